@@ -6,7 +6,7 @@ use crate::instruments::READERS;
 use std::path::Path;
 
 /// What to do with a file of another program.
-const EXPORT: &str = "not read; export X3P, SDF, GWY or text with that program";
+pub(crate) const EXPORT: &str = "not read; export X3P, SDF, GWY or text with that program";
 const PICTURE: &str = "grey values are no heights; export the heights as text or NPY";
 const SPREADSHEET: &str = "save the sheet as CSV";
 

@@ -115,6 +115,11 @@ impl Section {
         number.map(Some).ok_or_else(|| self.wrong(key, "a number"))
     }
 
+    /// A finite number that must be there.
+    pub(crate) fn some_number(&self, key: &str) -> Result<f64> {
+        self.number(key)?.ok_or_else(|| self.wrong(key, "a number"))
+    }
+
     /// A whole number that must be there.
     pub(crate) fn whole(&self, key: &str) -> Result<usize> {
         let number = self.text(key).and_then(|text| text.parse().ok());

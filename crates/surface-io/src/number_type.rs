@@ -73,6 +73,12 @@ impl NumberType {
         usize::from(self.size)
     }
 
+    /// Bytes of a map of so many numbers; `None` beyond 2^64.
+    pub(crate) fn bytes_of<N: TryInto<u64>>(self, shape: [N; 2]) -> Option<u64> {
+        let [rows, columns] = shape.map(|count| count.try_into().ok());
+        rows?.checked_mul(columns?)?.checked_mul(self.bytes() as u64)
+    }
+
     /// The number in the first of these bytes, or the integer that no double holds.
     pub(crate) fn decode(self, raw: &[u8]) -> Result<f64, i128> {
         let raw = &raw[..self.bytes()];

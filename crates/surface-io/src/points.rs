@@ -31,11 +31,7 @@ pub(crate) fn grid(table: &TextTable, declared: &ReadOptions) -> Result<StoredCh
     if table.columns != 3 {
         return Err(ContentError::NotPoints { line: table.first_line(), found: table.columns });
     }
-    let unit = table.heading.unit.clone();
-    let heights_unit = declared.unit.as_ref().or(unit.as_ref());
-    let has_length =
-        declared.height_scale.is_some() || heights_unit.is_some_and(|u| u.dimension() == Dimension::LENGTH);
-    let lateral = lateral_unit(declared, table, has_length)?;
+    let lateral = lateral_unit(declared, table)?;
     let spacing = match declared.cell {
         Some(cell) => {
             let [x, y] = cell.both();
@@ -43,44 +39,71 @@ pub(crate) fn grid(table: &TextTable, declared: &ReadOptions) -> Result<StoredCh
         }
         None => [None, None],
     };
-    let points = table.rows();
-    let axis = |name, at: usize| {
-        let along = table.values.iter().skip(at).step_by(3).copied();
-        if let Some(point) = along.clone().position(|v: f64| v.is_nan()) {
-            return Err(ContentError::Coordinate { axis: name, line: table.lines[point] as usize });
-        }
-        GridAxis::find(name, along.collect(), spacing[at])
-    };
-    let (x, y) = (axis('x', 0)?, axis('y', 1)?);
-    if x.count * y.count * FULL > points as f64 {
-        return Err(ContentError::Sparse { points, rows: y.count, columns: x.count });
-    }
-    let (rows, columns) = (y.count as usize, x.count as usize);
-    let mut heights = vec![f64::NAN; rows * columns];
-    // Lines that are taken; 0 is none.
-    let mut taken = vec![0_u32; rows * columns];
-    for (i, point) in table.values.chunks_exact(3).enumerate() {
-        let at = y.index(point[1])? * columns + x.index(point[0])?;
-        if taken[at] > 0 {
-            let [first, second] = [taken[at], table.lines[i]].map(|line| line as usize);
-            return Err(ContentError::Duplicate { first, second, at: [point[0], point[1]] });
-        }
-        taken[at] = table.lines[i];
-        heights[at] = table.scale.unwrap_or(1.0) * point[2];
-    }
+    let (x, y) = (axis(table, 'x', 0, spacing[0])?, axis(table, 'y', 1, spacing[1])?);
+    let heights = placed(table, &[&x, &y])?;
     let extent = if declared.cell.is_some() {
         [None; 2]
     } else {
         extents(table, [&x, &y], &lateral.unwrap_or_else(Unit::none))?
     };
-    let off = 100.0 * x.off.max(y.off);
+    let shape = [y.count as usize, x.count as usize];
+    Ok(channel(table, ["points", "cell"], x.off.max(y.off), heights, shape, extent))
+}
+
+/// The coordinates in a column as an axis.
+fn axis(table: &TextTable, name: char, at: usize, spacing: Option<f64>) -> Result<GridAxis, ContentError> {
+    let along = table.values.iter().skip(at).step_by(table.columns).copied();
+    if let Some(point) = along.clone().position(f64::is_nan) {
+        return Err(ContentError::Coordinate { axis: name, line: table.lines[point] as usize });
+    }
+    GridAxis::find(name, along.collect(), spacing)
+}
+
+/// The heights, in the last column, at their places on these axes, the first of which runs fastest; undefined where there is no point.
+fn placed(table: &TextTable, axes: &[&GridAxis]) -> Result<Vec<f64>, ContentError> {
+    let counts: f64 = axes.iter().map(|axis| axis.count).product();
+    let points = table.rows();
+    if counts * FULL > points as f64 {
+        let rows = axes.get(1).map_or(1.0, |axis| axis.count);
+        return Err(ContentError::Sparse { points, rows, columns: axes[0].count });
+    }
+    let places = axes.iter().map(|axis| axis.count as usize).product();
+    let mut heights = vec![f64::NAN; places];
+    // Lines that are taken; 0 is none.
+    let mut taken = vec![0_u32; places];
+    for (point, &line) in table.values.chunks_exact(table.columns).zip(&table.lines) {
+        let (coordinates, height) = (&point[..axes.len()], point[axes.len()]);
+        let mut at = 0;
+        for (axis, &coordinate) in axes.iter().zip(coordinates).rev() {
+            at = at * axis.count as usize + axis.index(coordinate)?;
+        }
+        if taken[at] > 0 {
+            let [first, second] = [taken[at], line].map(|line| line as usize);
+            let at = [coordinates[0], coordinates.get(1).copied().unwrap_or(0.0)];
+            return Err(ContentError::Duplicate { first, second, at });
+        }
+        taken[at] = line;
+        heights[at] = table.scale.unwrap_or(1.0) * height;
+    }
+    Ok(heights)
+}
+
+/// The channel of points, and how far they are off their places, in cells.
+fn channel(
+    table: &TextTable,
+    [points, cell]: [&str; 2],
+    off: f64,
+    heights: Vec<f64>,
+    shape: [usize; 2],
+    extent: [Option<Extent>; 2],
+) -> StoredChannel {
+    let off = 100.0 * off;
     let off =
-        if off > SHOWN { format!(", up to {off:.2} % of a cell off their places") } else { String::new() };
-    let details = format!("{points} points, {}{off}", table.details());
-    let (heights, unit) = (StoredHeights::Read(heights), StoredUnit::heights(unit));
-    let channel = StoredChannel::of(heights, details, [rows, columns], unit);
-    let notes = table.heading.notes(extent);
-    Ok(StoredChannel { name: table.heading.name.clone(), extent, notes, ..channel })
+        if off > SHOWN { format!(", up to {off:.2} % of a {cell} off their places") } else { String::new() };
+    let details = format!("{} {points}, {}{off}", table.rows(), table.details());
+    let (heights, unit) = (StoredHeights::Read(heights), StoredUnit::heights(table.heading.unit.clone()));
+    let channel = StoredChannel::of(heights, details, shape, unit);
+    StoredChannel { name: table.heading.name.clone(), extent, notes: table.heading.notes(extent), ..channel }
 }
 
 /// Whether the first two of three columns are all places of a grid of two rows and columns or more, each once and exactly on its place.
@@ -108,11 +131,10 @@ pub(crate) fn is_full_grid(table: &TextTable) -> bool {
 
 /// Unit of x and y: as given or as the file says. Heights with a unit beside coordinates without one are not
 /// guessed at.
-fn lateral_unit(
-    declared: &ReadOptions,
-    table: &TextTable,
-    heights_have_length: bool,
-) -> Result<Option<Unit>, ContentError> {
+fn lateral_unit(declared: &ReadOptions, table: &TextTable) -> Result<Option<Unit>, ContentError> {
+    let of_heights = declared.unit.as_ref().or(table.heading.unit.as_ref());
+    let heights_have_length =
+        declared.height_scale.is_some() || of_heights.is_some_and(|u| u.dimension() == Dimension::LENGTH);
     let (file, given) = (&table.heading.lateral_unit, &declared.lateral_unit);
     if let (Some(a), Some(b)) = (file, given)
         && !a.same(b)

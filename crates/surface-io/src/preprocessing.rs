@@ -224,9 +224,7 @@ impl Scan {
                 *h = unit.value.to_si(*h);
             }
         }
-        if let Some(value) = heights.iter().copied().find(|h| h.is_infinite()) {
-            return Err(ContentError::Overflow { value });
-        }
+        check_overflow(&heights)?;
         repair(preprocessing, cells, &mut heights, &mut steps)?;
         let undefined = heights.iter().filter(|h| h.is_nan()).count();
         if undefined == heights.len() {
@@ -449,6 +447,14 @@ impl Scan {
     }
 }
 
+/// Errors where a step made a height infinite.
+fn check_overflow(heights: &[f64]) -> Result<(), ContentError> {
+    match heights.iter().copied().find(|h| h.is_infinite()) {
+        Some(value) => Err(ContentError::Overflow { value }),
+        None => Ok(()),
+    }
+}
+
 /// Scan lines aligned, then scars and outliers made undefined.
 fn repair(
     preprocessing: &Preprocessing,
@@ -458,9 +464,7 @@ fn repair(
 ) -> Result<(), ContentError> {
     if let Some(align) = preprocessing.align_lines {
         steps.push(align.apply(cells, heights).map_err(|value| ContentError::Overflow { value })?);
-        if let Some(value) = heights.iter().copied().find(|h| h.is_infinite()) {
-            return Err(ContentError::Overflow { value });
-        }
+        check_overflow(heights)?;
     }
     let positive = |what, value: f64, expected| {
         let valid = value > 0.0 && value.is_finite();

@@ -118,12 +118,7 @@ pub fn text(map: &HeightMap, metric: Metric) -> String {
     let mut written = Lines::new(head, 24 * map.heights().len());
     for row in map.heights().chunks_exact(map.columns()) {
         for (i, h) in row.iter().enumerate() {
-            let end = if i + 1 == row.len() { '\n' } else { '\t' };
-            if h.is_finite() {
-                written.add(format_args!("{h:e}{end}"));
-            } else {
-                written.add(format_args!("nan{end}"));
-            }
+            written.add_height(*h, if i + 1 == row.len() { '\n' } else { '\t' });
         }
     }
     written.text
@@ -146,11 +141,8 @@ pub fn xyz(map: &HeightMap, metric: Metric) -> String {
     let centre = |k: usize, cell: f64| (k as f64 + 0.5) * cell;
     for (i, h) in map.heights().iter().enumerate() {
         let (x, y) = (centre(i % columns, map.dx()), centre(i / columns, map.dy()));
-        if h.is_finite() {
-            written.add(format_args!("{x:e} {y:e} {h:e}\n"));
-        } else {
-            written.add(format_args!("{x:e} {y:e} nan\n"));
-        }
+        written.add(format_args!("{x:e} {y:e} "));
+        written.add_height(*h, '\n');
     }
     written.text
 }

@@ -4,6 +4,7 @@
 //! Own code: `zip` 9.8 reserves memory for as many members as a file claims before it reads one of them, bounded by the claimed size of
 //! the directory and not by the file.
 
+use crate::detect::EXPORT;
 use crate::error::{ContentError, Result};
 use crate::fields::{ByteOrder, Fields, header};
 use crate::inflate::{Packed, Packing};
@@ -154,12 +155,11 @@ fn text_in_place(mut bytes: Vec<u8>) -> String {
 /// The error for an archive without a file of heights that is known.
 pub(crate) fn refused(members: &[Member]) -> ContentError {
     const SHOWN: usize = 8;
-    let remedy = "not read; export X3P, SDF, GWY or text with that program";
     for (member, what) in
         [("header.properties", "a JPK file (in an archive)"), ("index.xml", "a PLUX file of Sensofar")]
     {
         if members.iter().any(|m| m.name == member) {
-            return ContentError::Foreign { what, remedy };
+            return ContentError::Foreign { what, remedy: EXPORT };
         }
     }
     let mut names: Vec<String> = members.iter().take(SHOWN).map(|m| shortened(&m.name, 64)).collect();

@@ -69,8 +69,7 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
     let Some(number) = number else {
         return Err(source.wrong(shape + 8, format!("16 or 32 bits a number, found {bits}")));
     };
-    let points = u64::from(columns) * u64::from(rows);
-    if points.checked_mul(number.bytes() as u64) != Some(length) {
+    if number.bytes_of([rows, columns]) != Some(length) {
         let expected = format!("a block of {rows} x {columns} numbers of {bits} bits, found {length} bytes");
         return Err(source.wrong(begin, expected));
     }

@@ -162,7 +162,7 @@ fn channel(
         _ => AxisOrder::Columns,
     };
     let (lines, along) = (first, second);
-    let claimed = lines.checked_mul(along).and_then(|n| n.checked_mul(number.bytes() as u64));
+    let claimed = number.bytes_of([lines, along]);
     let most = RATIO.saturating_mul(source.length());
     if claimed.is_none_or(|claimed| claimed > most) {
         let expected = format!("{name} of {first} x {second} numbers in at most {most} bytes");

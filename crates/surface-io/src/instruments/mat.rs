@@ -177,8 +177,8 @@ fn channel(
     if complex {
         return wrong("real numbers, found complex ones".into());
     }
-    let size = number.bytes() as u64;
-    if (rows as u64).checked_mul(columns as u64).and_then(|n| n.checked_mul(size)) != Some(bytes) {
+    if number.bytes_of([rows, columns]) != Some(bytes) {
+        let size = number.bytes();
         return wrong(format!("{rows} x {columns} numbers of {size} bytes, found {bytes} bytes"));
     }
     let raw = |place| RawHeights { order: AxisOrder::Columns, ..RawHeights::new(place, number) };

@@ -50,12 +50,11 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
     let [about, maps @ ..] = header.sections() else { return Ok(Vec::new()) };
     check_number(source, 0, maps.len())?;
     let shape = [about.whole("ypixels")?, about.whole("xpixels")?];
-    let length = shape[0].checked_mul(shape[1]).and_then(|points| points.checked_mul(number.bytes()));
-    let length = length.ok_or_else(|| about.wrong("ypixels", "fewer points"))? as u64;
+    let length = number.bytes_of(shape).ok_or_else(|| about.wrong("ypixels", "fewer points"))?;
     let extent = ["xlength", "ylength"].map(|key| about.side(key, "m"));
     let one = |i: usize, map: &Section| {
         let name = map.text("bufferlabel").unwrap_or_default();
-        let range = map.number("bufferrange")?.ok_or_else(|| map.wrong("bufferrange", "a number"))?;
+        let range = map.some_number("bufferrange")?;
         let raw = RawHeights {
             reversed: [false, true],
             // All numbers together make the range from its negative to itself.

@@ -101,10 +101,10 @@ fn channel<'s>(
         4 => 4_294_967_296.0,
         _ => return Err(image.wrong("bytes/pixel", "2 or 4 bytes")),
     };
-    let bytes = |size: usize| columns.checked_mul(rows)?.checked_mul(size).map(|bytes| bytes as u64);
-    let wide = pixel == 4 || (version >= WIDE && bytes(4).is_some_and(|bytes| bytes <= length));
+    let bytes = |number: NumberType| number.bytes_of([rows, columns]);
+    let wide = pixel == 4 || (version >= WIDE && bytes(NumberType::I32).is_some_and(|bytes| bytes <= length));
     let kind = if wide { NumberType::I32 } else { NumberType::I16 };
-    if bytes(kind.bytes()) != Some(length) {
+    if bytes(kind) != Some(length) {
         let expected = format!("{columns} x {rows} numbers of {} bytes", kind.bytes());
         return Err(image.wrong("data length", expected));
     }

@@ -94,8 +94,8 @@ fn layout(map: &Section) -> Result<([usize; 2], NumberType, u64)> {
     };
     let number = number.ok_or_else(|| map.wrong("savebits", "8, 16 or 32 bits"))?;
     let shape = [map.whole("lines")?, map.whole("points")?];
-    let length = shape[0].checked_mul(shape[1]).and_then(|points| points.checked_mul(number.bytes()));
-    Ok((shape, number, length.ok_or_else(|| map.wrong("points", "fewer points"))? as u64))
+    let length = number.bytes_of(shape).ok_or_else(|| map.wrong("points", "fewer points"))?;
+    Ok((shape, number, length))
 }
 
 fn channel(
@@ -105,8 +105,7 @@ fn channel(
     shape: [usize; 2],
     number: NumberType,
 ) -> Result<StoredChannel> {
-    let wanted = |key: &str| map.number(key)?.ok_or_else(|| map.wrong(key, "a number"));
-    let (range, low) = (wanted("dim2range")?, wanted("dim2min")?);
+    let (range, low) = (map.some_number("dim2range")?, map.some_number("dim2min")?);
     let middle = if number.is_signed() { low + range / 2.0 } else { low };
     let shift = if middle.abs() <= PRINTED * range.abs() { 0.0 } else { middle };
     let scale = range / number.values();

@@ -78,8 +78,7 @@ pub(super) fn channel(source: &mut Source<'_>, tags: &Directories) -> Result<Opt
         (_, 2) => NumberType::F32,
         (_, other) => return wrong(348, format!("a type of numbers from 0 to 2, found {other}")),
     };
-    let points = u64::from(header.columns) * u64::from(header.rows);
-    if points.checked_mul(number.bytes() as u64) != Some(bytes) {
+    if number.bytes_of([header.rows, header.columns]) != Some(bytes) {
         let size = number.bytes();
         let expected =
             format!("{} x {} numbers of {size} bytes, found {bytes} bytes", header.columns, header.rows);
