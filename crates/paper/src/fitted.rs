@@ -195,7 +195,7 @@ impl FittedFigure {
         for formula in self.formulas {
             picture.legend(formula.legend, REFERENCE, Key::Line(formula.style));
         }
-        picture.save(out, self.name)
+        Ok(picture.save(out, self.name)?)
     }
 }
 
