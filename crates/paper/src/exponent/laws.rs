@@ -36,12 +36,12 @@ impl LawRow {
 
     /// Eq. 6.
     pub fn eq6(&self) -> f64 {
-        0.266 * self.fractal_dimension
+        analytic::exponent_fit(self.fractal_dimension)
     }
 
     /// Eq. 24 with H = 3 - D_f.
     pub fn power_law(&self) -> f64 {
-        1.0 / (4.0 - self.fractal_dimension)
+        analytic::exponent_scaling(3.0 - self.fractal_dimension)
     }
 
     /// Which law lies in the interval.

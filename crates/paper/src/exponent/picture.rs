@@ -1,5 +1,6 @@
 //! The pictures: local slopes with bands beside the laws, and line over surface.
 
+use crate::words;
 use evaluation::read_rows;
 use plots::{Axis, Key, Legend, LineStyle, Mark, Panels, Picture, color, logarithmic, shape};
 use runs::{CsvFile, Result};
@@ -62,9 +63,10 @@ fn slopes(directory: &Path) -> Result<Vec<PathBuf>> {
     for d in dimensions(shown.iter().map(|r| r.fractal_dimension)) {
         let mut picture = Picture::new(x, Axis::Linear(0.3, 1.1), FORCE, "$\\rm{d ln} k/\\rm{d ln} F$")
             .with_size(400.0, 280.0)
-            .with_subtitle(&format!("$D_{{\\rm{{f}}}} = {d:?}$"));
+            .with_subtitle(&words::dimension(d));
         let (low, high) = x.ends();
-        for (law, style) in [(0.266 * d, LineStyle::Dashed), (1.0 / (4.0 - d), LineStyle::Dotted)] {
+        let laws = [analytic::exponent_fit(d), analytic::exponent_scaling(3.0 - d)];
+        for (law, style) in laws.into_iter().zip([LineStyle::Dashed, LineStyle::Dotted]) {
             picture.line(&[(low, law), (high, law)], "#000000", 1.2, style);
         }
         for (model, color) in [("mdr1d", LINE), ("bem3d", SOLID)] {
@@ -104,15 +106,10 @@ fn ratios(directory: &Path) -> Result<Vec<PathBuf>> {
     let shown: Vec<&RatioRow> = rows.iter().filter(|r| r.convention == "measured_rms").collect();
     let x = logarithmic(shown.iter().map(|r| r.force_bar));
     let ends = shown.iter().flat_map(|r| [r.ratio - r.half_width, r.ratio + r.half_width]);
-    let mut picture = Picture::new(
-        x,
-        plots::linear(ends),
-        "normalised force $\\bar{F} = F/(E^* h L)$",
-        "$k_{\\rm{1D}}/k_{\\rm{3D}}$",
-    )
-    .with_size(800.0, 560.0)
-    .with_title("Stiffness of the line over that of the surface")
-    .with_legend_below();
+    let mut picture = Picture::new(x, plots::linear(ends), words::FORCE, "$k_{\\rm{1D}}/k_{\\rm{3D}}$")
+        .with_size(800.0, 560.0)
+        .with_title("Stiffness of the line over that of the surface")
+        .with_legend_below();
     for d in dimensions(shown.iter().map(|r| r.fractal_dimension)) {
         let own: Vec<&&RatioRow> =
             shown.iter().filter(|r| r.fractal_dimension.total_cmp(&d).is_eq()).collect();
@@ -123,7 +120,7 @@ fn ratios(directory: &Path) -> Result<Vec<PathBuf>> {
         picture.band(&band, &color);
         picture.line(&line, &color, 1.6, LineStyle::Solid);
         picture.points(&line, &color, 3.6, mark);
-        picture.legend(&format!("$D_{{\\rm{{f}}}} = {d:?}$"), &color, Key::Curve(mark));
+        picture.legend(&words::dimension(d), &color, Key::Curve(mark));
     }
     picture.legend("bands: 95 %, scatter and what both grids leave", "#000000", Key::Words);
     Ok(picture.save(directory, "exponent-ratio")?)

@@ -131,14 +131,10 @@ fn areas(solved: SolvedCase<'_>) -> [Found; 2] {
         };
         Some([estimate(&exponent, &gradient), estimate(&kappa, &units)])
     };
-    match found() {
-        Some(both) => both.map(Ok),
-        None => {
-            let reason =
-                format!("fewer than 3 loads with {cells} cells in contact and at most {share} of the square");
-            [Err(reason.clone().into()), Err(reason.into())]
-        }
-    }
+    let reason =
+        format!("fewer than 3 loads with {cells} cells in contact and at most {share} of the square");
+    let none = || [0, 1].map(|_| Err(reason.clone().into()));
+    found().map_or_else(none, |both| both.map(Ok))
 }
 
 /// Periodic over free stiffness, surface by surface, for both spectra.
