@@ -64,13 +64,14 @@ impl Normalisation {
     }
 }
 
-/// A planned contact: solve often, follow paths. It keeps tables, plans and the last state, from which the next solve starts.
+/// A planned contact: solve often, follow paths. It keeps tables, plans and the last state, from which the
+/// next solve starts.
 ///
-/// `solve` and `sweep` answer each load from no contact; `advance` and `follow` go along a path of loads, from where the contact is.
-/// Threads that use one contact do so one after the other, in the order of asking.
+/// `solve` and `sweep` answer each load from no contact; `advance` and `follow` go along a path of loads,
+/// from where the contact is. Threads that use one contact do so one after the other, in the order of asking.
 ///
-/// With a hardness `solve` begins with the virgin surface: a load smaller than one before is refused, because the indentation of that one
-/// would be forgotten. `advance` and `follow` keep it, along any path.
+/// With a hardness `solve` begins with the virgin surface: a load smaller than one before is refused, because
+/// the indentation of that one would be forgotten. `advance` and `follow` keep it, along any path.
 #[pyclass(frozen, module = "fractal_contact")]
 pub struct Contact {
     inner: Exclusive<Inner>,
@@ -112,7 +113,8 @@ impl Contact {
 
     /// Solves, on the pool where that may be long; Ctrl-C and errors become exceptions.
     ///
-    /// States that are replaced end outside of all locks: the end of an array may call Python, which may ask for this contact.
+    /// States that are replaced end outside of all locks: the end of an array may call Python, which may ask
+    /// for this contact.
     fn answer(&self, py: Python<'_>, asked: &Asked, area: Option<f64>) -> PyResult<Py<ContactState>> {
         let normal = match asked {
             Asked::Load(load) => *load,
@@ -289,7 +291,8 @@ impl Contact {
 
     /// Goes along a path: an iterator that yields the state at the end of each step as soon as it is there.
     ///
-    /// What was yielded stays where a later step raises; the contact then stands at the end of the step before that one.
+    /// What was yielded stays where a later step raises; the contact then stands at the end of the step
+    /// before that one.
     ///
     /// Parameters
     /// ----------
@@ -364,10 +367,11 @@ impl Contact {
         shown(py, &self.best)
     }
 
-    /// ContactState or None: the state at the end of the last solve or step that was complete, where the next step begins; None before the
-    /// first, and after a solve that failed.
+    /// ContactState or None: the state at the end of the last solve or step that was complete, where the next
+    /// step begins; None before the first, and after a solve that failed.
     ///
-    /// It says where the contact stands after a step that failed, or that a signal such as Ctrl-C interrupted.
+    /// It says where the contact stands after a step that failed, or that a signal such as Ctrl-C
+    /// interrupted.
     #[getter]
     fn last(&self, py: Python<'_>) -> Option<Py<ContactState>> {
         shown(py, &self.last)

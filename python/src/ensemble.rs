@@ -95,7 +95,8 @@ pub fn ensemble(
         Ok(())
     };
     let (found, raised) = pool::run(py, &mut listen, |stop| {
-        // A loop for each thread: one that waits for helpers does not begin another surface, which would need memory of its own.
+        // A loop for each thread: one that waits for helpers does not begin another surface, which would need
+        // memory of its own.
         run_jobs(threads, &(0..surfaces).collect::<Vec<usize>>(), stop, answer)
     })?;
     // A load that was refused stands for itself among the others.

@@ -1,7 +1,9 @@
-//! What one thread of Python uses at a time: taken in the order of asking, with Ctrl-C heard while a thread waits.
+//! What one thread of Python uses at a time: taken in the order of asking, with Ctrl-C heard while a thread
+//! waits.
 //!
-//! It is taken by the thread that calls from Python, before there is a job of the pool. A lock that is taken inside a job can wait for
-//! ever: a thread of the pool that waits for helpers may be given another job, which would wait for the lock that its own thread holds.
+//! It is taken by the thread that calls from Python, before there is a job of the pool. A lock that is taken
+//! inside a job can wait for ever: a thread of the pool that waits for helpers may be given another job,
+//! which would wait for the lock that its own thread holds.
 
 use crate::pool::LOOK;
 use pyo3::exceptions::PyRuntimeError;
@@ -41,8 +43,8 @@ impl<T: Send> Exclusive<T> {
     /// Takes the value; waits without the interpreter's lock while another thread has it.
     ///
     /// # Errors
-    /// What the handler of a signal raises meanwhile; `RuntimeError` where this very thread has the value or waits for it, as in the handler
-    /// of a signal that came during a solve.
+    /// What the handler of a signal raises meanwhile; `RuntimeError` where this very thread has the value or
+    /// waits for it, as in the handler of a signal that came during a solve.
     pub fn take(&self, py: Python<'_>) -> PyResult<InUse<'_, T>> {
         let mut state = self.locked();
         if state.waiting.is_empty()

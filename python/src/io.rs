@@ -124,7 +124,8 @@ fn metadata<'py>(py: Python<'py>, of: &Metadata) -> PyResult<Bound<'py, PyDict>>
 /// Map, metadata, steps, and the distance from which on heights are reliable.
 type Read<'py> = (HeightMap, Bound<'py, PyDict>, Vec<String>, Option<f64>);
 
-/// A surface of a file: its map, what the file says, what was done to the map, from which distance on the tip lets heights be seen.
+/// A surface of a file: its map, what the file says, what was done to the map, from which distance on the tip
+/// lets heights be seen.
 #[pyfunction]
 #[pyo3(signature = (path, options))]
 pub fn read_surface<'py>(

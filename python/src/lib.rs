@@ -1,4 +1,5 @@
-//! The Python package `fractal_contact`: classes and functions of the Rust crates, without logic of their own.
+//! The Python package `fractal_contact`: classes and functions of the Rust crates, without logic of their
+//! own.
 //!
 //! What a user sees is in `fractal_contact/*.py`, which call this module `_core`.
 

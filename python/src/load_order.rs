@@ -1,14 +1,14 @@
 //! The order of loads on a contact with a hardness.
 //!
-//! A solve begins with the virgin surface. A smaller load than one before would forget the indentation of that one without a word, so it
-//! is refused.
+//! A solve begins with the virgin surface. A smaller load than one before would forget the indentation of
+//! that one without a word, so it is refused.
 
 use crate::errors::of_model;
 use fractal_contact::{ContactState, Error, Load};
 use pyo3::prelude::*;
 
-/// How far a load may lie below a state that was solved for a load of another kind: what was not asked for is known within the tolerance
-/// of a solve.
+/// How far a load may lie below a state that was solved for a load of another kind: what was not asked for is
+/// known within the tolerance of a solve.
 const WITHIN_TOLERANCE: f64 = 1e-2;
 
 const REMEDY: &str = "with a hardness each load is solved from the virgin surface, and the indentation of a larger one would be \
@@ -47,12 +47,14 @@ impl Highest {
     }
 }
 
-/// An error where one of the loads is smaller than that before it; `area` where they were given as mean pressures.
+/// An error where one of the loads is smaller than that before it; `area` where they were given as mean
+/// pressures.
 pub fn check_rising(py: Python<'_>, loads: &[Load], area: Option<f64>) -> PyResult<()> {
     loads.windows(2).try_for_each(|pair| check(py, [pair[0], pair[1]], area, 0.0))
 }
 
-/// An error where the second load is smaller than the first, which is of its kind, by more than a share of it.
+/// An error where the second load is smaller than the first, which is of its kind, by more than a share of
+/// it.
 fn check(py: Python<'_>, loads: [Load; 2], area: Option<f64>, slack: f64) -> PyResult<()> {
     let (name, before, value, sign) = match loads {
         [Load::Force(before), Load::Force(value)] => ("force", before, value, 1.0),

@@ -1,4 +1,5 @@
-//! Memory that a call will take, compared with what there is before it is asked for: a system that refuses memory later ends the process.
+//! Memory that a call will take, compared with what there is before it is asked for: a system that refuses
+//! memory later ends the process.
 
 use crate::errors::of_model;
 use fractal_contact::runs::check_memory;
@@ -11,7 +12,8 @@ pub fn check(py: Python<'_>, what: impl Into<Cow<'static, str>>, bytes: f64) -> 
     check_memory(what, bytes).map_err(|error| of_model(py, error))
 }
 
-/// Bytes of a contact below which its solves are not looked at: to ask the system would take a part of their time.
+/// Bytes of a contact below which its solves are not looked at: to ask the system would take a part of their
+/// time.
 const SMALL: f64 = 1e8;
 
 /// Whether contacts that need this much at least are looked at before each solve.
@@ -19,7 +21,8 @@ pub fn is_large(least: Option<&RequiredMemory>) -> bool {
     least.is_some_and(|least| least.bytes > SMALL)
 }
 
-/// `MemoryError` where a solve with a contact, which may be used by one thread at a time, needs more than there is.
+/// `MemoryError` where a solve with a contact, which may be used by one thread at a time, needs more than
+/// there is.
 pub fn check_solve<C: Send + ?Sized>(
     py: Python<'_>,
     contact: &mut C,

@@ -59,10 +59,11 @@ pub fn set_threads(py: Python<'_>, count: usize) -> PyResult<()> {
     Ok(())
 }
 
-/// Runs `work` on the pool. `work` is given what says that it should stop; where a signal's handler raised, that exception comes with the
-/// result.
+/// Runs `work` on the pool. `work` is given what says that it should stop; where a signal's handler raised,
+/// that exception comes with the result.
 ///
-/// `listen` is called about twenty times a second, with the interpreter's lock; an error of it stops the work as well.
+/// `listen` is called about twenty times a second, with the interpreter's lock; an error of it stops the work
+/// as well.
 pub fn run<R: Send>(
     py: Python<'_>,
     listen: &mut (dyn FnMut(Python<'_>) -> PyResult<()> + Send),

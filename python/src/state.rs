@@ -18,8 +18,8 @@ pub fn array(py: Python<'_>, field: Field) -> PyResult<Py<PyArray2<f64>>> {
 
 /// Looks up all that arrays need of numpy, while the module is imported.
 ///
-/// The crate `numpy` does so when the first array is made, and takes for granted that nothing fails there: a Ctrl-C that came at that
-/// moment would be a panic.
+/// The crate `numpy` does so when the first array is made, and takes for granted that nothing fails there: a
+/// Ctrl-C that came at that moment would be a panic.
 pub fn look_up_arrays(py: Python<'_>) -> PyResult<()> {
     py.import("numpy")?;
     let array = PyArray1::from_vec(py, vec![0.0]).reshape([1, 1])?;
@@ -54,40 +54,43 @@ impl Certificate {
         self.0.complementarity
     }
 
-    /// float: relative difference of the force from the one asked for; of a mean gap its miss over the rms height.
+    /// float: relative difference of the force from the one asked for; of a mean gap its miss over the rms
+    /// height.
     #[getter]
     fn load_error(&self) -> f64 {
         self.0.load_error
     }
 
-    /// float or None: estimated relative error of the stiffness; None where it is a difference quotient (`quotient_error`).
+    /// float or None: estimated relative error of the stiffness; None where it is a difference quotient
+    /// (`quotient_error`).
     #[getter]
     fn stiffness_error(&self) -> Option<f64> {
         self.0.stiffness_error
     }
 
-    /// float or None: estimated relative error of a stiffness that is a difference quotient, with adhesion of short range and Dugdale's law.
-    /// The cells decide it, not the tolerance: no part of `worst`.
+    /// float or None: estimated relative error of a stiffness that is a difference quotient, with adhesion of
+    /// short range and Dugdale's law. The cells decide it, not the tolerance: no part of `worst`.
     #[getter]
     fn quotient_error(&self) -> Option<f64> {
         self.0.quotient_error
     }
 
-    /// float or None: bound of the relative error of the force under a prescribed approach or mean gap, an estimate with adhesion; no part
-    /// of `worst`.
+    /// float or None: bound of the relative error of the force under a prescribed approach or mean gap, an
+    /// estimate with adhesion; no part of `worst`.
     #[getter]
     fn force_error(&self) -> Option<f64> {
         self.0.force_error
     }
 
-    /// float or None: estimated relative error of the stiffness, however it was found; ``stiffness_error`` in tables.
+    /// float or None: estimated relative error of the stiffness, however it was found; ``stiffness_error`` in
+    /// tables.
     #[getter]
     fn error_of_stiffness(&self) -> Option<f64> {
         self.0.error_of_stiffness()
     }
 
-    /// float or None: largest difference between the traction of a cell and what the law of adhesion says of its gap, over work/range; None
-    /// without adhesion of finite range.
+    /// float or None: largest difference between the traction of a cell and what the law of adhesion says of
+    /// its gap, over work/range; None without adhesion of finite range.
     #[getter]
     fn equilibrium(&self) -> Option<f64> {
         self.0.equilibrium
@@ -122,9 +125,11 @@ impl Certificate {
     }
 }
 
-/// One contact state, alone or at the end of a step of a path. What was not asked for, or what the model does not claim, is None.
+/// One contact state, alone or at the end of a step of a path. What was not asked for, or what the model does
+/// not claim, is None.
 ///
-/// Its numbers and words are those of `quantities`. Units in brackets are those of SI; a scene in other units has its own.
+/// Its numbers and words are those of `quantities`. Units in brackets are those of SI; a scene in other units
+/// has its own.
 #[pyclass(frozen, module = "fractal_contact")]
 pub struct ContactState {
     state: RustState,
@@ -169,7 +174,8 @@ impl ContactState {
         self.state.resolution.map(|resolution| resolution.edge_cells)
     }
 
-    /// numpy.ndarray or None: areas of the connected contacts (length^2), the largest first; shape (patches,).
+    /// numpy.ndarray or None: areas of the connected contacts (length^2), the largest first; shape
+    /// (patches,).
     #[getter]
     fn patches<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
         self.state.patches.as_ref().map(|patches| PyArray1::from_slice(py, patches.areas()))
@@ -181,10 +187,11 @@ impl ContactState {
         Certificate(self.state.report.certificate)
     }
 
-    /// The numbers and words by their names, which are those of the columns of scenes; arrays only with ``fields=True``.
+    /// The numbers and words by their names, which are those of the columns of scenes; arrays only with
+    /// ``fields=True``.
     ///
-    /// Those of effects and of paths are there where the state has them; any other that it lacks is None. ``patches`` is the number of
-    /// connected contacts, and with ``fields=True`` the array.
+    /// Those of effects and of paths are there where the state has them; any other that it lacks is None.
+    /// ``patches`` is the number of connected contacts, and with ``fields=True`` the array.
     #[pyo3(signature = (*, fields=false))]
     fn to_dict<'py>(&self, py: Python<'py>, fields: bool) -> PyResult<Bound<'py, PyDict>> {
         let dict = PyDict::new(py);

@@ -19,7 +19,8 @@ fn boundary(periodic: bool) -> Boundary {
     if periodic { Boundary::Periodic } else { Boundary::Free }
 }
 
-/// Bytes for each point of a map: of a spectrum, and of height differences with periodic and with free boundaries.
+/// Bytes for each point of a map: of a spectrum, and of height differences with periodic and with free
+/// boundaries.
 const SPECTRUM: f64 = 24.0;
 const DIFFERENCES: [f64; 2] = [100.0, 400.0];
 

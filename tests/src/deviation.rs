@@ -23,10 +23,12 @@ pub struct Deviation {
     pub area: f64,
 }
 
-/// Solves every case of a problem with a model and compares; `None` where the model refuses the scene as unsupported.
+/// Solves every case of a problem with a model and compares; `None` where the model refuses the scene as
+/// unsupported.
 ///
 /// # Errors
-/// Every error of the model but [`Error::Unsupported`]; [`Error::Shape`] when a state lacks a number that was asked for.
+/// Every error of the model but [`Error::Unsupported`]; [`Error::Shape`] when a state lacks a number that was
+/// asked for.
 pub fn deviation(
     model: &dyn ContactModel,
     problem: &Problem,

@@ -1,6 +1,7 @@
 //! Orders of convergence.
 
-/// Order p of errors that fall like `N^-p`: least squares of ln error over ln N; `None` for fewer than two grids or an error of 0.
+/// Order p of errors that fall like `N^-p`: least squares of ln error over ln N; `None` for fewer than two
+/// grids or an error of 0.
 ///
 /// ```
 /// // Errors 1/N^2 on three grids.

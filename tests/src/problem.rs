@@ -14,7 +14,8 @@ pub struct Case {
 
 /// A body, the theory that solves it exactly, and a few states.
 ///
-/// Several states, because the error of one depends on how the edge of the contact happens to lie on the cells; their mean does not.
+/// Several states, because the error of one depends on how the edge of the contact happens to lie on the
+/// cells; their mean does not.
 pub struct Problem {
     /// Short name.
     pub name: &'static str,

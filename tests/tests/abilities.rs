@@ -1,4 +1,5 @@
-//! What models declare is what they do: each ability is tried, and each thing that is not among them is refused.
+//! What models declare is what they do: each ability is tried, and each thing that is not among them is
+//! refused.
 
 use contact_model::quantities::{AskedBy, QUANTITIES, Quantity};
 use contact_model::{
@@ -156,8 +157,8 @@ pub fn told(model: &dyn ContactModel) -> BTreeSet<&'static str> {
     told
 }
 
-/// Each surface, boundary, effect and output that a model declares is part of a scene that it answers, and the answer has what was
-/// asked for.
+/// Each surface, boundary, effect and output that a model declares is part of a scene that it answers, and
+/// the answer has what was asked for.
 #[test]
 fn what_is_declared_is_done() {
     for record in MODELS {

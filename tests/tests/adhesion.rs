@@ -82,9 +82,10 @@ fn force_is_the_slope_of_elastic_and_surface_energy() {
 
 #[test]
 fn without_work_of_adhesion_it_is_hertz() {
-    // a^3 = (3R/4E*) (F + 3 pi w R + sqrt(6 pi w R F + ...)): the difference falls as sqrt(w), and with it that of the stiffness of
-    // the held area. The approach is the slope of an energy that a itself leaves stationary: there it is w dA/dF, of first order; and so is
-    // the difference of the stiffness along the branch, its inverse derivative.
+    // a^3 = (3R/4E*) (F + 3 pi w R + sqrt(6 pi w R F + ...)): the difference falls as sqrt(w), and with it
+    // that of the stiffness of the held area. The approach is the slope of an energy that a itself leaves
+    // stationary: there it is w dA/dF, of first order; and so is the difference of the stiffness along the
+    // branch, its inverse derivative.
     let force = 0.01;
     let elastic = press(&Jkr, 0.0, Load::Force(force));
     for (model, name) in models() {

@@ -107,7 +107,8 @@ fn exponent(samples: &[Vec<Option<f64>>], loads: &[(usize, f64)], without: Optio
 
 #[test]
 fn means_and_errors_follow_from_the_samples() {
-    // Seven digits in the compact tables; a standard error loses some of them where surfaces are nearly equal.
+    // Seven digits in the compact tables; a standard error loses some of them where surfaces are nearly
+    // equal.
     for figure in ["fig2", "fig6"] {
         for d in DIMENSIONS {
             let samples = samples(figure, d);
@@ -139,8 +140,8 @@ fn exponents_of_readme_are_those_of_the_samples() {
             let alpha = exponent(&samples, &loads, None);
             let (value, half_width, unit) = stated(cell);
             assert!((alpha - value).abs() <= 0.501 * unit, "{figure}, D_f {d}: {alpha}, README {cell}");
-            // The half-width holds window and grid as well: at least the delete-one jackknife, which differs from the bootstrap by a
-            // tenth or so.
+            // The half-width holds window and grid as well: at least the delete-one jackknife, which differs
+            // from the bootstrap by a tenth or so.
             let n = samples.len();
             let each: Vec<f64> = (0..n).map(|i| exponent(&samples, &loads, Some(i))).collect();
             let scatter = 1.96 * mean_and_error(&each).1 * (n as f64 - 1.0);
@@ -226,7 +227,8 @@ fn coverage_of_readme_is_counted_in_the_tables() {
     assert!(page.contains(&sentence), "{sentence}");
 }
 
-/// Exponent of surfaces or lines between two loads from the samples of the study: the mean on the coarsest grid and all mean differences added up.
+/// Exponent of surfaces or lines between two loads from the samples of the study: the mean on the coarsest
+/// grid and all mean differences added up.
 fn multilevel_exponent(model: &str, d: f64, from: f64, to: f64) -> f64 {
     let study = of_dimension(rows("data/exponent/exponent-samples.csv.gz"), d);
     let study: Vec<Row> = study.into_iter().filter(|row| row["model"] == model).collect();

@@ -1,5 +1,5 @@
-//! Pages and tables that follow from the tables of quantities and of models and from the sources, and what holds of the others. With
-//! `UPDATE_DOCUMENTS=1` what follows is written anew.
+//! Pages and tables that follow from the tables of quantities and of models and from the sources, and what
+//! holds of the others. With `UPDATE_DOCUMENTS=1` what follows is written anew.
 
 mod constants;
 mod crates;

@@ -10,7 +10,8 @@ use tests::rough;
 const SURFACES: u64 = 12;
 const FORCES: [f64; 7] = [3e-3, 1e-2, 3e-2, 8e-2, 0.3, 1.0, 20.0];
 
-/// Ratio of the mean k_bar, one dimension over three, at each force. The law of the line has a prefactor up to a sixth larger
+/// Ratio of the mean k_bar, one dimension over three, at each force. The law of the line has a prefactor up
+/// to a sixth larger
 ///, twelve surfaces scatter by a tenth, and 129 cells a side leave few contact cells at the smallest forces.
 const POWER_LAW: std::ops::Range<f64> = 0.8..1.5;
 /// At F_bar = 1 the scatter is 3 to 4 % a surface and the line is stiffer by 7 to 20 %.

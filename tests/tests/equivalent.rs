@@ -55,7 +55,8 @@ fn sheared(model: &dyn ContactModel) -> Vec<ContactState> {
     history.follow(&path).unwrap()
 }
 
-/// Root mean square relative error of the displacement and of the dissipated energy against Cattaneo, Mindlin and Deresiewicz.
+/// Root mean square relative error of the displacement and of the dissipated energy against Cattaneo, Mindlin
+/// and Deresiewicz.
 fn errors(model: &dyn ContactModel) -> [f64; 2] {
     let exact = sheared(&CattaneoMindlin);
     let found = sheared(model);
@@ -88,15 +89,17 @@ fn a_sphere_on_cells_becomes_cattaneo_and_mindlin() {
     let all = grids.map(|cells| errors(&Equivalent::new(Bem3d { cells, ..Bem3d::default() })));
     for which in [0, 1] {
         let pairs: Vec<(usize, f64)> = grids.iter().zip(&all).map(|(&n, error)| (n, error[which])).collect();
-        // The staircase of the edge: slip begins in the outermost springs, which come from k, of first order or better.
+        // The staircase of the edge: slip begins in the outermost springs, which come from k, of first order
+        // or better.
         let found = order(&pairs).unwrap();
         assert!(found > 1.0, "{found}: {pairs:?}");
         assert!(pairs[2].1 < 1e-2, "{pairs:?}");
     }
 }
 
-/// Ciavarella and Jaeger: the tangential force of a stroke u is `mu (F(d) - F(d'))` with `d - d' = u G*/(mu E*)`, the tangential
-/// stiffness G*/E* times that at d'. For any shape: both sides by one model, once through the profile, once directly.
+/// Ciavarella and Jaeger: the tangential force of a stroke u is `mu (F(d) - F(d'))` with
+/// `d - d' = u G*/(mu E*)`, the tangential stiffness G*/E* times that at d'. For any shape: both sides by one
+/// model, once through the profile, once directly.
 ///
 /// Returns the largest error of the force over mu F, and of the stiffness over k.
 fn beside_a_difference_of_normal_contacts(model: &dyn ContactModel, depth: f64, per_decade: u32) -> [f64; 2] {
@@ -279,7 +282,8 @@ fn a_flat_square_slips_as_a_whole_and_sticks_as_mindlin_says() {
 
 #[test]
 fn history_in_time_and_in_load_give_the_same_rough_contact() {
-    // A force held constant and the approach that it makes, prescribed: the same forces, to the order of the segments of the path.
+    // A force held constant and the approach that it makes, prescribed: the same forces, to the order of the
+    // segments of the path.
     let model = Bem3d { cells: 17, tolerance: 1e-9, ..Bem3d::default() };
     let scene = creeping(fractal());
     let mut by_force = Equivalent::new(model).prepare(&scene, 2).unwrap();
@@ -300,7 +304,8 @@ fn history_in_time_and_in_load_give_the_same_rough_contact() {
     assert!(fine < 0.1 * coarse && fine < 1e-3, "{coarse:e} {fine:e}");
 }
 
-/// Surfaces with ties, faces, steps, needles and pits: k(d) jumps or stands still, and a profile is still there.
+/// Surfaces with ties, faces, steps, needles and pits: k(d) jumps or stands still, and a profile is still
+/// there.
 #[test]
 fn hard_surfaces_have_profiles() {
     let cells = 12;

@@ -8,7 +8,8 @@ use tests::{Deviation, Prescribed, deviation, order, problems};
 
 /// Closed forms: a few roundings, times 1/n = 2 for the power n = 1/2.
 const CLOSED_FORM: f64 = 1e-12;
-/// The one-dimensional method is exact for round bodies; its kappa_n comes from another formula than that of the theory.
+/// The one-dimensional method is exact for round bodies; its kappa_n comes from another formula than that of
+/// the theory.
 const ONE_DIMENSION: f64 = 1e-10;
 
 /// Grids of the orders of convergence, odd so that the apex is a cell centre.
@@ -27,9 +28,9 @@ struct Expected {
 
 /// Measured, then rounded up by about two.
 const TABLE: [Expected; 3] = [
-    // The contact edge is a staircase, off by a fraction of a cell: area and stiffness are of first order, better where the steps
-    // average out along the edge (3/2), hence noisy. The force at given approach is stationary in the contact set, so its error
-    // is of second order in the same fraction.
+    // The contact edge is a staircase, off by a fraction of a cell: area and stiffness are of first order,
+    // better where the steps average out along the edge (3/2), hence noisy. The force at given approach is
+    // stationary in the contact set, so its error is of second order in the same fraction.
     Expected {
         names: &["sphere", "cone", "power law n = 1/2", "power law n = 3"],
         response: 1.7..2.3,
@@ -37,8 +38,8 @@ const TABLE: [Expected; 3] = [
         area: 0.8..1.6,
         finest: [2.5e-5, 1e-3, 5e-3],
     },
-    // A punch's pressure grows like 1/sqrt(distance) at its edge, which cells resolve to first order; force, approach and stiffness are the
-    // same number. The round edge adds its staircase.
+    // A punch's pressure grows like 1/sqrt(distance) at its edge, which cells resolve to first order; force,
+    // approach and stiffness are the same number. The round edge adds its staircase.
     Expected {
         names: &["flat circle"],
         response: 0.8..1.4,

@@ -33,7 +33,8 @@ fn exact_force(n: f64, radius: f64) -> f64 {
     2.0 * kappa * 0.05 * radius.powf(n + 1.0) * n / (n + 1.0)
 }
 
-/// The smallest contact is 10 cells wide and its edge a staircase: k is noisy by 1 % there, the slope over a decade of radii by 1e-3.
+/// The smallest contact is 10 cells wide and its edge a staircase: k is noisy by 1 % there, the slope over a
+/// decade of radii by 1e-3.
 const STAIRCASE: f64 = 2.5e-3;
 /// Formulas: rounding of ln over twelve points.
 const CLOSED_FORM: f64 = 1e-10;

@@ -85,7 +85,8 @@ fn shear(history: &mut dyn PreparedContact, tangential: Tangential) -> ContactSt
 
 #[test]
 fn without_slip_it_is_mindlins_stiffness() {
-    // mu -> infinity: T = 2 G* a u, nothing lost; T/(2 G* a u) = 1 - u G*/(4 mu E* d) + ..., so the difference falls as 1/mu.
+    // mu -> infinity: T = 2 G* a u, nothing lost; T/(2 G* a u) = 1 - u G*/(4 mu E* d) + ..., so the
+    // difference falls as 1/mu.
     let u = 1e-3;
     let deviations = [1e2, 1e3, 1e4].map(|coefficient| {
         models(coefficient).map(|mut history| {
@@ -136,7 +137,8 @@ fn little_friction_is_gross_slip_and_none_is_none() {
 
 #[test]
 fn work_along_any_path_is_stored_or_lost() {
-    // What friction has lost never falls and never exceeds the work done; after a closed loop of u at T = T the work is the loss.
+    // What friction has lost never falls and never exceeds the work done; after a closed loop of u at T = T
+    // the work is the loss.
     for mut history in models(0.4) {
         let force = shear(&mut *history, Tangential::Force(0.0)).force;
         let reach = 0.4 * D / SHEAR;

@@ -1,4 +1,5 @@
-//! How often the error of a grid, estimated from cells twice and four times as large, covers the error that a finer grid shows.
+//! How often the error of a grid, estimated from cells twice and four times as large, covers the error that a
+//! finer grid shows.
 
 use analysis::grid_error;
 use bem3d::Bem3d;
@@ -23,8 +24,9 @@ fn states(surface: &Surface, boundary: Boundary, cells: usize, seed: u64, forces
     forces.iter().map(state).collect()
 }
 
-/// Runs under other counts take minutes: with 4 seeds, 5 forces, 65 to 257 cells and 1025 for the reference, 93 to 100 % of all numbers of
-/// resolved contacts were covered (135 each of stiffness and area), 92 % of stiffnesses and 80 % of areas of the surface without a shortest wave.
+/// Runs under other counts take minutes: with 4 seeds, 5 forces, 65 to 257 cells and 1025 for the reference,
+/// 93 to 100 % of all numbers of resolved contacts were covered (135 each of stiffness and area), 92 % of
+/// stiffnesses and 80 % of areas of the surface without a shortest wave.
 #[test]
 fn most_true_errors_of_resolved_contacts_are_within_the_estimate() {
     let waves = SelfAffine {

@@ -115,7 +115,8 @@ fn a_single_spike_and_two_distant_ones() {
         let pair = bem3d::love::influence(0, 0) + bem3d::love::influence(cells - 1, cells - 1);
         let exact = 2.0 * std::f64::consts::PI * cell / pair;
         assert_relative_eq!(state.stiffness.unwrap(), exact, max_relative = 1e-9);
-        // The second a little lower: it joins once the first has been pressed so deep and lifted it by its own field.
+        // The second a little lower: it joins once the first has been pressed so deep and lifted it by its
+        // own field.
         let uneven = map(cells, 1.0, |x, y| match (x, y) {
             p if p == corners[0] => 1.0,
             p if p == corners[1] => 0.999,

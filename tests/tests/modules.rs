@@ -1,7 +1,8 @@
-//! Dependencies between the modules of each crate run one way: no module uses an item of one that uses its own.
+//! Dependencies between the modules of each crate run one way: no module uses an item of one that uses its
+//! own.
 //!
-//! A use is a path to an item that another module defines, re-exports followed to the definition; a re-export itself is none. Methods,
-//! whose paths are not written, are not seen.
+//! A use is a path to an item that another module defines, re-exports followed to the definition; a re-export
+//! itself is none. Methods, whose paths are not written, are not seen.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};

@@ -31,7 +31,8 @@ fn check(map: &HeightMap, cells: &[usize], load: Load) {
         let pressure = state.fields.unwrap().pressure.unwrap().into_values();
         let found: Vec<usize> = (0..pressure.len()).filter(|&i| pressure[i] > 0.0).collect();
         assert_eq!(found, one.contact, "{method:?} {load:?} {map:?}");
-        // The certificate bounds gaps in units of the rms height; a gap times a cell's own stiffness (1.7 at most) is a force.
+        // The certificate bounds gaps in units of the rms height; a gap times a cell's own stiffness (1.7 at
+        // most) is a force.
         let gap = TOLERANCE * surface_gen::rms_height(map.heights());
         let force = 2.0 * gap * one.contact.len() as f64;
         assert_relative_eq!(state.force, one.force, epsilon = force, max_relative = ROUNDING);
@@ -73,7 +74,8 @@ const MASKS: [&[&str]; 5] = [
     &["x..", "xxx", "x.x"],
 ];
 
-/// Deeper than any approach of [`loads`] reaches (d <= 4, or F = 32 on one cell: about 36), not so deep that it spoils the rms height.
+/// Deeper than any approach of [`loads`] reaches (d <= 4, or F = 32 on one cell: about 36), not so deep that
+/// it spoils the rms height.
 const DEEP: f64 = -60.0;
 
 proptest! {

@@ -1,4 +1,5 @@
-//! The square that repeats itself: bem3d against Westergaard, Johnson-Greenwood-Higginson, the free square and itself.
+//! The square that repeats itself: bem3d against Westergaard, Johnson-Greenwood-Higginson, the free square
+//! and itself.
 
 use analytic::{Westergaard, westergaard};
 use approx::assert_relative_eq;
@@ -11,8 +12,9 @@ use std::sync::Arc;
 
 const AMPLITUDE: f64 = 0.01;
 
-/// Relative error of k times the cells a side, at most. Half a cell too much or too little at both edges changes k of a contact of the
-/// width c by `pi cot(pi c/2)/ln(1/r)` over the cells a side: 4.6, 4.0 and 7.0 for r = 0.05, 0.3 and 0.8.
+/// Relative error of k times the cells a side, at most. Half a cell too much or too little at both edges
+/// changes k of a contact of the width c by `pi cot(pi c/2)/ln(1/r)` over the cells a side: 4.6, 4.0 and 7.0
+/// for r = 0.05, 0.3 and 0.8.
 const FIRST_ORDER: f64 = 6.0;
 /// Grids of the convergence study.
 const CELLS: [usize; 4] = [32, 64, 128, 256];
@@ -59,7 +61,8 @@ fn westergaard_with_an_order_of_convergence() {
                 ((state.stiffness.unwrap() / exact.0 - 1.0).abs(), (gap - exact.1).abs() / AMPLITUDE)
             })
             .into();
-        // Both edges of contact fall anywhere within a cell: first order in k, with scatter. The gap is an integral: second order.
+        // Both edges of contact fall anywhere within a cell: first order in k, with scatter. The gap is an
+        // integral: second order.
         for (cells, (k, _)) in CELLS.iter().zip(&errors) {
             assert!(k * *cells as f64 <= FIRST_ORDER, "{ratio} {errors:?}");
         }
@@ -91,7 +94,8 @@ fn johnson_greenwood_higginson() {
 
 #[test]
 fn a_small_contact_feels_its_images_as_points() {
-    // 1/k = 1/k_free + 4 zeta(1/2) beta(1/2) / (pi E* L): the images of a force act on it as points on their background.
+    // 1/k = 1/k_free + 4 zeta(1/2) beta(1/2) / (pi E* L): the images of a force act on it as points on their
+    // background.
     let flat = |cells: usize, wide: usize| {
         let mut heights = vec![-1.0; cells * cells];
         for i in 0..wide * wide {
@@ -242,7 +246,8 @@ fn what_a_periodic_square_takes_and_refuses() {
     }
 }
 
-/// The counted area of a resolved surface is too large by an amount of first order; most of it goes with the correction for the boundary.
+/// The counted area of a resolved surface is too large by an amount of first order; most of it goes with the
+/// correction for the boundary.
 #[test]
 fn the_corrected_area_converges_faster() {
     let mut surface = SelfAffine::new(2.2, 1.0, 0.01).unwrap();

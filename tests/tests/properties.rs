@@ -9,8 +9,8 @@ use stability::PlainSum;
 use tests::{hard_map, map, rough_map, scene};
 
 const TOLERANCE: f64 = 1e-10;
-/// The certificate bounds gaps weighted by pressure in rms heights; an approach is one weighted by the tangent's pressure, up to ten times
-/// that, and two of them are compared.
+/// The certificate bounds gaps weighted by pressure in rms heights; an approach is one weighted by the
+/// tangent's pressure, up to ten times that, and two of them are compared.
 const SAME: f64 = 1e-8;
 /// Gaps that the certificate leaves open, in tolerances and rms heights (`Bem3d::tolerance`).
 const LEFT_OPEN: f64 = 10.0;
@@ -131,8 +131,8 @@ proptest! {
         prop_assert_eq!(solve(&at(0.0), load), solve(&at(steps as f64 * step), load));
     }
 
-    /// Nested sets, convex F, k that never falls and is the difference quotient while the set stays, and the elastic energy between the
-    /// sums of a convex force: chords above, tangents below.
+    /// Nested sets, convex F, k that never falls and is the difference quotient while the set stays, and the
+    /// elastic energy between the sums of a convex force: chords above, tangents below.
     #[test]
     fn on_the_way_down(drawn in any_map(), start in -6.0_f64..0.5, ratios in prop::collection::vec(1.001_f64..3.0, 1..8)) {
         let mut press = prepare(&drawn);
@@ -180,7 +180,8 @@ proptest! {
         prop_assert!((there - back).abs() <= ROUNDING * there.abs(), "{} {}", there, back);
     }
 
-    /// Raised anywhere below its summit, a surface carries more at the same approach, and needs less approach for the same force.
+    /// Raised anywhere below its summit, a surface carries more at the same approach, and needs less approach
+    /// for the same force.
     #[test]
     fn a_higher_surface_carries_more(
         drawn in any_map(), raise in prop::collection::vec(0.0_f64..1.0, 400), exponent in -4.0_f64..1.5,
@@ -199,8 +200,9 @@ proptest! {
         prop_assert!(back <= d * (1.0 + SAME) + SAME * unit(&drawn), "{} beyond {}", back, d);
     }
 
-    /// Barber's bounds. `F/k_N <= d <= F/k_N + relief` with k_N of the square: the flat surfaces through the summit and the deepest point
-    /// enclose the rough one. k is between that of a cell of the contact and that of the rectangle around it, and no more than the sum of cells.
+    /// Barber's bounds. `F/k_N <= d <= F/k_N + relief` with k_N of the square: the flat surfaces through the
+    /// summit and the deepest point enclose the rough one. k is between that of a cell of the contact and
+    /// that of the rectangle around it, and no more than the sum of cells.
     #[test]
     fn bounds_of_barber(drawn in any_map(), exponent in -6.0_f64..2.0) {
         let (cells, load) = (drawn.columns(), any_load(&drawn, exponent, true));

@@ -1,8 +1,9 @@
-//! What a column is called is what it is: every quantity of small random states against its definition, in every effect, boundary and
-//! kind of load, on rectangles with holes and oblong cells.
+//! What a column is called is what it is: every quantity of small random states against its definition, in
+//! every effect, boundary and kind of load, on rectangles with holes and oblong cells.
 //!
-//! A stiffness is compared with difference quotients of the force along the branch, gaps and approaches with the fields, areas, pressures
-//! and energies with the fields, dissipated energies with the work around a loop, each within the error that the state claims.
+//! A stiffness is compared with difference quotients of the force along the branch, gaps and approaches with
+//! the fields, areas, pressures and energies with the fields, dissipated energies with the work around a
+//! loop, each within the error that the state claims.
 //!
 //! More states than the default:
 //! `QUANTITIES=20 cargo test --release -p tests --test physics quantities -- --nocapture`.
@@ -406,7 +407,8 @@ fn adhesive_scene(draw: &mut Draw, law: Option<AdhesionLaw>, cells: (usize, usiz
     let map = map_of(&scene);
     let cell = map.dx().max(map.dy());
     let range = 0.1 * draw.between(0.3, 1.5);
-    // A cell closes by itself at five times the slope, or a twentieth of it for a short range of the same width.
+    // A cell closes by itself at five times the slope, or a twentieth of it for a short range of the same
+    // width.
     let steepest = 0.05 * PI * scene.modulus / (cell * 1.2);
     let work = draw.between(0.2, 0.9) * steepest * range * range;
     scene.effects.adhesion = match law {
@@ -479,7 +481,8 @@ fn exponential(seed: u64) -> Result<Faults, Error> {
     Ok(faults)
 }
 
-/// The slope of a front that moves by cells, from states further along the branch, against what the state claims. `None`: nothing claimed.
+/// The slope of a front that moves by cells, from states further along the branch, against what the state
+/// claims. `None`: nothing claimed.
 fn moving_front(seed: u64, law: Option<AdhesionLaw>) -> Result<(Faults, Option<bool>), Error> {
     let mut draw = Draw::new(seed);
     let scene = adhesive_scene(&mut draw, law, (18, 18));
@@ -545,7 +548,8 @@ fn moving_front(seed: u64, law: Option<AdhesionLaw>) -> Result<(Faults, Option<b
     Ok((faults, Some((slope - k).abs() <= error * k.abs() + open)))
 }
 
-/// Slope at the first of some points of the parabola of least squares, with twice its standard error or the bias seen by halving the way.
+/// Slope at the first of some points of the parabola of least squares, with twice its standard error or the
+/// bias seen by halving the way.
 fn parabola(points: &[(f64, f64)]) -> (f64, f64) {
     let fit = |points: &[(f64, f64)]| {
         let unit = points.last().unwrap().0;
@@ -582,7 +586,8 @@ fn parabola(points: &[(f64, f64)]) -> (f64, f64) {
     (slope, error + (near - slope).abs().min(error_near + (near - slope).abs()) * 0.5)
 }
 
-/// Friction of a sphere: the energy dissipated in a closed loop is the work of the tangential force around it.
+/// Friction of a sphere: the energy dissipated in a closed loop is the work of the tangential force around
+/// it.
 fn friction(seed: u64) -> Result<Faults, Error> {
     const STEPS: usize = 400;
     let mut draw = Draw::new(seed);
@@ -622,8 +627,8 @@ fn friction(seed: u64) -> Result<Faults, Error> {
     Ok(faults)
 }
 
-/// A sphere of Prony's series that is pressed in at changing rates: its force is the relaxation of every increment of the elastic force,
-/// and its area that of the contact radius.
+/// A sphere of Prony's series that is pressed in at changing rates: its force is the relaxation of every
+/// increment of the elastic force, and its area that of the contact radius.
 fn rheology(seed: u64) -> Result<Faults, Error> {
     const STEPS: usize = 4000;
     let mut draw = Draw::new(seed);

@@ -1,4 +1,5 @@
-//! Rectangular maps, oblong cells and undefined points against plain sums, exact solutions and their own symmetries.
+//! Rectangular maps, oblong cells and undefined points against plain sums, exact solutions and their own
+//! symmetries.
 
 use analytic::{Hertz, Westergaard};
 use approx::assert_relative_eq;
@@ -141,7 +142,8 @@ fn a_periodic_square_of_65_cells_equals_plain_sums_over_images() {
 
 #[test]
 fn odd_prime_and_smooth_sizes_converge_from_first_contact_to_full_contact() {
-    // Steps of a rough surface over seven decades; the work of odd and prime sizes is that of the even neighbour.
+    // Steps of a rough surface over seven decades; the work of odd and prime sizes is that of the even
+    // neighbour.
     let work = |cells: usize| -> usize {
         let surface = Surface::SelfAffine(SelfAffine::new(2.2, 1.0, 1.0).unwrap());
         let mut scene = Scene::new(surface, 1.0);
@@ -218,7 +220,8 @@ fn hertz_on_oblong_cells() {
 
 #[test]
 fn oblong_cells_converge_to_the_square_cell_solution_with_first_order() {
-    // Full contact of a flat square (data/paper/VALUES.md): k = 1.1522985 E* L, k_N = k - 0.4025/N for square cells.
+    // Full contact of a flat square (data/paper/VALUES.md): k = 1.1522985 E* L, k_N = k - 0.4025/N for square
+    // cells.
     let scene = Scene::new(Surface::Flat { size: 1.0.into() }, 1.0);
     let error = |cells: usize, rows: usize| {
         let model = Bem3d { cells, rows: Some(rows), tolerance: 1e-9, ..Bem3d::default() };
@@ -242,7 +245,8 @@ fn oblong_cells_converge_to_the_square_cell_solution_with_first_order() {
             state.stiffness.unwrap() / f64::sqrt(size[0] * size[1])
         };
         let (coarse, fine) = (k(40), k(80));
-        // The next term of a square, 0.12/N^1.59 (VALUES.md), leaves 0.040/N^1.59: 1.7e-4 of k on 40 x 20 cells.
+        // The next term of a square, 0.12/N^1.59 (VALUES.md), leaves 0.040/N^1.59: 1.7e-4 of k on 40 x 20
+        // cells.
         assert_relative_eq!(2.0 * fine - coarse, exact, max_relative = 3e-4);
     }
 }

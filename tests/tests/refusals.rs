@@ -127,8 +127,8 @@ fn effects_are_refused() {
     }
 }
 
-/// Theories of periodic contact take nothing without periodic boundaries, and no other effect with them; their states have a mean gap
-/// and no approach.
+/// Theories of periodic contact take nothing without periodic boundaries, and no other effect with them;
+/// their states have a mean gap and no approach.
 #[test]
 fn periodic_theories() {
     let mut with_cutoff = rough(2.4).unwrap();

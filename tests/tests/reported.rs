@@ -19,8 +19,8 @@ fn walked(model: Bem3d, scene: &Scene, loads: &[Load]) -> Vec<ContactState> {
     loads.iter().map(&mut step).collect()
 }
 
-/// The slope along the branch of JKR, within the error that each state claims, and 2 E* a of the held area; once they were one number, 1.4
-/// to 1.7 times the slope, with an error of 1e-8.
+/// The slope along the branch of JKR, within the error that each state claims, and 2 E* a of the held area;
+/// once they were one number, 1.4 to 1.7 times the slope, with an error of 1e-8.
 #[test]
 fn stiffness_of_a_sphere_with_short_range_is_the_slope_of_its_branch() {
     let work = 8.842e-6;
@@ -77,7 +77,8 @@ fn conductance_grows_with_a_contact_that_flows() {
     assert!((1.0..1.151).contains(&last), "{last}");
 }
 
-/// At a reload to an old load the stiffness is that of growing load, and the old cells are at the hardness, whatever the tolerance.
+/// At a reload to an old load the stiffness is that of growing load, and the old cells are at the hardness,
+/// whatever the tolerance.
 #[test]
 fn a_reload_to_an_old_load_is_as_the_first_time() {
     let surface = SelfAffine::new(2.2, 1.0, 0.001).map(Surface::SelfAffine).unwrap();
@@ -147,8 +148,8 @@ fn complete_contact_with_adhesion_has_no_stiffness() {
     }
 }
 
-/// By mean gap from apart to complete contact and back: every gap has a state, also where none was stable at a fixed approach of a kernel
-/// with a constant in it.
+/// By mean gap from apart to complete contact and back: every gap has a state, also where none was stable at
+/// a fixed approach of a kernel with a constant in it.
 #[test]
 fn every_mean_gap_of_a_periodic_contact_with_adhesion_has_a_state() {
     let surface = Surface::Sine { amplitude: 0.02, wavelength: 1.0, size: 1.0.into() };

@@ -1,4 +1,5 @@
-//! Rheology by its properties: limits in time, bounds by energy, superposition; exact springs and those of a table alike.
+//! Rheology by its properties: limits in time, bounds by energy, superposition; exact springs and those of a
+//! table alike.
 
 use analytic::{FlatPunch, Hertz};
 use approx::assert_relative_eq;
@@ -47,8 +48,8 @@ fn forces(model: &dyn ContactModel, scene: &Scene, path: &[(f64, f64)]) -> Vec<f
 
 #[test]
 fn slow_is_relaxed_and_fast_is_glassy() {
-    // A ramp to d in the time T: when it is slow the arms still hold sum w tau Phi'(T)/Phi = (3/2) sum w tau/T; when it is fast they have
-    // lost sum w/tau int Phi dt/Phi = (2/5) sum w T/tau.
+    // A ramp to d in the time T: when it is slow the arms still hold sum w tau Phi'(T)/Phi = (3/2) sum w
+    // tau/T; when it is fast they have lost sum w/tau int Phi dt/Phi = (2/5) sum w T/tau.
     let d = 0.02;
     for (model, tolerance) in models() {
         let scene = scene(sphere(), &series());
@@ -72,7 +73,8 @@ fn slow_is_relaxed_and_fast_is_glassy() {
 
 #[test]
 fn work_lies_between_the_relaxed_and_the_glassy_energy() {
-    // E* Phi <= F <= E*(0) Phi while the contact grows, hence so does the work; what lies above the relaxed energy is dissipated or still held.
+    // E* Phi <= F <= E*(0) Phi while the contact grows, hence so does the work; what lies above the relaxed
+    // energy is dissipated or still held.
     for (model, tolerance) in models() {
         let scene = scene(sphere(), &series());
         let segments = 200;
@@ -102,7 +104,8 @@ fn work_lies_between_the_relaxed_and_the_glassy_energy() {
 
 #[test]
 fn a_face_answers_linearly() {
-    // Without growth Boltzmann's superposition holds in d itself: the force of a sum of histories is the sum of the forces.
+    // Without growth Boltzmann's superposition holds in d itself: the force of a sum of histories is the sum
+    // of the forces.
     let punch = Surface::FlatCircle { radius: 0.3, size: 2.0.into() };
     let times = [0.0, 0.3, 1.0, 5.0, 40.0];
     let (one, other) = ([1e-3, 2e-3, 2e-3, 5e-3, 5e-3], [0.0, 4e-3, 7e-3, 7e-3, 9e-3]);
@@ -133,7 +136,8 @@ fn arms_without_weight_and_arms_that_never_relax_are_elastic() {
                 &path,
             )[1]
         };
-        // w -> 0, tau -> 0: the scene's own modulus; tau -> infinity: (1 + w) times it. The first orders vanish as w, tau and 1/tau.
+        // w -> 0, tau -> 0: the scene's own modulus; tau -> infinity: (1 + w) times it. The first orders
+        // vanish as w, tau and 1/tau.
         for (weight, time, limit) in [(1e-6, 1.0, 1.0), (2.0, 1e-6, 1.0), (2.0, 1e6, 3.0)] {
             assert_relative_eq!(with(weight, time), limit * elastic(d), max_relative = 1e-5 + tolerance);
         }

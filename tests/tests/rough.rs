@@ -7,7 +7,8 @@ use tests::{map, rough, rough_map, scene};
 
 /// Tolerance of the solves here.
 const TOLERANCE: f64 = 1e-10;
-/// Two solves of one state: each certificate bounds gaps against the rms height and k by itself; small approaches are shares of it.
+/// Two solves of one state: each certificate bounds gaps against the rms height and k by itself; small
+/// approaches are shares of it.
 const SAME: f64 = 1e-7;
 
 fn model(cells: usize) -> Bem3d {
@@ -48,7 +49,8 @@ fn no_state_exceeds_the_plateau_of_its_grid() {
     }
 }
 
-/// Far beyond full contact the gaps that are left are a millionth of the approach: less than single precision sees.
+/// Far beyond full contact the gaps that are left are a millionth of the approach: less than single precision
+/// sees.
 #[test]
 fn loads_a_million_times_the_relief() {
     for (cells, fractal_dimension) in [(33, 2.0), (129, 2.0), (65, 2.8)] {
@@ -62,7 +64,8 @@ fn loads_a_million_times_the_relief() {
     }
 }
 
-/// F(d) is convex and piecewise linear with slope k: `k_i dd <= dF <= k_(i+1) dd`, and the slope itself while the set stays.
+/// F(d) is convex and piecewise linear with slope k: `k_i dd <= dF <= k_(i+1) dd`, and the slope itself while
+/// the set stays.
 #[test]
 fn the_force_is_the_integral_of_the_stiffness() {
     let mut contact = prepared(2.4, 65, 5);

@@ -8,7 +8,8 @@ use proptest::test_runner::RngSeed;
 use tests::{hard_map, rough_map, scene};
 
 const TOLERANCE: f64 = 1e-9;
-/// The certificate bounds gaps weighted by pressure; the approach is one weighted by the tangent's pressure, up to ten times that.
+/// The certificate bounds gaps weighted by pressure; the approach is one weighted by the tangent's pressure,
+/// up to ten times that.
 const SAME: f64 = 2e-8;
 
 proptest! {

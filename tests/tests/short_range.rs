@@ -1,5 +1,5 @@
-//! Adhesion of short range on a grid against closed forms: spheres of JKR and, with waves, of Guduru, Kendall's
-//! punch, Johnson's wave.
+//! Adhesion of short range on a grid against closed forms: spheres of JKR and, with waves, of Guduru,
+//! Kendall's punch, Johnson's wave.
 
 use analytic::adhesive_wave::WavyContact;
 use analytic::jkr::AdhesiveSphere;
@@ -34,8 +34,8 @@ fn unloaded_radius() -> f64 {
     (4.5 * PI * WORK).cbrt()
 }
 
-/// That sphere on cells with sides `(side, side/oblong)`, `cells` of the longer ones in its radius without load, its centre beside all symmetries
-/// of the grid.
+/// That sphere on cells with sides `(side, side/oblong)`, `cells` of the longer ones in its radius without
+/// load, its centre beside all symmetries of the grid.
 fn sphere(cells: f64, oblong: usize) -> Scene {
     let dx = unloaded_radius() / cells;
     let dy = dx / oblong as f64;
@@ -63,7 +63,8 @@ fn pull_off(scene: &Scene) -> f64 {
 
 #[test]
 fn a_sphere_is_pulled_off_by_one_and_a_half_pi_w_r() {
-    // Second order in the cell over the radius at pull-off, 0.63 of that without load, and half a percent that fronts are trapped by.
+    // Second order in the cell over the radius at pull-off, 0.63 of that without load, and half a percent
+    // that fronts are trapped by.
     for (cells, error) in [(8.0, 0.03), (16.0, 0.01), (32.0, 0.005)] {
         let found = pull_off(&sphere(cells, 1));
         assert!((found - 1.0).abs() < error, "{cells}: {found}");
@@ -142,8 +143,8 @@ fn a_force_beyond_the_pull_off_is_an_error_with_the_last_state() {
     assert!((again.area.unwrap() / held[3].area.unwrap() - 1.0).abs() < 0.03);
 }
 
-/// A sphere (R = E* = 1) with rings of waves, `z = r^2/2 + A (1 - cos(2 pi r/l))`, in contact within one circle:
-/// Guduru, J. Mech. Phys. Solids 55, 445 (2007), in the form of the reduction to one dimension.
+/// A sphere (R = E* = 1) with rings of waves, `z = r^2/2 + A (1 - cos(2 pi r/l))`, in contact within one
+/// circle: Guduru, J. Mech. Phys. Solids 55, 445 (2007), in the form of the reduction to one dimension.
 struct WavySphere {
     amplitude: f64,
     length: f64,
@@ -213,8 +214,8 @@ fn a_wavy_sphere_sticks_and_comes_off_ring_by_ring() {
     for (i, inwards) in (0..=14).map(|i| (i, true)).chain((-14..14).rev().map(|i| (i, false))) {
         let d = step * f64::from(i);
         let state = at(&mut *history, Load::Approach(d)).unwrap();
-        // The edge advances to the first circle with so large an approach, and recedes to the first with so small
-        // a one.
+        // The edge advances to the first circle with so large an approach, and recedes to the first with so
+        // small a one.
         edge = edge.and_then(|edge| {
             if inwards {
                 (edge..circles.len()).find(|&k| circles[k].approach >= d)
@@ -239,7 +240,8 @@ fn a_wavy_sphere_sticks_and_comes_off_ring_by_ring() {
     approx::assert_relative_eq!(loss.0, loss.1, max_relative = SAME);
 }
 
-/// Pull-off force of a flat punch over Kendall's `sqrt(8 pi w E* a^3)`, a the radius of the disc with its area.
+/// Pull-off force of a flat punch over Kendall's `sqrt(8 pi w E* a^3)`, a the radius of the disc with its
+/// area.
 fn punch(cells: usize) -> f64 {
     let n = 2 * cells + 8;
     let middle = 0.5 * n as f64 - 0.1;
@@ -265,7 +267,8 @@ fn punch(cells: usize) -> f64 {
 
 #[test]
 fn a_flat_punch_comes_off_at_once() {
-    // Where a front is held by an edge the attraction reaches w only after its last cells have begun to open: first order in the cell.
+    // Where a front is held by an edge the attraction reaches w only after its last cells have begun to open:
+    // first order in the cell.
     let (coarse, fine) = (punch(16), punch(32));
     assert!((0.85..0.90).contains(&coarse) && (0.92..0.95).contains(&fine), "{coarse} {fine}");
     assert!((2.0 * fine - coarse - 1.0).abs() < 0.02, "{coarse} {fine}");
@@ -311,8 +314,8 @@ fn stays_open(cells: usize, direction: (u32, u32), share: f64) -> bool {
     area < 0.9
 }
 
-/// Straight fronts are trapped between the cells, most along their rows: the pull-off pressure goes with w^(2/3), so
-/// that 4 % of it are 6 % of w.
+/// Straight fronts are trapped between the cells, most along their rows: the pull-off pressure goes with
+/// w^(2/3), so that 4 % of it are 6 % of w.
 #[test]
 fn waves_in_other_directions_pull_off_and_snap_in_alike() {
     for (direction, trapped) in [((1, 0), 0.04), ((1, 1), 0.02), ((1, 2), 0.01)] {

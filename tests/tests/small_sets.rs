@@ -85,7 +85,8 @@ fn two_cells() {
 
 /// Two circles of radius 1, centres 4 apart: k = 3.4436977378 E* a.
 const TWO_CIRCLES: f64 = 3.443_697_737_8;
-/// Sides of the square in radii. One side gives an error that depends on how the round edge lies on the cells; their mean does not.
+/// Sides of the square in radii. One side gives an error that depends on how the round edge lies on the
+/// cells; their mean does not.
 const SIDES: [f64; 8] = [6.13, 6.29, 6.41, 6.57, 6.71, 6.83, 6.97, 7.11];
 
 /// Mean relative error of k over [`SIDES`].

@@ -10,7 +10,8 @@ use std::sync::Arc;
 use tests::{embedded, map, rough_map, scene};
 
 const TOLERANCE: f64 = 1e-10;
-/// Two solves at [`TOLERANCE`]: the certificate is against the rms height, approaches here are down to a hundredth of it.
+/// Two solves at [`TOLERANCE`]: the certificate is against the rms height, approaches here are down to a
+/// hundredth of it.
 const SAME: f64 = 1e-7;
 
 const CELLS: usize = 33;
@@ -95,8 +96,8 @@ fn divided(state: &ContactState, force: f64, approach: f64, stiffness: f64) -> C
     state
 }
 
-/// Above Eq. 8: heights, force and approach times one factor leave k alone. With `k ~ F^alpha (h^2)^delta` (Eq. 7) this is
-/// `alpha + 2 delta = 0`, so `dlnk/dlnh` at fixed F is minus `dlnk/dlnF` at fixed h.
+/// Above Eq. 8: heights, force and approach times one factor leave k alone. With `k ~ F^alpha (h^2)^delta`
+/// (Eq. 7) this is `alpha + 2 delta = 0`, so `dlnk/dlnh` at fixed F is minus `dlnk/dlnF` at fixed h.
 #[test]
 fn delta_is_minus_half_of_alpha() {
     let original = rough_map(2.4, CELLS, 3).unwrap();
@@ -112,7 +113,8 @@ fn delta_is_minus_half_of_alpha() {
     assert_relative_eq!(two_delta, -alpha, epsilon = 4.0 * SAME);
 }
 
-/// All lateral lengths times C, heights and approach unchanged: F and k times C, in three dimensions and in one.
+/// All lateral lengths times C, heights and approach unchanged: F and k times C, in three dimensions and in
+/// one.
 #[test]
 fn lateral_lengths_alone() {
     let original = rough_map(2.2, CELLS, 5).unwrap();
@@ -130,8 +132,9 @@ fn lateral_lengths_alone() {
     }
 }
 
-/// Eqs. 19 and 21: a larger frame around the one contact region leaves force, approach and stiffness alone, because the half-space is free
-/// outside. In the units of the frame that is Eq. 22: `k_bar` falls by C, `F_bar` by C times the ratio of the rms heights.
+/// Eqs. 19 and 21: a larger frame around the one contact region leaves force, approach and stiffness alone,
+/// because the half-space is free outside. In the units of the frame that is Eq. 22: `k_bar` falls by C,
+/// `F_bar` by C times the ratio of the rms heights.
 #[test]
 fn the_frame_does_not_matter() {
     let inner = map(CELLS, 1.0, |x, y| {
@@ -167,8 +170,9 @@ fn rough_map_value(x: usize, y: usize) -> f64 {
     0.05 * ((7 * x + 3 * y) as f64).sin() + 0.03 * ((2 * x + 11 * y) as f64).cos()
 }
 
-/// Eqs. 22 to 24 on a body that is exactly self-affine, `z = c r^n` with n for H: a frame C times as large on as many cells is
-/// the same map with lateral factor C and heights times C^n. So `F ~ C^(n + 1)`, `k ~ C` and `alpha = 1/(1 + n)` with no error of discretisation.
+/// Eqs. 22 to 24 on a body that is exactly self-affine, `z = c r^n` with n for H: a frame C times as large on
+/// as many cells is the same map with lateral factor C and heights times C^n. So `F ~ C^(n + 1)`, `k ~ C` and
+/// `alpha = 1/(1 + n)` with no error of discretisation.
 #[test]
 fn the_zoom_argument() {
     for n in [0.5, 0.8, 1.0] {

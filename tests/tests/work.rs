@@ -138,7 +138,8 @@ fn a_summit_cut_by_the_edges_is_one_patch_where_they_are_one() {
     }
 }
 
-/// A history over a rough surface: the table once, then one solve per step; fields only where asked for, and not for the table.
+/// A history over a rough surface: the table once, then one solve per step; fields only where asked for, and
+/// not for the table.
 #[test]
 fn a_history_pays_for_its_table_once() {
     let body = Body::Elastic { young: 2.0, poisson: 0.3 };

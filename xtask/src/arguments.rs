@@ -19,9 +19,11 @@ use studies::{
 };
 pub use studies::{Redraw, TuningArguments};
 
-/// Reproduces Pohrt, Popov, Filippov, Phys. Rev. E 86, 026710 (2012): normal contact stiffness of fractal rough surfaces.
+/// Reproduces Pohrt, Popov, Filippov, Phys. Rev. E 86, 026710 (2012): normal contact stiffness of fractal
+/// rough surfaces.
 ///
-/// Each figure is computed by real solves and written as CSV, SVG and PNG, with the paper's own claim beside each number.
+/// Each figure is computed by real solves and written as CSV, SVG and PNG, with the paper's own claim beside
+/// each number.
 #[derive(Debug, Parser)]
 #[command(name = "cargo xtask", bin_name = "cargo xtask", version, after_long_help = AFTER)]
 pub struct Arguments {
@@ -84,26 +86,32 @@ pub enum Command {
     Bench(BenchArguments),
     /// What half and twice of each tuned constant of the solver cost on this machine (tuning.csv).
     Tuning(TuningArguments),
-    /// What accuracy costs in time: one family of problems in every way there is (accuracy-cost.csv, .md and picture).
+    /// What accuracy costs in time: one family of problems in every way there is (accuracy-cost.csv, .md and
+    /// picture).
     #[command(after_help = EXPAND)]
     AccuracyCost(AccuracyCost),
-    /// Coverage of the error budgets: random surfaces, loads, grids and tolerances against references (budget-check.csv).
+    /// Coverage of the error budgets: random surfaces, loads, grids and tolerances against references
+    /// (budget-check.csv).
     #[command(after_help = EXPAND)]
     BudgetCheck(BudgetCheck),
-    /// Sec. II's two problems side by side: free and fractal, periodic with a roll-off; with Persson's and Greenwood-Williamson's theories.
+    /// Sec. II's two problems side by side: free and fractal, periodic with a roll-off; with Persson's and
+    /// Greenwood-Williamson's theories.
     #[command(after_help = EXPAND)]
     ReproduceTwoCases(TwoCasesArguments),
-    /// The exponent of stiffness over force with bands, by pairs of surfaces on neighbouring grids (exponent.csv and others).
+    /// The exponent of stiffness over force with bands, by pairs of surfaces on neighbouring grids
+    /// (exponent.csv and others).
     #[command(after_help = EXPAND)]
     Exponent(ExponentArguments),
-    /// What a command takes on many machines: jobs, core-hours, memory of a task, makespan, disk. Solves nothing.
+    /// What a command takes on many machines: jobs, core-hours, memory of a task, makespan, disk. Solves
+    /// nothing.
     Plan(PlanArguments),
-    /// Writes a batch script for SLURM or HyperQueue that does the shards of a command and merges them; with --now submits it. What is done is
-    /// not done again.
+    /// Writes a batch script for SLURM or HyperQueue that does the shards of a command and merges them; with
+    /// --now submits it. What is done is not done again.
     Submit(SubmitArguments),
     /// What is done, running, failed and missing of the shards in a directory.
     Status(ShardsArguments),
-    /// Tables and pictures from the shards in a directory: the bytes of one process. Refuses gaps, damage and mixed plans.
+    /// Tables and pictures from the shards in a directory: the bytes of one process. Refuses gaps, damage and
+    /// mixed plans.
     Merge(ShardsArguments),
     /// A random share of the solves of Fig. 2 again, from nothing and to a tight tolerance (audit.csv).
     #[command(after_help = EXPAND)]

@@ -132,7 +132,8 @@ pub fn tell_status(options: &ShardsArguments) -> Result<Status> {
     Ok(status)
 }
 
-/// The command whose tables the shards of a directory make, when all of its jobs are there, and what was typed for it.
+/// The command whose tables the shards of a directory make, when all of its jobs are there, and what was
+/// typed for it.
 ///
 /// # Errors
 /// [`Error::Parameter`] with what is missing, damaged or of another plan.

@@ -1,11 +1,12 @@
-//! The project's runner: `cargo xtask reproduce-fig1` .. `reproduce-fig7`, `reproduce-all`, `verify`, `audit`, `bench`,
-//! `reproduce-two-cases`, `accuracy-cost`, `budget-check`, `exponent`, `redraw`, `check-reference`, `stability`, `book`.
+//! The project's runner: `cargo xtask reproduce-fig1` .. `reproduce-fig7`, `reproduce-all`, `verify`,
+//! `audit`, `bench`, `reproduce-two-cases`, `accuracy-cost`, `budget-check`, `exponent`, `redraw`,
+//! `check-reference`, `stability`, `book`.
 //!
 //! Argument parsing and exit codes; the figures are in the crate `paper`.
 //!
-//! Exit codes: 0 done, 1 an error (its message says where), 2 bad arguments, 3 done but some solves did not converge, stored
-//! numbers differ, a hard case fails, error budgets do not hold or a link or command of the book is broken, 130 stopped by a signal,
-//! 141 nobody reads standard output any more.
+//! Exit codes: 0 done, 1 an error (its message says where), 2 bad arguments, 3 done but some solves did not
+//! converge, stored numbers differ, a hard case fails, error budgets do not hold or a link or command of the
+//! book is broken, 130 stopped by a signal, 141 nobody reads standard output any more.
 
 mod arguments;
 mod book;
@@ -155,8 +156,8 @@ fn redraw(options: &Redraw) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Ctrl-C, SIGTERM and SIGHUP end the process at once: what is finished is kept, and nothing else was begun that would be lost. Where the
-/// system grants no thread to tell of it, they do the same without a word.
+/// Ctrl-C, SIGTERM and SIGHUP end the process at once: what is finished is kept, and nothing else was begun
+/// that would be lost. Where the system grants no thread to tell of it, they do the same without a word.
 fn tell_what_an_interruption_leaves(out: PathBuf) -> Result<()> {
     let tell = move || {
         let (count, units) = (Store::count(&out), out.join(".units"));
@@ -210,8 +211,8 @@ fn report(outcomes: &[Outcome], claims: &[Claim], manifest: &Path) -> ExitCode {
     ExitCode::from(3)
 }
 
-/// Prints each row as it comes and keeps the file whole all along, so that an interruption keeps what was solved; in the end the file
-/// is in the order asked for.
+/// Prints each row as it comes and keeps the file whole all along, so that an interruption keeps what was
+/// solved; in the end the file is in the order asked for.
 fn bench(options: &BenchArguments) -> Result<ExitCode> {
     let (csv, plot) = options.files();
     if let Some(directory) = csv.as_deref().and_then(Path::parent) {
@@ -260,7 +261,8 @@ struct BenchTable {
 }
 
 impl BenchTable {
-    /// Writes the rows unless that would take more than a twentieth of the time: a long table of cheap rows is written now and then.
+    /// Writes the rows unless that would take more than a twentieth of the time: a long table of cheap rows
+    /// is written now and then.
     fn write(&mut self, path: &Path) -> Result<()> {
         let start = Instant::now();
         if self.written.is_some_and(|(end, took)| start.duration_since(end) < 20 * took) {

@@ -1,5 +1,5 @@
-//! Numbers that no machine has room for, and those that are none: each is refused before anything is solved or memory is asked for, by an
-//! error that names the flag and what was expected.
+//! Numbers that no machine has room for, and those that are none: each is refused before anything is solved
+//! or memory is asked for, by an error that names the flag and what was expected.
 
 #![allow(clippy::unwrap_used)] // Helpers outside #[test] functions.
 
@@ -31,7 +31,8 @@ fn xtask(words: &[&str], directory: &Path) -> Output {
     command.args(words).current_dir(directory).output().unwrap()
 }
 
-/// What is wrong with the end of a command that is to be refused: with 1 or 2, and one message that names the flag.
+/// What is wrong with the end of a command that is to be refused: with 1 or 2, and one message that names the
+/// flag.
 fn refused(words: &[&str], flag: &str) -> Option<String> {
     let directory = tempfile::tempdir().unwrap();
     let output = xtask(words, directory.path());

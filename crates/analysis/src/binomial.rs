@@ -2,8 +2,9 @@
 
 use statrs::distribution::{Binomial, DiscreteCDF as _};
 
-/// Probability of a number of successes as far from `share * trials` as this one or farther on its side, twice (at most 1): the two-sided
-/// p-value of "each trial succeeds with the probability `share`"; 0 for a share outside 0 to 1.
+/// Probability of a number of successes as far from `share * trials` as this one or farther on its side,
+/// twice (at most 1): the two-sided p-value of "each trial succeeds with the probability `share`"; 0 for a
+/// share outside 0 to 1.
 ///
 /// ```
 /// use analysis::binomial_test;

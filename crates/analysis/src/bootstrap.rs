@@ -24,8 +24,8 @@ impl Default for Bootstrap {
 impl Bootstrap {
     /// The draws: for each resample, `surfaces` indices in `0..surfaces` with repetition.
     ///
-    /// They depend on the seed and the number of surfaces alone, so that all curves of a run are resampled with the same
-    /// surfaces (curves of different D_f share phases, and their errors are correlated).
+    /// They depend on the seed and the number of surfaces alone, so that all curves of a run are resampled
+    /// with the same surfaces (curves of different D_f share phases, and their errors are correlated).
     ///
     /// ```
     /// let b = analysis::Bootstrap { resamples: 3, seed: 1 };
@@ -39,9 +39,11 @@ impl Bootstrap {
         (0..self.resamples).map(|_| (0..surfaces).map(|_| pick()).collect()).collect()
     }
 
-    /// Standard error of any number computed from a choice of surfaces: the standard deviation of `quantity` over the draws.
+    /// Standard error of any number computed from a choice of surfaces: the standard deviation of `quantity`
+    /// over the draws.
     ///
-    /// `None` for fewer than two surfaces, or when `quantity` exists for fewer than half of the draws (or two).
+    /// `None` for fewer than two surfaces, or when `quantity` exists for fewer than half of the draws (or
+    /// two).
     pub fn standard_error(
         &self,
         surfaces: usize,
@@ -53,8 +55,9 @@ impl Bootstrap {
         Some((sum(values.iter().map(|v| (v - mean) * (v - mean))) / (n - 1.0)).sqrt())
     }
 
-    /// Half the width of the interval that holds the central 68.3 % of the draws: the standard error of a normal quantity, and still
-    /// a sensible number for one with long tails (a ratio, a crossing of nearly parallel lines).
+    /// Half the width of the interval that holds the central 68.3 % of the draws: the standard error of a
+    /// normal quantity, and still a sensible number for one with long tails (a ratio, a crossing of nearly
+    /// parallel lines).
     ///
     /// `None` as for [`Bootstrap::standard_error`].
     pub fn half_width(&self, surfaces: usize, quantity: impl FnMut(&[usize]) -> Option<f64>) -> Option<f64> {
@@ -86,7 +89,8 @@ impl Statistics {
 mod tests {
     use super::*;
 
-    /// The bootstrap error of a mean has itself a relative error of 1/sqrt(2 x 400) = 3.5 %, and counts n, not n - 1.
+    /// The bootstrap error of a mean has itself a relative error of 1/sqrt(2 x 400) = 3.5 %, and counts n,
+    /// not n - 1.
     const BOOTSTRAP_SCATTER: f64 = 0.12;
 
     #[test]
@@ -119,7 +123,8 @@ mod tests {
 
     #[test]
     fn the_stream_is_written_down() {
-        // xoshiro256++ seeded by splitmix64 from 7, computed independently: results must stay reproducible for years.
+        // xoshiro256++ seeded by splitmix64 from 7, computed independently: results must stay reproducible
+        // for years.
         let b = Bootstrap { resamples: 1, seed: 7 };
         assert_eq!(b.draws(10), [[0, 1, 7, 4, 9, 4, 7, 3, 9, 0]]);
         assert_ne!(b.draws(10), Bootstrap { seed: 8, ..b }.draws(10));

@@ -18,14 +18,15 @@ pub struct Residual {
     pub rms: f64,
     /// Largest `|ln(F_tilde/F_bar)|`.
     pub max: f64,
-    /// Scatter of the curves around their own common mean, whatever that is: root mean square of `ln F_tilde` minus its mean
-    /// over the curves at the same force. `None` where no force is shared by two curves.
+    /// Scatter of the curves around their own common mean, whatever that is: root mean square of `ln F_tilde`
+    /// minus its mean over the curves at the same force. `None` where no force is shared by two curves.
     pub scatter: Option<f64>,
     /// Number of points.
     pub points: usize,
 }
 
-/// Residuals of a collapse over all points with F_bar in `min..=max`; one inner slice per curve. `None` without points.
+/// Residuals of a collapse over all points with F_bar in `min..=max`; one inner slice per curve. `None`
+/// without points.
 ///
 /// Source: Fig. 4 of the paper, `F_tilde = F_ul (k_bar/k_ul)^(1/(0.266 D_f))`.
 ///
@@ -65,7 +66,8 @@ pub fn collapse(curves: &[Vec<CollapsePoint>], min: f64, max: f64) -> Option<Res
     })
 }
 
-/// The longest run of consecutive points of a curve that stay within a factor `factor` of the line, in decades of F_bar.
+/// The longest run of consecutive points of a curve that stay within a factor `factor` of the line, in
+/// decades of F_bar.
 ///
 /// Points in increasing F_bar. 0 for a single point or none.
 ///

@@ -4,9 +4,10 @@ use contact_model::{Conductance, Result};
 
 /// Constriction conductance `Lambda = 2 k/(E* (rho1 + rho2))`, exact for any contact of half-spaces.
 ///
-/// The formula of [`Conductance`] for a fitted or averaged stiffness; a state has its own when it is asked for.
-/// `stiffness` k in force per length, `modulus` E* in force per length squared, resistivities in resistance times length; the
-/// result is 1/resistance. Source: Barber, Proc. R. Soc. A 459, 53 (2003); Sec. I and Eq. 13 of the paper.
+/// The formula of [`Conductance`] for a fitted or averaged stiffness; a state has its own when it is asked
+/// for. `stiffness` k in force per length, `modulus` E* in force per length squared, resistivities in
+/// resistance times length; the result is 1/resistance. Source: Barber, Proc. R. Soc. A 459, 53 (2003); Sec.
+/// I and Eq. 13 of the paper.
 ///
 /// # Errors
 /// [`contact_model::Error::Domain`] for a stiffness or resistivity that is negative or not finite, a modulus that is not positive or two

@@ -14,10 +14,11 @@ pub struct Crossing {
     pub spread: f64,
 }
 
-/// The point in which the laws `k_bar = zeta F_bar^alpha` come closest: the F_bar that makes the standard deviation of
-/// `ln zeta + alpha ln F_bar` over the laws least, `ln F_bar = -cov(alpha, ln zeta)/var(alpha)`.
+/// The point in which the laws `k_bar = zeta F_bar^alpha` come closest: the F_bar that makes the standard
+/// deviation of `ln zeta + alpha ln F_bar` over the laws least, `ln F_bar = -cov(alpha, ln zeta)/var(alpha)`.
 ///
-/// `laws` holds (alpha, zeta). `None` for fewer than two different exponents. Source: the intersection that fixes zeta in Eq. 11.
+/// `laws` holds (alpha, zeta). `None` for fewer than two different exponents. Source: the intersection that
+/// fixes zeta in Eq. 11.
 ///
 /// ```
 /// let law = |a: f64| (a, 0.18 / 0.086_f64.powf(a));
@@ -40,10 +41,11 @@ pub fn crossing(laws: &[(f64, f64)]) -> Option<Crossing> {
         .then_some(crossing)
 }
 
-/// The force within `min..=max` at which the relative spread of k_bar over the curves is least (no interpolation).
+/// The force within `min..=max` at which the relative spread of k_bar over the curves is least (no
+/// interpolation).
 ///
-/// Each curve has one entry per force. `None` when no force of the range has two or more curves. Choose the range with care:
-/// the curves also meet on the plateau and on the one-cell floor.
+/// Each curve has one entry per force. `None` when no force of the range has two or more curves. Choose the
+/// range with care: the curves also meet on the plateau and on the one-cell floor.
 pub fn least_spread(force_bar: &[f64], curves: &[Vec<Option<f64>>], min: f64, max: f64) -> Option<Crossing> {
     (force_bar.iter().enumerate())
         .filter(|(_, f)| (min..=max).contains(*f))

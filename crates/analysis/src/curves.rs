@@ -12,7 +12,8 @@ pub struct StiffnessSample {
     pub contact_cells: Option<usize>,
 }
 
-/// Stiffness of an ensemble of surfaces at common forces; a missing sample (not converged, not claimed) is `None`.
+/// Stiffness of an ensemble of surfaces at common forces; a missing sample (not converged, not claimed) is
+/// `None`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Curves {
     force_bar: Vec<f64>,

@@ -17,8 +17,9 @@ pub struct Statistics {
     pub count: usize,
 }
 
-/// Mean of finite numbers, and the standard deviation of one of them where there are at least two; `None` for no number, or one that is
-/// not finite. The standard error of the mean is the deviation over the square root of their count.
+/// Mean of finite numbers, and the standard deviation of one of them where there are at least two; `None` for
+/// no number, or one that is not finite. The standard error of the mean is the deviation over the square root
+/// of their count.
 ///
 /// ```
 /// assert_eq!(analysis::mean_and_deviation(&[0.0, 2.0]), Some((1.0, Some(2.0_f64.sqrt()))));

@@ -13,12 +13,14 @@ pub struct FitWindow {
     pub min_force_bar: f64,
     /// Largest F_bar.
     pub max_force_bar: f64,
-    /// Every surface must have at least this many cells in contact (where the model has cells): fewer is the one-cell floor.
+    /// Every surface must have at least this many cells in contact (where the model has cells): fewer is the
+    /// one-cell floor.
     pub min_contact_cells: usize,
 }
 
 impl FitWindow {
-    /// The paper's upper limit of its power law, `F_bar <= 0.086`; that every surface has at least 10 contact cells is a choice made here.
+    /// The paper's upper limit of its power law, `F_bar <= 0.086`; that every surface has at least 10 contact
+    /// cells is a choice made here.
     pub const PAPER: Self = Self { min_force_bar: 0.0, max_force_bar: 0.086, min_contact_cells: 10 };
 }
 
@@ -79,8 +81,8 @@ impl fmt::Display for NoFit {
 
 impl std::error::Error for NoFit {}
 
-/// Fits `ln k_bar = ln zeta + alpha ln F_bar` to the arithmetic mean of k_bar over the surfaces, all forces of the window with
-/// equal weight; forces at which a surface is missing are left out.
+/// Fits `ln k_bar = ln zeta + alpha ln F_bar` to the arithmetic mean of k_bar over the surfaces, all forces
+/// of the window with equal weight; forces at which a surface is missing are left out.
 ///
 /// Source: Eqs. 6, 8, 9 of the paper, which fits its averaged curves. Errors: standard
 /// deviation over `bootstrap` resamples of the surfaces, window fixed.

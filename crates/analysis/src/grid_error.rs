@@ -1,11 +1,13 @@
-//! What a grid leaves of a number, from the same number on grids half and a quarter as fine: of one state, and of a mean over surfaces.
+//! What a grid leaves of a number, from the same number on grids half and a quarter as fine: of one state,
+//! and of a mean over surfaces.
 
 use numerics::quantile::student;
 use numerics::sum::sum;
 
 /// Factor on what the differences say, so that nine in ten true errors of resolved contacts are smaller.
 const SAFETY: f64 = 1.5;
-/// By how much differences fall from one halving of the cells to the next, at the slowest: a low order from three grids is mostly chance.
+/// By how much differences fall from one halving of the cells to the next, at the slowest: a low order from
+/// three grids is mostly chance.
 const SLOWEST: f64 = 0.75;
 /// The fastest fall that is believed of one number: first order.
 const FASTEST: f64 = 0.5;
@@ -24,12 +26,14 @@ pub struct GridError {
 
 /// The discretisation error of a number from grids whose cells are once, twice and four times as large.
 ///
-/// The error is 1.5 times the difference of the two finer grids, or half the difference of the two coarser ones where that is larger: chance
-/// can make one of them small. The order of convergence is that of the differences, `log2(|q_4 - q_2|/|q_2 - q_1|)`, and never an assumed one.
-/// Below 1 the sum of all differences to come, `|q_2 - q_1|/(2^order - 1)`, is what remains, at most three times the last one. No
-/// extrapolation makes the error smaller. `tests/tests/grid_error.rs` counts how often the interval holds: for 93 to 100 % of stiffnesses, areas and
-/// largest pressures of spheres and of waves that the grid resolves; for 92 % of stiffnesses and 80 % of areas of surfaces with waves down
-/// to the cell, whose largest pressure has no limit.
+/// The error is 1.5 times the difference of the two finer grids, or half the difference of the two coarser
+/// ones where that is larger: chance can make one of them small. The order of convergence is that of the
+/// differences, `log2(|q_4 - q_2|/|q_2 - q_1|)`, and never an assumed one. Below 1 the sum of all differences
+/// to come, `|q_2 - q_1|/(2^order - 1)`, is what remains, at most three times the last one. No extrapolation
+/// makes the error smaller. `tests/tests/grid_error.rs` counts how often the interval holds: for 93 to 100 %
+/// of stiffnesses, areas and largest pressures of spheres and of waves that the grid resolves; for 92 % of
+/// stiffnesses and 80 % of areas of surfaces with waves down to the cell, whose largest pressure has no
+/// limit.
 ///
 /// `None` for numbers that are not finite, and for a zero on the finest grid.
 ///
@@ -57,7 +61,8 @@ pub fn relative_differences(fine: f64, half: f64, quarter: f64) -> Option<[f64; 
     (fine > 0.0).then(|| [(half - fine) / fine, (quarter - half) / fine])
 }
 
-/// A part of the relative differences between grids that is known from elsewhere, and could cancel the rest of them.
+/// A part of the relative differences between grids that is known from elsewhere, and could cancel the rest
+/// of them.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct KnownPart {
     /// In the last difference and the one before.
@@ -68,10 +73,11 @@ pub struct KnownPart {
 
 /// 95 % half-width of the distance from the limit of fine grids, relative, for the mean over `surfaces`.
 ///
-/// From the relative differences of single surfaces between the grid and the one half as fine, and between that and the one a quarter as fine
-/// ([`relative_differences`]): how large the first are, by how much they fall from one halving to the next, and how far both go together. No
-/// order of convergence is assumed. The known part is taken out of the differences, and its own remainder added in quadrature. `None` for
-/// fewer than two surfaces.
+/// From the relative differences of single surfaces between the grid and the one half as fine, and between
+/// that and the one a quarter as fine ([`relative_differences`]): how large the first are, by how much they
+/// fall from one halving to the next, and how far both go together. No order of convergence is assumed. The
+/// known part is taken out of the differences, and its own remainder added in quadrature. `None` for fewer
+/// than two surfaces.
 pub fn mean_grid_error(differences: &[[f64; 2]], known: KnownPart, surfaces: usize) -> Option<f64> {
     let n = differences.len() as f64;
     if differences.len() < 2 {
@@ -90,11 +96,11 @@ pub fn mean_grid_error(differences: &[[f64; 2]], known: KnownPart, surfaces: usi
     Some(waves.hypot(known.to_come))
 }
 
-/// 95 % half-width of all differences to come, from the mean of the last difference and from the second moments of the last one, of the one
-/// before, and of both.
+/// 95 % half-width of all differences to come, from the mean of the last difference and from the second
+/// moments of the last one, of the one before, and of both.
 ///
-/// What surfaces have in common gets the factor 1.5 of [`grid_error`], their scatter that of Student's t, each with its share of the last
-/// difference.
+/// What surfaces have in common gets the factor 1.5 of [`grid_error`], their scatter that of Student's t,
+/// each with its share of the last difference.
 pub fn error_from_moments(mean: f64, [last, before, both]: [f64; 3], surfaces: usize) -> f64 {
     if last.max(before) <= 0.0 {
         return 0.0;
@@ -107,11 +113,12 @@ pub fn error_from_moments(mean: f64, [last, before, both]: [f64; 3], surfaces: u
     (SAFETY * SAFETY * common + scatter * scatter * (1.0 - common)).sqrt() * all
 }
 
-/// Root mean square of the sum of all differences to come, from those of the last difference and of the one before.
+/// Root mean square of the sum of all differences to come, from those of the last difference and of the one
+/// before.
 ///
-/// Differences that fall by r from one grid to the next and go together with the correlation c add up to the variance
-/// `m r^2/(1 - r^2) (1 + c r)/(1 - c r)`. A last difference that fell faster than any sequence does (where its sign changes, or by chance)
-/// counts as one that fell by the fastest.
+/// Differences that fall by r from one grid to the next and go together with the correlation c add up to the
+/// variance `m r^2/(1 - r^2) (1 + c r)/(1 - c r)`. A last difference that fell faster than any sequence does
+/// (where its sign changes, or by chance) counts as one that fell by the fastest.
 fn to_come([last, before]: [f64; 2], fall: f64, together: f64, fastest: f64) -> f64 {
     let fall = fall.clamp(fastest, SLOWEST);
     let (square, product) = (fall * fall, together * fall);
@@ -136,7 +143,8 @@ mod tests {
         // First order, second order: nothing is gained by an order above 1.
         close([2.0, 2.25, 2.75], 0.1875, Some(1.0));
         close([-2.0, -2.25, -3.25], 0.375, Some(2.0));
-        // Differences of 2 and 3: what remains is 2 / (3/2 - 1); of 4 and 5, and of growing ones, three times the last.
+        // Differences of 2 and 3: what remains is 2 / (3/2 - 1); of 4 and 5, and of growing ones, three times
+        // the last.
         close([2.0, 4.0, 7.0], 3.0, Some(1.5f64.log2()));
         close([2.0, 6.0, 11.0], 9.0, Some(1.25f64.log2()));
         close([2.0, 2.5, 3.0], 1.125, Some(0.0));

@@ -1,4 +1,5 @@
-//! The grid that an accuracy asks for: from coarse to fine, until the error is small enough or the time is up.
+//! The grid that an accuracy asks for: from coarse to fine, until the error is small enough or the time is
+//! up.
 
 /// A relative error, and the time that it may cost.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -10,7 +11,8 @@ pub struct AccuracyTarget {
 }
 
 impl AccuracyTarget {
-    /// Tolerance of a solver that this accuracy does not notice: a thirtieth of it, from 1e-6 to 1e-3, one digit.
+    /// Tolerance of a solver that this accuracy does not notice: a thirtieth of it, from 1e-6 to 1e-3, one
+    /// digit.
     ///
     /// ```
     /// let target = analysis::AccuracyTarget { share: 0.01, seconds: 60.0 };
@@ -32,7 +34,8 @@ pub struct GridTrial<T> {
     pub seconds: f64,
     /// Seconds that the run takes beyond the trial; infinite where no run on this grid reaches the target.
     pub rest: f64,
-    /// The same of a grid as expensive as this one that leaves no error: what finer grids take at least is estimated from it.
+    /// The same of a grid as expensive as this one that leaves no error: what finer grids take at least is
+    /// estimated from it.
     pub least_rest: f64,
     /// What else the caller keeps of it.
     pub kept: T,
@@ -41,7 +44,8 @@ pub struct GridTrial<T> {
 /// Why no grid was chosen; each with the last trial.
 #[derive(Debug, Clone, PartialEq)]
 pub enum NoGrid<T> {
-    /// The run on the last grid, or the trial of the next one and the run on it, would take longer than the target allows.
+    /// The run on the last grid, or the trial of the next one and the run on it, would take longer than the
+    /// target allows.
     Time {
         /// The last grid.
         grid: usize,
@@ -52,7 +56,8 @@ pub enum NoGrid<T> {
         /// Seconds of the whole search and of the run.
         seconds: f64,
     },
-    /// As many finer grids as the time has room for would leave too much even if each left a quarter of the one before (second order).
+    /// As many finer grids as the time has room for would leave too much even if each left a quarter of the
+    /// one before (second order).
     Order {
         /// The last grid.
         grid: usize,
@@ -69,7 +74,8 @@ pub enum NoGrid<T> {
 pub type ChosenGrid<T> = Result<(usize, GridTrial<T>), NoGrid<T>>;
 
 impl<T> NoGrid<T> {
-    /// The reason in words, with what the last grid leaves: `grid` names a grid, `place` says where the error is largest, `time` words a time.
+    /// The reason in words, with what the last grid leaves: `grid` names a grid, `place` says where the error
+    /// is largest, `time` words a time.
     pub fn words(
         &self,
         budget: f64,
@@ -108,10 +114,12 @@ fn percent(share: f64) -> String {
     format!("{value:.*} %", if decimals.is_finite() { decimals as usize } else { 0 })
 }
 
-/// The first of several grids, from coarse to fine, whose error is within a target and whose run is within its time.
+/// The first of several grids, from coarse to fine, whose error is within a target and whose run is within
+/// its time.
 ///
-/// A grid is accepted if the coarser one left at most twice the target (one small difference may be chance), and the finest without that:
-/// nothing is extrapolated. The time of a grid is taken to grow with a power of its size.
+/// A grid is accepted if the coarser one left at most twice the target (one small difference may be chance),
+/// and the finest without that: nothing is extrapolated. The time of a grid is taken to grow with a power of
+/// its size.
 ///
 /// # Errors
 /// What a trial returns.

@@ -2,9 +2,11 @@
 
 use contact_model::{Error, Result};
 
-/// `kappa = A E* |grad h|/F`, the factor of `A = kappa F/(E* |grad h|)`, dimensionless (not the kappa_n of a body r^n).
+/// `kappa = A E* |grad h|/F`, the factor of `A = kappa F/(E* |grad h|)`, dimensionless (not the kappa_n of a
+/// body r^n).
 ///
-/// `area` A in length squared, `slope` |grad h| the rms slope of the surface. Source: Sec. I of the paper ("near 2").
+/// `area` A in length squared, `slope` |grad h| the rms slope of the surface. Source: Sec. I of the paper
+/// ("near 2").
 ///
 /// # Errors
 /// [`Error::Domain`] for a force, modulus or slope that is not finite and positive, or an area that is negative or not finite.

@@ -6,12 +6,13 @@ use contact_model::{Error, Result};
 use numerics::quantile::student;
 use numerics::sum::sum;
 
-/// Multilevel Monte Carlo: curves on the coarsest grid, and differences between each finer grid and the next coarser one on the same
-/// surfaces.
+/// Multilevel Monte Carlo: curves on the coarsest grid, and differences between each finer grid and the next
+/// coarser one on the same surfaces.
 ///
-/// The mean on the finest grid is the sum of the mean on the coarsest one and of the mean differences. The differences scatter less than the
-/// curves, so that few surfaces on the expensive grids are enough. Surfaces of different levels are independent. A level may end before
-/// the last point of the others: beyond its end the next coarser grid is the finest.
+/// The mean on the finest grid is the sum of the mean on the coarsest one and of the mean differences. The
+/// differences scatter less than the curves, so that few surfaces on the expensive grids are enough. Surfaces
+/// of different levels are independent. A level may end before the last point of the others: beyond its end
+/// the next coarser grid is the finest.
 ///
 /// Source: M. B. Giles, Oper. Res. 56, 607 (2008).
 #[derive(Debug, Clone, PartialEq)]
@@ -109,8 +110,8 @@ impl Multilevel {
         self.levels[level].len()
     }
 
-    /// A number that depends on the mean curve of the finest grid: its value there, and its error from the scatter of the surfaces by its
-    /// derivatives (`gradient`, one for each point).
+    /// A number that depends on the mean curve of the finest grid: its value there, and its error from the
+    /// scatter of the surfaces by its derivatives (`gradient`, one for each point).
     ///
     /// # Panics
     /// Where there are fewer derivatives than points.
@@ -123,7 +124,8 @@ impl Multilevel {
         Uncertain { value, standard_error: variance.sqrt(), degrees_of_freedom }
     }
 
-    /// What each level adds to the variance of a number that depends on the mean curve of the finest grid by these derivatives.
+    /// What each level adds to the variance of a number that depends on the mean curve of the finest grid by
+    /// these derivatives.
     ///
     /// # Panics
     /// Where there are fewer derivatives than points.
@@ -138,8 +140,9 @@ impl Multilevel {
             .collect()
     }
 
-    /// What the cells of the finest grid leave of a number that depends on the mean curve: [`grid_error`] of its values on the three finest
-    /// grids, absolute. `None` for fewer than three grids, or where the number does not exist on one of them.
+    /// What the cells of the finest grid leave of a number that depends on the mean curve: [`grid_error`] of
+    /// its values on the three finest grids, absolute. `None` for fewer than three grids, or where the number
+    /// does not exist on one of them.
     pub fn bias(&self, levels: usize, quantity: impl Fn(&[f64]) -> Option<f64>) -> Option<f64> {
         let on = |levels: usize| quantity(&self.means(levels));
         let (fine, half, quarter) =
@@ -153,7 +156,8 @@ fn mean_at(level: &[Vec<f64>], point: usize) -> Option<f64> {
     values.map(|values| sum(values.iter().copied()) / values.len() as f64)
 }
 
-/// Weights w with `sum w y` the slope of the straight line through (x, y) by least squares; `None` for fewer than two different x.
+/// Weights w with `sum w y` the slope of the straight line through (x, y) by least squares; `None` for fewer
+/// than two different x.
 ///
 /// ```
 /// let w = analysis::slope_weights(&[0.0, 1.0, 2.0]).unwrap();
@@ -192,7 +196,8 @@ mod tests {
         // Variances of the means: 2/2, 0.25/3, 0.005/2.
         let first = m.propagated(3.3, &[1.0, 0.0]);
         assert_relative_eq!(first.standard_error.powi(2), 1.0 + 0.25 / 3.0 + 0.0025, max_relative = 1e-12);
-        // A difference between points that move together scatters less: 10 y_0 - y_1 is 0 on both first levels but for 4, 12, 8.
+        // A difference between points that move together scatters less: 10 y_0 - y_1 is 0 on both first
+        // levels but for 4, 12, 8.
         let both = m.propagated(0.0, &[10.0, -1.0]);
         assert_relative_eq!(both.standard_error.powi(2), 0.0 + 16.0 / 3.0 + 0.25, max_relative = 1e-12);
     }

@@ -251,8 +251,8 @@ fn gap_in(nondimensional: Nondimensionalisation, gap: f64) -> Result<f64> {
 /// [`Error::OutOfRange`]. A mean gap is not taken: above D it is that of a pulled contact as well as of surfaces
 /// apart.
 ///
-/// The stiffness is the slope of the equilibrium curve ([`WavyContact::slope`]), 0 at both limits. That of the
-/// held contact area, which the conductance follows from, is that of the bonded strips
+/// The stiffness is the slope of the equilibrium curve ([`WavyContact::slope`]), 0 at both limits. That of
+/// the held contact area, which the conductance follows from, is that of the bonded strips
 /// ([`WavyContact::stiffness_fixed_area`]). A full contact has neither: its mean gap stays 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct AdhesiveWave;

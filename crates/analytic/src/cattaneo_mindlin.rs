@@ -1,4 +1,5 @@
-//! Cattaneo and Mindlin: a sphere under a constant normal and a changing tangential load; Mindlin and Deresiewicz: its memory.
+//! Cattaneo and Mindlin: a sphere under a constant normal and a changing tangential load; Mindlin and
+//! Deresiewicz: its memory.
 
 use crate::closed::{self, ROUNDED_UP};
 use crate::hertz::Hertz;
@@ -12,15 +13,16 @@ const NAME: &str = "cattaneo_mindlin";
 
 /// A sphere with Coulomb's friction, pressed first and then loaded tangentially, to and fro.
 ///
-/// First loading: stick radius `c = a (1 - T/(mu F))^(1/3)`, displacement `u = 3 mu F/(4 G* a) (1 - (1 - T/(mu F))^(2/3))`. After a
-/// turn at `(T_r, u_r)` the curve is the first one, doubled: `u_r - u = 2 u_1((T_r - T)/2)`, until it closes the loop with an
-/// earlier turn and goes on where that one left off (Mindlin and Deresiewicz 1953). The memory is the list of turns that are not
-/// closed.
+/// First loading: stick radius `c = a (1 - T/(mu F))^(1/3)`, displacement
+/// `u = 3 mu F/(4 G* a) (1 - (1 - T/(mu F))^(2/3))`. After a turn at `(T_r, u_r)` the curve is the first one,
+/// doubled: `u_r - u = 2 u_1((T_r - T)/2)`, until it closes the loop with an earlier turn and goes on where
+/// that one left off (Mindlin and Deresiewicz 1953). The memory is the list of turns that are not closed.
 ///
-/// Takes [`contact_model::Surface::Sphere`] with [`Friction::Coulomb`] and both bodies ([`Scene::of_pair`]). The normal load may change only before
-/// the first tangential one; a tangential force beyond mu F is [`Error::OutOfRange`], a displacement beyond is gross slip.
-/// Tangential tractions are taken not to disturb the normal ones: exact where [`contact_model::Pair::coupling`] is 0, otherwise an
-/// approximation of that order.
+/// Takes [`contact_model::Surface::Sphere`] with [`Friction::Coulomb`] and both bodies ([`Scene::of_pair`]).
+/// The normal load may change only before the first tangential one; a tangential force beyond mu F is
+/// [`Error::OutOfRange`], a displacement beyond is gross slip. Tangential tractions are taken not to disturb
+/// the normal ones: exact where [`contact_model::Pair::coupling`] is 0, otherwise an approximation of that
+/// order.
 ///
 /// ```
 /// use analytic::CattaneoMindlin;
@@ -171,11 +173,11 @@ impl SlidingSphere {
         Ok(self.limit * held(u.abs().min(1.0)).copysign(u))
     }
 
-    /// Energy that a cycle between -T and T dissipates: `(24/5) mu F u_slip (1 - (1 - t)^(5/3) - (5 t/6) (1 + (1 - t)^(2/3)))` with
-    /// `t = T/(mu F)`.
+    /// Energy that a cycle between -T and T dissipates:
+    /// `(24/5) mu F u_slip (1 - (1 - t)^(5/3) - (5 t/6) (1 + (1 - t)^(2/3)))` with `t = T/(mu F)`.
     ///
-    /// For small t it is `(4/27) mu F u_slip t^3`; the closed form cancels there and a series is taken. First loading dissipates a quarter
-    /// of it.
+    /// For small t it is `(4/27) mu F u_slip t^3`; the closed form cancels there and a series is taken. First
+    /// loading dissipates a quarter of it.
     ///
     /// # Errors
     /// As [`SlidingSphere::stick_radius`].

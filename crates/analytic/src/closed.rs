@@ -177,8 +177,8 @@ pub(crate) fn within(radius: f64, size: Size) -> Result<()> {
 /// A load exactly at the end of a range may come out a few roundings beyond it.
 pub(crate) const ROUNDED_UP: f64 = 1.0 + 8.0 * f64::EPSILON;
 
-/// Slope `dd/da` over that far from it, below which a state is the pull-off under prescribed approach: a radius
-/// that is found from an approach has half its digits there, and its `dF/dd` none.
+/// Slope `dd/da` over that far from it, below which a state is the pull-off under prescribed approach: a
+/// radius that is found from an approach has half its digits there, and its `dF/dd` none.
 pub(crate) const AT_FOLD: f64 = 1e-7;
 
 fn out_of_f64(value: f64) -> Error {

@@ -2,8 +2,9 @@
 
 /// `Gamma(x + 1/2) / Gamma(x)` for `x > 0`, relative error below 1e-14.
 ///
-/// The recurrence `R(x) = R(x + 1) x / (x + 1/2)` up to `x >= 16`, there Stirling's series of both logarithms, whose large terms
-/// cancel before they are computed: `x ln(1 + 1/(2x)) + ln(x)/2 - 1/2 + s(x + 1/2) - s(x)` (Abramowitz and Stegun 6.1.40).
+/// The recurrence `R(x) = R(x + 1) x / (x + 1/2)` up to `x >= 16`, there Stirling's series of both
+/// logarithms, whose large terms cancel before they are computed:
+/// `x ln(1 + 1/(2x)) + ln(x)/2 - 1/2 + s(x + 1/2) - s(x)` (Abramowitz and Stegun 6.1.40).
 pub(crate) fn half_step_ratio(x: f64) -> f64 {
     /// Where the series is good to the last place with the terms below.
     const LARGE: f64 = 16.0;

@@ -13,22 +13,26 @@ use surface_gen::MapStatistics;
 
 const NAME: &str = "greenwood_williamson";
 
-/// `1 - s^2/m0 = 0.8968/alpha`: how much less summits scatter than heights (Bush, Gibson, Thomas 1975, as used by McCool).
+/// `1 - s^2/m0 = 0.8968/alpha`: how much less summits scatter than heights (Bush, Gibson, Thomas 1975, as
+/// used by McCool).
 const SUMMIT_SCATTER: f64 = 0.8968;
 
 /// Greenwood and Williamson's contact of spherical summits that do not feel each other, in McCool's variant.
 ///
-/// From the profile moments m0, m2, m4 of the spectrum, `alpha = m0 m4/m2^2`: all summits have the radius `R = (3/8) sqrt(pi/m4)`,
-/// there are `n = m4/(6 sqrt(3) pi m2)` per area, and their heights scatter by `s = sqrt((1 - 0.8968/alpha) m0)` around a plane that
-/// lies `4 sqrt(m0/(pi alpha))` above the mean of the surface. At a flat t s above that plane, per area: `p = (4/3) n E* sqrt(R)
-/// s^(3/2) F_(3/2)(t)`, `A/A0 = pi n R s F_1(t)`, `K = 2 n E* sqrt(R s) F_(1/2)(t)`, with `F_j(t) = int_t^inf (x - t)^j phi(x) dx`.
+/// From the profile moments m0, m2, m4 of the spectrum, `alpha = m0 m4/m2^2`: all summits have the radius
+/// `R = (3/8) sqrt(pi/m4)`, there are `n = m4/(6 sqrt(3) pi m2)` per area, and their heights scatter by
+/// `s = sqrt((1 - 0.8968/alpha) m0)` around a plane that lies `4 sqrt(m0/(pi alpha))` above the mean of the
+/// surface. At a flat t s above that plane, per area: `p = (4/3) n E* sqrt(R) s^(3/2) F_(3/2)(t)`,
+/// `A/A0 = pi n R s F_1(t)`, `K = 2 n E* sqrt(R s) F_(1/2)(t)`, with
+/// `F_j(t) = int_t^inf (x - t)^j phi(x) dx`.
 ///
-/// The mean gap is the distance of the flat from the mean of the undeformed surface: between summits the theory's surface does not
-/// move. Loads beyond t = 0, where half of the summits would be in contact, are [`Error::OutOfRange`].
+/// The mean gap is the distance of the flat from the mean of the undeformed surface: between summits the
+/// theory's surface does not move. Loads beyond t = 0, where half of the summits would be in contact, are
+/// [`Error::OutOfRange`].
 ///
-/// Takes a [`Surface::SelfAffine`] with a short cut-off or [`Surface::Heights`], and [`contact_model::Boundary::Periodic`] (it knows
-/// no edges); the seed changes nothing. The moments of a map are measured ([`surface_gen::MapStatistics`]); m4 is that of its
-/// shortest waves.
+/// Takes a [`Surface::SelfAffine`] with a short cut-off or [`Surface::Heights`], and
+/// [`contact_model::Boundary::Periodic`] (it knows no edges); the seed changes nothing. The moments of a map
+/// are measured ([`surface_gen::MapStatistics`]); m4 is that of its shortest waves.
 ///
 /// ```
 /// use analytic::GreenwoodWilliamson;
@@ -76,7 +80,8 @@ pub struct Summits {
 }
 
 impl Summits {
-    /// Summits of an isotropic Gaussian surface with this spectrum (McCool's variant, see [`GreenwoodWilliamson`]).
+    /// Summits of an isotropic Gaussian surface with this spectrum (McCool's variant, see
+    /// [`GreenwoodWilliamson`]).
     pub fn new(spectrum: &Spectrum) -> Self {
         Self::unscaled(spectrum.profile_moments(), spectrum.side(), spectrum.rms_height())
     }
@@ -151,7 +156,8 @@ impl ContactModel for GreenwoodWilliamson {
     }
 }
 
-/// `F_j(t) = int_t^inf (x - t)^j phi(x) dx` for a Gaussian phi, j > -1/2 and t >= 0: 0.43001999 for j = 3/2, t = 0.
+/// `F_j(t) = int_t^inf (x - t)^j phi(x) dx` for a Gaussian phi, j > -1/2 and t >= 0: 0.43001999 for j = 3/2,
+/// t = 0.
 ///
 /// # Errors
 /// [`Error::Domain`] for a j or t outside this range.
@@ -170,7 +176,8 @@ pub fn gaussian_integral(j: f64, t: f64) -> Result<f64> {
     Ok(gaussian(&Gauss::<16>::new(), j, t) * (-0.5 * t * t).exp())
 }
 
-/// `exp(t^2/2) F_j(t)`, without underflow: with `x = t + v^2`, `2/sqrt(2 pi) int v^(2 j + 1) exp(-t v^2 - v^4/2) dv`.
+/// `exp(t^2/2) F_j(t)`, without underflow: with `x = t + v^2`,
+/// `2/sqrt(2 pi) int v^(2 j + 1) exp(-t v^2 - v^4/2) dv`.
 fn gaussian(gauss: &Gauss<16>, j: f64, t: f64) -> f64 {
     /// exp(-45) is beyond the last place.
     const SMALL: f64 = 45.0;
@@ -197,7 +204,8 @@ struct AsperityModel {
     gauss: Gauss<16>,
 }
 
-/// The flat is never further from the mean plane of the summits than this many s: there F is below the smallest f64.
+/// The flat is never further from the mean plane of the summits than this many s: there F is below the
+/// smallest f64.
 const FARTHEST: f64 = 37.0;
 
 impl AsperityModel {
@@ -319,7 +327,8 @@ mod tests {
         assert_relative_eq!(summits.elevation, 4.0 * (m0 / (PI * 1.5)).sqrt(), max_relative = 1e-11);
     }
 
-    /// The map of a surface with many waves everywhere has the summits of the surface, but for the lattice of waves.
+    /// The map of a surface with many waves everywhere has the summits of the surface, but for the lattice of
+    /// waves.
     #[test]
     fn a_map_is_the_surface_that_it_was_drawn_from() {
         const LATTICE: f64 = 0.01;

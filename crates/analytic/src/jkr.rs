@@ -10,8 +10,8 @@ use std::f64::consts::PI;
 
 const NAME: &str = "jkr";
 
-/// The JKR contact of a sphere with [`contact_model::Adhesion::ShortRange`]: `F = 4 E* a^3/(3 R) - sqrt(8 pi w E* a^3)`, `d
-/// = a^2/R - sqrt(2 pi w a/E*)`.
+/// The JKR contact of a sphere with [`contact_model::Adhesion::ShortRange`]:
+/// `F = 4 E* a^3/(3 R) - sqrt(8 pi w E* a^3)`, `d = a^2/R - sqrt(2 pi w a/E*)`.
 ///
 /// The state is that of bodies that are in contact and are pressed further or pulled apart: loads may be
 /// negative, and no load means the adhered contact, not an empty one. (Bodies that approach each other jump
@@ -19,9 +19,10 @@ const NAME: &str = "jkr";
 /// [`Error::OutOfRange`], named a pull-off: the smallest admissible load is in the error. So is a contact
 /// radius beyond half the shorter side.
 ///
-/// The stiffness is the slope of the equilibrium curve, on which the edge moves ([`AdhesiveSphere::slope`]): 0
-/// at the pull-off under prescribed force, negative beyond it, absent at the pull-off under prescribed approach,
-/// where it has no bound. That of the held contact area, which the conductance follows from, is `2 E* a`. Takes
+/// The stiffness is the slope of the equilibrium curve, on which the edge moves ([`AdhesiveSphere::slope`]):
+/// 0 at the pull-off under prescribed force, negative beyond it, absent at the pull-off under prescribed
+/// approach, where it has no bound. That of the held contact area, which the conductance follows from, is
+/// `2 E* a`. Takes
 /// [`contact_model::Surface::Sphere`]; adhesion that is off is w = 0, which is Hertz's contact.
 ///
 /// ```
@@ -212,7 +213,8 @@ impl AdhesiveSphere {
 
     // From here on radii in R, forces in E* R^2.
 
-    /// `(3/4) sqrt(2 pi w/(E* a^3))`: 1 at the pull-off under prescribed force, 3 at that under prescribed approach.
+    /// `(3/4) sqrt(2 pi w/(E* a^3))`: 1 at the pull-off under prescribed force, 3 at that under prescribed
+    /// approach.
     fn b(&self, a: f64) -> f64 {
         0.75 * (2.0 * PI * self.work / a).sqrt() / a
     }

@@ -27,10 +27,10 @@ const NAME: &str = "maugis_dugdale";
 /// half the shorter side is out of range too.
 ///
 /// The stiffness is the slope of the equilibrium curve, on which a and c both move ([`MaugisSphere::slope`]),
-/// absent at the pull-off under prescribed approach, where it has no bound. That of the held contact area, which
-/// the conductance follows from, is `2 E* a` as in [`crate::Jkr`]: the attraction is constant and bridges no
-/// current. Takes [`contact_model::Surface::Sphere`]; adhesion that is off, or without work, is Hertz's contact. A load costs
-/// one to two microseconds.
+/// absent at the pull-off under prescribed approach, where it has no bound. That of the held contact area,
+/// which the conductance follows from, is `2 E* a` as in [`crate::Jkr`]: the attraction is constant and
+/// bridges no current. Takes [`contact_model::Surface::Sphere`]; adhesion that is off, or without work, is
+/// Hertz's contact. A load costs one to two microseconds.
 ///
 /// ```
 /// use analytic::MaugisDugdale;

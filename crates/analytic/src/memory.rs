@@ -1,4 +1,5 @@
-//! The curve of a tangential load with its turns: first loading, doubled branches, loops that close (Mindlin and Deresiewicz).
+//! The curve of a tangential load with its turns: first loading, doubled branches, loops that close (Mindlin
+//! and Deresiewicz).
 
 /// `u = 1 - (1 - t)^(2/3)`: displacement of first loading over its reach, t in [0, 1].
 pub(crate) fn reached(t: f64) -> f64 {
@@ -10,7 +11,8 @@ pub(crate) fn held(u: f64) -> f64 {
     if u >= 1.0 { 1.0 } else { -(1.5 * (-u).ln_1p()).exp_m1() }
 }
 
-/// Energy that first loading dissipates, over mu F and the reach: `(6/5) (1 - (1 - t)^(5/3)) - t (1 + (1 - t)^(2/3))`.
+/// Energy that first loading dissipates, over mu F and the reach:
+/// `(6/5) (1 - (1 - t)^(5/3)) - t (1 + (1 - t)^(2/3))`.
 ///
 /// By its power series `t^3/27 + ...` where the closed form cancels.
 pub(crate) fn lost(t: f64) -> f64 {

@@ -6,7 +6,8 @@ use contact_model::{
     SolveReport, SurfaceKind,
 };
 
-/// A theory of a periodic contact in the mean pressure p, in units of `E* h / L`: h is the unit of heights of its
+/// A theory of a periodic contact in the mean pressure p, in units of `E* h / L`: h is the unit of heights of
+/// its
 /// [`Scaling`].
 pub(crate) trait PeriodicLaw: Send {
     /// Errors for a pressure > 0 beyond what the theory holds for.

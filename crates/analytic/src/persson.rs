@@ -17,19 +17,22 @@ const NAME: &str = "persson";
 /// Persson's theory of a statistically homogeneous, periodic surface.
 ///
 /// * Area: `A/A0 = erf(sqrt(2) p/(E* g))` with the rms slope g; `kappa = sqrt(8/pi)` for small p.
-/// * Mean gap: `u(p) = sqrt(pi) int dq q^2 C w int_p^inf dp'/p' (gamma + 3 (1 - gamma) P^2) exp(-(w p'/E*)^2)`, where `P = erf(w
-///   p'/E*)` and `w(q) = (pi int_(q_0)^q q'^3 C dq')^(-1/2)` (Yang and Persson 2008, Eq. 19). Stiffness per area: `-dp/du`.
+/// * Mean gap:
+///   `u(p) = sqrt(pi) int dq q^2 C w int_p^inf dp'/p' (gamma + 3 (1 - gamma) P^2) exp(-(w p'/E*)^2)`, where
+///   `P = erf(w p'/E*)` and `w(q) = (pi int_(q_0)^q q'^3 C dq')^(-1/2)` (Yang and Persson 2008, Eq. 19).
+///   Stiffness per area: `-dp/du`.
 /// * At small p this is `p = beta E* exp(-u/u_0)`, so the stiffness is p/u_0 ([`Persson::decay_length`]).
 ///
-/// Takes a [`Surface::SelfAffine`] with a short cut-off or [`Surface::Heights`], and [`contact_model::Boundary::Periodic`]; the seed
-/// changes nothing. Moments of the spectrum are those of [`crate::spectrum`], those of a map are measured
-/// ([`surface_gen::MapStatistics`]): g is its rms slope, exactly, and `C q^3` is constant within each band. The mean gap has no bound
-/// as p -> 0 (a Gaussian surface has no highest point): it is an error at no load, and real, finite surfaces leave the exponential
-/// where few summits touch.
+/// Takes a [`Surface::SelfAffine`] with a short cut-off or [`Surface::Heights`], and
+/// [`contact_model::Boundary::Periodic`]; the seed changes nothing. Moments of the spectrum are those of
+/// [`crate::spectrum`], those of a map are measured ([`surface_gen::MapStatistics`]): g is its rms slope,
+/// exactly, and `C q^3` is constant within each band. The mean gap has no bound as p -> 0 (a Gaussian surface
+/// has no highest point): it is an error at no load, and real, finite surfaces leave the exponential where
+/// few summits touch.
 ///
-/// The integrals over q are taken in the running slope `y(q) = 1/w`, where they have no singularity: relative error below 1e-11. A
-/// state costs some thousand nodes: tens of microseconds, a few hundred for its gap, a few milliseconds for the state at a given
-/// gap.
+/// The integrals over q are taken in the running slope `y(q) = 1/w`, where they have no singularity: relative
+/// error below 1e-11. A state costs some thousand nodes: tens of microseconds, a few hundred for its gap, a
+/// few milliseconds for the state at a given gap.
 ///
 /// ```
 /// use analytic::Persson;
@@ -48,7 +51,8 @@ const NAME: &str = "persson";
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Persson {
-    /// The elastic energy of partial contact over that of full contact of the same waves, in (0, 1]: 0.42 to 0.48 in simulations.
+    /// The elastic energy of partial contact over that of full contact of the same waves, in (0, 1]: 0.42 to
+    /// 0.48 in simulations.
     pub gamma: f64,
 }
 
@@ -133,8 +137,8 @@ impl Persson {
 
 /// In units of h, L and E*: slopes in h/L, pressures in E* h/L.
 ///
-/// With `y = 1/w`, `dG = 2 y dy = pi q^3 C dq`: `sqrt(pi) q^2 C w dq = (2/sqrt(pi)) dy/q`, and `w p = p/y`. The integrand is smooth:
-/// geometric panels from the longest wave and from y = 0 resolve any p.
+/// With `y = 1/w`, `dG = 2 y dy = pi q^3 C dq`: `sqrt(pi) q^2 C w dq = (2/sqrt(pi)) dy/q`, and `w p = p/y`.
+/// The integrand is smooth: geometric panels from the longest wave and from y = 0 resolve any p.
 struct PressureDiffusion {
     gamma: f64,
     /// `g/sqrt(2)`.
@@ -165,7 +169,8 @@ impl PressureDiffusion {
         Self::over(edges, |y| spectrum.wavenumber_at(y), gamma)
     }
 
-    /// Of a map: y^2, half of the variance of the gradient up to q, rises linearly in q through each of its bands.
+    /// Of a map: y^2, half of the variance of the gradient up to q, rises linearly in q through each of its
+    /// bands.
     fn measured(map: &MapStatistics, gamma: f64) -> Self {
         let (mut edges, mut limits, mut square) = (vec![0.0_f64], Vec::new(), 0.0);
         for band in &map.bands {
@@ -351,7 +356,8 @@ mod tests {
         }
     }
 
-    /// A surface whose waves are many everywhere: a roll-off at an eighth of the side, waves down to 64th parts of it.
+    /// A surface whose waves are many everywhere: a roll-off at an eighth of the side, waves down to 64th
+    /// parts of it.
     fn many_waves() -> SelfAffine {
         let surface = surface(0.8, Some(8.0), 64.0);
         SelfAffine {
@@ -362,8 +368,8 @@ mod tests {
         }
     }
 
-    /// The map of a surface in the theory is the surface itself: what is left is the lattice of its waves, whose longest
-    /// stand for a continuum that begins at them.
+    /// The map of a surface in the theory is the surface itself: what is left is the lattice of its waves,
+    /// whose longest stand for a continuum that begins at them.
     #[test]
     fn a_map_is_the_surface_that_it_was_drawn_from() {
         const LATTICE: f64 = 0.04;
@@ -412,7 +418,8 @@ mod tests {
                 assert!(area > 0.0 && area <= 1.0 && k > 0.0 && gap.is_finite() && gap >= 0.0);
             }
             if low.total_cmp(&high).is_eq() {
-                // u_0 = gamma (2/sqrt(pi)) y/q for one wavenumber, and its ring from 4.5 to 5.5 of the longest.
+                // u_0 = gamma (2/sqrt(pi)) y/q for one wavenumber, and its ring from 4.5 to 5.5 of the
+                // longest.
                 let light = contact.solve(Load::Force(1e-9)).unwrap();
                 let (u_0, q) = (1e-9 / light.stiffness.unwrap(), TAU * low);
                 let y = 0.51 * q / SQRT_2;
@@ -481,7 +488,8 @@ mod tests {
 
     #[test]
     fn the_energy_of_full_contact_does_not_depend_on_gamma() {
-        // int u dp from 0 to inf is the elastic energy per area of the flattened surface, (1/4) E* 2 pi int q^2 C dq.
+        // int u dp from 0 to inf is the elastic energy per area of the flattened surface, (1/4) E* 2 pi int
+        // q^2 C dq.
         let energy = |gamma: f64| {
             let law = law(0.8, None, 32.0, gamma);
             // int u dp = int (-p du/dp) dp.

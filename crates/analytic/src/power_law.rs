@@ -9,7 +9,8 @@ use surface_gen::{MapStatistics, SelfAffineFit};
 
 const NAME: &str = "power_law";
 
-/// `k_bar_ul` = 0.18: the dimensionless stiffness where the curves of all fractal dimensions cross, end of the power law (Fig. 2).
+/// `k_bar_ul` = 0.18: the dimensionless stiffness where the curves of all fractal dimensions cross, end of
+/// the power law (Fig. 2).
 pub const K_BAR_UL: f64 = 0.18;
 
 /// `F_bar_ul` = 0.086: the dimensionless force of that point.
@@ -21,7 +22,8 @@ const EXPONENT_PER_DIMENSION: f64 = 0.266;
 /// Factor 0.411 of Eq. 13, as printed; it is `2 x 1.1419 x 0.18 = 0.41108`.
 const CONDUCTANCE_FACTOR: f64 = 0.411;
 
-/// `alpha = 0.266 D_f`: the exponent fitted to three-dimensional solutions (Eq. 6), for D_f in [2, 3] (not checked).
+/// `alpha = 0.266 D_f`: the exponent fitted to three-dimensional solutions (Eq. 6), for D_f in [2, 3] (not
+/// checked).
 ///
 /// ```
 /// assert!((analytic::exponent_fit(2.0) - 0.532).abs() < 1e-15);
@@ -30,7 +32,8 @@ pub fn exponent_fit(fractal_dimension: f64) -> f64 {
     EXPONENT_PER_DIMENSION * fractal_dimension
 }
 
-/// `alpha = 1 / (1 + H)`: the exponent by the zoom argument of Eqs. 19 to 24, for a Hurst exponent H in [0, 1] (not checked).
+/// `alpha = 1 / (1 + H)`: the exponent by the zoom argument of Eqs. 19 to 24, for a Hurst exponent H in [0,
+/// 1] (not checked).
 ///
 /// ```
 /// assert_eq!(analytic::exponent_scaling(1.0), 0.5); // D_f = 2
@@ -39,7 +42,8 @@ pub fn exponent_scaling(hurst: f64) -> f64 {
     (1.0 + hurst).recip()
 }
 
-/// `zeta = 0.18 / 0.086^(0.266 D_f)`: the factor of `k_bar = zeta F_bar^alpha` (Eq. 11), for D_f in [2, 3] (not checked).
+/// `zeta = 0.18 / 0.086^(0.266 D_f)`: the factor of `k_bar = zeta F_bar^alpha` (Eq. 11), for D_f in [2, 3]
+/// (not checked).
 ///
 /// ```
 /// assert!((analytic::zeta_fit(2.0) - 0.664).abs() < 5e-4);
@@ -48,7 +52,8 @@ pub fn zeta_fit(fractal_dimension: f64) -> f64 {
     K_BAR_UL / F_BAR_UL.powf(exponent_fit(fractal_dimension))
 }
 
-/// `F_tilde = 0.086 (k_bar / 0.18)^(1 / (0.266 D_f))`: the ordinate of Fig. 4, equal to `F_bar` where Eq. 12 holds.
+/// `F_tilde = 0.086 (k_bar / 0.18)^(1 / (0.266 D_f))`: the ordinate of Fig. 4, equal to `F_bar` where Eq. 12
+/// holds.
 ///
 /// # Errors
 /// [`Error::Domain`] for a negative or non-finite `k_bar` or a fractal dimension outside [2, 3].
@@ -65,9 +70,9 @@ pub fn force_tilde(stiffness_bar: f64, fractal_dimension: f64) -> Result<f64> {
 
 /// `Lambda = 0.411 L / (rho1 + rho2) (F_bar / 0.086)^(0.266 D_f)`: contact conductance (Eq. 13).
 ///
-/// `side` L = sqrt(A0), a length; `resistivity` the sum rho1 + rho2, resistance times length; the result is 1/resistance. Barber's exact
-/// relation `Lambda = 2 k / (E* (rho1 + rho2))` applied to Eq. 12.
-/// (The introduction prints it as `k = E* (rho1 + rho2) Lambda / 2`, which is the same.)
+/// `side` L = sqrt(A0), a length; `resistivity` the sum rho1 + rho2, resistance times length; the result is
+/// 1/resistance. Barber's exact relation `Lambda = 2 k / (E* (rho1 + rho2))` applied to Eq. 12. (The
+/// introduction prints it as `k = E* (rho1 + rho2) Lambda / 2`, which is the same.)
 ///
 /// # Errors
 /// [`Error::Domain`] for a negative force, a side or resistivity that is not positive, or a fractal dimension outside [2, 3];
@@ -102,16 +107,17 @@ pub fn conductance_fit(force_bar: f64, fractal_dimension: f64, side: f64, resist
 
 /// The paper's Eq. 12: `k / (1.1419 E* L) = 0.18 (F / (0.086 E* h L))^(0.266 D_f)`, up to `k_bar = 0.18`.
 ///
-/// Takes a [`Surface::SelfAffine`] of given rms height without roll-off or cut-off, as the paper's surfaces are; the seed changes
-/// nothing: Eq. 12 is a fit to averages over 60 surfaces, single ones scatter around it (28 % at D_f = 2, 8 % at D_f = 3). Of a
+/// Takes a [`Surface::SelfAffine`] of given rms height without roll-off or cut-off, as the paper's surfaces
+/// are; the seed changes nothing: Eq. 12 is a fit to averages over 60 surfaces, single ones scatter around it
+/// (28 % at D_f = 2, 8 % at D_f = 3). Of a
 /// [`Surface::Heights`] it takes the rms height, `L = sqrt(Lx Ly)` and the Hurst exponent fitted to its spectrum
-/// ([`surface_gen::SelfAffineFit`]); an error of 0.05 in H is one of 3 % in k at F_bar = 0.0086. Maps that are not self-affine
-/// down to their longest wave are refused, as are tilted ones.
+/// ([`surface_gen::SelfAffineFit`]); an error of 0.05 in H is one of 3 % in k at F_bar = 0.0086. Maps that
+/// are not self-affine down to their longest wave are refused, as are tilted ones.
 ///
-/// The approach is what the formula itself implies, `d = int_0^F dF/k = F / ((1 - alpha) k)`, finite as alpha < 1. It takes the power
-/// law down to first touch. A sampled surface leaves it where few cells touch and is stiffer there than the formula, and a mean of k
-/// over surfaces is not a mean of d: read it as the approach of a surface that follows Eq. 12, not as a second fit. No area is
-/// claimed.
+/// The approach is what the formula itself implies, `d = int_0^F dF/k = F / ((1 - alpha) k)`, finite as alpha
+/// < 1. It takes the power law down to first touch. A sampled surface leaves it where few cells touch and is
+/// stiffer there than the formula, and a mean of k over surfaces is not a mean of d: read it as the approach
+/// of a surface that follows Eq. 12, not as a second fit. No area is claimed.
 ///
 /// ```
 /// use analytic::PowerLaw;

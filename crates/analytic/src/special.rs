@@ -7,8 +7,8 @@ const EULER: f64 = 0.577_215_664_901_532_9;
 
 /// `erf x`, relative error below 1e-15 for x >= 0.
 ///
-/// Up to 2.5 the series of positive terms `2/sqrt(pi) exp(-x^2) sum 2^n x^(2n + 1)/(2n + 1)!!` (Abramowitz and Stegun 7.1.6), beyond
-/// it `1 - erfc x`.
+/// Up to 2.5 the series of positive terms `2/sqrt(pi) exp(-x^2) sum 2^n x^(2n + 1)/(2n + 1)!!` (Abramowitz
+/// and Stegun 7.1.6), beyond it `1 - erfc x`.
 pub(crate) fn erf(x: f64) -> f64 {
     const LARGE: f64 = 2.5;
     if x < 0.0 {
@@ -37,8 +37,8 @@ fn erfc_large(x: f64) -> f64 {
 
 /// `E_1(z) = int_z^inf exp(-t)/t dt` for z > 0, relative error below 1e-14.
 ///
-/// Below 1 the series `-gamma - ln z - sum (-z)^k/(k k!)`, beyond it the continued fraction (Abramowitz and Stegun 5.1.11 and
-/// 5.1.22, contracted).
+/// Below 1 the series `-gamma - ln z - sum (-z)^k/(k k!)`, beyond it the continued fraction (Abramowitz and
+/// Stegun 5.1.11 and 5.1.22, contracted).
 pub(crate) fn exponential_integral(z: f64) -> f64 {
     const DEPTH: u32 = 120;
     if z >= 1.0 {

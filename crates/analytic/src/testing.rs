@@ -26,7 +26,8 @@ pub(crate) fn check_curve(model: &dyn ContactModel, scene: &Scene, d: f64) {
     let back = at(Load::Force(here.force));
     assert_relative_eq!(back.approach.unwrap(), d, max_relative = 1e-13);
     assert_relative_eq!(back.stiffness.unwrap(), here.stiffness.unwrap(), max_relative = 1e-12);
-    // Central difference: its error is e^2 times the third logarithmic derivative, at most 1e3 for the steepest power 11.
+    // Central difference: its error is e^2 times the third logarithmic derivative, at most 1e3 for the
+    // steepest power 11.
     let e = 1e-5;
     let (low, high) = (at(Load::Approach(d * (1.0 - e))), at(Load::Approach(d * (1.0 + e))));
     assert_relative_eq!(
@@ -47,10 +48,11 @@ pub(crate) fn check_curve(model: &dyn ContactModel, scene: &Scene, d: f64) {
     }
 }
 
-/// Of an adhesive sphere: dF/dd of a state is that of its neighbours under loads of the same kind, by central differences; the held
-/// area has 2 E* a, and the conductance follows from it.
+/// Of an adhesive sphere: dF/dd of a state is that of its neighbours under loads of the same kind, by central
+/// differences; the held area has 2 E* a, and the conductance follows from it.
 pub(crate) fn check_slope(model: &dyn ContactModel, scene: &Scene, load: Load) {
-    /// Relative step of the load; its square times third derivatives that grow towards a fold is the error of a difference.
+    /// Relative step of the load; its square times third derivatives that grow towards a fold is the error of
+    /// a difference.
     const STEP: f64 = 1e-5;
     const DIFFERENCES: f64 = 1e-6;
     let mut scene = scene.clone();
@@ -90,8 +92,9 @@ pub(crate) fn scale_invariant(
     }
 }
 
-/// Of a periodic contact at a mean pressure on a square of side 1: both loads agree, k = -dF/d(mean gap) by differences, F
-/// proportional to E*, gap and area monotone, nothing without load. `tolerance`: relative, of the round trip.
+/// Of a periodic contact at a mean pressure on a square of side 1: both loads agree, k = -dF/d(mean gap) by
+/// differences, F proportional to E*, gap and area monotone, nothing without load. `tolerance`: relative, of
+/// the round trip.
 pub(crate) fn check_periodic(model: &dyn ContactModel, scene: &Scene, pressure: f64, tolerance: f64) {
     let mut scene = scene.clone();
     scene.outputs.mean_gap = true;

@@ -1,8 +1,9 @@
-//! The hot paths: the kernel, one application of each operator, one load from nothing in sparse and in dense contact with each strategy, a
-//! sweep of loads, a step of a path with adhesion.
+//! The hot paths: the kernel, one application of each operator, one load from nothing in sparse and in dense
+//! contact with each strategy, a sweep of loads, a step of a path with adhesion.
 //!
-//! `cargo bench -p bem3d --bench solve -- --save-baseline before` on one commit and `-- --baseline before` on another compare both; run them
-//! one after the other on an idle machine. `-- --quick` only shows that they run.
+//! `cargo bench -p bem3d --bench solve -- --save-baseline before` on one commit and `-- --baseline before` on
+//! another compare both; run them one after the other on an idle machine. `-- --quick` only shows that they
+//! run.
 
 use bem3d::{Bem3d, Method, benchmarks, love};
 use contact_model::{
@@ -17,7 +18,8 @@ fn kernel(c: &mut Criterion) {
     });
 }
 
-/// One application between all cells of a pattern on 512 x 512: one cell in 400 for sums and the two-level operator, all for transforms.
+/// One application between all cells of a pattern on 512 x 512: one cell in 400 for sums and the two-level
+/// operator, all for transforms.
 fn applications(c: &mut Criterion) {
     let side = 512;
     let mut group = c.benchmark_group("one application, N = 512");
@@ -30,7 +32,8 @@ fn applications(c: &mut Criterion) {
     group.finish();
 }
 
-/// Forces that end in a factored set, in scattered and in dense contact at N = 257, D_f = 2.4, and the same on a single level.
+/// Forces that end in a factored set, in scattered and in dense contact at N = 257, D_f = 2.4, and the same
+/// on a single level.
 fn solves(c: &mut Criterion) {
     let Ok(surface) = SelfAffine::new(2.4, 1.0, 1.0) else { return };
     let scene = Scene::new(Surface::SelfAffine(surface), 1.0);
@@ -65,7 +68,8 @@ fn sweep(c: &mut Criterion) {
     group.finish();
 }
 
-/// A step up and one down of a path in contact, with the exponential law on a periodic surface of rms height 0.01.
+/// A step up and one down of a path in contact, with the exponential law on a periodic surface of rms height
+/// 0.01.
 fn adhesive_step(c: &mut Criterion) {
     let Ok(surface) = SelfAffine::new(2.2, 1.0, 0.01) else { return };
     let surface = SelfAffine { roll_off: Some(4.0 * std::f64::consts::TAU), ..surface };

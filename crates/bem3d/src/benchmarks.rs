@@ -1,4 +1,5 @@
-//! The operators and the parts of a solve as a benchmark sees them. Not part of the interface: nothing here is kept from version to version.
+//! The operators and the parts of a solve as a benchmark sees them. Not part of the interface: nothing here
+//! is kept from version to version.
 
 pub use crate::parts::{Part, Recorder, Spent};
 pub use crate::tuning::{CONSTANTS, Constant};
@@ -38,7 +39,8 @@ pub fn prepare_recorded(
     model.prepare_with(scene, seed, &Tuning::DEFAULT, recorder)
 }
 
-/// One application of the named operator (`direct`, `two levels`, `f32`, `f64`, `inverse`) between every `step`-th cell of a grid.
+/// One application of the named operator (`direct`, `two levels`, `f32`, `f64`, `inverse`) between every
+/// `step`-th cell of a grid.
 pub fn timed(name: &str, side: usize, step: usize) -> Option<Box<dyn FnMut() -> f64>> {
     let grid = Grid { columns: side, rows: side, stretch: 1.0 };
     let set = CellSet::from_index(grid, &(0..(side * side) as u32).step_by(step).collect::<Vec<_>>());

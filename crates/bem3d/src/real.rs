@@ -5,7 +5,8 @@ use numerics::parallel::map;
 use numerics::plan::Precision;
 use std::ops::AddAssign;
 
-/// Floating point of an operator and of the vectors of an iteration: f64, or f32 where the result is certified in f64.
+/// Floating point of an operator and of the vectors of an iteration: f64, or f32 where the result is
+/// certified in f64.
 pub trait Real: Precision + Default + AddAssign + PartialOrd {
     /// Name in reports.
     const NAME: &'static str;
@@ -43,7 +44,8 @@ impl Real for f32 {
     }
 }
 
-/// A power of two near the largest magnitude, so that values over it lie in the middle of the range of single precision.
+/// A power of two near the largest magnitude, so that values over it lie in the middle of the range of single
+/// precision.
 pub fn binary_unit(values: &[f64]) -> f64 {
     let largest = largest(values);
     if largest > 0.0 { largest.log2().floor().clamp(-1000.0, 1000.0).exp2() } else { 1.0 }

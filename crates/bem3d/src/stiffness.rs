@@ -62,12 +62,13 @@ impl<'a> Responding<'a> {
     }
 }
 
-/// Solves `G q = 1` on the cells that respond until the relative error of k is estimated below half of `tolerance`.
+/// Solves `G q = 1` on the cells that respond until the relative error of k is estimated below half of
+/// `tolerance`.
 ///
 /// For any q with residual `r = 1 - G q` the true k lies between the Ritz value `(1'q)^2 / (q'Gq)` and
-/// `1'q + r'q + r'G^-1 r`; both errors are quadratic in that of q. `guess` may be the q of a similar set; that of a factored state is
-/// exact up to rounding. The energy of a residual is the first thing that conjugate gradients find, so that the check of one
-/// correction is the beginning of the next.
+/// `1'q + r'q + r'G^-1 r`; both errors are quadratic in that of q. `guess` may be the q of a similar set;
+/// that of a factored state is exact up to rounding. The energy of a residual is the first thing that
+/// conjugate gradients find, so that the check of one correction is the beginning of the next.
 ///
 /// Cost: about 10 applications of G for a relative error of 1e-4.
 pub fn solve(
@@ -165,9 +166,10 @@ fn bounds(sum: f64, rq: f64, energy: f64) -> (f64, f64) {
 
 /// Change of k if the undecided cells changed sides.
 ///
-/// Adding cell j adds `(1 - (Gq)_j)^2 / S_j` with a Schur complement S_j not below the smallest eigenvalue; removing one
-/// takes away `q_j^2 / (G^-1)_jj`, at most `q_j^2 G_jj`. Undecided are the cells of [`Solved::undecided`] and those whose pressure
-/// is nearer to its bounds (`room`) than what their own residual gap can change. `tests/stiffness_error.rs` compares the sum of both parts with true errors.
+/// Adding cell j adds `(1 - (Gq)_j)^2 / S_j` with a Schur complement S_j not below the smallest eigenvalue;
+/// removing one takes away `q_j^2 / (G^-1)_jj`, at most `q_j^2 G_jj`. Undecided are the cells of
+/// [`Solved::undecided`] and those whose pressure is nearer to its bounds (`room`) than what their own
+/// residual gap can change. `tests/stiffness_error.rs` compares the sum of both parts with true errors.
 fn set_error(table: &KernelTable, room: &[f64], left: &[f64], at_undecided: &[f64], q: &[f64]) -> f64 {
     let smallest = table.smallest_eigenvalue();
     let added: f64 = at_undecided.iter().map(|v| (1.0 - v).powi(2)).sum::<f64>() / smallest;

@@ -1,12 +1,13 @@
 //! The tuned constants of a solve: meaning, unit and value.
 //!
-//! Those of adhesion stand beside their iterations (`adhesion`, `model/adhesive_stiffness`). The book's page on tuned constants lists all
-//! numeric constants of this crate and, of those in [`Tuning`], the measured cost of half and of twice the value.
+//! Those of adhesion stand beside their iterations (`adhesion`, `model/adhesive_stiffness`). The book's page
+//! on tuned constants lists all numeric constants of this crate and, of those in [`Tuning`], the measured
+//! cost of half and of twice the value.
 //!
-//! None of these numbers changes what a result converges to: they choose between ways to it and decide when an iteration evaluates the
-//! exact gap. Results that are compared bit by bit need the same values. `cargo xtask tuning` measures on the machine in hand what half and
-//! twice of each constant cost. Most were set between 2026-11-20 and 2026-11-22 on two-core
-//! machines (AMD EPYC of 2024, Intel Xeon with AVX-512).
+//! None of these numbers changes what a result converges to: they choose between ways to it and decide when
+//! an iteration evaluates the exact gap. Results that are compared bit by bit need the same values.
+//! `cargo xtask tuning` measures on the machine in hand what half and twice of each constant cost. Most were
+//! set between 2026-11-20 and 2026-11-22 on two-core machines (AMD EPYC of 2024, Intel Xeon with AVX-512).
 
 /// Constants that a solve reads; [`Tuning::DEFAULT`] is what is shipped.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -22,8 +23,8 @@ pub struct Tuning {
     pub close_pair_ns: f64,
     /// ns of one interpolation weight of the two-level operator.
     pub spread_ns: f64,
-    /// Radius of the near part of the two-level operator, in spacings, and points of its interpolation in each direction: an error of
-    /// 4e-5 of the largest displacement in the test of `two_level`.
+    /// Radius of the near part of the two-level operator, in spacings, and points of its interpolation in
+    /// each direction: an error of 4e-5 of the largest displacement in the test of `two_level`.
     pub reach: usize,
     /// See `reach`.
     pub order: usize,
@@ -31,7 +32,8 @@ pub struct Tuning {
     pub scattered: usize,
     /// ... and for at most so many cells.
     pub largest_scattered: usize,
-    /// A plan for a window serves a smaller one of at least this share of its cells: a new plan costs about three applications.
+    /// A plan for a window serves a smaller one of at least this share of its cells: a new plan costs about
+    /// three applications.
     pub kept_window: f64,
     /// Length of the torus of pressure corrections, in window sides: exact up to lags of half of it.
     pub shortened: f64,
@@ -51,19 +53,21 @@ pub struct Tuning {
     pub preconditioned: f64,
     /// The same for sets too large to factor, where it costs less than the steps that it saves.
     pub preconditioned_large: f64,
-    /// By this factor fewer steps with the preconditioner on sets between both shares: 1.6 to 1.8 for N = 1024 and 2048, D_f = 2.4 and 2.8,
-    /// F_bar = 0.1 and 0.3, 1e-3 and 1e-8 (2026-11, Xeon, applications counted).
+    /// By this factor fewer steps with the preconditioner on sets between both shares: 1.6 to 1.8 for N =
+    /// 1024 and 2048, D_f = 2.4 and 2.8, F_bar = 0.1 and 0.3, 1e-3 and 1e-8 (2026-11, Xeon, applications
+    /// counted).
     pub preconditioner_saves: f64,
-    /// From so many cells on, residuals are extended into the gaps between contacts: below, zeros take fewer steps. 2026-11, Xeon, five sweeps
-    /// (`examples/sweep`) at N = 257 and 513, D_f = 2.0 to 2.8, 1e-8: applications counted, no other set of surfaces tried.
+    /// From so many cells on, residuals are extended into the gaps between contacts: below, zeros take fewer
+    /// steps. 2026-11, Xeon, five sweeps (`examples/sweep`) at N = 257 and 513, D_f = 2.0 to 2.8, 1e-8:
+    /// applications counted, no other set of surfaces tried.
     pub extended: usize,
-    /// Share of a coarser value that a gap between contacts takes over in the preconditioner: 0.6 to 0.7 was best for N = 513 and 2049,
-    /// D_f = 2 to 2.6, 5 to 94 % contact.
+    /// Share of a coarser value that a gap between contacts takes over in the preconditioner: 0.6 to 0.7 was
+    /// best for N = 513 and 2049, D_f = 2 to 2.6, 5 to 94 % contact.
     pub decay: f32,
 
     // Contact set.
-    /// Reduction of the error asked of an inner solve: half of what is still wanted, within this range. A looser one restarts too
-    /// often, a tighter one solves well on a set that will change.
+    /// Reduction of the error asked of an inner solve: half of what is still wanted, within this range. A
+    /// looser one restarts too often, a tighter one solves well on a set that will change.
     pub reduction: (f64, f64),
     /// The same while the residuals are above `early`: the set still changes a lot.
     pub early_reduction: f64,
@@ -77,22 +81,25 @@ pub struct Tuning {
     pub better: f64,
     /// Outer iterations without better residuals after which the solve has stagnated.
     pub patience: usize,
-    /// The next gap is evaluated in single precision where the tolerance will not be met: the residuals are expected to fall as they did
-    /// last, by a factor within this range ...
+    /// The next gap is evaluated in single precision where the tolerance will not be met: the residuals are
+    /// expected to fall as they did last, by a factor within this range ...
     pub gain: (f64, f64),
     /// ... and as long as that gap exceeds the noise of single precision, this share of the approach.
     pub single_noise: f64,
-    /// A cell is added when it penetrates by more than this multiple of the rms gap left on the contact: penetrations below are within
-    /// the error of the inner solve, and adding those cells would regrow the set.
+    /// A cell is added when it penetrates by more than this multiple of the rms gap left on the contact:
+    /// penetrations below are within the error of the inner solve, and adding those cells would regrow the
+    /// set.
     pub noise: f64,
     /// With a hardness: share of a step from which it is taken whole ...
     pub whole_step: f64,
-    /// ... and steps of the next inner solve at most after one that was not: long ones change the sets too much at once. 2 solved every
-    /// load of N = 257 and 1025, periodic and free, p_s = 1 to 0.01 of E* times the rms gradient (2026-11); without a limit some stagnated.
+    /// ... and steps of the next inner solve at most after one that was not: long ones change the sets too
+    /// much at once. 2 solved every load of N = 257 and 1025, periodic and free, p_s = 1 to 0.01 of E* times
+    /// the rms gradient (2026-11); without a limit some stagnated.
     pub short_steps: usize,
     /// With a hardness: share of a step below which it is nothing, and the fall-back takes over.
     pub jammed: f64,
-    /// Outer iterations without better residuals, shortened ones among them, after which the fall-back takes over ...
+    /// Outer iterations without better residuals, shortened ones among them, after which the fall-back takes
+    /// over ...
     pub stalled: usize,
     /// ... for this many steps between two evaluations ...
     pub fall_back_steps: usize,
@@ -100,13 +107,16 @@ pub struct Tuning {
     pub fall_back: f64,
     /// Gaps below this share of the approach may be those of rounding: no fall-back is begun for them.
     pub rounding: f64,
-    /// Candidates reach up to this multiple of the approach; a plane that ends higher costs one more outer iteration.
+    /// Candidates reach up to this multiple of the approach; a plane that ends higher costs one more outer
+    /// iteration.
     pub candidates: f64,
-    /// Candidates up to one approach serve another of at least this share of it. Chosen without a measurement.
+    /// Candidates up to one approach serve another of at least this share of it. Chosen without a
+    /// measurement.
     pub kept_candidates: f64,
     /// Penetration that a factored solution leaves by rounding, relative to the approach.
     pub factor_rounding: f64,
-    /// Cells a side of the squares in which the largest gap left is kept; near a cell are its own square and the eight around.
+    /// Cells a side of the squares in which the largest gap left is kept; near a cell are its own square and
+    /// the eight around.
     pub undecided_square: usize,
     /// What the weights beyond them add up to: 0.113 next to a straight edge (see `undecided`).
     pub undecided_far: f64,
@@ -116,11 +126,13 @@ pub struct Tuning {
     pub stiffness_rounds: usize,
     /// Steps of one correction at most.
     pub stiffness_steps: usize,
-    /// Tolerance from which on the residual of a guess of q is evaluated in single precision; what comes of it in double.
+    /// Tolerance from which on the residual of a guess of q is evaluated in single precision; what comes of
+    /// it in double.
     pub stiffness_single: f64,
     /// Share of the tolerance that the linear solve may use up; the rest is left to undecided cells.
     pub stiffness_share: f64,
-    /// Share of the tolerance that the iteration aims at: its own estimate is not yet checked in double precision.
+    /// Share of the tolerance that the iteration aims at: its own estimate is not yet checked in double
+    /// precision.
     pub stiffness_aim: f64,
     /// Reduction of the residual at most in one correction: single precision has no more to give.
     pub stiffness_reduction: f64,
@@ -140,12 +152,13 @@ pub struct Tuning {
     pub near: (f64, f64),
     /// Where one cell in so many will touch, no tangent is followed far.
     pub filling: f64,
-    /// Where one cell in so many will touch, the cells that a tangent predicts are counted before it is followed ...
+    /// Where one cell in so many will touch, the cells that a tangent predicts are counted before it is
+    /// followed ...
     pub counted: f64,
     /// ... and it is not if they are so many times what the load has grown by.
     pub overshoot: f64,
-    /// How far the secant between two loads is extrapolated beyond the last tangent for the initial guess of q: half way, where it holds,
-    /// it would be twice as far.
+    /// How far the secant between two loads is extrapolated beyond the last tangent for the initial guess of
+    /// q: half way, where it holds, it would be twice as far.
     pub extrapolation: f64,
     /// Grids of at most the square of so many cells are solved without a coarser one.
     pub coarsest: usize,
@@ -307,7 +320,8 @@ pub const CONSTANTS: [Constant; 66] = constants![
 ];
 
 impl Tuning {
-    /// What is shipped but for one constant; a torus is never shorter than its window, an order never odd, a count never 0.
+    /// What is shipped but for one constant; a torus is never shorter than its window, an order never odd, a
+    /// count never 0.
     pub fn with_multiple((_, multiply): Constant, factor: f64) -> Self {
         let mut tuning = Self::DEFAULT;
         multiply(&mut tuning, factor);
@@ -339,10 +353,11 @@ impl Multiply for usize {
 
 // Layout: constants of the compiled code.
 
-/// Rows that a thread takes at a time; even, as the blocks of the extension are. This and the next were chosen without a measurement of
-/// other values.
+/// Rows that a thread takes at a time; even, as the blocks of the extension are. This and the next were
+/// chosen without a measurement of other values.
 pub const BAND: usize = 32;
-/// Bytes of a row in one stripe of a spectrum: four cache lines, so that a stripe of some thousand rows lies in the second cache.
+/// Bytes of a row in one stripe of a spectrum: four cache lines, so that a stripe of some thousand rows lies
+/// in the second cache.
 pub const STRIPE_BYTES: usize = 256;
 /// Bytes of a cache line.
 pub const CACHE_LINE: usize = 64;
@@ -360,13 +375,16 @@ pub const CHUNK: usize = 8 * BLOCK;
 pub const LONG_RUN: usize = 8;
 /// Levels of the preconditioner's extension at most: below `decay^8` nothing is left.
 pub const EXTENSION_LEVELS: usize = 8;
-/// Numbers kept at most in the symbols of one kind: 134 MB of f64, four times the largest symbol of 2049 cells a side.
+/// Numbers kept at most in the symbols of one kind: 134 MB of f64, four times the largest symbol of 2049
+/// cells a side.
 pub const KEPT_SYMBOLS: usize = 1 << 24;
-/// The list of candidates is filled up to so many times the approach asked for, so that a path of loads does not scan the grid each time ...
+/// The list of candidates is filled up to so many times the approach asked for, so that a path of loads does
+/// not scan the grid each time ...
 pub const CANDIDATES_AHEAD: f64 = 2.0;
 /// ... unless it would hold more than one cell in so many.
 pub const LISTED_CANDIDATES: usize = 8;
-/// Largest factor from the error of `1' G^-1 1` with the shifted kernel to that of k; beyond it no digit of k is left.
+/// Largest factor from the error of `1' G^-1 1` with the shifted kernel to that of k; beyond it no digit of k
+/// is left.
 pub const MAGNIFIED: f64 = 1e10;
 /// Loads at most on the way to a mean gap.
 pub const GAP_LOADS: usize = 60;

@@ -31,8 +31,9 @@ fn at(history: &mut dyn PreparedContact, load: Load) -> Result<ContactState, Err
     history.advance(Step::normal(0.0, load))
 }
 
-/// A sphere with R = E* = 1 and the range 1e-4 under Tabor's parameter mu = (R w^2/(E*^2 range^3))^(1/3). `half`: half of the side, in
-/// `(pi w R^2/K)^(1/3)` with K = 4/3 E*, Maugis's unit of the contact radius. Returns the scene, the unit of approaches and pi w R.
+/// A sphere with R = E* = 1 and the range 1e-4 under Tabor's parameter mu = (R w^2/(E*^2 range^3))^(1/3).
+/// `half`: half of the side, in `(pi w R^2/K)^(1/3)` with K = 4/3 E*, Maugis's unit of the contact radius.
+/// Returns the scene, the unit of approaches and pi w R.
 fn sphere(mu: f64, half: f64) -> (Scene, f64, f64) {
     let range = 1e-4f64;
     let work = (mu * range).powf(1.5);
@@ -238,8 +239,8 @@ fn a_plateau_snaps_in_and_off_and_loses_energy() {
     let (rising, falling) = (states(&mut *history, &up), states(&mut *history, &back));
     let first = rising.iter().position(|s| s.report.contact_cells > Some(0)).unwrap();
     let last = falling.iter().position(|s| s.report.contact_cells == Some(0)).unwrap();
-    // A rigid punch on a spring: beta = (A w/range^2)/k, k = 1.1419 E* L; in at -d = range (1 + ln beta), off at range beta. The edge of a
-    // punch gives way before its middle does, and a step is 0.01.
+    // A rigid punch on a spring: beta = (A w/range^2)/k, k = 1.1419 E* L; in at -d = range (1 + ln beta), off
+    // at range beta. The edge of a punch gives way before its middle does, and a step is 0.01.
     let beta: f64 = 0.25 * 0.04 / 0.01 / (1.1419 * 0.5);
     assert!((up[first] + 0.1 * (1.0 + beta.ln())).abs() < 0.015, "{}", up[first]);
     assert!((back[last] + 0.1 * beta).abs() < 0.015, "{}", back[last]);

@@ -118,8 +118,8 @@ fn check(state: &ContactState, hardness: f64) {
     assert!((depth.integral() - plastic.volume).abs() <= 1e-9 * plastic.volume.max(1e-12));
 }
 
-/// Loads that rise in steps and at once lead to the same state; unloading is elastic, reloading comes back, and the work of a loop is what
-/// the indentation dissipated.
+/// Loads that rise in steps and at once lead to the same state; unloading is elastic, reloading comes back,
+/// and the work of a loop is what the indentation dissipated.
 #[test]
 fn a_path_remembers_its_indentation() {
     for (boundary, hardness, loads) in
@@ -278,8 +278,9 @@ fn nearly_full_plasticity_converges() {
     assert!(last > 0.998);
 }
 
-/// A state on which the outer iteration stood still for ever: every step was cut at the bounds so that nothing of it went downhill. Its
-/// pressure obeys the conditions of the bounded problem, by the fields and whatever the method.
+/// A state on which the outer iteration stood still for ever: every step was cut at the bounds so that
+/// nothing of it went downhill. Its pressure obeys the conditions of the bounded problem, by the fields and
+/// whatever the method.
 #[test]
 fn a_state_that_jams_the_outer_iteration_is_solved() {
     let heights: Vec<f64> = include_str!("data/jammed.csv")

@@ -123,7 +123,8 @@ fn state(number: u64, tolerances: [f64; 2]) -> (Bem3d, Scene, Load) {
     (model, scene, load)
 }
 
-/// Solves the states of these numbers on two threads; how they ended, and the numbers of those that did not converge.
+/// Solves the states of these numbers on two threads; how they ended, and the numbers of those that did not
+/// converge.
 fn solved(first: u64, count: u64, tolerances: [f64; 2]) -> (BTreeMap<&'static str, usize>, Vec<String>) {
     let next = AtomicU64::new(first);
     let work = || {
@@ -139,7 +140,8 @@ fn solved(first: u64, count: u64, tolerances: [f64; 2]) -> (BTreeMap<&'static st
                     assert!(state.report.certificate.meets(model.tolerance));
                     if state.plastic.unwrap().area > 0.0 { "with saturated cells" } else { "elastic" }
                 }
-                // Near full plasticity, and where whole cells carry the force, a range of gaps has forces that differ by rounding.
+                // Near full plasticity, and where whole cells carry the force, a range of gaps has forces
+                // that differ by rounding.
                 Err(Error::OutOfRange { .. }) if matches!(load, Load::MeanGap(_)) => "no such gap",
                 Err(error) => {
                     failed.push(format!("{number}: {load:?} to {}: {error}", model.tolerance));
@@ -176,7 +178,8 @@ fn every_small_state_converges() {
     converge(0, STATES, TOLERANCES);
 }
 
-/// Ten times as many, and tighter ones: `cargo test --release -p bem3d --test hardness_states -- --ignored --nocapture`.
+/// Ten times as many, and tighter ones:
+/// `cargo test --release -p bem3d --test hardness_states -- --ignored --nocapture`.
 #[test]
 #[ignore = "minutes"]
 fn many_more_small_states_converge() {

@@ -1,5 +1,5 @@
-//! Profiles, bodies uniform along y: Hertz's line contact, Westergaard's wave, and a dense reference in two dimensions that shares no code
-//! with the solver.
+//! Profiles, bodies uniform along y: Hertz's line contact, Westergaard's wave, and a dense reference in two
+//! dimensions that shares no code with the solver.
 
 #![allow(clippy::unwrap_used)] // Helpers of tests.
 
@@ -35,7 +35,8 @@ fn rough(x: f64) -> f64 {
     0.01 * [1.0, 2.0, 3.0, 5.0, 9.0, 17.0, 29.0].iter().map(|&k| wave(k, k * k)).sum::<f64>()
 }
 
-/// Half-width and largest pressure of a cylinder of radius R under the force F' per length: `a^2 = 4 F' R/(pi E*)`, `p0 = 2 F'/(pi a)`.
+/// Half-width and largest pressure of a cylinder of radius R under the force F' per length:
+/// `a^2 = 4 F' R/(pi E*)`, `p0 = 2 F'/(pi a)`.
 #[test]
 fn a_cylinder_is_the_line_contact_of_hertz() {
     let (radius, per_length) = (2.0, 0.01);
@@ -60,7 +61,8 @@ fn a_cylinder_is_the_line_contact_of_hertz() {
         let largest = pressure(&state).iter().copied().fold(0.0, f64::max);
         println!("{n} strips: a {:.5}, p0 {:.6}, mean error {mean:.2e}", half_width / a, largest / p0);
         errors.push((mean, (largest / p0 - 1.0).abs()));
-        // The gap beside the contact, whatever displacements are counted from: u(x) - u(0) outside of a Hertzian strip.
+        // The gap beside the contact, whatever displacements are counted from: u(x) - u(0) outside of a
+        // Hertzian strip.
         let gap = state.gap().unwrap().values();
         let outside = |x: f64| {
             let s = x / a;
@@ -77,7 +79,8 @@ fn a_cylinder_is_the_line_contact_of_hertz() {
     assert!(errors[3].0 < 1e-5 && errors[3].1 < 1e-5, "{errors:?}");
 }
 
-/// Contact width `(2/pi) asin sqrt(r)`, mean gap `D (1 - r + r ln r)`, stiffness per area `pi E*/(w ln(1/r))` with `r = p/p*`.
+/// Contact width `(2/pi) asin sqrt(r)`, mean gap `D (1 - r + r ln r)`, stiffness per area `pi E*/(w ln(1/r))`
+/// with `r = p/p*`.
 #[test]
 fn a_periodic_wave_is_that_of_westergaard() {
     let (amplitude, width) = (0.01, 0.3);
@@ -114,7 +117,8 @@ fn a_periodic_wave_is_that_of_westergaard() {
     }
 }
 
-/// Displacement between two strips of width a at a distance x under unit pressure, by quadrature of the logarithm, times pi E*.
+/// Displacement between two strips of width a at a distance x under unit pressure, by quadrature of the
+/// logarithm, times pi E*.
 fn influence(x: f64, a: f64, periodic: bool) -> f64 {
     // -2 ln|x|, and for a period of 1 the sum over images without its mean: -2 ln|2 sin(pi x)|.
     let smooth = |x: f64| {
@@ -131,7 +135,8 @@ fn influence(x: f64, a: f64, periodic: bool) -> f64 {
     singular + a * (5.0 * smooth(x - at) + 8.0 * smooth(x) + 5.0 * smooth(x + at)) / 18.0
 }
 
-/// Pressure and plane by Gauss-Seidel with bounds 0 and `hardness` of each pressure, and bisection in the plane until they carry the force.
+/// Pressure and plane by Gauss-Seidel with bounds 0 and `hardness` of each pressure, and bisection in the
+/// plane until they carry the force.
 fn reference(heights: &[f64], periodic: bool, per_length: f64, hardness: f64) -> Vec<f64> {
     let n = heights.len();
     let a = 1.0 / n as f64;

@@ -81,7 +81,8 @@ fn solves_side_by_side_do_not_disturb_each_other() {
     }
 }
 
-/// A parallel iterator over surfaces of one grid, whose threads may begin another solve while they wait for one.
+/// A parallel iterator over surfaces of one grid, whose threads may begin another solve while they wait for
+/// one.
 #[test]
 fn a_parallel_iterator_over_surfaces_ends() {
     let pool = ThreadPoolBuilder::new().num_threads(3).build().unwrap();

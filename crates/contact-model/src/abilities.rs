@@ -126,9 +126,11 @@ pub enum Paths {
     Needed,
 }
 
-/// What a model can do. A scene that asks for more is refused by [`Abilities::refuse`] before anything is planned.
+/// What a model can do. A scene that asks for more is refused by [`Abilities::refuse`] before anything is
+/// planned.
 ///
-/// These are necessary: what depends on several of them together, or on numbers, a model refuses itself, in `prepare`.
+/// These are necessary: what depends on several of them together, or on numbers, a model refuses itself, in
+/// `prepare`.
 ///
 /// ```
 /// use contact_model::{Abilities, Boundary, Effect, LoadKind, Output, Paths, Scene, Surface, SurfaceKind};
@@ -163,8 +165,8 @@ pub struct Abilities {
 }
 
 impl Abilities {
-    /// Linear elastic normal contact with free boundaries, under a force or an approach, with the stiffness and what follows from it:
-    /// no surface yet.
+    /// Linear elastic normal contact with free boundaries, under a force or an approach, with the stiffness
+    /// and what follows from it: no surface yet.
     pub const ELASTIC: Self = Self {
         surfaces: &[],
         boundaries: &[Boundary::Free],

@@ -2,12 +2,13 @@
 
 use crate::error::{Error, Result, non_negative, positive};
 
-/// Conductance through the contact of two half-spaces: `Lambda = 2 k/(E* (rho_1 + rho_2))` (Barber 2003; Eq. 13 of the paper), with the
-/// stiffness k of the whole contact area, held ([`crate::ContactState::stiffness_fixed_area`]).
+/// Conductance through the contact of two half-spaces: `Lambda = 2 k/(E* (rho_1 + rho_2))` (Barber 2003; Eq.
+/// 13 of the paper), with the stiffness k of the whole contact area, held
+/// ([`crate::ContactState::stiffness_fixed_area`]).
 ///
-/// Exact for any contact area, periodic or not: potential and normal displacement are the same harmonic function. The bodies conduct
-/// through the real contact only, films and radiation apart; cells at the hardness conduct, and an attraction across a gap does not. It
-/// costs nothing beyond that stiffness.
+/// Exact for any contact area, periodic or not: potential and normal displacement are the same harmonic
+/// function. The bodies conduct through the real contact only, films and radiation apart; cells at the
+/// hardness conduct, and an attraction across a gap does not. It costs nothing beyond that stiffness.
 ///
 /// ```
 /// use contact_model::Conductance;
@@ -65,11 +66,12 @@ impl Conductance {
         }
     }
 
-    /// The conductance of a contact with this stiffness k between bodies with this E*; `None` where it is off.
+    /// The conductance of a contact with this stiffness k between bodies with this E*; `None` where it is
+    /// off.
     ///
     /// # Errors
-    /// As [`Conductance::resistivity`]; [`Error::Domain`] for a stiffness that is negative, a modulus that is not positive, or a result
-    /// that no f64 holds.
+    /// As [`Conductance::resistivity`]; [`Error::Domain`] for a stiffness that is negative, a modulus that is
+    /// not positive, or a result that no f64 holds.
     pub fn of(self, stiffness: f64, modulus: f64) -> Result<Option<f64>> {
         let Some(resistivity) = self.resistivity()? else { return Ok(None) };
         non_negative("stiffness", stiffness)?;

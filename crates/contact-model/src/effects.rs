@@ -9,8 +9,8 @@ use crate::rheology::{PronySeries, Relaxing, Rheology};
 pub struct Effects {
     /// What lies outside the square.
     pub boundary: Boundary,
-    /// Largest pressure that the bodies carry. A load is solved from the virgin surface; the indentation of a path stays from step to
-    /// step ([`crate::PreparedContact::advance_until`]).
+    /// Largest pressure that the bodies carry. A load is solved from the virgin surface; the indentation of a
+    /// path stays from step to step ([`crate::PreparedContact::advance_until`]).
     pub hardness: Hardness,
     /// Attraction between the surfaces.
     pub adhesion: Adhesion,
@@ -100,7 +100,8 @@ macro_rules! effects {
                 }
             }
 
-            /// It alone, with numbers for bodies of a side and an E* of about 1 whose heights are hundredths: for trials of models.
+            /// It alone, with numbers for bodies of a side and an E* of about 1 whose heights are hundredths:
+            /// for trials of models.
             pub fn example(self) -> Effects {
                 match self {
                     $(Self::$variant => Effects { $field: $example, ..Effects::default() },)+
@@ -159,8 +160,8 @@ pub enum Boundary {
     Periodic,
 }
 
-/// Largest pressure that the bodies carry: where it is reached, the softer one is indented without a further rise of the pressure
-/// (perfect plasticity, `0 <= p <= p_s`).
+/// Largest pressure that the bodies carry: where it is reached, the softer one is indented without a further
+/// rise of the pressure (perfect plasticity, `0 <= p <= p_s`).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[non_exhaustive]
 pub enum Hardness {
@@ -181,8 +182,8 @@ pub enum Adhesion {
     /// None.
     #[default]
     Off,
-    /// Short-range adhesion (JKR) with this work of adhesion (energy per area): the limit in which nothing attracts across a gap and the
-    /// edges of a contact bear any tension.
+    /// Short-range adhesion (JKR) with this work of adhesion (energy per area): the limit in which nothing
+    /// attracts across a gap and the edges of a contact bear any tension.
     ShortRange {
         /// Work of adhesion Delta gamma.
         work: f64,

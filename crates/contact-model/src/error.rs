@@ -112,7 +112,8 @@ impl Error {
         Self::OutOfRange { name, value: force, min: -limit, max: limit }
     }
 
-    /// The state reached where a solve did not converge, which has its status and certificate; any other error stays one.
+    /// The state reached where a solve did not converge, which has its status and certificate; any other
+    /// error stays one.
     ///
     /// # Errors
     /// The error itself.

@@ -3,7 +3,8 @@
 use crate::cells::{Cells, Size};
 use crate::quantities::Output;
 
-/// One number per cell of a rectangle, row-major (`values[iy * columns + ix]`: rows along y, as NPY arrays `[row, column]`).
+/// One number per cell of a rectangle, row-major (`values[iy * columns + ix]`: rows along y, as NPY arrays
+/// `[row, column]`).
 ///
 /// ```
 /// use contact_model::Field;
@@ -89,7 +90,8 @@ pub struct Fields {
     pub pressure: Option<Field>,
     /// Displacement u of the elastic surface under each cell centre.
     pub displacement: Option<Field>,
-    /// Gap g = u + z - d; infinite at undefined points. Over a plastic indentation its depth is added: the gap to the indented surface.
+    /// Gap g = u + z - d; infinite at undefined points. Over a plastic indentation its depth is added: the
+    /// gap to the indented surface.
     pub gap: Option<Field>,
     /// Depth of the plastic indentation >= 0.
     pub plastic_depth: Option<Field>,
@@ -105,7 +107,8 @@ impl Fields {
 /// Which cell of a block stands for it, where a field is shown on fewer points than it has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Shown {
-    /// That of the largest value, so that a single cell under pressure is seen; zero is no value worth a colour.
+    /// That of the largest value, so that a single cell under pressure is seen; zero is no value worth a
+    /// colour.
     Largest,
     /// That of the smallest value, so that a single cell without a gap is seen.
     Smallest,

@@ -1,24 +1,30 @@
 //! The shared words of fractal-contact.
 //!
-//! Three words organise everything: **physics** ([`Scene`]), **numerics** (each model's own options) and **chance** (the
-//! `seed` of [`ContactModel::prepare`]). This crate defines the first, the trait that joins them, and what comes back: a
+//! Three words organise everything: **physics** ([`Scene`]), **numerics** (each model's own options) and
+//! **chance** (the `seed` of [`ContactModel::prepare`]). This crate defines the first, the trait that joins
+//! them, and what comes back: a
 //! [`ContactState`] that always carries its evidence in a [`SolveReport`]. It has no numerics, no input or output, and no
 //! dependency besides `std` (with the feature `serde`, states can be stored).
 //!
 //! # Conventions
 //!
-//! * The body is an elastic half-space of effective modulus E* whose surface carries heights `h`; a rigid flat presses on
-//!   it. With `z = h_max - h >= 0` the contact conditions are `g = u + z - d >= 0`, `p >= 0`, `p g = 0`.
-//! * The approach `d` is counted **from first touch of the highest point**, not from the mean plane. At `F = 0`, `d = 0` and
-//!   `k = 0`.
+//! * The body is an elastic half-space of effective modulus E* whose surface carries heights `h`; a rigid
+//!   flat presses on it. With `z = h_max - h >= 0` the contact conditions are `g = u + z - d >= 0`, `p >= 0`,
+//!   `p g = 0`.
+//! * The approach `d` is counted **from first touch of the highest point**, not from the mean plane. At
+//!   `F = 0`, `d = 0` and `k = 0`.
 //! * Pressure is compressive and non-negative; stiffness is `k = dF/dd`.
-//! * Units are the caller's own and only need to be consistent: lengths in one unit, modulus in force per length squared.
-//!   Names that end in `_bar` are normalised ([`Normalisation`] is the only place that does it).
-//! * With periodic boundaries there is no approach but a mean gap; the stiffness is then the negative derivative of the force in it.
-//! * What depends on the path of the loads (friction, rheology, indentation, adhesion) is followed [`Step`] by step.
-//! * What is reported of a state stands in one table ([`quantities::QUANTITIES`]), what a model can do in another ([`Abilities`]).
-//! * Fields, patches and what follows from the stiffness (conductance) are [`Outputs`]: not asked for, not computed, and the [`Work`] in
-//!   the report shows it.
+//! * Units are the caller's own and only need to be consistent: lengths in one unit, modulus in force per
+//!   length squared. Names that end in `_bar` are normalised ([`Normalisation`] is the only place that does
+//!   it).
+//! * With periodic boundaries there is no approach but a mean gap; the stiffness is then the negative
+//!   derivative of the force in it.
+//! * What depends on the path of the loads (friction, rheology, indentation, adhesion) is followed [`Step`]
+//!   by step.
+//! * What is reported of a state stands in one table ([`quantities::QUANTITIES`]), what a model can do in
+//!   another ([`Abilities`]).
+//! * Fields, patches and what follows from the stiffness (conductance) are [`Outputs`]: not asked for, not
+//!   computed, and the [`Work`] in the report shows it.
 //! * `None` means "this model does not claim it" or "not asked for". It is never NaN and never a silent 0.
 //!
 //! ```

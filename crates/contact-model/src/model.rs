@@ -51,19 +51,21 @@ pub trait ContactModel: Send + Sync {
     /// What it is built on.
     fn sources(&self) -> &'static [Source];
 
-    /// What it can do. [`Abilities::refuse`] checks a scene against it, and help, tables and refusals follow from it.
+    /// What it can do. [`Abilities::refuse`] checks a scene against it, and help, tables and refusals follow
+    /// from it.
     fn abilities(&self) -> Abilities;
 
-    /// Checks the scene against what this model can do, and plans: draws the surface from `seed` where the scene
-    /// calls for one, builds tables.
+    /// Checks the scene against what this model can do, and plans: draws the surface from `seed` where the
+    /// scene calls for one, builds tables.
     ///
     /// # Errors
     /// [`crate::Error::Unsupported`] for a surface, effect or output that the model lacks (never a silent elastic answer),
     /// [`crate::Error::Domain`] or [`crate::Error::Shape`] for numbers that make no sense.
     fn prepare(&self, scene: &Scene, seed: u64) -> Result<Box<dyn PreparedContact>>;
 
-    /// What [`ContactModel::prepare`] and a light load need at least, the surface that is drawn included; `None` where that does not grow
-    /// with a grid. For callers that compare it with what there is: a model does not ask the system.
+    /// What [`ContactModel::prepare`] and a light load need at least, the surface that is drawn included;
+    /// `None` where that does not grow with a grid. For callers that compare it with what there is: a model
+    /// does not ask the system.
     fn least_memory(&self, scene: &Scene) -> Option<RequiredMemory> {
         let _ = scene;
         None
@@ -100,16 +102,18 @@ pub trait PreparedContact: Send {
 
     /// Solves for one load from no contact; `stop` is polled between iterations.
     ///
-    /// The result does not depend on the loads solved before beyond the stated tolerance; increasing loads are the fastest order. That
-    /// holds with effects that remember too: each load is reached from the virgin surface in one step, and a path that was followed is
-    /// forgotten. The next step ([`PreparedContact::advance_until`]) goes on from the load that was solved.
+    /// The result does not depend on the loads solved before beyond the stated tolerance; increasing loads
+    /// are the fastest order. That holds with effects that remember too: each load is reached from the virgin
+    /// surface in one step, and a path that was followed is forgotten. The next step
+    /// ([`PreparedContact::advance_until`]) goes on from the load that was solved.
     ///
     /// # Errors
     /// [`crate::Error::Domain`] for a negative or non-finite load, [`crate::Error::OutOfRange`] where the model does not hold,
     /// [`crate::Error::NotConverged`] and [`crate::Error::Stopped`] with the best state.
     fn solve_until(&mut self, load: Load, stop: Stop<'_>) -> Result<ContactState>;
 
-    /// Solves for one load as a step from no contact: [`PreparedContact::solve_until`] of a contact whose states are those of paths.
+    /// Solves for one load as a step from no contact: [`PreparedContact::solve_until`] of a contact whose
+    /// states are those of paths.
     ///
     /// # Errors
     /// As [`PreparedContact::advance_until`].
@@ -129,14 +133,15 @@ pub trait PreparedContact: Send {
         self.solve_until(load, &never)
     }
 
-    /// Goes to the end of the next step of a path; `stop` is polled between iterations. **A step that fails leaves the contact as it was
-    /// before.**
+    /// Goes to the end of the next step of a path; `stop` is polled between iterations. **A step that fails
+    /// leaves the contact as it was before.**
     ///
     /// A contact that remembers nothing solves for the normal load of the step, whatever came before.
     ///
     /// # Errors
-    /// As [`PreparedContact::solve_until`], and [`Step::validated`]; [`Error::OutOfRange`] for steps beyond what the model holds for (gross
-    /// slip, a time from which the contact would shrink), [`Error::Unsupported`] for a tangential load without friction.
+    /// As [`PreparedContact::solve_until`], and [`Step::validated`]; [`Error::OutOfRange`] for steps beyond
+    /// what the model holds for (gross slip, a time from which the contact would shrink),
+    /// [`Error::Unsupported`] for a tangential load without friction.
     fn advance_until(&mut self, step: Step, stop: Stop<'_>) -> Result<ContactState> {
         if step.tangential != Tangential::default() {
             return Err(Error::unsupported("of frictionless contact", "a tangential load"));
@@ -156,7 +161,8 @@ pub trait PreparedContact: Send {
     /// Goes along a whole path from where it is, one state per step.
     ///
     /// # Errors
-    /// As [`PreparedContact::advance_until`], at the first step that fails; the contact then stands at the end of the step before it.
+    /// As [`PreparedContact::advance_until`], at the first step that fails; the contact then stands at the
+    /// end of the step before it.
     fn follow(&mut self, path: &[Step]) -> Result<Vec<ContactState>> {
         path.iter().map(|step| self.advance(*step)).collect()
     }
@@ -164,17 +170,20 @@ pub trait PreparedContact: Send {
     /// Forgets the path: back to no contact at time 0.
     fn restart(&mut self) {}
 
-    /// What a solve for this load needs beyond what the contact holds, about; `None` where that does not grow with a grid. As
+    /// What a solve for this load needs beyond what the contact holds, about; `None` where that does not grow
+    /// with a grid. As
     /// [`ContactModel::least_memory`], for callers that compare it with what there is.
     fn required_memory(&self, load: Load) -> Option<RequiredMemory> {
         let _ = load;
         None
     }
 
-    /// Solves for loads in their order and gives each result to the observer with its number, as soon as it is there.
+    /// Solves for loads in their order and gives each result to the observer with its number, as soon as it
+    /// is there.
     ///
-    /// A load that does not converge or that the model refuses is an error that the observer gets; the sweep goes on unless the observer
-    /// returns an error, which ends it. [`Error::into_best`] takes the state of a load that did not converge.
+    /// A load that does not converge or that the model refuses is an error that the observer gets; the sweep
+    /// goes on unless the observer returns an error, which ends it. [`Error::into_best`] takes the state of a
+    /// load that did not converge.
     ///
     /// # Errors
     /// [`Error::Stopped`] where `stop` says so (the observer does not get it), or the error of the observer.

@@ -2,13 +2,16 @@
 
 use crate::error::{Error, Result, positive};
 
-/// Units in which a model solves: horizontal lengths in `length`, vertical ones in `height`, moduli in `modulus`.
+/// Units in which a model solves: horizontal lengths in `length`, vertical ones in `height`, moduli in
+/// `modulus`.
 ///
-/// A force is counted in `E* length height`, a stiffness in `E* length`, an area in `length^2`. The products are taken in an
-/// order that neither overflows nor underflows on the way, so a scene in units of 1e-150 or 1e150 loses nothing; only a result
-/// that no `f64` can hold is an error. Numbers are of either sign: adhesion pulls.
+/// A force is counted in `E* length height`, a stiffness in `E* length`, an area in `length^2`. The products
+/// are taken in an order that neither overflows nor underflows on the way, so a scene in units of 1e-150 or
+/// 1e150 loses nothing; only a result that no `f64` can hold is an error. Numbers are of either sign:
+/// adhesion pulls.
 ///
-/// This is arithmetic for solvers. The normalised quantities that are reported (`F_bar`, `k_bar`) belong to [`crate::Normalisation`].
+/// This is arithmetic for solvers. The normalised quantities that are reported (`F_bar`, `k_bar`) belong to
+/// [`crate::Normalisation`].
 ///
 /// ```
 /// use contact_model::Nondimensionalisation;
@@ -115,8 +118,8 @@ fn held(name: &'static str, value: f64, result: f64) -> Result<f64> {
     }
 }
 
-/// Product of a number of either sign and units > 0 without overflow or underflow on the way: the largest left while below 1, else the
-/// smallest.
+/// Product of a number of either sign and units > 0 without overflow or underflow on the way: the largest
+/// left while below 1, else the smallest.
 fn product<const N: usize>(mut factors: [f64; N]) -> f64 {
     let sign = factors[0];
     factors[0] = sign.abs();

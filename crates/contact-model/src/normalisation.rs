@@ -5,8 +5,8 @@ use crate::load::Load;
 
 /// The paper's saturation stiffness, `k_s = 1.1419 E* L` (Sec. II), in which `k_bar` is counted.
 ///
-/// It is `1.012 x 2/sqrt(pi)`, an old value for the rigid square punch; the converged one is 1.152298, so the continuum plateau of
-/// `k_bar` is 1.0091. It stays the unit because Eq. 8 defines `k_bar` with it.
+/// It is `1.012 x 2/sqrt(pi)`, an old value for the rigid square punch; the converged one is 1.152298, so the
+/// continuum plateau of `k_bar` is 1.0091. It stays the unit because Eq. 8 defines `k_bar` with it.
 pub const PAPER_STIFFNESS_FACTOR: f64 = 1.1419;
 
 /// Normalisation of one surface: what turns forces and stiffnesses into `F_bar` and `k_bar`.
@@ -15,7 +15,8 @@ pub const PAPER_STIFFNESS_FACTOR: f64 = 1.1419;
 pub struct Normalisation {
     /// Effective modulus E* (force per length squared).
     pub modulus: f64,
-    /// `L = sqrt(Lx Ly)` of the nominal contact area: the side of a square (also for the 1D line that stands for it).
+    /// `L = sqrt(Lx Ly)` of the nominal contact area: the side of a square (also for the 1D line that stands
+    /// for it).
     pub length: f64,
     /// Measured rms height of this surface; `None` for a body without one (a sphere, a punch).
     pub height: Option<f64>,

@@ -65,9 +65,11 @@ impl Pair {
         held("modulus", (0.5 * (first + second)).recip())
     }
 
-    /// Effective shear modulus: `1/G* = (2 - nu1)/(4 G1) + (2 - nu2)/(4 G2)`; a round contact without slip has `k_x = 2 G* a`.
+    /// Effective shear modulus: `1/G* = (2 - nu1)/(4 G1) + (2 - nu2)/(4 G2)`; a round contact without slip
+    /// has `k_x = 2 G* a`.
     ///
-    /// Then `k_x / k_z = G*/E* = (2 - 2 nu)/(2 - nu)` where the bodies are alike or one is rigid (Mindlin 1949).
+    /// Then `k_x / k_z = G*/E* = (2 - 2 nu)/(2 - nu)` where the bodies are alike or one is rigid (Mindlin
+    /// 1949).
     ///
     /// # Errors
     /// As [`Pair::modulus`].
@@ -76,10 +78,12 @@ impl Pair {
         held("shear_modulus", (first + second).recip())
     }
 
-    /// Dundurs' second constant, `beta = ((1 - 2 nu1)/G1 - (1 - 2 nu2)/G2) / (2 ((1 - nu1)/G1 + (1 - nu2)/G2))`, in [-1/2, 1/2].
+    /// Dundurs' second constant,
+    /// `beta = ((1 - 2 nu1)/G1 - (1 - 2 nu2)/G2) / (2 ((1 - nu1)/G1 + (1 - nu2)/G2))`, in [-1/2, 1/2].
     ///
-    /// Normal and tangential problems are independent of each other exactly when it is 0: bodies that are alike, or a rigid one on an
-    /// incompressible one. Theories of friction that take them as independent neglect terms of this order.
+    /// Normal and tangential problems are independent of each other exactly when it is 0: bodies that are
+    /// alike, or a rigid one on an incompressible one. Theories of friction that take them as independent
+    /// neglect terms of this order.
     ///
     /// # Errors
     /// As [`Pair::modulus`].

@@ -2,7 +2,8 @@
 
 /// The connected areas of a contact, the largest first; together they are the real contact area.
 ///
-/// Two cells belong to one patch when they share an edge (four neighbours; a common corner has no length that could carry anything).
+/// Two cells belong to one patch when they share an edge (four neighbours; a common corner has no length that
+/// could carry anything).
 #[derive(Debug, Clone, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Patches {

@@ -1,8 +1,9 @@
-//! THE table of quantities: what can be asked of a model, and each number and word that is reported of a state.
+//! THE table of quantities: what can be asked of a model, and each number and word that is reported of a
+//! state.
 //!
-//! Every table, file, picture and page that shows numbers of states iterates over [`QUANTITIES`], so a quantity that stands here is told
-//! everywhere: CSV, console, report, means over surfaces, curves, Python, glossary. Units are those of SI; without units a
-//! dimensional number is in the scene's own.
+//! Every table, file, picture and page that shows numbers of states iterates over [`QUANTITIES`], so a
+//! quantity that stands here is told everywhere: CSV, console, report, means over surfaces, curves, Python,
+//! glossary. Units are those of SI; without units a dimensional number is in the scene's own.
 
 use crate::conductance::Conductance;
 use crate::effects::{Boundary, Effects};
@@ -61,7 +62,8 @@ macro_rules! outputs {
                 }
             }
 
-            /// Asks for it, or no longer; the conductance is asked for with its bodies instead ([`Outputs::conductance`]).
+            /// Asks for it, or no longer; the conductance is asked for with its bodies instead
+            /// ([`Outputs::conductance`]).
             pub fn ask(&mut self, output: Output, asked: bool) {
                 match output {
                     $(Output::$variant => self.$field = asked,)+
@@ -72,7 +74,8 @@ macro_rules! outputs {
     };
 }
 
-// A new output: a line here; its quantities in the table below, or its field in `FIELDS`; a member of the state or of its fields.
+// A new output: a line here; its quantities in the table below, or its field in `FIELDS`; a member of the
+// state or of its fields.
 outputs! {
     /// Stiffness k = dF/dd along the branch of states.
     Stiffness stiffness,
@@ -117,7 +120,8 @@ impl Outputs {
 }
 
 impl ContactState {
-    /// The state with what follows from the stiffness of its contact area, and without a stiffness that was not asked for itself.
+    /// The state with what follows from the stiffness of its contact area, and without a stiffness that was
+    /// not asked for itself.
     ///
     /// The last thing that a model does: it computes the stiffnesses where [`Outputs::needs_stiffness`] and
     /// [`Outputs::needs_fixed_area`] say so.
@@ -299,8 +303,8 @@ pub struct Quantity {
     pub drawn: bool,
     /// Takes it from a state; empty where the model does not claim it.
     pub value: fn(&ContactState, &Normalisation) -> Value,
-    /// Names of the columns that belong to it: standard error of the mean, standard deviation of one surface; error of the grid, order of
-    /// convergence; standard error and deviation of the mean error of the grid.
+    /// Names of the columns that belong to it: standard error of the mean, standard deviation of one surface;
+    /// error of the grid, order of convergence; standard error and deviation of the mean error of the grid.
     pub columns: [&'static str; 6],
 }
 

@@ -2,10 +2,12 @@
 
 use crate::error::{Error, Result, non_negative, positive};
 
-/// Time dependence of the material: `F/F_elastic` after a step of the approach is `E*(t)/E*`, with E* the scene's modulus.
+/// Time dependence of the material: `F/F_elastic` after a step of the approach is `E*(t)/E*`, with E* the
+/// scene's modulus.
 ///
-/// Poisson's ratio does not change with time, so `E*(t)` follows the shear modulus: `G(t) = (1 - nu)/2 E*(t)` for a rigid indenter on one
-/// viscoelastic body. Viscosities are those of an incompressible body (nu = 1/2) in shear: `E* = 4 G`.
+/// Poisson's ratio does not change with time, so `E*(t)` follows the shear modulus: `G(t) = (1 - nu)/2 E*(t)`
+/// for a rigid indenter on one viscoelastic body. Viscosities are those of an incompressible body (nu = 1/2)
+/// in shear: `E* = 4 G`.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[non_exhaustive]
 #[allow(clippy::large_enum_variant)] // A plain value that is copied a few times per scene.
@@ -13,7 +15,8 @@ pub enum Rheology {
     /// None.
     #[default]
     Elastic,
-    /// Kelvin-Voigt element with this viscosity, of a material with nu = 1/2: a spring (the scene's E* = 4 G) beside a dashpot.
+    /// Kelvin-Voigt element with this viscosity, of a material with nu = 1/2: a spring (the scene's E* = 4 G)
+    /// beside a dashpot.
     KelvinVoigt {
         /// Viscosity eta.
         viscosity: f64,
@@ -24,12 +27,14 @@ pub enum Rheology {
         /// Viscosity eta.
         viscosity: f64,
     },
-    /// Standard solid (Zener): the scene's E* is what remains for ever, `E*(t) = E* (1 + weight exp(-t / time))`.
+    /// Standard solid (Zener): the scene's E* is what remains for ever,
+    /// `E*(t) = E* (1 + weight exp(-t / time))`.
     StandardSolid {
         /// The arm that relaxes.
         arm: Relaxing,
     },
-    /// Prony series: the scene's E* is what remains for ever, `E*(t) = E* (1 + sum weight_i exp(-t / time_i))`.
+    /// Prony series: the scene's E* is what remains for ever,
+    /// `E*(t) = E* (1 + sum weight_i exp(-t / time_i))`.
     Prony(PronySeries),
 }
 
@@ -74,7 +79,8 @@ impl Relaxing {
 
 /// Some relaxing arms with different times, at most [`PronySeries::MOST`].
 ///
-/// A fixed number of places keeps [`crate::Effects`] a plain value; measured series of four decades have four to twelve terms.
+/// A fixed number of places keeps [`crate::Effects`] a plain value; measured series of four decades have four
+/// to twelve terms.
 ///
 /// ```
 /// use contact_model::{PronySeries, Relaxing};

@@ -84,8 +84,8 @@ pub enum Surface {
     SelfAffine(SelfAffine),
     /// A given map.
     Heights(Arc<HeightMap>),
-    /// A given profile: a map of one row that stands for a body uniform along y (plane strain). A force on it is that on the side of
-    /// its row along y.
+    /// A given profile: a map of one row that stands for a body uniform along y (plane strain). A force on it
+    /// is that on the side of its row along y.
     Profile(Arc<HeightMap>),
     /// A given line (for one-dimensional models), standing for a rectangle.
     Line {

@@ -25,16 +25,18 @@ pub struct ContactState {
     pub force: f64,
     /// Approach d from first touch; `None` with periodic boundaries.
     pub approach: Option<f64>,
-    /// Mean gap, where asked for: the distance between the mean plane of the defined heights and that of the deformed half-space. Without
-    /// undefined points it is the mean of the gap field; with them it may be negative. `None` also where a theory has none (without load).
+    /// Mean gap, where asked for: the distance between the mean plane of the defined heights and that of the
+    /// deformed half-space. Without undefined points it is the mean of the gap field; with them it may be
+    /// negative. `None` also where a theory has none (without load).
     pub mean_gap: Option<f64>,
-    /// Stiffness k = dF/dd along the branch of the states, with periodic boundaries -dF/d(mean gap): the slope of the force as the load
-    /// goes on in the direction of its last change, a first load growing. What moves with the load moves: cells at the hardness flow, the
-    /// fronts of an adhesive contact advance or recede. At a kink, such as an old load that a plastic path reaches again, the slope in the
-    /// other direction differs.
+    /// Stiffness k = dF/dd along the branch of the states, with periodic boundaries -dF/d(mean gap): the
+    /// slope of the force as the load goes on in the direction of its last change, a first load growing. What
+    /// moves with the load moves: cells at the hardness flow, the fronts of an adhesive contact advance or
+    /// recede. At a kink, such as an old load that a plastic path reaches again, the slope in the other
+    /// direction differs.
     pub stiffness: Option<f64>,
-    /// Stiffness of the whole contact area of this state, held: bonded cells at the hardness or at a front included. The conductance follows
-    /// from it. Equal to the stiffness without hardness and adhesion.
+    /// Stiffness of the whole contact area of this state, held: bonded cells at the hardness or at a front
+    /// included. The conductance follows from it. Equal to the stiffness without hardness and adhesion.
     pub stiffness_fixed_area: Option<f64>,
     /// Real contact area.
     pub area: Option<f64>,
@@ -48,7 +50,8 @@ pub struct ContactState {
     pub adhesive: Option<AdhesiveState>,
     /// What the cells of the contact say about how well they resolve it, where the model has cells.
     pub resolution: Option<ContactResolution>,
-    /// Contact radius, of round contacts; of an equivalent profile that of the round contact of the same stiffness, `k/(2 E*)`.
+    /// Contact radius, of round contacts; of an equivalent profile that of the round contact of the same
+    /// stiffness, `k/(2 E*)`.
     pub contact_radius: Option<f64>,
     /// The tangential part, of contacts with friction.
     pub tangential: Option<TangentialState>,
@@ -112,8 +115,8 @@ impl ContactState {
         Self { stiffness_fixed_area: stiffness.into(), ..self }
     }
 
-    /// With the stiffness of an elastic contact, which is the same along the branch and with its area held: to first order a small
-    /// change of the load does not change the contact area's force.
+    /// With the stiffness of an elastic contact, which is the same along the branch and with its area held:
+    /// to first order a small change of the load does not change the contact area's force.
     #[must_use]
     pub fn with_elastic_stiffness(self, stiffness: impl Into<Option<f64>>) -> Self {
         let stiffness = stiffness.into();
@@ -193,8 +196,8 @@ pub struct TangentialState {
     pub force: f64,
     /// Tangential displacement.
     pub displacement: f64,
-    /// Radius inside which the traction is below what friction can hold, of round contacts (of an equivalent profile as the contact
-    /// radius): the contact radius without any slip, 0 in full slip.
+    /// Radius inside which the traction is below what friction can hold, of round contacts (of an equivalent
+    /// profile as the contact radius): the contact radius without any slip, 0 in full slip.
     pub stick_radius: Option<f64>,
     /// Energy that friction has dissipated since the first step, >= 0.
     pub dissipated: f64,
@@ -250,8 +253,9 @@ pub struct AdhesiveState {
     pub energy: f64,
     /// How stable the state is, > 0 for a minimum of the energy.
     ///
-    /// The smallest curvature of the energy, over that without adhesion. With Dugdale's law, whose states are stable between the jumps of
-    /// single cells, the smallest distance of the gap of a cell from the range, in ranges.
+    /// The smallest curvature of the energy, over that without adhesion. With Dugdale's law, whose states are
+    /// stable between the jumps of single cells, the smallest distance of the gap of a cell from the range,
+    /// in ranges.
     #[cfg_attr(feature = "serde", serde(with = "known_or_infinite"))]
     pub stability: f64,
 }
@@ -288,7 +292,8 @@ impl Branch {
 #[non_exhaustive]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ContactResolution {
-    /// Largest pressure of a cell: the mean over that cell, which grows as cells get smaller until they resolve the shortest wave.
+    /// Largest pressure of a cell: the mean over that cell, which grows as cells get smaller until they
+    /// resolve the shortest wave.
     pub largest_pressure: f64,
     /// Largest share of the force that one cell carries.
     pub largest_share: f64,
@@ -296,9 +301,10 @@ pub struct ContactResolution {
     pub edge_cells: usize,
     /// Contact area with a correction for its boundary, where the area was asked for.
     ///
-    /// The counted area of a contact of smooth boundary is too large by about `(pi - 1 + ln 2)/24` cells for each edge between
-    /// a cell in contact and one that is not (Yastrebov, Anciaux, Molinari, Tribol. Int. 114, 161 (2017), for square cells). It helps
-    /// where patches are several cells wide, and says how much the cells matter where they are not.
+    /// The counted area of a contact of smooth boundary is too large by about `(pi - 1 + ln 2)/24` cells for
+    /// each edge between a cell in contact and one that is not (Yastrebov, Anciaux, Molinari, Tribol. Int.
+    /// 114, 161 (2017), for square cells). It helps where patches are several cells wide, and says how much
+    /// the cells matter where they are not.
     pub corrected_area: Option<f64>,
 }
 
@@ -311,7 +317,8 @@ impl ContactResolution {
         Self { largest_pressure, largest_share, edge_cells, corrected_area: None }
     }
 
-    /// With the area of so many cells of which so many edges are its boundary, each cell of this area; not below zero.
+    /// With the area of so many cells of which so many edges are its boundary, each cell of this area; not
+    /// below zero.
     #[must_use]
     pub fn with_boundary(self, cells: usize, edges: usize, cell_area: f64) -> Self {
         let corrected = (cells as f64 - Self::AREA_PER_EDGE * edges as f64).max(0.0) * cell_area;
@@ -396,16 +403,18 @@ impl Status {
 
 /// How exactly the contact conditions hold, measured with the exact operator in double precision.
 ///
-/// All are relative and dimensionless; `s` is the measured rms height (the approach for a body without one). A tolerance `t` is
-/// met when every one of them that it bounds is at most `t` ([`Certificate::meets`]).
+/// All are relative and dimensionless; `s` is the measured rms height (the approach for a body without one).
+/// A tolerance `t` is met when every one of them that it bounds is at most `t` ([`Certificate::meets`]).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Certificate {
-    /// `sum p (g - min g) / (F s)`: the duality gap of the quadratic programme, in its Frank-Wolfe form. With a hardness p_s the minimum of
-    /// `sum q g` over all `0 <= q <= p_s` of the same force takes the place of `F min g`.
+    /// `sum p (g - min g) / (F s)`: the duality gap of the quadratic programme, in its Frank-Wolfe form. With
+    /// a hardness p_s the minimum of `sum q g` over all `0 <= q <= p_s` of the same force takes the place of
+    /// `F min g`.
     #[cfg_attr(feature = "serde", serde(with = "known_or_infinite"))]
     pub duality_gap: f64,
-    /// `max(0, -min g) / s`. With a hardness of cells below p_s, and beside it the largest gap left under a cell at p_s.
+    /// `max(0, -min g) / s`. With a hardness of cells below p_s, and beside it the largest gap left under a
+    /// cell at p_s.
     #[cfg_attr(feature = "serde", serde(with = "known_or_infinite"))]
     pub penetration: f64,
     /// `sum p |g| / (F s)`; of cells at the hardness p_s only a positive gap counts.
@@ -414,18 +423,20 @@ pub struct Certificate {
     /// `|F - F_asked| / F_asked`; of a mean gap its miss over s; 0 when the approach was prescribed.
     #[cfg_attr(feature = "serde", serde(with = "known_or_infinite"))]
     pub load_error: f64,
-    /// Estimated relative error of the stiffness, and of that of the held contact area where both are computed; `None` where none is,
-    /// or where the stiffness is a difference quotient ([`Certificate::quotient_error`]).
+    /// Estimated relative error of the stiffness, and of that of the held contact area where both are
+    /// computed; `None` where none is, or where the stiffness is a difference quotient
+    /// ([`Certificate::quotient_error`]).
     pub stiffness_error: Option<f64>,
-    /// Estimated relative error of a stiffness that is a difference quotient along the branch. The cells decide it, not the tolerance:
-    /// it is no part of [`Certificate::worst`]. `None` where the stiffness is not such a quotient.
+    /// Estimated relative error of a stiffness that is a difference quotient along the branch. The cells
+    /// decide it, not the tolerance: it is no part of [`Certificate::worst`]. `None` where the stiffness is
+    /// not such a quotient.
     pub quotient_error: Option<f64>,
-    /// Relative error of the force where an approach or a mean gap was prescribed, estimated from above by the gaps left on the contact
-    /// and the largest stiffness that it can have. `None` where the force itself was prescribed. The tolerance bounds
-    /// the gaps, not this: no part of [`Certificate::worst`].
+    /// Relative error of the force where an approach or a mean gap was prescribed, estimated from above by
+    /// the gaps left on the contact and the largest stiffness that it can have. `None` where the force itself
+    /// was prescribed. The tolerance bounds the gaps, not this: no part of [`Certificate::worst`].
     pub force_error: Option<f64>,
-    /// Largest difference between the traction of a cell and what the law of adhesion says of its gap, over `work/range`; `None` without
-    /// adhesion of finite range.
+    /// Largest difference between the traction of a cell and what the law of adhesion says of its gap, over
+    /// `work/range`; `None` without adhesion of finite range.
     pub equilibrium: Option<f64>,
 }
 

@@ -20,10 +20,12 @@ impl Default for Tangential {
     }
 }
 
-/// The end of a straight segment of a path; it begins where the last one ended. Before the first step: time 0, no contact, no load.
+/// The end of a straight segment of a path; it begins where the last one ended. Before the first step: time
+/// 0, no contact, no load.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Step {
-    /// Time at the end of the segment; it never decreases. Equal times are a jump. Friction alone does not look at it.
+    /// Time at the end of the segment; it never decreases. Equal times are a jump. Friction alone does not
+    /// look at it.
     pub time: f64,
     /// Normal load at the end.
     pub normal: Load,

@@ -1,4 +1,5 @@
-//! What sides, cells and fields must be; apart from these types, because errors hold states and states hold fields.
+//! What sides, cells and fields must be; apart from these types, because errors hold states and states hold
+//! fields.
 
 use crate::cells::{Cells, Size};
 use crate::error::{Error, Result, positive};
@@ -22,8 +23,8 @@ impl Size {
         positive("side along y", self.y).map(|_| ())
     }
 
-    /// Checks that a round contact of this radius is inside of the rectangle, beyond which the half-space is free; the name is for the
-    /// error.
+    /// Checks that a round contact of this radius is inside of the rectangle, beyond which the half-space is
+    /// free; the name is for the error.
     ///
     /// # Errors
     /// [`Error::OutOfRange`] for a radius beyond half the shorter side.

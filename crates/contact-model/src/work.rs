@@ -5,7 +5,8 @@ use std::ops::AddAssign;
 
 /// Work beyond iterations and applications of the operator. Closed forms do none.
 ///
-/// What is not asked for adds nothing: without fields `fields` and `bytes` are 0, without the stiffness its `linear_solves` are missing.
+/// What is not asked for adds nothing: without fields `fields` and `bytes` are 0, without the stiffness its
+/// `linear_solves` are missing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Work {

@@ -29,10 +29,11 @@ impl SolvePair {
     }
 }
 
-/// Solves a random share of the 3D ensemble of a run again, each from nothing with the given tolerance, and writes `audit.csv`.
+/// Solves a random share of the 3D ensemble of a run again, each from nothing with the given tolerance, and
+/// writes `audit.csv`.
 ///
-/// Which solves is decided by the master seed alone. Returns the outcome and one line that says how far the stored k are from the
-/// tight ones.
+/// Which solves is decided by the master seed alone. Returns the outcome and one line that says how far the
+/// stored k are from the tight ones.
 ///
 /// # Errors
 /// [`Error::Parameter`] for a share outside (0, 1] or a tolerance that is not tighter than the run's; what the solver refuses.

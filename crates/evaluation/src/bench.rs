@@ -1,4 +1,5 @@
-//! What an answer costs: one row per surface, tolerance and load, with the work, the time, the memory and the certificate.
+//! What an answer costs: one row per surface, tolerance and load, with the work, the time, the memory and the
+//! certificate.
 
 use crate::forces::Forces;
 use crate::limits::{self, within};
@@ -35,7 +36,8 @@ pub struct Bench {
     pub method: Method,
     /// Each load from nothing, set-up included; else one prepared contact under increasing loads.
     pub cold: bool,
-    /// Threads, at least 1: as many series are solved at the same time, and threads without a series help inside the others.
+    /// Threads, at least 1: as many series are solved at the same time, and threads without a series help
+    /// inside the others.
     pub threads: usize,
     /// Directory for the pressure of each row (NPY, row-major, in units of E*).
     pub pressure: Option<PathBuf>,
@@ -108,12 +110,13 @@ pub struct BenchRow {
     pub normalisation: Normalisation,
     /// Wall-clock seconds: the first row of a prepared contact includes preparing it.
     pub seconds: f64,
-    /// Seconds of the processor on all threads, where the platform tells and no other series was solved meanwhile.
+    /// Seconds of the processor on all threads, where the platform tells and no other series was solved
+    /// meanwhile.
     pub cpu_seconds: Option<f64>,
     /// Where the time went: parts with their nanoseconds and how often they were done; empty without a clock.
     pub parts: Vec<(Part, Spent)>,
-    /// Largest resident memory of the process during this row, in bytes, where the platform tells (with what other threads hold; since
-    /// the start of the process where the count cannot be set back).
+    /// Largest resident memory of the process during this row, in bytes, where the platform tells (with what
+    /// other threads hold; since the start of the process where the count cannot be set back).
     pub peak_memory: Option<u64>,
     /// Whether it was solved from nothing.
     pub cold: bool,
@@ -205,8 +208,9 @@ struct BenchSeries {
     model: Bem3d,
 }
 
-/// Solves everything, loads from the smallest up, and hands out each row as soon as it is there. The rows that it gives stand in the
-/// order asked for: surfaces, tolerances, loads. With a clock each row says where its time went.
+/// Solves everything, loads from the smallest up, and hands out each row as soon as it is there. The rows
+/// that it gives stand in the order asked for: surfaces, tolerances, loads. With a clock each row says where
+/// its time went.
 ///
 /// # Errors
 /// [`Error::Parameter`] or [`Error::File`] before anything is solved; [`Error::Model`] for what the model

@@ -16,7 +16,8 @@ const MARKS: [MarkShape; 5] =
 pub struct BenchPlot {
     /// Files written.
     pub files: Vec<PathBuf>,
-    /// The fitted powers of each curve: `seconds ~ cells^a, iterations ~ cells^b` (least squares in logarithms).
+    /// The fitted powers of each curve: `seconds ~ cells^a, iterations ~ cells^b` (least squares in
+    /// logarithms).
     pub slopes: Vec<String>,
 }
 
@@ -92,8 +93,9 @@ impl Over {
     }
 }
 
-/// Draws seconds over cells from a table of [`crate::write_bench`], as SVG and PNG; over force where all rows have one size, and in a
-/// second picture (`NAME-force`) where there are several of both. Solves that did not converge are hollow and in no fit.
+/// Draws seconds over cells from a table of [`crate::write_bench`], as SVG and PNG; over force where all rows
+/// have one size, and in a second picture (`NAME-force`) where there are several of both. Solves that did not
+/// converge are hollow and in no fit.
 ///
 /// # Errors
 /// [`Error::File`] for a table that cannot be read, [`Error::Parameter`] for a picture without a name.
@@ -198,7 +200,8 @@ fn tolerance_words(points: &[BenchPoint]) -> String {
     format!("tolerance of the certificate: {}", all.join(", "))
 }
 
-/// Draws again every picture of a bench in a directory: of each table of [`crate::write_bench`] with an SVG or PNG of its name.
+/// Draws again every picture of a bench in a directory: of each table of [`crate::write_bench`] with an SVG
+/// or PNG of its name.
 ///
 /// # Errors
 /// As [`plot_bench`]; a directory that cannot be read.

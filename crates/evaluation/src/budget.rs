@@ -26,7 +26,8 @@ pub struct Budget {
 }
 
 impl Budget {
-    /// All together: `algebraic + sqrt(discretisation^2 + ensemble^2 + window^2)`; `None` where one of the first three is unknown.
+    /// All together: `algebraic + sqrt(discretisation^2 + ensemble^2 + window^2)`; `None` where one of the
+    /// first three is unknown.
     ///
     /// ```
     /// let budget = evaluation::Budget { algebraic: 1.0, discretisation: Some(3.0), ensemble: Some(4.0), window: None };
@@ -61,12 +62,14 @@ impl Budgeted {
     }
 }
 
-/// What the tolerance leaves open in k, relative: the solver's estimate and what the missed load makes (k grows less than F).
+/// What the tolerance leaves open in k, relative: the solver's estimate and what the missed load makes (k
+/// grows less than F).
 pub(crate) fn algebraic(s: &Sample) -> f64 {
     s.certificate.stiffness_error.unwrap_or(0.0) + s.certificate.load_error
 }
 
-/// Writes the budgets of the ensembles of a run, `fig2-budget.csv` for 3D and `fig6-budget.csv` for 1D, solving what is not stored.
+/// Writes the budgets of the ensembles of a run, `fig2-budget.csv` for 3D and `fig6-budget.csv` for 1D,
+/// solving what is not stored.
 ///
 /// # Errors
 /// As [`measure_3d`] and [`measure_1d`].
@@ -180,7 +183,8 @@ fn row(measured: &Measured, series: &Series, j: usize) -> Option<Budgeted> {
     })
 }
 
-/// What a relative error of k at each force makes of alpha and, relative, of zeta: the weights of the straight line.
+/// What a relative error of k at each force makes of alpha and, relative, of zeta: the weights of the
+/// straight line.
 fn weights(series: &Series, inside: &[usize]) -> Vec<(f64, f64)> {
     let x: Vec<f64> = inside.iter().map(|&j| series.points[j].force_bar.ln()).collect();
     let n = x.len() as f64;

@@ -17,7 +17,8 @@ pub struct FittedLaw {
     pub fit: Result<FittedPowerLaw, NoFit>,
 }
 
-/// Power laws of an ensemble, one per fractal dimension, over [`FitWindow::PAPER`]; errors by bootstrap over surfaces.
+/// Power laws of an ensemble, one per fractal dimension, over [`FitWindow::PAPER`]; errors by bootstrap over
+/// surfaces.
 pub fn laws(measured: &Measured) -> Vec<FittedLaw> {
     laws_within(measured, &FitWindow::PAPER)
 }
@@ -32,7 +33,8 @@ pub fn laws_within(measured: &Measured, window: &FitWindow) -> Vec<FittedLaw> {
     measured.series.iter().map(law).collect()
 }
 
-/// Floors of contact cells and upper ends of the window between which the exponents of one series are compared.
+/// Floors of contact cells and upper ends of the window between which the exponents of one series are
+/// compared.
 const FLOORS: [usize; 3] = [10, 30, 100];
 const LARGEST: [f64; 2] = [0.086, 0.03];
 /// A window shorter than this says little about a power law; the windows beside it may be half as long.
@@ -43,8 +45,8 @@ const LEAST_DECADES: f64 = 1.0;
 pub struct WindowedLaw {
     /// The law.
     pub fit: FittedPowerLaw,
-    /// Largest changes of alpha and of zeta with floors of 30 and 100 contact cells on every surface and an upper end of 0.03, over at least
-    /// half a decade.
+    /// Largest changes of alpha and of zeta with floors of 30 and 100 contact cells on every surface and an
+    /// upper end of 0.03, over at least half a decade.
     pub windows: (f64, f64),
     /// 95 % half-widths of alpha and of ln zeta that the grid leaves; `None` without coarser grids.
     pub grid: Option<(f64, f64)>,
@@ -91,8 +93,8 @@ pub fn dense_dimensions(given: &[f64]) -> Vec<f64> {
     all
 }
 
-/// 95 % half-widths of alpha and of ln zeta from the coarser grids, over the forces that the finest resolves. Where a coarser one does not, its
-/// difference is too large, and so is the half-width.
+/// 95 % half-widths of alpha and of ln zeta from the coarser grids, over the forces that the finest resolves.
+/// Where a coarser one does not, its difference is too large, and so is the half-width.
 fn law_error(series: &Series, [half, quarter]: [&Series; 2]) -> Option<(f64, f64)> {
     let window = FitWindow::PAPER;
     let all = [series, half, quarter];

@@ -8,8 +8,8 @@ use runs::{Header, Progress, Result, write_csv};
 use stability::{Case, CaseResult, Effort};
 use std::path::{Path, PathBuf};
 
-/// Solves hard cases ([`stability::cases`]) and writes `stability.csv` and `stability.md` into `out`. Gives the verdicts in the order of
-/// the cases, and the files.
+/// Solves hard cases ([`stability::cases`]) and writes `stability.csv` and `stability.md` into `out`. Gives
+/// the verdicts in the order of the cases, and the files.
 ///
 /// # Errors
 /// [`runs::Error::File`] where a file cannot be written. A case that fails is no error but a row.

@@ -1,21 +1,27 @@
-//! Ensembles of rough surfaces and what they are worth: error budgets, accuracy targets, benchmarks, audits, hard cases.
+//! Ensembles of rough surfaces and what they are worth: error budgets, accuracy targets, benchmarks, audits,
+//! hard cases.
 //!
-//! A [`Run`] holds the plain parameters of one command: a [`Preset`], overridden by a [`Request`] and checked. [`measure_3d`] and
+//! A [`Run`] holds the plain parameters of one command: a [`Preset`], overridden by a [`Request`] and
+//! checked. [`measure_3d`] and
 //! [`measure_1d`] solve an ensemble, [`state_budgets`] states to what its means are known, [`plan`] and [`settle`] choose the sizes that
-//! meet an accuracy target, [`accuracy_cost`] shows what accuracy costs, [`budget_check`] whether the budgets hold, [`audit`] solves
-//! stored states again, [`bench()`] measures time, [`hard_cases`] writes the table of the registry `stability`.
+//! meet an accuracy target, [`accuracy_cost`] shows what accuracy costs, [`budget_check`] whether the budgets
+//! hold, [`audit`] solves stored states again, [`bench()`] measures time, [`hard_cases`] writes the table of
+//! the registry `stability`.
 //!
 //! # Conventions
 //!
-//! * `F_bar = F/(E* h L)` with the **measured** rms height h of each surface; `k_bar = k/(1.1419 E* L)` (Eqs. 8, 10).
-//! * Means are arithmetic over the surfaces whose solve converged; the logarithmic mean stands beside. A solve that does not
-//!   converge is in the samples with its status, and in no mean.
-//! * Fewer than 10 contact cells are the one-cell floor of the grid: kept in every CSV, marked, left out of lines and fits.
+//! * `F_bar = F/(E* h L)` with the **measured** rms height h of each surface; `k_bar = k/(1.1419 E* L)` (Eqs.
+//!   8, 10).
+//! * Means are arithmetic over the surfaces whose solve converged; the logarithmic mean stands beside. A
+//!   solve that does not converge is in the samples with its status, and in no mean.
+//! * Fewer than 10 contact cells are the one-cell floor of the grid: kept in every CSV, marked, left out of
+//!   lines and fits.
 //!
 //! # Units of work
 //!
-//! The unit of work is one surface under all its loads ([`Realisation`]), solved from the smallest load upwards with one prepared contact and
-//! kept in the result store of the run (`runs::Store`) under everything that decides its numbers. Other commands reuse it.
+//! The unit of work is one surface under all its loads ([`Realisation`]), solved from the smallest load
+//! upwards with one prepared contact and kept in the result store of the run (`runs::Store`) under everything
+//! that decides its numbers. Other commands reuse it.
 //!
 //! # What it does not do
 //!

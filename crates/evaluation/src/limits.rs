@@ -1,10 +1,12 @@
-//! How large the numbers of a command may be: what costs more than any machine has is refused by name before memory is asked for.
+//! How large the numbers of a command may be: what costs more than any machine has is refused by name before
+//! memory is asked for.
 
 use runs::{Error, Result};
 use std::fmt::Display;
 use std::ops::RangeInclusive;
 
-/// Cells a side of a surface: a map of 65536 x 65536 heights takes 34 GB by itself, and what fits is asked of the memory.
+/// Cells a side of a surface: a map of 65536 x 65536 heights takes 34 GB by itself, and what fits is asked of
+/// the memory.
 pub const CELLS: RangeInclusive<usize> = 3..=1 << 16;
 /// Elements of a line: 2^30 take 8 GB for the heights alone.
 pub const ELEMENTS: RangeInclusive<usize> = 3..=1 << 30;

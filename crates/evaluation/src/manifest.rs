@@ -5,7 +5,8 @@ use runs::Result;
 use serde_json::{Map, Value, json};
 use std::path::{Path, PathBuf};
 
-/// Enters these outcomes of `command` (as typed) into `manifest.json`; entries of other commands in the same directory stay.
+/// Enters these outcomes of `command` (as typed) into `manifest.json`; entries of other commands in the same
+/// directory stay.
 ///
 /// # Errors
 /// [`runs::Error::File`] when it cannot be written.

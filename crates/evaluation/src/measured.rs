@@ -8,7 +8,8 @@ use analysis::{CollapsePoint, Curves, EnsemblePoint, ensemble, relative_differen
 use runs::{Error, Progress, Result, Store};
 use std::sync::Arc;
 
-/// Surfaces that are solved on the coarser grids as well: enough to know the scatter of a difference to a fifth.
+/// Surfaces that are solved on the coarser grids as well: enough to know the scatter of a difference to a
+/// fifth.
 pub const COARSER_SURFACES: usize = 12;
 
 /// All surfaces of one fractal dimension.
@@ -31,7 +32,8 @@ pub struct Measured {
     pub discretisation: Discretisation,
     /// One series per fractal dimension, increasing.
     pub series: Vec<Series>,
-    /// The first surfaces on grids half and a quarter as fine, which say what the grid leaves; `None` where those are too coarse.
+    /// The first surfaces on grids half and a quarter as fine, which say what the grid leaves; `None` where
+    /// those are too coarse.
     pub coarser: Option<Box<[Self; 2]>>,
 }
 
@@ -161,7 +163,8 @@ impl Series {
         Ok(Self { fractal_dimension, units, curves, points })
     }
 
-    /// The same curves of the surfaces `draw` (a surface may be drawn more than once); its units stay those of the whole.
+    /// The same curves of the surfaces `draw` (a surface may be drawn more than once); its units stay those
+    /// of the whole.
     #[must_use]
     pub fn redrawn(&self, draw: &[usize]) -> Self {
         let curves = self.curves.resampled(draw);
@@ -174,8 +177,8 @@ impl Series {
         sample.stiffness_bar.filter(|_| sample.converged())
     }
 
-    /// Relative differences of k of each surface under load number `j`, between its grid and the one half as fine, and between that and the one
-    /// a quarter as fine, all converged.
+    /// Relative differences of k of each surface under load number `j`, between its grid and the one half as
+    /// fine, and between that and the one a quarter as fine, all converged.
     pub fn grid_differences(&self, [half, quarter]: [&Self; 2], j: usize) -> Vec<[f64; 2]> {
         let of = |i: usize| {
             relative_differences(self.stiffness(i, j)?, half.stiffness(i, j)?, quarter.stiffness(i, j)?)

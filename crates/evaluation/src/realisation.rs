@@ -13,8 +13,8 @@ use serde::{Deserialize, Serialize};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
 
-/// Number of the format of stored units. Raise it when the numbers of `surface-gen` or `mdr1d`, or the fields of a [`Sample`],
-/// change; `bem3d` has its own number, which enters the key too.
+/// Number of the format of stored units. Raise it when the numbers of `surface-gen` or `mdr1d`, or the fields
+/// of a [`Sample`], change; `bem3d` has its own number, which enters the key too.
 pub const FORMAT: u32 = 3;
 
 /// How a surface is discretised, and by which model.
@@ -51,8 +51,8 @@ impl Discretisation {
         }
     }
 
-    /// Memory that one surface needs at least, bytes: as many per cell as light loads take, per element as drawing
-    /// a line takes.
+    /// Memory that one surface needs at least, bytes: as many per cell as light loads take, per element as
+    /// drawing a line takes.
     pub fn memory(&self) -> f64 {
         match *self {
             Self::Bem3d { cells, .. } => bem3d::BYTES_PER_CELL * (cells as f64).powi(2),
@@ -60,7 +60,8 @@ impl Discretisation {
         }
     }
 
-    /// The same model on cells (elements) twice and four times as large; `None` where those are too coarse to say anything.
+    /// The same model on cells (elements) twice and four times as large; `None` where those are too coarse to
+    /// say anything.
     pub fn coarser(self) -> Option<[Self; 2]> {
         let by = |factor: usize| match self {
             Self::Bem3d { cells, tolerance } => {
@@ -75,7 +76,8 @@ impl Discretisation {
         Some([by(2)?, by(4)?])
     }
 
-    /// k_bar of complete contact on this grid (data/paper/VALUES.md for N x N cells; no grid changes that of a line).
+    /// k_bar of complete contact on this grid (data/paper/VALUES.md for N x N cells; no grid changes that of
+    /// a line).
     pub fn complete_contact(self) -> f64 {
         let edge = match self {
             Self::Bem3d { cells, .. } => {
@@ -96,11 +98,12 @@ impl Discretisation {
         stiffness / PAPER_STIFFNESS_FACTOR
     }
 
-    /// What the edge of a free square adds to the relative differences of k between grids, at a mean k_bar; a line has no edge.
+    /// What the edge of a free square adds to the relative differences of k between grids, at a mean k_bar; a
+    /// line has no edge.
     ///
-    /// Its share is that of complete contact, where there is nothing else, times `(k/k_complete)^8`: half the stiffness has less than a hundredth
-    /// of it. It makes k too small on a coarse grid, short waves make it too large: near complete contact both can cancel in the differences,
-    /// and not in what is to come.
+    /// Its share is that of complete contact, where there is nothing else, times `(k/k_complete)^8`: half the
+    /// stiffness has less than a hundredth of it. It makes k too small on a coarse grid, short waves make it
+    /// too large: near complete contact both can cancel in the differences, and not in what is to come.
     pub fn edge_part(self, stiffness_bar: f64) -> KnownPart {
         let Some([half, quarter]) = self.coarser() else { return KnownPart::default() };
         let [fine, half, quarter] = [self, half, quarter].map(Self::complete_contact);
@@ -174,15 +177,16 @@ pub struct Realisation {
 pub struct RealisationResult {
     /// Measured rms height of this surface, in which F_bar is counted.
     pub rms_height: f64,
-    /// Wall-clock seconds of preparing and solving (goes into the manifest and the run-time claim, never into a figure).
+    /// Wall-clock seconds of preparing and solving (goes into the manifest and the run-time claim, never into
+    /// a figure).
     pub seconds: f64,
     /// One sample per load.
     pub samples: Vec<Sample>,
 }
 
 impl Realisation {
-    /// Everything that decides the numbers, as text: physics, discretisation, seed, loads, formats. Two units with the same text have
-    /// the same result.
+    /// Everything that decides the numbers, as text: physics, discretisation, seed, loads, formats. Two units
+    /// with the same text have the same result.
     ///
     /// ```
     /// use evaluation::{Discretisation, Realisation};
@@ -211,13 +215,14 @@ impl Realisation {
         )
     }
 
-    /// Predicted processor milliseconds on the machine of `data/bench`: they order the work, divide it into shards and move the progress bar.
-    /// Within a factor of two of what was measured there.
+    /// Predicted processor milliseconds on the machine of `data/bench`: they order the work, divide it into
+    /// shards and move the progress bar. Within a factor of two of what was measured there.
     pub fn cost(&self) -> u64 {
         let n = self.discretisation.size() as f64;
         let seconds = match self.discretisation {
-            // One load on a 512 x 512 grid takes a few ms where little is in contact and a second where much is (data/bench/single.csv);
-            // in a sweep each begins where the one before ended, which leaves a fifth of it at a tolerance of 1e-3.
+            // One load on a 512 x 512 grid takes a few ms where little is in contact and a second where much
+            // is (data/bench/single.csv); in a sweep each begins where the one before ended, which leaves a
+            // fifth of it at a tolerance of 1e-3.
             Discretisation::Bem3d { tolerance, .. } => {
                 let filled = |force: &f64| force.powf(0.9) / (force.powf(0.9) + 0.5);
                 let loads: f64 = self.forces.iter().map(|force| 0.005 + 1.2 * filled(force)).sum();
@@ -233,8 +238,8 @@ impl Realisation {
         1 + (1e3 * seconds).min(1e15) as u64
     }
 
-    /// Solves the unit from the smallest load upwards with one prepared contact. A solve that does not converge is recorded with
-    /// its status.
+    /// Solves the unit from the smallest load upwards with one prepared contact. A solve that does not
+    /// converge is recorded with its status.
     ///
     /// # Errors
     /// [`Error::Model`] for anything that a model refuses.
@@ -389,7 +394,8 @@ mod tests {
     fn an_edge_that_hides_in_the_differences_is_found_again() {
         let grid = Discretisation::Bem3d { cells: 129, tolerance: 1e-3 };
         let edge = grid.edge_part(grid.complete_contact());
-        // k of complete contact goes up by 0.4/N/1.15 to the limit, the two differences by as much and by twice as much.
+        // k of complete contact goes up by 0.4/N/1.15 to the limit, the two differences by as much and by
+        // twice as much.
         let expected = 0.4025 / 129.0 / 1.1523;
         assert_relative_eq!(edge.to_come, -expected, max_relative = 0.02);
         assert_relative_eq!(edge.differences[0], -expected, max_relative = 0.1);

@@ -10,8 +10,8 @@ use std::sync::Arc;
 /// Solves all units that the store does not hold, the largest first, and gives the results in the order of
 /// `units`. The results do not depend on `threads`.
 ///
-/// Each finished unit is stored at once: an interruption loses those in flight. No more units are in flight than fit in memory; threads without
-/// a unit help inside the others.
+/// Each finished unit is stored at once: an interruption loses those in flight. No more units are in flight
+/// than fit in memory; threads without a unit help inside the others.
 ///
 /// # Errors
 /// [`Error::Parameter`] for a size that does not fit in memory;

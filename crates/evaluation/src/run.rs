@@ -15,8 +15,8 @@ pub enum Preset {
     Default,
     /// The paper's own sizes: 2049 cells a side, 60 surfaces, 2^20 elements, 500 lines.
     Paper,
-    /// Where the paper saw no technical possibility in three dimensions: 16385 cells a side, a few surfaces, light loads. Takes
-    /// 4 to 5 GB for each surface in work.
+    /// Where the paper saw no technical possibility in three dimensions: 16385 cells a side, a few surfaces,
+    /// light loads. Takes 4 to 5 GB for each surface in work.
     Extended,
 }
 

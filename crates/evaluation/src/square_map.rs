@@ -6,9 +6,11 @@ use runs::files::Error;
 use std::path::Path;
 use surface_io::{ContentError, Dimension, Format, Preprocessing, Quantity, ReadOptions, Scan, Sides};
 
-/// Reads an NPY array `[row, column]` of numbers as heights on square cells with `sqrt(Lx Ly) = 1`, as they are.
+/// Reads an NPY array `[row, column]` of numbers as heights on square cells with `sqrt(Lx Ly) = 1`, as they
+/// are.
 ///
-/// Either byte order and either order of the axes; the shape is compared with the length of the file before anything is allocated.
+/// Either byte order and either order of the axes; the shape is compared with the length of the file before
+/// anything is allocated.
 ///
 /// # Errors
 /// [`Error::System`] when it cannot be read; [`Error::Content`] when it is no NPY file, not of real numbers, shorter or longer

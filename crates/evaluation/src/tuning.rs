@@ -1,4 +1,5 @@
-//! What each tuned constant of the boundary-element solver is worth: the time of a set of paths with half and with twice its value.
+//! What each tuned constant of the boundary-element solver is worth: the time of a set of paths with half and
+//! with twice its value.
 
 use crate::table_of::TableOf;
 use bem3d::Bem3d;
@@ -11,7 +12,8 @@ use std::time::Instant;
 /// Cells a side, D_f, loads F_bar of one warm path, tolerance.
 type WarmPath = (usize, f64, &'static [f64], f64);
 
-/// The paths: factors, two-level sums, transforms of scattered, half and nearly full contact; from three to eight digits.
+/// The paths: factors, two-level sums, transforms of scattered, half and nearly full contact; from three to
+/// eight digits.
 const PATHS: [WarmPath; 5] = [
     (257, 2.4, &[1e-6, 1e-4, 1e-2, 0.1, 1.0, 20.0], 1e-8),
     (513, 2.0, &[1e-3, 0.03, 0.3, 3.0, 20.0], 1e-6),
@@ -52,8 +54,8 @@ struct PathsCost {
     converged: bool,
 }
 
-/// Solves the set with half and twice of each constant whose name contains `only`, beside the value shipped, `repetitions` times; writes
-/// `tuning.csv` into `out` and hands out each row when it is there.
+/// Solves the set with half and twice of each constant whose name contains `only`, beside the value shipped,
+/// `repetitions` times; writes `tuning.csv` into `out` and hands out each row when it is there.
 ///
 /// # Errors
 /// [`Error::Parameter`] where no constant has such a name; what the model refuses; [`Error::File`] where the table cannot be written.

@@ -2,8 +2,8 @@
 
 use std::fmt::{self, Write};
 
-/// Passes text on, with control characters and marks that reorder a line written out: `\u{1b}` for the byte that begins a command of a
-/// terminal.
+/// Passes text on, with control characters and marks that reorder a line written out: `\u{1b}` for the byte
+/// that begins a command of a terminal.
 ///
 /// ```
 /// use std::fmt::Write as _;

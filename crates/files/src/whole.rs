@@ -7,7 +7,8 @@ use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
-/// Prefix of a file that is being written; the process that writes it and a hash of its machine's name follow.
+/// Prefix of a file that is being written; the process that writes it and a hash of its machine's name
+/// follow.
 const PREFIX: &str = ".partial-";
 
 /// A left-over whose writer cannot be asked for (no /proc) is cleaned after this age.
@@ -21,8 +22,8 @@ pub fn create_directory(path: &Path) -> Result<()> {
     fs::create_dir_all(path).map_err(Error::system("create the directory", path))
 }
 
-/// Reads a file of at most `largest` bytes. A pipe or a device, which may never end, is refused unread, and so is
-/// a longer file.
+/// Reads a file of at most `largest` bytes. A pipe or a device, which may never end, is refused unread, and
+/// so is a longer file.
 ///
 /// # Errors
 /// [`Error::System`] where the system refuses, [`Error::Content`] for what is refused here.

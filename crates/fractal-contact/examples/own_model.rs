@@ -1,8 +1,10 @@
-//! A scene that names a model of one's own: a thin elastic layer as a Winkler foundation, beside a half-space.
+//! A scene that names a model of one's own: a thin elastic layer as a Winkler foundation, beside a
+//! half-space.
 //!
 //! `cargo run -p fractal-contact --example own_model -- DIRECTORY`
 //!
-//! Prints approach, force and stiffness of both: F = pi R (E*/t) d^2 on the layer, Hertz's force on the half-space.
+//! Prints approach, force and stiffness of both: F = pi R (E*/t) d^2 on the layer, Hertz's force on the
+//! half-space.
 
 use fractal_contact::scenes::{Options, Plan, Registry, Result, SceneFile, run};
 use fractal_contact::{

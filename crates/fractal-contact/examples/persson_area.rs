@@ -38,8 +38,8 @@ fn main() -> Result<()> {
         let fraction = |area: Option<f64>| area.unwrap_or(0.0);
         let (here, persson) = (fraction(solved.solve(load)?.area), fraction(theory.solve(load)?.area));
         println!("{pressure:>9} {here:>8.4} {persson:>8.4} {:>6.3}", here / persson);
-        // The theory is exact towards full contact. Where contact is light, the few highest summits of one small
-        // surface carry more than it says, and cells that touch in part count whole.
+        // The theory is exact towards full contact. Where contact is light, the few highest summits of one
+        // small surface carry more than it says, and cells that touch in part count whole.
         assert!(here / persson > 0.95 && (pressure < 0.5 || here / persson < 1.1));
     }
     Ok(())

@@ -2,8 +2,8 @@
 //!
 //! `cargo run --release -p fractal-contact --example rough_ball`
 //!
-//! The heights of a rough flat piece are added to those of a ball. Light loads rest on summits; a contact much wider than the waves has the
-//! stiffness of Hertz.
+//! The heights of a rough flat piece are added to those of a ball. Light loads rest on summits; a contact
+//! much wider than the waves has the stiffness of Hertz.
 //!
 //! ```text
 //!  F in N   k/k of Hertz   A/A of Hertz   contact cells

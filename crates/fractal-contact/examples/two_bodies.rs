@@ -2,8 +2,8 @@
 //!
 //! `cargo run --release -p fractal-contact --example two_bodies`
 //!
-//! A body pressed on its own imprint fits: the composite is flat. Moved by a few cells it does not fit any more, and over independent surfaces
-//! the composite has the rms height `sqrt(2) h`.
+//! A body pressed on its own imprint fits: the composite is flat. Moved by a few cells it does not fit any
+//! more, and over independent surfaces the composite has the rms height `sqrt(2) h`.
 //!
 //! ```text
 //! rms height of one body 1.000 um
@@ -24,7 +24,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let surface = SelfAffine { roll_off: Some(std::f64::consts::TAU / 64e-6), ..surface };
     let draw = |seed| height_map(&Surface::SelfAffine(surface), 256, seed);
     let (first, other) = (draw(1)?, draw(2)?);
-    // An instrument would measure the imprint from its own side: mirrored. Laid on the first face to face it is mirrored again.
+    // An instrument would measure the imprint from its own side: mirrored. Laid on the first face to face it
+    // is mirrored again.
     let imprint = first.scaled(1.0, -1.0)?.mirrored();
     let facing = imprint.mirrored();
 

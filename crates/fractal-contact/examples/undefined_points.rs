@@ -2,8 +2,9 @@
 //!
 //! `cargo run --release -p fractal-contact --example undefined_points -- DIRECTORY`
 //!
-//! An optical profiler loses steep flanks, and summits to glare. Here both are taken out of a surface that is known everywhere, so that the
-//! loss can be judged. The map is written as X3P into `DIRECTORY/optical.x3p`, as `data/measured` has it.
+//! An optical profiler loses steep flanks, and summits to glare. Here both are taken out of a surface that is
+//! known everywhere, so that the loss can be judged. The map is written as X3P into `DIRECTORY/optical.x3p`,
+//! as `data/measured` has it.
 //!
 //! ```text
 //! 14.6 % of the points are undefined

@@ -88,13 +88,13 @@ pub enum Command {
         /// Compute again what is stored.
         #[arg(long)]
         fresh: bool,
-        /// Do one of N parts of the surfaces, counted from 0, store what it finds and write no table: 0/4, or auto, as the variables of a SLURM array
-        /// or of a HyperQueue task say. `merge` makes the tables.
+        /// Do one of N parts of the surfaces, counted from 0, store what it finds and write no table: 0/4, or
+        /// auto, as the variables of a SLURM array or of a HyperQueue task say. `merge` makes the tables.
         #[arg(long, value_name = "i/N", conflicts_with = "fresh")]
         shard: Option<ShardChoice>,
     },
-    /// Writes a batch script for SLURM or HyperQueue that does the shards of a scene and merges them; with --now submits it. What is done is not
-    /// done again.
+    /// Writes a batch script for SLURM or HyperQueue that does the shards of a scene and merges them; with
+    /// --now submits it. What is done is not done again.
     Submit {
         /// The scene.
         scene: PathBuf,
@@ -117,13 +117,15 @@ pub enum Command {
         /// All channels of a surface's file as JSON, lengths in metres.
         #[arg(long, conflicts_with = "channel")]
         json: bool,
-        /// Directory for statistics of a surface: parameters of ISO 25178, spectra with bands, height differences, fit.
+        /// Directory for statistics of a surface: parameters of ISO 25178, spectra with bands, height
+        /// differences, fit.
         #[arg(long, value_name = "DIR", conflicts_with = "json")]
         out: Option<PathBuf>,
         #[command(flatten)]
         more: Box<MapArguments>,
     },
-    /// Draws a self-affine surface into a file, by its ending: .npy, .txt (text matrix), .xyz, .vti, .h5, .x3p, .gwy or .nc.
+    /// Draws a self-affine surface into a file, by its ending: .npy, .txt (text matrix), .xyz, .vti, .h5,
+    /// .x3p, .gwy or .nc.
     #[command(after_help = SURFACE)]
     Surface {
         /// The file.
@@ -207,7 +209,8 @@ pub struct ShardsArguments {
     pub plan: Option<String>,
 }
 
-/// The keys of [scene.surface] in a scene: how a file is meant, and what is done to the map before it is described.
+/// The keys of [scene.surface] in a scene: how a file is meant, and what is done to the map before it is
+/// described.
 #[derive(Debug, Default, clap::Args)]
 pub struct MapArguments {
     /// Number, from 0, or name of the channel of a file with several.
@@ -237,7 +240,8 @@ pub struct MapArguments {
     /// What the two indices of an array are, where its file does not say: xy (the first is x) or yx.
     #[arg(long)]
     axes: Option<surface_io::Axes>,
-    /// What the first line and the first column of a text matrix are, where they may be coordinates: axes or heights.
+    /// What the first line and the first column of a text matrix are, where they may be coordinates: axes or
+    /// heights.
     #[arg(long)]
     border: Option<surface_io::Border>,
     /// A number that stands for an undefined point, such as -9999.
@@ -246,13 +250,15 @@ pub struct MapArguments {
     /// Lines of text to leave out at the beginning.
     #[arg(long, default_value_t = 0)]
     skip_lines: usize,
-    /// Part of the map: centre, defined (the largest rectangle without undefined points), or "row,column,rows,columns".
+    /// Part of the map: centre, defined (the largest rectangle without undefined points), or
+    /// "row,column,rows,columns".
     #[arg(long)]
     crop: Option<surface_io::Crop>,
     /// Shifts scan lines (rows) to a common height: median_difference (to the line before) or median.
     #[arg(long, value_name = "HOW")]
     align_lines: Option<surface_io::AlignLines>,
-    /// Streaks along x, at most four rows tall, become undefined beyond so many robust standard deviations of the differences between rows.
+    /// Streaks along x, at most four rows tall, become undefined beyond so many robust standard deviations of
+    /// the differences between rows.
     #[arg(long, value_name = "TIMES")]
     scars: Option<f64>,
     /// Heights farther from their neighbours than so many robust standard deviations become undefined.

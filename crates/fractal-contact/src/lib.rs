@@ -30,12 +30,12 @@
 //!
 //! # Features
 //!
-//! `scenes` (default): scenes and their files, pictures and result store. `program` (default): the program. `rayon` (default):
-//! surfaces are drawn, and large systems solved, on the threads of the pool in which they are asked for. `faer` (default): small
-//! contact sets are solved by a Cholesky factor. `simd` (default): transforms take the widest vector instructions that the processor
-//! has; without it and without `faer`, results are the same bytes on every processor of one architecture, as far as its mathematical
-//! functions are.
-//! Without default features the solvers and theories remain.
+//! `scenes` (default): scenes and their files, pictures and result store. `program` (default): the program.
+//! `rayon` (default): surfaces are drawn, and large systems solved, on the threads of the pool in which they
+//! are asked for. `faer` (default): small contact sets are solved by a Cholesky factor. `simd` (default):
+//! transforms take the widest vector instructions that the processor has; without it and without `faer`,
+//! results are the same bytes on every processor of one architecture, as far as its mathematical functions
+//! are. Without default features the solvers and theories remain.
 
 #![allow(clippy::format_push_string, clippy::format_collect)] // Text is built once per file: clear beats one allocation less.
 

@@ -1,4 +1,5 @@
-//! The models of the library: a record each, from which scenes, help, tables and Python take all that they know of them.
+//! The models of the library: a record each, from which scenes, help, tables and Python take all that they
+//! know of them.
 
 use analytic::{
     AdhesiveWave, CattaneoMindlin, FlatPunch, GreenwoodWilliamson, Hertz, Jkr, MaugisDugdale, Persson,
@@ -78,7 +79,8 @@ const EXACT: &str = "exact, to about 1e-13";
 const BEM3D: Bem3d =
     Bem3d { cells: 257, rows: None, tolerance: 1e-6, max_outer_iterations: 200, method: bem3d::Method::Auto };
 
-/// Every model of the library. A closed form is one entry here; a model with options has a variant of `scenes::Numerics` too.
+/// Every model of the library. A closed form is one entry here; a model with options has a variant of
+/// `scenes::Numerics` too.
 pub static MODELS: &[ModelRecord] = &[
     ModelRecord {
         has_options: true,

@@ -14,7 +14,8 @@ pub fn read_scene(path: &Path) -> Result<SceneFile> {
 pub fn stopped_by_signals() -> Result<Arc<AtomicBool>> {
     let stopped = Arc::new(AtomicBool::new(false));
     let flag = Arc::clone(&stopped);
-    // A handler without its thread would swallow the signals; their default action leaves the finished states in the store.
+    // A handler without its thread would swallow the signals; their default action leaves the finished states
+    // in the store.
     if !runs::grants_a_thread() {
         runs::err!("note: the system grants no thread: Ctrl-C ends the run at once, without its tables");
         return Ok(stopped);

@@ -1,4 +1,5 @@
-//! What a user reads beside the numbers: warnings with remedies, means over surfaces, the map as it was solved.
+//! What a user reads beside the numbers: warnings with remedies, means over surfaces, the map as it was
+//! solved.
 
 use fractal_contact::scenes::{Options, Plan, SceneFile, SceneOutcome, run};
 use runs::{CsvFile, Silent};

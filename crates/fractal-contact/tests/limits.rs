@@ -1,5 +1,5 @@
-//! Numbers of arguments and of the environment that no machine has room for, and those that are none: refused by name, before memory is
-//! asked for; and a machine that grants no threads.
+//! Numbers of arguments and of the environment that no machine has room for, and those that are none: refused
+//! by name, before memory is asked for; and a machine that grants no threads.
 
 use std::process::{Command, Output};
 
@@ -97,7 +97,8 @@ fn a_number_of_threads_in_the_environment_is_one_or_is_refused() {
     }
 }
 
-/// Stacks of many threads do not fit into a limited address space: there are fewer threads then, and the same bytes.
+/// Stacks of many threads do not fit into a limited address space: there are fewer threads then, and the same
+/// bytes.
 #[cfg(target_os = "linux")]
 #[test]
 fn fewer_threads_than_asked_for_give_the_same_bytes() {
@@ -115,7 +116,8 @@ fn fewer_threads_than_asked_for_give_the_same_bytes() {
     assert_eq!(run("ulimit -v 3000000", "fewer", "4096").0, all);
 }
 
-/// A limit of processes binds everybody but root, who becomes somebody else for this where the system lets it.
+/// A limit of processes binds everybody but root, who becomes somebody else for this where the system lets
+/// it.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_machine_without_threads_has_the_calling_one() {

@@ -104,7 +104,8 @@ fn what_is_done_to_a_map_is_in_its_manifest() {
     assert!(error.contains("`rotate` is 45") && error.contains("0, 90, 180 or 270"), "{error}");
 }
 
-/// A map of 20 lines of 40 points with offsets of the lines and a streak: through scene, manifest and command line.
+/// A map of 20 lines of 40 points with offsets of the lines and a streak: through scene, manifest and command
+/// line.
 #[test]
 fn scan_lines_are_repaired_where_it_is_named() {
     let dir = tempfile::tempdir().unwrap();

@@ -1,4 +1,5 @@
-//! `report.html` in a browser: no error, maps that draw, values that are those of the files, nothing that a name could do.
+//! `report.html` in a browser: no error, maps that draw, values that are those of the files, nothing that a
+//! name could do.
 
 use fractal_contact::scenes::{Options, Plan, SceneFile, info_statistics, run};
 use std::path::Path;

@@ -1,4 +1,5 @@
-//! What is kept is what was solved: fields of the right load, folders of one run, states that are not solved twice.
+//! What is kept is what was solved: fields of the right load, folders of one run, states that are not solved
+//! twice.
 
 use fractal_contact::scenes::{Options, Plan, Result, SceneFile, SceneOutcome, run};
 use runs::Silent;
@@ -57,7 +58,8 @@ fn the_field_of_a_load_is_the_field_of_that_load() {
     }
 }
 
-/// Number and rounded sum of the values of an NPY file: a state that is solved alone is not the same to the bit.
+/// Number and rounded sum of the values of an NPY file: a state that is solved alone is not the same to the
+/// bit.
 fn field_of(npy: &[u8]) -> (usize, i64) {
     let values: Vec<f64> = npy[128..].as_chunks::<8>().0.iter().map(|b| f64::from_le_bytes(*b)).collect();
     (values.len(), (values.iter().sum::<f64>() * 1e5).round() as i64)
@@ -108,7 +110,8 @@ fn states_are_kept_one_by_one() {
         file.rows.iter().map(|row| row[column].parse().unwrap()).collect()
     };
     for (i, (a, b)) in stiffness(&out).iter().zip(stiffness(&whole)).enumerate() {
-        // Kept states are the same to the bit; what is solved after an interruption is within the tolerance, 1e-6 of either run.
+        // Kept states are the same to the bit; what is solved after an interruption is within the tolerance,
+        // 1e-6 of either run.
         let bound = if i < 3 { 0.0 } else { 2e-6 };
         assert!((a / b - 1.0).abs() <= bound, "{i}: {a}, {b}");
     }

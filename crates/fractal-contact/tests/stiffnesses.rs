@@ -1,4 +1,5 @@
-//! The stiffness along the branch and that of the held contact area, what follows from them, and their errors.
+//! The stiffness along the branch and that of the held contact area, what follows from them, and their
+//! errors.
 
 use fractal_contact::scenes::{Options, Plan, SceneFile, SceneOutcome, run};
 use runs::{CsvFile, Silent};

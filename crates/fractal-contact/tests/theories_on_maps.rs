@@ -36,7 +36,8 @@ const FREE: &str = "[scene]\nunits = \"none\"\nmodels = [\"bem3d\", \"mdr1d\", \
     force_bar = [0.01, 0.05]\n[scene.surface]\nkind = \"file\"\npath = \"map.csv\"\nsize = 1\nunit = \"none\"\n\
     [models.mdr1d]\nelements = 4096\n[sampling]\nseed = 1\nsurfaces = 3\n[outputs]\nstiffness = true\n";
 
-/// Mean squares of a map under a window, over those of the map: of 8 to 32 waves a side, and of the window itself.
+/// Mean squares of a map under a window, over those of the map: of 8 to 32 waves a side, and of the window
+/// itself.
 const UNDER_WINDOW: f64 = 0.03;
 
 #[test]

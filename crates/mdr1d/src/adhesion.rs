@@ -1,10 +1,12 @@
 //! Short-range adhesion of axisymmetric bodies: the outermost spring tears at a critical length.
 //!
-//! In a contact of radius a the springs at the edge are stretched by `Delta l = sqrt(2 pi a w / E*)` and no further (Hess 2011; Popov and
-//! Hess 2015, Sec. 3.2). So `d = g(a) - Delta l` and `F = 2 E* int_0^a (d - g) dx`: the JKR theory for any axisymmetric body.
+//! In a contact of radius a the springs at the edge are stretched by `Delta l = sqrt(2 pi a w / E*)` and no
+//! further (Hess 2011; Popov and Hess 2015, Sec. 3.2). So `d = g(a) - Delta l` and
+//! `F = 2 E* int_0^a (d - g) dx`: the JKR theory for any axisymmetric body.
 //!
-//! For `g = s x^n` both equations have the form `B t^m - c t = y` with `m > 1` exactly when `n > 1/2`: convex in t, with its
-//! smallest y at a fold, where the contact pulls off. Blunter edges hold: a body with `n <= 1/2` would be drawn in without end.
+//! For `g = s x^n` both equations have the form `B t^m - c t = y` with `m > 1` exactly when `n > 1/2`: convex
+//! in t, with its smallest y at a fold, where the contact pulls off. Blunter edges hold: a body with
+//! `n <= 1/2` would be drawn in without end.
 
 use crate::axisymmetric::{Profile, RoundContact};
 use contact_model::{Error, Result};
@@ -14,8 +16,8 @@ use std::f64::consts::PI;
 /// Exponents at and below this one have no stable contact with adhesion that grows with the load.
 const SHARPEST: f64 = 0.5;
 
-/// Slope `dd/da` over that without adhesion, below which a state is the pull-off under prescribed approach: a radius that is found
-/// from an approach has half its digits there, and its `dF/dd` none.
+/// Slope `dd/da` over that without adhesion, below which a state is the pull-off under prescribed approach: a
+/// radius that is found from an approach has half its digits there, and its `dF/dd` none.
 const AT_FOLD: f64 = 1e-7;
 
 /// A load exactly at the fold may come out a few roundings beyond it.
@@ -81,10 +83,11 @@ impl Adhesive {
         }
     }
 
-    /// `dF/dd` along the branch, on which the edge moves, over E* L: `2 a (1 - b)/(1 - b/3)` with `b = (3/2) c sqrt(a)/(n s a^n)`.
+    /// `dF/dd` along the branch, on which the edge moves, over E* L: `2 a (1 - b)/(1 - b/3)` with
+    /// `b = (3/2) c sqrt(a)/(n s a^n)`.
     ///
-    /// 0 at the pull-off under prescribed force, `None` at that under prescribed approach, where it has no bound. The edge of a flat
-    /// punch does not move: 2 a.
+    /// 0 at the pull-off under prescribed force, `None` at that under prescribed approach, where it has no
+    /// bound. The edge of a flat punch does not move: 2 a.
     pub fn slope(self, radius: f64) -> Option<f64> {
         let held = 2.0 * radius;
         match self.profile {
@@ -121,8 +124,8 @@ impl Adhesive {
 
 /// The largest root t of `B t^m - c t = y`, for m > 1 (m > 0 where c = 0), B > 0, c >= 0.
 ///
-/// Convex in t: Newton's steps from above the root only descend. Solved in the unit of whichever of `c t` and `y` is the larger, so
-/// that nothing is lost as c -> 0.
+/// Convex in t: Newton's steps from above the root only descend. Solved in the unit of whichever of `c t` and
+/// `y` is the larger, so that nothing is lost as c -> 0.
 fn largest_root(b: f64, c: f64, m: f64, y: f64) -> Result<f64, Failure> {
     let range = |value: f64| if value.is_finite() { Ok(value) } else { Err(Failure::Range(value)) };
     let loaded = if y > 0.0 { (y / b).powf(m.recip()) } else { 0.0 };
@@ -216,7 +219,8 @@ mod tests {
 
     #[test]
     fn a_cone_and_a_flat_punch() {
-        // Cone (Maugis and Barquins 1981): F = (pi/2) E* tan a^2 - sqrt(8 pi w E* a^3), so the pull-off is at sqrt(a) = 3 c/(2 s).
+        // Cone (Maugis and Barquins 1981): F = (pi/2) E* tan a^2 - sqrt(8 pi w E* a^3), so the pull-off is at
+        // sqrt(a) = 3 c/(2 s).
         let (work, slope) = (1e-3, 0.2);
         let cone = adhesive(&Surface::Cone { slope, size: 1.0.into() }, work);
         let Err(Failure::PullsOff { smallest }) = cone.at_force(-1.0) else { panic!("it holds") };
@@ -238,7 +242,8 @@ mod tests {
         assert!(matches!(power(1e-3, 0.501, 1e3).at_force(0.0), Err(Failure::Range(_))));
     }
 
-    /// The rule itself on a line of springs: an element holds unless stretched beyond the length of its own radius.
+    /// The rule itself on a line of springs: an element holds unless stretched beyond the length of its own
+    /// radius.
     fn springs(body: Adhesive, approach: f64, element: f64) -> f64 {
         let stretch = |x: f64| approach - body.profile.depth(x).unwrap();
         let centre = |i: usize| (i as f64 + 0.5) * element;
@@ -255,8 +260,9 @@ mod tests {
         for (coefficient, exponent) in [(0.5, 2.0), (0.3, 1.0), (1.0, 3.0)] {
             let body = power(coefficient, exponent, 1e-4);
             let exact = body.at_approach(0.01).unwrap().force;
-            // The edge is found to within an element, and the edge spring carries a finite force: first order. The error of one spacing
-            // depends on where the edge falls in its element, so means over neighbouring spacings are compared.
+            // The edge is found to within an element, and the edge spring carries a finite force: first
+            // order. The error of one spacing depends on where the edge falls in its element, so means over
+            // neighbouring spacings are compared.
             let error = |n: usize| {
                 let near = (0..16).map(|i| springs(body, 0.01, 1.0 / (n + 2 * i) as f64) - exact);
                 near.map(f64::abs).sum::<f64>() / 16.0

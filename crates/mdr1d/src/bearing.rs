@@ -4,14 +4,16 @@ use contact_model::{Error, Line, Load, Nondimensionalisation, Result};
 use numerics::range::range;
 use numerics::sum::Sum;
 
-/// Elements per bin: small enough that sorting one bin costs microseconds, large enough that the bins stay in cache.
+/// Elements per bin: small enough that sorting one bin costs microseconds, large enough that the bins stay in
+/// cache.
 const ELEMENTS_PER_BIN: usize = 512;
 /// Most bins: as many write positions as the first two cache levels and their page tables follow.
 const MOST_BINS: usize = 4096;
 /// Independent partial sums and maxima: what a core computes side by side.
 const LANES: usize = 8;
 
-/// How a line bears a rigid flat at every load: `F(d)` and `k(d)` of independent springs of stiffness E* per length (Eq. 16).
+/// How a line bears a rigid flat at every load: `F(d)` and `k(d)` of independent springs of stiffness E* per
+/// length (Eq. 16).
 ///
 /// With `z = h_max - h` and elements of length `dx` the contact set is `{z < d}`, and
 ///
@@ -19,17 +21,20 @@ const LANES: usize = 8;
 /// F = E* dx S(d),   S(d) = sum (d - z)+,   k = E* dx #(z < d).
 /// ```
 ///
-/// `S` is convex and piecewise linear with its kinks at the sorted `z`, so either of `F` and `d` follows from the other by order
-/// statistics and prefix sums, without iteration. Only positive terms are summed: the relative error of `S`, and of `d` from
-/// `F`, is a few units in the last place. An offset of the heights cancels in `z`.
+/// `S` is convex and piecewise linear with its kinks at the sorted `z`, so either of `F` and `d` follows from
+/// the other by order statistics and prefix sums, without iteration. Only positive terms are summed: the
+/// relative error of `S`, and of `d` from `F`, is a few units in the last place. An offset of the heights
+/// cancels in `z`.
 ///
-/// Cost: O(n) to build (one pass that finds the highest element, one that counts the elements per depth bin and one that
-/// groups them); then O(log n) a load, plus the sort of one bin, about n/2048 elements, the first time a load falls inside it. A
-/// line whose heights crowd into one bin (a flat with one deep pit) pays a full sort, O(n log n), once.
+/// Cost: O(n) to build (one pass that finds the highest element, one that counts the elements per depth bin
+/// and one that groups them); then O(log n) a load, plus the sort of one bin, about n/2048 elements, the
+/// first time a load falls inside it. A line whose heights crowd into one bin (a flat with one deep pit) pays
+/// a full sort, O(n log n), once.
 #[derive(Debug, Clone)]
 pub struct Bearing {
     element: f64,
-    /// `z` of all elements, grouped by bin, ascending from bin to bin; sorted inside a bin once `knots` of that bin are there.
+    /// `z` of all elements, grouped by bin, ascending from bin to bin; sorted inside a bin once `knots` of
+    /// that bin are there.
     depths: Vec<f64>,
     bins: Vec<Bin>,
 }
@@ -86,7 +91,8 @@ impl Bearing {
         let (lowest, highest) = range(heights);
         let relief = highest - lowest;
         let count = (heights.len() / ELEMENTS_PER_BIN).clamp(1, MOST_BINS);
-        // Monotone in z, which is all that the grouping needs. No relief: 0 * inf is NaN, which the cast turns into bin 0.
+        // Monotone in z, which is all that the grouping needs. No relief: 0 * inf is NaN, which the cast
+        // turns into bin 0.
         let per_depth = count as f64 / relief;
         let bin_of = |z: f64| ((z * per_depth) as usize).min(count - 1);
 
@@ -120,8 +126,8 @@ impl Bearing {
 
     /// The state under a load, on a foundation of stiffness `modulus` per length.
     ///
-    /// At a kink (`d` equal to some `z`) those elements touch without force and are not in the contact set. No load gives
-    /// `d = 0` and `k = 0`.
+    /// At a kink (`d` equal to some `z`) those elements touch without force and are not in the contact set.
+    /// No load gives `d = 0` and `k = 0`.
     ///
     /// # Errors
     /// [`Error::Domain`] for a load that is negative or not finite, a modulus that is not positive, or a result that no `f64`
@@ -210,8 +216,9 @@ impl Bearing {
     }
 }
 
-/// Depth range and `S` at both ends of every bin that is not empty: `S` grows by `m (z' - z)` where `m` elements bear from
-/// `z` to `z'`, and by `sum (high - z)` for those that lie in the bin itself. Every term is positive.
+/// Depth range and `S` at both ends of every bin that is not empty: `S` grows by `m (z' - z)` where `m`
+/// elements bear from `z` to `z'`, and by `sum (high - z)` for those that lie in the bin itself. Every term
+/// is positive.
 fn bins(depths: &[f64], ends: &[usize]) -> Vec<Bin> {
     let mut sum = Sum::from(0.0);
     let (mut start, mut last) = (0, 0.0);

@@ -1,4 +1,5 @@
-//! What all contacts of axisymmetric bodies share: the profile in its scene, and its state under a normal load without adhesion.
+//! What all contacts of axisymmetric bodies share: the profile in its scene, and its state under a normal
+//! load without adhesion.
 
 use crate::axisymmetric::{Profile, RoundContact};
 use contact_model::{Error, Load, Result, ScaledState, Scaling, Scene, Size};
@@ -60,7 +61,8 @@ impl RoundContact {
     }
 }
 
-/// Errors where a round contact (radius in units of L) has left the rectangle, beyond which the half-space is free.
+/// Errors where a round contact (radius in units of L) has left the rectangle, beyond which the half-space is
+/// free.
 pub(crate) fn check_radius(radius: f64, size: Size) -> Result<()> {
     size.admit_radius("contact radius", radius * size.length())
 }

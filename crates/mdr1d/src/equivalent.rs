@@ -15,27 +15,34 @@ use contact_model::{
 };
 use std::sync::Arc;
 
-/// Friction or rheology of any surface that a model M can press, rough ones too, through the equivalent profile of M's own k(d).
+/// Friction or rheology of any surface that a model M can press, rough ones too, through the equivalent
+/// profile of M's own k(d).
 ///
-/// M solves the normal problem under the scene's surface with every effect off, once per node of a table, and under each step's load; its
-/// states give a [`Tabulated`] profile, and this carries the springs of [`crate::PartialSlip`] (Coulomb's friction, any path of both loads, with
+/// M solves the normal problem under the scene's surface with every effect off, once per node of a table, and
+/// under each step's load; its states give a [`Tabulated`] profile, and this carries the springs of
+/// [`crate::PartialSlip`] (Coulomb's friction, any path of both loads, with
 /// [`contact_model::Pair`]) or the relaxing ones of [`crate::Viscoelastic`] (any [`contact_model::Rheology`] while the contact grows). One effect at a time.
-/// M itself never sees it. Outputs of M pass through: area, fields, patches, conductance, each of the step's own contact.
+/// M itself never sees it. Outputs of M pass through: area, fields, patches, conductance, each of the step's
+/// own contact.
 ///
-/// **The normal part is a state that M has solved for this very load**, for an elastic material. Tangential results are those of the Cattaneo-Mindlin and
-/// Ciavarella-Jaeger approximation: exact for round contacts, a few per cent for others. They need a contact that grows
-/// with the load, so that k(d) never falls: checked at every state, [`Error::OutOfRange`] otherwise. Viscoelastic ones are exact for any shape
-/// while the contact grows in time; that is checked as in [`crate::Viscoelastic`]. `contact_radius` and `stick_radius` are those of
-/// the round contact of the same stiffness, `k/(2 E*)`.
+/// **The normal part is a state that M has solved for this very load**, for an elastic material. Tangential
+/// results are those of the Cattaneo-Mindlin and Ciavarella-Jaeger approximation: exact for round contacts, a
+/// few per cent for others. They need a contact that grows with the load, so that k(d) never falls: checked
+/// at every state, [`Error::OutOfRange`] otherwise. Viscoelastic ones are exact for any shape while the
+/// contact grows in time; that is checked as in [`crate::Viscoelastic`]. `contact_radius` and `stick_radius`
+/// are those of the round contact of the same stiffness, `k/(2 E*)`.
 ///
-/// The nodes lie on one logarithmic lattice of approaches (in rms heights, in sides for bodies without), so histories share
-/// them; the table begins so many decades below the first load after a [`PreparedContact::restart`] and follows the loads upwards. Its error falls with the
-/// third (x) and fourth (F) order of the spacing where k(d) is smooth; [`Tabulated::uncertainty`] at the step's approach is in the report's strategy. A pressure field
-/// is refused with rheology (M's is that of an elastic body), and so is a stiffness.
+/// The nodes lie on one logarithmic lattice of approaches (in rms heights, in sides for bodies without), so
+/// histories share them; the table begins so many decades below the first load after a
+/// [`PreparedContact::restart`] and follows the loads upwards. Its error falls with the third (x) and fourth
+/// (F) order of the spacing where k(d) is smooth; [`Tabulated::uncertainty`] at the step's approach is in the
+/// report's strategy. A pressure field is refused with rheology (M's is that of an elastic body), and so is a
+/// stiffness.
 ///
-/// Cost: one solve of M per node (about 49 at the defaults) at the first step, in ascending order, one per further step and per node that it
-/// adds. Fields and patches are asked of a second contact of M, so that the nodes do not pay for them. With `bem3d` on
-/// 257 x 257 cells at F_bar = 1 the first step takes 0.3 s, each further one 10 ms (tolerance 1e-4).
+/// Cost: one solve of M per node (about 49 at the defaults) at the first step, in ascending order, one per
+/// further step and per node that it adds. Fields and patches are asked of a second contact of M, so that the
+/// nodes do not pay for them. With `bem3d` on 257 x 257 cells at F_bar = 1 the first step takes 0.3 s, each
+/// further one 10 ms (tolerance 1e-4).
 ///
 /// ```
 /// use contact_model::{Body, Friction, ContactModel, Load, Pair, Scene, Step, Surface, Tangential};
@@ -68,11 +75,12 @@ impl<M: ContactModel> Equivalent<M> {
         Self { model, per_decade: 16, decades: 3 }
     }
 
-    /// The equivalent profile of a scene's elastic contact up to an approach > 0 (a length); effects of the scene are left aside.
+    /// The equivalent profile of a scene's elastic contact up to an approach > 0 (a length); effects of the
+    /// scene are left aside.
     ///
     /// # Errors
-    /// Those of M, for the surface, the loads and the solves; [`Error::Domain`] for an approach that is not positive or options out
-    /// of range; [`Error::OutOfRange`] where k falls with d.
+    /// Those of M, for the surface, the loads and the solves; [`Error::Domain`] for an approach that is not
+    /// positive or options out of range; [`Error::OutOfRange`] where k falls with d.
     pub fn profile(&self, scene: &Scene, seed: u64, approach: f64) -> Result<Tabulated> {
         let bare = Scene { outputs: Outputs::default(), ..scene.clone() };
         let mut normal = self.normal(&bare, seed)?;

@@ -1,9 +1,10 @@
 //! A linear viscoelastic material under segments of straight load: relaxation and creep, both in closed form.
 //!
-//! With `E*(t) = E* (e + sum w_i exp(-r_i t)) + E* v delta(t)` a load `Phi(t)` (what an elastic contact with modulus 1 would carry)
-//! gives the force `F/E* = e Phi + sum w_i q_i + v Phi'` with `q_i' = Phi' - r_i q_i`: Boltzmann's integral with one memory per arm.
-//! The other way round, a straight force gives Phi as a parabola and exponentials whose rates are the zeros of `e + sum w_i s/(s +
-//! r_i) + v s`; they lie one between each pair of neighbouring r_i, and are found once.
+//! With `E*(t) = E* (e + sum w_i exp(-r_i t)) + E* v delta(t)` a load `Phi(t)` (what an elastic contact with
+//! modulus 1 would carry) gives the force `F/E* = e Phi + sum w_i q_i + v Phi'` with `q_i' = Phi' - r_i q_i`:
+//! Boltzmann's integral with one memory per arm. The other way round, a straight force gives Phi as a
+//! parabola and exponentials whose rates are the zeros of `e + sum w_i s/(s + r_i) + v s`; they lie one
+//! between each pair of neighbouring r_i, and are found once.
 
 use contact_model::{Error, Relaxing, Result, Rheology};
 use numerics::root;
@@ -139,8 +140,8 @@ impl Material {
         Memory { force, ..self.jumped(memory, by) }
     }
 
-    /// After a segment in which Phi went to `load` and ended with the rate `speed`; `integrals` are `int exp(-r_i (D - s)) Phi'(s) ds`
-    /// over it.
+    /// After a segment in which Phi went to `load` and ended with the rate `speed`; `integrals` are
+    /// `int exp(-r_i (D - s)) Phi'(s) ds` over it.
     pub fn relaxed(
         &self,
         memory: &Memory,
@@ -266,7 +267,8 @@ impl Material {
 }
 
 impl Creep {
-    /// Whether a time is so short that the modes nearly cancel `b`: then from the speed at the beginning, else from b.
+    /// Whether a time is so short that the modes nearly cancel `b`: then from the speed at the beginning,
+    /// else from b.
     fn is_short(&self, s: f64) -> bool {
         self.modes.iter().all(|mode| mode.rate * s < 1.0)
     }
@@ -302,7 +304,8 @@ impl Creep {
         self.speed(s) < -ROUNDING * (self.noise + self.b.abs() + self.c.abs() * s + modes)
     }
 
-    /// The first time within the segment from which Phi falls, beyond rounding; found between samples that resolve every rate.
+    /// The first time within the segment from which Phi falls, beyond rounding; found between samples that
+    /// resolve every rate.
     pub fn first_fall(&self, duration: f64) -> Option<f64> {
         /// Samples per octave of time, and octaves below the shortest time.
         const PER_OCTAVE: i32 = 8;
@@ -406,7 +409,8 @@ mod tests {
 
     #[test]
     fn a_force_and_its_creep_fit_each_other() {
-        // Over segments of any length the arms give back the force that was asked for, at the end and on the way.
+        // Over segments of any length the arms give back the force that was asked for, at the end and on the
+        // way.
         for material in [
             prony(&[(3.0, 2.0)]),
             prony(&[(1.0, 1e-2), (0.5, 1.0), (2.0, 70.0)]),

@@ -23,19 +23,23 @@ const PROFILE: &str = "a measured profile: the method replaces a surface by a li
 
 /// The method of reduction of dimensionality.
 ///
-/// Takes a [`Surface::SelfAffine`] (the line is drawn from the seed), a [`Surface::Heights`] (phases are drawn, the spectrum of the
-/// line is `pi q C_2D` of the map's own: [`LineGenerator::of_map`]; `sqrt(Lx Ly)` stands for the side, and the map has to be
-/// isotropic), a [`Surface::Line`], and the bodies of [`Profile`]. For rough lines it claims force, approach and stiffness; for axisymmetric bodies also the area, `pi a^2`, which is exact there.
+/// Takes a [`Surface::SelfAffine`] (the line is drawn from the seed), a [`Surface::Heights`] (phases are
+/// drawn, the spectrum of the line is `pi q C_2D` of the map's own: [`LineGenerator::of_map`]; `sqrt(Lx Ly)`
+/// stands for the side, and the map has to be isotropic), a [`Surface::Line`], and the bodies of [`Profile`].
+/// For rough lines it claims force, approach and stiffness; for axisymmetric bodies also the area, `pi a^2`,
+/// which is exact there.
 ///
-/// The bodies of [`Profile`] may adhere ([`Adhesion::ShortRange`]): their loads may then be negative, down to the pull-off, which is
+/// The bodies of [`Profile`] may adhere ([`Adhesion::ShortRange`]): their loads may then be negative, down to
+/// the pull-off, which is
 /// [`Error::OutOfRange`] with the smallest admissible load; no load means the adhered contact. The stiffness is then the slope along
-/// the branch, on which the edge moves: 0 at the pull-off under prescribed force, negative beyond it, absent at the pull-off under
-/// prescribed approach, where it has no bound. That of the held contact area, which the conductance follows from, is `2 E* a`. Power-law
-/// bodies with exponents up to 1/2 have no such contact and are refused. So is adhesion of rough lines: the rule that tears a spring
-/// needs the radius of a round contact.
+/// the branch, on which the edge moves: 0 at the pull-off under prescribed force, negative beyond it, absent
+/// at the pull-off under prescribed approach, where it has no bound. That of the held contact area, which the
+/// conductance follows from, is `2 E* a`. Power-law bodies with exponents up to 1/2 have no such contact and
+/// are refused. So is adhesion of rough lines: the rule that tears a spring needs the radius of a round
+/// contact.
 ///
-/// An ensemble over one spectrum is faster with one [`surface_gen::LineGenerator`] and its lines as [`Surface::Line`]: the plan
-/// and the amplitudes are then made once. The states are the same.
+/// An ensemble over one spectrum is faster with one [`surface_gen::LineGenerator`] and its lines as
+/// [`Surface::Line`]: the plan and the amplitudes are then made once. The states are the same.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Mdr1d {
     /// Number of elements of a line that is drawn from a seed; a given line brings its own.
@@ -147,8 +151,8 @@ impl ContactModel for Mdr1d {
 
 /// [`Mdr1d`] for many lines of one surface: plans, amplitudes and memory are kept from line to line.
 ///
-/// The states are those of [`Mdr1d`], bit for bit; a line of 2^20 elements takes about half the time. Cheap to share between
-/// threads.
+/// The states are those of [`Mdr1d`], bit for bit; a line of 2^20 elements takes about half the time. Cheap
+/// to share between threads.
 ///
 /// ```
 /// use contact_model::{ContactModel, Load, Scene, SelfAffine, Surface};

@@ -10,18 +10,20 @@ use contact_model::{
 
 const NAME: &str = "mdr1d_partial_slip";
 
-/// Coulomb's friction of axisymmetric bodies through their profile, each spring sticking or slipping by itself.
+/// Coulomb's friction of axisymmetric bodies through their profile, each spring sticking or slipping by
+/// itself.
 ///
-/// Takes the bodies of [`Profile`] with [`Friction::Coulomb`] and both bodies' materials ([`Scene::of_pair`]), and any path of
-/// normal and tangential loads: a step goes straight from one pair of approach and tangential displacement to the next (a step by
-/// force ends where the force is reached). The state at its end is exact for the springs, whatever the length of the step, energy
-/// included: nothing is discretised in x or in the path. Cost: O(m) for m corners that the path has left in the state of the
-/// springs, at most two more per step; a tangential force some thirty times that. Energies are results too: units in which they
-/// leave f64 (lengths below 1e-100) are errors.
+/// Takes the bodies of [`Profile`] with [`Friction::Coulomb`] and both bodies' materials
+/// ([`Scene::of_pair`]), and any path of normal and tangential loads: a step goes straight from one pair of
+/// approach and tangential displacement to the next (a step by force ends where the force is reached). The
+/// state at its end is exact for the springs, whatever the length of the step, energy included: nothing is
+/// discretised in x or in the path. Cost: O(m) for m corners that the path has left in the state of the
+/// springs, at most two more per step; a tangential force some thirty times that. Energies are results too:
+/// units in which they leave f64 (lengths below 1e-100) are errors.
 ///
-/// The springs are exact for the half-space in the approximation of Cattaneo, Mindlin, Jaeger and Ciavarella: tangential tractions
-/// do not disturb the normal ones ([`contact_model::Pair::coupling`] is 0, or neglected), slip is taken to have the direction of the
-/// load everywhere, which it has not quite for nu > 0.
+/// The springs are exact for the half-space in the approximation of Cattaneo, Mindlin, Jaeger and Ciavarella:
+/// tangential tractions do not disturb the normal ones ([`contact_model::Pair::coupling`] is 0, or
+/// neglected), slip is taken to have the direction of the load everywhere, which it has not quite for nu > 0.
 ///
 /// ```
 /// use contact_model::{Body, Friction, ContactModel, Load, Pair, Scene, Step, Surface, Tangential};

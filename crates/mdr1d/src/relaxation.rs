@@ -1,4 +1,5 @@
-//! A growing contact of a viscoelastic material, step by step: Boltzmann's integral over the elastic law of a profile.
+//! A growing contact of a viscoelastic material, step by step: Boltzmann's integral over the elastic law of a
+//! profile.
 
 use crate::axisymmetric::RoundContact;
 use crate::material::{Material, Memory};
@@ -29,7 +30,8 @@ impl RelaxedState {
     }
 }
 
-/// A material and its history. The elastic law comes with each step: contacts that are numbers of another model differ by its tolerance.
+/// A material and its history. The elastic law comes with each step: contacts that are numbers of another
+/// model differ by its tolerance.
 #[derive(Debug, Clone)]
 pub(crate) struct Relaxation {
     material: Material,
@@ -60,7 +62,8 @@ impl Relaxation {
         self.at = Self::new(self.material.clone(), self.model).at;
     }
 
-    /// The history after a step by approach; `press` gives the elastic contact there and a profile that reaches so deep.
+    /// The history after a step by approach; `press` gives the elastic contact there and a profile that
+    /// reaches so deep.
     pub fn by_approach<P: Shape>(
         &self,
         time: f64,
@@ -154,8 +157,8 @@ fn shrinks(time: f64, from: f64) -> Error {
 
 /// `int_0^D exp(-r (D - s)) 2 a(d_0 + v s) v ds` by Gauss's rule.
 ///
-/// Panels double away from the end of the segment, in units of 1/r, and in d away from 0, and end where x(gamma) has a kink: the decay and
-/// the power of d are smooth on each.
+/// Panels double away from the end of the segment, in units of 1/r, and in d away from 0, and end where
+/// x(gamma) has a kink: the decay and the power of d are smooth on each.
 fn remembered(profile: &impl Shape, from: f64, speed: f64, rate: f64, duration: f64) -> f64 {
     /// exp(-64) is nothing beside the rest.
     const DOUBLINGS: i32 = 6;

@@ -11,7 +11,8 @@ pub(crate) trait Shape: Clone {
     /// x(gamma): half the length of the line that is less than gamma deep; 0 for gamma <= 0.
     fn radius(&self, gamma: f64) -> f64;
 
-    /// `int q dx` over the x of an interval of gamma, for the quadratic q of gamma with these values at the ends and in the middle.
+    /// `int q dx` over the x of an interval of gamma, for the quadratic q of gamma with these values at the
+    /// ends and in the middle.
     fn integral(&self, interval: [f64; 2], values: [f64; 3]) -> f64;
 
     /// The gamma between two others at which x(gamma) is not smooth, in any order; 0 goes without saying.
@@ -41,15 +42,16 @@ impl Shape for Profile {
 
 /// [`Shape::integral`] of a power, `x ~ gamma^(1/exponent)`.
 ///
-/// By moments where the interval is wide; these cancel where it is narrow, and there dx/dgamma is smooth and five points of Gauss
-/// are exact to the last place.
+/// By moments where the interval is wide; these cancel where it is narrow, and there dx/dgamma is smooth and
+/// five points of Gauss are exact to the last place.
 pub(crate) fn of_power(
     exponent: f64,
     position: impl Fn(f64) -> f64,
     [low, high]: [f64; 2],
     [first, middle, last]: [f64; 3],
 ) -> f64 {
-    /// `low/high` above which an interval is narrow: the singularity at 0 is then 19 half widths away, and the rule's error 1e-16.
+    /// `low/high` above which an interval is narrow: the singularity at 0 is then 19 half widths away, and
+    /// the rule's error 1e-16.
     const NARROW: f64 = 0.9;
     let width = high - low;
     if width <= 0.0 {

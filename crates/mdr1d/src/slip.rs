@@ -1,12 +1,15 @@
 //! The tangential springs of an axisymmetric contact, exactly: what sticks, what slips, what is lost.
 //!
-//! A spring at x has the tangential deflection U(x); its force is G* U, and Coulomb's law holds it within `mu E* (d - g(x))`. Along
-//! a straight segment of a path (d and u linear) a spring moves with the body until it reaches that bound and then along it, so at the
-//! end `U = clamp(U_0 + Du, -c, c)` with `c = mu E*/G* (d - g)`; a spring that comes into contact on the way begins there with U =
-//! 0. All of this is linear in `g`: with `gamma = g(x)` as the coordinate, U stays a polygon for any path and any profile, and
+//! A spring at x has the tangential deflection U(x); its force is G* U, and Coulomb's law holds it within
+//! `mu E* (d - g(x))`. Along a straight segment of a path (d and u linear) a spring moves with the body until
+//! it reaches that bound and then along it, so at the end `U = clamp(U_0 + Du, -c, c)` with
+//! `c = mu E*/G* (d - g)`; a spring that comes into contact on the way begins there with U =
+//! 0. All of this is linear in `g`: with `gamma = g(x)` as the coordinate, U stays a polygon for any path and
+//!    any profile, and
 //! forces and losses are integrals of polynomials of gamma. Nothing is discretised.
 //!
-//! The polygon's slope never exceeds that of the bound, so slip begins at the edge and reaches inward to one gamma.
+//! The polygon's slope never exceeds that of the bound, so slip begins at the edge and reaches inward to one
+//! gamma.
 
 use crate::shape::Shape;
 use contact_model::{Nondimensionalisation, Result, Tangential, TangentialState};
@@ -47,7 +50,8 @@ impl<P: Shape> Springs<P> {
         Self::new(self.profile.clone(), self.bound * self.shear, self.shear)
     }
 
-    /// The same springs on a profile that agrees with theirs as far as they have been pressed, to its accuracy.
+    /// The same springs on a profile that agrees with theirs as far as they have been pressed, to its
+    /// accuracy.
     pub fn on(&self, profile: P) -> Self {
         Self { profile, polygon: self.polygon.clone(), ..*self }
     }
@@ -84,8 +88,8 @@ impl<P: Shape> Springs<P> {
         2.0 * self.shear * sum
     }
 
-    /// The tangential part of a state, what was prescribed as it was prescribed. The factor is that of forces, for springs of a profile that
-    /// agrees with the contact to its accuracy.
+    /// The tangential part of a state, what was prescribed as it was prescribed. The factor is that of
+    /// forces, for springs of a profile that agrees with the contact to its accuracy.
     pub fn state(
         &self,
         prescribed: Tangential,
@@ -136,10 +140,11 @@ impl<P: Shape> Springs<P> {
         }
     }
 
-    /// The springs under an approach where they hold a tangential force; `None` beyond the limit mu F, at which the contact slips as a
-    /// whole.
+    /// The springs under an approach where they hold a tangential force; `None` beyond the limit mu F, at
+    /// which the contact slips as a whole.
     pub fn held(&self, approach: f64, limit: f64, force: f64) -> Option<Self> {
-        /// A force exactly at the limit may come out a few roundings beyond it; one that is there already does not move anything.
+        /// A force exactly at the limit may come out a few roundings beyond it; one that is there already
+        /// does not move anything.
         const ROUNDING: f64 = 8.0 * f64::EPSILON;
         if force.abs() > limit * (1.0 + ROUNDING) {
             return None;
@@ -156,7 +161,8 @@ impl<P: Shape> Springs<P> {
         Some(self.moved(approach, displacement))
     }
 
-    /// Displacements between which every tangential force lies, at an approach: there the whole contact slips.
+    /// Displacements between which every tangential force lies, at an approach: there the whole contact
+    /// slips.
     fn reach(&self, approach: f64) -> [f64; 2] {
         let centre = self.polygon.first().map_or(0.0, |knot| knot.u);
         let limit = self.limit(0.0, approach);
@@ -228,8 +234,8 @@ impl<P: Shape> Springs<P> {
 
     /// `int (slip x force) dx / G*` of the springs that are in contact at the end, on one side.
     ///
-    /// A spring that ends e beyond its bound has slipped for the share `e/rate` of the segment, against a bound that grew by `growth`
-    /// in all of it.
+    /// A spring that ends e beyond its bound has slipped for the share `e/rate` of the segment, against a
+    /// bound that grew by `growth` in all of it.
     fn lost_in_contact(&self, free: &[Knot], approach: f64, by: f64, slip: Option<(f64, f64)>) -> f64 {
         let Some((begin, sign)) = slip else { return 0.0 };
         let growth = self.bound * (approach - self.approach);
@@ -265,7 +271,8 @@ impl<P: Shape> Springs<P> {
         self.sum(&end, approach, self.approach, lost)
     }
 
-    /// Integral over x of a function of gamma and the polygon, quadratic wherever the polygon is straight and keeps its sign.
+    /// Integral over x of a function of gamma and the polygon, quadratic wherever the polygon is straight and
+    /// keeps its sign.
     fn sum(&self, polygon: &[Knot], from: f64, to: f64, function: impl Fn(f64, f64) -> f64) -> f64 {
         let mut total = 0.0;
         for w in polygon.windows(2) {

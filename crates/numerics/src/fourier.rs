@@ -1,8 +1,9 @@
 //! Discrete Fourier transforms of real fields on a rectangle, planned once.
 //!
-//! Of a field of `columns` x `rows` values, row-major, the waves (mx, my) with `0 <= mx <= columns/2` are kept: the others are their
-//! conjugates. Wave (mx, my) has the index `mx rows + my`, negative my from the end: a column of waves of one mx is contiguous. The operator
-//! of a solver with its fused products has a transform of its own.
+//! Of a field of `columns` x `rows` values, row-major, the waves (mx, my) with `0 <= mx <= columns/2` are
+//! kept: the others are their conjugates. Wave (mx, my) has the index `mx rows + my`, negative my from the
+//! end: a column of waves of one mx is contiguous. The operator of a solver with its fused products has a
+//! transform of its own.
 
 use crate::parallel::{for_each, threads_for};
 use crate::plan::Precision;
@@ -59,7 +60,8 @@ impl ForwardTransform {
         Self { columns, rows, along_x: f64::real_forward(columns), along_y: f64::forward(rows) }
     }
 
-    /// `H = sum h exp(-2 pi i (mx ix / columns + my iy / rows))`, no factor before it; `fill` writes the values h of row iy over zeros.
+    /// `H = sum h exp(-2 pi i (mx ix / columns + my iy / rows))`, no factor before it; `fill` writes the
+    /// values h of row iy over zeros.
     ///
     /// Cost O(N log N) for N values, on one thread; memory 8 bytes for each value.
     ///
@@ -100,11 +102,13 @@ impl InverseTransform {
         Self { columns, rows, along_x: f64::real_inverse(columns), along_y: f64::inverse(rows) }
     }
 
-    /// `h = sum H exp(2 pi i (mx ix / columns + my iy / rows))` over the whole plane of waves, no factor before it.
+    /// `h = sum H exp(2 pi i (mx ix / columns + my iy / rows))` over the whole plane of waves, no factor
+    /// before it.
     ///
-    /// `fill` writes the waves H of column mx over zeros, for mx below `filled`, at most columns/2 + 1; all others are 0. Waves that are
-    /// their own conjugates count with their real parts. Shared by threads, with the same bits for any number of them. Cost O(N log N) for N
-    /// values, memory 8 bytes for each beside the values.
+    /// `fill` writes the waves H of column mx over zeros, for mx below `filled`, at most columns/2 + 1; all
+    /// others are 0. Waves that are their own conjugates count with their real parts. Shared by threads, with
+    /// the same bits for any number of them. Cost O(N log N) for N values, memory 8 bytes for each beside the
+    /// values.
     ///
     /// ```
     /// use numerics::fourier::{Complex64, InverseTransform};
@@ -159,8 +163,8 @@ impl InverseTransform {
     }
 }
 
-/// The smallest multiple of `step` of at least `least` and `step` whose only prime factors are 2, 3 and 5, for a step that has no others:
-/// transforms of such lengths are fast.
+/// The smallest multiple of `step` of at least `least` and `step` whose only prime factors are 2, 3 and 5,
+/// for a step that has no others: transforms of such lengths are fast.
 ///
 /// ```
 /// use numerics::fourier::fast_length;

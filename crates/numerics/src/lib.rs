@@ -22,7 +22,8 @@
 //!
 //! # What it does not do
 //!
-//! No linear algebra: `faer` has it. Transforms and distribution functions are those of `rustfft`, `realfft` and `statrs`.
+//! No linear algebra: `faer` has it. Transforms and distribution functions are those of `rustfft`, `realfft`
+//! and `statrs`.
 
 pub mod fourier;
 pub mod gauss;

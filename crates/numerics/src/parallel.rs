@@ -1,13 +1,14 @@
 //! Work in tasks on the threads of the caller's pool.
 //!
-//! What a task is depends on sizes alone, each is done by one thread, and their results are put together in their order: no bit of a result
-//! depends on the number of threads. The pool is that of `rayon` in which a solve runs; its threads that have nothing else to do help.
-//! Parallel iterators of `rayon` would make buffers for each split instead of each thread, and need a second code without the feature
-//! `rayon`, where there is one thread.
+//! What a task is depends on sizes alone, each is done by one thread, and their results are put together in
+//! their order: no bit of a result depends on the number of threads. The pool is that of `rayon` in which a
+//! solve runs; its threads that have nothing else to do help. Parallel iterators of `rayon` would make
+//! buffers for each split instead of each thread, and need a second code without the feature `rayon`, where
+//! there is one thread.
 //!
-//! A thread that waits for its helpers may be given any other work of its pool, such as another solve of a parallel iterator over surfaces.
-//! Two rules keep that harmless: nothing is locked while tasks are shared, and what such a thread begins meanwhile runs on it alone, so that
-//! work is never nested deeper than that.
+//! A thread that waits for its helpers may be given any other work of its pool, such as another solve of a
+//! parallel iterator over surfaces. Two rules keep that harmless: nothing is locked while tasks are shared,
+//! and what such a thread begins meanwhile runs on it alone, so that work is never nested deeper than that.
 
 #[cfg(feature = "rayon")]
 use std::cell::Cell;
@@ -85,7 +86,8 @@ pub fn for_each<T: Send, B: Send>(
     }
 }
 
-/// Does `work` on each task, where there is so much work in all, and gives the results in the order of the tasks.
+/// Does `work` on each task, where there is so much work in all, and gives the results in the order of the
+/// tasks.
 pub fn map<T: Send, R: Send + Default>(
     total: usize,
     tasks: impl ExactSizeIterator<Item = T> + Send,

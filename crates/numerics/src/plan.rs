@@ -1,13 +1,14 @@
 //! Plans of fast Fourier transforms in one dimension (`rustfft`, `realfft`).
 //!
-//! A planner is generic over the precision, so that each crate that calls it compiles all of its algorithms: half of the time that `bem3d` took
-//! to compile. The functions here are compiled once.
+//! A planner is generic over the precision, so that each crate that calls it compiles all of its algorithms:
+//! half of the time that `bem3d` took to compile. The functions here are compiled once.
 
 use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
 use rustfft::{Fft, FftNum, FftPlanner};
 use std::sync::Arc;
 
-/// Single and double precision; no factor stands before any transform. Cost O(n log n) for a plan of length n, as of one transform.
+/// Single and double precision; no factor stands before any transform. Cost O(n log n) for a plan of length
+/// n, as of one transform.
 pub trait Precision: FftNum {
     /// Real values to waves: of `length` values the first `length / 2 + 1`.
     fn real_forward(length: usize) -> Arc<dyn RealToComplex<Self>>;

@@ -1,7 +1,8 @@
 //! Quantiles of the normal law, of Student's and of the chi-square distribution.
 //!
-//! The inverse distribution functions of `statrs` 0.18 end in NaN (chi-square below two degrees of freedom) or do not end (Student's for some
-//! degrees of freedom): those two are found by bisection of the distribution function, which is right.
+//! The inverse distribution functions of `statrs` 0.18 end in NaN (chi-square below two degrees of freedom)
+//! or do not end (Student's for some degrees of freedom): those two are found by bisection of the
+//! distribution function, which is right.
 
 use crate::root::bisect;
 use statrs::distribution::{ChiSquared, ContinuousCDF as _, Normal, StudentsT};
@@ -15,7 +16,8 @@ pub fn normal(probability: f64) -> f64 {
     Normal::standard().inverse_cdf(probability)
 }
 
-/// 97.5 % quantile of Student's distribution: half-width of a 95 % interval in standard errors; that of one degree of freedom below 1.
+/// 97.5 % quantile of Student's distribution: half-width of a 95 % interval in standard errors; that of one
+/// degree of freedom below 1.
 ///
 /// ```
 /// assert!((numerics::quantile::student(4.0) - 2.776_445).abs() < 1e-6);
@@ -30,7 +32,8 @@ pub fn student(degrees_of_freedom: f64) -> f64 {
     f64::midpoint(low, high)
 }
 
-/// Quantile of the chi-square distribution to a relative error of 1e-6; `None` for degrees of freedom that are no positive number.
+/// Quantile of the chi-square distribution to a relative error of 1e-6; `None` for degrees of freedom that
+/// are no positive number.
 ///
 /// ```
 /// let (freedom, probability) = (2.0, 0.025_f64);

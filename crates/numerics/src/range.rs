@@ -8,7 +8,8 @@ const LANES: usize = 8;
 /// Values of which a thread takes the range at a time.
 const CHUNK: usize = 1 << 15;
 
-/// Smallest and largest value, NaN ignored; (inf, -inf) for none. Shared by threads where there are many values.
+/// Smallest and largest value, NaN ignored; (inf, -inf) for none. Shared by threads where there are many
+/// values.
 ///
 /// ```
 /// assert_eq!(numerics::range::range(&[2.0, f64::NAN, -1.0]), (-1.0, 2.0));
@@ -36,8 +37,9 @@ fn range_alone(values: &[f64]) -> (f64, f64) {
     (low, high.iter().chain(rest).fold(f64::NEG_INFINITY, |a, &b| a.max(b)))
 }
 
-/// Middle of the range and half its width, 1 where there is no width: values less the middle over it are between -1 and 1, so that no square of
-/// them leaves the range of f64 and an offset costs its own rounding only. Undefined values (not finite) are to be left out before.
+/// Middle of the range and half its width, 1 where there is no width: values less the middle over it are
+/// between -1 and 1, so that no square of them leaves the range of f64 and an offset costs its own rounding
+/// only. Undefined values (not finite) are to be left out before.
 ///
 /// ```
 /// assert_eq!(numerics::range::middle_and_half_width((1.0, 5.0)), (3.0, 2.0));

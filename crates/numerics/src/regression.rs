@@ -2,8 +2,8 @@
 
 use crate::sum::sum;
 
-/// Slope and intercept of the straight line through `points` by least squares; `None` for fewer than two different x or a
-/// number that is not finite.
+/// Slope and intercept of the straight line through `points` by least squares; `None` for fewer than two
+/// different x or a number that is not finite.
 ///
 /// ```
 /// assert_eq!(numerics::regression::least_squares(&[(0.0, 1.0), (1.0, 3.0)]), Some((2.0, 1.0)));
@@ -19,7 +19,8 @@ pub fn least_squares(points: &[(f64, f64)]) -> Option<(f64, f64)> {
     (xx > 0.0 && slope.is_finite() && intercept.is_finite()).then_some((slope, intercept))
 }
 
-/// Exponent p of `y ~ x^p`: the slope of ln y over ln x by least squares, points that are not positive left out; as [`least_squares`].
+/// Exponent p of `y ~ x^p`: the slope of ln y over ln x by least squares, points that are not positive left
+/// out; as [`least_squares`].
 ///
 /// ```
 /// let squares = [1.0, 2.0, 3.0, -1.0].map(|x: f64| (x, 5.0 * x * x));

@@ -1,10 +1,12 @@
 //! Roots of functions of one variable.
 
-/// The root between two points where `function` has opposite signs, to the last place that the function's own rounding allows.
+/// The root between two points where `function` has opposite signs, to the last place that the function's own
+/// rounding allows.
 ///
-/// Bisection that takes inverse quadratic interpolation where that is safe (Chandrupatla, Adv. Eng. Softw. 28, 145 (1997)): some ten
-/// evaluations for smooth functions, never more than bisection needs. A point where the function is 0 is returned as it is; without
-/// a change of sign the end with the smaller value is. Values at the ends may be infinite.
+/// Bisection that takes inverse quadratic interpolation where that is safe (Chandrupatla, Adv. Eng. Softw.
+/// 28, 145 (1997)): some ten evaluations for smooth functions, never more than bisection needs. A point where
+/// the function is 0 is returned as it is; without a change of sign the end with the smaller value is. Values
+/// at the ends may be infinite.
 pub fn between(low: f64, high: f64, mut function: impl FnMut(f64) -> f64) -> f64 {
     /// More than the bits of any two numbers of one sign; never reached by functions with numbers for values.
     const MOST_STEPS: usize = 2_200;
@@ -48,7 +50,8 @@ pub fn between(low: f64, high: f64, mut function: impl FnMut(f64) -> f64) -> f64
     if fa.abs() < fb.abs() { a } else { b }
 }
 
-/// The largest root of a convex function by Newton's method from a point above it: the steps only descend, until rounding stops them.
+/// The largest root of a convex function by Newton's method from a point above it: the steps only descend,
+/// until rounding stops them.
 ///
 /// `function` gives value and slope. A start without a positive slope is returned as it is.
 ///
@@ -57,7 +60,8 @@ pub fn between(low: f64, high: f64, mut function: impl FnMut(f64) -> f64) -> f64
 /// assert!((root - 2.0_f64.sqrt()).abs() < 1e-15);
 /// ```
 pub fn newton_from_above(start: f64, mut function: impl FnMut(f64) -> (f64, f64)) -> f64 {
-    /// Of `x^m` a step far above the root shortens x by 1/m at least, near it the error is squared; never reached for exponents below 1e3.
+    /// Of `x^m` a step far above the root shortens x by 1/m at least, near it the error is squared; never
+    /// reached for exponents below 1e3.
     const MOST_STEPS: usize = 10_000;
     let mut x = start;
     for _ in 0..MOST_STEPS {
@@ -71,9 +75,11 @@ pub fn newton_from_above(start: f64, mut function: impl FnMut(f64) -> (f64, f64)
     x
 }
 
-/// The bracket `[low, high]` after so many halvings, each of which keeps the half in which `below` changes from true to false.
+/// The bracket `[low, high]` after so many halvings, each of which keeps the half in which `below` changes
+/// from true to false.
 ///
-/// For functions of which the sign alone is known, or whose values an interpolation cannot use; [`between`] needs fewer evaluations.
+/// For functions of which the sign alone is known, or whose values an interpolation cannot use; [`between`]
+/// needs fewer evaluations.
 ///
 /// ```
 /// let [low, high] = numerics::root::bisect(0.0, 1.0, 4, |x| x < 0.3);

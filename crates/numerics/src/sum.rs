@@ -56,7 +56,8 @@ pub fn sum(values: impl IntoIterator<Item = f64>) -> f64 {
     total.value()
 }
 
-/// Sum of `term` over the values, pairwise: the rounding error grows with log n only. Shared by threads, with the same bits for any number.
+/// Sum of `term` over the values, pairwise: the rounding error grows with log n only. Shared by threads, with
+/// the same bits for any number.
 ///
 /// ```
 /// assert_eq!(numerics::sum::pairwise(&[1.0, 2.0, 3.0], |v| v * v), 14.0);

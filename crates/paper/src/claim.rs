@@ -56,7 +56,8 @@ pub struct Statement {
 pub struct Estimate {
     /// The number.
     pub value: f64,
-    /// Half-width of the 95 % interval: scatter of the surfaces and whatever else the number depends on; 0 where it is exact.
+    /// Half-width of the 95 % interval: scatter of the surfaces and whatever else the number depends on; 0
+    /// where it is exact.
     pub half_width: f64,
 }
 
@@ -128,7 +129,8 @@ pub struct Claim {
 }
 
 impl Claim {
-    /// Judges a number by its interval alone: confirmed where it lies inside the reading, contradicted where it misses it, else unresolved.
+    /// Judges a number by its interval alone: confirmed where it lies inside the reading, contradicted where
+    /// it misses it, else unresolved.
     ///
     /// ```
     /// use paper::{Claim, Estimate, Statement, Verdict};
@@ -167,8 +169,8 @@ impl Claim {
         }
     }
 
-    /// One of two laws: contradicted where the interval misses the reading of this law, unresolved where it meets that of the rival as well,
-    /// else confirmed.
+    /// One of two laws: contradicted where the interval misses the reading of this law, unresolved where it
+    /// meets that of the rival as well, else confirmed.
     ///
     /// ```
     /// use paper::{Claim, Estimate, Statement, Verdict};
@@ -197,7 +199,8 @@ impl Claim {
         self
     }
 
-    /// Beside the same quantity in another convention: where one is confirmed and the other contradicted, the convention decides.
+    /// Beside the same quantity in another convention: where one is confirmed and the other contradicted, the
+    /// convention decides.
     #[must_use]
     pub fn in_convention(mut self, convention: &str, value: f64) -> Self {
         // With the same half-width, so that both are judged alike.

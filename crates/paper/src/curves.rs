@@ -127,7 +127,8 @@ fn read(path: &Path, file: &CsvFile) -> Result<Vec<CurvePoints>> {
     Ok(curves)
 }
 
-/// Draws `name.svg` and `name.png` from a table of Fig. 2 or 6; `over` is a coarser run of the same figure, drawn beneath.
+/// Draws `name.svg` and `name.png` from a table of Fig. 2 or 6; `over` is a coarser run of the same figure,
+/// drawn beneath.
 pub(crate) fn draw(name: &str, csv: &Path, over: Option<&Path>, out: &Path) -> Result<Vec<PathBuf>> {
     let file = CsvFile::read(csv)?;
     let curves = read(csv, &file)?;
@@ -179,8 +180,8 @@ pub(crate) fn draw(name: &str, csv: &Path, over: Option<&Path>, out: &Path) -> R
     Ok(picture.save(out, name)?)
 }
 
-/// The points (x, y, below the floor of the grid) of one fractal dimension with their line and legend, in these widths of the line, of marks
-/// below the floor and of marks above it.
+/// The points (x, y, below the floor of the grid) of one fractal dimension with their line and legend, in
+/// these widths of the line, of marks below the floor and of marks above it.
 pub(crate) fn draw_curve(picture: &mut Picture, d: f64, points: &[(f64, f64, bool)], widths: [f64; 3]) {
     let (color, shape) = (color(d), shape(d));
     let alone = apart(&points.iter().map(|p| p.0).collect::<Vec<_>>());
@@ -199,8 +200,8 @@ fn above_floor(points: &[CurvePoint]) -> Vec<(f64, f64)> {
     points.iter().filter(|p| !p.below_floor).map(|p| (p.force, p.stiffness)).collect()
 }
 
-/// Whether each of these increasing loads has a mark: not a single load beside one of the regular loads, where two marks would lie
-/// on each other.
+/// Whether each of these increasing loads has a mark: not a single load beside one of the regular loads,
+/// where two marks would lie on each other.
 fn apart(forces: &[f64]) -> Vec<bool> {
     let step = |a: f64, b: f64| (b / a).ln();
     let mut steps: Vec<f64> = forces.windows(2).map(|w| step(w[0], w[1])).collect();

@@ -18,8 +18,8 @@ const CSV_SIDE: usize = 257;
 /// Memory of drawing a surface and its pictures, bytes per cell.
 const BYTES: f64 = 24.0;
 
-/// Draws surface number 0 of each fractal dimension: `fig1.csv` (at most 257 x 257 a map), `fig1.svg`, `fig1.png`, and at full
-/// size `fig1-df2.0.npy`, `fig1-df2.0.png`, ... (grey-scale, darker = higher).
+/// Draws surface number 0 of each fractal dimension: `fig1.csv` (at most 257 x 257 a map), `fig1.svg`,
+/// `fig1.png`, and at full size `fig1-df2.0.npy`, `fig1-df2.0.png`, ... (grey-scale, darker = higher).
 ///
 /// Source: Fig. 1 of the paper (2049 x 2049 cells, six fractal dimensions).
 ///

@@ -12,7 +12,8 @@ pub(crate) const FIGURE: CurveFigure = CurveFigure {
     measure: measure_3d,
 };
 
-/// Solves the 3D ensemble and writes `fig2.csv`, `fig2-samples.csv`, `fig2-budget.csv`, `fig2.svg`, `fig2.png`.
+/// Solves the 3D ensemble and writes `fig2.csv`, `fig2-samples.csv`, `fig2-budget.csv`, `fig2.svg`,
+/// `fig2.png`.
 ///
 /// The budget takes the first surfaces on a grid half as fine as well, a twentieth more work.
 ///

@@ -15,7 +15,8 @@ use evaluation::FLAGS_3D as FLAGS;
 
 /// Transforms the 3D ensemble (solving what is not stored) and writes `fig4.csv`, `fig4.svg`, `fig4.png`.
 ///
-/// `F_tilde = 0.086 (k_bar/0.18)^(1/(0.266 D_f))` equals F_bar where Eq. 12 holds. Source: Fig. 4 of the paper.
+/// `F_tilde = 0.086 (k_bar/0.18)^(1/(0.266 D_f))` equals F_bar where Eq. 12 holds. Source: Fig. 4 of the
+/// paper.
 ///
 /// # Errors
 /// As [`crate::fig2`].
@@ -44,7 +45,8 @@ pub(crate) fn write(run: &Run, measured: &Measured) -> Result<Outcome> {
     Ok(Outcome::of("fig4", files, &[measured]))
 }
 
-/// Draws `fig4.svg` and `fig4.png` from the table: F_tilde over F_bar would be six curves on one diagonal, their ratio shows them apart.
+/// Draws `fig4.svg` and `fig4.png` from the table: F_tilde over F_bar would be six curves on one diagonal,
+/// their ratio shows them apart.
 pub(crate) fn draw(csv: &Path, out: &Path) -> Result<Vec<PathBuf>> {
     let file = CsvFile::read(csv)?;
     let rows: Vec<(String, f64, f64, f64, bool)> = read_rows(csv, &file)?;

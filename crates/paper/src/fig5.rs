@@ -21,8 +21,9 @@ const BINS: usize = 1000;
 /// Memory of drawing a line, bytes per element.
 const BYTES: f64 = 40.0;
 
-/// Draws line number 0 of each fractal dimension (3, 2.5 and 2 by default): `fig5.csv` with the lowest and the highest element of
-/// each of 1000 bins, so that no peak is lost, `fig5.svg`, `fig5.png`, and whole as `fig5-df2.0.npy`, ...
+/// Draws line number 0 of each fractal dimension (3, 2.5 and 2 by default): `fig5.csv` with the lowest and
+/// the highest element of each of 1000 bins, so that no peak is lost, `fig5.svg`, `fig5.png`, and whole as
+/// `fig5-df2.0.npy`, ...
 ///
 /// Source: Fig. 5 of the paper (2^20 elements).
 ///

@@ -12,7 +12,8 @@ pub(crate) const FIGURE: CurveFigure = CurveFigure {
     measure: measure_1d,
 };
 
-/// Solves the 1D ensemble and writes `fig6.csv`, `fig6-samples.csv`, `fig6-budget.csv`, `fig6.svg`, `fig6.png`.
+/// Solves the 1D ensemble and writes `fig6.csv`, `fig6-samples.csv`, `fig6-budget.csv`, `fig6.svg`,
+/// `fig6.png`.
 ///
 /// Source: Fig. 6 of the paper (2^20 elements, 500 lines).
 ///

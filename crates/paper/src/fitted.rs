@@ -54,7 +54,8 @@ struct FittedRow {
     error: Option<f64>,
     /// 95 %: scatter, window and grid.
     half_width: Option<f64>,
-    /// The parameter over the window that all fractal dimensions of the model resolve, and its standard error.
+    /// The parameter over the window that all fractal dimensions of the model resolve, and its standard
+    /// error.
     common: Option<(f64, Option<f64>)>,
     fit: Option<FittedPowerLaw>,
     note: Option<String>,
@@ -152,7 +153,8 @@ impl FittedFigure {
 }
 
 impl FittedFigure {
-    /// Draws `name.svg` and `name.png` from the table; `finer` is a table of Fig. 2 whose fitted laws stand beside.
+    /// Draws `name.svg` and `name.png` from the table; `finer` is a table of Fig. 2 whose fitted laws stand
+    /// beside.
     pub fn draw(&self, csv: &Path, finer: Option<&Path>, out: &Path) -> Result<Vec<PathBuf>> {
         let file = CsvFile::read(csv)?;
         let rows: Vec<FittedPoint> = read_rows(csv, &file)?;
@@ -221,8 +223,8 @@ struct MeanRow {
     min_contact_cells: Option<usize>,
 }
 
-/// The laws of a table of Fig. 2: fitted to its means in the same window by the same code, without errors, because it does not hold
-/// the single surfaces.
+/// The laws of a table of Fig. 2: fitted to its means in the same window by the same code, without errors,
+/// because it does not hold the single surfaces.
 fn laws_of_means(path: &Path, file: &CsvFile) -> Result<Vec<(f64, FittedPowerLaw)>> {
     let rows: Vec<MeanRow> = read_rows(path, file)?;
     let sample = |r: &MeanRow| {

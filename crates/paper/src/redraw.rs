@@ -13,8 +13,8 @@ pub struct Beside {
     pub finer: Option<PathBuf>,
 }
 
-/// Draws every picture of a directory again from the tables there: those of the figures, of the two cases, of what accuracy costs
-/// (its text as well) and of benches that have a picture. No table is touched.
+/// Draws every picture of a directory again from the tables there: those of the figures, of the two cases, of
+/// what accuracy costs (its text as well) and of benches that have a picture. No table is touched.
 ///
 /// # Errors
 /// [`Error::File`] for a directory without such a table, for a table that cannot be read, and for pictures that cannot be written.

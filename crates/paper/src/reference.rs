@@ -6,8 +6,8 @@ use runs::{CsvFile, Error, Progress, Result};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Largest relative difference of a stored number. The 3D solves have the tolerance 1e-10, and k follows it; another processor or
-/// version of the transform library moves last digits.
+/// Largest relative difference of a stored number. The 3D solves have the tolerance 1e-10, and k follows it;
+/// another processor or version of the transform library moves last digits.
 pub const RELATIVE: f64 = 1e-6;
 
 /// Columns that are compared as numbers; all others must be equal.
@@ -29,8 +29,8 @@ fn small(out: PathBuf) -> Result<Run> {
     })
 }
 
-/// Runs Figs. 2 and 6 at a small fixed size in `scratch` and compares with `reference/quick-fig2.csv` and `quick-fig6.csv`; with
-/// `bless` it rewrites those instead. Gives one line per difference.
+/// Runs Figs. 2 and 6 at a small fixed size in `scratch` and compares with `reference/quick-fig2.csv` and
+/// `quick-fig6.csv`; with `bless` it rewrites those instead. Gives one line per difference.
 ///
 /// # Errors
 /// What a figure refuses; a reference file that is missing or no table.

@@ -19,7 +19,8 @@ pub(crate) fn title(file: &CsvFile) -> String {
     file.comments.first().cloned().unwrap_or_default()
 }
 
-/// Cells and surfaces of a model, from the header that `evaluation::describe` wrote; `None` where it names none.
+/// Cells and surfaces of a model, from the header that `evaluation::describe` wrote; `None` where it names
+/// none.
 pub(crate) fn ensemble(file: &CsvFile, model: &str) -> Option<String> {
     let start = format!("{model}: ");
     let line = file.comments.iter().find_map(|c| c.strip_prefix(&start).filter(|c| c.contains("per D_f")))?;

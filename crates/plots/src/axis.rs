@@ -24,7 +24,8 @@ pub(crate) struct Tick {
 
 /// Most decades with a label each, and with short ticks at 2 to 9.
 const LABELLED: i32 = 12;
-/// Where a label stands for more decades than this, the others have no tick: the whole range of numbers has 640.
+/// Where a label stands for more decades than this, the others have no tick: the whole range of numbers has
+/// 640.
 const DENSE: i32 = 9;
 /// With fewer decades on the axis than this, 2 and 5 have labels as well.
 const FEW: usize = 3;
@@ -122,7 +123,8 @@ impl Axis {
 /// Digits after the point of a label: a number has no more.
 const MOST_DECIMALS: f64 = 17.0;
 
-/// The number nearest to a power of ten: 0 or infinity beyond the numbers, but right among subnormal ones, where `powi` gives 0.
+/// The number nearest to a power of ten: 0 or infinity beyond the numbers, but right among subnormal ones,
+/// where `powi` gives 0.
 pub(crate) fn power_of_ten(exponent: i32) -> f64 {
     format!("1e{exponent}").parse().unwrap_or(f64::NAN)
 }

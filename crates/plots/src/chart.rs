@@ -71,7 +71,8 @@ impl Chart {
             .with_subtitle(&self.subtitle);
         let styles = COLORS.iter().zip(SHAPES).cycle();
         for (i, (curve, (color, shape))) in self.curves.iter().zip(styles).enumerate() {
-            // Earlier curves are wider and their marks larger, so that they show where later ones lie on them.
+            // Earlier curves are wider and their marks larger, so that they show where later ones lie on
+            // them.
             let above = (self.curves.len() - 1 - i).min(4) as f64;
             let mark = if i % 2 == 0 { Mark::Solid(shape) } else { Mark::Hollow(shape) };
             // Where points are dense they are the line.
@@ -115,7 +116,8 @@ mod tests {
         }
     }
 
-    /// Any bits, so that exponents are spread evenly from subnormal numbers to 1e308; infinities and NaN among them.
+    /// Any bits, so that exponents are spread evenly from subnormal numbers to 1e308; infinities and NaN
+    /// among them.
     fn number() -> impl Strategy<Value = f64> {
         prop_oneof![
             any::<u64>().prop_map(f64::from_bits),

@@ -7,7 +7,8 @@ use std::path::Path;
 /// Undefined points.
 pub(crate) const UNDEFINED: [u8; 3] = [205, 205, 205];
 
-/// 256 colours of viridis, which is even to the eye and to that of the colour-blind, from the lowest to the highest value.
+/// 256 colours of viridis, which is even to the eye and to that of the colour-blind, from the lowest to the
+/// highest value.
 ///
 /// ```
 /// assert_eq!(plots::viridis()[0], [68, 1, 84]);
@@ -16,8 +17,8 @@ pub fn viridis() -> [[u8; 3]; 256] {
     std::array::from_fn(|i| colorous::VIRIDIS.eval_rational(i, 256).into_array())
 }
 
-/// A PNG with a pixel for each value, the last row on top: viridis from the lowest to the highest of the range, undefined points grey, and
-/// white at 0 where `zero_is_white`.
+/// A PNG with a pixel for each value, the last row on top: viridis from the lowest to the highest of the
+/// range, undefined points grey, and white at 0 where `zero_is_white`.
 ///
 /// # Errors
 /// [`crate::Error::Content`] where the encoder refuses.

@@ -71,9 +71,10 @@ impl FieldPicture<'_> {
         finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)))
     }
 
-    /// Writes a PNG, y upwards. The colours are viridis, from the smallest to the largest value (from 0 under [`Shown::Largest`], where
-    /// zero is white) or over the range given; undefined points are grey, the contact has a red outline. Under [`Shown::Largest`] a
-    /// field of which less than 2 % of the pixels are above zero has each of these drawn three pixels wide.
+    /// Writes a PNG, y upwards. The colours are viridis, from the smallest to the largest value (from 0 under
+    /// [`Shown::Largest`], where zero is white) or over the range given; undefined points are grey, the
+    /// contact has a red outline. Under [`Shown::Largest`] a field of which less than 2 % of the pixels are
+    /// above zero has each of these drawn three pixels wide.
     ///
     /// Cost: linear in the number of cells.
     ///
@@ -237,7 +238,8 @@ mod tests {
 
     #[test]
     fn y_points_upwards_and_single_cells_are_seen() {
-        // A row of 2 x 1 at the bottom carries pressure at the right, the row above at the left; one point is undefined.
+        // A row of 2 x 1 at the bottom carries pressure at the right, the row above at the left; one point is
+        // undefined.
         let field = Field::new([3, 2], [3.0, 2.0], vec![0.0, f64::NAN, 1.0, 2.0, 0.0, 0.0]).unwrap();
         let found = colors(
             &field,

@@ -52,7 +52,8 @@ pub(crate) struct Frame<'a> {
 }
 
 impl Frame<'_> {
-    /// Ticks and labels of an axis, labels at these values where they are given; the power of ten that labels share stands at the end.
+    /// Ticks and labels of an axis, labels at these values where they are given; the power of ten that labels
+    /// share stands at the end.
     pub fn axis(&self, drawing: &mut Drawing, side: Side, axis: Axis, given: Option<&[f64]>) {
         let style = self.style;
         let [x, y, w, h] = self.place;

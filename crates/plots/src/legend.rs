@@ -120,7 +120,8 @@ impl SetLegend<'_> {
     }
 }
 
-/// The upper left corner of a free place of this size in the frame; `None` where every place would cover something.
+/// The upper left corner of a free place of this size in the frame; `None` where every place would cover
+/// something.
 pub(crate) fn free_place(
     frame: Rectangle,
     size: (f64, f64),

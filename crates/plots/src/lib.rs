@@ -5,12 +5,13 @@
 //!
 //! # Conventions
 //!
-//! Symbols are set as symbols: a label is `$\\bar{F} = F/(E^* h L)$` between dollar signs, upright words outside. Frames have ticks inwards
-//! on four sides; logarithmic axes have powers of ten and ticks at 2 to 9. Letters are outlines of the fonts in `fonts/`, so that an SVG
-//! needs nothing from the machine that shows it; its labels are in `aria-label` as well. Both files come from one drawing of paths.
+//! Symbols are set as symbols: a label is `$\\bar{F} = F/(E^* h L)$` between dollar signs, upright words
+//! outside. Frames have ticks inwards on four sides; logarithmic axes have powers of ten and ticks at 2 to 9.
+//! Letters are outlines of the fonts in `fonts/`, so that an SVG needs nothing from the machine that shows
+//! it; its labels are in `aria-label` as well. Both files come from one drawing of paths.
 //!
-//! Colours are told apart in grey as well; the same fractal dimension has the same colour in every picture ([`color`]). Maps have row 0
-//! at the bottom. Files are written whole or not at all.
+//! Colours are told apart in grey as well; the same fractal dimension has the same colour in every picture
+//! ([`color`]). Maps have row 0 at the bottom. Files are written whole or not at all.
 
 #![allow(clippy::format_push_string)] // Text is built once per file: clear beats one allocation less.
 

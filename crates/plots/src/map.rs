@@ -62,7 +62,8 @@ fn pixels(cells: Cells, size: Size) -> [usize; 2] {
 /// Cells whose sides differ by less than this are square in a picture: a pixel over the most of them.
 const SQUARE: f64 = 1.0 / MOST_PIXELS;
 
-/// Grey values of heights, darker = higher, for optimal contrast: the lowest and highest 0.5 % are white and black.
+/// Grey values of heights, darker = higher, for optimal contrast: the lowest and highest 0.5 % are white and
+/// black.
 ///
 /// A map without relief is white. Cost O(n log n).
 pub fn grey(heights: &[f64]) -> Vec<u8> {

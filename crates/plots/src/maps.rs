@@ -17,7 +17,8 @@ pub struct GreyMap {
     pub side: usize,
 }
 
-/// Side of one map (two pixels for each of the 257 values that a table of Fig. 1 keeps), the space around it and for its label.
+/// Side of one map (two pixels for each of the 257 values that a table of Fig. 1 keeps), the space around it
+/// and for its label.
 const MAP: f64 = 257.0;
 const GAP: f64 = 10.0;
 const LABEL: f64 = 28.0;

@@ -209,7 +209,8 @@ impl Picture {
     }
 
     fn place(&self, frame: Rectangle, p: (f64, f64)) -> Option<(f64, f64)> {
-        // What is drawn so far from the frame looks the same nearer to it; coordinates stay finite in single precision.
+        // What is drawn so far from the frame looks the same nearer to it; coordinates stay finite in single
+        // precision.
         let (x, y) = (self.axes[0].place(p.0)?.clamp(-FAR, FAR), self.axes[1].place(p.1)?.clamp(-FAR, FAR));
         Some((frame[0] + x * frame[2], frame[1] + (1.0 - y) * frame[3]))
     }

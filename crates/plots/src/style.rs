@@ -6,7 +6,8 @@ pub(crate) const INK: &str = "#1a1a1a";
 pub const REFERENCE: &str = "#333333";
 /// What belongs to every curve of a picture, in its legend.
 pub const NEUTRAL: &str = "#6b6b6b";
-/// Colours of curves without a fractal dimension: from Okabe and Ito, told apart by colour-blind readers and in grey.
+/// Colours of curves without a fractal dimension: from Okabe and Ito, told apart by colour-blind readers and
+/// in grey.
 pub const COLORS: [&str; 6] = ["#0b559f", "#d55e00", "#009e73", "#8c2d7a", "#a6761d", "#3b3b3b"];
 /// Shapes in the same order.
 pub const SHAPES: [MarkShape; 6] = [

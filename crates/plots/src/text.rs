@@ -1,7 +1,8 @@
 //! Labels: words with symbols between dollar signs, set from glyph outlines as journals set them.
 //!
-//! Between dollar signs letters are italic, digits and signs upright, `_` and `^` lower and raise the next character or `{group}`,
-//! `\bar{x}` and `\tilde{x}` put an accent on a symbol, `\rm{words}` is upright: `$\bar{k} = k/(1.1419 E^* L)$`.
+//! Between dollar signs letters are italic, digits and signs upright, `_` and `^` lower and raise the next
+//! character or `{group}`, `\bar{x}` and `\tilde{x}` put an accent on a symbol, `\rm{words}` is upright:
+//! `$\bar{k} = k/(1.1419 E^* L)$`.
 
 use files::{Error, Result};
 use std::path::Path;

@@ -4,8 +4,9 @@
 const PREFIXES: [(&str, i32); 9] =
     [("p", -12), ("n", -9), ("µ", -6), ("m", -3), ("", 0), ("k", 3), ("M", 6), ("G", 9), ("T", 12)];
 
-/// The unit in which a number of metres, newtons or pascals has one to three digits before the point, and the factor from its plain unit
-/// to that one. Lengths have no larger unit than the metre; every other unit is left as it is.
+/// The unit in which a number of metres, newtons or pascals has one to three digits before the point, and the
+/// factor from its plain unit to that one. Lengths have no larger unit than the metre; every other unit is
+/// left as it is.
 ///
 /// ```
 /// assert_eq!(plots::prefixed("m", 2.5e-8), ("nm".to_owned(), 1e9));

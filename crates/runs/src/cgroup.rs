@@ -23,7 +23,8 @@ fn memory_left_of(groups: &str, root: &Path) -> Option<u64> {
             some if some.split(',').any(|name| name == "memory") => (root.join("memory"), FIRST),
             _ => continue,
         };
-        // The limits of the groups above count too. In a container the path may be that of the host: its own group is then the root.
+        // The limits of the groups above count too. In a container the path may be that of the host: its own
+        // group is then the root.
         for group in Path::new(group.trim_start_matches('/')).ancestors() {
             if let Some(of_group) = left_in(&mount.join(group), files) {
                 left = Some(left.map_or(of_group, |left| left.min(of_group)));

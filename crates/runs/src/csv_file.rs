@@ -5,7 +5,8 @@ use analysis::{Table, Value};
 use contact_model::Source;
 use std::path::Path;
 
-/// What the `#` lines say besides the table's own title and columns. No times, no machine: the same run gives the same bytes.
+/// What the `#` lines say besides the table's own title and columns. No times, no machine: the same run gives
+/// the same bytes.
 #[derive(Debug, Clone, Default)]
 pub struct Header {
     /// Works that the numbers rest on.
@@ -42,7 +43,8 @@ impl Header {
     }
 }
 
-/// Writes a table whole: `#` lines (title, columns with units, sources, parameters, version, command), column names, rows.
+/// Writes a table whole: `#` lines (title, columns with units, sources, parameters, version, command), column
+/// names, rows.
 ///
 /// Numbers are the shortest decimals that read back to the same bits; absent entries are empty.
 ///

@@ -37,8 +37,8 @@ struct Read<T> {
 }
 
 impl ResultKind {
-    /// A kind by its name. Raise the number of its format when an output of the same key is written differently or
-    /// means something else: results of the format before are then not found.
+    /// A kind by its name. Raise the number of its format when an output of the same key is written
+    /// differently or means something else: results of the format before are then not found.
     pub const fn new(name: &'static str, format: u32) -> Self {
         Self { name, format }
     }
@@ -48,8 +48,8 @@ impl ResultKind {
         format!("{} {}\n{key}", self.name, self.format)
     }
 
-    /// An output as one line. JSON has no NaN and no infinity: the line of an output that holds one is without the
-    /// output, so that it is refused when it is read.
+    /// An output as one line. JSON has no NaN and no infinity: the line of an output that holds one is
+    /// without the output, so that it is refused when it is read.
     pub fn encode<T: Serialize>(&self, output: &T) -> String {
         let Self { name, format } = *self;
         let line = Written { name, format, output: all_finite(output).then_some(output) };

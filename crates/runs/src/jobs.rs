@@ -14,8 +14,9 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 /// Who works at the same time.
 ///
-/// Each job in flight has a thread; those without a job help inside the others, where their work is large enough to share. Which jobs are
-/// in flight at the same time follows from their number, their memory and the threads; the results do not.
+/// Each job in flight has a thread; those without a job help inside the others, where their work is large
+/// enough to share. Which jobs are in flight at the same time follows from their number, their memory and the
+/// threads; the results do not.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Threads {
     /// All threads.
@@ -40,13 +41,15 @@ pub fn on_one_thread<T: Send>(work: impl FnOnce() -> T + Send) -> T {
     }
 }
 
-/// Runs the jobs of `order`, those that stand first in it first, and gives their results by number; `None` where none was begun.
+/// Runs the jobs of `order`, those that stand first in it first, and gives their results by number; `None`
+/// where none was begun.
 ///
-/// After a failure, or when `stop` says so, no further job begins, and those in flight are told by their own closure.
+/// After a failure, or when `stop` says so, no further job begins, and those in flight are told by their own
+/// closure.
 ///
-/// One loop per thread rather than a parallel iterator: a thread that waits inside a job then never begins another one (whose time
-/// would contain the first), and those without a job help the others. Where the system grants fewer threads there are fewer, at worst the
-/// calling one.
+/// One loop per thread rather than a parallel iterator: a thread that waits inside a job then never begins
+/// another one (whose time would contain the first), and those without a job help the others. Where the
+/// system grants fewer threads there are fewer, at worst the calling one.
 pub fn run_jobs<T: Send + Sync, E: Send + Sync>(
     threads: Threads,
     order: &[usize],
@@ -86,7 +89,8 @@ pub fn run_jobs<T: Send + Sync, E: Send + Sync>(
 /// All results in their places, or why some are missing.
 ///
 /// # Errors
-/// The first error that is not the stop of the others; [`contact_model::Error::Stopped`] where jobs were stopped or never begun.
+/// The first error that is not the stop of the others; [`contact_model::Error::Stopped`] where jobs were
+/// stopped or never begun.
 pub fn collect<T>(done: Vec<Option<Result<T, Error>>>) -> Result<Vec<T>, Error> {
     let mut results = Vec::with_capacity(done.len());
     let mut stopped = None;
@@ -124,7 +128,8 @@ pub trait Job: Sync {
     /// What a person calls it.
     fn name(&self) -> String;
 
-    /// Predicted processor milliseconds, at least 1: they order the work, divide it into shards and move the progress bar.
+    /// Predicted processor milliseconds, at least 1: they order the work, divide it into shards and move the
+    /// progress bar.
     fn cost(&self) -> u64;
 
     /// Memory that it needs, bytes; 0 where nothing to speak of.
@@ -143,9 +148,9 @@ pub trait Job: Sync {
     /// Whatever ends the whole command.
     fn solve(&self, stop: Stop<'_>) -> Result<Self::Output, Self::Error>;
 
-    /// Does the rest of the work: `stored` is what the store holds of this job and [`Job::is_whole`] refused, such as
-    /// the part that was done before an interruption; `store` replaces it at any moment. A job without parts begins
-    /// anew.
+    /// Does the rest of the work: `stored` is what the store holds of this job and [`Job::is_whole`] refused,
+    /// such as the part that was done before an interruption; `store` replaces it at any moment. A job
+    /// without parts begins anew.
     ///
     /// # Errors
     /// Whatever ends the whole command.
@@ -159,13 +164,14 @@ pub trait Job: Sync {
         self.solve(stop)
     }
 
-    /// Whether its output is worth storing; what is not is computed again each time, by every shard's merge too.
+    /// Whether its output is worth storing; what is not is computed again each time, by every shard's merge
+    /// too.
     fn is_stored(&self) -> bool {
         true
     }
 
-    /// Whether an output that was read back is all that this job gives: of its own loads, and not a part of one.
-    /// Its numbers are finite.
+    /// Whether an output that was read back is all that this job gives: of its own loads, and not a part of
+    /// one. Its numbers are finite.
     fn is_whole(&self, output: &Self::Output) -> bool {
         let _ = output;
         true
@@ -187,11 +193,11 @@ pub trait Job: Sync {
     }
 }
 
-/// Does all jobs that the store does not hold, the most expensive first, and gives the results in the order of `jobs`; `None` where a
-/// failure or `stop` came first. The results do not depend on `threads`.
+/// Does all jobs that the store does not hold, the most expensive first, and gives the results in the order
+/// of `jobs`; `None` where a failure or `stop` came first. The results do not depend on `threads`.
 ///
-/// Each finished job is stored at once: an interruption loses those in flight. Results that another version of the program stored in
-/// another format are not used, and `progress` is told of them once.
+/// Each finished job is stored at once: an interruption loses those in flight. Results that another version
+/// of the program stored in another format are not used, and `progress` is told of them once.
 ///
 /// Errors of single jobs are in their places.
 #[allow(clippy::type_complexity)] // A list of what became of each job.

@@ -2,17 +2,18 @@
 //!
 //! # Jobs
 //!
-//! A [`Job`] is one independent piece of work with a key (everything that decides its numbers) and a cost. [`run_stored`] does a list
-//! of them, one per thread, the most expensive first. Each finished job is kept in the [`Store`] at once, whole or not at all, and
-//! checked on reading: a damaged or foreign result is computed again. Results have the same bytes for any number of threads.
-//! They are stored as JSON that names their [`ResultKind`] and keeps every bit of their numbers.
+//! A [`Job`] is one independent piece of work with a key (everything that decides its numbers) and a cost.
+//! [`run_stored`] does a list of them, one per thread, the most expensive first. Each finished job is kept in
+//! the [`Store`] at once, whole or not at all, and checked on reading: a damaged or foreign result is
+//! computed again. Results have the same bytes for any number of threads. They are stored as JSON that names
+//! their [`ResultKind`] and keeps every bit of their numbers.
 //!
 //! # Files
 //!
 //! * [`files`]: written whole or not at all.
-//! * CSV ([`write_csv`], [`CsvFile`]): `#` lines with title, columns and units, sources, parameters, version and the command that
-//!   makes the same bytes; shortest decimals that read back to the same bits; absent is empty, never NaN. No times and no machine:
-//!   those are in `manifest.json` ([`machine`]).
+//! * CSV ([`write_csv`], [`CsvFile`]): `#` lines with title, columns and units, sources, parameters, version
+//!   and the command that makes the same bytes; shortest decimals that read back to the same bits; absent is
+//!   empty, never NaN. No times and no machine: those are in `manifest.json` ([`machine`]).
 //!
 //! # Terminal
 //!

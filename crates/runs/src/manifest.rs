@@ -31,8 +31,8 @@ pub fn machine() -> Value {
     json!({ "os": std::env::consts::OS, "architecture": std::env::consts::ARCH, "cores": cores, "cpu": cpu, "instructions": instructions })
 }
 
-/// The vector instructions of the processor that transforms and factors choose between at run time: results are the same bytes where they
-/// are the same.
+/// The vector instructions of the processor that transforms and factors choose between at run time: results
+/// are the same bytes where they are the same.
 pub(crate) fn instructions() -> Vec<&'static str> {
     #[cfg(target_arch = "x86_64")]
     {

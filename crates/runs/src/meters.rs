@@ -9,7 +9,8 @@ use std::time::Duration;
 
 /// Processor seconds of this thread (Linux).
 ///
-/// The kernel brings the number up to date when the thread leaves the processor, so it sleeps first, for some ten microseconds.
+/// The kernel brings the number up to date when the thread leaves the processor, so it sleeps first, for some
+/// ten microseconds.
 pub fn cpu_seconds() -> Option<f64> {
     std::thread::sleep(Duration::from_micros(1));
     let text = fs::read_to_string("/proc/thread-self/schedstat").ok()?;
@@ -27,7 +28,8 @@ pub fn process_cpu_seconds() -> Option<f64> {
     Some(tasks.filter_map(of).sum::<u64>() as f64 * 1e-9)
 }
 
-/// Lets [`peak_memory`] count from here where the system allows it; else it goes on counting from the start of the process.
+/// Lets [`peak_memory`] count from here where the system allows it; else it goes on counting from the start
+/// of the process.
 pub fn reset_peak_memory() {
     // 5: the peak becomes what is resident now (proc(5), clear_refs).
     let _ = fs::write("/proc/self/clear_refs", "5");
@@ -38,8 +40,8 @@ pub fn peak_memory() -> Option<u64> {
     memory("VmHWM:")
 }
 
-/// Memory that the system could give to this process now, in bytes (Linux); less where the address space of the process or the memory of
-/// its control group is limited.
+/// Memory that the system could give to this process now, in bytes (Linux); less where the address space of
+/// the process or the memory of its control group is limited.
 pub fn available_memory() -> Option<u64> {
     let there = memory_in("/proc/meminfo", "MemAvailable:")?;
     Some([address_space(), cgroup::memory_left()].into_iter().flatten().fold(there, u64::min))
@@ -66,15 +68,16 @@ fn address_space() -> Option<u64> {
     Some(limit.saturating_sub(memory("VmSize:")?))
 }
 
-/// Address space, not memory, that a thread reserves: twice the largest cache for products of matrices (`private-gemm-x86`), and
-/// 128 MB for the arena of its allocator.
+/// Address space, not memory, that a thread reserves: twice the largest cache for products of matrices
+/// (`private-gemm-x86`), and 128 MB for the arena of its allocator.
 fn reserved_by_thread() -> u64 {
     let cache = fs::read_to_string("/sys/devices/system/cpu/cpu0/cache/index3/size").unwrap_or_default();
     let kilobytes = cache.trim().strip_suffix('K').and_then(|k| k.parse::<u64>().ok()).unwrap_or(32 << 10);
     2 * 1024 * kilobytes + (1 << 27)
 }
 
-/// Jobs of a size that there is memory for at the same time: at most `threads`. Under a limit of the address space what each thread reserves counts too.
+/// Jobs of a size that there is memory for at the same time: at most `threads`. Under a limit of the address
+/// space what each thread reserves counts too.
 ///
 /// # Errors
 /// [`Error::Parameter`] where a single job needs more memory than there is; `name` and `value` are what its size comes from. Where the

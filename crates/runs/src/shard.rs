@@ -62,14 +62,16 @@ impl FromStr for ShardChoice {
     }
 }
 
-/// The variable that says how many tasks an array of HyperQueue has, which HyperQueue itself does not tell them.
+/// The variable that says how many tasks an array of HyperQueue has, which HyperQueue itself does not tell
+/// them.
 pub const TASKS: &str = "FRACTAL_CONTACT_TASKS";
 
 impl ShardChoice {
     /// The shard; `variable` looks a variable of the environment up.
     ///
-    /// SLURM tells each task of an array its number, the smallest and largest ones, the step and their count: `--array=3-11:4` is three shards.
-    /// A list with gaps (`--array=3,7`) does not say which number a task has among them and is refused. HyperQueue tells the number only:
+    /// SLURM tells each task of an array its number, the smallest and largest ones, the step and their count:
+    /// `--array=3-11:4` is three shards. A list with gaps (`--array=3,7`) does not say which number a task
+    /// has among them and is refused. HyperQueue tells the number only:
     /// [`TASKS`] has to say how many there are, numbered from 0.
     ///
     /// # Errors
@@ -119,15 +121,16 @@ impl ShardChoice {
     }
 }
 
-/// The numbers of jobs, the most expensive first; equal costs keep their order, so that one of each kind comes early.
+/// The numbers of jobs, the most expensive first; equal costs keep their order, so that one of each kind
+/// comes early.
 pub fn largest_first<C: Ord>(count: usize, cost: impl Fn(usize) -> C) -> Vec<usize> {
     let mut order: Vec<usize> = (0..count).collect();
     order.sort_by_key(|&i| std::cmp::Reverse(cost(i)));
     order
 }
 
-/// The shard of each job: the most expensive first, each to the shard that has the least to do (Graham's rule: no shard is longer than 4/3 of the
-/// best division). Depends on the costs and the count alone.
+/// The shard of each job: the most expensive first, each to the shard that has the least to do (Graham's
+/// rule: no shard is longer than 4/3 of the best division). Depends on the costs and the count alone.
 pub fn assign(costs: &[u64], count: usize) -> Vec<usize> {
     let mut shards: BinaryHeap<Reverse<(u64, usize)>> =
         (0..count.max(1)).map(|shard| Reverse((0, shard))).collect();

@@ -1,9 +1,10 @@
 //! The result store: packs of results in `DIR/.units`, each written by one process and read by all.
 //!
-//! A pack is a text file. Its head says which process of which plan wrote it; then one result after the other, each with the hash of its key, its
-//! length and a digest. Results are appended whole and never changed: what a kill or a full disk cuts off, and what a disk damages, fails its
-//! digest and is as good as absent, and the results after it are still read. No two processes write one pack, so there is nothing to lock, and
-//! a million results are as many files as there were processes.
+//! A pack is a text file. Its head says which process of which plan wrote it; then one result after the
+//! other, each with the hash of its key, its length and a digest. Results are appended whole and never
+//! changed: what a kill or a full disk cuts off, and what a disk damages, fails its digest and is as good as
+//! absent, and the results after it are still read. No two processes write one pack, so there is nothing to
+//! lock, and a million results are as many files as there were processes.
 
 use crate::error::{Error, Result};
 use crate::progress::Progress;
@@ -16,8 +17,8 @@ use std::time::{Duration, Instant};
 
 /// First words of a pack; the number of its format follows.
 const PACK: &str = "# fractal-contact results ";
-/// Number of the format of packs. Raise it when results of all kinds are written in another way: packs of another format
-/// are not read, and a run is told of them.
+/// Number of the format of packs. Raise it when results of all kinds are written in another way: packs of
+/// another format are not read, and a run is told of them.
 const FORMAT: u32 = 2;
 /// First words of each result in it; the hash of its key and the bytes after this line follow.
 const RESULT: &str = "# fractal-contact result ";
@@ -27,9 +28,11 @@ const DIGEST: &str = "# whole ";
 const LISTED: usize = 5;
 /// Ending of a pack's name.
 const ENDING: &str = "pack";
-/// Results are brought to the disk at most so often: a crash of the machine, not of the process, loses what is younger.
+/// Results are brought to the disk at most so often: a crash of the machine, not of the process, loses what
+/// is younger.
 const SYNC_EVERY: Duration = Duration::from_secs(1);
-/// A pack is written anew when more than so many bytes, and more than half of it, are parts of results that were replaced.
+/// A pack is written anew when more than so many bytes, and more than half of it, are parts of results that
+/// were replaced.
 const LEAST_WASTE: u64 = 1 << 20;
 
 /// Who writes a pack.
@@ -104,7 +107,8 @@ pub struct Pack {
     pub damaged_bytes: u64,
 }
 
-/// Where the results of finished jobs are kept, each under a key that names everything that decides its numbers.
+/// Where the results of finished jobs are kept, each under a key that names everything that decides its
+/// numbers.
 #[derive(Debug, Clone)]
 pub struct Store(Arc<Shared>);
 
@@ -146,7 +150,8 @@ struct Lock(File);
 
 impl Drop for Lock {
     fn drop(&mut self) {
-        // Closing is not enough while a child process is being started, which has a copy of the file for a moment.
+        // Closing is not enough while a child process is being started, which has a copy of the file for a
+        // moment.
         let _ = self.0.unlock();
     }
 }
@@ -162,8 +167,9 @@ impl Drop for Shared {
 }
 
 impl Store {
-    /// Opens (and creates) `out/.units` for a run that has the directory for itself: as long as it is open, no other such run can open it. Removes what
-    /// interrupted runs left half-written. With `fresh` nothing stored is read.
+    /// Opens (and creates) `out/.units` for a run that has the directory for itself: as long as it is open,
+    /// no other such run can open it. Removes what interrupted runs left half-written. With `fresh` nothing
+    /// stored is read.
     ///
     /// # Errors
     /// [`crate::Error::File`] when the directory cannot be made or read; [`crate::Error::Parameter`] when another process uses it.
@@ -178,7 +184,8 @@ impl Store {
         Ok(Self(Arc::new(Shared { directory, head, packs: Mutex::new(packs), _lock: lock })))
     }
 
-    /// Opens it beside others, for a shard of a plan. Packs of other shards of the same division hold none of its jobs and are not read.
+    /// Opens it beside others, for a shard of a plan. Packs of other shards of the same division hold none of
+    /// its jobs and are not read.
     ///
     /// # Errors
     /// [`crate::Error::File`] when the directory cannot be made or read.
@@ -196,8 +203,8 @@ impl Store {
         Ok(Self(Arc::new(Shared { directory, head, packs: Mutex::new(packs), _lock: None })))
     }
 
-    /// Tells of packs that are not used because they are of another format; once in a process, which may open a directory
-    /// for each of its tables.
+    /// Tells of packs that are not used because they are of another format; once in a process, which may open
+    /// a directory for each of its tables.
     pub(crate) fn tell_unused(&self, progress: &dyn Progress) {
         static TOLD: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
         let unused = std::mem::take(&mut self.held().unused);
@@ -255,7 +262,8 @@ impl Store {
         all.len()
     }
 
-    /// The texts stored under this key that are whole and of the same key, the newest first. A job that two processes did by mistake has two.
+    /// The texts stored under this key that are whole and of the same key, the newest first. A job that two
+    /// processes did by mistake has two.
     pub fn texts(&self, key: &str) -> impl Iterator<Item = String> + '_ {
         let body = head(key);
         let found: Vec<(PathBuf, Place)> = {
@@ -399,7 +407,8 @@ impl Packs {
 }
 
 impl Pack {
-    /// Reads where the results of a pack lie, not the results; `None` for a file that is none, and one that is not wanted.
+    /// Reads where the results of a pack lie, not the results; `None` for a file that is none, and one that
+    /// is not wanted.
     #[allow(clippy::type_complexity)] // Offset and length of each result.
     fn read(path: &Path, wanted: &dyn Fn(&PackHead) -> bool) -> Result<Option<(Self, Vec<(u64, u64)>)>> {
         // A pipe would wait for its other end.
@@ -439,7 +448,8 @@ impl Pack {
                 at += bytes;
                 continue;
             }
-            // Cut off or damaged: the next result begins at the next line that says so, which may lie inside the last one if that was cut.
+            // Cut off or damaged: the next result begins at the next line that says so, which may lie inside
+            // the last one if that was cut.
             let last = places.last().map_or(at, |&(offset, _)| offset);
             let from = if std::mem::replace(&mut searched, places.len()) == places.len() { at } else { last };
             let all = match &mut all {
@@ -525,8 +535,8 @@ fn serial(path: &Path) -> Option<u64> {
     path.file_stem()?.to_str()?.parse().ok()
 }
 
-/// The lock of a directory. The system lets go of it when the process ends, however it ends; within the process all stores of a
-/// directory share it.
+/// The lock of a directory. The system lets go of it when the process ends, however it ends; within the
+/// process all stores of a directory share it.
 fn lock(path: &Path, out: &Path) -> Result<Option<Arc<Lock>>> {
     static HELD: Mutex<Vec<(PathBuf, Weak<Lock>)>> = Mutex::new(Vec::new());
     let mut held = HELD.lock().unwrap_or_else(PoisonError::into_inner);
@@ -559,8 +569,8 @@ fn head(key: &str) -> String {
     key.lines().flat_map(|line| ["# ", line, "\n"]).collect()
 }
 
-/// FNV-1a of 128 bits (Fowler, Noll, Vo; offset basis and prime of draft-eastlake-fnv): the same for ever, unlike the hasher of
-/// the standard library. It names results; on reading the whole key is compared.
+/// FNV-1a of 128 bits (Fowler, Noll, Vo; offset basis and prime of draft-eastlake-fnv): the same for ever,
+/// unlike the hasher of the standard library. It names results; on reading the whole key is compared.
 ///
 /// ```
 /// // The published test vector of the letter a.
@@ -639,7 +649,8 @@ mod tests {
         assert_eq!(packs.iter().map(|p| p.results.len()).collect::<Vec<_>>(), [1, 2]);
         assert_eq!(packs[1].head.shard.as_deref(), Some("1/2"));
         assert_eq!(Store::count(dir.path()), 2);
-        // What another shard of the same division has done is none of its business; of another division, it is.
+        // What another shard of the same division has done is none of its business; of another division, it
+        // is.
         assert!(shard(0).load("b\n").is_none() && shard(0).load("a\n").is_some());
         let other = Store::open_shared(dir.path(), "p", Shard { index: 0, count: 3 }).unwrap();
         assert!(other.load("b\n").is_some());

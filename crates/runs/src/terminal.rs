@@ -9,14 +9,16 @@ const BROKEN_PIPE: i32 = 141;
 
 /// Writes a line to standard output, for programs.
 ///
-/// Where nobody reads it any more (`... | head -1`), the process ends quietly with the exit code 141, as if by SIGPIPE; where it cannot
-/// be written (a full device), with a message and 1. Files are written whole, so that nothing half-written stays.
+/// Where nobody reads it any more (`... | head -1`), the process ends quietly with the exit code 141, as if
+/// by SIGPIPE; where it cannot be written (a full device), with a message and 1. Files are written whole, so
+/// that nothing half-written stays.
 #[macro_export]
 macro_rules! out {
     ($($text:tt)*) => { $crate::print(format_args!("{}\n", format_args!($($text)*))) };
 }
 
-/// Writes a line to standard error, for programs; where that is closed or full the line is lost, and what is computed goes on.
+/// Writes a line to standard error, for programs; where that is closed or full the line is lost, and what is
+/// computed goes on.
 #[macro_export]
 macro_rules! err {
     ($($text:tt)*) => { $crate::print_error(format_args!("{}\n", format_args!($($text)*))) };
@@ -39,8 +41,8 @@ pub fn print_error(text: Arguments<'_>) {
     let _ = write(&mut std::io::stderr().lock(), text);
 }
 
-/// Writes text whose control characters, but for ends of lines and tabs, are written out: names in files, tokens that an error quotes and
-/// paths may hold commands of a terminal.
+/// Writes text whose control characters, but for ends of lines and tabs, are written out: names in files,
+/// tokens that an error quotes and paths may hold commands of a terminal.
 fn write(into: &mut dyn Write, text: Arguments<'_>) -> std::io::Result<()> {
     let mut target = Target { into, failed: None };
     match (Escaping::of_lines(&mut target).write_fmt(text), target.failed) {

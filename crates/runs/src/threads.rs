@@ -1,7 +1,8 @@
 //! Threads that the system grants: fewer than asked for where it does not, at worst the calling one.
 //!
-//! `rayon` makes its global pool when it is first used and panics where the system refuses a thread, as under `ulimit -u 1` or in a
-//! container with a limit of processes. Programs therefore run in [`with_threads`], and [`crate::run_jobs`] asks [`granted_pool`].
+//! `rayon` makes its global pool when it is first used and panics where the system refuses a thread, as under
+//! `ulimit -u 1` or in a container with a limit of processes. Programs therefore run in [`with_threads`], and
+//! [`crate::run_jobs`] asks [`granted_pool`].
 
 use crate::error::Error;
 use rayon::{ThreadPool, ThreadPoolBuilder};
@@ -11,13 +12,15 @@ use std::time::Duration;
 /// More threads than this are a mistake.
 pub const MOST_THREADS: usize = 4096;
 
-/// Name of the variable of the environment that says how many threads a program has for what is not divided into jobs.
+/// Name of the variable of the environment that says how many threads a program has for what is not divided
+/// into jobs.
 pub const THREADS_VARIABLE: &str = "RAYON_NUM_THREADS";
 
 /// Stack of a program's thread: what the first thread of a process has.
 const STACK: usize = 8 << 20;
 
-/// Runs a program in a pool of its own: one thread per core, or as many as `asked`, the value of [`THREADS_VARIABLE`], says.
+/// Runs a program in a pool of its own: one thread per core, or as many as `asked`, the value of
+/// [`THREADS_VARIABLE`], says.
 ///
 /// # Errors
 /// [`Error::Parameter`] for a value that is no number of threads.
@@ -34,8 +37,9 @@ pub fn with_threads<T: Send>(asked: Option<&OsStr>, work: impl FnOnce() -> T + S
     };
     let cores = || std::thread::available_parallelism().map_or(1, usize::from);
     let pool = granted_pool(threads.unwrap_or_else(cores), STACK);
-    // What is asked of the global pool from outside of the other one is done by this thread. It needs none of the system's, so that it is
-    // refused only where a caller made the global pool before, and then there is one.
+    // What is asked of the global pool from outside of the other one is done by this thread. It needs none of
+    // the system's, so that it is refused only where a caller made the global pool before, and then there is
+    // one.
     let _ = ThreadPoolBuilder::new().num_threads(1).use_current_thread().build_global();
     Ok(match pool {
         Some(pool) => pool.install(work),
@@ -43,7 +47,8 @@ pub fn with_threads<T: Send>(asked: Option<&OsStr>, work: impl FnOnce() -> T + S
     })
 }
 
-/// A pool of so many threads, or of half as many, a quarter and so on as the system grants; `None` where it grants none.
+/// A pool of so many threads, or of half as many, a quarter and so on as the system grants; `None` where it
+/// grants none.
 pub fn granted_pool(threads: usize, stack: usize) -> Option<ThreadPool> {
     /// Threads of a pool that could not be filled need a moment to end.
     const PAUSE: Duration = Duration::from_millis(5);
@@ -62,7 +67,8 @@ pub fn granted_pool(threads: usize, stack: usize) -> Option<ThreadPool> {
     }
 }
 
-/// Whether the system grants one more thread now: to be asked before a handler of signals, which waits in a thread of its own, is set.
+/// Whether the system grants one more thread now: to be asked before a handler of signals, which waits in a
+/// thread of its own, is set.
 pub fn grants_a_thread() -> bool {
     std::thread::Builder::new().spawn(|| ()).is_ok_and(|thread| thread.join().is_ok())
 }

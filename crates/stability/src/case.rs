@@ -110,7 +110,8 @@ impl CaseResult {
     }
 }
 
-/// Solves cases in parallel; threads without a case help inside the others. `found` hears of each as it ends. The verdicts come in the order of the cases.
+/// Solves cases in parallel; threads without a case help inside the others. `found` hears of each as it ends.
+/// The verdicts come in the order of the cases.
 pub fn run(cases: &[Case], effort: Effort, found: &(dyn Fn(&CaseResult) + Sync)) -> Vec<CaseResult> {
     let one = |case: &Case| {
         let verdict = case.run(effort);

@@ -16,12 +16,14 @@ pub struct SmallContact {
     pub approach: f64,
     /// `1' K^-1 1` on the contact set.
     pub stiffness: f64,
-    /// Smallest of the positive forces over the mean one and positive gaps over the approach: how far from a tie.
+    /// Smallest of the positive forces over the mean one and positive gaps over the approach: how far from a
+    /// tie.
     pub margin: f64,
 }
 
-/// All contact sets among the `cells` (at most 16; all others must be out of reach) that satisfy `p > 0` inside and `g > 0` outside, by trying
-/// every one of them with Gauss's elimination. There should be exactly one.
+/// All contact sets among the `cells` (at most 16; all others must be out of reach) that satisfy `p > 0`
+/// inside and `g > 0` outside, by trying every one of them with Gauss's elimination. There should be exactly
+/// one.
 ///
 /// Cost O(2^n n^3).
 ///

@@ -55,7 +55,8 @@ impl Ledger {
         self.must(report.certificate.meets(tolerance), || format!("F {force}: {report:?}"));
     }
 
-    /// Enters the deviations of force, approach and stiffness of one state from another; the contact must have as many cells.
+    /// Enters the deviations of force, approach and stiffness of one state from another; the contact must
+    /// have as many cells.
     ///
     /// # Errors
     /// [`Error::Shape`] where a state lacks one of them.

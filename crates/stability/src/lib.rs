@@ -1,28 +1,33 @@
-//! Hard cases of contact mechanics, each solved for real and judged by a certificate and a physical or exact result.
+//! Hard cases of contact mechanics, each solved for real and judged by a certificate and a physical or exact
+//! result.
 //!
 //! # What it computes
 //!
 //! [`cases`] is the registry: what solvers of this field trip over (one cell, ties, full contact, loads over sixteen decades, units at
-//! the ends of f64, misleading warm starts, limits). A [`Case`] says why it is hard and what is asserted; [`Case::run`]
-//! solves it and gives a [`CaseResult`]: the largest deviation found ([`CaseResult::figure`]), the bound that it must keep, and assertions
-//! that do not hold. That a solver comes back is never an assertion: each case compares with a closed form, a symmetry, a bound of
-//! mechanics or a reference implementation.
+//! the ends of f64, misleading warm starts, limits). A [`Case`] says why it is hard and what is asserted;
+//! [`Case::run`] solves it and gives a [`CaseResult`]: the largest deviation found ([`CaseResult::figure`]),
+//! the bound that it must keep, and assertions that do not hold. That a solver comes back is never an
+//! assertion: each case compares with a closed form, a symmetry, a bound of mechanics or a reference
+//! implementation.
 //!
 //! # Conventions
 //!
 //! * Figures are relative deviations, or numbers of things that differ where bits are compared (bound 0).
-//! * Besides its certificate a state has a witness that shares nothing with the solver but Love's kernel: the contact conditions and the
-//!   force from plain sums over pairs (free boundaries, modulus 1, up to 129 cells a side), the stiffness by Gauss's elimination (up to 220 cells).
+//! * Besides its certificate a state has a witness that shares nothing with the solver but Love's kernel: the
+//!   contact conditions and the force from plain sums over pairs (free boundaries, modulus 1, up to 129 cells
+//!   a side), the stiffness by Gauss's elimination (up to 220 cells).
 //! * A case that fails, with an error or a panic, is a row like any other; the others still run.
 //!
 //! # How accurate
 //!
-//! The reference implementations are [`every_contact_set`] (all sets of up to 16 cells), [`relaxed`] (projected Gauss-Seidel, to rounding) and
+//! The reference implementations are [`every_contact_set`] (all sets of up to 16 cells), [`relaxed`]
+//! (projected Gauss-Seidel, to rounding) and
 //! [`PlainSum`]. Bounds are stated beside each case with their reason.
 //!
 //! # How fast
 //!
-//! All cases take well under a minute of processor time ([`Effort::Quick`]); [`Effort::Thorough`] has larger grids and takes minutes.
+//! All cases take well under a minute of processor time ([`Effort::Quick`]); [`Effort::Thorough`] has larger
+//! grids and takes minutes.
 //!
 //! # What it does not do
 //!

@@ -33,8 +33,9 @@ pub fn rough_map(fractal_dimension: f64, cells: usize, seed: u64) -> Result<Heig
     surface_gen::self_affine_map(&rough(fractal_dimension)?, cells, seed)
 }
 
-/// Maps on which solvers have failed, of `cells` x `cells` and drawn from numbers in [0, 1): white noise (0), the same in steps (1),
-/// stripes (2), a tilted plane (3), a few spikes (4), one sharp summit (5), heights over twenty decades (any other kind).
+/// Maps on which solvers have failed, of `cells` x `cells` and drawn from numbers in [0, 1): white noise (0),
+/// the same in steps (1), stripes (2), a tilted plane (3), a few spikes (4), one sharp summit (5), heights
+/// over twenty decades (any other kind).
 ///
 /// # Errors
 /// Those of [`HeightMap::new`].

@@ -1,4 +1,5 @@
-//! The slow, obviously right reference implementations: sums over pairs, Gauss's elimination, projected Gauss-Seidel.
+//! The slow, obviously right reference implementations: sums over pairs, Gauss's elimination, projected
+//! Gauss-Seidel.
 
 use bem3d::love::influence_of_rectangle;
 use contact_model::HeightMap;
@@ -10,8 +11,9 @@ const OVER: f64 = 1.6;
 const SETTLED: f64 = 1e-15;
 const SWEEPS: usize = 20_000;
 
-/// Periods of the images that a periodic kernel sums up on each side, for an extrapolation to infinitely many. What images beyond m
-/// periods add to a difference of the kernel is a series of odd powers of 1/(m + 1/2): four sums leave 1/(m + 1/2)^7.
+/// Periods of the images that a periodic kernel sums up on each side, for an extrapolation to infinitely
+/// many. What images beyond m periods add to a difference of the kernel is a series of odd powers of 1/(m +
+/// 1/2): four sums leave 1/(m + 1/2)^7.
 const IMAGES: [isize; 4] = [3, 6, 12, 24];
 
 /// Displacements of the cells of a grid under forces on them, by the plain sum, for modulus 1.
@@ -24,7 +26,8 @@ pub struct PlainSum {
 }
 
 impl PlainSum {
-    /// A table of all lags of a grid of `cells` (columns, rows) with sides `dx`, `dy`, on a half-space that is unloaded outside.
+    /// A table of all lags of a grid of `cells` (columns, rows) with sides `dx`, `dy`, on a half-space that
+    /// is unloaded outside.
     pub fn new([columns, rows]: [usize; 2], [dx, dy]: [f64; 2]) -> Self {
         let (unit, stretch) = scales(dx, dy);
         let lag = |i: usize| influence_of_rectangle(i % columns, i / columns, stretch) / (PI * unit);
@@ -36,10 +39,12 @@ impl PlainSum {
         Self::new([map.columns(), map.rows()], [map.dx(), map.dy()])
     }
 
-    /// The table for a map that repeats itself, from sums of Love's kernel over its images: no Fourier transform and no spectrum.
+    /// The table for a map that repeats itself, from sums of Love's kernel over its images: no Fourier
+    /// transform and no spectrum.
     ///
-    /// The sum has no limit but its differences have one; the kernel is counted from its smallest value. Accuracy about 1e-10 of the
-    /// largest one. Cost: some 3000 influence coefficients a lag, more for long rectangles.
+    /// The sum has no limit but its differences have one; the kernel is counted from its smallest value.
+    /// Accuracy about 1e-10 of the largest one. Cost: some 3000 influence coefficients a lag, more for long
+    /// rectangles.
     pub fn periodic(map: &HeightMap) -> Self {
         let (columns, rows) = (map.columns(), map.rows());
         let (unit, stretch) = scales(map.dx(), map.dy());
@@ -133,10 +138,12 @@ pub struct Relaxed {
     pub force: f64,
 }
 
-/// The state at an approach by projected Gauss-Seidel: each cell in turn gets the force that closes its gap, if that is no pull.
+/// The state at an approach by projected Gauss-Seidel: each cell in turn gets the force that closes its gap,
+/// if that is no pull.
 ///
-/// No guess, no contact set, no transform: slow and independent of everything that `bem3d` does. Cost O(n^2) a sweep and in
-/// memory for n cells within reach; a few hundred sweeps on 33 x 33 cells, thousands where a periodic map is in full contact.
+/// No guess, no contact set, no transform: slow and independent of everything that `bem3d` does. Cost O(n^2)
+/// a sweep and in memory for n cells within reach; a few hundred sweeps on 33 x 33 cells, thousands where a
+/// periodic map is in full contact.
 ///
 /// # Panics
 /// Where the sweeps do not settle: an unfinished relaxation is no reference.
@@ -144,7 +151,8 @@ pub fn relaxed(map: &HeightMap, approach: f64) -> Relaxed {
     relaxed_by(&PlainSum::of(map), map, approach)
 }
 
-/// The same with a given kernel; that of a periodic map may be counted from any value that leaves it positive, and the approach with it.
+/// The same with a given kernel; that of a periodic map may be counted from any value that leaves it
+/// positive, and the approach with it.
 ///
 /// # Panics
 /// As [`relaxed`].
@@ -175,7 +183,8 @@ pub fn relaxed_by(sum: &PlainSum, map: &HeightMap, approach: f64) -> Relaxed {
             settled = true;
             break;
         }
-        // All forces together, as far as the energy falls: the mean pressure of a periodic map is slow one by one.
+        // All forces together, as far as the energy falls: the mean pressure of a periodic map is slow one by
+        // one.
         let product = |b: &mut dyn Iterator<Item = f64>| force.iter().zip(b).map(|(f, b)| f * b).sum::<f64>();
         let slope = product(&mut gap.iter().copied());
         let curvature = product(&mut gap.iter().zip(&open).map(|(g, o)| g - o));
@@ -252,7 +261,8 @@ mod tests {
             let wave = |i: usize| (PI * 2.0 * (i % cells[0]) as f64 / cells[0] as f64).cos();
             let forces: Vec<(usize, f64)> = (0..cells[0] * cells[1]).map(|i| (i, wave(i))).collect();
             let u = PlainSum::periodic(&map).displacement(&forces);
-            // 2 pi / q over pi E* at long waves; larger for short ones, which other waves of the continuum add to.
+            // 2 pi / q over pi E* at long waves; larger for short ones, which other waves of the continuum
+            // add to.
             let continuum = 2.0 * size[0] / (2.0 * PI) * (cells[0] * cells[1]) as f64 / (size[0] * size[1]);
             assert!((0.9..1.2).contains(&(u[0] / continuum)), "{} {continuum}", u[0]);
             for (i, u_i) in u.iter().enumerate() {

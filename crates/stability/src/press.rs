@@ -11,7 +11,8 @@ use std::cell::Cell;
 
 /// Tolerance of the solves.
 pub(crate) const TOLERANCE: f64 = 1e-10;
-/// Two solves of one state at [`TOLERANCE`]: certificates count gaps in rms heights, approaches here are down to a thousandth of that.
+/// Two solves of one state at [`TOLERANCE`]: certificates count gaps in rms heights, approaches here are down
+/// to a thousandth of that.
 pub(crate) const SAME: f64 = 1e-7;
 /// The approach may be off by so many tolerances of the rms height (`Bem3d::tolerance`).
 const LEFT_OPEN: f64 = 10.0;
@@ -166,7 +167,8 @@ pub(crate) fn witness(
     Ok(())
 }
 
-/// Compares a state at an approach with the one that relaxation finds: contact set exactly; force and stiffness enter the figure.
+/// Compares a state at an approach with the one that relaxation finds: contact set exactly; force and
+/// stiffness enter the figure.
 pub(crate) fn against_relaxation(ledger: &mut Ledger, map: &HeightMap, d: f64) -> Result<()> {
     let state = press_both(ledger, map, Load::Approach(d))?;
     let slow = relaxed(map, d);

@@ -37,11 +37,13 @@
 //! * **Sampling.** Row-major, x along a row, at the cells' centres; the phases count from the rectangle's
 //!   corner. So the same seed is the same surface on any grid, with more or fewer short waves (and its own
 //!   factor where the rms is prescribed).
-//! * **Given maps.** [`MapStatistics`] is what theories of rough contact take from a map and how far it is what they
-//!   assume; [`SelfAffineFit`] is its Hurst exponent, or why it has none; [`LineGenerator::of_map`] draws the line that
-//!   stands for it. A map whose opposite edges differ is measured under Hann's window ([`windowed`]).
-//! * **Other maps.** [`WaveGenerator`] draws maps with the amplitudes of any spectrum: artificial twins of a given
-//!   map and anisotropic self-affine surfaces; [`PrescribedMap`] gives them a distribution of heights too.
+//! * **Given maps.** [`MapStatistics`] is what theories of rough contact take from a map and how far it is
+//!   what they assume; [`SelfAffineFit`] is its Hurst exponent, or why it has none; [`LineGenerator::of_map`]
+//!   draws the line that stands for it. A map whose opposite edges differ is measured under Hann's window
+//!   ([`windowed`]).
+//! * **Other maps.** [`WaveGenerator`] draws maps with the amplitudes of any spectrum: artificial twins of a
+//!   given map and anisotropic self-affine surfaces; [`PrescribedMap`] gives them a distribution of heights
+//!   too.
 //! * **Chance.** The phase of a wave is a function of (seed, i, j) alone; the stream is written down in the
 //!   source of [`map_phase`] and pinned by tests. The fractal dimension does not enter: surfaces of one seed
 //!   and different D_f share their phases.
@@ -53,15 +55,15 @@
 //!
 //! The synthesis agrees with the sum over waves to 1e-12 of the rms, the rms with the prescribed one to
 //! 1e-12. Bytes do not depend on the number of threads; another processor or version of the transform library
-//! may change last digits. A map is drawn on the threads of the `rayon` pool in which it is called (without one,
-//! the global pool). On one core of a 2020s machine a map of 2049 x 2049 cells takes about 0.15 s and a
+//! may change last digits. A map is drawn on the threads of the `rayon` pool in which it is called (without
+//! one, the global pool). On one core of a 2020s machine a map of 2049 x 2049 cells takes about 0.15 s and a
 //! line of 2^20 elements about 6 ms; memory is twice that of the map. Keep a [`MapGenerator`] or
 //! [`LineGenerator`] to draw many.
 //!
 //! # What it does not do
 //!
-//! Gaussian amplitudes, resampling of given maps, reading files; no contact mechanics. Parameters of standards,
-//! correlations and fits with intervals are in the crate `surface-statistics`.
+//! Gaussian amplitudes, resampling of given maps, reading files; no contact mechanics. Parameters of
+//! standards, correlations and fits with intervals are in the crate `surface-statistics`.
 
 mod distribution;
 mod hash;

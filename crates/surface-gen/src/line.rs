@@ -58,11 +58,12 @@ impl LineGenerator {
         })
     }
 
-    /// Plans lines of `elements` elements that stand for a given map: the wave m of the line has the height variance
-    /// `2 B_1D^2` of all waves of the map with |q| nearest to `m 2 pi / L_1D`, the rule `C_1D = pi q C_2D` (Eq. 17) of
-    /// the map's own spectrum, whatever its shape. Waves longer than the line go to m = 1, shorter ones than the
-    /// line carries are left out: with as many elements as the map has cells along its diagonal the rms height is that
-    /// of the map, where that is periodic. Elsewhere the spectrum is that under Hann's window ([`crate::windowed`]).
+    /// Plans lines of `elements` elements that stand for a given map: the wave m of the line has the height
+    /// variance `2 B_1D^2` of all waves of the map with |q| nearest to `m 2 pi / L_1D`, the rule
+    /// `C_1D = pi q C_2D` (Eq. 17) of the map's own spectrum, whatever its shape. Waves longer than the line
+    /// go to m = 1, shorter ones than the line carries are left out: with as many elements as the map has
+    /// cells along its diagonal the rms height is that of the map, where that is periodic. Elsewhere the
+    /// spectrum is that under Hann's window ([`crate::windowed`]).
     ///
     /// # Errors
     /// Those of [`crate::MapStatistics::new`], and as [`LineGenerator::new`]. Cost O(N log N) for N cells.
@@ -192,7 +193,8 @@ mod tests {
         SelfAffine::new(fractal_dimension, 1.0, 1.0).unwrap()
     }
 
-    /// The reference implementation: Eq. 14 wave by wave, both signs of q, `B_1D = sqrt((2 pi / L_1D) pi q C_2D)`.
+    /// The reference implementation: Eq. 14 wave by wave, both signs of q,
+    /// `B_1D = sqrt((2 pi / L_1D) pi q C_2D)`.
     fn direct(surface: &SelfAffine, constant: f64, n: usize, seed: u64) -> Vec<f64> {
         let length = line_length(surface.size.length());
         let (q0, floor) = (TAU / surface.size.length(), surface.roll_off.unwrap_or(0.0));

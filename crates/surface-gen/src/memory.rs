@@ -2,14 +2,17 @@
 
 use contact_model::{Cells, Error, Result, Surface};
 
-/// Bytes that drawing a self-affine map takes for each of the map: half of its waves, as complex numbers, beside it.
+/// Bytes that drawing a self-affine map takes for each of the map: half of its waves, as complex numbers,
+/// beside it.
 const DRAWN: f64 = 2.0;
 /// The same with amplitudes of their own, those of a lay or of an artificial twin.
 const WITH_AMPLITUDES: f64 = 3.0;
-/// The same with prescribed heights: sorted heights, those of two steps of the iteration, their order and their waves.
+/// The same with prescribed heights: sorted heights, those of two steps of the iteration, their order and
+/// their waves.
 const PRESCRIBED: f64 = 7.0;
 
-/// Bytes that [`crate::height_map`] takes at its peak: those of the map, twice as many where it is drawn, none where it is given.
+/// Bytes that [`crate::height_map`] takes at its peak: those of the map, twice as many where it is drawn,
+/// none where it is given.
 ///
 /// ```
 /// use contact_model::{SelfAffine, Surface};
@@ -28,13 +31,14 @@ pub fn height_map_memory(surface: &Surface, cells: impl Into<Cells>) -> f64 {
     }
 }
 
-/// Bytes that [`crate::WaveGenerator`] and a map of it take at their peak, with the heights of a [`crate::PrescribedMap`] or without.
+/// Bytes that [`crate::WaveGenerator`] and a map of it take at their peak, with the heights of a
+/// [`crate::PrescribedMap`] or without.
 pub fn wave_map_memory(cells: impl Into<Cells>, prescribed: bool) -> f64 {
     cells.into().map_bytes() * if prescribed { PRESCRIBED } else { WITH_AMPLITUDES }
 }
 
-/// An error where the bytes cannot be had that a map of these cells takes while it is drawn. They are not kept: each thread touches its
-/// own part of them first.
+/// An error where the bytes cannot be had that a map of these cells takes while it is drawn. They are not
+/// kept: each thread touches its own part of them first.
 pub(crate) fn check(cells: Cells, bytes: f64) -> Result<()> {
     // A number beyond those of `usize` becomes the largest, which is refused.
     Vec::<u8>::new().try_reserve_exact(bytes as usize).map_err(|_| {

@@ -44,7 +44,8 @@ impl StoredUnit {
 const SIGNALS: [&str; 3] = ["amplitude", "deflection", "error"];
 
 impl StoredUnit {
-    /// The unit of a signal of a probe microscope: what the cantilever does is no height, though it may be a length.
+    /// The unit of a signal of a probe microscope: what the cantilever does is no height, though it may be a
+    /// length.
     pub(crate) fn of_signal(name: &str, unit: &str) -> Self {
         let name = name.to_lowercase();
         match Self::written(unit) {
@@ -251,7 +252,8 @@ impl RawHeights {
         Err(source.wrong(offset, expected))
     }
 
-    /// An error where the numbers are not all there, or their scale makes no heights; called before the channel is listed.
+    /// An error where the numbers are not all there, or their scale makes no heights; called before the
+    /// channel is listed.
     pub(crate) fn check(&self, source: &Source<'_>, rows: usize, columns: usize) -> Result<()> {
         if rows == 0 || columns == 0 {
             let (rows, columns) = (rows as u64, columns as u64);
@@ -449,7 +451,8 @@ impl StoredChannel {
         self.notes.push(note.into());
     }
 
-    /// Leaves the unit open where numbers are integers in a unit of length without a scale: a count need not be one of them.
+    /// Leaves the unit open where numbers are integers in a unit of length without a scale: a count need not
+    /// be one of them.
     pub(crate) fn check_counts(&mut self, number: NumberType, scaled: bool) {
         if let (StoredUnit::Heights(unit), false, false) = (&self.unit, number.is_float(), scaled)
             && *unit != Unit::none()
@@ -522,7 +525,8 @@ impl StoredChannel {
         (self.rows, self.columns) = (columns, rows);
     }
 
-    /// Escapes the control characters of all that is the file's own text: what is shown is what a channel is chosen by.
+    /// Escapes the control characters of all that is the file's own text: what is shown is what a channel is
+    /// chosen by.
     pub(crate) fn escape(&mut self) {
         let Self { name, details, unit, notes, .. } = self;
         let unit = if let StoredUnit::NoHeights(unit) = unit { unit.as_mut() } else { None };
@@ -596,7 +600,8 @@ pub(crate) fn chosen(
 /// Channels of one file that are listed: those of probe microscopes have dozens at most.
 const MOST: usize = 256;
 
-/// An error where a header lists more channels than files have: each takes more memory than its line in the header.
+/// An error where a header lists more channels than files have: each takes more memory than its line in the
+/// header.
 pub(crate) fn check_number(source: &Source<'_>, offset: u64, channels: usize) -> Result<()> {
     if channels <= MOST {
         return Ok(());
@@ -604,8 +609,8 @@ pub(crate) fn check_number(source: &Source<'_>, offset: u64, channels: usize) ->
     Err(source.wrong(offset, format!("at most {MOST} channels, found {channels}")))
 }
 
-/// An error where a line of numbers or more stands behind the last numbers that a header lists: its counts or its type are not those of
-/// the file. A few bytes are a note.
+/// An error where a line of numbers or more stands behind the last numbers that a header lists: its counts or
+/// its type are not those of the file. A few bytes are a note.
 pub(crate) fn check_rest(
     channels: &mut [StoredChannel],
     source: &Source<'_>,

@@ -10,13 +10,15 @@ const ROUNDED: f64 = 1e-9;
 /// Least share of a cell of the result that must be defined, but for roundings.
 const HALF: f64 = 0.5 - 1e-9;
 
-/// The sum of the heights of two bodies that touch face to face, which is pressed against a flat half-space: with heights counted from each body outwards,
-/// the gap between both is what the sum leaves to its highest point (K. L. Johnson, Contact Mechanics, 1985, Sec. 4.1).
+/// The sum of the heights of two bodies that touch face to face, which is pressed against a flat half-space:
+/// with heights counted from each body outwards, the gap between both is what the sum leaves to its highest
+/// point (K. L. Johnson, Contact Mechanics, 1985, Sec. 4.1).
 ///
-/// Both maps are seen in the directions of the first: a map that was measured from its own side must be mirrored before
-/// ([`crate::Preprocessing::mirror`]). The middle of the second lies at `offset` from that of the first, lengths along x and y. The result is the
-/// part that both cover, in the larger of both cells along each axis: each height is a mean over the area of its cell, exact where the grids
-/// coincide. A cell of which less than half is defined on one of the bodies is undefined. Cost O(N).
+/// Both maps are seen in the directions of the first: a map that was measured from its own side must be
+/// mirrored before ([`crate::Preprocessing::mirror`]). The middle of the second lies at `offset` from that of
+/// the first, lengths along x and y. The result is the part that both cover, in the larger of both cells
+/// along each axis: each height is a mean over the area of its cell, exact where the grids coincide. A cell
+/// of which less than half is defined on one of the bodies is undefined. Cost O(N).
 ///
 /// # Errors
 /// [`ContentError::Apart`] where both have less than one cell in common, [`ContentError::Map`] where no point is defined.
@@ -52,7 +54,8 @@ fn summed(first: &HeightMap, second: &HeightMap, offset: [f64; 2]) -> Result<Hei
 struct Axis {
     cell: f64,
     count: usize,
-    /// For each cell of the result and each map: its first cell there, and the shares of that and those behind it.
+    /// For each cell of the result and each map: its first cell there, and the shares of that and those
+    /// behind it.
     shares: [Vec<(usize, Vec<f64>)>; 2],
 }
 
@@ -83,7 +86,8 @@ impl Axis {
     }
 }
 
-/// The first whole cell under an interval of cells, and the shares of it and those behind it, which add up to 1.
+/// The first whole cell under an interval of cells, and the shares of it and those behind it, which add up to
+/// 1.
 fn parts(from: f64, to: f64) -> (usize, Vec<f64>) {
     let (first, last) = (from.floor() as usize, (to.ceil() as usize).max(from.floor() as usize + 1));
     let share = |i: usize| ((i + 1) as f64).min(to) - (i as f64).max(from);

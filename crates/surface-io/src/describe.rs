@@ -61,14 +61,14 @@ impl fmt::Display for Absent {
 }
 
 impl Description {
-    /// Fractal dimension D_f = 3 - H, where it lies between 2 and 3 as that of a self-affine surface does (within
-    /// 0.1, the error of a fit).
+    /// Fractal dimension D_f = 3 - H, where it lies between 2 and 3 as that of a self-affine surface does
+    /// (within 0.1, the error of a fit).
     pub fn fractal_dimension(&self) -> Option<f64> {
         self.hurst.ok().map(|h| 3.0 - h).filter(|d| (1.9..=3.1).contains(d))
     }
 
-    /// The description without the straight-line fit of the exponent: where a fit with an interval is told beside it, the two would
-    /// contradict each other wherever the spectrum rolls off.
+    /// The description without the straight-line fit of the exponent: where a fit with an interval is told
+    /// beside it, the two would contradict each other wherever the spectrum rolls off.
     #[must_use]
     pub fn without_fit(self) -> Self {
         Self { hurst: Err(Absent::NotFitted), ..self }

@@ -51,7 +51,8 @@ const FOREIGN: [(&[u8], &str, &str); 37] = [
     (b"# vtk DataFile", "a VTK file", "export NPY or text"),
 ];
 
-/// The format by request, the first bytes and the name's ending; `None` for text that may be a matrix or points.
+/// The format by request, the first bytes and the name's ending; `None` for text that may be a matrix or
+/// points.
 pub(crate) fn detect(
     requested: Option<Format>,
     path: &Path,

@@ -5,8 +5,8 @@ use crate::source::Source;
 use flate2::read::{DeflateDecoder, ZlibDecoder};
 use std::io::Read;
 
-/// Deflate packs at most so many bytes into one, and so do the other compressions that are read, in maps that are measured; a few more end
-/// its stream.
+/// Deflate packs at most so many bytes into one, and so do the other compressions that are read, in maps that
+/// are measured; a few more end its stream.
 pub(crate) const RATIO: u64 = 1032;
 const END: u64 = 64;
 
@@ -33,7 +33,8 @@ pub(crate) struct Packed {
 }
 
 impl Packed {
-    /// An error where the file ends too early or the bytes cannot unpack to as many as claimed; called before anything is allocated.
+    /// An error where the file ends too early or the bytes cannot unpack to as many as claimed; called before
+    /// anything is allocated.
     pub(crate) fn check(self, source: &Source<'_>) -> Result<()> {
         let Self { packing, offset, length, unpacked } = self;
         if offset.checked_add(length).is_none_or(|end| end > source.length()) {

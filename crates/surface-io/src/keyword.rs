@@ -168,8 +168,8 @@ impl FromStr for Undefined {
 impl FromStr for Crop {
     type Err = KeywordError;
 
-    /// Reads `centre`, `defined`, or row, column, rows and columns as in `10,20,256,512`; with three numbers there are
-    /// as many columns as rows.
+    /// Reads `centre`, `defined`, or row, column, rows and columns as in `10,20,256,512`; with three numbers
+    /// there are as many columns as rows.
     ///
     /// # Errors
     /// [`KeywordError`] for other words.

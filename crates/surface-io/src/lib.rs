@@ -23,26 +23,29 @@
 //!
 //! # Nothing is guessed silently
 //!
-//! * **Format.** Binary ones by their first bytes, XYZ by the name's ending or [`ReadOptions::format`], everything else as
-//!   a text matrix; three columns without either are points or a matrix by their comments, points where the first two are all
-//!   places of a grid, or else an error; two
-//!   columns of more than eight lines, the first of ascending or descending numbers, are a profile. Other
-//!   files that people try (archives, pictures) are named.
+//! * **Format.** Binary ones by their first bytes, XYZ by the name's ending or [`ReadOptions::format`],
+//!   everything else as a text matrix; three columns without either are points or a matrix by their comments,
+//!   points where the first two are all places of a grid, or else an error; two columns of more than eight
+//!   lines, the first of ascending or descending numbers, are a profile. Other files that people try
+//!   (archives, pictures) are named.
 //! * **Text.** The first line of data sets the delimiter: semicolon, else tab, else comma, else whitespace.
-//!   Comments begin with `#` or `%` at the beginning of a line or behind white space; lines before the numbers that begin with a word are a header like them. Of both count `Width`,
-//!   `Height`, `Value units` and `Lateral units`, as Gwyddion's exports and this crate write them, and the keys of SPIP, Nanoscope and
-//!   profilers (`x-length`, `Scan Size`, `Pixel size`, `Z unit`, ...); two that differ are an error, and so are other numbers of columns
-//!   or rows than there are. Decimal commas are read on request ([`Decimal::Comma`]), or where every comma can be nothing else. An
-//!   empty place between two delimiters, `nan`, words such as `---` or `BAD` and the C library's `1.#QNAN` are undefined points. A heading
-//!   or an empty line between numbers ends a map, and several maps are channels. A first line and a first column that may be coordinates
-//!   are asked about ([`ReadOptions::border`]).
-//! * **Notes.** What a file says and what is not used of it, and a value far from all others, stand in [`Metadata::notes`] and in the error
-//!   that asks for what is missing.
+//!   Comments begin with `#` or `%` at the beginning of a line or behind white space; lines before the
+//!   numbers that begin with a word are a header like them. Of both count `Width`, `Height`, `Value units`
+//!   and `Lateral units`, as Gwyddion's exports and this crate write them, and the keys of SPIP, Nanoscope
+//!   and profilers (`x-length`, `Scan Size`, `Pixel size`, `Z unit`, ...); two that differ are an error, and
+//!   so are other numbers of columns or rows than there are. Decimal commas are read on request
+//!   ([`Decimal::Comma`]), or where every comma can be nothing else. An empty place between two delimiters,
+//!   `nan`, words such as `---` or `BAD` and the C library's `1.#QNAN` are undefined points. A heading or an
+//!   empty line between numbers ends a map, and several maps are channels. A first line and a first column
+//!   that may be coordinates are asked about ([`ReadOptions::border`]).
+//! * **Notes.** What a file says and what is not used of it, and a value far from all others, stand in
+//!   [`Metadata::notes`] and in the error that asks for what is missing.
 //! * **Size.** Two sides, or two sides of a cell. One value is that of a square map, or of square cells; so
 //!   is a header's width or height without the other, and two that are square cells within the decimals that
 //!   are printed. Cells whose sides differ by more than 1e4 are an error.
-//! * **Profiles.** Points x, z with equal steps become a map of one row, as does a row of an instrument whose file says its length along x alone
-//!   ([`Metadata::profile`]): a body that is uniform along y, on square cells.
+//! * **Profiles.** Points x, z with equal steps become a map of one row, as does a row of an instrument whose
+//!   file says its length along x alone ([`Metadata::profile`]): a body that is uniform along y, on square
+//!   cells.
 //! * **Points.** In any order; the spacing along each axis is the smallest step, refined over the whole
 //!   range, and one for both where they differ by no more than the points are off their places. A point may
 //!   be off its place by a tenth of a found spacing or a quarter of a given one, how far one is is told, two
@@ -53,9 +56,10 @@
 //!   unit both stay as they are. What is given beside what the file says must agree with it within the digits
 //!   of a header (0.5 %).
 //! * **Channels** that cannot be read are listed with the reason beside those that can.
-//! * **Counts.** Grey levels and other numbers without a unit become heights by [`ReadOptions::height_scale`] only.
-//!   Integers of an HDF5 file that have a unit of length and no scale are counts too.
-//! * **Axes.** Arrays without names of their axes (HDF5, MATLAB, NetCDF) are read by the custom of the format, which is noted;
+//! * **Counts.** Grey levels and other numbers without a unit become heights by [`ReadOptions::height_scale`]
+//!   only. Integers of an HDF5 file that have a unit of length and no scale are counts too.
+//! * **Axes.** Arrays without names of their axes (HDF5, MATLAB, NetCDF) are read by the custom of the
+//!   format, which is noted;
 //!   [`ReadOptions::axes`] says which index is x. It is an error where the file or the format says it.
 //! * **Undefined points** are refused without a [`Fill`] or [`Undefined::NoContact`] (and with both),
 //!   infinite heights always.
@@ -66,8 +70,9 @@
 //!
 //! Numbers are the doubles nearest to what is written, also with a unit of a power of ten behind them
 //! ([`Quantity`]); heights of a scan are converted with one rounding. What is written is read again to the
-//! bit ([`text()`], [`xyz`], [`npy`], [`hdf5`], [`x3p`], [`gwy`], [`netcdf`]); so are the sides in all but NPY,
-//! in X3P but for their last bit. Trends are exact to 1e-13 of the range of the heights, filled points to 1e-10.
+//! bit ([`text()`], [`xyz`], [`npy`], [`hdf5`], [`x3p`], [`gwy`], [`netcdf`]); so are the sides in all but
+//! NPY, in X3P but for their last bit. Trends are exact to 1e-13 of the range of the heights, filled points
+//! to 1e-10.
 //!
 //! # Hostile files
 //!

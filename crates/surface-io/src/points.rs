@@ -59,7 +59,8 @@ fn axis(table: &TextTable, name: char, at: usize, spacing: Option<f64>) -> Resul
     GridAxis::find(name, along.collect(), spacing)
 }
 
-/// The heights, in the last column, at their places on these axes, the first of which runs fastest; undefined where there is no point.
+/// The heights, in the last column, at their places on these axes, the first of which runs fastest; undefined
+/// where there is no point.
 fn placed(table: &TextTable, axes: &[&GridAxis]) -> Result<Vec<f64>, ContentError> {
     let counts: f64 = axes.iter().map(|axis| axis.count).product();
     let points = table.rows();
@@ -106,7 +107,8 @@ fn channel(
     StoredChannel { name: table.heading.name.clone(), extent, notes: table.heading.notes(extent), ..channel }
 }
 
-/// Whether the first two of three columns are all places of a grid of two rows and columns or more, each once and exactly on its place.
+/// Whether the first two of three columns are all places of a grid of two rows and columns or more, each once
+/// and exactly on its place.
 pub(crate) fn is_full_grid(table: &TextTable) -> bool {
     let axis = |name, at: usize| {
         let along: Vec<f64> = table.values.iter().skip(at).step_by(3).copied().collect();

@@ -25,13 +25,16 @@ pub struct Preprocessing {
     pub crop: Option<Crop>,
     /// How scan lines, the rows, are shifted to a common height.
     pub align_lines: Option<AlignLines>,
-    /// Scars become undefined: runs of at least 16 points along x, at most four rows tall, that are higher or lower than the row before and
-    /// the row after them by more than so many robust standard deviations of the differences between neighbouring rows. A ridge or a
-    /// groove of the surface that is as narrow and lies along x goes too.
+    /// Scars become undefined: runs of at least 16 points along x, at most four rows tall, that are higher or
+    /// lower than the row before and the row after them by more than so many robust standard deviations of
+    /// the differences between neighbouring rows. A ridge or a groove of the surface that is as narrow and
+    /// lies along x goes too.
     pub scars: Option<f64>,
-    /// Heights farther from the median of their neighbours than so many robust standard deviations of all such distances become undefined.
+    /// Heights farther from the median of their neighbours than so many robust standard deviations of all
+    /// such distances become undefined.
     pub outliers: Option<f64>,
-    /// Radius of the tip that measured the heights: says from which distance on they are reliable, and changes nothing.
+    /// Radius of the tip that measured the heights: says from which distance on they are reliable, and
+    /// changes nothing.
     pub tip_radius: Option<Quantity>,
     /// What becomes of undefined points. Without it and without [`Preprocessing::fill`] they are an error.
     pub undefined: Option<Undefined>,
@@ -39,9 +42,10 @@ pub struct Preprocessing {
     pub fill: Option<Fill>,
     /// What is subtracted: fitted to the points that are defined in the file, after the crop.
     pub detrend: Detrend,
-    /// Cut-off wavelength of a Gaussian low-pass filter across the scan lines, along y (ISO 16610-21: half of a wave of this wavelength is
-    /// transmitted), from four cells to the side of the map. At edges and undefined points the weights are those of the defined points,
-    /// their sum one; undefined points that are kept stay undefined. It takes noise from line to line, and waves of the surface with it.
+    /// Cut-off wavelength of a Gaussian low-pass filter across the scan lines, along y (ISO 16610-21: half of
+    /// a wave of this wavelength is transmitted), from four cells to the side of the map. At edges and
+    /// undefined points the weights are those of the defined points, their sum one; undefined points that are
+    /// kept stay undefined. It takes noise from line to line, and waves of the surface with it.
     pub filter_across: Option<Quantity>,
     /// Columns after averaging over larger cells; as many as the map has where only `rows` is given.
     pub cells: Option<usize>,
@@ -87,9 +91,10 @@ impl std::fmt::Display for Mirror {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Window {
-    /// `sin^2(pi x/Lx) sin^2(pi y/Ly)` at the middles of the cells, divided by its rms, 3/8: a map without a step at its edges, for periodic
-    /// boundaries. A homogeneous surface keeps its spectrum, and with it rms height and slope; in the middle of the map it is 8/3 as rough
-    /// as it was, at the edges smooth: it serves theories and twins, and a solver finds another contact than without it.
+    /// `sin^2(pi x/Lx) sin^2(pi y/Ly)` at the middles of the cells, divided by its rms, 3/8: a map without a
+    /// step at its edges, for periodic boundaries. A homogeneous surface keeps its spectrum, and with it rms
+    /// height and slope; in the middle of the map it is 8/3 as rough as it was, at the edges smooth: it
+    /// serves theories and twins, and a solver finds another contact than without it.
     Hann,
 }
 
@@ -101,8 +106,8 @@ pub struct Preprocessed {
     pub map: HeightMap,
     /// One line for each step, with what it found; empty where nothing was done.
     pub steps: Vec<String>,
-    /// From which distance on the tip lets heights be seen, in the unit of the map's sides; infinite where from none, `None` without a
-    /// tip and where from all.
+    /// From which distance on the tip lets heights be seen, in the unit of the map's sides; infinite where
+    /// from none, `None` without a tip and where from all.
     pub reliable_from: Option<f64>,
     /// Rms height before and after a window; `None` without one.
     pub tapered: Option<[f64; 2]>,
@@ -152,8 +157,9 @@ pub enum Fill {
 }
 
 impl Scan {
-    /// A map: crop, align scan lines, take out scars and outliers, fill, subtract the trend, filter across the lines, average over larger
-    /// cells, mirror, turn, taper; in metres where the scan has units, else in its own numbers.
+    /// A map: crop, align scan lines, take out scars and outliers, fill, subtract the trend, filter across
+    /// the lines, average over larger cells, mirror, turn, taper; in metres where the scan has units, else in
+    /// its own numbers.
     ///
     /// The trend is fitted to measured heights only and subtracted from all. Where undefined points are kept,
     /// the mean over a larger cell is that of its defined part, and the cell is undefined where this is less

@@ -11,7 +11,8 @@ pub(crate) const SNIFF: u64 = 1024;
 /// A reader of one binary format.
 pub(crate) struct Reader {
     pub(crate) format: Format,
-    /// Whether a file of this length that begins so is one; the beginning has [`SNIFF`] bytes, or the whole of a shorter file.
+    /// Whether a file of this length that begins so is one; the beginning has [`SNIFF`] bytes, or the whole
+    /// of a shorter file.
     pub(crate) recognises: fn(start: &[u8], length: u64) -> bool,
     /// The channels by the headers of the file; heights are read later.
     pub(crate) channels: fn(&mut Source<'_>) -> Result<Vec<StoredChannel>>,

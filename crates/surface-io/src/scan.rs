@@ -25,8 +25,9 @@ pub struct Metadata {
     pub rows: usize,
     /// Columns.
     pub columns: usize,
-    /// Whether it is a profile: one row whose file, no points x, y, z, says how far it reaches along x alone. It stands for a body that is uniform along y;
-    /// its cells are squares unless the caller says otherwise, and a force on it is one on the side of a cell along y.
+    /// Whether it is a profile: one row whose file, no points x, y, z, says how far it reaches along x alone.
+    /// It stands for a body that is uniform along y; its cells are squares unless the caller says otherwise,
+    /// and a force on it is one on the side of a cell along y.
     pub profile: bool,
     /// Sides of the map along x and y; `None` where neither they nor the cells are known.
     pub size: Option<[Quantity; 2]>,
@@ -34,8 +35,8 @@ pub struct Metadata {
     pub cell: Option<Sourced<[Quantity; 2]>>,
     /// Unit of the heights; `None` where it is unknown.
     pub unit: Option<Sourced<Unit>>,
-    /// The values are no heights but a phase, a voltage or counts, and make no map: their unit as the file writes it, empty where it does
-    /// not.
+    /// The values are no heights but a phase, a voltage or counts, and make no map: their unit as the file
+    /// writes it, empty where it does not.
     pub no_heights: Option<String>,
     /// Number of undefined points: cells without a height.
     pub undefined: usize,
@@ -43,7 +44,8 @@ pub struct Metadata {
     pub range: Option<[f64; 2]>,
     /// Root mean square of the heights about their mean in the file's unit; `None` where no point is defined.
     pub rms_height: Option<f64>,
-    /// What the file says and what is not used of it, what may be meant otherwise, and values that stand alone: sentences for people.
+    /// What the file says and what is not used of it, what may be meant otherwise, and values that stand
+    /// alone: sentences for people.
     pub notes: Vec<String>,
 }
 
@@ -253,8 +255,8 @@ fn scaled(
     Ok(Sourced { value, origin: Origin::Caller })
 }
 
-/// What is said of the lowest and the highest value where it stands alone: farther from the next one than twice the range of all others, as
-/// a mark of undefined points does that the file does not declare.
+/// What is said of the lowest and the highest value where it stands alone: farther from the next one than
+/// twice the range of all others, as a mark of undefined points does that the file does not declare.
 fn lone_extremes(heights: &[f64]) -> Vec<String> {
     const ALONE: f64 = 2.0;
     // The lowest value and the next one, the highest and the one before.

@@ -12,8 +12,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 /// What files and byte arrays can both do.
 pub(crate) trait Input: Read + Seek {
-    /// The same bytes without a lifetime, for readers of other crates that keep what they read from: a second handle of a file, a copy of
-    /// bytes.
+    /// The same bytes without a lifetime, for readers of other crates that keep what they read from: a second
+    /// handle of a file, a copy of bytes.
     fn detached(&self) -> std::io::Result<OwnInput>;
 }
 
@@ -29,13 +29,15 @@ impl Input for Cursor<&[u8]> {
     }
 }
 
-/// An input of its own; the place in a file is shared with the one that it comes from, so that both go to an offset before they read.
+/// An input of its own; the place in a file is shared with the one that it comes from, so that both go to an
+/// offset before they read.
 pub(crate) enum OwnInput {
     File(BufReader<File>),
     Bytes(Cursor<Vec<u8>>),
 }
 
-/// An input of its own that gives so many bytes in all: a file may name the same bytes a thousand times, and what is read is held.
+/// An input of its own that gives so many bytes in all: a file may name the same bytes a thousand times, and
+/// what is read is held.
 pub(crate) struct Detached {
     input: OwnInput,
     budget: Budget,
@@ -178,7 +180,8 @@ impl<'a> Source<'a> {
         Ok(Detached { input, budget: budget.clone() })
     }
 
-    /// A part of the input, for readers of other crates; the caller has compared its end with [`Source::length`].
+    /// A part of the input, for readers of other crates; the caller has compared its end with
+    /// [`Source::length`].
     pub(crate) fn part(&mut self, offset: u64, length: u64) -> Result<Take<&mut (dyn Input + 'a)>> {
         self.input.seek(SeekFrom::Start(offset)).map_err(Error::system("read", self.subject.path()))?;
         Ok((&mut *self.input as &mut (dyn Input + 'a)).take(length))

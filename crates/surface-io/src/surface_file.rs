@@ -51,7 +51,8 @@ impl<'a> SurfaceFile<'a> {
         Self::new(path, input, length, declared)
     }
 
-    /// Opens the bytes of a file; `name` stands in the messages, and its ending counts as that of a file's name.
+    /// Opens the bytes of a file; `name` stands in the messages, and its ending counts as that of a file's
+    /// name.
     ///
     /// # Errors
     /// As [`SurfaceFile::open`].
@@ -96,7 +97,8 @@ impl<'a> SurfaceFile<'a> {
         self.channels.len()
     }
 
-    /// The scan of the channel that was chosen ([`ReadOptions::channel`]), or of the only one that can be heights.
+    /// The scan of the channel that was chosen ([`ReadOptions::channel`]), or of the only one that can be
+    /// heights.
     ///
     /// # Errors
     /// [`ContentError::Channel`] where none or several are; otherwise as [`SurfaceFile::scans`].
@@ -110,7 +112,8 @@ impl<'a> SurfaceFile<'a> {
     /// The scans of all channels, one after another.
     ///
     /// # Errors
-    /// Of each: [`ContentError::Unread`] where this channel cannot be read and others can; [`Error::System`] where the system refuses; [`Error::Content`] for heights that are not all there, that are infinite or
+    /// Of each: [`ContentError::Unread`] where this channel cannot be read and others can; [`Error::System`]
+    /// where the system refuses; [`Error::Content`] for heights that are not all there, that are infinite or
     /// that no double holds, and for contradictions to what is declared.
     pub fn scans(self) -> impl Iterator<Item = Result<Scan>> {
         let Self { mut source, format, channels, declared } = self;
@@ -129,7 +132,8 @@ pub(crate) fn opened(path: &Path) -> Result<(BufReader<File>, u64)> {
     Ok((BufReader::new(file), about.len()))
 }
 
-/// The source of an input that is not too long, and its format; `None` for text that may be a matrix or points.
+/// The source of an input that is not too long, and its format; `None` for text that may be a matrix or
+/// points.
 pub(crate) fn told<'a>(
     path: &Path,
     input: impl Input + 'a,
@@ -150,7 +154,8 @@ pub(crate) fn told<'a>(
 impl Scan {
     /// Reads a file of one channel, or the channel that [`ReadOptions::channel`] names.
     ///
-    /// Memory: the heights for binary files that are not compressed; for text the file and at most four times its length on top.
+    /// Memory: the heights for binary files that are not compressed; for text the file and at most four times
+    /// its length on top.
     ///
     /// # Errors
     /// As [`SurfaceFile::open`] and [`SurfaceFile::scan`].

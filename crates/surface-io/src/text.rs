@@ -99,7 +99,8 @@ impl TextTable {
         self.values.len() / self.columns
     }
 
-    /// Whether these are two columns, the first of which only goes up or only goes down where it is a number, as x does along a profile.
+    /// Whether these are two columns, the first of which only goes up or only goes down where it is a number,
+    /// as x does along a profile.
     pub(crate) fn is_profile(&self) -> bool {
         if self.columns != 2 || self.rows() <= PROFILE {
             return false;
@@ -116,8 +117,8 @@ impl TextTable {
 
     /// Reads all lines, map by map; with decimal commas where they are found to be nothing else.
     ///
-    /// A heading between numbers ends a map, and so does an empty line: not where there is one behind every line, nor between three
-    /// columns, which are points of one map unless they are asked for as a matrix.
+    /// A heading between numbers ends a map, and so does an empty line: not where there is one behind every
+    /// line, nor between three columns, which are points of one map unless they are asked for as a matrix.
     ///
     /// Memory: at most 8 bytes for each byte of the text (nothing between two commas), and 4 for each line.
     pub(crate) fn read(bytes: &[u8], declared: &ReadOptions) -> Result<Vec<Self>, ContentError> {
@@ -146,7 +147,8 @@ impl TextTable {
     ) -> Result<Vec<Self>, ContentError> {
         let numbers = Numbers { decimal };
         let mut maps: Vec<Self> = Vec::new();
-        // Lines of the heading of the next map, and the first and the last of them without the mark of a comment.
+        // Lines of the heading of the next map, and the first and the last of them without the mark of a
+        // comment.
         let mut heading: Vec<(usize, Cow<'_, [u8]>)> = Vec::new();
         let (mut first, mut last): (Option<NumberedLine<'_>>, Option<NumberedLine<'_>>) = (None, None);
         let (mut open, mut gap) = (false, false);
@@ -266,7 +268,8 @@ impl TextTable {
         format!("{}{commas}{scale}", self.delimiter)
     }
 
-    /// A line before the numbers that is half of numbers, as many as there are columns, is a line of data with a slip.
+    /// A line before the numbers that is half of numbers, as many as there are columns, is a line of data
+    /// with a slip.
     fn check_header(&self, numbers: Numbers, header: &[u8], line: usize) -> Result<(), ContentError> {
         let byte = self.delimiter.byte();
         let tokens: Vec<&[u8]> = match self.delimiter {
@@ -301,8 +304,8 @@ impl TextTable {
             // Tabs at the ends are delimiters there, so only the line break and spaces go.
             let end = data.iter().rposition(|&b| b != b'\r').map_or(0, |at| at + 1);
             let data = if byte == b'\t' { &data[..end] } else { data.trim_ascii() };
-            // One delimiter behind the last number is the habit of some programs; with a number less than in other lines, the last
-            // place is empty.
+            // One delimiter behind the last number is the habit of some programs; with a number less than in
+            // other lines, the last place is empty.
             let (data, open) = data.strip_suffix(&[byte]).map_or((data, false), |data| (data, true));
             for (i, token) in data.split(|&b| b == byte).enumerate() {
                 push(token.trim_ascii(), i + 1, &mut self.values)?;
@@ -395,7 +398,8 @@ fn line_end(bytes: &[u8]) -> u8 {
     if !bytes.contains(&b'\n') && bytes.contains(&b'\r') { b'\r' } else { b'\n' }
 }
 
-/// Refuses bytes that text does not have: control characters, and carriage returns alone where lines end otherwise.
+/// Refuses bytes that text does not have: control characters, and carriage returns alone where lines end
+/// otherwise.
 fn check_text(bytes: &[u8], end: u8) -> Result<(), ContentError> {
     let bad = |&(i, b): &(usize, &u8)| match *b {
         b'\t' | b'\n' | 0x0c => false,
@@ -413,8 +417,8 @@ fn check_text(bytes: &[u8], end: u8) -> Result<(), ContentError> {
     }
 }
 
-/// Whether every comma in the numbers is one of decimals, and one of them at least can be nothing else: no point anywhere, another
-/// delimiter between numbers, at most one comma in each.
+/// Whether every comma in the numbers is one of decimals, and one of them at least can be nothing else: no
+/// point anywhere, another delimiter between numbers, at most one comma in each.
 fn has_decimal_commas(bytes: &[u8], end: u8, skip: usize) -> bool {
     let numbers = Numbers { decimal: Decimal::Comma };
     let mut certain = false;

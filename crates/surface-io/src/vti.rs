@@ -44,8 +44,8 @@ const HIDDEN: u8 = 32;
 ///
 /// # Errors
 /// [`ContentError::OutOfRange`] for a field of another size or a side that is not positive, [`ContentError::NoCells`] for no
-/// rows or columns; [`ContentError::NotFinite`] for a field with an infinity, and in [`Encoding::Ascii`] for one
-/// with a NaN: VTK's reader of decimals stops there.
+/// rows or columns; [`ContentError::NotFinite`] for a field with an infinity, and in [`Encoding::Ascii`] for
+/// one with a NaN: VTK's reader of decimals stops there.
 ///
 /// ```
 /// use surface_io::{Encoding, DataArray, vti};

@@ -53,9 +53,9 @@ impl Metric {
 /// `x3p`, `gwy` or `nc` (NetCDF-3).
 ///
 /// All but NPY (an array `[row, column]`) say the size and the unit; X3P is in metres only. Every number is
-/// written so that the same double is read again; X3P says cells, whose multiple may be off a side by its last
-/// bit. Undefined points are `nan` in text and XYZ, NaN in NPY, HDF5, X3P, NetCDF and VTI, masked in GWY; VTI also hides
-/// their cells ([`vti`]), NetCDF masks them too.
+/// written so that the same double is read again; X3P says cells, whose multiple may be off a side by its
+/// last bit. Undefined points are `nan` in text and XYZ, NaN in NPY, HDF5, X3P, NetCDF and VTI, masked in
+/// GWY; VTI also hides their cells ([`vti`]), NetCDF masks them too.
 ///
 /// # Errors
 /// [`Error::System`] where the system refuses, [`Error::Content`] for another ending, and X3P without a unit.

@@ -1,8 +1,8 @@
 //! Zip archives, as far as X3P needs them: members that are stored or deflated, below 4 GB
 //! (APPNOTE.TXT of PKWARE, <https://pkware.cachefly.net/webdocs/casestudies/APPNOTE.TXT>).
 //!
-//! Own code: `zip` 9.8 reserves memory for as many members as a file claims before it reads one of them, bounded by the claimed size of
-//! the directory and not by the file.
+//! Own code: `zip` 9.8 reserves memory for as many members as a file claims before it reads one of them,
+//! bounded by the claimed size of the directory and not by the file.
 
 use crate::detect::EXPORT;
 use crate::error::{ContentError, Result};
@@ -115,8 +115,8 @@ impl Member {
         Ok(packed)
     }
 
-    /// Its text, whose checksum is right: what is no UTF-8 is a question mark. An error where it is longer than `most` bytes, before it is
-    /// unpacked.
+    /// Its text, whose checksum is right: what is no UTF-8 is a question mark. An error where it is longer
+    /// than `most` bytes, before it is unpacked.
     pub(crate) fn unpack_text(&self, source: &mut Source<'_>, most: u64) -> Result<String> {
         if self.unpacked > most {
             let expected = format!("{} of at most {most} bytes, it has {}", self.name, self.unpacked);

@@ -119,7 +119,8 @@ fn unreadable_data_sets_are_listed() {
     );
 }
 
-/// One byte makes another map: contradictions between header and length, versions and types that are not read.
+/// One byte makes another map: contradictions between header and length, versions and types that are not
+/// read.
 #[test]
 fn contradictions_are_told_with_their_place() {
     let changed = |name: &str, at: usize, to: &[u8]| {

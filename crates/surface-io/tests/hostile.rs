@@ -510,7 +510,8 @@ fn replaced(name: &str, from: &str, to: &str) -> String {
     error(&text.replace(from, to).chars().map(|c| c as u8).collect::<Vec<_>>())
 }
 
-/// One byte makes heights that are upside down, of another scale, or not heights at all: what is refused, and the message.
+/// One byte makes heights that are upside down, of another scale, or not heights at all: what is refused, and
+/// the message.
 #[test]
 fn heights_that_may_be_others_are_refused() {
     let nanoscope = "nanoscope with two channels";
@@ -621,7 +622,8 @@ fn contradictions_in_headers_of_probe_microscopes_are_named() {
     }
 }
 
-/// Of a wave, a group, a list of buffers, the only heights are taken; other signals are listed with their unit.
+/// Of a wave, a group, a list of buffers, the only heights are taken; other signals are listed with their
+/// unit.
 #[test]
 fn other_signals_are_no_heights() {
     for (name, heights, other, unit) in [

@@ -16,7 +16,8 @@ fn bytes(file: &str, key: &str) -> f64 {
     1024.0 * line.split_whitespace().nth(1).unwrap().parse::<f64>().unwrap()
 }
 
-/// The most memory of this process over that of the map of a file of so many bytes, which has no blocks on disk.
+/// The most memory of this process over that of the map of a file of so many bytes, which has no blocks on
+/// disk.
 fn share(on_disk: u64) -> f64 {
     let (rows, columns) = (1_u64 << 14, on_disk / 4 / (1 << 14));
     let directory = tempfile::tempdir().unwrap();
@@ -41,7 +42,8 @@ fn raw_heights_take_little_more_than_their_map() {
     assert!(share < MOST, "{share}");
 }
 
-/// `cargo test -p surface-io --test large -- --ignored`, half a minute: the same at a size that not every machine holds.
+/// `cargo test -p surface-io --test large -- --ignored`, half a minute: the same at a size that not every
+/// machine holds.
 #[test]
 #[ignore = "takes 9 GB of memory"]
 fn four_gigabytes_of_raw_heights_take_little_more_than_their_map() {

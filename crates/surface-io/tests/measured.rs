@@ -47,7 +47,8 @@ fn check(expected: &Value, scan: &Scan) -> Result<(), String> {
     let metadata = scan.metadata();
     let unit = expected["unit"].as_str().unwrap_or_default();
     let factor = metres(unit);
-    // Without a length unit, values are compared as they stand; a pair is the unit of the sides and that of the values.
+    // Without a length unit, values are compared as they stand; a pair is the unit of the sides and that of
+    // the values.
     let of_pair = unit.strip_prefix("('").and_then(|pair| metres(pair.split('\'').next()?));
     let lateral = factor.or(of_pair).unwrap_or(1.0);
     let own = metadata.unit.as_ref().map_or(1.0, |u| u.value.to_si(1.0));
@@ -151,9 +152,10 @@ fn real_files_of_more_formats_are_read_as_an_independent_reader_does() {
     assert!(wrong.is_empty(), "{} of {}:\n{}", wrong.len(), expected.len(), wrong.join("\n"));
 }
 
-/// The bytes `25 8a bb f6 ff 87 73 40` at offset 1376 are 312.49999, of which 512 make 160 um in nm: the field of a 100x objective. Read
-/// as mm, as the independent reader does, they make 160 m. The numbers 0 and 65535 both occur, and the header has 0 and 65535 (offset 8)
-/// for the heights 2.689124584197998 and 6.007402420043945 (offset 16); that reader divides by 65534 and finds 6.007453 as the largest.
+/// The bytes `25 8a bb f6 ff 87 73 40` at offset 1376 are 312.49999, of which 512 make 160 um in nm: the
+/// field of a 100x objective. Read as mm, as the independent reader does, they make 160 m. The numbers 0 and
+/// 65535 both occur, and the header has 0 and 65535 (offset 8) for the heights 2.689124584197998 and
+/// 6.007402420043945 (offset 16); that reader divides by 65534 and finds 6.007453 as the largest.
 #[test]
 fn a_map_of_a_confocal_microscope_is_160_um_wide() {
     let Some(directory) = directory("formats") else { return };
@@ -203,7 +205,8 @@ fn a_line_of_a_stylus_has_the_distance_of_its_places() {
     assert!((unit.to_si(scan.height(0, 3000).unwrap()) - scale * double(48561 + 24000) * 1e-6).abs() < 1e-20);
 }
 
-/// Files of `../shared/reports`: JPK's integers have the scale of their group, an array without labels tells its order, a simple field.
+/// Files of `../shared/reports`: JPK's integers have the scale of their group, an array without labels tells
+/// its order, a simple field.
 #[test]
 fn reported_files_are_read() {
     let Some(directory) = directory("reports") else { return };

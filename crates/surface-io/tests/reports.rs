@@ -92,7 +92,8 @@ fn blocks_of_numbers_are_maps() {
     let count = |text: &str| {
         SurfaceFile::from_bytes("a.txt", text.as_bytes(), &ReadOptions::default()).unwrap().len()
     };
-    // A blank line ends a map; one behind every line does not, nor does one between points, nor a comment that says nothing.
+    // A blank line ends a map; one behind every line does not, nor does one between points, nor a comment
+    // that says nothing.
     assert_eq!(count("1 2\n3 4\n\n5 6\n7 8\n"), 2);
     assert_eq!(count("1 2\n\n3 4\n\n5 6\n"), 1);
     assert_eq!(count("0 0 1\n1 0 2\n\n0 1 3\n1 1 4\n"), 1);

@@ -150,8 +150,8 @@ pub struct SpatialParameters {
     /// Distance of the slowest decay to s, a length. `None` where it does not decay in all directions inside
     /// the map.
     pub slowest: Option<f64>,
-    /// Texture aspect ratio, fastest over slowest decay; 1 for an isotropic surface. `None` with `slowest`: it then is
-    /// at most about Sal over the shorter side.
+    /// Texture aspect ratio, fastest over slowest decay; 1 for an isotropic surface. `None` with `slowest`:
+    /// it then is at most about Sal over the shorter side.
     pub str: Option<f64>,
 }
 
@@ -274,8 +274,8 @@ pub fn texture_direction(map: &HeightMap) -> Result<f64> {
 /// are incomplete: they do not count.
 ///
 /// Patches of up to 16 undefined points have the mean height of their neighbours first, because each of them
-/// would take a hill away. Larger ones stay: one that touches the edge of the map is outside of it, and those inside
-/// may make a tenth of the hills incomplete.
+/// would take a hill away. Larger ones stay: one that touches the edge of the map is outside of it, and those
+/// inside may make a tenth of the hills incomplete.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FeatureParameters {
     /// Number of hills that count.
@@ -320,7 +320,8 @@ impl FeatureParameters {
         let columns = cells.columns;
         let (mut sum, mut whole) = (0.0, 0_usize);
         for &i in &peaks {
-            // A complete hill has all neighbours of its peak. Filled ones are lower or higher than what was there.
+            // A complete hill has all neighbours of its peak. Filled ones are lower or higher than what was
+            // there.
             if [i - columns, i - 1, i, i + 1, i + columns]
                 .iter()
                 .any(|&j| points[j] != holes::Point::Measured)

@@ -8,18 +8,22 @@ use contact_model::{Boundary, HeightMap, Result, Size};
 use std::f64::consts::{PI, TAU};
 use surface_gen::periodogram;
 
-/// Rings of wavenumbers in a fundamental wavenumber: between two of them the phase over half a side changes by less than 1/2.
+/// Rings of wavenumbers in a fundamental wavenumber: between two of them the phase over half a side changes
+/// by less than 1/2.
 const RINGS: f64 = 8.0;
 
 /// How well mean squares over distances are known, from the spectrum of the map itself.
 ///
-/// A mean square over the distance r is a sum `sum_q w(q r) |H(q)|^2` over independent waves with exponentially distributed squares, where
-/// heights are Gaussian. With `n = 2 (2 (sum w |H|^2)^2/sum (w |H|^2)^2 - 1)` over the waves, each with its conjugate (Satterthwaite), n times
-/// the mean square over the expected one is about chi-square distributed with n degrees of freedom. Weights: `1 - J_0(q r)` for height
-/// differences in all directions, `1 - cos(q_x r)` for slopes along x, `(1 - cos(q_x r/2))^2` for curvatures. Free maps are taken under
-/// Hann's window for the spectrum, and n is multiplied by the share of pairs of points at r that lie inside of the map.
+/// A mean square over the distance r is a sum `sum_q w(q r) |H(q)|^2` over independent waves with
+/// exponentially distributed squares, where heights are Gaussian. With
+/// `n = 2 (2 (sum w |H|^2)^2/sum (w |H|^2)^2 - 1)` over the waves, each with its conjugate (Satterthwaite), n
+/// times the mean square over the expected one is about chi-square distributed with n degrees of freedom.
+/// Weights: `1 - J_0(q r)` for height differences in all directions, `1 - cos(q_x r)` for slopes along x,
+/// `(1 - cos(q_x r/2))^2` for curvatures. Free maps are taken under Hann's window for the spectrum, and n is
+/// multiplied by the share of pairs of points at r that lie inside of the map.
 ///
-/// Assumes Gaussian heights. A free map says nothing of waves much longer than itself: bands end at half of its shorter side.
+/// Assumes Gaussian heights. A free map says nothing of waves much longer than itself: bands end at half of
+/// its shorter side.
 ///
 /// ```
 /// use contact_model::{Boundary, SelfAffine};
@@ -84,7 +88,8 @@ impl DifferenceBands {
         Ok(Self { free, size, waves })
     }
 
-    /// Limits of half the mean square height difference over each distance; `None` beyond half the shorter side of a free map.
+    /// Limits of half the mean square height difference over each distance; `None` beyond half the shorter
+    /// side of a free map.
     ///
     /// # Errors
     /// [`contact_model::Error::Domain`] for a level outside (0, 1).
@@ -99,7 +104,8 @@ impl DifferenceBands {
         limits.collect()
     }
 
-    /// Limits of the rms slope over each distance along x (axis 0) or y; otherwise as [`DifferenceBands::of_differences`].
+    /// Limits of the rms slope over each distance along x (axis 0) or y; otherwise as
+    /// [`DifferenceBands::of_differences`].
     ///
     /// # Errors
     /// As there.

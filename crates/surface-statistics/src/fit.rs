@@ -114,9 +114,10 @@ pub struct FitOptions {
 /// scatter less on their own period than the law says, and their intervals are too wide; a part cut out of
 /// one is as good as Gaussian.
 ///
-/// This is the fit that is told where statistics of a map are asked for. [`surface_gen::SelfAffineFit`] is a straight line through the
-/// logarithms of the rings over fixed wavelengths, for a theory that takes H alone: it has no interval, no roll-off and no correction for
-/// the window, refuses maps whose spectrum is no power law down to the longest wave, and differs from this one by its scatter there.
+/// This is the fit that is told where statistics of a map are asked for. [`surface_gen::SelfAffineFit`] is a
+/// straight line through the logarithms of the rings over fixed wavelengths, for a theory that takes H alone:
+/// it has no interval, no roll-off and no correction for the window, refuses maps whose spectrum is no power
+/// law down to the longest wave, and differs from this one by its scatter there.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SpectrumFit {
     /// Hurst exponent H; outside of 0 to 1 the surface is not self-affine.

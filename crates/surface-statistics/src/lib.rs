@@ -66,8 +66,8 @@
 //! 0.19.2 as `data/iso25178/README.md` says. 95 % bands of spectra, height differences, slopes and
 //! curvatures hold the truth for 93 to 96 % of values (`tests/bands.rs`).
 //!
-//! Of 100 surfaces each, with seeds that had no part in setting up the fit, intervals and bounds hold the true
-//! exponent, roll-off and cut-off (`tests/coverage.rs`, about 40 s):
+//! Of 100 surfaces each, with seeds that had no part in setting up the fit, intervals and bounds hold the
+//! true exponent, roll-off and cut-off (`tests/coverage.rs`, about 40 s):
 //!
 //! ```text
 //! cargo test -p surface-statistics --test coverage -- --ignored --nocapture
@@ -99,8 +99,8 @@
 //! # What it does not do
 //!
 //! Filters (Gaussian, spline) and levelling, functional and volume parameters (Sk, Vmp, ...), roll-off and
-//! cut-off of profiles, fits of anisotropic spectra, dales. A profile is a map of one row: height parameters of
-//! such a map are those of its primary profile (Pa, Pq, ... of ISO 21920-2).
+//! cut-off of profiles, fits of anisotropic spectra, dales. A profile is a map of one row: height parameters
+//! of such a map are those of its primary profile (Pa, Pq, ... of ISO 21920-2).
 
 mod areal;
 mod bins;

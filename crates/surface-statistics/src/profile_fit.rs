@@ -15,8 +15,9 @@ const WAVES: f64 = 4.0;
 const FEWEST: usize = 8;
 /// Of the normal law.
 const QUANTILE: f64 = 1.96;
-/// How many times the variance of a sum of logarithms of neighbouring waves is that of independent ones under Hann's window: their
-/// amplitudes are correlated by 2/3 and 1/6, logarithms of their squares by about the squares of that.
+/// How many times the variance of a sum of logarithms of neighbouring waves is that of independent ones under
+/// Hann's window: their amplitudes are correlated by 2/3 and 1/6, logarithms of their squares by about the
+/// squares of that.
 const HANN: f64 = 1.95;
 
 /// `C_1D ~ q^-(1 + 2 H)`, fitted to the waves of one row.
@@ -31,9 +32,10 @@ pub struct ProfileFit {
 }
 
 impl ProfileFit {
-    /// Least squares of `ln C_1D` over `ln q`, each wave with the same weight: `ln` of a periodogram of a Gaussian profile has the variance
-    /// `pi^2/6` at every wave, so that the interval follows. The waves are those longer than four steps (and than twice the `instrument`'s
-    /// distance where it is known) and, of a free profile, shorter than a quarter of it; free profiles are taken under Hann's window.
+    /// Least squares of `ln C_1D` over `ln q`, each wave with the same weight: `ln` of a periodogram of a
+    /// Gaussian profile has the variance `pi^2/6` at every wave, so that the interval follows. The waves are
+    /// those longer than four steps (and than twice the `instrument`'s distance where it is known) and, of a
+    /// free profile, shorter than a quarter of it; free profiles are taken under Hann's window.
     ///
     /// # Errors
     /// [`Error::Domain`] for more than one row, fewer than 8 waves in the range, and what [`PowerSpectrum::along_x`] refuses.

@@ -1,5 +1,5 @@
-//! Every parameter that a map with undefined points has is that of the map without them: scattered failures of an instrument change none
-//! by more than a stated bound, and what a hole changes by more is an error.
+//! Every parameter that a map with undefined points has is that of the map without them: scattered failures
+//! of an instrument change none by more than a stated bound, and what a hole changes by more is an error.
 
 #![allow(clippy::unwrap_used)] // Tests, as a whole.
 

@@ -74,7 +74,8 @@ fn tree() -> BTreeSet<String> {
     found
 }
 
-/// Whether a name looks like a path of this repository, and not like a file that a program writes or a place holder.
+/// Whether a name looks like a path of this repository, and not like a file that a program writes or a place
+/// holder.
 fn is_path(name: &str, top: &BTreeSet<&str>) -> bool {
     let plain = name.replace(", ", ",").chars().all(|c| c.is_alphanumeric() || "_./-{},".contains(c));
     let capitals = |part: &str| part.len() > 1 && part.chars().all(|c| c.is_uppercase() || c == '_');

@@ -48,8 +48,8 @@ pub enum MethodName {
 /// Flags of the bench.
 #[derive(Debug, Args)]
 pub struct BenchArguments {
-    /// An NPY map [row, column] of real numbers, taken as it is (square cells, L = sqrt(Lx Ly) = E* = 1, F_bar by its measured
-    /// rms height).
+    /// An NPY map [row, column] of real numbers, taken as it is (square cells, L = sqrt(Lx Ly) = E* = 1,
+    /// F_bar by its measured rms height).
     #[arg(long, value_name = "FILE.npy", conflicts_with_all = ["cells", "rows", "fractal_dimensions", "seed"])]
     surface: Option<PathBuf>,
     /// Columns of generated surfaces, separated by commas [default: 257,513,1025].
@@ -97,12 +97,12 @@ pub struct BenchArguments {
     /// Prepare anew for every load.
     #[arg(long)]
     cold: bool,
-    /// Cost as the work grows: 257 to 4097 cells and every load from nothing unless said otherwise, table and pictures in
-    /// out/bench-scaling.* unless named.
+    /// Cost as the work grows: 257 to 4097 cells and every load from nothing unless said otherwise, table and
+    /// pictures in out/bench-scaling.* unless named.
     #[arg(long, conflicts_with = "surface")]
     scaling: bool,
-    /// Threads: as many series (surface and tolerance) are solved at the same time, and a thread without a series helps inside the others.
-    /// One series has all of them.
+    /// Threads: as many series (surface and tolerance) are solved at the same time, and a thread without a
+    /// series helps inside the others. One series has all of them.
     #[arg(long, default_value_t = 1)]
     threads: usize,
     /// Print where the time of the rows went, part by part.
@@ -114,7 +114,8 @@ pub struct BenchArguments {
     /// Write the table; it is whole all along.
     #[arg(long, value_name = "FILE.csv")]
     csv: Option<PathBuf>,
-    /// Draw seconds over cells and over force from the table (SVG and PNG), and print the slopes of seconds and iterations.
+    /// Draw seconds over cells and over force from the table (SVG and PNG), and print the slopes of seconds
+    /// and iterations.
     #[arg(long, value_name = "FILE.svg", requires = "csv")]
     plot: Option<PathBuf>,
 }

@@ -8,8 +8,8 @@ use std::path::PathBuf;
 /// The part of a command's jobs that one process does.
 #[derive(Debug, Args)]
 pub struct Sharded {
-    /// Do one of N parts of the jobs, counted from 0, store what it finds and write no table: 0/4, or auto, as the variables of a SLURM array or
-    /// of a HyperQueue task say. `merge` makes the tables.
+    /// Do one of N parts of the jobs, counted from 0, store what it finds and write no table: 0/4, or auto,
+    /// as the variables of a SLURM array or of a HyperQueue task say. `merge` makes the tables.
     #[arg(long, value_name = "i/N")]
     pub shard: Option<ShardChoice>,
 }

@@ -60,8 +60,9 @@ pub struct SolveSizes {
     /// Ignore stored units and solve everything again.
     #[arg(long)]
     fresh: bool,
-    /// Choose grid, tolerance and number of surfaces so that each mean k_bar above the one-cell floor is known to this (95 % half-width):
-    /// a share or per cent, such as 0.02 or 2%. Pilots on finer and finer grids run first.
+    /// Choose grid, tolerance and number of surfaces so that each mean k_bar above the one-cell floor is
+    /// known to this (95 % half-width): a share or per cent, such as 0.02 or 2%. Pilots on finer and finer
+    /// grids run first.
     #[arg(long, value_name = "SHARE", value_parser = share, allow_hyphen_values = true)]
     accuracy: Option<f64>,
     /// Most time that --accuracy may choose, such as 90s, 10min, 2h.

@@ -181,7 +181,8 @@ pub struct ExponentArguments {
     /// Lines of each number of elements, separated by commas.
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     lines: Option<Vec<usize>>,
-    /// Loads F_bar of the surfaces: numbers and logarithmic ranges MIN:MAX:COUNT (both ends in), separated by commas.
+    /// Loads F_bar of the surfaces: numbers and logarithmic ranges MIN:MAX:COUNT (both ends in), separated by
+    /// commas.
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     forces: Option<String>,
     /// Loads of the lines; the factor between both exists at loads that both have.

@@ -68,7 +68,8 @@ pub fn programs(root: &Path) -> Result<[PathBuf; 2]> {
     Ok([own, scenes])
 }
 
-/// A temporary directory that looks like the repository to the commands: `data/`, and both programs on the path.
+/// A temporary directory that looks like the repository to the commands: `data/`, and both programs on the
+/// path.
 pub struct Scratch {
     folder: tempfile::TempDir,
 }

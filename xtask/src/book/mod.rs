@@ -1,7 +1,7 @@
 //! `cargo xtask book`: the links of every Markdown file, the commands of the book, its pictures, its pages.
 //!
-//! Blocks fenced as `sh` in `book/src` are run, in a temporary directory with `data/` in it; those fenced as `sh,long` take minutes or
-//! hours and are only counted. Rust blocks are doctests of the package `tests`.
+//! Blocks fenced as `sh` in `book/src` are run, in a temporary directory with `data/` in it; those fenced as
+//! `sh,long` take minutes or hours and are only counted. Rust blocks are doctests of the package `tests`.
 
 mod commands;
 mod links;

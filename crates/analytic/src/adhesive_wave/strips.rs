@@ -59,8 +59,8 @@ impl Strips {
 
     /// `-d(p/p*)/d(mean gap over D)` along the curve; `1/less_log` of it is that of bonded strips.
     ///
-    /// With `q = d(p/p*)/dt` of t = tan psi the gap falls by `-q ln r + 2 alpha cos^2 psi/sqrt t`: that of the
-    /// bonded strips, and that of the tension on strips that grow.
+    /// With `q = d(p/p*)/dt` of t = tan psi the gap falls by `-q ln r + 2 alpha cos^2 psi/sqrt t`: that of
+    /// the bonded strips, and that of the tension on strips that grow.
     pub fn slope(self, alpha: f64) -> f64 {
         if alpha <= 0.0 || self.tangent <= 0.0 {
             return self.less_log().recip();

@@ -7,8 +7,8 @@ use std::sync::Arc;
 
 /// Finds the cells with `z < d`.
 ///
-/// Outside them the gap `u + z - d` is positive because u is not negative: they need no check and no storage. Undefined points have an
-/// infinite z and are never among them.
+/// Outside them the gap `u + z - d` is positive because u is not negative: they need no check and no storage.
+/// Undefined points have an infinite z and are never among them.
 #[derive(Debug)]
 pub struct Candidates {
     grid: Grid,
@@ -79,7 +79,8 @@ impl Candidates {
 
     /// The cells with `z < d`.
     ///
-    /// Cost: the grid once for each doubling of d, else the candidates of the last doubling; the grid each time where many lie below.
+    /// Cost: the grid once for each doubling of d, else the candidates of the last doubling; the grid each
+    /// time where many lie below.
     pub fn below(&mut self, d: f64) -> CellSet {
         if d > self.cap {
             let cap = CANDIDATES_AHEAD * d;
@@ -156,7 +157,8 @@ mod tests {
 
     #[test]
     fn the_grid_is_scanned_for_twice_the_approach_in_any_unit() {
-        // Work: a path of loads up to twice the first one is served from the list, and the list holds no more.
+        // Work: a path of loads up to twice the first one is served from the list, and the list holds no
+        // more.
         for unit in [2f64.powi(-40), 1.0, 2f64.powi(40)] {
             let z = (0..64).map(|i| f64::from(i) * unit).collect();
             let mut candidates = Candidates::new(Grid::square(8, 8), Arc::new(z));

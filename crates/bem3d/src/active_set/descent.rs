@@ -21,15 +21,18 @@ pub struct Feasible {
 }
 
 impl Feasible {
-    /// The nearest feasible pressure: `min(max(y + mu, 0), p_s)`, with the mu that brings the sum to the force.
+    /// The nearest feasible pressure: `min(max(y + mu, 0), p_s)`, with the mu that brings the sum to the
+    /// force.
     ///
-    /// The sum rises with mu and is piecewise linear: Newton's method within a bracket, which is halved where Newton's step leaves it.
+    /// The sum rises with mu and is piecewise linear: Newton's method within a bracket, which is halved where
+    /// Newton's step leaves it.
     fn project(self, y: &mut [f64]) {
         let upper = self.bounds.upper();
         let Some(force) = self.force else {
             return each(y, |y| *y = y.clamp(0.0, upper));
         };
-        // The sum is 0 at the lower end. At the upper end each cell carries its share of the force, or p_s where that is less.
+        // The sum is 0 at the lower end. At the upper end each cell carries its share of the force, or p_s
+        // where that is less.
         let (smallest, largest) =
             y.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), &y| (a.min(y), b.max(y)));
         let share = force / y.len() as f64;
@@ -77,18 +80,21 @@ impl Feasible {
     }
 }
 
-/// Minimises the energy `p'Gp/2 + (z - d)'p` over the feasible pressures on a set of cells, `gap` being its gradient `Gp + z - d`: so many
-/// steps at most. Returns how many were taken; fewer where the energy cannot fall any more.
+/// Minimises the energy `p'Gp/2 + (z - d)'p` over the feasible pressures on a set of cells, `gap` being its
+/// gradient `Gp + z - d`: so many steps at most. Returns how many were taken; fewer where the energy cannot
+/// fall any more.
 ///
-/// The first step goes towards the projection of `p - a gap`, to the minimum of the energy on the way or to its end. Conjugate gradients on
-/// the cells between their bounds follow, up to the first bound that a step meets, and as long as the gradient on those cells is the larger
-/// part of the projected gradient; then another projected gradient. This is the method of J. J. Moré, G. Toraldo, SIAM J. Optim. 1, 93
-/// (1991) with the proportioning of Z. Dostál, J. Schöberl, Comput. Optim. Appl. 30, 23 (2005), and with exact line searches, which a
-/// quadratic energy allows.
+/// The first step goes towards the projection of `p - a gap`, to the minimum of the energy on the way or to
+/// its end. Conjugate gradients on the cells between their bounds follow, up to the first bound that a step
+/// meets, and as long as the gradient on those cells is the larger part of the projected gradient; then
+/// another projected gradient. This is the method of J. J. Moré, G. Toraldo, SIAM J. Optim. 1, 93 (1991) with
+/// the proportioning of Z. Dostál, J. Schöberl, Comput. Optim. Appl. 30, 23 (2005), and with exact line
+/// searches, which a quadratic energy allows.
 ///
-/// Every step lowers the energy. With a step length a between the inverses of the largest and of the smallest eigenvalue of G, as every
-/// one here is, a projected gradient lowers it by at least a fixed share of its distance from the minimum; runs that begin with one each
-/// therefore converge to the only solution, from any pressure (D. P. Bertsekas, Nonlinear Programming, section 2.3).
+/// Every step lowers the energy. With a step length a between the inverses of the largest and of the smallest
+/// eigenvalue of G, as every one here is, a projected gradient lowers it by at least a fixed share of its
+/// distance from the minimum; runs that begin with one each therefore converge to the only solution, from any
+/// pressure (D. P. Bertsekas, Nonlinear Programming, section 2.3).
 ///
 /// Cost: one application of G in double precision a step.
 pub fn descend(
@@ -154,8 +160,8 @@ pub fn descend(
     steps
 }
 
-/// The gradient on the cells between their bounds, less its mean where the force is prescribed, zero on all others. Its square, that of the
-/// gradient on cells at a bound that they would leave, and the mean.
+/// The gradient on the cells between their bounds, less its mean where the force is prescribed, zero on all
+/// others. Its square, that of the gradient on cells at a bound that they would leave, and the mean.
 fn project_gradient(p: &[f64], gap: &[f64], feasible: Feasible, residual: &mut [f64]) -> (f64, f64, f64) {
     let Feasible { bounds, force } = feasible;
     let upper = bounds.upper();

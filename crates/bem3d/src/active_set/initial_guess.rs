@@ -1,4 +1,5 @@
-//! Where a solve begins: from the tangent of the last state, or by nested iteration from the same surface on coarser grids.
+//! Where a solve begins: from the tangent of the last state, or by nested iteration from the same surface on
+//! coarser grids.
 
 use super::candidates::GapRange;
 use super::solver::solve;
@@ -35,7 +36,8 @@ impl LastState {
         }
     }
 
-    /// A guess of q on cells of a state from the last one and the secant between them; on the way down the last q alone.
+    /// A guess of q on cells of a state from the last one and the secant between them; on the way down the
+    /// last q alone.
     pub fn tangent_at(self, solved: &Solved, cells: &CellSet, tuning: &Tuning) -> Option<Vec<f64>> {
         let mut q = cells.carry(&self.contact, &self.tangent.as_ref()?.0);
         let way = solved.d - self.d;
@@ -53,8 +55,9 @@ impl LastState {
         Some(q)
     }
 
-    /// Follows the tangent of the last state: `p + Dd q` on the same set. The stiffness grows with the load, so that the predicted
-    /// approach is an upper bound and every new contact cell lies below it. Where no stiffness was asked for, the pressure is scaled.
+    /// Follows the tangent of the last state: `p + Dd q` on the same set. The stiffness grows with the load,
+    /// so that the predicted approach is an upper bound and every new contact cell lies below it. Where no
+    /// stiffness was asked for, the pressure is scaled.
     pub fn extrapolated(&self, target: Control, tuning: &Tuning) -> Option<Guess> {
         let ratio = self.ratio(target);
         if !(1.0 / tuning.warm..=tuning.warm).contains(&ratio) {
@@ -76,9 +79,10 @@ impl LastState {
 
     /// Whether a load begins on coarse grids although a state is known.
     ///
-    /// The tangent overshoots (the stiffness grows with every cell that joins); where it predicts far more cells than the load
-    /// has grown by, eliminating them costs more than a coarse solution at a third of the price. `predicted` counts them with one
-    /// application; where a good part of the grid will touch, the answer is known without.
+    /// The tangent overshoots (the stiffness grows with every cell that joins); where it predicts far more
+    /// cells than the load has grown by, eliminating them costs more than a coarse solution at a third of the
+    /// price. `predicted` counts them with one application; where a good part of the grid will touch, the
+    /// answer is known without.
     pub fn overshoots(
         &self,
         target: Control,
@@ -105,9 +109,10 @@ pub fn predicted_cells(problem: &mut Problem, guess: &Guess) -> usize {
 
 /// A guess for a load with nothing known.
 ///
-/// The cells with `z < F / k_1` (k_1: one cell alone, the softest contact) contain the contact set. If they are few they are the guess;
-/// otherwise the surface averaged over 2 x 2 cells is solved first. A coarse grid only says where to begin: every fine cell
-/// stays a candidate, because fractal summits vanish on coarse grids.
+/// The cells with `z < F / k_1` (k_1: one cell alone, the softest contact) contain the contact set. If they
+/// are few they are the guess; otherwise the surface averaged over 2 x 2 cells is solved first. A coarse grid
+/// only says where to begin: every fine cell stays a candidate, because fractal summits vanish on coarse
+/// grids.
 pub fn cold_start(problem: &mut Problem, target: Control, limits: Limits, stop: Stop<'_>) -> Guess {
     let (grid, tuning) = (problem.grid(), *problem.operators.tuning());
     let own = problem.operators.table().own();
@@ -163,13 +168,15 @@ fn blocks(grid: Grid, tuning: &Tuning) -> (usize, usize) {
     (halved(grid.columns), halved(grid.rows))
 }
 
-/// Nondimensional pressure at equal force: forces are counted in the side of a cell, so that a sum over coarse cells is smaller.
+/// Nondimensional pressure at equal force: forces are counted in the side of a cell, so that a sum over
+/// coarse cells is smaller.
 fn pressure_ratio(grid: Grid, tuning: &Tuning) -> f64 {
     let (across, down) = blocks(grid, tuning);
     ((across * down) as f64).sqrt()
 }
 
-/// The same surface on cells twice as large: means of their defined cells (fewer at the last row and column of an odd grid).
+/// The same surface on cells twice as large: means of their defined cells (fewer at the last row and column
+/// of an odd grid).
 fn coarser(problem: &Problem) -> Problem {
     let (fine, tuning) = (problem.grid(), *problem.operators.tuning());
     let (across, down) = blocks(fine, &tuning);

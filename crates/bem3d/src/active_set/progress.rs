@@ -72,11 +72,13 @@ impl OuterProgress {
         self.goal.is_some()
     }
 
-    /// Begins the fall-back where the outer iteration has come to nothing, ends it where it has done its part. Whether neither goes on.
+    /// Begins the fall-back where the outer iteration has come to nothing, ends it where it has done its
+    /// part. Whether neither goes on.
     ///
-    /// The fall-back converges from every pressure, and the n-th time it goes on until the residuals are 10^-n times the smallest of all
-    /// before: it is left a few times at most, and each time the outer iteration either reduces the residuals within so many iterations
-    /// or is left again. So the solve ends, but for rounding, at the tolerance.
+    /// The fall-back converges from every pressure, and the n-th time it goes on until the residuals are
+    /// 10^-n times the smallest of all before: it is left a few times at most, and each time the outer
+    /// iteration either reduces the residuals within so many iterations or is left again. So the solve ends,
+    /// but for rounding, at the tolerance.
     fn alternate(&mut self, error: f64, jammed: bool, resolved: bool, tuning: &Tuning) -> bool {
         if error < tuning.better * self.lowest {
             (self.lowest, self.since_lowest) = (error, 0);
@@ -201,8 +203,9 @@ mod tests {
 
     #[test]
     fn patience_is_for_outer_iterations_without_better_residuals() {
-        // The first residuals are the best, patience + 1 more are no better: the next one ends it where they may be those of rounding, and
-        // begins the fall-back where they are not. Large ones that do not fall do so, too.
+        // The first residuals are the best, patience + 1 more are no better: the next one ends it where they
+        // may be those of rounding, and begins the fall-back where they are not. Large ones that do not fall
+        // do so, too.
         for error in [1e-3, 0.5] {
             for (d, rounding) in [(1e-3, false), (2.0 * error / TUNING.rounding, true)] {
                 let mut progress = OuterProgress::new(TIGHT, false);
@@ -216,7 +219,8 @@ mod tests {
                 assert_eq!(progress.falls_back(), !rounding, "{error} {d}");
             }
         }
-        // What is followed by a gap in single precision takes no patience: only the limit of iterations ends it.
+        // What is followed by a gap in single precision takes no patience: only the limit of iterations ends
+        // it.
         let mut progress = OuterProgress::new(TIGHT, false);
         let mut error = 0.5;
         let decisions = (0..=TIGHT.outer_iterations).map(|_| {
@@ -244,7 +248,8 @@ mod tests {
             (decision, progress.falls_back())
         };
         let continued = Decision::Continue { best: false };
-        // A step of which nothing is left begins it at once, without a gap in single precision; a tenth of the smallest residuals ends it.
+        // A step of which nothing is left begins it at once, without a gap in single precision; a tenth of
+        // the smallest residuals ends it.
         let mut progress = OuterProgress::new(TIGHT, false);
         assert_eq!(next(&mut progress, seen(0.1)), (Decision::Continue { best: true }, false));
         assert_eq!(next(&mut progress, jammed(0.2)), (continued, true));

@@ -1,4 +1,5 @@
-//! The outer iteration: solve on a superset of the contact set, remove cells in tension, add penetrating cells.
+//! The outer iteration: solve on a superset of the contact set, remove cells in tension, add penetrating
+//! cells.
 
 use super::descent::{Feasible, descend};
 use super::line_search::shorten;
@@ -13,10 +14,11 @@ use contact_model::{Status, Stop};
 
 /// Solves for one load from a guess.
 ///
-/// At fixed force, solving on a superset of the contact set and removing the cells in tension never removes a true contact cell
-/// where G restricted to the set is an inverse M-matrix, which it was on every set tried: bilateral contact on a superset needs a larger
-/// approach than the true one, and every removal lowers it. Rounding and early stops can break this, so each outer iteration evaluates
-/// the exact gap on all candidates and adds the cells that penetrate.
+/// At fixed force, solving on a superset of the contact set and removing the cells in tension never removes a
+/// true contact cell where G restricted to the set is an inverse M-matrix, which it was on every set tried:
+/// bilateral contact on a superset needs a larger approach than the true one, and every removal lowers it.
+/// Rounding and early stops can break this, so each outer iteration evaluates the exact gap on all candidates
+/// and adds the cells that penetrate.
 ///
 /// Cost: 20 to 60 applications of G for four digits, a few factorisations for a small set.
 pub fn solve(problem: &mut Problem, target: Control, guess: Guess, limits: Limits, stop: Stop<'_>) -> Solved {
@@ -71,7 +73,8 @@ struct Solver<'a> {
     /// The pressure before with its gap, where cells were at their upper bound: steps from such a pressure
     /// may have to be shortened.
     before: Option<(Pressure, Continuation)>,
-    /// Steps of the next inner solve at most: few after one that was shortened, because long ones change the sets too much at once.
+    /// Steps of the next inner solve at most: few after one that was shortened, because long ones change the
+    /// sets too much at once.
     inner_steps: usize,
 }
 
@@ -148,7 +151,8 @@ impl<'a> Solver<'a> {
         self.problem.operators.recorder().clone()
     }
 
-    /// Evaluates the gap under the present pressure, and at a prescribed force finds the approach that it makes.
+    /// Evaluates the gap under the present pressure, and at a prescribed force finds the approach that it
+    /// makes.
     ///
     /// A `rough` evaluation in single precision says how to go on, but is never evidence.
     fn evaluate(&mut self, rough: bool) -> Evaluated {
@@ -228,7 +232,8 @@ impl<'a> Solver<'a> {
         share
     }
 
-    /// One outer iteration: a new set from the gap, a solution on it, and the cells in tension removed. Returns the steps taken.
+    /// One outer iteration: a new set from the gap, a solution on it, and the cells in tension removed.
+    /// Returns the steps taken.
     fn improve(&mut self, error: f64, stop: Stop<'_>) -> usize {
         let recorder = self.recorder();
         let Self { problem, target, limits, now, state, left, .. } = self;

@@ -120,8 +120,8 @@ pub struct Solved {
     pub continuation: Continuation,
 }
 
-/// The exact gap of a state on all cells that could touch: what says which cells are undecided, and what a solve to a tighter
-/// tolerance begins with instead of evaluating it again.
+/// The exact gap of a state on all cells that could touch: what says which cells are undecided, and what a
+/// solve to a tighter tolerance begins with instead of evaluating it again.
 #[derive(Debug, Clone, Default)]
 pub struct Continuation {
     /// The candidates, the contact set among them.

@@ -1,14 +1,16 @@
 //! How far the gaps of open cells may still change: what decides whether a cell is open for sure.
 //!
-//! On a contact set C the displacement of an open cell j follows those of the contact with weights `G_jC G_CC^-1`. Where G on C is an
-//! inverse M-matrix they are positive and their sum is below 1: no open gap changes by more than the largest gap left on the contact.
-//! Nor does a far gap change it much. Next to a straight edge of the contact the weights beyond a distance R add up to
-//! `(2 / pi) asin sqrt(1 / R)` in cells; of one open cell within the contact, to a few hundredths.
+//! On a contact set C the displacement of an open cell j follows those of the contact with weights
+//! `G_jC G_CC^-1`. Where G on C is an inverse M-matrix they are positive and their sum is below 1: no open
+//! gap changes by more than the largest gap left on the contact. Nor does a far gap change it much. Next to a
+//! straight edge of the contact the weights beyond a distance R add up to `(2 / pi) asin sqrt(1 / R)` in
+//! cells; of one open cell within the contact, to a few hundredths.
 
 use crate::geometry::{CellSet, Grid};
 use crate::tuning::Tuning;
 
-/// Bounds of the change that an open gap can still undergo, square by square, from the gaps left on the contact.
+/// Bounds of the change that an open gap can still undergo, square by square, from the gaps left on the
+/// contact.
 #[derive(Debug)]
 struct ChangeBound {
     square: usize,
@@ -48,7 +50,8 @@ impl ChangeBound {
     }
 }
 
-/// The cells without contact whose gap is below what it can still change; `contact` is a subset of `checked`, `left` the gap on it.
+/// The cells without contact whose gap is below what it can still change; `contact` is a subset of `checked`,
+/// `left` the gap on it.
 pub fn undecided(
     grid: Grid,
     contact: &CellSet,
@@ -156,7 +159,8 @@ mod tests {
             share in 0.1f64..0.9,
             stretch in prop_oneof![Just(1.0), 0.8f64..1.25],
         ) {
-            // Contact on one half and on scattered cells of the other; what is left differs by decades from place to place.
+            // Contact on one half and on scattered cells of the other; what is left differs by decades from
+            // place to place.
             let (grid, square) = (Grid { columns: 40, rows: 36, stretch }, 8);
             let mut picks = picks.into_iter();
             let mut pick = || picks.next().unwrap();

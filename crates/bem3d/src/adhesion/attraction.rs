@@ -1,33 +1,41 @@
-//! The attraction between the cells of a grid: a law of each cell's gap and, for a short range, what its neighbours change.
+//! The attraction between the cells of a grid: a law of each cell's gap and, for a short range, what its
+//! neighbours change.
 //!
 //! # A short range on cells
 //!
-//! JKR's limit has no length below which the attraction acts, a grid has its cell. The work of adhesion w is put into the last cells of a
-//! contact, by the law `s = s0 (1 - g/g0)` with `s0 = c sqrt(E* w/a)` and `g0 = 2 w/s0`, a the longer side of a cell.
+//! JKR's limit has no length below which the attraction acts, a grid has its cell. The work of adhesion w is
+//! put into the last cells of a contact, by the law `s = s0 (1 - g/g0)` with `s0 = c sqrt(E* w/a)` and
+//! `g0 = 2 w/s0`, a the longer side of a cell.
 //!
-//! Where a straight front bears the tension t on its last closed cells and the next are open by g, `t g/2` is the energy release rate, exactly
-//! (virtual crack closure). At the rate w, `t/sqrt(E* w/a)` is 1.077 along the rows of cells, 1.266 along their diagonals and tends to 1.46
-//! for directions of large numbers; Pohrt and Popov's criterion has 1.4537. With c = 1.077 the law is the line between both states of a
-//! front along the rows: it moves through the cells without a barrier. With a larger c it is trapped; with a smaller one cells begin to open
-//! while those before them still do, and fronts of all directions move at nearly w. With c = 0.7 and the factor below, Johnson's wave on 256
-//! cells is drawn off at 1.034 of its pressure where its fronts lie along the rows, at 1.013 along the diagonals and at 1.001 along (1, 2); that
-//! is 5, 2 and 0 % of w, and finer cells do not lower it. Curved fronts, whose directions vary, are trapped by half a percent.
+//! Where a straight front bears the tension t on its last closed cells and the next are open by g, `t g/2` is
+//! the energy release rate, exactly (virtual crack closure). At the rate w, `t/sqrt(E* w/a)` is 1.077 along
+//! the rows of cells, 1.266 along their diagonals and tends to 1.46 for directions of large numbers; Pohrt
+//! and Popov's criterion has 1.4537. With c = 1.077 the law is the line between both states of a front along
+//! the rows: it moves through the cells without a barrier. With a larger c it is trapped; with a smaller one
+//! cells begin to open while those before them still do, and fronts of all directions move at nearly w. With
+//! c = 0.7 and the factor below, Johnson's wave on 256 cells is drawn off at 1.034 of its pressure where its
+//! fronts lie along the rows, at 1.013 along the diagonals and at 1.001 along (1, 2); that is 5, 2 and 0 % of
+//! w, and finer cells do not lower it. Curved fronts, whose directions vary, are trapped by half a percent.
 //!
-//! What is left is a line tension. At c = 0.7 a front of length L has the energy `-0.44 a w L` beside that of the area, in all directions, so
-//! that a round contact of radius R acts as if w were `w (1 + 0.44 a/R)`. With the attached share of a cell `x = (1 - g/g0)^2`, the mean J
-//! over the neighbours within 4 a and the mean m of |x| over J, a front has the length `(2/m) sum x_i (1 - (J x)_i)`. Adding `b a w` times
-//! that to the energy makes the attraction of a cell `(1 + B (2 (J x)_i - 1)) s(g)`, `B = 2 b a/m`: as before on a straight front, less in a
-//! corner of the contact. Fronts become sharper too, and their tension vanishes at b = 0.389. The error of pull-off forces is then of second
-//! order in `a/R`. `fronts` repeats the calibration.
+//! What is left is a line tension. At c = 0.7 a front of length L has the energy `-0.44 a w L` beside that of
+//! the area, in all directions, so that a round contact of radius R acts as if w were `w (1 + 0.44 a/R)`.
+//! With the attached share of a cell `x = (1 - g/g0)^2`, the mean J over the neighbours within 4 a and the
+//! mean m of |x| over J, a front has the length `(2/m) sum x_i (1 - (J x)_i)`. Adding `b a w` times that to
+//! the energy makes the attraction of a cell `(1 + B (2 (J x)_i - 1)) s(g)`, `B = 2 b a/m`: as before on a
+//! straight front, less in a corner of the contact. Fronts become sharper too, and their tension vanishes at
+//! b = 0.389. The error of pull-off forces is then of second order in `a/R`. `fronts` repeats the
+//! calibration.
 
 use super::law::{Law, Shape};
 use crate::geometry::{CellSet, Grid};
 use crate::real::each;
 use contact_model::Boundary;
 
-/// The factor b of the length of fronts in the energy, in longer sides of a cell times the work of adhesion: their line tension then is zero.
+/// The factor b of the length of fronts in the energy, in longer sides of a cell times the work of adhesion:
+/// their line tension then is zero.
 const FRONT_WIDTH: f64 = 0.389;
-/// Radius of the neighbourhood in longer sides of a cell. A larger one takes contacts that lie near each other for one.
+/// Radius of the neighbourhood in longer sides of a cell. A larger one takes contacts that lie near each
+/// other for one.
 const RADIUS: f64 = 4.0;
 
 /// The attraction between the cells of a grid.
@@ -73,8 +81,8 @@ impl Attraction {
         self.law.peak * (1.0 + self.neighbours.as_ref().map_or(0.0, |n| n.strength))
     }
 
-    /// Area of a contact, in cells: with a short range the attached shares of all cells, which is where fronts have their elastic tips to a
-    /// tenth of a cell; otherwise the closed cells.
+    /// Area of a contact, in cells: with a short range the attached shares of all cells, which is where
+    /// fronts have their elastic tips to a tenth of a cell; otherwise the closed cells.
     pub fn area(&self, closed: &CellSet, gap: &[f64]) -> f64 {
         match &self.neighbours {
             Some(_) => gap.iter().map(|&g| self.law.attached(g)).sum(),
@@ -82,20 +90,20 @@ impl Attraction {
         }
     }
 
-    /// The cells that a small change of the load finds attached, where fronts stay: with a short range those that hold more than half of
-    /// their work. `None`: the attraction moves with the gaps.
+    /// The cells that a small change of the load finds attached, where fronts stay: with a short range those
+    /// that hold more than half of their work. `None`: the attraction moves with the gaps.
     pub fn held(&self, cells: &CellSet, gap: &[f64]) -> Option<CellSet> {
         self.neighbours.as_ref().map(|_| cells.filter(gap, |g| self.law.attached(g) > 0.5))
     }
 
-    /// Whether the attraction moves over the grid by whole cells, so that the force changes in steps that no derivative at a state shows:
-    /// the fronts of a short range, the edges of Dugdale's zones.
+    /// Whether the attraction moves over the grid by whole cells, so that the force changes in steps that no
+    /// derivative at a state shows: the fronts of a short range, the edges of Dugdale's zones.
     pub fn moves_by_cells(&self) -> bool {
         self.neighbours.is_some() || self.law.shape == Shape::Uniform
     }
 
-    /// The cells that attract with at least half of the work of adhesion left: of a short range the attached ones, of Dugdale's law those
-    /// within the range.
+    /// The cells that attract with at least half of the work of adhesion left: of a short range the attached
+    /// ones, of Dugdale's law those within the range.
     pub fn attracting(&self, cells: &CellSet, gap: &[f64]) -> CellSet {
         self.held(cells, gap).unwrap_or_else(|| cells.filter(gap, |g| g < self.law.range))
     }
@@ -114,7 +122,8 @@ impl Attraction {
         self.times_factors(cells, gap, |g| self.law.traction(g))
     }
 
-    /// Magnitudes of the derivatives of the tractions, each in the gap of its own cell and with the neighbours held.
+    /// Magnitudes of the derivatives of the tractions, each in the gap of its own cell and with the
+    /// neighbours held.
     pub fn slopes(&self, cells: &CellSet, gap: &[f64]) -> Vec<f64> {
         self.times_factors(cells, gap, |g| self.law.slope(g))
     }
@@ -146,7 +155,8 @@ impl Attraction {
         }
     }
 
-    /// By how much the attractions differ in all from the law of their gaps; at the jump of Dugdale's law none do.
+    /// By how much the attractions differ in all from the law of their gaps; at the jump of Dugdale's law
+    /// none do.
     pub fn imbalance(&self, cells: &CellSet, attraction: &[f64], gap: &[f64]) -> f64 {
         let pairs = attraction.iter().zip(gap);
         match self.factors(cells, gap) {
@@ -157,8 +167,9 @@ impl Attraction {
         }
     }
 
-    /// How the attraction of open cells with these gaps follows the gaps of the others: `coupled(v) = R^-1 C R^-1 v`, C the negative of those
-    /// derivatives and R the roots of the slopes. `None`: it does not.
+    /// How the attraction of open cells with these gaps follows the gaps of the others:
+    /// `coupled(v) = R^-1 C R^-1 v`, C the negative of those derivatives and R the roots of the slopes.
+    /// `None`: it does not.
     pub fn coupling<'a>(
         &'a self,
         open: &'a CellSet,

@@ -1,8 +1,9 @@
 //! Passing a bottleneck: where a branch has just ended, or a jump is under way along an unstable direction.
 //!
-//! The plain iteration creeps there, each update changing little, until the jump has gone on; its change has a minimum above zero. Acceleration,
-//! which looks for the state of least change, stays at the minimum, or turns back to the unstable equilibrium. So the plain iteration goes on,
-//! and now and then far along its own change, until it contracts or turns.
+//! The plain iteration creeps there, each update changing little, until the jump has gone on; its change has
+//! a minimum above zero. Acceleration, which looks for the state of least change, stays at the minimum, or
+//! turns back to the unstable equilibrium. So the plain iteration goes on, and now and then far along its own
+//! change, until it contracts or turns.
 
 use crate::real::dot;
 
@@ -41,8 +42,8 @@ impl Bottleneck {
         *self = Self::default();
     }
 
-    /// How many times its change the iteration is to go, with this residual and this change of the attraction over its peak; `None`:
-    /// acceleration makes progress.
+    /// How many times its change the iteration is to go, with this residual and this change of the attraction
+    /// over its peak; `None`: acceleration makes progress.
     pub fn factor(&mut self, residual: f64, change: Vec<f64>) -> Option<f64> {
         let Some(passage) = &mut self.passage else {
             if self.least.is_none_or(|least| residual <= 0.5 * least) {

@@ -1,10 +1,12 @@
 //! Equilibrium of contact pressure and attraction at one load: the attraction lags, the contact follows.
 //!
-//! With the attraction s given, the pressure of the contact solves an elastic contact problem of the gaps `z - G s`; then `s <- s(g)`. Where G
-//! on every set is an inverse M-matrix this map of s is monotone: more attraction here closes gaps everywhere, and never opens one. From a
-//! state whose load has risen it rises to the nearest equilibrium above, from one whose load has fallen it falls to the nearest one below: the
-//! branches of approach and withdrawal. Its derivative is `D^(1/2) G^ D^(1/2)` up to similarity, D the slopes of the law on open cells and G^
-//! the compliance of the open cells with the contact kept closed, so that it contracts exactly where the energy has a minimum.
+//! With the attraction s given, the pressure of the contact solves an elastic contact problem of the gaps
+//! `z - G s`; then `s <- s(g)`. Where G on every set is an inverse M-matrix this map of s is monotone: more
+//! attraction here closes gaps everywhere, and never opens one. From a state whose load has risen it rises to
+//! the nearest equilibrium above, from one whose load has fallen it falls to the nearest one below: the
+//! branches of approach and withdrawal. Its derivative is `D^(1/2) G^ D^(1/2)` up to similarity, D the slopes
+//! of the law on open cells and G^ the compliance of the open cells with the contact kept closed, so that it
+//! contracts exactly where the energy has a minimum.
 
 use super::attraction::Attraction;
 use super::bottleneck::Bottleneck;
@@ -17,29 +19,33 @@ use crate::real::{dot, each, largest, smallest, sum};
 use contact_model::{Status, Stop};
 use std::sync::Arc;
 
-/// An update lowers the gaps left on the contact by this factor: less than the attraction changes by would be lost, more is gone after the
-/// next change of the attraction.
+/// An update lowers the gaps left on the contact by this factor: less than the attraction changes by would be
+/// lost, more is gone after the next change of the attraction.
 const REDUCTION: f64 = 0.05;
 /// The same for the plain iteration, whose contact is solved before the attraction is changed.
 const PLAIN_REDUCTION: f64 = 1e-2;
 /// Steps of conjugate gradients in an update at most.
 const STEPS: usize = 40;
-/// The plain iteration changes the attraction where no gap of the contact is wrong by more than this share of the range.
+/// The plain iteration changes the attraction where no gap of the contact is wrong by more than this share of
+/// the range.
 const SETTLED: f64 = 1e-3;
 /// With acceleration: by more than this share of what the attraction changes its gaps by ...
 const BALANCE: f64 = 0.1;
 /// ... and at most this.
 const SETTLED_FIRST: f64 = 0.05;
-/// Acceleration begins when no gap changes by more than this share of the range in an update: the attraction is then nearly linear in them.
+/// Acceleration begins when no gap changes by more than this share of the range in an update: the attraction
+/// is then nearly linear in them.
 const ACCELERATED: f64 = 0.5;
-/// An accelerated step changes no attraction by more than this factor beyond that of the plain one, else it is not taken.
+/// An accelerated step changes no attraction by more than this factor beyond that of the plain one, else it
+/// is not taken.
 const LONGEST: f64 = 2.0;
 /// Attractions below this share of the largest one do not limit an accelerated step.
 const FELT: f64 = 1e-6;
-/// Updates of the plain iteration, and of a short range, for each outer iteration allowed: it contracts by the spectral radius only.
+/// Updates of the plain iteration, and of a short range, for each outer iteration allowed: it contracts by
+/// the spectral radius only.
 const PLAIN_UPDATES: usize = 20;
-/// At a mean gap more attraction here opens gaps elsewhere, and cells may change sides for ever; from so many updates on the attraction changes
-/// by a share only ...
+/// At a mean gap more attraction here opens gaps elsewhere, and cells may change sides for ever; from so many
+/// updates on the attraction changes by a share only ...
 const PATIENT: usize = 100;
 /// ... which is this.
 const DAMPED: f64 = 0.3;
@@ -55,13 +61,14 @@ const FIRST: f64 = 1e-2;
 pub enum AdhesiveControl {
     /// Sum of the net pressure.
     Force(f64),
-    /// Plane: the approach with free boundaries; with periodic ones the approach that a kernel of zero mean has, which is the mean of the
-    /// heights less the mean gap.
+    /// Plane: the approach with free boundaries; with periodic ones the approach that a kernel of zero mean
+    /// has, which is the mean of the heights less the mean gap.
     Plane(f64),
 }
 
 impl AdhesiveControl {
-    /// What stays as it is while the contact is corrected; `shift` is the constant in the kernel, 0 with free boundaries.
+    /// What stays as it is while the contact is corrected; `shift` is the constant in the kernel, 0 with free
+    /// boundaries.
     fn fixed(self, shift: f64) -> Fixed {
         match self {
             Self::Force(_) => Fixed::Force,
@@ -137,7 +144,8 @@ impl Equilibrium {
     }
 }
 
-/// Energy of a state, elastic and of the attraction; `shift` is the constant in the kernel, which stores none.
+/// Energy of a state, elastic and of the attraction; `shift` is the constant in the kernel, which stores
+/// none.
 pub fn energy(problem: &Problem, attraction: &Attraction, state: &Equilibrium) -> f64 {
     let z = problem.candidates.gaps(&state.cells);
     let force = state.force();
@@ -235,7 +243,8 @@ impl Search<'_> {
         Err(Box::new((Ended::Status(Status::IterationLimit), state)))
     }
 
-    /// Whether the contact of a state is of another load than the one asked for: then it is solved from coarse grids.
+    /// Whether the contact of a state is of another load than the one asked for: then it is solved from
+    /// coarse grids.
     fn is_far(&self, state: &Equilibrium) -> bool {
         let AdhesiveControl::Force(asked) = self.control else { return false };
         let (held, wanted) = (sum(&state.pressure), asked + sum(&state.attraction));
@@ -250,7 +259,8 @@ impl Search<'_> {
         state
     }
 
-    /// The contact under the present attraction, by nested iteration: the elastic problem of the gaps `z - G s`.
+    /// The contact under the present attraction, by nested iteration: the elastic problem of the gaps
+    /// `z - G s`.
     fn contact_afresh(&mut self, state: &mut Equilibrium, stop: Stop<'_>) {
         let grid = self.problem.grid();
         let mut lifted = Vec::new();
@@ -281,8 +291,8 @@ impl Search<'_> {
         state.steps += solved.steps;
     }
 
-    /// How far the force of a state is from the one prescribed, relative to it; where a force of zero is prescribed,
-    /// relative to the pressure of the contact.
+    /// How far the force of a state is from the one prescribed, relative to it; where a force of zero is
+    /// prescribed, relative to the pressure of the contact.
     pub fn load_error(&self, state: &Equilibrium) -> f64 {
         let AdhesiveControl::Force(asked) = self.control else { return 0.0 };
         let miss = (state.force() - asked).abs();
@@ -343,8 +353,8 @@ impl Search<'_> {
         state.mismatch = attraction.mismatch(&state.cells, &state.attraction, &state.gap);
     }
 
-    /// One update: the attraction of the present gaps, and the pressure that then closes the contact. `false` where the attraction cannot
-    /// hold the force.
+    /// One update: the attraction of the present gaps, and the pressure that then closes the contact. `false`
+    /// where the attraction cannot hold the force.
     #[allow(clippy::too_many_lines)] // One update, in the order of its steps.
     fn update(
         &mut self,
@@ -469,7 +479,8 @@ fn extrapolate(factor: f64, from: &[f64], to: &mut [f64], most: f64) {
     to.iter_mut().zip(from).for_each(|(to, from)| *to = (from + factor * (*to - from)).clamp(0.0, most));
 }
 
-/// Replaces what an update made of a state by the combination of the last updates, unless that would change an attraction too much.
+/// Replaces what an update made of a state by the combination of the last updates, unless that would change
+/// an attraction too much.
 fn accelerate(
     attraction: &Attraction,
     own: f64,

@@ -1,7 +1,9 @@
-//! Straight fronts of a short range on an infinite grid, in directions of small numbers: what the constants of [`super::attraction`] rest on.
+//! Straight fronts of a short range on an infinite grid, in directions of small numbers: what the constants
+//! of [`super::attraction`] rest on.
 //!
-//! A strip of attached cells between two fronts along the direction (p, q) is drawn off a plane by a displacement. All cells of a row along the
-//! front do the same, so that rows are the unknowns. `cargo test --release -p bem3d fronts -- --nocapture` prints the table.
+//! A strip of attached cells between two fronts along the direction (p, q) is drawn off a plane by a
+//! displacement. All cells of a row along the front do the same, so that rows are the unknowns.
+//! `cargo test --release -p bem3d fronts -- --nocapture` prints the table.
 
 #![allow(clippy::needless_range_loop)] // Indices as in the formulas.
 #![allow(clippy::cast_possible_wrap, clippy::cast_sign_loss)] // Small numbers.
@@ -55,7 +57,8 @@ impl Direction {
         found
     }
 
-    /// Displacement in row n under a unit of pressure on the cells of row 0, `pi E* u`, less the logarithm of a line load's reach.
+    /// Displacement in row n under a unit of pressure on the cells of row 0, `pi E* u`, less the logarithm of
+    /// a line load's reach.
     fn influence(&self, n: i64) -> f64 {
         let (i, j) = self.cell(n);
         let length = self.period();
@@ -83,7 +86,8 @@ impl Direction {
         rows
     }
 
-    /// Tension of the last cells of a strip that all hold on and opening of the next ones, where fronts release `w = 1`.
+    /// Tension of the last cells of a strip that all hold on and opening of the next ones, where fronts
+    /// release `w = 1`.
     fn edge(&self) -> (f64, f64) {
         const ROWS: usize = 300;
         let length = self.period();
@@ -93,7 +97,8 @@ impl Direction {
             (0..ROWS).map(|i| (0..ROWS).map(|k| influence[i.abs_diff(k)]).collect()).collect();
         let p = eliminated(matrix, vec![1.0; ROWS]);
         let beside = dot(&p, &(0..ROWS).map(|k| influence[ROWS - k]).collect::<Vec<_>>());
-        // The stress intensity of a strip of half width h under the line load P is P/sqrt(pi h); at w it is sqrt(2).
+        // The stress intensity of a strip of half width h under the line load P is P/sqrt(pi h); at w it is
+        // sqrt(2).
         let line = p.iter().sum::<f64>() / length;
         let scale = 2f64.sqrt() / (line / (PI * 0.5 * ROWS as f64 / length).sqrt());
         (scale * p[ROWS - 1], scale * (1.0 - beside))
@@ -180,7 +185,8 @@ impl Direction {
             let line = net.iter().sum::<f64>() * spacing;
             let tip = E * half * (-PI * drawn / (2.0 * line.abs())).exp();
             let release = line * line / (2.0 * PI * tip);
-            // Energies of a length of both fronts: of the work and its zone, and of the same in the strip without one.
+            // Energies of a length of both fronts: of the work and its zone, and of the same in the strip
+            // without one.
             let zone: f64 = 0.5 * dot(&net, &gap);
             let work: f64 =
                 -attached.iter().zip(&mean).map(|(a, m)| a * (1.0 - strength * (1.0 - m))).sum::<f64>();

@@ -3,11 +3,12 @@
 use contact_model::AdhesionLaw;
 use std::f64::consts::PI;
 
-/// Gaps beyond so many ranges feel no exponential attraction: below the rounding of the largest traction, `exp(-36.7) = 2^-53`.
+/// Gaps beyond so many ranges feel no exponential attraction: below the rounding of the largest traction,
+/// `exp(-36.7) = 2^-53`.
 const FARTHEST: f64 = 36.7;
 
-/// Traction in contact of a short range, in `sqrt(E* w/a)` with the longer side a of a cell; see [`super::attraction`]. Larger ones trap
-/// fronts between the rows of cells, smaller ones draw them apart.
+/// Traction in contact of a short range, in `sqrt(E* w/a)` with the longer side a of a cell; see
+/// [`super::attraction`]. Larger ones trap fronts between the rows of cells, smaller ones draw them apart.
 const FRONT_TRACTION: f64 = 0.7;
 
 /// How the attraction falls.
@@ -39,7 +40,8 @@ pub struct Law {
 }
 
 impl Law {
-    /// The law of a short range, of this work of adhesion over `pi E*` times the height on cells with this longer side.
+    /// The law of a short range, of this work of adhesion over `pi E*` times the height on cells with this
+    /// longer side.
     pub fn short(work: f64, side: f64) -> Self {
         let peak = FRONT_TRACTION * (work / (PI * side)).sqrt();
         Self { peak, range: 2.0 * work / peak, shape: Shape::Linear }
@@ -73,9 +75,9 @@ impl Law {
         }
     }
 
-    /// Distance of a traction and a gap from the graph of the law: the difference of the tractions over the peak. At the jump of Dugdale's
-    /// law every traction between both values is on the graph: there it is how far the gap lies beyond the range, in ranges, where that is
-    /// less.
+    /// Distance of a traction and a gap from the graph of the law: the difference of the tractions over the
+    /// peak. At the jump of Dugdale's law every traction between both values is on the graph: there it is how
+    /// far the gap lies beyond the range, in ranges, where that is less.
     pub fn mismatch(self, traction: f64, gap: f64) -> f64 {
         let difference = (traction - self.traction(gap)).abs() / self.peak;
         match self.shape {

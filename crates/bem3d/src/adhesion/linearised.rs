@@ -1,15 +1,18 @@
 //! The response of a state to a small change of the load: how stable it is and how stiff.
 //!
-//! With the contact set C and the slopes D of the law on the open cells Z within reach, a unit of approach changes the net pressure by
-//! x with `A x = 1`, where A is G with `-1/D` added on the diagonal of Z: then `k = 1'x`. Eliminating C leaves `(G^ - 1/D) x_Z = ...` with
-//! the Schur complement G^; with `S = D^(1/2) G^ D^(1/2)` and `x_Z = -D^(1/2) v` it is `(1 - S) v = b`, positive definite where the energy
-//! has a minimum. Conjugate gradients on it find v and, with the coefficients of Lanczos, the largest eigenvalue r of S.
+//! With the contact set C and the slopes D of the law on the open cells Z within reach, a unit of approach
+//! changes the net pressure by x with `A x = 1`, where A is G with `-1/D` added on the diagonal of Z: then
+//! `k = 1'x`. Eliminating C leaves `(G^ - 1/D) x_Z = ...` with the Schur complement G^; with
+//! `S = D^(1/2) G^ D^(1/2)` and `x_Z = -D^(1/2) v` it is `(1 - S) v = b`, positive definite where the energy
+//! has a minimum. Conjugate gradients on it find v and, with the coefficients of Lanczos, the largest
+//! eigenvalue r of S.
 //!
-//! With the mean plane of a periodic surface held, G stands for the kernel of zero mean. Where every cell touches, that is singular: the force
-//! is free, and there is no stiffness.
+//! With the mean plane of a periodic surface held, G stands for the kernel of zero mean. Where every cell
+//! touches, that is singular: the force is free, and there is no stiffness.
 //!
-//! Where the attraction of a cell depends on its neighbours, `D + C` stands for D, `N = 1 + D^(-1/2) C D^(-1/2)`: then `(1 - S N) v = b` with
-//! `x_Z = -D^(1/2) N v`, which is positive definite in the scalar product `u'N v`.
+//! Where the attraction of a cell depends on its neighbours, `D + C` stands for D,
+//! `N = 1 + D^(-1/2) C D^(-1/2)`: then `(1 - S N) v = b` with `x_Z = -D^(1/2) N v`, which is positive
+//! definite in the scalar product `u'N v`.
 
 use super::attraction::Attraction;
 use super::equilibrium::{AdhesiveControl, Equilibrium};
@@ -21,7 +24,8 @@ use crate::real::{dot, each, sum};
 use contact_model::Stop;
 use numerics::root::bisect;
 
-/// Slopes below this share of the largest one are left out: what they change is below the rounding of the sums.
+/// Slopes below this share of the largest one are left out: what they change is below the rounding of the
+/// sums.
 const FLAT: f64 = 1e-12;
 /// Inner solves on the contact reduce their residual by this factor: near what single precision resolves.
 const INNER: f64 = 1e-4;
@@ -37,8 +41,8 @@ const ROUNDS: usize = 4;
 /// What a small change of the load does.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Response {
-    /// `1 - r` for the exponential law, with the approach or the force held as the control says; for Dugdale's law the smallest distance
-    /// of the gap of a cell from the range, in ranges.
+    /// `1 - r` for the exponential law, with the approach or the force held as the control says; for
+    /// Dugdale's law the smallest distance of the gap of a cell from the range, in ranges.
     pub stability: f64,
     /// The stiffness where it was wanted and exists.
     pub stiffness: Option<Slope>,
@@ -146,8 +150,9 @@ impl Linearised<'_> {
         sum
     }
 
-    /// Solves `(1 - S N) v = b` in the scalar product of N until the energy of the residual is below `wanted` or, without it, until the smallest eigenvalue has settled.
-    /// `held` is the stiffness of the contact alone where the force is fixed.
+    /// Solves `(1 - S N) v = b` in the scalar product of N until the energy of the residual is below `wanted`
+    /// or, without it, until the smallest eigenvalue has settled. `held` is the stiffness of the contact
+    /// alone where the force is fixed.
     fn reduce(&mut self, b: &[f64], wanted: Option<f64>, held: f64) -> Reduced {
         let mut v = vec![0.0; b.len()];
         let mut r = b.to_vec();
@@ -245,8 +250,9 @@ pub fn respond(
     response
 }
 
-/// The stiffness of the contact area of a state, held: of the closed cells and, with a short range, of those that hold more than half of
-/// their work. `None` where it is the whole of a periodic surface. Also the steps of conjugate gradients.
+/// The stiffness of the contact area of a state, held: of the closed cells and, with a short range, of those
+/// that hold more than half of their work. `None` where it is the whole of a periodic surface. Also the steps
+/// of conjugate gradients.
 ///
 /// Cost: one or two solves on the contact.
 pub fn fixed_area(

@@ -4,7 +4,8 @@ use crate::real::dot;
 
 /// States that are combined at most.
 const DEPTH: usize = 6;
-/// Added to the diagonal of the normal equations, relative: combinations of nearly equal residuals are not worth their rounding.
+/// Added to the diagonal of the normal equations, relative: combinations of nearly equal residuals are not
+/// worth their rounding.
 const REGULARISATION: f64 = 1e-12;
 
 /// What one update of the iteration made of a state.
@@ -27,8 +28,8 @@ impl Mixing {
         self.entries.clear();
     }
 
-    /// Takes what an update made of a state with this residual, and replaces it by the combination of the last updates with the smallest
-    /// residual, to first order.
+    /// Takes what an update made of a state with this residual, and replaces it by the combination of the
+    /// last updates with the smallest residual, to first order.
     pub fn combine(&mut self, pressure: &mut [f64], attraction: &mut [f64], residual: Vec<f64>) {
         if self.entries.len() > DEPTH {
             self.entries.remove(0);
@@ -62,7 +63,8 @@ impl Mixing {
     }
 }
 
-/// Gauss's elimination of a small symmetric system with its right-hand side as the last column; `None` where it is singular.
+/// Gauss's elimination of a small symmetric system with its right-hand side as the last column; `None` where
+/// it is singular.
 pub fn solved(mut rows: Vec<Vec<f64>>) -> Option<Vec<f64>> {
     let n = rows.len();
     for k in 0..n {
@@ -127,7 +129,8 @@ mod tests {
         let (mut pressure, mut attraction) = ([3.0], [4.0]);
         mixing.combine(&mut pressure, &mut attraction, vec![1.0, 0.5]);
         assert_eq!((pressure, attraction), ([3.0], [4.0]));
-        // Residuals of 1 and -1: the combination of least residual is half of both, of pressure and attraction.
+        // Residuals of 1 and -1: the combination of least residual is half of both, of pressure and
+        // attraction.
         mixing.clear();
         mixing.combine(&mut [1.0], &mut [2.0], vec![1.0]);
         let (mut pressure, mut attraction) = ([3.0], [6.0]);

@@ -1,4 +1,5 @@
-//! Adhesion: an attractive traction across open gaps, beside the contact conditions. A short range is one below the size of a cell.
+//! Adhesion: an attractive traction across open gaps, beside the contact conditions. A short range is one
+//! below the size of a cell.
 
 mod attraction;
 mod bottleneck;

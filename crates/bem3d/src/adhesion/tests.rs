@@ -1,4 +1,5 @@
-//! Small surfaces against a dense reference that shares the influence matrix with the solver and nothing else.
+//! Small surfaces against a dense reference that shares the influence matrix with the solver and nothing
+//! else.
 
 #![allow(clippy::needless_range_loop)] // Indices as in the formulas.
 
@@ -14,7 +15,8 @@ use std::sync::Arc;
 
 /// Residuals of the solver in these tests.
 const TOLERANCE: f64 = 1e-9;
-/// Gaps of the solver and of the reference, in ranges: the tolerance over the smallest distance of an eigenvalue from 1 met here.
+/// Gaps of the solver and of the reference, in ranges: the tolerance over the smallest distance of an
+/// eigenvalue from 1 met here.
 const SAME: f64 = 1e-6;
 
 const LIMITS: Limits =
@@ -68,8 +70,8 @@ fn dense(grid: Grid, boundary: Boundary) -> Vec<Vec<f64>> {
         .collect()
 }
 
-/// Without the constant of a periodic kernel, up to a part of it so small that it changes nothing here and keeps the matrix regular: at a
-/// plane that of zero mean acts.
+/// Without the constant of a periodic kernel, up to a part of it so small that it changes nothing here and
+/// keeps the matrix regular: at a plane that of zero mean acts.
 fn at_a_plane(grid: Grid, boundary: Boundary) -> Vec<Vec<f64>> {
     const LEFT: f64 = 1e-8;
     let constant = KernelTable::shared(grid, boundary).shift() * (1.0 - LEFT);
@@ -101,8 +103,8 @@ pub fn eliminated(mut matrix: Vec<Vec<f64>>, mut right: Vec<f64>) -> Vec<f64> {
     right
 }
 
-/// The equilibrium near given gaps at an approach, by Newton's method with the contact set changed between steps; `None` where it does not
-/// settle. Returns the gaps, and whether the energy has a minimum there.
+/// The equilibrium near given gaps at an approach, by Newton's method with the contact set changed between
+/// steps; `None` where it does not settle. Returns the gaps, and whether the energy has a minimum there.
 fn newton(
     grid: Grid,
     g: &[Vec<f64>],
@@ -173,7 +175,8 @@ fn slopes(attraction: &Attraction, all: &CellSet, gap: &[f64]) -> Vec<Vec<f64>> 
     slopes
 }
 
-/// Whether the derivatives of the pressure less those of the attraction are positive definite on the open cells.
+/// Whether the derivatives of the pressure less those of the attraction are positive definite on the open
+/// cells.
 fn is_minimum(g: &[Vec<f64>], contact: &[bool], slopes: &[Vec<f64>]) -> bool {
     let n = contact.len();
     let inverse: Vec<Vec<f64>> = (0..n)
@@ -448,8 +451,8 @@ fn a_law_is_its_energy_differentiated() {
     approx::assert_relative_eq!(dugdale.mismatch(0.0, 0.0), 1.0);
 }
 
-/// While the gaps of all others stay, the energy is convex in that of one cell: the stiffness of a cell among held ones is at least the
-/// reciprocal of its own influence, and the attraction falls less steeply.
+/// While the gaps of all others stay, the energy is convex in that of one cell: the stiffness of a cell among
+/// held ones is at least the reciprocal of its own influence, and the attraction falls less steeply.
 #[test]
 fn no_attachment_or_detachment_of_a_single_cell_lowers_the_energy_of_a_short_range() {
     let mut least = f64::INFINITY;

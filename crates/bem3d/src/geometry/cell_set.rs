@@ -7,7 +7,8 @@ use std::ops::{AddAssign, Range};
 
 /// A set of cells, row by row. Values on it stand one after the other in the order of the cells.
 ///
-/// Every cell has its column; where the cells of a row form long runs, the runs are kept too, and values move run by run.
+/// Every cell has its column; where the cells of a row form long runs, the runs are kept too, and values move
+/// run by run.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct CellSet {
     rows: Vec<RowStart>,
@@ -63,7 +64,8 @@ impl SetRow<'_> {
         })
     }
 
-    /// Writes the values of a set where they belong in a row that begins at column x0; the rest of the row stays.
+    /// Writes the values of a set where they belong in a row that begins at column x0; the rest of the row
+    /// stays.
     pub fn spread<T: Copy>(&self, values: &[T], row: &mut [T], x0: usize) {
         if self.runs.is_empty() {
             for (&x, &value) in self.columns.iter().zip(&values[self.span()]) {
@@ -296,8 +298,8 @@ impl CellSet {
         })
     }
 
-    /// Cuts values on the set into those of bands of rows that begin at these rows of the grid, each with its first position. The first band
-    /// begins at the first row of the set or before it.
+    /// Cuts values on the set into those of bands of rows that begin at these rows of the grid, each with its
+    /// first position. The first band begins at the first row of the set or before it.
     pub fn split<'v, T>(
         &self,
         mut values: &'v mut [T],
@@ -374,7 +376,8 @@ impl CellSet {
         })
     }
 
-    /// Values on `other` carried over to this set: 0 on cells that `other` lacks, dropped where this set lacks them.
+    /// Values on `other` carried over to this set: 0 on cells that `other` lacks, dropped where this set
+    /// lacks them.
     pub fn carry<T: Copy + Default + Send + Sync>(&self, other: &Self, values: &[T]) -> Vec<T> {
         let mut carried = Vec::new();
         self.carry_to(other, values, &mut carried);
@@ -418,8 +421,8 @@ impl CellSet {
         });
     }
 
-    /// Changes the values `own` of each row that both sets have by those on `other`, given as a line that begins at a column and is zero
-    /// elsewhere.
+    /// Changes the values `own` of each row that both sets have by those on `other`, given as a line that
+    /// begins at a column and is zero elsewhere.
     fn beside<T: Copy + Default + Send + Sync>(
         &self,
         other: &Self,

@@ -81,7 +81,8 @@ impl Window {
         Self { x, y, width, height }
     }
 
-    /// Whether a plan for this window also serves another: it holds it, and is not so large that a new plan is cheaper.
+    /// Whether a plan for this window also serves another: it holds it, and is not so large that a new plan
+    /// is cheaper.
     pub fn serves(self, wanted: Self, tuning: &Tuning) -> bool {
         self.union(wanted) == self && wanted.count() as f64 >= tuning.kept_window * self.count() as f64
     }
@@ -106,14 +107,17 @@ impl Lengths {
 
     /// Shortest good lengths that leave a kernel of full reach free of wrap-around.
     ///
-    /// For an even kernel `2 (n - 1)` is enough: the only lag that meets its mirror image is `n - 1`, and it is equal to it.
+    /// For an even kernel `2 (n - 1)` is enough: the only lag that meets its mirror image is `n - 1`, and it
+    /// is equal to it.
     pub fn free(window: Window) -> Self {
         Self::map(window, |n| fast_length(2 * (n - 1), EVEN))
     }
 
-    /// Good lengths of a torus that represents lags up to `0.5 share n` exactly; farther ones are taken the shorter way round.
+    /// Good lengths of a torus that represents lags up to `0.5 share n` exactly; farther ones are taken the
+    /// shorter way round.
     ///
-    /// Positive definite: the kernel's symbol falls as 1/q, what the kink half way round adds as 1/q^2, less from the first wave on.
+    /// Positive definite: the kernel's symbol falls as 1/q, what the kink half way round adds as 1/q^2, less
+    /// from the first wave on.
     pub fn shortened(window: Window, share: f64) -> Self {
         let free = Self::free(window);
         let short = Self::map(window, |n| fast_length((share * n as f64) as usize - 1, EVEN));

@@ -1,28 +1,31 @@
-//! Influence coefficients of a half-plane (plane strain): the displacement of the middle of a strip under uniform pressure on another.
+//! Influence coefficients of a half-plane (plane strain): the displacement of the middle of a strip under
+//! uniform pressure on another.
 //!
-//! `u(x) = -(2 / (pi E*)) int p(s) ln(|x - s| / D) ds` has no zero at infinity: displacements are counted from a point at the distance D
-//! from each strip. D is twice the side of the map along x, so that every entry is positive and the matrix is an inverse M-matrix on
-//! every set tried. Pressure, contact and gap at a prescribed force do not depend on it; the approach and the stiffness do.
+//! `u(x) = -(2 / (pi E*)) int p(s) ln(|x - s| / D) ds` has no zero at infinity: displacements are counted
+//! from a point at the distance D from each strip. D is twice the side of the map along x, so that every
+//! entry is positive and the matrix is an inverse M-matrix on every set tried. Pressure, contact and gap at a
+//! prescribed force do not depend on it; the approach and the stiffness do.
 
 use crate::geometry::Grid;
 use std::f64::consts::PI;
 
-/// Beyond this distance, in steps, the series is used: the closed form, a difference of terms `x ln x`, loses digits.
+/// Beyond this distance, in steps, the series is used: the closed form, a difference of terms `x ln x`, loses
+/// digits.
 const FAR: usize = 64;
 /// D over the side of the map along x.
 const DATUM: f64 = 2.0;
 /// Catalan's constant.
 const CATALAN: f64 = 0.915_965_594_177_219;
 
-/// Displacement at a lag of so many strips of width a under unit pressure, times `pi E* / c`; c is the unit of length and
-/// `stretch = a / c`: `2 (a/c) (ln(D/a) - <ln|x + t|>)`, the mean over `-1/2 < t < 1/2`.
+/// Displacement at a lag of so many strips of width a under unit pressure, times `pi E* / c`; c is the unit
+/// of length and `stretch = a / c`: `2 (a/c) (ln(D/a) - <ln|x + t|>)`, the mean over `-1/2 < t < 1/2`.
 pub fn influence(lag: usize, grid: Grid) -> f64 {
     let datum = (DATUM * grid.columns as f64).ln();
     2.0 * grid.stretch * (datum - mean_logarithm(lag))
 }
 
-/// A lower bound of the eigenvalues on every set of strips: that of the alternating wave on the infinite line, `8 G a / (pi c)` with
-/// Catalan's constant G.
+/// A lower bound of the eigenvalues on every set of strips: that of the alternating wave on the infinite
+/// line, `8 G a / (pi c)` with Catalan's constant G.
 pub fn smallest_eigenvalue(stretch: f64) -> f64 {
     8.0 * CATALAN / PI * stretch
 }
@@ -66,7 +69,8 @@ mod tests {
 
     #[test]
     fn strips_are_the_difference_of_two_long_rows_of_squares() {
-        // Rows of square cells so long that their ends add the same at both lags: Love's kernel summed along y.
+        // Rows of square cells so long that their ends add the same at both lags: Love's kernel summed along
+        // y.
         let half = 20_000;
         let row = |lag| {
             (1..=half).map(|y| 2.0 * crate::kernel::love::influence(lag, y)).sum::<f64>()
@@ -105,7 +109,8 @@ mod tests {
                     assert!(inverse[i * n + j] <= 1e-12 * largest, "({i}, {j}): {}", inverse[i * n + j]);
                 }
             }
-            // Below the eigenvalue: G - lambda is positive definite as long as elimination meets positive pivots.
+            // Below the eigenvalue: G - lambda is positive definite as long as elimination meets positive
+            // pivots.
             let bound = smallest_eigenvalue(grid.stretch);
             assert!(
                 pivots(n, &|i, j| entry(i, j) - if i == j { bound } else { 0.0 }).iter().all(|&p| p > 0.0)

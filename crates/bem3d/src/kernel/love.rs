@@ -5,18 +5,21 @@ use std::f64::consts::PI;
 
 /// Beyond this distance, in longer sides of a cell, the far-field series is used.
 ///
-/// The closed form is a second difference of terms of size r and loses r^2 of its digits; the series loses r^-6.
-/// Here the closed form is good to 4e-12 of the kernel's own value (1e-14 of that at the origin) and the series to 2e-13.
+/// The closed form is a second difference of terms of size r and loses r^2 of its digits; the series loses
+/// r^-6. Here the closed form is good to 4e-12 of the kernel's own value (1e-14 of that at the origin) and
+/// the series to 2e-13.
 const FAR: f64 = 64.0;
 
-/// Displacement at the lattice offset (x, y), in cells, of a square cell that carries unit pressure, times pi E* / h_c.
+/// Displacement at the lattice offset (x, y), in cells, of a square cell that carries unit pressure, times pi
+/// E* / h_c.
 ///
 /// `I = f(x+1/2, y+1/2) - f(x-1/2, y+1/2) - f(x+1/2, y-1/2) + f(x-1/2, y-1/2)` with
-/// `f(u, v) = v asinh(u/|v|) + u asinh(v/|u|)`; dimensionless, symmetric in both signs and in the exchange of x and y.
-/// So `u_i = (h_c / (pi E*)) sum_j I(i - j) p_j`.
+/// `f(u, v) = v asinh(u/|v|) + u asinh(v/|u|)`; dimensionless, symmetric in both signs and in the exchange of
+/// x and y. So `u_i = (h_c / (pi E*)) sum_j I(i - j) p_j`.
 ///
-/// Relative accuracy 1e-13 within 8 cells, 4e-12 at worst (just inside 64 cells), 2e-13 beyond; absolute 5e-14 everywhere.
-/// Source: Love (1929), Phil. Trans. R. Soc. A 228, 377; the far field is the multipole expansion of the uniform square.
+/// Relative accuracy 1e-13 within 8 cells, 4e-12 at worst (just inside 64 cells), 2e-13 beyond; absolute
+/// 5e-14 everywhere. Source: Love (1929), Phil. Trans. R. Soc. A 228, 377; the far field is the multipole
+/// expansion of the uniform square.
 ///
 /// ```
 /// // Own centre: 4 ln(1 + sqrt 2).
@@ -55,7 +58,8 @@ fn is_far(x: usize, y: usize, stretch: f64) -> bool {
     (x * a).powi(2) + (y * b).powi(2) > (FAR * a.max(b)).powi(2)
 }
 
-/// The larger lag with the side of the cell along it, then the other: ordered, the symmetry is exact to the last bit.
+/// The larger lag with the side of the cell along it, then the other: ordered, the symmetry is exact to the
+/// last bit.
 fn ordered(x: usize, y: usize, stretch: f64) -> [(f64, f64); 2] {
     let (x, y) = ((x as f64, stretch), (y as f64, stretch.recip()));
     if x.0 >= y.0 { [x, y] } else { [y, x] }
@@ -73,14 +77,15 @@ fn corner(u: f64, v: f64) -> f64 {
     v * (u / v.abs()).asinh() + u * (v / u.abs()).asinh()
 }
 
-/// The mean of 1/r over the cell, by Taylor's series: `sinh(D/2)/(D/2)` in both directions applied to 1/r, to fourth order.
+/// The mean of 1/r over the cell, by Taylor's series: `sinh(D/2)/(D/2)` in both directions applied to 1/r, to
+/// fourth order.
 fn far_field(x: usize, y: usize, stretch: f64) -> f64 {
     let [(x, a), (y, b)] = ordered(x, y, stretch);
     let (x, y) = (x * a, y * b);
     let r2 = x * x + y * y;
     let (a2, b2) = (a * a, b * b);
-    // d^2/dx^2 (1/r) = (3 c^2 - 1) / r^3 with c = x/r; d^4/dx^4 (1/r) = 24 P_4(c) / r^5; the mixed derivative follows from
-    // Laplace^2 (1/r) = 9 / r^5.
+    // d^2/dx^2 (1/r) = (3 c^2 - 1) / r^3 with c = x/r; d^4/dx^4 (1/r) = 24 P_4(c) / r^5; the mixed derivative
+    // follows from Laplace^2 (1/r) = 9 / r^5.
     let second = |c2: f64| 3.0 * c2 - 1.0;
     let fourth = |c2: f64| 3.0 * (35.0 * c2 * c2 - 30.0 * c2 + 3.0);
     let (x4, y4) = (fourth(x * x / r2), fourth(y * y / r2));
@@ -90,15 +95,17 @@ fn far_field(x: usize, y: usize, stretch: f64) -> f64 {
     (1.0 + (quadrupole + next / r2) / r2) / r2.sqrt()
 }
 
-/// The smallest eigenvalue of the kernel of square cells on the infinite lattice, a lower bound for every contact set.
+/// The smallest eigenvalue of the kernel of square cells on the infinite lattice, a lower bound for every
+/// contact set.
 ///
-/// It is the lattice symbol at the checkerboard wave, `sum I(x, y) (-1)^(x + y)`: no principal submatrix of a symmetric matrix
-/// has a smaller eigenvalue.
+/// It is the lattice symbol at the checkerboard wave, `sum I(x, y) (-1)^(x + y)`: no principal submatrix of a
+/// symmetric matrix has a smaller eigenvalue.
 pub const SMALLEST_EIGENVALUE: f64 = 1.824_301;
 
 /// The same for cells of sides `stretch` and `1 / stretch`.
 ///
-/// By Poisson's sum it is `(32/pi^2) sum_ab (-1)^(a+b) / (m n sqrt((m / stretch)^2 + (n stretch)^2))` over `m = 2a + 1, n = 2b + 1`.
+/// By Poisson's sum it is `(32/pi^2) sum_ab (-1)^(a+b) / (m n sqrt((m / stretch)^2 + (n stretch)^2))` over
+/// `m = 2a + 1, n = 2b + 1`.
 pub fn smallest_eigenvalue(stretch: f64) -> f64 {
     if stretch.to_bits() == 1f64.to_bits() {
         return SMALLEST_EIGENVALUE;

@@ -1,5 +1,5 @@
-//! Influence coefficients: Love's for a half-space that is unloaded outside the map, the periodic ones, those of a half-plane, and
-//! tables of them.
+//! Influence coefficients: Love's for a half-space that is unloaded outside the map, the periodic ones, those
+//! of a half-plane, and tables of them.
 
 mod alternating;
 mod half_plane;

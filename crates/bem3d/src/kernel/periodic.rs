@@ -1,8 +1,9 @@
 //! The kernel of a rectangle that repeats itself for ever.
 //!
-//! A mean pressure on every copy would sink an infinite half-space without limit; displacements are counted from their mean, which
-//! leaves a kernel of zero mean. That kernel is no inverse M-matrix, and cells outside `z < d` may penetrate. Adding a constant c to
-//! it changes neither the pressure under a given force nor the gap, only where the plane is counted from (`d + c F`), and with
+//! A mean pressure on every copy would sink an infinite half-space without limit; displacements are counted
+//! from their mean, which leaves a kernel of zero mean. That kernel is no inverse M-matrix, and cells outside
+//! `z < d` may penetrate. Adding a constant c to it changes neither the pressure under a given force nor the
+//! gap, only where the plane is counted from (`d + c F`), and with
 //! [`PeriodicKernel::shift`] every entry is positive, so that what the elimination and the candidates of the free kernel rely on holds
 //! again (`tests/tests/periodic.rs` checks the results).
 
@@ -11,12 +12,13 @@ use super::symbol::Symbol;
 use crate::geometry::{Grid, Lengths};
 use std::f64::consts::{PI, TAU};
 
-/// Chebyshev polynomials in each direction for the smooth part of the symbol of square cells: the error falls as 5.8^-n.
+/// Chebyshev polynomials in each direction for the smooth part of the symbol of square cells: the error falls
+/// as 5.8^-n.
 const MODES: usize = 22;
 /// From so many polynomials on, which oblong cells take, the sums are evaluated at every wave.
 const MOST_MODES: usize = 256;
-/// `c N` of a square of N x N square cells: above 1.61554, the depth of the kernel half a period away in both directions
-/// (`(1 - sqrt 2) 4 zeta(1/2) beta(1/2)` for a point; 1.62 or less for cells).
+/// `c N` of a square of N x N square cells: above 1.61554, the depth of the kernel half a period away in both
+/// directions (`(1 - sqrt 2) 4 zeta(1/2) beta(1/2)` for a point; 1.62 or less for cells).
 const SHIFT: f64 = 2.0;
 /// c of other rectangles over the depth of their kernel.
 const SHIFT_OVER_DEPTH: f64 = 1.25;
@@ -34,7 +36,8 @@ pub struct PeriodicKernel {
 impl PeriodicKernel {
     /// Kernel of a grid. Exact to rounding: the displacement at cell centres under uniform pressure on cells.
     ///
-    /// Cost: some 25 multiplications a cell and a real transform of the grid; up to 5000 a row or column more for oblong cells.
+    /// Cost: some 25 multiplications a cell and a real transform of the grid; up to 5000 a row or column more
+    /// for oblong cells.
     pub fn new(grid: Grid) -> Self {
         let (columns, rows) = (grid.columns, grid.rows);
         let symbol = symbol(grid);
@@ -57,7 +60,8 @@ impl PeriodicKernel {
         Self { grid, symmetric, quarter, shift }
     }
 
-    /// The constant c that is added to the kernel of zero mean; a larger one only loses digits of the stiffness, `1/k' = 1/k + c`.
+    /// The constant c that is added to the kernel of zero mean; a larger one only loses digits of the
+    /// stiffness, `1/k' = 1/k + c`.
     pub fn shift(&self) -> f64 {
         self.shift
     }
@@ -101,15 +105,16 @@ fn sinc(x: f64) -> f64 {
     if x.abs() < 1e-4 { 1.0 - x * x / 6.0 } else { x.sin() / x }
 }
 
-/// The continuum's share of the symbol at a wave (in radians a cell) of cells a x b: `2 pi / |q|` times the transform of a cell.
+/// The continuum's share of the symbol at a wave (in radians a cell) of cells a x b: `2 pi / |q|` times the
+/// transform of a cell.
 fn first(x: f64, y: f64, a: f64, b: f64) -> f64 {
     TAU / (x / a).hypot(y / b) * sinc(x / 2.0) * sinc(y / 2.0)
 }
 
 /// From the values of an even function at a few waves between 0 and pi to those at the waves of a grid.
 ///
-/// What the waves that the grid takes for q add is analytic for `|x| < 2 pi` and `|Im x| < (a/b) pi`, so that polynomials in
-/// `2 (x/pi)^2 - 1` represent it: few of them unless the cells are oblong.
+/// What the waves that the grid takes for q add is analytic for `|x| < 2 pi` and `|Im x| < (a/b) pi`, so that
+/// polynomials in `2 (x/pi)^2 - 1` represent it: few of them unless the cells are oblong.
 struct Interpolation {
     /// Where values are asked for.
     nodes: Vec<f64>,
@@ -157,8 +162,8 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// The waves that the grid takes for (x, y): `sum 2 pi / |Q| sinc(X/2) sinc(Y/2)` over `X = x + 2 pi m`, `Y = y + 2 pi n`,
-/// `Q = (X/a, Y/b)`, without `m = n = 0`; `0 <= x, y <= pi`.
+/// The waves that the grid takes for (x, y): `sum 2 pi / |Q| sinc(X/2) sinc(Y/2)` over `X = x + 2 pi m`,
+/// `Y = y + 2 pi n`, `Q = (X/a, Y/b)`, without `m = n = 0`; `0 <= x, y <= pi`.
 fn aliases(weights: &[f64; TERMS], x: f64, y: f64, a: f64, b: f64) -> f64 {
     // sin((x + 2 pi m)/2) = (-1)^m sin(x/2): alternating sums over m = 1, 2, .. and m = -1, -2, ..
     let terms = |q: f64, side: f64| {
@@ -250,8 +255,9 @@ mod tests {
 
     #[test]
     fn a_cell_and_its_images() {
-        // Differences of the kernel are sums of Love's kernel over images in a square (as many periods in each direction as make one, those
-        // at its edges by half); what images beyond it add falls as one over its side.
+        // Differences of the kernel are sums of Love's kernel over images in a square (as many periods in
+        // each direction as make one, those at its edges by half); what images beyond it add falls as one
+        // over its side.
         for (columns, rows, stretch, [mx, my]) in [
             (3_usize, 3_usize, 1.0, [40_isize, 40_isize]),
             (8, 8, 1.0, [40, 40]),
@@ -313,8 +319,8 @@ mod tests {
 
     #[test]
     fn own_image_of_a_point() {
-        // N (I(0) - I_free(0)) - c N -> 4 zeta(1/2) beta(1/2) = -3.9002649, the square lattice of point charges on their background;
-        // cells add a term of second order.
+        // N (I(0) - I_free(0)) - c N -> 4 zeta(1/2) beta(1/2) = -3.9002649, the square lattice of point
+        // charges on their background; cells add a term of second order.
         let change =
             |n: usize| (kernel(n, n, 1.0).at(0, 0) - influence_of_rectangle(0, 0, 1.0)) * n as f64 - SHIFT;
         let limit = change(64) + (change(64) - change(32)) / 3.0;

@@ -61,7 +61,8 @@ impl Symbol {
         Self { lengths, values }
     }
 
-    /// The values over the number of points (neither transform is normalised), in the precision of a convolution.
+    /// The values over the number of points (neither transform is normalised), in the precision of a
+    /// convolution.
     pub fn scaled<T: Real>(&self) -> Arc<Vec<T>> {
         let norm = 1.0 / self.lengths.points() as f64;
         Arc::new(self.values.iter().map(|&v| T::of(v * norm)).collect())

@@ -36,8 +36,8 @@ impl From<Boundary> for Medium {
 
 /// The kernel at all lags of a grid and the symbols made from it.
 ///
-/// Rows and symbols are made when they are first needed: a contact of three cells does not pay for a table of four million.
-/// What it holds depends on the grid alone, so that sharing it changes no result.
+/// Rows and symbols are made when they are first needed: a contact of three cells does not pay for a table of
+/// four million. What it holds depends on the grid alone, so that sharing it changes no result.
 pub struct KernelTable {
     grid: Grid,
     medium: Medium,
@@ -113,7 +113,8 @@ impl KernelTable {
         self.periodic.get_or_init(|| kernel)
     }
 
-    /// The constant in the kernel: nothing with free boundaries, [`PeriodicKernel::shift`] with periodic ones.
+    /// The constant in the kernel: nothing with free boundaries, [`PeriodicKernel::shift`] with periodic
+    /// ones.
     pub fn shift(&self) -> f64 {
         if self.is_periodic() { self.periodic().shift() } else { 0.0 }
     }
@@ -161,12 +162,14 @@ impl KernelTable {
         }
     }
 
-    /// Circular lengths of a transform that is exact on a window: the period itself where the window needs as much.
+    /// Circular lengths of a transform that is exact on a window: the period itself where the window needs as
+    /// much.
     pub fn exact_lengths(&self, window: Window) -> Lengths {
         self.within_period(Lengths::free(window))
     }
 
-    /// Circular lengths for corrections of the pressure, exact up to lags of half `share` of the window ([`Lengths::shortened`]).
+    /// Circular lengths for corrections of the pressure, exact up to lags of half `share` of the window
+    /// ([`Lengths::shortened`]).
     pub fn shortened_lengths(&self, window: Window, share: f64) -> Lengths {
         self.within_period(Lengths::shortened(window, share))
     }
@@ -190,7 +193,8 @@ impl KernelTable {
         cached(&self.double, lengths, || self.exact_symbol(lengths).scaled())
     }
 
-    /// Scaled symbol of the operator in single precision, rounded from the one in double precision, which certificates need.
+    /// Scaled symbol of the operator in single precision, rounded from the one in double precision, which
+    /// certificates need.
     pub fn symbol_f32(&self, lengths: Lengths) -> Arc<Vec<f32>> {
         let double = self.symbol_f64(lengths);
         cached(&self.single, lengths, || Arc::new(double.iter().map(|&value| value as f32).collect()))
@@ -205,7 +209,8 @@ impl KernelTable {
     pub fn inverse_symbol(&self, lengths: Lengths) -> Arc<Vec<f32>> {
         cached(&self.inverse, lengths, || {
             let mut symbol = self.exact_symbol(lengths);
-            // The wrapped kernel is positive definite; a rounding error in a tiny window must not turn a sign.
+            // The wrapped kernel is positive definite; a rounding error in a tiny window must not turn a
+            // sign.
             let floor = self.smallest_eigenvalue / 2.0;
             for value in &mut symbol.values {
                 *value = 1.0 / value.max(floor);
@@ -247,8 +252,8 @@ impl<T> Kept<T> {
 
 /// The symbol of some lengths, made where there is none.
 ///
-/// Nothing is locked while it is made: threads share that work, and one that waits may begin another solve, which would wait for the lock
-/// for ever. Two threads may make the same symbol; one of them is kept.
+/// Nothing is locked while it is made: threads share that work, and one that waits may begin another solve,
+/// which would wait for the lock for ever. Two threads may make the same symbol; one of them is kept.
 fn cached<T>(kept: &Mutex<Kept<T>>, lengths: Lengths, make: impl FnOnce() -> Arc<Vec<T>>) -> Arc<Vec<T>> {
     let found = lock(kept).find(lengths);
     found.unwrap_or_else(|| {
@@ -292,8 +297,8 @@ mod tests {
 
     #[test]
     fn uniform_pressure_sinks_a_periodic_map_by_its_shift_alone() {
-        // Zero mean plus c: u = c times the number of cells everywhere, by pairs and by a transform. The period itself is a length that
-        // serves, whatever its prime factors.
+        // Zero mean plus c: u = c times the number of cells everywhere, by pairs and by a transform. The
+        // period itself is a length that serves, whatever its prime factors.
         for (columns, rows, stretch) in
             [(6, 6, 1.0), (7, 7, 1.0), (16, 16, 1.0), (1, 1, 1.0), (13, 4, 1.0), (5, 12, 1.6)]
         {
@@ -327,7 +332,8 @@ mod tests {
 
     #[test]
     fn the_inverse_is_one_over_the_eigenvalue_of_a_wave() {
-        // The checkerboard on a torus: the smallest eigenvalue, which the floor of the inverse must not touch.
+        // The checkerboard on a torus: the smallest eigenvalue, which the floor of the inverse must not
+        // touch.
         for (columns, rows, stretch) in [(16, 16, 1.0), (24, 16, 1.0), (20, 16, 1.5)] {
             let grid = Grid { columns, rows, stretch };
             let table = KernelTable::shared(grid, Boundary::Free);

@@ -1,4 +1,5 @@
-//! Small sets: the influence matrix itself and its Cholesky factor. Pressure and stiffness come from one factor.
+//! Small sets: the influence matrix itself and its Cholesky factor. Pressure and stiffness come from one
+//! factor.
 
 use crate::geometry::CellSet;
 use crate::kernel::KernelTable;

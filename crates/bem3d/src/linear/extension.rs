@@ -1,9 +1,10 @@
 //! Extension of displacements from the contact set into the gaps between, for the preconditioner.
 //!
-//! For every extension E of a function on the set C to a whole window, `E' G^-1 E >= (G_CC)^-1`, with equality for the
-//! displacement that the pressure makes. Zeros are an extension too, but a poor one: the jump at every edge of contact
-//! weighs as much as what is asked. Here a gap takes the mean of the contact around it on the finest of ever coarser grids
-//! that has contact there, times a decay for each level; this halves the number of steps where contact is full of holes.
+//! For every extension E of a function on the set C to a whole window, `E' G^-1 E >= (G_CC)^-1`, with
+//! equality for the displacement that the pressure makes. Zeros are an extension too, but a poor one: the
+//! jump at every edge of contact weighs as much as what is asked. Here a gap takes the mean of the contact
+//! around it on the finest of ever coarser grids that has contact there, times a decay for each level; this
+//! halves the number of steps where contact is full of holes.
 
 use crate::geometry::{CellSet, Window};
 use crate::tuning::{BAND, EXTENSION_LEVELS};
@@ -115,7 +116,8 @@ impl Extension {
         }
     }
 
-    /// The transpose of [`Self::extend`], from what [`BandSums::add`] summed to what each contact cell of a block receives.
+    /// The transpose of [`Self::extend`], from what [`BandSums::add`] summed to what each contact cell of a
+    /// block receives.
     pub fn collect(&mut self) {
         let decay = self.decay;
         for l in 1..self.levels.len() {
@@ -186,7 +188,8 @@ impl BandSums<'_> {
         self.width > 0
     }
 
-    /// Adds row y of the window: zero outside the set for [`Extension::extend`]; zero on it, and times the decay, for
+    /// Adds row y of the window: zero outside the set for [`Extension::extend`]; zero on it, and times the
+    /// decay, for
     /// [`Extension::collect`].
     pub fn add(&mut self, y: usize, row: &[f32]) {
         gather(row, &mut self.values[y % BAND / 2 * self.width..][..self.width]);

@@ -11,8 +11,8 @@ use crate::tuning::CHUNK;
 use contact_model::Stop;
 use numerics::parallel::map;
 
-/// When an iteration ends: at the first of these, or one step earlier where the next step, if it gains as much as the last one, would
-/// meet a criterion. The caller measures the result.
+/// When an iteration ends: at the first of these, or one step earlier where the next step, if it gains as
+/// much as the last one, would meet a criterion. The caller measures the result.
 #[derive(Debug, Clone, Copy)]
 pub struct StoppingCriteria {
     /// The error has fallen by this factor (in the norm `sqrt(r' M r)` of the preconditioned residual) ...
@@ -41,7 +41,8 @@ pub enum Fixed {
     Approach,
     /// The force: `G x = r + const` and `sum x = 0`, the approach adapts.
     Force,
-    /// The mean plane of a periodic surface: `(G - c) x = r` with the constant c that the kernel has beyond its zero mean.
+    /// The mean plane of a periodic surface: `(G - c) x = r` with the constant c that the kernel has beyond
+    /// its zero mean.
     MeanPlane(f64),
 }
 
@@ -50,7 +51,8 @@ pub enum Fixed {
 pub struct PcgOutcome {
     /// Steps.
     pub steps: usize,
-    /// Applications of the influence matrix: one a step, and one that told nothing where the precision ended the iteration.
+    /// Applications of the influence matrix: one a step, and one that told nothing where the precision ended
+    /// the iteration.
     pub applications: usize,
     /// Estimate from above of the energy `r' G^-1 r` at the beginning.
     pub energy: f64,
@@ -163,8 +165,8 @@ pub struct Vectors<T> {
     t: Vec<T>,
     kt: Vec<T>,
     z: Vec<T>,
-    /// What the sum of a correction is taken from: about `G^-1 1`, found on the first set of a load and carried from set to set. Empty:
-    /// not yet found.
+    /// What the sum of a correction is taken from: about `G^-1 1`, found on the first set of a load and
+    /// carried from set to set. Empty: not yet found.
     weights: Vec<T>,
 }
 
@@ -211,10 +213,12 @@ impl<T: Real> Vectors<T> {
 
 /// Solves `G x = r` on a set approximately, or what [`Fixed`] makes of it.
 ///
-/// At a fixed force the equation is solved on the corrections without a sum: with the weights w, the residual is `r - (w'r / w'1) 1` and
-/// the preconditioned one `z - (1'z / 1'w) w`, which is symmetric and keeps the sum whatever the weights; `G^-1 1` is the best of them.
+/// At a fixed force the equation is solved on the corrections without a sum: with the weights w, the residual
+/// is `r - (w'r / w'1) 1` and the preconditioned one `z - (1'z / 1'w) w`, which is symmetric and keeps the
+/// sum whatever the weights; `G^-1 1` is the best of them.
 ///
-/// Cost: one application of G and one of the preconditioner a step. The caller checks the result with the exact operator.
+/// Cost: one application of G and one of the preconditioner a step. The caller checks the result with the
+/// exact operator.
 pub fn pcg<T: Real>(
     operator: &mut dyn InfluenceOperator<T>,
     preconditioner: &mut dyn Preconditioner<T>,

@@ -47,8 +47,9 @@ impl<T: Real> Preconditioner<T> for Identity {
     }
 }
 
-/// `M = E' B E`: the residual is extended into the gaps between contacts ([`Extension`]), the inverse of the kernel on a torus around
-/// the window is applied (about |q| / 2 pi), and the transpose leads back. A quarter of the cost of an application of G or less.
+/// `M = E' B E`: the residual is extended into the gaps between contacts ([`Extension`]), the inverse of the
+/// kernel on a torus around the window is applied (about |q| / 2 pi), and the transpose leads back. A quarter
+/// of the cost of an application of G or less.
 #[derive(Debug)]
 pub struct TorusInverse<'a> {
     /// The inverse on the torus.
@@ -62,8 +63,9 @@ pub struct TorusInverse<'a> {
 impl TorusInverse<'_> {
     /// Safety factor of the energy on a torus.
     ///
-    /// `(G_CC)^-1 <= (G^-1)_CC` for every set C, so that the inverse on the whole lattice gives a bound; wrapping the lattice on a torus
-    /// makes it an estimate that a residual as wide as the torus can exceed by some ten per cent.
+    /// `(G_CC)^-1 <= (G^-1)_CC` for every set C, so that the inverse on the whole lattice gives a bound;
+    /// wrapping the lattice on a torus makes it an estimate that a residual as wide as the torus can exceed
+    /// by some ten per cent.
     pub const SAFETY: f64 = 2.0;
 
     fn precondition(&mut self, set: &CellSet, offset: f32, r: &mut [f32], z: &mut [f32]) -> Preconditioned {

@@ -15,10 +15,12 @@ use contact_model::{
 };
 use std::f64::consts::PI;
 
-/// Largest product of the slope of the law and the own compliance of a cell. At 1 a single open cell would be unstable alone, whatever the
-/// surface does; at a fifth of it the cohesive zone, about `E* range^2/work` long, is five cells long.
+/// Largest product of the slope of the law and the own compliance of a cell. At 1 a single open cell would be
+/// unstable alone, whatever the surface does; at a fifth of it the cohesive zone, about `E* range^2/work`
+/// long, is five cells long.
 const RESOLVED: f64 = 0.2;
-/// Ranges over the height of the surface: rounding of the gaps hides smaller ones, and the surface in larger ones.
+/// Ranges over the height of the surface: rounding of the gaps hides smaller ones, and the surface in larger
+/// ones.
 const RANGES: std::ops::RangeInclusive<f64> = 1e-9..=1e9;
 /// A gap that has moved against the load by more than this, in ranges, has left the branch.
 const ON_BRANCH: f64 = 1e-3;
@@ -281,8 +283,9 @@ impl AdhesiveContact {
         Ok(Last { equilibrium, control, branch, state: returned(state)? })
     }
 
-    /// The error of a force that was not prescribed, relative to it, estimated: what the tractions lack in all, and what the largest
-    /// stiffness of a contact in this place makes of the gaps left, both more where the state is less stable. `None` without a force, and for a state that is not stable.
+    /// The error of a force that was not prescribed, relative to it, estimated: what the tractions lack in
+    /// all, and what the largest stiffness of a contact in this place makes of the gaps left, both more where
+    /// the state is less stable. `None` without a force, and for a state that is not stable.
     fn force_error(&self, control: AdhesiveControl, state: &Equilibrium, response: &Response) -> Option<f64> {
         let (AdhesiveControl::Plane(_), force) = (control, state.force().abs()) else { return None };
         let lack = self.attraction.imbalance(&state.cells, &state.attraction, &state.gap);

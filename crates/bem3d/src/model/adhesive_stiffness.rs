@@ -1,9 +1,10 @@
 //! The stiffnesses of a state with adhesion: along the branch, and of its contact area held.
 //!
-//! An exponential attraction moves with the gaps, and its linearised equations have the stiffness. Fronts of a short range and the edges of
-//! Dugdale's zones move by whole cells: between two moves the force follows the gaps as if they were held, 1.4 to 1.8 times too stiff
-//! however small the cells. There the stiffness is a difference quotient: the state is followed along its branch until its fronts have moved
-//! by two cells, and a parabola through the states found has its slope at the first one.
+//! An exponential attraction moves with the gaps, and its linearised equations have the stiffness. Fronts of
+//! a short range and the edges of Dugdale's zones move by whole cells: between two moves the force follows
+//! the gaps as if they were held, 1.4 to 1.8 times too stiff however small the cells. There the stiffness is
+//! a difference quotient: the state is followed along its branch until its fronts have moved by two cells,
+//! and a parabola through the states found has its slope at the first one.
 
 use super::adhesive::AdhesiveContact;
 use super::load::LoadSequence;
@@ -16,9 +17,11 @@ const FIRST_STEP: f64 = 0.1;
 const ADVANCE: f64 = 0.4;
 /// ... and until they have advanced by so many in all.
 const FAR_ENOUGH: f64 = 2.5;
-/// Until fronts have advanced by so many cells the force follows the gaps as if they were held: a fit takes in more points than those.
+/// Until fronts have advanced by so many cells the force follows the gaps as if they were held: a fit takes
+/// in more points than those.
 const NEAREST: f64 = 1.0;
-/// In a contact of fewer cells than a radius of 17, a front counts as advanced by a cell when it has taken this share of its area.
+/// In a contact of fewer cells than a radius of 17, a front counts as advanced by a cell when it has taken
+/// this share of its area.
 const NARROW: f64 = 0.12;
 /// A step grows or shrinks at most by this factor from one to the next.
 const ADAPT: f64 = 2.0;
@@ -84,7 +87,8 @@ impl AdhesiveContact {
         found
     }
 
-    /// The slope of the force in the plane along the branch, with its relative error; `None` where no branch goes on from the state.
+    /// The slope of the force in the plane along the branch, with its relative error; `None` where no branch
+    /// goes on from the state.
     fn quotient(
         &mut self,
         state: &Equilibrium,
@@ -98,7 +102,8 @@ impl AdhesiveContact {
         if edges == 0 && state.attraction.iter().all(|s| *s <= 0.0) {
             return Some((0.0, 0.0));
         }
-        // A round front has 8/(2 pi) edges of cells for each cell of its length. Of a contact few cells wide the slope changes with less.
+        // A round front has 8/(2 pi) edges of cells for each cell of its length. Of a contact few cells wide
+        // the slope changes with less.
         let front = (edges as f64 * std::f64::consts::FRAC_PI_4).min(NARROW * size).max(f64::MIN_POSITIVE);
         let direction = if branch == Branch::Approach { 1.0 } else { -1.0 };
         let mut step = FIRST_STEP * self.attraction.law.range;
@@ -138,9 +143,10 @@ impl AdhesiveContact {
 
 /// The slope at the first of some points on a curve with scatter, and its estimated error.
 ///
-/// Parabolas of least squares go through more and more of the points, at least `fewest`: far ones lower what the scatter does, and are biased by what a
-/// parabola leaves out. The longest one is taken whose slope agrees with those of all shorter ones within twice the standard errors of both
-/// (Lepski's rule); the scatter is that around a cubic through all points.
+/// Parabolas of least squares go through more and more of the points, at least `fewest`: far ones lower what
+/// the scatter does, and are biased by what a parabola leaves out. The longest one is taken whose slope
+/// agrees with those of all shorter ones within twice the standard errors of both (Lepski's rule); the
+/// scatter is that around a cubic through all points.
 fn first_slope(points: &[(f64, f64)], fewest: usize) -> Option<(f64, f64)> {
     if points.len() <= FEWEST {
         return None;

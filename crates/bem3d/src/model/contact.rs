@@ -211,8 +211,9 @@ impl PreparedSurface {
         }
     }
 
-    /// Pressure, and stiffness where asked for. The stiffness may need a more accurate pressure than the certificate does: as long as
-    /// undecided cells could change it by more than the tolerance, the contact set is solved further.
+    /// Pressure, and stiffness where asked for. The stiffness may need a more accurate pressure than the
+    /// certificate does: as long as undecided cells could change it by more than the tolerance, the contact
+    /// set is solved further.
     pub(super) fn settle(
         &mut self,
         target: Control,
@@ -319,8 +320,9 @@ impl PreparedSurface {
         k * self.magnification(k)
     }
 
-    /// The cells that follow a small change of the load as it goes on: those below the hardness. On a path, cells of the indentation that
-    /// are at the hardness again flow when the load grows, and do not when it falls.
+    /// The cells that follow a small change of the load as it goes on: those below the hardness. On a path,
+    /// cells of the indentation that are at the hardness again flow when the load grows, and do not when it
+    /// falls.
     fn responding<'a>(&self, solved: &'a Solved) -> Responding<'a> {
         let bounds = self.problem.bounds;
         let mut responding = Responding::free(solved, bounds);
@@ -335,8 +337,8 @@ impl PreparedSurface {
         responding
     }
 
-    /// On a path, the cells of the indentation whose pressure is the hardness, and which have flowed no further, within what the tolerance
-    /// leaves open.
+    /// On a path, the cells of the indentation whose pressure is the hardness, and which have flowed no
+    /// further, within what the tolerance leaves open.
     pub(super) fn flowing_again(&self, solved: &Solved) -> CellSet {
         let Some(memory) = &self.memory else { return CellSet::default() };
         let (table, hardness) = (self.problem.operators.table(), self.problem.bounds.upper());

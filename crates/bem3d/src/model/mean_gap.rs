@@ -1,4 +1,5 @@
-//! What a rectangle that repeats itself has instead of an approach: a mean gap, and a stiffness from a kernel with a constant in it.
+//! What a rectangle that repeats itself has instead of an approach: a mean gap, and a stiffness from a kernel
+//! with a constant in it.
 
 use super::certificate::LoadError;
 use super::prepared::PreparedSurface;
@@ -17,8 +18,9 @@ impl PreparedSurface {
         self.problem.bounds == Bounds::Unlimited && self.defined == self.problem.grid().count()
     }
 
-    /// The state at a nondimensional mean gap, by Newton's method in ln F where the stiffness is known and secants where it is not: the gap
-    /// falls about linearly with ln F. It is met to the tolerance, in rms heights.
+    /// The state at a nondimensional mean gap, by Newton's method in ln F where the stiffness is known and
+    /// secants where it is not: the gap falls about linearly with ln F. It is met to the tolerance, in rms
+    /// heights.
     pub(super) fn at_mean_gap(&mut self, asked: f64, stop: Stop<'_>) -> Result<ContactState> {
         let first = self.problem.candidates.range().first;
         if asked >= self.mean - first {

@@ -5,8 +5,8 @@ use contact_model::{Cells, RequiredMemory, Scene, Size, Surface};
 /// Name of the model.
 pub const NAME: &str = "bem3d";
 
-/// Memory of one surface under light loads, bytes for each cell, the drawing of the surface included: the largest of
-/// `peak_memory_bytes` in `data/bench/scaling.csv`, rounded up.
+/// Memory of one surface under light loads, bytes for each cell, the drawing of the surface included: the
+/// largest of `peak_memory_bytes` in `data/bench/scaling.csv`, rounded up.
 pub const BYTES_PER_CELL: f64 = 50.0;
 
 /// How much more contact takes that fills the grid, bytes for each cell, by the same table.
@@ -14,7 +14,8 @@ const FILLED_BYTES: f64 = 150.0;
 /// The box around a contact of a share s of the cells fills about so many times s of the grid.
 const BOX_OVER_CONTACT: f64 = 6.0;
 
-/// Memory of a solve beyond [`BYTES_PER_CELL`], bytes for each cell of the grid, where a share of the cells is in contact.
+/// Memory of a solve beyond [`BYTES_PER_CELL`], bytes for each cell of the grid, where a share of the cells
+/// is in contact.
 pub fn bytes_per_cell(contact: f64) -> f64 {
     FILLED_BYTES * (BOX_OVER_CONTACT * contact).min(1.0)
 }
@@ -51,10 +52,12 @@ pub struct Bem3d {
     pub cells: usize,
     /// Number of rows; `None`: as many as make the cells nearly square ([`Cells::nearly_square`]).
     pub rows: Option<usize>,
-    /// Bound t of the certificate and of the estimated relative error of k ([`contact_model::Certificate::meets`]).
+    /// Bound t of the certificate and of the estimated relative error of k
+    /// ([`contact_model::Certificate::meets`]).
     ///
-    /// The certificate counts gaps in rms heights, so that at a prescribed force the approach is good to a few t (at worst about ten) of
-    /// the rms height, not of itself: a light load on a rough surface wants a smaller t for a precise d.
+    /// The certificate counts gaps in rms heights, so that at a prescribed force the approach is good to a
+    /// few t (at worst about ten) of the rms height, not of itself: a light load on a rough surface wants a
+    /// smaller t for a precise d.
     pub tolerance: f64,
     /// Outer iterations at most (each a handful of operator applications).
     pub max_outer_iterations: usize,

@@ -186,7 +186,8 @@ impl PreparedSurface {
         active_set::cold_start(&mut self.problem, target, limits, stop)
     }
 
-    /// How many times the relative error of k is that of `1' G^-1 1 = k'` with the constant c in G: `k = k' / (1 - c k')`.
+    /// How many times the relative error of k is that of `1' G^-1 1 = k'` with the constant c in G:
+    /// `k = k' / (1 - c k')`.
     ///
     /// 1 with free boundaries; grows without limit towards full contact of a periodic surface.
     pub(super) fn magnification(&self, value: f64) -> f64 {

@@ -4,8 +4,9 @@ use super::options::NAME;
 use crate::kernel::Medium;
 use contact_model::{Adhesion, Boundary, Conductance, Error, Outputs, Result, Scene, Surface};
 
-/// What deforms under a scene's surface: under a profile with free boundaries a half-plane. With periodic ones the kernel of one row is
-/// that of plane strain by itself, because a pressure that repeats itself with the row has no wave along y.
+/// What deforms under a scene's surface: under a profile with free boundaries a half-plane. With periodic
+/// ones the kernel of one row is that of plane strain by itself, because a pressure that repeats itself with
+/// the row has no wave along y.
 pub(super) fn medium(scene: &Scene) -> Medium {
     match (&scene.surface, scene.effects.boundary) {
         (Surface::Profile(_), Boundary::Free) => Medium::HalfPlane,
@@ -42,7 +43,8 @@ pub(super) fn check(scene: &Scene) -> Result<()> {
     }
 }
 
-/// The outputs of a medium: the stiffness of a half-plane depends on where displacements are counted from and is not claimed.
+/// The outputs of a medium: the stiffness of a half-plane depends on where displacements are counted from and
+/// is not claimed.
 pub(super) fn outputs(outputs: Outputs, medium: Medium) -> Outputs {
     match medium {
         Medium::HalfPlane => Outputs { stiffness: false, stiffness_fixed_area: false, ..outputs },

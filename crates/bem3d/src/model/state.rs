@@ -199,7 +199,8 @@ impl PreparedSurface {
         Ok(Some(PlasticState::new(area, volume, units.pressure(PI * hardness)?)))
     }
 
-    /// The fields asked for, of a (net) pressure on a set at an approach, with the depth of the indentation of saturated cells.
+    /// The fields asked for, of a (net) pressure on a set at an approach, with the depth of the indentation
+    /// of saturated cells.
     pub(super) fn fields(
         &mut self,
         (set, pressure): (&CellSet, &[f64]),

@@ -1,4 +1,5 @@
-//! Convolution with an even kernel on a window of the grid, by real FFTs of its rows and complex ones of its columns.
+//! Convolution with an even kernel on a window of the grid, by real FFTs of its rows and complex ones of its
+//! columns.
 
 use super::influence::InfluenceOperator;
 use crate::geometry::{CellSet, Lengths, Window};
@@ -14,8 +15,9 @@ use std::sync::Arc;
 
 /// A planned convolution on a window: `u = kernel * p` from rows of the window to rows of the window.
 ///
-/// The spectra of rows are kept in stripes of a few columns each, stripe by stripe: a row writes whole cache lines, the columns of a
-/// stripe are transformed where it lies in the cache, and threads share rows and stripes among them.
+/// The spectra of rows are kept in stripes of a few columns each, stripe by stripe: a row writes whole cache
+/// lines, the columns of a stripe are transformed where it lies in the cache, and threads share rows and
+/// stripes among them.
 pub struct FftConvolution<T: Real> {
     window: Window,
     lengths: Lengths,
@@ -25,7 +27,8 @@ pub struct FftConvolution<T: Real> {
     row_inverse: Arc<dyn ComplexToReal<T>>,
     column_forward: Arc<dyn Fft<T>>,
     column_inverse: Arc<dyn Fft<T>>,
-    /// Row spectra: of each stripe all rows, of each row the columns of the stripe; from `start` on (where a cache line begins).
+    /// Row spectra: of each stripe all rows, of each row the columns of the stripe; from `start` on (where a
+    /// cache line begins).
     spectrum: Vec<Complex<T>>,
     start: usize,
     /// Which bands of rows were given last.
@@ -105,7 +108,8 @@ impl<T: Real> FftConvolution<T> {
         });
     }
 
-    /// Distance of columns that are transformed one after the other: at a multiple of a page they would share few lines of the cache.
+    /// Distance of columns that are transformed one after the other: at a multiple of a page they would share
+    /// few lines of the cache.
     fn pitch(length: usize) -> usize {
         length + Self::TOGETHER
     }
@@ -147,7 +151,8 @@ impl<T: Real> FftConvolution<T> {
         });
     }
 
-    /// Multiplies the spectrum by the symbol: a transform of each column forward and back. Only the bands of rows `wanted` are right afterwards.
+    /// Multiplies the spectrum by the symbol: a transform of each column forward and back. Only the bands of
+    /// rows `wanted` are right afterwards.
     ///
     /// Cost: O(lx ly log) with [`Self::forward`] and [`Self::backward`]; rows of zeros are not transformed.
     pub fn multiply(&mut self, wanted: impl Fn(usize) -> bool) {
@@ -187,7 +192,8 @@ impl<T: Real> FftConvolution<T> {
         });
     }
 
-    /// Transforms rows back: `take` reads row y where it is `wanted`. Each band of rows has its own output, of those given in order.
+    /// Transforms rows back: `take` reads row y where it is `wanted`. Each band of rows has its own output,
+    /// of those given in order.
     pub fn backward<O: Send>(
         &mut self,
         wanted: impl Fn(usize) -> bool + Sync,
@@ -205,7 +211,8 @@ impl<T: Real> FftConvolution<T> {
                 for (values, stripe) in line.chunks_mut(Self::STRIPE).zip(stripes) {
                     values.copy_from_slice(&stripe[y * Self::STRIPE..][..values.len()]);
                 }
-                // The spectrum of a real row has real ends; rounding may say otherwise and the plan would complain.
+                // The spectrum of a real row has real ends; rounding may say otherwise and the plan would
+                // complain.
                 line[0].im = T::default();
                 if even {
                     line[half - 1].im = T::default();
@@ -238,7 +245,8 @@ fn runs(count: usize, has: impl Fn(usize) -> bool) -> Vec<Range<usize>> {
 }
 
 impl<T: Real> InfluenceOperator<T> for FftConvolution<T> {
-    /// Both sets lie inside the window. Rows without sources are not transformed forward, rows without targets not backward.
+    /// Both sets lie inside the window. Rows without sources are not transformed forward, rows without
+    /// targets not backward.
     fn apply(&mut self, sources: &CellSet, p: &[T], targets: &CellSet, u: &mut [T]) {
         let Window { x: x0, y: y0, .. } = self.window;
         let held = |y: usize| targets.row(y + y0).is_some();
@@ -274,7 +282,8 @@ impl InfluenceOperator<f64> for FftConvolution<f32> {
     }
 }
 
-/// Reads columns from `first` on out of some rows of a stripe, square by square: `columns[i * pitch + y] = stripe[y * width + first + i]`.
+/// Reads columns from `first` on out of some rows of a stripe, square by square:
+/// `columns[i * pitch + y] = stripe[y * width + first + i]`.
 fn to_columns<T: Real>(
     stripe: &[Complex<T>],
     width: usize,

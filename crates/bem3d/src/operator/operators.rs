@@ -138,7 +138,8 @@ impl Operators {
         self.application(application, window).apply(sources, p, targets, u);
     }
 
-    /// Makes room for `u` on the targets and counts an application, unless there is nothing to apply or nothing to apply it to.
+    /// Makes room for `u` on the targets and counts an application, unless there is nothing to apply or
+    /// nothing to apply it to.
     fn begin(&mut self, sources: &CellSet, targets: &CellSet, u: &mut Vec<f64>) -> Option<Window> {
         u.resize(targets.len(), 0.0);
         let (Some(from), Some(to)) = (sources.window(), targets.window()) else {

@@ -140,9 +140,10 @@ impl Planner<'_> {
         best
     }
 
-    /// How a system on a set is solved of which `contact` cells are known to be in contact. `every_lag`: whether the kernel must be exact at
-    /// every lag, as for the stiffness, or may be that of a shorter torus, as for corrections of the pressure: at a prescribed force they
-    /// have no sum, so that the far lags count for little, and the exact gap that follows sees what is left.
+    /// How a system on a set is solved of which `contact` cells are known to be in contact. `every_lag`:
+    /// whether the kernel must be exact at every lag, as for the stiffness, or may be that of a shorter
+    /// torus, as for corrections of the pressure: at a prescribed force they have no sum, so that the far
+    /// lags count for little, and the exact gap that follows sees what is left.
     pub fn system(&self, set: &CellSet, contact: usize, every_lag: bool) -> Option<Recipe> {
         let (window, tuning) = (set.window()?, self.tuning);
         let share = contact as f64 / window.count() as f64;
@@ -180,7 +181,8 @@ impl Planner<'_> {
     }
 }
 
-/// About how many pairs lie within a radius: each tile of that size with the nine around it, by the share of a disc.
+/// About how many pairs lie within a radius: each tile of that size with the nine around it, by the share of
+/// a disc.
 fn close_pairs(sources: &CellSet, targets: &CellSet, window: Window, radius: usize) -> f64 {
     let (across, down) = (window.width / radius + 3, window.height / radius + 3);
     let count = |set: &CellSet| {
@@ -263,7 +265,8 @@ mod tests {
             let scattered = plan(&every(400), true);
             assert_eq!(scattered.conditioning, Conditioning::Identity);
             assert!(!scattered.is_single() && scattered.to_string().starts_with("two levels, spacing"));
-            // Between both shares the cost of the transforms decides, beside more steps of sums over the same cells.
+            // Between both shares the cost of the transforms decides, beside more steps of sums over the same
+            // cells.
             for (preconditioner_saves, step, single) in
                 [(1e9, 290, true), (1e-9, 290, false), (1e9, 310, false)]
             {

@@ -1,11 +1,12 @@
 //! Two levels: the smooth far field on a coarse lattice, the near field by sums over close pairs.
 //!
 //! The kernel is split at a radius R into a part that is smooth everywhere and a part that ends at R:
-//! `I(r) = S(r) + (I(r) - S(r))`. For `r >= R`, S is the kernel's own far field; inside it is continued by an even polynomial in
-//! r (multi-level summation; Brandt and Lubrecht, J. Comput. Phys. 90, 348 (1990); Hardy et al., J. Chem. Theory Comput. 11, 766
-//! (2015)). S is interpolated from a lattice of a few cells' spacing, where an FFT of that much smaller size sums it; the rest is
-//! exact for each close pair. The cost follows the number of cells and of close pairs; the window counts only by its lattice.
-//! It is made for square cells and the free kernel.
+//! `I(r) = S(r) + (I(r) - S(r))`. For `r >= R`, S is the kernel's own far field; inside it is continued by an
+//! even polynomial in r (multi-level summation; Brandt and Lubrecht, J. Comput. Phys. 90, 348 (1990); Hardy
+//! et al., J. Chem. Theory Comput. 11, 766 (2015)). S is interpolated from a lattice of a few cells' spacing,
+//! where an FFT of that much smaller size sums it; the rest is exact for each close pair. The cost follows
+//! the number of cells and of close pairs; the window counts only by its lattice. It is made for square cells
+//! and the free kernel.
 
 use super::fft::FftConvolution;
 use super::influence::InfluenceOperator;
@@ -111,7 +112,8 @@ impl TwoLevel {
         (cell / self.split.spacing - first, &self.weights[cell % self.split.spacing])
     }
 
-    /// Pressure to the nodes: the transpose of [`Self::interpolate`]. A row of nodes gathers from the rows of cells around it.
+    /// Pressure to the nodes: the transpose of [`Self::interpolate`]. A row of nodes gathers from the rows of
+    /// cells around it.
     fn restrict<T: Real>(&mut self, sources: &CellSet, p: &[T]) {
         let mut charge = std::mem::take(&mut self.charge);
         let (Split { spacing, order, .. }, lattice) = (self.split, self.lattice);
@@ -188,7 +190,8 @@ impl<T: Real> InfluenceOperator<T> for TwoLevel {
     }
 }
 
-/// The smooth part of the kernel: `1/r + 1/(24 r^3)` from `radius` on, inside its Taylor series in r^2 about `radius`.
+/// The smooth part of the kernel: `1/r + 1/(24 r^3)` from `radius` on, inside its Taylor series in r^2 about
+/// `radius`.
 fn smooth(r: f64, radius: f64) -> f64 {
     if r >= radius {
         return (1.0 + 1.0 / (24.0 * r * r)) / r;
@@ -274,7 +277,8 @@ mod tests {
             let first = s.powi(6) * (0.225_585_937_5 / radius + 2.932_617_187_5 / (24.0 * radius.powi(3)));
             assert!((left_out / first - 1.0).abs() < 1.5 * s.abs() + 1e-4, "{t}: {left_out} {first}");
         }
-        // At the origin s = -1: the sums of (1, 1/2, 3/8, 5/16, 35/128, 63/256) and of (1, 3/2, 15/8, 35/16, 315/128, 693/256).
+        // At the origin s = -1: the sums of (1, 1/2, 3/8, 5/16, 35/128, 63/256) and of (1, 3/2, 15/8, 35/16,
+        // 315/128, 693/256).
         let origin = 2.707_031_25 / radius + 11.730_468_75 / (24.0 * radius.powi(3));
         assert_relative_eq!(smooth(0.0, radius), origin, max_relative = 1e-15);
     }
@@ -294,7 +298,8 @@ mod tests {
 
     #[test]
     fn a_window_anywhere_has_the_nodes_that_its_cells_interpolate_from() {
-        // Spacing 4: cells 9 to 14 lie between nodes 2 and 4, cells 4 to 7 between 1 and 2; order 6 takes four nodes more than that.
+        // Spacing 4: cells 9 to 14 lie between nodes 2 and 4, cells 4 to 7 between 1 and 2; order 6 takes
+        // four nodes more than that.
         let split = Split { spacing: 4, reach: 6, order: 6 };
         assert_eq!(
             split.lattice(Window { x: 9, y: 4, width: 6, height: 4 }),

@@ -146,8 +146,8 @@ fn cells_on_the_wrong_side_by_hand() {
 
 #[test]
 fn the_stated_error_of_an_undecided_corner_is_what_the_corner_changes() {
-    // A small map with and without one corner. Schur complements lie between the smallest eigenvalue and G_jj: the estimate exceeds the
-    // change by a factor between 1 and 1.9325 for square cells.
+    // A small map with and without one corner. Schur complements lie between the smallest eigenvalue and
+    // G_jj: the estimate exceeds the change by a factor between 1 and 1.9325 for square cells.
     for grid in [Grid::square(4, 4), Grid { columns: 6, rows: 3, stretch: 1.2 }] {
         let table = KernelTable::shared(grid, Boundary::Free);
         let excess = table.own() / table.smallest_eigenvalue();

@@ -58,8 +58,8 @@ pub struct Coverage {
 }
 
 impl Coverage {
-    /// Whether the share in each stratum can be that of a correct 95 % budget (exact binomial test at 1 %). Budgets that are too wide fail by
-    /// the median of error over budget, which may not be below 0.2.
+    /// Whether the share in each stratum can be that of a correct 95 % budget (exact binomial test at 1 %).
+    /// Budgets that are too wide fail by the median of error over budget, which may not be below 0.2.
     pub fn holds(&self) -> bool {
         self.median >= SHARP && self.rejected().next().is_none()
     }
@@ -98,14 +98,16 @@ impl std::fmt::Display for Coverage {
     }
 }
 
-/// Draws random (surface, load, grid, tolerance), predicts the error of k as the figures do, compares with the same surface on cells
-/// four times smaller at 1e-10, and writes `budget-check.csv`. The cases go round the strata: 720 are 40 in each.
+/// Draws random (surface, load, grid, tolerance), predicts the error of k as the figures do, compares with
+/// the same surface on cells four times smaller at 1e-10, and writes `budget-check.csv`. The cases go round
+/// the strata: 720 are 40 in each.
 ///
-/// Cases on the one-cell floor (fewer than 10 contact cells on some surface) are drawn again, as the figures mark such rows. The truth is itself on
-/// a finite grid: with errors of first order it is known to a quarter of them.
+/// Cases on the one-cell floor (fewer than 10 contact cells on some surface) are drawn again, as the figures
+/// mark such rows. The truth is itself on a finite grid: with errors of first order it is known to a quarter
+/// of them.
 ///
-/// Cases that are stored in the directory are not solved again, and a larger number of cases begins with the same
-/// ones.
+/// Cases that are stored in the directory are not solved again, and a larger number of cases begins with the
+/// same ones.
 ///
 /// # Errors
 /// [`Error::Parameter`] for fewer cases than strata, no thread, or a directory that another process works in; what

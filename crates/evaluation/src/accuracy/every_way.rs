@@ -153,7 +153,8 @@ fn order(
     exact: bool,
     errors: &[(f64, f64)],
 ) -> Order {
-    // Against the finest grid the last errors are too small: the grids at least twice as coarse show the slope.
+    // Against the finest grid the last errors are too small: the grids at least twice as coarse show the
+    // slope.
     let last = errors.last().map_or(0.0, |e| e.0);
     let far: Vec<(f64, f64)> = errors.iter().copied().filter(|e| exact || e.0 > 1.9 * last).collect();
     let extrapolated = limit.and_then(|l| l.order);

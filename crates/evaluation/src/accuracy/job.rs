@@ -17,7 +17,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 const STORED: u32 = 2;
 
 /// Predicted processor milliseconds of one load on one grid, solved from nothing: the problems of
-/// `data/accuracy` took between 0.4 and 1.3 of it, cases of the check that are not drawn again between 0.8 and 2.2.
+/// `data/accuracy` took between 0.4 and 1.3 of it, cases of the check that are not drawn again between 0.8
+/// and 2.2.
 pub(super) fn cold_cost(discretisation: Discretisation, force_bar: f64) -> u64 {
     // Without a load before it, a rough surface takes as long as a smooth one: about what the prediction for
     // sweeps says in the middle of the fractal dimensions.
@@ -67,12 +68,12 @@ pub(super) fn jobs(sizes: &StudySizes, seed: u64) -> Result<Vec<StudyJob>> {
     Ok(problems.chain(ensembles).chain(forms).map(job).collect())
 }
 
-/// What [`super::accuracy_cost`] solves: one job for each problem, each ensemble, and the closed forms of each
-/// fractal dimension.
+/// What [`super::accuracy_cost`] solves: one job for each problem, each ensemble, and the closed forms of
+/// each fractal dimension.
 ///
-/// A job measures on one thread, and no two jobs of a process measure at the same time, whatever the threads. The
-/// times are those of the machine that solved the job: they compare where all shards ran on machines of one kind
-/// with nothing else to do.
+/// A job measures on one thread, and no two jobs of a process measure at the same time, whatever the threads.
+/// The times are those of the machine that solved the job: they compare where all shards ran on machines of
+/// one kind with nothing else to do.
 ///
 /// # Errors
 /// None that a depth can cause; [`Error::Model`] where a surface cannot be made.

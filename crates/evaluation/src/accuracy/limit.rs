@@ -1,14 +1,18 @@
-//! The limit of a sequence of grids: where the observed order is established, the extrapolated value, and how certain it is.
+//! The limit of a sequence of grids: where the observed order is established, the extrapolated value, and how
+//! certain it is.
 
 use serde::{Deserialize, Serialize};
 
-/// Orders that are looked for: the square root of a cell (slower is no order that five grids can show) to the fourth power.
+/// Orders that are looked for: the square root of a cell (slower is no order that five grids can show) to the
+/// fourth power.
 const ORDERS: (f64, f64) = (0.5, 4.0);
 /// Step of the search.
 const STEP: f64 = 0.02;
-/// What is extrapolated is at most so much of the finest value: a number that vanishes in the limit has no relative error.
+/// What is extrapolated is at most so much of the finest value: a number that vanishes in the limit has no
+/// relative error.
 const REACH: f64 = 0.5;
-/// A sequence follows its order when the residual of the fit is at most so much of the error of its finest grid.
+/// A sequence follows its order when the residual of the fit is at most so much of the error of its finest
+/// grid.
 const FOLLOWS: f64 = 0.25;
 
 /// Where a sequence goes.
@@ -16,8 +20,8 @@ const FOLLOWS: f64 = 0.25;
 pub(crate) struct Limit {
     /// The extrapolated value, or that of the finest grid where no order is established.
     pub value: f64,
-    /// How far the limit may be from `value`: half of what was extrapolated and the residual of the fit; without an order the largest
-    /// distance from the finest grid to the two before it.
+    /// How far the limit may be from `value`: half of what was extrapolated and the residual of the fit;
+    /// without an order the largest distance from the finest grid to the two before it.
     pub uncertainty: f64,
     /// Order in the cell, where established.
     pub order: Option<f64>,
@@ -40,11 +44,11 @@ impl Limit {
     }
 }
 
-/// `v(h) = limit + C h^p` through values on cells of size h, coarsest first, by least squares that weigh each grid by 1/h; `None` for
-/// fewer than two values.
+/// `v(h) = limit + C h^p` through values on cells of size h, coarsest first, by least squares that weigh each
+/// grid by 1/h; `None` for fewer than two values.
 ///
-/// The order counts as established where four grids or more follow it, it lies inside the search, and the finest grid is nearer to the
-/// limit than the one before.
+/// The order counts as established where four grids or more follow it, it lies inside the search, and the
+/// finest grid is nearer to the limit than the one before.
 pub(crate) fn limit(values: &[(f64, f64)]) -> Option<Limit> {
     let &[.., before, finest] = values else { return None };
     let spread = values.iter().rev().take(3).map(|v| (v.1 - finest.1).abs()).fold(0.0, f64::max);

@@ -1,4 +1,5 @@
-//! Means over ensembles: how far surfaces scatter, and what lines and closed forms are worth as an answer for the mean.
+//! Means over ensembles: how far surfaces scatter, and what lines and closed forms are worth as an answer for
+//! the mean.
 
 use super::limit::{Limit, limit};
 use super::problem::{DIMENSIONS, Family, LOADS, ProblemKey};
@@ -44,8 +45,8 @@ pub(crate) struct ClosedForm {
     pub answer: Answer,
 }
 
-/// Rows of all ensembles, references and closed forms. The ensembles of each fractal dimension follow one another;
-/// its closed forms are in the order of the loads.
+/// Rows of all ensembles, references and closed forms. The ensembles of each fractal dimension follow one
+/// another; its closed forms are in the order of the loads.
 pub(crate) fn means(
     sizes: &StudySizes,
     found: &[EnsembleMeans],

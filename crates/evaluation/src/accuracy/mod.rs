@@ -1,8 +1,9 @@
 //! What accuracy costs in time, and which part of an error dominates.
 //!
 //! [`accuracy_cost`] solves bodies with a known answer and self-affine surfaces in every way that this project has, and says how far
-//! each answer is off and what it took. References are exact answers, or the limit of fine grids at the tightest tolerance,
-//! extrapolated where the observed order is established; each comes with its uncertainty, and no error is reported below it.
+//! each answer is off and what it took. References are exact answers, or the limit of fine grids at the
+//! tightest tolerance, extrapolated where the observed order is established; each comes with its uncertainty,
+//! and no error is reported below it.
 
 mod check;
 mod depth;
@@ -37,12 +38,12 @@ use std::time::Instant;
 /// Name of its files.
 const NAME: &str = "accuracy-cost";
 
-/// Runs the study and writes `accuracy-cost.csv`, `accuracy-order.csv`, `accuracy-cost.svg`, `accuracy-cost.png` (drawn from the CSV)
-/// and `accuracy-cost.md` into a directory. What is stored there is not solved again, and keeps the times of the
-/// machine that solved it.
+/// Runs the study and writes `accuracy-cost.csv`, `accuracy-order.csv`, `accuracy-cost.svg`,
+/// `accuracy-cost.png` (drawn from the CSV) and `accuracy-cost.md` into a directory. What is stored there is
+/// not solved again, and keeps the times of the machine that solved it.
 ///
-/// It runs on one thread, so that processor seconds are those of each row; they, the memory and which rows are on
-/// the Pareto front are all that differs between machines.
+/// It runs on one thread, so that processor seconds are those of each row; they, the memory and which rows
+/// are on the Pareto front are all that differs between machines.
 ///
 /// # Errors
 /// What a solver refuses, a directory that another process works in, and files that cannot be written.

@@ -1,6 +1,8 @@
-//! From an accuracy target to settings: pilots on finer and finer grids, and as many surfaces as their scatter asks for.
+//! From an accuracy target to settings: pilots on finer and finer grids, and as many surfaces as their
+//! scatter asks for.
 //!
-//! The choice rests on counts and on predicted costs, never on a clock: the same target gives the same settings.
+//! The choice rests on counts and on predicted costs, never on a clock: the same target gives the same
+//! settings.
 
 use crate::budget::{self, Budgeted};
 use crate::measured::{COARSER_SURFACES, Measured, measure_1d, measure_3d, run_units};
@@ -50,11 +52,12 @@ pub struct AccuracyPlan {
     pub lines: Vec<String>,
 }
 
-/// The settings that meet a target (the 95 % half-width of each mean k_bar above the floor), after pilots that are stored with the run: it
-/// solves nothing of them again.
+/// The settings that meet a target (the 95 % half-width of each mean k_bar above the floor), after pilots
+/// that are stored with the run: it solves nothing of them again.
 ///
-/// On each grid a pilot solves 16 surfaces (64 lines) under all loads, with the coarser grids that say what the grid leaves. The first grid
-/// that leaves less than the target is taken, with as many surfaces as the pilot's scatter asks for.
+/// On each grid a pilot solves 16 surfaces (64 lines) under all loads, with the coarser grids that say what
+/// the grid leaves. The first grid that leaves less than the target is taken, with as many surfaces as the
+/// pilot's scatter asks for.
 ///
 /// # Errors
 /// [`Error::Parameter`] for sizes or a tolerance that were given beside the target, and for an accuracy outside (0, 1), a budget that is not
@@ -94,7 +97,8 @@ pub fn plan(
     Ok(plan)
 }
 
-/// Solves what a plan chose and adds surfaces until the target is met, as far as the budget goes: the pilot predicts, the run decides.
+/// Solves what a plan chose and adds surfaces until the target is met, as far as the budget goes: the pilot
+/// predicts, the run decides.
 ///
 /// The units are stored with the run, so that the figure itself solves nothing again.
 ///
@@ -124,8 +128,8 @@ pub fn settle(
     Ok(plan)
 }
 
-/// Surfaces that bring every mean above the floor within a target, a tenth more than the scatter found asks for; no more than there are
-/// where all are within, or where the rest is not a matter of their number.
+/// Surfaces that bring every mean above the floor within a target, a tenth more than the scatter found asks
+/// for; no more than there are where all are within, or where the rest is not a matter of their number.
 fn surfaces_wanted(all: &[Budgeted], target: f64, count: usize) -> f64 {
     let factors = above_floor(all).filter(|b| b.relative().is_some_and(|r| r > target)).map(|b| {
         let (grid, ensemble) = (b.budget.discretisation.unwrap_or(0.0), b.budget.ensemble.unwrap_or(0.0));

@@ -1,7 +1,7 @@
 //! The distance of two pressures on different grids.
 
-/// Relative L2 distance `|a - b| / |b|` of two fields, constant on the cells of N x N and M x M grids over one square: exact, by the
-/// overlaps of the cells.
+/// Relative L2 distance `|a - b| / |b|` of two fields, constant on the cells of N x N and M x M grids over
+/// one square: exact, by the overlaps of the cells.
 ///
 /// `None` where b vanishes or a field is not a square. Cost O((N + M)^2).
 pub(crate) fn distance(a: &[f64], b: &[f64]) -> Option<f64> {

@@ -31,7 +31,8 @@ pub(crate) enum Family {
     Square,
     /// One surface whose waves all grids resolve, sampled ever finer: what is found is the discretisation.
     Band,
-    /// Waves to the end of each grid at a fixed constant of the spectrum: what finer grids add is the truncation.
+    /// Waves to the end of each grid at a fixed constant of the spectrum: what finer grids add is the
+    /// truncation.
     Spectrum,
     /// The mean of an ensemble, each surface counted in its own rms height as in Figs. 2 and 6.
     Mean,
@@ -116,7 +117,8 @@ impl StudyProblem {
         Self { key: ProblemKey::body(Family::Square), scene, load: Load::Force(1.0) }
     }
 
-    /// Stiffness, approach and area as formulas say: `a = RADIUS`, `d = a^2 / R`, `k = 2 E* a`; `d = F/k` of the punch.
+    /// Stiffness, approach and area as formulas say: `a = RADIUS`, `d = a^2 / R`, `k = 2 E* a`; `d = F/k` of
+    /// the punch.
     pub fn exact(&self) -> [Option<f64>; 3] {
         match self.key.family {
             Family::Sphere => [2.0 * RADIUS, RADIUS * RADIUS, PI * RADIUS * RADIUS].map(Some),
@@ -135,7 +137,8 @@ impl StudyProblem {
         Some((0..cells * cells).map(|i| pressure(at(i % cells), at(i / cells))).collect())
     }
 
-    /// The scene of the one-dimensional model where it is another one: a flat line of the length that stands for the square.
+    /// The scene of the one-dimensional model where it is another one: a flat line of the length that stands
+    /// for the square.
     pub fn line(&self, elements: usize) -> Result<Scene> {
         let mut scene = self.scene.clone();
         scene.outputs.pressure = false;

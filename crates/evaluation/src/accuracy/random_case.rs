@@ -22,7 +22,8 @@ pub(super) const FINER: usize = 4;
 /// Grids and tolerances that are drawn from.
 const CELLS: [usize; 5] = [65, 97, 129, 193, 257];
 const TOLERANCES: (f64, f64) = (1e-6, 1e-1);
-/// Ranges of loads; each with each of the paper's fractal dimensions is a stratum, and the cases go round them.
+/// Ranges of loads; each with each of the paper's fractal dimensions is a stratum, and the cases go round
+/// them.
 const LOADS: [(f64, f64); 3] = [(1e-3, 0.086), (0.086, 2.0), (2.0, 20.0)];
 pub(super) const STRATA: usize = LOADS.len() * FRACTAL_DIMENSIONS.len();
 
@@ -144,8 +145,8 @@ fn draw(seed: u64, number: u64, attempt: u64) -> (usize, f64, f64) {
     (pick(u(1), &CELLS), logarithmic(u(2), loads), logarithmic(u(3), TOLERANCES))
 }
 
-/// Seed of the surface of a case. Those that its budget comes from follow from it: others for each case, so that the
-/// cases are independent.
+/// Seed of the surface of a case. Those that its budget comes from follow from it: others for each case, so
+/// that the cases are independent.
 fn surface(seed: u64, number: u64) -> u64 {
     surface_seed(seed ^ 0xca5e, 1 + number)
 }
@@ -160,7 +161,8 @@ fn case(seed: u64, number: u64, stop: Stop<'_>) -> Result<RandomCase> {
     let (d, _) = stratum(number as usize);
     let surface = surface(seed, number);
     let solve = |discretisation, seed, force_bar| solve(discretisation, d, seed, force_bar, stop);
-    // The heaviest load of a range never lies on the floor of the finest grid; light ones do in a few draws out of ten.
+    // The heaviest load of a range never lies on the floor of the finest grid; light ones do in a few draws
+    // out of ten.
     for attempt in 0_u64.. {
         let (cells, force_bar, tolerance) = draw(seed, number, attempt);
         let discretisation = Discretisation::Bem3d { cells, tolerance };

@@ -163,7 +163,8 @@ impl StudyRow {
     }
 }
 
-/// A measurement has a thread of its own, to which `stop` cannot be sent: it is asked before each measurement.
+/// A measurement has a thread of its own, to which `stop` cannot be sent: it is asked before each
+/// measurement.
 pub(crate) fn unless_stopped(stop: Stop<'_>) -> Result<()> {
     if stop() {
         return Err(Error::model("accuracy against time")(contact_model::Error::Stopped { best: None }));
@@ -171,7 +172,8 @@ pub(crate) fn unless_stopped(stop: Stop<'_>) -> Result<()> {
     Ok(())
 }
 
-/// Prepares and solves from nothing, on one thread, with the meters running. A model that does not claim this load or surface gives `None`.
+/// Prepares and solves from nothing, on one thread, with the meters running. A model that does not claim this
+/// load or surface gives `None`.
 pub(crate) fn measure(
     model: &dyn ContactModel,
     scene: &Scene,
@@ -213,8 +215,8 @@ fn measure_here(model: &dyn ContactModel, scene: &Scene, load: Load, seed: u64) 
     }))
 }
 
-/// Marks in each problem the rows that no other beats in both seconds and error of k. Rows without a clock and rows
-/// that missed their tolerance do not compete.
+/// Marks in each problem the rows that no other beats in both seconds and error of k. Rows without a clock
+/// and rows that missed their tolerance do not compete.
 pub(crate) fn mark_pareto(rows: &mut [StudyRow]) {
     let candidates: Vec<(usize, f64, f64)> = rows
         .iter()

@@ -14,8 +14,8 @@ pub(crate) struct Study {
     pub orders: Vec<Order>,
 }
 
-/// Solves everything that the store does not hold, one job at a time and on one thread: times are what the study
-/// is about.
+/// Solves everything that the store does not hold, one job at a time and on one thread: times are what the
+/// study is about.
 pub(crate) fn study(sizes: &StudySizes, seed: u64, store: &Store, progress: &dyn Progress) -> Result<Study> {
     let jobs = jobs(sizes, seed)?;
     // First what measures memory: it counts from what the process holds.

@@ -75,7 +75,8 @@ fn label(p: &AccuracyPoint) -> String {
     }
 }
 
-/// The cheapest row in three dimensions within an error that every finer grid keeps too: a lucky grid between worse ones is no way.
+/// The cheapest row in three dimensions within an error that every finer grid keeps too: a lucky grid between
+/// worse ones is no way.
 fn cheapest<'a>(
     points: &'a [AccuracyPoint],
     problem: &AccuracyPoint,
@@ -254,8 +255,8 @@ struct Sequence {
 }
 
 impl Sequence {
-    /// The error of the finest grid, or the uncertainty of the limit, carried to the paper's grid by the order (the square root of
-    /// the cell where none is seen).
+    /// The error of the finest grid, or the uncertainty of the limit, carried to the paper's grid by the
+    /// order (the square root of the cell where none is seen).
     fn carried(&self, finest: f64) -> f64 {
         let error = self.error_finest.unwrap_or(0.0).max(self.limit_error.unwrap_or(0.0));
         error * (finest / PAPER_CELLS).powf(self.order.unwrap_or(0.5).max(0.0))

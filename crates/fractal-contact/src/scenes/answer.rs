@@ -30,17 +30,19 @@ use std::time::Instant;
 
 /// Answers a scene: every model on every surface under every load, and writes what is asked for.
 ///
-/// `results.csv` and `manifest.json` always, `ensemble.csv` (means over the surfaces) where there are several; `patches.csv`, fields and
-/// curves where the scene asks for them. A theory, which is the same for every seed, has one surface.
-/// Finished states are kept in `OUT/.units` and reused by the next run of the same scene: with a state that is
-/// solved again, the ones after it differ from those of an uninterrupted run within the tolerance, no more. Where
-/// `stop` says so, the states so far are written and [`SceneOutcome::stopped`] is true.
+/// `results.csv` and `manifest.json` always, `ensemble.csv` (means over the surfaces) where there are
+/// several; `patches.csv`, fields and curves where the scene asks for them. A theory, which is the same for
+/// every seed, has one surface. Finished states are kept in `OUT/.units` and reused by the next run of the
+/// same scene: with a state that is solved again, the ones after it differ from those of an uninterrupted run
+/// within the tolerance, no more. Where `stop` says so, the states so far are written and
+/// [`SceneOutcome::stopped`] is true.
 ///
 /// The directory belongs to one run: what an earlier run wrote there and this one does not is removed.
 ///
 /// # Errors
-/// As [`crate::scenes::check`]; [`crate::scenes::Error::Run`] for what only shows at full size, for a directory that another process
-/// is using or that holds files of somebody else under the names of results; files that cannot be written.
+/// As [`crate::scenes::check`]; [`crate::scenes::Error::Run`] for what only shows at full size, for a
+/// directory that another process is using or that holds files of somebody else under the names of results;
+/// files that cannot be written.
 pub fn run(
     scene: &SceneFile,
     plan: &Plan,
@@ -134,10 +136,12 @@ pub fn run(
     Ok(outcome)
 }
 
-/// Does one shard of a scene and writes no table; [`crate::scenes::run`] in the same directory, when all shards are done, finds their results and does.
+/// Does one shard of a scene and writes no table; [`crate::scenes::run`] in the same directory, when all
+/// shards are done, finds their results and does.
 ///
-/// Shards of one scene may run at the same time, here or on other machines that share the directory. A job that is interrupted goes on from its last
-/// state: the states after it are then those of an undivided run within the tolerance, not to the last digit.
+/// Shards of one scene may run at the same time, here or on other machines that share the directory. A job
+/// that is interrupted goes on from its last state: the states after it are then those of an undivided run
+/// within the tolerance, not to the last digit.
 ///
 /// # Errors
 /// As [`crate::scenes::run`]; the first job that fails.

@@ -4,11 +4,12 @@
 //! # What it computes
 //!
 //! A [`SceneFile`] is read from TOML: `[scene]` (models, material, surface, loads or a path), `[effects]`,
-//! `[outputs]`, `[models.NAME]` (numerics) and `[sampling]`. [`Plan`] says what will be done, what will not and
-//! why, and what it will cost; [`run`] answers the scene with every model that it names and writes
-//! `results.csv`, `manifest.json` and what the scene asks for; [`info`] tells what a file holds, [`GeneratedSurface`]
-//! draws a surface into one. A [`Registry`] adds models of the user's own to those that scenes name. The mechanics
-//! are those of the model crates; the program `fractal-contact` is a thin layer on this library.
+//! `[outputs]`, `[models.NAME]` (numerics) and `[sampling]`. [`Plan`] says what will be done, what will not
+//! and why, and what it will cost; [`run`] answers the scene with every model that it names and writes
+//! `results.csv`, `manifest.json` and what the scene asks for; [`info`] tells what a file holds,
+//! [`GeneratedSurface`] draws a surface into one. A [`Registry`] adds models of the user's own to those that
+//! scenes name. The mechanics are those of the model crates; the program `fractal-contact` is a thin layer on
+//! this library.
 //!
 //! ```
 //! use fractal_contact::scenes::{Options, Plan, SceneFile, run};
@@ -47,13 +48,13 @@
 //!   with the models that have it.
 //! * A load outside a model's range has its row with the reason (`status` is `refused`), and the others go
 //!   on.
-//! * `results.csv` has the same bytes for any number of threads; after an interruption, states that follow the
-//!   kept ones of a surface agree within the tolerance. Times and the machine are in `manifest.json`.
+//! * `results.csv` has the same bytes for any number of threads; after an interruption, states that follow
+//!   the kept ones of a surface agree within the tolerance. Times and the machine are in `manifest.json`.
 //!
 //! # Errors
 //!
-//! A mistake in a scene is a [`Diagnostic`], and so is a note on a key with a new name: what, the line with the
-//! place underlined, and a remedy. Unknown keys are mistakes. The tables are read key by key rather than
+//! A mistake in a scene is a [`Diagnostic`], and so is a note on a key with a new name: what, the line with
+//! the place underlined, and a remedy. Unknown keys are mistakes. The tables are read key by key rather than
 //! derived, because a derived reader knows neither units nor remedies, and loses the place of a value in an
 //! enum.
 //!

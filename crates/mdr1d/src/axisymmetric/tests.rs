@@ -87,8 +87,8 @@ fn cone_and_circle_in_numbers() {
 
 #[test]
 fn the_discretised_profile_converges_with_its_order() {
-    // The radius is an element's edge on all three grids (1/3 of the half width at odd multiples of 81), so that the force error is
-    // the smooth one of the midpoint rule.
+    // The radius is an element's edge on all three grids (1/3 of the half width at odd multiples of 81), so
+    // that the force error is the smooth one of the midpoint rule.
     for (exponent, order) in [(0.5, 1.5), (0.8, 1.8), (1.0, 2.0), (2.0, 2.0), (3.0, 2.0)] {
         let body = power(0.7, exponent);
         let exact = body.at_approach(body.depth(0.1).unwrap());

@@ -137,7 +137,8 @@ fn ramp(elements: usize) -> Line {
 
 #[test]
 fn bins_share_a_ramp_evenly() {
-    // Work, not time: a load sorts one bin, and none holds more than its share whatever the offset, the relief and the remainder.
+    // Work, not time: a load sorts one bin, and none holds more than its share whatever the offset, the
+    // relief and the remainder.
     for (bins, rest) in [(8, 3), (5, 300), (1, 7)] {
         let elements = bins * ELEMENTS_PER_BIN + rest;
         let bearing = Bearing::new(&ramp(elements));
@@ -150,7 +151,8 @@ fn bins_share_a_ramp_evenly() {
 
 #[test]
 fn a_kink_between_two_bins_is_one_state_by_force_and_by_approach() {
-    // With z_i = i/8 and dx = 1/4, S(z_i) = i (i + 1)/16: element i touches at d = z_i without force, wherever its bin begins.
+    // With z_i = i/8 and dx = 1/4, S(z_i) = i (i + 1)/16: element i touches at d = z_i without force,
+    // wherever its bin begins.
     let mut bearing = Bearing::new(&ramp(4 * ELEMENTS_PER_BIN));
     let firsts: Vec<usize> = bearing.bins.iter().map(|bin| bin.start).collect();
     assert_eq!(firsts.len(), 4);

@@ -52,7 +52,8 @@ impl Spent {
 const NEAR: f64 = 0.25;
 
 impl Normal {
-    /// A contact of M that gives the stiffness, one that gives everything where that is more, and how dense and how far the table goes.
+    /// A contact of M that gives the stiffness, one that gives everything where that is more, and how dense
+    /// and how far the table goes.
     pub fn new(
         contact: Box<dyn PreparedContact>,
         full: Option<Box<dyn PreparedContact>>,

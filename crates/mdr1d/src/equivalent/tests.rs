@@ -45,8 +45,8 @@ fn step(normal: f64, tangential: Tangential) -> Step {
 
 const SOLID: Rheology = Rheology::StandardSolid { arm: Relaxing { weight: 3.0, time: 2.0 } };
 
-/// Largest difference of force, displacement, stick radius and loss from exact springs along a path of both loads, relative to the
-/// largest of each.
+/// Largest difference of force, displacement, stick radius and loss from exact springs along a path of both
+/// loads, relative to the largest of each.
 fn difference(surface: &Surface, per_decade: u32) -> [f64; 4] {
     let path: Vec<Step> = [
         (0.010, 0.0),

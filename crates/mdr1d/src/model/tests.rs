@@ -191,10 +191,12 @@ fn adhesion_of_a_sphere_behind_the_trait() {
     }
 }
 
-/// dF/dd of a state is that of its neighbours, 2 E* a that of its held area; the conductance follows from the latter.
+/// dF/dd of a state is that of its neighbours, 2 E* a that of its held area; the conductance follows from the
+/// latter.
 #[test]
 fn the_stiffness_of_an_adhesive_body_is_the_slope_of_its_branch() {
-    /// Relative step of loads; the error of a central difference is its square times third derivatives, which grow towards a fold.
+    /// Relative step of loads; the error of a central difference is its square times third derivatives, which
+    /// grow towards a fold.
     const STEP: f64 = 1e-5;
     const DIFFERENCES: f64 = 1e-6;
     let size = 20.0.into();
@@ -272,7 +274,8 @@ fn adhesion_where_the_rule_has_no_radius_is_refused() {
     );
 }
 
-/// A map has a line of its own: the rms height of the map, another line for another seed, and the plateau of Eq. 18.
+/// A map has a line of its own: the rms height of the map, another line for another seed, and the plateau of
+/// Eq. 18.
 #[test]
 fn a_map_is_pressed_through_its_line() {
     let surface = SelfAffine::new(2.3, [2.0, 1.0], 0.01).unwrap();

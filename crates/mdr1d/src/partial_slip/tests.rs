@@ -73,7 +73,8 @@ fn force_and_displacement_drive_the_same_path() {
 
 #[test]
 fn the_path_matters() {
-    // Sheared at a light load and then pressed is softer than pressed and then sheared: the springs that came later began unstrained.
+    // Sheared at a light load and then pressed is softer than pressed and then sheared: the springs that came
+    // later began unstrained.
     let run = |path: &[(f64, f64)]| {
         let mut contact = PartialSlip.prepare(&scene(sphere(1.0), 0.5), 0).unwrap();
         let steps: Vec<Step> =

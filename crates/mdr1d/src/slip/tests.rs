@@ -100,7 +100,8 @@ fn without_slip_the_springs_are_a_stiffness() {
 
 #[test]
 fn oblique_loading_sticks_below_the_friction_angle() {
-    // d and u grow together from first touch, u/d below mu E*/G*: every spring has U = (u/d) (d - g), T = (G*/E*)(u/d) F, no slip.
+    // d and u grow together from first touch, u/d below mu E*/G*: every spring has U = (u/d) (d - g), T =
+    // (G*/E*)(u/d) F, no slip.
     let slope = 0.9 * MU / SHEAR;
     for exponent in [0.6, 1.0, 2.0, 3.0] {
         let profile = power(exponent);
@@ -183,7 +184,8 @@ fn single_springs_converge_to_it() {
         };
         let scale = MU * profile.at_approach(0.01).force;
         let (coarse, fine) = (error(500, 25), error(2000, 100));
-        // A spring's bound is taken at the end of each segment: first order, in the loss and, where the normal load changes, in the force.
+        // A spring's bound is taken at the end of each segment: first order, in the loss and, where the
+        // normal load changes, in the force.
         for fine in [fine.0 / scale, fine.1 / (scale * 0.005)] {
             assert!(fine.abs() < 2e-2, "{exponent}: {fine}");
         }
@@ -236,7 +238,8 @@ proptest! {
         }
     }
 
-    /// The work of the tangential force is what the springs hold and what is lost, for any path of the normal load.
+    /// The work of the tangential force is what the springs hold and what is lost, for any path of the normal
+    /// load.
     #[test]
     fn energy(n in 0.5_f64..4.0, path in path()) {
         const PIECES: usize = 2000;

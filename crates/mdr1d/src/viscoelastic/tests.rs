@@ -62,7 +62,8 @@ fn steps_of_the_approach_relax_as_the_modulus() {
 
 #[test]
 fn steps_of_the_force_creep_as_the_compliance() {
-    // Lee and Radok: (16/3) sqrt(R) d^1.5 = F J(t), for the standard solid J = 1 - w/(1 + w) exp(-t/(tau (1 + w))) over G.
+    // Lee and Radok: (16/3) sqrt(R) d^1.5 = F J(t), for the standard solid J = 1 - w/(1 + w) exp(-t/(tau (1 +
+    // w))) over G.
     let mut contact = prepare(sphere(), SOLID);
     for time in [0.0, 1e-3, 1.0, 8.0, 1e4] {
         let compliance = 1.0 - 0.75 * (-time / 8.0_f64).exp();
@@ -81,7 +82,8 @@ fn steps_of_the_force_creep_as_the_compliance() {
 
 #[test]
 fn ramps_in_closed_form() {
-    // Cone, d = v t, Phi = 2 d^2/(pi slope): Maxwell gives E* (4 v^2/(pi slope)) (tau t - tau^2 (1 - exp(-t/tau))).
+    // Cone, d = v t, Phi = 2 d^2/(pi slope): Maxwell gives E* (4 v^2/(pi slope)) (tau t - tau^2 (1 -
+    // exp(-t/tau))).
     let (slope, v, tau) = (0.1, 1e-3, 2.0);
     let cone = Surface::Cone { slope, size: 2.0.into() };
     let factor = 2.0 / (std::f64::consts::PI * slope);
@@ -131,7 +133,8 @@ fn in_any_units() {
 
 #[test]
 fn the_time_of_shrinking_is_named() {
-    // Kelvin-Voigt, loaded at once, then the force falls: d grows on until the spring alone would carry the force, F(t) = E* Phi(t).
+    // Kelvin-Voigt, loaded at once, then the force falls: d grows on until the spring alone would carry the
+    // force, F(t) = E* Phi(t).
     let mut contact = prepare(sphere(), Rheology::KelvinVoigt { viscosity: 2.0 });
     approach(&mut *contact, 0.0, 0.01);
     approach(&mut *contact, 1.0, 0.01);
@@ -262,7 +265,8 @@ proptest! {
     fn force_and_approach_are_inverse(arms in series(), log in -2.0_f64..2.0) {
         let rheology = Rheology::Prony(PronySeries::new(&arms).unwrap());
         let (mut by_force, mut by_approach) = (prepare(sphere(), rheology), prepare(sphere(), rheology));
-        // Between the times the approach is not straight: first order segments would differ, so the path is fine and the bound wide.
+        // Between the times the approach is not straight: first order segments would differ, so the path is
+        // fine and the bound wide.
         let segments = 400;
         let mut worst = 0.0_f64;
         for i in 1..=segments {

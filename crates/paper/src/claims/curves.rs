@@ -1,4 +1,5 @@
-//! Numbers of the curves themselves: the crossing, saturation, the collapse, lines over surfaces, finer grids.
+//! Numbers of the curves themselves: the crossing, saturation, the collapse, lines over surfaces, finer
+//! grids.
 
 use super::ensemble::{Ensemble, stiffness_at};
 use super::{Found, Row, resampled};
@@ -59,7 +60,8 @@ pub(super) fn conductance(solid: &Ensemble<'_>, load: f64) -> Vec<Row> {
     })
 }
 
-/// F_bar at which a mean curve reaches a share of its plateau, by straight lines in ln-ln; `None` outside the loads.
+/// F_bar at which a mean curve reaches a share of its plateau, by straight lines in ln-ln; `None` outside the
+/// loads.
 fn reaches(measured: &Measured, series: &Series, share: f64, draw: &[usize]) -> Option<f64> {
     let stiffness_bar = share * measured.discretisation.complete_contact();
     let points: Vec<(f64, f64)> = (series.curves.force_bar().iter().zip(series.curves.mean_of(draw)))
@@ -177,7 +179,8 @@ pub(super) fn farthest_ratio(solid: &Ensemble<'_>, line: &Ensemble<'_>) -> Vec<R
     })
 }
 
-/// Relative change of the mean stiffness with cells twice as large, where it is largest in the window of the power law.
+/// Relative change of the mean stiffness with cells twice as large, where it is largest in the window of the
+/// power law.
 pub(super) fn change_with_grid(solid: &Ensemble<'_>) -> Vec<Row> {
     solid.each(|series| {
         let window = FitWindow::PAPER;
@@ -272,7 +275,8 @@ pub(super) fn decades(solid: &Ensemble<'_>, factor: f64) -> Vec<Row> {
     })
 }
 
-/// Seconds of the stored units of both models, whenever they were solved. They depend on the machine: never part of a file.
+/// Seconds of the stored units of both models, whenever they were solved. They depend on the machine: never
+/// part of a file.
 pub(super) fn run_times(solid: &Ensemble<'_>, line: &Ensemble<'_>) -> Vec<Row> {
     let (solid, line) = (solid.measured, line.measured);
     let (t3, t1) = (solid.seconds(), line.seconds());

@@ -175,7 +175,8 @@ pub(super) fn meeting_point(solid: &Ensemble<'_>, pick: fn(&Crossing) -> f64) ->
                 format!("{count} fractal dimensions have a fit over a decade or more: three are needed");
             return Err(reason.into());
         };
-        // All fractal dimensions are resampled with the same surfaces: they share phases. The forces of each fit stay.
+        // All fractal dimensions are resampled with the same surfaces: they share phases. The forces of each
+        // fit stay.
         let error = Bootstrap::default().half_width(solid.surfaces(), |draw| {
             let law =
                 |(s, l): &(&Series, &Law)| law_of(&s.curves, &l.loads(), draw).map(|l| (l.alpha, l.zeta));

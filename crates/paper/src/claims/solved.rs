@@ -1,4 +1,5 @@
-//! Numbers that are solved for a claim alone, whatever the size of the run: full contact, regions of contact, rms heights.
+//! Numbers that are solved for a claim alone, whatever the size of the run: full contact, regions of contact,
+//! rms heights.
 
 use super::{Found, Row};
 use crate::claim::Estimate;
@@ -10,7 +11,8 @@ use runs::{Error, Result};
 use std::f64::consts::{PI, TAU};
 use surface_gen::{LineGenerator, MapGenerator};
 
-/// Full contact of two grids of this many cells a side, extrapolated in 1/N (the error is of first order: data/paper/VALUES.md).
+/// Full contact of two grids of this many cells a side, extrapolated in 1/N (the error is of first order:
+/// data/paper/VALUES.md).
 const GRIDS: [usize; 2] = [64, 128];
 
 /// k/(E* L) of a scene under a load that presses all of it flat.
@@ -60,7 +62,8 @@ pub(super) fn ratio_of_plateaus() -> Result<Vec<Row>> {
 /// Elements and cells of the paper.
 const SIZES: (usize, usize) = (1 << 20, 2049);
 
-/// rms height of the line over that of the surface, both to the ends of their own spectra; 1 between equal limits.
+/// rms height of the line over that of the surface, both to the ends of their own spectra; 1 between equal
+/// limits.
 pub(super) fn ratio_of_heights(dimensions: &[f64]) -> Result<Vec<Row>> {
     let (elements, cells) = SIZES;
     let remark = format!(

@@ -19,7 +19,8 @@ pub const REFERENCE_CELLS: usize = 2049;
 pub enum Convention {
     /// The measured one of each grid, as the paper has it: a finer grid has lower long waves.
     Measured,
-    /// That of one spectrum on 2049 x 2049 cells: a finer grid has the same long waves and more short ones; the line has the same spectrum.
+    /// That of one spectrum on 2049 x 2049 cells: a finer grid has the same long waves and more short ones;
+    /// the line has the same spectrum.
     FixedSpectrum,
 }
 
@@ -87,7 +88,8 @@ pub struct MeanCurve {
 }
 
 impl MeanCurve {
-    /// The mean curve of all pairs of a fractal dimension; `error` is the relative error that the finest grid may leave.
+    /// The mean curve of all pairs of a fractal dimension; `error` is the relative error that the finest grid
+    /// may leave.
     ///
     /// # Errors
     /// [`Error::Model`] for fewer than two whole pairs on a level.
@@ -164,7 +166,8 @@ impl MeanCurve {
             .flatten()
     }
 
-    /// The largest share of the variance of the slope through the points that comes from one level, and the size of its finer grid.
+    /// The largest share of the variance of the slope through the points that comes from one level, and the
+    /// size of its finer grid.
     pub fn widest_level(&self, points: Range<usize>) -> Option<(usize, f64)> {
         let ln_f: Vec<f64> = self.forces[points.clone()].iter().map(|f| f.ln()).collect();
         let gradient = self.gradient(points, &slope_weights(&ln_f)?);
@@ -232,7 +235,8 @@ fn spectrum_heights(ladder: &Ladder, d: f64) -> contact_model::Result<Vec<f64>> 
     ladder.sizes.iter().map(height).collect()
 }
 
-/// k_bar of a pair at the forces, or its difference; as far as the loads go. `None` where a solve did not meet its tolerance.
+/// k_bar of a pair at the forces, or its difference; as far as the loads go. `None` where a solve did not
+/// meet its tolerance.
 fn difference(pair: &Pair, level: usize, forces: &[f64], heights: &[f64]) -> Option<Vec<f64>> {
     let fine = stiffnesses(&pair.fine, forces, heights[level])?;
     let Some(coarse) = &pair.coarse else { return Some(fine) };
@@ -240,7 +244,8 @@ fn difference(pair: &Pair, level: usize, forces: &[f64], heights: &[f64]) -> Opt
     Some(fine.iter().zip(&coarse).map(|(fine, coarse)| fine - coarse).collect())
 }
 
-/// k_bar at forces that are counted in another height than the surface's own, `height` of its own; up to the last load that was solved.
+/// k_bar at forces that are counted in another height than the surface's own, `height` of its own; up to the
+/// last load that was solved.
 fn stiffnesses(result: &RealisationResult, forces: &[f64], height: f64) -> Option<Vec<f64>> {
     let points: Option<Vec<(f64, f64)>> = (result.samples.iter())
         .map(|s| Some((s.force_bar.ln(), s.stiffness_bar.filter(|_| s.converged())?.ln())))

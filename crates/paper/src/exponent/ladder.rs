@@ -137,8 +137,8 @@ impl Ladder {
         self.places(dimensions, seed, &self.surfaces).into_iter().map(|place| place.unit).collect()
     }
 
-    /// Solves so many surfaces of each level, or takes them from the store: the largest grids first, each with the threads that its memory
-    /// allows.
+    /// Solves so many surfaces of each level, or takes them from the store: the largest grids first, each
+    /// with the threads that its memory allows.
     ///
     /// # Errors
     /// As [`solve_realisations`].

@@ -4,7 +4,8 @@ use super::curve::{Banded, Convention, MeanCurve};
 use analysis::slope_weights;
 use std::ops::Range;
 
-/// Largest load of the windows at small force: below, edges change the stiffness of a free surface by under 4 %, and every grid has it.
+/// Largest load of the windows at small force: below, edges change the stiffness of a free surface by under 4
+/// %, and every grid has it.
 pub const LARGEST: f64 = 2e-2;
 
 /// An exponent over a window.
@@ -65,7 +66,8 @@ const DECADES: [(&str, Range<f64>); 5] = [
     ("2e-6..2e-5", 2e-6..2e-5),
 ];
 
-/// Exponents of all curves over the window that all of one model and convention resolve, over each one's own, and decade by decade.
+/// Exponents of all curves over the window that all of one model and convention resolve, over each one's own,
+/// and decade by decade.
 pub fn law_rows(curves: &[MeanCurve]) -> Vec<LawRow> {
     let mut rows = Vec::new();
     for curve in curves {
@@ -76,7 +78,8 @@ pub fn law_rows(curves: &[MeanCurve]) -> Vec<LawRow> {
         let own = lowest(curve);
         let windows = [("common", common..LARGEST), ("own", own..LARGEST)].into_iter().chain(DECADES);
         for (window, asked) in windows {
-            // A little slack for the rounding of the logarithmic range; a decade counts where all of it is resolved.
+            // A little slack for the rounding of the logarithmic range; a decade counts where all of it is
+            // resolved.
             let asked = asked.start * (1.0 - 1e-9)..asked.end * (1.0 + 1e-9);
             let Some(points) = curve.points_within(&asked).filter(|_| own <= asked.start * (1.0 + 1e-8))
             else {

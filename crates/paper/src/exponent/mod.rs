@@ -1,8 +1,9 @@
 //! The exponent of stiffness over force, by multilevel Monte Carlo over grids.
 //!
-//! Pairs of the same surface on two neighbouring grids give the mean difference between them with few surfaces; the mean on the finest grid
-//! is the sum of the mean on the coarsest and of all differences ([`analysis::Multilevel`]). From it come local slopes with bands, fits over
-//! stated windows, and the factor between line and surface, each with the part that the finest grid leaves. Nothing is extrapolated: a curve
+//! Pairs of the same surface on two neighbouring grids give the mean difference between them with few
+//! surfaces; the mean on the finest grid is the sum of the mean on the coarsest and of all differences
+//! ([`analysis::Multilevel`]). From it come local slopes with bands, fits over stated windows, and the factor
+//! between line and surface, each with the part that the finest grid leaves. Nothing is extrapolated: a curve
 //! ends where that part exceeds the stated error.
 
 mod curve;
@@ -160,8 +161,8 @@ const PILOT: usize = 2;
 
 /// Lines that say what the study costs, and how many surfaces `seconds` of all threads are worth.
 ///
-/// What is stored counts as measured; besides, a few surfaces of the smaller grids are solved (those of the study, nothing is lost): grids
-/// that together take a thousandth of the cells of the largest one.
+/// What is stored counts as measured; besides, a few surfaces of the smaller grids are solved (those of the
+/// study, nothing is lost): grids that together take a thousandth of the cells of the largest one.
 ///
 /// # Errors
 /// What the study refuses; what a model or the store refuses.
@@ -186,9 +187,10 @@ pub fn exponent_plan(study: &Exponent, seconds: f64, progress: &dyn Progress) ->
     Ok(lines)
 }
 
-/// Solves what is not stored, and writes `exponent.csv` (curves and local slopes), `exponent-levels.csv`, `exponent-laws.csv`,
-/// `exponent-ratio.csv`, `exponent-factor.csv` and `exponent-samples.csv`, the pictures of slopes and ratios, and
-/// `exponent.md`, tables for a page (with processor hours: the only file that depends on the machine).
+/// Solves what is not stored, and writes `exponent.csv` (curves and local slopes), `exponent-levels.csv`,
+/// `exponent-laws.csv`, `exponent-ratio.csv`, `exponent-factor.csv` and `exponent-samples.csv`, the pictures
+/// of slopes and ratios, and `exponent.md`, tables for a page (with processor hours: the only file that
+/// depends on the machine).
 ///
 /// # Errors
 /// [`Error::Parameter`] for sizes that make no sense; what a model or the file system refuses.

@@ -3,7 +3,8 @@
 use super::ladder::{Ladder, Pair, Rungs};
 use evaluation::Forces;
 
-/// Differences between grids that are not measured yet scatter so much less than those of the level before (in variance), at most.
+/// Differences between grids that are not measured yet scatter so much less than those of the level before
+/// (in variance), at most.
 const SHRINKS: f64 = 0.5;
 
 /// One level of a ladder.
@@ -15,7 +16,8 @@ pub struct LevelCost {
     pub surfaces: usize,
     /// Processor seconds of one surface for all fractal dimensions, both grids.
     pub seconds: f64,
-    /// Variance of ln k_bar, or of the difference between the grids over the mean, averaged over loads and fractal dimensions.
+    /// Variance of ln k_bar, or of the difference between the grids over the mean, averaged over loads and
+    /// fractal dimensions.
     pub variance: f64,
     /// Whether seconds and variance were measured, or follow from the level below.
     pub measured: bool,
@@ -23,8 +25,8 @@ pub struct LevelCost {
     pub best: usize,
 }
 
-/// Seconds and scatter of each level, from what is solved, and the numbers of surfaces that a time is worth: in proportion to
-/// `sqrt(variance/seconds)` (Giles 2008).
+/// Seconds and scatter of each level, from what is solved, and the numbers of surfaces that a time is worth:
+/// in proportion to `sqrt(variance/seconds)` (Giles 2008).
 pub fn costs(ladder: &Ladder, rungs: &[Rungs], seconds: f64) -> Vec<LevelCost> {
     let mut levels: Vec<LevelCost> = Vec::with_capacity(ladder.sizes.len());
     for (level, &size) in ladder.sizes.iter().enumerate() {
@@ -57,7 +59,8 @@ pub fn costs(ladder: &Ladder, rungs: &[Rungs], seconds: f64) -> Vec<LevelCost> {
     levels
 }
 
-/// Mean over loads and fractal dimensions of the variance of the level, relative to the mean on the fine grid.
+/// Mean over loads and fractal dimensions of the variance of the level, relative to the mean on the fine
+/// grid.
 fn variance(rungs: &[Rungs], level: usize) -> Option<f64> {
     let mut all = Vec::new();
     for rung in rungs {

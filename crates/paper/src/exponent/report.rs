@@ -18,7 +18,8 @@ fn loads(forces: &Range<f64>) -> String {
     format!("{:.1e} to {:.1e}", forces.start, forces.end)
 }
 
-/// What was solved, how far each curve goes, the exponents beside the laws, and the factor between line and surface.
+/// What was solved, how far each curve goes, the exponents beside the laws, and the factor between line and
+/// surface.
 pub fn report(
     command: &str,
     solved: &[(&Ladder, &[Rungs])],

@@ -27,9 +27,10 @@ use std::time::Instant;
 pub(crate) use study::NAME;
 use study::{CaseCurve, CasePoint, CaseSolve, Solves, SurfaceCase};
 
-/// Solves the two cases (and the two mixed ones) of each fractal dimension and roll-off with boundary elements, Persson's and Greenwood and
-/// Williamson's theories, and writes `two-cases.csv`, `two-cases-pairs.csv`, pictures and `two-cases.md` into a directory. What is stored
-/// there is not solved again.
+/// Solves the two cases (and the two mixed ones) of each fractal dimension and roll-off with boundary
+/// elements, Persson's and Greenwood and Williamson's theories, and writes `two-cases.csv`,
+/// `two-cases-pairs.csv`, pictures and `two-cases.md` into a directory. What is stored there is not solved
+/// again.
 ///
 /// # Errors
 /// [`Error::Parameter`] for numbers that make no sense, what a model refuses, and files that cannot be written.
@@ -236,7 +237,8 @@ mod tests {
         let units = || Store::count(dir.path());
         let first = read(&small());
         assert_eq!(units(), 2 * 4 * 2);
-        // One more roll-off: two cases of two surfaces on two grids; the others come from the store, and their numbers stay.
+        // One more roll-off: two cases of two surfaces on two grids; the others come from the store, and
+        // their numbers stay.
         let study = TwoCases { roll_offs: vec![3.0, 5.0], ..small() };
         let both = read(&study);
         assert_eq!(units(), 2 * 6 * 2);

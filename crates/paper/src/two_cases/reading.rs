@@ -9,7 +9,8 @@ use contact_model::Boundary;
 use evaluation::{FLOOR_CELLS, list};
 use runs::{Error, Result};
 
-/// Shares of the square in contact between which the theories of random surfaces are compared: many summits, far from full contact.
+/// Shares of the square in contact between which the theories of random surfaces are compared: many summits,
+/// far from full contact.
 const AREAS: [f64; 2] = [0.01, 0.2];
 
 /// A slope counts as that of a proportionality when it differs from 1 by no more.
@@ -35,8 +36,8 @@ pub(super) struct SolvedCase<'a> {
     pub(super) coarser: &'a [Solves],
 }
 
-/// What Sec. II expects: an exponent below 1 without a roll-off; 1, and a factor of the order of unity, for the periodic surface with
-/// one, and only for that; and what Secs. I and IV say of the area.
+/// What Sec. II expects: an exponent below 1 without a roll-off; 1, and a factor of the order of unity, for
+/// the periodic surface with one, and only for that; and what Secs. I and IV say of the area.
 ///
 /// # Errors
 /// As [`claims::entries`].
@@ -89,8 +90,9 @@ const RESOLVED: (usize, f64) = (100, 0.1);
 
 /// Area over force: its exponent, and kappa.
 ///
-/// Their intervals hold the scatter of the surfaces and, in quadrature, the difference from cells twice as large: an area counted in cells
-/// is too large by a part that falls with the first order, so that as much is left.
+/// Their intervals hold the scatter of the surfaces and, in quadrature, the difference from cells twice as
+/// large: an area counted in cells is too large by a part that falls with the first order, so that as much is
+/// left.
 fn areas(solved: SolvedCase<'_>) -> [Found; 2] {
     let (cells, share) = RESOLVED;
     let inside = |p: &CasePoint| {
@@ -185,7 +187,8 @@ pub(super) fn loads_between(curve: &CaseCurve) -> FitWindow {
     }
 }
 
-/// Decades of F over which the local slope stays within [`PROPORTIONAL`] of 1, the longest run of loads above the floor.
+/// Decades of F over which the local slope stays within [`PROPORTIONAL`] of 1, the longest run of loads above
+/// the floor.
 pub(super) fn proportional(curve: &CaseCurve) -> f64 {
     let near = |i: usize, slope: Option<f64>| {
         let above = curve.points[i].min_contact_cells.is_none_or(|n| n >= FLOOR_CELLS);

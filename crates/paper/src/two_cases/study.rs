@@ -13,14 +13,15 @@ pub(crate) const NAME: &str = "two-cases";
 
 /// What is solved.
 ///
-/// Sec. II of the paper tells two problems apart: fractal up to the size of the system with free edges, where it expects `k ~ F^alpha`, and
-/// a spectrum that ends at a longest wave, of which a periodic patch stands for the rest, where Persson finds `k ~ F`.
+/// Sec. II of the paper tells two problems apart: fractal up to the size of the system with free edges, where
+/// it expects `k ~ F^alpha`, and a spectrum that ends at a longest wave, of which a periodic patch stands for
+/// the rest, where Persson finds `k ~ F`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TwoCases {
     /// Cells a side.
     pub cells: usize,
-    /// Cells of the shortest wave: the theories want a spectrum with an end, and the grid resolves it. The same surfaces are solved with
-    /// half as many as well.
+    /// Cells of the shortest wave: the theories want a spectrum with an end, and the grid resolves it. The
+    /// same surfaces are solved with half as many as well.
     pub cells_per_wave: usize,
     /// Surfaces of each case.
     pub surfaces: usize,
@@ -47,7 +48,8 @@ pub(super) struct SurfaceCase {
     pub(super) roll_off: Option<f64>,
 }
 
-/// The paper's two cases, and the other two that tell boundary and spectrum apart: name and colour, as the table and the pictures have them.
+/// The paper's two cases, and the other two that tell boundary and spectrum apart: name and colour, as the
+/// table and the pictures have them.
 pub(super) const NAMES: [(&str, &str); 4] = [
     ("free, fractal", "#30126e"),
     ("free, roll-off", "#8c2d5a"),
@@ -107,7 +109,8 @@ pub(super) struct PairRow {
 }
 
 impl TwoCases {
-    /// The paper's two cases and the two between, of each fractal dimension: first those that are fractal to the side, which all roll-offs share.
+    /// The paper's two cases and the two between, of each fractal dimension: first those that are fractal to
+    /// the side, which all roll-offs share.
     pub(super) fn cases(&self) -> Vec<SurfaceCase> {
         let spectra = || std::iter::once(None).chain(self.roll_offs.iter().copied().map(Some));
         let of = |&fractal_dimension: &f64| {

@@ -118,7 +118,8 @@ impl Completeness {
         lines
     }
 
-    /// Refuses a plan with jobs that are not done, or beside which results of other plans lie, unless it was `chosen` among them.
+    /// Refuses a plan with jobs that are not done, or beside which results of other plans lie, unless it was
+    /// `chosen` among them.
     ///
     /// # Errors
     /// [`Error::Parameter`] with the list of jobs (a long one is in a file, which it names) and the command that computes them.

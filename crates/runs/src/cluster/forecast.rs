@@ -9,10 +9,12 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 use std::fmt;
 
-/// Memory that a core of a cluster has as a rule, bytes: a task that needs more takes the cores that belong to it.
+/// Memory that a core of a cluster has as a rule, bytes: a task that needs more takes the cores that belong
+/// to it.
 const MEMORY_OF_CORE: f64 = 4e9;
-/// Most cores of one task that are worth it: two threads in one solve were measured to be 1.45 to 1.8 times as fast as one on 2049 cells a side
-/// (data/bench/threads.csv), and the memory of a core stays idle otherwise.
+/// Most cores of one task that are worth it: two threads in one solve were measured to be 1.45 to 1.8 times
+/// as fast as one on 2049 cells a side (data/bench/threads.csv), and the memory of a core stays idle
+/// otherwise.
 const MOST_CORES: usize = 4;
 /// A task is to take about so many seconds: the start is nothing beside it, and little is lost with it.
 const TASK: f64 = 3600.0;
@@ -20,7 +22,8 @@ const TASK: f64 = 3600.0;
 const MOST_TASKS: usize = 1000;
 /// Memory of the program itself, bytes.
 const PROGRAM: f64 = 200e6;
-/// What is asked for is so many times what is predicted: machines differ by a factor of three, and a task that is cut off loses the job in hand.
+/// What is asked for is so many times what is predicted: machines differ by a factor of three, and a task
+/// that is cut off loses the job in hand.
 const MARGIN: f64 = 3.0;
 /// What is asked for at least, seconds.
 const LEAST_TIME: f64 = 600.0;
@@ -128,7 +131,8 @@ impl Forecast {
         nodes * (cores / self.cores).min(by_memory)
     }
 
-    /// The forecast in words, with the makespan on nodes of so many cores and, where it is told, so much memory (bytes).
+    /// The forecast in words, with the makespan on nodes of so many cores and, where it is told, so much
+    /// memory (bytes).
     ///
     /// # Errors
     /// [`Error::Parameter`] for nodes that hold no task.

@@ -45,8 +45,8 @@ pub(super) fn shards(jobs: &dyn JobList, count: usize) -> Vec<Option<usize>> {
     of
 }
 
-/// Does the jobs of a shard that the store of `out` does not hold, the most expensive first, as many at a time as there are threads and memory.
-/// Other shards may run at the same time, here or elsewhere.
+/// Does the jobs of a shard that the store of `out` does not hold, the most expensive first, as many at a
+/// time as there are threads and memory. Other shards may run at the same time, here or elsewhere.
 ///
 /// # Errors
 /// The first failure; what was done before is stored.

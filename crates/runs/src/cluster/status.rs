@@ -71,8 +71,8 @@ pub fn submitted_tasks(out: &Path, plan: &ShardPlan) -> Option<usize> {
     noted(out, plan).last().map(|noted| noted.count)
 }
 
-/// What the engines say of each shard of a division into `count`; of several submissions, what is running or waiting counts. A remark for each
-/// submission that could not be asked about.
+/// What the engines say of each shard of a division into `count`; of several submissions, what is running or
+/// waiting counts. A remark for each submission that could not be asked about.
 fn tasks(out: &Path, plan: &ShardPlan, count: usize) -> (BTreeMap<usize, TaskState>, Vec<String>) {
     let mut all: BTreeMap<usize, TaskState> = BTreeMap::new();
     let mut silent = Vec::new();
@@ -143,7 +143,8 @@ impl Noted {
     fn ask(&self) -> Result<Vec<(usize, TaskState)>, String> {
         let Self { engine, job, .. } = self;
         if engine == "slurm" {
-            // `-r`: one line for each task, those that wait as well; `-t all`: those that have ended too, as long as the controller knows them.
+            // `-r`: one line for each task, those that wait as well; `-t all`: those that have ended too, as
+            // long as the controller knows them.
             return match asked("squeue", &["-h", "-r", "-t", "all", "-j", job, "-o", "%K %T"]) {
                 Ok(text) => Ok(parse_squeue(&text)),
                 // It has ended long ago.

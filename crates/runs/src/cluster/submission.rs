@@ -58,7 +58,8 @@ pub struct Submission {
     /// The engine: slurm or hyperqueue.
     #[cfg_attr(feature = "clap", arg(long))]
     pub engine: Engine,
-    /// Time limit of a task in minutes [default: three times the predicted time of the longest one, at least 10].
+    /// Time limit of a task in minutes [default: three times the predicted time of the longest one, at least
+    /// 10].
     #[cfg_attr(feature = "clap", arg(long = "time", value_name = "MINUTES", value_parser = clap::value_parser!(u64).range(1..=MOST_MINUTES)))]
     pub minutes: Option<u64>,
     /// Memory of a task in megabytes [default: predicted].
@@ -125,8 +126,8 @@ impl fmt::Debug for dyn JobList + '_ {
 }
 
 impl Submission {
-    /// Submits what is left of a command to an engine, and says what it takes and what was written: [`Self::write`] with this program. Without a
-    /// number of tasks, that of an earlier submission is kept.
+    /// Submits what is left of a command to an engine, and says what it takes and what was written:
+    /// [`Self::write`] with this program. Without a number of tasks, that of an earlier submission is kept.
     ///
     /// # Errors
     /// As [`Self::write`], and a directory that cannot be made or read.
@@ -147,8 +148,8 @@ impl Submission {
         Ok(format!("{forecast}\n{submitted}"))
     }
 
-    /// Writes the scripts into `OUT/slurm` or `OUT/hyperqueue`, for the shards with jobs that are neither done nor, as far as the engine knows, at
-    /// work or waiting; submits them where that is asked for.
+    /// Writes the scripts into `OUT/slurm` or `OUT/hyperqueue`, for the shards with jobs that are neither
+    /// done nor, as far as the engine knows, at work or waiting; submits them where that is asked for.
     ///
     /// # Errors
     /// [`Error::Parameter`] where nothing is left to do, for paths that a script cannot hold, and with what the engine said where it refuses;

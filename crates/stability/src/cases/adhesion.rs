@@ -67,8 +67,8 @@ pub(super) fn go(history: &mut dyn PreparedContact, load: Load) -> Result<Contac
     history.advance(Step::normal(0.0, load))
 }
 
-/// What a state with free boundaries leaves open: of open cells the difference between the traction and the law of the gap, of closed ones
-/// a contact pressure that pulls; both over work/range. By plain sums.
+/// What a state with free boundaries leaves open: of open cells the difference between the traction and the
+/// law of the gap, of closed ones a contact pressure that pulls; both over work/range. By plain sums.
 fn conditions(
     ledger: &mut Ledger,
     map: &HeightMap,

@@ -39,7 +39,8 @@ pub(super) const CASES: [Case; 4] = [
     },
 ];
 
-/// What a state leaves open of the conditions of `0 <= p <= p_s`, gaps in rms heights (approaches where there is none); by plain sums.
+/// What a state leaves open of the conditions of `0 <= p <= p_s`, gaps in rms heights (approaches where there
+/// is none); by plain sums.
 fn conditions(ledger: &mut Ledger, map: &HeightMap, hardness: f64, state: &ContactState) -> Result<()> {
     ledger.meets(state, tight().tolerance);
     let (p, d) = (pressure(state)?, approach(state)?);

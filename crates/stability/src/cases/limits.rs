@@ -85,7 +85,8 @@ pub(super) const CASES: [Case; 9] = [
 ];
 
 fn sizes(ledger: &mut Ledger, effort: Effort) -> Result<()> {
-    // 34 and 66: even 2 (N - 2) is a good length, so that one that is too short is not rounded up to one that is long enough.
+    // 34 and 66: even 2 (N - 2) is a good length, so that one that is too short is not rounded up to one that
+    // is long enough.
     let quick = [31, 34, 61, 64, 65, 66, 67];
     let thorough = [31, 34, 61, 64, 65, 66, 67, 97, 127, 128, 129];
     let sizes: &[usize] = effort.pick(&quick, &thorough);
@@ -137,7 +138,8 @@ fn far_field(ledger: &mut Ledger, effort: Effort) {
         ledger.near("40-digit value", influence(x, y), value);
         ledger.near("40-digit value", influence(y, x), value);
     }
-    // Quadrature converges as (1/(4 r))^16: exact to rounding from five cells on. Lags in all directions, spaced by a tenth.
+    // Quadrature converges as (1/(4 r))^16: exact to rounding from five cells on. Lags in all directions,
+    // spaced by a tenth.
     let gauss = Gauss::new();
     let steps = effort.pick(130, 1300);
     for i in 0..steps {

@@ -48,8 +48,9 @@ fn attracted(map: &HeightMap, work: f64) -> Scene {
     scene
 }
 
-/// What a state leaves open, square cells: of open cells the difference between the traction and that of their gap and their neighbours, of
-/// closed ones a contact pressure that pulls. Tractions over the largest one of a straight front, gaps over the range. By plain sums.
+/// What a state leaves open, square cells: of open cells the difference between the traction and that of
+/// their gap and their neighbours, of closed ones a contact pressure that pulls. Tractions over the largest
+/// one of a straight front, gaps over the range. By plain sums.
 fn conditions(
     ledger: &mut Ledger,
     sum: &PlainSum,

@@ -83,8 +83,9 @@ fn flat_maps(ledger: &mut Ledger, _: Effort) -> Result<()> {
     Ok(())
 }
 
-/// `|d(h + e) - d(h)|` at one force: with `g = u + h_max - h - d`, raising h by less than e at every cell lowers the mean plane's own
-/// approach by less than e (a higher surface is touched earlier), and `h_max` moves by less than e too.
+/// `|d(h + e) - d(h)|` at one force: with `g = u + h_max - h - d`, raising h by less than e at every cell
+/// lowers the mean plane's own approach by less than e (a higher surface is touched earlier), and `h_max`
+/// moves by less than e too.
 fn quantised(ledger: &mut Ledger, effort: Effort) -> Result<()> {
     let cells = effort.pick(33, 65);
     for (fractal_dimension, step) in [(2.0, 0.25), (2.5, 0.25), (3.0, 0.5)] {

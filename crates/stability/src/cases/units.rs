@@ -73,7 +73,8 @@ fn moved(ledger: &mut Ledger, effort: Effort) -> Result<()> {
     Ok(())
 }
 
-/// A cell of 2^-5 or 2^-7: the units hold one number that is no power of two, so every product is rounded once.
+/// A cell of 2^-5 or 2^-7: the units hold one number that is no power of two, so every product is rounded
+/// once.
 fn powers_of_two(ledger: &mut Ledger, effort: Effort) -> Result<()> {
     let here = rough_map(2.4, effort.pick(32, 128), 9)?;
     for exponent in [-500, 500] {

@@ -18,7 +18,8 @@ pub struct HeightMoments {
 }
 
 impl HeightMoments {
-    /// Of finite heights; `None` where all are one, or there are none. Sums as those of [`rms_height`]. Cost O(n).
+    /// Of finite heights; `None` where all are one, or there are none. Sums as those of [`rms_height`]. Cost
+    /// O(n).
     ///
     /// ```
     /// use surface_gen::HeightMoments;

@@ -30,8 +30,8 @@ pub fn patches(cells: impl Into<Cells>, index: &[u32], boundary: Boundary) -> Ve
     sizes
 }
 
-/// Number of edges between a cell of a set and one that is not of the set; with free boundaries the edges of the
-/// grid count as well. Arguments, conventions and cost as those of [`patches`].
+/// Number of edges between a cell of a set and one that is not of the set; with free boundaries the edges of
+/// the grid count as well. Arguments, conventions and cost as those of [`patches`].
 ///
 /// ```
 /// use contact_model::Boundary;

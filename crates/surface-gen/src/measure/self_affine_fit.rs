@@ -10,21 +10,24 @@ use std::f64::consts::TAU;
 const LEAST_RANGE: f64 = 4.0;
 /// A fitted exponent is that of a self-affine surface within this error of the fit.
 const OUTSIDE: f64 = 0.1;
-/// Where the spectrum is no power law, the exponents of the longer and the shorter half of the waves differ by more than
-/// this over ln of the ratio of longest to shortest. Of 32 generated surfaces of 128 cells a side, one reaches three quarters of it.
+/// Where the spectrum is no power law, the exponents of the longer and the shorter half of the waves differ
+/// by more than this over ln of the ratio of longest to shortest. Of 32 generated surfaces of 128 cells a
+/// side, one reaches three quarters of it.
 const BEND: f64 = 1.0;
-/// The waves longer than those of the fit have less than this share of the power law's height variance where the
-/// spectrum rolls off. The few waves of one Gaussian map scatter by half of theirs.
+/// The waves longer than those of the fit have less than this share of the power law's height variance where
+/// the spectrum rolls off. The few waves of one Gaussian map scatter by half of theirs.
 const ROLLED_OFF: f64 = 0.2;
 
 const REMEDY: &str = "of a self-affine surface without roll-off; `crop` or `cells` may select its range, models that solve \
                       the map or take any spectrum need none";
 
-/// A power law `C_2D ~ q^(-2 (H + 1))` fitted to the spectrum of a map: H for theories that take nothing else of it.
+/// A power law `C_2D ~ q^(-2 (H + 1))` fitted to the spectrum of a map: H for theories that take nothing else
+/// of it.
 ///
-/// A straight line through the logarithms of the rings between fixed wavelengths, without an interval. Statistics of a map tell the fit of
-/// the crate `surface-statistics`, `SpectrumFit`: by largest likelihood, with roll-off, cut-off, noise and intervals, between the wavelengths
-/// that can be trusted. Theories take this one: it costs one transform, refuses what is not self-affine, and the crates of models know no
+/// A straight line through the logarithms of the rings between fixed wavelengths, without an interval.
+/// Statistics of a map tell the fit of the crate `surface-statistics`, `SpectrumFit`: by largest likelihood,
+/// with roll-off, cut-off, noise and intervals, between the wavelengths that can be trusted. Theories take
+/// this one: it costs one transform, refuses what is not self-affine, and the crates of models know no
 /// statistics.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SelfAffineFit {
@@ -34,19 +37,20 @@ pub struct SelfAffineFit {
     pub fitted: [f64; 2],
     /// H of the longer half of these waves minus that of the shorter half, in ln q.
     pub bend: f64,
-    /// Height variance of the waves longer than those of the fit, over that of the power law continued to them.
+    /// Height variance of the waves longer than those of the fit, over that of the power law continued to
+    /// them.
     pub long_waves: f64,
 }
 
 impl SelfAffineFit {
-    /// Fits the map's spectrum under Hann's window ([`windowed`]), and checks that it is a power law down to the
-    /// longest wave. On surfaces of this crate of 256 cells a side H comes back within 0.05.
+    /// Fits the map's spectrum under Hann's window ([`windowed`]), and checks that it is a power law down to
+    /// the longest wave. On surfaces of this crate of 256 cells a side H comes back within 0.05.
     ///
     /// # Errors
     /// [`Error::Domain`] with the number that speaks against self-affinity: undefined points, too few waves
-    /// (about 128 cells along the shorter side are needed), an exponent outside [0, 1] by more than 0.1, halves
-    /// whose exponents differ too much (by 0.7 for 128 cells, 0.5 for 256), long waves with less than a fifth of the
-    /// power law's variance (a roll-off). Cost O(N log N) for N cells.
+    /// (about 128 cells along the shorter side are needed), an exponent outside [0, 1] by more than 0.1,
+    /// halves whose exponents differ too much (by 0.7 for 128 cells, 0.5 for 256), long waves with less than
+    /// a fifth of the power law's variance (a roll-off). Cost O(N log N) for N cells.
     pub fn new(map: &HeightMap) -> Result<Self> {
         let fitted = fit_range(map);
         let [from, to] = fitted;

@@ -9,8 +9,8 @@ use contact_model::{Error, HeightMap, Result};
 use std::borrow::Cow;
 use std::f64::consts::TAU;
 
-/// Opposite edges of a periodic map differ by no more than this times the largest step between neighbouring lines
-/// of cells inside.
+/// Opposite edges of a periodic map differ by no more than this times the largest step between neighbouring
+/// lines of cells inside.
 const MATCHING: f64 = 1.5;
 
 /// Largest share of a plane in the variance of heights; a periodic wave has 6/pi^2 = 0.61 at most.
@@ -24,15 +24,16 @@ const BAND: f64 = 1.090_507_732_665_257_7;
 pub struct Band {
     /// Wavenumbers between which they lie, the edges of rings, in 1/L with `L = sqrt(Lx Ly)`.
     pub limits: [f64; 2],
-    /// Variance of their heights, gradients and Laplacians: `2 pi int q^(1 + k) C_2D dq` for k = 0, 2, 4, in `h^2`,
-    /// `(h/L)^2` and `(h/L^2)^2` with the rms height h.
+    /// Variance of their heights, gradients and Laplacians: `2 pi int q^(1 + k) C_2D dq` for k = 0, 2, 4, in
+    /// `h^2`, `(h/L)^2` and `(h/L^2)^2` with the rms height h.
     pub variances: [f64; 3],
 }
 
 /// Statistics of a map as a sample of a homogeneous surface.
 ///
-/// Where opposite edges of the map match, it is taken as periodic and its gradient is the spectral derivative, that
-/// of [`crate::rms_slope`]; elsewhere the spectrum is that under Hann's window ([`windowed`]).
+/// Where opposite edges of the map match, it is taken as periodic and its gradient is the spectral
+/// derivative, that of [`crate::rms_slope`]; elsewhere the spectrum is that under Hann's window
+/// ([`windowed`]).
 ///
 /// ```
 /// use contact_model::Surface;
@@ -57,8 +58,8 @@ pub struct MapStatistics {
     pub kurtosis: f64,
     /// Share of the plane of least squares in the variance of heights.
     pub tilt: f64,
-    /// Rms step between opposite edges over the largest one between neighbouring columns or rows inside, the larger
-    /// of both directions.
+    /// Rms step between opposite edges over the largest one between neighbouring columns or rows inside, the
+    /// larger of both directions.
     pub edge_step: f64,
     /// Whether the spectrum is that under Hann's window, because opposite edges differ.
     pub windowed: bool,
@@ -75,8 +76,8 @@ impl MapStatistics {
     ///
     /// # Errors
     /// [`Error::Domain`] for undefined points, heights that are all one, a tilt (a plane with more than 3/4 of the
-    /// variance of a map that is not periodic), and numbers beyond the range of f64. Cost O(N log N) for N cells,
-    /// memory about that of the map.
+    /// variance of a map that is not periodic), and numbers beyond the range of f64. Cost O(N log N) for N
+    /// cells, memory about that of the map.
     pub fn new(map: &HeightMap) -> Result<Self> {
         let Homogeneous { map: homogeneous, edge_step, tilt } = homogeneous(map)?;
         let (lattice, length) = (Lattice::new(map.cells(), map.size()), map.length());
@@ -132,8 +133,8 @@ impl MapStatistics {
         self.moment(1).sqrt() * (self.rms_height / self.length)
     }
 
-    /// Moments m0, m2, m4 of a profile of the isotropic surface with this spectrum: variances of height, slope and
-    /// curvature along a line, in `h^2`, `(h/L)^2` and `(h/L^2)^2`.
+    /// Moments m0, m2, m4 of a profile of the isotropic surface with this spectrum: variances of height,
+    /// slope and curvature along a line, in `h^2`, `(h/L)^2` and `(h/L^2)^2`.
     ///
     /// Of the variances over the plane 1, 1/2 and 3/8, the angular means of cos^2 and cos^4 (Nayak 1971).
     pub fn profile_moments(&self) -> [f64; 3] {
@@ -145,7 +146,8 @@ impl MapStatistics {
     }
 }
 
-/// Rings put together until their limits differ by [`BAND`]; the first ring begins at the `longest` wave's wavenumber.
+/// Rings put together until their limits differ by [`BAND`]; the first ring begins at the `longest` wave's
+/// wavenumber.
 fn bands(rings: &[[f64; 3]], scales: [f64; 3], longest: f64) -> Vec<Band> {
     let (mut bands, mut low, mut sum) = (Vec::new(), 1.0, [0.0; 3]);
     for (i, ring) in rings.iter().enumerate() {
@@ -161,9 +163,9 @@ fn bands(rings: &[[f64; 3]], scales: [f64; 3], longest: f64) -> Vec<Band> {
     bands
 }
 
-/// Rms heights of a map's waves by their wavenumber in multiples m = 1, 2, ... of `step`: wave q goes to the nearest
-/// m, and to 1 where it is longer. For `step = 2 pi / L_1D` their squares are the variances `2 B_1D^2` of the waves of
-/// the equivalent line: `C_1D = pi q C_2D` in each of its bands (Eq. 17).
+/// Rms heights of a map's waves by their wavenumber in multiples m = 1, 2, ... of `step`: wave q goes to the
+/// nearest m, and to 1 where it is longer. For `step = 2 pi / L_1D` their squares are the variances
+/// `2 B_1D^2` of the waves of the equivalent line: `C_1D = pi q C_2D` in each of its bands (Eq. 17).
 ///
 /// # Errors
 /// As [`MapStatistics::new`].
@@ -214,8 +216,8 @@ pub(crate) fn homogeneous(map: &HeightMap) -> Result<Homogeneous<'_>> {
     Ok(Homogeneous { map: Cow::Owned(windowed(map)?), edge_step, tilt })
 }
 
-/// Rms step from the last column to the first over the largest one from a column to the next; 0 for fewer than 3
-/// columns, which carry no wave.
+/// Rms step from the last column to the first over the largest one from a column to the next; 0 for fewer
+/// than 3 columns, which carry no wave.
 fn edge_step(map: &HeightMap, rms: f64) -> f64 {
     let columns = map.columns();
     if columns < 3 {

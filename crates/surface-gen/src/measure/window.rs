@@ -32,8 +32,8 @@ fn mean_square(count: usize) -> f64 {
     }
 }
 
-/// The map about its mean under Hann's window along x times that along y, over the rms of the window: a homogeneous surface keeps its
-/// spectrum.
+/// The map about its mean under Hann's window along x times that along y, over the rms of the window: a
+/// homogeneous surface keeps its spectrum.
 ///
 /// The window keeps the jump between opposite edges out of the short waves and smears each ring of the
 /// spectrum over its neighbours. Cost O(N).
@@ -71,7 +71,8 @@ mod tests {
     #[test]
     fn squares_of_the_window_have_the_mean_1_over_profiles_too() {
         for [columns, rows] in [[7, 5], [9, 1], [2, 6], [1, 4]] {
-            // A spike of height 1 at every cell in turn: what is left of all of them, squared, is the window's mean square.
+            // A spike of height 1 at every cell in turn: what is left of all of them, squared, is the
+            // window's mean square.
             let cells = columns * rows;
             let square = |at: usize| {
                 let heights = (0..cells).map(|i| f64::from(u8::from(i == at))).collect();

@@ -1,7 +1,9 @@
-//! AL3D, of Alicona's focus-variation microscopes: a list of tags of 52 bytes, and at `DepthImageOffset` the heights in metres, float32 row
-//! by row, rows padded to eight bytes (Alicona's description of the format; the readers of Gwyddion and `SurfaceTopography` agree).
+//! AL3D, of Alicona's focus-variation microscopes: a list of tags of 52 bytes, and at `DepthImageOffset` the
+//! heights in metres, float32 row by row, rows padded to eight bytes (Alicona's description of the format;
+//! the readers of Gwyddion and `SurfaceTopography` agree).
 //!
-//! The first row of the file is y = 0. Undefined are NaN and what `InvalidPixelValue` says. The picture and the quality map are not read.
+//! The first row of the file is y = 0. Undefined are NaN and what `InvalidPixelValue` says. The picture and
+//! the quality map are not read.
 
 use crate::channel::{RawHeights, StoredChannel, StoredUnit, Undefined};
 use crate::error::Result;

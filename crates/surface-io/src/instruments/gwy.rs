@@ -1,7 +1,9 @@
-//! GWY, the file of Gwyddion: named components, objects inside objects (<http://gwyddion.net/documentation/user-guide-en/gwyfile-format.html>).
+//! GWY, the file of Gwyddion: named components, objects inside objects
+//! (<http://gwyddion.net/documentation/user-guide-en/gwyfile-format.html>).
 //!
-//! Channel N is the object `/N/data`, its name `/N/data/title`. Rows go from the top to the bottom of the picture. The points of a mask
-//! (`/N/mask`) are undefined, and so are those that are no numbers. Sides without a unit of length are noted and not used.
+//! Channel N is the object `/N/data`, its name `/N/data/title`. Rows go from the top to the bottom of the
+//! picture. The points of a mask (`/N/mask`) are undefined, and so are those that are no numbers. Sides
+//! without a unit of length are noted and not used.
 
 mod write;
 
@@ -168,7 +170,8 @@ fn channel(source: &Source<'_>, field: &DataField, mask: Option<&DataField>) -> 
     Ok(channel)
 }
 
-/// The name of an object and the offset of its end; the cursor stands before the name, and behind the length afterwards.
+/// The name of an object and the offset of its end; the cursor stands before the name, and behind the length
+/// afterwards.
 fn object(file: &mut Cursor<'_, '_>) -> Result<(String, u64)> {
     let name = file.name()?;
     let length: u32 = file.get()?;

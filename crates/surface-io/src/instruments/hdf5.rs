@@ -1,34 +1,40 @@
 //! HDF5: every data set of two dimensions of numbers is a channel, named by its path.
 //!
-//! Sources: the HDF5 File Format Specification 3.0 (<https://support.hdfgroup.org/documentation/hdf5/latest/_f_m_t3.html>), for the order
-//! of the axes the HDF5 Dimension Scales and the Image and Palette specifications, for packed values the NetCDF attribute conventions.
+//! Sources: the HDF5 File Format Specification 3.0
+//! (<https://support.hdfgroup.org/documentation/hdf5/latest/_f_m_t3.html>), for the order of the axes the
+//! HDF5 Dimension Scales and the Image and Palette specifications, for packed values the NetCDF attribute
+//! conventions.
 //!
-//! - **Order.** The attribute `DIMENSION_LABELS` of a data set decides (`y`, `x` or `x`, `y`), or `CLASS = "IMAGE"` (rows first). A data
-//!   set without either has x first, as SurfaceTopography and MATLAB write it, which is noted; [`crate::Axes`] `yx` takes the first index
-//!   for y. The first row is y = 0.
-//! - **Unit.** The attribute `unit` or `units` of the data set, nothing else. `none` are plain numbers. Integers with a unit of length and
-//!   without a scale are counts of an unknown height: [`crate::ReadOptions::height_scale`] says it.
-//! - **Size.** The attribute `size` of two numbers, along x and y, beside `size_unit`; this crate writes them. HDF5 itself has no size.
+//! - **Order.** The attribute `DIMENSION_LABELS` of a data set decides (`y`, `x` or `x`, `y`), or
+//!   `CLASS = "IMAGE"` (rows first). A data set without either has x first, as SurfaceTopography and MATLAB
+//!   write it, which is noted; [`crate::Axes`] `yx` takes the first index for y. The first row is y = 0.
+//! - **Unit.** The attribute `unit` or `units` of the data set, nothing else. `none` are plain numbers.
+//!   Integers with a unit of length and without a scale are counts of an unknown height:
+//!   [`crate::ReadOptions::height_scale`] says it.
+//! - **Size.** The attribute `size` of two numbers, along x and y, beside `size_unit`; this crate writes
+//!   them. HDF5 itself has no size.
 //! - **Values.** `scale_factor`, `add_offset`, `_FillValue` and `missing_value` count as NetCDF defines them.
 //! - **Undefined points.** NaN, fill values, chunks that were never written.
 //!
 //! Programs that write attributes of their own:
 //!
-//! - **JPK.** `encoder.scaling.multiplier`, `.offset` and `.unit.unit` of the group that holds a data set: height = multiplier x number +
-//!   offset. The conversion sets are not applied.
+//! - **JPK.** `encoder.scaling.multiplier`, `.offset` and `.unit.unit` of the group that holds a data set:
+//!   height = multiplier x number + offset. The conversion sets are not applied.
 //! - **MATLAB 7.3.** A matrix of rows and columns stands as columns and rows. Text and scalars are passed.
-//! - **Zygo's DATX** (`Data/Surface/...`, after prysm's `read_zygo_datx` and `IO/DATX.py` of SurfaceTopography). Height = number in `Unit`,
-//!   of `Fringes` number x `Wavelength` x `Interferometric Scale Factor` x `Obliquity Factor` in m; numbers from `No Data` on are
-//!   undefined; intensities are no heights. Rows first, as prysm has it; SurfaceTopography takes the first index for x. The sides of a cell
-//!   stand in `X Converter` and `Y Converter`, records of texts and of a list of numbers, which the crate hdf5-pure does not give: the size
-//!   is unknown, and a note tells it.
+//! - **Zygo's DATX** (`Data/Surface/...`, after prysm's `read_zygo_datx` and `IO/DATX.py` of
+//!   SurfaceTopography). Height = number in `Unit`, of `Fringes` number x `Wavelength` x
+//!   `Interferometric Scale Factor` x `Obliquity Factor` in m; numbers from `No Data` on are undefined;
+//!   intensities are no heights. Rows first, as prysm has it; SurfaceTopography takes the first index for x.
+//!   The sides of a cell stand in `X Converter` and `Y Converter`, records of texts and of a list of numbers,
+//!   which the crate hdf5-pure does not give: the size is unknown, and a note tells it.
 //!
-//! A data set that cannot be read is listed with its reason. Read are the layouts compact, contiguous and chunked (deflate, shuffle,
-//! Fletcher-32, which is not checked); not read are other filters (LZF, SZIP, scale-offset, ZFP), chunks indexed by a B-tree of version 2,
-//! data layouts of HDF5 2.0 (version 5), virtual data sets and data in other files, links to which are passed.
+//! A data set that cannot be read is listed with its reason. Read are the layouts compact, contiguous and
+//! chunked (deflate, shuffle, Fletcher-32, which is not checked); not read are other filters (LZF, SZIP,
+//! scale-offset, ZFP), chunks indexed by a B-tree of version 2, data layouts of HDF5 2.0 (version 5), virtual
+//! data sets and data in other files, links to which are passed.
 //!
-//! The crate hdf5-pure reads the metadata; its own reading of chunks allocates what a damaged header claims (4 GB for a file of 4 kB), so
-//! numbers are decoded here.
+//! The crate hdf5-pure reads the metadata; its own reading of chunks allocates what a damaged header claims
+//! (4 GB for a file of 4 kB), so numbers are decoded here.
 
 mod attributes;
 mod vendor;
@@ -61,8 +67,8 @@ const MAGIC: &[u8] = b"\x89HDF\r\n\x1a\n";
 /// Groups inside groups, and objects, that are looked at: links may form loops.
 const DEEPEST: usize = 8;
 const MOST: usize = 1000;
-/// The metadata of a file are read from at most so many bytes for each of its own, and so many besides: strings of attributes may all
-/// be one string of a heap.
+/// The metadata of a file are read from at most so many bytes for each of its own, and so many besides:
+/// strings of attributes may all be one string of a heap.
 const REREAD: u64 = 4;
 const LEAST: u64 = 16 << 20;
 const DEFLATE: u16 = 1;

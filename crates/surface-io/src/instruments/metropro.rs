@@ -1,11 +1,13 @@
-//! MetroPro .dat, of Zygo's interferometers: a header of 834 or 4096 bytes, the intensities, and the phase as big-endian int32 row by row.
+//! MetroPro .dat, of Zygo's interferometers: a header of 834 or 4096 bytes, the intensities, and the phase as
+//! big-endian int32 row by row.
 //!
-//! Height of a count in metres: interference scale x obliquity x wavelength over 4096, 32768 or 131072 by the phase resolution
-//! (MetroPro Reference Guide, OMP-0347; the readers of Gwyddion and `SurfaceTopography` agree). Numbers from 2147483640 on
-//! are undefined; a lateral resolution of 0 is no size. The first row of the file is y = 0. Intensities are not read.
+//! Height of a count in metres: interference scale x obliquity x wavelength over 4096, 32768 or 131072 by the
+//! phase resolution (MetroPro Reference Guide, OMP-0347; the readers of Gwyddion and `SurfaceTopography`
+//! agree). Numbers from 2147483640 on are undefined; a lateral resolution of 0 is no size. The first row of
+//! the file is y = 0. Intensities are not read.
 //!
-//! Not read: files with the mark of another sign. Gwyddion, `SurfaceTopography` and itom turn their heights over; the formula of the
-//! guide has no sign, and other readers follow it.
+//! Not read: files with the mark of another sign. Gwyddion, `SurfaceTopography` and itom turn their heights
+//! over; the formula of the guide has no sign, and other readers follow it.
 
 use crate::channel::{RawHeights, StoredChannel, StoredUnit, Undefined};
 use crate::error::Result;

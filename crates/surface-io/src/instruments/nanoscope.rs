@@ -1,16 +1,19 @@
-//! Nanoscope, the files of Digital Instruments, Veeco and Bruker (.001, .spm): a text header of lines `\Key: value` in sections `\*Name`,
-//! integers behind it.
+//! Nanoscope, the files of Digital Instruments, Veeco and Bruker (.001, .spm): a text header of lines
+//! `\Key: value` in sections `\*Name`, integers behind it.
 //!
-//! The height of a count is that of the whole range over the counts: the hard value of `@2:Z scale` (volts) times the soft scale that it
-//! names (`[Sens. Zsens]`, nm/V) over 256^(bytes a pixel); from version 9.2 on integers have four bytes whatever that entry says
-//! (<http://www.physics.arizona.edu/~smanne/DI/software/fileformats.html>; the readers of Gwyddion and `SurfaceTopography` agree). A channel
-//! whose soft scale is no length per volt (phase, amplitude) holds counts. The first line in the file is the last row: y goes upwards,
-//! whatever the direction of the frame.
+//! The height of a count is that of the whole range over the counts: the hard value of `@2:Z scale` (volts)
+//! times the soft scale that it names (`[Sens. Zsens]`, nm/V) over 256^(bytes a pixel); from version 9.2 on
+//! integers have four bytes whatever that entry says
+//! (<http://www.physics.arizona.edu/~smanne/DI/software/fileformats.html>; the readers of Gwyddion and
+//! `SurfaceTopography` agree). A channel whose soft scale is no length per volt (phase, amplitude) holds
+//! counts. The first line in the file is the last row: y goes upwards, whatever the direction of the frame.
 //!
-//! `Scan Size` has the side along y where both sides have the ratio of `Aspect Ratio`; readers disagree on the side of other images,
-//! which is left open and noted. All lines are read, also those beyond `Valid data len`: the details tell how many are valid.
+//! `Scan Size` has the side along y where both sides have the ratio of `Aspect Ratio`; readers disagree on
+//! the side of other images, which is left open and noted. All lines are read, also those beyond
+//! `Valid data len`: the details tell how many are valid.
 //!
-//! Not read: versions before 4.3 (no `@2:Z scale`), data as text, force curves, files whose line ends were changed.
+//! Not read: versions before 4.3 (no `@2:Z scale`), data as text, force curves, files whose line ends were
+//! changed.
 
 use crate::channel::{RawHeights, StoredChannel, StoredUnit};
 use crate::entries::{Entries, HeaderLine, Section};
@@ -195,7 +198,8 @@ impl<'a> Scale<'a> {
         Some(Self { soft, value, unit: unit.trim() })
     }
 
-    /// Height of the whole range and its unit; `None` where the soft scale is no length per unit of the hard value.
+    /// Height of the whole range and its unit; `None` where the soft scale is no length per unit of the hard
+    /// value.
     fn height<'s>(&self, scales: &impl Fn(&str) -> Option<&'s str>) -> Option<(f64, Unit)> {
         let soft = Scale::read(scales(&format!("@{}", self.soft?.to_ascii_lowercase()))?)?;
         let (length, per) = soft.unit.split_once('/')?;
@@ -215,7 +219,8 @@ fn length_unit(text: &str) -> Option<Unit> {
     (unit.dimension() == Dimension::LENGTH).then_some(unit)
 }
 
-/// `10 10 ~m`, or one number for a square; without the second side where the aspect ratio, x to y, is another one.
+/// `10 10 ~m`, or one number for a square; without the second side where the aspect ratio, x to y, is another
+/// one.
 fn extents(text: &str, aspect: Option<&str>) -> [Option<Extent>; 2] {
     /// Digits that are printed of a side.
     const PRINTED: f64 = 5e-3;

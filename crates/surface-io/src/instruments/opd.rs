@@ -1,8 +1,10 @@
-//! OPD, of Wyko's (Veeco's, Bruker's) interferometers: a directory of named blocks, and the blocks one after another.
+//! OPD, of Wyko's (Veeco's, Bruker's) interferometers: a directory of named blocks, and the blocks one after
+//! another.
 //!
-//! Height of a number in nanometres: `Wavelength` over `Mult`; a point is `Pixel_size` millimetres wide, and that times `Aspect` high
-//! (the readers of Gwyddion and `SurfaceTopography` agree). Heights stand column by column, the last row first. Undefined are float32 from
-//! 1e38 on and int16 from 32766 on. Intensities are not read.
+//! Height of a number in nanometres: `Wavelength` over `Mult`; a point is `Pixel_size` millimetres wide, and
+//! that times `Aspect` high (the readers of Gwyddion and `SurfaceTopography` agree). Heights stand column by
+//! column, the last row first. Undefined are float32 from 1e38 on and int16 from 32766 on. Intensities are
+//! not read.
 
 use crate::channel::{AxisOrder, RawHeights, StoredChannel, StoredUnit, Undefined};
 use crate::error::Result;

@@ -1,15 +1,16 @@
 //! SDF, the surface data file of ISO 25178-71, as text and binary, and its forerunner BCR.
 //!
-//! After the readers of SurfaceTopography 1.27 (`IO/SDF.py`) and surfalize (`file/sdf.py`), both from the standard, and Gwyddion's
-//! `sdfile.c`. The scales along x, y and z are metres. Profiles follow one another, their points along x. Binary files are
-//! little-endian. Undefined points are `BAD` in text and NaN.
+//! After the readers of SurfaceTopography 1.27 (`IO/SDF.py`) and surfalize (`file/sdf.py`), both from the
+//! standard, and Gwyddion's `sdfile.c`. The scales along x, y and z are metres. Profiles follow one another,
+//! their points along x. Binary files are little-endian. Undefined points are `BAD` in text and NaN.
 //!
-//! - **ISO 1.0, 2.0.** Row j is profile j. The smallest number of a type is undefined (surfalize from the standard), of unsigned integers
-//!   of 16 and 32 bits the largest (SurfaceTopography from Gwyddion).
-//! - **BCR 0.0, 1.0.** The first profile is that of the largest y; the largest number of a type is undefined: as users report of it
-//!   (surfalize, issue 33). Its description, EUR 15178 EN, was not at hand.
+//! - **ISO 1.0, 2.0.** Row j is profile j. The smallest number of a type is undefined (surfalize from the
+//!   standard), of unsigned integers of 16 and 32 bits the largest (SurfaceTopography from Gwyddion).
+//! - **BCR 0.0, 1.0.** The first profile is that of the largest y; the largest number of a type is undefined:
+//!   as users report of it (surfalize, issue 33). Its description, EUR 15178 EN, was not at hand.
 //!
-//! Not read: compressed data, the trailer. `Micromap` states its scales in the trailer: the size of its maps is unknown here.
+//! Not read: compressed data, the trailer. `Micromap` states its scales in the trailer: the size of its maps
+//! is unknown here.
 
 use crate::channel::{RawHeights, StoredChannel, StoredHeights, StoredUnit, Undefined, undefined_heights};
 use crate::entries::{Entries, HeaderLine};

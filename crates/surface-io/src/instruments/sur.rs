@@ -1,15 +1,17 @@
 //! SUR, the file of Digital Surf's MountainsMap, uncompressed and compressed (zlib).
 //!
-//! After Gwyddion's `surffile.c`, SurfaceTopography's `IO/SUR.py`, surfalize's `file/sur.py` and RosettaSciIO's `digitalsurf/_api.py`
-//! (<https://github.com/hyperspy/rosettasciio>). Little-endian; an object is a header of 512 bytes, a comment, a private part and integers
-//! of 16 or 32 bits, row by row; row j is y = j * step, as SurfaceTopography and surfalize have it. A height is
-//! `Z step * number + Z offset` in the unit of the Z step, as in Gwyddion and surfalize; RosettaSciIO counts numbers from `Zmin`,
-//! SurfaceTopography leaves out the offset: the difference is one constant for all heights. With `special points` the number `Zmin - 2` is
-//! an undefined point.
+//! After Gwyddion's `surffile.c`, SurfaceTopography's `IO/SUR.py`, surfalize's `file/sur.py` and
+//! RosettaSciIO's `digitalsurf/_api.py` (<https://github.com/hyperspy/rosettasciio>). Little-endian; an
+//! object is a header of 512 bytes, a comment, a private part and integers of 16 or 32 bits, row by row; row
+//! j is y = j * step, as SurfaceTopography and surfalize have it. A height is `Z step * number + Z offset` in
+//! the unit of the Z step, as in Gwyddion and surfalize; RosettaSciIO counts numbers from `Zmin`,
+//! SurfaceTopography leaves out the offset: the difference is one constant for all heights. With
+//! `special points` the number `Zmin - 2` is an undefined point.
 //!
-//! Several objects (a surface and its intensity, series) are several channels; images are no heights. Not read: profiles, force curves,
-//! spectra, files of a Macintosh, and surfaces that the header calls inverted: SurfaceTopography 1.27 and Gwyddion invert the numbers then,
-//! surfalize and RosettaSciIO do not, and hills would be taken for valleys.
+//! Several objects (a surface and its intensity, series) are several channels; images are no heights. Not
+//! read: profiles, force curves, spectra, files of a Macintosh, and surfaces that the header calls inverted:
+//! SurfaceTopography 1.27 and Gwyddion invert the numbers then, surfalize and RosettaSciIO do not, and hills
+//! would be taken for valleys.
 
 use crate::channel::{Bytes, RawHeights, StoredChannel, StoredHeights, StoredUnit, Undefined};
 use crate::error::{ContentError, Result};
@@ -63,7 +65,8 @@ header! {
 fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
     let mut found = Vec::new();
     let (mut at, mut most, mut first_kind) = (0, 1, 0);
-    // Older writers have the code of a material where newer ones have the number of channels: what follows decides.
+    // Older writers have the code of a material where newer ones have the number of channels: what follows
+    // decides.
     while found.len() < most && source.length() - at >= HEADER {
         let header = Header::of(&mut source.fields(ByteOrder::Little, at, HEADER)?)?;
         if header.magic != *PLAIN && header.magic != *COMPRESSED {

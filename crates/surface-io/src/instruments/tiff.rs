@@ -1,19 +1,24 @@
 //! TIFF with one number per pixel: each grey image of 16 bits or more, integers or floats, is a channel.
 //!
-//! Sources: TIFF 6.0 with its supplements (tags), for the description and the resolution `ij/io/FileOpener.java` and `FileSaver.java` of
+//! Sources: TIFF 6.0 with its supplements (tags), for the description and the resolution
+//! `ij/io/FileOpener.java` and `FileSaver.java` of
 //! <https://github.com/imagej/ImageJ>.
 //!
-//! - **Unit and scale.** TIFF says neither; [`crate::ReadOptions::height_scale`] or a unit is asked for. Only ImageJ's description counts:
-//!   `cf=0` with `c0` and `c1` makes values `c0 + c1 * number`, `vunit` is their unit; another `cf` makes them no heights.
-//! - **Size.** By ImageJ's `unit` (and `yunit`), pixels per unit in the tags of the resolution. Resolutions per inch, and those without that
-//!   description, are those of print or screens.
-//! - **Order.** The first row is the top one and y = 0; the orientations 2, 3 and 4 are turned, 5 to 8 are refused.
+//! - **Unit and scale.** TIFF says neither; [`crate::ReadOptions::height_scale`] or a unit is asked for. Only
+//!   ImageJ's description counts: `cf=0` with `c0` and `c1` makes values `c0 + c1 * number`, `vunit` is their
+//!   unit; another `cf` makes them no heights.
+//! - **Size.** By ImageJ's `unit` (and `yunit`), pixels per unit in the tags of the resolution. Resolutions
+//!   per inch, and those without that description, are those of print or screens.
+//! - **Order.** The first row is the top one and y = 0; the orientations 2, 3 and 4 are turned, 5 to 8 are
+//!   refused.
 //! - **Undefined points.** NaN, and what GDAL's tag of no data says.
 //!
-//! Pictures of 8 bits or in colours, and those where white is zero, are refused. Read are uncompressed data, LZW, Deflate and `PackBits` in
-//! strips and tiles. Of OME's description the physical size of a pixel counts (<https://docs.openmicroscopy.org/ome-model>).
+//! Pictures of 8 bits or in colours, and those where white is zero, are refused. Read are uncompressed data,
+//! LZW, Deflate and `PackBits` in strips and tiles. Of OME's description the physical size of a pixel counts
+//! (<https://docs.openmicroscopy.org/ome-model>).
 //!
-//! Files of Park Systems (one map in private tags) and JPK (private tags of each image) have descriptions of their own.
+//! Files of Park Systems (one map in private tags) and JPK (private tags of each image) have descriptions of
+//! their own.
 
 mod directory;
 mod jpk;

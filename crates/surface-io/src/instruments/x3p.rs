@@ -1,13 +1,18 @@
-//! X3P, the XML container of ISO 25178-72 (before: ISO 5436-2): an archive of `main.xml`, the numbers and a checksum.
+//! X3P, the XML container of ISO 25178-72 (before: ISO 5436-2): an archive of `main.xml`, the numbers and a
+//! checksum.
 //!
-//! After the openGPS library (<https://github.com/aschet/x3p>: `iso5436_2_container.cxx`, `valid_buffer.cxx`), Gwyddion's `opengps.c` and
-//! the notes of x3pio on the standard (<https://github.com/aschet/x3pio>, `docs/format.md`). All lengths are metres. Numbers run along x
-//! first, then along y: row j is y = j * increment, upwards, as in this crate. A height is increment * number + offset; the increment is 1
-//! where none is given. I and L are signed integers of 16 and 32 bits, F and D floats.
+//! After the openGPS library (<https://github.com/aschet/x3p>: `iso5436_2_container.cxx`,
+//! `valid_buffer.cxx`), Gwyddion's `opengps.c` and the notes of x3pio on the standard
+//! (<https://github.com/aschet/x3pio>, `docs/format.md`). All lengths are metres. Numbers run along x first,
+//! then along y: row j is y = j * increment, upwards, as in this crate. A height is increment * number +
+//! offset; the increment is 1 where none is given. I and L are signed integers of 16 and 32 bits, F and D
+//! floats.
 //!
-//! Undefined points are NaN, infinities, empty in a list of numbers in `main.xml`, or zero bits of the member that `ValidPointsLink` names (lowest bit
-//! first). Read: surfaces (`SUR`) on a regular grid in one layer. Not read: profiles, clouds of points, irregular grids, several layers,
-//! a third axis that points downwards; another rotation is noted and not applied. An increment beside floats leaves the unit open. Damage shows in the checksums of the archive; MD5 is not compared, as `SurfaceTopography` gives that of another member.
+//! Undefined points are NaN, infinities, empty in a list of numbers in `main.xml`, or zero bits of the member
+//! that `ValidPointsLink` names (lowest bit first). Read: surfaces (`SUR`) on a regular grid in one layer.
+//! Not read: profiles, clouds of points, irregular grids, several layers, a third axis that points downwards;
+//! another rotation is noted and not applied. An increment beside floats leaves the unit open. Damage shows
+//! in the checksums of the archive; MD5 is not compared, as `SurfaceTopography` gives that of another member.
 
 mod main_xml;
 mod write;
@@ -26,7 +31,8 @@ use main_xml::{Axis, Main};
 
 /// The member that describes the others.
 const MAIN: &str = "main.xml";
-/// Bytes of it: a description has a few thousand, a list of a million heights as text about this many. It is unpacked as a whole.
+/// Bytes of it: a description has a few thousand, a list of a million heights as text about this many. It is
+/// unpacked as a whole.
 const LONGEST: u64 = 16 << 20;
 
 /// Every archive: its members tell whether it is an X3P file.
@@ -60,7 +66,8 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
     let (Some(scale), Some(shift)) = (scale.filter(|scale| scale.abs() > 0.0), shift) else {
         return Err(wrong(source, main_member, "an increment along z other than 0, and an offset"));
     };
-    // The schema gives an increment to integers only, and readers disagree whether floats are multiplied by it.
+    // The schema gives an increment to integers only, and readers disagree whether floats are multiplied by
+    // it.
     let disputed = number.is_float() && (scale - 1.0).abs() > 0.0;
     let (scale, unit) = if disputed { (1.0, StoredUnit::Unknown) } else { (scale, StoredUnit::written("m")) };
     if disputed {

@@ -1,8 +1,10 @@
-//! Zygo XYZ, the text export of MetroPro: fourteen lines of a header between lines with `#`, then a line `column row height` for each point.
+//! Zygo XYZ, the text export of MetroPro: fourteen lines of a header between lines with `#`, then a line
+//! `column row height` for each point.
 //!
-//! No manual of the format was at hand: public readers agree on the lines of the header (the fourth has the place and the shape of the phase,
-//! the eighth as its seventh number the camera's resolution in metres, 0 where it is not calibrated), on `No Data` for undefined points and on
-//! micrometres as MetroPro writes them; one says that the later program Mx can be set to another unit, of which the file says nothing. That is
+//! No manual of the format was at hand: public readers agree on the lines of the header (the fourth has the
+//! place and the shape of the phase, the eighth as its seventh number the camera's resolution in metres, 0
+//! where it is not calibrated), on `No Data` for undefined points and on micrometres as MetroPro writes them;
+//! one says that the later program Mx can be set to another unit, of which the file says nothing. That is
 //! noted. The row 0 is y = 0.
 
 use crate::channel::{StoredChannel, StoredHeights, StoredUnit, undefined_heights};

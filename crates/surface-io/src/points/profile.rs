@@ -13,12 +13,13 @@ use contact_model::Line;
 use std::io::Cursor;
 use std::path::Path;
 
-/// Reads a measured profile as a line: text of two columns, x and z, in any order of the points. [`Scan::read`] makes a map of one row
-/// of it, the body that is uniform along y.
+/// Reads a measured profile as a line: text of two columns, x and z, in any order of the points.
+/// [`Scan::read`] makes a map of one row of it, the body that is uniform along y.
 ///
-/// The rules are those of points of a map along one axis: x has equal steps within a tenth of one ([`ReadOptions::cell`] for noisier ones),
-/// the line is one step longer than from its first to its last point. Every place needs a height. Both units are in the file or are
-/// given ([`ReadOptions::unit`] or [`ReadOptions::height_scale`], and [`ReadOptions::lateral_unit`]); `none` for both are plain numbers.
+/// The rules are those of points of a map along one axis: x has equal steps within a tenth of one
+/// ([`ReadOptions::cell`] for noisier ones), the line is one step longer than from its first to its last
+/// point. Every place needs a height. Both units are in the file or are given ([`ReadOptions::unit`] or
+/// [`ReadOptions::height_scale`], and [`ReadOptions::lateral_unit`]); `none` for both are plain numbers.
 ///
 /// # Errors
 /// [`crate::Error::System`] where the system refuses; [`crate::Error::Content`] for everything else.

@@ -8,8 +8,8 @@ use crate::options::ReadOptions;
 use crate::quantity::{Quantity, Unit};
 use crate::text::TextTable;
 
-/// The points of a table of two columns as a map of one row: column i at `x_min + i * spacing`; places without a point are undefined.
-/// The extent along y stays open: the file says nothing of it.
+/// The points of a table of two columns as a map of one row: column i at `x_min + i * spacing`; places
+/// without a point are undefined. The extent along y stays open: the file says nothing of it.
 ///
 /// Cost O(n log n) for n points.
 pub(crate) fn row(table: &TextTable, declared: &ReadOptions) -> Result<StoredChannel, ContentError> {

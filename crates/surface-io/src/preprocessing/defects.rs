@@ -6,8 +6,8 @@ use std::ops::Range;
 /// The standard deviation of a Gaussian over its median absolute deviation.
 pub(super) const GAUSSIAN: f64 = 1.4826;
 
-/// Makes NaN of every height farther from the median of its neighbours (eight, fewer at an edge) than `times` the robust standard deviation
-/// of all such distances; how many.
+/// Makes NaN of every height farther from the median of its neighbours (eight, fewer at an edge) than `times`
+/// the robust standard deviation of all such distances; how many.
 ///
 /// One pass: two outliers beside each other are found, a patch of many is not. Cost O(N log N) for N points.
 pub(super) fn remove_outliers(cells: Cells, times: f64, heights: &mut [f64]) -> usize {
@@ -49,7 +49,8 @@ fn median(values: &mut [f64]) -> f64 {
     *values.select_nth_unstable_by(middle, f64::total_cmp).1
 }
 
-/// Rows and columns of the largest rectangle without undefined points, by its number of cells; the first of several. Cost O(N).
+/// Rows and columns of the largest rectangle without undefined points, by its number of cells; the first of
+/// several. Cost O(N).
 pub(super) fn largest_defined(cells: Cells, heights: &[f64]) -> (Range<usize>, Range<usize>) {
     let mut best = (0, 0..0, 0..0);
     // Defined points above each other that end in this row.
@@ -58,7 +59,8 @@ pub(super) fn largest_defined(cells: Cells, heights: &[f64]) -> (Range<usize>, R
         for (count, h) in defined.iter_mut().zip(line) {
             *count = if h.is_nan() { 0 } else { *count + 1 };
         }
-        // Columns of growing height: each begins the widest rectangle of its own height. The last column, of none, closes all.
+        // Columns of growing height: each begins the widest rectangle of its own height. The last column, of
+        // none, closes all.
         let mut open: Vec<(usize, usize)> = Vec::new();
         for (column, &height) in defined.iter().enumerate() {
             let mut from = column;

@@ -1,8 +1,8 @@
 //! Spheres and cylinders of least squares: the nominal form of a ball, a lens, a roller.
 //!
-//! Both are written so that a plane is one of them: `A (x^2 + y^2 + z^2) + B x + C y + z + E = 0` is a sphere of radius
-//! `sqrt(1 + B^2 + C^2 - 4 A E)/(2 |A|)`, in which z is a smooth function of A at 0. The squares of the vertical distances are made
-//! smallest by Gauss and Newton's iteration, which starts at the paraboloid.
+//! Both are written so that a plane is one of them: `A (x^2 + y^2 + z^2) + B x + C y + z + E = 0` is a sphere
+//! of radius `sqrt(1 + B^2 + C^2 - 4 A E)/(2 |A|)`, in which z is a smooth function of A at 0. The squares of
+//! the vertical distances are made smallest by Gauss and Newton's iteration, which starts at the paraboloid.
 
 use super::normal_equations::{MOST, NormalEquations};
 use crate::error::ContentError;

@@ -1,21 +1,25 @@
-//! Errors of scanning instruments: offsets between scan lines, scars, and noise across the lines. Scan lines are rows.
+//! Errors of scanning instruments: offsets between scan lines, scars, and noise across the lines. Scan lines
+//! are rows.
 
 use super::defects::GAUSSIAN;
 use contact_model::Cells;
 
-/// How scan lines (rows, the fast axis along x) are shifted to a common height. The mean height of the map is kept.
+/// How scan lines (rows, the fast axis along x) are shifted to a common height. The mean height of the map is
+/// kept.
 ///
-/// An instrument that scans line by line measures heights along a line within a second, and heights across the lines
-/// over minutes: drift and jumps of its sensor shift whole lines. Aligned, the map has no information any more on the
-/// mean slope and on long waves across the lines, whether of the drift or of the surface.
+/// An instrument that scans line by line measures heights along a line within a second, and heights across
+/// the lines over minutes: drift and jumps of its sensor shift whole lines. Aligned, the map has no
+/// information any more on the mean slope and on long waves across the lines, whether of the drift or of the
+/// surface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum AlignLines {
-    /// Each line is shifted so that the median of its height differences to the line before, over the columns where
-    /// both are defined, is zero. A line without defined points is passed over; one that shares no defined column
-    /// with the last line that has any keeps that line's shift.
+    /// Each line is shifted so that the median of its height differences to the line before, over the columns
+    /// where both are defined, is zero. A line without defined points is passed over; one that shares no
+    /// defined column with the last line that has any keeps that line's shift.
     MedianDifference,
-    /// Each line is shifted to the same median height. Where a line crosses much of a hill, the hill is lowered.
+    /// Each line is shifted to the same median height. Where a line crosses much of a hill, the hill is
+    /// lowered.
     Median,
 }
 
@@ -39,7 +43,8 @@ impl AlignLines {
         }
     }
 
-    /// Shifts the lines; a line for records. An error is the first shift that overflows. Cost O(N) for N points.
+    /// Shifts the lines; a line for records. An error is the first shift that overflows. Cost O(N) for N
+    /// points.
     pub(super) fn apply(self, cells: Cells, heights: &mut [f64]) -> Result<String, f64> {
         let mut shifts = match self {
             Self::MedianDifference => shifts_by_differences(cells, heights),
@@ -48,7 +53,8 @@ impl AlignLines {
         if let Some(shift) = shifts.iter().copied().find(|shift| !shift.is_finite()) {
             return Err(shift);
         }
-        // The mean over all defined points is kept: shifts are counted from their mean, weighted by the points of each line.
+        // The mean over all defined points is kept: shifts are counted from their mean, weighted by the
+        // points of each line.
         let counts: Vec<f64> = heights
             .chunks_exact(cells.columns)
             .map(|line| line.iter().filter(|h| !h.is_nan()).count() as f64)
@@ -100,8 +106,8 @@ fn shifts_by_medians(cells: Cells, heights: &[f64]) -> Vec<f64> {
     heights.chunks_exact(cells.columns).map(median_of).collect()
 }
 
-/// The median, of an even number of values the mean of the middle two; of at least one value. Shifts of lines add up:
-/// the lower one of two would tilt a map.
+/// The median, of an even number of values the mean of the middle two; of at least one value. Shifts of lines
+/// add up: the lower one of two would tilt a map.
 fn central(values: &mut [f64]) -> f64 {
     let even = values.len().is_multiple_of(2);
     let middle = values.len() / 2;
@@ -120,15 +126,16 @@ const TALLEST: usize = 4;
 /// Points along a row that a scar has at least.
 const SHORTEST: usize = 16;
 
-/// Makes NaN of scars, the short bright or dark streaks along scan lines that an error of the feedback leaves; a line
-/// for records.
+/// Makes NaN of scars, the short bright or dark streaks along scan lines that an error of the feedback
+/// leaves; a line for records.
 ///
-/// A point belongs to a bright streak where it lies in one to [`TALLEST`] consecutive rows of its column that are all
-/// higher than both the row before them and the row after them, by more than `times` the robust standard deviation
-/// of the height differences between neighbouring rows (1.4826 times the median of their distances from their median,
-/// which no tilt changes); a dark streak is as much lower. A scar is a run of [`SHORTEST`] points or more of one kind in a row. Rows beyond the
-/// edges and undefined points are no neighbours. Of a ridge of the surface that is as narrow, as long and along x it
-/// cannot be told. Cost O(N) for N points.
+/// A point belongs to a bright streak where it lies in one to [`TALLEST`] consecutive rows of its column that
+/// are all higher than both the row before them and the row after them, by more than `times` the robust
+/// standard deviation of the height differences between neighbouring rows (1.4826 times the median of their
+/// distances from their median, which no tilt changes); a dark streak is as much lower. A scar is a run of
+/// [`SHORTEST`] points or more of one kind in a row. Rows beyond the edges and undefined points are no
+/// neighbours. Of a ridge of the surface that is as narrow, as long and along x it cannot be told. Cost O(N)
+/// for N points.
 pub(super) fn remove_scars(cells: Cells, times: f64, heights: &mut [f64]) -> String {
     let Cells { columns, rows } = cells;
     let differences = heights.iter().zip(heights.iter().skip(columns)).map(|(a, b)| b - a);
@@ -174,7 +181,8 @@ pub(super) fn remove_scars(cells: Cells, times: f64, heights: &mut [f64]) -> Str
     )
 }
 
-/// 1.4826 times the median distance from the median, which is the standard deviation of Gaussian values; 0 of none.
+/// 1.4826 times the median distance from the median, which is the standard deviation of Gaussian values; 0 of
+/// none.
 fn robust_deviation(values: &mut [f64]) -> f64 {
     if values.is_empty() {
         return 0.0;
@@ -186,13 +194,14 @@ fn robust_deviation(values: &mut [f64]) -> f64 {
     GAUSSIAN * central(values)
 }
 
-/// The cut-off in cells from which on weights at the cells have the transmission of the Gaussian: 50.2 % at a cut-off
-/// of four cells, 56 % at three, 89 % at two.
+/// The cut-off in cells from which on weights at the cells have the transmission of the Gaussian: 50.2 % at a
+/// cut-off of four cells, 56 % at three, 89 % at two.
 pub(super) const LEAST_CUT_OFF: f64 = 4.0;
 
-/// The Gaussian low-pass filter of ISO 16610-21 along y: weights `exp(-pi (y/(alpha c))^2)` with `alpha = sqrt(ln 2/pi)`,
-/// to a distance of the cut-off c, given in cells; the sum of the weights over the defined points is one. A wave of
-/// wavelength w along y is transmitted by `2^(-(c/w)^2)`, half of it at the cut-off; along x nothing changes.
+/// The Gaussian low-pass filter of ISO 16610-21 along y: weights `exp(-pi (y/(alpha c))^2)` with
+/// `alpha = sqrt(ln 2/pi)`, to a distance of the cut-off c, given in cells; the sum of the weights over the
+/// defined points is one. A wave of wavelength w along y is transmitted by `2^(-(c/w)^2)`, half of it at the
+/// cut-off; along x nothing changes.
 ///
 /// Undefined points stay undefined. Cost O(N c) for N points.
 pub(super) fn filter_across(cells: Cells, cut_off: f64, heights: &mut [f64]) {
@@ -249,7 +258,8 @@ mod tests {
     fn offsets_of_lines_are_recovered() {
         let cells = Cells { columns: 40, rows: 30 };
         let offset = |y: f64| (y * y * 7.3).sin() + 0.2 * y;
-        // Waves along x; hills that cover less than half of every line have no part in the median of differences.
+        // Waves along x; hills that cover less than half of every line have no part in the median of
+        // differences.
         let relief = |x: f64, y: f64| {
             let hill = if (5.0..20.0).contains(&x) { 3.0 * (0.7 * y).sin() } else { 0.0 };
             (0.4 * x).sin() + hill
@@ -369,7 +379,8 @@ mod tests {
             (30..=63, 20..=22) => -1.0,
             _ => 0.0,
         };
-        // A ridge along x of five rows, one of one row but 15 points, one across the lines, one of 45 degrees.
+        // A ridge along x of five rows, one of one row but 15 points, one across the lines, one of 45
+        // degrees.
         let ridge = |x: f64, y: f64| match (x as usize, y as usize) {
             (.., 50..=54) | (5..=19, 40) | (50..=52, 24..=48) => 1.0,
             (x, y @ 24..=48) if (x + 20).abs_diff(y + 40) < 2 && x < 45 => 1.0,
@@ -424,7 +435,8 @@ mod tests {
         for cut_off in [5.0, 8.7, 20.0, 333.0] {
             for ratio in [0.6_f64, 1.0, 1.7, 4.0] {
                 let expected = 0.5_f64.powf(ratio.powi(-2));
-                // Truncated weights: 1e-7. Sampled weights: images at the sampling frequency, below five cells 1e-3.
+                // Truncated weights: 1e-7. Sampled weights: images at the sampling frequency, below five
+                // cells 1e-3.
                 let tolerance = if cut_off < 6.0 { 4e-2 } else { 1e-6 };
                 let wavelength = ratio * cut_off;
                 assert_abs_diff_eq!(transmission(cut_off, wavelength), expected, epsilon = tolerance);

@@ -325,7 +325,8 @@ fn spheres_and_cylinders_are_found_and_nothing_is_left() {
         let range = found.map.defined().fold([0.0_f64; 2], |[a, b], h| [a.min(h), b.max(h)]);
         (range[1] - range[0], found.steps.concat())
     };
-    // Half of a ball from its side, a hollow, and nearly a plane: radii over the half diagonal of 25 x 18 cells.
+    // Half of a ball from its side, a hollow, and nearly a plane: radii over the half diagonal of 25 x 18
+    // cells.
     for (radius, x0, y0) in [(25.0, 3.0, 9.0), (-40.0, 10.0, 0.0), (2e4, -300.0, 700.0)] {
         let sphere = |x: f64, y: f64| {
             let square: f64 = radius * radius - (x - x0).powi(2) - (y - y0).powi(2);
@@ -439,7 +440,8 @@ fn undefined_points_are_cropped_away() {
 
 #[test]
 fn errors_of_scanning_are_repaired_in_order_and_told() {
-    // Lines 2 nm apart that jump by 3 nm, a streak of 50 nm in row 9, a wave across the lines at the cut-off; in a file of nanometres.
+    // Lines 2 nm apart that jump by 3 nm, a streak of 50 nm in row 9, a wave across the lines at the cut-off;
+    // in a file of nanometres.
     let wave = |y: f64| (std::f64::consts::TAU * y / 10.0).cos();
     let height = |x: f64, y: f64| {
         let streak = if (y - 9.0).abs() < 0.5 && (30.0..46.0).contains(&x) { 50.0 } else { 0.0 };

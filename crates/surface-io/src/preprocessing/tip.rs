@@ -2,16 +2,17 @@
 
 use contact_model::Cells;
 
-/// A tip of radius R traces no summit sharper than itself; below the distance at which measured summits reach half of its curvature, heights
-/// are the tip's as much as the surface's.
+/// A tip of radius R traces no summit sharper than itself; below the distance at which measured summits reach
+/// half of its curvature, heights are the tip's as much as the surface's.
 const SHARE: f64 = 0.5;
 
-/// The shortest distance from which on the sharpest summit has less than half of the tip's curvature, along x or y, whichever is longer;
-/// 0 where it has at all distances, `None` where it never has.
+/// The shortest distance from which on the sharpest summit has less than half of the tip's curvature, along x
+/// or y, whichever is longer; 0 where it has at all distances, `None` where it never has.
 ///
-/// The curvature at a distance d is that of the second difference `(2 h(x) - h(x - d) - h(x + d))/d^2`, largest over the map (A. Sanner,
-/// W. G. Noehring, L. A. Thimons, T. D. B. Jacobs, L. Pastewka, Appl. Surf. Sci. Adv. 7, 100190 (2022)). Cost O(N) for each of up to half
-/// as many distances as there are cells along a side, and it ends at the first that is reliable.
+/// The curvature at a distance d is that of the second difference `(2 h(x) - h(x - d) - h(x + d))/d^2`,
+/// largest over the map (A. Sanner, W. G. Noehring, L. A. Thimons, T. D. B. Jacobs, L. Pastewka, Appl. Surf.
+/// Sci. Adv. 7, 100190 (2022)). Cost O(N) for each of up to half as many distances as there are cells along a
+/// side, and it ends at the first that is reliable.
 pub(super) fn reliable_from(cells: Cells, cell: [f64; 2], heights: &[f64], radius: f64) -> Option<f64> {
     let Cells { columns, rows } = cells;
     let along = |count: usize, step: usize, side: f64| {

@@ -112,7 +112,8 @@ impl Trend {
     }
 }
 
-/// 1, x, y and the three products of second order, nearly orthogonal over the whole rectangle; along one row 1, x and x^2.
+/// 1, x, y and the three products of second order, nearly orthogonal over the whole rectangle; along one row
+/// 1, x and x^2.
 fn basis(row: usize, column: usize, cells: Cells) -> [f64; MOST] {
     let to_unit = |i: usize, count: usize| (2.0 * i as f64 + 1.0) / count as f64 - 1.0;
     let (x, y) = (to_unit(column, cells.columns), to_unit(row, cells.rows));

@@ -1,8 +1,10 @@
-//! What headers say: `# Width: 10 um` of Gwyddion and this crate, `x-length = 5000` of SPIP, `\Scan Size: 10 um` of Nanoscope, `Pixel
-//! size = 0.1 um` of profilers, in comments or in lines before the numbers.
+//! What headers say: `# Width: 10 um` of Gwyddion and this crate, `x-length = 5000` of SPIP,
+//! `\Scan Size: 10 um` of Nanoscope, `Pixel size = 0.1 um` of profilers, in comments or in lines before the
+//! numbers.
 //!
-//! The words are those of the readers in <https://github.com/ContactEngineering/SurfaceTopography> (`IO/Text.py`) and Gwyddion
-//! (`spip-asc.c`), and their usual variants. A length counts where it has a unit; a number of pixels has none and is compared with the lines.
+//! The words are those of the readers in <https://github.com/ContactEngineering/SurfaceTopography>
+//! (`IO/Text.py`) and Gwyddion (`spip-asc.c`), and their usual variants. A length counts where it has a unit;
+//! a number of pixels has none and is compared with the lines.
 
 use super::statement::{Axes, Side, Statement, key_and_value, lengths};
 use crate::error::ContentError;
@@ -256,7 +258,8 @@ impl Heading {
         self.sides.map(|side| side.filter(counts))
     }
 
-    /// Width and height of a matrix of so many columns and rows, and the sides of its cells where the header says those.
+    /// Width and height of a matrix of so many columns and rows, and the sides of its cells where the header
+    /// says those.
     ///
     /// # Errors
     /// [`ContentError::Contradiction`] where the header says another number of columns or rows, or where two of its lengths differ.

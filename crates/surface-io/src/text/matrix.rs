@@ -33,7 +33,8 @@ pub(crate) fn matrix(mut table: TextTable, declared: &ReadOptions) -> Result<Sto
     Ok(StoredChannel { name: table.heading.name, extent, notes, ..channel })
 }
 
-/// Takes coordinates in the first line and the first value of each line out of a table that has them, and gives the sides of its cells.
+/// Takes coordinates in the first line and the first value of each line out of a table that has them, and
+/// gives the sides of its cells.
 ///
 /// # Errors
 /// [`ContentError::Border`] where numbers may be such coordinates and nobody says whether they are.
@@ -124,7 +125,8 @@ fn extents(table: &TextTable, columns: usize, rows: usize) -> Result<[Option<Ext
     }
     let (dx, dy) = (Extent::Side(a).cell(columns)?, Extent::Side(b).cell(rows)?);
     let off = (dx.value() / dy.value() - 1.0).abs();
-    // A height that is square to the last digits of a double is kept as it stands: what is written is read as the same map.
+    // A height that is square to the last digits of a double is kept as it stands: what is written is read as
+    // the same map.
     let square = off > EXACT && off <= across.rounding + down.rounding;
     Ok([Some(Extent::Side(a)), Some(if square { Extent::Cell(dx) } else { Extent::Side(b) })])
 }

@@ -40,7 +40,8 @@ impl Numbers {
         }
     }
 
-    /// Whether a line is one of a header: it begins with none of the characters of numbers, and has a word that is none.
+    /// Whether a line is one of a header: it begins with none of the characters of numbers, and has a word
+    /// that is none.
     pub(super) fn is_header(self, line: &[u8]) -> bool {
         let line = line.trim_ascii();
         let first = line.iter().copied().find(|&b| b != b'"').unwrap_or_default();

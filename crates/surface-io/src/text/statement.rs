@@ -41,7 +41,8 @@ pub(super) enum Axes {
     Both,
 }
 
-/// Kind, key and value of a line `key: value` or `key = value`, or with a tab between; `None` for what means nothing here.
+/// Kind, key and value of a line `key: value` or `key = value`, or with a tab between; `None` for what means
+/// nothing here.
 pub(super) fn key_and_value(text: &str) -> Option<(Statement, String, String)> {
     let text = text.trim().trim_start_matches(['\\', '@', '*']);
     let quoted = text.starts_with('"');
@@ -152,7 +153,8 @@ const WORDS: [(&str, &str); 12] = [
     ("Angstrom", "angstrom"),
 ];
 
-/// One or two lengths or plain numbers: `10 um`, `10 um x 5 um`, `10 x 5 um`, `10 5 um`; `None` for other words.
+/// One or two lengths or plain numbers: `10 um`, `10 um x 5 um`, `10 x 5 um`, `10 5 um`; `None` for other
+/// words.
 pub(super) fn lengths(text: &str) -> Option<Vec<Side>> {
     let text = text.trim();
     let one = |text: &str| quantity(text).map(|side| vec![side]);
@@ -195,7 +197,8 @@ fn quantity(text: &str) -> Option<Side> {
     known.then_some(Side { quantity, rounding })
 }
 
-/// Whether a comma between digits can be no other than that of decimals: one of thousands has three digits behind it.
+/// Whether a comma between digits can be no other than that of decimals: one of thousands has three digits
+/// behind it.
 pub(super) fn is_decimal_comma(text: &str) -> bool {
     let Some((whole, rest)) = text.split_once(',') else { return false };
     let digits = rest.bytes().take_while(u8::is_ascii_digit).count();

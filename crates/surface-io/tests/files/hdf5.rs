@@ -17,8 +17,8 @@
 //!     n = f.create_dataset("part", shape=(2, 4), dtype="f8", chunks=(1, 4)); n[1, :] = [1, 2, 3, 4]
 //! ```
 //!
-//! And of programs that write attributes of their own: `fringes.datx` and `nanometers.datx` after the description of Zygo's files,
-//! `matlab73.mat` after that of MATLAB's, `counts.h5` after JPK's:
+//! And of programs that write attributes of their own: `fringes.datx` and `nanometers.datx` after the
+//! description of Zygo's files, `matlab73.mat` after that of MATLAB's, `counts.h5` after JPK's:
 //!
 //! ```python
 //! largest = np.finfo("f8").max

@@ -1,4 +1,5 @@
-//! MATLAB files: of SciPy 1.17 (`scipy.mat`, `scipy-packed.mat`), and one written here with the bytes of numbers the other way round.
+//! MATLAB files: of SciPy 1.17 (`scipy.mat`, `scipy-packed.mat`), and one written here with the bytes of
+//! numbers the other way round.
 //!
 //! ```python
 //! variables = {"Z": np.array([[1., 2, 3], [4, np.nan, 6]]), "dx": 0.5, "text": "some text", "s": {"a": 1},

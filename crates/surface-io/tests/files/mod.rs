@@ -41,7 +41,8 @@ pub struct Small {
     pub compressed: bool,
 }
 
-/// All of them, two at least for each format: with undefined points or another type of numbers, where it has such.
+/// All of them, two at least for each format: with undefined points or another type of numbers, where it has
+/// such.
 pub fn all() -> Vec<Small> {
     let of_all = [
         al3d::files(),

@@ -3,7 +3,8 @@
 use super::Small;
 
 pub fn files() -> Vec<Small> {
-    // A deflection in newtons, and heights in 2^32 steps of the range about 0; the first line is the last row.
+    // A deflection in newtons, and heights in 2^32 steps of the range about 0; the first line is the last
+    // row.
     let words = [-2_147_483_648_i32, 0, 1 << 30, 3, -4, 5];
     let data: Vec<u8> = words.iter().chain(&words).flat_map(|n| n.to_le_bytes()).collect();
     let step = 1e-5 / 4_294_967_296.0;

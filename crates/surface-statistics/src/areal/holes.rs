@@ -1,8 +1,10 @@
-//! Undefined points of a map where hills are looked for: small patches are filled, others are told apart by whether the edge reaches them.
+//! Undefined points of a map where hills are looked for: small patches are filled, others are told apart by
+//! whether the edge reaches them.
 
 use contact_model::Cells;
 
-/// Cells of the largest patch that is filled: scattered failures of an instrument, not a region that it did not see.
+/// Cells of the largest patch that is filled: scattered failures of an instrument, not a region that it did
+/// not see.
 const LARGEST: usize = 16;
 /// Sweeps over a patch: more than such a patch needs for the digits that decide which point is higher.
 const SWEEPS: usize = 60;
@@ -20,8 +22,8 @@ pub(super) enum Point {
     Outside,
 }
 
-/// Fills patches of at most 16 undefined points, joined along the axes, so that each filled height is the mean of its neighbours': no
-/// filled point is a peak. Says what each point is.
+/// Fills patches of at most 16 undefined points, joined along the axes, so that each filled height is the
+/// mean of its neighbours': no filled point is a peak. Says what each point is.
 pub(super) fn fill_small(heights: &mut [f64], cells: Cells) -> Vec<Point> {
     let mut points = vec![Point::Measured; heights.len()];
     let mut seen: Vec<bool> = heights.iter().map(|h| !h.is_nan()).collect();

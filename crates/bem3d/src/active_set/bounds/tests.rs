@@ -17,7 +17,8 @@ mod reference;
 const TIGHT: Limits = Limits { tolerance: 1e-10, height: None, outer_iterations: 200, factor: true };
 /// What they leave open in the pressure of a few cells.
 const SAME: f64 = 1e-7;
-/// A solution nearer to a tie than this share of the hardness or of the approach may be found with a cell on its other side.
+/// A solution nearer to a tie than this share of the hardness or of the approach may be found with a cell on
+/// its other side.
 const TIE: f64 = 1e-6;
 
 /// A solution of the conditions on a tiny grid.
@@ -250,7 +251,8 @@ fn one_cell_gives_way_where_the_saturated_ones_carry_a_little_too_much() {
         bring_to(force, 1.0, &mut set, &mut p, &candidates);
         (set.index(grid).collect::<Vec<_>>(), p)
     };
-    // Within rounding nothing is done; beyond, the cell with the largest gap gives way, and elastic cells open.
+    // Within rounding nothing is done; beyond, the cell with the largest gap gives way, and elastic cells
+    // open.
     assert_eq!(brought(&[1.0, 1.0, 1.0], 3.0 - 3e-13), (vec![0, 1, 2], vec![1.0; 3]));
     let (cells, p) = brought(&[1.0, 1.0, 1.0, 1e-9], 3.0 - 1e-8);
     assert_eq!((cells, p[0], p[2]), (vec![0, 1, 2], 1.0, 1.0));

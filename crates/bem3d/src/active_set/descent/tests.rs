@@ -46,8 +46,8 @@ fn evaluated(operators: &mut Operators, cells: &CellSet, p: &[f64], z: &[f64]) -
     (energy, u)
 }
 
-/// From pressures far from any solution: the energy falls at every step, the bounds and the force hold, and what is left of the conditions
-/// goes to zero, with and without a hardness.
+/// From pressures far from any solution: the energy falls at every step, the bounds and the force hold, and
+/// what is left of the conditions goes to zero, with and without a hardness.
 #[test]
 fn every_step_lowers_the_energy_and_the_end_is_the_solution() {
     for (grid, boundary) in [

@@ -287,8 +287,8 @@ fn a_coarse_grid_is_the_mean_of_its_defined_cells() {
 fn a_coarse_pressure_goes_to_the_fine_cells_below_the_plane() {
     let grid = Grid::square(64, 64);
     let mut z = vec![1.0; grid.count()];
-    // The plane is at 0.5. Of coarse cell 0 two fine cells lie below it and two above; of cell 1 one lies below and one in it; of
-    // cell 2 one lies in it and none below.
+    // The plane is at 0.5. Of coarse cell 0 two fine cells lie below it and two above; of cell 1 one lies
+    // below and one in it; of cell 2 one lies in it and none below.
     (z[0], z[1]) = (0.0, 0.2);
     (z[2], z[3]) = (0.1, 0.5);
     z[4] = 0.5;

@@ -251,7 +251,8 @@ fn the_energy_estimates_bound_the_energy() {
 
 #[test]
 fn the_energy_of_the_error_is_compared_with_the_value_gained() {
-    // r'G^-1 r of what is left, at most |r|^2 / eigenvalue or 2 r'M r, against a share of base + r'x, in any unit.
+    // r'G^-1 r of what is left, at most |r|^2 / eigenvalue or 2 r'M r, against a share of base + r'x, in any
+    // unit.
     let set = scattered(SQUARE);
     for unit in [1.0, 1e3] {
         let right = right(set.len(), unit);

@@ -29,8 +29,8 @@ pub(crate) fn within(scene: &SceneFile, errors: &GridErrors, share: f64) -> bool
     largest(scene, errors).is_some_and(|error| error <= share)
 }
 
-/// Which numbers an accuracy is about: those asked for whose error of the grid is estimated. Of the area it is the corrected one, and
-/// the largest pressure, which every scene has, is none of them.
+/// Which numbers an accuracy is about: those asked for whose error of the grid is estimated. Of the area it
+/// is the corrected one, and the largest pressure, which every scene has, is none of them.
 fn controlled(scene: &SceneFile) -> Vec<&'static str> {
     let asked = |quantity: &&Quantity| match quantity.asked_by {
         AskedBy::Output(output) => scene.requested.outputs.asks(output),
@@ -47,17 +47,19 @@ fn largest(scene: &SceneFile, errors: &GridErrors) -> Option<f64> {
 impl SceneFile {
     /// The scene with the grid and the tolerance that its `accuracy` asks for; itself where it asks for none.
     ///
-    /// A pilot solves the loads on surface 0 with 33, 65, 129, ... cells along the longer side of the grid (of a given map: with every so many-th of
-    /// its cells, at last with all of them) and estimates the errors of stiffness (of either kind), corrected area, conductance and mean gap, as
-    /// far as they are outputs, from three grids each ([`analysis::grid_error`]). It stops at the first grid with small enough errors of which the coarser one's were at
-    /// most twice as large: nothing is extrapolated. The run then compares every state with coarser grids itself (`grid_error`): on surface 0
-    /// it finds what the pilot found, and of other surfaces it says where the accuracy is missed. For one surface the pilot takes as
-    /// long as the run.
+    /// A pilot solves the loads on surface 0 with 33, 65, 129, ... cells along the longer side of the grid
+    /// (of a given map: with every so many-th of its cells, at last with all of them) and estimates the
+    /// errors of stiffness (of either kind), corrected area, conductance and mean gap, as far as they are
+    /// outputs, from three grids each ([`analysis::grid_error`]). It stops at the first grid with small
+    /// enough errors of which the coarser one's were at most twice as large: nothing is extrapolated. The run
+    /// then compares every state with coarser grids itself (`grid_error`): on surface 0 it finds what the
+    /// pilot found, and of other surfaces it says where the accuracy is missed. For one surface the pilot
+    /// takes as long as the run.
     ///
     /// # Errors
     /// [`crate::scenes::Error::Scene`] where no grid gives the accuracy or the predicted time is beyond the budget, with the accuracy that is to be had;
-    /// for a scene without a model, a load or an output that an accuracy could be about; [`crate::scenes::Error::Run`] for what the pilot's
-    /// solves refuse.
+    /// for a scene without a model, a load or an output that an accuracy could be about;
+    /// [`crate::scenes::Error::Run`] for what the pilot's solves refuse.
     pub fn with_grid_for_accuracy(mut self, stop: SharedStop<'_>) -> Result<Self> {
         let Some(target) = self.accuracy else { return Ok(self) };
         calibration::jobs_in_memory(&self, 1)?;
@@ -158,7 +160,8 @@ struct Worst {
 }
 
 impl Worst {
-    /// Of the last grid, compared with the two before it; loads that a grid refuses are left out: the run says so.
+    /// Of the last grid, compared with the two before it; loads that a grid refuses are left out: the run
+    /// says so.
     fn of(quantities: &[&'static str], solved: &[Vec<Option<Numbers>>]) -> Option<Self> {
         let [.., quarter, half, fine] = solved else { return None };
         let one = |(load, quantity): (usize, &'static str)| {
@@ -192,8 +195,8 @@ fn largest_cells(scene: &SceneFile) -> usize {
     ((MOST_CELLS as f64 * (size.x / size.x.max(size.y))).round() as usize).max(1)
 }
 
-/// Grids that double: of free squares one more than powers of two, so that a coarser grid has every second point; of a given map its own
-/// cells, every second one, every fourth.
+/// Grids that double: of free squares one more than powers of two, so that a coarser grid has every second
+/// point; of a given map its own cells, every second one, every fourth.
 fn grids(scene: &SceneFile) -> Vec<usize> {
     if let Some(Cells { columns, rows }) = scene.surface.own_cells() {
         let own = columns.max(rows);

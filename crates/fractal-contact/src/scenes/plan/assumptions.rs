@@ -9,8 +9,8 @@ use contact_model::Boundary;
 use std::f64::consts::TAU;
 use surface_gen::{MapStatistics, SelfAffineFit};
 
-/// Rms slopes of two directions differ by more than chance does below this ratio: on isotropic maps of 128 x 128 and 240 x 60
-/// cells it was above 0.95.
+/// Rms slopes of two directions differ by more than chance does below this ratio: on isotropic maps of 128 x
+/// 128 and 240 x 60 cells it was above 0.95.
 const ISOTROPIC: f64 = 0.6;
 /// Heights of self-affine maps, which have a few long waves, are Gaussian within these.
 const SKEWNESS: f64 = 0.5;

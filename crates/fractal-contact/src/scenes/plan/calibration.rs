@@ -30,8 +30,8 @@ const APPLICATIONS_EXPONENT: f64 = 0.3;
 /// N^0.5 to N^1.4 as measured by the example `effects` of `bem3d`.
 const FRONTS_TIME_EXPONENT: f64 = 3.1;
 const FRONTS_APPLICATIONS_EXPONENT: f64 = 1.0;
-/// What adhesion takes beside, where all cells are within reach: states of the last sweeps. Measured from outside
-/// on that example.
+/// What adhesion takes beside, where all cells are within reach: states of the last sweeps. Measured from
+/// outside on that example.
 const ADHESION_BYTES: f64 = 300.0;
 
 /// Time and work of a small solve, scaled. What a small grid refuses is not predicted: its run will tell.
@@ -138,8 +138,8 @@ impl PilotSolve {
     }
 }
 
-/// A few of the loads on a grid of at most `coarse` cells along its longer side, instead of `full`; the second
-/// number is that of its cells.
+/// A few of the loads on a grid of at most `coarse` cells along its longer side, instead of `full`; the
+/// second number is that of its cells.
 fn small_solves(
     scene: &SceneFile,
     numerics: &Numerics,
@@ -158,8 +158,8 @@ fn small_solves(
             _ => Surface::Heights(thin),
         };
     }
-    // Larger cells resolve an attraction as well whose range is larger by the root of that: so it costs as many
-    // sweeps, and is not refused.
+    // Larger cells resolve an attraction as well whose range is larger by the root of that: so it costs as
+    // many sweeps, and is not refused.
     if let (Adhesion::FiniteRange { work, range, law }, Some(grid)) = (physics.effects.adhesion, grid) {
         let larger = (full.columns as f64 / grid.columns as f64).max(full.rows as f64 / grid.rows as f64);
         let range = range * larger.sqrt().max(1.0);

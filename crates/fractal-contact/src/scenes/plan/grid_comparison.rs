@@ -111,7 +111,8 @@ impl GridComparison {
     }
 }
 
-/// One model of a scene, and the scene, on a grid with so many cells along its longer side: a given map is sampled at every so many-th cell.
+/// One model of a scene, and the scene, on a grid with so many cells along its longer side: a given map is
+/// sampled at every so many-th cell.
 pub(crate) fn on_grid(scene: &SceneFile, numerics: &Numerics, longer: usize) -> Result<SceneFile> {
     let mut coarse = scene.clone();
     coarse.surface = scene.surface.coarser(cells(scene, numerics), longer)?;
@@ -167,7 +168,8 @@ fn rms_slope(scene: &SceneFile, map: &HeightMap) -> Result<f64> {
 mod tests {
     use super::*;
 
-    /// With free edges 37 of 54 errors of the largest pressure were inside their estimates, of the other numbers 94 to 98 %.
+    /// With free edges 37 of 54 errors of the largest pressure were inside their estimates, of the other
+    /// numbers 94 to 98 %.
     #[test]
     fn the_largest_pressure_has_no_error_where_its_limit_may_be_infinite() {
         let all = || compared().map(|quantity| quantity.name).chain([RMS_SLOPE]);

@@ -36,8 +36,9 @@ impl ModelOnSurface {
         )
     }
 
-    /// Predicted processor milliseconds: they order the work, divide it into shards and move the progress bar. A guess from the sizes alone, within
-    /// a factor of ten; those of one model, which are what is divided, have the same.
+    /// Predicted processor milliseconds: they order the work, divide it into shards and move the progress
+    /// bar. A guess from the sizes alone, within a factor of ten; those of one model, which are what is
+    /// divided, have the same.
     pub fn cost(&self, scene: &SceneFile) -> u64 {
         let numerics = self.numerics(scene);
         let n = numerics.size() as u64;

@@ -38,8 +38,8 @@ pub struct Plan {
     pub surface: String,
     /// Metadata of its file.
     pub metadata: Option<String>,
-    /// The map of a file as it is solved: after crop, fill and detrend; `None` for other surfaces and for maps of more than 4096 x 4096
-    /// cells.
+    /// The map of a file as it is solved: after crop, fill and detrend; `None` for other surfaces and for
+    /// maps of more than 4096 x 4096 cells.
     pub prepared: Option<surface_io::Description>,
     /// Remarks on the scene.
     pub notes: Vec<Diagnostic>,
@@ -141,7 +141,8 @@ impl Plan {
         })
     }
 
-    /// The map as it is solved, without the exponent where statistics are asked for: theirs has an interval, and one is told.
+    /// The map as it is solved, without the exponent where statistics are asked for: theirs has an interval,
+    /// and one is told.
     pub(crate) fn as_solved(&self) -> Option<surface_io::Description> {
         let description = self.prepared.clone()?;
         let fitted = self.outputs.contains(&("statistics", true));

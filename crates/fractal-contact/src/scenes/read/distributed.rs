@@ -7,7 +7,8 @@ const BINS: (usize, usize) = (4, 50);
 /// What may be distributed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Distributed {
-    /// The pressure of the cells in contact, as a density over the nominal area: its integral is the contact fraction.
+    /// The pressure of the cells in contact, as a density over the nominal area: its integral is the contact
+    /// fraction.
     Pressure,
     /// The gap of the others, in the same way.
     Gap,
@@ -55,7 +56,8 @@ pub(crate) fn of_state(
     asked.iter().filter_map(|&name| Some((name, of(name)?))).collect()
 }
 
-/// Densities of the positive values in equal bins from 0 to the largest, with all values (cells) as the whole.
+/// Densities of the positive values in equal bins from 0 to the largest, with all values (cells) as the
+/// whole.
 pub(crate) fn of_cells(values: &[f64]) -> Vec<Bin> {
     let positive = || values.iter().copied().filter(|v| *v > 0.0 && v.is_finite());
     let largest = positive().fold(0.0, f64::max);
@@ -76,7 +78,8 @@ pub(crate) fn of_cells(values: &[f64]) -> Vec<Bin> {
         .collect()
 }
 
-/// Numbers of contacts per area in bins that double, the first of which holds contacts of one cell alone; empty bins are left out.
+/// Numbers of contacts per area in bins that double, the first of which holds contacts of one cell alone;
+/// empty bins are left out.
 pub(crate) fn of_patches(areas: &[f64], cell: f64) -> Vec<Bin> {
     let bin = |area: &f64| (area / (0.75 * cell)).log2().floor().max(0.0) as i32;
     let last = areas.iter().map(bin).max().unwrap_or(-1);

@@ -40,7 +40,8 @@ pub struct GeneratedSurface {
 }
 
 impl GeneratedSurface {
-    /// Draws the surface, writes it by the name's ending ([`surface_io::write_map`]) and says in a few lines what it is.
+    /// Draws the surface, writes it by the name's ending ([`surface_io::write_map`]) and says in a few lines
+    /// what it is.
     ///
     /// # Errors
     /// [`Error::Argument`] for a length that is none or units that do not fit, [`Error::Run`] for numbers
@@ -95,10 +96,12 @@ impl GeneratedSurface {
     }
 }
 
-/// Writes an artificial twin of a map into a file: its spectrum with the phases of a seed, and says what it is.
+/// Writes an artificial twin of a map into a file: its spectrum with the phases of a seed, and says what it
+/// is.
 ///
-/// The map is that of a surface's file as `declared` and after `preprocessing`; where it is not periodic, take its trend off and lay a
-/// window over it. With `keep_heights` the twin has the distribution of its heights too.
+/// The map is that of a surface's file as `declared` and after `preprocessing`; where it is not periodic,
+/// take its trend off and lay a window over it. With `keep_heights` the twin has the distribution of its
+/// heights too.
 ///
 /// # Errors
 /// [`Error::Surface`] for files that cannot be read or written, [`Error::Run`] for undefined points and a map without relief.

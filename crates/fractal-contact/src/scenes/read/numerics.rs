@@ -38,7 +38,8 @@ pub enum Numerics {
     Registered(RegisteredModel),
 }
 
-/// The same with at most so many cells along the longer side of the grid on a rectangle of this size, in the same proportion.
+/// The same with at most so many cells along the longer side of the grid on a rectangle of this size, in the
+/// same proportion.
 fn reduced(model: Bem3d, most: usize, size: Size) -> Bem3d {
     let Cells { columns, rows } = model.grid(size);
     let longer = columns.max(rows);
@@ -107,7 +108,8 @@ impl Numerics {
         ModelRecord::named(self.name())
     }
 
-    /// Whether it answers for one surface rather than for the spectrum that it was drawn from: a theory gives the same for every seed.
+    /// Whether it answers for one surface rather than for the spectrum that it was drawn from: a theory gives
+    /// the same for every seed.
     pub fn depends_on_realisation(&self) -> bool {
         self.is_stored()
     }

@@ -1,5 +1,5 @@
-//! What a seed draws on cells: self-affine surfaces, isotropic or with a lay, artificial twins of a map, and either with a
-//! prescribed distribution of heights.
+//! What a seed draws on cells: self-affine surfaces, isotropic or with a lay, artificial twins of a map, and
+//! either with a prescribed distribution of heights.
 
 use crate::scenes::read::human_readable::number;
 use crate::scenes::read::sampled::{sampled, sampled_cells};
@@ -36,14 +36,16 @@ pub struct RandomSurface {
     pub spectrum: RandomSpectrum,
     /// The distribution of its heights; `None`: what random phases give, nearly Gaussian.
     pub heights: Option<HeightDistribution>,
-    /// Where it is sampled on a coarser grid: the cells on which it is drawn, and the most along the longer side that are kept.
+    /// Where it is sampled on a coarser grid: the cells on which it is drawn, and the most along the longer
+    /// side that are kept.
     sampling: Option<(Cells, usize)>,
 }
 
 /// A drawn surface.
 pub(crate) struct Drawn {
     pub map: HeightMap,
-    /// Rms difference of the amplitudes of its waves from the spectrum, over the rms height, where its heights are prescribed.
+    /// Rms difference of the amplitudes of its waves from the spectrum, over the rms height, where its
+    /// heights are prescribed.
     pub spectrum_residual: Option<f64>,
 }
 
@@ -70,10 +72,12 @@ impl RandomSurface {
         }
     }
 
-    /// The same surface on at most so many cells along the longer side, where it is drawn on `cells` otherwise.
+    /// The same surface on at most so many cells along the longer side, where it is drawn on `cells`
+    /// otherwise.
     ///
-    /// A self-affine surface without a distribution of heights is drawn on the coarser cells, with fewer short waves. With one, maps that
-    /// are drawn on two grids differ by some per cent of the rms height: it is drawn on the finer cells, and sampled.
+    /// A self-affine surface without a distribution of heights is drawn on the coarser cells, with fewer
+    /// short waves. With one, maps that are drawn on two grids differ by some per cent of the rms height: it
+    /// is drawn on the finer cells, and sampled.
     pub(crate) fn coarser(&self, cells: Cells, longer: usize) -> Self {
         let drawn = matches!(self.spectrum, RandomSpectrum::SelfAffine { .. }) && self.heights.is_none();
         let finest = self.sampling.map_or(cells, |(finest, _)| finest);

@@ -8,10 +8,11 @@ use std::sync::Arc;
 
 /// Models written by the user, which scenes name beside those of the library.
 ///
-/// A registered model is configured in code: `[models.NAME]` has no keys for it. It is given the surface as the
-/// scene describes it (a random one is the model's own to draw from the seed; sums of a random surface and a body are
-/// not passed on), answers for each of the scene's random surfaces, and its states are stored under its name and
-/// version: **change the version with anything that changes a result**, or results stored by an earlier model are taken.
+/// A registered model is configured in code: `[models.NAME]` has no keys for it. It is given the surface as
+/// the scene describes it (a random one is the model's own to draw from the seed; sums of a random surface
+/// and a body are not passed on), answers for each of the scene's random surfaces, and its states are stored
+/// under its name and version: **change the version with anything that changes a result**, or results stored
+/// by an earlier model are taken.
 ///
 /// ```
 /// use fractal_contact::scenes::{Plan, Registry, SceneFile};
@@ -89,7 +90,8 @@ impl Registry {
         Ok(self)
     }
 
-    /// The models in the order added; in a scene built in code each is a [`crate::scenes::Numerics::Registered`].
+    /// The models in the order added; in a scene built in code each is a
+    /// [`crate::scenes::Numerics::Registered`].
     pub fn models(&self) -> &[RegisteredModel] {
         &self.models
     }

@@ -191,7 +191,8 @@ fn uniform(file: &Entry<'_>, map: &HeightMap) -> Diagnostic {
     Diagnostic::note(message).at(file.span()).with_help(help)
 }
 
-/// The highest point in rms heights above the mean, where it stands alone: a Gaussian map of 1e8 points reaches 6.
+/// The highest point in rms heights above the mean, where it stands alone: a Gaussian map of 1e8 points
+/// reaches 6.
 fn spike(map: &HeightMap) -> Option<(usize, usize, f64)> {
     const ALONE: f64 = 8.0;
     let known: Vec<f64> = map.defined().collect();
@@ -201,7 +202,8 @@ fn spike(map: &HeightMap) -> Option<(usize, usize, f64)> {
     (above.is_finite() && above > ALONE).then(|| (place / map.columns(), place % map.columns(), above))
 }
 
-/// The tilt of a map over its whole size in rms heights of what is left without it, where that changes its contact.
+/// The tilt of a map over its whole size in rms heights of what is left without it, where that changes its
+/// contact.
 fn tilt(scan: &Scan, preprocessing: &Preprocessing, map: &HeightMap) -> Option<f64> {
     /// A tilt below this is hidden by the roughness.
     const HIDDEN: f64 = 1.0;

@@ -49,7 +49,8 @@ impl SceneSurface {
         matches!(self, Self::Plain(Surface::Profile(_)))
     }
 
-    /// Whether a model has other numbers for other seeds: of a given map only the line that stands for it has.
+    /// Whether a model has other numbers for other seeds: of a given map only the line that stands for it
+    /// has.
     pub(crate) fn is_random_for(&self, numerics: &Numerics) -> bool {
         if self.is_profile() {
             return false;
@@ -85,7 +86,8 @@ impl SceneSurface {
         }
     }
 
-    /// Whether a seed draws another surface on other cells, and not only more or fewer short waves of the same one.
+    /// Whether a seed draws another surface on other cells, and not only more or fewer short waves of the
+    /// same one.
     pub(crate) fn differs_by_grid(&self) -> bool {
         matches!(self, Self::Drawn { rough, .. } if rough.heights.is_some()) && self.own_cells().is_none()
     }

@@ -63,7 +63,8 @@ fn keep_bytes(out: &Path, file: FieldFile<'_>, bytes: &[u8]) -> Result<StoredFil
     StoredFile::of(out, name)
 }
 
-/// Draws the fields of all states, each quantity in one range; of a complete result the values kept for it are then removed.
+/// Draws the fields of all states, each quantity in one range; of a complete result the values kept for it
+/// are then removed.
 pub(crate) fn draw(
     scene: &SceneFile,
     (model, surface): (&str, usize),
@@ -167,7 +168,8 @@ pub(crate) fn picture<'a>(
     }
 }
 
-/// A field of one row as a curve over x, instead of a picture one cell high; the points are (x, value), x in the scene's unit.
+/// A field of one row as a curve over x, instead of a picture one cell high; the points are (x, value), x in
+/// the scene's unit.
 pub(crate) fn row_chart(picture: &FieldPicture<'_>, points: Vec<(f64, f64)>) -> Chart {
     let extreme = |of: &dyn Fn(&(f64, f64)) -> f64| {
         points.iter().map(|p| of(p).abs()).filter(|v| v.is_finite()).fold(0.0, f64::max)

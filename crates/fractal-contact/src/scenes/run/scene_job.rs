@@ -81,7 +81,8 @@ impl Job for SceneJob<'_> {
     }
 }
 
-/// Every model of a scene on every surface, in the order of the tables. A theory, which is the same for every seed, has one surface.
+/// Every model of a scene on every surface, in the order of the tables. A theory, which is the same for every
+/// seed, has one surface.
 pub(crate) fn units(scene: &SceneFile) -> Vec<ModelOnSurface> {
     let surfaces = |model: usize| {
         if scene.surface.is_random_for(&scene.models[model]) { scene.sampling.surfaces } else { 1 }

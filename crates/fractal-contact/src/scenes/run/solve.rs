@@ -19,8 +19,8 @@ use std::path::Path;
 use std::time::Instant;
 
 impl ModelOnSurface {
-    /// Answers the loads that `result` lacks, in their order, and gives the result to `keep` after each. A load that a model refuses has its
-    /// row with the reason, and the others go on. A path begins anew.
+    /// Answers the loads that `result` lacks, in their order, and gives the result to `keep` after each. A
+    /// load that a model refuses has its row with the reason, and the others go on. A path begins anew.
     ///
     /// # Errors
     /// [`Error::Run`] where the scene cannot be prepared, and files that cannot be written. A stop is no
@@ -152,7 +152,8 @@ impl ModelOnSurface {
         Ok(())
     }
 
-    /// The record of a state: its fields become files, where these are asked for, and are counted where distributions are.
+    /// The record of a state: its fields become files, where these are asked for, and are counted where
+    /// distributions are.
     fn recorded(
         &self,
         scene: &SceneFile,
@@ -201,7 +202,8 @@ impl ModelOnSurface {
         Ok(kept)
     }
 
-    /// The heights that boundary elements solve, NaN where they are undefined; `None` for a model without cells.
+    /// The heights that boundary elements solve, NaN where they are undefined; `None` for a model without
+    /// cells.
     fn heights(&self, scene: &SceneFile) -> Result<Option<Field>> {
         let numerics = self.numerics(scene);
         if numerics.boundary_elements().is_none() {

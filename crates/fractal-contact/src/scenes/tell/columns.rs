@@ -33,7 +33,8 @@ pub(crate) fn with_grid_errors(scene: &SceneFile) -> impl Iterator<Item = &'stat
     asked(scene).filter(|quantity| scene.requested.grid_error && quantity.compared != Compared::No)
 }
 
-/// Unit of a column of a scene: without units a dimensional number is in the scene's own, and only pure numbers and texts keep theirs.
+/// Unit of a column of a scene: without units a dimensional number is in the scene's own, and only pure
+/// numbers and texts keep theirs.
 pub(crate) fn unit(scene: &SceneFile, si: &'static str) -> &'static str {
     match (scene.system, si) {
         (System::Si, si) => si,

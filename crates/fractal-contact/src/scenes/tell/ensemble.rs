@@ -13,7 +13,8 @@ type MeanAndDeviation = (f64, Option<f64>);
 /// A quantity, or what the grid leaves in it.
 type Averaged = (&'static Quantity, bool);
 
-/// What is averaged over the surfaces of a scene, in the order of columns: quantities, then errors of the grid.
+/// What is averaged over the surfaces of a scene, in the order of columns: quantities, then errors of the
+/// grid.
 fn averaged(scene: &SceneFile) -> Vec<Averaged> {
     let quantities = columns::asked(scene).filter(|quantity| quantity.average != Average::No);
     // Where a pressure has no limit there is no error to be averaged.

@@ -17,7 +17,8 @@ use surface_io::{
 /// A few lines on a scene (`.toml`), a table (`.csv` with a header that explains itself) or a surface
 /// (anything else).
 ///
-/// `declared` is what the caller says about a surface's file, `preprocessing` what is done to its map before it is described.
+/// `declared` is what the caller says about a surface's file, `preprocessing` what is done to its map before
+/// it is described.
 ///
 /// # Errors
 /// As [`SceneFile::read`] and [`crate::scenes::check`] for scenes; [`Error::Run`] and [`Error::Surface`] with
@@ -79,8 +80,8 @@ fn surface(path: &Path, declared: &ReadOptions, preprocessing: &Preprocessing) -
     })
 }
 
-/// As [`info`] of a surface, and its statistics: tables and pictures of parameters, spectra and height differences and `report.html`
-/// in a directory, the parameters as lines.
+/// As [`info`] of a surface, and its statistics: tables and pictures of parameters, spectra and height
+/// differences and `report.html` in a directory, the parameters as lines.
 ///
 /// The map is taken as a piece of a larger surface: not periodic.
 ///
@@ -149,12 +150,13 @@ fn each(file: SurfaceFile<'_>) -> Result<String> {
     Ok(text)
 }
 
-/// All channels of a surface's file as JSON: `{"channels": [{"name", "columns", "rows", "profile", "size": [x, y], "unit", "undefined", "minimum",
-/// "maximum", "rms"}]}`.
+/// All channels of a surface's file as JSON:
+/// `{"channels": [{"name", "columns", "rows", "profile", "size": [x, y], "unit", "undefined", "minimum", "maximum", "rms"}]}`.
 ///
-/// Heights as the file has them, before anything is done to them. Lengths are in metres, and then `unit` is "m"; values of another or no unit
-/// stand as they are in the file. `rms` is about the mean, `undefined` a share of the points; what the file does not say and `declared` does
-/// not either is null. A channel that is not read beside others is `{"error"}`; `notes` are remarks on what the file says.
+/// Heights as the file has them, before anything is done to them. Lengths are in metres, and then `unit` is
+/// "m"; values of another or no unit stand as they are in the file. `rms` is about the mean, `undefined` a
+/// share of the points; what the file does not say and `declared` does not either is null. A channel that is
+/// not read beside others is `{"error"}`; `notes` are remarks on what the file says.
 ///
 /// # Errors
 /// [`Error::Surface`] with what is wrong with the file.

@@ -60,8 +60,8 @@ mod tests {
         scene
     }
 
-    /// A quantity of the table that a scene asks for is in its CSV, in the table of the console and of the report, in the means and the
-    /// curves.
+    /// A quantity of the table that a scene asks for is in its CSV, in the table of the console and of the
+    /// report, in the means and the curves.
     #[test]
     fn every_quantity_is_told_everywhere() {
         for quantity in QUANTITIES {

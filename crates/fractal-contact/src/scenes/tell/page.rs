@@ -16,7 +16,8 @@ const SCRIPT: &str = include_str!("page/page.js");
 /// How a field is read.
 pub(crate) const READING: &str = "A click, or the arrow keys, read the value of a cell; a double click, + and - zoom, and so does the wheel with shift or control.";
 
-/// The whole of it: a heading, what stands below it, and sections of (id, name in the list, heading, content).
+/// The whole of it: a heading, what stands below it, and sections of (id, name in the list, heading,
+/// content).
 pub(crate) fn page(title: &str, head: &Markup, sections: &[(&str, &str, &str, Markup)]) -> Markup {
     html! {
         (DOCTYPE)

@@ -53,7 +53,8 @@ pub(crate) fn curve_files(scene: &SceneFile) -> Vec<String> {
     names.flat_map(|y| ["svg", "png"].map(|end| format!("curve-{y}.{end}"))).collect()
 }
 
-/// What is drawn over what: every quantity that is drawn, over the load, the time, or what a loop is drawn over.
+/// What is drawn over what: every quantity that is drawn, over the load, the time, or what a loop is drawn
+/// over.
 fn pairs(scene: &SceneFile) -> Vec<(Axis, &'static Quantity)> {
     let drawn = || columns::asked(scene).filter(|quantity| quantity.drawn);
     let named = |name: &str| columns::asked(scene).find(|quantity| quantity.name == name);

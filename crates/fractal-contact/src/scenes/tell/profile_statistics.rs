@@ -7,7 +7,8 @@ use surface_statistics::{
 };
 
 impl MapStatisticsTables {
-    /// Everything that is known of one row: heights, spectrum, differences and slopes along x, Hurst exponent.
+    /// Everything that is known of one row: heights, spectrum, differences and slopes along x, Hurst
+    /// exponent.
     pub(super) fn measure_profile(&mut self, map: &HeightMap, boundary: Boundary, instrument: Option<f64>) {
         self.remarks.push(
             "a profile: parameters are those of one line (ISO 21920-2), not areal ones; no filter was applied, so that they are of the primary \

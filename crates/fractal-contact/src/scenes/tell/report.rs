@@ -246,8 +246,8 @@ impl Report<'_> {
         } }
     }
 
-    /// The map and the fields of the first surface as long as there is room: of the largest loads first, or of
-    /// steps spread over a path.
+    /// The map and the fields of the first surface as long as there is room: of the largest loads first, or
+    /// of steps spread over a path.
     fn fields(&self, out: &Path) -> Result<Markup> {
         let mut views: Vec<(FieldView, &'static FieldQuantity, &str, usize)> = Vec::new();
         for &SolvedUnit { model, surface, states } in self.units.iter().filter(|of| of.surface == 0) {
@@ -311,7 +311,8 @@ pub(crate) fn residuals(scene: &SceneFile) -> impl Iterator<Item = &'static Quan
     columns::asked(scene).filter(|quantity| matches!(quantity.role, Role::Residual(_)))
 }
 
-/// The numbers below `count` in an order whose beginnings are spread over all of them: strides of falling powers of 2.
+/// The numbers below `count` in an order whose beginnings are spread over all of them: strides of falling
+/// powers of 2.
 fn spread(count: usize) -> Vec<usize> {
     let mut order = Vec::with_capacity(count);
     let mut stride = count.next_power_of_two();

@@ -24,7 +24,8 @@ impl ResultFolder {
     /// Reads the manifest of earlier runs.
     ///
     /// # Errors
-    /// The name of a file that this run would overwrite and no run of a scene wrote; a directory that cannot be read.
+    /// The name of a file that this run would overwrite and no run of a scene wrote; a directory that cannot
+    /// be read.
     pub fn claim(directory: &Path, scene: &SceneFile) -> Result<Self> {
         let entries =
             std::fs::read_dir(directory).map_err(runs::Error::file("read the directory", directory))?;

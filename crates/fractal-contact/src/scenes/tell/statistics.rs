@@ -1,4 +1,5 @@
-//! Statistics of a map as tables and pictures: `statistics.csv`, `spectrum.csv`, `height-difference.csv`, `scale-dependence.csv`.
+//! Statistics of a map as tables and pictures: `statistics.csv`, `spectrum.csv`, `height-difference.csv`,
+//! `scale-dependence.csv`.
 
 use crate::scenes::plan::grid_comparison::solved_map;
 use crate::scenes::read::entries::System;
@@ -70,8 +71,8 @@ pub(crate) struct MapStatisticsTables {
 }
 
 impl MapStatisticsTables {
-    /// Measures a map: of a periodic surface without a window, else under Hann's over its deviation from the mean. Of a `profile` what one
-    /// row says.
+    /// Measures a map: of a periodic surface without a window, else under Hann's over its deviation from the
+    /// mean. Of a `profile` what one row says.
     pub fn new(
         map: &HeightMap,
         profile: bool,

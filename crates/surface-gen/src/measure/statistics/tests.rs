@@ -25,7 +25,8 @@ fn waves_of(cells: [usize; 2], size: [f64; 2], amplitude: f64, [k, m]: [f64; 2])
         .unwrap()
 }
 
-/// Two waves of one wavelength across each other have every moment in closed form, on any rectangle and in any units.
+/// Two waves of one wavelength across each other have every moment in closed form, on any rectangle and in
+/// any units.
 #[test]
 fn a_pair_of_waves_by_hand() {
     for (cells, size, times) in [([32, 32], [1.0, 1.0], [4.0, 4.0]), ([96, 32], [3.0, 1.0], [9.0, 3.0])] {
@@ -87,8 +88,8 @@ fn generated_surfaces_have_their_slope_and_are_isotropic() {
     }
 }
 
-/// A quarter of a surface is not periodic: the window gives it the slope that the whole has, within the scatter of
-/// its long waves, and the jump at the edges does not count.
+/// A quarter of a surface is not periodic: the window gives it the slope that the whole has, within the
+/// scatter of its long waves, and the jump at the edges does not count.
 #[test]
 fn a_part_of_a_surface_is_windowed() {
     let whole = self_affine_map(&SelfAffine { roll_off: Some(16.0 * TAU), ..unit(0.8) }, 512, 1).unwrap();
@@ -151,8 +152,8 @@ fn the_line_of_a_map_follows_the_rule() {
     }
 }
 
-/// With a roll-off some octaves from the longest wave a line of the map is one of the surface that it was drawn from,
-/// up to the map's shortest wave.
+/// With a roll-off some octaves from the longest wave a line of the map is one of the surface that it was
+/// drawn from, up to the map's shortest wave.
 #[test]
 fn the_line_of_a_map_is_that_of_its_surface() {
     let surface = SelfAffine { roll_off: Some(8.0 * TAU), short_cutoff: Some(64.0 * TAU), ..unit(0.7) };

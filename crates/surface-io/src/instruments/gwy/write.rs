@@ -6,7 +6,8 @@ use contact_model::HeightMap;
 
 /// The bytes of a Gwyddion file of one channel: float64 heights and sides with their unit, or without one.
 ///
-/// Gwyddion has no undefined points: theirs is the mean height, under a mask, which is read as undefined again.
+/// Gwyddion has no undefined points: theirs is the mean height, under a mask, which is read as undefined
+/// again.
 ///
 /// # Errors
 /// [`ContentError::OutOfRange`] for a map of 4 GB or more.

@@ -6,8 +6,8 @@ use crate::write::{Metric, with_nan};
 use contact_model::HeightMap;
 use hdf5_pure::{AttrValue, FileBuilder};
 
-/// The bytes of an HDF5 file: the data set `heights` of float64 `[row, column]`, NaN at undefined points, with the attributes `unit`, `size`
-/// (along x and y), `size_unit` and `DIMENSION_LABELS` (`y`, `x`).
+/// The bytes of an HDF5 file: the data set `heights` of float64 `[row, column]`, NaN at undefined points,
+/// with the attributes `unit`, `size` (along x and y), `size_unit` and `DIMENSION_LABELS` (`y`, `x`).
 ///
 /// # Errors
 /// [`ContentError::Unwritten`] where the library refuses.

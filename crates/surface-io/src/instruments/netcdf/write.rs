@@ -9,9 +9,9 @@ const BYTE: u32 = 1;
 const TEXT: u32 = 2;
 const DOUBLE: u32 = 6;
 
-/// The bytes of a NetCDF-3 file (with offsets of 64 bits, CDF-2) as `SurfaceTopography` writes it: float64 `heights(x, y)`, the
-/// variables `x` and `y` with the attributes `length` and `unit`; at undefined points heights are NaN, which is their fill value, and
-/// `mask` is 1.
+/// The bytes of a NetCDF-3 file (with offsets of 64 bits, CDF-2) as `SurfaceTopography` writes it: float64
+/// `heights(x, y)`, the variables `x` and `y` with the attributes `length` and `unit`; at undefined points
+/// heights are NaN, which is their fill value, and `mask` is 1.
 ///
 /// # Errors
 /// [`ContentError::OutOfRange`] for a map of 4 GB or more.
@@ -76,7 +76,8 @@ pub fn netcdf(map: &HeightMap, metric: Metric) -> Result<Vec<u8>, ContentError> 
     Ok(file)
 }
 
-/// One variable: the numbers of its dimensions, the type and bytes of its values, names, types and bytes of its attributes.
+/// One variable: the numbers of its dimensions, the type and bytes of its values, names, types and bytes of
+/// its attributes.
 struct Variable {
     name: &'static str,
     dimensions: Vec<usize>,

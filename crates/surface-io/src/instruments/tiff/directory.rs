@@ -26,7 +26,8 @@ struct Entry {
 const LONGEST: u64 = 256;
 
 impl Directories {
-    /// Refuses lists and texts that reach beyond the end of the file, for which the other crate reserves up to 4 MB unasked.
+    /// Refuses lists and texts that reach beyond the end of the file, for which the other crate reserves up
+    /// to 4 MB unasked.
     pub(super) fn read(source: &mut Source<'_>) -> Result<Self> {
         let start = source.bytes(0, 8)?;
         let (big, large) = (start.starts_with(b"MM"), start[2] == 43 || start[3] == 43);

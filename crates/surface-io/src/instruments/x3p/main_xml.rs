@@ -80,7 +80,8 @@ impl Main {
 
 const DATUM: &str = "Record3/DataList/Datum";
 
-/// Calls for every number that stands in `main.xml` itself, NaN where it is missing, `None` where it is no number.
+/// Calls for every number that stands in `main.xml` itself, NaN where it is missing, `None` where it is no
+/// number.
 pub(super) fn listed(text: &str, each: &mut impl FnMut(Option<f64>)) {
     elements(text, &mut |path, text| {
         if path.split_once('/').is_some_and(|(_, path)| path == DATUM) {
@@ -91,15 +92,17 @@ pub(super) fn listed(text: &str, each: &mut impl FnMut(Option<f64>)) {
     });
 }
 
-/// Elements inside elements that are looked at, and bytes of the names from the root on; the standard has six.
+/// Elements inside elements that are looked at, and bytes of the names from the root on; the standard has
+/// six.
 const DEEPEST: usize = 32;
 const LONGEST_PATH: usize = 1 << 10;
-/// Bytes of an element's own text that are kept: a number, a name. Of a longer one nothing is, so that its beginning is no number.
+/// Bytes of an element's own text that are kept: a number, a name. Of a longer one nothing is, so that its
+/// beginning is no number.
 const LONGEST: usize = 1 << 12;
 const TOO_LONG: &str = "(too long)";
 
-/// Calls for every element at its end, with the names from the root on and its own text. What is no XML ends the document, and so does
-/// what is nested deeper than any description.
+/// Calls for every element at its end, with the names from the root on and its own text. What is no XML ends
+/// the document, and so does what is nested deeper than any description.
 fn elements(text: &str, each: &mut impl FnMut(&str, &str)) {
     let mut reader = Reader::from_str(text);
     let (mut path, mut lengths, mut own) = (String::new(), Vec::new(), String::new());

@@ -5,8 +5,8 @@ use crate::write::with_nan;
 use crate::zip::archive;
 use contact_model::HeightMap;
 
-/// The bytes of an X3P file (ISO 25178-72): float64 heights in metres, row by row, NaN at undefined points; `main.xml` without the record
-/// of the instrument, as a map does not know it.
+/// The bytes of an X3P file (ISO 25178-72): float64 heights in metres, row by row, NaN at undefined points;
+/// `main.xml` without the record of the instrument, as a map does not know it.
 ///
 /// X3P says the sides of a cell, not those of the map: a side that is read again may differ by its last bit.
 ///

@@ -13,7 +13,8 @@ use std::sync::Arc;
 const STATES: u64 = 600;
 /// Bound of the residuals, in units of the heights.
 const TOLERANCE: f64 = 1e-9;
-/// Conditions of the reference: rounding of a few hundred additions, in units of the heights and of the largest pressure.
+/// Conditions of the reference: rounding of a few hundred additions, in units of the heights and of the
+/// largest pressure.
 const ROUNDING: f64 = 1e-11;
 /// Exchanges of single cells at most.
 const EXCHANGES: usize = 400;
@@ -74,8 +75,8 @@ impl Dense {
         Some((p, gap, d))
     }
 
-    /// The solution, from the cells of a state: the cell that violates its condition most changes its kind, until none does. `None` where
-    /// the force is that of whole cells or the exchanges do not end.
+    /// The solution, from the cells of a state: the cell that violates its condition most changes its kind,
+    /// until none does. `None` where the force is that of whole cells or the exchanges do not end.
     fn solution(&self, mut kinds: Vec<Kind>) -> Option<(Vec<f64>, f64)> {
         for _ in 0..EXCHANGES {
             let (p, gap, d) = self.state(&kinds)?;
@@ -180,7 +181,8 @@ fn random_states_are_those_of_a_dense_reference() {
         compared += 1;
         saturated += u64::from(p.iter().any(|&p| p >= hardness));
         let found = CellSet::all(grid).carry(&solved.contact, &solved.p);
-        // The energy of the difference is below what the gaps left open allow: twice the duality gap and the miss of the complementarity.
+        // The energy of the difference is below what the gaps left open allow: twice the duality gap and the
+        // miss of the complementarity.
         let change: Vec<f64> = found.iter().zip(&p).map(|(a, b)| a - b).collect();
         let mut u = vec![0.0; p.len()];
         DirectSum(&dense.table).apply(&CellSet::all(grid), &change, &CellSet::all(grid), &mut u);
