@@ -67,7 +67,7 @@ impl ClosedLaw for HertzSphere {
 /// Johnson Eq. 4.24).
 ///
 /// # Errors
-/// [`Error::Domain`] for a force that is negative or a contact radius that is not positive, or not finite
+/// [`contact_model::Error::Domain`] for a force that is negative or a contact radius that is not positive, or not finite
 /// numbers.
 ///
 /// ```
