@@ -300,7 +300,7 @@ impl WaveLaw {
     fn pulled_off(&self, force: f64, nondimensional: Nondimensionalisation) -> Error {
         let least = self.wave.limits.map_or(0.0, |[first, _]| first.pressure(self.wave.alpha));
         let smallest = nondimensional.force(least * self.full);
-        smallest.map_or_else(|error| error, |smallest| Error::pull_off(Load::Force(force), smallest))
+        smallest.map_or_else(|error| error, |smallest| Load::Force(force).pull_off(smallest))
     }
 }
 

@@ -246,7 +246,7 @@ impl AdhesiveSphere {
         let pull_off = 1.5 * PI * self.work;
         let scaled = self.nondimensional.force_in(force);
         if scaled < -pull_off * closed::ROUNDED_UP {
-            return Err(Error::pull_off(Load::Force(force), self.pull_off_at_force()?.force));
+            return Err(Load::Force(force).pull_off(self.pull_off_at_force()?.force));
         }
         let root = (scaled + pull_off).max(0.0).sqrt() + pull_off.sqrt();
         Ok((0.75 * root * root).cbrt())
@@ -262,7 +262,7 @@ impl AdhesiveSphere {
         let fold = self.smallest_radius();
         let least = -0.75 * c * fold.sqrt();
         if d < least * closed::ROUNDED_UP {
-            return Err(Error::pull_off(Load::Approach(approach), self.pull_off_at_approach()?.approach));
+            return Err(Load::Approach(approach).pull_off(self.pull_off_at_approach()?.approach));
         }
         if d <= least {
             return Ok(fold);

@@ -293,7 +293,7 @@ impl MaugisSphere {
         let least = fold.force(lambda);
         if wanted < least * closed::ROUNDED_UP {
             let smallest = self.nondimensional.force(self.force_of(&fold))?;
-            return Err(Error::pull_off(Load::Force(force), smallest));
+            return Err(Load::Force(force).pull_off(smallest));
         }
         if wanted <= least {
             return Ok(fold);
@@ -314,7 +314,7 @@ impl MaugisSphere {
         if wanted < least * closed::ROUNDED_UP {
             let min = self.nondimensional.approach(self.approach_of(&end))?;
             if self.approach_fold.is_some() {
-                return Err(Error::pull_off(Load::Approach(approach), min));
+                return Err(Load::Approach(approach).pull_off(min));
             }
             let name =
                 "approach (the contact radius is 0; attraction without contact is not part of the model)";

@@ -1,6 +1,5 @@
 //! The one error type of the model crates: numbers, not prose.
 
-use crate::load::Load;
 use crate::state::ContactState;
 use std::borrow::Cow;
 use std::fmt;
@@ -92,18 +91,6 @@ impl Error {
     /// Shorthand for [`Error::OutOfMemory`] where the system refused `bytes`.
     pub fn out_of_memory(what: impl Into<Cow<'static, str>>, bytes: f64) -> Self {
         Self::OutOfMemory { what: what.into(), bytes, available: None }
-    }
-
-    /// A load below the smallest of its kind under which an adhesive contact holds.
-    pub fn pull_off(load: Load, smallest: f64) -> Self {
-        let (name, value) = match load {
-            Load::Force(force) => ("force (the contact pulls off under a prescribed force)", force),
-            Load::Approach(approach) => {
-                ("approach (the contact pulls off under a prescribed approach)", approach)
-            }
-            Load::MeanGap(gap) => ("mean gap (the contact pulls off under a prescribed mean gap)", gap),
-        };
-        Self::OutOfRange { name: name.into(), value, min: smallest, max: f64::INFINITY }
     }
 
     /// A tangential force beyond the limit `mu F` of Coulomb's friction.

@@ -46,4 +46,16 @@ impl Load {
         };
         if value.is_finite() { Ok(self) } else { Err(Error::domain(name, value, "a finite number")) }
     }
+
+    /// The error of this load where it is below the smallest of its kind under which an adhesive contact holds.
+    pub fn pull_off(self, smallest: f64) -> Error {
+        let (name, value) = match self {
+            Self::Force(force) => ("force (the contact pulls off under a prescribed force)", force),
+            Self::Approach(approach) => {
+                ("approach (the contact pulls off under a prescribed approach)", approach)
+            }
+            Self::MeanGap(gap) => ("mean gap (the contact pulls off under a prescribed mean gap)", gap),
+        };
+        Error::OutOfRange { name: name.into(), value, min: smallest, max: f64::INFINITY }
+    }
 }

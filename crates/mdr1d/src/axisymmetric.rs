@@ -5,8 +5,7 @@
 //! and Hess 2015), pressed into independent springs of stiffness E* per length. The half width of the line in
 //! contact is the radius of the round contact.
 
-use crate::body::check_radius;
-use contact_model::{Error, Line, Result, Surface, SurfaceKind};
+use contact_model::{Error, Line, Result, Size, Surface, SurfaceKind};
 use std::f64::consts::PI;
 
 /// The MDR profile of an axisymmetric body, in units of `L = sqrt(Lx Ly)` of its rectangle (the side of a
@@ -224,6 +223,12 @@ pub fn kappa(exponent: f64) -> Result<f64> {
     let y = (w * w).recip();
     let series = SERIES.iter().rev().fold(0.0, |sum, c| sum * y + c);
     Ok(factor * (PI * w * series).sqrt())
+}
+
+/// Errors where a round contact (radius in units of L) has left the rectangle, beyond which the half-space is
+/// free.
+pub(crate) fn check_radius(radius: f64, size: Size) -> Result<()> {
+    size.admit_radius("contact radius", radius * size.length())
 }
 
 #[cfg(test)]

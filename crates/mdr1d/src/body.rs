@@ -1,7 +1,7 @@
 //! What all contacts of axisymmetric bodies share: the profile in its scene, and its state under a normal
 //! load without adhesion.
 
-use crate::axisymmetric::{Profile, RoundContact};
+use crate::axisymmetric::{Profile, RoundContact, check_radius};
 use contact_model::{Error, Load, Result, ScaledState, Scaling, Scene, Size};
 
 /// An axisymmetric body on its rectangle.
@@ -59,12 +59,6 @@ impl RoundContact {
             ..ScaledState::default()
         }
     }
-}
-
-/// Errors where a round contact (radius in units of L) has left the rectangle, beyond which the half-space is
-/// free.
-pub(crate) fn check_radius(radius: f64, size: Size) -> Result<()> {
-    size.admit_radius("contact radius", radius * size.length())
 }
 
 /// A loaded contact of which nothing is left.

@@ -314,7 +314,7 @@ impl RoundIndenter {
                     Load::Force(_) => nondimensional.force(smallest)?,
                     _ => nondimensional.approach(smallest)?,
                 };
-                Err(Error::pull_off(load, smallest))
+                Err(load.pull_off(smallest))
             }
             Err(Failure::Range(radius)) => Err(out_of_f64(radius)),
         }

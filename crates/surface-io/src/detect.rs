@@ -1,12 +1,10 @@
 //! How the format of a file is told from its content and its name.
 
 use crate::error::ContentError;
-use crate::format::Format;
+use crate::format::{EXPORT, Format};
 use crate::instruments::READERS;
 use std::path::Path;
 
-/// What to do with a file of another program.
-pub(crate) const EXPORT: &str = "not read; export X3P, SDF, GWY or text with that program";
 const PICTURE: &str = "grey values are no heights; export the heights as text or NPY";
 const SPREADSHEET: &str = "save the sheet as CSV";
 

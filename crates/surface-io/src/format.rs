@@ -2,6 +2,9 @@
 
 use std::fmt;
 
+/// What to do with a file of another program.
+pub(crate) const EXPORT: &str = "not read; export X3P, SDF, GWY or text with that program";
+
 /// Declares the formats: each with its word and its name.
 macro_rules! formats {
     ($($(#[$about:meta])* $name:ident = $word:literal, $shown:literal;)*) => {

@@ -4,9 +4,9 @@
 //! Own code: `zip` 9.8 reserves memory for as many members as a file claims before it reads one of them,
 //! bounded by the claimed size of the directory and not by the file.
 
-use crate::detect::EXPORT;
 use crate::error::{ContentError, Result};
 use crate::fields::{ByteOrder, Fields, header};
+use crate::format::EXPORT;
 use crate::inflate::{Packed, Packing};
 use crate::source::Source;
 use flate2::Crc;

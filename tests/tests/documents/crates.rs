@@ -60,7 +60,9 @@ fn models_meet_where_the_architecture_says() {
         ["bem3d", "mdr1d", "analytic"].iter().filter(|model| reached.contains(*model)).count()
     };
     let meet = all.iter().filter(|package| models(package) > 1).map(|package| format!("`{}`", package.name));
-    let sentence = format!("meet in {} and `tests` only", meet.collect::<Vec<_>>().join(", "));
+    let mut meet: Vec<_> = meet.collect();
+    meet.sort();
+    let sentence = format!("meet in {} and `tests` only", meet.join(", "));
     let text = std::fs::read_to_string(root().join("ARCHITECTURE.md")).unwrap();
     let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(text.contains(&sentence), "ARCHITECTURE.md does not say \"{sentence}\"");

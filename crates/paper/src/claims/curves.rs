@@ -1,8 +1,8 @@
 //! Numbers of the curves themselves: the crossing, saturation, the collapse, lines over surfaces, finer
 //! grids.
 
-use super::ensemble::{Ensemble, stiffness_at};
-use super::{Found, Row, resampled};
+use super::ensemble::{Ensemble, resampled, stiffness_at};
+use super::table::{Found, Row};
 use crate::claim::Estimate;
 use analysis::{
     Bootstrap, CollapsePoint, FitWindow, Residual, collapse as residual, decades_within, interpolate, sum,

@@ -1,6 +1,6 @@
 //! The ensembles of a command with their fitted laws, and what several numbers of them need.
 
-use super::{Data, Entry, Found, Model, Reason, Row, curves, laws, solved, wrong};
+use super::table::{Found, Model, Reason, Row};
 use crate::claim::Estimate;
 use analysis::{Bootstrap, Curves, FitWindow, FittedPowerLaw, fit_power_law, interpolate};
 use evaluation::{Measured, Series, WindowedLaw, windowed_law};
@@ -44,59 +44,15 @@ impl<'a> Ensembles<'a> {
         Self { solid: of("bem3d"), line: of("mdr1d") }
     }
 
-    fn of(&self, model: Model) -> Result<&Ensemble<'a>> {
+    /// The one of a model.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for one that the command does not have.
+    pub(super) fn of(&self, model: Model) -> Result<&Ensemble<'a>> {
         let ensemble = if model == Model::Surfaces { &self.solid } else { &self.line };
         ensemble
             .as_ref()
             .ok_or_else(|| Error::parameter("model", format!("{model:?}"), "one that the command solves"))
-    }
-
-    /// What an entry of the table is compared with.
-    ///
-    /// # Errors
-    /// What a solver refuses; an ensemble that the command does not have.
-    pub(super) fn rows(&self, entry: &'static Entry) -> Result<Vec<Row>> {
-        let solid = || self.of(Model::Surfaces);
-        let line = || self.of(Model::Lines);
-        Ok(match &entry.data {
-            Data::Exponent(model) => laws::exponents(self.of(*model)?),
-            Data::ExponentOverDimension(model) => laws::over_dimension(self.of(*model)?),
-            Data::ExponentDifference => laws::differences(solid()?, line()?),
-            Data::ExponentOfHalves(model) => laws::halves(self.of(*model)?),
-            Data::ExponentBelowMinusAbove(from, middle) => laws::below_minus_above(line()?, *from, *middle),
-            Data::Factor => laws::factors(solid()?),
-            Data::ForceWhereLawsMeet => laws::meeting_point(solid()?, |point| point.force_bar),
-            Data::StiffnessWhereLawsMeet => laws::meeting_point(solid()?, |point| point.stiffness_bar),
-            Data::FarthestRatioOfFactors => laws::ratio_of_factors(solid()?, line()?),
-            Data::FarthestDistanceOfFactors => laws::distance_of_factors(solid()?, line()?),
-            Data::ScatterOfCollapse(top) => curves::collapse(solid()?, *top, |residual| residual.scatter),
-            Data::DistanceFromCollapse(top) => {
-                curves::collapse(solid()?, *top, |residual| Some(residual.rms))
-            }
-            Data::DecadesOfCollapse(factor) => curves::decades(solid()?, *factor),
-            Data::StiffnessAt(load) => curves::stiffnesses(solid()?, *load),
-            Data::Spread(load, other) => curves::spread(solid()?, *load, *other),
-            Data::StiffnessOverLaw(load) => laws::stiffness_over_law(solid()?, *load),
-            Data::ConductanceAt(load) => curves::conductance(solid()?, *load),
-            Data::ForceAtPlateauShare(model, share) => curves::force_at_share(self.of(*model)?, *share),
-            Data::AreaAtPlateauShare(share) => curves::area_at_share(solid()?, *share),
-            Data::RatioOfForcesAtPlateauShare(share) => curves::sooner(solid()?, line()?, *share),
-            Data::ChangeWithTheGrid => curves::change_with_grid(solid()?),
-            Data::ChangeOverScatter(load) => curves::change_over_scatter(solid()?, *load),
-            Data::LargestRatio(from, to) => curves::largest_ratio(solid()?, line()?, *from..=*to),
-            Data::RatioAtSmallestLoad => curves::ratio_at_smallest_load(solid()?, line()?),
-            Data::FarthestRatio => curves::farthest_ratio(solid()?, line()?),
-            Data::Plateau => solved::plateau()?,
-            Data::RatioOfPlateaus => solved::ratio_of_plateaus()?,
-            Data::ShareInOneRegion(dimensions) => solved::share_in_one_region(dimensions)?,
-            Data::ContactLengthOverDiameters => solved::length_over_diameters()?,
-            Data::RatioOfHeights(dimensions) => solved::ratio_of_heights(dimensions)?,
-            Data::RunTimes => curves::run_times(solid()?, line()?),
-            Data::NotJudged(reason) => Row::only(Err(reason.as_str().into())),
-            Data::TwoCases(_) => {
-                return Err(wrong(&format!("{}: the study of the two problems judges it", entry.id)));
-            }
-        })
     }
 }
 

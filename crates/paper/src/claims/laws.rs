@@ -1,7 +1,7 @@
 //! Numbers of the fitted power laws: alpha, zeta, where the laws meet, how straight the curves are.
 
-use super::ensemble::{Ensemble, Law, ONE_SURFACE, between, law_of};
-use super::{Found, Reason, Row, resampled};
+use super::ensemble::{Ensemble, Law, ONE_SURFACE, between, law_of, resampled};
+use super::table::{Found, Reason, Row};
 use crate::claim::Estimate;
 use analysis::{Bootstrap, Crossing, FitWindow, crossing, interpolate, sum};
 use evaluation::{FLOOR_CELLS, Series, laws_within};

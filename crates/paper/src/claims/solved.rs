@@ -1,7 +1,7 @@
 //! Numbers that are solved for a claim alone, whatever the size of the run: full contact, regions of contact,
 //! rms heights.
 
-use super::{Found, Row};
+use super::table::{Found, Row};
 use crate::claim::Estimate;
 use bem3d::Bem3d;
 use contact_model::{Amplitude, ContactModel, ContactState, Field, Load, Scene, SelfAffine, Surface};
