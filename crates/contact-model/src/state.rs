@@ -1,7 +1,6 @@
 //! What comes back from a solve, and its evidence.
 
 use crate::fields::{Field, Fields};
-use crate::load::Load;
 use crate::patches::Patches;
 use crate::work::Work;
 use std::fmt;
@@ -364,13 +363,6 @@ impl SolveReport {
             work: Work::default(),
             certificate: Certificate::default(),
         }
-    }
-
-    /// The same of a formula that takes the approach too: a force that follows from one is exact.
-    pub fn formula(strategy: impl Into<String>, load: Load) -> Self {
-        let mut report = Self::exact(strategy);
-        report.certificate.force_error = matches!(load, Load::Approach(_)).then_some(0.0);
-        report
     }
 }
 

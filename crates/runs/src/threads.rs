@@ -50,8 +50,8 @@ pub fn with_threads<T: Send>(asked: Option<&OsStr>, work: impl FnOnce() -> T + S
 /// A pool of so many threads, or of half as many, a quarter and so on as the system grants; `None` where it
 /// grants none.
 pub fn granted_pool(threads: usize, stack: usize) -> Option<ThreadPool> {
-    /// Threads of a pool that could not be filled need a moment to end.
-    const PAUSE: Duration = Duration::from_millis(5);
+    /// Threads of a pool that could not be filled need a moment to end: until then their stacks are taken.
+    const PAUSE: Duration = Duration::from_millis(50);
     let mut threads = threads.clamp(1, MOST_THREADS);
     loop {
         let builder = ThreadPoolBuilder::new().num_threads(threads);

@@ -126,11 +126,14 @@ impl fmt::Debug for dyn JobList + '_ {
 }
 
 impl Submission {
-    /// Submits what is left of a command to an engine, and says what it takes and what was written:
-    /// [`Self::write`] with this program. Without a number of tasks, that of an earlier submission is kept.
+    /// Writes the scripts of this program into `OUT/slurm` or `OUT/hyperqueue`, for the shards with jobs that
+    /// are neither done nor, as far as the engine knows, at work or waiting; submits them where that is asked
+    /// for. Returns the forecast and what was written, in words. Without a number of tasks, that of an earlier
+    /// submission is kept.
     ///
     /// # Errors
-    /// As [`Self::write`], and a directory that cannot be made or read.
+    /// [`Error::Parameter`] where nothing is left to do, for paths that a script cannot hold, and with what the
+    /// engine said where it refuses; [`Error::File`] for files that cannot be written or read.
     pub fn submit(
         &self,
         plan: &ShardPlan,
@@ -148,12 +151,7 @@ impl Submission {
         Ok(format!("{forecast}\n{submitted}"))
     }
 
-    /// Writes the scripts into `OUT/slurm` or `OUT/hyperqueue`, for the shards with jobs that are neither
-    /// done nor, as far as the engine knows, at work or waiting; submits them where that is asked for.
-    ///
-    /// # Errors
-    /// [`Error::Parameter`] where nothing is left to do, for paths that a script cannot hold, and with what the engine said where it refuses;
-    /// [`Error::File`] for files that cannot be written.
+    /// The same with a forecast and a program that are given.
     pub(crate) fn write(
         &self,
         target: &Target<'_>,
