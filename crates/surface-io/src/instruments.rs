@@ -1,4 +1,4 @@
-//! Binary formats of instruments and programs, each told by its first bytes.
+//! Formats of instruments and programs, each recognised by its content.
 
 mod al3d;
 mod bcr;
