@@ -113,7 +113,7 @@ fn fewer_threads_than_asked_for_give_the_same_bytes() {
     };
     let (all, _) = run("true", "all", "2");
     // 4096 stacks of 8 MB are 34 GB.
-    assert_eq!(run("ulimit -v 4000000", "fewer", "4096").0, all);
+    assert_eq!(run("ulimit -v 3000000", "fewer", "4096").0, all);
 }
 
 /// A limit of processes binds everybody but root, who becomes somebody else for this where the system lets

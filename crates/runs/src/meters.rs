@@ -61,7 +61,7 @@ pub fn check_memory(what: impl Into<Cow<'static, str>>, bytes: f64) -> contact_m
 }
 
 /// Address space that a limit (`ulimit -v`) leaves to this process, in bytes; `None` without a limit.
-fn address_space() -> Option<u64> {
+pub(crate) fn address_space() -> Option<u64> {
     let limits = fs::read_to_string("/proc/self/limits").ok()?;
     let line = limits.lines().find_map(|l| l.strip_prefix("Max address space"))?;
     let limit: u64 = line.split_whitespace().next()?.parse().ok()?;

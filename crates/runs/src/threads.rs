@@ -5,6 +5,7 @@
 //! [`crate::run_jobs`] asks [`granted_pool`].
 
 use crate::error::Error;
+use crate::meters::address_space;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::ffi::OsStr;
 use std::time::Duration;
@@ -48,11 +49,16 @@ pub fn with_threads<T: Send>(asked: Option<&OsStr>, work: impl FnOnce() -> T + S
 }
 
 /// A pool of so many threads, or of half as many, a quarter and so on as the system grants; `None` where it
-/// grants none.
+/// grants none. Their stacks of `stack` bytes (0: the default) take a quarter of a limited address space at
+/// most.
 pub fn granted_pool(threads: usize, stack: usize) -> Option<ThreadPool> {
     /// Threads of a pool that could not be filled need a moment to end: until then their stacks are taken.
     const PAUSE: Duration = Duration::from_millis(50);
-    let mut threads = threads.clamp(1, MOST_THREADS);
+    /// Part of the address space for stacks. A thread that is granted and finds no room to begin in ends the
+    /// process: the limit is not to be tried.
+    const PART: u64 = 4;
+    let room = address_space().filter(|_| stack > 0).map(|left| (left / PART / stack as u64) as usize);
+    let mut threads = threads.clamp(1, room.unwrap_or(MOST_THREADS).clamp(1, MOST_THREADS));
     loop {
         let builder = ThreadPoolBuilder::new().num_threads(threads);
         let builder = if stack > 0 { builder.stack_size(stack) } else { builder };
