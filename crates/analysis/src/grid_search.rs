@@ -97,7 +97,7 @@ impl<T> NoGrid<T> {
                 format!("{left}, {what} would take about {takes}, and the budget is {budget}")
             }
             Self::Order { grid: n, trial, finer } => format!(
-                "{}, and {finer} finer grids within the budget of {} would leave too much even if each left a quarter of the one before",
+                "{}, and the finer grids within the budget of {} ({finer}) would leave too much even if each left a quarter of the one before",
                 leaves(*n, trial),
                 time(budget)
             ),
@@ -206,7 +206,7 @@ mod tests {
         let refused = |share, seconds| search(1, share, seconds).unwrap_err();
         assert_eq!(
             refused(1e-3, 1e3),
-            "16 cells leave 6.25 % (at 16), and 2 finer grids within the budget of 1000 s would leave too much even if each left a quarter of the one before"
+            "16 cells leave 6.25 % (at 16), and the finer grids within the budget of 1000 s (2) would leave too much even if each left a quarter of the one before"
         );
         assert_eq!(
             refused(0.02, 100.0),

@@ -1,7 +1,7 @@
 //! Plans of fast Fourier transforms in one dimension (`rustfft`, `realfft`).
 //!
-//! A planner is generic over the precision, so that each crate that calls it compiles all of its algorithms:
-//! half of the time that `bem3d` took to compile. The functions here are compiled once.
+//! A planner is generic over the precision, so that each crate that calls it compiles all of its algorithms.
+//! The functions here are compiled once.
 
 use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
 use rustfft::{Fft, FftNum, FftPlanner};
@@ -20,46 +20,29 @@ pub trait Precision: FftNum {
     fn inverse(length: usize) -> Arc<dyn Fft<Self>>;
 }
 
-impl Precision for f64 {
-    #[inline(never)]
-    fn real_forward(length: usize) -> Arc<dyn RealToComplex<Self>> {
-        RealFftPlanner::new().plan_fft_forward(length)
-    }
+/// Methods of a type, and not functions over both: those would be compiled where they are called.
+macro_rules! planned {
+    ($($precision:ty),*) => { $(impl Precision for $precision {
+        #[inline(never)]
+        fn real_forward(length: usize) -> Arc<dyn RealToComplex<Self>> {
+            RealFftPlanner::new().plan_fft_forward(length)
+        }
 
-    #[inline(never)]
-    fn real_inverse(length: usize) -> Arc<dyn ComplexToReal<Self>> {
-        RealFftPlanner::new().plan_fft_inverse(length)
-    }
+        #[inline(never)]
+        fn real_inverse(length: usize) -> Arc<dyn ComplexToReal<Self>> {
+            RealFftPlanner::new().plan_fft_inverse(length)
+        }
 
-    #[inline(never)]
-    fn forward(length: usize) -> Arc<dyn Fft<Self>> {
-        FftPlanner::new().plan_fft_forward(length)
-    }
+        #[inline(never)]
+        fn forward(length: usize) -> Arc<dyn Fft<Self>> {
+            FftPlanner::new().plan_fft_forward(length)
+        }
 
-    #[inline(never)]
-    fn inverse(length: usize) -> Arc<dyn Fft<Self>> {
-        FftPlanner::new().plan_fft_inverse(length)
-    }
+        #[inline(never)]
+        fn inverse(length: usize) -> Arc<dyn Fft<Self>> {
+            FftPlanner::new().plan_fft_inverse(length)
+        }
+    })* };
 }
 
-impl Precision for f32 {
-    #[inline(never)]
-    fn real_forward(length: usize) -> Arc<dyn RealToComplex<Self>> {
-        RealFftPlanner::new().plan_fft_forward(length)
-    }
-
-    #[inline(never)]
-    fn real_inverse(length: usize) -> Arc<dyn ComplexToReal<Self>> {
-        RealFftPlanner::new().plan_fft_inverse(length)
-    }
-
-    #[inline(never)]
-    fn forward(length: usize) -> Arc<dyn Fft<Self>> {
-        FftPlanner::new().plan_fft_forward(length)
-    }
-
-    #[inline(never)]
-    fn inverse(length: usize) -> Arc<dyn Fft<Self>> {
-        FftPlanner::new().plan_fft_inverse(length)
-    }
-}
+planned!(f32, f64);
