@@ -2,11 +2,10 @@
 //! hard cases.
 //!
 //! A [`Run`] holds the plain parameters of one command: a [`Preset`], overridden by a [`Request`] and
-//! checked. [`measure_3d`] and
-//! [`measure_1d`] solve an ensemble, [`state_budgets`] states to what its means are known, [`plan`] and [`settle`] choose the sizes that
-//! meet an accuracy target, [`accuracy_cost`] shows what accuracy costs, [`budget_check`] whether the budgets
-//! hold, [`audit`] solves stored states again, [`bench()`] measures time, [`hard_cases`] writes the table of
-//! the registry `stability`.
+//! checked. [`measure_3d`] and [`measure_1d`] solve an ensemble, [`state_budgets`] states to what its means
+//! are known, [`plan`] and [`settle`] choose the sizes that meet an accuracy target, [`accuracy_cost`] shows
+//! what accuracy costs, [`budget_check`] whether the budgets hold, [`audit`] solves stored states again,
+//! [`bench()`] measures time, [`hard_cases`] writes the table of the registry `stability`.
 //!
 //! # Conventions
 //!

@@ -1,10 +1,11 @@
 //! The figures of Pohrt, Popov and Filippov, Phys. Rev. E 86, 026710 (2012) as code: runs, tables, pictures,
 //! comparison.
 //!
-//! [`fig1`] .. [`fig7`] take the parameters of one command ([`evaluation::Run`]), compute, write their CSV, draw their picture from that
-//! CSV, and give an [`evaluation::Outcome`] with the paper's own claims beside the numbers ([`Judged`],
-//! [`Claim`]). [`verify`] judges them all, [`reproduce_all`] makes everything, [`check_reference`] compares a
-//! small run with stored numbers, [`redraw`] renews pictures from their tables.
+//! [`fig1`] .. [`fig7`] take the parameters of one command ([`evaluation::Run`]), compute, write their CSV,
+//! draw their picture from that CSV, and give an [`evaluation::Outcome`] with the paper's own claims beside
+//! the numbers ([`Judged`], [`Claim`]). [`verify`] judges them all, [`reproduce_all`] makes everything,
+//! [`check_reference`] compares a small run with stored numbers, [`redraw`] renews pictures from their
+//! tables.
 //!
 //! Normalisation, means, units of work and the store are those of `evaluation`; CSV files those of `runs`.
 //!

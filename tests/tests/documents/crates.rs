@@ -17,12 +17,14 @@ pub fn crates() -> String {
 pub fn modules_page() -> String {
     let mut text = String::from(
         "# Crates and modules\n\n\
-         This page answers where a piece of the code is: every crate of `crates/`, each after those that it uses, with its\n\
-         modules and the first sentence of each. It is written from the sources, and a test compares it with them.\n\
+         This page answers where a piece of the code is: every crate of `crates/`, each after those that it uses, with\n\
+         its modules and the first sentence of each. It is written from the sources, and a test compares it with\n\
+         them. \
          [ARCHITECTURE.md](../..) has the rules that hold between crates.\n",
     );
     for package in packages() {
-        text.push_str(&["\n## ", &package.name, "\n\n", &package.description, "\n\n"].concat());
+        let description = wrapped(&package.description, "");
+        text.push_str(&["\n## ", &package.name, "\n\n", &description, "\n\n"].concat());
         list(&package.modules, 0, &mut text);
     }
     text
@@ -31,9 +33,27 @@ pub fn modules_page() -> String {
 fn list(modules: &[Module], depth: usize, text: &mut String) {
     for module in modules {
         let begin = "  ".repeat(depth);
-        text.push_str(&[&begin, "- `", &module.name, "`: ", &module.sentence, "\n"].concat());
+        let item = [&begin, "- `", &module.name, "`: ", &module.sentence].concat();
+        text.push_str(&(wrapped(&item, &(begin + "  ")) + "\n"));
         list(&module.inner, depth + 1, text);
     }
+}
+
+/// A paragraph, or an item of a list, within 110 columns; later lines begin with `margin`.
+fn wrapped(item: &str, margin: &str) -> String {
+    const COLUMNS: usize = 110;
+    let words = item.trim_start().split(' ');
+    let mut lines = vec![item[..item.len() - item.trim_start().len()].to_owned()];
+    for (i, word) in words.enumerate() {
+        let last = lines.last_mut().unwrap();
+        if last.chars().count() + 1 + word.chars().count() > COLUMNS {
+            lines.push([margin, word].concat());
+        } else {
+            last.push_str(if i == 0 { "" } else { " " });
+            last.push_str(word);
+        }
+    }
+    lines.join("\n")
 }
 
 #[test]
