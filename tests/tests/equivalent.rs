@@ -310,7 +310,7 @@ fn history_in_time_and_in_load_give_the_same_rough_contact() {
 fn hard_surfaces_have_profiles() {
     let cells = 12;
     let from_middle = |x: usize, y: usize| (x as f64 - 5.5).hypot(y as f64 - 5.5);
-    let reliefs: [&dyn Fn(usize, usize) -> f64; 9] = [
+    let heights: [&dyn Fn(usize, usize) -> f64; 9] = [
         &|_, _| 0.0,
         &|x, _| if x < 6 { 0.0 } else { -0.01 },
         &|x, y| if (x, y) == (5, 7) { -10.0 } else { 0.0 },
@@ -322,8 +322,8 @@ fn hard_surfaces_have_profiles() {
         &|x, y| 1e-6 * ((x * 31 + y * 17) % 29) as f64,
     ];
     let model = Equivalent { per_decade: 8, ..Equivalent::new(Bem3d::default()) };
-    for (which, relief) in reliefs.into_iter().enumerate() {
-        let surface = Surface::Heights(std::sync::Arc::new(tests::map(cells, 1.0, relief).unwrap()));
+    for (which, height) in heights.into_iter().enumerate() {
+        let surface = Surface::Heights(std::sync::Arc::new(tests::map(cells, 1.0, height).unwrap()));
         for force in [1e-6, 1e-3, 0.1] {
             let mut slides = model.prepare(&sliding(surface.clone()), 0).unwrap();
             for (normal, share) in [(1.0, 0.5), (3.0, -0.9), (2.0, 1.0), (0.0, 0.0), (1.0, 0.3)] {

@@ -27,7 +27,7 @@ fn config(cases: u32) -> ProptestConfig {
 }
 
 prop_compose! {
-    /// Any of the reliefs that solvers have tripped over, or a rough one, of up to 20 x 20 cells.
+    /// Any of the maps that solvers have tripped over, or a rough one, of up to 20 x 20 cells.
     fn any_map()(
         kind in 0_u8..9, cells in 2_usize..21, seed in 0_u64..1000, noise in prop::collection::vec(0.0_f64..1.0, 400),
     ) -> HeightMap {
@@ -200,7 +200,7 @@ proptest! {
         prop_assert!(back <= d * (1.0 + SAME) + SAME * unit(&drawn), "{} beyond {}", back, d);
     }
 
-    /// Barber's bounds. `F/k_N <= d <= F/k_N + relief` with k_N of the square: the flat surfaces through the
+    /// Barber's bounds. `F/k_N <= d <= F/k_N + height` with k_N of the square: the flat surfaces through the
     /// summit and the deepest point enclose the rough one. k is between that of a cell of the contact and
     /// that of the rectangle around it, and no more than the sum of cells.
     #[test]

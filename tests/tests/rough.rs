@@ -178,11 +178,11 @@ fn the_work_is_the_elastic_energy() {
     let area = map.dx() * map.dx();
     let highest = map.highest();
     let elastic = 0.5 * area * p.iter().zip(&u).map(|(p, u)| p * u).sum::<f64>();
-    let relief = area * p.iter().zip(map.heights()).map(|(p, h)| p * (highest - h)).sum::<f64>();
+    let of_heights = area * p.iter().zip(map.heights()).map(|(p, h)| p * (highest - h)).sum::<f64>();
     // Trapezoids with end correction on 1000 states of a piecewise linear force.
     let quadrature = 1e-6;
     assert_relative_eq!(work, elastic, max_relative = quadrature);
-    assert_relative_eq!(last.force * 5.0 - work, elastic + relief, max_relative = quadrature);
+    assert_relative_eq!(last.force * 5.0 - work, elastic + of_heights, max_relative = quadrature);
 }
 
 #[test]

@@ -165,7 +165,7 @@ fn the_frame_does_not_matter() {
     }
 }
 
-/// A little relief on the paraboloid, fixed by its place alone.
+/// Small heights on the paraboloid, fixed by its place alone.
 fn rough_map_value(x: usize, y: usize) -> f64 {
     0.05 * ((7 * x + 3 * y) as f64).sin() + 0.03 * ((2 * x + 11 * y) as f64).cos()
 }

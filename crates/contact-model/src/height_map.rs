@@ -23,7 +23,7 @@ impl HeightMap {
     /// number for the cells or the size makes it a square.
     ///
     /// # Errors
-    /// Those of [`Cells::validate`]; [`Error::Domain`] for a height that is NaN or infinite or a relief
+    /// Those of [`Cells::validate`]; [`Error::Domain`] for a height that is NaN or infinite or a range
     /// (highest minus lowest) that overflows; [`Error::Shape`] when the number of heights is not that of the
     /// cells.
     ///

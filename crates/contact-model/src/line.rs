@@ -14,7 +14,7 @@ impl Line {
     /// Takes the heights of the elements of a line of the given length (same length unit).
     ///
     /// # Errors
-    /// [`Error::Domain`] for a length that is not positive, a height that is NaN or infinite or a relief that
+    /// [`Error::Domain`] for a length that is not positive, a height that is NaN or infinite or a range that
     /// overflows; [`Error::Shape`] for no heights at all.
     pub fn new(length: f64, heights: Vec<f64>) -> Result<Self> {
         positive("length", length)?;

@@ -26,7 +26,7 @@ impl Normalisation {
     /// `F_bar = F / (E* h L)` (Eq. 10), dimensionless.
     ///
     /// # Errors
-    /// [`Error::Domain`] when the surface has no rms height or no relief.
+    /// [`Error::Domain`] when the surface has no rms height, or one of 0.
     pub fn force_bar(&self, force: f64) -> Result<f64> {
         Ok(force / self.force_unit()?)
     }

@@ -15,7 +15,7 @@ const SAME_MODULUS: f64 = 1e-9;
 /// Everything physical about one question. Numerics are a model's own options, chance is the seed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scene {
-    /// What carries the relief.
+    /// What carries the heights.
     pub surface: Surface,
     /// Effective modulus E* of the pair, `1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2`.
     pub modulus: f64,
@@ -76,7 +76,7 @@ impl Scene {
     }
 }
 
-/// What carries the relief. Axisymmetric bodies sit in the middle of the rectangle, apex up.
+/// What carries the heights. Axisymmetric bodies sit in the middle of the rectangle, apex up.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Surface {

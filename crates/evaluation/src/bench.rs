@@ -24,7 +24,7 @@ use surface_io::write_npy;
 /// What is measured.
 #[derive(Debug, Clone)]
 pub struct Bench {
-    /// Which reliefs.
+    /// Which surfaces.
     pub surfaces: Surfaces,
     /// Loads F_bar: solved from the smallest up, rows in the order in which they were written.
     pub forces: Forces,
@@ -73,7 +73,7 @@ pub fn parts_table(rows: &[BenchRow]) -> Vec<String> {
     std::iter::once(head).chain(parts.iter().map(line)).collect()
 }
 
-/// Reliefs of a bench.
+/// Surfaces of a bench.
 #[derive(Debug, Clone)]
 pub enum Surfaces {
     /// A map as it is, with square cells and `sqrt(Lx Ly) = 1`.
@@ -198,7 +198,7 @@ impl Bench {
     }
 }
 
-/// One relief at one tolerance.
+/// One surface at one tolerance.
 struct BenchSeries {
     surface: String,
     drawn: Option<(f64, u64)>,
@@ -250,12 +250,12 @@ pub fn bench(
 }
 
 fn series(bench: &Bench) -> Result<Vec<BenchSeries>> {
-    let mut reliefs = Vec::new();
+    let mut surfaces = Vec::new();
     match &bench.surfaces {
         Surfaces::File(path) => {
             let map = read_map(path)?;
             let name = path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
-            reliefs.push((name, None, map.cells(), 0, Surface::Heights(Arc::new(map))));
+            surfaces.push((name, None, map.cells(), 0, Surface::Heights(Arc::new(map))));
         }
         Surfaces::SelfAffine { cells, rows, fractal_dimensions, seed } => {
             for &d in fractal_dimensions {
@@ -264,21 +264,21 @@ fn series(bench: &Bench) -> Result<Vec<BenchSeries>> {
                     let surface = SelfAffine::new(d, unit_area(cells), 1.0)
                         .map_err(Error::model(format!("D_f = {d:?}")))?;
                     let surface = Surface::SelfAffine(surface);
-                    reliefs.push(("self-affine".to_owned(), Some((d, *seed)), cells, *seed, surface));
+                    surfaces.push(("self-affine".to_owned(), Some((d, *seed)), cells, *seed, surface));
                 }
             }
         }
     }
     let mut all = Vec::new();
-    for (surface, drawn, cells, seed, relief) in reliefs {
+    for (name, drawn, cells, seed, surface) in surfaces {
         for &tolerance in &bench.tolerances {
-            let mut scene = Scene::new(relief.clone(), 1.0);
+            let mut scene = Scene::new(surface.clone(), 1.0);
             scene.effects.boundary = bench.boundary;
             scene.outputs.pressure = bench.pressure.is_some();
             scene.outputs.mean_gap = bench.boundary == Boundary::Periodic;
             let (columns, rows) = (cells.columns, Some(cells.rows));
             let model = Bem3d { cells: columns, rows, tolerance, method: bench.method, ..Bem3d::default() };
-            all.push(BenchSeries { surface: surface.clone(), drawn, cells, scene, seed, model });
+            all.push(BenchSeries { surface: name.clone(), drawn, cells, scene, seed, model });
         }
     }
     Ok(all)

@@ -172,7 +172,7 @@ fn draw(points: &[BenchPoint], over: Over, directory: &Path, name: &str, plot: &
     Ok(())
 }
 
-/// Points of one relief, one tolerance and one value of `other`, in the order in which they come.
+/// Points of one surface, one tolerance and one value of `other`, in the order in which they come.
 fn curves(points: &[BenchPoint], other: Over) -> Vec<Vec<BenchPoint>> {
     let mut curves: Vec<Vec<BenchPoint>> = Vec::new();
     for p in points {

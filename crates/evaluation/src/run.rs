@@ -182,7 +182,8 @@ impl Run {
             |name, count| limits::jobs(name, within(name, count, &limits::COUNT)?, of_each).map(|()| count);
         Ok(Self {
             preset: request.preset,
-            // Fewer than 3 cells a side hold no wave besides the Nyquist one, which has no phase: no relief.
+            // Fewer than 3 cells a side hold no wave besides the Nyquist one, which has no phase: all heights
+            // are equal.
             cells: within("cells", request.cells.unwrap_or(sizes.cells), &limits::CELLS)?,
             surfaces: counted("surfaces", request.surfaces.unwrap_or(sizes.surfaces))?,
             elements: within("elements", request.elements.unwrap_or(sizes.elements), &limits::ELEMENTS)?,

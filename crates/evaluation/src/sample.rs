@@ -39,7 +39,7 @@ impl Sample {
     /// Takes from a state what is kept.
     ///
     /// # Errors
-    /// [`contact_model::Error::Domain`] when the surface has no relief to normalise by.
+    /// [`contact_model::Error::Domain`] when the surface has no rms height to normalise by.
     pub fn new(force_bar: f64, state: &ContactState, normalisation: &Normalisation) -> Result<Self> {
         let report = &state.report;
         Ok(Self {

@@ -89,11 +89,11 @@ impl Bearing {
     pub fn rebuild(&mut self, line: &Line) {
         let heights = line.heights();
         let (lowest, highest) = range(heights);
-        let relief = highest - lowest;
+        let height = highest - lowest;
         let count = (heights.len() / ELEMENTS_PER_BIN).clamp(1, MOST_BINS);
-        // Monotone in z, which is all that the grouping needs. No relief: 0 * inf is NaN, which the cast
+        // Monotone in z, which is all that the grouping needs. Equal heights: 0 * inf is NaN, which the cast
         // turns into bin 0.
-        let per_depth = count as f64 / relief;
+        let per_depth = count as f64 / height;
         let bin_of = |z: f64| ((z * per_depth) as usize).min(count - 1);
 
         let mut ends = vec![0_usize; count];

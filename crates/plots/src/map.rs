@@ -65,7 +65,7 @@ const SQUARE: f64 = 1.0 / MOST_PIXELS;
 /// Grey values of heights, darker = higher, for optimal contrast: the lowest and highest 0.5 % are white and
 /// black.
 ///
-/// A map without relief is white. Cost O(n log n).
+/// A map of equal heights is white. Cost O(n log n).
 pub fn grey(heights: &[f64]) -> Vec<u8> {
     let mut sorted = heights.to_vec();
     sorted.sort_by(f64::total_cmp);
@@ -74,7 +74,7 @@ pub fn grey(heights: &[f64]) -> Vec<u8> {
     heights.iter().map(|&h| shade(h, low, high)).collect()
 }
 
-/// White at the low end, black at the high one; white without relief.
+/// White at the low end, black at the high one; white where all heights are equal.
 fn shade(value: f64, low: f64, high: f64) -> u8 {
     let t = if high > low { share(value, low, high).clamp(0.0, 1.0) } else { 0.0 };
     (255.0 * (1.0 - t)).round() as u8

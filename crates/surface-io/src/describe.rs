@@ -40,7 +40,7 @@ pub enum Absent {
     /// A profile has no rings: its own spectrum is that of `surface_statistics::ProfileFit`.
     Profile,
     /// All heights are one.
-    NoRelief,
+    NoHeight,
     /// Too few rings lie in the range of the fit: fewer than about 40 cells along the shorter side, or cells
     /// far from squares.
     FewWaves,
@@ -53,7 +53,7 @@ impl fmt::Display for Absent {
         f.write_str(match self {
             Self::Undefined => "points are undefined; fill them first",
             Self::Profile => "one row of points has the spectrum of a profile, not of a surface",
-            Self::NoRelief => "no relief",
+            Self::NoHeight => "no relief",
             Self::FewWaves => "too few waves along one side",
             Self::NotFitted => "not asked for",
         })
@@ -103,7 +103,7 @@ pub fn describe(map: &HeightMap) -> Description {
     let hurst = if !whole {
         Err(Absent::Undefined)
     } else if high <= low {
-        Err(Absent::NoRelief)
+        Err(Absent::NoHeight)
     } else if cells.rows == 1 {
         Err(Absent::Profile)
     } else {

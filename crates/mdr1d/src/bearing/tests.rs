@@ -102,9 +102,9 @@ fn a_long_line_equals_the_sums() {
     let line = long_line(40_000);
     let (mut bearing, reference) = (Bearing::new(&line), Reference::new(&line));
     assert!(bearing.bins.len() > 50);
-    let relief = line.highest() - range(line.heights()).0;
+    let height = line.highest() - range(line.heights()).0;
     for i in 0..60 {
-        let d = relief * 1.3 * 10_f64.powf(-f64::from(i) / 10.0);
+        let d = height * 1.3 * 10_f64.powf(-f64::from(i) / 10.0);
         let s = bearing.press(Load::Approach(d), 3.0).unwrap();
         assert_relative_eq!(s.force, reference.force(d, 3.0), max_relative = ROUNDING);
         assert_eq!(s.elements, reference.elements(d));
@@ -138,7 +138,7 @@ fn ramp(elements: usize) -> Line {
 #[test]
 fn bins_share_a_ramp_evenly() {
     // Work, not time: a load sorts one bin, and none holds more than its share whatever the offset, the
-    // relief and the remainder.
+    // height and the remainder.
     for (bins, rest) in [(8, 3), (5, 300), (1, 7)] {
         let elements = bins * ELEMENTS_PER_BIN + rest;
         let bearing = Bearing::new(&ramp(elements));
@@ -201,7 +201,7 @@ fn extreme_units() {
         let line = Line::new(base.length() * horizontal, heights).unwrap();
         let mut bearing = Bearing::new(&line);
         let s = bearing.press(Load::Approach(0.3 * vertical), modulus).unwrap();
-        // Scaling by a power of ten rounds every height: a few units in the last place of the relief, over d.
+        // Scaling by a power of ten rounds every height: a few units in the last place of the height, over d.
         let expected = Nondimensionalisation::new(modulus, horizontal, vertical)
             .unwrap()
             .force(reference.force)

@@ -43,7 +43,7 @@ fn a_part_of_a_surface_is_not_periodic_and_keeps_its_dimension() {
 fn small_and_flat_maps_have_no_dimension() {
     for map in [HeightMap::new(1, 1.0, vec![3.0]), HeightMap::new(64, 1.0, vec![3.0; 4096])] {
         let found = describe(&map.unwrap());
-        assert_eq!(found.hurst, Err(Absent::NoRelief));
+        assert_eq!(found.hurst, Err(Absent::NoHeight));
         assert!(found.rms_height <= 0.0 && found.rms_slope <= 0.0);
         assert!(found.to_string().contains("fractal dimension  not determined: no relief"));
     }

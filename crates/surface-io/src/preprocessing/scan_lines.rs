@@ -260,7 +260,7 @@ mod tests {
         let offset = |y: f64| (y * y * 7.3).sin() + 0.2 * y;
         // Waves along x; hills that cover less than half of every line have no part in the median of
         // differences.
-        let relief = |x: f64, y: f64| {
+        let height = |x: f64, y: f64| {
             let hill = if (5.0..20.0).contains(&x) { 3.0 * (0.7 * y).sin() } else { 0.0 };
             (0.4 * x).sin() + hill
         };
@@ -271,7 +271,7 @@ mod tests {
                 || ((y - 12.0).abs() < 0.5 && (x - 34.0).abs() > 0.5)
         };
         for holes in [false, true] {
-            let clean = heights(cells, |x, y| if holes && gone(x, y) { f64::NAN } else { relief(x, y) });
+            let clean = heights(cells, |x, y| if holes && gone(x, y) { f64::NAN } else { height(x, y) });
             let mut found: Vec<f64> =
                 clean.iter().enumerate().map(|(i, h)| h + offset((i / cells.columns) as f64)).collect();
             let kept = mean(&found);
@@ -364,7 +364,7 @@ mod tests {
         low - 1e296..=high + 1e296
     }
 
-    /// A gentle relief with noise of rms 0.01, `noise` of which depends on x and y.
+    /// Gentle heights with noise of rms 0.01, `noise` of which depends on x and y.
     fn rough(x: f64, y: f64) -> f64 {
         let noise = ((x * 12.9898 + y * 78.233).sin() * 43758.547).fract();
         (x / 15.0).sin() + (y / 12.0).cos() + 0.02 * noise

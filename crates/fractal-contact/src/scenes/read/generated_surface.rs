@@ -104,7 +104,7 @@ impl GeneratedSurface {
 /// heights too.
 ///
 /// # Errors
-/// [`Error::Surface`] for files that cannot be read or written, [`Error::Run`] for undefined points and a map without relief.
+/// [`Error::Surface`] for files that cannot be read or written, [`Error::Run`] for undefined points and a map of equal heights.
 pub fn write_twin(
     path: &Path,
     (declared, preprocessing): (&ReadOptions, &Preprocessing),
