@@ -2,7 +2,7 @@
 
 use crate::arguments::{Arguments, Command, PlanArguments, ShardsArguments, SubmitArguments};
 use clap::Parser as _;
-use evaluation::{Realisation, Run, realisation_jobs, run_units};
+use evaluation::{Realisation, Run, ensemble_jobs, realisation_jobs};
 use runs::cluster::{self, Division, Forecast, Status, check, quoted, run_shard, status, without_flags};
 use runs::{Error, JobList, Reporter, Result, ShardChoice};
 
@@ -22,8 +22,8 @@ pub fn jobs(command: &Command) -> Result<Box<dyn JobList>> {
     if request.fresh {
         return Err(Error::parameter("fresh", true, "no --fresh beside shards: choose another --out"));
     }
-    if let Some(units) = units(command)? {
-        return Ok(Box::new(realisation_jobs(units)));
+    if let Some(surfaces) = surfaces(command)? {
+        return Ok(Box::new(realisation_jobs(surfaces)));
     }
     match command {
         Command::ReproduceTwoCases(options) => paper::two_cases_jobs(&options.study()?),
@@ -52,16 +52,16 @@ pub fn shard(command: &Command, choice: ShardChoice, typed: &[String]) -> Result
 }
 
 /// The surfaces and lines of a command that solves no others.
-fn units(command: &Command) -> Result<Option<Vec<Realisation>>> {
+fn surfaces(command: &Command) -> Result<Option<Vec<Realisation>>> {
     let run = Run::new(&command.request())?;
     Ok(Some(match command {
-        Command::ReproduceFig2(_) | Command::ReproduceFig4(_) => run_units(&run, true, false),
-        Command::ReproduceFig6(_) => run_units(&run, false, true),
+        Command::ReproduceFig2(_) | Command::ReproduceFig4(_) => ensemble_jobs(&run, true, false),
+        Command::ReproduceFig6(_) => ensemble_jobs(&run, false, true),
         Command::ReproduceFig3(_)
         | Command::ReproduceFig7(_)
         | Command::ReproduceAll(_)
-        | Command::Verify(_) => run_units(&run, true, true),
-        Command::Exponent(options) => options.study(&run)?.units()?,
+        | Command::Verify(_) => ensemble_jobs(&run, true, true),
+        Command::Exponent(options) => options.study(&run)?.jobs()?,
         _ => return Ok(None),
     }))
 }

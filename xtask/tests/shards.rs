@@ -16,14 +16,14 @@ fn said(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned() + &String::from_utf8_lossy(&output.stdout)
 }
 
-/// Units of work, and how many of them were found.
+/// Jobs, and how many of them were found.
 fn work(output: &Output) -> (usize, usize) {
     let text = said(output);
-    let lines = text.lines().filter(|line| line.contains("units of work done"));
+    let lines = text.lines().filter(|line| line.contains("jobs done"));
     let first = |part: &str| part.split(' ').next().unwrap().parse::<usize>().unwrap();
     let count = |line: &str| {
-        let (units, found) = line.split_once(" s, ").unwrap();
-        (first(units), first(found))
+        let (jobs, found) = line.split_once(" s, ").unwrap();
+        (first(jobs), first(found))
     };
     lines.map(count).fold((0, 0), |a, b| (a.0 + b.0, a.1 + b.1))
 }
@@ -60,8 +60,8 @@ fn merged_shards_are_the_undivided_command() {
         assert!(status.status.success() && said(&status).contains("100 % of the predicted time"));
         let merged = xtask("merge", many.path());
         assert!(merged.status.success(), "{}", said(&merged));
-        let (units, found) = work(&merged);
-        assert!(units > 0 && units == found, "{command}: {found} of {units}");
+        let (jobs, found) = work(&merged);
+        assert!(jobs > 0 && jobs == found, "{command}: {found} of {jobs}");
         let (a, b) = (files(one.path()), files(many.path()));
         let names = |files: &[(String, Vec<u8>)]| files.iter().map(|f| f.0.clone()).collect::<Vec<_>>();
         assert_eq!(names(&a), names(&b), "{command}");

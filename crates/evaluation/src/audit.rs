@@ -47,12 +47,12 @@ pub fn audit(run: &Run, share: f64, tolerance: f64, progress: &dyn Progress) -> 
     }
     let session = Session::open(run)?;
     let measured = measure_3d(run, &session.store, progress)?;
-    let units: Vec<&(Realisation, RealisationResult)> =
-        measured.series.iter().flat_map(|s| &s.units).collect();
+    let realisations: Vec<&(Realisation, RealisationResult)> =
+        measured.series.iter().flat_map(|s| &s.realisations).collect();
     let loads = measured.force_bar().len();
-    let wanted = ((share * (units.len() * loads) as f64).ceil() as usize).max(1);
+    let wanted = ((share * (realisations.len() * loads) as f64).ceil() as usize).max(1);
     // The smallest hashes: a sample without replacement that does not depend on any order.
-    let mut all: Vec<(u64, usize, usize)> = (0..units.len())
+    let mut all: Vec<(u64, usize, usize)> = (0..realisations.len())
         .flat_map(|u| (0..loads).map(move |j| (u, j)))
         .map(|(u, j)| (surface_gen::surface_seed(run.seed ^ 0xa0d1, (u * loads + j) as u64), u, j))
         .collect();
@@ -62,7 +62,7 @@ pub fn audit(run: &Run, share: f64, tolerance: f64, progress: &dyn Progress) -> 
     let order: Vec<usize> = (0..all.len()).collect();
     let done = run_jobs(Threads::all(run.threads), &order, &never, |i, stop| {
         let (_, u, j) = all[i];
-        let pair = again(units[u], j, tolerance, stop)?;
+        let pair = again(realisations[u], j, tolerance, stop)?;
         progress.advance(1, false);
         Ok(pair)
     });
@@ -84,25 +84,26 @@ pub fn audit(run: &Run, share: f64, tolerance: f64, progress: &dyn Progress) -> 
     Ok((session.close(outcome)?, summary))
 }
 
-/// One load of one unit from nothing. `None` where the stored or the tight solve has no stiffness to compare.
+/// One load of one surface from nothing. `None` where the stored or the tight solve has no stiffness to
+/// compare.
 fn again(
-    (unit, result): &(Realisation, RealisationResult),
+    (realisation, result): &(Realisation, RealisationResult),
     load: usize,
     tolerance: f64,
     stop: Stop<'_>,
 ) -> Result<Option<SolvePair>> {
-    let Discretisation::Bem3d { cells, .. } = unit.discretisation else { return Ok(None) };
+    let Discretisation::Bem3d { cells, .. } = realisation.discretisation else { return Ok(None) };
     let stored = &result.samples[load];
     let alone = Realisation {
         discretisation: Discretisation::Bem3d { cells, tolerance },
         forces: [stored.force_bar].into(),
-        ..unit.clone()
+        ..realisation.clone()
     };
     let tight = alone.solve(stop)?;
     let tight = tight.samples.first().filter(|s| s.converged()).and_then(|s| s.stiffness_bar);
     Ok(stored.stiffness_bar.zip(tight).filter(|_| stored.converged()).map(|(a, b)| SolvePair {
-        fractal_dimension: unit.fractal_dimension,
-        index: unit.index,
+        fractal_dimension: realisation.fractal_dimension,
+        index: realisation.index,
         force_bar: stored.force_bar,
         stiffness_bar: [a, b],
         claimed: stored.certificate.stiffness_error.unwrap_or(0.0),

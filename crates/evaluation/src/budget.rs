@@ -117,7 +117,7 @@ pub(crate) fn budgets(measured: &Measured) -> Vec<Budgeted> {
             .filter(|&j| (fit.force_bar_min..=fit.force_bar_max).contains(&series.points[j].force_bar))
             .collect();
         let weights = weights(series, &inside);
-        let freedom = analysis::student(series.units.len() as f64 - 1.0);
+        let freedom = analysis::student(series.realisations.len() as f64 - 1.0);
         let open = |weight: fn(&(f64, f64)) -> f64| {
             let each = inside.iter().zip(&weights).map(|(&j, w)| weight(w).abs() * mean_algebraic(series, j));
             analysis::sum(each)
@@ -156,8 +156,11 @@ pub(crate) fn budgets(measured: &Measured) -> Vec<Budgeted> {
 
 /// Mean over the converged surfaces of what their tolerance leaves open, relative.
 fn mean_algebraic(series: &Series, j: usize) -> f64 {
-    let open: Vec<f64> =
-        (series.units.iter()).map(|(_, r)| &r.samples[j]).filter(|s| s.converged()).map(algebraic).collect();
+    let open: Vec<f64> = (series.realisations.iter())
+        .map(|(_, r)| &r.samples[j])
+        .filter(|s| s.converged())
+        .map(algebraic)
+        .collect();
     analysis::sum(open.iter().copied()) / open.len().max(1) as f64
 }
 

@@ -114,7 +114,7 @@ fn law_error(series: &Series, [half, quarter]: [&Series; 2]) -> Option<(f64, f64
         let [fine, half, quarter] = [law(all[0], draw)?, law(all[1], draw)?, law(all[2], draw)?];
         Some([[half.0 - fine.0, quarter.0 - half.0], [half.1 - fine.1, quarter.1 - half.1]])
     };
-    let surfaces = all.iter().map(|s| s.units.len()).min().unwrap_or(0);
+    let surfaces = all.iter().map(|s| s.realisations.len()).min().unwrap_or(0);
     let whole: Vec<usize> = (0..surfaces).collect();
     let found = differences(&whole)?;
     let draws: Vec<[[f64; 2]; 2]> =

@@ -16,9 +16,9 @@
 //! * Fewer than 10 contact cells are the one-cell floor of the grid: kept in every CSV, marked, left out of
 //!   lines and fits.
 //!
-//! # Units of work
+//! # Jobs
 //!
-//! The unit of work is one surface under all its loads ([`Realisation`]), solved from the smallest load
+//! A job is one surface under all its loads ([`Realisation`]), solved from the smallest load
 //! upwards with one prepared contact and kept in the result store of the run (`runs::Store`) under everything
 //! that decides its numbers. Other commands reuse it.
 //!
@@ -65,7 +65,7 @@ pub use forces::Forces;
 pub use hard_cases::hard_cases;
 pub use header::{FLAGS_1D, FLAGS_3D, PAPER, describe, header};
 pub use manifest::write_manifest;
-pub use measured::{COARSER_SURFACES, Measured, Series, measure_1d, measure_3d, run_units, transformed};
+pub use measured::{COARSER_SURFACES, Measured, Series, ensemble_jobs, measure_1d, measure_3d, transformed};
 pub use outcome::Outcome;
 pub use realisation::{Discretisation, FORMAT, Models, Realisation, RealisationResult};
 pub use realisation_jobs::{RealisationJob, is_solved, realisation_jobs, solve_realisations};

@@ -17,8 +17,8 @@ pub const COARSER_SURFACES: usize = 12;
 pub struct Series {
     /// D_f.
     pub fractal_dimension: f64,
-    /// The units, in the order of their index.
-    pub units: Vec<(Realisation, RealisationResult)>,
+    /// Its surfaces and what was solved of them, in the order of their index.
+    pub realisations: Vec<(Realisation, RealisationResult)>,
     /// Converged stiffnesses on common forces.
     pub curves: Curves,
     /// Their means.
@@ -74,7 +74,7 @@ pub fn with_coarser(
 }
 
 /// Everything that the ensembles of a run solve, coarser grids included.
-pub fn run_units(run: &Run, solid: bool, line: bool) -> Vec<Realisation> {
+pub fn ensemble_jobs(run: &Run, solid: bool, line: bool) -> Vec<Realisation> {
     let solid = solid.then(|| {
         let discretisation = Discretisation::Bem3d { cells: run.cells, tolerance: run.tolerance };
         (discretisation, run.surfaces, run.forces_3d.values())
@@ -87,11 +87,11 @@ pub fn run_units(run: &Run, solid: bool, line: bool) -> Vec<Realisation> {
         let coarser = coarser.map(move |grid| (grid, surfaces.min(COARSER_SURFACES), forces));
         std::iter::once((discretisation, surfaces, forces)).chain(coarser)
     });
-    grids.flat_map(|(grid, surfaces, forces)| units(grid, surfaces, forces, run)).collect()
+    grids.flat_map(|(grid, surfaces, forces)| jobs(grid, surfaces, forces, run)).collect()
 }
 
 /// Surface by surface, so that an interrupted run holds whole ensembles of fewer surfaces.
-fn units(discretisation: Discretisation, surfaces: usize, forces: &[f64], run: &Run) -> Vec<Realisation> {
+fn jobs(discretisation: Discretisation, surfaces: usize, forces: &[f64], run: &Run) -> Vec<Realisation> {
     let forces: Arc<[f64]> = forces.into();
     let dimensions = run.dimensions();
     let of_surface = |index: usize| {
@@ -121,22 +121,22 @@ pub fn measure(
     progress: &dyn Progress,
 ) -> Result<Measured> {
     let dimensions = run.dimensions();
-    let units = units(discretisation, surfaces, forces, run);
+    let jobs = jobs(discretisation, surfaces, forces, run);
     let (kind, size) = match discretisation {
         Discretisation::Bem3d { cells, .. } => ("surfaces", format!("{cells} x {cells} cells")),
         Discretisation::Mdr1d { elements } => ("lines", format!("{elements} elements")),
     };
-    let what = format!("{}: {} {kind} of {size}, {} loads", discretisation.name(), units.len(), forces.len());
-    let results = solve_realisations(&what, &units, store, run.threads, progress)?;
+    let what = format!("{}: {} {kind} of {size}, {} loads", discretisation.name(), jobs.len(), forces.len());
+    let results = solve_realisations(&what, &jobs, store, run.threads, progress)?;
     let mut pairs: Vec<Vec<(Realisation, RealisationResult)>> =
         dimensions.iter().map(|_| Vec::new()).collect();
-    for (i, pair) in units.into_iter().zip(results).enumerate() {
+    for (i, pair) in jobs.into_iter().zip(results).enumerate() {
         pairs[i % dimensions.len()].push(pair);
     }
     let series = pairs
         .into_iter()
         .zip(&dimensions)
-        .map(|(units, &d)| Series::new(d, units, forces))
+        .map(|(realisations, &d)| Series::new(d, realisations, forces))
         .collect::<Result<_>>()?;
     Ok(Measured { discretisation, series, coarser: None })
 }
@@ -144,10 +144,10 @@ pub fn measure(
 impl Series {
     fn new(
         fractal_dimension: f64,
-        units: Vec<(Realisation, RealisationResult)>,
+        realisations: Vec<(Realisation, RealisationResult)>,
         forces: &[f64],
     ) -> Result<Self> {
-        let rows = units
+        let rows = realisations
             .iter()
             .map(|(_, result)| {
                 let sample = |s: &Sample| {
@@ -160,11 +160,11 @@ impl Series {
         let what = || format!("the ensemble at D_f = {fractal_dimension:?}");
         let curves = Curves::new(forces.to_vec(), rows).map_err(|e| Error::model(what())(e))?;
         let points = ensemble(&curves);
-        Ok(Self { fractal_dimension, units, curves, points })
+        Ok(Self { fractal_dimension, realisations, curves, points })
     }
 
-    /// The same curves of the surfaces `draw` (a surface may be drawn more than once); its units stay those
-    /// of the whole.
+    /// The same curves of the surfaces `draw` (a surface may be drawn more than once); its realisations stay
+    /// those of the whole.
     #[must_use]
     pub fn redrawn(&self, draw: &[usize]) -> Self {
         let curves = self.curves.resampled(draw);
@@ -173,7 +173,7 @@ impl Series {
 
     /// k_bar of surface `i` under load number `j`, where it converged.
     fn stiffness(&self, i: usize, j: usize) -> Option<f64> {
-        let sample = self.units.get(i)?.1.samples.get(j)?;
+        let sample = self.realisations.get(i)?.1.samples.get(j)?;
         sample.stiffness_bar.filter(|_| sample.converged())
     }
 
@@ -183,7 +183,7 @@ impl Series {
         let of = |i: usize| {
             relative_differences(self.stiffness(i, j)?, half.stiffness(i, j)?, quarter.stiffness(i, j)?)
         };
-        (0..self.units.len()).filter_map(of).collect()
+        (0..self.realisations.len()).filter_map(of).collect()
     }
 
     /// Arithmetic mean of k_bar over the converged surfaces at each force.
@@ -202,7 +202,7 @@ impl Series {
     }
 
     fn mean_at(&self, j: usize, of: impl Fn(&Sample) -> Option<f64>) -> Option<f64> {
-        let samples = self.units.iter().map(|(_, r)| &r.samples[j]).filter(|s| s.converged());
+        let samples = self.realisations.iter().map(|(_, r)| &r.samples[j]).filter(|s| s.converged());
         let values: Vec<f64> = samples.filter_map(of).collect();
         (!values.is_empty()).then(|| analysis::sum(values.iter().copied()) / values.len() as f64)
     }
@@ -211,13 +211,13 @@ impl Series {
 impl Measured {
     /// Solves that did not meet their tolerance.
     pub fn not_converged(&self) -> usize {
-        let samples = self.series.iter().flat_map(|s| &s.units).flat_map(|(_, r)| &r.samples);
+        let samples = self.series.iter().flat_map(|s| &s.realisations).flat_map(|(_, r)| &r.samples);
         samples.filter(|s| !s.converged()).count()
     }
 
-    /// Seconds of all its units together, whenever they were solved.
+    /// Seconds of all its jobs together, whenever they were solved.
     pub fn seconds(&self) -> f64 {
-        analysis::sum(self.series.iter().flat_map(|s| &s.units).map(|(_, r)| r.seconds))
+        analysis::sum(self.series.iter().flat_map(|s| &s.realisations).map(|(_, r)| r.seconds))
     }
 
     /// The series of this fractal dimension.

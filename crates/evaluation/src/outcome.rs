@@ -16,9 +16,9 @@ pub struct Outcome {
     pub reached: Vec<String>,
     /// Wall-clock seconds of this command.
     pub seconds: f64,
-    /// Seconds of all 3D units together, whenever they were solved.
+    /// Seconds of all 3D jobs together, whenever they were solved.
     pub bem3d_seconds: Option<f64>,
-    /// Seconds of all 1D units together.
+    /// Seconds of all 1D jobs together.
     pub mdr1d_seconds: Option<f64>,
 }
 

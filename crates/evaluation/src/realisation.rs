@@ -1,4 +1,4 @@
-//! One unit of work: one surface under all its loads.
+//! One surface of an ensemble under all its loads: the job that is stored.
 
 use crate::sample::Sample;
 use analysis::KnownPart;
@@ -13,8 +13,8 @@ use serde::{Deserialize, Serialize};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
 
-/// Number of the format of stored units. Raise it when the numbers of `surface-gen` or `mdr1d`, or the fields
-/// of a [`Sample`], change; `bem3d` has its own number, which enters the key too.
+/// Number of the format of stored results. Raise it when the numbers of `surface-gen` or `mdr1d`, or the
+/// fields of a [`Sample`], change; `bem3d` has its own number, which enters the key too.
 pub const FORMAT: u32 = 3;
 
 /// How a surface is discretised, and by which model.
@@ -129,7 +129,7 @@ const EDGE_POWER: i32 = 8;
 /// Coarsest grid and shortest line that say anything about a finer one.
 const COARSEST: (usize, usize) = (17, 1 << 9);
 
-/// Models that units share: what a line's ensemble plans once serves all its lines.
+/// Models that jobs share: what a line's ensemble plans once serves all its lines.
 #[derive(Debug, Default)]
 pub struct Models {
     /// By D_f and number of elements.
@@ -137,12 +137,12 @@ pub struct Models {
 }
 
 impl Models {
-    /// The model of a unit.
-    fn of(&self, unit: &Realisation, surface: &SelfAffine) -> contact_model::Result<Arc<dyn ContactModel>> {
-        let Discretisation::Mdr1d { elements } = unit.discretisation else {
-            return Ok(Arc::from(unit.discretisation.model()));
+    /// The model of a job.
+    fn of(&self, job: &Realisation, surface: &SelfAffine) -> contact_model::Result<Arc<dyn ContactModel>> {
+        let Discretisation::Mdr1d { elements } = job.discretisation else {
+            return Ok(Arc::from(job.discretisation.model()));
         };
-        let d = unit.fractal_dimension;
+        let d = job.fractal_dimension;
         // A poisoned lock means that another thread panicked while it only pushed.
         let mut lines = self.lines.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some((.., ensemble)) =
@@ -172,7 +172,7 @@ pub struct Realisation {
     pub forces: Arc<[f64]>,
 }
 
-/// What a unit gave.
+/// What was solved of a realisation.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RealisationResult {
     /// Measured rms height of this surface, in which F_bar is counted.
@@ -185,15 +185,15 @@ pub struct RealisationResult {
 }
 
 impl Realisation {
-    /// Everything that decides the numbers, as text: physics, discretisation, seed, loads, formats. Two units
+    /// Everything that decides the numbers, as text: physics, discretisation, seed, loads, formats. Two jobs
     /// with the same text have the same result.
     ///
     /// ```
     /// use evaluation::{Discretisation, Realisation};
     /// let discretisation = Discretisation::Mdr1d { elements: 64 };
-    /// let unit = Realisation { discretisation, fractal_dimension: 2.5, index: 0, seed: 7, forces: [0.1, 1.0].into() };
-    /// assert!(unit.key().contains("fractal_dimension 2.5\n") && unit.key().contains("seed 7\n"));
-    /// assert!(!unit.key().contains("index")); // the seed says which surface it is
+    /// let job = Realisation { discretisation, fractal_dimension: 2.5, index: 0, seed: 7, forces: [0.1, 1.0].into() };
+    /// assert!(job.key().contains("fractal_dimension 2.5\n") && job.key().contains("seed 7\n"));
+    /// assert!(!job.key().contains("index")); // the seed says which surface it is
     /// ```
     pub fn key(&self) -> String {
         let discretisation = match self.discretisation {
@@ -238,7 +238,7 @@ impl Realisation {
         1 + (1e3 * seconds).min(1e15) as u64
     }
 
-    /// Solves the unit from the smallest load upwards with one prepared contact. A solve that does not
+    /// Solves the job from the smallest load upwards with one prepared contact. A solve that does not
     /// converge is recorded with its status.
     ///
     /// # Errors
@@ -247,7 +247,7 @@ impl Realisation {
         self.solve_among(&Models::default(), stop)
     }
 
-    /// The same with what other units have planned.
+    /// The same with what other jobs have planned.
     ///
     /// # Errors
     /// As [`Realisation::solve`].
@@ -322,7 +322,7 @@ mod tests {
             Normalisation { modulus: 1.0, length: 1.0, height: Some(2.0) }
         }
         fn solve_until(&mut self, load: Load, _: Stop<'_>) -> ModelResult<ContactState> {
-            let Load::Force(force) = load else { panic!("units prescribe forces") };
+            let Load::Force(force) = load else { panic!("jobs prescribe forces") };
             let mut report = SolveReport::exact("closed form");
             report.certificate = Certificate { duality_gap: 0.5, ..Default::default() };
             let stiffness = Some(force.sqrt());
@@ -337,14 +337,14 @@ mod tests {
 
     #[test]
     fn a_solve_that_gives_up_is_recorded_with_its_status() {
-        let unit = Realisation {
+        let job = Realisation {
             discretisation: Discretisation::Mdr1d { elements: 8 },
             fractal_dimension: 2.0,
             index: 0,
             seed: 1,
             forces: [0.1, 1.0].into(),
         };
-        let result = unit.solve_with(&Failing, &contact_model::never).unwrap();
+        let result = job.solve_with(&Failing, &contact_model::never).unwrap();
         approx::assert_relative_eq!(result.samples[0].force, 0.2);
         assert!(result.samples[0].converged() && !result.samples[1].converged());
         assert_eq!(result.samples[1].status, "iteration_limit");
@@ -353,7 +353,7 @@ mod tests {
 
     #[test]
     fn every_parameter_is_in_the_key() {
-        let unit = Realisation {
+        let job = Realisation {
             discretisation: Discretisation::Bem3d { cells: 8, tolerance: 1e-4 },
             fractal_dimension: 2.0,
             index: 0,
@@ -363,19 +363,19 @@ mod tests {
         let others = [
             Realisation {
                 discretisation: Discretisation::Bem3d { cells: 9, tolerance: 1e-4 },
-                ..unit.clone()
+                ..job.clone()
             },
             Realisation {
                 discretisation: Discretisation::Bem3d { cells: 8, tolerance: 1e-5 },
-                ..unit.clone()
+                ..job.clone()
             },
-            Realisation { discretisation: Discretisation::Mdr1d { elements: 8 }, ..unit.clone() },
-            Realisation { fractal_dimension: 2.2, ..unit.clone() },
-            Realisation { seed: 2, ..unit.clone() },
-            Realisation { forces: [0.1].into(), ..unit.clone() },
+            Realisation { discretisation: Discretisation::Mdr1d { elements: 8 }, ..job.clone() },
+            Realisation { fractal_dimension: 2.2, ..job.clone() },
+            Realisation { seed: 2, ..job.clone() },
+            Realisation { forces: [0.1].into(), ..job.clone() },
         ];
         for other in &others {
-            assert_ne!(unit.key(), other.key());
+            assert_ne!(job.key(), other.key());
             assert!(other.cost() > 0);
         }
     }

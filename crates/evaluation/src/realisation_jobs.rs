@@ -7,48 +7,53 @@ use runs::{
 };
 use std::sync::Arc;
 
-/// Solves all units that the store does not hold, the largest first, and gives the results in the order of
-/// `units`. The results do not depend on `threads`.
+/// Solves what the store does not hold, the largest first, and gives the results in the order of
+/// `realisations`. The results do not depend on `threads`.
 ///
-/// Each finished unit is stored at once: an interruption loses those in flight. No more units are in flight
-/// than fit in memory; threads without a unit help inside the others.
+/// Each finished job is stored at once: an interruption loses those in flight. No more jobs are in flight
+/// than fit in memory; threads without a job help inside the others.
 ///
 /// # Errors
 /// [`Error::Parameter`] for a size that does not fit in memory;
-/// the first error in the order of `units`; units that finished before stay stored.
+/// the first error in the order of `realisations`; jobs that finished before stay stored.
 pub fn solve_realisations(
     what: &str,
-    units: &[Realisation],
+    realisations: &[Realisation],
     store: &Store,
     threads: usize,
     progress: &dyn Progress,
 ) -> Result<Vec<RealisationResult>> {
-    let largest =
-        units.iter().map(|unit| unit.discretisation).max_by(|a, b| a.memory().total_cmp(&b.memory()));
+    let largest = realisations
+        .iter()
+        .map(|realisation| realisation.discretisation)
+        .max_by(|a, b| a.memory().total_cmp(&b.memory()));
     let in_flight = largest.map_or(Ok(threads), |largest| {
         let name = if matches!(largest, Discretisation::Bem3d { .. }) { "cells" } else { "elements" };
         threads_for_memory(threads, largest.memory(), name, largest.size())
     })?;
-    let jobs = realisation_jobs(units.to_vec());
+    let jobs = realisation_jobs(realisations.to_vec());
     let threads = Threads { total: threads, jobs: in_flight };
     collect(run_stored(what, &jobs, store, threads, progress, &never))
 }
 
 /// Units as jobs that share what a line's ensemble plans once.
-pub fn realisation_jobs(units: Vec<Realisation>) -> Vec<RealisationJob> {
+pub fn realisation_jobs(realisations: Vec<Realisation>) -> Vec<RealisationJob> {
     let models = Arc::new(Models::default());
-    units.into_iter().map(|unit| RealisationJob { unit, models: Arc::clone(&models) }).collect()
+    realisations
+        .into_iter()
+        .map(|realisation| RealisationJob { realisation, models: Arc::clone(&models) })
+        .collect()
 }
 
-/// Whether the store holds a result of this unit; its numbers are not read.
-pub fn is_solved(unit: &Realisation, store: &Store) -> bool {
-    store.load(&RealisationJob::KIND.stored_key(&unit.key())).is_some()
+/// Whether the store holds a result of this realisation; its numbers are not read.
+pub fn is_solved(realisation: &Realisation, store: &Store) -> bool {
+    store.load(&RealisationJob::KIND.stored_key(&realisation.key())).is_some()
 }
 
-/// A unit with what all of them share.
+/// A realisation with what all of them share.
 #[derive(Debug, Clone)]
 pub struct RealisationJob {
-    unit: Realisation,
+    realisation: Realisation,
     models: Arc<Models>,
 }
 
@@ -59,11 +64,11 @@ impl Job for RealisationJob {
     const KIND: ResultKind = ResultKind::new("realisation", FORMAT);
 
     fn key(&self) -> String {
-        self.unit.key()
+        self.realisation.key()
     }
 
     fn name(&self) -> String {
-        let Realisation { discretisation, fractal_dimension, index, .. } = &self.unit;
+        let Realisation { discretisation, fractal_dimension, index, .. } = &self.realisation;
         let (model, size) = (discretisation.name(), discretisation.size());
         let kind =
             if matches!(discretisation, Discretisation::Bem3d { .. }) { "cells a side" } else { "elements" };
@@ -71,25 +76,25 @@ impl Job for RealisationJob {
     }
 
     fn cost(&self) -> u64 {
-        self.unit.cost()
+        self.realisation.cost()
     }
 
     fn memory(&self) -> f64 {
-        self.unit.discretisation.memory()
+        self.realisation.discretisation.memory()
     }
 
     fn stored_bytes(&self) -> u64 {
-        1000 + 500 * self.unit.forces.len() as u64
+        1000 + 500 * self.realisation.forces.len() as u64
     }
 
     fn solve(&self, stop: Stop<'_>) -> Result<RealisationResult> {
-        self.unit.solve_among(&self.models, stop)
+        self.realisation.solve_among(&self.models, stop)
     }
 
     /// The loads are part of the key; the samples must be of those loads.
     fn is_whole(&self, result: &RealisationResult) -> bool {
         let solved = result.samples.iter().map(|sample| sample.force_bar.to_bits());
-        solved.eq(self.unit.forces.iter().map(|force| force.to_bits()))
+        solved.eq(self.realisation.forces.iter().map(|force| force.to_bits()))
     }
 }
 
@@ -101,14 +106,14 @@ mod tests {
     #[test]
     fn units_come_back_bit_for_bit_and_damage_does_not() {
         let discretisation = Discretisation::Mdr1d { elements: 64 };
-        let unit = Realisation {
+        let realisation = Realisation {
             discretisation,
             fractal_dimension: 2.4,
             index: 0,
             seed: 1,
             forces: [0.1, 1.0].into(),
         };
-        let job = realisation_jobs(vec![unit]).remove(0);
+        let job = realisation_jobs(vec![realisation]).remove(0);
         let result = RealisationResult {
             rms_height: 1.0 / 3.0,
             seconds: 0.25,

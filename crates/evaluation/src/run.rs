@@ -104,7 +104,7 @@ pub struct Request {
     pub threads: Option<usize>,
     /// Directory of the results; `out` by default.
     pub out: Option<PathBuf>,
-    /// Ignore stored units.
+    /// Ignore stored results.
     pub fresh: bool,
     /// A `fig2.csv` or `fig6.csv` of another run, drawn under the curves.
     pub over: Option<PathBuf>,
@@ -139,7 +139,7 @@ pub struct Run {
     pub threads: usize,
     /// Directory of the results.
     pub out: PathBuf,
-    /// Ignore stored units.
+    /// Ignore stored results.
     pub fresh: bool,
     /// A table of another run that is drawn under the curves.
     pub over: Option<PathBuf>,

@@ -66,13 +66,13 @@ fn seven_digits(value: f64) -> String {
 pub fn compact_table(title: &str, measured: &Measured) -> Result<Table> {
     const LOADS: &str =
         "at the loads of the curves' table, from the smallest up, separated by blanks; - where there is none";
-    let units: Vec<_> = measured.series.iter().flat_map(|s| &s.units).collect();
+    let realisations: Vec<_> = measured.series.iter().flat_map(|s| &s.realisations).collect();
     let values = |result: &RealisationResult, of: fn(&Sample) -> Option<String>| {
         let each =
             result.samples.iter().map(|s| of(s).filter(|_| s.converged()).unwrap_or_else(|| "-".to_owned()));
         each.collect::<Vec<_>>().join(" ")
     };
-    TableOf::new(title, &units)
+    TableOf::new(title, &realisations)
         .column("fractal_dimension", "1", FRACTAL_DIMENSION, |(u, _)| u.fractal_dimension)
         .column("surface", "1", "number of the surface in its ensemble", |(u, _)| u.index)
         .column("seed", "1", "seed of this surface", |(u, _)| u.seed)
@@ -91,8 +91,8 @@ pub fn samples_table(title: &str, measured: &Measured) -> Result<Table> {
     const GAP: &str = "sum p (g - min g)/(F h), the duality gap in its Frank-Wolfe form";
     const AREA: &str = "contact area over A0; empty where the model claims no area";
     let (model, size) = (measured.discretisation.name(), measured.discretisation.size());
-    let units = measured.series.iter().flat_map(|s| &s.units);
-    let samples: Vec<_> = units.flat_map(|(u, r)| r.samples.iter().map(move |s| (s, u, r))).collect();
+    let realisations = measured.series.iter().flat_map(|s| &s.realisations);
+    let samples: Vec<_> = realisations.flat_map(|(u, r)| r.samples.iter().map(move |s| (s, u, r))).collect();
     TableOf::new(title, &samples)
         .column("model", "-", MODEL, |_| model)
         .column("fractal_dimension", "1", FRACTAL_DIMENSION, |(_, u, _)| u.fractal_dimension)

@@ -7,7 +7,7 @@
 //! [`check_reference`] compares a small run with stored numbers, [`redraw`] renews pictures from their
 //! tables.
 //!
-//! Normalisation, means, units of work and the store are those of `evaluation`; CSV files those of `runs`.
+//! Normalisation, means, jobs and the store are those of `evaluation`; CSV files those of `runs`.
 //!
 //! # What it does not do
 //!

@@ -30,17 +30,17 @@ fn read(out: &Path, name: &str) -> Vec<u8> {
     fs::read(out.join(name)).unwrap()
 }
 
-/// Counts units and those found on disk.
+/// Counts jobs and those found on disk.
 #[derive(Default)]
 struct Counter {
-    units: AtomicUsize,
+    jobs: AtomicUsize,
     reused: AtomicUsize,
 }
 
 impl Progress for Counter {
     fn begin(&self, _: &str, _: u64) {}
     fn advance(&self, _: u64, reused: bool) {
-        self.units.fetch_add(1, Ordering::Relaxed);
+        self.jobs.fetch_add(1, Ordering::Relaxed);
         self.reused.fetch_add(usize::from(reused), Ordering::Relaxed);
     }
     fn end(&self) {}
@@ -92,13 +92,13 @@ fn a_run_resumes_and_damage_is_solved_again() {
     fs::write(dir.path().join(".units/.partial-0-0-x.csv"), "half").unwrap();
     let counter = Counter::default();
     fig2(&run, &counter).unwrap();
-    assert_eq!((counter.units.into_inner(), counter.reused.into_inner()), (4, 1));
+    assert_eq!((counter.jobs.into_inner(), counter.reused.into_inner()), (4, 1));
     assert!(TABLES.map(|t| read(dir.path(), t)).to_vec() == whole);
     assert_eq!(Store::count(dir.path()), 4);
 }
 
 #[test]
-fn other_figures_reuse_units_and_other_parameters_do_not() {
+fn other_figures_reuse_results_and_other_parameters_do_not() {
     let dir = tempfile::tempdir().unwrap();
     let run = run(dir.path());
     fig2(&run, &Silent).unwrap();
@@ -106,7 +106,7 @@ fn other_figures_reuse_units_and_other_parameters_do_not() {
     let reused = |run: &Run, figure: fn(&Run, &dyn Progress) -> runs::Result<paper::Judged>| {
         let counter = Counter::default();
         figure(run, &counter).unwrap();
-        (counter.units.into_inner(), counter.reused.into_inner())
+        (counter.jobs.into_inner(), counter.reused.into_inner())
     };
     assert_eq!(reused(&run, fig3), (10, 10));
     assert_eq!(reused(&run, fig4), (4, 4));
@@ -231,7 +231,7 @@ fn a_wish_is_met_or_refused_with_its_price() {
     let settled = evaluation::settle(planned, requirements, target, &Silent).unwrap();
     let counter = Counter::default();
     fig2(&settled.run, &counter).unwrap();
-    assert_eq!(counter.units.into_inner(), counter.reused.into_inner());
+    assert_eq!(counter.jobs.into_inner(), counter.reused.into_inner());
     let file = CsvFile::read(&dir.path().join("fig2-budget.csv")).unwrap();
     assert!(file.numbers("relative").unwrap().iter().all(|r| r.unwrap() <= 0.1));
     let refused = plan(1e-4, 60.0).unwrap_err().to_string();

@@ -4,7 +4,7 @@
 pub trait Progress: Sync {
     /// A stage begins; `total` is its relative cost.
     fn begin(&self, what: &str, total: u64);
-    /// A unit of this relative cost is done; `reused` when it was found on disk.
+    /// A job of this relative cost is done; `reused` when it was found on disk.
     fn advance(&self, cost: u64, reused: bool);
     /// The stage is over.
     fn end(&self);

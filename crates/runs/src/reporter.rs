@@ -21,7 +21,7 @@ struct Stage {
     bar: ProgressBar,
     total: u64,
     done: u64,
-    units: usize,
+    jobs: usize,
     reused: usize,
     begun: Instant,
     told: Instant,
@@ -38,7 +38,7 @@ impl Reporter {
     pub fn new() -> Self {
         let now = Instant::now();
         let bar = ProgressBar::hidden();
-        let stage = Stage { bar, total: 0, done: 0, units: 0, reused: 0, begun: now, told: now };
+        let stage = Stage { bar, total: 0, done: 0, jobs: 0, reused: 0, begun: now, told: now };
         Self { terminal: std::io::stderr().is_terminal(), stage: Mutex::new(stage) }
     }
 
@@ -59,13 +59,13 @@ impl Progress for Reporter {
         {
             bar.set_style(style);
         }
-        self.with(|s| *s = Stage { bar, total, done: 0, units: 0, reused: 0, begun: now, told: now });
+        self.with(|s| *s = Stage { bar, total, done: 0, jobs: 0, reused: 0, begun: now, told: now });
     }
 
     fn advance(&self, cost: u64, reused: bool) {
         self.with(|s| {
             s.done += cost;
-            s.units += 1;
+            s.jobs += 1;
             s.reused += usize::from(reused);
             if self.terminal {
                 s.bar.inc(cost);
@@ -87,11 +87,7 @@ impl Progress for Reporter {
         self.with(|s| {
             s.bar.finish_and_clear();
             let seconds = s.begun.elapsed().as_secs_f64();
-            crate::err!(
-                "{} units of work done in {seconds:.1} s, {} of them found on disk",
-                s.units,
-                s.reused
-            );
+            crate::err!("{} jobs done in {seconds:.1} s, {} of them found on disk", s.jobs, s.reused);
         });
     }
 

@@ -57,7 +57,7 @@ pub struct SolveSizes {
     /// Threads; 0 is one per core. Changes no byte of a CSV.
     #[arg(long, default_value_t = 0)]
     threads: usize,
-    /// Ignore stored units and solve everything again.
+    /// Ignore stored results and solve everything again.
     #[arg(long)]
     fresh: bool,
     /// Choose grid, tolerance and number of surfaces so that each mean k_bar above the one-cell floor is

@@ -2,7 +2,7 @@
 
 use super::depth::Depth;
 use super::every_way::solve_problem;
-use super::means::{ClosedForm, EnsembleMeans, closed_forms, discretisations, ensemble, unit};
+use super::means::{ClosedForm, EnsembleMeans, closed_forms, discretisations, ensemble, job};
 use super::problem::{CELLS_PER_WAVE, DIMENSIONS, LOADS, PAPER_CELLS, RADIUS, StudyProblem};
 use super::row::{Formula, StudyRow, Way};
 use super::sizes::{Order, StudySizes};
@@ -114,7 +114,7 @@ impl Job for StudyJob {
             StudyTask::Ensemble(d, discretisation) => format!(
                 "ensemble\nsurfaces {}\nmaster_seed {seed}\n{}",
                 sizes.surfaces,
-                unit(*discretisation, *d, 0, *seed).key(),
+                job(*discretisation, *d, 0, *seed).key(),
             ),
             StudyTask::ClosedForms(d) => {
                 format!("closed forms\nfractal_dimension {d:?}\nforce_bar {LOADS:?}\n")
@@ -152,7 +152,7 @@ impl Job for StudyJob {
                 self.ways().iter().map(cost).sum()
             }
             StudyTask::Ensemble(d, discretisation) => {
-                unit(*discretisation, *d, 0, self.seed).cost() * self.sizes.surfaces as u64
+                job(*discretisation, *d, 0, self.seed).cost() * self.sizes.surfaces as u64
             }
             StudyTask::ClosedForms(_) => 1,
         }

@@ -63,7 +63,7 @@ pub(crate) fn means(
     rows
 }
 
-pub(crate) fn unit(discretisation: Discretisation, d: f64, index: usize, seed: u64) -> Realisation {
+pub(crate) fn job(discretisation: Discretisation, d: f64, index: usize, seed: u64) -> Realisation {
     let seed = surface_gen::surface_seed(seed, index as u64);
     Realisation { discretisation, fractal_dimension: d, index, seed, forces: Arc::from(LOADS) }
 }
@@ -85,7 +85,7 @@ pub(crate) fn ensemble(
         unless_stopped(stop)?;
         let (result, taken) = on_one_thread(|| {
             let start = cpu_seconds();
-            let result = unit(discretisation, d, index, seed).solve_among(&models, &never);
+            let result = job(discretisation, d, index, seed).solve_among(&models, &never);
             (result, cpu_seconds().zip(start).map(|(end, start)| end - start))
         });
         seconds = seconds.zip(taken).map(|(all, one)| all + one);

@@ -5,7 +5,7 @@
 //! settings.
 
 use crate::budget::{self, Budgeted};
-use crate::measured::{COARSER_SURFACES, Measured, measure_1d, measure_3d, run_units};
+use crate::measured::{COARSER_SURFACES, Measured, ensemble_jobs, measure_1d, measure_3d};
 use crate::run::{Request, Run};
 use analysis::{AccuracyTarget, GridTrial, first_grid};
 use runs::amounts::duration;
@@ -100,7 +100,7 @@ pub fn plan(
 /// Solves what a plan chose and adds surfaces until the target is met, as far as the budget goes: the pilot
 /// predicts, the run decides.
 ///
-/// The units are stored with the run, so that the figure itself solves nothing again.
+/// The results are stored with the run, so that the figure itself solves nothing again.
 ///
 /// # Errors
 /// What the solver refuses.
@@ -224,8 +224,8 @@ impl Model {
 
     /// Predicted seconds of all surfaces of a run, coarser grids included.
     fn seconds(self, run: &Run) -> f64 {
-        let units = run_units(run, self == Self::Bem3d, self == Self::Mdr1d);
-        units.iter().map(|unit| 1e-3 * unit.cost() as f64).sum::<f64>() / run.threads.max(1) as f64
+        let jobs = ensemble_jobs(run, self == Self::Bem3d, self == Self::Mdr1d);
+        jobs.iter().map(|job| 1e-3 * job.cost() as f64).sum::<f64>() / run.threads.max(1) as f64
     }
 
     /// Those of one surface more.

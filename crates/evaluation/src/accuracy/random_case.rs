@@ -220,9 +220,9 @@ fn solve(
     force_bar: f64,
     stop: Stop<'_>,
 ) -> Result<Sample> {
-    let unit =
+    let job =
         Realisation { discretisation, fractal_dimension: d, index: 0, seed, forces: [force_bar].into() };
-    let result = unit.solve(stop)?;
+    let result = job.solve(stop)?;
     result.samples.into_iter().next().ok_or_else(|| Error::parameter("cases", force_bar, "a load"))
 }
 

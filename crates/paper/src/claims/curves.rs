@@ -74,7 +74,7 @@ fn reaches(measured: &Measured, series: &Series, share: f64, draw: &[usize]) -> 
 
 /// The same with its scatter.
 fn force_of(measured: &Measured, series: &Series, share: f64) -> Option<Estimate> {
-    resampled(series.units.len(), |draw| reaches(measured, series, share, draw))
+    resampled(series.realisations.len(), |draw| reaches(measured, series, share, draw))
 }
 
 pub(super) fn force_at_share(ensemble: &Ensemble<'_>, share: f64) -> Vec<Row> {
@@ -275,12 +275,12 @@ pub(super) fn decades(solid: &Ensemble<'_>, factor: f64) -> Vec<Row> {
     })
 }
 
-/// Seconds of the stored units of both models, whenever they were solved. They depend on the machine: never
+/// Seconds of the stored jobs of both models, whenever they were solved. They depend on the machine: never
 /// part of a file.
 pub(super) fn run_times(solid: &Ensemble<'_>, line: &Ensemble<'_>) -> Vec<Row> {
     let (solid, line) = (solid.measured, line.measured);
     let (t3, t1) = (solid.seconds(), line.seconds());
-    let count = |m: &Measured| m.series.iter().map(|s| s.units.len()).sum::<usize>();
+    let count = |m: &Measured| m.series.iter().map(|s| s.realisations.len()).sum::<usize>();
     let (cells, elements) = (solid.discretisation.size(), line.discretisation.size());
     let sizes = format!(
         "{t3:.1} s for {} surfaces of {cells} cells a side, {t1:.1} s for {} lines of {elements} elements (sum over surfaces and lines; depends on the \

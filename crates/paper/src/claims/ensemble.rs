@@ -80,7 +80,7 @@ impl Ensemble<'_> {
 
     /// Surfaces of each D_f.
     pub fn surfaces(&self) -> usize {
-        self.measured.series.first().map_or(0, |series| series.units.len())
+        self.measured.series.first().map_or(0, |series| series.realisations.len())
     }
 }
 
@@ -138,7 +138,7 @@ pub(super) fn resampled(surfaces: usize, number: impl Fn(&[usize]) -> Option<f64
 pub(super) fn stiffness_at(series: &Series, force_bar: f64) -> Option<Estimate> {
     let forces = series.curves.force_bar();
     let value = interpolate(forces, &series.means(), force_bar)?;
-    let error = Bootstrap::default().standard_error(series.units.len(), |draw| {
+    let error = Bootstrap::default().standard_error(series.realisations.len(), |draw| {
         interpolate(forces, &series.curves.mean_of(draw), force_bar)
     });
     Estimate::normal(value, error)

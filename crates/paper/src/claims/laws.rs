@@ -81,7 +81,7 @@ pub(super) fn halves(ensemble: &Ensemble<'_>) -> Vec<Row> {
             |window| FitWindow { min_contact_cells: FitWindow::PAPER.min_contact_cells, ..window };
         let upper = above_floor(between(middle, law.fit.force_bar_max));
         let lower = above_floor(between(law.fit.force_bar_min, middle));
-        let found = resampled(series.units.len(), |draw| {
+        let found = resampled(series.realisations.len(), |draw| {
             let alpha = |window| Some(law_of(&series.curves, window, draw)?.alpha);
             Some(alpha(&upper)? - alpha(&lower)?)
         });
@@ -130,7 +130,7 @@ pub(super) fn stiffness_over_law(ensemble: &Ensemble<'_>, load: f64) -> Vec<Row>
         let middle = (law.fit.force_bar_min * law.fit.force_bar_max).sqrt();
         let upper_half = FitWindow { min_force_bar: middle, ..window };
         let found =
-            resampled(series.units.len(), |draw| over(&window, draw)).ok_or(super::curves::NO_LOAD)?;
+            resampled(series.realisations.len(), |draw| over(&window, draw)).ok_or(super::curves::NO_LOAD)?;
         let moved = over(&upper_half, &series.curves.all()).map_or(0.0, |other| (other - found.value).abs());
         let remark = format!(
             "{}; the interval holds the scatter and the law of the upper half of its window",

@@ -47,7 +47,7 @@ struct Place {
     dimension: usize,
     level: usize,
     fine: bool,
-    unit: Realisation,
+    job: Realisation,
 }
 
 impl Ladder {
@@ -96,7 +96,7 @@ impl Ladder {
     }
 
     /// The realisation of a level, on its own grid or on the coarser one under the loads of its own.
-    fn unit(&self, d: f64, seed: u64, level: usize, index: usize, fine: bool) -> Realisation {
+    fn job(&self, d: f64, seed: u64, level: usize, index: usize, fine: bool) -> Realisation {
         let own = self.sizes[level];
         Realisation {
             discretisation: self.on(if fine { own } else { self.sizes[level - 1] }),
@@ -114,8 +114,8 @@ impl Ladder {
             for index in 0..count {
                 for (dimension, &d) in dimensions.iter().enumerate() {
                     for fine in [true, false].into_iter().filter(|fine| *fine || level > 0) {
-                        let unit = self.unit(d, seed, level, index, fine);
-                        places.push(Place { dimension, level, fine, unit });
+                        let job = self.job(d, seed, level, index, fine);
+                        places.push(Place { dimension, level, fine, job });
                     }
                 }
             }
@@ -128,13 +128,13 @@ impl Ladder {
         let asked = self.sizes.iter().zip(&self.surfaces);
         let level: Vec<usize> = asked.map(|(&own, &count)| if own == size { count } else { 0 }).collect();
         let places = self.places(dimensions, seed, &level);
-        let surfaces = places.chunk_by(|a, b| a.unit.index == b.unit.index);
-        surfaces.take_while(|places| places.iter().all(|place| is_solved(&place.unit, store))).count()
+        let surfaces = places.chunk_by(|a, b| a.job.index == b.job.index);
+        surfaces.take_while(|places| places.iter().all(|place| is_solved(&place.job, store))).count()
     }
 
     /// Everything that a study solves.
-    pub fn units(&self, dimensions: &[f64], seed: u64) -> Vec<Realisation> {
-        self.places(dimensions, seed, &self.surfaces).into_iter().map(|place| place.unit).collect()
+    pub fn jobs(&self, dimensions: &[f64], seed: u64) -> Vec<Realisation> {
+        self.places(dimensions, seed, &self.surfaces).into_iter().map(|place| place.job).collect()
     }
 
     /// Solves so many surfaces of each level, or takes them from the store: the largest grids first, each
@@ -153,14 +153,14 @@ impl Ladder {
         let places = self.places(dimensions, seed, surfaces);
         let mut by_size: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
         for (i, place) in places.iter().enumerate() {
-            by_size.entry(place.unit.discretisation.size()).or_default().push(i);
+            by_size.entry(place.job.discretisation.size()).or_default().push(i);
         }
         let mut results: Vec<Option<RealisationResult>> = places.iter().map(|_| None).collect();
         for (size, members) in by_size.into_iter().rev() {
-            let units: Vec<Realisation> = members.iter().map(|&i| places[i].unit.clone()).collect();
-            let what = format!("{}: {} surfaces, size {size}", self.model.name(), units.len());
+            let jobs: Vec<Realisation> = members.iter().map(|&i| places[i].job.clone()).collect();
+            let what = format!("{}: {} surfaces, size {size}", self.model.name(), jobs.len());
             for (i, result) in
-                members.into_iter().zip(solve_realisations(&what, &units, store, threads, progress)?)
+                members.into_iter().zip(solve_realisations(&what, &jobs, store, threads, progress)?)
             {
                 results[i] = Some(result);
             }
@@ -176,7 +176,7 @@ impl Ladder {
             match level.last_mut() {
                 // The coarse grid follows the fine one.
                 Some(pair) if !place.fine => pair.coarse = Some(result),
-                _ => level.push(Pair { index: place.unit.index, fine: result, coarse: None }),
+                _ => level.push(Pair { index: place.job.index, fine: result, coarse: None }),
             }
         }
         Ok(rungs)

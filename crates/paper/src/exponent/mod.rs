@@ -129,12 +129,12 @@ impl Exponent {
     ///
     /// # Errors
     /// [`Error::Parameter`] for sizes that make no sense.
-    pub fn units(&self) -> Result<Vec<Realisation>> {
+    pub fn jobs(&self) -> Result<Vec<Realisation>> {
         self.validate()?;
         Ok(self
             .ladders()
             .into_iter()
-            .flat_map(|(_, l)| l.units(&self.fractal_dimensions, self.seed))
+            .flat_map(|(_, l)| l.jobs(&self.fractal_dimensions, self.seed))
             .collect())
     }
 

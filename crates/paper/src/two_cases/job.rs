@@ -55,14 +55,14 @@ impl Job for CaseJob {
 
     // Free squares are those of Fig. 2, and periodic ones take about as long.
     fn cost(&self) -> u64 {
-        let unit = Realisation {
+        let job = Realisation {
             discretisation: self.discretisation(),
             fractal_dimension: self.case.fractal_dimension,
             index: 0,
             seed: self.seed,
             forces: self.study.forces.values().into(),
         };
-        unit.cost()
+        job.cost()
     }
 
     fn memory(&self) -> f64 {

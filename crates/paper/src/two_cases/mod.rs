@@ -234,14 +234,14 @@ mod tests {
             two_cases(study, dir.path(), &Silent).unwrap();
             std::fs::read_to_string(dir.path().join("two-cases.csv")).unwrap()
         };
-        let units = || Store::count(dir.path());
+        let jobs = || Store::count(dir.path());
         let first = read(&small());
-        assert_eq!(units(), 2 * 4 * 2);
+        assert_eq!(jobs(), 2 * 4 * 2);
         // One more roll-off: two cases of two surfaces on two grids; the others come from the store, and
         // their numbers stay.
         let study = TwoCases { roll_offs: vec![3.0, 5.0], ..small() };
         let both = read(&study);
-        assert_eq!(units(), 2 * 6 * 2);
+        assert_eq!(jobs(), 2 * 6 * 2);
         for row in first.lines().filter(|line| line.contains("bem3d,")) {
             assert!(both.contains(row), "{row}");
         }
