@@ -9,7 +9,7 @@ pub use bench::BenchArguments;
 pub use cluster::{PlanArguments, ShardsArguments, SubmitArguments};
 
 use clap::{Parser, Subcommand};
-use evaluation::{AccuracyTarget, Request, Requirements};
+use evaluation::{AccuracyTarget, Model, Request};
 use runs::ShardChoice;
 use sizes::{Both, LineSizes, Maps, Reduced, Solid};
 use std::path::PathBuf;
@@ -128,16 +128,16 @@ pub enum Command {
 
 impl Command {
     /// The accuracy that a figure is asked for, and which ensembles it needs.
-    pub fn target(&self) -> Option<(Requirements, AccuracyTarget)> {
-        let (solve, solid, line) = match self {
-            Self::ReproduceFig2(a) | Self::ReproduceFig4(a) => (&a.solve, true, false),
-            Self::ReproduceFig6(a) => (&a.solve, false, true),
+    pub fn target(&self) -> Option<(&'static [Model], AccuracyTarget)> {
+        let (solve, models): (_, &[Model]) = match self {
+            Self::ReproduceFig2(a) | Self::ReproduceFig4(a) => (&a.solve, &[Model::Bem3d]),
+            Self::ReproduceFig6(a) => (&a.solve, &[Model::Mdr1d]),
             Self::ReproduceFig3(a) | Self::ReproduceFig7(a) | Self::ReproduceAll(a) | Self::Verify(a) => {
-                (&a.solve, true, true)
+                (&a.solve, &Model::BOTH)
             }
             _ => return None,
         };
-        solve.target().map(|target| (Requirements { solid, line }, target))
+        solve.target().map(|target| (models, target))
     }
 
     /// The shard that it is asked for.
@@ -305,16 +305,10 @@ mod tests {
     #[test]
     fn a_wish_is_a_share_and_a_time() {
         let target = |line: &str| parse(line).unwrap().command.target();
-        let (requirements, asked) = target("reproduce-fig2 --accuracy 1% --budget 2h").unwrap();
-        assert_eq!(
-            (requirements, asked),
-            (Requirements { solid: true, line: false }, AccuracyTarget { share: 0.01, seconds: 7200.0 })
-        );
-        let (requirements, asked) = target("verify --accuracy 0.05").unwrap();
-        assert_eq!(
-            (requirements, asked),
-            (Requirements { solid: true, line: true }, AccuracyTarget { share: 0.05, seconds: 600.0 })
-        );
+        let (models, asked) = target("reproduce-fig2 --accuracy 1% --budget 2h").unwrap();
+        assert_eq!((models, asked), (&[Model::Bem3d][..], AccuracyTarget { share: 0.01, seconds: 7200.0 }));
+        let (models, asked) = target("verify --accuracy 0.05").unwrap();
+        assert_eq!((models, asked), (&Model::BOTH[..], AccuracyTarget { share: 0.05, seconds: 600.0 }));
         assert!(target("reproduce-fig6").is_none() && target("bench").is_none());
         for line in [
             "reproduce-fig2 --accuracy 0",

@@ -2,7 +2,7 @@
 
 use crate::arguments::{Arguments, Command, PlanArguments, ShardsArguments, SubmitArguments};
 use clap::Parser as _;
-use evaluation::{Realisation, Run, ensemble_jobs, realisation_jobs};
+use evaluation::{Model, RealisationJob, Run, ensemble_jobs};
 use runs::cluster::{self, Division, Forecast, Status, check, quoted, run_shard, status, without_flags};
 use runs::{Error, JobList, Reporter, Result, ShardChoice};
 
@@ -23,7 +23,7 @@ pub fn jobs(command: &Command) -> Result<Box<dyn JobList>> {
         return Err(Error::parameter("fresh", true, "no --fresh beside shards: choose another --out"));
     }
     if let Some(surfaces) = surfaces(command)? {
-        return Ok(Box::new(realisation_jobs(surfaces)));
+        return Ok(Box::new(surfaces));
     }
     match command {
         Command::ReproduceTwoCases(options) => paper::two_cases_jobs(&options.study()?),
@@ -52,15 +52,15 @@ pub fn shard(command: &Command, choice: ShardChoice, typed: &[String]) -> Result
 }
 
 /// The surfaces and lines of a command that solves no others.
-fn surfaces(command: &Command) -> Result<Option<Vec<Realisation>>> {
+fn surfaces(command: &Command) -> Result<Option<Vec<RealisationJob>>> {
     let run = Run::new(&command.request())?;
     Ok(Some(match command {
-        Command::ReproduceFig2(_) | Command::ReproduceFig4(_) => ensemble_jobs(&run, true, false),
-        Command::ReproduceFig6(_) => ensemble_jobs(&run, false, true),
+        Command::ReproduceFig2(_) | Command::ReproduceFig4(_) => ensemble_jobs(&run, &[Model::Bem3d]),
+        Command::ReproduceFig6(_) => ensemble_jobs(&run, &[Model::Mdr1d]),
         Command::ReproduceFig3(_)
         | Command::ReproduceFig7(_)
         | Command::ReproduceAll(_)
-        | Command::Verify(_) => ensemble_jobs(&run, true, true),
+        | Command::Verify(_) => ensemble_jobs(&run, &Model::BOTH),
         Command::Exponent(options) => options.study(&run)?.jobs()?,
         _ => return Ok(None),
     }))

@@ -76,11 +76,11 @@ fn solve(command: Command, typed: &[String]) -> Result<ExitCode> {
     }
     let target = command.target();
     let run = match target {
-        Some((requirements, target)) => {
-            let plan = evaluation::plan(&command.request(), requirements, target, &reporter)?;
+        Some((models, target)) => {
+            let plan = evaluation::plan(&command.request(), models, target, &reporter)?;
             plan.lines.iter().for_each(|line| runs::out!("{line}"));
             let told = plan.lines.len();
-            let settled = evaluation::settle(plan, requirements, target, &reporter)?;
+            let settled = evaluation::settle(plan, models, target, &reporter)?;
             settled.lines.iter().skip(told).for_each(|line| runs::out!("{line}"));
             // What was solved a moment ago is not solved again.
             Run { fresh: false, ..settled.run }
@@ -131,10 +131,10 @@ fn solve(command: Command, typed: &[String]) -> Result<ExitCode> {
         // Done above.
         _ => Vec::new(),
     };
-    if let Some((requirements, _)) = target
+    if let Some((models, _)) = target
         && outcomes.iter().all(|o| o.reached.is_empty())
     {
-        let budgets = evaluation::state_budgets(&run, requirements.solid, requirements.line, &reporter)?;
+        let budgets = evaluation::state_budgets(&run, models, &reporter)?;
         outcomes.push(budgets.into());
     }
     // The first word that was typed is the subcommand: no flag stands before it.

@@ -1,16 +1,16 @@
 //! A second look at stored solves: some of them again, from nothing and to a tight tolerance.
 
-use crate::header::{FLAGS_3D as FLAGS, header};
-use crate::measured::measure_3d;
+use crate::header::{flags, header};
+use crate::measured::measure;
 use crate::outcome::Outcome;
-use crate::realisation::{Discretisation, Realisation, RealisationResult};
+use crate::realisation::{Discretisation, Model, RealisationJob, RealisationResult};
 use crate::run::Run;
 use crate::session::Session;
 use crate::table_of::TableOf;
 use crate::tables::{FORCE_BAR, FRACTAL_DIMENSION};
 use analysis::Table;
 use contact_model::{Stop, never};
-use runs::{Error, Progress, Result, Threads, collect, run_jobs, write_csv};
+use runs::{Error, Job as _, Progress, Result, Threads, collect, run_jobs, write_csv};
 
 /// One solve and its repetition to a tight tolerance.
 struct SolvePair {
@@ -45,9 +45,9 @@ pub fn audit(run: &Run, share: f64, tolerance: f64, progress: &dyn Progress) -> 
         let expected = format!("a number from 1e-12 to below the run's {:?}", run.tolerance);
         return Err(Error::parameter("audit-tolerance", tolerance, expected));
     }
-    let session = Session::open(run)?;
-    let measured = measure_3d(run, &session.store, progress)?;
-    let realisations: Vec<&(Realisation, RealisationResult)> =
+    let session = Session::open(&run.out, run.fresh)?;
+    let measured = measure(Model::Bem3d, run, &session.store, progress)?;
+    let realisations: Vec<&(RealisationJob, RealisationResult)> =
         measured.series.iter().flat_map(|s| &s.realisations).collect();
     let loads = measured.force_bar().len();
     let wanted = ((share * (realisations.len() * loads) as f64).ceil() as usize).max(1);
@@ -76,9 +76,11 @@ pub fn audit(run: &Run, share: f64, tolerance: f64, progress: &dyn Progress) -> 
     );
     let mut outcome = Outcome::new("audit");
     let path = run.out.join("audit.csv");
-    let header =
-        header(format!("{} --share {share} --audit-tolerance {tolerance}", run.command("audit", &FLAGS)))
-            .with_note(summary.clone());
+    let header = header(format!(
+        "{} --share {share} --audit-tolerance {tolerance}",
+        run.command("audit", flags(Model::Bem3d))
+    ))
+    .with_note(summary.clone());
     write_csv(&path, &table(&pairs)?, &header)?;
     outcome.files.push(path);
     Ok((session.close(outcome)?, summary))
@@ -87,15 +89,14 @@ pub fn audit(run: &Run, share: f64, tolerance: f64, progress: &dyn Progress) -> 
 /// One load of one surface from nothing. `None` where the stored or the tight solve has no stiffness to
 /// compare.
 fn again(
-    (realisation, result): &(Realisation, RealisationResult),
+    (realisation, result): &(RealisationJob, RealisationResult),
     load: usize,
     tolerance: f64,
     stop: Stop<'_>,
 ) -> Result<Option<SolvePair>> {
-    let Discretisation::Bem3d { cells, .. } = realisation.discretisation else { return Ok(None) };
     let stored = &result.samples[load];
-    let alone = Realisation {
-        discretisation: Discretisation::Bem3d { cells, tolerance },
+    let alone = RealisationJob {
+        discretisation: Discretisation::Bem3d { cells: realisation.discretisation.size(), tolerance },
         forces: [stored.force_bar].into(),
         ..realisation.clone()
     };

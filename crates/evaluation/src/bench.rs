@@ -187,17 +187,6 @@ impl BenchRow {
     }
 }
 
-impl Bench {
-    /// Number of series: a surface at a tolerance each.
-    fn series(&self) -> usize {
-        let surfaces = match &self.surfaces {
-            Surfaces::File(_) => 1,
-            Surfaces::SelfAffine { cells, fractal_dimensions, .. } => cells.len() * fractal_dimensions.len(),
-        };
-        surfaces * self.tolerances.len()
-    }
-}
-
 /// One surface at one tolerance.
 struct BenchSeries {
     surface: String,
@@ -243,8 +232,9 @@ pub fn bench(
         files::create_directory(directory)?;
     }
     let order: Vec<usize> = (0..series.len()).collect();
+    let alone = bench.threads == 1 || series.len() == 1;
     let done = run_jobs(Threads::all(bench.threads), &order, &never, |i, stop| {
-        series[i].run(bench, clock, stop, found)
+        series[i].run(bench, clock, alone, stop, found)
     });
     Ok(collect(done)?.into_iter().flatten().collect())
 }
@@ -294,6 +284,7 @@ impl BenchSeries {
         &self,
         bench: &Bench,
         clock: Option<Clock>,
+        alone: bool,
         stop: Stop<'_>,
         found: &(dyn Fn(&BenchRow) -> Result<()> + Sync),
     ) -> Result<Vec<BenchRow>> {
@@ -306,7 +297,6 @@ impl BenchSeries {
                 contact = None; // Its memory first.
             }
             reset_peak_memory();
-            let alone = bench.threads == 1 || bench.series() == 1;
             let cpu = process_cpu_seconds().filter(|_| alone);
             let _ = recorder.take();
             let start = Instant::now();

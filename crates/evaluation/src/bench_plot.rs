@@ -1,5 +1,6 @@
 //! The picture of a bench: cost over the number of cells, or over the load where there is one size only.
 
+use crate::run::distinct;
 use crate::table_of::read_rows;
 use analysis::observed_power;
 use plots::{Key, LineStyle, Mark, MarkShape, NEUTRAL, Picture, color, logarithmic, number};
@@ -41,55 +42,27 @@ impl BenchPoint {
 }
 
 /// What the horizontal axis counts; the other one tells the curves apart.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Over {
-    Cells,
-    Force,
+#[derive(Clone, Copy)]
+struct Over {
+    of: fn(&BenchPoint) -> f64,
+    name: &'static str,
+    /// Its symbol in a picture.
+    symbol: &'static str,
+    label: &'static str,
 }
 
+const CELLS: Over = Over { of: |p| p.cells, name: "cells", symbol: "N", label: "cells per side $N$" };
+const FORCE: Over = Over {
+    of: |p| p.force_bar,
+    name: "F_bar",
+    symbol: "\\bar{F}",
+    label: "normalised force $\\bar{F} = F/(E^* h L)$",
+};
+
 impl Over {
-    fn of(self, p: &BenchPoint) -> f64 {
-        match self {
-            Self::Cells => p.cells,
-            Self::Force => p.force_bar,
-        }
-    }
-
-    fn other(self) -> Self {
-        match self {
-            Self::Cells => Self::Force,
-            Self::Force => Self::Cells,
-        }
-    }
-
-    fn label(self) -> &'static str {
-        match self {
-            Self::Cells => "cells per side $N$",
-            Self::Force => "normalised force $\\bar{F} = F/(E^* h L)$",
-        }
-    }
-
-    fn name(self) -> &'static str {
-        match self {
-            Self::Cells => "cells",
-            Self::Force => "F_bar",
-        }
-    }
-
-    /// Its symbol in a picture.
-    fn symbol(self) -> &'static str {
-        match self {
-            Self::Cells => "N",
-            Self::Force => "\\bar{F}",
-        }
-    }
-
     /// Different values, increasing.
     fn values(self, points: &[BenchPoint]) -> Vec<f64> {
-        let mut values: Vec<f64> = points.iter().map(|p| self.of(p)).collect();
-        values.sort_by(f64::total_cmp);
-        values.dedup();
-        values
+        distinct(points.iter().map(self.of))
     }
 }
 
@@ -106,42 +79,46 @@ pub fn plot_bench(csv: &Path, picture: &Path) -> Result<BenchPlot> {
     let directory = picture.parent().map_or_else(PathBuf::new, Path::to_owned);
     let points = read(csv)?;
     let mut plot = BenchPlot::default();
-    let (sizes, loads) = (Over::Cells.values(&points).len(), Over::Force.values(&points).len());
+    let (sizes, loads) = (CELLS.values(&points).len(), FORCE.values(&points).len());
     if sizes > 1 {
-        draw(&points, Over::Cells, &directory, name, &mut plot)?;
+        draw(&points, [CELLS, FORCE], &directory, name, &mut plot)?;
     }
     if loads > 1 || sizes == 1 {
         let name = if sizes > 1 { format!("{name}-force") } else { name.to_owned() };
-        draw(&points, Over::Force, &directory, &name, &mut plot)?;
+        draw(&points, [FORCE, CELLS], &directory, &name, &mut plot)?;
     }
     Ok(plot)
 }
 
-fn draw(points: &[BenchPoint], over: Over, directory: &Path, name: &str, plot: &mut BenchPlot) -> Result<()> {
-    let other = over.other();
+fn draw(
+    points: &[BenchPoint],
+    [over, other]: [Over; 2],
+    directory: &Path,
+    name: &str,
+    plot: &mut BenchPlot,
+) -> Result<()> {
     let others = other.values(points);
     let y = logarithmic(points.iter().map(|p| p.seconds));
     let along = over.values(points);
-    let mut drawing =
-        Picture::new(logarithmic(along.iter().copied()), y, over.label(), "wall-clock time (s)")
-            .with_title("Time of one certified solve with its stiffness")
-            .with_subtitle(&tolerance_words(points));
+    let mut drawing = Picture::new(logarithmic(along.iter().copied()), y, over.label, "wall-clock time (s)")
+        .with_title("Time of one certified solve with its stiffness")
+        .with_subtitle(&tolerance_words(points));
     // Sizes of grids are few and odd: each has its own label.
-    if over == Over::Cells && along.len() <= 8 {
+    if over.name == CELLS.name && along.len() <= 8 {
         drawing = drawing.with_x_ticks(&along);
     }
     let tolerances = points.iter().any(|p| p.tolerance.total_cmp(&points[0].tolerance).is_ne());
     let mut known = Vec::new();
     for mut curve in curves(points, other) {
-        curve.sort_by(|a, b| over.of(a).total_cmp(&over.of(b)));
+        curve.sort_by(|a, b| (over.of)(a).total_cmp(&(over.of)(b)));
         let first = curve[0].clone();
         let color = first.fractal_dimension.map_or_else(|| NEUTRAL.to_owned(), color);
         let what = first.fractal_dimension.map_or_else(|| first.surface.clone(), |d| format!("D_f = {d:?}"));
-        let rank = others.iter().position(|v| v.total_cmp(&other.of(&first)).is_eq()).unwrap_or(0);
+        let rank = others.iter().position(|v| v.total_cmp(&(other.of)(&first)).is_eq()).unwrap_or(0);
         let mark = MARKS[rank % MARKS.len()];
         let (done, open): (Vec<BenchPoint>, Vec<BenchPoint>) =
             curve.into_iter().partition(BenchPoint::converged);
-        let at = |points: &[BenchPoint]| points.iter().map(|p| (over.of(p), p.seconds)).collect::<Vec<_>>();
+        let at = |points: &[BenchPoint]| points.iter().map(|p| ((over.of)(p), p.seconds)).collect::<Vec<_>>();
         drawing.line(&at(&done), &color, 1.4, LineStyle::Solid);
         drawing.points(&at(&done), &color, 4.6, Mark::Solid(mark));
         drawing.points(&at(&open), &color, 4.6, Mark::Hollow(mark));
@@ -152,19 +129,19 @@ fn draw(points: &[BenchPoint], over: Over, directory: &Path, name: &str, plot: &
             drawing.legend(&label, &color, Key::Line(LineStyle::Solid));
             known.push(what.clone());
         }
-        let power = |of: fn(&BenchPoint) -> f64| observed_power(done.iter().map(|p| (over.of(p), of(p))));
+        let power = |of: fn(&BenchPoint) -> f64| observed_power(done.iter().map(|p| ((over.of)(p), of(p))));
         if let (Some(a), Some(b)) = (power(|p| p.seconds), power(|p| p.iterations)) {
-            let mut curve = format!("{what}, {} = {}", other.name(), shown(other.of(&first)));
+            let mut curve = format!("{what}, {} = {}", other.name, shown((other.of)(&first)));
             if tolerances {
                 curve += &format!(", tolerance {:?}", first.tolerance);
             }
-            let over = over.name();
+            let over = over.name;
             plot.slopes.push(format!("{curve}: seconds ~ {over}^{a:.2}, iterations ~ {over}^{b:.2}"));
         }
     }
     if others.len() > 1 {
         for (rank, value) in others.iter().enumerate() {
-            let label = format!("${} = {}$", other.symbol(), number(*value).replace('$', ""));
+            let label = format!("${} = {}$", other.symbol, number(*value).replace('$', ""));
             drawing.legend(&label, NEUTRAL, Key::Mark(Mark::Solid(MARKS[rank % MARKS.len()])));
         }
     }
@@ -181,7 +158,7 @@ fn curves(points: &[BenchPoint], other: Over) -> Vec<Vec<BenchPoint>> {
             q.surface == p.surface
                 && q.fractal_dimension == p.fractal_dimension
                 && q.tolerance.total_cmp(&p.tolerance).is_eq()
-                && other.of(q).total_cmp(&other.of(p)).is_eq()
+                && (other.of)(q).total_cmp(&(other.of)(p)).is_eq()
         };
         match curves.iter_mut().find(same) {
             Some(curve) => curve.push(p.clone()),
@@ -193,10 +170,7 @@ fn curves(points: &[BenchPoint], other: Over) -> Vec<Vec<BenchPoint>> {
 
 /// The tolerance of all solves, or how many there are.
 fn tolerance_words(points: &[BenchPoint]) -> String {
-    let mut all: Vec<f64> = points.iter().map(|p| p.tolerance).collect();
-    all.sort_by(f64::total_cmp);
-    all.dedup();
-    let all: Vec<String> = all.into_iter().map(number).collect();
+    let all: Vec<String> = distinct(points.iter().map(|p| p.tolerance)).into_iter().map(number).collect();
     format!("tolerance of the certificate: {}", all.join(", "))
 }
 

@@ -1,10 +1,11 @@
 //! Error budgets: k = value +- algebraic +- discretisation +- ensemble, for each mean and for alpha and zeta.
 
 use crate::fitted_laws::{WindowedLaw, windowed_law};
-use crate::header::{FLAGS_1D, FLAGS_3D, describe, header};
-use crate::measured::{COARSER_SURFACES, Measured, Series, measure_1d, measure_3d};
+use crate::header::{describe, flags, header};
+use crate::measured::{COARSER_SURFACES, Measured, Series, measure};
 use crate::outcome::Outcome;
-use crate::run::{Flag, Run};
+use crate::realisation::Model;
+use crate::run::Run;
 use crate::sample::{FLOOR_CELLS, Sample};
 use crate::session::Session;
 use crate::table_of::TableOf;
@@ -72,17 +73,16 @@ pub(crate) fn algebraic(s: &Sample) -> f64 {
 /// solving what is not stored.
 ///
 /// # Errors
-/// As [`measure_3d`] and [`measure_1d`].
-pub fn state_budgets(run: &Run, solid: bool, line: bool, progress: &dyn Progress) -> Result<Outcome> {
-    let session = Session::open(run)?;
+/// As [`measure`].
+pub fn state_budgets(run: &Run, models: &[Model], progress: &dyn Progress) -> Result<Outcome> {
+    let session = Session::open(&run.out, run.fresh)?;
     let mut outcome = Outcome::new("budget");
-    if solid {
-        let measured = measure_3d(run, &session.store, progress)?;
-        outcome.add_budget(write_budget("fig2", &FLAGS_3D, run, &measured)?);
-    }
-    if line {
-        let measured = measure_1d(run, &session.store, progress)?;
-        outcome.add_budget(write_budget("fig6", &FLAGS_1D, run, &measured)?);
+    for &model in models {
+        let name = match model {
+            Model::Bem3d => "fig2",
+            Model::Mdr1d => "fig6",
+        };
+        outcome.add_budget(write_budget(name, run, &measure(model, run, &session.store, progress)?)?);
     }
     session.close(outcome)
 }
@@ -91,13 +91,9 @@ pub fn state_budgets(run: &Run, solid: bool, line: bool, progress: &dyn Progress
 ///
 /// # Errors
 /// A file that cannot be written.
-pub fn write_budget(
-    name: &'static str,
-    flags: &[Flag],
-    run: &Run,
-    measured: &Measured,
-) -> Result<(PathBuf, String)> {
+pub fn write_budget(name: &'static str, run: &Run, measured: &Measured) -> Result<(PathBuf, String)> {
     let all = budgets(measured);
+    let flags = flags(measured.discretisation.of());
     let header = describe(header(run.command(&format!("reproduce-{name}"), flags)), run, &[measured]);
     let path = run.out.join(format!("{name}-budget.csv"));
     write(&path, measured, &all, header)?;
@@ -122,34 +118,30 @@ pub(crate) fn budgets(measured: &Measured) -> Vec<Budgeted> {
             let each = inside.iter().zip(&weights).map(|(&j, w)| weight(w).abs() * mean_algebraic(series, j));
             analysis::sum(each)
         };
-        let budgeted = |quantity, value, budget| Budgeted {
+        let parts = [
+            ("alpha", fit.alpha, fit.alpha_se, open(|w| w.0), grid.map(|g| g.0), windows.0),
+            (
+                "zeta",
+                fit.zeta,
+                fit.zeta_se,
+                fit.zeta * open(|w| w.1),
+                grid.map(|g| fit.zeta * g.1),
+                windows.1,
+            ),
+        ];
+        all.extend(parts.map(|(quantity, value, error, algebraic, discretisation, window)| Budgeted {
             quantity,
             fractal_dimension: d,
             force_bar: None,
             value,
-            budget,
+            budget: Budget {
+                algebraic,
+                discretisation,
+                ensemble: error.map(|error| freedom * error),
+                window: Some(window),
+            },
             below_floor: false,
-        };
-        all.push(budgeted(
-            "alpha",
-            fit.alpha,
-            Budget {
-                algebraic: open(|w| w.0),
-                discretisation: grid.map(|g| g.0),
-                ensemble: fit.alpha_se.map(|se| freedom * se),
-                window: Some(windows.0),
-            },
-        ));
-        all.push(budgeted(
-            "zeta",
-            fit.zeta,
-            Budget {
-                algebraic: fit.zeta * open(|w| w.1),
-                discretisation: grid.map(|g| fit.zeta * g.1),
-                ensemble: fit.zeta_se.map(|se| freedom * se),
-                window: Some(windows.1),
-            },
-        ));
+        }));
     }
     all
 }

@@ -1,36 +1,16 @@
 //! What Figs. 3 and 7 have in common: the fitted power laws.
 
 use crate::measured::{Measured, Series};
+use crate::run::distinct;
 use analysis::{
     Bootstrap, EnsemblePoint, FitWindow, FittedPowerLaw, NoFit, error_from_moments, fit_power_law,
     least_squares,
 };
 
-/// A fitted law, or why there is none.
-#[derive(Debug, Clone, PartialEq)]
-pub struct FittedLaw {
-    /// `bem3d` or `mdr1d`.
-    pub model: &'static str,
-    /// D_f.
-    pub fractal_dimension: f64,
-    /// The fit.
-    pub fit: Result<FittedPowerLaw, NoFit>,
-}
-
-/// Power laws of an ensemble, one per fractal dimension, over [`FitWindow::PAPER`]; errors by bootstrap over
-/// surfaces.
-pub fn laws(measured: &Measured) -> Vec<FittedLaw> {
-    laws_within(measured, &FitWindow::PAPER)
-}
-
-/// The same over another window.
-pub fn laws_within(measured: &Measured, window: &FitWindow) -> Vec<FittedLaw> {
-    let law = |s: &Series| FittedLaw {
-        model: measured.discretisation.name(),
-        fractal_dimension: s.fractal_dimension,
-        fit: fit_power_law(&s.curves, window, &Bootstrap::default()),
-    };
-    measured.series.iter().map(law).collect()
+/// Power laws of an ensemble over a window, one for each fractal dimension, or why there is none; errors by
+/// bootstrap over surfaces.
+pub fn laws(measured: &Measured, window: &FitWindow) -> Vec<Result<FittedPowerLaw, NoFit>> {
+    measured.series.iter().map(|s| fit_power_law(&s.curves, window, &Bootstrap::default())).collect()
 }
 
 /// Floors of contact cells and upper ends of the window between which the exponents of one series are
@@ -86,11 +66,8 @@ pub fn windowed_law(measured: &Measured, series: &Series) -> Result<WindowedLaw,
 
 /// 2.0, 2.05 .. 3.0 and the given ones: where formulas are tabulated.
 pub fn dense_dimensions(given: &[f64]) -> Vec<f64> {
-    let mut all: Vec<f64> = (0..=20).map(|i| f64::from(200 + 5 * i) / 100.0).collect();
-    all.extend_from_slice(given);
-    all.sort_by(f64::total_cmp);
-    all.dedup_by(|a, b| a.total_cmp(b).is_eq());
-    all
+    let steps = (0..=20).map(|i| f64::from(200 + 5 * i) / 100.0);
+    distinct(steps.chain(given.iter().copied()))
 }
 
 /// 95 % half-widths of alpha and of ln zeta from the coarser grids, over the forces that the finest resolves.

@@ -1,6 +1,6 @@
 //! The table of hard cases: what was asserted and what was reached.
 
-use crate::table_of::TableOf;
+use crate::table_of::{TableOf, markdown_table};
 use analysis::Table;
 use contact_model::ContactModel as _;
 use runs::files::{create_directory, write_whole};
@@ -47,20 +47,22 @@ fn table(verdicts: &[CaseResult]) -> Result<Table> {
 
 fn markdown(verdicts: &[CaseResult], effort: Effort) -> String {
     let passed = verdicts.iter().filter(|v| v.passed()).count();
+    let row = |v: &CaseResult| {
+        let figure = v.figure.map_or_else(|| "none".to_owned(), short);
+        let [name, why, asserted, status] =
+            [v.case.name, v.case.why, v.case.asserted, v.status.as_str()].map(str::to_owned);
+        [name, why, asserted, figure, short(v.case.bound), status]
+    };
     let mut text = format!(
         "# Hard cases\n\n{passed} of {} pass{}. A figure is the largest relative deviation from what is asserted, or the number of things that \
-         differ where the bound is 0; every state meets its tolerance, and most have a witness by plain sums besides.\n\n\
-         | case | why it is hard | what is asserted | figure reached | bound | |\n|---|---|---|---|---|---|\n",
+         differ where the bound is 0; every state meets its tolerance, and most have a witness by plain sums besides.\n\n{}",
         verdicts.len(),
-        effort.pick("", ", thorough")
+        effort.pick("", ", thorough"),
+        markdown_table(
+            "| case | why it is hard | what is asserted | figure reached | bound | |\n|---|---|---|---|---|---|",
+            verdicts.iter().map(row)
+        )
     );
-    for v in verdicts {
-        let figure = v.figure.map_or_else(|| "none".to_owned(), short);
-        let cells =
-            [v.case.name, v.case.why, v.case.asserted, &figure, &short(v.case.bound), v.status.as_str()];
-        // A bar inside a cell would end it.
-        text += &format!("| {} |\n", cells.map(|c| c.replace('|', "\\|")).join(" | "));
-    }
     for v in verdicts.iter().filter(|v| !v.broken.is_empty()) {
         text += &format!("\n{}:\n\n", v.case.name);
         v.broken.iter().for_each(|line| text += &format!("- {}\n", line.replace('\n', " ")));

@@ -1,7 +1,7 @@
 //! The header of every CSV about ensembles: the paper, the command, the ensembles.
 
 use crate::measured::Measured;
-use crate::realisation::Discretisation;
+use crate::realisation::{Discretisation, Model};
 use crate::run::{Flag, Run, list};
 use runs::Header;
 
@@ -14,12 +14,17 @@ pub fn header(command: String) -> Header {
     Header { sources: vec![PAPER.to_owned()], ..Header::new(command) }
 }
 
-/// The flags that decide the bytes of a 3D ensemble.
-pub const FLAGS_3D: [Flag; 6] =
-    [Flag::CELLS, Flag::SURFACES, Flag::FRACTAL_DIMENSIONS, Flag::FORCES, Flag::TOLERANCE, Flag::SEED];
-/// The flags that decide the bytes of a 1D ensemble.
-pub const FLAGS_1D: [Flag; 5] =
-    [Flag::ELEMENTS, Flag::LINES, Flag::FRACTAL_DIMENSIONS, Flag::FORCES, Flag::SEED];
+/// The flags that decide the bytes of an ensemble of a model.
+pub const fn flags(model: Model) -> &'static [Flag] {
+    const BEM3D: [Flag; 6] =
+        [Flag::CELLS, Flag::SURFACES, Flag::FRACTAL_DIMENSIONS, Flag::FORCES, Flag::TOLERANCE, Flag::SEED];
+    const MDR1D: [Flag; 5] =
+        [Flag::ELEMENTS, Flag::LINES, Flag::FRACTAL_DIMENSIONS, Flag::FORCES, Flag::SEED];
+    match model {
+        Model::Bem3d => &BEM3D,
+        Model::Mdr1d => &MDR1D,
+    }
+}
 
 /// Header lines about an ensemble.
 pub fn describe(mut header: Header, run: &Run, measured: &[&Measured]) -> Header {
@@ -29,12 +34,13 @@ pub fn describe(mut header: Header, run: &Run, measured: &[&Measured]) -> Header
         .with_note(format!("fractal_dimensions: {}", list(&run.dimensions())))
         .with_note(format!("seed: {} (surface i: surface_seed(seed, i); D_f does not enter)", run.seed));
     for m in measured {
-        let (size, count, forces) = match m.discretisation {
+        let size = match m.discretisation {
             Discretisation::Bem3d { cells, tolerance } => {
-                (format!("{cells} cells a side, tolerance {tolerance:?}"), run.surfaces, &run.forces_3d)
+                format!("{cells} cells a side, tolerance {tolerance:?}")
             }
-            Discretisation::Mdr1d { elements } => (format!("{elements} elements"), run.lines, &run.forces_1d),
+            Discretisation::Mdr1d { elements } => format!("{elements} elements"),
         };
+        let (_, count, forces) = run.ensemble(m.discretisation.of());
         header = header
             .with_sources(m.discretisation.model().sources())
             .with_note(format!(

@@ -2,7 +2,7 @@
 //! hard cases.
 //!
 //! A [`Run`] holds the plain parameters of one command: a [`Preset`], overridden by a [`Request`] and
-//! checked. [`measure_3d`] and [`measure_1d`] solve an ensemble, [`state_budgets`] states to what its means
+//! checked. [`measure`] solves an ensemble of a [`Model`], [`state_budgets`] states to what its means
 //! are known, [`plan`] and [`settle`] choose the sizes that meet an accuracy target, [`accuracy_cost`] shows
 //! what accuracy costs, [`budget_check`] whether the budgets hold, [`audit`] solves stored states again,
 //! [`bench()`] measures time, [`hard_cases`] writes the table of the registry `stability`.
@@ -18,7 +18,7 @@
 //!
 //! # Jobs
 //!
-//! A job is one surface under all its loads ([`Realisation`]), solved from the smallest load
+//! A job is one surface under all its loads ([`RealisationJob`]), solved from the smallest load
 //! upwards with one prepared contact and kept in the result store of the run (`runs::Store`) under everything
 //! that decides its numbers. Other commands reuse it.
 //!
@@ -52,27 +52,27 @@ mod tables;
 mod tuning;
 
 pub use accuracy::{
-    AccuracyPlan, Coverage, Depth, Requirements, accuracy_cost, accuracy_cost_jobs, budget_check,
-    budget_check_jobs, plan, redraw_accuracy, settle,
+    AccuracyPlan, Coverage, Depth, accuracy_cost, accuracy_cost_jobs, budget_check, budget_check_jobs, plan,
+    redraw_accuracy, settle,
 };
 pub use analysis::AccuracyTarget;
 pub use audit::audit;
 pub use bench::{BENCH_COLUMNS, Bench, BenchRow, Clock, Surfaces, bench, elapsed, parts_table, write_bench};
 pub use bench_plot::{BenchPlot, plot_bench, redraw_benches};
 pub use budget::{Budget, Budgeted, state_budgets, write_budget};
-pub use fitted_laws::{FittedLaw, WindowedLaw, dense_dimensions, laws, laws_within, windowed_law};
+pub use fitted_laws::{WindowedLaw, dense_dimensions, laws, windowed_law};
 pub use forces::Forces;
 pub use hard_cases::hard_cases;
-pub use header::{FLAGS_1D, FLAGS_3D, PAPER, describe, header};
+pub use header::{PAPER, describe, flags, header};
 pub use manifest::write_manifest;
-pub use measured::{COARSER_SURFACES, Measured, Series, ensemble_jobs, measure_1d, measure_3d, transformed};
+pub use measured::{COARSER_SURFACES, Measured, Series, ensemble_jobs, measure, transformed};
 pub use outcome::Outcome;
-pub use realisation::{Discretisation, FORMAT, Models, Realisation, RealisationResult};
-pub use realisation_jobs::{RealisationJob, is_solved, realisation_jobs, solve_realisations};
-pub use run::{FRACTAL_DIMENSIONS, Flag, Preset, Request, Run, SEED, TOLERANCE, list};
+pub use realisation::{Discretisation, FORMAT, Model, Models, RealisationJob, RealisationResult};
+pub use realisation_jobs::{is_solved, solve_realisations};
+pub use run::{FRACTAL_DIMENSIONS, Flag, Preset, Request, Run, SEED, TOLERANCE, distinct, list};
 pub use runs::{Error, Result};
 pub use sample::{FLOOR_CELLS, Sample};
 pub use session::Session;
-pub use table_of::{TableOf, read_rows};
+pub use table_of::{TableOf, markdown_table, read_rows};
 pub use tables::{FORCE_BAR, FRACTAL_DIMENSION, MODEL, compact_table, curves_table, samples_table};
 pub use tuning::{ConstantRow, Multiple, tuning};

@@ -1,6 +1,6 @@
 //! An ensemble of one model over all fractal dimensions.
 
-use crate::realisation::{Discretisation, Realisation, RealisationResult};
+use crate::realisation::{Discretisation, Model, Models, RealisationJob, RealisationResult};
 use crate::realisation_jobs::solve_realisations;
 use crate::run::Run;
 use crate::sample::{FLOOR_CELLS, Sample};
@@ -18,7 +18,7 @@ pub struct Series {
     /// D_f.
     pub fractal_dimension: f64,
     /// Its surfaces and what was solved of them, in the order of their index.
-    pub realisations: Vec<(Realisation, RealisationResult)>,
+    pub realisations: Vec<(RealisationJob, RealisationResult)>,
     /// Converged stiffnesses on common forces.
     pub curves: Curves,
     /// Their means.
@@ -37,71 +37,47 @@ pub struct Measured {
     pub coarser: Option<Box<[Self; 2]>>,
 }
 
-/// The 3D ensemble of a run, from the store where it is there.
+/// The ensemble of a model, from the store where it is there, with its first surfaces on coarser grids.
 ///
 /// # Errors
 /// See [`solve_realisations`].
-pub fn measure_3d(run: &Run, store: &Store, progress: &dyn Progress) -> Result<Measured> {
-    let discretisation = Discretisation::Bem3d { cells: run.cells, tolerance: run.tolerance };
-    with_coarser(discretisation, run.surfaces, run.forces_3d.values(), run, store, progress)
+pub fn measure(model: Model, run: &Run, store: &Store, progress: &dyn Progress) -> Result<Measured> {
+    let mut all = Vec::new();
+    for (grid, surfaces) in grids(model, run) {
+        all.push(measure_on(grid, surfaces, run, store, progress)?);
+    }
+    let mut all = all.into_iter();
+    let measured = all.next().ok_or_else(|| Error::parameter("model", model.name(), "a grid"))?;
+    let coarser = all.next().zip(all.next()).map(|(half, quarter)| Box::new([half, quarter]));
+    Ok(Measured { coarser, ..measured })
 }
 
-/// The 1D ensemble of a run, from the store where it is there.
-///
-/// # Errors
-/// See [`solve_realisations`].
-pub fn measure_1d(run: &Run, store: &Store, progress: &dyn Progress) -> Result<Measured> {
-    let discretisation = Discretisation::Mdr1d { elements: run.elements };
-    with_coarser(discretisation, run.lines, run.forces_1d.values(), run, store, progress)
-}
-
-/// An ensemble with its first surfaces on coarser grids.
-///
-/// # Errors
-/// See [`solve_realisations`].
-pub fn with_coarser(
-    discretisation: Discretisation,
-    surfaces: usize,
-    forces: &[f64],
-    run: &Run,
-    store: &Store,
-    progress: &dyn Progress,
-) -> Result<Measured> {
-    let measured = measure(discretisation, surfaces, forces, run, store, progress)?;
-    let Some([half, quarter]) = discretisation.coarser() else { return Ok(measured) };
-    let on = |grid| measure(grid, surfaces.min(COARSER_SURFACES), forces, run, store, progress);
-    Ok(Measured { coarser: Some(Box::new([on(half)?, on(quarter)?])), ..measured })
+/// The grid of a model with its number of surfaces, and the two coarser ones.
+fn grids(model: Model, run: &Run) -> impl Iterator<Item = (Discretisation, usize)> {
+    let (grid, surfaces, _) = run.ensemble(model);
+    let coarser = grid.coarser().into_iter().flatten();
+    std::iter::once((grid, surfaces)).chain(coarser.map(move |grid| (grid, surfaces.min(COARSER_SURFACES))))
 }
 
 /// Everything that the ensembles of a run solve, coarser grids included.
-pub fn ensemble_jobs(run: &Run, solid: bool, line: bool) -> Vec<Realisation> {
-    let solid = solid.then(|| {
-        let discretisation = Discretisation::Bem3d { cells: run.cells, tolerance: run.tolerance };
-        (discretisation, run.surfaces, run.forces_3d.values())
-    });
-    let line =
-        line.then(|| (Discretisation::Mdr1d { elements: run.elements }, run.lines, run.forces_1d.values()));
-    let ensembles = solid.into_iter().chain(line);
-    let grids = ensembles.flat_map(|(discretisation, surfaces, forces)| {
-        let coarser = discretisation.coarser().into_iter().flatten();
-        let coarser = coarser.map(move |grid| (grid, surfaces.min(COARSER_SURFACES), forces));
-        std::iter::once((discretisation, surfaces, forces)).chain(coarser)
-    });
-    grids.flat_map(|(grid, surfaces, forces)| jobs(grid, surfaces, forces, run)).collect()
+pub fn ensemble_jobs(run: &Run, models: &[Model]) -> Vec<RealisationJob> {
+    let all = models.iter().flat_map(|&model| grids(model, run));
+    all.flat_map(|(grid, surfaces)| jobs(grid, surfaces, run)).collect()
 }
 
 /// Surface by surface, so that an interrupted run holds whole ensembles of fewer surfaces.
-fn jobs(discretisation: Discretisation, surfaces: usize, forces: &[f64], run: &Run) -> Vec<Realisation> {
-    let forces: Arc<[f64]> = forces.into();
-    let dimensions = run.dimensions();
+fn jobs(discretisation: Discretisation, surfaces: usize, run: &Run) -> Vec<RealisationJob> {
+    let forces: Arc<[f64]> = run.ensemble(discretisation.of()).2.values().into();
+    let (dimensions, models) = (run.dimensions(), Arc::<Models>::default());
     let of_surface = |index: usize| {
         let seed = surface_gen::surface_seed(run.seed, index as u64);
-        let of = |&fractal_dimension: &f64| Realisation {
+        let of = |&fractal_dimension: &f64| RealisationJob {
             discretisation,
             fractal_dimension,
             index,
             seed,
             forces: Arc::clone(&forces),
+            models: Arc::clone(&models),
         };
         dimensions.iter().map(of).collect::<Vec<_>>()
     };
@@ -112,23 +88,23 @@ fn jobs(discretisation: Discretisation, surfaces: usize, forces: &[f64], run: &R
 ///
 /// # Errors
 /// See [`solve_realisations`].
-pub fn measure(
+fn measure_on(
     discretisation: Discretisation,
     surfaces: usize,
-    forces: &[f64],
     run: &Run,
     store: &Store,
     progress: &dyn Progress,
 ) -> Result<Measured> {
     let dimensions = run.dimensions();
-    let jobs = jobs(discretisation, surfaces, forces, run);
+    let forces = run.ensemble(discretisation.of()).2.values();
+    let jobs = jobs(discretisation, surfaces, run);
     let (kind, size) = match discretisation {
         Discretisation::Bem3d { cells, .. } => ("surfaces", format!("{cells} x {cells} cells")),
         Discretisation::Mdr1d { elements } => ("lines", format!("{elements} elements")),
     };
     let what = format!("{}: {} {kind} of {size}, {} loads", discretisation.name(), jobs.len(), forces.len());
     let results = solve_realisations(&what, &jobs, store, run.threads, progress)?;
-    let mut pairs: Vec<Vec<(Realisation, RealisationResult)>> =
+    let mut pairs: Vec<Vec<(RealisationJob, RealisationResult)>> =
         dimensions.iter().map(|_| Vec::new()).collect();
     for (i, pair) in jobs.into_iter().zip(results).enumerate() {
         pairs[i % dimensions.len()].push(pair);
@@ -144,7 +120,7 @@ pub fn measure(
 impl Series {
     fn new(
         fractal_dimension: f64,
-        realisations: Vec<(Realisation, RealisationResult)>,
+        realisations: Vec<(RealisationJob, RealisationResult)>,
         forces: &[f64],
     ) -> Result<Self> {
         let rows = realisations

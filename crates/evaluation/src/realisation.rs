@@ -8,7 +8,7 @@ use contact_model::{
     ContactModel, Outputs, PAPER_STIFFNESS_FACTOR, Scene, SelfAffine, Stop, Surface, line_length,
 };
 use mdr1d::{Ensemble, Mdr1d};
-use runs::{Error, Result};
+use runs::{Error, Job, Result, ResultKind};
 use serde::{Deserialize, Serialize};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
@@ -16,6 +16,30 @@ use std::time::Instant;
 /// Number of the format of stored results. Raise it when the numbers of `surface-gen` or `mdr1d`, or the
 /// fields of a [`Sample`], change; `bem3d` has its own number, which enters the key too.
 pub const FORMAT: u32 = 3;
+
+/// The models of ensembles.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+pub enum Model {
+    /// Boundary elements on surfaces.
+    #[serde(rename = "3D")]
+    Bem3d,
+    /// The one-dimensional reduction on lines.
+    #[serde(rename = "1D")]
+    Mdr1d,
+}
+
+impl Model {
+    /// Surfaces first, as in the figures.
+    pub const BOTH: [Self; 2] = [Self::Bem3d, Self::Mdr1d];
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Bem3d => "bem3d",
+            Self::Mdr1d => "mdr1d",
+        }
+    }
+}
 
 /// How a surface is discretised, and by which model.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -35,11 +59,25 @@ pub enum Discretisation {
 }
 
 impl Discretisation {
+    /// Which model it is of.
+    pub fn of(&self) -> Model {
+        match self {
+            Self::Bem3d { .. } => Model::Bem3d,
+            Self::Mdr1d { .. } => Model::Mdr1d,
+        }
+    }
+
     /// Name of the model.
     pub fn name(&self) -> &'static str {
+        self.of().name()
+    }
+
+    /// The same on so many cells a side, or elements.
+    #[must_use]
+    pub fn with_size(self, size: usize) -> Self {
         match self {
-            Self::Bem3d { .. } => "bem3d",
-            Self::Mdr1d { .. } => "mdr1d",
+            Self::Bem3d { tolerance, .. } => Self::Bem3d { cells: size, tolerance },
+            Self::Mdr1d { .. } => Self::Mdr1d { elements: size },
         }
     }
 
@@ -63,15 +101,12 @@ impl Discretisation {
     /// The same model on cells (elements) twice and four times as large; `None` where those are too coarse to
     /// say anything.
     pub fn coarser(self) -> Option<[Self; 2]> {
-        let by = |factor: usize| match self {
-            Self::Bem3d { cells, tolerance } => {
-                let cells = cells.div_ceil(factor);
-                (cells >= COARSEST.0).then_some(Self::Bem3d { cells, tolerance })
-            }
-            Self::Mdr1d { elements } => {
-                let elements = elements / factor;
-                (elements >= COARSEST.1).then_some(Self::Mdr1d { elements })
-            }
+        let by = |factor: usize| {
+            let (size, coarsest) = match self {
+                Self::Bem3d { cells, .. } => (cells.div_ceil(factor), COARSEST.0),
+                Self::Mdr1d { elements } => (elements / factor, COARSEST.1),
+            };
+            (size >= coarsest).then_some(self.with_size(size))
         };
         Some([by(2)?, by(4)?])
     }
@@ -138,7 +173,7 @@ pub struct Models {
 
 impl Models {
     /// The model of a job.
-    fn of(&self, job: &Realisation, surface: &SelfAffine) -> contact_model::Result<Arc<dyn ContactModel>> {
+    fn of(&self, job: &RealisationJob, surface: &SelfAffine) -> contact_model::Result<Arc<dyn ContactModel>> {
         let Discretisation::Mdr1d { elements } = job.discretisation else {
             return Ok(Arc::from(job.discretisation.model()));
         };
@@ -158,8 +193,8 @@ impl Models {
 }
 
 /// One surface and its loads.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Realisation {
+#[derive(Debug, Clone)]
+pub struct RealisationJob {
     /// How it is solved.
     pub discretisation: Discretisation,
     /// D_f.
@@ -170,6 +205,8 @@ pub struct Realisation {
     pub seed: u64,
     /// Loads F_bar, increasing.
     pub forces: Arc<[f64]>,
+    /// What the jobs of an ensemble share; decides nothing.
+    pub models: Arc<Models>,
 }
 
 /// What was solved of a realisation.
@@ -184,18 +221,14 @@ pub struct RealisationResult {
     pub samples: Vec<Sample>,
 }
 
-impl Realisation {
-    /// Everything that decides the numbers, as text: physics, discretisation, seed, loads, formats. Two jobs
-    /// with the same text have the same result.
-    ///
-    /// ```
-    /// use evaluation::{Discretisation, Realisation};
-    /// let discretisation = Discretisation::Mdr1d { elements: 64 };
-    /// let job = Realisation { discretisation, fractal_dimension: 2.5, index: 0, seed: 7, forces: [0.1, 1.0].into() };
-    /// assert!(job.key().contains("fractal_dimension 2.5\n") && job.key().contains("seed 7\n"));
-    /// assert!(!job.key().contains("index")); // the seed says which surface it is
-    /// ```
-    pub fn key(&self) -> String {
+impl Job for RealisationJob {
+    type Output = RealisationResult;
+    type Error = Error;
+
+    const KIND: ResultKind = ResultKind::new("realisation", FORMAT);
+
+    /// Physics, discretisation, seed, loads, formats; not the index, as the seed says which surface it is.
+    fn key(&self) -> String {
         let discretisation = match self.discretisation {
             Discretisation::Bem3d { cells, tolerance } => {
                 format!(
@@ -215,9 +248,18 @@ impl Realisation {
         )
     }
 
-    /// Predicted processor milliseconds on the machine of `data/bench`: they order the work, divide it into
-    /// shards and move the progress bar. Within a factor of two of what was measured there.
-    pub fn cost(&self) -> u64 {
+    fn name(&self) -> String {
+        let Self { discretisation, fractal_dimension, index, .. } = self;
+        let (model, size) = (discretisation.name(), discretisation.size());
+        let kind = match discretisation.of() {
+            Model::Bem3d => "cells a side",
+            Model::Mdr1d => "elements",
+        };
+        format!("{model}, D_f = {fractal_dimension:?}, surface {index}, {size} {kind}")
+    }
+
+    /// On the machine of `data/bench`, within a factor of two of what was measured there.
+    fn cost(&self) -> u64 {
         let n = self.discretisation.size() as f64;
         let seconds = match self.discretisation {
             // One load on a 512 x 512 grid takes a few ms where little is in contact and a second where much
@@ -238,26 +280,31 @@ impl Realisation {
         1 + (1e3 * seconds).min(1e15) as u64
     }
 
-    /// Solves the job from the smallest load upwards with one prepared contact. A solve that does not
-    /// converge is recorded with its status.
-    ///
-    /// # Errors
-    /// [`Error::Model`] for anything that a model refuses.
-    pub fn solve(&self, stop: Stop<'_>) -> Result<RealisationResult> {
-        self.solve_among(&Models::default(), stop)
+    fn memory(&self) -> f64 {
+        self.discretisation.memory()
     }
 
-    /// The same with what other jobs have planned.
-    ///
-    /// # Errors
-    /// As [`Realisation::solve`].
-    pub fn solve_among(&self, models: &Models, stop: Stop<'_>) -> Result<RealisationResult> {
+    fn stored_bytes(&self) -> u64 {
+        1000 + 500 * self.forces.len() as u64
+    }
+
+    /// From the smallest load upwards with one prepared contact. A solve that does not converge is recorded
+    /// with its status.
+    fn solve(&self, stop: Stop<'_>) -> Result<RealisationResult> {
         let what = || format!("{} at D_f = {:?}", self.discretisation.name(), self.fractal_dimension);
         let surface = self.surface().map_err(|e| Error::model(what())(e))?;
-        let model = models.of(self, &surface).map_err(|e| Error::model(what())(e))?;
+        let model = self.models.of(self, &surface).map_err(|e| Error::model(what())(e))?;
         self.solve_with(&*model, stop)
     }
 
+    /// The loads are part of the key; the samples must be of those loads.
+    fn is_whole(&self, result: &RealisationResult) -> bool {
+        let solved = result.samples.iter().map(|sample| sample.force_bar.to_bits());
+        solved.eq(self.forces.iter().map(|force| force.to_bits()))
+    }
+}
+
+impl RealisationJob {
     fn surface(&self) -> contact_model::Result<SelfAffine> {
         SelfAffine::new(self.fractal_dimension, 1.0, 1.0)
     }
@@ -337,12 +384,13 @@ mod tests {
 
     #[test]
     fn a_solve_that_gives_up_is_recorded_with_its_status() {
-        let job = Realisation {
+        let job = RealisationJob {
             discretisation: Discretisation::Mdr1d { elements: 8 },
             fractal_dimension: 2.0,
             index: 0,
             seed: 1,
             forces: [0.1, 1.0].into(),
+            models: Arc::default(),
         };
         let result = job.solve_with(&Failing, &contact_model::never).unwrap();
         approx::assert_relative_eq!(result.samples[0].force, 0.2);
@@ -353,26 +401,27 @@ mod tests {
 
     #[test]
     fn every_parameter_is_in_the_key() {
-        let job = Realisation {
+        let job = RealisationJob {
             discretisation: Discretisation::Bem3d { cells: 8, tolerance: 1e-4 },
             fractal_dimension: 2.0,
             index: 0,
             seed: 1,
             forces: [0.1, 1.0].into(),
+            models: Arc::default(),
         };
         let others = [
-            Realisation {
+            RealisationJob {
                 discretisation: Discretisation::Bem3d { cells: 9, tolerance: 1e-4 },
                 ..job.clone()
             },
-            Realisation {
+            RealisationJob {
                 discretisation: Discretisation::Bem3d { cells: 8, tolerance: 1e-5 },
                 ..job.clone()
             },
-            Realisation { discretisation: Discretisation::Mdr1d { elements: 8 }, ..job.clone() },
-            Realisation { fractal_dimension: 2.2, ..job.clone() },
-            Realisation { seed: 2, ..job.clone() },
-            Realisation { forces: [0.1].into(), ..job.clone() },
+            RealisationJob { discretisation: Discretisation::Mdr1d { elements: 8 }, ..job.clone() },
+            RealisationJob { fractal_dimension: 2.2, ..job.clone() },
+            RealisationJob { seed: 2, ..job.clone() },
+            RealisationJob { forces: [0.1].into(), ..job.clone() },
         ];
         for other in &others {
             assert_ne!(job.key(), other.key());

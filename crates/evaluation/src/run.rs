@@ -2,6 +2,7 @@
 
 use crate::forces::Forces;
 use crate::limits::{self, within};
+use crate::realisation::{Discretisation, Model};
 use runs::{Error, Result};
 use std::path::PathBuf;
 
@@ -206,6 +207,24 @@ impl Run {
         self.fractal_dimensions.clone().unwrap_or_else(|| FRACTAL_DIMENSIONS.to_vec())
     }
 
+    /// How the ensemble of a model is solved, the number of its surfaces, and its loads.
+    pub fn ensemble(&self, model: Model) -> (Discretisation, usize, &Forces) {
+        let Self { cells, tolerance, elements, .. } = *self;
+        match model {
+            Model::Bem3d => (Discretisation::Bem3d { cells, tolerance }, self.surfaces, &self.forces_3d),
+            Model::Mdr1d => (Discretisation::Mdr1d { elements }, self.lines, &self.forces_1d),
+        }
+    }
+
+    /// The same with cells a side (elements) and surfaces (lines) of a model.
+    #[must_use]
+    pub fn with_sizes(&self, model: Model, size: usize, surfaces: usize) -> Self {
+        match model {
+            Model::Bem3d => Self { cells: size, surfaces, ..self.clone() },
+            Model::Mdr1d => Self { elements: size, lines: surfaces, ..self.clone() },
+        }
+    }
+
     /// The command that makes the same bytes, with every parameter of `flags` written out.
     ///
     /// What does not change them (threads, directory, fresh) is left out.
@@ -269,6 +288,14 @@ pub fn list(values: &[f64]) -> String {
     values.iter().map(|v| format!("{v:?}")).collect::<Vec<_>>().join(",")
 }
 
+/// Different values, increasing.
+pub fn distinct(values: impl IntoIterator<Item = f64>) -> Vec<f64> {
+    let mut all: Vec<f64> = values.into_iter().collect();
+    all.sort_by(f64::total_cmp);
+    all.dedup_by(|a, b| a.total_cmp(b).is_eq());
+    all
+}
+
 fn dimensions(asked: &[f64]) -> Result<Vec<f64>> {
     let name = "fractal-dimensions";
     if asked.is_empty() {
@@ -279,10 +306,7 @@ fn dimensions(asked: &[f64]) -> Result<Vec<f64>> {
             return Err(Error::parameter(name, d, "numbers in [2, 3]"));
         }
     }
-    let mut sorted = asked.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    sorted.dedup_by(|a, b| a.total_cmp(b).is_eq());
-    Ok(sorted)
+    Ok(distinct(asked.iter().copied()))
 }
 
 fn threads(asked: Option<usize>) -> Result<usize> {

@@ -1,8 +1,8 @@
 //! The start and the end of every command.
 
 use crate::outcome::Outcome;
-use crate::run::Run;
 use runs::{Result, Store, files};
+use std::path::Path;
 use std::time::Instant;
 
 /// The directory, made and cleaned, and the clock.
@@ -14,15 +14,15 @@ pub struct Session {
 }
 
 impl Session {
-    /// Makes and cleans the directory of a run and opens its store.
+    /// Makes and cleans a directory of results and opens its store; `fresh` forgets what is stored.
     ///
     /// # Errors
     /// [`runs::Error::File`] where the system refuses.
-    pub fn open(run: &Run) -> Result<Self> {
+    pub fn open(out: &Path, fresh: bool) -> Result<Self> {
         let start = Instant::now();
-        files::create_directory(&run.out)?;
-        files::clean(&run.out)?;
-        Ok(Self { store: Store::open(&run.out, run.fresh)?, start })
+        files::create_directory(out)?;
+        files::clean(out)?;
+        Ok(Self { store: Store::open(out, fresh)?, start })
     }
 
     /// Enters the seconds since [`Session::open`].

@@ -71,6 +71,21 @@ pub(crate) const fn names<T, const N: usize>(columns: &[(&'static str, T); N]) -
     names
 }
 
+/// Rows of a table in Markdown, from their cells.
+pub fn markdown_rows<C: AsRef<str>, const N: usize>(rows: impl IntoIterator<Item = [C; N]>) -> String {
+    // A bar inside a cell would end it.
+    let escaped = |cells: [C; N]| cells.map(|cell| cell.as_ref().replace('|', "\\|"));
+    rows.into_iter().map(|cells| format!("| {} |\n", escaped(cells).join(" | "))).collect()
+}
+
+/// A table in Markdown: its two first lines, and the cells of each row.
+pub fn markdown_table<C: AsRef<str>, const N: usize>(
+    head: &str,
+    rows: impl IntoIterator<Item = [C; N]>,
+) -> String {
+    format!("{head}\n{}", markdown_rows(rows))
+}
+
 /// A number as text; absent is empty.
 pub(crate) fn maybe(value: Option<f64>) -> String {
     value.map(number).unwrap_or_default()

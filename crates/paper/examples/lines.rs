@@ -11,7 +11,8 @@
 //! 3 comparisons: 0 contradicted, 0 not resolved at this size, 0 matter of convention, 3 confirmed
 //! ```
 
-use evaluation::{Request, Result, Run, Session, laws, measure_1d};
+use analysis::FitWindow;
+use evaluation::{Model, Request, Result, Run, Session, laws, measure};
 use paper::{Claim, Estimate, Statement, Verdict, plain};
 use runs::Silent;
 use std::path::PathBuf;
@@ -33,12 +34,12 @@ fn main() -> Result<()> {
         ..Request::default()
     };
     let run = Run::new(&request)?;
-    let measured = measure_1d(&run, &Session::open(&run)?.store, &Silent)?;
+    let measured = measure(Model::Mdr1d, &run, &Session::open(&run.out, run.fresh)?.store, &Silent)?;
     let mut claims = Vec::new();
-    for law in laws(&measured) {
-        let Ok(fit) = law.fit else { continue };
-        let scaling = analytic::exponent_scaling(3.0 - law.fractal_dimension);
-        let name = format!("alpha of lines, D_f = {}", law.fractal_dimension);
+    for (series, fit) in measured.series.iter().zip(laws(&measured, &FitWindow::PAPER)) {
+        let (Ok(fit), d) = (fit, series.fractal_dimension) else { continue };
+        let scaling = analytic::exponent_scaling(3.0 - d);
+        let name = format!("alpha of lines, D_f = {d}");
         let Some(alpha) = Estimate::normal(fit.alpha, fit.alpha_se) else { continue };
         // Finite lines bend the law; the book's table has the same at 2^20 elements.
         claims.push(Claim::judge(name, SCALING, [scaling - 0.03, scaling + 0.03], alpha, ""));

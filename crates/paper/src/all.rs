@@ -15,14 +15,14 @@ pub fn reproduce_all(run: &Run, progress: &dyn Progress) -> Result<Vec<Judged>> 
     let (six, line) = fig6::FIGURE.reproduce(run, progress)?;
     outcomes.extend([two, six]);
     let alone = |write: &dyn Fn() -> Result<Outcome>| -> Result<Judged> {
-        let session = Session::open(run)?;
+        let session = Session::open(&run.out, run.fresh)?;
         session.close(write()?).map(Judged::from)
     };
     outcomes.push(alone(&|| fig3::FIGURE.write(run, &solid, &line))?);
     outcomes.push(alone(&|| fig4::write(run, &solid))?);
     outcomes.push(alone(&|| fig7::FIGURE.write(run, &solid, &line))?);
     // The claims of all figures are in the verification.
-    let session = Session::open(run)?;
+    let session = Session::open(&run.out, run.fresh)?;
     let (outcome, claims) = verify::write(run, &solid, &line)?;
     outcomes.push(Judged::new(session.close(outcome)?, claims));
     outcomes.sort_by_key(|o| o.name);

@@ -1,8 +1,7 @@
 //! What the paper states, what a fair reading of it is, and what was found.
 
-use crate::words;
 use analysis::Table;
-use evaluation::TableOf;
+use evaluation::{TableOf, markdown_table};
 use runs::Result;
 use std::fmt;
 
@@ -334,7 +333,7 @@ pub fn markdown(claims: &[Claim]) -> String {
         let [quantity, allowed, found, verdict] = c.short_cells();
         [quantity, paper, reading.to_owned(), allowed, found, verdict, c.conditions()]
     };
-    format!("{}\n\n{}", counts(claims), words::table(head, claims.iter().map(row)))
+    format!("{}\n\n{}", counts(claims), markdown_table(head, claims.iter().map(row)))
 }
 
 /// The short table: quantity, what the paper allows, what was found, verdict; run times are left out.
@@ -348,7 +347,7 @@ pub fn markdown(claims: &[Claim]) -> String {
 pub fn short_table(claims: &[Claim]) -> String {
     let head = "| quantity | paper | here, 95 % | verdict |\n|---|---|---|---|";
     let rows = claims.iter().filter(|c| !c.timed).map(Claim::short_cells);
-    format!("{}\n\n{}", counts(claims), words::table(head, rows))
+    format!("{}\n\n{}", counts(claims), markdown_table(head, rows))
 }
 
 /// One significant digit: enough for an error.

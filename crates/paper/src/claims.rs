@@ -13,9 +13,9 @@ mod solved;
 mod table;
 
 use crate::claim::Claim;
-use evaluation::Measured;
+use evaluation::{Measured, Model};
 use runs::Result;
-use table::{Model, wrong};
+use table::wrong;
 
 pub(crate) use ensemble::{Ensembles, Law};
 pub(crate) use table::{CaseData, Cases, Data, Entry, Found, Row, entries};
@@ -47,8 +47,8 @@ pub(crate) fn judged(command: &str, ensembles: &Ensembles<'_>) -> Result<Vec<Cla
 /// # Errors
 /// What a solver refuses; an ensemble that the command does not have.
 fn rows(ensembles: &Ensembles<'_>, entry: &'static Entry) -> Result<Vec<Row>> {
-    let solid = || ensembles.of(Model::Surfaces);
-    let line = || ensembles.of(Model::Lines);
+    let solid = || ensembles.of(Model::Bem3d);
+    let line = || ensembles.of(Model::Mdr1d);
     Ok(match &entry.data {
         Data::Exponent(model) => laws::exponents(ensembles.of(*model)?),
         Data::ExponentOverDimension(model) => laws::over_dimension(ensembles.of(*model)?),
@@ -99,7 +99,8 @@ pub(crate) fn of_figure(command: &str, measured: &[&Measured]) -> Result<Vec<Cla
 #[cfg(test)]
 mod tests {
     use super::*;
-    use evaluation::{Request, Run, Session, measure_1d, measure_3d};
+    use crate::fitted::both;
+    use evaluation::{Request, Run, Session};
     use runs::Silent;
     use std::collections::BTreeSet;
 
@@ -129,9 +130,8 @@ mod tests {
             ..Request::default()
         };
         let run = Run::new(&request).unwrap();
-        let store = Session::open(&run).unwrap().store;
-        let solid = measure_3d(&run, &store, &Silent).unwrap();
-        let line = measure_1d(&run, &store, &Silent).unwrap();
+        let store = Session::open(&run.out, run.fresh).unwrap().store;
+        let [solid, line] = both(&run, &store, &Silent).unwrap();
         // Of small ensembles, so that most have no number; the others are solved for the comparison alone.
         let ensembles = Ensembles::new(&[&solid, &line]);
         for entry in VERIFIED[..5].iter().flat_map(|command| entries(command).unwrap()) {

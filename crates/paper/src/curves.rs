@@ -5,38 +5,37 @@ use crate::judged::Judged;
 use crate::words;
 use analysis::Table;
 use evaluation::{
-    Flag, Measured, Outcome, Run, Session, compact_table, curves_table, describe, header, samples_table,
-    write_budget,
+    Measured, Model, Outcome, Run, Session, compact_table, curves_table, describe, flags, header, measure,
+    samples_table, write_budget,
 };
 use plots::{Axis, Key, LineStyle, Mark, MarkShape, NEUTRAL, Picture, REFERENCE, color, logarithmic, shape};
-use runs::{CsvFile, Error, Header, Progress, Result, Store, write_csv};
+use runs::{CsvFile, Error, Header, Progress, Result, write_csv};
 use std::path::{Path, PathBuf};
 
 /// A figure of mean curves.
 pub(crate) struct CurveFigure {
     pub name: &'static str,
     pub title: &'static str,
-    /// Flags that decide the bytes of its files.
-    pub flags: &'static [Flag],
-    pub measure: fn(&Run, &Store, &dyn Progress) -> Result<Measured>,
+    pub model: Model,
 }
 
 impl CurveFigure {
     /// The figure and its ensemble, which is solved where it is not stored.
     pub fn reproduce(&self, run: &Run, progress: &dyn Progress) -> Result<(Judged, Measured)> {
         check(run.over.as_deref())?;
-        let session = Session::open(run)?;
-        let measured = (self.measure)(run, &session.store, progress)?;
+        let session = Session::open(&run.out, run.fresh)?;
+        let measured = measure(self.model, run, &session.store, progress)?;
         let mut outcome = Outcome::of(self.name, self.write(run, &measured)?, &[&measured]);
-        outcome.add_budget(write_budget(self.name, self.flags, run, &measured)?);
+        outcome.add_budget(write_budget(self.name, run, &measured)?);
         let claims = claims::of_figure(self.name, &[&measured])?;
         Ok((Judged::new(session.close(outcome)?, claims), measured))
     }
 
     /// Writes `name.csv`, `name-samples.csv`, `name-compact.csv`, `name.svg`, `name.png`.
     fn write(&self, run: &Run, measured: &Measured) -> Result<Vec<PathBuf>> {
-        let Self { name, title, flags, .. } = *self;
-        let header = describe(header(run.command(&format!("reproduce-{name}"), flags)), run, &[measured]);
+        let Self { name, title, model } = *self;
+        let header =
+            describe(header(run.command(&format!("reproduce-{name}"), flags(model))), run, &[measured]);
         let samples = run.out.join(format!("{name}-samples.csv"));
         let all = samples_table(&format!("{title}: every surface and load"), measured)?;
         write_csv(&samples, &all, &header)?;

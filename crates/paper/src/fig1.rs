@@ -27,7 +27,7 @@ const BYTES: f64 = 24.0;
 /// Files that cannot be written, maps that do not fit in memory.
 pub fn fig1(run: &Run, progress: &dyn Progress) -> Result<Judged> {
     threads_for_memory(1, BYTES * (run.cells as f64).powi(2), "cells", run.cells)?;
-    let session = Session::open(run)?;
+    let session = Session::open(&run.out, run.fresh)?;
     let dimensions = run.dimensions();
     let mut outcome = Outcome::new("fig1");
     let mut points = Vec::new();

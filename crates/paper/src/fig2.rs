@@ -2,14 +2,13 @@
 
 use crate::curves::CurveFigure;
 use crate::judged::Judged;
-use evaluation::{FLAGS_3D, Run, measure_3d};
+use evaluation::{Model, Run};
 use runs::{Progress, Result};
 
 pub(crate) const FIGURE: CurveFigure = CurveFigure {
     name: "fig2",
     title: "Fig. 2: stiffness over force, 3D boundary elements",
-    flags: &FLAGS_3D,
-    measure: measure_3d,
+    model: Model::Bem3d,
 };
 
 /// Solves the 3D ensemble and writes `fig2.csv`, `fig2-samples.csv`, `fig2-budget.csv`, `fig2.svg`,

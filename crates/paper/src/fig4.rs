@@ -4,14 +4,12 @@ use crate::claims;
 use crate::judged::Judged;
 use crate::{curves, words};
 use evaluation::{
-    FORCE_BAR, FRACTAL_DIMENSION, MODEL, Measured, Outcome, Run, Session, TableOf, describe, header,
-    measure_3d, read_rows, transformed,
+    FORCE_BAR, FRACTAL_DIMENSION, MODEL, Measured, Model, Outcome, Run, Session, TableOf, describe, flags,
+    header, measure, read_rows, transformed,
 };
 use plots::{Axis, Key, LineStyle, Mark, MarkShape, NEUTRAL, Picture, REFERENCE, logarithmic};
 use runs::{CsvFile, Progress, Result};
 use std::path::{Path, PathBuf};
-
-use evaluation::FLAGS_3D as FLAGS;
 
 /// Transforms the 3D ensemble (solving what is not stored) and writes `fig4.csv`, `fig4.svg`, `fig4.png`.
 ///
@@ -21,8 +19,8 @@ use evaluation::FLAGS_3D as FLAGS;
 /// # Errors
 /// As [`crate::fig2`].
 pub fn fig4(run: &Run, progress: &dyn Progress) -> Result<Judged> {
-    let session = Session::open(run)?;
-    let measured = measure_3d(run, &session.store, progress)?;
+    let session = Session::open(&run.out, run.fresh)?;
+    let measured = measure(Model::Bem3d, run, &session.store, progress)?;
     let outcome = session.close(write(run, &measured)?)?;
     Ok(Judged::new(outcome, claims::of_figure("fig4", &[&measured])?))
 }
@@ -40,7 +38,7 @@ pub(crate) fn write(run: &Run, measured: &Measured) -> Result<Outcome> {
         .column("force_tilde", "1", TILDE, |p| p.1.force_tilde)
         .column("below_floor", "-", "true where some surface has fewer than 10 contact cells", |p| p.2)
         .table()?;
-    let header = describe(header(run.command("reproduce-fig4", &FLAGS)), run, &[measured]);
+    let header = describe(header(run.command("reproduce-fig4", flags(Model::Bem3d))), run, &[measured]);
     let files = curves::written(run, "fig4", &table, &header, |csv| draw(csv, &run.out))?;
     Ok(Outcome::of("fig4", files, &[measured]))
 }

@@ -31,7 +31,7 @@ const BYTES: f64 = 40.0;
 /// Files that cannot be written, lines that do not fit in memory.
 pub fn fig5(run: &Run, progress: &dyn Progress) -> Result<Judged> {
     threads_for_memory(1, BYTES * run.elements as f64, "elements", run.elements)?;
-    let session = Session::open(run)?;
+    let session = Session::open(&run.out, run.fresh)?;
     let dimensions: Vec<f64> = run
         .fractal_dimensions
         .as_ref()

@@ -2,15 +2,11 @@
 
 use crate::curves::CurveFigure;
 use crate::judged::Judged;
-use evaluation::{FLAGS_1D, Run, measure_1d};
+use evaluation::{Model, Run};
 use runs::{Progress, Result};
 
-pub(crate) const FIGURE: CurveFigure = CurveFigure {
-    name: "fig6",
-    title: "Fig. 6: stiffness over force, 1D reduction",
-    flags: &FLAGS_1D,
-    measure: measure_1d,
-};
+pub(crate) const FIGURE: CurveFigure =
+    CurveFigure { name: "fig6", title: "Fig. 6: stiffness over force, 1D reduction", model: Model::Mdr1d };
 
 /// Solves the 1D ensemble and writes `fig6.csv`, `fig6-samples.csv`, `fig6-budget.csv`, `fig6.svg`,
 /// `fig6.png`.

@@ -6,11 +6,11 @@ use crate::judged::Judged;
 use crate::{curves, words};
 use analysis::{Bootstrap, Curves, FitWindow, FittedPowerLaw, StiffnessSample, fit_power_law};
 use evaluation::{
-    FRACTAL_DIMENSION, Flag, Measured, Outcome, Run, Session, TableOf, dense_dimensions, describe, header,
-    laws, laws_within, measure_1d, measure_3d, read_rows,
+    FRACTAL_DIMENSION, Flag, Measured, Model, Outcome, Run, Session, TableOf, dense_dimensions, describe,
+    header, laws, measure, read_rows,
 };
 use plots::{Axis, Key, LineStyle, Mark, MarkShape, Picture, REFERENCE, number};
-use runs::{CsvFile, Error, Progress, Result};
+use runs::{CsvFile, Error, Progress, Result, Store};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 
@@ -45,6 +45,12 @@ pub(crate) struct Formula {
     pub style: LineStyle,
 }
 
+/// The ensembles of both models, surfaces first; what is not stored is solved.
+pub(crate) fn both(run: &Run, store: &Store, progress: &dyn Progress) -> Result<[Measured; 2]> {
+    let [solid, line] = Model::BOTH.map(|model| measure(model, run, store, progress));
+    Ok([solid?, line?])
+}
+
 /// A row of the table: a fit, why there is none, or a formula.
 #[derive(Default)]
 struct FittedRow {
@@ -64,9 +70,8 @@ struct FittedRow {
 impl FittedFigure {
     /// The figure; ensembles are solved where they are not stored.
     pub fn reproduce(&self, run: &Run, progress: &dyn Progress) -> Result<Judged> {
-        let session = Session::open(run)?;
-        let solid = measure_3d(run, &session.store, progress)?;
-        let line = measure_1d(run, &session.store, progress)?;
+        let session = Session::open(&run.out, run.fresh)?;
+        let [solid, line] = both(run, &session.store, progress)?;
         let outcome = session.close(self.write(run, &solid, &line)?)?;
         Ok(Judged::new(outcome, claims::of_figure(self.name, &[&solid, &line])?))
     }
@@ -110,27 +115,23 @@ impl FittedFigure {
 
     fn rows(&self, run: &Run, solid: &Measured, line: &Measured) -> Vec<FittedRow> {
         let of = |measured: &Measured| -> Vec<FittedRow> {
-            let own = laws(measured);
-            let lowest = own.iter().filter_map(|law| law.fit.as_ref().ok());
+            let own = laws(measured, &FitWindow::PAPER);
+            let lowest = own.iter().filter_map(|fit| fit.as_ref().ok());
             let lowest = lowest.map(|fit| fit.force_bar_min).fold(0.0, f64::max);
             let window = FitWindow { min_force_bar: lowest * (1.0 - 1e-9), ..FitWindow::PAPER };
-            let common = laws_within(measured, &window);
-            (own.into_iter().zip(common).zip(&measured.series))
-                .map(|((law, common), series)| {
-                    let (fit, note) = match law.fit {
-                        Ok(fit) => (Some(fit), None),
-                        Err(reason) => (None, Some(reason.to_string())),
-                    };
+            (own.into_iter().zip(laws(measured, &window)).zip(&measured.series))
+                .map(|((fit, common), series)| {
+                    let note = fit.as_ref().err().map(ToString::to_string);
+                    let fit = fit.ok();
                     let (value, error) = fit.as_ref().map(self.value).unzip();
+                    let law = Law::new(measured, series).ok();
                     FittedRow {
-                        model: law.model,
-                        fractal_dimension: law.fractal_dimension,
+                        model: measured.discretisation.name(),
+                        fractal_dimension: series.fractal_dimension,
                         value,
                         error: error.flatten(),
-                        half_width: Law::new(measured, series)
-                            .ok()
-                            .map(|law| (self.estimate)(&law).half_width),
-                        common: common.fit.as_ref().ok().map(self.value),
+                        half_width: law.map(|law| (self.estimate)(&law).half_width),
+                        common: common.as_ref().ok().map(self.value),
                         fit,
                         note,
                     }

@@ -2,7 +2,7 @@
 
 use crate::claim::Claim;
 use evaluation::Outcome;
-use std::ops::{Deref, DerefMut};
+use std::ops::Deref;
 
 /// The outcome of a command, with the statements of the paper that its numbers can judge.
 #[derive(Debug, Clone)]
@@ -35,11 +35,5 @@ impl Deref for Judged {
 
     fn deref(&self) -> &Outcome {
         &self.outcome
-    }
-}
-
-impl DerefMut for Judged {
-    fn deref_mut(&mut self) -> &mut Outcome {
-        &mut self.outcome
     }
 }

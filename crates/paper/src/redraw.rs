@@ -38,7 +38,7 @@ pub fn redraw(directory: &Path, beside: &Beside) -> Result<Vec<PathBuf>> {
         });
     }
     if directory.join("accuracy-cost.csv").exists() {
-        files.extend(evaluation::redraw_accuracy(directory)?.files);
+        files.extend(evaluation::redraw_accuracy(directory)?);
     }
     files.extend(evaluation::redraw_benches(directory)?);
     if directory.join("exponent.csv").exists() {

@@ -2,8 +2,9 @@
 
 use crate::claim::{Claim, claims_table, markdown, short_table, sort};
 use crate::claims;
+use crate::fitted::both;
 use crate::judged::Judged;
-use evaluation::{Flag, Measured, Outcome, Run, Session, describe, header, measure_1d, measure_3d};
+use evaluation::{Flag, Measured, Outcome, Run, Session, describe, header};
 use runs::{Progress, Result, files, write_csv};
 
 /// Judges every statement (solving what is not stored) and writes `verify.csv`, `verify.md` and the short
@@ -15,9 +16,8 @@ use runs::{Progress, Result, files, write_csv};
 /// # Errors
 /// As [`crate::fig2`] and [`crate::fig6`].
 pub fn verify(run: &Run, progress: &dyn Progress) -> Result<Judged> {
-    let session = Session::open(run)?;
-    let solid = measure_3d(run, &session.store, progress)?;
-    let line = measure_1d(run, &session.store, progress)?;
+    let session = Session::open(&run.out, run.fresh)?;
+    let [solid, line] = both(run, &session.store, progress)?;
     let (outcome, claims) = write(run, &solid, &line)?;
     Ok(Judged::new(session.close(outcome)?, claims))
 }

@@ -56,12 +56,6 @@ pub(crate) fn flag<'a>(file: &'a CsvFile, name: &str) -> Option<&'a str> {
     command.split_whitespace().skip_while(|w| *w != name).nth(1)
 }
 
-/// A table in Markdown: its two first lines, and the cells of each row.
-pub(crate) fn table<const N: usize>(head: &str, rows: impl IntoIterator<Item = [String; N]>) -> String {
-    let row = |cells: [String; N]| format!("| {} |\n", cells.map(|c| c.replace('|', "\\|")).join(" | "));
-    format!("{head}\n") + &rows.into_iter().map(row).collect::<String>()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

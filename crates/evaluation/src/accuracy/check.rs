@@ -4,13 +4,13 @@ use super::random_case::{CaseJob, FINER, REFERENCE, RandomCase, STRATA, stratum}
 use crate::header::header;
 use crate::limits::{self, within};
 use crate::outcome::Outcome;
+use crate::session::Session;
 use crate::table_of::TableOf;
 use crate::tables::{FORCE_BAR, FRACTAL_DIMENSION};
 use analysis::{Table, binomial_test};
 use contact_model::never;
-use runs::{Error, JobList, Progress, Result, Store, Threads, collect, files, run_stored, write_csv};
+use runs::{Error, JobList, Progress, Result, Threads, collect, run_stored, write_csv};
 use std::path::Path;
-use std::time::Instant;
 
 /// Share of the true errors that a budget is to hold, and the level of the exact binomial test of it.
 const COVERED: f64 = 0.95;
@@ -36,6 +36,12 @@ pub struct Stratum {
 }
 
 impl Stratum {
+    /// The range and its hits in words.
+    fn words(&self) -> String {
+        let ((low, high), d) = (self.loads, self.fractal_dimension);
+        format!("D_f {d:?}, F_bar {low:?} to {high:?}: {} of {}", self.inside, self.cases)
+    }
+
     /// Two-sided p-value of "95 % of the errors are inside".
     pub fn p_value(&self) -> f64 {
         binomial_test(self.inside, self.cases, COVERED)
@@ -83,13 +89,7 @@ impl std::fmt::Display for Coverage {
             self.median,
             self.strata.len()
         )?;
-        let rejected: Vec<String> = self
-            .rejected()
-            .map(|s| {
-                let ((low, high), d) = (s.loads, s.fractal_dimension);
-                format!("D_f {d:?}, F_bar {low:?} to {high:?}: {} of {}", s.inside, s.cases)
-            })
-            .collect();
+        let rejected: Vec<String> = self.rejected().map(Stratum::words).collect();
         if rejected.is_empty() {
             write!(f, "none")
         } else {
@@ -119,13 +119,10 @@ pub fn budget_check(
     out: &Path,
     progress: &dyn Progress,
 ) -> Result<(Outcome, Coverage)> {
-    let start = Instant::now();
     let jobs = jobs(cases, seed)?;
-    files::create_directory(out)?;
-    files::clean(out)?;
-    let store = Store::open(out, false)?;
+    let session = Session::open(out, false)?;
     let what = format!("{cases} random cases against references");
-    let found = collect(run_stored(&what, &jobs, &store, Threads::all(threads), progress, &never))?;
+    let found = collect(run_stored(&what, &jobs, &session.store, Threads::all(threads), progress, &never))?;
     let coverage = judge(&found);
     let path = out.join("budget-check.csv");
     let mut header = header(format!("cargo xtask budget-check --cases {cases} --seed {seed}"))
@@ -135,8 +132,7 @@ pub fn budget_check(
     write_csv(&path, &table(&found)?, &header)?;
     let mut outcome = Outcome::new("budget-check");
     outcome.files.push(path);
-    outcome.seconds = start.elapsed().as_secs_f64();
-    Ok((outcome, coverage))
+    Ok((session.close(outcome)?, coverage))
 }
 
 /// What [`budget_check`] solves, case by case.
@@ -158,14 +154,8 @@ fn jobs(cases: usize, seed: u64) -> Result<Vec<CaseJob>> {
 /// One line for each stratum.
 fn strata(coverage: &Coverage) -> Vec<String> {
     let line = |s: &Stratum| {
-        let ((low, high), d) = (s.loads, s.fractal_dimension);
-        format!(
-            "D_f {d:?}, F_bar {low:?} to {high:?}: {} of {} inside, p = {:.2}, median error over budget {:.2}",
-            s.inside,
-            s.cases,
-            s.p_value(),
-            s.median
-        )
+        let (words, p) = (s.words(), s.p_value());
+        format!("{words} inside, p = {p:.2}, median error over budget {:.2}", s.median)
     };
     coverage.strata.iter().map(line).collect()
 }
@@ -224,7 +214,7 @@ fn table(cases: &[RandomCase]) -> Result<Table> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use runs::{Job, Silent};
+    use runs::{Job, Silent, Store};
     use std::sync::atomic::{AtomicUsize, Ordering};
 
     fn made(error: f64, budget: f64) -> RandomCase {

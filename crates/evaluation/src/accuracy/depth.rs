@@ -2,6 +2,7 @@
 
 use super::row::Way;
 use super::sizes::StudySizes;
+use crate::run::distinct;
 use bem3d::Method;
 
 /// How much is solved.
@@ -83,9 +84,9 @@ impl StudySizes {
             } else if self.grids.contains(&cells) {
                 tolerances.extend(self.tolerances);
             }
-            tolerances.sort_by(|a, b| b.total_cmp(a));
-            tolerances.dedup_by(|a, b| a.total_cmp(b).is_eq());
-            all.extend(tolerances.into_iter().map(|tolerance| (cells, tolerance, Method::Auto)));
+            all.extend(
+                distinct(tolerances).into_iter().rev().map(|tolerance| (cells, tolerance, Method::Auto)),
+            );
             if cells == self.ladder {
                 all.extend([Method::Iterative, Method::SingleLevel].map(|m| (cells, OPERATORS, m)));
             }

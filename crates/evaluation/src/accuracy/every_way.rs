@@ -5,7 +5,6 @@ use super::pressure;
 use super::problem::{Family, StudyProblem};
 use super::row::{Answer, Formula, Parts, StudyRow, Way, measure, unless_stopped};
 use super::sizes::{Order, Quantity, StudySizes};
-use analysis::observed_power;
 use analytic::Hertz;
 use analytic::flat_punch::SQUARE_STIFFNESS_UNCERTAINTY;
 use bem3d::{Bem3d, Method};
@@ -90,7 +89,7 @@ fn compare(problem: &StudyProblem, sizes: &StudySizes, rows: &mut [StudyRow], or
         };
         let Some(found) = limits[q] else { continue };
         let errors: Vec<(f64, f64)> = values.iter().map(|&(h, v)| (h, found.distance(v))).collect();
-        orders.push(order(problem, q, Some(found), known.is_some(), &errors));
+        orders.push(order(problem, Quantity::ALL[q], Some(found), known.is_some(), &errors));
     }
     let pressures: Vec<(f64, f64)> = tight
         .iter()
@@ -98,7 +97,13 @@ fn compare(problem: &StudyProblem, sizes: &StudySizes, rows: &mut [StudyRow], or
         .filter_map(|(i, a)| Some((cell(i), pressure_error(problem, a, tight.last()?)?)))
         .collect();
     if !pressures.is_empty() {
-        orders.push(order(problem, 3, None, problem.key.family == Family::Sphere, &pressures));
+        orders.push(order(
+            problem,
+            Quantity::Pressure,
+            None,
+            problem.key.family == Family::Sphere,
+            &pressures,
+        ));
     }
     for i in 0..rows.len() {
         let row = &rows[i];
@@ -148,7 +153,7 @@ fn pressure_error(problem: &StudyProblem, answer: &Answer, finest: &Answer) -> O
 
 fn order(
     problem: &StudyProblem,
-    q: usize,
+    quantity: Quantity,
     limit: Option<Limit>,
     exact: bool,
     errors: &[(f64, f64)],
@@ -157,13 +162,5 @@ fn order(
     // slope.
     let last = errors.last().map_or(0.0, |e| e.0);
     let far: Vec<(f64, f64)> = errors.iter().copied().filter(|e| exact || e.0 > 1.9 * last).collect();
-    let extrapolated = limit.and_then(|l| l.order);
-    Order {
-        problem: problem.key,
-        quantity: Quantity::ALL[q],
-        power: extrapolated.or_else(|| observed_power(far)),
-        established: exact || extrapolated.is_some(),
-        limit,
-        errors: [errors.first().map(|e| e.1), errors.last().map(|e| e.1)],
-    }
+    Order::new(problem.key, quantity, limit, exact, errors, &far)
 }

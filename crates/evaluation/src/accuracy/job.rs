@@ -6,7 +6,7 @@ use super::means::{ClosedForm, EnsembleMeans, closed_forms, discretisations, ens
 use super::problem::{CELLS_PER_WAVE, DIMENSIONS, LOADS, PAPER_CELLS, RADIUS, StudyProblem};
 use super::row::{Formula, StudyRow, Way};
 use super::sizes::{Order, StudySizes};
-use crate::realisation::{Discretisation, FORMAT, Realisation};
+use crate::realisation::{Discretisation, FORMAT, RealisationJob};
 use contact_model::Stop;
 use runs::{Error, Job, JobList, Result, ResultKind};
 use serde::{Deserialize, Serialize};
@@ -23,7 +23,8 @@ pub(super) fn cold_cost(discretisation: Discretisation, force_bar: f64) -> u64 {
     // Without a load before it, a rough surface takes as long as a smooth one: about what the prediction for
     // sweeps says in the middle of the fractal dimensions.
     let (fractal_dimension, forces) = (2.45, [force_bar].into());
-    Realisation { discretisation, fractal_dimension, index: 0, seed: 0, forces }.cost()
+    let models = Arc::default();
+    RealisationJob { discretisation, fractal_dimension, index: 0, seed: 0, forces, models }.cost()
 }
 
 /// What is solved together.
@@ -114,7 +115,7 @@ impl Job for StudyJob {
             StudyTask::Ensemble(d, discretisation) => format!(
                 "ensemble\nsurfaces {}\nmaster_seed {seed}\n{}",
                 sizes.surfaces,
-                job(*discretisation, *d, 0, *seed).key(),
+                job(*discretisation, *d, 0, *seed, &Arc::default()).key(),
             ),
             StudyTask::ClosedForms(d) => {
                 format!("closed forms\nfractal_dimension {d:?}\nforce_bar {LOADS:?}\n")
@@ -152,7 +153,7 @@ impl Job for StudyJob {
                 self.ways().iter().map(cost).sum()
             }
             StudyTask::Ensemble(d, discretisation) => {
-                job(*discretisation, *d, 0, self.seed).cost() * self.sizes.surfaces as u64
+                job(*discretisation, *d, 0, self.seed, &Arc::default()).cost() * self.sizes.surfaces as u64
             }
             StudyTask::ClosedForms(_) => 1,
         }

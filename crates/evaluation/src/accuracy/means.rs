@@ -1,16 +1,16 @@
 //! Means over ensembles: how far surfaces scatter, and what lines and closed forms are worth as an answer for
 //! the mean.
 
-use super::limit::{Limit, limit};
+use super::limit::limit;
 use super::problem::{DIMENSIONS, Family, LOADS, ProblemKey};
 use super::row::{Answer, Formula, Parts, StudyRow, Way, measure, unless_stopped};
 use super::sizes::{Order, Quantity, StudySizes};
-use crate::realisation::{Discretisation, Models, Realisation};
-use analysis::{Statistics, observed_power, statistics};
+use crate::realisation::{Discretisation, Models, RealisationJob};
+use analysis::{Statistics, statistics};
 use analytic::PowerLaw;
 use analytic::flat_punch::SQUARE_STIFFNESS;
 use contact_model::{Load, PAPER_STIFFNESS_FACTOR, Scene, SelfAffine, Status, Stop, Surface, never};
-use runs::{Error, Result, cpu_seconds, on_one_thread};
+use runs::{Error, Job as _, Result, cpu_seconds, on_one_thread};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -63,9 +63,15 @@ pub(crate) fn means(
     rows
 }
 
-pub(crate) fn job(discretisation: Discretisation, d: f64, index: usize, seed: u64) -> Realisation {
-    let seed = surface_gen::surface_seed(seed, index as u64);
-    Realisation { discretisation, fractal_dimension: d, index, seed, forces: Arc::from(LOADS) }
+pub(crate) fn job(
+    discretisation: Discretisation,
+    d: f64,
+    index: usize,
+    seed: u64,
+    models: &Arc<Models>,
+) -> RealisationJob {
+    let (seed, models) = (surface_gen::surface_seed(seed, index as u64), Arc::clone(models));
+    RealisationJob { discretisation, fractal_dimension: d, index, seed, forces: Arc::from(LOADS), models }
 }
 
 /// Solves an ensemble; asks `stop` between the surfaces.
@@ -76,7 +82,7 @@ pub(crate) fn ensemble(
     seed: u64,
     stop: Stop<'_>,
 ) -> Result<EnsembleMeans> {
-    let models = Models::default();
+    let models = Arc::default();
     let mut answer = Answer { status: Status::Converged.as_str().to_owned(), ..Answer::default() };
     let mut k: Vec<Vec<f64>> = vec![Vec::new(); LOADS.len()];
     let mut approach = k.clone();
@@ -85,7 +91,7 @@ pub(crate) fn ensemble(
         unless_stopped(stop)?;
         let (result, taken) = on_one_thread(|| {
             let start = cpu_seconds();
-            let result = job(discretisation, d, index, seed).solve_among(&models, &never);
+            let result = job(discretisation, d, index, seed, &models).solve(&never);
             (result, cpu_seconds().zip(start).map(|(end, start)| end - start))
         });
         seconds = seconds.zip(taken).map(|(all, one)| all + one);
@@ -125,7 +131,9 @@ fn at_load(
     let deviation = scatter * (solids.last().map_or(1.0, |s| s.1.count as f64)).sqrt();
     let sixty = deviation / PAPER_SURFACES.sqrt() / finest.mean;
     let problem = ProblemKey::rough(Family::Mean, d, LOADS[j]);
-    orders.push(order(problem, reference, &sequence));
+    let errors: Vec<(f64, f64)> = sequence.iter().map(|&(h, v)| (h, reference.distance(v))).collect();
+    let far = &errors[..errors.len() - 1];
+    orders.push(Order::new(problem, Quantity::Stiffness, Some(reference), false, &errors, far));
     reference.uncertainty = reference.uncertainty.hypot(scatter);
     let mut rows = Vec::new();
     let mut add = |way: Way, surfaces: usize, answer: Answer, own: Option<f64>| {
@@ -173,18 +181,4 @@ pub(crate) fn closed_forms(d: f64, stop: Stop<'_>) -> Result<Vec<ClosedForm>> {
         }
     }
     Ok(all)
-}
-
-fn order(problem: ProblemKey, limit: Limit, sequence: &[(f64, f64)]) -> Order {
-    let errors: Vec<(f64, f64)> = sequence.iter().map(|&(h, v)| (h, limit.distance(v))).collect();
-    Order {
-        problem,
-        quantity: Quantity::Stiffness,
-        power: limit
-            .order
-            .or_else(|| observed_power(errors.iter().copied().take(errors.len().saturating_sub(1)))),
-        established: limit.order.is_some(),
-        limit: Some(limit),
-        errors: [errors.first().map(|e| e.1), errors.last().map(|e| e.1)],
-    }
 }

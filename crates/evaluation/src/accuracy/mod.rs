@@ -25,15 +25,15 @@ mod text;
 pub use check::{Coverage, budget_check, budget_check_jobs};
 pub use depth::Depth;
 pub use job::accuracy_cost_jobs;
-pub use plan::{AccuracyPlan, Requirements, plan, settle};
+pub use plan::{AccuracyPlan, plan, settle};
 
 use crate::header::header;
 use crate::outcome::Outcome;
+use crate::session::Session;
 use contact_model::ContactModel as _;
-use runs::{Progress, Result, Store, files, write_csv};
+use runs::{Progress, Result, files, write_csv};
 use sizes::StudySizes;
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 
 /// Name of its files.
 const NAME: &str = "accuracy-cost";
@@ -64,11 +64,8 @@ fn with_sizes(
     (out, fresh): (&Path, bool),
     progress: &dyn Progress,
 ) -> Result<Outcome> {
-    let start = Instant::now();
-    files::create_directory(out)?;
-    files::clean(out)?;
-    let store = Store::open(out, fresh)?;
-    let study = study::study(sizes, seed, &store, progress)?;
+    let session = Session::open(out, fresh)?;
+    let study = study::study(sizes, seed, &session.store, progress)?;
     let header = header(command)
         .with_sources(bem3d::Bem3d::default().sources())
         .with_sources(mdr1d::Mdr1d::default().sources())
@@ -90,21 +87,15 @@ fn with_sizes(
     outcome.files = vec![csv.clone(), order.clone()];
     outcome.files.extend(redraw(&csv, &order, out)?);
     outcome.not_converged = study.rows.iter().filter(|r| !r.converged()).count();
-    outcome.seconds = start.elapsed().as_secs_f64();
-    Ok(outcome)
+    session.close(outcome)
 }
 
 /// Draws the picture and writes the text again from the tables that [`accuracy_cost`] left in a directory.
 ///
 /// # Errors
 /// Tables that cannot be read, files that cannot be written.
-pub fn redraw_accuracy(out: &Path) -> Result<Outcome> {
-    let start = Instant::now();
-    let [csv, order] = [format!("{NAME}.csv"), "accuracy-order.csv".to_owned()].map(|name| out.join(name));
-    let mut outcome = Outcome::new(NAME);
-    outcome.files = redraw(&csv, &order, out)?;
-    outcome.seconds = start.elapsed().as_secs_f64();
-    Ok(outcome)
+pub fn redraw_accuracy(out: &Path) -> Result<Vec<PathBuf>> {
+    redraw(&out.join(format!("{NAME}.csv")), &out.join("accuracy-order.csv"), out)
 }
 
 fn redraw(csv: &Path, order: &Path, out: &Path) -> Result<Vec<PathBuf>> {
@@ -118,7 +109,7 @@ fn redraw(csv: &Path, order: &Path, out: &Path) -> Result<Vec<PathBuf>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use runs::{CsvFile, JobList as _, Silent};
+    use runs::{CsvFile, JobList as _, Silent, Store};
     use std::sync::atomic::{AtomicUsize, Ordering};
 
     /// A quarter of the finest quick grid: a second of work.
@@ -161,7 +152,7 @@ mod tests {
             }
         }
         let drawn = std::fs::read(dir.path().join("accuracy-cost.png")).unwrap();
-        assert_eq!(redraw_accuracy(dir.path()).unwrap().files.len(), 3);
+        assert_eq!(redraw_accuracy(dir.path()).unwrap().len(), 3);
         assert!(std::fs::read(dir.path().join("accuracy-cost.png")).unwrap() == drawn);
         let text = std::fs::read_to_string(dir.path().join("accuracy-cost.md")).unwrap();
         assert!(text.contains("## Which part dominates") && !text.contains("NaN") && !text.contains("inf"));

@@ -1,5 +1,6 @@
 //! The picture: error of k over seconds, one panel for each load.
 
+use crate::run::distinct;
 use crate::table_of::read_rows;
 use plots::{Axis, Key, Legend, LineStyle, Mark, MarkShape, NEUTRAL, Panels, Picture, color, extent};
 use runs::{CsvFile, Result};
@@ -52,10 +53,7 @@ pub(crate) fn read(csv: &Path) -> Result<Vec<AccuracyPoint>> {
 
 /// Different values, increasing.
 pub(crate) fn values(points: &[AccuracyPoint], of: impl Fn(&AccuracyPoint) -> Option<f64>) -> Vec<f64> {
-    let mut all: Vec<f64> = points.iter().filter_map(of).collect();
-    all.sort_by(f64::total_cmp);
-    all.dedup_by(|a, b| a.total_cmp(b).is_eq());
-    all
+    distinct(points.iter().filter_map(of))
 }
 
 pub(crate) fn draw(csv: &Path, out: &Path, name: &str) -> Result<Vec<PathBuf>> {

@@ -5,11 +5,12 @@
 //! settings.
 
 use crate::budget::{self, Budgeted};
-use crate::measured::{COARSER_SURFACES, Measured, ensemble_jobs, measure_1d, measure_3d};
+use crate::measured::{COARSER_SURFACES, ensemble_jobs, measure};
+use crate::realisation::Model;
 use crate::run::{Request, Run};
 use analysis::{AccuracyTarget, GridTrial, first_grid};
 use runs::amounts::duration;
-use runs::{Error, Progress, Result, Store, files};
+use runs::{Error, Job as _, Progress, Result, Store, files};
 
 /// Surfaces and lines of a pilot: their scatter is itself known to a fifth, and to a tenth.
 const PILOT_SURFACES: usize = 16;
@@ -17,29 +18,12 @@ const PILOT_LINES: usize = 64;
 /// Grids and lines to choose from.
 const GRIDS: [usize; 7] = [65, 129, 257, 513, 1025, 2049, 4097];
 const LINES: [usize; 6] = [1 << 12, 1 << 14, 1 << 16, 1 << 18, 1 << 20, 1 << 22];
-/// Cost over cells a side (`Realisation::cost`), and over elements.
+/// Cost over cells a side (`RealisationJob::cost`), and over elements.
 const POWERS: (f64, f64) = (2.2, 1.1);
 /// Most surfaces that are planned for.
 const MOST_SURFACES: f64 = *crate::limits::COUNT.end() as f64;
 /// More surfaces than the scatter found asks for, by this factor.
 const MORE: f64 = 1.1;
-
-/// Which ensembles a command needs.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Requirements {
-    /// Figs. 2, 4.
-    pub solid: bool,
-    /// Fig. 6.
-    pub line: bool,
-}
-
-impl Requirements {
-    /// Lines first: they cost little and leave the time to surfaces.
-    fn models(self) -> impl Iterator<Item = Model> {
-        let both = [(self.line, Model::Mdr1d), (self.solid, Model::Bem3d)];
-        both.into_iter().filter_map(|(asked, model)| asked.then_some(model))
-    }
-}
 
 /// Settings that should meet a target.
 #[derive(Debug, Clone, PartialEq)]
@@ -64,7 +48,7 @@ pub struct AccuracyPlan {
 /// positive, or a target beyond the budget, with what the last grid leaves; what the pilot's solves refuse.
 pub fn plan(
     request: &Request,
-    requirements: Requirements,
+    models: &[Model],
     target: AccuracyTarget,
     progress: &dyn Progress,
 ) -> Result<AccuracyPlan> {
@@ -91,8 +75,9 @@ pub fn plan(
     files::create_directory(&run.out)?;
     let store = Store::open(&run.out, run.fresh)?;
     let mut plan = AccuracyPlan { run, seconds: 0.0, lines: Vec::new() };
-    for model in requirements.models() {
-        model.choose(&mut plan, target, &store, progress)?;
+    // Lines first: they cost little and leave the time to surfaces.
+    for &model in models.iter().rev() {
+        choose(model, &mut plan, target, &store, progress)?;
     }
     Ok(plan)
 }
@@ -106,23 +91,23 @@ pub fn plan(
 /// What the solver refuses.
 pub fn settle(
     mut plan: AccuracyPlan,
-    requirements: Requirements,
+    models: &[Model],
     target: AccuracyTarget,
     progress: &dyn Progress,
 ) -> Result<AccuracyPlan> {
     let store = Store::open(&plan.run.out, false)?;
-    for model in requirements.models() {
+    for &model in models.iter().rev() {
         loop {
-            let all = budget::budgets(&model.measure(&plan.run, &store, progress)?);
-            let count = model.count(&plan.run);
+            let all = budget::budgets(&measure(model, &plan.run, &store, progress)?);
+            let (grid, count, _) = plan.run.ensemble(model);
             let wanted = surfaces_wanted(&all, target.share, count);
-            let seconds = (wanted - count as f64) * model.seconds_of_one(&plan.run);
+            let seconds = (wanted - count as f64) * seconds_of_one(model, &plan.run);
             if wanted <= count as f64 || wanted > MOST_SURFACES || plan.seconds + seconds > target.seconds {
                 break;
             }
-            plan.run = model.sized(&plan.run, model.size(&plan.run), wanted as usize);
+            plan.run = plan.run.with_sizes(model, grid.size(), wanted as usize);
             plan.seconds += seconds;
-            plan.lines.push(format!("{}, for rows that scatter more", model.words(&plan.run)));
+            plan.lines.push(format!("{}, for rows that scatter more", words(model, &plan.run)));
         }
     }
     Ok(plan)
@@ -150,119 +135,87 @@ fn above_floor(all: &[Budgeted]) -> impl Iterator<Item = &Budgeted> {
 struct Pilot {
     /// Surfaces that its scatter asks for.
     surfaces: f64,
-    /// D_f and F_bar of the mean of which grid and tolerance leave most.
-    worst: (f64, f64),
+    /// D_f and F_bar of the mean of which grid and tolerance leave most; `None` where coarser grids say
+    /// nothing of any.
+    worst: Option<(f64, f64)>,
 }
 
-/// The model of an ensemble.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Model {
-    Bem3d,
-    Mdr1d,
+/// Chooses size and number of surfaces of a model in a plan, and adds its time.
+fn choose(
+    model: Model,
+    plan: &mut AccuracyPlan,
+    target: AccuracyTarget,
+    store: &Store,
+    progress: &dyn Progress,
+) -> Result<()> {
+    let (grids, power, count): (&[usize], f64, usize) = match model {
+        Model::Bem3d => (&GRIDS, POWERS.0, PILOT_SURFACES),
+        Model::Mdr1d => (&LINES, POWERS.1, PILOT_LINES),
+    };
+    let left = AccuracyTarget { seconds: target.seconds - plan.seconds, ..target };
+    let mut spent = 0.0;
+    let trial = |size: usize| -> Result<GridTrial<Pilot>> {
+        let run = plan.run.with_sizes(model, size, count);
+        let mut all = budget::budgets(&measure(model, &run, store, progress)?);
+        let (seconds, each) = (seconds(model, &run), seconds_of_one(model, &run));
+        spent += seconds;
+        let left_by_grid = |b: &Budgeted| {
+            let relative = (b.budget.algebraic + b.budget.discretisation?) / b.value;
+            Some((relative, (b.fractal_dimension, b.force_bar?)))
+        };
+        let worst = above_floor(&all).filter_map(left_by_grid).max_by(|a, b| a.0.total_cmp(&b.0));
+        let surfaces = surfaces_wanted(&all, target.share, count);
+        for b in &mut all {
+            b.budget.discretisation = Some(0.0);
+        }
+        let least = surfaces_wanted(&all, target.share, count);
+        let rest = |surfaces: f64| (surfaces - count as f64) * each;
+        let whole = if surfaces <= MOST_SURFACES { rest(surfaces) } else { f64::INFINITY };
+        let (error, worst) = worst.unzip();
+        let kept = Pilot { surfaces, worst };
+        Ok(GridTrial { error, seconds, rest: whole, least_rest: rest(least), kept })
+    };
+    let (size, trial) = first_grid(grids, left, power, trial)?.map_err(|none| {
+        let grid = |size: usize| match model {
+            Model::Bem3d => format!("{size} cells a side"),
+            Model::Mdr1d => format!("{size} elements"),
+        };
+        let place = |pilot: &Pilot| {
+            let words = |(d, force_bar)| format!("D_f = {d:?}, F_bar = {force_bar:.1e}");
+            pilot.worst.map_or_else(String::new, words)
+        };
+        let expected = format!("less: {}", none.words(left.seconds, &grid, &place, &duration));
+        Error::parameter("accuracy", format!("{:.3} %", 100.0 * target.share), expected)
+    })?;
+    let seconds = spent + trial.rest;
+    plan.run = plan.run.with_sizes(model, size, trial.kept.surfaces as usize);
+    plan.seconds += seconds;
+    let (words, percent) = (words(model, &plan.run), 100.0 * target.share);
+    plan.lines
+        .push(format!("{words} should give each mean to {percent:.2} % in about {}", duration(seconds)));
+    Ok(())
 }
 
-impl Model {
-    /// Chooses size and number of surfaces in a plan, and adds its time.
-    fn choose(
-        self,
-        plan: &mut AccuracyPlan,
-        target: AccuracyTarget,
-        store: &Store,
-        progress: &dyn Progress,
-    ) -> Result<()> {
-        let (grids, power, count): (&[usize], f64, usize) = match self {
-            Self::Bem3d => (&GRIDS, POWERS.0, PILOT_SURFACES),
-            Self::Mdr1d => (&LINES, POWERS.1, PILOT_LINES),
-        };
-        let left = AccuracyTarget { seconds: target.seconds - plan.seconds, ..target };
-        let mut spent = 0.0;
-        let trial = |size: usize| -> Result<GridTrial<Pilot>> {
-            let run = self.sized(&plan.run, size, count);
-            let mut all = budget::budgets(&self.measure(&run, store, progress)?);
-            let (seconds, each) = (self.seconds(&run), self.seconds_of_one(&run));
-            spent += seconds;
-            let left_by_grid = |b: &Budgeted| {
-                let relative = (b.budget.algebraic + b.budget.discretisation?) / b.value;
-                Some((relative, (b.fractal_dimension, b.force_bar?)))
-            };
-            let worst = above_floor(&all).filter_map(left_by_grid).max_by(|a, b| a.0.total_cmp(&b.0));
-            let surfaces = surfaces_wanted(&all, target.share, count);
-            for b in &mut all {
-                b.budget.discretisation = Some(0.0);
-            }
-            let least = surfaces_wanted(&all, target.share, count);
-            let rest = |surfaces: f64| (surfaces - count as f64) * each;
-            let whole = if surfaces <= MOST_SURFACES { rest(surfaces) } else { f64::INFINITY };
-            let kept = Pilot { surfaces, worst: worst.map_or((0.0, 0.0), |worst| worst.1) };
-            let error = worst.map(|worst| worst.0);
-            Ok(GridTrial { error, seconds, rest: whole, least_rest: rest(least), kept })
-        };
-        let (size, trial) = first_grid(grids, left, power, trial)?.map_err(|none| {
-            let grid = |size: usize| match self {
-                Self::Bem3d => format!("{size} cells a side"),
-                Self::Mdr1d => format!("{size} elements"),
-            };
-            let place = |pilot: &Pilot| format!("D_f = {:?}, F_bar = {:.1e}", pilot.worst.0, pilot.worst.1);
-            let expected = format!("less: {}", none.words(left.seconds, &grid, &place, &duration));
-            Error::parameter("accuracy", format!("{:.3} %", 100.0 * target.share), expected)
-        })?;
-        let seconds = spent + trial.rest;
-        plan.run = self.sized(&plan.run, size, trial.kept.surfaces as usize);
-        plan.seconds += seconds;
-        let (words, percent) = (self.words(&plan.run), 100.0 * target.share);
-        plan.lines
-            .push(format!("{words} should give each mean to {percent:.2} % in about {}", duration(seconds)));
-        Ok(())
-    }
+/// Predicted seconds of all surfaces of a model, coarser grids included.
+fn seconds(model: Model, run: &Run) -> f64 {
+    let jobs = ensemble_jobs(run, &[model]);
+    jobs.iter().map(|job| 1e-3 * job.cost() as f64).sum::<f64>() / run.threads.max(1) as f64
+}
 
-    fn measure(self, run: &Run, store: &Store, progress: &dyn Progress) -> Result<Measured> {
-        match self {
-            Self::Bem3d => measure_3d(run, store, progress),
-            Self::Mdr1d => measure_1d(run, store, progress),
+/// Those of one surface more.
+fn seconds_of_one(model: Model, run: &Run) -> f64 {
+    let size = run.ensemble(model).0.size();
+    let [one, none] = [1, 0].map(|more| run.with_sizes(model, size, COARSER_SURFACES + more));
+    seconds(model, &one) - seconds(model, &none)
+}
+
+fn words(model: Model, run: &Run) -> String {
+    let Run { cells, surfaces, elements, lines, tolerance, .. } = run;
+    match model {
+        Model::Bem3d => {
+            format!("bem3d: {surfaces} surfaces of {cells} cells a side, tolerance {tolerance:.0e}")
         }
-    }
-
-    /// Predicted seconds of all surfaces of a run, coarser grids included.
-    fn seconds(self, run: &Run) -> f64 {
-        let jobs = ensemble_jobs(run, self == Self::Bem3d, self == Self::Mdr1d);
-        jobs.iter().map(|job| 1e-3 * job.cost() as f64).sum::<f64>() / run.threads.max(1) as f64
-    }
-
-    /// Those of one surface more.
-    fn seconds_of_one(self, run: &Run) -> f64 {
-        let [one, none] = [1, 0].map(|more| self.sized(run, self.size(run), COARSER_SURFACES + more));
-        self.seconds(&one) - self.seconds(&none)
-    }
-
-    fn sized(self, run: &Run, size: usize, count: usize) -> Run {
-        match self {
-            Self::Bem3d => Run { cells: size, surfaces: count, ..run.clone() },
-            Self::Mdr1d => Run { elements: size, lines: count, ..run.clone() },
-        }
-    }
-
-    fn size(self, run: &Run) -> usize {
-        match self {
-            Self::Bem3d => run.cells,
-            Self::Mdr1d => run.elements,
-        }
-    }
-
-    fn count(self, run: &Run) -> usize {
-        match self {
-            Self::Bem3d => run.surfaces,
-            Self::Mdr1d => run.lines,
-        }
-    }
-
-    fn words(self, run: &Run) -> String {
-        let Run { cells, surfaces, elements, lines, tolerance, .. } = run;
-        match self {
-            Self::Bem3d => {
-                format!("bem3d: {surfaces} surfaces of {cells} cells a side, tolerance {tolerance:.0e}")
-            }
-            Self::Mdr1d => format!("mdr1d: {lines} lines of {elements} elements"),
-        }
+        Model::Mdr1d => format!("mdr1d: {lines} lines of {elements} elements"),
     }
 }
 

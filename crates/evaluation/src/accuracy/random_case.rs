@@ -3,13 +3,14 @@
 use super::job::cold_cost;
 use crate::budget::algebraic;
 use crate::measured::COARSER_SURFACES;
-use crate::realisation::{Discretisation, FORMAT, Realisation};
+use crate::realisation::{Discretisation, FORMAT, RealisationJob};
 use crate::run::FRACTAL_DIMENSIONS;
 use crate::sample::{FLOOR_CELLS, Sample};
 use analysis::{mean_grid_error, relative_differences};
 use contact_model::Stop;
 use runs::{Error, Job, Result, ResultKind};
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 use surface_gen::surface_seed;
 
 /// Number of the format of stored cases. Raise it when [`RandomCase`] changes, or how cases are drawn and
@@ -220,8 +221,8 @@ fn solve(
     force_bar: f64,
     stop: Stop<'_>,
 ) -> Result<Sample> {
-    let job =
-        Realisation { discretisation, fractal_dimension: d, index: 0, seed, forces: [force_bar].into() };
+    let (forces, models) = ([force_bar].into(), Arc::default());
+    let job = RealisationJob { discretisation, fractal_dimension: d, index: 0, seed, forces, models };
     let result = job.solve(stop)?;
     result.samples.into_iter().next().ok_or_else(|| Error::parameter("cases", force_bar, "a load"))
 }

@@ -2,6 +2,7 @@
 
 use super::limit::Limit;
 use super::problem::ProblemKey;
+use analysis::observed_power;
 use serde::{Deserialize, Serialize};
 
 /// StudySizes of a study.
@@ -62,4 +63,27 @@ pub(crate) struct Order {
     pub limit: Option<Limit>,
     /// Relative error on the coarsest and on the finest grid.
     pub errors: [Option<f64>; 2],
+}
+
+impl Order {
+    /// From the errors (cell, error) of a sequence, coarsest first; without an established order those that
+    /// are `far` from the limit show the slope.
+    pub fn new(
+        problem: ProblemKey,
+        quantity: Quantity,
+        limit: Option<Limit>,
+        exact: bool,
+        errors: &[(f64, f64)],
+        far: &[(f64, f64)],
+    ) -> Self {
+        let extrapolated = limit.and_then(|l| l.order);
+        Self {
+            problem,
+            quantity,
+            power: extrapolated.or_else(|| observed_power(far.iter().copied())),
+            established: exact || extrapolated.is_some(),
+            limit,
+            errors: [errors.first().map(|e| e.1), errors.last().map(|e| e.1)],
+        }
+    }
 }

@@ -1,7 +1,7 @@
 //! The text: what it takes, when less is enough, which part dominates. Written from the tables.
 
 use super::picture::{AccuracyPoint, TARGETS, read, values};
-use crate::table_of::read_rows;
+use crate::table_of::{markdown_rows, read_rows};
 use runs::{CsvFile, Result};
 use serde::Deserialize;
 use std::path::Path;
@@ -44,8 +44,12 @@ fn percent(v: f64) -> String {
     }
 }
 
+fn or_dash<T>(v: Option<T>, words: impl Fn(T) -> String) -> String {
+    v.map_or_else(|| "-".to_owned(), words)
+}
+
 fn maybe(v: Option<f64>) -> String {
-    v.map_or_else(|| "-".to_owned(), percent)
+    or_dash(v, percent)
 }
 
 fn seconds(v: Option<f64>) -> String {
@@ -68,10 +72,11 @@ fn problems<'a>(points: &'a [AccuracyPoint], family: &str) -> Vec<&'a AccuracyPo
     all
 }
 
-fn label(p: &AccuracyPoint) -> String {
+/// D_f and F_bar, or the name of a body.
+fn label(p: &AccuracyPoint) -> [String; 2] {
     match (p.fractal_dimension, p.force_bar) {
-        (Some(d), Some(f)) => format!("{d:?} | {f:?}"),
-        _ => format!("{} | -", p.family),
+        (Some(d), Some(f)) => [d, f].map(|v| format!("{v:?}")),
+        _ => [p.family.clone(), "-".to_owned()],
     }
 }
 
@@ -147,57 +152,46 @@ fn short(points: &[AccuracyPoint]) -> String {
 }
 
 fn takes(points: &[AccuracyPoint]) -> String {
-    let mut text = String::new();
-    for (family, word) in
-        [("sphere", "exact"), ("square", "exact"), ("band", "resolved"), ("spectrum", "fractal")]
-    {
-        for problem in problems(points, family) {
-            let cells = TARGETS.map(|target| {
-                let best = cheapest(points, problem, target);
-                best.map_or_else(
-                    || "-".to_owned(),
-                    |p| {
-                        let method =
-                            if p.method == "auto" { String::new() } else { format!(" ({})", p.method) };
-                        let (cells, tolerance) = (p.size.unwrap_or(0.0), p.tolerance.unwrap_or(0.0));
-                        format!("{cells:.0}, {tolerance:.0e}{method}, {}", seconds(p.seconds))
-                    },
-                )
-            });
-            let limit = problem
-                .reference_error
-                .map_or_else(|| "-".to_owned(), |e| if e > 0.0 { percent(e) } else { "exactly".into() });
-            text += &format!("| {word} | {} | {} | {limit} |\n", label(problem), cells.join(" | "));
-        }
-    }
-    text
+    let families = [("sphere", "exact"), ("square", "exact"), ("band", "resolved"), ("spectrum", "fractal")];
+    let way = |p: &AccuracyPoint| {
+        let method = if p.method == "auto" { String::new() } else { format!(" ({})", p.method) };
+        let (cells, tolerance) = (p.size.unwrap_or(0.0), p.tolerance.unwrap_or(0.0));
+        format!("{cells:.0}, {tolerance:.0e}{method}, {}", seconds(p.seconds))
+    };
+    let limit = |e: f64| if e > 0.0 { percent(e) } else { "exactly".to_owned() };
+    let row = |(word, problem): (&str, &AccuracyPoint)| {
+        let [surface, load] = label(problem);
+        let [a, b, c] = TARGETS.map(|target| or_dash(cheapest(points, problem, target), way));
+        [word.to_owned(), surface, load, a, b, c, or_dash(problem.reference_error, limit)]
+    };
+    let all = families
+        .into_iter()
+        .flat_map(|(family, word)| problems(points, family).into_iter().map(move |problem| (word, problem)));
+    markdown_rows(all.map(row))
 }
 
 fn less(points: &[AccuracyPoint]) -> String {
-    let mut text = String::new();
-    for problem in problems(points, "mean") {
+    markdown_rows(problems(points, "mean").into_iter().map(|problem| {
         let of = |model: &str| points.iter().rfind(|p| p.same_problem(problem) && p.model == model);
-        let line = of("mdr1d");
-        let error = |p: Option<&AccuracyPoint>| maybe(p.and_then(|p| p.model_error));
-        text += &format!(
-            "| {} | {} | {} | {} | {} | {} | {} |\n",
-            label(problem),
-            error(line),
-            seconds(line.and_then(|p| p.seconds)),
-            error(of("power_law")),
-            error(of("plateau")),
+        let error = |model: &str| maybe(of(model).and_then(|p| p.model_error));
+        let [surface, load] = label(problem);
+        [
+            surface,
+            load,
+            error("mdr1d"),
+            seconds(of("mdr1d").and_then(|p| p.seconds)),
+            error("power_law"),
+            error("plateau"),
             maybe(of("bem3d").and_then(|p| p.ensemble)),
             maybe(problem.reference_error),
-        );
-    }
-    text
+        ]
+    }))
 }
 
 /// The rows of the table, and how often each part dominates.
 fn parts(points: &[AccuracyPoint], orders: &Orders) -> (String, String) {
-    let mut text = String::new();
     let mut counts = [0_usize; 3];
-    for problem in problems(points, "spectrum") {
+    let rows = markdown_rows(problems(points, "spectrum").into_iter().map(|problem| {
         let (d, f) = (problem.fractal_dimension, problem.force_bar);
         let algebraic = points
             .iter()
@@ -223,21 +217,17 @@ fn parts(points: &[AccuracyPoint], orders: &Orders) -> (String, String) {
             counts[i] += 1;
             name
         });
-        text += &format!(
-            "| {} | {} | {} | {} | {} | {word} |\n",
-            label(problem),
-            maybe(algebraic),
-            maybe(discretisation),
-            maybe(ensemble),
-            maybe(model)
-        );
-    }
+        let [surface, load] = label(problem);
+        let [algebraic, discretisation, ensemble, model] =
+            [algebraic, discretisation, ensemble, model].map(maybe);
+        [surface, load, algebraic, discretisation, ensemble, model, word.to_owned()]
+    }));
     let total: usize = counts.iter().sum();
     let counts = format!(
         "Of {total} rows the ensemble dominates {}, the discretisation {}, the algebraic error {}.",
         counts[2], counts[1], counts[0]
     );
-    (text, counts)
+    (rows, counts)
 }
 
 /// A row of the second table.
@@ -288,33 +278,27 @@ impl Orders {
     }
 
     fn text(&self) -> String {
-        let mut text = String::new();
-        let mut done: Vec<(&str, Option<f64>, Option<f64>)> = Vec::new();
-        for s in self.rows.iter().filter(|s| s.family != "mean") {
-            let key = (s.family.as_str(), s.fractal_dimension, s.force_bar);
-            if done.contains(&key) {
-                continue;
-            }
-            done.push(key);
+        let key = |s: &Sequence| (s.family.clone(), s.fractal_dimension, s.force_bar);
+        let mut known = Vec::new();
+        let mut first = |s: &&Sequence| {
+            let new = !known.contains(&key(s));
+            known.push(key(s));
+            new
+        };
+        let problems = self.rows.iter().filter(|s| s.family != "mean" && first(s));
+        markdown_rows(problems.map(|s| {
             let cell = |quantity: &str| {
-                let found = self.rows.iter().find(|t| {
-                    (t.family.as_str(), t.fractal_dimension, t.force_bar) == key && t.quantity == quantity
-                });
+                let found = self.rows.iter().find(|t| key(t) == key(s) && t.quantity == quantity);
                 found.map_or_else(String::new, |t| {
-                    let order = t.order.map_or_else(|| "-".to_owned(), |o| format!("{o:.1}"));
+                    let order = or_dash(t.order, |o| format!("{o:.1}"));
                     let order = if t.established { order } else { format!("({order})") };
                     format!("{order}: {}, {}", maybe(t.error_coarsest), maybe(t.error_finest))
                 })
             };
-            let number = |v: Option<f64>| v.map_or_else(String::new, |v| format!("{v:?}"));
-            text += &format!(
-                "| {} | {} | {} | {} |\n",
-                s.family,
-                number(s.fractal_dimension),
-                number(s.force_bar),
-                ["stiffness", "approach", "area", "pressure"].map(cell).join(" | ")
-            );
-        }
-        text
+            let [d, f] =
+                [s.fractal_dimension, s.force_bar].map(|v| v.map_or_else(String::new, |v| format!("{v:?}")));
+            let [k, approach, area, pressure] = ["stiffness", "approach", "area", "pressure"].map(cell);
+            [s.family.clone(), d, f, k, approach, area, pressure]
+        }))
     }
 }

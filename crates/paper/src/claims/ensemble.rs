@@ -1,16 +1,13 @@
 //! The ensembles of a command with their fitted laws, and what several numbers of them need.
 
-use super::table::{Found, Model, Reason, Row};
+use super::table::{Found, Reason, Row};
 use crate::claim::Estimate;
 use analysis::{Bootstrap, Curves, FitWindow, FittedPowerLaw, fit_power_law, interpolate};
-use evaluation::{Measured, Series, WindowedLaw, windowed_law};
+use evaluation::{Measured, Model, Series, WindowedLaw, windowed_law};
 use runs::{Error, Result};
 
 /// The ensembles that a command has solved.
-pub(crate) struct Ensembles<'a> {
-    solid: Option<Ensemble<'a>>,
-    line: Option<Ensemble<'a>>,
-}
+pub(crate) struct Ensembles<'a>(Vec<Ensemble<'a>>);
 
 /// An ensemble and the law of each of its series, or why there is none to judge.
 pub(super) struct Ensemble<'a> {
@@ -36,12 +33,11 @@ pub(crate) struct Law {
 impl<'a> Ensembles<'a> {
     /// With their laws.
     pub fn new(measured: &[&'a Measured]) -> Self {
-        let of = |name: &str| {
-            let measured = *measured.iter().find(|m| m.discretisation.name() == name)?;
+        let of = |&measured: &&'a Measured| {
             let laws = measured.series.iter().map(|series| Law::new(measured, series)).collect();
-            Some(Ensemble { measured, laws })
+            Ensemble { measured, laws }
         };
-        Self { solid: of("bem3d"), line: of("mdr1d") }
+        Self(measured.iter().map(of).collect())
     }
 
     /// The one of a model.
@@ -49,10 +45,8 @@ impl<'a> Ensembles<'a> {
     /// # Errors
     /// [`Error::Parameter`] for one that the command does not have.
     pub(super) fn of(&self, model: Model) -> Result<&Ensemble<'a>> {
-        let ensemble = if model == Model::Surfaces { &self.solid } else { &self.line };
-        ensemble
-            .as_ref()
-            .ok_or_else(|| Error::parameter("model", format!("{model:?}"), "one that the command solves"))
+        let ensemble = self.0.iter().find(|e| e.measured.discretisation.of() == model);
+        ensemble.ok_or_else(|| Error::parameter("model", model.name(), "one that the command solves"))
     }
 }
 

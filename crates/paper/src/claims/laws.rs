@@ -4,7 +4,7 @@ use super::ensemble::{Ensemble, Law, ONE_SURFACE, between, law_of, resampled};
 use super::table::{Found, Reason, Row};
 use crate::claim::Estimate;
 use analysis::{Bootstrap, Crossing, FitWindow, crossing, interpolate, sum};
-use evaluation::{FLOOR_CELLS, Series, laws_within};
+use evaluation::{FLOOR_CELLS, Series, laws};
 
 /// What the intervals of exponents hold.
 const INTERVAL: &str = "the interval holds scatter, floors of 10, 30 and 100 cells, upper ends of 0.086 and 0.03, and what the grid leaves";
@@ -95,13 +95,14 @@ pub(super) fn halves(ensemble: &Ensemble<'_>) -> Vec<Row> {
 pub(super) fn below_minus_above(line: &Ensemble<'_>, from: f64, middle: f64) -> Vec<Row> {
     let low = FitWindow { min_force_bar: from * (1.0 - 1e-9), max_force_bar: middle, ..FitWindow::PAPER };
     let high = FitWindow { min_force_bar: middle, ..FitWindow::PAPER };
-    let both = laws_within(line.measured, &low).into_iter().zip(laws_within(line.measured, &high));
-    both.map(|(below, above)| {
+    let both = laws(line.measured, &low).into_iter().zip(laws(line.measured, &high));
+    both.zip(&line.measured.series)
+        .map(|((below, above), series)| {
         let too_few = |load: f64| {
             format!("every line has {FLOOR_CELLS} elements in contact only from {load:.1e} on: more elements reach {from:e}")
         };
         let found = || -> Found {
-            let (Ok(a), Ok(b)) = (&below.fit, &above.fit) else { return Err(too_few(middle).into()) };
+            let (Ok(a), Ok(b)) = (&below, &above) else { return Err(too_few(middle).into()) };
             // Two loads a decade at least: the first of them lies within a factor 2.2.
             if a.force_bar_min > 2.2 * from {
                 return Err(too_few(a.force_bar_min).into());
@@ -112,7 +113,7 @@ pub(super) fn below_minus_above(line: &Ensemble<'_>, from: f64, middle: f64) -> 
             let remark = format!("{low:.3} from {first:.1e} to {middle:e}, {high:.3} above");
             Ok((below.minus(above), remark))
         };
-        Row::at(below.fractal_dimension, found())
+        Row::at(series.fractal_dimension, found())
     })
     .collect()
 }

@@ -1,6 +1,7 @@
 //! The table `claims.toml`: its entries, and the verdict of one on a number.
 
 use crate::claim::{Claim, Estimate, Statement};
+use evaluation::Model;
 use runs::{Error, Result};
 use serde::Deserialize;
 use std::borrow::Cow;
@@ -126,15 +127,6 @@ pub(crate) enum Cases {
     Persson,
     #[serde(rename = "all but periodic with a roll-off")]
     BesidePersson,
-}
-
-/// A model of the two that are compared.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
-pub(crate) enum Model {
-    #[serde(rename = "3D")]
-    Surfaces,
-    #[serde(rename = "1D")]
-    Lines,
 }
 
 /// A formula of the paper over D_f.

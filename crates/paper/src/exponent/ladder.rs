@@ -1,7 +1,7 @@
 //! Grids from coarse to fine, and pairs of the same surface on neighbouring ones.
 
 use evaluation::limits::{self, within};
-use evaluation::{Discretisation, Forces, Realisation, RealisationResult, is_solved, solve_realisations};
+use evaluation::{Discretisation, Forces, RealisationJob, RealisationResult, is_solved, solve_realisations};
 use runs::{Error, Progress, Result, Store};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -47,7 +47,7 @@ struct Place {
     dimension: usize,
     level: usize,
     fine: bool,
-    job: Realisation,
+    job: RealisationJob,
 }
 
 impl Ladder {
@@ -88,35 +88,29 @@ impl Ladder {
         }
     }
 
-    fn on(&self, size: usize) -> Discretisation {
-        match self.model {
-            Discretisation::Bem3d { tolerance, .. } => Discretisation::Bem3d { cells: size, tolerance },
-            Discretisation::Mdr1d { .. } => Discretisation::Mdr1d { elements: size },
-        }
-    }
-
-    /// The realisation of a level, on its own grid or on the coarser one under the loads of its own.
-    fn job(&self, d: f64, seed: u64, level: usize, index: usize, fine: bool) -> Realisation {
-        let own = self.sizes[level];
-        Realisation {
-            discretisation: self.on(if fine { own } else { self.sizes[level - 1] }),
-            fractal_dimension: d,
-            index,
-            // Levels are independent: each has a master seed of its own.
-            seed: surface_seed(surface_seed(seed, level as u64), index as u64),
-            forces: self.forces_on(own),
-        }
-    }
-
+    /// What each level needs, on its own grid and, under the same loads, on the next coarser one.
     fn places(&self, dimensions: &[f64], seed: u64, surfaces: &[usize]) -> Vec<Place> {
         let mut places = Vec::new();
         for (level, &count) in surfaces.iter().enumerate() {
+            let own = self.sizes[level];
+            let forces = self.forces_on(own);
+            let grids = std::iter::once(own).chain(level.checked_sub(1).map(|below| self.sizes[below]));
             for index in 0..count {
-                for (dimension, &d) in dimensions.iter().enumerate() {
-                    for fine in [true, false].into_iter().filter(|fine| *fine || level > 0) {
-                        let job = self.job(d, seed, level, index, fine);
-                        places.push(Place { dimension, level, fine, job });
-                    }
+                for (dimension, &fractal_dimension) in dimensions.iter().enumerate() {
+                    places.extend(grids.clone().map(|size| Place {
+                        dimension,
+                        level,
+                        fine: size == own,
+                        job: RealisationJob {
+                            discretisation: self.model.with_size(size),
+                            fractal_dimension,
+                            index,
+                            // Levels are independent: each has a master seed of its own.
+                            seed: surface_seed(surface_seed(seed, level as u64), index as u64),
+                            forces: Arc::clone(&forces),
+                            models: Arc::default(),
+                        },
+                    }));
                 }
             }
         }
@@ -133,8 +127,8 @@ impl Ladder {
     }
 
     /// Everything that a study solves.
-    pub fn jobs(&self, dimensions: &[f64], seed: u64) -> Vec<Realisation> {
-        self.places(dimensions, seed, &self.surfaces).into_iter().map(|place| place.job).collect()
+    pub fn jobs(&self, dimensions: &[f64], seed: u64) -> Vec<RealisationJob> {
+        shared(self.places(dimensions, seed, &self.surfaces).iter())
     }
 
     /// Solves so many surfaces of each level, or takes them from the store: the largest grids first, each
@@ -157,7 +151,7 @@ impl Ladder {
         }
         let mut results: Vec<Option<RealisationResult>> = places.iter().map(|_| None).collect();
         for (size, members) in by_size.into_iter().rev() {
-            let jobs: Vec<Realisation> = members.iter().map(|&i| places[i].job.clone()).collect();
+            let jobs = shared(members.iter().map(|&i| &places[i]));
             let what = format!("{}: {} surfaces, size {size}", self.model.name(), jobs.len());
             for (i, result) in
                 members.into_iter().zip(solve_realisations(&what, &jobs, store, threads, progress)?)
@@ -181,6 +175,12 @@ impl Ladder {
         }
         Ok(rungs)
     }
+}
+
+/// The jobs of places, which share what they plan once.
+fn shared<'a>(places: impl Iterator<Item = &'a Place>) -> Vec<RealisationJob> {
+    let models = Arc::default();
+    places.map(|place| RealisationJob { models: Arc::clone(&models), ..place.job.clone() }).collect()
 }
 
 impl Rungs {

@@ -1,6 +1,7 @@
 //! Which law holds where, and the factor between line and surface.
 
 use super::curve::{Banded, Convention, MeanCurve};
+use crate::claim::Estimate;
 use analysis::slope_weights;
 use std::ops::Range;
 
@@ -107,9 +108,7 @@ pub struct Ratio {
     /// F_bar.
     pub force_bar: f64,
     /// k_1D/k_3D.
-    pub value: f64,
-    /// 95 %.
-    pub half_width: f64,
+    pub value: Estimate,
 }
 
 /// k_1D/k_3D over the loads that both resolve.
@@ -122,19 +121,15 @@ pub struct Factor {
     /// The loads.
     pub forces: Range<f64>,
     /// exp of the mean logarithm of the ratio.
-    pub value: f64,
-    /// 95 %.
-    pub half_width: f64,
+    pub value: Estimate,
     /// Slope of the logarithm of the ratio over that of the force.
-    pub slope: f64,
-    /// 95 %.
-    pub slope_half_width: f64,
+    pub slope: Estimate,
 }
 
 impl Factor {
     /// Whether the interval of the slope holds 0.
     pub fn verdict(&self) -> &'static str {
-        if self.slope.abs() <= self.slope_half_width { "yes" } else { "no" }
+        if self.slope.value.abs() <= self.slope.half_width { "yes" } else { "no" }
     }
 }
 
@@ -160,13 +155,17 @@ pub fn ratios(curves: &[MeanCurve]) -> (Vec<Ratio>, Vec<Factor>) {
         let combined = |i: Range<usize>, j: Range<usize>, weights: &[f64]| {
             let (a, b) = (line.logarithmic(j, weights)?, solid.logarithmic(i, weights)?);
             let half_width = a.scatter.half_width().hypot(b.scatter.half_width()) + a.grid + b.grid;
-            Some((a.value() - b.value(), half_width))
+            Some(Estimate { value: a.value() - b.value(), half_width })
+        };
+        // exp of a logarithm.
+        let raised = |ln: Estimate| {
+            let value = ln.value.exp();
+            Estimate { value, half_width: value * ln.half_width }
         };
         for &(i, j) in &both {
-            if let Some((ln, half)) = combined(i..i + 1, j..j + 1, &[1.0]) {
-                let (force_bar, value, half_width) = (solid.forces[i], ln.exp(), ln.exp() * half);
-                ratios.push(Ratio { convention, fractal_dimension, force_bar, value, half_width });
-            }
+            let ratio = combined(i..i + 1, j..j + 1, &[1.0]).map(raised);
+            let force_bar = solid.forces[i];
+            ratios.extend(ratio.map(|value| Ratio { convention, fractal_dimension, force_bar, value }));
         }
         let small: Vec<(usize, usize)> =
             both.into_iter().filter(|&(i, _)| solid.forces[i] <= LARGEST * (1.0 + 1e-9)).collect();
@@ -179,17 +178,14 @@ pub fn ratios(curves: &[MeanCurve]) -> (Vec<Ratio>, Vec<Factor>) {
         let ln_f: Vec<f64> = solid.forces[i.clone()].iter().map(|f| f.ln()).collect();
         let mean = combined(i.clone(), j.clone(), &vec![1.0 / small.len() as f64; small.len()]);
         let slope = slope_weights(&ln_f).and_then(|weights| combined(i, j, &weights));
-        if let (Some((mean, half)), Some((slope, slope_half_width))) = (mean, slope) {
-            factors.push(Factor {
-                convention,
-                fractal_dimension,
-                forces: solid.forces[i0]..solid.forces[i1],
-                value: mean.exp(),
-                half_width: mean.exp() * half,
-                slope,
-                slope_half_width,
-            });
-        }
+        let forces = solid.forces[i0]..solid.forces[i1];
+        factors.extend(mean.map(raised).zip(slope).map(|(value, slope)| Factor {
+            convention,
+            fractal_dimension,
+            forces,
+            value,
+            slope,
+        }));
     }
     (ratios, factors)
 }

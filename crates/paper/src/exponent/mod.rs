@@ -21,11 +21,12 @@ use crate::judged::Judged;
 use analysis::Table;
 use contact_model::ContactModel as _;
 use curve::{Convention, MeanCurve};
-use evaluation::{Discretisation, FRACTAL_DIMENSIONS, Forces, Outcome, Realisation, SEED, header, list};
+use evaluation::{
+    Discretisation, FRACTAL_DIMENSIONS, Forces, Outcome, RealisationJob, SEED, Session, header, list,
+};
 use ladder::{Pair, Rungs};
 use runs::{Error, Progress, Result, Store, files, write_csv};
 use std::path::PathBuf;
-use std::time::Instant;
 
 /// What the study solves.
 #[derive(Debug, Clone, PartialEq)]
@@ -129,7 +130,7 @@ impl Exponent {
     ///
     /// # Errors
     /// [`Error::Parameter`] for sizes that make no sense.
-    pub fn jobs(&self) -> Result<Vec<Realisation>> {
+    pub fn jobs(&self) -> Result<Vec<RealisationJob>> {
         self.validate()?;
         Ok(self
             .ladders()
@@ -196,10 +197,7 @@ pub fn exponent_plan(study: &Exponent, seconds: f64, progress: &dyn Progress) ->
 /// [`Error::Parameter`] for sizes that make no sense; what a model or the file system refuses.
 pub fn exponent(study: &Exponent, progress: &dyn Progress) -> Result<Judged> {
     study.validate()?;
-    let start = Instant::now();
-    files::create_directory(&study.out)?;
-    files::clean(&study.out)?;
-    let store = Store::open(&study.out, study.fresh)?;
+    let session = Session::open(&study.out, study.fresh)?;
     let mut curves = Vec::new();
     let mut solved: Vec<(&Ladder, Vec<Rungs>)> = Vec::new();
     // Lines first: they are cheap.
@@ -208,7 +206,7 @@ pub fn exponent(study: &Exponent, progress: &dyn Progress) -> Result<Judged> {
             &study.fractal_dimensions,
             study.seed,
             &ladder.surfaces,
-            (&store, study.threads),
+            (&session.store, study.threads),
             progress,
         )?;
         for convention in Convention::BOTH {
@@ -263,8 +261,7 @@ pub fn exponent(study: &Exponent, progress: &dyn Progress) -> Result<Judged> {
         analysis::sum(of.flat_map(|(_, rungs)| rungs).flat_map(Rungs::pairs).map(Pair::seconds))
     };
     (outcome.bem3d_seconds, outcome.mdr1d_seconds) = (Some(seconds("bem3d")), Some(seconds("mdr1d")));
-    outcome.seconds = start.elapsed().as_secs_f64();
-    Ok(outcome.into())
+    session.close(outcome).map(Judged::from)
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! The pictures: local slopes with bands beside the laws, and line over surface.
 
 use crate::words;
-use evaluation::read_rows;
+use evaluation::{distinct, read_rows};
 use plots::{Axis, Key, Legend, LineStyle, Mark, Panels, Picture, color, logarithmic, shape};
 use runs::{CsvFile, Result};
 use serde::Deserialize;
@@ -46,13 +46,6 @@ pub fn draw(directory: &Path) -> Result<Vec<PathBuf>> {
     Ok(files)
 }
 
-fn dimensions(all: impl Iterator<Item = f64>) -> Vec<f64> {
-    let mut all: Vec<f64> = all.collect();
-    all.sort_by(f64::total_cmp);
-    all.dedup_by(|a, b| a.total_cmp(b).is_eq());
-    all
-}
-
 fn slopes(directory: &Path) -> Result<Vec<PathBuf>> {
     let path = directory.join(CURVES);
     let rows: Vec<CurveRow> = read_rows(&path, &CsvFile::read(&path)?)?;
@@ -60,7 +53,7 @@ fn slopes(directory: &Path) -> Result<Vec<PathBuf>> {
         rows.iter().filter(|r| r.convention == "measured_rms" && r.slope.is_some()).collect();
     let x = logarithmic(shown.iter().map(|r| r.force_bar));
     let mut pictures = Vec::new();
-    for d in dimensions(shown.iter().map(|r| r.fractal_dimension)) {
+    for d in distinct(shown.iter().map(|r| r.fractal_dimension)) {
         let mut picture = Picture::new(x, Axis::Linear(0.3, 1.1), FORCE, "$\\rm{d ln} k/\\rm{d ln} F$")
             .with_size(400.0, 280.0)
             .with_subtitle(&words::dimension(d));
@@ -110,7 +103,7 @@ fn ratios(directory: &Path) -> Result<Vec<PathBuf>> {
         .with_size(800.0, 560.0)
         .with_title("Stiffness of the line over that of the surface")
         .with_legend_below();
-    for d in dimensions(shown.iter().map(|r| r.fractal_dimension)) {
+    for d in distinct(shown.iter().map(|r| r.fractal_dimension)) {
         let own: Vec<&&RatioRow> =
             shown.iter().filter(|r| r.fractal_dimension.total_cmp(&d).is_eq()).collect();
         let (color, mark) = (color(d), Mark::Solid(shape(d)));

@@ -4,7 +4,7 @@ use super::curve::{Convention, MeanCurve};
 use super::ladder::{Ladder, Pair, Rungs};
 use super::laws::{Factor, LawRow};
 use crate::claim::short;
-use crate::words;
+use evaluation::markdown_table;
 use std::ops::Range;
 
 /// `0.5123 +- 0.0045`: as many digits as the error allows.
@@ -35,7 +35,7 @@ pub fn report(
         })
     });
     let head = "| | size | surfaces for each D_f | processor hours, all D_f |\n|---|---:|---:|---:|";
-    let mut text = format!("`{command}`\n\n{}", words::table(head, levels));
+    let mut text = format!("`{command}`\n\n{}", markdown_table(head, levels));
     for (model, words) in [("bem3d", "Surfaces"), ("mdr1d", "Lines")] {
         for convention in Convention::BOTH {
             let curves = curves.iter().filter(|c| c.model == model && c.convention == convention);
@@ -45,14 +45,13 @@ pub fn report(
     let head =
         "| D_f | F_bar | k_1D/k_3D | slope of its logarithm over ln F | constant |\n|---|---|---|---|---|";
     let row = |f: &Factor| {
-        let [factor, slope] = [(f.value, f.half_width), (f.slope, f.slope_half_width)];
         let d = format!("{:?}", f.fractal_dimension);
-        let [factor, slope] = [factor, slope].map(|(value, half_width)| with_error(value, half_width));
+        let [factor, slope] = [f.value, f.slope].map(|e| with_error(e.value, e.half_width));
         [d, loads(&f.forces), factor, slope, f.verdict().to_owned()]
     };
     for convention in Convention::BOTH {
         let rows = factors.iter().filter(|f| f.convention == convention).map(row);
-        text += &format!("\nLine over surface, {}:\n\n{}", convention.words(), words::table(head, rows));
+        text += &format!("\nLine over surface, {}:\n\n{}", convention.words(), markdown_table(head, rows));
     }
     text
 }
@@ -78,5 +77,5 @@ fn exponents<'a>(curves: impl Iterator<Item = &'a MeanCurve>, laws: &[LawRow]) -
             ]
         })
     });
-    words::table(head, rows)
+    markdown_table(head, rows)
 }

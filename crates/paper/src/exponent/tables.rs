@@ -104,8 +104,8 @@ pub fn ratios(rows: &[Ratio]) -> Result<Table> {
         .column("convention", "-", CONVENTION, |r| r.convention.as_str())
         .column("fractal_dimension", "1", FRACTAL_DIMENSION, |r| r.fractal_dimension)
         .column("force_bar", "1", "F/(E* h L)", |r| r.force_bar)
-        .column("ratio", "1", "k_1D/k_3D", |r| r.value)
-        .column("half_width", "1", BOTH_HALF, |r| r.half_width)
+        .column("ratio", "1", "k_1D/k_3D", |r| r.value.value)
+        .column("half_width", "1", BOTH_HALF, |r| r.value.half_width)
         .table()
 }
 
@@ -116,10 +116,10 @@ pub fn factors(rows: &[Factor]) -> Result<Table> {
         .column("fractal_dimension", "1", FRACTAL_DIMENSION, |r| r.fractal_dimension)
         .column("force_bar_min", "1", "smallest load at which both are resolved", |r| r.forces.start)
         .column("force_bar_max", "1", "largest load", |r| r.forces.end)
-        .column("factor", "1", "exp of the mean of ln(k_1D/k_3D) over the loads", |r| r.value)
-        .column("factor_half_width", "1", BOTH_HALF, |r| r.half_width)
-        .column("slope", "1", RATIO_SLOPE, |r| r.slope)
-        .column("slope_half_width", "1", BOTH_HALF, |r| r.slope_half_width)
+        .column("factor", "1", "exp of the mean of ln(k_1D/k_3D) over the loads", |r| r.value.value)
+        .column("factor_half_width", "1", BOTH_HALF, |r| r.value.half_width)
+        .column("slope", "1", RATIO_SLOPE, |r| r.slope.value)
+        .column("slope_half_width", "1", BOTH_HALF, |r| r.slope.half_width)
         .column("constant", "-", "yes: 0 lies inside the slope's interval; no: it does not", Factor::verdict)
         .table()
 }

@@ -4,7 +4,7 @@ use super::study::{CaseSolve, Solves, SurfaceCase, TwoCases};
 use analysis::StiffnessSample;
 use bem3d::Bem3d;
 use contact_model::{ContactModel as _, ContactState, Stop};
-use evaluation::{Discretisation, Realisation};
+use evaluation::{Discretisation, RealisationJob};
 use runs::{Error, Job, Result, ResultKind};
 use std::sync::Arc;
 
@@ -55,12 +55,13 @@ impl Job for CaseJob {
 
     // Free squares are those of Fig. 2, and periodic ones take about as long.
     fn cost(&self) -> u64 {
-        let job = Realisation {
+        let job = RealisationJob {
             discretisation: self.discretisation(),
             fractal_dimension: self.case.fractal_dimension,
             index: 0,
             seed: self.seed,
             forces: self.study.forces.values().into(),
+            models: Arc::default(),
         };
         job.cost()
     }

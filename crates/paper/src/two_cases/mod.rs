@@ -12,7 +12,7 @@ use analysis::{Curves, ensemble};
 use analytic::{GreenwoodWilliamson, Persson};
 use bem3d::Bem3d;
 use contact_model::{Boundary, ContactModel, ContactState, never};
-use evaluation::{Outcome, header};
+use evaluation::{Outcome, Session, header};
 use job::CaseJob;
 pub(crate) use picture::draw;
 use picture::{names, pairs_table, table};
@@ -23,7 +23,6 @@ use runs::{
 };
 use std::path::Path;
 use std::sync::Arc;
-use std::time::Instant;
 pub(crate) use study::NAME;
 use study::{CaseCurve, CasePoint, CaseSolve, Solves, SurfaceCase};
 
@@ -35,14 +34,11 @@ use study::{CaseCurve, CasePoint, CaseSolve, Solves, SurfaceCase};
 /// # Errors
 /// [`Error::Parameter`] for numbers that make no sense, what a model refuses, and files that cannot be written.
 pub fn two_cases(study: &TwoCases, out: &Path, progress: &dyn Progress) -> Result<Judged> {
-    let start = Instant::now();
     study.check()?;
-    files::create_directory(out)?;
-    files::clean(out)?;
-    let store = Store::open(out, false)?;
-    let solved = solve(study, &store, progress)?;
-    let coarser = solve(&study.coarser(), &store, progress)?;
-    let mut outcome = Judged::from(Outcome::new(NAME));
+    let session = Session::open(out, false)?;
+    let solved = solve(study, &session.store, progress)?;
+    let coarser = solve(&study.coarser(), &session.store, progress)?;
+    let (mut outcome, mut claims) = (Outcome::new(NAME), Vec::new());
     let mut curves = Vec::new();
     let pairs = pairs(study, &solved)?;
     for ((case, surfaces), coarser) in study.cases().into_iter().zip(solved).zip(coarser) {
@@ -59,7 +55,7 @@ pub fn two_cases(study: &TwoCases, out: &Path, progress: &dyn Progress) -> Resul
         let curve = mean_curve(case, slope, &means, [&surfaces, &coarser]);
         let solved =
             SolvedCase { study, curve: &curve, means: &means, surfaces: &surfaces, coarser: &coarser };
-        outcome.claims.extend(judged(solved)?);
+        claims.extend(judged(solved)?);
         curves.push(curve);
     }
     for case in study.cases().into_iter().filter(|c| c.boundary == Boundary::Periodic) {
@@ -85,10 +81,9 @@ pub fn two_cases(study: &TwoCases, out: &Path, progress: &dyn Progress) -> Resul
     outcome.files.push(beside);
     outcome.files.extend(draw(&csv, out)?);
     let text = out.join(format!("{NAME}.md"));
-    files::write_whole(&text, summary(study, &names(&csv)?, &curves, &pairs, &outcome.claims).as_bytes())?;
+    files::write_whole(&text, summary(study, &names(&csv)?, &curves, &pairs, &claims).as_bytes())?;
     outcome.files.push(text);
-    outcome.seconds = start.elapsed().as_secs_f64();
-    Ok(outcome)
+    session.close(outcome).map(|outcome| Judged::new(outcome, claims))
 }
 
 /// What a study solves, the coarser grids included.

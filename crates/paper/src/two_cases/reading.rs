@@ -3,10 +3,9 @@
 use super::study::{CaseCurve, CasePoint, PairRow, Solves, SurfaceCase, TwoCases};
 use crate::claim::{Claim, Estimate, plain};
 use crate::claims::{self, CaseData, Cases, Data, Entry, Found, Row};
-use crate::words;
 use analysis::{Bootstrap, Curves, FitWindow, Multilevel, fit_power_law, slope_weights};
 use contact_model::Boundary;
-use evaluation::{FLOOR_CELLS, list};
+use evaluation::{FLOOR_CELLS, list, markdown_table};
 use runs::{Error, Result};
 
 /// Shares of the square in contact between which the theories of random surfaces are compared: many summits,
@@ -253,15 +252,17 @@ pub(super) fn summary(
         roll_offs = list(&study.roll_offs),
         command = study.command(),
         pictures = pictures.collect::<String>(),
-        decades = words::table(&head, curves.iter().filter(solved).map(decades)),
+        decades = markdown_table(&head, curves.iter().filter(solved).map(decades)),
         low = AREAS[0],
         high = AREAS[1],
-        differences = words::table(
+        differences = markdown_table(
             "| case | theory | difference |\n| --- | --- | ---: |",
             theories.filter_map(difference)
         ),
-        ratios =
-            words::table("| D_f | roll-off | F_bar | ratio |\n| --- | --- | ---: | ---: |", light.map(ratio)),
+        ratios = markdown_table(
+            "| D_f | roll-off | F_bar | ratio |\n| --- | --- | ---: | ---: |",
+            light.map(ratio)
+        ),
         claims = plain(claims)
     )
 }
