@@ -11,7 +11,7 @@ fn every_hard_case_holds() {
             v.case.name,
             v.figure.unwrap_or(f64::NAN),
             v.case.bound,
-            v.status.as_str()
+            v.status()
         );
     }
     let failed: Vec<&CaseResult> = verdicts.iter().filter(|v| !v.passed()).collect();

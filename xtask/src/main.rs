@@ -341,7 +341,7 @@ fn stability(thorough: bool, out: &Path) -> Result<ExitCode> {
     let (verdicts, files) = evaluation::hard_cases(&stability::cases(), effort, out, &Reporter::new())?;
     for v in &verdicts {
         let figure = v.figure.map_or_else(|| "no figure".to_owned(), |f| format!("{f:.1e}"));
-        runs::out!("{:<6}  {:<38} {figure:>9} of {:.0e}", v.status.as_str(), v.case.name, v.case.bound);
+        runs::out!("{:<6}  {:<38} {figure:>9} of {:.0e}", v.status(), v.case.name, v.case.bound);
         runs::out!("        why: {}", v.case.why);
         runs::out!("        asserted: {}", v.case.asserted);
         v.broken.iter().for_each(|line| runs::out!("        broken: {line}"));

@@ -41,7 +41,7 @@ fn table(verdicts: &[CaseResult]) -> Result<Table> {
         .column("bound", "1", "largest figure that passes; 0 where bits or counts are compared", |v| {
             v.case.bound
         })
-        .column("status", "-", STATUS, |v| v.status.as_str())
+        .column("status", "-", STATUS, CaseResult::status)
         .table()
 }
 
@@ -50,7 +50,7 @@ fn markdown(verdicts: &[CaseResult], effort: Effort) -> String {
     let row = |v: &CaseResult| {
         let figure = v.figure.map_or_else(|| "none".to_owned(), short);
         let [name, why, asserted, status] =
-            [v.case.name, v.case.why, v.case.asserted, v.status.as_str()].map(str::to_owned);
+            [v.case.name, v.case.why, v.case.asserted, v.status()].map(str::to_owned);
         [name, why, asserted, figure, short(v.case.bound), status]
     };
     let mut text = format!(

@@ -24,7 +24,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("asserted: {}", case.asserted);
     let verdict = case.run(Effort::Quick);
     let figure = verdict.figure.map_or_else(|| "none".to_owned(), |f| format!("{f:.1e}"));
-    println!("{}: largest deviation {figure}, bound {:.0e}", verdict.status.as_str(), case.bound);
+    println!("{}: largest deviation {figure}, bound {:.0e}", verdict.status(), case.bound);
     verdict.broken.iter().for_each(|broken| println!("broken: {broken}"));
     assert!(verdict.passed());
     Ok(())

@@ -3,7 +3,6 @@
 use crate::ledger::Ledger;
 use contact_model::Result;
 use rayon::prelude::*;
-use std::fmt;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// How much work is put into a case.
@@ -31,7 +30,7 @@ impl Effort {
 }
 
 /// A hard case: it is solved for real, and its assertions are physical or exact.
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy)]
 pub struct Case {
     /// Short name, the key of the table.
     pub name: &'static str,
@@ -59,34 +58,7 @@ impl Case {
         }
         ledger.must(ledger.entries() > 0, || "nothing was compared".to_owned());
         let (figure, broken) = ledger.close();
-        let within = figure.is_some_and(|f| f <= self.bound);
-        let status = if within && broken.is_empty() { CaseStatus::Passed } else { CaseStatus::Failed };
-        CaseResult { case: *self, figure, status, broken }
-    }
-}
-
-impl fmt::Debug for Case {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Case").field("name", &self.name).field("bound", &self.bound).finish_non_exhaustive()
-    }
-}
-
-/// How a case ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum CaseStatus {
-    /// Every assertion holds and the figure is within its bound.
-    Passed,
-    /// It does not.
-    Failed,
-}
-
-impl CaseStatus {
-    /// The word used in tables.
-    pub fn as_str(self) -> &'static str {
-        match self {
-            Self::Passed => "passed",
-            Self::Failed => "failed",
-        }
+        CaseResult { case: *self, figure, broken }
     }
 }
 
@@ -97,16 +69,19 @@ pub struct CaseResult {
     pub case: Case,
     /// The largest deviation found, dimensionless; `None` where it is no finite number.
     pub figure: Option<f64>,
-    /// Whether it passed.
-    pub status: CaseStatus,
     /// Assertions that do not hold, in words, the first few.
     pub broken: Vec<String>,
 }
 
 impl CaseResult {
-    /// Whether it passed.
+    /// Whether every assertion holds and the figure is within its bound.
     pub fn passed(&self) -> bool {
-        self.status == CaseStatus::Passed
+        self.broken.is_empty() && self.figure.is_some_and(|figure| figure <= self.case.bound)
+    }
+
+    /// The word used in tables.
+    pub fn status(&self) -> &'static str {
+        if self.passed() { "passed" } else { "failed" }
     }
 }
 

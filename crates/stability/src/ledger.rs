@@ -55,6 +55,21 @@ impl Ledger {
         self.must(report.certificate.meets(tolerance), || format!("F {force}: {report:?}"));
     }
 
+    /// States that a state has so many cells in contact, and enters the relative deviation of its stiffness.
+    ///
+    /// # Errors
+    /// [`Error::Shape`] where it has none.
+    pub fn contact(&mut self, state: &ContactState, cells: usize, exact: f64) -> Result<()> {
+        self.contact_cells(state, cells);
+        self.near("k", stiffness(state)?, exact);
+        Ok(())
+    }
+
+    /// Enters the deviation of each value of a field from the exact one, over `largest`.
+    pub fn field<'a>(&mut self, found: &[f64], exact: impl IntoIterator<Item = &'a f64>, largest: f64) {
+        found.iter().zip(exact).for_each(|(a, b)| self.enter((a - b).abs() / largest));
+    }
+
     /// Enters the deviations of force, approach and stiffness of one state from another; the contact must
     /// have as many cells.
     ///
@@ -125,6 +140,11 @@ pub fn mean_gap(state: &ContactState) -> Result<f64> {
 /// [`Error::Shape`] where it has none.
 pub fn pressure(state: &ContactState) -> Result<&[f64]> {
     known("pressure", state.pressure().map(Field::values))
+}
+
+/// The largest magnitude of a field.
+pub fn largest(field: &[f64]) -> f64 {
+    field.iter().fold(0.0, |largest, value| value.abs().max(largest))
 }
 
 fn known<T>(name: &'static str, value: Option<T>) -> Result<T> {

@@ -48,7 +48,7 @@ mod maps;
 mod plain;
 mod press;
 
-pub use case::{Case, CaseResult, CaseStatus, Effort, run};
+pub use case::{Case, CaseResult, Effort, run};
 pub use cases::cases;
 pub use enumerate::{SmallContact, every_contact_set};
 pub use maps::{embedded, hard_map, map, rough, rough_map, scene};

@@ -1,9 +1,10 @@
 //! Attraction across open gaps.
 
 use crate::case::{Case, Effort};
-use crate::ledger::{Ledger, approach, pressure};
-use crate::maps::{map, rough_map, scene};
+use crate::ledger::{Ledger, approach, largest, pressure};
+use crate::maps::{map, rough_map};
 use crate::plain::PlainSum;
+use crate::press::watched;
 use bem3d::Bem3d;
 use contact_model::{
     Adhesion, AdhesionLaw, Boundary, ContactModel, ContactState, Error, HeightMap, Load, PreparedContact,
@@ -51,12 +52,23 @@ pub(super) const CASES: [Case; 5] = [
     },
 ];
 
-fn attracted(map: &HeightMap, work: f64, range: f64) -> Scene {
-    let mut scene = scene(map.clone());
+/// A scene with an attraction, without the stiffness.
+pub(super) fn attracted_by(map: &HeightMap, adhesion: Adhesion) -> Scene {
+    let mut scene = watched(map);
     scene.outputs.stiffness = false;
-    (scene.outputs.area, scene.outputs.pressure) = (true, true);
-    scene.effects.adhesion = Adhesion::FiniteRange { work, range, law: AdhesionLaw::Exponential };
+    scene.effects.adhesion = adhesion;
     scene
+}
+
+fn attracted(map: &HeightMap, work: f64, range: f64) -> Scene {
+    attracted_by(map, Adhesion::FiniteRange { work, range, law: AdhesionLaw::Exponential })
+}
+
+/// States that a state meets its tolerance and is stable.
+pub(super) fn meets_and_is_stable(ledger: &mut Ledger, state: &ContactState) {
+    ledger.meets(state, TOLERANCE);
+    let stability = state.adhesive.map_or(f64::NAN, |adhesive| adhesive.stability);
+    ledger.must(stability > 0.0, || format!("stability {stability}"));
 }
 
 pub(super) fn path(scene: &Scene) -> Result<Box<dyn PreparedContact>> {
@@ -75,9 +87,7 @@ fn conditions(
     (work, range): (f64, f64),
     state: &ContactState,
 ) -> Result<()> {
-    ledger.meets(state, TOLERANCE);
-    let stability = state.adhesive.map_or(f64::NAN, |adhesive| adhesive.stability);
-    ledger.must(stability > 0.0, || format!("stability {stability}"));
+    meets_and_is_stable(ledger, state);
     let (p, d) = (pressure(state)?, approach(state)?);
     let cell = map.dx() * map.dy();
     let forces: Vec<(usize, f64)> = p.iter().enumerate().map(|(i, p)| (i, p * cell)).collect();
@@ -135,8 +145,7 @@ fn summit(ledger: &mut Ledger, effort: Effort) -> Result<()> {
 
 fn everything(ledger: &mut Ledger, effort: Effort) -> Result<()> {
     let cells = effort.pick(24, 48);
-    let rough = rough_map(2.2, cells, 2)?;
-    let map = map(cells, 1.0, |x, y| 0.02 * rough.heights()[y * cells + x])?;
+    let map = rough_map(2.2, cells, 2)?.scaled(1.0, 0.02)?;
     let (work, range) = (0.5, 0.5);
     let mut history = path(&attracted(&map, work, range))?;
     for force in [0.0, 0.1, 0.0] {
@@ -172,8 +181,7 @@ fn below_a_cell(ledger: &mut Ledger, _: Effort) -> Result<()> {
 
 fn tension(ledger: &mut Ledger, effort: Effort) -> Result<()> {
     let cells = effort.pick(24, 64);
-    let rough = rough_map(2.2, cells, 2)?;
-    let map = map(cells, 1.0, |x, y| 0.02 * rough.heights()[y * cells + x])?;
+    let map = rough_map(2.2, cells, 2)?.scaled(1.0, 0.02)?;
     let mut scene = attracted(&map, 0.5, 0.5);
     scene.effects.boundary = Boundary::Periodic;
     let mut history = path(&scene)?;
@@ -183,8 +191,8 @@ fn tension(ledger: &mut Ledger, effort: Effort) -> Result<()> {
         ledger.meets(&state, TOLERANCE);
         ledger.contact_cells(&state, cells * cells);
         let p = pressure(&state)?.to_vec();
-        let largest = p.iter().fold(0.0_f64, |a, p| a.max(p.abs()));
         if let Some((before, pressures)) = &last {
+            let largest = largest(&p);
             for (p, old) in p.iter().zip(pressures) {
                 ledger.enter((p - old - (force - before)).abs() / largest);
             }

@@ -73,8 +73,7 @@ fn one_cell(ledger: &mut Ledger, _: Effort) -> Result<()> {
     for cells in [16, 33, 65] {
         let map = rough_map(2.6, cells, 8)?;
         let state = press_both(ledger, &map, Load::Force(1e-12))?;
-        ledger.contact_cells(&state, 1);
-        ledger.near("k", stiffness(&state)?, exact * map.dx());
+        ledger.contact(&state, 1, exact * map.dx())?;
         ledger.near("F/d", state.force / approach(&state)?, exact * map.dx());
     }
     Ok(())
@@ -86,9 +85,7 @@ fn two_cells(ledger: &mut Ledger, (dx, dy): (usize, usize), printed: f64) -> Res
         let map = faces(cells, |x, y| pair.contains(&(x, y)))?;
         for load in [Load::Approach(1e-3), Load::Force(1e-6), Load::Force(1e-150)] {
             let state = press_both(ledger, &map, load)?;
-            ledger.contact_cells(&state, 2);
-            let exact = 2.0 * PI * map.dx() / (influence(0, 0) + influence(dx, dy));
-            ledger.near("k", stiffness(&state)?, exact);
+            ledger.contact(&state, 2, 2.0 * PI * map.dx() / (influence(0, 0) + influence(dx, dy)))?;
             ledger.near("k as printed", stiffness(&state)?, printed * map.dx());
         }
     }
@@ -104,8 +101,7 @@ fn two_summits(ledger: &mut Ledger, effort: Effort) -> Result<()> {
         let cell = even.dx();
         let one = PI * cell / influence(0, 0);
         let state = press_both(ledger, &even, Load::Force(1e-3 * cell))?;
-        ledger.contact_cells(&state, 2);
-        ledger.near("k of two", stiffness(&state)?, 2.0 * one / (1.0 + far));
+        ledger.contact(&state, 2, 2.0 * one / (1.0 + far))?;
         // The lower one, z below, is lowered by far x d while the first alone carries.
         let z = 1e-3;
         let uneven = map(cells, 1.0, |x, y| match (x, y) {
@@ -116,8 +112,7 @@ fn two_summits(ledger: &mut Ledger, effort: Effort) -> Result<()> {
         let joins = z / (1.0 - far);
         for (factor, count, k) in [(0.999_9, 1, one), (1.000_1, 2, 2.0 * one / (1.0 + far))] {
             let state = press_both(ledger, &uneven, Load::Approach(factor * joins))?;
-            ledger.contact_cells(&state, count);
-            ledger.near("k beside the kink", stiffness(&state)?, k);
+            ledger.contact(&state, count, k)?;
         }
     }
     Ok(())
@@ -132,8 +127,7 @@ fn spike(ledger: &mut Ledger, _: Effort) -> Result<()> {
         let joins = 1.0 / (1.0 - influence(corner.0, corner.1) / influence(0, 0));
         for d in [1e-12, 1e-3, 0.9, 0.999_9 * joins] {
             let state = press_both(ledger, &map, Load::Approach(d))?;
-            ledger.contact_cells(&state, 1);
-            ledger.near("k", stiffness(&state)?, one);
+            ledger.contact(&state, 1, one)?;
         }
         let state = press(ledger, &map, Load::Approach(1.000_1 * joins))?;
         let count = state.report.contact_cells;
@@ -157,8 +151,7 @@ fn smallest_grids(ledger: &mut Ledger, _: Effort) -> Result<()> {
             (&uneven, Load::Approach(1e4)),
         ] {
             let state = press_both(ledger, map, load)?;
-            ledger.contact_cells(&state, all.len());
-            ledger.near("k", stiffness(&state)?, exact);
+            ledger.contact(&state, all.len(), exact)?;
         }
     }
     Ok(())

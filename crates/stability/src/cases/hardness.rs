@@ -4,7 +4,7 @@ use crate::case::{Case, Effort};
 use crate::ledger::{Ledger, approach, pressure};
 use crate::maps::{hard_map, map, rough_map};
 use crate::plain::PlainSum;
-use crate::press::{tight, watched};
+use crate::press::{forces, tight, watched};
 use contact_model::{ContactModel, ContactState, Error, Hardness, HeightMap, Load, Result};
 
 pub(super) const CASES: [Case; 4] = [
@@ -45,9 +45,7 @@ fn conditions(ledger: &mut Ledger, map: &HeightMap, hardness: f64, state: &Conta
     ledger.meets(state, tight().tolerance);
     let (p, d) = (pressure(state)?, approach(state)?);
     let cell = map.dx() * map.dy();
-    let forces: Vec<(usize, f64)> =
-        p.iter().enumerate().filter(|(_, p)| **p > 0.0).map(|(i, p)| (i, p * cell)).collect();
-    let u = PlainSum::of(map).displacement(&forces);
+    let u = PlainSum::of(map).displacement(&forces(state, map)?);
     let rms = surface_gen::rms_height(map.heights());
     let unit = if rms > 0.0 { rms } else { d };
     let mut saturated = 0;
@@ -141,7 +139,6 @@ fn full(ledger: &mut Ledger, effort: Effort) -> Result<()> {
     let cells = effort.pick(64, 128);
     let rough = rough_map(2.2, cells, 9)?;
     let slope = surface_gen::rms_slope_differences(&rough);
-    let map = map(cells, 1.0, |x, y| 0.08 / slope * rough.heights()[y * cells + x])?;
-    pressed(ledger, &map, 0.1, &[1e-3, 0.01, 0.1, 0.3, 0.6, 0.9, 0.99, 0.999])?;
+    pressed(ledger, &rough.scaled(1.0, 0.08 / slope)?, 0.1, &[1e-3, 0.01, 0.1, 0.3, 0.6, 0.9, 0.99, 0.999])?;
     Ok(())
 }

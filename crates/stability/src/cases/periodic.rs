@@ -1,7 +1,7 @@
 //! The square that repeats itself.
 
 use crate::case::{Case, Effort};
-use crate::ledger::{Ledger, mean_gap, pressure, stiffness};
+use crate::ledger::{Ledger, largest, mean_gap, pressure, stiffness};
 use crate::maps::{map, rough_map};
 use crate::press::{tight, watched_periodic};
 use contact_model::{ContactModel, HeightMap, Load, PreparedContact, Result};
@@ -40,16 +40,14 @@ fn any_origin(ledger: &mut Ledger, effort: Effort) -> Result<()> {
             let state = contact.solve(Load::Force(force))?;
             ledger.meets(&state, tight().tolerance);
             let gap = mean_gap(&state)?;
-            let largest = pressure(&state)?.iter().fold(0.0_f64, |a, &p| a.max(p));
+            let largest = largest(pressure(&state)?);
             for (dx, dy) in [(1, 0), (7, 13), (cells / 2, cells / 2)] {
                 let mut other = prepare(&rolled(here.heights(), dx, dy)?)?;
                 let there = other.solve(Load::Force(force))?;
                 ledger.near("k", stiffness(&there)?, stiffness(&state)?);
                 ledger.enter((mean_gap(&there)? - gap).abs());
                 let expected = rolled(pressure(&state)?, dx, dy)?;
-                for (a, b) in expected.heights().iter().zip(pressure(&there)?) {
-                    ledger.enter((a - b).abs() / largest);
-                }
+                ledger.field(pressure(&there)?, expected.heights(), largest);
             }
         }
     }
@@ -70,7 +68,7 @@ fn full(ledger: &mut Ledger, effort: Effort) -> Result<()> {
             Ok(pressure(&state)?.to_vec())
         };
         let (one, other) = (press(light)?, press(heavy)?);
-        let largest = other.iter().fold(0.0_f64, |a, &p| a.max(p));
+        let largest = largest(&other);
         for (a, b) in one.iter().zip(&other) {
             ledger.enter((b - a - (heavy - light)).abs() / largest);
         }

@@ -1,7 +1,7 @@
 //! Loads from first touch to far beyond full contact.
 
 use crate::case::{Case, Effort};
-use crate::ledger::{Ledger, approach, pressure, stiffness};
+use crate::ledger::{Ledger, approach, largest, pressure, stiffness};
 use crate::maps::{map, rough_map};
 use crate::press::{SAME, press, press_again, press_both, stop_after, tight, watched};
 use contact_model::{ContactModel, ContactState, HeightMap, Load, Result};
@@ -104,10 +104,9 @@ fn full(ledger: &mut Ledger, effort: Effort) -> Result<()> {
         let one = press(ledger, &map, Load::Force(light))?;
         let other = press(ledger, &map, Load::Force(heavy))?;
         for state in [&one, &other] {
-            ledger.contact_cells(state, cells * cells);
-            ledger.near("k of the square", stiffness(state)?, stiffness(&flat)?);
+            ledger.contact(state, cells * cells, stiffness(&flat)?)?;
         }
-        let largest = punch.iter().fold(0.0_f64, |a, &b| a.max(b)) * heavy;
+        let largest = largest(&punch) * heavy;
         for ((a, b), q) in pressure(&one)?.iter().zip(pressure(&other)?).zip(&punch) {
             ledger.enter((b - a - (heavy - light) * q).abs() / largest);
         }
@@ -149,8 +148,7 @@ fn far_beyond(ledger: &mut Ledger, effort: Effort) -> Result<()> {
         for force in [1e5, 1e6] {
             let model = bem3d::Bem3d { tolerance: 1e-4, ..tight() };
             let state = model.prepare(&watched(&map), 0)?.solve(Load::Force(force))?;
-            ledger.contact_cells(&state, cells * cells);
-            ledger.near("k of the square", stiffness(&state)?, square);
+            ledger.contact(&state, cells * cells, square)?;
             // In rms heights: the approach itself is a million of them, and its last digit 1e-10.
             let excess = approach(&state)? - force / square - constant;
             ledger.must(excess.abs() < 1e-3, || format!("F {force}: d is off by {excess} rms heights"));

@@ -1,7 +1,7 @@
 //! Maps that are no squares, cells that are no squares, and points that are not there.
 
 use crate::case::{Case, Effort};
-use crate::ledger::{Ledger, approach, pressure, stiffness};
+use crate::ledger::{Ledger, approach, largest, pressure, stiffness};
 use crate::plain::{PlainSum, relaxed_by};
 use crate::press::{against_relaxation, press, press_both, tight, watched_periodic};
 use bem3d::love::influence;
@@ -81,8 +81,7 @@ fn waves(cells: [usize; 2], size: [f64; 2], seed: usize) -> Result<HeightMap> {
 /// A periodic state under the force that relaxation finds at an approach.
 fn against_images(ledger: &mut Ledger, map: &HeightMap, approaches: &[f64]) -> Result<()> {
     let sum = PlainSum::periodic(map);
-    let scene = watched_periodic(map);
-    let mut contact = tight().prepare(&scene, 0)?;
+    let mut contact = tight().prepare(&watched_periodic(map), 0)?;
     let cell = map.dx() * map.dy();
     for &d in approaches {
         let slow = relaxed_by(&sum, map, d);
@@ -92,10 +91,7 @@ fn against_images(ledger: &mut Ledger, map: &HeightMap, approaches: &[f64]) -> R
         for (&i, force) in slow.contact.iter().zip(&slow.forces) {
             expected[i] = force / cell;
         }
-        let largest = expected.iter().copied().fold(0.0, f64::max);
-        for (p, expected) in pressure(&state)?.iter().zip(&expected) {
-            ledger.enter((p - expected).abs() / largest);
-        }
+        ledger.field(pressure(&state)?, &expected, largest(&expected));
     }
     Ok(())
 }
@@ -107,8 +103,7 @@ fn row(ledger: &mut Ledger, effort: Effort) -> Result<()> {
     for d in [0.05, 0.4, 3.0] {
         against_relaxation(ledger, &row, d)?;
         against_relaxation(ledger, &column, d)?;
-        let states = [&row, &column].map(|map| press(ledger, map, Load::Approach(d)));
-        let [a, b] = states;
+        let [a, b] = [&row, &column].map(|map| press(ledger, map, Load::Approach(d)));
         ledger.near("k of the column", stiffness(&b?)?, stiffness(&a?)?);
     }
     Ok(())
@@ -197,8 +192,7 @@ fn one_point(ledger: &mut Ledger, _: Effort) -> Result<()> {
         ledger.near("approach of one cell", approach(&state)?, 2.0 / k);
         let state = press_both(ledger, &map, Load::Approach(0.1))?;
         ledger.near("force of one cell", state.force, 0.1 * k);
-        let scene = watched_periodic(&map);
-        let state = tight().prepare(&scene, 0)?.solve(Load::Force(2.0))?;
+        let state = tight().prepare(&watched_periodic(&map), 0)?.solve(Load::Force(2.0))?;
         ledger.contact_cells(&state, 1);
         ledger.enter((pressure(&state)?[at] / 50.0 - 1.0).abs());
     }
@@ -211,8 +205,8 @@ fn any_size(ledger: &mut Ledger, effort: Effort) -> Result<()> {
     }
     let largest = effort.pick(97, 513);
     for n in [63, 65, 70, 97, largest] {
-        let scene = watched_periodic(&crate::maps::rough_map(2.2, n, 3)?);
-        let mut contact = tight().prepare(&scene, 0)?;
+        let map = crate::maps::rough_map(2.2, n, 3)?;
+        let mut contact = tight().prepare(&watched_periodic(&map), 0)?;
         for force in [1e-4, 0.01, 0.3, 1.0, 3.0, 10.0, 100.0, 1e4] {
             let state = contact.solve(Load::Force(force))?;
             ledger.meets(&state, tight().tolerance);

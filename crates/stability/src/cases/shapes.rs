@@ -59,8 +59,7 @@ fn saw_tooth(ledger: &mut Ledger, _: Effort) -> Result<()> {
     let (one, other) = (press_both(ledger, &teeth, one)?, press_both(ledger, &teeth, other)?);
     let all: Vec<usize> = (0..cells * cells).collect();
     for state in [&one, &other] {
-        ledger.contact_cells(state, all.len());
-        ledger.near("k of the square", stiffness(state)?, 1.140_213_49);
+        ledger.contact(state, all.len(), 1.140_213_49)?;
     }
     ledger.near("dF/dd in full contact", (other.force - one.force) / 30.0, stiffness(&one)?);
     Ok(())

@@ -55,8 +55,7 @@ fn flat_top(ledger: &mut Ledger, _: Effort) -> Result<()> {
         ledger.near("printed k", exact, 1.106_498_258 * 8.0 * map.dx());
         for load in [Load::Approach(1e-6), Load::Force(1e-12), Load::Force(1e-3)] {
             let state = press_both(ledger, &map, load)?;
-            ledger.contact_cells(&state, 64);
-            ledger.near("k", stiffness(&state)?, exact);
+            ledger.contact(&state, 64, exact)?;
         }
     }
     Ok(())
@@ -71,8 +70,7 @@ fn flat_maps(ledger: &mut Ledger, _: Effort) -> Result<()> {
             for size in [1e-200, 1e-12, 0.3, 1e12, 1e200] {
                 for load in [Load::Force(size), Load::Approach(size)] {
                     let state = press(ledger, &flat, load)?;
-                    ledger.contact_cells(&state, all.len());
-                    ledger.near("k", stiffness(&state)?, exact);
+                    ledger.contact(&state, all.len(), exact)?;
                     ledger.near("F/d", state.force / approach(&state)?, exact);
                 }
             }
@@ -130,13 +128,7 @@ fn symmetric(ledger: &mut Ledger, effort: Effort) -> Result<()> {
                 let state = press_both(ledger, &map, Load::Force(force))?;
                 let p = HeightMap::new(cells, 1.0, pressure(&state)?.to_vec())?;
                 for turned in [p.mirrored(), p.transposed()] {
-                    let worst = p
-                        .heights()
-                        .iter()
-                        .zip(turned.heights())
-                        .map(|(a, b)| (a - b).abs())
-                        .fold(0.0, f64::max);
-                    ledger.enter(worst / p.highest());
+                    ledger.field(p.heights(), turned.heights(), p.highest());
                 }
             }
         }
@@ -155,8 +147,7 @@ fn checkerboard(ledger: &mut Ledger, _: Effort) -> Result<()> {
         let all: Vec<usize> = (0..cells * cells).collect();
         let full = PlainSum::of(&board).stiffness(&all);
         let heavy = press_both(ledger, &board, Load::Force(1e3))?;
-        ledger.contact_cells(&heavy, all.len());
-        ledger.near("k of full contact", stiffness(&heavy)?, full);
+        ledger.contact(&heavy, all.len(), full)?;
     }
     Ok(())
 }
