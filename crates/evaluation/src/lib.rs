@@ -2,8 +2,8 @@
 //! hard cases.
 //!
 //! A [`Run`] holds the plain parameters of one command: a [`Preset`], overridden by a [`Request`] and
-//! checked. [`measure`] solves an ensemble of a [`Model`], [`state_budgets`] states to what its means
-//! are known, [`plan`] and [`settle`] choose the sizes that meet an accuracy target, [`accuracy_cost`] shows
+//! checked. [`measure`] solves the ensemble of a [`Model`], [`state_budgets`] states to what its means are
+//! known, [`plan`] and [`settle`] choose the sizes that meet an accuracy target, [`accuracy_cost`] shows
 //! what accuracy costs, [`budget_check`] whether the budgets hold, [`audit`] solves stored states again,
 //! [`bench()`] measures time, [`hard_cases`] writes the table of the registry `stability`.
 //!
@@ -18,9 +18,9 @@
 //!
 //! # Jobs
 //!
-//! A job is one surface under all its loads ([`RealisationJob`]), solved from the smallest load
-//! upwards with one prepared contact and kept in the result store of the run (`runs::Store`) under everything
-//! that decides its numbers. Other commands reuse it.
+//! A job is one surface under all its loads ([`RealisationJob`]), solved from the smallest load upwards with
+//! one prepared contact and kept in the result store of the run (`runs::Store`) under everything that decides
+//! its numbers. Other commands reuse it.
 //!
 //! # What it does not do
 //!
