@@ -1,6 +1,7 @@
 //! A second look at stored solves: some of them again, from nothing and to a tight tolerance.
 
 use crate::header::{flags, header};
+use crate::limits::require;
 use crate::measured::measure;
 use crate::outcome::Outcome;
 use crate::realisation::{Discretisation, Model, RealisationJob, RealisationResult};
@@ -10,7 +11,7 @@ use crate::table_of::TableOf;
 use crate::tables::{FORCE_BAR, FRACTAL_DIMENSION};
 use analysis::Table;
 use contact_model::{Stop, never};
-use runs::{Error, Job as _, Progress, Result, Threads, collect, run_jobs, write_csv};
+use runs::{Job as _, Progress, Result, Threads, collect, run_jobs, write_csv};
 
 /// One solve and its repetition to a tight tolerance.
 struct SolvePair {
@@ -36,15 +37,11 @@ impl SolvePair {
 /// stored k are from the tight ones.
 ///
 /// # Errors
-/// [`Error::Parameter`] for a share outside (0, 1] or a tolerance that is not tighter than the run's; what the solver refuses.
+/// [`runs::Error::Parameter`] for a share outside (0, 1] or a tolerance that is not tighter than the run's; what the solver refuses.
 pub fn audit(run: &Run, share: f64, tolerance: f64, progress: &dyn Progress) -> Result<(Outcome, String)> {
-    if !(share > 0.0 && share <= 1.0) {
-        return Err(Error::parameter("share", share, "a number above 0, at most 1"));
-    }
-    if !(tolerance >= 1e-12 && tolerance < run.tolerance) {
-        let expected = format!("a number from 1e-12 to below the run's {:?}", run.tolerance);
-        return Err(Error::parameter("audit-tolerance", tolerance, expected));
-    }
+    require(share > 0.0 && share <= 1.0, "share", share, "a number above 0, at most 1")?;
+    let expected = format!("a number from 1e-12 to below the run's {:?}", run.tolerance);
+    require((1e-12..run.tolerance).contains(&tolerance), "audit-tolerance", tolerance, expected)?;
     let session = Session::open(&run.out, run.fresh)?;
     let measured = measure(Model::Bem3d, run, &session.store, progress)?;
     let realisations: Vec<&(RealisationJob, RealisationResult)> =

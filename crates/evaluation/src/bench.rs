@@ -2,7 +2,7 @@
 //! certificate.
 
 use crate::forces::Forces;
-use crate::limits::{self, within};
+use crate::limits::{self, require, within};
 use crate::realisation::Discretisation;
 use crate::square_map::{read_map, unit_area};
 use crate::table_of::{maybe, names};
@@ -214,13 +214,9 @@ pub fn bench(
         cells.iter().try_for_each(|&cells| within("cells", cells, &limits::CELLS).map(drop))?;
         rows.iter().try_for_each(|&rows| within("rows", rows, &(1..=*limits::CELLS.end())).map(drop))?;
     }
-    if let Some(tolerance) = bench.tolerances.iter().find(|t| !(**t > 0.0 && **t < 1.0)) {
-        return Err(Error::parameter(
-            "tolerance",
-            format!("{tolerance:?}"),
-            "numbers between 0 and 1, both excluded",
-        ));
-    }
+    let expected = "numbers between 0 and 1, both excluded";
+    let between = |t: &f64| require(*t > 0.0 && *t < 1.0, "tolerance", format!("{t:?}"), expected);
+    bench.tolerances.iter().try_for_each(between)?;
     let series = series(bench)?;
     let largest = series.iter().map(|s| s.cells).max_by_key(|cells| cells.checked_count());
     if let Some(cells) = largest {

@@ -1,6 +1,6 @@
 //! Lists of loads, as written on the command line.
 
-use crate::limits::MOST_LOADS;
+use crate::limits::{MOST_LOADS, require};
 use runs::{Error, Result};
 use std::collections::HashSet;
 
@@ -40,10 +40,8 @@ impl Forces {
                 [min, max, count] => values.extend(range(item, positive(min)?, positive(max)?, count)?),
                 _ => return Err(Error::parameter("forces", item, EXPECTED)),
             }
-            if values.len() > MOST_LOADS {
-                let expected = format!("at most {MOST_LOADS} loads in all, there are {}", values.len());
-                return Err(Error::parameter("forces", item, expected));
-            }
+            let expected = format!("at most {MOST_LOADS} loads in all, there are {}", values.len());
+            require(values.len() <= MOST_LOADS, "forces", item, expected)?;
         }
         let mut seen = HashSet::new();
         let asked: Vec<f64> = values.into_iter().filter(|v| seen.insert(v.to_bits())).collect();
@@ -69,18 +67,14 @@ impl Forces {
 }
 
 fn positive(text: &str) -> Result<f64> {
-    match text.trim().parse::<f64>() {
-        Ok(v) if v.is_finite() && v > 0.0 => Ok(v),
-        _ => Err(Error::parameter("forces", text, EXPECTED)),
-    }
+    let value = text.trim().parse::<f64>().ok().filter(|v| v.is_finite() && *v > 0.0);
+    value.ok_or_else(|| Error::parameter("forces", text, EXPECTED))
 }
 
 fn range(item: &str, min: f64, max: f64, count: &str) -> Result<Vec<f64>> {
     let count: usize = count.trim().parse().map_err(|_| Error::parameter("forces", item, EXPECTED))?;
-    if min >= max || !(2..=MOST_LOADS).contains(&count) {
-        let expected = format!("MIN < MAX and a COUNT of 2 to {MOST_LOADS} in MIN:MAX:COUNT");
-        return Err(Error::parameter("forces", item, expected));
-    }
+    let expected = format!("MIN < MAX and a COUNT of 2 to {MOST_LOADS} in MIN:MAX:COUNT");
+    require(min < max && (2..=MOST_LOADS).contains(&count), "forces", item, expected)?;
     let (low, high) = (min.log10(), max.log10());
     let step = |i: usize| 10f64.powf(low + (high - low) * i as f64 / (count - 1) as f64);
     let mut values: Vec<f64> = (0..count).map(step).collect();

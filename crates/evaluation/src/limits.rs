@@ -17,15 +17,35 @@ pub const MOST_JOBS: usize = 1_000_000;
 /// Loads of a command.
 pub const MOST_LOADS: usize = 10_000;
 
+/// States what must hold of the value of a parameter.
+///
+/// # Errors
+/// [`Error::Parameter`] with its name, the value and what was expected, where it does not hold.
+pub fn require(
+    holds: bool,
+    name: &'static str,
+    value: impl Display,
+    expected: impl Into<String>,
+) -> Result<()> {
+    if holds { Ok(()) } else { Err(Error::parameter(name, value, expected)) }
+}
+
 /// A number inside a range.
 ///
 /// # Errors
 /// [`Error::Parameter`] with its name, the number and both ends.
 pub fn within<T: PartialOrd + Display>(name: &'static str, value: T, range: &RangeInclusive<T>) -> Result<T> {
-    if range.contains(&value) {
-        return Ok(value);
-    }
-    Err(Error::parameter(name, value, format!("a whole number from {} to {}", range.start(), range.end())))
+    let expected = format!("a whole number from {} to {}", range.start(), range.end());
+    require(range.contains(&value), name, &value, expected)?;
+    Ok(value)
+}
+
+/// A tolerance of the solver of boundary elements.
+///
+/// # Errors
+/// [`Error::Parameter`] outside 1e-12 to 0.1.
+pub fn tolerance(tolerance: f64) -> Result<()> {
+    require((1e-12..=0.1).contains(&tolerance), "tolerance", tolerance, "a number from 1e-12 to 0.1")
 }
 
 /// So many jobs in all, of `count` surfaces, lines or cases.
@@ -33,12 +53,7 @@ pub fn within<T: PartialOrd + Display>(name: &'static str, value: T, range: &Ran
 /// # Errors
 /// [`Error::Parameter`] beyond [`MOST_JOBS`].
 pub fn jobs(name: &'static str, count: usize, of_each: usize) -> Result<()> {
-    match count.checked_mul(of_each) {
-        Some(jobs) if jobs <= MOST_JOBS => Ok(()),
-        _ => {
-            let most = MOST_JOBS / of_each.max(1);
-            let expected = format!("at most {most}, {MOST_JOBS} jobs of {of_each} for each");
-            Err(Error::parameter(name, count, expected))
-        }
-    }
+    let all = count.checked_mul(of_each);
+    let expected = format!("at most {}, {MOST_JOBS} jobs of {of_each} for each", MOST_JOBS / of_each.max(1));
+    require(all.is_some_and(|all| all <= MOST_JOBS), name, count, expected)
 }

@@ -1,9 +1,9 @@
 //! One run: plain parameters, checked.
 
 use crate::forces::Forces;
-use crate::limits::{self, within};
+use crate::limits::{self, require, within};
 use crate::realisation::{Discretisation, Model};
-use runs::{Error, Result};
+use runs::Result;
 use std::path::PathBuf;
 
 /// PresetSizes of a run before single parameters are overridden.
@@ -159,7 +159,7 @@ impl Run {
     /// Expands the preset, applies what was asked for, checks it.
     ///
     /// # Errors
-    /// [`Error::Parameter`] naming the first value that makes no sense.
+    /// [`runs::Error::Parameter`] naming the first value that makes no sense.
     ///
     /// ```
     /// use evaluation::{Preset, Request, Run};
@@ -173,9 +173,7 @@ impl Run {
         let sizes = request.preset.sizes();
         let forces = |preset| Forces::parse(request.forces.as_deref().unwrap_or(preset));
         let tolerance = request.tolerance.unwrap_or(sizes.tolerance);
-        if !(1e-12..=0.1).contains(&tolerance) {
-            return Err(Error::parameter("tolerance", tolerance, "a number from 1e-12 to 0.1"));
-        }
+        limits::tolerance(tolerance)?;
         let fractal_dimensions = request.fractal_dimensions.as_deref().map(dimensions).transpose()?;
         // Each fractal dimension is solved on every surface and line.
         let of_each = fractal_dimensions.as_ref().map_or(FRACTAL_DIMENSIONS.len(), Vec::len);
@@ -298,14 +296,8 @@ pub fn distinct(values: impl IntoIterator<Item = f64>) -> Vec<f64> {
 
 fn dimensions(asked: &[f64]) -> Result<Vec<f64>> {
     let name = "fractal-dimensions";
-    if asked.is_empty() {
-        return Err(Error::parameter(name, "(nothing)", "at least one number in [2, 3]"));
-    }
-    for &d in asked {
-        if !(2.0..=3.0).contains(&d) {
-            return Err(Error::parameter(name, d, "numbers in [2, 3]"));
-        }
-    }
+    require(!asked.is_empty(), name, "(nothing)", "at least one number in [2, 3]")?;
+    asked.iter().try_for_each(|d| require((2.0..=3.0).contains(d), name, d, "numbers in [2, 3]"))?;
     Ok(distinct(asked.iter().copied()))
 }
 

@@ -2,14 +2,14 @@
 
 use super::random_case::{CaseJob, FINER, REFERENCE, RandomCase, STRATA, stratum};
 use crate::header::header;
-use crate::limits::{self, within};
+use crate::limits::{self, require, within};
 use crate::outcome::Outcome;
 use crate::session::Session;
 use crate::table_of::TableOf;
 use crate::tables::{FORCE_BAR, FRACTAL_DIMENSION};
 use analysis::{Table, binomial_test};
 use contact_model::never;
-use runs::{Error, JobList, Progress, Result, Threads, collect, run_stored, write_csv};
+use runs::{JobList, Progress, Result, Threads, collect, run_stored, write_csv};
 use std::path::Path;
 
 /// Share of the true errors that a budget is to hold, and the level of the exact binomial test of it.
@@ -17,8 +17,6 @@ const COVERED: f64 = 0.95;
 const LEVEL: f64 = 0.01;
 /// Smallest median of error over budget: below, budgets are too wide to be of use. Normal errors have 0.34.
 const SHARP: f64 = 0.2;
-/// Fewest cases.
-const FEWEST: usize = STRATA;
 
 /// One range of loads at one fractal dimension.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -110,7 +108,7 @@ impl std::fmt::Display for Coverage {
 /// same ones.
 ///
 /// # Errors
-/// [`Error::Parameter`] for fewer cases than strata, no thread, or a directory that another process works in; what
+/// [`runs::Error::Parameter`] for fewer cases than strata, no thread, or a directory that another process works in; what
 /// the solver refuses; files that cannot be written.
 pub fn budget_check(
     cases: usize,
@@ -138,15 +136,13 @@ pub fn budget_check(
 /// What [`budget_check`] solves, case by case.
 ///
 /// # Errors
-/// [`Error::Parameter`] for fewer cases than strata.
+/// [`runs::Error::Parameter`] for fewer cases than strata.
 pub fn budget_check_jobs(cases: usize, seed: u64) -> Result<Box<dyn JobList>> {
     Ok(Box::new(jobs(cases, seed)?))
 }
 
 fn jobs(cases: usize, seed: u64) -> Result<Vec<CaseJob>> {
-    if cases < FEWEST {
-        return Err(Error::parameter("cases", cases, format!("at least {FEWEST}, one for each stratum")));
-    }
+    require(cases >= STRATA, "cases", cases, format!("at least {STRATA}, one for each stratum"))?;
     within("cases", cases, &limits::COUNT)?;
     Ok((0..cases as u64).map(|number| CaseJob { seed, number }).collect())
 }
@@ -255,7 +251,7 @@ mod tests {
     #[test]
     fn cases_that_were_interrupted_give_the_same_table() {
         // The three cheapest of a round of strata.
-        let mut all = jobs(FEWEST, 1).unwrap();
+        let mut all = jobs(STRATA, 1).unwrap();
         all.sort_by_key(Job::cost);
         all.truncate(3);
         let dirs = [(); 2].map(|()| tempfile::tempdir().unwrap());
@@ -287,8 +283,8 @@ mod tests {
 
     #[test]
     fn fewer_cases_than_strata_are_refused() {
-        let refused = budget_check_jobs(FEWEST - 1, 1).map(drop).unwrap_err().to_string();
+        let refused = budget_check_jobs(STRATA - 1, 1).map(drop).unwrap_err().to_string();
         assert!(refused.contains("one for each stratum"), "{refused}");
-        assert_eq!(budget_check_jobs(FEWEST, 1).unwrap().count(), FEWEST);
+        assert_eq!(budget_check_jobs(STRATA, 1).unwrap().count(), STRATA);
     }
 }

@@ -5,6 +5,7 @@
 //! settings.
 
 use crate::budget::{self, Budgeted};
+use crate::limits::require;
 use crate::measured::{COARSER_SURFACES, ensemble_jobs, measure};
 use crate::realisation::Model;
 use crate::run::{Request, Run};
@@ -60,17 +61,13 @@ pub fn plan(
         ("tolerance", request.tolerance.map(|t| format!("{t:?}"))),
     ];
     for (name, value) in given {
-        if let Some(value) = value {
-            return Err(Error::parameter(name, value, "nothing beside an accuracy target, which chooses it"));
-        }
+        let expected = "nothing beside an accuracy target, which chooses it";
+        require(value.is_none(), name, value.unwrap_or_default(), expected)?;
     }
     let AccuracyTarget { share, seconds } = target;
-    if !(share > 0.0 && share < 1.0) {
-        return Err(Error::parameter("accuracy", share, "a share between 0 and 1, or per cent such as 1%"));
-    }
-    if !(seconds > 0.0 && seconds.is_finite()) {
-        return Err(Error::parameter("budget", seconds, "a time such as 90s, 10min or 2h"));
-    }
+    let expected = "a share between 0 and 1, or per cent such as 1%";
+    require(share > 0.0 && share < 1.0, "accuracy", share, expected)?;
+    require(seconds > 0.0 && seconds.is_finite(), "budget", seconds, "a time such as 90s, 10min or 2h")?;
     let run = Run { tolerance: target.tolerance(), ..Run::new(request)? };
     files::create_directory(&run.out)?;
     let store = Store::open(&run.out, run.fresh)?;

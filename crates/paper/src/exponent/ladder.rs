@@ -1,8 +1,8 @@
 //! Grids from coarse to fine, and pairs of the same surface on neighbouring ones.
 
-use evaluation::limits::{self, within};
+use evaluation::limits::{self, require, within};
 use evaluation::{Discretisation, Forces, RealisationJob, RealisationResult, is_solved, solve_realisations};
-use runs::{Error, Progress, Result, Store};
+use runs::{Progress, Result, Store};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use surface_gen::surface_seed;
@@ -54,26 +54,23 @@ impl Ladder {
     /// Checks sizes and numbers.
     ///
     /// # Errors
-    /// [`Error::Parameter`] for sizes that do not increase, or another number of surfaces than of sizes, or fewer than two of them.
+    /// [`runs::Error::Parameter`] for sizes that do not increase, or another number of surfaces than of sizes, or fewer than two of them.
     pub fn validate(&self, sizes: &'static str, surfaces: &'static str, dimensions: usize) -> Result<()> {
         let range = match self.model {
             Discretisation::Bem3d { .. } => limits::CELLS,
             Discretisation::Mdr1d { .. } => limits::ELEMENTS,
         };
         self.sizes.iter().try_for_each(|&size| within(sizes, size, &range).map(drop))?;
-        if self.sizes.is_empty() {
-            return Err(Error::parameter(sizes, "nothing", "at least one size"));
+        require(!self.sizes.is_empty(), sizes, "nothing", "at least one size")?;
+        for pair in self.sizes.windows(2) {
+            let expected = format!("sizes that increase, after {}", pair[0]);
+            require(pair[1] > pair[0], sizes, pair[1], expected)?;
         }
-        if let Some(pair) = self.sizes.windows(2).find(|pair| pair[1] <= pair[0]) {
-            return Err(Error::parameter(sizes, pair[1], format!("sizes that increase, after {}", pair[0])));
-        }
-        if self.surfaces.len() != self.sizes.len() {
-            let expected = format!("{} numbers, one for each size", self.sizes.len());
-            return Err(Error::parameter(surfaces, format!("{} numbers", self.surfaces.len()), expected));
-        }
-        if let Some(count) = self.surfaces.iter().find(|&&count| count < 2) {
-            return Err(Error::parameter(surfaces, count, "at least 2 on each grid"));
-        }
+        let [own, count] = [&self.sizes, &self.surfaces].map(Vec::len);
+        let expected = format!("{own} numbers, one for each size");
+        require(own == count, surfaces, format!("{count} numbers"), expected)?;
+        let two = |count: &usize| require(*count >= 2, surfaces, count, "at least 2 on each grid");
+        self.surfaces.iter().try_for_each(two)?;
         // Each on its own grid and on the next coarser one.
         let all = self.surfaces.iter().fold(0, |sum: usize, &count| sum.saturating_add(count));
         limits::jobs(surfaces, all, 2 * dimensions)

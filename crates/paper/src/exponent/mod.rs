@@ -21,11 +21,12 @@ use crate::judged::Judged;
 use analysis::Table;
 use contact_model::ContactModel as _;
 use curve::{Convention, MeanCurve};
+use evaluation::limits::require;
 use evaluation::{
     Discretisation, FRACTAL_DIMENSIONS, Forces, Outcome, RealisationJob, SEED, Session, header, list,
 };
 use ladder::{Pair, Rungs};
-use runs::{Error, Progress, Result, Store, files, write_csv};
+use runs::{Progress, Result, Store, files, write_csv};
 use std::path::PathBuf;
 
 /// What the study solves.
@@ -65,7 +66,7 @@ impl Exponent {
     /// The study at these sizes.
     ///
     /// # Errors
-    /// None for the sizes there are; [`Error::Parameter`] of a list of loads.
+    /// None for the sizes there are; [`runs::Error::Parameter`] of a list of loads.
     pub fn new(sizes: ExponentSizes) -> Result<Self> {
         let (cells, surfaces, elements, lines, solid_forces, line_forces): (&[_], &[_], &[_], &[_], _, _) =
             match sizes {
@@ -118,9 +119,8 @@ impl Exponent {
     }
 
     fn validate(&self) -> Result<()> {
-        if !(self.error > 0.0 && self.error < 1.0) {
-            return Err(Error::parameter("error", self.error, "a share above 0 and below 1"));
-        }
+        let error = self.error;
+        require(error > 0.0 && error < 1.0, "error", error, "a share above 0 and below 1")?;
         let dimensions = self.fractal_dimensions.len();
         self.solid.validate("grids", "surfaces", dimensions)?;
         self.line.validate("elements", "lines", dimensions)
@@ -129,7 +129,7 @@ impl Exponent {
     /// Everything that it solves.
     ///
     /// # Errors
-    /// [`Error::Parameter`] for sizes that make no sense.
+    /// [`runs::Error::Parameter`] for sizes that make no sense.
     pub fn jobs(&self) -> Result<Vec<RealisationJob>> {
         self.validate()?;
         Ok(self
@@ -194,7 +194,7 @@ pub fn exponent_plan(study: &Exponent, seconds: f64, progress: &dyn Progress) ->
 /// depends on the machine).
 ///
 /// # Errors
-/// [`Error::Parameter`] for sizes that make no sense; what a model or the file system refuses.
+/// [`runs::Error::Parameter`] for sizes that make no sense; what a model or the file system refuses.
 pub fn exponent(study: &Exponent, progress: &dyn Progress) -> Result<Judged> {
     study.validate()?;
     let session = Session::open(&study.out, study.fresh)?;

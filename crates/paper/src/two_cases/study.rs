@@ -3,7 +3,7 @@
 use crate::claim::Estimate;
 use analysis::StiffnessSample;
 use contact_model::{Boundary, Scene, SelfAffine, Surface};
-use evaluation::limits::{self, within};
+use evaluation::limits::{self, require, within};
 use evaluation::{Forces, list};
 use runs::{Error, Result};
 use serde::{Deserialize, Serialize};
@@ -152,36 +152,22 @@ impl TwoCases {
         // Four cases of each pair, on two grids.
         let pairs = self.fractal_dimensions.len().saturating_mul(self.roll_offs.len());
         limits::jobs("surfaces", self.surfaces, pairs.saturating_mul(8))?;
-        if !(1e-12..=0.1).contains(&self.tolerance) {
-            return Err(Error::parameter("tolerance", self.tolerance, "a number from 1e-12 to 0.1"));
-        }
-        if let Some(d) = self.fractal_dimensions.iter().find(|d| !(2.0..=3.0).contains(*d)) {
-            return Err(Error::parameter("df", d, "numbers in [2, 3]"));
-        }
-        let per_wave = self.cells_per_wave;
-        let most = limits::CELLS.end() / 4;
-        if !(4..=most).contains(&per_wave) || !per_wave.is_multiple_of(2) {
-            return Err(Error::parameter(
-                "cells-per-wave",
-                per_wave,
-                format!("an even number from 4 to {most}"),
-            ));
-        }
-        if !self.cells.is_multiple_of(per_wave) {
-            let expected = format!("a multiple of the {per_wave} cells of the shortest wave");
-            return Err(Error::parameter("cells", self.cells, expected));
-        }
-        if self.cells / 4 < per_wave {
-            return Err(Error::parameter("cells", self.cells, "at least four of the shortest waves a side"));
-        }
+        limits::tolerance(self.tolerance)?;
+        let dimension = |d: &f64| require((2.0..=3.0).contains(d), "df", d, "numbers in [2, 3]");
+        self.fractal_dimensions.iter().try_for_each(dimension)?;
+        let (cells, per_wave, most) = (self.cells, self.cells_per_wave, limits::CELLS.end() / 4);
+        let even = (4..=most).contains(&per_wave) && per_wave.is_multiple_of(2);
+        require(even, "cells-per-wave", per_wave, format!("an even number from 4 to {most}"))?;
+        let expected = format!("a multiple of the {per_wave} cells of the shortest wave");
+        require(cells.is_multiple_of(per_wave), "cells", cells, expected)?;
+        require(cells / 4 >= per_wave, "cells", cells, "at least four of the shortest waves a side")?;
         for (name, given) in [("df", &self.fractal_dimensions), ("roll-off", &self.roll_offs)] {
-            if given.is_empty() {
-                return Err(Error::parameter(name, "nothing", "at least one number"));
-            }
+            require(!given.is_empty(), name, "nothing", "at least one number")?;
         }
-        if let Some(waves) = self.roll_offs.iter().find(|r| !(**r > 1.0 && **r < self.shortest())) {
-            let expected = format!("between 1 and {} waves a side (cells / {per_wave})", self.shortest());
-            return Err(Error::parameter("roll-off", waves, expected));
+        let shortest = self.shortest();
+        let expected = format!("between 1 and {shortest} waves a side (cells / {per_wave})");
+        for &waves in &self.roll_offs {
+            require(waves > 1.0 && waves < shortest, "roll-off", waves, expected.as_str())?;
         }
         Ok(())
     }
