@@ -11,7 +11,7 @@ use runs::{Job as _, Progress, Result, Store, Threads, collect, run_stored, thre
 /// than fit in memory; threads without a job help inside the others.
 ///
 /// # Errors
-/// [`Error::Parameter`] for a size that does not fit in memory;
+/// [`runs::Error::Parameter`] for a size that does not fit in memory;
 /// the first error in the order of `jobs`; jobs that finished before stay stored.
 pub fn solve_realisations(
     what: &str,
