@@ -1,5 +1,6 @@
 //! Formats of files.
 
+use crate::keyword::keywords;
 use std::fmt;
 
 /// What to do with a file of another program.
@@ -8,18 +9,17 @@ pub(crate) const EXPORT: &str = "not read; export X3P, SDF, GWY or text with tha
 /// Declares the formats: each with its word and its name.
 macro_rules! formats {
     ($($(#[$about:meta])* $name:ident = $word:literal, $shown:literal;)*) => {
-        /// A format that is read.
-        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-        #[non_exhaustive]
-        pub enum Format { $($(#[$about])* $name,)* }
+        keywords! {
+            /// A format that is read.
+            #[derive(Hash)]
+            #[non_exhaustive]
+            Format: "format";
+            $($(#[$about])* $name = $word,)*
+        }
 
-        impl Format {
-            /// All of them.
-            pub const ALL: [Self; [$($word),*].len()] = [$(Self::$name),*];
-
-            /// Word, and name.
-            fn words(self) -> (&'static str, &'static str) {
-                match self { $(Self::$name => ($word, $shown),)* }
+        impl fmt::Display for Format {
+            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str(match self { $(Self::$name => $shown,)* })
             }
         }
     };
@@ -82,17 +82,4 @@ formats! {
     Opdx = "opdx", "OPDx (Dektak)";
     /// TMD, of TrueMap and GelSight.
     Tmd = "tmd", "TMD (TrueMap)";
-}
-
-impl Format {
-    /// The word that stands for it in scenes and on command lines.
-    pub fn word(self) -> &'static str {
-        self.words().0
-    }
-}
-
-impl fmt::Display for Format {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.words().1)
-    }
 }

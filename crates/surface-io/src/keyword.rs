@@ -1,12 +1,9 @@
 //! Words of scenes and command lines.
 
-use crate::format::Format;
-use crate::options::{Axes, Border, Decimal};
-use crate::preprocessing::{AlignLines, Crop, Detrend, Fill, Mirror, Undefined, Window};
+use crate::preprocessing::{Crop, Fill};
 use crate::quantity::QuantityError;
 use std::fmt;
 use std::str::FromStr;
-use std::sync::LazyLock;
 
 /// A word that is not one of those expected.
 #[derive(Debug, Clone, PartialEq)]
@@ -16,27 +13,72 @@ pub struct KeywordError {
     /// The word, shortened.
     pub found: String,
     /// The words that are known.
-    pub expected: &'static str,
+    pub expected: String,
     /// Why it is no quantity either, where one is allowed.
     pub quantity: Option<QuantityError>,
 }
 
 impl KeywordError {
-    fn new(what: &'static str, found: &str, expected: &'static str) -> Self {
-        Self { what, found: found.chars().take(32).collect(), expected, quantity: None }
+    fn new(what: &'static str, found: &str, expected: impl Into<String>) -> Self {
+        let found = found.chars().take(32).collect();
+        Self { what, found, expected: expected.into(), quantity: None }
     }
 }
 
-/// What a word stands for among those that are known.
-fn among<T, const N: usize>(
+/// What a word stands for among those that are known; what is said behind the list of them.
+pub(crate) fn among<T, const N: usize>(
     what: &'static str,
     text: &str,
     known: [(&str, T); N],
-    expected: &'static str,
+    behind: &str,
 ) -> Result<T, KeywordError> {
+    let words = known.each_ref().map(|(word, _)| *word);
     let found = known.into_iter().find(|(word, _)| *word == text);
-    found.map(|(_, value)| value).ok_or_else(|| KeywordError::new(what, text, expected))
+    found.map(|(_, value)| value).ok_or_else(|| {
+        let expected = match &words[..] {
+            [first @ .., last] if !first.is_empty() => format!("{} or {last}", first.join(", ")),
+            words => words.concat(),
+        };
+        KeywordError::new(what, text, expected + behind)
+    })
 }
+
+/// Declares what is chosen by a word in scenes and on command lines: what the choice is called, what is said
+/// behind the list of its words in errors, and the word of each.
+macro_rules! keywords {
+    (
+        $(#[$about:meta])* $name:ident: $what:literal $(, $behind:literal)?;
+        $($(#[$doc:meta])* $choice:ident = $word:literal,)*
+    ) => {
+        $(#[$about])*
+        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+        pub enum $name { $($(#[$doc])* $choice,)* }
+
+        impl $name {
+            /// All of them.
+            pub const ALL: [Self; [$($word),*].len()] = [$(Self::$choice),*];
+
+            /// The word that stands for it in scenes and on command lines.
+            pub fn word(self) -> &'static str {
+                match self { $(Self::$choice => $word,)* }
+            }
+        }
+
+        impl std::str::FromStr for $name {
+            type Err = $crate::keyword::KeywordError;
+
+            /// Reads a word.
+            ///
+            /// # Errors
+            /// [`KeywordError`](crate::KeywordError) for other words.
+            fn from_str(text: &str) -> Result<Self, Self::Err> {
+                let known = Self::ALL.map(|choice| (choice.word(), choice));
+                $crate::keyword::among($what, text, known, concat!($($behind)?))
+            }
+        }
+    };
+}
+pub(crate) use keywords;
 
 impl fmt::Display for KeywordError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -49,88 +91,6 @@ impl fmt::Display for KeywordError {
 }
 
 impl std::error::Error for KeywordError {}
-
-impl FromStr for Format {
-    type Err = KeywordError;
-
-    /// Reads a [`Format::word`].
-    ///
-    /// # Errors
-    /// [`KeywordError`] for other words.
-    fn from_str(text: &str) -> Result<Self, KeywordError> {
-        among("format", text, Self::ALL.map(|format| (format.word(), format)), &FORMATS)
-    }
-}
-
-/// All words of [`Format`].
-static FORMATS: LazyLock<String> = LazyLock::new(|| {
-    let [first @ .., last] = Format::ALL.map(Format::word);
-    format!("{} or {last}", first.join(", "))
-});
-
-impl FromStr for Decimal {
-    type Err = KeywordError;
-
-    /// Reads `point` or `comma`.
-    ///
-    /// # Errors
-    /// [`KeywordError`] for other words.
-    fn from_str(text: &str) -> Result<Self, KeywordError> {
-        let known = [("point", Self::Point), ("comma", Self::Comma)];
-        among("decimal", text, known, "point or comma")
-    }
-}
-
-impl FromStr for Axes {
-    type Err = KeywordError;
-
-    /// Reads `xy` or `yx`: the first index is x, or y.
-    ///
-    /// # Errors
-    /// [`KeywordError`] for other words.
-    fn from_str(text: &str) -> Result<Self, KeywordError> {
-        let known = [Self::Xy, Self::Yx].map(|axes| (axes.word(), axes));
-        among("axes", text, known, "xy or yx, what the first and the second index count along")
-    }
-}
-
-impl FromStr for Border {
-    type Err = KeywordError;
-
-    /// Reads `axes` or `heights`.
-    ///
-    /// # Errors
-    /// [`KeywordError`] for other words.
-    fn from_str(text: &str) -> Result<Self, KeywordError> {
-        among("border", text, [("axes", Self::Axes), ("heights", Self::Heights)], "axes or heights")
-    }
-}
-
-impl FromStr for Detrend {
-    type Err = KeywordError;
-
-    /// Reads `none`, `mean`, `plane`, `quadric`, `sphere` or `cylinder`.
-    ///
-    /// # Errors
-    /// [`KeywordError`] for other words.
-    fn from_str(text: &str) -> Result<Self, KeywordError> {
-        let known = Self::ALL.map(|detrend| (detrend.word(), detrend));
-        among("detrend", text, known, "none, mean, plane, quadric, sphere or cylinder")
-    }
-}
-
-impl FromStr for AlignLines {
-    type Err = KeywordError;
-
-    /// Reads `median_difference` or `median`.
-    ///
-    /// # Errors
-    /// [`KeywordError`] for other words.
-    fn from_str(text: &str) -> Result<Self, KeywordError> {
-        let known = Self::ALL.map(|align| (align.word(), align));
-        among("align_lines", text, known, "median_difference or median")
-    }
-}
 
 impl FromStr for Fill {
     type Err = KeywordError;
@@ -149,19 +109,6 @@ impl FromStr for Fill {
                 KeywordError { quantity: Some(quantity), ..error }
             }),
         }
-    }
-}
-
-impl FromStr for Undefined {
-    type Err = KeywordError;
-
-    /// Reads `no_contact`.
-    ///
-    /// # Errors
-    /// [`KeywordError`] for other words.
-    fn from_str(text: &str) -> Result<Self, KeywordError> {
-        let known = [("no_contact", Self::NoContact)];
-        among("undefined", text, known, "no_contact (fill gives undefined points a height)")
     }
 }
 
@@ -192,33 +139,12 @@ impl FromStr for Crop {
     }
 }
 
-impl FromStr for Mirror {
-    type Err = KeywordError;
-
-    /// Reads `x` or `y`.
-    ///
-    /// # Errors
-    /// [`KeywordError`] for other words.
-    fn from_str(text: &str) -> Result<Self, KeywordError> {
-        among("mirror", text, [("x", Self::X), ("y", Self::Y)], "x or y")
-    }
-}
-
-impl FromStr for Window {
-    type Err = KeywordError;
-
-    /// Reads `hann`.
-    ///
-    /// # Errors
-    /// [`KeywordError`] for other words.
-    fn from_str(text: &str) -> Result<Self, KeywordError> {
-        among("window", text, [("hann", Self::Hann)], "hann")
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::format::Format;
+    use crate::options::{Axes, Decimal};
+    use crate::preprocessing::{AlignLines, Detrend, Undefined};
 
     #[test]
     fn words_are_read_or_named() {

@@ -2,6 +2,7 @@
 
 use crate::choice::ChannelChoice;
 use crate::format::Format;
+use crate::keyword::keywords;
 use crate::quantity::{Quantity, Unit};
 use crate::sides::Sides;
 
@@ -62,40 +63,31 @@ impl Default for ReadOptions {
     }
 }
 
-/// What the first line and the first column of a text matrix are.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Border {
+keywords! {
+    /// What the first line and the first column of a text matrix are.
+    Border: "border";
     /// Coordinates of the columns, of the rows, or of both, whichever are in equal steps.
-    Axes,
+    Axes = "axes",
     /// Heights like all others.
-    Heights,
+    Heights = "heights",
 }
 
-/// How decimals are written.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Decimal {
+keywords! {
+    /// How decimals are written.
+    #[derive(Default)]
+    Decimal: "decimal";
     /// 1.5
     #[default]
-    Point,
+    Point = "point",
     /// 1,5
-    Comma,
+    Comma = "comma",
 }
 
-/// What the first index of an array counts along, and what the second.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Axes {
+keywords! {
+    /// What the first index of an array counts along, and what the second.
+    Axes: "axes", ", what the first and the second index count along";
     /// The first index is x, the second y.
-    Xy,
+    Xy = "xy",
     /// The first index is y: rows, as those of a picture.
-    Yx,
-}
-
-impl Axes {
-    /// The word that stands for it in scenes and on command lines.
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Xy => "xy",
-            Self::Yx => "yx",
-        }
-    }
+    Yx = "yx",
 }

@@ -13,6 +13,7 @@ pub use scan_lines::AlignLines;
 pub use trend::Detrend;
 
 use crate::error::{ContentError, Error, Place, Result};
+use crate::keyword::keywords;
 use crate::quantity::{Dimension, Quantity};
 use crate::scan::Scan;
 use contact_model::{Cells, HeightMap, Size};
@@ -59,13 +60,13 @@ pub struct Preprocessing {
     pub window: Option<Window>,
 }
 
-/// Which axis is reversed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Mirror {
+keywords! {
+    /// Which axis is reversed.
+    Mirror: "mirror";
     /// x: the last column becomes the first, as a body is seen that is laid on its face.
-    X,
+    X = "x",
     /// y: the last row becomes the first.
-    Y,
+    Y = "y",
 }
 
 impl Mirror {
@@ -78,24 +79,15 @@ impl Mirror {
     }
 }
 
-impl std::fmt::Display for Mirror {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(match self {
-            Self::X => "x reversed",
-            Self::Y => "y reversed",
-        })
-    }
-}
-
-/// A taper towards the edges.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Window {
+keywords! {
+    /// A taper towards the edges.
+    #[non_exhaustive]
+    Window: "window";
     /// `sin^2(pi x/Lx) sin^2(pi y/Ly)` at the middles of the cells, divided by its rms, 3/8: a map without a
     /// step at its edges, for periodic boundaries. A homogeneous surface keeps its spectrum, and with it rms
     /// height and slope; in the middle of the map it is 8/3 as rough as it was, at the edges smooth: it
     /// serves theories and twins, and a solver finds another contact than without it.
-    Hann,
+    Hann = "hann",
 }
 
 /// A map, and what was done to make it.
@@ -134,12 +126,12 @@ pub enum Crop {
     },
 }
 
-/// What becomes of undefined points that are not filled.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Undefined {
+keywords! {
+    /// What becomes of undefined points that are not filled.
+    #[non_exhaustive]
+    Undefined: "undefined", " (fill gives undefined points a height)";
     /// They stay undefined and cannot touch ([`HeightMap::with_undefined`]).
-    NoContact,
+    NoContact = "no_contact",
 }
 
 /// Heights for undefined points.
@@ -508,7 +500,7 @@ fn of_profile(preprocessing: &Preprocessing) -> Result<(), ContentError> {
 fn turned(mut map: HeightMap, preprocessing: &Preprocessing, steps: &mut Vec<String>) -> HeightMap {
     if let Some(mirror) = preprocessing.mirror {
         map = mirror.of(&map);
-        steps.push(mirror.to_string());
+        steps.push(format!("{} reversed", mirror.word()));
     }
     let turns = preprocessing.quarter_turns % 4;
     if turns > 0 {

@@ -2,39 +2,29 @@
 //! are rows.
 
 use super::defects::GAUSSIAN;
+use crate::keyword::keywords;
 use contact_model::Cells;
 
-/// How scan lines (rows, the fast axis along x) are shifted to a common height. The mean height of the map is
-/// kept.
-///
-/// An instrument that scans line by line measures heights along a line within a second, and heights across
-/// the lines over minutes: drift and jumps of its sensor shift whole lines. Aligned, the map has no
-/// information any more on the mean slope and on long waves across the lines, whether of the drift or of the
-/// surface.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum AlignLines {
+keywords! {
+    /// How scan lines (rows, the fast axis along x) are shifted to a common height. The mean height of the map is
+    /// kept.
+    ///
+    /// An instrument that scans line by line measures heights along a line within a second, and heights across
+    /// the lines over minutes: drift and jumps of its sensor shift whole lines. Aligned, the map has no
+    /// information any more on the mean slope and on long waves across the lines, whether of the drift or of the
+    /// surface.
+    #[non_exhaustive]
+    AlignLines: "align_lines";
     /// Each line is shifted so that the median of its height differences to the line before, over the columns
     /// where both are defined, is zero. A line without defined points is passed over; one that shares no
     /// defined column with the last line that has any keeps that line's shift.
-    MedianDifference,
+    MedianDifference = "median_difference",
     /// Each line is shifted to the same median height. Where a line crosses much of a hill, the hill is
     /// lowered.
-    Median,
+    Median = "median",
 }
 
 impl AlignLines {
-    /// All of them.
-    pub const ALL: [Self; 2] = [Self::MedianDifference, Self::Median];
-
-    /// The word that stands for it in scenes and on command lines.
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::MedianDifference => "median_difference",
-            Self::Median => "median",
-        }
-    }
-
     /// What is zero or equal afterwards.
     fn result(self) -> &'static str {
         match self {

@@ -2,42 +2,26 @@
 
 use super::normal_equations::{MOST, NormalEquations};
 use crate::error::ContentError;
+use crate::keyword::keywords;
 use contact_model::Cells;
 
-/// What is subtracted from the heights.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Detrend {
+keywords! {
+    /// What is subtracted from the heights.
+    #[derive(Default)]
+    Detrend: "detrend";
     /// Nothing.
     #[default]
-    Nothing,
+    Nothing = "none",
     /// The mean height.
-    Mean,
+    Mean = "mean",
     /// The plane `a + b x + c y` of least squares: a tilted specimen.
-    Plane,
+    Plane = "plane",
     /// `a + b x + c y + d x^2 + e x y + f y^2` of least squares: a curved one.
-    Quadric,
+    Quadric = "quadric",
     /// The sphere of least squares: a ball, a lens.
-    Sphere,
+    Sphere = "sphere",
     /// The circular cylinder of least squares, its axis in any direction, tilted or not: a roller, a wire.
-    Cylinder,
-}
-
-impl Detrend {
-    /// All of them.
-    pub const ALL: [Self; 6] =
-        [Self::Nothing, Self::Mean, Self::Plane, Self::Quadric, Self::Sphere, Self::Cylinder];
-
-    /// The word that stands for it in scenes and on command lines.
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Nothing => "none",
-            Self::Mean => "mean",
-            Self::Plane => "plane",
-            Self::Quadric => "quadric",
-            Self::Sphere => "sphere",
-            Self::Cylinder => "cylinder",
-        }
-    }
+    Cylinder = "cylinder",
 }
 
 /// Coefficients of Legendre's polynomials in coordinates that run from -1 to 1 along each side.

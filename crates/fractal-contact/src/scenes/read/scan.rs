@@ -165,7 +165,7 @@ pub(crate) fn read_second(
             .with_help("a profile is a body uniform along y, alone: bring both surfaces as maps"));
     }
     let (map, how) = match facing {
-        Some(mirror) => (mirror.of(&map), mirror.to_string()),
+        Some(mirror) => (mirror.of(&map), format!("{} reversed", mirror.word())),
         None => (map, "as it is seen through its body".to_owned()),
     };
     let sum = surface_io::composite(first, &map, offset).map_err(|e| table.diagnostic(e.to_string()))?;
