@@ -8,7 +8,6 @@ use crate::options::Axes;
 use crate::quantity::{Dimension, QuantityError, Unit};
 use crate::source::Source;
 use files::escaped;
-use std::fmt;
 
 /// Unit of a channel's values as the file says it.
 #[derive(Debug, Clone, PartialEq)]
@@ -103,17 +102,6 @@ pub(crate) enum StoredHeights {
 /// Reads the heights row by row, NaN where undefined.
 type Deferred = dyn Fn(&mut Source<'_>) -> Result<Vec<f64>> + Send + Sync;
 
-impl fmt::Debug for StoredHeights {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Read(heights) => write!(f, "{} heights", heights.len()),
-            Self::Raw(raw) => raw.fmt(f),
-            Self::Deferred(_) => write!(f, "heights to be read"),
-            Self::Unread(problem) => problem.fmt(f),
-        }
-    }
-}
-
 /// Numbers one after another: `height = scale * number + shift`.
 pub(crate) struct RawHeights {
     pub(crate) bytes: Bytes,
@@ -128,12 +116,6 @@ pub(crate) struct RawHeights {
     pub(crate) shift: f64,
     /// Which numbers stand for undefined points, besides NaN.
     pub(crate) undefined: Undefined,
-}
-
-impl fmt::Debug for RawHeights {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}, {:?}", self.number, self.order)
-    }
 }
 
 /// Where numbers are.
@@ -255,10 +237,7 @@ impl RawHeights {
     /// An error where the numbers are not all there, or their scale makes no heights; called before the
     /// channel is listed.
     pub(crate) fn check(&self, source: &Source<'_>, rows: usize, columns: usize) -> Result<()> {
-        if rows == 0 || columns == 0 {
-            let (rows, columns) = (rows as u64, columns as u64);
-            return Err(source.content(ContentError::NoCells { rows, columns }));
-        }
+        source.check_cells([rows, columns])?;
         let (offset, found) = match &self.bytes {
             Bytes::File(offset) => (*offset, source.length().saturating_sub(*offset)),
             Bytes::Held(bytes) => (0, bytes.len() as u64),
@@ -320,21 +299,7 @@ impl RawHeights {
         Ok(())
     }
 
-    /// The height of a number at a place of a line, put where it belongs.
-    pub(crate) fn put(
-        &self,
-        source: &Source<'_>,
-        heights: &mut [f64],
-        shape: [usize; 2],
-        place: [usize; 2],
-        raw: &[u8],
-    ) -> Result<()> {
-        let (i, height) = self.placed(source, shape, place, raw)?;
-        heights[i] = height;
-        Ok(())
-    }
-
-    /// The same for a number that another reader decoded.
+    /// Puts the height of a number that another reader decoded where it belongs.
     pub(crate) fn put_number(&self, heights: &mut [f64], shape: [usize; 2], place: [usize; 2], number: f64) {
         let [row, column] = self.place(shape, place);
         heights[row * shape[1] + column] = self.height(number);
@@ -353,7 +318,7 @@ impl RawHeights {
     }
 
     /// Where the number at a place of a line belongs, row by row, and its height.
-    fn placed(
+    pub(crate) fn placed(
         &self,
         source: &Source<'_>,
         shape: [usize; 2],
@@ -379,24 +344,9 @@ impl RawHeights {
 
 /// A map of undefined points, where there is memory for it.
 pub(crate) fn undefined_heights(source: &Source<'_>, rows: usize, columns: usize) -> Result<Vec<f64>> {
-    let mut heights = Vec::new();
-    let refused = |_| ContentError::Memory { bytes: 8 * (rows as u128 * columns as u128) };
-    heights.try_reserve_exact(rows * columns).map_err(refused).map_err(|e| source.content(e))?;
+    let mut heights = source.room(rows * columns)?;
     heights.resize(rows * columns, f64::NAN);
     Ok(heights)
-}
-
-/// Heights that are undefined where the numbers of a mask are not 0; both are checked.
-pub(crate) fn masked(raw: RawHeights, mask: RawHeights, rows: usize, columns: usize) -> StoredHeights {
-    StoredHeights::Deferred(Box::new(move |source| {
-        let mut heights = raw.read(source, rows, columns)?;
-        mask.each(source, rows, columns, &mut |i, masked| {
-            if masked.abs() > 0.0 {
-                heights[i] = f64::NAN;
-            }
-        })?;
-        Ok(heights)
-    }))
 }
 
 impl StoredChannel {
@@ -413,6 +363,17 @@ impl StoredChannel {
         Ok(Self { extent, ..Self::of(StoredHeights::Raw(raw), details, [rows, columns], unit) })
     }
 
+    /// A channel without a name whose heights another reader makes.
+    pub(crate) fn deferred(
+        details: String,
+        shape: [usize; 2],
+        unit: StoredUnit,
+        extent: [Option<Extent>; 2],
+        read: impl Fn(&mut Source<'_>) -> Result<Vec<f64>> + Send + Sync + 'static,
+    ) -> Self {
+        Self { extent, ..Self::of(StoredHeights::Deferred(Box::new(read)), details, shape, unit) }
+    }
+
     /// A channel without a name and without a size.
     pub(crate) fn of(
         heights: StoredHeights,
@@ -422,6 +383,37 @@ impl StoredChannel {
     ) -> Self {
         let (extent, axes, notes) = ([None; 2], FileAxes::Fixed, Vec::new());
         Self { name: None, details, rows, columns, unit, extent, axes, notes, heights }
+    }
+
+    /// The channel of numbers as [`StoredChannel::new`], undefined where those of a mask are not 0.
+    pub(crate) fn masked(
+        source: &Source<'_>,
+        raw: RawHeights,
+        (mask, detail): (RawHeights, &str),
+        [rows, columns]: [usize; 2],
+        unit: StoredUnit,
+        extent: [Option<Extent>; 2],
+    ) -> Result<Self> {
+        raw.check(source, rows, columns)?;
+        mask.check(source, rows, columns)?;
+        let details = format!("{}, {detail}", raw.details());
+        Ok(Self::deferred(details, [rows, columns], unit, extent, move |source| {
+            let mut heights = raw.read(source, rows, columns)?;
+            mask.each(source, rows, columns, &mut |i, masked| {
+                if masked.abs() > 0.0 {
+                    heights[i] = f64::NAN;
+                }
+            })?;
+            Ok(heights)
+        }))
+    }
+
+    /// Tells of sides in a unit that is no length, which are not used.
+    pub(crate) fn note_sides(&mut self, sides: [Option<f64>; 2], unit: &str) {
+        if let ([None, None], [Some(x), Some(y)]) = (self.extent, sides) {
+            let unit = if unit.is_empty() { "without a unit" } else { unit };
+            self.note(format!("the file has sides {x:e} x {y:e} {unit}, which is no length"));
+        }
     }
 
     /// A channel, or one that says why it is not read: the others of its file are read all the same.

@@ -17,6 +17,7 @@ mod nms;
 mod opd;
 mod opdx;
 mod plu;
+mod prelude;
 mod sdf;
 mod sur;
 mod tiff;

@@ -25,16 +25,14 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
     let [rows, columns] = header.shape[..] else {
         return Err(source.content(ContentError::Shape { found: header.shape }));
     };
-    if rows == 0 || columns == 0 {
-        return Err(source.content(ContentError::NoCells { rows, columns }));
-    }
+    let shape = [rows as usize, columns as usize];
+    source.check_cells(shape)?;
     let found = source.length() - header_bytes;
     let expected = (u128::from(rows) * u128::from(columns)).saturating_mul(header.kind.bytes() as u128);
     if expected != u128::from(found) {
         return Err(source.content(ContentError::Length { rows, columns, expected, found }));
     }
     let raw = RawHeights { order: header.order, ..RawHeights::at(header_bytes, header.kind) };
-    let shape = [rows as usize, columns as usize];
     Ok(vec![StoredChannel::new(source, raw, shape, StoredUnit::Unknown, [None; 2])?])
 }
 

@@ -1,5 +1,6 @@
 //! Numbers as bytes: types and byte orders.
 
+use crate::fields::ByteOrder;
 use std::fmt;
 
 /// Type and byte order of a number in a binary file.
@@ -22,10 +23,18 @@ const EXACT: i128 = 1 << 53;
 
 impl NumberType {
     pub(crate) const U8: Self = Self { kind: Kind::Unsigned, size: 1, little: true };
-    pub(crate) const I16: Self = Self { kind: Kind::Signed, size: 2, little: true };
-    pub(crate) const I32: Self = Self { kind: Kind::Signed, size: 4, little: true };
-    pub(crate) const F32: Self = Self { kind: Kind::Float, size: 4, little: true };
-    pub(crate) const F64: Self = Self { kind: Kind::Float, size: 8, little: true };
+    pub(crate) const U16: Self = Self { size: 2, ..Self::U8 };
+    pub(crate) const I16: Self = Self { kind: Kind::Signed, ..Self::U16 };
+    pub(crate) const I32: Self = Self { size: 4, ..Self::I16 };
+    pub(crate) const F32: Self = Self { kind: Kind::Float, ..Self::I32 };
+    pub(crate) const F64: Self = Self { size: 8, ..Self::F32 };
+
+    /// By its code in a format, its place in a list of types as numpy calls them: `i2`, `f8`, empty for what
+    /// is not read.
+    pub(crate) fn of_code(code: u64, types: &[&str], order: ByteOrder) -> Option<Self> {
+        let [letter, size] = *types.get(usize::try_from(code).ok()?)?.as_bytes() else { return None };
+        Self::new(letter, size - b'0', order == ByteOrder::Little)
+    }
 
     /// By the letter of numpy (`f`, `i`, `u`) and the number of bytes; `None` for what is not read.
     pub(crate) fn new(letter: u8, size: u8, little: bool) -> Option<Self> {

@@ -147,12 +147,26 @@ impl<'a> Source<'a> {
     }
 
     fn read(&mut self, offset: u64, count: u64) -> Result<Vec<u8>> {
-        let mut bytes = Vec::new();
-        let refused = |_| self.content(ContentError::Memory { bytes: count.into() });
-        bytes.try_reserve_exact(count as usize).map_err(refused)?;
+        let mut bytes = self.room(count as usize)?;
         bytes.resize(count as usize, 0);
         self.fill(offset, &mut bytes)?;
         Ok(bytes)
+    }
+
+    /// An empty list with room for so many numbers.
+    pub(crate) fn room<T>(&self, count: usize) -> Result<Vec<T>> {
+        let mut list = Vec::new();
+        let bytes = size_of::<T>() as u128 * count as u128;
+        list.try_reserve_exact(count).map_err(|_| self.content(ContentError::Memory { bytes }))?;
+        Ok(list)
+    }
+
+    /// An error where there are no rows or no columns.
+    pub(crate) fn check_cells(&self, [rows, columns]: [usize; 2]) -> Result<()> {
+        if rows > 0 && columns > 0 {
+            return Ok(());
+        }
+        Err(self.content(ContentError::NoCells { rows: rows as u64, columns: columns as u64 }))
     }
 
     /// Fills the buffer from an offset on.

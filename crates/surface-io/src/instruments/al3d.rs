@@ -5,14 +5,7 @@
 //! The first row of the file is y = 0. Undefined are NaN and what `InvalidPixelValue` says. The picture and
 //! the quality map are not read.
 
-use crate::channel::{RawHeights, StoredChannel, StoredUnit, Undefined};
-use crate::error::Result;
-use crate::extent::Extent;
-use crate::fields::{ByteOrder, Text};
-use crate::format::Format;
-use crate::number_type::NumberType;
-use crate::reader::Reader;
-use crate::source::Source;
+use super::prelude::*;
 
 const MAGIC: &[u8] = b"AliconaImaging\0\r\n";
 /// Bytes of a tag: its name, its value, a line break.

@@ -10,15 +10,8 @@
 //! `zmin` is not used: Gwyddion moves all heights so that the lowest is `zmin`, `SurfaceTopography` does not.
 //! Not read: force curves.
 
-use crate::channel::{RawHeights, StoredChannel, StoredUnit, Undefined};
+use super::prelude::*;
 use crate::entries::{Entries, HeaderLine};
-use crate::error::Result;
-use crate::extent::Extent;
-use crate::fields::decoded;
-use crate::format::Format;
-use crate::number_type::NumberType;
-use crate::reader::Reader;
-use crate::source::Source;
 
 /// What may stand before text of two bytes a character.
 const MARK: &[u8] = b"\xff\xfe";
@@ -73,9 +66,9 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
     let header = header.section("");
     let little = header.text("intelmode") != Some("0");
     let kind = header.text(KEY).unwrap_or_default();
-    let (letter, size) = match kind.trim_end_matches("_unicode") {
-        "bcrstm" => (b'i', 2),
-        "bcrf" => (b'f', 4),
+    let number = match kind.trim_end_matches("_unicode") {
+        "bcrstm" => NumberType::I16,
+        "bcrf" => NumberType::F32,
         _ => return Err(header.wrong(KEY, "bcrstm or bcrf, with _unicode or without it")),
     };
     if kind.ends_with("_unicode") != (wide == 2) {
@@ -86,16 +79,16 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
     }
     let [rows, columns] = [header.whole("ypixels")?, header.whole("xpixels")?];
     let void = header.number("voidpixels")?.is_some_and(|count| count.abs() > 0.0);
-    let undefined = match letter {
-        b'f' => Undefined::AtLeast(VOID),
+    let undefined = match number {
+        NumberType::F32 => Undefined::AtLeast(VOID),
         _ if void => Undefined::Equal(i16::MAX.into()),
         _ => Undefined::None,
     };
     let scale = header.number("bit2nm")?;
-    if scale.is_none() && letter == b'i' {
+    if scale.is_none() && !number.is_float() {
         return Err(header.wrong("bit2nm", "the height of a count"));
     }
-    let number = NumberType::new(letter, size, little).unwrap_or(NumberType::I16);
+    let number = if little { number } else { number.big_endian() };
     let raw = RawHeights { scale: scale.unwrap_or(1.0), undefined, ..RawHeights::at(begin, number) };
     let unit = |key: &str| header.text(key).filter(|unit| !unit.is_empty()).unwrap_or("nm");
     let mut extent = [None; 2];
@@ -104,6 +97,6 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
     }
     let heights = StoredUnit::written(unit("zunit"));
     let channel = StoredChannel::new(source, raw, [rows, columns], heights, extent)?;
-    source.ends(begin, u64::from(size) * rows as u64 * columns as u64)?;
+    source.ends(begin, number.bytes() as u64 * rows as u64 * columns as u64)?;
     Ok(vec![channel])
 }

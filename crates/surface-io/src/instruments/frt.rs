@@ -11,15 +11,7 @@
 //! Not read: the images of block 0x7d (the first is the map of block 0x0b again) and files that have no other
 //! map, profiles, the offset of the colour scale in block 0x71.
 
-use crate::channel::{RawHeights, StoredChannel, StoredUnit, Undefined};
-use crate::cursor::Cursor;
-use crate::error::Result;
-use crate::extent::Extent;
-use crate::fields::ByteOrder;
-use crate::format::Format;
-use crate::number_type::NumberType;
-use crate::reader::Reader;
-use crate::source::Source;
+use super::prelude::*;
 
 const MAGIC: &[u8] = b"FRTM_GLIDERV";
 const LITTLE: ByteOrder = ByteOrder::Little;
@@ -62,12 +54,9 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
     let valid = find(VALID, 4).ok().map(|block| block.1);
     let [columns, rows, bits] = source.get::<[u32; 3]>(LITTLE, shape)?;
     let number = match bits {
-        16 => NumberType::new(b'u', 2, true),
-        32 => Some(NumberType::I32),
-        _ => None,
-    };
-    let Some(number) = number else {
-        return Err(source.wrong(shape + 8, format!("16 or 32 bits a number, found {bits}")));
+        16 => NumberType::U16,
+        32 => NumberType::I32,
+        _ => return Err(source.wrong(shape + 8, format!("16 or 32 bits a number, found {bits}"))),
     };
     if number.bytes_of([rows, columns]) != Some(length) {
         let expected = format!("a block of {rows} x {columns} numbers of {bits} bits, found {length} bytes");

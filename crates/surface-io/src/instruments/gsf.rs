@@ -6,14 +6,8 @@
 //! NaN. `XReal` and `YReal` are the sides in `XYUnits`; sides without a unit of length are noted and not
 //! used. The numbers fill the file to its end: another length is an error. The offsets are not used.
 
-use crate::channel::{RawHeights, StoredChannel, StoredUnit};
+use super::prelude::*;
 use crate::entries::{Entries, HeaderLine};
-use crate::error::Result;
-use crate::extent::Extent;
-use crate::format::Format;
-use crate::number_type::NumberType;
-use crate::reader::Reader;
-use crate::source::Source;
 
 const MAGIC: &[u8] = b"Gwyddion Simple Field 1.0\n";
 /// Longest header that is read.
@@ -41,9 +35,6 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
     let raw = RawHeights::at(begin, NumberType::F32);
     let mut channel = StoredChannel::new(source, raw, [rows, columns], unit, extent)?;
     source.ends(begin, 4 * rows as u64 * columns as u64)?;
-    if let ([None, None], [Some(x), Some(y)]) = (extent, sides) {
-        let unit = if lateral.is_empty() { "without a unit" } else { lateral };
-        channel.note(format!("the file has sides {x:e} x {y:e} {unit}, which is no length"));
-    }
+    channel.note_sides(sides, lateral);
     Ok(vec![channel.named(header.text("title").unwrap_or_default())])
 }

@@ -9,15 +9,7 @@ mod write;
 
 pub use write::gwy;
 
-use crate::channel::{RawHeights, StoredChannel, StoredUnit, masked};
-use crate::cursor::Cursor;
-use crate::error::Result;
-use crate::extent::Extent;
-use crate::fields::ByteOrder;
-use crate::format::Format;
-use crate::number_type::NumberType;
-use crate::reader::Reader;
-use crate::source::Source;
+use super::prelude::*;
 
 const MAGIC: &[u8] = b"GWYP";
 
@@ -153,20 +145,16 @@ fn channel(source: &Source<'_>, field: &DataField, mask: Option<&DataField>) -> 
     let raw = RawHeights::at(at, NumberType::F64);
     let unit = StoredUnit::written(&field.unit);
     let extent = field.size.map(|side| Extent::of_side(side?, &field.lateral_unit));
-    let mut channel = StoredChannel::new(source, raw, shape, unit, extent)?;
-    if let Some(mask) = mask {
+    let mut channel = if let Some(mask) = mask {
         let Some((masked_at, _)) = mask.values.filter(|_| mask.shape == field.shape) else {
             return Err(source.wrong(at, "a mask of as many columns and rows as its data field"));
         };
         let mask = RawHeights::at(masked_at, NumberType::F64);
-        mask.check(source, shape[0], shape[1])?;
-        channel.detail("masked points undefined");
-        channel.heights = masked(RawHeights::at(at, NumberType::F64), mask, shape[0], shape[1]);
-    }
-    if let ([None, None], [Some(x), Some(y)]) = (extent, field.size) {
-        let unit = if field.lateral_unit.is_empty() { "without a unit" } else { &field.lateral_unit };
-        channel.note(format!("the file has sides {x:e} x {y:e} {unit}, which is no length"));
-    }
+        StoredChannel::masked(source, raw, (mask, "masked points undefined"), shape, unit, extent)?
+    } else {
+        StoredChannel::new(source, raw, shape, unit, extent)?
+    };
+    channel.note_sides(field.size, &field.lateral_unit);
     Ok(channel)
 }
 

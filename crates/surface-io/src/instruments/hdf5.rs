@@ -42,18 +42,12 @@ mod write;
 
 pub use write::hdf5;
 
-use crate::channel::{
-    AxisOrder, Bytes, FileAxes, RawHeights, StoredChannel, StoredHeights, undefined_heights,
-};
-use crate::error::Result;
-use crate::extent::Extent;
-use crate::format::Format;
+use super::prelude::*;
+use crate::channel::{FileAxes, undefined_heights};
 use crate::inflate::RATIO;
-use crate::number_type::NumberType;
 use crate::options::Axes;
 use crate::quantity::{Dimension, Quantity, Unit};
-use crate::reader::Reader;
-use crate::source::{Budget, Source};
+use crate::source::Budget;
 use attributes::{Attributes, UNIT, Values, numbers, packed, text, unit};
 use flate2::read::ZlibDecoder;
 use hdf5_pure::{
@@ -181,28 +175,25 @@ fn channel(
     };
     let Values { scale, shift, undefined, .. } = values;
     let raw = |bytes| RawHeights { order, scale, shift, undefined, ..RawHeights::new(bytes, number) };
-    raw(Bytes::Held(Vec::new())).check_scale(source)?;
-    let (heights, details) = match dataset.layout() {
+    let held = raw(Bytes::Held(Vec::new()));
+    held.check_scale(source)?;
+    let (shape, unit, extent) = ([rows, columns], values.unit, extent(&attributes));
+    let mut channel = match dataset.layout() {
         Err(e) => {
             // The other channels of the file are read all the same.
             let said = e.to_string();
-            let heights = StoredHeights::Deferred(Box::new(move |source| Err(unreadable(source, &said))));
-            (heights, raw(Bytes::Held(Vec::new())).details())
+            let read = move |source: &mut Source<'_>| Err(unreadable(source, &said));
+            StoredChannel::deferred(held.details(), shape, unit, extent, read)
         }
         Ok(Layout::Compact { .. }) => {
-            let raw = raw(Bytes::Held(dataset.read_raw().map_err(|e| unreadable(source, &e))?));
-            raw.check(source, rows, columns)?;
-            let details = raw.details();
-            (StoredHeights::Raw(raw), details)
+            let bytes = dataset.read_raw().map_err(|e| unreadable(source, &e))?;
+            StoredChannel::new(source, raw(Bytes::Held(bytes)), shape, unit, extent)?
         }
         Ok(Layout::Contiguous { address: Some(address), .. }) => {
             if !taken.insert(address) {
                 return Ok(None);
             }
-            let raw = raw(Bytes::File(address));
-            raw.check(source, rows, columns)?;
-            let details = raw.details();
-            (StoredHeights::Raw(raw), details)
+            StoredChannel::new(source, raw(Bytes::File(address)), shape, unit, extent)?
         }
         Ok(Layout::Chunked { chunk_shape, .. }) => {
             let chunks = dataset.chunks().map_err(|e| e.to_string().chars().take(200).collect::<String>());
@@ -211,24 +202,22 @@ fn channel(
             {
                 return Ok(None);
             }
-            let raw = raw(Bytes::Held(Vec::new()));
-            let details = format!("{}, in chunks", raw.details());
-            let filters = dataset.filters();
+            let details = format!("{}, in chunks", held.details());
             let [a, b] = chunk_shape[..] else { return Ok(None) };
-            let pieces = Pieces { name: name.to_owned(), raw, chunk: [a, b], filters, chunks, lines, along };
-            (StoredHeights::Deferred(Box::new(move |source| pieces.read(source))), details)
+            let (name, filters) = (name.to_owned(), dataset.filters());
+            let pieces = Pieces { name, raw: held, chunk: [a, b], filters, chunks, lines, along };
+            StoredChannel::deferred(details, shape, unit, extent, move |source| pieces.read(source))
         }
         // Never written, in other files, or mapped from other data sets.
         Ok(_) => return Ok(None),
     };
-    let mut channel = StoredChannel::of(heights, details, [rows, columns], values.unit);
     channel.axes = axes;
     if let FileAxes::Assumed(axes) = axes {
         channel.assume(axes, values.custom);
     }
     channel.notes.extend(values.notes);
     channel.check_counts(number, values.scaled);
-    Ok(Some(StoredChannel { extent: extent(&attributes), ..channel }.named(name)))
+    Ok(Some(channel.named(name)))
 }
 
 /// Whole IEEE floats and integers; `None` for all else.
@@ -342,7 +331,9 @@ impl Pieces {
             let taken = wide.min(self.along - at);
             for (i, row) in unpacked.chunks_exact(wide * size).take(self.lines - line).enumerate() {
                 for (k, raw) in row.chunks_exact(size).take(taken).enumerate() {
-                    self.raw.put(source, &mut heights, [rows, columns], [line + i, at + k], raw)?;
+                    let place = [line + i, at + k];
+                    let (cell, height) = self.raw.placed(source, [rows, columns], place, raw)?;
+                    heights[cell] = height;
                 }
             }
         }

@@ -15,14 +15,8 @@
 //! Not read: versions 1 to 3, whose waves have one dimension; complex numbers, texts, waves of four
 //! dimensions; the note.
 
-use crate::channel::{RawHeights, StoredChannel, StoredUnit, check_number};
-use crate::error::Result;
-use crate::extent::Extent;
-use crate::fields::{ByteOrder, Fields, Text, header};
-use crate::format::Format;
-use crate::number_type::NumberType;
-use crate::reader::Reader;
-use crate::source::Source;
+use super::prelude::*;
+use crate::channel::check_number;
 
 /// Bytes of both headers of version 5, and of the second one.
 const HEADER: u64 = 384;

@@ -14,15 +14,9 @@
 //! Passed are scalars, text, structures, cells, sparse matrices and arrays of three dimensions; complex
 //! matrices are listed and not read. Version 7.3 is HDF5; version 4 is not read.
 
-use crate::channel::{AxisOrder, Bytes, RawHeights, StoredChannel, StoredHeights, StoredUnit};
-use crate::error::Result;
-use crate::fields::{ByteOrder, Fields};
-use crate::format::Format;
+use super::prelude::*;
 use crate::inflate::{Packed, Packing};
-use crate::number_type::NumberType;
 use crate::options::Axes;
-use crate::reader::Reader;
-use crate::source::Source;
 use flate2::read::ZlibDecoder;
 use std::io::Read as _;
 
@@ -34,6 +28,8 @@ const CLASSES: std::ops::RangeInclusive<u8> = 6..=15;
 const COMPLEX: u8 = 8;
 /// Bytes of a matrix before its numbers that are looked at: names have 63 letters.
 const START: u64 = 1024;
+/// Types of numbers by their codes.
+const TYPES: [&str; 14] = ["", "i1", "u1", "i2", "u2", "i4", "u4", "f4", "", "f8", "", "", "i8", "u8"];
 /// Most matrices that are read.
 const MOST: usize = 1000;
 
@@ -132,21 +128,9 @@ fn matrix(fields: &mut Fields<'_>) -> Result<Option<Matrix>> {
     let kind = fields.go(after).get::<u32>()?;
     // Small numbers stand in the tag.
     let (kind, bytes) = if kind > 0xffff { (kind & 0xffff, kind >> 16) } else { (kind, fields.get()?) };
-    let (letter, size) = match kind {
-        1 => (b'i', 1),
-        2 => (b'u', 1),
-        3 => (b'i', 2),
-        4 => (b'u', 2),
-        5 => (b'i', 4),
-        6 => (b'u', 4),
-        7 => (b'f', 4),
-        9 => (b'f', 8),
-        12 => (b'i', 8),
-        13 => (b'u', 8),
-        _ => return Err(fields.wrong(format!("a type of numbers from 1 to 13 before this, found {kind}"))),
-    };
-    let little = fields.order() == ByteOrder::Little;
-    let Some(number) = NumberType::new(letter, size, little) else { return Ok(None) };
+    let number = NumberType::of_code(kind.into(), &TYPES, fields.order());
+    let expected = || format!("a type of numbers from 1 to 13 before this, found {kind}");
+    let number = number.ok_or_else(|| fields.wrong(expected()))?;
     let complex = flags & COMPLEX != 0;
     let at = fields.place() as u64;
     Ok(Some(Matrix { name, shape, complex, number, at, bytes: bytes.into() }))
@@ -181,20 +165,18 @@ fn channel(
         let size = number.bytes();
         return wrong(format!("{rows} x {columns} numbers of {size} bytes, found {bytes} bytes"));
     }
-    let raw = |place| RawHeights { order: AxisOrder::Columns, ..RawHeights::new(place, number) };
+    let raw = move |place| RawHeights { order: AxisOrder::Columns, ..RawHeights::new(place, number) };
     let unit = StoredUnit::Unknown;
     let mut channel = if let Some((offset, length)) = packed {
         let packed = Packed { packing: Packing::Zlib, offset, length, unpacked: at + bytes };
         packed.check(source)?;
         let details = format!("{}, packed", raw(Bytes::Held(Vec::new())).details());
-        let heights = StoredHeights::Deferred(Box::new(move |source| {
+        StoredChannel::deferred(details, [rows, columns], unit, [None; 2], move |source| {
             let mut plain = Vec::new();
             packed.unpack(source, &mut plain)?;
             plain.drain(..at as usize);
-            let raw = RawHeights { order: AxisOrder::Columns, ..RawHeights::new(Bytes::Held(plain), number) };
-            raw.read(source, rows, columns)
-        }));
-        StoredChannel::of(heights, details, [rows, columns], unit)
+            raw(Bytes::Held(plain)).read(source, rows, columns)
+        })
     } else {
         StoredChannel::new(source, raw(Bytes::File(begin + at)), [rows, columns], unit, [None; 2])?
     };

@@ -9,14 +9,7 @@
 //! Not read: files with the mark of another sign. Gwyddion, `SurfaceTopography` and itom turn their heights
 //! over; the formula of the guide has no sign, and other readers follow it.
 
-use crate::channel::{RawHeights, StoredChannel, StoredUnit, Undefined};
-use crate::error::Result;
-use crate::extent::Extent;
-use crate::fields::{ByteOrder, header};
-use crate::format::Format;
-use crate::number_type::NumberType;
-use crate::reader::Reader;
-use crate::source::Source;
+use super::prelude::*;
 
 /// First three bytes; the fourth is that of the header.
 const MAGIC: &[u8] = b"\x88\x1b\x03";

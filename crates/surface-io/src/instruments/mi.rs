@@ -11,13 +11,9 @@
 //! The first line of the file is the bottom of the image, so the last row, whatever `scanUp` says. Not read:
 //! spectra, data as text; `reverseX` and its like, which no reader uses: a note says where one is set.
 
-use crate::channel::{RawHeights, StoredChannel, StoredUnit, check_number, check_rest};
+use super::prelude::*;
+use crate::channel::{check_number, check_rest};
 use crate::entries::{Entries, HeaderLine, Section};
-use crate::error::Result;
-use crate::format::Format;
-use crate::number_type::NumberType;
-use crate::reader::Reader;
-use crate::source::Source;
 
 const IMAGE: &[u8] = b"fileType      Image";
 const SPECTRA: &[u8] = b"fileType      Spectroscopy";

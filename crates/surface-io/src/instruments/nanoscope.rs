@@ -15,15 +15,9 @@
 //! Not read: versions before 4.3 (no `@2:Z scale`), data as text, force curves, files whose line ends were
 //! changed.
 
-use crate::channel::{RawHeights, StoredChannel, StoredUnit};
+use super::prelude::*;
 use crate::entries::{Entries, HeaderLine, Section};
-use crate::error::Result;
-use crate::extent::Extent;
-use crate::format::Format;
-use crate::number_type::NumberType;
 use crate::quantity::{Dimension, Unit};
-use crate::reader::Reader;
-use crate::source::Source;
 
 /// First bytes, in small letters.
 const BEGINNINGS: [&[u8]; 3] = [b"\\*file list", b"\\*ec file list", b"\\*force file list"];

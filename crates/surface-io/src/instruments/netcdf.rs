@@ -19,18 +19,9 @@ mod write;
 
 pub use write::netcdf;
 
-use crate::channel::{
-    AxisOrder, FileAxes, RawHeights, StoredChannel, StoredHeights, StoredUnit, Undefined, masked,
-};
-use crate::cursor::Cursor;
-use crate::error::{ContentError, Result};
-use crate::extent::Extent;
-use crate::fields::{ByteOrder, decoded};
-use crate::format::Format;
-use crate::number_type::NumberType;
+use super::prelude::*;
+use crate::channel::FileAxes;
 use crate::options::Axes;
-use crate::reader::Reader;
-use crate::source::Source;
 
 const MAGIC: &[u8] = b"CDF";
 /// What the library writes where nothing was written, as double and as float.
@@ -78,7 +69,7 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
     let wrong = |source: &Source<'_>, expected: &str| Err(source.wrong(heights.offset, expected));
     let named = |number: &u64| {
         let at = usize::try_from(*number).ok()?;
-        dimensions.get(at).map(|(name, length)| (name.as_str(), *length))
+        dimensions.get(at).map(|(name, length)| (name.as_str(), *length as usize))
     };
     let of: Vec<_> = heights.dimensions.iter().filter_map(named).collect();
     let (axes, order, [columns, rows]) = match (of.as_slice(), heights.rank) {
@@ -92,9 +83,6 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
             (FileAxes::Assumed(Axes::Yx), AxisOrder::Rows, [*columns, *rows])
         }
         _ => return wrong(source, "heights over the dimensions x and y, or over two of other names"),
-    };
-    let (Ok(columns), Ok(rows)) = (usize::try_from(columns), usize::try_from(rows)) else {
-        return Err(source.content(ContentError::NoCells { rows, columns }));
     };
     let Some(number) = heights.number else {
         return wrong(source, "heights that are numbers");
@@ -111,32 +99,28 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
         [None, None] => Undefined::None,
     };
     let raw = RawHeights { order, scale, shift, undefined, ..RawHeights::at(heights.offset, number) };
-    raw.check(source, rows, columns)?;
-    let mut details = raw.details();
-    let stored = match mask {
-        None => StoredHeights::Raw(raw),
-        Some(Variable { dimensions, rank: 2, number: Some(number), offset, .. })
-            if dimensions == heights.dimensions =>
-        {
-            details += ", masked points undefined";
-            let mask = RawHeights { order, ..RawHeights::at(offset, number) };
-            mask.check(source, rows, columns)?;
-            masked(raw, mask, rows, columns)
-        }
-        Some(_) => return wrong(source, "a mask over the same dimensions as heights"),
-    };
     let side = |variable: Option<Variable>| {
         let Attributes { unit, length, .. } = variable?.attributes;
         Extent::of_side(length?, &unit?)
     };
     let unit = StoredUnit::written(heights.attributes.unit.as_deref().unwrap_or_default());
-    let mut channel = StoredChannel::of(stored, details, [rows, columns], unit);
+    let (shape, extent) = ([rows, columns], [side(x), side(y)]);
+    let mut channel = match mask {
+        None => StoredChannel::new(source, raw, shape, unit, extent)?,
+        Some(Variable { dimensions, rank: 2, number: Some(number), offset, .. })
+            if dimensions == heights.dimensions =>
+        {
+            let mask = RawHeights { order, ..RawHeights::at(offset, number) };
+            StoredChannel::masked(source, raw, (mask, "masked points undefined"), shape, unit, extent)?
+        }
+        Some(_) => return wrong(source, "a mask over the same dimensions as heights"),
+    };
     channel.axes = axes;
     channel.check_counts(number, attributes.scale.is_some());
     if let FileAxes::Assumed(axes) = axes {
         channel.assume(axes, "as the conventions have it, the dimensions have other names than x and y");
     }
-    Ok(vec![StoredChannel { extent: [side(x), side(y)], ..channel }.named("heights")])
+    Ok(vec![channel.named("heights")])
 }
 
 /// The header, read from its beginning to its end.
@@ -272,18 +256,6 @@ impl<'s, 'a> Header<'s, 'a> {
 
 /// The type of numbers; `None` for characters and what does not exist.
 fn number(kind: u64) -> Option<NumberType> {
-    let (letter, size) = match kind {
-        1 => (b'i', 1),
-        3 => (b'i', 2),
-        4 => (b'i', 4),
-        5 => (b'f', 4),
-        6 => (b'f', 8),
-        7 => (b'u', 1),
-        8 => (b'u', 2),
-        9 => (b'u', 4),
-        10 => (b'i', 8),
-        11 => (b'u', 8),
-        _ => return None,
-    };
-    NumberType::new(letter, size, false)
+    const TYPES: [&str; 12] = ["", "i1", "", "i2", "i4", "f4", "f8", "u1", "u2", "u4", "i8", "u8"];
+    NumberType::of_code(kind, &TYPES, ByteOrder::Big)
 }

@@ -13,13 +13,9 @@
 //! heights, nor are amplitudes and deflections in metres. Lines behind `CurLine` were not measured: a note
 //! says so. Not read: data that are not `Binary`, the calibration (the ranges contain it).
 
-use crate::channel::{RawHeights, StoredChannel, StoredUnit, check_number, check_rest};
+use super::prelude::*;
+use crate::channel::{check_number, check_rest};
 use crate::entries::{Entries, HeaderLine, Section};
-use crate::error::Result;
-use crate::format::Format;
-use crate::number_type::NumberType;
-use crate::reader::Reader;
-use crate::source::Source;
 
 const MAGIC: &[u8] = b"[DataSet]\r\n";
 /// What stands between the header and the first map, behind a line break.

@@ -14,14 +14,7 @@
 //! Not read: other versions than `OM_MS_2.0`, other numbers than uint16, profiles, files of several images
 //! (SMS, SMT).
 
-use crate::channel::{RawHeights, StoredChannel, StoredUnit, Undefined, masked};
-use crate::error::Result;
-use crate::extent::Extent;
-use crate::fields::{ByteOrder, Text, header};
-use crate::format::Format;
-use crate::number_type::NumberType;
-use crate::reader::Reader;
-use crate::source::Source;
+use super::prelude::*;
 
 const VERSION: &[u8] = b"OM_MS_2.0\0";
 const HEADER: u64 = 3468;
@@ -58,18 +51,16 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
     }
     let ([first, last], [low, high]) = (header.numbers.map(f64::from), header.range);
     let scale = (high - low) / (last - first);
-    let raw = || RawHeights {
-        scale,
-        shift: low - scale * first,
-        ..RawHeights::at(HEADER, NumberType::new(b'u', 2, true).unwrap_or(NumberType::I16))
-    };
+    let raw = RawHeights { scale, shift: low - scale * first, ..RawHeights::at(HEADER, NumberType::U16) };
     let [columns, rows] = header.shape.map(|count| count as usize);
     let extent = header.cell.map(|cell| Extent::of_cell(cell, "nm"));
-    let mut channel = StoredChannel::new(source, raw(), [rows, columns], StoredUnit::written("um"), extent)?;
+    let (shape, unit) = ([rows, columns], StoredUnit::written("um"));
+    raw.check(source, rows, columns)?;
     let points = u64::from(header.shape[0]) * u64::from(header.shape[1]);
     let intensities = HEADER + 2 * points;
-    if header.intensities == 0 {
+    let channel = if header.intensities == 0 {
         source.ends(HEADER, 2 * points)?;
+        StoredChannel::new(source, raw, shape, unit, extent)?
     } else {
         source.ends(HEADER, 3 * points)?;
         // The heights of the mask are 1 where the intensity is 0, and undefined elsewhere.
@@ -78,9 +69,8 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
             undefined: Undefined::AtLeast(1.0),
             ..RawHeights::at(intensities, NumberType::U8)
         };
-        dark.check(source, rows, columns)?;
-        channel.detail("points of intensity 0 undefined");
-        channel.heights = masked(raw(), dark, rows, columns);
-    }
+        let mask = (dark, "points of intensity 0 undefined");
+        StoredChannel::masked(source, raw, mask, shape, unit, extent)?
+    };
     Ok(vec![channel.named(&header.name)])
 }

@@ -6,14 +6,7 @@
 //! column, the last row first. Undefined are float32 from 1e38 on and int16 from 32766 on. Intensities are
 //! not read.
 
-use crate::channel::{AxisOrder, RawHeights, StoredChannel, StoredUnit, Undefined};
-use crate::error::Result;
-use crate::extent::Extent;
-use crate::fields::{ByteOrder, Text, header};
-use crate::format::Format;
-use crate::number_type::NumberType;
-use crate::reader::Reader;
-use crate::source::Source;
+use super::prelude::*;
 
 /// An entry of the directory: name, type, length, attribute.
 const ENTRY: u64 = 24;

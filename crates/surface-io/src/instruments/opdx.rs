@@ -16,15 +16,7 @@
 //!
 //! Not read: the settings of the measurement (`MetaData`), arrays of other numbers.
 
-use crate::channel::{RawHeights, StoredChannel, StoredUnit};
-use crate::cursor::Cursor;
-use crate::error::Result;
-use crate::extent::Extent;
-use crate::fields::{ByteOrder, decoded};
-use crate::format::Format;
-use crate::number_type::NumberType;
-use crate::reader::Reader;
-use crate::source::Source;
+use super::prelude::*;
 
 const MAGIC: &[u8] = b"VCA DATA\x01\x00\x00\x55";
 const LITTLE: ByteOrder = ByteOrder::Little;

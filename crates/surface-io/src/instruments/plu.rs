@@ -9,14 +9,7 @@
 //! they stand beside pictures no description says, and only the first layer is read. Profiles and the
 //! pictures are not read.
 
-use crate::channel::{RawHeights, StoredChannel, StoredUnit, Undefined};
-use crate::error::Result;
-use crate::extent::Extent;
-use crate::fields::{ByteOrder, Fields, header};
-use crate::format::Format;
-use crate::number_type::NumberType;
-use crate::reader::Reader;
-use crate::source::Source;
+use super::prelude::*;
 
 /// Bytes before the first layer, and those of a layer's shape and range.
 const HEADER: u64 = 500;

@@ -12,15 +12,9 @@
 //! Not read: compressed data, the trailer. `Micromap` states its scales in the trailer: the size of its maps
 //! is unknown here.
 
-use crate::channel::{RawHeights, StoredChannel, StoredHeights, StoredUnit, Undefined, undefined_heights};
+use super::prelude::*;
+use crate::channel::undefined_heights;
 use crate::entries::{Entries, HeaderLine};
-use crate::error::{ContentError, Result};
-use crate::extent::Extent;
-use crate::fields::{ByteOrder, Text};
-use crate::format::Format;
-use crate::number_type::NumberType;
-use crate::reader::Reader;
-use crate::source::Source;
 
 /// Behind an `a` for text or a `b` for numbers.
 const REVISIONS: [&[u8]; 4] = [b"ISO-1.0", b"ISO-2.0", b"BCR-0.0", b"BCR-1.0"];
@@ -55,9 +49,7 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
     };
     let bcr = start[1..].starts_with(b"BCR");
     let ([columns, rows], [x, y, z]) = (header.count, header.scale);
-    if columns == 0 || rows == 0 {
-        return Err(source.content(ContentError::NoCells { rows: rows as u64, columns: columns as u64 }));
-    }
+    source.check_cells([rows, columns])?;
     if header.compression.abs() > 0.0 {
         return Err(source.wrong(0, format!("Compression 0, found {}", header.compression)));
     }
@@ -70,26 +62,20 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
         return Err(source.wrong(offset, expected));
     };
     let raw = RawHeights { reversed: [false, bcr], scale: z, undefined, ..RawHeights::at(offset, number) };
-    let (heights, details) = if start[0] == b'a' {
-        // One digit and one space at least for each.
-        let left = source.length() - offset;
-        if columns.checked_mul(rows).is_none_or(|count| count as u64 > left.div_ceil(2)) {
-            let expected = format!("{columns} x {rows} numbers, there are {left} bytes (cut short?)");
-            return Err(source.wrong(offset, expected));
-        }
-        let read = move |source: &mut Source<'_>| numbers(source, offset, &raw, [rows, columns]);
-        (StoredHeights::Deferred(Box::new(read)), "text, row by row".to_owned())
-    } else {
-        raw.check(source, rows, columns)?;
-        let details = raw.details();
-        (StoredHeights::Raw(raw), details)
-    };
     let known = !header.manufacturer.starts_with("Micromap");
     let cell = |scale: f64| Extent::of_cell(scale, "m").filter(|_| known);
-    Ok(vec![StoredChannel {
-        extent: [cell(x), cell(y)],
-        ..StoredChannel::of(heights, details, [rows, columns], StoredUnit::written("m"))
-    }])
+    let (shape, unit, extent) = ([rows, columns], StoredUnit::written("m"), [cell(x), cell(y)]);
+    if start[0] != b'a' {
+        return Ok(vec![StoredChannel::new(source, raw, shape, unit, extent)?]);
+    }
+    // One digit and one space at least for each.
+    let left = source.length() - offset;
+    if columns.checked_mul(rows).is_none_or(|count| count as u64 > left.div_ceil(2)) {
+        let expected = format!("{columns} x {rows} numbers, there are {left} bytes (cut short?)");
+        return Err(source.wrong(offset, expected));
+    }
+    let read = move |source: &mut Source<'_>| numbers(source, offset, &raw, shape);
+    Ok(vec![StoredChannel::deferred("text, row by row".to_owned(), shape, unit, extent, read)])
 }
 
 /// A type of numbers, and which of them stands for undefined points.

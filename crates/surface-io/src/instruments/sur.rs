@@ -13,15 +13,8 @@
 //! SurfaceTopography 1.27 and Gwyddion invert the numbers then, surfalize and RosettaSciIO do not, and hills
 //! would be taken for valleys.
 
-use crate::channel::{Bytes, RawHeights, StoredChannel, StoredHeights, StoredUnit, Undefined};
-use crate::error::{ContentError, Result};
-use crate::extent::Extent;
-use crate::fields::{ByteOrder, Text, header};
-use crate::format::Format;
+use super::prelude::*;
 use crate::inflate::{Packed, Packing};
-use crate::number_type::NumberType;
-use crate::reader::Reader;
-use crate::source::Source;
 
 const PLAIN: &[u8; 12] = b"DIGITAL SURF";
 const COMPRESSED: &[u8; 12] = b"DSCOMPRESSED";
@@ -116,9 +109,7 @@ fn object(source: &mut Source<'_>, at: u64, header: &Header, image: bool) -> Res
         let expected = format!("{columns} x {rows} numbers, found {}", header.total);
         return wrong(source, 116, expected);
     }
-    if columns == 0 || rows == 0 {
-        return Err(source.content(ContentError::NoCells { rows: rows as u64, columns: columns as u64 }));
-    }
+    source.check_cells([rows, columns])?;
     if !(z.is_finite() && z.abs() > 0.0 && header.z_offset.is_finite()) {
         return wrong(source, 128, format!("a step along z other than 0 and an offset, found {z}"));
     }
@@ -132,10 +123,17 @@ fn object(source: &mut Source<'_>, at: u64, header: &Header, image: bool) -> Res
     let shift = header.z_offset.into();
     let raw = move |bytes| RawHeights { scale: z, shift, undefined, ..RawHeights::new(bytes, number) };
     let plain = raw(Bytes::File(data));
-    let mut details = plain.details();
+    let unit = match StoredUnit::written(&header.unit[2]) {
+        StoredUnit::NoHeights(unit) => StoredUnit::NoHeights(unit),
+        _ if image => StoredUnit::NoHeights(None),
+        unit => unit,
+    };
+    let name = [&*header.name, &*header.z_axis].into_iter().find(|name| !name.is_empty()).unwrap_or_default();
+    let extent = [Extent::of_cell(x, &header.unit[0]), Extent::of_cell(y, &header.unit[1])];
+    let shape = [rows, columns];
     let length = u64::from(header.total) * number.bytes() as u64;
-    let (heights, end) = if header.magic == *COMPRESSED {
-        details += ", compressed";
+    let (channel, end) = if header.magic == *COMPRESSED {
+        let details = format!("{}, compressed", plain.details());
         let (streams, end) = streams(source, data, length)?;
         let read = move |source: &mut Source<'_>| {
             let mut bytes = Vec::new();
@@ -144,20 +142,11 @@ fn object(source: &mut Source<'_>, at: u64, header: &Header, image: bool) -> Res
             }
             raw(Bytes::Held(bytes)).read(source, rows, columns)
         };
-        (StoredHeights::Deferred(Box::new(read)), end)
+        (StoredChannel::deferred(details, shape, unit, extent, read), end)
     } else {
-        plain.check(source, rows, columns)?;
-        (StoredHeights::Raw(plain), data + length)
+        (StoredChannel::new(source, plain, shape, unit, extent)?, data + length)
     };
-    let unit = match StoredUnit::written(&header.unit[2]) {
-        StoredUnit::NoHeights(unit) => StoredUnit::NoHeights(unit),
-        _ if image => StoredUnit::NoHeights(None),
-        unit => unit,
-    };
-    let name = [&*header.name, &*header.z_axis].into_iter().find(|name| !name.is_empty()).unwrap_or_default();
-    let extent = [Extent::of_cell(x, &header.unit[0]), Extent::of_cell(y, &header.unit[1])];
-    let channel = StoredChannel::of(heights, details, [rows, columns], unit);
-    Ok((StoredChannel { extent, ..channel }.named(name), end))
+    Ok((channel.named(name), end))
 }
 
 /// The streams of a compressed object that unpack to so many bytes, and the offset of their end.

@@ -24,17 +24,12 @@ mod directory;
 mod jpk;
 mod park;
 
-use crate::channel::{
-    Bytes, RawHeights, StoredChannel, StoredHeights, StoredUnit, Undefined, undefined_heights,
-};
-use crate::error::{ContentError, Error, Place, Result};
-use crate::extent::Extent;
-use crate::format::Format;
+use super::prelude::*;
+use crate::channel::undefined_heights;
+use crate::error::{ContentError, Error, Place};
 use crate::inflate::RATIO;
-use crate::number_type::{NumberType, exact};
+use crate::number_type::exact;
 use crate::quantity::{Dimension, Quantity, Unit};
-use crate::reader::Reader;
-use crate::source::Source;
 use directory::{Directories, MOST};
 use jpk::Jpk;
 use quick_xml::events::Event;
@@ -273,10 +268,8 @@ fn channel(
             return Err(source.wrong(0, expected));
         }
     };
-    if rows == 0 || columns == 0 {
-        let (rows, columns) = (rows.into(), columns.into());
-        return Err(source.content(ContentError::NoCells { rows, columns }));
-    }
+    let shape = [rows as usize, columns as usize];
+    source.check_cells(shape)?;
     let claimed = u128::from(rows) * u128::from(columns) * u128::from(bits / 8);
     if claimed > u128::from(RATIO.saturating_mul(source.length())) {
         let expected = format!("{columns} x {rows} numbers in {} bytes (cut short?)", source.length());
@@ -303,9 +296,7 @@ fn channel(
     let raw = RawHeights { reversed, scale, shift, undefined, ..RawHeights::new(held, kind) };
     raw.check_scale(source)?;
     let image = Image { number, size: page.size, bytes: u64::from(bits / 8), raw };
-    let heights = StoredHeights::Deferred(Box::new(move |source| image.read(source)));
     let details = format!("{}, row by row", kind.name());
-    let channel = StoredChannel::of(heights, details, [rows as usize, columns as usize], unit);
     let extent = match &jpk {
         Some(jpk) => jpk.extent,
         None => description.map_or_else(|| microscope, |description| description.extent(page)),
@@ -315,7 +306,8 @@ fn channel(
         None if alone => String::new(),
         None => format!("image {number}"),
     };
-    Ok(Some(StoredChannel { extent, ..channel }.named(&name)))
+    let channel = StoredChannel::deferred(details, shape, unit, extent, move |source| image.read(source));
+    Ok(Some(channel.named(&name)))
 }
 
 /// What is needed to read one image.

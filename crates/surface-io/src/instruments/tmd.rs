@@ -10,15 +10,7 @@
 //! Not read: the first version of the format (`v1.0`), the AMB files of Ambios that begin with the same
 //! words.
 
-use crate::channel::{RawHeights, StoredChannel, StoredUnit};
-use crate::cursor::Cursor;
-use crate::error::Result;
-use crate::extent::Extent;
-use crate::fields::ByteOrder;
-use crate::format::Format;
-use crate::number_type::NumberType;
-use crate::reader::Reader;
-use crate::source::Source;
+use super::prelude::*;
 
 const MAGIC: &[u8] = b"Binary TrueMap Data File v2.0\r\n\0";
 

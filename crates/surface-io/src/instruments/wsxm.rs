@@ -15,14 +15,9 @@
 //! Not read: curves, movies, the offsets and the calibration of the scanner, which `Z Amplitude` contains: in
 //! a real file 18.8851 nm are 973 counts of 20 V / 2^16 at a gain of 3 and 21.2 nm/V.
 
-use crate::channel::{RawHeights, StoredChannel, StoredUnit, check_rest};
+use super::prelude::*;
+use crate::channel::check_rest;
 use crate::entries::{Entries, HeaderLine, number_and_text};
-use crate::error::Result;
-use crate::extent::Extent;
-use crate::format::Format;
-use crate::number_type::NumberType;
-use crate::reader::Reader;
-use crate::source::Source;
 
 const MAGIC: &[u8] = b"WSxM file copyright";
 /// The second line of images; curves and movies have another one.

@@ -19,13 +19,8 @@ mod write;
 
 pub use write::x3p;
 
-use crate::channel::{Bytes, RawHeights, StoredChannel, StoredHeights, StoredUnit};
-use crate::error::{ContentError, Error, Result};
-use crate::extent::Extent;
-use crate::format::Format;
-use crate::number_type::NumberType;
-use crate::reader::Reader;
-use crate::source::Source;
+use super::prelude::*;
+use crate::error::Error;
 use crate::zip::{self, Member};
 use main_xml::{Axis, Main};
 
@@ -109,9 +104,8 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
     };
     let (x, y) = (x.cell(), y.cell());
     let read = move |source: &mut Source<'_>| numbers.read(source, [columns, rows], (scale, shift));
-    let heights = StoredHeights::Deferred(Box::new(read));
-    let channel = StoredChannel::of(heights, details, [rows, columns], unit);
-    Ok(vec![StoredChannel { extent: [x, y], notes, ..channel }])
+    let channel = StoredChannel::deferred(details, [rows, columns], unit, [x, y], read);
+    Ok(vec![StoredChannel { notes, ..channel }])
 }
 
 fn wrong(source: &Source<'_>, main: &Member, expected: &str) -> Error {
@@ -218,10 +212,7 @@ impl Numbers {
             }
             Self::Listed(main) => {
                 let text = main.unpack_text(source, LONGEST)?;
-                let (mut heights, mut others) = (Vec::new(), 0);
-                let count = rows * columns;
-                let refused = |_| ContentError::Memory { bytes: 8 * count as u128 };
-                heights.try_reserve_exact(count).map_err(refused).map_err(|e| source.content(e))?;
+                let (mut heights, mut others) = (source.room(rows * columns)?, 0);
                 main_xml::listed(&text, &mut |number| match number {
                     Some(number) => heights.push(scale * number + shift),
                     None => others += 1,

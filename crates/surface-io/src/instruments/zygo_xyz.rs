@@ -7,13 +7,8 @@
 //! one says that the later program Mx can be set to another unit, of which the file says nothing. That is
 //! noted. The row 0 is y = 0.
 
-use crate::channel::{StoredChannel, StoredHeights, StoredUnit, undefined_heights};
-use crate::error::{ContentError, Result};
-use crate::extent::Extent;
-use crate::fields::decoded;
-use crate::format::Format;
-use crate::reader::Reader;
-use crate::source::Source;
+use super::prelude::*;
+use crate::channel::undefined_heights;
 
 const MAGIC: &[u8] = b"Zygo XYZ Data File";
 /// Longest header in bytes.
@@ -36,9 +31,7 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
         );
     };
     let (columns, rows) = (columns as usize, rows as usize);
-    if columns == 0 || rows == 0 {
-        return Err(source.content(ContentError::NoCells { rows: rows as u64, columns: columns as u64 }));
-    }
+    source.check_cells([rows, columns])?;
     // A point takes eight bytes at least.
     let most = source.length() / 8 + 1;
     if columns.checked_mul(rows).is_none_or(|count| count as u64 > most) {
@@ -49,12 +42,12 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
     let resolution = numbers(7).get(6).copied().flatten().unwrap_or(0.0);
     let behind = end as u64;
     let read = move |source: &mut Source<'_>| points(source, behind, [left, top], [rows, columns]);
-    let heights = StoredHeights::Deferred(Box::new(read));
-    let unit = StoredUnit::written("um");
-    let mut channel = StoredChannel::of(heights, "points as text".to_owned(), [rows, columns], unit);
+    let (unit, extent) = (StoredUnit::written("um"), [Extent::of_cell(resolution, "m"); 2]);
+    let mut channel =
+        StoredChannel::deferred("points as text".to_owned(), [rows, columns], unit, extent, read);
     channel
         .note("heights are taken for micrometres, as MetroPro writes them; the file does not say its unit");
-    Ok(vec![StoredChannel { extent: [Extent::of_cell(resolution, "m"); 2], ..channel }])
+    Ok(vec![channel])
 }
 
 /// The heights, NaN where none is said.

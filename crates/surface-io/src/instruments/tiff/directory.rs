@@ -22,6 +22,9 @@ struct Entry {
     length: u64,
 }
 
+/// Types of numbers by their codes.
+const TYPES: [&str; 13] = ["", "u1", "", "u2", "u4", "", "i1", "", "i2", "i4", "", "f4", "f8"];
+
 /// Longest private text that is read, in bytes.
 const LONGEST: u64 = 256;
 
@@ -91,19 +94,14 @@ impl Directories {
     /// The first number of a tag, where it is finite.
     pub(super) fn number(&self, source: &mut Source<'_>, image: usize, tag: u16) -> Result<Option<f64>> {
         let Some(entry) = self.entry(image, tag) else { return Ok(None) };
-        let (letter, size) = match entry.kind {
-            1 | 3 | 4 => (b'u', [0, 1, 0, 2, 4][usize::from(entry.kind)]),
-            6 | 8 | 9 => (b'i', [1, 0, 2, 4][usize::from(entry.kind - 6)]),
-            11 => (b'f', 4),
-            12 => (b'f', 8),
-            _ => return Ok(None),
+        let Some(number) = NumberType::of_code(entry.kind.into(), &TYPES, ByteOrder::Little) else {
+            return Ok(None);
         };
-        match NumberType::new(letter, size, true) {
-            Some(number) if entry.length >= size.into() => {
-                let found = source.fields(self.order, entry.at, size.into())?.number(number)?;
-                Ok(Some(found).filter(|found| found.is_finite()))
-            }
-            _ => Ok(None),
+        let size = number.bytes() as u64;
+        if entry.length < size {
+            return Ok(None);
         }
+        let found = source.fields(self.order, entry.at, size)?.number(number)?;
+        Ok(Some(found).filter(|found| found.is_finite()))
     }
 }

@@ -8,10 +8,7 @@
 //! `tests/test_jpk.py`) agree.
 
 use super::directory::Directories;
-use crate::channel::StoredUnit;
-use crate::error::Result;
-use crate::extent::Extent;
-use crate::source::Source;
+use crate::instruments::prelude::*;
 
 /// Sides of the grid.
 const SIDES: [u16; 2] = [0x8042, 0x8043];

@@ -10,12 +10,8 @@
 //! Not read: line profiles, spectra, logarithms and squares, the picture.
 
 use super::directory::Directories;
-use crate::channel::{RawHeights, StoredChannel, StoredUnit};
-use crate::error::Result;
-use crate::extent::Extent;
-use crate::fields::{ByteOrder, Wide, header};
-use crate::number_type::NumberType;
-use crate::source::Source;
+use crate::fields::Wide;
+use crate::instruments::prelude::*;
 
 /// Tags, and the number in the first of them.
 const MARK: u16 = 50432;
