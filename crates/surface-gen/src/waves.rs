@@ -90,7 +90,7 @@ impl WaveGenerator {
         // Sum of variances and number of waves.
         let mut sums: Vec<[f64; 2]> = Vec::new();
         let mut ring_of = vec![0; variances.len()];
-        periodogram(&sample, &mut |wave| {
+        periodogram(&sample, |wave| {
             let [mx, my] = wave.index;
             let at = index(cells, mx.unsigned_abs(), my);
             variances[at] = wave.variance;
@@ -353,7 +353,7 @@ mod tests {
             let anisotropy = Anisotropy { ratio: 3.0, lay };
             let map = WaveGenerator::anisotropic(&surface, anisotropy, 96).unwrap().map(1).unwrap();
             let [mut xx, mut xy, mut yy] = [0.0; 3];
-            periodogram(&map, &mut |wave| {
+            periodogram(&map, |wave| {
                 let [x, y] = wave.index.map(|m| m as f64);
                 let weight = wave.copies * wave.variance;
                 (xx, xy, yy) = (xx + weight * x * x, xy + weight * x * y, yy + weight * y * y);

@@ -247,7 +247,7 @@ pub fn texture_direction(map: &HeightMap) -> Result<f64> {
     let size = map.size();
     let limits = [2.0 / size.shorter(), 0.5 / map.dx().max(map.dy())];
     let mut sectors = vec![0.0; SECTORS];
-    periodogram(&windowed, &mut |wave| {
+    periodogram(&windowed, |wave| {
         let [x, y] = [wave.index[0] as f64 / size.x, wave.index[1] as f64 / size.y];
         if (limits[0]..=limits[1]).contains(&x.hypot(y)) {
             let turn = (y.atan2(x) / PI).rem_euclid(1.0);

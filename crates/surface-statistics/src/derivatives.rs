@@ -113,7 +113,7 @@ pub fn nayak_parameter(statistics: &MapStatistics) -> f64 {
 }
 
 /// Root mean squares over distances; the values of each index belong together.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct ScaleDependence {
     /// Length of the stencil.
     pub distance: Vec<f64>,
@@ -176,7 +176,7 @@ impl ScaleDependence {
         let Relative { heights, unit } = Relative::new(map);
         let periodic = boundary == Boundary::Periodic;
         let last = if periodic { (columns / 2 / order).max(1) } else { (columns - 1) / order };
-        let mut found = Self { distance: Vec::new(), rms: Vec::new(), points: Vec::new() };
+        let mut found = Self::default();
         for cells in steps(last) {
             let (mut sum, mut points) = (0.0, 0);
             for row in heights.chunks_exact(columns) {

@@ -10,7 +10,7 @@ use numerics::fourier::{ForwardTransform, InverseTransform, fast_length};
 ///
 /// `A(r) = <[h(x + r) - h(x)]^2>/2`; the structure function is `2 A`, the autocorrelation of a homogeneous
 /// surface `R(r) = h_rms^2 - A(r)`, its rms slope over the distance r `sqrt(2 A)/r`.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct HeightDifference {
     /// Mean distance of the pairs, a length.
     pub distance: Vec<f64>,
@@ -27,10 +27,6 @@ impl HeightDifference {
     /// Source: Sanner, Noehring, Thimons, Jacobs, Pastewka, Appl. Surf. Sci. Adv. 7, 100190 (2022), Eq. 14.
     pub fn slope(&self) -> Vec<f64> {
         self.half_square.iter().zip(&self.distance).map(|(a, r)| (2.0 * a).sqrt() / r).collect()
-    }
-
-    fn empty() -> Self {
-        Self { distance: Vec::new(), half_square: Vec::new(), pairs: Vec::new() }
     }
 }
 
@@ -156,7 +152,7 @@ impl DifferenceMap {
     fn along(&self, axis: usize) -> Result<HeightDifference> {
         let cells = [self.cells.columns, self.cells.rows][axis];
         let last = if self.periodic { cells / 2 } else { cells - 1 };
-        let mut found = HeightDifference::empty();
+        let mut found = HeightDifference::default();
         for k in 1..=last {
             let lag = if axis == 0 { [k.cast_signed(), 0] } else { [0, k.cast_signed()] };
             if let Some([value, pairs]) = self.at(lag) {
@@ -214,7 +210,7 @@ impl DifferenceMap {
                 sum[2] += pairs * (value / self.unit / self.unit);
             }
         }
-        let mut found = HeightDifference::empty();
+        let mut found = HeightDifference::default();
         for [pairs, r, value] in sums.into_iter().filter(|[pairs, ..]| *pairs > 0.0) {
             found.distance.push(r / pairs);
             let root = (value / pairs).sqrt() * self.unit;

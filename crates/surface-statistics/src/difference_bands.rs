@@ -63,7 +63,7 @@ impl DifferenceBands {
         let (size, cells) = (map.size(), map.cells());
         let fundamental = TAU / size.x.max(size.y);
         let mut waves: [Vec<Waves>; 3] = std::array::from_fn(|_| Vec::new());
-        periodogram(tapered.as_ref().unwrap_or(map), &mut |wave| {
+        periodogram(tapered.as_ref().unwrap_or(map), |wave| {
             let [mx, my] = wave.index;
             // Of a wave and its conjugate one counts, with the variance of both.
             let own = mx == 0 || 2 * mx.unsigned_abs() == cells.columns;

@@ -8,7 +8,7 @@ use std::f64::consts::TAU;
 use surface_gen::{defined_everywhere, hann_window, periodogram};
 
 /// A spectrum and how well it is known: the values of each index belong together, wavenumbers rise.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct PowerSpectrum {
     /// Mean wavenumber of the waves of a bin, in 1/length.
     pub wavenumber: Vec<f64>,
@@ -67,13 +67,13 @@ impl PowerSpectrum {
         let map = tapered.as_ref().unwrap_or(map);
         // Sum of the variances and of their squares over qy.
         let mut sums = vec![[0.0; 2]; columns / 2 + 1];
-        let unit = periodogram(map, &mut |wave| {
+        let unit = periodogram(map, |wave| {
             let sum = &mut sums[wave.index[0].unsigned_abs()];
             sum[0] += wave.variance;
             sum[1] += wave.variance * wave.variance;
         })?;
         let length = map.size().x;
-        let mut spectrum = Self::empty();
+        let mut spectrum = Self::default();
         for (m, [sum, square]) in sums.into_iter().enumerate().skip(1) {
             let independent = if square > 0.0 { (2.0 * sum * sum / square - 1.0).max(1.0) } else { 1.0 };
             // The Nyquist wave is real.
@@ -119,7 +119,7 @@ impl PowerSpectrum {
         let tapered = if map.undefined() == 0 { taper.over(map)? } else { map.clone() };
         let (size, length) = (map.size(), map.length());
         let mut sums = vec![[0.0; 3]; bins.edges().len() - 1];
-        let unit = periodogram(&tapered, &mut |wave| {
+        let unit = periodogram(&tapered, |wave| {
             let [mx, my] = wave.index;
             let q = TAU * (mx as f64 / size.x).hypot(my as f64 / size.y);
             if let Some(bin) = bins.index(q) {
@@ -130,7 +130,7 @@ impl PowerSpectrum {
             }
         })?;
         let pairs = correlated_pairs(map, taper, bins);
-        let mut spectrum = Self::empty();
+        let mut spectrum = Self::default();
         for ([count, q, variance], pairs) in sums.into_iter().zip(pairs).filter(|(sum, _)| sum[0] > 0.0) {
             let density = ((variance / count).sqrt() * unit * (length / TAU)).powi(2);
             // However wide the window's transform is, one wave is left.
@@ -141,10 +141,6 @@ impl PowerSpectrum {
             return Err(Error::domain("last edge of bins", last, "bins that hold waves of the map"));
         }
         Ok(spectrum)
-    }
-
-    fn empty() -> Self {
-        Self { wavenumber: Vec::new(), density: Vec::new(), degrees_of_freedom: Vec::new() }
     }
 
     fn push(&mut self, wavenumber: f64, density: f64, degrees_of_freedom: f64) -> Result<()> {

@@ -37,7 +37,7 @@ pub struct Wave {
 /// let sine = Surface::Sine { amplitude: 0.2, wavelength: 1.0, size: 1.0.into() };
 /// let map = surface_gen::height_map(&sine, 16, 0)?;
 /// let mut found = 0.0;
-/// let unit = surface_gen::periodogram(&map, &mut |wave| {
+/// let unit = surface_gen::periodogram(&map, |wave| {
 ///     if wave.index == [1, 0] {
 ///         found = wave.copies * wave.variance;
 ///     }
@@ -45,11 +45,7 @@ pub struct Wave {
 /// assert!((found * unit * unit - 0.02).abs() < 1e-15);
 /// # Ok::<(), contact_model::Error>(())
 /// ```
-pub fn periodogram(map: &HeightMap, visit: &mut dyn FnMut(Wave)) -> Result<f64> {
-    all_waves(map, visit)
-}
-
-fn all_waves(map: &HeightMap, mut visit: impl FnMut(Wave)) -> Result<f64> {
+pub fn periodogram(map: &HeightMap, mut visit: impl FnMut(Wave)) -> Result<f64> {
     defined_everywhere(map, "a spectrum")?;
     let Cells { columns: nx, rows: ny } = map.cells();
     let (middle, unit) = middle_and_half_width(range(map.heights()));
@@ -82,7 +78,7 @@ pub(super) fn waves(
     lattice: &Lattice,
     mut visit: impl FnMut(f64, f64, f64, [f64; 2]),
 ) -> Result<f64> {
-    all_waves(map, |wave| {
+    periodogram(map, |wave| {
         let [mx, my] = wave.index.map(|m| m.unsigned_abs() as u64);
         // (L/Lx) (L/Ly) = 1.
         let product = (wave.index[0] * wave.index[1]) as f64;

@@ -95,7 +95,7 @@ impl Rings {
             let q = (m[0] * step[0]).hypot(m[1] * step[1]);
             (q >= from * (1.0 - SLACK) && q <= to).then_some((q.round() as usize, q))
         };
-        let unit = periodogram(map, &mut |wave| {
+        let unit = periodogram(map, |wave| {
             if let Some((ring, q)) = ring_of(wave.index.map(|m| m as f64)) {
                 let sum = &mut sums[ring];
                 *sum = [sum[0] + wave.copies, sum[1] + wave.copies * q, sum[2] + wave.copies * wave.variance];
