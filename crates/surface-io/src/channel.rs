@@ -84,6 +84,16 @@ pub(crate) enum FileAxes {
     Assumed(Axes),
 }
 
+impl FileAxes {
+    /// Which index of the map runs fastest, the last of the array.
+    pub(crate) fn order(self) -> AxisOrder {
+        match self {
+            Self::Said(Axes::Xy) | Self::Assumed(Axes::Xy) => AxisOrder::Columns,
+            _ => AxisOrder::Rows,
+        }
+    }
+}
+
 /// How a note on the order of the axes begins.
 const TAKEN: &str = "the first index is taken for";
 
@@ -140,6 +150,14 @@ impl AxisOrder {
         match self {
             Self::Rows => Self::Columns,
             Self::Columns => Self::Rows,
+        }
+    }
+
+    /// Rows and columns of so many lines of so many numbers, and the reverse.
+    pub(crate) fn shape<N>(self, [lines, along]: [N; 2]) -> [N; 2] {
+        match self {
+            Self::Rows => [lines, along],
+            Self::Columns => [along, lines],
         }
     }
 
@@ -207,18 +225,10 @@ impl RawHeights {
 
     /// Bytes that so many rows and columns take; `None` beyond 2^64.
     fn length(&self, rows: usize, columns: usize) -> Option<u64> {
-        let (along, lines) = self.lines(rows, columns);
+        let [lines, along] = self.order.shape([rows, columns]);
         let own = (along as u64).checked_mul(self.number.bytes() as u64)?;
         let line = self.line_bytes.unwrap_or(own).max(own);
         line.checked_mul(lines as u64 - 1)?.checked_add(own)
-    }
-
-    /// Numbers of a line, and lines.
-    fn lines(&self, rows: usize, columns: usize) -> (usize, usize) {
-        match self.order {
-            AxisOrder::Rows => (columns, rows),
-            AxisOrder::Columns => (rows, columns),
-        }
     }
 
     /// An error where every height would be the same or none; called before the channel is listed.
@@ -272,7 +282,7 @@ impl RawHeights {
         /// Bytes that are read at a time.
         const CHUNK: usize = 1 << 16;
         self.check(source, rows, columns)?;
-        let (along, lines) = self.lines(rows, columns);
+        let [lines, along] = self.order.shape([rows, columns]);
         let size = self.number.bytes();
         let line_bytes = self.line_bytes.unwrap_or(0).max((along * size) as u64);
         let at_once = (CHUNK / size).min(along);
@@ -307,10 +317,7 @@ impl RawHeights {
 
     /// Row and column of a place of a line.
     pub(crate) fn place(&self, [rows, columns]: [usize; 2], [line, at]: [usize; 2]) -> [usize; 2] {
-        let [row, column] = match self.order {
-            AxisOrder::Rows => [line, at],
-            AxisOrder::Columns => [at, line],
-        };
+        let [row, column] = self.order.shape([line, at]);
         [
             if self.reversed[1] { rows - 1 - row } else { row },
             if self.reversed[0] { columns - 1 - column } else { column },
@@ -457,17 +464,16 @@ impl StoredChannel {
         }
     }
 
-    /// Takes this for the order of the axes, of which the file says nothing, and tells why.
-    pub(crate) fn assume(&mut self, axes: Axes, why: &str) {
-        let (taken, other) = match axes {
-            Axes::Xy => ("x", Axes::Yx),
-            Axes::Yx => ("y", Axes::Xy),
-        };
-        self.axes = FileAxes::Assumed(axes);
-        let other = other.word();
-        self.note(format!(
-            "the first index is taken for {taken} ({why}); axes = \"{other}\" takes the other"
-        ));
+    /// Takes this for the order of the axes; where the file says nothing of it, a note tells why.
+    pub(crate) fn take_axes(&mut self, axes: FileAxes, why: &str) {
+        self.axes = axes;
+        if let FileAxes::Assumed(axes) = axes {
+            let (taken, other) = match axes {
+                Axes::Xy => ("x", Axes::Yx.word()),
+                Axes::Yx => ("y", Axes::Xy.word()),
+            };
+            self.note(format!("{TAKEN} {taken} ({why}); axes = \"{other}\" takes the other"));
+        }
     }
 
     /// Puts the axes in the order that is asked for.

@@ -3,7 +3,7 @@
 use crate::error::{Error, Result};
 use crate::extent::Extent;
 use crate::fields::decoded;
-use crate::quantity::{Dimension, Quantity, Unit};
+use crate::source::Source;
 use crate::subject::Subject;
 
 /// What a line of such a header is.
@@ -21,6 +21,24 @@ pub(crate) enum HeaderLine<'l> {
     /// No such line; what was expected.
     Wrong(&'static str),
 }
+
+impl<'l> HeaderLine<'l> {
+    /// A key and its value with a mark between, or the name of a section in brackets.
+    pub(crate) fn in_section(line: &'l str, between: char) -> Self {
+        match line.strip_prefix('[').and_then(|line| line.strip_suffix(']')) {
+            Some(name) => Self::Section(name),
+            None => Self::entry(line, between),
+        }
+    }
+
+    /// A key and its value with a mark between; a comment without one.
+    pub(crate) fn entry(line: &'l str, between: char) -> Self {
+        line.split_once(between).map_or(Self::Passed, |(key, value)| Self::Entry(key, value))
+    }
+}
+
+/// Relative error of a number of a header that has six digits.
+pub(crate) const SIX_DIGITS: f64 = 1e-5;
 
 /// A text header; names of sections and keys are in small letters.
 pub(crate) struct Entries {
@@ -71,6 +89,17 @@ impl Entries {
             }
         }
         Ok((found, false))
+    }
+
+    /// Reads lines up to one that ends the header; an error says that it is expected.
+    pub(crate) fn up_to_end(
+        source: &Source<'_>,
+        text: &[u8],
+        line: impl for<'l> Fn(&'l str) -> HeaderLine<'l>,
+        expected: &str,
+    ) -> Result<Self> {
+        let (header, ended) = Self::read(source.subject(), text, line)?;
+        if ended { Ok(header) } else { Err(source.wrong(header.end, format!("{expected} (cut short?)"))) }
     }
 
     pub(crate) fn sections(&self) -> &[Section] {
@@ -130,23 +159,6 @@ impl Section {
     pub(crate) fn side(&self, key: &str, unit: &str) -> Option<Extent> {
         Extent::of_side(self.text(key)?.parse().ok()?, unit)
     }
-
-    /// A length with its unit; `None` where there is none.
-    pub(crate) fn length(&self, key: &str) -> Option<Quantity> {
-        length(self.text(key)?)
-    }
-}
-
-/// `600 nm`, also with a comma as the point.
-pub(crate) fn length(text: &str) -> Option<Quantity> {
-    let (number, unit) = number_and_unit(text)?;
-    Quantity::of(number, &unit).ok().filter(|length| length.dimension() == Dimension::LENGTH)
-}
-
-/// A number and the unit behind it.
-pub(crate) fn number_and_unit(text: &str) -> Option<(f64, Unit)> {
-    let (number, unit) = number_and_text(text)?;
-    Some((number, unit.parse().ok()?))
 }
 
 /// A number and what stands behind it.

@@ -298,21 +298,15 @@ pub enum ContentError {
         /// The first line of data, from 1.
         first: usize,
     },
-    /// Points with coordinates that are not numbers, or lines without three values.
-    #[error("line {line} has {found} values: expected x, y and z of one point")]
-    NotPoints {
+    /// Lines without as many values as a point has.
+    #[error("line {line} has {found} values: expected {expected}")]
+    NoPoint {
         /// Line, from 1.
         line: usize,
         /// Values found.
         found: usize,
-    },
-    /// Lines without two values where a profile is read.
-    #[error("line {line} has {found} values: expected x and z of one point of a profile")]
-    NotProfile {
-        /// Line, from 1.
-        line: usize,
-        /// Values found.
-        found: usize,
+        /// What was expected.
+        expected: &'static str,
     },
     /// A profile with points without a height, or with places without a point.
     #[error(
@@ -547,6 +541,38 @@ pub enum ContentError {
     /// The map was refused.
     #[error("{0}")]
     Map(#[source] contact_model::Error),
+}
+
+impl ContentError {
+    /// A number out of its range.
+    pub(crate) fn out_of_range(what: &'static str, value: f64, expected: &'static str) -> Self {
+        Self::OutOfRange { what, value, expected }
+    }
+
+    /// What neither the file nor the caller states, and what the file says about it.
+    pub(crate) fn unspecified(what: &'static str, seen: Vec<String>, remedy: &'static str) -> Self {
+        Self::Unspecified { what, seen, remedy }
+    }
+
+    /// Heights without a unit, of a file with these notes.
+    pub(crate) fn no_unit(seen: &[String]) -> Self {
+        let remedy = "say unit = \"nm\" or another unit of length";
+        Self::unspecified("the unit of the heights", seen.to_vec(), remedy)
+    }
+
+    /// Two statements that differ.
+    pub(crate) fn contradiction(
+        what: &'static str,
+        first: impl Into<String>,
+        second: impl Into<String>,
+    ) -> Self {
+        Self::Contradiction { what, first: first.into(), second: second.into() }
+    }
+
+    /// A quantity that cannot be read.
+    pub(crate) fn quantity(what: &'static str) -> impl FnOnce(QuantityError) -> Self {
+        move |source| Self::Quantity { what, source }
+    }
 }
 
 /// Why a text is no number.

@@ -65,7 +65,7 @@ fn scaled(what: &'static str, from: Quantity, by: f64, value: f64) -> Result<Qua
         // The product of positive numbers is below the range of doubles.
         return Err(ContentError::OutOfRange { what, value: from.value() * by, expected: "a length > 0" });
     }
-    Quantity::new(value, from.dimension()).map_err(|source| ContentError::Quantity { what, source })
+    Quantity::new(value, from.dimension()).map_err(ContentError::quantity(what))
 }
 
 /// Whether two lengths are one within the digits that headers print.
@@ -84,11 +84,9 @@ pub(crate) fn given(declared: &ReadOptions, count: [usize; 2]) -> Result<Option<
     let width = declared.width.map(|w| positive("width", ["width"; 2], w.into())).transpose()?;
     let [columns, rows] = count;
     if let (Some(Sides::One(side)), true) = (declared.size, columns != rows) {
-        return Err(ContentError::Contradiction {
-            what: "size",
-            first: format!("one value, {side}, is that of a square map"),
-            second: format!("there are {rows} rows of {columns}: say both sides, size = [Lx, Ly]"),
-        });
+        let first = format!("one value, {side}, is that of a square map");
+        let second = format!("there are {rows} rows of {columns}: say both sides, size = [Lx, Ly]");
+        return Err(ContentError::contradiction("size", first, second));
     }
     let mut statements: Vec<(&str, [Extent; 2])> = Vec::new();
     statements.extend(cell.map(|cell| ("cell", cell.map(Extent::Cell))));
@@ -143,7 +141,7 @@ fn positive(one: &'static str, each: [&'static str; 2], sides: Sides) -> Result<
     let both = sides.both();
     for (what, side) in names.into_iter().zip(both) {
         if side.dimension() != Dimension::NONE {
-            side.expect(Dimension::LENGTH).map_err(|source| ContentError::Quantity { what, source })?;
+            side.expect(Dimension::LENGTH).map_err(ContentError::quantity(what))?;
         }
         if side.value() <= 0.0 {
             return Err(ContentError::OutOfRange { what, value: side.value(), expected: "a length > 0" });

@@ -117,7 +117,7 @@ fn terminated(bytes: &[u8]) -> String {
 macro_rules! header {
     ($(#[$about:meta])* struct $name:ident { $($(#[$doc:meta])* $field:ident: $type:ty = $at:expr,)* }) => {
         $(#[$about])*
-        #[derive(Debug, PartialEq)]
+        #[derive(Debug, Clone, PartialEq)]
         struct $name { $($(#[$doc])* $field: $type,)* }
 
         impl $name {

@@ -11,6 +11,7 @@ use crate::channel::{StoredChannel, StoredHeights, StoredUnit, check_unit};
 use crate::error::ContentError;
 use crate::extent::Extent;
 use crate::options::ReadOptions;
+use crate::provenance::contradiction;
 use crate::quantity::{Dimension, Quantity, Unit};
 use crate::text::TextTable;
 use axis::GridAxis;
@@ -29,7 +30,8 @@ const ROUNDED: f64 = 1e-9;
 /// Cost O(n log n) for n points.
 pub(crate) fn grid(table: &TextTable, declared: &ReadOptions) -> Result<StoredChannel, ContentError> {
     if table.columns != 3 {
-        return Err(ContentError::NotPoints { line: table.first_line(), found: table.columns });
+        let (line, found) = (table.first_line(), table.columns);
+        return Err(ContentError::NoPoint { line, found, expected: "x, y and z of one point" });
     }
     let lateral = lateral_unit(declared, table)?;
     let spacing = match declared.cell {
@@ -141,18 +143,14 @@ fn lateral_unit(declared: &ReadOptions, table: &TextTable) -> Result<Option<Unit
     if let (Some(a), Some(b)) = (file, given)
         && !a.same(b)
     {
-        let (first, second) = (format!("{a} from the file"), format!("{b} as given"));
-        return Err(ContentError::Contradiction { what: "unit of x and y", first, second });
+        return Err(contradiction("unit of x and y", a, b));
     }
     let unit = given.clone().or_else(|| file.clone());
     check_unit("lateral_unit", unit.as_ref())?;
     if unit.is_none() && heights_have_length {
         let remedy = "say lateral_unit = \"um\" or another unit of length";
-        return Err(ContentError::Unspecified {
-            what: "the unit of x and y",
-            seen: table.heading.notes([None; 2]),
-            remedy,
-        });
+        let seen = table.heading.notes([None; 2]);
+        return Err(ContentError::unspecified("the unit of x and y", seen, remedy));
     }
     Ok(unit)
 }
@@ -182,9 +180,7 @@ fn extents(
     axes: [&GridAxis; 2],
     unit: &Unit,
 ) -> Result<[Option<Extent>; 2], ContentError> {
-    let quantity = |spacing: f64| {
-        Quantity::of(spacing, unit).map_err(|source| ContentError::Quantity { what: "spacing", source })
-    };
+    let quantity = |spacing: f64| Quantity::of(spacing, unit).map_err(ContentError::quantity("spacing"));
     let stated = table.heading.sides();
     let mut extents = [None; 2];
     for ((extent, axis), side) in extents.iter_mut().zip(axes).zip(stated) {

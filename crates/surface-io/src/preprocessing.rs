@@ -14,7 +14,7 @@ pub use trend::Detrend;
 
 use crate::error::{ContentError, Error, Place, Result};
 use crate::keyword::keywords;
-use crate::quantity::{Dimension, Quantity};
+use crate::quantity::{Dimension, Quantity, Unit};
 use crate::scan::Scan;
 use contact_model::{Cells, HeightMap, Size};
 use surface_gen::{hann_window, rms_height};
@@ -202,8 +202,8 @@ impl Scan {
     ) -> Result<Preprocessed, ContentError> {
         let mut steps = Vec::new();
         if let (Some(_), Some(Undefined::NoContact)) = (preprocessing.fill, preprocessing.undefined) {
-            let (first, second) = ("fill is given".into(), "undefined = \"no_contact\" too".into());
-            return Err(ContentError::Contradiction { what: "undefined points", first, second });
+            let second = "undefined = \"no_contact\" too";
+            return Err(ContentError::contradiction("undefined points", "fill is given", second));
         }
         if let Some(unit) = &self.metadata().no_heights {
             let name = self.metadata().name.as_deref().unwrap_or_default();
@@ -256,11 +256,11 @@ impl Scan {
             }
         }
         if let Some(trend) = trend {
-            trend.subtract(cells, &mut heights);
+            trend.subtract(&mut heights);
             steps.push(format!("the {} of least squares subtracted", preprocessing.detrend.word()));
         }
         if let Some(form) = form {
-            form.subtract(cells, cell, &mut heights);
+            form.subtract(&mut heights);
             let radius = form.radius();
             steps.push(format!(
                 "the {} of least squares subtracted: radius {:e} ({})",
@@ -343,7 +343,7 @@ impl Scan {
     /// The value of a length in the unit of the map's sides.
     fn length(&self, what: &'static str, length: Quantity) -> Result<f64, ContentError> {
         let unit = self.metadata().unit.as_ref().map_or(Dimension::NONE, |u| u.value.dimension());
-        length.expect(unit).map_err(|source| ContentError::Quantity { what, source })
+        length.expect(unit).map_err(ContentError::quantity(what))
     }
 
     /// Sides of the map and of a cell in metres, or in the numbers of the file.
@@ -352,30 +352,20 @@ impl Scan {
         let unit = metadata.unit.as_ref().map(|u| u.value.dimension());
         let (Some(size), Some(cell)) = (metadata.size, &metadata.cell) else {
             let remedy = "say size = [\"1 mm\", \"2 mm\"] or cell = \"0.5 um\", or numbers where the heights have no unit";
-            return Err(ContentError::Unspecified {
-                what: "the size of the map",
-                seen: metadata.notes.clone(),
-                remedy,
-            });
+            return Err(ContentError::unspecified("the size of the map", metadata.notes.clone(), remedy));
         };
         let dx = cell.value[0];
         match unit {
-            None if dx.dimension() == Dimension::LENGTH => Err(ContentError::Unspecified {
-                what: "the unit of the heights",
-                seen: metadata.notes.clone(),
-                remedy: "say unit = \"nm\" or another unit of length",
-            }),
+            None if dx.dimension() == Dimension::LENGTH => Err(ContentError::no_unit(&metadata.notes)),
             unit if dx.dimension() == unit.unwrap_or(Dimension::NONE) => {
                 Ok((size.map(Quantity::value), cell.value.map(Quantity::value)))
             }
-            _ => Err(ContentError::Contradiction {
-                what: "units",
-                first: format!("the side of a cell is {dx}"),
-                second: format!(
-                    "the heights have {}",
-                    metadata.unit.as_ref().map_or_else(|| "no unit".into(), |u| u.value.to_string())
-                ),
-            }),
+            _ => {
+                let of_heights = metadata.unit.as_ref().map_or_else(Unit::none, |unit| unit.value.clone());
+                let (first, second) =
+                    (format!("the side of a cell is {dx}"), format!("the heights have {of_heights}"));
+                Err(ContentError::contradiction("units", first, second))
+            }
         }
     }
 
@@ -433,7 +423,7 @@ impl Scan {
             Fill::Neighbours => fill::harmonic(cells, cell[1] / cell[0], heights),
             Fill::Plane => {
                 if let Some(plane) = Detrend::Plane.fit(cells, heights)? {
-                    plane.fill(cells, heights);
+                    plane.fill(heights);
                 }
             }
             Fill::Value(value) => {

@@ -234,24 +234,19 @@ fn scaled(
     unit: Option<&Sourced<Unit>>,
     heights: &mut [f64],
 ) -> Result<Sourced<Unit>, ContentError> {
-    let metres = scale
-        .expect(Dimension::LENGTH)
-        .map_err(|source| ContentError::Quantity { what: "height_scale", source })?;
+    let what = "height_scale";
+    let metres = scale.expect(Dimension::LENGTH).map_err(ContentError::quantity(what))?;
     if let Some(unit) = unit {
         let (first, second) = (format!("{} {}", unit.value, unit.origin), format!("height_scale = {scale}"));
         return Err(ContentError::Contradiction { what: "unit of the heights", first, second });
     }
     if metres <= 0.0 {
-        return Err(ContentError::OutOfRange {
-            what: "height_scale",
-            value: metres,
-            expected: "a length > 0",
-        });
+        return Err(ContentError::out_of_range(what, metres, "a length > 0"));
     }
     for h in heights {
         *h *= metres;
     }
-    let value = "m".parse().map_err(|source| ContentError::Quantity { what: "height_scale", source })?;
+    let value = "m".parse().map_err(ContentError::quantity(what))?;
     Ok(Sourced { value, origin: Origin::Caller })
 }
 
@@ -260,23 +255,8 @@ fn scaled(
 fn lone_extremes(heights: &[f64]) -> Vec<String> {
     const ALONE: f64 = 2.0;
     // The lowest value and the next one, the highest and the one before.
-    let [mut low, mut high] = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
-    for &h in heights.iter().filter(|h| !h.is_nan()) {
-        low = if h < low[0] {
-            [h, low[0]]
-        } else if h > low[0] {
-            [low[0], low[1].min(h)]
-        } else {
-            low
-        };
-        high = if h > high[0] {
-            [h, high[0]]
-        } else if h < high[0] {
-            [high[0], high[1].max(h)]
-        } else {
-            high
-        };
-    }
+    let low = lowest_two(heights.iter().copied());
+    let high = lowest_two(heights.iter().map(|h| -h)).map(|h| -h);
     let note = |value: f64, next: f64, [from, to]: [f64; 2]| {
         let alone = to > from && (value - next).abs() > ALONE * (to - from);
         let count = heights.iter().filter(|h| (**h - value).abs() <= 0.0).count();
@@ -290,6 +270,19 @@ fn lone_extremes(heights: &[f64]) -> Vec<String> {
     };
     let found = [note(low[0], low[1], [low[1], high[0]]), note(high[0], high[1], [low[0], high[1]])];
     found.into_iter().flatten().collect()
+}
+
+/// The lowest value and the next one that differs from it.
+fn lowest_two(values: impl Iterator<Item = f64>) -> [f64; 2] {
+    values.filter(|v| !v.is_nan()).fold([f64::INFINITY; 2], |[first, next], v| {
+        if v < first {
+            [v, first]
+        } else if v > first {
+            [first, next.min(v)]
+        } else {
+            [first, next]
+        }
+    })
 }
 
 /// Large and small numbers with an exponent.

@@ -13,33 +13,32 @@ use std::sync::atomic::{AtomicU64, Ordering};
 /// What files and byte arrays can both do.
 pub(crate) trait Input: Read + Seek {
     /// The same bytes without a lifetime, for readers of other crates that keep what they read from: a second
-    /// handle of a file, a copy of bytes.
-    fn detached(&self) -> std::io::Result<OwnInput>;
+    /// handle of a file, a copy of bytes. The place in a file is shared with the one that it comes from, so
+    /// that both go to an offset before they read.
+    fn detached(&self) -> std::io::Result<Box<dyn OwnInput>>;
 }
 
 impl Input for BufReader<File> {
-    fn detached(&self) -> std::io::Result<OwnInput> {
-        self.get_ref().try_clone().map(|file| OwnInput::File(BufReader::new(file)))
+    fn detached(&self) -> std::io::Result<Box<dyn OwnInput>> {
+        Ok(Box::new(BufReader::new(self.get_ref().try_clone()?)))
     }
 }
 
 impl Input for Cursor<&[u8]> {
-    fn detached(&self) -> std::io::Result<OwnInput> {
-        Ok(OwnInput::Bytes(Cursor::new(self.get_ref().to_vec())))
+    fn detached(&self) -> std::io::Result<Box<dyn OwnInput>> {
+        Ok(Box::new(Cursor::new(self.get_ref().to_vec())))
     }
 }
 
-/// An input of its own; the place in a file is shared with the one that it comes from, so that both go to an
-/// offset before they read.
-pub(crate) enum OwnInput {
-    File(BufReader<File>),
-    Bytes(Cursor<Vec<u8>>),
-}
+/// An input of its own.
+pub(crate) trait OwnInput: Read + Seek + Send + Sync {}
+
+impl<T: Read + Seek + Send + Sync> OwnInput for T {}
 
 /// An input of its own that gives so many bytes in all: a file may name the same bytes a thousand times, and
 /// what is read is held.
 pub(crate) struct Detached {
-    input: OwnInput,
+    input: Box<dyn OwnInput>,
     budget: Budget,
 }
 
@@ -65,10 +64,7 @@ impl Read for Detached {
             self.budget.0.store(0, Ordering::Relaxed);
             return Err(std::io::Error::other("more is read than the file can mean"));
         }
-        let read = match &mut self.input {
-            OwnInput::File(file) => file.read(buffer),
-            OwnInput::Bytes(bytes) => bytes.read(buffer),
-        }?;
+        let read = self.input.read(buffer)?;
         self.budget.0.store(left - read as u64, Ordering::Relaxed);
         Ok(read)
     }
@@ -76,10 +72,7 @@ impl Read for Detached {
 
 impl Seek for Detached {
     fn seek(&mut self, to: SeekFrom) -> std::io::Result<u64> {
-        match &mut self.input {
-            OwnInput::File(file) => file.seek(to),
-            OwnInput::Bytes(bytes) => bytes.seek(to),
-        }
+        self.input.seek(to)
     }
 }
 

@@ -106,7 +106,7 @@ impl<'a> SurfaceFile<'a> {
         let number = chosen(&self.channels, self.declared.channel.as_ref());
         let number = number.map_err(|e| self.source.content(e))?;
         let channel = self.channels.swap_remove(number);
-        read(&mut self.source, self.format, (number, channel), &self.declared)
+        scan(&mut self.source, self.format, (number, channel), &self.declared)
     }
 
     /// The scans of all channels, one after another.
@@ -117,7 +117,7 @@ impl<'a> SurfaceFile<'a> {
     /// that no double holds, and for contradictions to what is declared.
     pub fn scans(self) -> impl Iterator<Item = Result<Scan>> {
         let Self { mut source, format, channels, declared } = self;
-        channels.into_iter().enumerate().map(move |channel| read(&mut source, format, channel, &declared))
+        channels.into_iter().enumerate().map(move |channel| scan(&mut source, format, channel, &declared))
     }
 }
 
@@ -182,7 +182,8 @@ impl Scan {
     }
 }
 
-fn read(
+/// The scan of a channel.
+pub(crate) fn scan(
     source: &mut Source<'_>,
     format: Format,
     (number, mut channel): (usize, StoredChannel),

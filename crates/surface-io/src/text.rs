@@ -12,7 +12,7 @@ use crate::error::{ContentError, NumberKind, Place};
 use crate::fields::decoded;
 use crate::format::Format;
 use crate::options::{Decimal, ReadOptions};
-use number::{Numbers, unquoted};
+use number::unquoted;
 use std::borrow::Cow;
 use std::fmt;
 
@@ -38,6 +38,13 @@ impl Delimiter {
         } else {
             Self::Whitespace
         }
+    }
+
+    /// What stands between the delimiters of a line, each without spaces around it.
+    fn tokens(self, data: &[u8]) -> impl Iterator<Item = &[u8]> {
+        let (spaces, byte) = (self == Self::Whitespace, self.byte());
+        let between = move |b: &u8| if spaces { b.is_ascii_whitespace() } else { *b == byte };
+        data.split(between).map(<[u8]>::trim_ascii).filter(move |token| !(spaces && token.is_empty()))
     }
 
     fn byte(self) -> u8 {
@@ -145,7 +152,6 @@ impl TextTable {
         decimal: Decimal,
         declared: &ReadOptions,
     ) -> Result<Vec<Self>, ContentError> {
-        let numbers = Numbers { decimal };
         let mut maps: Vec<Self> = Vec::new();
         // Lines of the heading of the next map, and the first and the last of them without the mark of a
         // comment.
@@ -161,7 +167,7 @@ impl TextTable {
                 heading.extend(comment.map(|comment| (i + 1, Cow::from(comment))));
                 continue;
             }
-            if numbers.is_header(data) {
+            if decimal.is_header(data) {
                 heading.push((i + 1, line.trim_ascii().into()));
                 (first, last) = (first.or(Some((i + 1, data))), Some((i + 1, data)));
                 continue;
@@ -194,11 +200,11 @@ impl TextTable {
             let alone = maps.len() == 1;
             let Some(map) = maps.last_mut() else { return Err(ContentError::Empty) };
             let all = if alone { bytes } else { &[] };
-            map.line(numbers, data, i + 1, all).map_err(|error| map.odd_one_out(error, bytes))?;
+            map.line(decimal, data, i + 1, all).map_err(|error| map.odd_one_out(error, bytes))?;
             if let (true, Some((number, header))) = (new, last)
                 && !Heading::says(header)
             {
-                map.check_header(numbers, header, number)?;
+                map.check_header(decimal, header, number)?;
             }
             if new {
                 title = last.map(|(_, header)| header);
@@ -211,7 +217,7 @@ impl TextTable {
             let (number, line) =
                 if maps.is_empty() { (number, line) } else { last.unwrap_or((number, line)) };
             let mut none = Self::new(line, decimal, end);
-            return none.line(numbers, line, number, line).and(Err(ContentError::Empty));
+            return none.line(decimal, line, number, line).and(Err(ContentError::Empty));
         }
         let Some(map) = maps.last_mut() else { return Err(ContentError::Empty) };
         heading.into_iter().try_for_each(|(line, text)| map.heading.read(&text, line))?;
@@ -270,33 +276,26 @@ impl TextTable {
 
     /// A line before the numbers that is half of numbers, as many as there are columns, is a line of data
     /// with a slip.
-    fn check_header(&self, numbers: Numbers, header: &[u8], line: usize) -> Result<(), ContentError> {
-        let byte = self.delimiter.byte();
-        let tokens: Vec<&[u8]> = match self.delimiter {
-            Delimiter::Whitespace => {
-                header.split(u8::is_ascii_whitespace).filter(|t| !t.is_empty()).collect()
-            }
-            _ => header.split(|&b| b == byte).map(<[u8]>::trim_ascii).collect(),
-        };
+    fn check_header(&self, decimal: Decimal, header: &[u8], line: usize) -> Result<(), ContentError> {
+        let tokens: Vec<&[u8]> = self.delimiter.tokens(header).collect();
         let place = |value| Place::Line { line, value };
-        let read = tokens.iter().filter(|t| !t.is_empty() && numbers.read(t, place(1)).is_ok()).count();
+        let read = tokens.iter().filter(|t| !t.is_empty() && decimal.number(t, place(1)).is_ok()).count();
         if self.columns > 1 && tokens.len() == self.columns && 2 * read >= self.columns {
             for (i, token) in tokens.iter().enumerate() {
-                numbers.read(token, place(i + 1))?;
+                decimal.number(token, place(i + 1))?;
             }
         }
         Ok(())
     }
 
-    fn line(&mut self, numbers: Numbers, data: &[u8], line: usize, all: &[u8]) -> Result<(), ContentError> {
+    fn line(&mut self, decimal: Decimal, data: &[u8], line: usize, all: &[u8]) -> Result<(), ContentError> {
         let before = self.values.len();
         let push = |token: &[u8], value: usize, values: &mut Vec<f64>| -> Result<(), ContentError> {
-            values.push(numbers.read(token, Place::Line { line, value })?);
+            values.push(decimal.number(token, Place::Line { line, value })?);
             Ok(())
         };
         if self.delimiter == Delimiter::Whitespace {
-            let tokens = data.split(u8::is_ascii_whitespace).filter(|t| !t.is_empty());
-            for (i, token) in tokens.enumerate() {
+            for (i, token) in self.delimiter.tokens(data).enumerate() {
                 push(token, i + 1, &mut self.values)?;
             }
         } else {
@@ -307,8 +306,8 @@ impl TextTable {
             // One delimiter behind the last number is the habit of some programs; with a number less than in
             // other lines, the last place is empty.
             let (data, open) = data.strip_suffix(&[byte]).map_or((data, false), |data| (data, true));
-            for (i, token) in data.split(|&b| b == byte).enumerate() {
-                push(token.trim_ascii(), i + 1, &mut self.values)?;
+            for (i, token) in self.delimiter.tokens(data).enumerate() {
+                push(token, i + 1, &mut self.values)?;
             }
             let found = self.values.len() - before;
             if open && found + 1 == self.columns {
@@ -342,14 +341,8 @@ impl TextTable {
         };
         let count = |line: &[u8]| {
             let data = without_comment(line).0.trim_ascii();
-            let byte = self.delimiter.byte();
-            match self.delimiter {
-                _ if data.is_empty() => 0,
-                Delimiter::Whitespace => {
-                    data.split(u8::is_ascii_whitespace).filter(|t| !t.is_empty()).count()
-                }
-                _ => data.strip_suffix(&[byte]).unwrap_or(data).split(|&b| b == byte).count(),
-            }
+            let most = data.strip_suffix(&[self.delimiter.byte()]).unwrap_or(data);
+            if data.is_empty() { 0 } else { self.delimiter.tokens(most).count() }
         };
         let third = all.split(|&b| b == self.end).skip(*line).map(count).find(|&count| count > 0);
         if third == Some(*found) {
@@ -420,12 +413,11 @@ fn check_text(bytes: &[u8], end: u8) -> Result<(), ContentError> {
 /// Whether every comma in the numbers is one of decimals, and one of them at least can be nothing else: no
 /// point anywhere, another delimiter between numbers, at most one comma in each.
 fn has_decimal_commas(bytes: &[u8], end: u8, skip: usize) -> bool {
-    let numbers = Numbers { decimal: Decimal::Comma };
     let mut certain = false;
     let mut begun = false;
     for line in bytes.split(|&b| b == end).skip(skip) {
         let data = without_comment(line).0.trim_ascii();
-        if data.is_empty() || (!begun && numbers.is_header(data)) {
+        if data.is_empty() || (!begun && Decimal::Comma.is_header(data)) {
             continue;
         }
         begun = true;

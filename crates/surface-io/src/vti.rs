@@ -73,12 +73,8 @@ pub fn vti(
     }
     for field in fields {
         if cells.checked_count() != Some(field.values.len()) {
-            let value = field.values.len() as f64;
-            return Err(ContentError::OutOfRange {
-                what: "number of values of a field",
-                value,
-                expected: "rows x columns",
-            });
+            let (what, value) = ("number of values of a field", field.values.len() as f64);
+            return Err(ContentError::out_of_range(what, value, "rows x columns"));
         }
         let wrong = |v: &f64| v.is_infinite() || (v.is_nan() && encoding == Encoding::Ascii);
         if let Some(at) = field.values.iter().position(wrong) {

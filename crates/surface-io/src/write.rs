@@ -68,31 +68,31 @@ impl Metric {
 /// ```
 pub fn write_map(path: &Path, map: &HeightMap, metric: Metric) -> Result<()> {
     let ending = path.extension().and_then(|e| e.to_str()).unwrap_or_default();
-    let bytes = match ending {
-        "npy" => npy(&[map.rows(), map.columns()], &with_nan(map)).map_err(Error::content(path))?,
-        "h5" => hdf5(map, metric).map_err(Error::content(path))?,
+    let bytes = encoded(ending, map, metric).map_err(Error::content(path))?;
+    files::write_whole(path, &bytes).map_err(Error::System)
+}
+
+/// The bytes of a file whose name has this ending.
+fn encoded(ending: &str, map: &HeightMap, metric: Metric) -> Result<Vec<u8>, ContentError> {
+    Ok(match ending {
+        "npy" => npy(&[map.rows(), map.columns()], &with_nan(map))?,
+        "h5" => hdf5(map, metric)?,
         "txt" => text(map, metric).into_bytes(),
         "xyz" => xyz(map, metric).into_bytes(),
         "vti" => {
             let values = with_nan(map);
             let field = DataArray { name: "height", unit: metric.name(), values: &values };
-            vti(map.cells(), map.size(), &[field], Encoding::Base64).map_err(Error::content(path))?
+            vti(map.cells(), map.size(), &[field], Encoding::Base64)?
         }
         "x3p" if metric == Metric::Unitless => {
             let remedy = "X3P is in metres: read the heights with a unit, or write txt";
-            let problem =
-                ContentError::Unspecified { what: "the unit of the heights", seen: Vec::new(), remedy };
-            return Err(Error::content(path)(problem));
+            return Err(ContentError::unspecified("the unit of the heights", Vec::new(), remedy));
         }
-        "x3p" => x3p(map).map_err(Error::content(path))?,
-        "gwy" => gwy(map, metric).map_err(Error::content(path))?,
-        "nc" => netcdf(map, metric).map_err(Error::content(path))?,
-        other => {
-            let problem = ContentError::Ending { found: other.chars().take(16).collect() };
-            return Err(Error::content(path)(problem));
-        }
-    };
-    files::write_whole(path, &bytes).map_err(Error::System)
+        "x3p" => x3p(map)?,
+        "gwy" => gwy(map, metric)?,
+        "nc" => netcdf(map, metric)?,
+        other => return Err(ContentError::Ending { found: other.chars().take(16).collect() }),
+    })
 }
 
 /// Writes numbers as an NPY array of the given shape (float64, row-major), whole or not at all.

@@ -25,14 +25,7 @@ const LONGEST_COMMENT: u64 = 0xffff;
 #[derive(Debug, Clone)]
 pub(crate) struct Member {
     pub(crate) name: String,
-    /// Bytes unpacked, as the directory claims.
-    pub(crate) unpacked: u64,
-    packed: u64,
-    method: u16,
-    encrypted: bool,
-    checksum: u32,
-    /// Offset of its own header.
-    pub(crate) offset: u64,
+    entry: Entry,
 }
 
 /// The members by the directory at the end of the file.
@@ -81,36 +74,38 @@ fn entry(fields: &mut Fields<'_>) -> Result<Member> {
     let [name, extra, comment] = entry.behind.map(usize::from);
     let name = String::from_utf8_lossy(fields.take(name)?).replace('\\', "/");
     fields.take(extra + comment)?;
-    Ok(Member {
-        name,
-        unpacked: entry.unpacked.into(),
-        packed: entry.packed.into(),
-        method: entry.method,
-        encrypted: entry.flags & 1 == 1,
-        checksum: entry.checksum,
-        offset: entry.offset.into(),
-    })
+    Ok(Member { name, entry })
 }
 
 impl Member {
+    /// Bytes unpacked, as the directory claims.
+    pub(crate) fn unpacked(&self) -> u64 {
+        self.entry.unpacked.into()
+    }
+
+    /// Offset of its own header.
+    pub(crate) fn offset(&self) -> u64 {
+        self.entry.offset.into()
+    }
+
     /// Where its bytes are; an error where they cannot be all there.
     pub(crate) fn packed(&self, source: &mut Source<'_>) -> Result<Packed> {
-        let packing = match (self.method, self.encrypted) {
+        let packing = match (self.entry.method, self.entry.flags & 1 == 1) {
             (0, false) => Packing::Stored,
             (8, false) => Packing::Deflate,
             _ => {
                 let expected = "a member that is stored or deflated, without a password";
-                return Err(source.wrong(self.offset, expected));
+                return Err(source.wrong(self.offset(), expected));
             }
         };
-        let header = source.bytes(self.offset, HEADER)?;
-        let behind: [u16; 2] = source.get(ByteOrder::Little, self.offset + 26)?;
+        let header = source.bytes(self.offset(), HEADER)?;
+        let behind: [u16; 2] = source.get(ByteOrder::Little, self.offset() + 26)?;
         let behind: u64 = behind.map(u64::from).iter().sum();
         if !header.starts_with(MAGIC) {
-            return Err(source.wrong(self.offset, "the header of a member"));
+            return Err(source.wrong(self.offset(), "the header of a member"));
         }
-        let offset = self.offset + HEADER + behind;
-        let packed = Packed { packing, offset, length: self.packed, unpacked: self.unpacked };
+        let offset = self.offset() + HEADER + behind;
+        let packed = Packed { packing, offset, length: self.entry.packed.into(), unpacked: self.unpacked() };
         packed.check(source)?;
         Ok(packed)
     }
@@ -118,9 +113,9 @@ impl Member {
     /// Its text, whose checksum is right: what is no UTF-8 is a question mark. An error where it is longer
     /// than `most` bytes, before it is unpacked.
     pub(crate) fn unpack_text(&self, source: &mut Source<'_>, most: u64) -> Result<String> {
-        if self.unpacked > most {
-            let expected = format!("{} of at most {most} bytes, it has {}", self.name, self.unpacked);
-            return Err(source.wrong(self.offset, expected));
+        if self.unpacked() > most {
+            let expected = format!("{} of at most {most} bytes, it has {}", self.name, self.unpacked());
+            return Err(source.wrong(self.offset(), expected));
         }
         Ok(text_in_place(self.unpack(source)?))
     }
@@ -131,9 +126,9 @@ impl Member {
         self.packed(source)?.unpack(source, &mut bytes)?;
         let mut sum = Crc::new();
         sum.update(&bytes);
-        if sum.sum() != self.checksum {
+        if sum.sum() != self.entry.checksum {
             let expected = format!("{} with the checksum of the directory (damaged)", self.name);
-            return Err(source.wrong(self.offset, shortened(&expected, 120)));
+            return Err(source.wrong(self.offset(), shortened(&expected, 120)));
         }
         Ok(bytes)
     }

@@ -50,9 +50,8 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
     let subject = source.subject().clone();
     let header = |bytes: u64| {
         let (text, _) = text(&start[..start.len().min(bytes as usize)]);
-        let (header, _) = Entries::read(&subject, text.as_bytes(), |line| match line.split_once('=') {
-            Some((key, value)) if !line.starts_with(['%', '#']) => HeaderLine::Entry(key, value),
-            _ => HeaderLine::Passed,
+        let (header, _) = Entries::read(&subject, text.as_bytes(), |line| {
+            if line.starts_with(['%', '#']) { HeaderLine::Passed } else { HeaderLine::entry(line, '=') }
         })?;
         Ok(header)
     };

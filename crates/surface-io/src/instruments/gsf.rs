@@ -21,10 +21,7 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
     let Some(end) = start.iter().position(|&b| b == 0) else {
         return Err(source.wrong(start.len() as u64, "a zero behind the header before this (cut short?)"));
     };
-    let (header, _) = Entries::read(source.subject(), &start[..end], |line| match line.split_once('=') {
-        Some((key, value)) => HeaderLine::Entry(key, value),
-        None => HeaderLine::Passed,
-    })?;
+    let (header, _) = Entries::read(source.subject(), &start[..end], |line| HeaderLine::entry(line, '='))?;
     let header = header.section("");
     let [rows, columns] = [header.whole("yres")?, header.whole("xres")?];
     let begin = end as u64 / 4 * 4 + 4;

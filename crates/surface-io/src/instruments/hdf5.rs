@@ -157,10 +157,7 @@ fn channel(
         None => Values { unit: unit(&attributes), ..packed },
     };
     let axes = axes(&attributes).unwrap_or(FileAxes::Assumed(values.axes));
-    let order = match axes {
-        FileAxes::Said(Axes::Yx) | FileAxes::Assumed(Axes::Yx) => AxisOrder::Rows,
-        _ => AxisOrder::Columns,
-    };
+    let order = axes.order();
     let (lines, along) = (first, second);
     let claimed = number.bytes_of([lines, along]);
     let most = RATIO.saturating_mul(source.length());
@@ -169,15 +166,12 @@ fn channel(
         return Err(source.wrong(0, expected));
     }
     let (lines, along) = (lines as usize, along as usize);
-    let (rows, columns) = match order {
-        AxisOrder::Rows => (lines, along),
-        AxisOrder::Columns => (along, lines),
-    };
+    let shape = order.shape([lines, along]);
     let Values { scale, shift, undefined, .. } = values;
     let raw = |bytes| RawHeights { order, scale, shift, undefined, ..RawHeights::new(bytes, number) };
     let held = raw(Bytes::Held(Vec::new()));
     held.check_scale(source)?;
-    let (shape, unit, extent) = ([rows, columns], values.unit, extent(&attributes));
+    let (unit, extent) = (values.unit, extent(&attributes));
     let mut channel = match dataset.layout() {
         Err(e) => {
             // The other channels of the file are read all the same.
@@ -211,10 +205,7 @@ fn channel(
         // Never written, in other files, or mapped from other data sets.
         Ok(_) => return Ok(None),
     };
-    channel.axes = axes;
-    if let FileAxes::Assumed(axes) = axes {
-        channel.assume(axes, values.custom);
-    }
+    channel.take_axes(axes, values.custom);
     channel.notes.extend(values.notes);
     channel.check_counts(number, values.scaled);
     Ok(Some(channel.named(name)))
@@ -312,10 +303,7 @@ impl Pieces {
         if chunks.len() as u128 > count {
             return Err(source.wrong(0, format!("{count} chunks at most, found {}", chunks.len())));
         }
-        let (rows, columns) = match self.raw.order {
-            AxisOrder::Rows => (self.lines, self.along),
-            AxisOrder::Columns => (self.along, self.lines),
-        };
+        let shape @ [rows, columns] = self.raw.order.shape([self.lines, self.along]);
         let mut heights = undefined_heights(source, rows, columns)?;
         let wide = wide as usize;
         for chunk in chunks {
@@ -332,7 +320,7 @@ impl Pieces {
             for (i, row) in unpacked.chunks_exact(wide * size).take(self.lines - line).enumerate() {
                 for (k, raw) in row.chunks_exact(size).take(taken).enumerate() {
                     let place = [line + i, at + k];
-                    let (cell, height) = self.raw.placed(source, [rows, columns], place, raw)?;
+                    let (cell, height) = self.raw.placed(source, shape, place, raw)?;
                     heights[cell] = height;
                 }
             }

@@ -15,6 +15,7 @@
 //! matrices are listed and not read. Version 7.3 is HDF5; version 4 is not read.
 
 use super::prelude::*;
+use crate::channel::FileAxes;
 use crate::inflate::{Packed, Packing};
 use crate::options::Axes;
 use flate2::read::ZlibDecoder;
@@ -180,6 +181,6 @@ fn channel(
     } else {
         StoredChannel::new(source, raw(Bytes::File(begin + at)), [rows, columns], unit, [None; 2])?
     };
-    channel.assume(Axes::Yx, "MATLAB draws rows along y");
+    channel.take_axes(FileAxes::Assumed(Axes::Yx), "MATLAB draws rows along y");
     Ok(channel.named(&name))
 }

@@ -33,10 +33,7 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
     if bytes.starts_with(SPECTRA) {
         return Err(source.wrong(0, "an image; this file holds spectra"));
     }
-    let (header, ended) = Entries::read(source.subject(), &bytes, line)?;
-    if !ended {
-        return Err(source.wrong(header.end, "the line data before this (cut short?)"));
-    }
+    let header = Entries::up_to_end(source, &bytes, line, "the line data before this")?;
     let mut lines = bytes[..header.end as usize].trim_ascii_end().rsplit(|&b| b == b'\n');
     let number = match lines.next().unwrap_or_default().get(KEY..).unwrap_or_default().trim_ascii() {
         b"" | b"BINARY" => NumberType::I16,

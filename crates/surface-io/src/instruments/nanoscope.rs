@@ -17,6 +17,7 @@
 
 use super::prelude::*;
 use crate::entries::{Entries, HeaderLine, Section};
+use crate::provenance::PRINTED;
 use crate::quantity::{Dimension, Unit};
 
 /// First bytes, in small letters.
@@ -44,10 +45,8 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
         let expected = "lines that end in CR LF; this file was copied as text, which damages its numbers";
         return Err(source.wrong(0, expected));
     }
-    let (header, ended) = Entries::read(source.subject(), &bytes, line)?;
-    if !ended {
-        return Err(source.wrong(header.end, "the line \\*File list end of the header (cut short?)"));
-    }
+    let expected = "the line \\*File list end of the header";
+    let header = Entries::up_to_end(source, &bytes, line, expected)?;
     let lists = |ending: &'static str| header.sections().iter().filter(move |s| s.name.ends_with(ending));
     let find = |ending: &'static str, key: &str| lists(ending).find_map(|s| s.text(key));
     let version = find("file list", "version").unwrap_or_default().trim_start_matches("0x");
@@ -216,8 +215,6 @@ fn length_unit(text: &str) -> Option<Unit> {
 /// `10 10 ~m`, or one number for a square; without the second side where the aspect ratio, x to y, is another
 /// one.
 fn extents(text: &str, aspect: Option<&str>) -> [Option<Extent>; 2] {
-    /// Digits that are printed of a side.
-    const PRINTED: f64 = 5e-3;
     let words: Vec<&str> = text.split_whitespace().collect();
     let (x, y, unit) = match words[..] {
         [x, y, unit] => (x, y, unit),

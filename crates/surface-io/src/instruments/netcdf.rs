@@ -72,18 +72,18 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
         dimensions.get(at).map(|(name, length)| (name.as_str(), *length as usize))
     };
     let of: Vec<_> = heights.dimensions.iter().filter_map(named).collect();
-    let (axes, order, [columns, rows]) = match (of.as_slice(), heights.rank) {
-        ([("x", columns), ("y", rows)], 2) => {
-            (FileAxes::Said(Axes::Xy), AxisOrder::Columns, [*columns, *rows])
-        }
-        ([("y", rows), ("x", columns)], 2) => (FileAxes::Said(Axes::Yx), AxisOrder::Rows, [*columns, *rows]),
+    let (axes, [first, second]) = match (of.as_slice(), heights.rank) {
+        ([("x", columns), ("y", rows)], 2) => (FileAxes::Said(Axes::Xy), [*columns, *rows]),
+        ([("y", rows), ("x", columns)], 2) => (FileAxes::Said(Axes::Yx), [*rows, *columns]),
         ([(first, rows), (second, columns)], 2)
             if ![first, second].iter().any(|n| ["x", "y"].contains(n)) =>
         {
-            (FileAxes::Assumed(Axes::Yx), AxisOrder::Rows, [*columns, *rows])
+            (FileAxes::Assumed(Axes::Yx), [*rows, *columns])
         }
         _ => return wrong(source, "heights over the dimensions x and y, or over two of other names"),
     };
+    let order = axes.order();
+    let shape = order.shape([first, second]);
     let Some(number) = heights.number else {
         return wrong(source, "heights that are numbers");
     };
@@ -104,7 +104,7 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
         Extent::of_side(length?, &unit?)
     };
     let unit = StoredUnit::written(heights.attributes.unit.as_deref().unwrap_or_default());
-    let (shape, extent) = ([rows, columns], [side(x), side(y)]);
+    let extent = [side(x), side(y)];
     let mut channel = match mask {
         None => StoredChannel::new(source, raw, shape, unit, extent)?,
         Some(Variable { dimensions, rank: 2, number: Some(number), offset, .. })
@@ -115,11 +115,8 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
         }
         Some(_) => return wrong(source, "a mask over the same dimensions as heights"),
     };
-    channel.axes = axes;
     channel.check_counts(number, attributes.scale.is_some());
-    if let FileAxes::Assumed(axes) = axes {
-        channel.assume(axes, "as the conventions have it, the dimensions have other names than x and y");
-    }
+    channel.take_axes(axes, "as the conventions have it, the dimensions have other names than x and y");
     Ok(vec![channel.named("heights")])
 }
 

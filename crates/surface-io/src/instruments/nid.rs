@@ -15,16 +15,13 @@
 
 use super::prelude::*;
 use crate::channel::{check_number, check_rest};
-use crate::entries::{Entries, HeaderLine, Section};
+use crate::entries::{Entries, HeaderLine, SIX_DIGITS, Section};
 
 const MAGIC: &[u8] = b"[DataSet]\r\n";
 /// What stands between the header and the first map, behind a line break.
 const MARK: &[u8] = b"\n#!";
 /// Longest header that is read: those of files have 10 to 40 kB.
 const LONGEST: u64 = 1 << 20;
-/// Relative error of a number of the header, which has six digits.
-const PRINTED: f64 = 1e-5;
-
 pub(crate) const READER: Reader =
     Reader { format: Format::Nid, recognises: |start, _| start.starts_with(MAGIC), channels };
 
@@ -33,7 +30,8 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
     let Some(end) = bytes.windows(MARK.len()).position(|part| part == MARK) else {
         return Err(source.wrong(bytes.len() as u64, "the mark #! before this (cut short?)"));
     };
-    let (header, _) = Entries::read(source.subject(), &bytes[..=end], line)?;
+    let (header, _) =
+        Entries::read(source.subject(), &bytes[..=end], |line| HeaderLine::in_section(line, '='))?;
     let place = |key: &str| {
         let (group, channel) = key.strip_prefix("gr")?.split_once("-ch")?;
         Some([group.parse::<u32>().ok()?, channel.parse().ok()?])
@@ -61,14 +59,6 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
     }
     check_rest(&mut channels, source, at, line_bytes)?;
     Ok(channels)
-}
-
-fn line(line: &str) -> HeaderLine<'_> {
-    match (line.strip_prefix('[').and_then(|line| line.strip_suffix(']')), line.split_once('=')) {
-        (Some(name), _) => HeaderLine::Section(name),
-        (None, Some((key, value))) => HeaderLine::Entry(key, value),
-        (None, None) => HeaderLine::Passed,
-    }
 }
 
 /// Rows and columns, the type of the numbers, and the bytes of all.
@@ -103,7 +93,7 @@ fn channel(
 ) -> Result<StoredChannel> {
     let (range, low) = (map.some_number("dim2range")?, map.some_number("dim2min")?);
     let middle = if number.is_signed() { low + range / 2.0 } else { low };
-    let shift = if middle.abs() <= PRINTED * range.abs() { 0.0 } else { middle };
+    let shift = if middle.abs() <= SIX_DIGITS * range.abs() { 0.0 } else { middle };
     let scale = range / number.values();
     let raw = RawHeights { reversed: [false, true], scale, shift, ..RawHeights::at(at, number) };
     let side = |range: &str, unit: &str| map.side(range, map.text(unit)?);

@@ -115,9 +115,8 @@ fn text_header(source: &Source<'_>, start: &[u8]) -> Result<(Header, u64)> {
         let expected = "a line with an asterisk at the end of the header before this";
         return Err(source.wrong(start.len() as u64, expected));
     };
-    let (header, _) = Entries::read(source.subject(), &start[..=end], |line| match line.split_once('=') {
-        Some((key, value)) if !line.trim_start().starts_with(';') => HeaderLine::Entry(key, value),
-        _ => HeaderLine::Passed,
+    let (header, _) = Entries::read(source.subject(), &start[..=end], |line| {
+        if line.trim_start().starts_with(';') { HeaderLine::Passed } else { HeaderLine::entry(line, '=') }
     })?;
     let section = header.section("");
     let number = |key: &str| Ok(section.number(key)?.unwrap_or(0.0));

@@ -17,16 +17,13 @@
 
 use super::prelude::*;
 use crate::channel::check_rest;
-use crate::entries::{Entries, HeaderLine, number_and_text};
+use crate::entries::{Entries, HeaderLine, SIX_DIGITS, number_and_text};
 
 const MAGIC: &[u8] = b"WSxM file copyright";
 /// The second line of images; curves and movies have another one.
 const IMAGE: &[u8] = b"SxM Image file";
 /// Longest header that is read: those of files have 2 to 5 kB.
 const LONGEST: u64 = 1 << 20;
-/// Relative error of a number of the header, which has six digits.
-const PRINTED: f64 = 1e-5;
-
 pub(crate) const READER: Reader = Reader {
     format: Format::Wsxm,
     recognises: |start, _| {
@@ -38,10 +35,7 @@ pub(crate) const READER: Reader = Reader {
 
 fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
     let bytes = source.start(LONGEST)?;
-    let (header, ended) = Entries::read(source.subject(), &bytes, line)?;
-    if !ended {
-        return Err(source.wrong(header.end, "the line [Header end] before this (cut short?)"));
-    }
+    let header = Entries::up_to_end(source, &bytes, line, "the line [Header end] before this")?;
     let [general, control, other] =
         ["general info", "control", "miscellaneous"].map(|name| header.section(name));
     let number = match general.text("image data type") {
@@ -58,7 +52,7 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
     let scale = match (amplitude, range) {
         (None, _) => 1.0,
         (Some((height, _)), Some((range, size))) if number.is_float() => {
-            if (height - range).abs() > PRINTED * (height.abs() + size) {
+            if (height - range).abs() > SIX_DIGITS * (height.abs() + size) {
                 let expected = format!("the amplitude {range}, Maximum less Minimum,");
                 return Err(general.wrong("z amplitude", expected));
             }
@@ -70,7 +64,10 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
     };
     let name = general.text("acquisition channel").unwrap_or_default();
     let unit = amplitude.map_or(StoredUnit::Unknown, |(_, unit)| StoredUnit::of_signal(name, unit));
-    let side = |key: &str| control.length(key).filter(|side| side.value() > 0.0).map(Extent::Side);
+    let side = |key: &str| {
+        let (side, unit) = number_and_text(control.text(key)?)?;
+        Extent::of_side(side, unit)
+    };
     let raw = RawHeights { reversed: [true; 2], scale, ..RawHeights::at(header.end, number) };
     let shape @ [rows, columns] = [general.whole("number of rows")?, general.whole("number of columns")?];
     let extent = [side("x amplitude"), side("y amplitude")];
@@ -89,9 +86,5 @@ fn line(line: &str) -> HeaderLine<'_> {
     if line == "[Header end]" {
         return HeaderLine::End;
     }
-    match (line.strip_prefix('[').and_then(|line| line.strip_suffix(']')), line.split_once(':')) {
-        (Some(name), _) => HeaderLine::Section(name),
-        (None, Some((key, value))) => HeaderLine::Entry(key, value),
-        (None, None) => HeaderLine::Passed,
-    }
+    HeaderLine::in_section(line, ':')
 }

@@ -109,7 +109,7 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
 }
 
 fn wrong(source: &Source<'_>, main: &Member, expected: &str) -> Error {
-    source.wrong(main.offset, format!("in main.xml {expected}"))
+    source.wrong(main.offset(), format!("in main.xml {expected}"))
 }
 
 /// Columns, rows and the type of numbers of a surface that is read.
@@ -176,11 +176,11 @@ impl Axis {
 
 /// An error where a member has another length, or cannot have it.
 fn sized(source: &mut Source<'_>, member: &Member, bytes: Option<u64>) -> Result<()> {
-    if bytes != Some(member.unpacked) {
+    if bytes != Some(member.unpacked()) {
         let bytes = bytes.map_or("more".to_owned(), |bytes| bytes.to_string());
         let expected =
-            format!("a member of {bytes} bytes for these rows and columns, found {}", member.unpacked);
-        return Err(source.wrong(member.offset, expected));
+            format!("a member of {bytes} bytes for these rows and columns, found {}", member.unpacked());
+        return Err(source.wrong(member.offset(), expected));
     }
     member.packed(source).map(drop)
 }

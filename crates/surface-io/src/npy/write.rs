@@ -19,12 +19,8 @@ const ALIGNED: usize = 64;
 pub fn npy(shape: &[usize], values: &[f64]) -> Result<Vec<u8>, ContentError> {
     let product = shape.iter().try_fold(1_usize, |n, &axis| n.checked_mul(axis));
     if product != Some(values.len()) {
-        let value = values.len() as f64;
-        return Err(ContentError::OutOfRange {
-            what: "number of values",
-            value,
-            expected: "the product of the shape",
-        });
+        let (what, expected) = ("number of values", "the product of the shape");
+        return Err(ContentError::out_of_range(what, values.len() as f64, expected));
     }
     let axes: Vec<String> = shape.iter().map(usize::to_string).collect();
     // Python's tuple of one number has a comma.
@@ -37,11 +33,8 @@ pub fn npy(shape: &[usize], values: &[f64]) -> Result<Vec<u8>, ContentError> {
     let mut bytes = Vec::with_capacity(10 + text.len() + 8 * values.len());
     bytes.extend(super::header::MAGIC);
     bytes.extend([1, 0]);
-    let length = u16::try_from(text.len()).map_err(|_| ContentError::OutOfRange {
-        what: "number of axes",
-        value: shape.len() as f64,
-        expected: "a few",
-    })?;
+    let too_many = |_| ContentError::out_of_range("number of axes", shape.len() as f64, "a few");
+    let length = u16::try_from(text.len()).map_err(too_many)?;
     bytes.extend(length.to_le_bytes());
     bytes.extend(text.bytes());
     for value in values {

@@ -5,16 +5,15 @@ use crate::error::{ContentError, Result};
 use crate::format::Format;
 use crate::options::ReadOptions;
 use crate::preprocessing::Preprocessing;
-use crate::scan::Scan;
 use crate::source::Input;
-use crate::surface_file::{opened, told};
+use crate::surface_file::{opened, scan, told};
 use crate::text::TextTable;
 use contact_model::Line;
 use std::io::Cursor;
 use std::path::Path;
 
 /// Reads a measured profile as a line: text of two columns, x and z, in any order of the points.
-/// [`Scan::read`] makes a map of one row of it, the body that is uniform along y.
+/// [`crate::Scan::read`] makes a map of one row of it, the body that is uniform along y.
 ///
 /// The rules are those of points of a map along one axis: x has equal steps within a tenth of one
 /// ([`ReadOptions::cell`] for noisier ones), the line is one step longer than from its first to its last
@@ -62,22 +61,16 @@ fn read(path: &Path, input: impl Input, length: u64, declared: &ReadOptions) -> 
         [table] => row(table, declared),
         _ => Err(several),
     });
-    let mut channel = channel.map_err(|e| source.content(e))?;
+    let channel = channel.map_err(|e| source.content(e))?;
     drop(bytes);
-    if let Some(axes) = declared.axes {
-        channel.orient(axes).map_err(|e| source.content(e))?;
-    }
-    let (heights, points) = (channel.read(&mut source)?, channel.columns);
-    let scan = Scan::new(path, Format::Profile, (0, channel), heights, declared);
-    let scan = scan.map_err(|e| source.content(e))?;
+    let points = channel.columns;
+    let scan = scan(&mut source, Format::Profile, (0, channel), declared)?;
     let undefined = scan.metadata().undefined;
     if undefined > 0 {
         return Err(source.content(ContentError::Gaps { undefined, points }));
     }
     if scan.metadata().unit.is_none() {
-        let (what, seen) = ("the unit of the heights", scan.metadata().notes.clone());
-        let remedy = "say unit = \"nm\" or another unit of length";
-        return Err(source.content(ContentError::Unspecified { what, seen, remedy }));
+        return Err(source.content(ContentError::no_unit(&scan.metadata().notes)));
     }
     let map = scan.into_preprocessed(&Preprocessing::default())?.map;
     Line::new(map.size().x, map.heights().to_vec()).map_err(|e| source.content(ContentError::Map(e)))

@@ -14,7 +14,8 @@ use crate::text::TextTable;
 /// Cost O(n log n) for n points.
 pub(crate) fn row(table: &TextTable, declared: &ReadOptions) -> Result<StoredChannel, ContentError> {
     if table.columns != 2 {
-        return Err(ContentError::NotProfile { line: table.first_line(), found: table.columns });
+        let (line, found) = (table.first_line(), table.columns);
+        return Err(ContentError::NoPoint { line, found, expected: "x and z of one point of a profile" });
     }
     let lateral = lateral_unit(declared, table)?.unwrap_or_else(Unit::none);
     let given = declared.cell.map(|cell| spacing_of(cell.both()[0], Some(&lateral))).transpose()?;
@@ -24,8 +25,7 @@ pub(crate) fn row(table: &TextTable, declared: &ReadOptions) -> Result<StoredCha
         return Err(ContentError::Unspecified { what: "the step of the profile", seen: Vec::new(), remedy });
     };
     let heights = placed(table, &[&axis])?;
-    let step = Quantity::of(spacing, &lateral)
-        .map_err(|source| ContentError::Quantity { what: "spacing", source })?;
+    let step = Quantity::of(spacing, &lateral).map_err(ContentError::quantity("spacing"))?;
     let (shape, extent) = ([1, axis.count as usize], [Some(Extent::Cell(step)), None]);
     Ok(channel(table, ["points x, z", "step"], axis.off, heights, shape, extent))
 }

@@ -28,8 +28,7 @@ pub(super) struct Form {
     kind: FormKind,
     /// A, B, C, E; or A, B, E, direction and slope of the axis: in units of half the diagonal.
     parameters: [f64; MOST],
-    /// Half the diagonal of the map.
-    unit: f64,
+    places: Places,
     middle: f64,
 }
 
@@ -151,7 +150,7 @@ impl Form {
                 break;
             }
         }
-        Ok(Self { kind, parameters, unit, middle })
+        Ok(Self { kind, parameters, places, middle })
     }
 
     /// Radius, in the unit of the heights; infinite for a plane. Positive where it is a hill.
@@ -161,15 +160,14 @@ impl Form {
             FormKind::Sphere => (p[0], 1.0 + p[1] * p[1] + p[2] * p[2] - 4.0 * p[0] * p[3]),
             FormKind::Cylinder => (p[0], 1.0 + p[1] * p[1] - 4.0 * p[0] * p[2]),
         };
-        self.unit * square.max(0.0).sqrt() / (2.0 * a)
+        self.places.unit * square.max(0.0).sqrt() / (2.0 * a)
     }
 
     /// Takes the form away from all heights; where it has none (beyond its equator) nothing is left.
-    pub(super) fn subtract(&self, cells: Cells, cell: [f64; 2], heights: &mut [f64]) {
-        let places = Places::new(cells, cell);
+    pub(super) fn subtract(&self, heights: &mut [f64]) {
         for (i, h) in heights.iter_mut().enumerate() {
-            let form = height(self.kind, &self.parameters, places.at(i)).map_or(f64::NAN, |f| f.0);
-            *h = (*h - self.middle) - self.unit * form;
+            let form = height(self.kind, &self.parameters, self.places.at(i)).map_or(f64::NAN, |f| f.0);
+            *h = (*h - self.middle) - self.places.unit * form;
         }
     }
 }

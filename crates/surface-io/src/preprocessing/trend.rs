@@ -27,6 +27,7 @@ keywords! {
 /// Coefficients of Legendre's polynomials in coordinates that run from -1 to 1 along each side.
 #[derive(Debug)]
 pub(super) struct Trend {
+    cells: Cells,
     unknowns: usize,
     coefficients: [f64; MOST],
     /// What the coefficients are multiplied by.
@@ -72,26 +73,26 @@ impl Detrend {
             equations.add_all(&of_row);
         }
         let coefficients = equations.solve().ok_or(ContentError::Trend { present, unknowns })?;
-        Ok(Some(Trend { unknowns, coefficients, unit, middle }))
+        Ok(Some(Trend { cells, unknowns, coefficients, unit, middle }))
     }
 }
 
 impl Trend {
-    fn at(&self, i: usize, cells: Cells) -> f64 {
-        let basis = basis(i / cells.columns, i % cells.columns, cells);
+    fn at(&self, i: usize) -> f64 {
+        let basis = basis(i / self.cells.columns, i % self.cells.columns, self.cells);
         (0..self.unknowns).map(|i| self.coefficients[i] * basis[i]).sum()
     }
 
-    pub(super) fn subtract(&self, cells: Cells, heights: &mut [f64]) {
+    pub(super) fn subtract(&self, heights: &mut [f64]) {
         for (i, h) in heights.iter_mut().enumerate() {
-            *h = (*h - self.middle) - self.unit * self.at(i, cells);
+            *h = (*h - self.middle) - self.unit * self.at(i);
         }
     }
 
     /// Puts its own heights at the undefined points.
-    pub(super) fn fill(&self, cells: Cells, heights: &mut [f64]) {
+    pub(super) fn fill(&self, heights: &mut [f64]) {
         for (i, h) in heights.iter_mut().enumerate().filter(|(_, h)| h.is_nan()) {
-            *h = self.middle + self.unit * self.at(i, cells);
+            *h = self.middle + self.unit * self.at(i);
         }
     }
 }

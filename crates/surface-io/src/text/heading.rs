@@ -6,7 +6,7 @@
 //! (`IO/Text.py`) and Gwyddion (`spip-asc.c`), and their usual variants. A length counts where it has a unit;
 //! a number of pixels has none and is compared with the lines.
 
-use super::statement::{Axes, Side, Statement, key_and_value, lengths};
+use super::statement::{Side, Statement, key_and_value, lengths};
 use crate::error::ContentError;
 use crate::extent::{Extent, agree};
 use crate::fields::decoded;
@@ -135,29 +135,19 @@ impl Heading {
             Statement::Side(axis, of_scan) => self.side(&key, &value, axis, of_scan, line)?,
             Statement::Size => match lengths(&value).as_deref() {
                 Some([one]) => once(&mut self.square, Some(*one), &key)?,
-                Some([x, y]) => {
-                    once(&mut self.sides[0], Some(*x), &key)?;
-                    once(&mut self.sides[1], Some(*y), &key)?;
-                }
+                Some([x, y]) => both(&mut self.sides, [*x, *y], &key)?,
                 _ => {}
             },
-            Statement::Cell(axes) => {
+            Statement::Cell(axis) => {
                 let said = lengths(&value).unwrap_or_default();
-                let one = said.first().copied();
                 let of_length = |side: &Side| side.quantity.dimension() == Dimension::LENGTH;
                 self.grid |= key == "cellsize";
-                match (axes, said.as_slice()) {
+                match (axis, said.as_slice()) {
                     (_, []) => {}
-                    (Axes::One(axis), [plain]) if !of_length(plain) => self.count(axis, &value, &key)?,
-                    (Axes::One(axis), _) => once(&mut self.cells[axis], one, &key)?,
-                    (Axes::Both, [x, y]) => {
-                        once(&mut self.cells[0], Some(*x), &key)?;
-                        once(&mut self.cells[1], Some(*y), &key)?;
-                    }
-                    (Axes::Both, _) => {
-                        once(&mut self.cells[0], one, &key)?;
-                        once(&mut self.cells[1], one, &key)?;
-                    }
+                    (Some(axis), [plain]) if !of_length(plain) => self.count(axis, &value, &key)?,
+                    (Some(axis), [one, ..]) => once(&mut self.cells[axis], Some(*one), &key)?,
+                    (None, [x, y]) => both(&mut self.cells, [*x, *y], &key)?,
+                    (None, [one, ..]) => both(&mut self.cells, [*one; 2], &key)?,
                 }
             }
             Statement::Count(axis) => self.count(axis, &value, &key)?,
@@ -297,6 +287,11 @@ impl Heading {
         }
         Ok((sides, cells))
     }
+}
+
+/// Takes a statement about both axes.
+fn both(fields: &mut [Option<Side>; 2], sides: [Side; 2], key: &str) -> Result<(), ContentError> {
+    fields.iter_mut().zip(sides).try_for_each(|(field, side)| once(field, Some(side), key))
 }
 
 /// Takes a statement, or finds it to be another one than before.

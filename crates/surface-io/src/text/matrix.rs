@@ -1,6 +1,7 @@
 //! A text matrix: one row per line.
 
 use super::TextTable;
+use super::statement::Side;
 use crate::channel::{StoredChannel, StoredHeights, StoredUnit};
 use crate::error::ContentError;
 use crate::extent::Extent;
@@ -107,16 +108,11 @@ fn extents(table: &TextTable, columns: usize, rows: usize) -> Result<[Option<Ext
     }
     let cell = |side: Extent, count: usize| side.cell(count).map(Extent::Cell);
     let (Some(across), Some(down)) = (width, height) else {
-        return Ok([
-            match (width, height) {
-                (None, Some(down)) => Some(cell(Extent::Side(down.quantity), rows)?),
-                (across, _) => across.map(|across| Extent::Side(across.quantity)),
-            },
-            match (width, height) {
-                (Some(across), None) => Some(cell(Extent::Side(across.quantity), columns)?),
-                (_, down) => down.map(|down| Extent::Side(down.quantity)),
-            },
-        ]);
+        let side = |own: Option<Side>, other: Option<Side>, count: usize| match (own, other) {
+            (None, Some(other)) => cell(Extent::Side(other.quantity), count).map(Some),
+            (own, _) => Ok(own.map(|own| Extent::Side(own.quantity))),
+        };
+        return Ok([side(width, height, rows)?, side(height, width, columns)?]);
     };
     let (a, b) = (across.quantity, down.quantity);
     if a.dimension() != b.dimension() {

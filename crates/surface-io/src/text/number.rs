@@ -10,24 +10,18 @@ const MISSING: [&str; 12] =
 /// Longest text that an error quotes, in characters.
 const QUOTED: usize = 32;
 
-/// How numbers are read.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Numbers {
-    pub(super) decimal: Decimal,
-}
-
-impl Numbers {
+impl Decimal {
     /// The number, NaN for a missing one.
-    pub(super) fn read(self, token: &[u8], place: Place) -> Result<f64, ContentError> {
+    pub(super) fn number(self, token: &[u8], place: Place) -> Result<f64, ContentError> {
         let token = unquoted(token);
         if token.is_empty() {
             return Ok(f64::NAN);
         }
         let text = std::str::from_utf8(token).ok();
-        let value = match self.decimal {
-            Decimal::Point => text.and_then(parsed),
-            Decimal::Comma if token.contains(&b'.') => None,
-            Decimal::Comma => text.and_then(|t| parsed(&t.replacen(',', ".", 1))),
+        let value = match self {
+            Self::Point => text.and_then(parsed),
+            Self::Comma if token.contains(&b'.') => None,
+            Self::Comma => text.and_then(|t| parsed(&t.replacen(',', ".", 1))),
         };
         match value {
             Some(value) if value.is_infinite() && token.iter().any(u8::is_ascii_digit) => {
@@ -46,7 +40,7 @@ impl Numbers {
         let line = line.trim_ascii();
         let first = line.iter().copied().find(|&b| b != b'"').unwrap_or_default();
         let place = Place::Line { line: 0, value: 0 };
-        let number = |token: &[u8]| match self.read(token, place) {
+        let number = |token: &[u8]| match self.number(token, place) {
             Err(ContentError::Infinite { .. }) => true,
             read => read.is_ok(),
         };
@@ -60,8 +54,7 @@ impl Numbers {
         let number = |t: &str| t.parse::<f64>().is_ok();
         if text.split_ascii_whitespace().count() > 1 && text.split_ascii_whitespace().all(number) {
             NumberKind::Two
-        } else if self.decimal == Decimal::Point && text.contains(',') && number(&text.replacen(',', ".", 1))
-        {
+        } else if self == Self::Point && text.contains(',') && number(&text.replacen(',', ".", 1)) {
             NumberKind::DecimalComma
         } else {
             NumberKind::None

@@ -19,8 +19,8 @@ pub(super) enum Statement {
     Side(usize, bool),
     /// Both sides, or the one of a square map.
     Size,
-    /// Side of a cell.
-    Cell(Axes),
+    /// Side of a cell along an axis, or along both.
+    Cell(Option<usize>),
     /// Number of columns (axis 0) or rows (axis 1).
     Count(usize),
     HeightUnit,
@@ -33,12 +33,6 @@ pub(super) enum Statement {
     BitToNm,
     /// A number that stands for an undefined point.
     Missing,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Axes {
-    One(usize),
-    Both,
 }
 
 /// Kind, key and value of a line `key: value` or `key = value`, or with a tab between; `None` for what means
@@ -108,11 +102,11 @@ fn known(words: &str) -> Option<Statement> {
         | "y scan size" | "scan range y" | "y scan range" | "length y" => Statement::Side(1, true),
         "scan size" | "scan range" | "scan area" | "image size" | "field of view" => Statement::Size,
         "pixel size" | "pixelsize" | "cell size" | "cellsize" | "xy calibration" | "point spacing"
-        | "sample spacing" => Statement::Cell(Axes::Both),
+        | "sample spacing" => Statement::Cell(None),
         "x pixel size" | "pixel size x" | "x spacing" | "spacing x" | "x step" | "step x" | "x increment"
-        | "dx" | "x resolution" => Statement::Cell(Axes::One(0)),
+        | "dx" | "x resolution" => Statement::Cell(Some(0)),
         "y pixel size" | "pixel size y" | "y spacing" | "spacing y" | "y step" | "step y" | "y increment"
-        | "dy" | "y resolution" => Statement::Cell(Axes::One(1)),
+        | "dy" | "y resolution" => Statement::Cell(Some(1)),
         "x pixels" | "pixels x" | "columns" | "number of columns" | "samps/line" | "samples/line" | "nx"
         | "w" | "ncols" | "numcols" | "horizontal" => Statement::Count(0),
         "y pixels" | "pixels y" | "rows" | "number of rows" | "number of lines" | "lines" | "ny" | "h"

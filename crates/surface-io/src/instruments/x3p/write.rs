@@ -73,11 +73,7 @@ pub fn x3p(map: &HeightMap) -> Result<Vec<u8>, ContentError> {
     let checksum = format!("{:x} *main.xml\n", md5::compute(&main)).into_bytes();
     let value = data.len() as f64;
     archive(&[("main.xml", main.into_bytes()), ("bindata/data.bin", data), ("md5checksum.hex", checksum)])
-        .ok_or(ContentError::OutOfRange {
-            what: "bytes of heights",
-            value,
-            expected: "less than 4 GB in X3P",
-        })
+        .ok_or_else(|| ContentError::out_of_range("bytes of heights", value, "less than 4 GB in X3P"))
 }
 
 /// The side of a cell whose multiple is this side, or next to it where no double is.
