@@ -1,6 +1,5 @@
 //! What is wrong with a file, and where it is.
 
-use std::fmt;
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -8,10 +7,11 @@ use std::path::{Path, PathBuf};
 pub type Result<T, E = Error> = std::result::Result<T, E>;
 
 /// What can go wrong with a file.
-#[derive(Debug)]
+#[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
     /// The operating system refused.
+    #[error("cannot {action} {}: {source}", .path.display())]
     System {
         /// What was being done (`open`, `read`, `write`, ...).
         action: &'static str,
@@ -21,6 +21,7 @@ pub enum Error {
         source: io::Error,
     },
     /// A file does not hold what it should, or cannot hold what is asked of it.
+    #[error("{}: {reason}", .path.display())]
     Content {
         /// Where.
         path: PathBuf,
@@ -39,25 +40,5 @@ impl Error {
     /// A file that does not hold what it should.
     pub fn content(path: &Path, reason: impl Into<String>) -> Self {
         Self::Content { path: path.to_owned(), reason: reason.into() }
-    }
-}
-
-impl fmt::Display for Error {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::System { action, path, source } => {
-                write!(f, "cannot {action} {}: {source}", path.display())
-            }
-            Self::Content { path, reason } => write!(f, "{}: {reason}", path.display()),
-        }
-    }
-}
-
-impl std::error::Error for Error {
-    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
-        match self {
-            Self::System { source, .. } => Some(source),
-            Self::Content { .. } => None,
-        }
     }
 }

@@ -8,10 +8,11 @@ use std::path::Path;
 pub type Result<T, E = Error> = std::result::Result<T, E>;
 
 /// What can go wrong between a command and its files.
-#[derive(Debug)]
+#[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
     /// A parameter that makes no sense.
+    #[error("{name} = {value}: expected {expected}")]
     Parameter {
         /// The parameter; programs call their flags the same.
         name: &'static str,
@@ -21,8 +22,10 @@ pub enum Error {
         expected: String,
     },
     /// A file cannot be read or written, or does not hold what it should.
-    File(files::Error),
+    #[error(transparent)]
+    File(#[from] files::Error),
     /// A model or an analysis refused its numbers.
+    #[error("{what}: {source}")]
     Model {
         /// What was being computed.
         what: String,
@@ -57,31 +60,5 @@ impl Error {
     pub fn model(what: impl Into<String>) -> impl FnOnce(contact_model::Error) -> Self {
         let what = what.into();
         move |source| Self::Model { what, source }
-    }
-}
-
-impl fmt::Display for Error {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Parameter { name, value, expected } => write!(f, "{name} = {value}: expected {expected}"),
-            Self::File(error) => write!(f, "{error}"),
-            Self::Model { what, source } => write!(f, "{what}: {source}"),
-        }
-    }
-}
-
-impl std::error::Error for Error {
-    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
-        match self {
-            Self::File(error) => std::error::Error::source(error),
-            Self::Model { source, .. } => Some(source),
-            Self::Parameter { .. } => None,
-        }
-    }
-}
-
-impl From<files::Error> for Error {
-    fn from(error: files::Error) -> Self {
-        Self::File(error)
     }
 }

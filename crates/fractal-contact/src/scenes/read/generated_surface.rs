@@ -112,8 +112,8 @@ pub fn write_twin(
     seed: u64,
     out: &Path,
 ) -> Result<String> {
-    let scan = Scan::read(path, declared).map_err(Error::Surface)?;
-    let of = Arc::new(scan.map(preprocessing).map_err(Error::Surface)?);
+    let scan = Scan::read(path, declared)?;
+    let of = Arc::new(scan.map(preprocessing)?);
     let unit = scan.metadata().unit.as_ref().map_or(Ok(Metric::Unitless), |unit| Metric::of(&unit.value));
     let metric = unit.map_err(|problem| Error::Argument { name: "unit", reason: problem.to_string() })?;
     let (cells, heights) = (of.cells(), keep_heights.then(|| HeightDistribution::Of(Arc::clone(&of))));
@@ -124,7 +124,7 @@ pub fn write_twin(
 
 /// Writes a surface and says what it is.
 fn write(path: &Path, Drawn { map, spectrum_residual }: &Drawn, metric: Metric) -> Result<String> {
-    write_map(path, map, metric).map_err(Error::Surface)?;
+    write_map(path, map, metric)?;
     let unit = if metric == Metric::Metres { "m" } else { "none" };
     let mut text = format!("{}\nunit               {unit}\n{}\n", path.display(), describe(map));
     if let Some(residual) = spectrum_residual {

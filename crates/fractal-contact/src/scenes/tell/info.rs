@@ -68,11 +68,11 @@ fn table(path: &Path) -> Result<String> {
 }
 
 fn surface(path: &Path, declared: &ReadOptions, preprocessing: &Preprocessing) -> Result<String> {
-    let file = SurfaceFile::open(path, declared).map_err(Error::Surface)?;
+    let file = SurfaceFile::open(path, declared)?;
     if file.len() > 1 && declared.channel.is_none() {
         return each(file);
     }
-    let scan = file.scan().map_err(Error::Surface)?;
+    let scan = file.scan()?;
     Ok(match scan.preprocessed(preprocessing) {
         Ok(found) => described(&scan, &found, &describe(&found.map)),
         // What stands in the way of a map is part of the answer.
@@ -98,8 +98,8 @@ pub fn info_statistics(
         let reason = format!("{} is no surface: statistics are of the heights in a file", path.display());
         return Err(Error::Argument { name: "out", reason });
     }
-    let scan = SurfaceFile::open(path, declared).and_then(SurfaceFile::scan).map_err(Error::Surface)?;
-    let found = scan.preprocessed(preprocessing).map_err(Error::Surface)?;
+    let scan = SurfaceFile::open(path, declared).and_then(SurfaceFile::scan)?;
+    let found = scan.preprocessed(preprocessing)?;
     let metric = scan.metadata().unit.as_ref().is_some_and(|u| u.value.dimension() == Dimension::LENGTH);
     let system = if metric { System::Si } else { System::None };
     let statistics = MapStatisticsTables::new(
@@ -144,7 +144,7 @@ fn each(file: SurfaceFile<'_>) -> Result<String> {
             Ok(scan) => text += &format!("\n{}\n", scan.metadata()),
             // The others are told all the same.
             Err(error) if error.problem().is_some() => text += &format!("\nnot read   {error}\n"),
-            Err(error) => return Err(Error::Surface(error)),
+            Err(error) => return Err(error.into()),
         }
     }
     Ok(text)
@@ -161,13 +161,13 @@ fn each(file: SurfaceFile<'_>) -> Result<String> {
 /// # Errors
 /// [`Error::Surface`] with what is wrong with the file.
 pub fn info_json(path: &Path, declared: &ReadOptions) -> Result<String> {
-    let file = SurfaceFile::open(path, declared).map_err(Error::Surface)?;
+    let file = SurfaceFile::open(path, declared)?;
     let mut channels = Vec::with_capacity(file.len());
     for scan in file.scans() {
         channels.push(match scan {
             Ok(scan) => channel(scan.metadata()),
             Err(error) if error.problem().is_some() => serde_json::json!({ "error": error.to_string() }),
-            Err(error) => return Err(Error::Surface(error)),
+            Err(error) => return Err(error.into()),
         });
     }
     Ok(format!("{:#}\n", serde_json::json!({ "channels": channels })))
