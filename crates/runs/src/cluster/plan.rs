@@ -5,20 +5,20 @@ use crate::error::{Error, Result};
 use crate::jobs::JobList;
 use crate::store::fnv1a_128;
 use rayon::prelude::*;
-use serde_json::{Value, json};
+use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
 /// A sharded command: `DIR/.units/plans/DIGEST.json`.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ShardPlan {
+    /// The arguments of the program, without the directory, the shard and the threads.
+    pub arguments: Vec<String>,
     /// Hash of the keys of all jobs in their order: two commands with the same jobs have the same plan.
     pub digest: String,
-    /// The program, as it calls itself.
-    pub program: String,
-    /// Its arguments, without the directory, the shard and the threads.
-    pub arguments: Vec<String>,
     /// Number of jobs.
     pub jobs: usize,
+    /// The program, as it calls itself.
+    pub program: String,
 }
 
 impl ShardPlan {
@@ -61,21 +61,12 @@ impl ShardPlan {
         if path.symlink_metadata().is_ok_and(|about| !about.is_file()) {
             return Err(Error::content(&path, "not a regular file: remove it"));
         }
-        let Self { digest, program, arguments, jobs } = self;
-        let text = json!({ "digest": digest, "program": program, "arguments": arguments, "jobs": jobs });
-        Ok(files::write_whole(&path, format!("{text:#}\n").as_bytes())?)
+        let text = serde_json::to_string_pretty(self).map_err(|e| Error::content(&path, e.to_string()))?;
+        Ok(files::write_whole(&path, (text + "\n").as_bytes())?)
     }
 
     fn read(path: &Path) -> Option<Self> {
-        let plan: Value = serde_json::from_slice(&files::read(path, 1 << 24).ok()?).ok()?;
-        let text = |name: &str| Some(plan[name].as_str()?.to_owned());
-        let arguments = plan["arguments"].as_array()?.iter().map(|word| Some(word.as_str()?.to_owned()));
-        Some(Self {
-            digest: text("digest")?,
-            program: text("program")?,
-            arguments: arguments.collect::<Option<_>>()?,
-            jobs: usize::try_from(plan["jobs"].as_u64()?).ok()?,
-        })
+        serde_json::from_slice(&files::read(path, 1 << 24).ok()?).ok()
     }
 
     /// All plans of a directory, by digest.

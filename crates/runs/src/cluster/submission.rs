@@ -107,8 +107,8 @@ impl fmt::Display for Submitted {
 }
 
 /// The program, its directory of results and how its jobs are divided.
-#[derive(Debug, Clone)]
-pub struct Target<'a> {
+#[derive(Clone)]
+pub(crate) struct Target<'a> {
     /// The program that the tasks run: a built binary.
     pub binary: &'a Path,
     /// Directory of the results.
@@ -117,12 +117,6 @@ pub struct Target<'a> {
     pub plan: &'a ShardPlan,
     /// Its jobs.
     pub jobs: &'a dyn JobList,
-}
-
-impl fmt::Debug for dyn JobList + '_ {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} jobs", self.count())
-    }
 }
 
 impl Submission {
