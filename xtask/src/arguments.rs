@@ -11,7 +11,7 @@ pub use cluster::{PlanArguments, ShardsArguments, SubmitArguments};
 use clap::{Parser, Subcommand};
 use evaluation::{AccuracyTarget, Model, Request};
 use runs::ShardChoice;
-use sizes::{Both, LineSizes, Maps, Reduced, Solid};
+use sizes::{Both, LineSizes, Maps, Reduced, Solid, SolveSizes};
 use std::path::PathBuf;
 use studies::{
     AccuracyCost, Audit, BookArguments, BudgetCheck, ExponentArguments, Reference, StabilityArguments,
@@ -127,33 +127,38 @@ pub enum Command {
 }
 
 impl Command {
-    /// The accuracy that a figure is asked for, and which ensembles it needs.
-    pub fn target(&self) -> Option<(&'static [Model], AccuracyTarget)> {
-        let (solve, models): (_, &[Model]) = match self {
+    /// What a figure solves, and which ensembles it needs.
+    fn solved(&self) -> Option<(&SolveSizes, &'static [Model])> {
+        Some(match self {
             Self::ReproduceFig2(a) | Self::ReproduceFig4(a) => (&a.solve, &[Model::Bem3d]),
             Self::ReproduceFig6(a) => (&a.solve, &[Model::Mdr1d]),
             Self::ReproduceFig3(a) | Self::ReproduceFig7(a) | Self::ReproduceAll(a) | Self::Verify(a) => {
                 (&a.solve, &Model::BOTH)
             }
             _ => return None,
-        };
-        solve.target().map(|target| (models, target))
+        })
+    }
+
+    /// The ensembles that a figure needs.
+    pub fn models(&self) -> Option<&'static [Model]> {
+        self.solved().map(|(_, models)| models)
+    }
+
+    /// The accuracy that a figure is asked for, and which ensembles it needs.
+    pub fn target(&self) -> Option<(&'static [Model], AccuracyTarget)> {
+        let (solve, models) = self.solved()?;
+        Some((models, solve.target()?))
     }
 
     /// The shard that it is asked for.
     pub fn shard(&self) -> Option<ShardChoice> {
         let sharded = match self {
-            Self::ReproduceFig2(a) | Self::ReproduceFig4(a) => &a.solve.sharded,
-            Self::ReproduceFig6(a) => &a.solve.sharded,
-            Self::ReproduceFig3(a) | Self::ReproduceFig7(a) | Self::ReproduceAll(a) | Self::Verify(a) => {
-                &a.solve.sharded
-            }
             Self::Audit(a) => &a.solid.solve.sharded,
             Self::Exponent(a) => &a.sharded,
             Self::BudgetCheck(a) => &a.sharded,
             Self::ReproduceTwoCases(a) => &a.sharded,
             Self::AccuracyCost(a) => &a.sharded,
-            _ => return None,
+            figure => &figure.solved()?.0.sharded,
         };
         sharded.shard
     }
@@ -176,19 +181,12 @@ impl Command {
             }
             Self::Audit(a) => a.solid.fill(&mut request),
             Self::Exponent(a) => a.fill(&mut request),
-            Self::Bench(_)
-            | Self::Redraw(_)
-            | Self::Book(_)
-            | Self::Tuning(_)
-            | Self::Plan(_)
-            | Self::Submit(_)
-            | Self::Status(_)
-            | Self::Merge(_) => {}
             Self::BudgetCheck(a) => (request.out, request.threads) = (Some(a.out.clone()), Some(a.threads)),
             Self::ReproduceTwoCases(a) => (request.out, request.threads) = (Some(a.out.clone()), a.threads),
             Self::AccuracyCost(a) => (request.out, request.fresh) = (Some(a.out.clone()), a.fresh),
             Self::CheckReference(a) => request.out = Some(a.out.clone()),
             Self::Stability(a) => request.out = Some(a.out.clone()),
+            _ => {}
         }
         request
     }

@@ -54,16 +54,10 @@ pub fn shard(command: &Command, choice: ShardChoice, typed: &[String]) -> Result
 /// The surfaces and lines of a command that solves no others.
 fn surfaces(command: &Command) -> Result<Option<Vec<RealisationJob>>> {
     let run = Run::new(&command.request())?;
-    Ok(Some(match command {
-        Command::ReproduceFig2(_) | Command::ReproduceFig4(_) => ensemble_jobs(&run, &[Model::Bem3d]),
-        Command::ReproduceFig6(_) => ensemble_jobs(&run, &[Model::Mdr1d]),
-        Command::ReproduceFig3(_)
-        | Command::ReproduceFig7(_)
-        | Command::ReproduceAll(_)
-        | Command::Verify(_) => ensemble_jobs(&run, &Model::BOTH),
-        Command::Exponent(options) => options.study(&run)?.jobs()?,
-        _ => return Ok(None),
-    }))
+    match command {
+        Command::Exponent(options) => options.study(&run)?.jobs().map(Some),
+        figure => Ok(figure.models().map(|models| ensemble_jobs(&run, models))),
+    }
 }
 
 fn plan_of(typed: &[String], jobs: &dyn JobList) -> cluster::ShardPlan {

@@ -99,6 +99,11 @@ pub(super) fn share(text: &str) -> Result<f64, String> {
     }
 }
 
+/// Sizes of ensembles.
+pub trait Sizes {
+    fn fill(&self, request: &mut Request);
+}
+
 /// Size of the 3D ensemble.
 #[derive(Debug, Args)]
 pub struct SolidSize {
@@ -113,8 +118,8 @@ pub struct SolidSize {
     tolerance: Option<f64>,
 }
 
-impl SolidSize {
-    pub(super) fn fill(&self, request: &mut Request) {
+impl Sizes for SolidSize {
+    fn fill(&self, request: &mut Request) {
         (request.cells, request.surfaces, request.tolerance) = (self.cells, self.surfaces, self.tolerance);
     }
 }
@@ -130,8 +135,8 @@ pub struct LineSize {
     lines: Option<usize>,
 }
 
-impl LineSize {
-    pub(super) fn fill(&self, request: &mut Request) {
+impl Sizes for LineSize {
+    fn fill(&self, request: &mut Request) {
         (request.elements, request.lines) = (self.elements, self.lines);
     }
 }
@@ -170,62 +175,44 @@ impl LineSizes {
     }
 }
 
-/// Flags of Figs. 2 and 4.
+/// Sizes of both ensembles.
 #[derive(Debug, Args)]
-pub struct Solid {
-    #[command(flatten)]
-    common: Common,
-    #[command(flatten)]
-    size: SolidSize,
-    #[command(flatten)]
-    pub(super) solve: SolveSizes,
-}
-
-impl Solid {
-    pub(super) fn fill(&self, request: &mut Request) {
-        self.common.fill(request);
-        self.size.fill(request);
-        self.solve.fill(request);
-    }
-}
-
-/// Flags of Fig. 6.
-#[derive(Debug, Args)]
-pub struct Reduced {
-    #[command(flatten)]
-    common: Common,
-    #[command(flatten)]
-    size: LineSize,
-    #[command(flatten)]
-    pub(super) solve: SolveSizes,
-}
-
-impl Reduced {
-    pub(super) fn fill(&self, request: &mut Request) {
-        self.common.fill(request);
-        self.size.fill(request);
-        self.solve.fill(request);
-    }
-}
-
-/// Flags of everything that needs both models.
-#[derive(Debug, Args)]
-pub struct Both {
-    #[command(flatten)]
-    common: Common,
+pub struct BothSizes {
     #[command(flatten)]
     solid: SolidSize,
     #[command(flatten)]
     line: LineSize,
+}
+
+impl Sizes for BothSizes {
+    fn fill(&self, request: &mut Request) {
+        self.solid.fill(request);
+        self.line.fill(request);
+    }
+}
+
+/// Flags of a figure that solves ensembles of these sizes.
+#[derive(Debug, Args)]
+pub struct Solved<S: Args> {
+    #[command(flatten)]
+    common: Common,
+    #[command(flatten)]
+    size: S,
     #[command(flatten)]
     pub(super) solve: SolveSizes,
 }
 
-impl Both {
+impl<S: Args + Sizes> Solved<S> {
     pub(super) fn fill(&self, request: &mut Request) {
         self.common.fill(request);
-        self.solid.fill(request);
-        self.line.fill(request);
+        self.size.fill(request);
         self.solve.fill(request);
     }
 }
+
+/// Flags of Figs. 2 and 4.
+pub type Solid = Solved<SolidSize>;
+/// Flags of Fig. 6.
+pub type Reduced = Solved<LineSize>;
+/// Flags of everything that needs both models.
+pub type Both = Solved<BothSizes>;
