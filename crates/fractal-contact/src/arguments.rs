@@ -290,28 +290,15 @@ pub struct MapArguments {
 impl MapArguments {
     /// How the file is read, and what is done to its map.
     pub fn options(self) -> (ReadOptions, Preprocessing) {
-        let Self {
-            format,
-            lateral_unit,
-            height_scale,
-            decimal,
-            missing,
-            skip_lines,
-            crop,
-            fill,
-            detrend,
-            ..
-        } = self;
-        let undefined = fill.is_none().then_some(surface_io::Undefined::NoContact);
         let preprocessing = Preprocessing {
-            crop,
+            crop: self.crop,
             align_lines: self.align_lines,
             scars: self.scars,
             outliers: self.outliers,
             tip_radius: self.tip_radius,
-            undefined,
-            fill,
-            detrend,
+            undefined: self.fill.is_none().then_some(surface_io::Undefined::NoContact),
+            fill: self.fill,
+            detrend: self.detrend,
             filter_across: self.filter_across,
             mirror: self.mirror,
             // One of four words.
@@ -320,18 +307,18 @@ impl MapArguments {
             ..Preprocessing::default()
         };
         let declared = ReadOptions {
-            format,
+            format: self.format,
             channel: self.channel,
             unit: self.unit,
-            height_scale,
-            lateral_unit,
+            height_scale: self.height_scale,
+            lateral_unit: self.lateral_unit,
             size: self.size,
             cell: self.cell,
-            decimal,
+            decimal: self.decimal,
             axes: self.axes,
             border: self.border,
-            missing,
-            skip_lines,
+            missing: self.missing,
+            skip_lines: self.skip_lines,
             ..ReadOptions::default()
         };
         (declared, preprocessing)

@@ -23,7 +23,7 @@ use crate::scenes::tell::report::Report;
 use crate::scenes::tell::result_folder::ResultFolder;
 use crate::scenes::tell::statistics::MapStatisticsTables;
 use crate::scenes::tell::summary;
-use analysis::{Column, Table};
+use analysis::Table;
 use runs::cluster::{ShardPlan, ShardReport, run_shard};
 use runs::{Failure, Header, Progress, Shard, Store, Threads, run_stored, write_csv};
 use std::time::Instant;
@@ -72,7 +72,7 @@ pub fn run(
         })
         .collect();
     count(scene, &units, &results, options, &mut outcome);
-    let Tables { states: table, patches } = tables(scene, &solved)?;
+    let table = states_table(scene, &solved)?;
     let means = if scene.sampling.surfaces > 1 { ensemble::means(scene, &solved) } else { Vec::new() };
     let header = header(scene, plan);
     let mut write = |name: &str, table: &Table| -> Result<()> {
@@ -83,7 +83,7 @@ pub fn run(
     };
     write("results.csv", &table)?;
     if scene.requested.outputs.contact_patches {
-        write("patches.csv", &patches)?;
+        write("patches.csv", &patches_table(scene, &solved)?)?;
     }
     if !means.is_empty() {
         let title = format!("{}: means over surfaces", title(scene));
@@ -161,12 +161,6 @@ pub fn run_scene_shard(
     run_shard(plan, &jobs, shard, (&options.out, options.threads), progress, stop)
 }
 
-/// The tables of a run.
-struct Tables {
-    states: Table,
-    patches: Table,
-}
-
 /// Counts, notes and files of all results, for the outcome.
 fn count(
     scene: &SceneFile,
@@ -205,29 +199,31 @@ fn count(
         }
     }
     for (warning, count) in Warning::ALL.into_iter().zip(warned).filter(|(_, count)| *count > 0) {
-        outcome.notes.push(format!(
-            "{} ({count} of {counted} states): {}",
-            warning.as_str(),
-            warning.remedy()
-        ));
+        let [words, remedy] = warning.words();
+        outcome.notes.push(format!("{words} ({count} of {counted} states): {remedy}"));
     }
 }
 
-/// Rows of all states in their order, and of the connected contacts of each.
-fn tables(scene: &SceneFile, units: &[SolvedUnit<'_>]) -> Result<Tables> {
+/// Rows of all states in their order.
+fn states_table(scene: &SceneFile, units: &[SolvedUnit<'_>]) -> Result<Table> {
     let mut table = Table::new(title(scene), columns::columns(scene));
-    let mut patches = patches_table(scene);
-    for unit in units {
-        for record in unit.states {
-            table.push(columns::row(scene, unit, record)).map_err(runs::Error::model("a row"))?;
-            let areas = record.solved().and_then(|solved| solved.state.patches.as_ref());
-            for area in areas.map_or(&[][..], contact_model::Patches::areas) {
-                let row = vec![unit.model.into(), unit.surface.into(), record.index.into(), (*area).into()];
-                patches.push(row).map_err(runs::Error::model("a patch"))?;
-            }
-        }
+    for (unit, record) in units.iter().flat_map(SolvedUnit::records) {
+        table.push(columns::row(scene, unit, record)).map_err(runs::Error::model("a row"))?;
     }
-    Ok(Tables { states: table, patches })
+    Ok(table)
+}
+
+/// Rows of the connected contacts of all states.
+fn patches_table(scene: &SceneFile, units: &[SolvedUnit<'_>]) -> Result<Table> {
+    let area = ("area", scene.system.unit("m^2"), "of one connected contact, the largest first");
+    let title = format!("{}: connected contact areas", title(scene));
+    let rows = units.iter().flat_map(SolvedUnit::records).flat_map(|(unit, record)| {
+        let patches = record.solved().and_then(|solved| solved.state.patches.as_ref());
+        let areas = patches.map_or(&[][..], contact_model::Patches::areas);
+        areas.iter().map(|&area| [unit.model.into(), unit.surface.into(), record.index.into(), area.into()])
+    });
+    let columns = [columns::MODEL, columns::SURFACE, columns::LOAD, area];
+    Ok(columns::table(title, columns, rows, "a patch")?)
 }
 
 /// What the tables are called.
@@ -278,18 +274,6 @@ fn header(scene: &SceneFile, plan: &Plan) -> Header {
         header = header.with_note(format!("seed: {}", scene.sampling.seed));
     }
     header
-}
-
-fn patches_table(scene: &SceneFile) -> Table {
-    let area = if scene.system == crate::scenes::System::Si { "m^2" } else { "scene" };
-    let column = |name, unit, meaning| Column { name, unit, meaning };
-    let columns = vec![
-        column("model", "-", "who answers"),
-        column("surface", "1", "number of the surface, from 0"),
-        column("state", "1", "number of the load, from 0"),
-        column("area", area, "of one connected contact, the largest first"),
-    ];
-    Table::new(format!("{}: connected contact areas", title(scene)), columns)
 }
 
 /// What each model did, summed over its states.

@@ -9,15 +9,10 @@ const BUDGET: f64 = 600.0;
 
 /// Reads `accuracy` and `budget`, with the place of the former.
 pub(crate) fn read_accuracy<'a>(scene: &Entries<'a>) -> Read<Option<(AccuracyTarget, Entry<'a>)>> {
-    let (accuracy, budget) = (scene.find("accuracy"), scene.find("budget"));
-    let Some(entry) = accuracy else {
-        return match budget {
-            Some(budget) => Err(budget
-                .diagnostic_at_key("`budget` is given, but no `accuracy`")
-                .with_help("it limits the time that `accuracy = \"1 %\"` may take: add that, or remove it")),
-            None => Ok(None),
-        };
-    };
+    let accuracy = scene.find("accuracy");
+    let help = "it limits the time that `accuracy = \"1 %\"` may take: add that, or remove it";
+    let budget = scene.beside("budget", "accuracy", help)?;
+    let Some(entry) = accuracy else { return Ok(None) };
     let share = entry.pure_number()?;
     if !(share > 0.0 && share < 1.0) {
         return Err(entry

@@ -81,10 +81,10 @@ impl Diagnostic {
         }
     }
 
-    /// At these bytes of the text; a place given before stays.
+    /// At these bytes of the text, where they are known; a place given before stays.
     #[must_use]
-    pub fn at(mut self, span: Range<usize>) -> Self {
-        self.span.get_or_insert(span);
+    pub fn at(mut self, span: impl Into<Option<Range<usize>>>) -> Self {
+        self.span = self.span.or(span.into());
         self
     }
 

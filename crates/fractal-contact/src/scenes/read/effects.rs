@@ -33,8 +33,8 @@ pub static EFFECT_KEYS: &[EffectKey] = &[
         about: "What lies outside of the rectangle.",
         off: "an unloaded half-space outside the rectangle",
         read: |entry, _, effects| {
-            effects.boundary = entry.choice(&[("free", Boundary::Free), ("periodic", Boundary::Periodic)])?;
-            Ok(())
+            let words = [("free", Boundary::Free), ("periodic", Boundary::Periodic)];
+            entry.choice(&words).map(|boundary| effects.boundary = boundary)
         },
         words: |effects| {
             (effects.boundary == Boundary::Periodic).then(|| "periodic copies of the rectangle".into())
@@ -63,8 +63,7 @@ pub static EFFECT_KEYS: &[EffectKey] = &[
                 with a range (a length), by the exponential law if none is named.",
         off: "no attraction",
         read: |entry, system, effects| {
-            effects.adhesion = read_adhesion(&entry.table_or("work")?, system)?;
-            Ok(())
+            read_adhesion(&entry.table_or("work")?, system).map(|adhesion| effects.adhesion = adhesion)
         },
         words: |effects| match effects.adhesion {
             Adhesion::Off => None,
@@ -99,8 +98,7 @@ pub static EFFECT_KEYS: &[EffectKey] = &[
         about: "Time dependence of the material.",
         off: "elastic",
         read: |entry, system, effects| {
-            effects.rheology = read_rheology(entry, system)?;
-            Ok(())
+            read_rheology(entry, system).map(|rheology| effects.rheology = rheology)
         },
         words: |effects| (effects.rheology != Rheology::Elastic).then(|| rheology_words(&effects.rheology)),
     },
@@ -193,46 +191,42 @@ fn rheology_words(rheology: &Rheology) -> String {
     }
 }
 
-#[derive(Clone, Copy)]
-enum RheologyKind {
-    KelvinVoigt,
-    Maxwell,
-    StandardSolid,
-    Prony,
+/// How the parameters of a rheology are read.
+type ReadRheology = fn(&Entries<'_>, System) -> Read<Rheology>;
+
+const RHEOLOGIES: [(&str, ReadRheology); 4] = [
+    ("kelvin_voigt", |table, system| Ok(Rheology::KelvinVoigt { viscosity: viscosity(table, system)? })),
+    ("maxwell", |table, system| Ok(Rheology::Maxwell { viscosity: viscosity(table, system)? })),
+    ("standard_solid", |table, system| {
+        let (weight, time) = (table.require("weight", "1.0")?, table.require("time", "\"1 s\"")?);
+        Ok(Rheology::StandardSolid { arm: relaxing(&weight, &time, system)? })
+    }),
+    ("prony", |table, system| {
+        let (weights, times) =
+            (table.require("weights", "[1.0, 0.5]")?, table.require("times", "[\"1 s\", \"10 s\"]")?);
+        let (w, t) = (weights.list(), times.list());
+        if w.len() != t.len() {
+            return Err(times
+                .diagnostic(format!("{} weights and {} times", w.len(), t.len()))
+                .with_help("one relaxation time for each weight"));
+        }
+        let arms = w.iter().zip(&t).map(|(w, t)| relaxing(w, t, system)).collect::<Read<Vec<_>>>()?;
+        PronySeries::new(&arms).map(Rheology::Prony).map_err(|e| weights.diagnostic(e.to_string()))
+    }),
+];
+
+fn viscosity(table: &Entries<'_>, system: System) -> Read<f64> {
+    table.require("viscosity", "\"1 MPa s\"")?.positive(Dimension::VISCOSITY, system)
+}
+
+fn relaxing(weight: &Entry<'_>, time: &Entry<'_>, system: System) -> Read<Relaxing> {
+    Ok(Relaxing { weight: weight.positive_number()?, time: time.positive(Dimension::TIME, system)? })
 }
 
 fn read_rheology(entry: &Entry<'_>, system: System) -> Read<Rheology> {
     let table = entry.table()?;
-    let words = [
-        ("kelvin_voigt", RheologyKind::KelvinVoigt),
-        ("maxwell", RheologyKind::Maxwell),
-        ("standard_solid", RheologyKind::StandardSolid),
-        ("prony", RheologyKind::Prony),
-    ];
-    let kind = table.require("kind", "\"standard_solid\"")?.choice(&words)?;
-    let viscosity = || table.require("viscosity", "\"1 MPa s\"")?.positive(Dimension::VISCOSITY, system);
-    let arm = |weight: &Entry<'_>, time: &Entry<'_>| -> Read<Relaxing> {
-        Ok(Relaxing { weight: weight.positive_number()?, time: time.positive(Dimension::TIME, system)? })
-    };
-    let rheology = match kind {
-        RheologyKind::KelvinVoigt => Rheology::KelvinVoigt { viscosity: viscosity()? },
-        RheologyKind::Maxwell => Rheology::Maxwell { viscosity: viscosity()? },
-        RheologyKind::StandardSolid => Rheology::StandardSolid {
-            arm: arm(&table.require("weight", "1.0")?, &table.require("time", "\"1 s\"")?)?,
-        },
-        RheologyKind::Prony => {
-            let (weights, times) =
-                (table.require("weights", "[1.0, 0.5]")?, table.require("times", "[\"1 s\", \"10 s\"]")?);
-            let (w, t) = (weights.list(), times.list());
-            if w.len() != t.len() {
-                return Err(times
-                    .diagnostic(format!("{} weights and {} times", w.len(), t.len()))
-                    .with_help("one relaxation time for each weight"));
-            }
-            let arms = w.iter().zip(&t).map(|(w, t)| arm(w, t)).collect::<Read<Vec<_>>>()?;
-            Rheology::Prony(PronySeries::new(&arms).map_err(|e| weights.diagnostic(e.to_string()))?)
-        }
-    };
+    let read = table.require("kind", "\"standard_solid\"")?.choice(&RHEOLOGIES)?;
+    let rheology = read(&table, system)?;
     table.finish()?;
     Ok(rheology)
 }

@@ -22,6 +22,22 @@ pub enum System {
     None,
 }
 
+impl System {
+    /// Unit of a column of a table: without units a dimensional number is in the scene's own, and only pure
+    /// numbers and texts keep theirs.
+    pub(crate) fn unit(self, si: &'static str) -> &'static str {
+        match (self, si) {
+            (Self::Si, _) | (Self::None, "1" | "-") => si,
+            (Self::None, _) => "scene",
+        }
+    }
+
+    /// Unit of a picture: nothing where the scene has none.
+    pub(crate) fn shown(self, si: &str) -> &str {
+        if self == Self::Si { si } else { "" }
+    }
+}
+
 /// One table.
 #[derive(Debug)]
 pub(crate) struct Entries<'a> {
@@ -74,17 +90,44 @@ impl<'a> Entries<'a> {
 
     /// A mistake of the table itself.
     pub fn diagnostic(&self, message: impl Into<String>) -> Diagnostic {
-        let diagnostic = Diagnostic::new(message);
-        match &self.span {
-            Some(span) => diagnostic.at(span.clone()),
-            None => diagnostic,
-        }
+        Diagnostic::new(message).at(self.span.clone())
     }
 
     /// The value of a key, if it is there.
     pub fn find(&self, key: &'static str) -> Option<Entry<'a>> {
         self.known.borrow_mut().push(key);
         self.entry(key)
+    }
+
+    /// What a key holds, if it is there.
+    pub fn optional<T>(
+        &self,
+        key: &'static str,
+        read: impl FnOnce(&Entry<'a>) -> Read<T>,
+    ) -> Read<Option<T>> {
+        self.find(key).map(|entry| read(&entry)).transpose()
+    }
+
+    /// Replaces a value by what a key holds, if it is there.
+    pub fn set<T>(
+        &self,
+        value: &mut T,
+        key: &'static str,
+        read: impl FnOnce(&Entry<'a>) -> Read<T>,
+    ) -> Read<()> {
+        self.optional(key, read).map(|given| given.into_iter().for_each(|given| *value = given))
+    }
+
+    /// The value of a key that says nothing without another one.
+    pub fn beside(&self, key: &'static str, other: &str, help: &str) -> Read<Option<Entry<'a>>> {
+        let entry = self.find(key);
+        match &entry {
+            Some(entry) if self.entry(other).is_none() => {
+                let message = format!("`{key}` is given, but no `{other}`");
+                Err(entry.diagnostic_at_key(message).with_help(help))
+            }
+            _ => Ok(entry),
+        }
     }
 
     /// The value of any key without making it a known one.
@@ -108,11 +151,7 @@ impl<'a> Entries<'a> {
                     .with_help(format!("did you mean `{key}` here?"));
             }
             let missing = Diagnostic::of_type(format!("`{key}` is missing in {}", self.title()));
-            let missing = match &self.span {
-                Some(span) => missing.at(span.clone()),
-                None => missing,
-            };
-            missing.with_help(format!("add `{key} = {example}`"))
+            missing.at(self.span.clone()).with_help(format!("add `{key} = {example}`"))
         })
     }
 
@@ -130,7 +169,7 @@ impl<'a> Entries<'a> {
 
     /// A table, if it is there.
     pub fn table(&self, key: &'static str) -> Read<Option<Entries<'a>>> {
-        self.find(key).map(|entry| entry.table()).transpose()
+        self.optional(key, Entry::table)
     }
 
     /// At most one of these keys.
@@ -180,12 +219,9 @@ impl<'a> Entries<'a> {
 
 fn syntax(error: &toml::de::Error) -> Diagnostic {
     let message = error.message().lines().collect::<Vec<_>>().join(", ");
-    let diagnostic = Diagnostic::new(message)
-        .with_help("this is not valid TOML: text is quoted, tables are `[name]`, each key stands once");
-    match error.span() {
-        Some(span) => diagnostic.at(span),
-        None => diagnostic,
-    }
+    Diagnostic::new(message)
+        .with_help("this is not valid TOML: text is quoted, tables are `[name]`, each key stands once")
+        .at(error.span())
 }
 
 /// A quantity of this dimension, as it stands in a file.
@@ -337,7 +373,7 @@ impl<'a> Entry<'a> {
             .ok_or_else(|| self.wrong("true or false", "true or false, without quotes"))
     }
 
-    /// One of these words.
+    /// One of these words, each with what it stands for.
     pub fn choice<T: Copy>(&self, words: &[(&str, T)]) -> Read<T> {
         let names: Vec<&str> = words.iter().map(|(name, _)| *name).collect();
         let example = names.iter().map(|n| format!("\"{n}\"")).collect::<Vec<_>>().join(" or ");
@@ -410,6 +446,11 @@ impl<'a> Entry<'a> {
             let most = if value > u64::MAX as f64 { ", below 2^64" } else { "" };
             self.outside(value, format!("a whole number >= {least}{most}"))
         })
+    }
+
+    /// The same of cells, rows and the like.
+    pub fn size(&self, least: u64) -> Read<usize> {
+        self.count(least).map(|count| count as usize)
     }
 
     /// A number with its unit in SI, or a plain number where the scene has none.

@@ -23,15 +23,38 @@ pub enum LoadKind {
 }
 
 impl LoadKind {
+    const ALL: [Self; 5] = [Self::Force, Self::ForceBar, Self::MeanPressure, Self::Approach, Self::MeanGap];
+
+    /// Its key in the file, its dimension and unit in SI, and what it is in tables.
+    fn record(self) -> (&'static str, Dimension, &'static str, &'static str) {
+        match self {
+            Self::Force => ("force", Dimension::FORCE, "N", "force"),
+            Self::ForceBar => {
+                let meaning = "F_bar = F/(E* h L) with this surface's measured rms height h, L = sqrt(Lx Ly)";
+                ("force_bar", Dimension::NONE, "1", meaning)
+            }
+            Self::MeanPressure => {
+                let meaning = "mean pressure, F/(Lx Ly), undefined points included";
+                ("mean_pressure", Dimension::PRESSURE, "Pa", meaning)
+            }
+            Self::Approach => ("approach", Dimension::LENGTH, "m", "approach"),
+            Self::MeanGap => ("mean_gap", Dimension::LENGTH, "m", "mean gap"),
+        }
+    }
+
     /// Its key in the file.
     pub fn key(self) -> &'static str {
-        match self {
-            Self::Force => "force",
-            Self::ForceBar => "force_bar",
-            Self::MeanPressure => "mean_pressure",
-            Self::Approach => "approach",
-            Self::MeanGap => "mean_gap",
-        }
+        self.record().0
+    }
+
+    /// Its unit in SI.
+    pub(crate) fn unit(self) -> &'static str {
+        self.record().2
+    }
+
+    /// What it is, in a phrase.
+    pub(crate) fn meaning(self) -> &'static str {
+        self.record().3
     }
 }
 
@@ -77,9 +100,15 @@ impl LoadRequest {
             Self::Path(steps) => steps.len(),
         }
     }
-}
 
-impl LoadRequest {
+    /// The number that the load of a state prescribes; `None` along a path.
+    pub(crate) fn prescribed(&self, state: usize) -> Option<f64> {
+        match self {
+            Self::Loads(loads) => loads.values.get(state).copied(),
+            Self::Path(_) => None,
+        }
+    }
+
     /// Whether an approach or a mean gap may be prescribed, of which the force is a result with an error.
     pub(crate) fn prescribes_distance(&self) -> bool {
         match self {
@@ -91,41 +120,37 @@ impl LoadRequest {
     }
 }
 
-const KEYS: [&str; 5] = ["force", "force_bar", "mean_pressure", "approach", "mean_gap"];
-
 /// Reads the loads or the path of `[scene]`. `pulls`: loads may be negative (adhesion).
 pub(crate) fn read_request<'a>(
     scene: &Entries<'a>,
     system: System,
     pulls: bool,
 ) -> Read<(LoadRequest, Entry<'a>)> {
-    let loads = scene.one_of(&KEYS)?;
+    let keys = LoadKind::ALL.map(LoadKind::key);
+    let loads = scene.one_of(&keys)?;
     let path = scene.find("path");
     match (loads, path) {
         (Some((key, _)), Some(path)) => Err(path
             .diagnostic_at_key(format!("`{key}` and `path` are both given in [scene]"))
             .with_help(format!("loads one by one are `{key}`; a history (friction, rheology, indentation, adhesion) is `path`: keep one of them"))),
-        (None, None) => Err(scene.misspelt_or(&KEYS, scene
+        (None, None) => Err(scene.misspelt_or(&keys, scene
             .diagnostic("nothing is pressed: [scene] has no load")
             .with_help("add `force = \"1 N\"`, `approach = [...]`, `force_bar = { from = 1e-4, to = 1, count = 9 }`, or [[scene.path]] for a history"))),
-        (Some((key, entry)), None) => Ok((LoadRequest::Loads(read_loads(key, &entry, system, pulls)?), entry)),
+        (Some((key, entry)), None) => {
+            let kind = LoadKind::ALL.into_iter().find(|kind| kind.key() == key).unwrap_or(LoadKind::Force);
+            Ok((LoadRequest::Loads(read_loads(kind, &entry, system, pulls)?), entry))
+        }
         (None, Some(entry)) => Ok((LoadRequest::Path(read_path(&entry, system, pulls)?), entry)),
     }
 }
 
-fn read_loads(key: &str, entry: &Entry<'_>, system: System, pulls: bool) -> Read<LoadList> {
-    let (kind, dimension) = match key {
-        "force" => (LoadKind::Force, Some(Dimension::FORCE)),
-        "force_bar" => (LoadKind::ForceBar, None),
-        "mean_pressure" => (LoadKind::MeanPressure, Some(Dimension::PRESSURE)),
-        "approach" => (LoadKind::Approach, Some(Dimension::LENGTH)),
-        _ => (LoadKind::MeanGap, Some(Dimension::LENGTH)),
-    };
+fn read_loads(kind: LoadKind, entry: &Entry<'_>, system: System, pulls: bool) -> Read<LoadList> {
+    let (key, dimension, ..) = kind.record();
     let signed = pulls && matches!(kind, LoadKind::Force | LoadKind::Approach);
     let number = |item: &Entry<'_>| {
         let value = match dimension {
-            Some(dimension) => item.quantity(dimension, system)?,
-            None => item.number()?,
+            Dimension::NONE => item.number()?,
+            dimension => item.quantity(dimension, system)?,
         };
         if value >= 0.0 || signed {
             return Ok(value);
@@ -138,8 +163,8 @@ fn read_loads(key: &str, entry: &Entry<'_>, system: System, pulls: bool) -> Read
         let from = range.require("from", "...")?;
         let to = range.require("to", "...")?;
         let count = range.require("count", "9")?;
-        let even =
-            range.find("spacing").map_or(Ok(false), |e| e.choice(&[("log", false), ("linear", true)]))?;
+        let mut even = false;
+        range.set(&mut even, "spacing", |e| e.choice(&[("log", false), ("linear", true)]))?;
         range.finish()?;
         let number_of = count.count(2)?;
         if number_of > MOST {
@@ -195,7 +220,8 @@ fn read_path(entry: &Entry<'_>, system: System, pulls: bool) -> Read<Vec<Step>> 
     let mut last = Step::normal(0.0, Load::Force(0.0));
     for item in entry.list() {
         let table = item.table()?;
-        let time = table.find("time").map_or(Ok(last.time), |e| e.quantity(Dimension::TIME, system))?;
+        let mut time = last.time;
+        table.set(&mut time, "time", |e| e.quantity(Dimension::TIME, system))?;
         let normal = match table.one_of(&["force", "approach", "mean_gap"])? {
             Some(("force", e)) => Load::Force(e.quantity(Dimension::FORCE, system)?),
             Some(("mean_gap", e)) => Load::MeanGap(e.quantity(Dimension::LENGTH, system)?),

@@ -237,24 +237,14 @@ pub(crate) fn read_models<'a>(
 }
 
 fn bem3d_options(mut model: Bem3d, table: &Entries<'_>) -> Read<Bem3d> {
-    if let Some(entry) = table.find("cells") {
-        model.cells = entry.count(1)? as usize;
-    }
-    if let Some(entry) = table.find("rows") {
-        model.rows = Some(entry.count(1)? as usize);
-    }
-    if let Some(entry) = table.find("tolerance") {
-        model.tolerance = entry.positive_number()?;
-        if model.tolerance >= 1.0 {
-            return Err(entry.outside(model.tolerance, "a number < 1").with_help("1e-6 gives six digits"));
-        }
-    }
-    if let Some(entry) = table.find("max_outer_iterations") {
-        model.max_outer_iterations = entry.count(1)? as usize;
-    }
-    if let Some(entry) = table.find("method") {
-        model.method = entry.choice(&Method::ALL.map(|method| (method.as_str(), method)))?;
-    }
+    table.set(&mut model.cells, "cells", |e| e.size(1))?;
+    table.set(&mut model.rows, "rows", |e| e.size(1).map(Some))?;
+    table.set(&mut model.tolerance, "tolerance", |e| match e.positive_number()? {
+        below if below < 1.0 => Ok(below),
+        large => Err(e.outside(large, "a number < 1").with_help("1e-6 gives six digits")),
+    })?;
+    table.set(&mut model.max_outer_iterations, "max_outer_iterations", |e| e.size(1))?;
+    table.set(&mut model.method, "method", |e| e.choice(&Method::ALL.map(|m| (m.as_str(), m))))?;
     Ok(model)
 }
 
@@ -266,35 +256,26 @@ fn configured(numerics: Numerics, table: Entries<'_>) -> Read<Numerics> {
             for (key, most, value) in
                 [("per_decade", 1000, &mut outer.per_decade), ("decades", 12, &mut outer.decades)]
             {
-                if let Some(entry) = table.find(key) {
-                    let count = entry.count(1)?;
-                    if count > most {
-                        let expected = format!("at most {most}");
-                        return Err(entry.outside(count as f64, expected).with_help("16 and 3 by default"));
-                    }
-                    *value = count as u32;
-                }
+                table.set(value, key, |e| match e.count(1)? {
+                    count if count <= most => Ok(count as u32),
+                    count => Err(e
+                        .outside(count as f64, format!("at most {most}"))
+                        .with_help("16 and 3 by default")),
+                })?;
             }
             Numerics::Equivalent(outer)
         }
         Numerics::Mdr1d(mut model) => {
-            if let Some(entry) = table.find("elements") {
-                model.elements = entry.count(1)? as usize;
-            }
+            table.set(&mut model.elements, "elements", |e| e.size(1))?;
             Numerics::Mdr1d(model)
         }
         Numerics::Persson(mut model) => {
-            if let Some(entry) = table.find("gamma") {
-                model.gamma = entry.positive_number()?;
-            }
+            table.set(&mut model.gamma, "gamma", Entry::positive_number)?;
             Numerics::Persson(model)
         }
         Numerics::GreenwoodWilliamson(mut model) => {
-            if let Some(entry) = table.find("heights") {
-                let words =
-                    [("gaussian", SummitHeights::Gaussian), ("exponential", SummitHeights::Exponential)];
-                model.heights = entry.choice(&words)?;
-            }
+            let words = [("gaussian", SummitHeights::Gaussian), ("exponential", SummitHeights::Exponential)];
+            table.set(&mut model.heights, "heights", |e| e.choice(&words))?;
             Numerics::GreenwoodWilliamson(model)
         }
         other => other,

@@ -88,51 +88,43 @@ pub(crate) fn read_map(table: &Entries<'_>, system: System, directory: &Path) ->
 
 /// How the file is meant.
 fn read_options(table: &Entries<'_>, system: System, notes: &mut Vec<Diagnostic>) -> Read<ReadOptions> {
-    let mut declared = ReadOptions::default();
-    if let Some(entry) = table.find("format") {
-        declared.format = Some(entry.choice(&Format::ALL.map(|format| (format.word(), format)))?);
-    }
-    if let Some(entry) = table.find("channel") {
-        let number = |_| entry.count(0).map(|number| ChannelChoice::Number(number as usize));
-        declared.channel = Some(entry.text().map(|name| ChannelChoice::Name(name.into())).or_else(number)?);
-    }
     let unit = |key: &'static str| -> Read<Option<Unit>> {
-        let Some(entry) = table.find(key) else { return Ok(None) };
-        let unit: Unit = entry.text()?.parse().map_err(|e| {
-            entry.diagnostic(format!("`{key}`: {e}")).with_help("a unit of length in quotes, such as \"nm\"")
-        })?;
-        Ok(Some(unit))
+        table.optional(key, |entry| {
+            entry.text()?.parse().map_err(|e| {
+                entry
+                    .diagnostic(format!("`{key}`: {e}"))
+                    .with_help("a unit of length in quotes, such as \"nm\"")
+            })
+        })
     };
-    declared.unit = unit("unit")?;
-    declared.lateral_unit = unit("lateral_unit")?;
-    if let Some(entry) = table.find("height_scale") {
-        declared.height_scale = Some(length(&entry, entry.positive(Dimension::LENGTH, system)?, system)?);
-    }
+    let mut declared = ReadOptions {
+        format: table.optional("format", |e| e.choice(&Format::ALL.map(|format| (format.word(), format))))?,
+        channel: table.optional("channel", |e| match e.as_word() {
+            Some(name) => Ok(ChannelChoice::Name(name.into())),
+            None => e.size(0).map(ChannelChoice::Number),
+        })?,
+        unit: unit("unit")?,
+        lateral_unit: unit("lateral_unit")?,
+        height_scale: table.optional("height_scale", |e| positive_length(e, system))?,
+        ..ReadOptions::default()
+    };
     match table.one_of(&["size", "cell", "width"])? {
         Some(("size", entry)) => declared.size = Some(sides(&entry, system)?),
         Some(("cell", entry)) => declared.cell = Some(sides(&entry, system)?),
         Some((_, entry)) => {
-            declared.width = Some(length(&entry, entry.positive(Dimension::LENGTH, system)?, system)?);
+            declared.width = Some(positive_length(&entry, system)?);
             let note = Diagnostic::note("`width` is now `size`").at(entry.key_span());
             notes.push(note.with_help("write `size = [Lx, Ly]`, or one value where the map is square; `width` is Lx, with square cells"));
         }
         None => {}
     }
-    if let Some(entry) = table.find("decimal") {
-        declared.decimal = entry.choice(&[("point", Decimal::Point), ("comma", Decimal::Comma)])?;
-    }
-    if let Some(entry) = table.find("axes") {
-        declared.axes = Some(entry.choice(&[("xy", Axes::Xy), ("yx", Axes::Yx)])?);
-    }
-    if let Some(entry) = table.find("border") {
-        declared.border = Some(entry.choice(&[("axes", Border::Axes), ("heights", Border::Heights)])?);
-    }
-    if let Some(entry) = table.find("missing") {
-        declared.missing = Some(entry.any_number()?);
-    }
-    if let Some(entry) = table.find("skip_lines") {
-        declared.skip_lines = entry.count(0)? as usize;
-    }
+    let decimals = [("point", Decimal::Point), ("comma", Decimal::Comma)];
+    table.set(&mut declared.decimal, "decimal", |e| e.choice(&decimals))?;
+    declared.axes = table.optional("axes", |e| e.choice(&[("xy", Axes::Xy), ("yx", Axes::Yx)]))?;
+    let borders = [("axes", Border::Axes), ("heights", Border::Heights)];
+    declared.border = table.optional("border", |e| e.choice(&borders))?;
+    declared.missing = table.optional("missing", Entry::any_number)?;
+    table.set(&mut declared.skip_lines, "skip_lines", |e| e.size(0))?;
     Ok(declared)
 }
 
@@ -143,21 +135,15 @@ pub(crate) fn read_second(
     system: System,
     directory: &Path,
 ) -> Read<FileMap> {
-    let facing = match table.find("facing") {
-        Some(entry) => entry.choice(&[("x", Some(Mirror::X)), ("y", Some(Mirror::Y)), ("none", None)])?,
-        None => Some(Mirror::X),
-    };
-    let offset = match table.find("offset") {
-        None => [0.0; 2],
-        Some(entry) => match &entry.list()[..] {
-            [x, y] => [x.quantity(Dimension::LENGTH, system)?, y.quantity(Dimension::LENGTH, system)?],
-            _ => {
-                return Err(entry
-                    .diagnostic("`offset` has not two values")
-                    .with_help("of the middle of the second surface from that of the first, along x and y: [\"5 um\", \"0 um\"]"));
-            }
-        },
-    };
+    let (mut facing, mut offset) = (Some(Mirror::X), [0.0; 2]);
+    let faces = [("x", Some(Mirror::X)), ("y", Some(Mirror::Y)), ("none", None)];
+    table.set(&mut facing, "facing", |e| e.choice(&faces))?;
+    table.set(&mut offset, "offset", |e| match &e.list()[..] {
+        [x, y] => Ok([x.quantity(Dimension::LENGTH, system)?, y.quantity(Dimension::LENGTH, system)?]),
+        _ => Err(e.diagnostic("`offset` has not two values").with_help(
+            "of the middle of the second surface from that of the first, along x and y: [\"5 um\", \"0 um\"]",
+        )),
+    })?;
     let FileMap { map, mut metadata, reliable_from, notes, profile } = read_map(table, system, directory)?;
     if profile {
         return Err(table
@@ -230,41 +216,34 @@ fn length(entry: &Entry<'_>, value: f64, system: System) -> Read<Quantity> {
     Quantity::new(value, dimension).map_err(|e| entry.diagnostic(e.to_string()))
 }
 
+fn positive_length(entry: &Entry<'_>, system: System) -> Read<Quantity> {
+    length(entry, entry.positive(Dimension::LENGTH, system)?, system)
+}
+
+fn read_crop(entry: &Entry<'_>) -> Read<Crop> {
+    if !entry.is_table() {
+        return entry.choice(&[("centre", Crop::Centre), ("defined", Crop::Defined)]);
+    }
+    let window = entry.table()?;
+    let number = |key: &'static str, least: u64| window.require(key, "0")?.size(least);
+    let (rows, columns) = match window.one_of(&["cells", "rows"])? {
+        Some(("cells", cells)) => cells.size(1).map(|cells| (cells, cells))?,
+        _ => (number("rows", 1)?, number("columns", 1)?),
+    };
+    let crop = Crop::Window { row: number("row", 0)?, column: number("column", 0)?, rows, columns };
+    window.finish()?;
+    Ok(crop)
+}
+
 fn read_treatment(table: &Entries<'_>, system: System) -> Read<Preprocessing> {
-    let mut preprocessing = Preprocessing::default();
-    if let Some(entry) = table.find("crop") {
-        preprocessing.crop = Some(if entry.is_table() {
-            let window = entry.table()?;
-            let number =
-                |key: &'static str, least: u64| window.require(key, "0")?.count(least).map(|v| v as usize);
-            let (rows, columns) = match window.one_of(&["cells", "rows"])? {
-                Some(("cells", cells)) => {
-                    let cells = cells.count(1)? as usize;
-                    (cells, cells)
-                }
-                _ => (number("rows", 1)?, number("columns", 1)?),
-            };
-            let crop = Crop::Window { row: number("row", 0)?, column: number("column", 0)?, rows, columns };
-            window.finish()?;
-            crop
-        } else {
-            entry.choice(&[("centre", Crop::Centre), ("defined", Crop::Defined)])?
-        });
-    }
-    if let Some(entry) = table.find("align_lines") {
-        let align = entry.choice(&AlignLines::ALL.map(|align| (align.word(), align)))?;
-        preprocessing.align_lines = Some(align);
-    }
-    if let Some(entry) = table.find("scars") {
-        preprocessing.scars = Some(entry.number()?);
-    }
-    if let Some(entry) = table.find("outliers") {
-        preprocessing.outliers = Some(entry.number()?);
-    }
-    if let Some(entry) = table.find("tip_radius") {
-        let radius = entry.positive(Dimension::LENGTH, system)?;
-        preprocessing.tip_radius = Some(length(&entry, radius, system)?);
-    }
+    let mut preprocessing = Preprocessing {
+        crop: table.optional("crop", read_crop)?,
+        align_lines: table.optional("align_lines", |e| e.choice(&AlignLines::ALL.map(|a| (a.word(), a))))?,
+        scars: table.optional("scars", Entry::number)?,
+        outliers: table.optional("outliers", Entry::number)?,
+        tip_radius: table.optional("tip_radius", |e| positive_length(e, system))?,
+        ..Preprocessing::default()
+    };
     match table.one_of(&["fill", "undefined"])? {
         Some(("fill", entry)) => {
             preprocessing.fill = Some(match entry.as_word() {
@@ -285,33 +264,17 @@ fn read_treatment(table: &Entries<'_>, system: System) -> Read<Preprocessing> {
         }
         None => {}
     }
-    if let Some(entry) = table.find("detrend") {
-        preprocessing.detrend = entry.choice(&Detrend::ALL.map(|detrend| (detrend.word(), detrend)))?;
-    }
-    if let Some(entry) = table.find("filter_across") {
-        let cut_off = entry.positive(Dimension::LENGTH, system)?;
-        preprocessing.filter_across = Some(length(&entry, cut_off, system)?);
-    }
-    if let Some(entry) = table.find("mirror") {
-        preprocessing.mirror = Some(entry.choice(&[("x", Mirror::X), ("y", Mirror::Y)])?);
-    }
-    if let Some(entry) = table.find("rotate") {
-        let degrees = entry.count(0)?;
-        if degrees % 90 != 0 || degrees > 270 {
-            return Err(entry
-                .diagnostic(format!("`rotate` is {degrees}"))
-                .with_help("degrees from x to y: 0, 90, 180 or 270"));
-        }
-        preprocessing.quarter_turns = (degrees / 90) as u8;
-    }
-    if let Some(entry) = table.find("window") {
-        preprocessing.window = Some(entry.choice(&[("hann", Window::Hann)])?);
-    }
-    if let Some(entry) = table.find("cells") {
-        preprocessing.cells = Some(entry.count(1)? as usize);
-    }
-    if let Some(entry) = table.find("rows") {
-        preprocessing.rows = Some(entry.count(1)? as usize);
-    }
+    table.set(&mut preprocessing.detrend, "detrend", |e| e.choice(&Detrend::ALL.map(|d| (d.word(), d))))?;
+    preprocessing.filter_across = table.optional("filter_across", |e| positive_length(e, system))?;
+    preprocessing.mirror = table.optional("mirror", |e| e.choice(&[("x", Mirror::X), ("y", Mirror::Y)]))?;
+    table.set(&mut preprocessing.quarter_turns, "rotate", |e| match e.count(0)? {
+        degrees @ (0 | 90 | 180 | 270) => Ok((degrees / 90) as u8),
+        degrees => Err(e
+            .diagnostic(format!("`rotate` is {degrees}"))
+            .with_help("degrees from x to y: 0, 90, 180 or 270")),
+    })?;
+    preprocessing.window = table.optional("window", |e| e.choice(&[("hann", Window::Hann)]))?;
+    preprocessing.cells = table.optional("cells", |e| e.size(1))?;
+    preprocessing.rows = table.optional("rows", |e| e.size(1))?;
     Ok(preprocessing)
 }

@@ -79,6 +79,12 @@ struct Places {
     accuracy: Option<Range<usize>>,
 }
 
+impl Places {
+    fn of_output(&self, name: &str) -> Option<Range<usize>> {
+        self.outputs.iter().find(|(key, _)| *key == name).map(|(_, span)| span.clone())
+    }
+}
+
 impl SceneFile {
     /// A scene built in code, in any consistent units: no effects, no outputs, one surface of seed 0.
     /// Messages then have no line.
@@ -208,10 +214,7 @@ impl SceneFile {
 
     /// A mistake of an output.
     pub(crate) fn at_output(&self, name: &str, diagnostic: Diagnostic) -> Diagnostic {
-        self.placed(
-            diagnostic,
-            self.places.outputs.iter().find(|(n, _)| *n == name).map(|(_, span)| span.clone()),
-        )
+        self.placed(diagnostic, self.places.of_output(name))
     }
 
     /// A mistake of the accuracy that is asked for.
@@ -220,10 +223,7 @@ impl SceneFile {
     }
 
     fn placed(&self, diagnostic: Diagnostic, span: Option<Range<usize>>) -> Diagnostic {
-        let diagnostic = match span {
-            Some(span) => diagnostic.at(span),
-            None => diagnostic,
-        };
+        let diagnostic = diagnostic.at(span);
         if self.text.is_empty() { diagnostic } else { diagnostic.placed(&self.path, &self.text) }
     }
 
@@ -250,9 +250,8 @@ fn read_scene(root: &Entries<'_>, directory: &Path, registry: &Registry) -> Read
         return Err(Diagnostic::new("there is no [scene]")
             .with_help("a scene begins with [scene]: `models`, `modulus` and a load"));
     };
-    let system = scene
-        .find("units")
-        .map_or(Ok(System::Si), |e| e.choice(&[("none", System::None), ("si", System::Si)]))?;
+    let mut system = System::Si;
+    scene.set(&mut system, "units", |e| e.choice(&[("none", System::None), ("si", System::Si)]))?;
     let options = root.table("models")?;
     let models = read_models(&scene, options.as_ref(), registry.models())?;
     let effects_table = root.table("effects")?;
@@ -525,11 +524,8 @@ fn check_half_plane(
         ("displacement", outputs.displacement),
     ];
     let Some((name, _)) = asked.iter().find(|(_, asked)| *asked) else { return Ok(()) };
-    let mut diagnostic = Diagnostic::new(format!("{name} of a profile with free boundaries: {why}"));
-    if let Some((_, span)) = places.outputs.iter().find(|(key, _)| key == name) {
-        diagnostic = diagnostic.at(span.clone());
-    }
-    Err(diagnostic.with_help(help))
+    let message = format!("{name} of a profile with free boundaries: {why}");
+    Err(Diagnostic::new(message).at(places.of_output(name)).with_help(help))
 }
 
 /// Whether boundary elements have an effect that depends on the path.

@@ -216,7 +216,7 @@ pub(crate) fn read_surface(scene: &Entries<'_>, system: System, directory: &Path
     let second = scene.table("second_surface")?;
     let body = scene.table("body")?;
     let of_file = |table: &Entries<'_>| -> Read<bool> {
-        Ok(table.require("kind", "\"self_affine\"")?.choice(&ROUGH)? == RoughKind::File)
+        table.require("kind", "\"self_affine\"")?.choice(&[("self_affine", false), ("file", true)])
     };
     if let Some(second) = &second
         && !(of_file(second)? && surface.as_ref().map_or(Ok(false), &of_file)?)
@@ -307,15 +307,9 @@ fn refuse_for_profile(
 
 /// `twin` and `keep_heights`.
 fn read_twin<'a>(table: &Entries<'a>, is_second: bool) -> Read<Option<(Entry<'a>, TwinSpectrum, bool)>> {
-    let keep = table.find("keep_heights");
-    let Some(entry) = table.find("twin") else {
-        return match keep {
-            None => Ok(None),
-            Some(keep) => Err(keep
-                .diagnostic_at_key("`keep_heights` is given, but no `twin`")
-                .with_help("add `twin = \"waves\"`, or remove it: the map itself has its heights")),
-        };
-    };
+    let help = "add `twin = \"waves\"`, or remove it: the map itself has its heights";
+    let keep = table.beside("keep_heights", "twin", help)?;
+    let Some(entry) = table.find("twin") else { return Ok(None) };
     let like = entry.choice(&[("waves", TwinSpectrum::EachWave), ("rings", TwinSpectrum::Rings)])?;
     if is_second {
         return Err(entry
@@ -328,36 +322,21 @@ fn read_twin<'a>(table: &Entries<'a>, is_second: bool) -> Read<Option<(Entry<'a>
 
 /// `anisotropy` and `lay`.
 fn read_anisotropy(table: &Entries<'_>) -> Read<Option<Anisotropy>> {
-    let lay = table.find("lay");
-    let Some(ratio) = table.find("anisotropy") else {
-        return match lay {
-            None => Ok(None),
-            Some(lay) => Err(lay
-                .diagnostic_at_key("`lay` is given, but no `anisotropy`")
-                .with_help("add `anisotropy = 4`: waves along the lay are so many times as long as across")),
-        };
-    };
+    let help = "add `anisotropy = 4`: waves along the lay are so many times as long as across";
+    let lay = table.beside("lay", "anisotropy", help)?;
+    let Some(ratio) = table.find("anisotropy") else { return Ok(None) };
     let lay = lay.map_or(Ok(0.0), |lay| lay.angle())?;
     Ok(Some(Anisotropy { ratio: ratio.positive_number()?, lay }))
 }
 
 /// `weibull`.
 fn read_heights(table: &Entries<'_>) -> Read<Option<HeightDistribution>> {
-    let shape = table.find("weibull").map(|shape| shape.positive_number()).transpose()?;
+    let shape = table.optional("weibull", Entry::positive_number)?;
     Ok(shape.map(|shape| HeightDistribution::Weibull { shape }))
 }
 
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum RoughKind {
-    SelfAffine,
-    File,
-}
-
-const ROUGH: [(&str, RoughKind); 2] = [("self_affine", RoughKind::SelfAffine), ("file", RoughKind::File)];
-
 fn read_self_affine(table: &Entries<'_>, system: System) -> Read<SelfAffine> {
-    let length =
-        |key: &'static str| table.find(key).map(|e| e.positive(Dimension::LENGTH, system)).transpose();
+    let length = |key: &'static str| table.optional(key, |e| e.positive(Dimension::LENGTH, system));
     let size = read_size(table, system)?;
     let hurst = match table.one_of(&["fractal_dimension", "hurst"])? {
         Some(("hurst", e)) => within(&e, e.number()?, 0.0, 1.0)?,
@@ -370,9 +349,8 @@ fn read_self_affine(table: &Entries<'_>, system: System) -> Read<SelfAffine> {
     };
     let rms = table.require("rms_height", "\"1 um\"")?.positive(Dimension::LENGTH, system)?;
     let short = length("shortest_wavelength")?;
-    let long = table.find("roll_off_wavelength");
-    let roll_off = long.as_ref().map(|e| e.positive(Dimension::LENGTH, system)).transpose()?;
-    if let (Some(entry), Some(long), Some(short)) = (&long, roll_off, short)
+    let roll_off = length("roll_off_wavelength")?;
+    if let (Some(entry), Some(long), Some(short)) = (table.entry("roll_off_wavelength"), roll_off, short)
         && long < short
     {
         return Err(entry
@@ -414,30 +392,39 @@ fn within(entry: &Entry<'_>, value: f64, low: f64, high: f64) -> Read<f64> {
     }
 }
 
-#[derive(Clone, Copy)]
-enum BodyKind {
-    Sphere,
-    Cone,
-    PowerLaw,
-    FlatCircle,
-    Flat,
-    Sine,
-}
+/// How the parameters of a body are read.
+type ReadBody = fn(&Entries<'_>, Size, System) -> Read<Surface>;
 
-const BODIES: [(&str, BodyKind); 7] = [
-    ("sphere", BodyKind::Sphere),
-    ("cone", BodyKind::Cone),
-    ("power_law", BodyKind::PowerLaw),
-    ("flat_circle", BodyKind::FlatCircle),
-    ("flat", BodyKind::Flat),
-    ("flat_square", BodyKind::Flat),
-    ("sine", BodyKind::Sine),
+const BODIES: [(&str, ReadBody); 7] = [
+    ("sphere", |table, size, system| Ok(Surface::Sphere { radius: length(table, "radius", system)?, size })),
+    ("cone", |table, size, _| {
+        Ok(Surface::Cone { slope: table.require("slope", "0.1")?.positive_number()?, size })
+    }),
+    ("power_law", |table, size, system| {
+        // Two lengths instead of a coefficient whose unit depends on the exponent.
+        let exponent = table.require("exponent", "4")?.positive_number()?;
+        let (depth, radius) = (length(table, "depth", system)?, length(table, "radius", system)?);
+        Ok(Surface::PowerLaw { coefficient: depth / radius.powf(exponent), exponent, size })
+    }),
+    ("flat_circle", |table, size, system| {
+        Ok(Surface::FlatCircle { radius: length(table, "radius", system)?, size })
+    }),
+    ("flat", |_, size, _| Ok(Surface::Flat { size })),
+    ("flat_square", |_, size, _| Ok(Surface::Flat { size })),
+    ("sine", |table, size, system| {
+        let (amplitude, wavelength) =
+            (length(table, "amplitude", system)?, length(table, "wavelength", system)?);
+        Ok(Surface::Sine { amplitude, wavelength, size })
+    }),
 ];
+
+fn length(table: &Entries<'_>, key: &'static str, system: System) -> Read<f64> {
+    table.require(key, "\"1 mm\"")?.positive(Dimension::LENGTH, system)
+}
 
 /// A body; on a rough surface it has that surface's size.
 fn read_body(table: &Entries<'_>, given: Option<Size>, system: System) -> Read<Surface> {
-    let length = |key: &'static str| table.require(key, "\"1 mm\"")?.positive(Dimension::LENGTH, system);
-    let kind = table.require("kind", "\"sphere\"")?.choice(&BODIES)?;
+    let read = table.require("kind", "\"sphere\"")?.choice(&BODIES)?;
     let size = match (given, table.one_of(&["side", "size"])?) {
         (Some(_), Some((key, entry))) => {
             return Err(entry
@@ -447,21 +434,7 @@ fn read_body(table: &Entries<'_>, given: Option<Size>, system: System) -> Read<S
         (Some(size), None) => size,
         (None, _) => read_size(table, system)?,
     };
-    let surface = match kind {
-        BodyKind::Sphere => Surface::Sphere { radius: length("radius")?, size },
-        BodyKind::Cone => Surface::Cone { slope: table.require("slope", "0.1")?.positive_number()?, size },
-        BodyKind::PowerLaw => {
-            // Two lengths instead of a coefficient whose unit depends on the exponent.
-            let exponent = table.require("exponent", "4")?.positive_number()?;
-            let (depth, radius) = (length("depth")?, length("radius")?);
-            Surface::PowerLaw { coefficient: depth / radius.powf(exponent), exponent, size }
-        }
-        BodyKind::FlatCircle => Surface::FlatCircle { radius: length("radius")?, size },
-        BodyKind::Flat => Surface::Flat { size },
-        BodyKind::Sine => {
-            Surface::Sine { amplitude: length("amplitude")?, wavelength: length("wavelength")?, size }
-        }
-    };
+    let surface = read(table, size, system)?;
     table.known_only()?;
     Ok(surface)
 }

@@ -1,7 +1,6 @@
 //! What scenes, loads, units and models are called in titles and labels.
 
 use crate::models::ModelRecord;
-use crate::scenes::read::entries::System;
 use crate::scenes::read::human_readable::short;
 use crate::scenes::read::loads::{LoadKind, LoadRequest};
 use crate::scenes::read::scene_file::SceneFile;
@@ -14,16 +13,10 @@ pub(crate) fn scene_name(scene: &SceneFile) -> String {
 
 /// A load in words, with its unit.
 pub(crate) fn load(scene: &SceneFile, state: usize) -> String {
-    let si = scene.system == System::Si;
     match &scene.request {
         LoadRequest::Loads(loads) => {
-            let unit = match loads.kind {
-                LoadKind::ForceBar => "",
-                _ if !si => "",
-                LoadKind::Force => "N",
-                LoadKind::MeanPressure => "Pa",
-                LoadKind::Approach | LoadKind::MeanGap => "m",
-            };
+            let unit =
+                if loads.kind == LoadKind::ForceBar { "" } else { scene.system.shown(loads.kind.unit()) };
             let words = loads.kind.key().replace('_', " ");
             let (unit, factor) = plots::prefixed(unit, loads.values[state]);
             let value = short(factor * loads.values[state]);

@@ -4,7 +4,6 @@ use crate::scenes::read::error::Result;
 use crate::scenes::read::words;
 use crate::scenes::run::field_view::FieldView;
 
-use crate::scenes::read::entries::System;
 use crate::scenes::read::outputs::{FieldFormat, HEIGHTS};
 use crate::scenes::read::scene_file::SceneFile;
 use crate::scenes::run::state_result::{FieldFile, ModelResult, StoredFile};
@@ -144,14 +143,13 @@ pub(crate) fn picture<'a>(
     cells: Cells,
     values: &'a [f64],
 ) -> FieldPicture<'a> {
-    let si = scene.system == System::Si;
     let &FieldQuantity { name, words, symbol, unit, shown, .. } = field;
     let load = if name == HEIGHTS.name { "as solved".to_owned() } else { words::load(scene, state) };
     let mut title = format!("{}, {}", name.replace('_', " "), words::model_name(model));
     title[..1].make_ascii_uppercase();
     let number = if scene.sampling.surfaces > 1 { format!(", surface {surface}") } else { String::new() };
     let subtitle = format!("{}{number}: {load}", words::scene_name(scene));
-    let [unit, length_unit] = if si { [unit, "m"] } else { [""; 2] };
+    let [unit, length_unit] = [unit, "m"].map(|unit| scene.system.shown(unit));
     let size = scene.surface.size();
     FieldPicture {
         title,

@@ -237,7 +237,7 @@ fn write_vti(
     grid: Cells,
     values: &[f64],
 ) -> Result<()> {
-    let unit = if scene.system == crate::scenes::System::Si { quantity.unit } else { "" };
+    let unit = scene.system.shown(quantity.unit);
     let field = surface_io::DataArray { name: quantity.name, unit, values };
     let bytes = surface_io::vti(grid, scene.surface.size(), &[field], surface_io::Encoding::Base64)
         .map_err(|e| Error::Argument { name: "vti", reason: format!("{}: {e}", path.display()) })?;

@@ -32,41 +32,37 @@ impl Warning {
     pub const ALL: [Self; 7] =
         [Self::FewCells, Self::OneCell, Self::Edge, Self::Yield, Self::Area, Self::Accuracy, Self::Stiffness];
 
-    /// What stands in the row of the state.
-    pub fn as_str(self) -> &'static str {
+    /// What stands in the row of the state, and what to do about it.
+    pub fn words(self) -> [&'static str; 2] {
         match self {
-            Self::FewCells => "fewer than 10 contact cells",
-            Self::OneCell => "one cell carries most of the load",
-            Self::Edge => "contact at the edge of the rectangle",
-            Self::Yield => "pressure above the hardness (E*/10 where none is given)",
-            Self::Area => "area not resolved",
-            Self::Accuracy => "accuracy not reached",
-            Self::Stiffness => "stiffness not known",
-        }
-    }
-
-    /// What to do about it.
-    pub fn remedy(self) -> &'static str {
-        match self {
-            Self::FewCells => "the numbers are those of the grid: a larger load or smaller cells",
-            Self::OneCell => {
-                "is it a spike of the measurement? `missing = HEIGHT` (as in the file) takes it out; else smaller cells"
-            }
-            Self::Edge => {
-                "the edge decides too: a larger map, a smaller load, `detrend`, or `boundary = \"periodic\"`"
-            }
-            Self::Yield => {
-                "bodies yield there, and these are elastic: take area and largest pressure as bounds"
-            }
-            Self::Area => {
-                "the boundary of the contact is more than a tenth of its area: `area_corrected` is nearer the limit of small cells"
-            }
-            Self::Stiffness => {
-                "complete contact has none; at a jump or a kink of the path it is not claimed: take the difference of neighbouring states"
-            }
-            Self::Accuracy => {
-                "the columns `_grid_error` say what was: the grid was chosen on surface 0, others may need more cells (ask for an `accuracy` of half the share)"
-            }
+            Self::FewCells => [
+                "fewer than 10 contact cells",
+                "the numbers are those of the grid: a larger load or smaller cells",
+            ],
+            Self::OneCell => [
+                "one cell carries most of the load",
+                "is it a spike of the measurement? `missing = HEIGHT` (as in the file) takes it out; else smaller cells",
+            ],
+            Self::Edge => [
+                "contact at the edge of the rectangle",
+                "the edge decides too: a larger map, a smaller load, `detrend`, or `boundary = \"periodic\"`",
+            ],
+            Self::Yield => [
+                "pressure above the hardness (E*/10 where none is given)",
+                "bodies yield there, and these are elastic: take area and largest pressure as bounds",
+            ],
+            Self::Area => [
+                "area not resolved",
+                "the boundary of the contact is more than a tenth of its area: `area_corrected` is nearer the limit of small cells",
+            ],
+            Self::Accuracy => [
+                "accuracy not reached",
+                "the columns `_grid_error` say what was: the grid was chosen on surface 0, others may need more cells (ask for an `accuracy` of half the share)",
+            ],
+            Self::Stiffness => [
+                "stiffness not known",
+                "complete contact has none; at a jump or a kink of the path it is not claimed: take the difference of neighbouring states",
+            ],
         }
     }
 
@@ -100,7 +96,7 @@ impl Warning {
 
     /// All of them as one note; `None` for none.
     pub fn note(all: &[Self]) -> Option<String> {
-        let texts: Vec<&str> = all.iter().map(|warning| warning.as_str()).collect();
+        let texts: Vec<&str> = all.iter().map(|warning| warning.words()[0]).collect();
         (!texts.is_empty()).then(|| texts.join("; "))
     }
 }

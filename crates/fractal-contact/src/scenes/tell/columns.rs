@@ -1,11 +1,10 @@
 //! The columns of `results.csv`: the quantities that a scene asks for.
 
 use crate::scenes::plan::grid_comparison::RMS_SLOPE;
-use crate::scenes::read::entries::System;
-use crate::scenes::read::loads::{LoadKind, LoadRequest};
+use crate::scenes::read::loads::{LoadList, LoadRequest};
 use crate::scenes::read::scene_file::SceneFile;
 use crate::scenes::run::state_result::{SolvedUnit, StateRecord};
-use analysis::{Column, Value};
+use analysis::{Column, Table, Value};
 use contact_model::quantities::{Compared, QUANTITIES, Quantity, Question};
 
 /// The error of a quantity that the cells leave, and the order of convergence.
@@ -15,6 +14,35 @@ const GRID_ERROR_PERIODIC: &str = "estimated relative error of the grid, from ce
      edge of the rectangle or a spike grows without limit";
 const GRID_ORDER_PERIODIC: &str = "order of convergence as observed on these grids; empty where none is seen; empty with free boundaries, where the pressure at an edge \
      of the rectangle or a spike grows without limit";
+
+/// Name, unit and meaning of a column.
+pub(crate) type ColumnWords = (&'static str, &'static str, &'static str);
+
+pub(crate) const MODEL: ColumnWords = ("model", "-", "who answers");
+pub(crate) const SURFACE: ColumnWords = ("surface", "1", "number of the surface, from 0");
+pub(crate) const LOAD: ColumnWords = ("state", "1", "number of the load, from 0");
+pub(crate) const STATE: ColumnWords = ("state", "1", "number of the load or step, from 0");
+
+pub(crate) fn plain((name, unit, meaning): ColumnWords) -> Column {
+    Column { name, unit, meaning }
+}
+
+/// A table whose rows, of which each is a `what`, have a value for each column.
+///
+/// # Errors
+/// A number that is not finite.
+pub(crate) fn table<const N: usize>(
+    title: impl Into<String>,
+    columns: [ColumnWords; N],
+    rows: impl IntoIterator<Item = [Value; N]>,
+    what: &str,
+) -> runs::Result<Table> {
+    let mut table = Table::new(title, columns.map(plain).into());
+    for row in rows {
+        table.push(row.into()).map_err(runs::Error::model(what))?;
+    }
+    Ok(table)
+}
 
 /// The quantities that a scene asks for, in the order of the table of all.
 pub(crate) fn asked(scene: &SceneFile) -> impl Iterator<Item = &'static Quantity> + '_ {
@@ -33,68 +61,42 @@ pub(crate) fn with_grid_errors(scene: &SceneFile) -> impl Iterator<Item = &'stat
     asked(scene).filter(|quantity| scene.requested.grid_error && quantity.compared != Compared::No)
 }
 
-/// Unit of a column of a scene: without units a dimensional number is in the scene's own, and only pure
-/// numbers and texts keep theirs.
-pub(crate) fn unit(scene: &SceneFile, si: &'static str) -> &'static str {
-    match (scene.system, si) {
-        (System::Si, si) => si,
-        (System::None, "1" | "-") => si,
-        (System::None, _) => "scene",
-    }
-}
-
 /// The column of a quantity.
 pub(crate) fn column(scene: &SceneFile, quantity: &Quantity) -> Column {
-    let unit = unit(scene, quantity.unit.si(&scene.requested.outputs));
+    let unit = scene.system.unit(quantity.unit.si(&scene.requested.outputs));
     Column { name: quantity.name, unit, meaning: quantity.meaning }
 }
 
 /// The number that a load prescribes; `None` along a path.
 pub(crate) fn prescribed(scene: &SceneFile) -> Option<Column> {
-    let LoadRequest::Loads(loads) = &scene.request else { return None };
-    let (si, meaning) = match loads.kind {
-        LoadKind::Force => ("N", "force"),
-        LoadKind::ForceBar => {
-            ("1", "F_bar = F/(E* h L) with this surface's measured rms height h, L = sqrt(Lx Ly)")
-        }
-        LoadKind::MeanPressure => ("Pa", "mean pressure, F/(Lx Ly), undefined points included"),
-        LoadKind::Approach => ("m", "approach"),
-        LoadKind::MeanGap => ("m", "mean gap"),
-    };
-    Some(Column { name: "prescribed", unit: unit(scene, si), meaning })
+    let LoadRequest::Loads(LoadList { kind, .. }) = &scene.request else { return None };
+    Some(Column { name: "prescribed", unit: scene.system.unit(kind.unit()), meaning: kind.meaning() })
 }
 
 /// The columns of a scene with their units.
 pub(crate) fn columns(scene: &SceneFile) -> Vec<Column> {
-    let plain = |name, unit, meaning| Column { name, unit, meaning };
-    let mut columns = vec![
-        plain("model", "-", "who answers"),
-        plain("surface", "1", "number of the surface, from 0"),
-        plain("state", "1", "number of the load or step, from 0"),
-    ];
+    let mut columns = [MODEL, SURFACE, STATE].map(plain).to_vec();
     columns.extend(prescribed(scene));
     columns.extend(asked(scene).map(|quantity| column(scene, quantity)));
     if scene.requested.grid_error {
-        columns.push(plain(RMS_SLOPE, "1", "of the surface on the grid that was solved"));
+        columns.push(plain((RMS_SLOPE, "1", "of the surface on the grid that was solved")));
         for quantity in with_grid_errors(scene) {
             let [.., error, order, _, _] = quantity.columns;
             let periodic = quantity.compared == Compared::Periodic;
-            columns.push(plain(error, "1", if periodic { GRID_ERROR_PERIODIC } else { GRID_ERROR }));
-            columns.push(plain(order, "1", if periodic { GRID_ORDER_PERIODIC } else { GRID_ORDER }));
+            columns.push(plain((error, "1", if periodic { GRID_ERROR_PERIODIC } else { GRID_ERROR })));
+            columns.push(plain((order, "1", if periodic { GRID_ORDER_PERIODIC } else { GRID_ORDER })));
         }
-        columns.push(plain("rms_slope_grid_error", "1", GRID_ERROR));
-        columns.push(plain("rms_slope_grid_order", "1", GRID_ORDER));
+        columns.push(plain(("rms_slope_grid_error", "1", GRID_ERROR)));
+        columns.push(plain(("rms_slope_grid_order", "1", GRID_ORDER)));
     }
-    columns.push(plain("note", "-", "why a model refused a load, or what to beware of"));
+    columns.push(plain(("note", "-", "why a model refused a load, or what to beware of")));
     columns
 }
 
 /// The row of a state, in the order of [`columns`].
 pub(crate) fn row(scene: &SceneFile, unit: &SolvedUnit<'_>, record: &StateRecord) -> Vec<Value> {
     let mut row = vec![unit.model.into(), unit.surface.into(), record.index.into()];
-    if let LoadRequest::Loads(loads) = &scene.request {
-        row.push(loads.values[record.index].into());
-    }
+    row.extend(scene.request.prescribed(record.index).map(Value::from));
     row.extend(asked(scene).map(|quantity| value(record, quantity)));
     if scene.requested.grid_error {
         let grid = record.solved().and_then(|solved| solved.grid.as_ref());

@@ -6,7 +6,8 @@ use crate::scenes::read::error::Result;
 use crate::scenes::read::scene_file::SceneFile;
 use crate::scenes::read::words;
 use crate::scenes::run::state_result::SolvedUnit;
-use analysis::{Column, Table};
+use crate::scenes::tell::columns;
+use analysis::{Table, Value};
 use plots::{Chart, Curve};
 
 /// Curves of a model in one picture.
@@ -26,38 +27,27 @@ pub(crate) fn table(
     units: &[SolvedUnit<'_>],
 ) -> Result<Table> {
     let (_, unit, per_unit) = of.words();
-    let shown = if scene.system == System::Si { [unit, per_unit] } else { ["scene"; 2] };
+    let [unit, per_unit] = [unit, per_unit].map(|unit| scene.system.unit(unit));
     let density = match of {
         Distributed::Patches => "contacts per area: its integral is their number",
         _ => "share of the nominal area per unit: its integral is the share of the cells above zero",
     };
-    let column = |name, unit, meaning| Column { name, unit, meaning };
-    let columns = vec![
-        column("model", "-", "who answers"),
-        column("surface", "1", "number of the surface, from 0"),
-        column("state", "1", "number of the load, from 0"),
-        column("lower", shown[0], "lower end of the bin"),
-        column("upper", shown[0], "upper end of the bin"),
-        column("density", shown[1], density),
+    let columns = [
+        columns::MODEL,
+        columns::SURFACE,
+        columns::LOAD,
+        ("lower", unit, "lower end of the bin"),
+        ("upper", unit, "upper end of the bin"),
+        ("density", per_unit, density),
     ];
-    let mut table = Table::new(title, columns);
-    for &SolvedUnit { model, surface, states } in units {
-        for state in states {
-            for [lower, upper, density] in state.distributions.iter().filter(|d| d.0 == of).flat_map(|d| &d.1)
-            {
-                let row = vec![
-                    model.into(),
-                    surface.into(),
-                    state.index.into(),
-                    (*lower).into(),
-                    (*upper).into(),
-                    (*density).into(),
-                ];
-                table.push(row).map_err(runs::Error::model("a bin"))?;
-            }
-        }
-    }
-    Ok(table)
+    let rows = units.iter().flat_map(SolvedUnit::records).flat_map(|(unit, record)| {
+        let bins = record.distributions.iter().filter(|d| d.0 == of).flat_map(|d| &d.1);
+        bins.map(|bin| {
+            let [lower, upper, density] = bin.map(Value::from);
+            [unit.model.into(), unit.surface.into(), record.index.into(), lower, upper, density]
+        })
+    });
+    Ok(columns::table(title, columns, rows, "a bin")?)
 }
 
 /// The distribution under a few loads on surface 0; `None` without any.

@@ -1,6 +1,5 @@
 //! Means over the surfaces of a scene.
 
-use crate::scenes::read::loads::LoadRequest;
 use crate::scenes::read::scene_file::SceneFile;
 use crate::scenes::run::state_result::{Solved, SolvedUnit};
 use crate::scenes::tell::columns;
@@ -56,10 +55,6 @@ impl Mean {
 /// The means in the order of models and loads.
 pub(crate) fn means(scene: &SceneFile, units: &[SolvedUnit<'_>]) -> Vec<Mean> {
     let averaged = averaged(scene);
-    let prescribed = match &scene.request {
-        LoadRequest::Loads(loads) => loads.values.as_slice(),
-        LoadRequest::Path(_) => &[],
-    };
     let mut means = Vec::new();
     for model in scene.models.iter().map(crate::scenes::Numerics::name) {
         for state in 0..scene.request.count() {
@@ -79,7 +74,7 @@ pub(crate) fn means(scene: &SceneFile, units: &[SolvedUnit<'_>]) -> Vec<Mean> {
             means.push(Mean {
                 model,
                 state,
-                prescribed: prescribed.get(state).copied(),
+                prescribed: scene.request.prescribed(state),
                 surfaces: solved.len(),
                 values: averaged.iter().map(value).collect(),
             });
@@ -90,16 +85,10 @@ pub(crate) fn means(scene: &SceneFile, units: &[SolvedUnit<'_>]) -> Vec<Mean> {
 
 /// The means as a table: `surfaces`, and for each quantity its mean, standard error and standard deviation.
 pub(crate) fn table(scene: &SceneFile, title: String, means: &[Mean]) -> contact_model::Result<Table> {
-    let mut all = vec![
-        Column { name: "model", unit: "-", meaning: "who answers" },
-        Column { name: "state", unit: "1", meaning: "number of the load or step, from 0" },
-        Column {
-            name: "prescribed",
-            unit: columns::prescribed(scene).map_or("1", |column| column.unit),
-            meaning: "what the load prescribes; empty along a path",
-        },
-        Column { name: "surfaces", unit: "1", meaning: "surfaces on which the state reached its tolerance" },
-    ];
+    let unit = columns::prescribed(scene).map_or("1", |column| column.unit);
+    let prescribed = ("prescribed", unit, "what the load prescribes; empty along a path");
+    let surfaces = ("surfaces", "1", "surfaces on which the state reached its tolerance");
+    let mut all = [columns::MODEL, columns::STATE, prescribed, surfaces].map(columns::plain).to_vec();
     let averaged = averaged(scene);
     for &(quantity, of_grid) in &averaged {
         let [se, sd, error, _, error_se, error_sd] = quantity.columns;

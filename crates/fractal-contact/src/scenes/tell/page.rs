@@ -9,6 +9,7 @@ use base64::engine::general_purpose::STANDARD;
 use contact_model::Shown;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use plots::{Chart, FieldPicture, prefixed};
+use std::path::{Path, PathBuf};
 
 const STYLE: &str = include_str!("page/page.css");
 const SCRIPT: &str = include_str!("page/page.js");
@@ -16,10 +17,15 @@ const SCRIPT: &str = include_str!("page/page.js");
 /// How a field is read.
 pub(crate) const READING: &str = "A click, or the arrow keys, read the value of a cell; a double click, + and - zoom, and so does the wheel with shift or control.";
 
-/// The whole of it: a heading, what stands below it, and sections of (id, name in the list, heading,
+/// Writes `report.html`: a heading, what stands below it, and sections of (id, name in the list, heading,
 /// content).
-pub(crate) fn page(title: &str, head: &Markup, sections: &[(&str, &str, &str, Markup)]) -> Markup {
-    html! {
+pub(crate) fn write(
+    out: &Path,
+    title: &str,
+    head: &Markup,
+    sections: &[(&str, &str, &str, Markup)],
+) -> Result<PathBuf> {
+    let page = html! {
         (DOCTYPE)
         html lang="en" {
             head {
@@ -40,7 +46,10 @@ pub(crate) fn page(title: &str, head: &Markup, sections: &[(&str, &str, &str, Ma
                 script { (PreEscaped(SCRIPT)) }
             }
         }
-    }
+    };
+    let path = out.join("report.html");
+    runs::files::write_whole(&path, page.into_string().as_bytes())?;
+    Ok(path)
 }
 
 /// A chart as a picture that keeps its names to itself.
@@ -50,6 +59,12 @@ pub(crate) fn chart(chart: &Chart) -> Result<Markup> {
     Ok(
         html! { figure { img src={ "data:image/svg+xml;base64," (svg) } alt=(plain) width="800" height="600"; } },
     )
+}
+
+/// Charts one after the other.
+pub(crate) fn figures<'a>(charts: impl IntoIterator<Item = &'a Chart>) -> Result<Markup> {
+    let drawn = charts.into_iter().map(chart).collect::<Result<Vec<_>>>()?;
+    Ok(html! { @for figure in drawn { (figure) } })
 }
 
 /// The parameters of a surface with their intervals.

@@ -143,10 +143,9 @@ fn curve(
             let solved = record.solved()?;
             let number =
                 |of: &Quantity| of.number(&solved.state, &solved.normalisation).filter(|v| v.is_finite());
-            let x = match (x, &scene.request) {
-                (Axis::Quantity(quantity), _) => number(quantity)?,
-                (Axis::Load, LoadRequest::Loads(loads)) => *loads.values.get(record.index)?,
-                (Axis::Load, LoadRequest::Path(_)) => return None,
+            let x = match x {
+                Axis::Quantity(quantity) => number(quantity)?,
+                Axis::Load => scene.request.prescribed(record.index)?,
             };
             let error = solved.grid.as_ref().and_then(|grid| grid.of(y.name)).map(|error| error.error);
             Some(((x, number(y)?), error))

@@ -38,11 +38,8 @@ impl MapStatisticsTables {
         let slope = self.known("slope by scale", ScaleDependence::slope_along_x(map, boundary));
         let curvature = self.known("curvature by scale", ScaleDependence::curvature_along_x(map, boundary));
         if let Some((slope, curvature)) = slope.zip(curvature) {
-            self.scales.push(Scale {
-                axis: "x",
-                slope: (slope, Vec::new()),
-                curvature: (curvature, Vec::new()),
-            });
+            let (slope, curvature) = ((slope, Vec::new()), (curvature, Vec::new()));
+            self.scales.push(Scale { axis: "x", slope, curvature });
         }
     }
 

@@ -47,12 +47,6 @@ impl Report<'_> {
     /// # Errors
     /// Pictures that cannot be encoded, and a file that cannot be written.
     pub fn write(&self, out: &Path) -> Result<PathBuf> {
-        let path = out.join("report.html");
-        runs::files::write_whole(&path, self.page(out)?.into_string().as_bytes())?;
-        Ok(path)
-    }
-
-    fn page(&self, out: &Path) -> Result<Markup> {
         let name = words::scene_name(self.scene);
         let (curves, fields, distributions) = (self.curves()?, self.fields(out)?, self.distributions()?);
         let spectrum = self.spectrum()?;
@@ -73,7 +67,7 @@ impl Report<'_> {
             ("cite", "Sources", "Sources to cite", self.sources()),
             ("scene", "Scene", "The scene", scene),
         ];
-        Ok(page::page(&name, &head, &sections))
+        page::write(out, &name, &head, &sections)
     }
 
     fn verdict(&self) -> Markup {
@@ -119,28 +113,22 @@ impl Report<'_> {
     }
 
     fn curves(&self) -> Result<Markup> {
-        let charts = pictures::charts(self.scene, self.units, self.means);
-        let drawn = charts.iter().map(|(_, c)| page::chart(c)).collect::<Result<Vec<_>>>()?;
-        Ok(html! { @for figure in drawn { (figure) } })
+        page::figures(pictures::charts(self.scene, self.units, self.means).iter().map(|(_, chart)| chart))
     }
 
     fn distributions(&self) -> Result<Markup> {
         let asked = &self.scene.requested.distributions;
         let charts = asked.iter().filter_map(|&of| distributions::chart(self.scene, of, self.units));
-        let drawn = charts.map(|c| page::chart(&c)).collect::<Result<Vec<_>>>()?;
-        Ok(
-            html! { @if !drawn.is_empty() { h3 { "Distributions" } div.charts { @for figure in drawn { (figure) } } } },
-        )
+        let charts: Vec<Chart> = charts.collect();
+        let drawn = page::figures(&charts)?;
+        Ok(html! { @if !charts.is_empty() { h3 { "Distributions" } div.charts { (drawn) } } })
     }
 
     fn spectrum(&self) -> Result<Markup> {
         if let Some(statistics) = self.statistics {
             let charts = statistics.charts(&words::scene_name(self.scene));
-            let drawn = charts.iter().map(|(_, c)| page::chart(c)).collect::<Result<Vec<_>>>()?;
-            return Ok(html! {
-                h3 { "Statistics" } (page::statistics(statistics))
-                div.charts { @for figure in drawn { (figure) } }
-            });
+            let drawn = page::figures(charts.iter().map(|(_, chart)| chart))?;
+            return Ok(html! { h3 { "Statistics" } (page::statistics(statistics)) div.charts { (drawn) } });
         }
         let Some(map) = self.plan.prepared.as_ref().filter(|map| map.spectrum.len() > 1) else {
             return Ok(html! {});

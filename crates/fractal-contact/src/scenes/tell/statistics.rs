@@ -113,28 +113,16 @@ impl MapStatisticsTables {
             let limits = limits(&|bands| bands.of_differences(&found, LEVEL));
             self.differences = Some((found, limits));
         }
-        let along = [
-            (
-                "x",
-                ScaleDependence::slope_along_x(map, boundary),
-                ScaleDependence::curvature_along_x(map, boundary),
-            ),
-            (
-                "y",
-                ScaleDependence::slope_along_y(map, boundary),
-                ScaleDependence::curvature_along_y(map, boundary),
-            ),
-        ];
-        for (i, (axis, slope, curvature)) in along.into_iter().enumerate() {
-            let slope = self.known("slope by scale", slope);
-            if let Some((slope, curvature)) = slope.zip(self.known("curvature by scale", curvature)) {
+        let slopes = [ScaleDependence::slope_along_x, ScaleDependence::slope_along_y];
+        let curvatures = [ScaleDependence::curvature_along_x, ScaleDependence::curvature_along_y];
+        for (i, axis) in ["x", "y"].into_iter().enumerate() {
+            let slope = self.known("slope by scale", slopes[i](map, boundary));
+            let curvature = self.known("curvature by scale", curvatures[i](map, boundary));
+            if let Some((slope, curvature)) = slope.zip(curvature) {
                 let of_slope = limits(&|bands| bands.of_slopes(&slope, i, LEVEL));
                 let of_curvature = limits(&|bands| bands.of_curvatures(&curvature, i, LEVEL));
-                self.scales.push(Scale {
-                    axis,
-                    slope: (slope, of_slope),
-                    curvature: (curvature, of_curvature),
-                });
+                let (slope, curvature) = ((slope, of_slope), (curvature, of_curvature));
+                self.scales.push(Scale { axis, slope, curvature });
             }
         }
     }
@@ -183,13 +171,8 @@ impl MapStatisticsTables {
         if let Some(std) = self.known("texture direction", texture_direction(map)) {
             let meaning =
                 "direction of the waves that have most of the variance, from x towards y; the lay is across";
-            self.parameters.push(Parameter {
-                symbol: "Std",
-                value: Some(std),
-                ends: [None; 2],
-                power: None,
-                meaning,
-            });
+            let (value, ends) = (Some(std), [None; 2]);
+            self.parameters.push(Parameter { symbol: "Std", value, ends, power: None, meaning });
         }
         if let Some(f) = self.known("feature parameters", FeatureParameters::new(map)) {
             self.push("Spd", Some(f.spd), -2, "density of hills that are higher than 5 % of Sz");
@@ -207,12 +190,8 @@ impl MapStatisticsTables {
         }
         if let Some(statistics) = self.known("Nayak's parameter", surface_gen::MapStatistics::new(map)) {
             let nayak = surface_statistics::nayak_parameter(&statistics);
-            self.push(
-                "alpha",
-                Some(nayak).filter(|a| a.is_finite()),
-                0,
-                "Nayak's parameter m0 m4/m2^2, at least 1.5: the wider the spectrum, the larger",
-            );
+            let meaning = "Nayak's parameter m0 m4/m2^2, at least 1.5: the wider the spectrum, the larger";
+            self.push("alpha", Some(nayak).filter(|a| a.is_finite()), 0, meaning);
         }
     }
 
@@ -274,15 +253,13 @@ impl MapStatisticsTables {
     }
 
     pub fn unit(&self, power: i32) -> &'static str {
-        match (self.system, power) {
-            (_, 0) => "1",
-            (System::None, _) => "scene",
-            (_, 1) => "m",
-            (_, -1) => "1/m",
-            (_, -2) => "1/m^2",
-            (_, 3) => "m^3",
-            _ => "m^4",
-        }
+        self.system.unit(match power {
+            0 => "1",
+            1 => "m",
+            2 => "m^2",
+            -1 => "1/m",
+            _ => "1/m^2",
+        })
     }
 
     /// Of the first surface of a scene, as it is solved.

@@ -2,12 +2,16 @@
 
 use crate::scenes::read::entries::System;
 use crate::scenes::read::error::Result;
+use crate::scenes::tell::columns;
 use crate::scenes::tell::statistics::{Bands, FILES, LEVEL, MapStatisticsTables};
-use analysis::{Column, Table, Value};
+use analysis::{Table, Value};
 use plots::{Chart, Curve};
 use runs::{Header, write_csv};
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
+
+const LOWER_END: &str =
+    "lower end of its 95 % band of Gaussian heights; empty beyond half the side of a free map";
 
 /// The ends of a band in a table.
 fn limits(bands: &[Option<[f64; 2]>], index: usize) -> [Value; 2] {
@@ -45,149 +49,94 @@ impl MapStatisticsTables {
     }
 
     fn parameter_table(&self) -> Result<Table> {
-        let column = |name, unit, meaning| Column { name, unit, meaning };
-        let columns = vec![
-            column("quantity", "-", "symbol"),
-            column("value", "of its row", "empty where there is only a bound, or nothing"),
-            column("low", "of its row", "lower end of the 95 % interval, where there is one"),
-            column("high", "of its row", "its upper end"),
-            column("unit", "-", "of the row"),
-            column("meaning", "-", "what it is"),
+        let title = if self.profile { "Statistics of a profile" } else { "Statistics of a surface" };
+        let columns = [
+            ("quantity", "-", "symbol"),
+            ("value", "of its row", "empty where there is only a bound, or nothing"),
+            ("low", "of its row", "lower end of the 95 % interval, where there is one"),
+            ("high", "of its row", "its upper end"),
+            ("unit", "-", "of the row"),
+            ("meaning", "-", "what it is"),
         ];
-        let mut table = Table::new(
-            if self.profile { "Statistics of a profile" } else { "Statistics of a surface" },
-            columns,
-        );
-        for p in &self.parameters {
+        let rows = self.parameters.iter().map(|p| {
             let unit = p.power.map_or("degrees", |power| self.unit(power));
-            let row = vec![
-                p.symbol.into(),
-                p.value.into(),
-                p.ends[0].into(),
-                p.ends[1].into(),
-                unit.into(),
-                p.meaning.into(),
-            ];
-            table.push(row).map_err(runs::Error::model("statistics"))?;
-        }
-        Ok(table)
+            let [low, high] = p.ends.map(Value::from);
+            [p.symbol.into(), p.value.into(), low, high, unit.into(), p.meaning.into()]
+        });
+        Ok(columns::table(title, columns, rows, "statistics")?)
     }
 
     fn spectrum_table(&self) -> Result<Table> {
-        let column = |name, unit, meaning| Column { name, unit, meaning };
-        let columns = vec![
-            column(
+        let columns = [
+            (
                 "direction",
                 "-",
                 "radial: averaged over rings, in length^4; x and y: of profiles, averaged, in length^3",
             ),
-            column("wavenumber", self.unit(-1), "q = 2 pi/wavelength"),
-            column(
-                "density",
-                "of its row",
-                "two-sided: its integral over all q is the variance of the heights",
-            ),
-            column("low", "of its row", "lower end of the 95 % band of Gaussian heights"),
-            column("high", "of its row", "its upper end"),
-            column("degrees_of_freedom", "1", "of the mean"),
+            ("wavenumber", self.unit(-1), "q = 2 pi/wavelength"),
+            ("density", "of its row", "two-sided: its integral over all q is the variance of the heights"),
+            ("low", "of its row", "lower end of the 95 % band of Gaussian heights"),
+            ("high", "of its row", "its upper end"),
+            ("degrees_of_freedom", "1", "of the mean"),
         ];
-        let mut table = Table::new("Power spectral densities", columns);
-        for (direction, s) in &self.spectra {
+        let rows = self.spectra.iter().flat_map(|(direction, s)| {
             let bands = s.band(LEVEL).unwrap_or_default();
-            for (i, (&q, &density)) in s.wavenumber.iter().zip(&s.density).enumerate() {
-                let [low, high] = bands
-                    .get(i)
-                    .map_or([None; 2], |band| band.map(Some))
-                    .map(|v| v.filter(|v| v.is_finite()));
+            s.wavenumber.iter().zip(&s.density).enumerate().map(move |(i, (&q, &density))| {
+                let band = bands.get(i).map_or([None; 2], |band| band.map(Some));
+                let [low, high] = band.map(|v| v.filter(|v| v.is_finite()).into());
                 let freedom = s.degrees_of_freedom.get(i).copied();
-                let row: Vec<Value> = vec![
-                    (*direction).into(),
-                    q.into(),
-                    density.into(),
-                    low.into(),
-                    high.into(),
-                    freedom.into(),
-                ];
-                table.push(row).map_err(runs::Error::model("a spectrum"))?;
-            }
-        }
-        Ok(table)
+                [(*direction).into(), q.into(), density.into(), low, high, freedom.into()]
+            })
+        });
+        Ok(columns::table("Power spectral densities", columns, rows, "a spectrum")?)
     }
 
     fn difference_table(&self) -> Result<Table> {
-        let column = |name, unit, meaning| Column { name, unit, meaning };
-        let square = if self.system == System::Si { "m^2" } else { "scene" };
-        let columns = vec![
-            column("distance", self.unit(1), "between two points, in any direction"),
-            column("half_square", square, "<[h(x + r) - h(x)]^2>/2: the variance less the autocorrelation"),
-            column(
-                "low",
-                square,
-                "lower end of its 95 % band of Gaussian heights; empty beyond half the side of a free map",
-            ),
-            column("high", square, "its upper end"),
-            column("autocorrelation", "1", "1 - half_square/Sq^2"),
-            column("slope", "1", "rms slope over that distance: sqrt(2 half_square)/distance"),
-            column("pairs", "1", "of points"),
+        let square = self.unit(2);
+        let columns = [
+            ("distance", self.unit(1), "between two points, in any direction"),
+            ("half_square", square, "<[h(x + r) - h(x)]^2>/2: the variance less the autocorrelation"),
+            ("low", square, LOWER_END),
+            ("high", square, "its upper end"),
+            ("autocorrelation", "1", "1 - half_square/Sq^2"),
+            ("slope", "1", "rms slope over that distance: sqrt(2 half_square)/distance"),
+            ("pairs", "1", "of points"),
         ];
-        let mut table = Table::new("Height differences", columns);
         let variance = self.rms_height().map(|rms| rms * rms).filter(|variance| *variance > 0.0);
-        if let Some((d, bands)) = &self.differences {
+        let rows = self.differences.iter().flat_map(|(d, bands)| {
             let values = d.distance.iter().zip(&d.half_square).zip(d.slope()).zip(&d.pairs);
-            for (i, (((&r, &a), slope), &pairs)) in values.enumerate() {
+            values.enumerate().map(move |(i, (((&r, &a), slope), &pairs))| {
                 let [low, high] = limits(bands, i);
                 let autocorrelation = variance.map(|variance| 1.0 - a / variance);
-                let row =
-                    vec![r.into(), a.into(), low, high, autocorrelation.into(), slope.into(), pairs.into()];
-                table.push(row).map_err(runs::Error::model("differences"))?;
-            }
-        }
-        Ok(table)
+                [r.into(), a.into(), low, high, autocorrelation.into(), slope.into(), pairs.into()]
+            })
+        });
+        Ok(columns::table("Height differences", columns, rows, "differences")?)
     }
 
     fn scale_table(&self) -> Result<Table> {
-        let column = |name, unit, meaning| Column { name, unit, meaning };
         let curvature = self.unit(-1);
-        let columns = vec![
-            column("axis", "-", "along which differences are taken"),
-            column("distance", self.unit(1), "over which they are taken"),
-            column("rms_slope", "1", "of first differences over that distance"),
-            column(
-                "slope_low",
-                "1",
-                "lower end of its 95 % band of Gaussian heights; empty beyond half the side of a free map",
-            ),
-            column("slope_high", "1", "its upper end"),
-            column(
-                "rms_curvature",
-                curvature,
-                "of second differences over it; empty where the map is too short",
-            ),
-            column("curvature_low", curvature, "lower end of its 95 % band"),
-            column("curvature_high", curvature, "its upper end"),
+        let columns = [
+            ("axis", "-", "along which differences are taken"),
+            ("distance", self.unit(1), "over which they are taken"),
+            ("rms_slope", "1", "of first differences over that distance"),
+            ("slope_low", "1", LOWER_END),
+            ("slope_high", "1", "its upper end"),
+            ("rms_curvature", curvature, "of second differences over it; empty where the map is too short"),
+            ("curvature_low", curvature, "lower end of its 95 % band"),
+            ("curvature_high", curvature, "its upper end"),
         ];
-        let mut table = Table::new("Slope and curvature by scale", columns);
-        for of in &self.scales {
+        let rows = self.scales.iter().flat_map(|of| {
             let ((slope, slope_bands), (curvature, curvature_bands)) = (&of.slope, &of.curvature);
-            for (i, (&distance, &rms)) in slope.distance.iter().zip(&slope.rms).enumerate() {
+            slope.distance.iter().zip(&slope.rms).enumerate().map(move |(i, (&distance, &rms))| {
                 let [low, high] = limits(slope_bands, i);
                 let at = curvature.distance.iter().position(|d| (d - distance).abs() <= 1e-9 * distance);
                 let [curved_low, curved_high] = limits(curvature_bands, at.unwrap_or(usize::MAX));
-                let curved: Value = at.and_then(|at| curvature.rms.get(at)).copied().into();
-                let row = vec![
-                    of.axis.into(),
-                    distance.into(),
-                    rms.into(),
-                    low,
-                    high,
-                    curved,
-                    curved_low,
-                    curved_high,
-                ];
-                table.push(row).map_err(runs::Error::model("scales"))?;
-            }
-        }
-        Ok(table)
+                let curved = at.and_then(|at| curvature.rms.get(at)).copied().into();
+                [of.axis.into(), distance.into(), rms.into(), low, high, curved, curved_low, curved_high]
+            })
+        });
+        Ok(columns::table("Slope and curvature by scale", columns, rows, "scales")?)
     }
 
     /// The pictures, by the names of their files.

@@ -1,7 +1,6 @@
 //! The states of a run as a table for a terminal.
 
 use crate::scenes::read::human_readable::short;
-use crate::scenes::read::loads::LoadRequest;
 use crate::scenes::read::scene_file::SceneFile;
 use crate::scenes::run::state_result::{SolvedUnit, StateRecord};
 use crate::scenes::tell::columns;
@@ -129,11 +128,7 @@ pub(crate) fn of_models(scene: &SceneFile, units: &[SolvedUnit<'_>], means: &[Me
         let mut lines: Vec<Vec<String>> = Vec::new();
         if means.is_empty() {
             for record in units.iter().filter(|unit| unit.model == name).flat_map(|unit| unit.states) {
-                let prescribed = match &scene.request {
-                    LoadRequest::Loads(loads) => loads.values.get(record.index).copied(),
-                    LoadRequest::Path(_) => None,
-                };
-                let mut line = vec![load(prescribed)];
+                let mut line = vec![load(scene.request.prescribed(record.index))];
                 line.extend(shown.iter().map(|of| of.of_state(record)));
                 lines.push(line);
             }

@@ -1,6 +1,5 @@
 //! `report.html` of a surface: what its file says, what was done to it, the map, and its statistics.
 
-use crate::scenes::read::entries::System;
 use crate::scenes::read::error::Result;
 use crate::scenes::read::outputs::HEIGHTS;
 use crate::scenes::run::field_pictures;
@@ -33,12 +32,6 @@ impl SurfaceReport<'_> {
     /// # Errors
     /// Pictures that cannot be encoded, and a file that cannot be written.
     pub fn write(&self, out: &Path) -> Result<PathBuf> {
-        let path = out.join("report.html");
-        runs::files::write_whole(&path, self.page()?.into_string().as_bytes())?;
-        Ok(path)
-    }
-
-    fn page(&self) -> Result<Markup> {
         let head = html! { p.lead { "A surface: its map, what its file says, and statistics with their intervals." } };
         let file = html! {
             pre { (self.metadata) }
@@ -46,11 +39,9 @@ impl SurfaceReport<'_> {
             @else { h3 { "What was done to it" } ol { @for step in self.steps { li { (step) } } } }
             h3 { "The map that is described below" } pre { (surface_io::describe(self.map).without_fit()) }
         };
-        let mut charts = Vec::new();
-        for (_, chart) in self.statistics.charts(self.name) {
-            charts.push(page::chart(&chart)?);
-        }
-        charts.push(page::chart(&self.distribution())?);
+        let charts = self.statistics.charts(self.name);
+        let distribution = self.distribution();
+        let charts = page::figures(charts.iter().map(|(_, chart)| chart).chain([&distribution]))?;
         let statistics = html! {
             (page::statistics(self.statistics))
             p { "The map counts as a piece of a larger surface: it is not periodic, and spectra are under Hann's window. Bands and intervals are \
@@ -61,20 +52,11 @@ impl SurfaceReport<'_> {
         let sections = [
             ("map", "Map", "The map", map),
             ("statistics", "Statistics", "Statistics", statistics),
-            (
-                "curves",
-                "Curves",
-                "Spectrum, differences, slopes, heights",
-                html! { div.charts { @for c in &charts { (c) } } },
-            ),
+            ("curves", "Curves", "Spectrum, differences, slopes, heights", html! { div.charts { (charts) } }),
             ("file", "File", "What the file says", file),
             ("cite", "Sources", "Sources to cite", sources()),
         ];
-        Ok(page::page(self.name, &head, &sections))
-    }
-
-    fn si(&self) -> bool {
-        self.statistics.system == System::Si
+        page::write(out, self.name, &head, &sections)
     }
 
     fn field(&self) -> Result<Markup> {
@@ -82,7 +64,7 @@ impl SurfaceReport<'_> {
         let values: Vec<f64> =
             map.heights().iter().map(|h| if h.is_finite() { *h } else { f64::NAN }).collect();
         let view = FieldView::new(HEIGHTS.shown, map.cells(), &values);
-        let unit = if self.si() { "m" } else { "" };
+        let unit = self.statistics.system.shown("m");
         let picture = FieldPicture {
             title: "Heights".into(),
             subtitle: self.name.into(),
