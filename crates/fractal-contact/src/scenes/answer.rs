@@ -1,28 +1,13 @@
 //! From a scene to its files: planned, solved, told.
 
-use crate::scenes::plan::accuracy::SharedStop;
-use crate::scenes::plan::calibration;
-use crate::scenes::plan::cost::Cost;
-use crate::scenes::plan::model_on_surface::ModelOnSurface;
-use crate::scenes::plan::scene_plan::{ModelPlan, Plan};
-use crate::scenes::read::error::Result;
-use crate::scenes::read::human_readable::number;
-use crate::scenes::read::scene_file::SceneFile;
-use crate::scenes::read::words;
-use crate::scenes::run::field_pictures;
-use crate::scenes::run::outcome::{Options, SceneOutcome};
-use crate::scenes::run::scene_job::{scene_jobs, units};
-use crate::scenes::run::state_result::{Answer, ModelResult, SolvedUnit};
-use crate::scenes::run::warnings::Warning;
-use crate::scenes::tell::columns;
-use crate::scenes::tell::distributions;
-use crate::scenes::tell::ensemble;
-use crate::scenes::tell::manifest;
-use crate::scenes::tell::pictures;
-use crate::scenes::tell::report::Report;
-use crate::scenes::tell::result_folder::ResultFolder;
-use crate::scenes::tell::statistics::MapStatisticsTables;
-use crate::scenes::tell::summary;
+use crate::scenes::plan::{Cost, ModelOnSurface, ModelPlan, Plan, SharedStop, calibration};
+use crate::scenes::read::{Result, SceneFile, System, effect_lines, number, words};
+use crate::scenes::run::{
+    Answer, ModelResult, Options, SceneOutcome, SolvedUnit, Warning, field_pictures, scene_jobs, units,
+};
+use crate::scenes::tell::{
+    MapStatisticsTables, Report, ResultFolder, columns, distributions, ensemble, manifest, pictures, summary,
+};
 use analysis::Table;
 use runs::cluster::{ShardPlan, ShardReport, run_shard};
 use runs::{Failure, Header, Progress, Shard, Store, Threads, run_stored, write_csv};
@@ -243,8 +228,8 @@ fn header(scene: &SceneFile, plan: &Plan) -> Header {
         header = header.with_note(scene.comment());
     }
     header = header.with_note(match scene.system {
-        crate::scenes::System::Si => "units: SI",
-        crate::scenes::System::None => "units: none; lengths, forces and moduli in the scene's own",
+        System::Si => "units: SI",
+        System::None => "units: none; lengths, forces and moduli in the scene's own",
     });
     // Which file, and what was done to it.
     let tables = scene.text.lines().skip_while(|line| line.trim() != "[scene.surface]").skip(1);
@@ -262,7 +247,7 @@ fn header(scene: &SceneFile, plan: &Plan) -> Header {
     for ModelPlan { name, grid, accuracy, .. } in &plan.models {
         header = header.with_note(format!("model {name}: grid: {grid}; {accuracy}"));
     }
-    for line in crate::scenes::read::effects::effect_lines(&scene.effects) {
+    for line in effect_lines(&scene.effects) {
         header = header.with_note(format!(
             "effect {}: {} ({})",
             line.name,

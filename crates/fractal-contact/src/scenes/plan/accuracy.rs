@@ -1,14 +1,9 @@
 //! `accuracy` in `[scene]`: the grid that an accuracy asks for, instead of the other way round.
 
-use crate::scenes::plan::calibration;
-use crate::scenes::plan::grid_comparison::{GridErrors, Numbers, compared, on_grid, solve};
-use crate::scenes::read::diagnostic::Diagnostic;
-use crate::scenes::read::error::Result;
-use crate::scenes::read::human_readable::short;
-use crate::scenes::read::loads::LoadRequest;
-use crate::scenes::read::numerics::{MOST_CELLS, Numerics};
-use crate::scenes::read::scene_file::{SceneFile, cells};
-use crate::scenes::read::words;
+use crate::scenes::plan::{GridErrors, Numbers, calibration, compared, on_grid, solve};
+use crate::scenes::read::{
+    Diagnostic, LoadRequest, MOST_CELLS, Numerics, Result, SceneFile, cells, short, words,
+};
 use analysis::{AccuracyTarget, GridTrial, grid_error};
 use bem3d::Bem3d;
 use contact_model::quantities::{AskedBy, Quantity};

@@ -1,9 +1,6 @@
 //! What theories assume of a given map, measured on it and said in the plan.
 
-use crate::scenes::read::diagnostic::Diagnostic;
-use crate::scenes::read::human_readable::number;
-use crate::scenes::read::numerics::Numerics;
-use crate::scenes::read::scene_file::SceneFile;
+use crate::scenes::read::{Diagnostic, Numerics, SceneFile, number};
 use analytic::greenwood_williamson::Summits;
 use contact_model::Boundary;
 use std::f64::consts::TAU;

@@ -1,12 +1,7 @@
 //! The cost of a run, predicted from small solves of the same kind.
 
-use crate::scenes::plan::cost::Cost;
-use crate::scenes::read::error::Result;
-use crate::scenes::read::loads::LoadRequest;
-use crate::scenes::read::numerics::Numerics;
-use crate::scenes::read::sampled::sampled;
-use crate::scenes::read::scene_file::SceneFile;
-use crate::scenes::read::scene_file::cells;
+use crate::scenes::plan::Cost;
+use crate::scenes::read::{LoadRequest, Numerics, Result, SceneFile, cells, sampled};
 use bem3d::BYTES_PER_CELL;
 use contact_model::{Adhesion, Cells, ContactState, Surface};
 use mdr1d::BYTES_PER_ELEMENT;

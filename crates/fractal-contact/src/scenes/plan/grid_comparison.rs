@@ -1,7 +1,6 @@
 //! What the grid does to a state: the same load on the same surface with cells twice and four times as large.
 
-use crate::scenes::read::numerics::Numerics;
-use crate::scenes::read::scene_file::{SceneFile, cells};
+use crate::scenes::read::{Numerics, SceneFile, cells};
 use analysis::{GridError, grid_error};
 use contact_model::quantities::{Compared, QUANTITIES, Quantity};
 use contact_model::{

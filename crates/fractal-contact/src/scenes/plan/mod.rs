@@ -7,3 +7,12 @@ pub(crate) mod cost;
 pub(crate) mod grid_comparison;
 pub(crate) mod model_on_surface;
 pub(crate) mod scene_plan;
+
+pub(crate) use accuracy::{SharedStop, within};
+pub(crate) use assumptions::Assumptions;
+pub(crate) use cost::Cost;
+pub(crate) use grid_comparison::{
+    GridComparison, GridErrors, Numbers, RMS_SLOPE, compared, on_grid, solve, solved_map,
+};
+pub(crate) use model_on_surface::{FORMAT, ModelOnSurface, probe};
+pub(crate) use scene_plan::{ModelPlan, Plan};

@@ -1,7 +1,6 @@
 //! One model and one surface: what is solved, stored and divided as a whole.
 
-use crate::scenes::read::numerics::Numerics;
-use crate::scenes::read::scene_file::{SceneFile, cells};
+use crate::scenes::read::{Numerics, SceneFile, cells};
 use contact_model::{Cells, Scene};
 
 /// Number of the format of stored units; it changes with anything that changes a state.

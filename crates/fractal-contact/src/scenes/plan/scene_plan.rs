@@ -1,17 +1,9 @@
 //! What will be computed, what will not and why, and what it will cost.
 
-use crate::scenes::plan::assumptions::Assumptions;
-use crate::scenes::plan::calibration;
-use crate::scenes::plan::cost::Cost;
-use crate::scenes::plan::model_on_surface::{ModelOnSurface, probe};
-use crate::scenes::read::diagnostic::Diagnostic;
-use crate::scenes::read::effects::{EffectLine, effect_lines};
-use crate::scenes::read::entries::System;
-use crate::scenes::read::error::Result;
-use crate::scenes::read::human_readable::number;
-use crate::scenes::read::human_readable::short;
-use crate::scenes::read::numerics::Numerics;
-use crate::scenes::read::scene_file::{SceneFile, cells};
+use crate::scenes::plan::{Assumptions, Cost, ModelOnSurface, calibration, probe};
+use crate::scenes::read::{
+    Diagnostic, EffectLine, Numerics, Result, SceneFile, System, cells, effect_lines, number, short,
+};
 use contact_model::Cells;
 use runs::amounts::{memory, time};
 use std::fmt;

@@ -1,6 +1,6 @@
 //! `accuracy` and `budget` of `[scene]`.
 
-use crate::scenes::read::entries::{Entries, Entry, Read, System};
+use crate::scenes::read::{Entries, Entry, Read, System};
 use analysis::AccuracyTarget;
 use surface_io::Dimension;
 

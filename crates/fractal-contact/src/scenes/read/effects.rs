@@ -1,8 +1,6 @@
 //! `[effects]`: each off unless named.
 
-use crate::scenes::read::diagnostic::Diagnostic;
-use crate::scenes::read::entries::{Entries, Entry, Read, System};
-use crate::scenes::read::human_readable::number;
+use crate::scenes::read::{Diagnostic, Entries, Entry, Read, System, number};
 use contact_model::{
     Adhesion, AdhesionLaw, Boundary, Effects, Friction, Hardness, PronySeries, Relaxing, Rheology,
 };

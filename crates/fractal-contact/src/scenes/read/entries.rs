@@ -1,6 +1,6 @@
 //! A table of a scene, read key by key: what nobody asks for is an error.
 
-use crate::scenes::read::diagnostic::Diagnostic;
+use crate::scenes::read::Diagnostic;
 use contact_model::Error;
 use std::borrow::Cow;
 use std::cell::RefCell;

@@ -1,6 +1,6 @@
 //! The one error type of this crate.
 
-use crate::scenes::read::diagnostic::Diagnostic;
+use crate::scenes::read::Diagnostic;
 
 /// Result of everything in this crate.
 pub type Result<T, E = Error> = std::result::Result<T, E>;

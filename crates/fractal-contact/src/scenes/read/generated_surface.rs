@@ -1,7 +1,6 @@
 //! Generated surfaces as files: self-affine ones, and twins of a map.
 
-use crate::scenes::read::error::{Error, Result};
-use crate::scenes::read::random_surface::{Drawn, RandomSpectrum, RandomSurface};
+use crate::scenes::read::{Drawn, Error, RandomSpectrum, RandomSurface, Result};
 use contact_model::{Amplitude, Cells, SelfAffine, Size};
 use std::f64::consts::PI;
 use std::path::Path;

@@ -1,6 +1,6 @@
 //! What is prescribed: loads one by one, or a path.
 
-use crate::scenes::read::entries::{Entries, Entry, Read, System};
+use crate::scenes::read::{Entries, Entry, Read, System};
 use contact_model::{Load, Normalisation, Step, Tangential};
 use surface_io::Dimension;
 

@@ -19,3 +19,22 @@ pub(crate) mod scan;
 pub(crate) mod scene_file;
 pub(crate) mod scene_surface;
 pub(crate) mod words;
+
+pub(crate) use accuracy_target::read_accuracy;
+pub(crate) use diagnostic::Diagnostic;
+pub(crate) use distributed::{Bin, Distributed};
+pub(crate) use effects::{EffectLine, effect_lines, read_effects};
+pub(crate) use entries::{Entries, Entry, LengthOrPair, Read, System, suggestion};
+pub(crate) use error::{Error, Result};
+pub(crate) use human_readable::{number, short};
+pub(crate) use loads::{LoadKind, LoadList, LoadRequest, read_request};
+pub(crate) use numerics::{MOST_CELLS, Numerics, read_models};
+pub(crate) use outputs::{FieldFormat, HEIGHTS, RequestedOutputs, read_outputs};
+pub(crate) use random_surface::{
+    Drawn, RandomSpectrum, RandomSurface, describe_self_affine, describe_sides, map_key,
+};
+pub(crate) use registered_model::RegisteredModel;
+pub(crate) use registry::Registry;
+pub(crate) use sampled::{sampled, sampled_cells};
+pub(crate) use scene_file::{SceneFile, cells, depends_on_path};
+pub(crate) use scene_surface::{SceneSurface, SurfaceEntry, read_surface};

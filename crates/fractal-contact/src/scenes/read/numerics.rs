@@ -1,9 +1,7 @@
 //! The models by name, and what `[models.NAME]` says about their numerics.
 
 use crate::models::{MODELS, ModelRecord};
-use crate::scenes::read::diagnostic::Diagnostic;
-use crate::scenes::read::entries::{Entries, Entry, Read, suggestion};
-use crate::scenes::read::registered_model::RegisteredModel;
+use crate::scenes::read::{Diagnostic, Entries, Entry, Read, RegisteredModel, suggestion};
 use analytic::greenwood_williamson::SummitHeights;
 use analytic::{GreenwoodWilliamson, Persson};
 use bem3d::{Bem3d, Method};

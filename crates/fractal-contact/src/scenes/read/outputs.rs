@@ -1,7 +1,6 @@
 //! `[outputs]`: what is not asked for is not computed and not stored.
 
-use crate::scenes::read::distributed::Distributed;
-use crate::scenes::read::entries::{Entries, Entry, Read, System};
+use crate::scenes::read::{Distributed, Entries, Entry, Read, System};
 use contact_model::{Conductance, FIELDS, FieldQuantity, Output, Outputs, Shown};
 use surface_io::Dimension;
 

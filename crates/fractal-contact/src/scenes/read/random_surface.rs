@@ -1,8 +1,7 @@
 //! What a seed draws on cells: self-affine surfaces, isotropic or with a lay, artificial twins of a map, and
 //! either with a prescribed distribution of heights.
 
-use crate::scenes::read::human_readable::number;
-use crate::scenes::read::sampled::{sampled, sampled_cells};
+use crate::scenes::read::{number, sampled, sampled_cells};
 use contact_model::{Amplitude, Cells, HeightMap, Result, SelfAffine, Size};
 use runs::fnv1a_128;
 use std::f64::consts::PI;

@@ -1,8 +1,7 @@
 //! Models written by the user, under names that scenes may use.
 
 use crate::models::ModelRecord;
-use crate::scenes::read::error::{Error, Result};
-use crate::scenes::read::registered_model::RegisteredModel;
+use crate::scenes::read::{Error, RegisteredModel, Result};
 use contact_model::ContactModel;
 use std::sync::Arc;
 

@@ -1,8 +1,6 @@
 //! `[scene.surface]` with `kind = "file"`: a measured map, as it is declared.
 
-use crate::scenes::read::diagnostic::Diagnostic;
-use crate::scenes::read::entries::{Entries, Entry, LengthOrPair, Read, System};
-use crate::scenes::read::human_readable::number;
+use crate::scenes::read::{Diagnostic, Entries, Entry, LengthOrPair, Read, System, number};
 use contact_model::HeightMap;
 use std::path::Path;
 use surface_io::{

@@ -1,15 +1,10 @@
 //! A scene as it stands in a file.
 
-use crate::scenes::read::accuracy_target::read_accuracy;
-use crate::scenes::read::diagnostic::Diagnostic;
-use crate::scenes::read::effects::read_effects;
-use crate::scenes::read::entries::{Entries, Entry, Read, System};
-use crate::scenes::read::error::Result;
-use crate::scenes::read::loads::{LoadKind, LoadRequest, read_request};
-use crate::scenes::read::numerics::{MOST_CELLS, Numerics, read_models};
-use crate::scenes::read::outputs::{self, RequestedOutputs, read_outputs};
-use crate::scenes::read::registry::Registry;
-use crate::scenes::read::scene_surface::{SceneSurface, SurfaceEntry, read_surface};
+use crate::scenes::read::{
+    Diagnostic, Entries, Entry, LoadKind, LoadRequest, MOST_CELLS, Numerics, Read, Registry,
+    RequestedOutputs, Result, SceneSurface, SurfaceEntry, System, outputs, read_accuracy, read_effects,
+    read_models, read_outputs, read_request, read_surface,
+};
 use analysis::AccuracyTarget;
 use contact_model::{
     Adhesion, Body, Boundary, Cells, Effects, Friction, Hardness, Load, Pair, Paths, Rheology, Scene,

@@ -1,14 +1,9 @@
 //! The surface of a scene: `[scene.surface]`, and `[scene.body]` added to it.
 
-use crate::scenes::read::diagnostic::Diagnostic;
-use crate::scenes::read::entries::{Entries, Entry, LengthOrPair, Read, System};
-use crate::scenes::read::human_readable::number;
-use crate::scenes::read::numerics::Numerics;
-use crate::scenes::read::random_surface::{
-    RandomSpectrum, RandomSurface, describe_self_affine, describe_sides, map_key,
+use crate::scenes::read::{
+    Diagnostic, Entries, Entry, LengthOrPair, Numerics, RandomSpectrum, RandomSurface, Read, System,
+    describe_self_affine, describe_sides, map_key, number, sampled, scan,
 };
-use crate::scenes::read::sampled::sampled;
-use crate::scenes::read::scan;
 use contact_model::{Amplitude, Cells, Error, HeightMap, Result, SelfAffine, Size, Surface};
 use std::f64::consts::PI;
 use std::path::Path;

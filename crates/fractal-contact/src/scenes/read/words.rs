@@ -1,9 +1,7 @@
 //! What scenes, loads, units and models are called in titles and labels.
 
 use crate::models::ModelRecord;
-use crate::scenes::read::human_readable::short;
-use crate::scenes::read::loads::{LoadKind, LoadRequest};
-use crate::scenes::read::scene_file::SceneFile;
+use crate::scenes::read::{LoadKind, LoadRequest, SceneFile, short};
 
 /// The scene's name in a title.
 pub(crate) fn scene_name(scene: &SceneFile) -> String {

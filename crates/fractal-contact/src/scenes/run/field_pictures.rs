@@ -1,12 +1,8 @@
 //! Pictures of fields. They are drawn last, when the range of all loads is known: one surface has one scale.
 
-use crate::scenes::read::error::Result;
-use crate::scenes::read::words;
-use crate::scenes::run::field_view::FieldView;
+use crate::scenes::read::{FieldFormat, HEIGHTS, Result, SceneFile, words};
+use crate::scenes::run::{FieldFile, FieldView, ModelResult, StoredFile};
 
-use crate::scenes::read::outputs::{FieldFormat, HEIGHTS};
-use crate::scenes::read::scene_file::SceneFile;
-use crate::scenes::run::state_result::{FieldFile, ModelResult, StoredFile};
 use contact_model::{Cells, FieldQuantity};
 use plots::{Chart, Curve, FieldPicture};
 use std::io::Write as _;

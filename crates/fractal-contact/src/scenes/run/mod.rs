@@ -7,3 +7,11 @@ pub(crate) mod scene_job;
 pub(crate) mod solve;
 pub(crate) mod state_result;
 pub(crate) mod warnings;
+
+pub(crate) use field_view::{FieldView, shown_words};
+pub(crate) use outcome::{Options, SceneOutcome};
+pub(crate) use scene_job::{scene_jobs, units};
+pub(crate) use state_result::{
+    Answer, FieldFile, ModelResult, Solved, SolvedUnit, StateRecord, StoredFile, field_of_file,
+};
+pub(crate) use warnings::Warning;

@@ -1,6 +1,6 @@
 //! Where a scene is run, and what came of it.
 
-use crate::scenes::plan::cost::Cost;
+use crate::scenes::plan::Cost;
 use std::path::PathBuf;
 
 /// Where and how a scene is run; nothing here changes a number.

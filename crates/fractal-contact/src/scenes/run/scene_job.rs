@@ -1,10 +1,8 @@
 //! A model and a surface as a job, and its result as text.
 
-use crate::scenes::plan::calibration;
-use crate::scenes::plan::model_on_surface::{FORMAT, ModelOnSurface};
-use crate::scenes::read::error::{Error, Result};
-use crate::scenes::read::scene_file::SceneFile;
-use crate::scenes::run::state_result::ModelResult;
+use crate::scenes::plan::{FORMAT, ModelOnSurface, calibration};
+use crate::scenes::read::{Error, Result, SceneFile};
+use crate::scenes::run::ModelResult;
 use contact_model::Stop;
 use runs::{Job, JobList, ResultKind};
 use std::path::Path;

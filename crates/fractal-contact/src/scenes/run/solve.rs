@@ -1,18 +1,12 @@
 //! One model and one surface under all loads, or along the whole path.
 
-use crate::scenes::plan::grid_comparison::{GridComparison, solved_map};
-use crate::scenes::plan::model_on_surface::ModelOnSurface;
-use crate::scenes::read::distributed;
-use crate::scenes::read::error::{Error, Result};
-use crate::scenes::read::loads::LoadRequest;
-use crate::scenes::read::numerics::Numerics;
-use crate::scenes::read::outputs::{FieldFormat, HEIGHTS};
-use crate::scenes::read::scene_file::SceneFile;
-use crate::scenes::read::scene_file::cells;
-use crate::scenes::run::field_pictures;
-use crate::scenes::run::field_view::FieldView;
-use crate::scenes::run::state_result::{Answer, FieldFile, ModelResult, Solved, StateRecord, StoredFile};
-use crate::scenes::run::warnings::Warning;
+use crate::scenes::plan::{GridComparison, ModelOnSurface, solved_map};
+use crate::scenes::read::{
+    Error, FieldFormat, HEIGHTS, LoadRequest, Numerics, Result, SceneFile, cells, distributed,
+};
+use crate::scenes::run::{
+    Answer, FieldFile, FieldView, ModelResult, Solved, StateRecord, StoredFile, Warning, field_pictures,
+};
 use contact_model::{Cells, ContactState, Field, FieldQuantity, Load, Step, Stop};
 use std::borrow::Cow;
 use std::path::Path;

@@ -1,10 +1,8 @@
 //! What is kept of a model's states, and the names of their files.
 
-use crate::scenes::plan::grid_comparison::GridErrors;
-use crate::scenes::read::distributed::{Bin, Distributed};
-use crate::scenes::read::error::Result;
-use crate::scenes::read::outputs::HEIGHTS;
-use crate::scenes::run::warnings::Warning;
+use crate::scenes::plan::GridErrors;
+use crate::scenes::read::{Bin, Distributed, HEIGHTS, Result};
+use crate::scenes::run::Warning;
 use contact_model::{ContactState, FIELDS, Normalisation, Status};
 use runs::fnv1a_128;
 use serde::{Deserialize, Serialize};

@@ -1,9 +1,7 @@
 //! What may be wrong with a state though it is solved as well as it was asked for, and what to do about it.
 
-use crate::scenes::plan::accuracy::within;
-use crate::scenes::plan::grid_comparison::GridErrors;
-use crate::scenes::read::scene_file::SceneFile;
-use crate::scenes::read::scene_surface::SceneSurface;
+use crate::scenes::plan::{GridErrors, within};
+use crate::scenes::read::{SceneFile, SceneSurface};
 use contact_model::{ContactState, Hardness, Surface};
 use serde::{Deserialize, Serialize};
 

@@ -1,9 +1,8 @@
 //! The columns of `results.csv`: the quantities that a scene asks for.
 
-use crate::scenes::plan::grid_comparison::RMS_SLOPE;
-use crate::scenes::read::loads::{LoadList, LoadRequest};
-use crate::scenes::read::scene_file::SceneFile;
-use crate::scenes::run::state_result::{SolvedUnit, StateRecord};
+use crate::scenes::plan::RMS_SLOPE;
+use crate::scenes::read::{LoadList, LoadRequest, SceneFile};
+use crate::scenes::run::{SolvedUnit, StateRecord};
 use analysis::{Column, Table, Value};
 use contact_model::quantities::{Compared, QUANTITIES, Quantity, Question};
 

@@ -1,11 +1,7 @@
 //! Distributions of pressure, gap and contact areas: `distribution-NAME.csv`, and a picture of surface 0.
 
-use crate::scenes::read::distributed::{Bin, Distributed};
-use crate::scenes::read::entries::System;
-use crate::scenes::read::error::Result;
-use crate::scenes::read::scene_file::SceneFile;
-use crate::scenes::read::words;
-use crate::scenes::run::state_result::SolvedUnit;
+use crate::scenes::read::{Bin, Distributed, Result, SceneFile, System, words};
+use crate::scenes::run::SolvedUnit;
 use crate::scenes::tell::columns;
 use analysis::{Table, Value};
 use plots::{Chart, Curve};

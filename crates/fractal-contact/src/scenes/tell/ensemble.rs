@@ -1,7 +1,7 @@
 //! Means over the surfaces of a scene.
 
-use crate::scenes::read::scene_file::SceneFile;
-use crate::scenes::run::state_result::{Solved, SolvedUnit};
+use crate::scenes::read::SceneFile;
+use crate::scenes::run::{Solved, SolvedUnit};
 use crate::scenes::tell::columns;
 use analysis::{Column, Table, Value, mean_and_deviation};
 use contact_model::quantities::{Average, Quantity};

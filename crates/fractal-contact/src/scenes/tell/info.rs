@@ -1,11 +1,8 @@
 //! What a file holds: a scene, a surface or a table of results.
 
-use crate::scenes::plan::scene_plan::Plan;
-use crate::scenes::read::entries::System;
-use crate::scenes::read::error::{Error, Result};
-use crate::scenes::read::scene_file::SceneFile;
-use crate::scenes::tell::statistics::MapStatisticsTables;
-use crate::scenes::tell::surface_report::SurfaceReport;
+use crate::scenes::plan::Plan;
+use crate::scenes::read::{Error, Result, SceneFile, System, number};
+use crate::scenes::tell::{MapStatisticsTables, SurfaceReport};
 use contact_model::Boundary;
 use runs::Header;
 use std::path::Path;
@@ -60,7 +57,7 @@ fn table(path: &Path) -> Result<String> {
                 if some.is_empty() { "empty".into() } else { some.join(", ") }
             );
         } else {
-            let [low, high] = [low, high].map(crate::scenes::read::human_readable::number);
+            let [low, high] = [low, high].map(number);
             text += &format!("{name:24} {low} to {high}, {} of {} rows\n", values.len(), file.rows.len());
         }
     }

@@ -1,10 +1,8 @@
 //! `manifest.json`: the whole scene, what it was run with, what it cost, what to cite.
 
-use crate::scenes::plan::cost::Cost;
-use crate::scenes::plan::scene_plan::Plan;
-use crate::scenes::read::error::Result;
-use crate::scenes::read::scene_file::SceneFile;
-use crate::scenes::run::outcome::{Options, SceneOutcome};
+use crate::scenes::plan::{Cost, FORMAT, Plan};
+use crate::scenes::read::{Result, SceneFile};
+use crate::scenes::run::{Options, SceneOutcome};
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
 use std::path::PathBuf;
@@ -59,7 +57,7 @@ pub(crate) fn write(
     let whole = json!({
         "project": "fractal-contact",
         "version": env!("CARGO_PKG_VERSION"),
-        "formats": { "scene": crate::scenes::plan::model_on_surface::FORMAT, "bem3d": bem3d::FORMAT },
+        "formats": { "scene": FORMAT, "bem3d": bem3d::FORMAT },
         "scene": scene.text,
         "seed": scene.sampling.seed,
         "surfaces": scene.sampling.surfaces,

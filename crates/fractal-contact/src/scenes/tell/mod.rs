@@ -15,6 +15,12 @@ pub(crate) mod statistics_files;
 pub(crate) mod summary;
 pub(crate) mod surface_report;
 
+pub(crate) use ensemble::Mean;
+pub(crate) use report::Report;
+pub(crate) use result_folder::ResultFolder;
+pub(crate) use statistics::{Bands, FILES, LEVEL, MapStatisticsTables, Parameter, Scale};
+pub(crate) use surface_report::SurfaceReport;
+
 #[cfg(test)]
 mod tests {
     use super::{columns, ensemble, pictures, report, summary};

@@ -1,9 +1,8 @@
 //! A page of HTML that needs no network and no other file: its frame, charts, fields and statistics.
 
-use crate::scenes::read::error::Result;
-use crate::scenes::read::human_readable;
-use crate::scenes::run::field_view::{FieldView, shown_words};
-use crate::scenes::tell::statistics::MapStatisticsTables;
+use crate::scenes::read::{Result, human_readable};
+use crate::scenes::run::{FieldView, shown_words};
+use crate::scenes::tell::MapStatisticsTables;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use contact_model::Shown;

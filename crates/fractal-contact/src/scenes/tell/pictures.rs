@@ -1,12 +1,8 @@
 //! Curves drawn from the states.
 
-use crate::scenes::read::error::Result;
-use crate::scenes::read::loads::{LoadKind, LoadRequest};
-use crate::scenes::read::scene_file::{SceneFile, depends_on_path};
-use crate::scenes::read::words;
-use crate::scenes::run::state_result::SolvedUnit;
-use crate::scenes::tell::columns;
-use crate::scenes::tell::ensemble::Mean;
+use crate::scenes::read::{LoadKind, LoadRequest, Result, SceneFile, depends_on_path, words};
+use crate::scenes::run::{SolvedUnit, StateRecord};
+use crate::scenes::tell::{Mean, columns};
 use contact_model::Boundary;
 use contact_model::quantities::Quantity;
 use plots::{Chart, Curve};
@@ -139,7 +135,7 @@ fn curve(
     let label = words::model_name(model).to_owned();
     if means.is_empty() {
         let records = units.iter().filter(|unit| unit.model == model).flat_map(|unit| unit.states);
-        let state = |record: &crate::scenes::run::state_result::StateRecord| {
+        let state = |record: &StateRecord| {
             let solved = record.solved()?;
             let number =
                 |of: &Quantity| of.number(&solved.state, &solved.normalisation).filter(|v| v.is_finite());

@@ -1,6 +1,6 @@
 //! Statistics of a profile: parameters of ISO 21920-2 instead of those of a surface.
 
-use crate::scenes::tell::statistics::{MapStatisticsTables, Parameter, Scale};
+use crate::scenes::tell::{MapStatisticsTables, Parameter, Scale};
 use contact_model::{Boundary, HeightMap};
 use surface_statistics::{
     DifferenceMap, HeightParameters, PowerSpectrum, ProfileFit, ScaleDependence, Taper,

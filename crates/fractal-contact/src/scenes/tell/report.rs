@@ -1,25 +1,9 @@
 //! `report.html`: a run in one page, which needs no network and no other file.
 
-use crate::scenes::plan::cost::Cost;
-use crate::scenes::plan::scene_plan::Plan;
-use crate::scenes::read::entries::System;
-use crate::scenes::read::error::Result;
-use crate::scenes::read::human_readable;
-use crate::scenes::read::human_readable::number;
-use crate::scenes::read::outputs::HEIGHTS;
-use crate::scenes::read::scene_file::SceneFile;
-use crate::scenes::read::words;
-use crate::scenes::run::field_pictures;
-use crate::scenes::run::field_view::FieldView;
-use crate::scenes::run::outcome::SceneOutcome;
-use crate::scenes::run::state_result::{FieldFile, SolvedUnit};
-use crate::scenes::tell::columns;
-use crate::scenes::tell::distributions;
-use crate::scenes::tell::ensemble::Mean;
-use crate::scenes::tell::page;
-use crate::scenes::tell::pictures;
-use crate::scenes::tell::statistics::MapStatisticsTables;
-use crate::scenes::tell::summary;
+use crate::scenes::plan::{Cost, Plan};
+use crate::scenes::read::{HEIGHTS, Result, SceneFile, System, human_readable, number, words};
+use crate::scenes::run::{FieldFile, FieldView, SceneOutcome, SolvedUnit, field_pictures};
+use crate::scenes::tell::{MapStatisticsTables, Mean, columns, distributions, page, pictures, summary};
 use analysis::Value;
 use contact_model::FieldQuantity;
 use contact_model::quantities::{Quantity, Role};

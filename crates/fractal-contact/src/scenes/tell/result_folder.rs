@@ -1,11 +1,8 @@
 //! Whose files are in a directory of results: those that its manifest lists are the program's own.
 
-use crate::scenes::read::error::Result;
-use crate::scenes::read::scene_file::SceneFile;
-use crate::scenes::run::state_result::field_of_file;
-use crate::scenes::tell::distributions;
-use crate::scenes::tell::pictures;
-use crate::scenes::tell::statistics;
+use crate::scenes::read::{Result, SceneFile};
+use crate::scenes::run::field_of_file;
+use crate::scenes::tell::{distributions, pictures, statistics};
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::path::{Component, Path, PathBuf};

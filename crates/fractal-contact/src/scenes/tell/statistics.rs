@@ -1,11 +1,8 @@
 //! Statistics of a map as tables and pictures: `statistics.csv`, `spectrum.csv`, `height-difference.csv`,
 //! `scale-dependence.csv`.
 
-use crate::scenes::plan::grid_comparison::solved_map;
-use crate::scenes::read::entries::System;
-use crate::scenes::read::error::Result;
-use crate::scenes::read::human_readable::short;
-use crate::scenes::read::scene_file::SceneFile;
+use crate::scenes::plan::solved_map;
+use crate::scenes::read::{Result, SceneFile, System, short};
 use contact_model::{Boundary, HeightMap};
 use std::sync::Arc;
 use surface_statistics::{

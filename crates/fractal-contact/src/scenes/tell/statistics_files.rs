@@ -1,9 +1,7 @@
 //! Files of the statistics of a map: tables as CSV, pictures of spectrum, height differences and slopes.
 
-use crate::scenes::read::entries::System;
-use crate::scenes::read::error::Result;
-use crate::scenes::tell::columns;
-use crate::scenes::tell::statistics::{Bands, FILES, LEVEL, MapStatisticsTables};
+use crate::scenes::read::{Result, System};
+use crate::scenes::tell::{Bands, FILES, LEVEL, MapStatisticsTables, columns};
 use analysis::{Table, Value};
 use plots::{Chart, Curve};
 use runs::{Header, write_csv};

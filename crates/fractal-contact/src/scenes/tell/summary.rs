@@ -1,10 +1,8 @@
 //! The states of a run as a table for a terminal.
 
-use crate::scenes::read::human_readable::short;
-use crate::scenes::read::scene_file::SceneFile;
-use crate::scenes::run::state_result::{SolvedUnit, StateRecord};
-use crate::scenes::tell::columns;
-use crate::scenes::tell::ensemble::Mean;
+use crate::scenes::read::{SceneFile, short};
+use crate::scenes::run::{SolvedUnit, StateRecord};
+use crate::scenes::tell::{Mean, columns};
 use analysis::Value;
 use contact_model::quantities::{Quantity, Role};
 

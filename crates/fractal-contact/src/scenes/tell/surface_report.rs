@@ -1,11 +1,8 @@
 //! `report.html` of a surface: what its file says, what was done to it, the map, and its statistics.
 
-use crate::scenes::read::error::Result;
-use crate::scenes::read::outputs::HEIGHTS;
-use crate::scenes::run::field_pictures;
-use crate::scenes::run::field_view::FieldView;
-use crate::scenes::tell::page;
-use crate::scenes::tell::statistics::MapStatisticsTables;
+use crate::scenes::read::{HEIGHTS, Result};
+use crate::scenes::run::{FieldView, field_pictures};
+use crate::scenes::tell::{MapStatisticsTables, page};
 use contact_model::HeightMap;
 use maud::{Markup, html};
 use plots::{Chart, Curve, FieldPicture};
