@@ -4,6 +4,7 @@ mod bench;
 mod cluster;
 mod sizes;
 mod studies;
+mod words;
 
 pub use bench::BenchArguments;
 pub use cluster::{PlanArguments, ShardsArguments, SubmitArguments};

@@ -27,7 +27,7 @@ pub fn jobs(command: &Command) -> Result<Box<dyn JobList>> {
     }
     match command {
         Command::ReproduceTwoCases(options) => paper::two_cases_jobs(&options.study()?),
-        Command::AccuracyCost(options) => evaluation::accuracy_cost_jobs(options.depth(), options.seed),
+        Command::AccuracyCost(options) => evaluation::accuracy_cost_jobs(options.depth, options.seed),
         Command::BudgetCheck(options) => evaluation::budget_check_jobs(options.cases, options.seed),
         _ => {
             let expected = "reproduce-fig2, -fig3, -fig4, -fig6, -fig7, reproduce-all, verify, reproduce-two-cases, exponent, accuracy-cost or budget-check";

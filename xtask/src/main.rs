@@ -100,7 +100,7 @@ fn solve(command: Command, typed: &[String]) -> Result<ExitCode> {
         Command::ReproduceAll(_) => paper::reproduce_all(&run, &reporter)?,
         Command::AccuracyCost(options) => {
             let kept = (options.out.as_path(), options.fresh);
-            vec![evaluation::accuracy_cost(options.depth(), options.seed, kept, &reporter)?.into()]
+            vec![evaluation::accuracy_cost(options.depth, options.seed, kept, &reporter)?.into()]
         }
         Command::ReproduceTwoCases(options) => {
             vec![paper::two_cases(&options.study()?, &options.out, &reporter)?]

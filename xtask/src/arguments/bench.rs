@@ -1,7 +1,8 @@
 //! Flags of the bench.
 
+use super::words::{Words, words};
 use bem3d::Method;
-use clap::{Args, ValueEnum};
+use clap::Args;
 use contact_model::Boundary;
 use evaluation::{Bench, Forces, Surfaces};
 use std::path::PathBuf;
@@ -25,25 +26,16 @@ of the best state, and the others go on.
 
 Exit codes: 0 done; 1 error; 2 bad arguments; 3 done, but some solves did not converge.";
 
-/// Edges of the square.
-#[derive(Debug, Clone, Copy, ValueEnum)]
-pub enum BoundaryName {
-    /// Nothing presses outside the square.
-    Free,
-    /// The square repeats.
-    Periodic,
-}
+const BOUNDARIES: Words<Boundary> = &[
+    ("free", Boundary::Free, "Nothing presses outside the square"),
+    ("periodic", Boundary::Periodic, "The square repeats"),
+];
 
-/// How linear systems are solved.
-#[derive(Debug, Clone, Copy, ValueEnum)]
-pub enum MethodName {
-    /// The cheapest way for each set.
-    Auto,
-    /// No factors.
-    Iterative,
-    /// No factors, no two-level sums, no coarse grids.
-    SingleLevel,
-}
+const METHODS: Words<Method> = &[
+    ("auto", Method::Auto, "The cheapest way for each set"),
+    ("iterative", Method::Iterative, "No factors"),
+    ("single-level", Method::SingleLevel, "No factors, no two-level sums, no coarse grids"),
+];
 
 /// Flags of the bench.
 #[derive(Debug, Args)]
@@ -80,8 +72,8 @@ pub struct BenchArguments {
     )]
     forces: String,
     /// Edges of the square.
-    #[arg(long, value_enum, default_value = "free")]
-    boundary: BoundaryName,
+    #[arg(long, value_parser = words(BOUNDARIES), default_value = "free")]
+    boundary: Boundary,
     /// Tolerances, separated by commas: bound of the certificate and of the error of k.
     #[arg(
         long,
@@ -92,8 +84,8 @@ pub struct BenchArguments {
     )]
     tolerance: Vec<f64>,
     /// How linear systems are solved.
-    #[arg(long, value_enum, default_value = "auto")]
-    method: MethodName,
+    #[arg(long, value_parser = words(METHODS), default_value = "auto")]
+    method: Method,
     /// Prepare anew for every load.
     #[arg(long)]
     cold: bool,
@@ -159,15 +151,8 @@ impl BenchArguments {
             surfaces,
             forces: Forces::parse(&self.forces)?,
             tolerances: self.tolerance.clone(),
-            boundary: match self.boundary {
-                BoundaryName::Free => Boundary::Free,
-                BoundaryName::Periodic => Boundary::Periodic,
-            },
-            method: match self.method {
-                MethodName::Auto => Method::Auto,
-                MethodName::Iterative => Method::Iterative,
-                MethodName::SingleLevel => Method::SingleLevel,
-            },
+            boundary: self.boundary,
+            method: self.method,
             cold: self.cold || self.scaling,
             threads: self.threads,
             pressure: self.pressure.clone(),

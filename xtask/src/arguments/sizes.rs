@@ -1,28 +1,32 @@
 //! Flags that the figures share: sizes, what to solve, where to write.
 
 use super::cluster::Sharded;
-use clap::{Args, ValueEnum};
+use super::words::{Words, words};
+use clap::Args;
 use evaluation::{AccuracyTarget, Preset, Request};
 use std::path::PathBuf;
 
-#[derive(Debug, Clone, Copy, ValueEnum)]
-pub enum PresetName {
-    /// Well under a minute: 129 cells, 8 surfaces, 2^16 elements, 40 lines.
-    Quick,
-    /// A few minutes: 513 cells, 40 surfaces, 2^18 elements, 200 lines.
-    Default,
-    /// The paper's sizes: 2049 cells, 60 surfaces, 2^20 elements, 500 lines; tolerance 1e-3.
-    Paper,
-    /// Beyond the paper: 16385 cells, 4 surfaces, light loads; tolerance 1e-3, 5 GB for each thread.
-    Extended,
-}
+const PRESETS: Words<Preset> = &[
+    ("quick", Preset::Quick, "Well under a minute: 129 cells, 8 surfaces, 2^16 elements, 40 lines"),
+    ("default", Preset::Default, "A few minutes: 513 cells, 40 surfaces, 2^18 elements, 200 lines"),
+    (
+        "paper",
+        Preset::Paper,
+        "The paper's sizes: 2049 cells, 60 surfaces, 2^20 elements, 500 lines; tolerance 1e-3",
+    ),
+    (
+        "extended",
+        Preset::Extended,
+        "Beyond the paper: 16385 cells, 4 surfaces, light loads; tolerance 1e-3, 5 GB for each thread",
+    ),
+];
 
 /// Flags of every figure.
 #[derive(Debug, Args)]
 pub struct Common {
     /// Sizes to start from; the other flags override them.
-    #[arg(long, value_enum, default_value = "default")]
-    preset: PresetName,
+    #[arg(long, value_parser = words(PRESETS), default_value = "default")]
+    preset: Preset,
     /// Fractal dimensions in [2, 3], separated by commas, such as 2.0,2.2.
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     fractal_dimensions: Option<Vec<f64>>,
@@ -36,12 +40,7 @@ pub struct Common {
 
 impl Common {
     pub(super) fn fill(&self, request: &mut Request) {
-        request.preset = match self.preset {
-            PresetName::Quick => Preset::Quick,
-            PresetName::Default => Preset::Default,
-            PresetName::Paper => Preset::Paper,
-            PresetName::Extended => Preset::Extended,
-        };
+        request.preset = self.preset;
         request.fractal_dimensions.clone_from(&self.fractal_dimensions);
         request.seed = self.seed;
         request.out = Some(self.out.clone());

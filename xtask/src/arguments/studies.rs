@@ -2,7 +2,8 @@
 
 use super::cluster::Sharded;
 use super::sizes::{Solid, share};
-use clap::{Args, ValueEnum};
+use super::words::{Words, words};
+use clap::Args;
 use evaluation::{Depth, Forces, Request, Run};
 use paper::TwoCases;
 use paper::{Exponent, ExponentSizes};
@@ -22,22 +23,18 @@ pub struct Audit {
 }
 
 /// Sizes of the study of accuracy.
-#[derive(Debug, Clone, Copy, ValueEnum)]
-pub enum DepthName {
-    /// Up to 257 cells: a minute or two.
-    Quick,
-    /// Up to 1025 cells: a quarter of an hour.
-    Default,
-    /// Up to 2049 cells, tolerances to 1e-10: hours.
-    Thorough,
-}
+const DEPTHS: Words<Depth> = &[
+    ("quick", Depth::Quick, "Up to 257 cells: a minute or two"),
+    ("default", Depth::Default, "Up to 1025 cells: a quarter of an hour"),
+    ("thorough", Depth::Thorough, "Up to 2049 cells, tolerances to 1e-10: hours"),
+];
 
 /// Flags of the study of accuracy.
 #[derive(Debug, Args)]
 pub struct AccuracyCost {
     /// How much is solved. One thread: the times are those of each row.
-    #[arg(long, value_enum, default_value = "default")]
-    preset: DepthName,
+    #[arg(long = "preset", value_name = "PRESET", value_parser = words(DEPTHS), default_value = "default")]
+    pub depth: Depth,
     /// Master seed.
     #[arg(long, default_value_t = evaluation::SEED)]
     pub seed: u64,
@@ -49,17 +46,6 @@ pub struct AccuracyCost {
     pub out: PathBuf,
     #[command(flatten)]
     pub(super) sharded: Sharded,
-}
-
-impl AccuracyCost {
-    /// How much is solved.
-    pub fn depth(&self) -> Depth {
-        match self.preset {
-            DepthName::Quick => Depth::Quick,
-            DepthName::Default => Depth::Default,
-            DepthName::Thorough => Depth::Thorough,
-        }
-    }
 }
 
 /// Flags of the check of error budgets.
@@ -153,22 +139,18 @@ impl TwoCasesArguments {
 }
 
 /// Sizes of the study of the exponent.
-#[derive(Debug, Clone, Copy, ValueEnum)]
-pub enum ExponentSizesName {
-    /// Up to 129 cells and 2^12 elements: seconds.
-    Quick,
-    /// Up to 1025 cells and 2^20 elements; --plan says how long.
-    Default,
-    /// Up to 16385 cells and 2^26 elements; --plan says how long.
-    Full,
-}
+const EXPONENT_SIZES: Words<ExponentSizes> = &[
+    ("quick", ExponentSizes::Quick, "Up to 129 cells and 2^12 elements: seconds"),
+    ("default", ExponentSizes::Default, "Up to 1025 cells and 2^20 elements; --plan says how long"),
+    ("full", ExponentSizes::Full, "Up to 16385 cells and 2^26 elements; --plan says how long"),
+];
 
 /// Flags of the study of the exponent.
 #[derive(Debug, Args)]
 pub struct ExponentArguments {
     /// Sizes to start from; the other flags override them.
-    #[arg(long, value_enum, default_value = "default")]
-    preset: ExponentSizesName,
+    #[arg(long, value_parser = words(EXPONENT_SIZES), default_value = "default")]
+    preset: ExponentSizes,
     /// Cells a side, from the coarsest grid to the finest, separated by commas.
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     grids: Option<Vec<usize>>,
@@ -228,11 +210,7 @@ impl ExponentArguments {
     /// # Errors
     /// [`runs::Error::Parameter`] for a list of loads that is none.
     pub fn study(&self, run: &Run) -> runs::Result<Exponent> {
-        let mut study = Exponent::new(match self.preset {
-            ExponentSizesName::Quick => ExponentSizes::Quick,
-            ExponentSizesName::Default => ExponentSizes::Default,
-            ExponentSizesName::Full => ExponentSizes::Full,
-        })?;
+        let mut study = Exponent::new(self.preset)?;
         let lists = [
             (&mut study.solid.sizes, &self.grids),
             (&mut study.solid.surfaces, &self.surfaces),
