@@ -127,52 +127,7 @@ pub enum Command {
     /// Draws a self-affine surface into a file, by its ending: .npy, .txt (text matrix), .xyz, .vti, .h5,
     /// .x3p, .gwy or .nc.
     #[command(after_help = SURFACE)]
-    Surface {
-        /// The file.
-        file: PathBuf,
-        /// Cells along x: columns.
-        #[arg(long, default_value_t = 257)]
-        cells: usize,
-        /// Cells along y [default: as many as make the cells nearest to squares].
-        #[arg(long)]
-        rows: Option<usize>,
-        /// Side of a square, such as "1 mm" or a plain number, or both of a rectangle, "2 mm x 1 mm".
-        #[arg(long, visible_alias = "side", default_value = "1")]
-        size: String,
-        /// Fractal dimension in [2, 3] [default: 2.4].
-        #[arg(long)]
-        fractal_dimension: Option<f64>,
-        /// Hurst exponent in [0, 1], instead of the fractal dimension: 3 minus it.
-        #[arg(long, conflicts_with = "fractal_dimension")]
-        hurst: Option<f64>,
-        /// Rms height of the samples, such as "1 um", or a plain number.
-        #[arg(long, default_value = "0.01")]
-        rms_height: String,
-        /// Longer waves have a constant spectrum [default: none].
-        #[arg(long, value_name = "LENGTH")]
-        roll_off_wavelength: Option<String>,
-        /// The shortest wave [default: two cells].
-        #[arg(long, value_name = "LENGTH")]
-        shortest_wavelength: Option<String>,
-        /// Ratio of wavelengths along the lay to those across [default: 1, isotropic].
-        #[arg(long, value_name = "RATIO")]
-        anisotropy: Option<f64>,
-        /// Direction of the lay in degrees, from x towards y.
-        #[arg(
-            long,
-            value_name = "DEGREES",
-            default_value_t = 0.0,
-            requires = "anisotropy",
-            allow_negative_numbers = true
-        )]
-        lay: f64,
-        /// Shape of Weibull's law of the heights [default: nearly Gaussian].
-        #[arg(long, value_name = "SHAPE")]
-        weibull: Option<f64>,
-        /// The same seed is the same surface, here and in a scene.
-        #[arg(long)]
-        seed: u64,
-    },
+    Surface(Box<SurfaceArguments>),
     /// Draws an artificial twin of a map: its spectrum, the phases of a seed.
     Twin {
         /// The map: what `info` reads.
@@ -196,6 +151,55 @@ pub enum Command {
         /// The shell.
         shell: clap_complete::Shell,
     },
+}
+
+/// Flags of a surface that is drawn.
+#[derive(Debug, clap::Args)]
+pub struct SurfaceArguments {
+    /// The file.
+    pub file: PathBuf,
+    /// Cells along x: columns.
+    #[arg(long, default_value_t = 257)]
+    pub cells: usize,
+    /// Cells along y [default: as many as make the cells nearest to squares].
+    #[arg(long)]
+    pub rows: Option<usize>,
+    /// Side of a square, such as "1 mm" or a plain number, or both of a rectangle, "2 mm x 1 mm".
+    #[arg(long, visible_alias = "side", default_value = "1")]
+    pub size: String,
+    /// Fractal dimension in [2, 3] [default: 2.4].
+    #[arg(long)]
+    pub fractal_dimension: Option<f64>,
+    /// Hurst exponent in [0, 1], instead of the fractal dimension: 3 minus it.
+    #[arg(long, conflicts_with = "fractal_dimension")]
+    pub hurst: Option<f64>,
+    /// Rms height of the samples, such as "1 um", or a plain number.
+    #[arg(long, default_value = "0.01")]
+    pub rms_height: String,
+    /// Longer waves have a constant spectrum [default: none].
+    #[arg(long, value_name = "LENGTH")]
+    pub roll_off_wavelength: Option<String>,
+    /// The shortest wave [default: two cells].
+    #[arg(long, value_name = "LENGTH")]
+    pub shortest_wavelength: Option<String>,
+    /// Ratio of wavelengths along the lay to those across [default: 1, isotropic].
+    #[arg(long, value_name = "RATIO")]
+    pub anisotropy: Option<f64>,
+    /// Direction of the lay in degrees, from x towards y.
+    #[arg(
+        long,
+        value_name = "DEGREES",
+        default_value_t = 0.0,
+        requires = "anisotropy",
+        allow_negative_numbers = true
+    )]
+    pub lay: f64,
+    /// Shape of Weibull's law of the heights [default: nearly Gaussian].
+    #[arg(long, value_name = "SHAPE")]
+    pub weibull: Option<f64>,
+    /// The same seed is the same surface, here and in a scene.
+    #[arg(long)]
+    pub seed: u64,
 }
 
 /// Flags of what reads a folder of shards.

@@ -74,38 +74,24 @@ fn execute(arguments: Arguments) -> Result<ExitCode> {
             runs::print(format_args!("{text}"));
             Ok(ExitCode::SUCCESS)
         }
-        Command::Surface {
-            file,
-            cells,
-            rows,
-            size,
-            fractal_dimension,
-            hurst,
-            rms_height,
-            roll_off_wavelength,
-            shortest_wavelength,
-            anisotropy,
-            lay,
-            weibull,
-            seed,
-        } => {
-            if let Some(hurst) = hurst.filter(|hurst| !(0.0..=1.0).contains(hurst)) {
+        Command::Surface(asked) => {
+            if let Some(hurst) = asked.hurst.filter(|hurst| !(0.0..=1.0).contains(hurst)) {
                 return Err(runs::Error::parameter("hurst", hurst, "a number in [0, 1]").into());
             }
-            let fractal_dimension = fractal_dimension.or_else(|| Some(3.0 - hurst?)).unwrap_or(2.4);
+            let fractal_dimension = asked.fractal_dimension.or_else(|| Some(3.0 - asked.hurst?));
             let make = GeneratedSurface {
-                cells,
-                rows,
-                size,
-                fractal_dimension,
-                rms_height,
-                roll_off_wavelength,
-                shortest_wavelength,
-                anisotropy: anisotropy.map(|ratio| Anisotropy { ratio, lay }),
-                heights: weibull.map(|shape| HeightDistribution::Weibull { shape }),
-                seed,
+                cells: asked.cells,
+                rows: asked.rows,
+                size: asked.size,
+                fractal_dimension: fractal_dimension.unwrap_or(2.4),
+                rms_height: asked.rms_height,
+                roll_off_wavelength: asked.roll_off_wavelength,
+                shortest_wavelength: asked.shortest_wavelength,
+                anisotropy: asked.anisotropy.map(|ratio| Anisotropy { ratio, lay: asked.lay }),
+                heights: asked.weibull.map(|shape| HeightDistribution::Weibull { shape }),
+                seed: asked.seed,
             };
-            runs::print(format_args!("{}", make.write(&file)?));
+            runs::print(format_args!("{}", make.write(&asked.file)?));
             Ok(ExitCode::SUCCESS)
         }
         Command::Twin { file, twin, seed, rings, keep_heights, more } => {

@@ -285,23 +285,18 @@ fn read_scene(root: &Entries<'_>, directory: &Path, registry: &Registry) -> Read
     check_histories(&models, &request, &request_entry, &effects)?;
     let models = models.into_iter().map(|(numerics, _)| numerics).collect();
     Ok(SceneFile {
-        path: PathBuf::new(),
-        text: String::new(),
         system,
-        models,
-        surface,
-        modulus,
         hardness,
         accuracy: accuracy.map(|(target, _)| target),
         pair,
         effects,
-        request,
         requested,
         sampling,
         metadata,
         reliable_from,
         notes,
         places,
+        ..SceneFile::new(models, surface, modulus, request)
     })
 }
 
