@@ -12,8 +12,11 @@ use fractal_contact::{
     Scene, Step,
 };
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::IntoPyDict as _;
 use std::sync::{Mutex, PoisonError};
+
+/// The loads that a call may name one of.
+const LOADS: [&str; 4] = ["force", "approach", "mean_pressure", "mean_gap"];
 
 /// What turns forces and stiffnesses into the dimensionless ones of the paper.
 #[pyclass(frozen, module = "fractal_contact")]
@@ -240,11 +243,8 @@ impl Contact {
         mean_pressure: Option<Bound<'py, PyAny>>,
         mean_gap: Option<Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let loads = PyDict::new(slf.py());
-        loads.set_item("force", force)?;
-        loads.set_item("approach", approach)?;
-        loads.set_item("mean_pressure", mean_pressure)?;
-        loads.set_item("mean_gap", mean_gap)?;
+        let values = [force, approach, mean_pressure, mean_gap];
+        let loads = LOADS.into_iter().zip(values).into_py_dict(slf.py())?;
         slf.py().import("fractal_contact._models")?.call_method("sweep", (slf,), Some(&loads))
     }
 
@@ -319,14 +319,10 @@ impl Contact {
         tangential_force: Option<Bound<'py, PyAny>>,
         tangential_displacement: Option<Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let steps = PyDict::new(slf.py());
-        steps.set_item("time", time)?;
-        steps.set_item("force", force)?;
-        steps.set_item("approach", approach)?;
-        steps.set_item("mean_pressure", mean_pressure)?;
-        steps.set_item("mean_gap", mean_gap)?;
-        steps.set_item("tangential_force", tangential_force)?;
-        steps.set_item("tangential_displacement", tangential_displacement)?;
+        let values =
+            [force, approach, mean_pressure, mean_gap, time, tangential_force, tangential_displacement];
+        let names = LOADS.into_iter().chain(["time", "tangential_force", "tangential_displacement"]);
+        let steps = names.zip(values).into_py_dict(slf.py())?;
         slf.py().import("fractal_contact._models")?.call_method("follow", (slf,), Some(&steps))
     }
 

@@ -28,39 +28,13 @@ where
 }
 
 fn options(of: &Bound<'_, PyDict>) -> PyResult<(ReadOptions, Preprocessing)> {
-    const KNOWN: [&str; 26] = [
-        "format",
-        "channel",
-        "unit",
-        "lateral_unit",
-        "size",
-        "cell",
-        "height_scale",
-        "decimal",
-        "axes",
-        "border",
-        "missing",
-        "skip_lines",
-        "crop",
-        "align_lines",
-        "scars",
-        "outliers",
-        "tip_radius",
-        "undefined",
-        "fill",
-        "detrend",
-        "filter_across",
-        "cells",
-        "rows",
-        "mirror",
-        "rotate",
-        "window",
-    ];
+    const KNOWN: &str = "format, channel, unit, lateral_unit, size, cell, height_scale, decimal, axes, border, missing, \
+                         skip_lines, crop, align_lines, scars, outliers, tip_radius, undefined, fill, detrend, filter_across, \
+                         cells, rows, mirror, rotate, window";
     for key in of.keys() {
         let key: String = key.extract()?;
-        if !KNOWN.contains(&key.as_str()) {
-            let known = KNOWN.join(", ");
-            return Err(PyTypeError::new_err(format!("no option is called {key:?}: there are {known}")));
+        if KNOWN.split(", ").all(|known| known != key) {
+            return Err(PyTypeError::new_err(format!("no option is called {key:?}: there are {KNOWN}")));
         }
     }
     let declared = ReadOptions {
