@@ -2,7 +2,7 @@
 
 use crate::arguments::{Arguments, Command, PlanArguments, ShardsArguments, SubmitArguments};
 use clap::Parser as _;
-use evaluation::{Model, RealisationJob, Run, ensemble_jobs};
+use evaluation::{RealisationJob, Run, ensemble_jobs};
 use runs::cluster::{self, Division, Forecast, Status, check, quoted, run_shard, status, without_flags};
 use runs::{Error, JobList, Reporter, Result, ShardChoice};
 

@@ -1,7 +1,8 @@
 //! A file read from a place on, some bytes at a time.
 
 use crate::error::{Error, Result};
-use crate::fields::{ByteOrder, Stored};
+use crate::fields::Stored;
+use crate::number_type::ByteOrder;
 use crate::source::Source;
 
 /// Bytes of a file that a cursor reads at a time, and the longest name or text.

@@ -1,20 +1,11 @@
 //! Headers of binary files: numbers and texts at offsets, as an instrument's manual lists them.
 
 use crate::error::{Error, Result};
-use crate::number_type::NumberType;
+use crate::number_type::{ByteOrder, NumberType};
 use crate::subject::Subject;
 use std::borrow::Cow;
 use std::ops::Deref;
 use std::path::Path;
-
-/// Which byte of a number comes first.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum ByteOrder {
-    /// The lowest.
-    Little,
-    /// The highest.
-    Big,
-}
 
 /// A part of a file that is in memory, read number by number and never beyond its end.
 pub(crate) struct Fields<'a> {

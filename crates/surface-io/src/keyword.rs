@@ -1,9 +1,7 @@
 //! Words of scenes and command lines.
 
-use crate::preprocessing::{Crop, Fill};
 use crate::quantity::QuantityError;
 use std::fmt;
-use std::str::FromStr;
 
 /// A word that is not one of those expected.
 #[derive(Debug, Clone, PartialEq)]
@@ -19,7 +17,7 @@ pub struct KeywordError {
 }
 
 impl KeywordError {
-    fn new(what: &'static str, found: &str, expected: impl Into<String>) -> Self {
+    pub(crate) fn new(what: &'static str, found: &str, expected: impl Into<String>) -> Self {
         let found = found.chars().take(32).collect();
         Self { what, found, expected: expected.into(), quantity: None }
     }
@@ -92,59 +90,11 @@ impl fmt::Display for KeywordError {
 
 impl std::error::Error for KeywordError {}
 
-impl FromStr for Fill {
-    type Err = KeywordError;
-
-    /// Reads `neighbours`, `plane` or a height such as `-2 um`.
-    ///
-    /// # Errors
-    /// [`KeywordError`] for other words.
-    fn from_str(text: &str) -> Result<Self, KeywordError> {
-        match text {
-            "neighbours" => Ok(Self::Neighbours),
-            "plane" => Ok(Self::Plane),
-            other => other.parse().map(Self::Value).map_err(|quantity| {
-                let error =
-                    KeywordError::new("fill", other, "neighbours, plane or a height such as \"-2 um\"");
-                KeywordError { quantity: Some(quantity), ..error }
-            }),
-        }
-    }
-}
-
-impl FromStr for Crop {
-    type Err = KeywordError;
-
-    /// Reads `centre`, `defined`, or row, column, rows and columns as in `10,20,256,512`; with three numbers
-    /// there are as many columns as rows.
-    ///
-    /// # Errors
-    /// [`KeywordError`] for other words.
-    fn from_str(text: &str) -> Result<Self, KeywordError> {
-        match text {
-            "centre" => return Ok(Self::Centre),
-            "defined" => return Ok(Self::Defined),
-            _ => {}
-        }
-        let numbers: Result<Vec<usize>, _> = text.split(',').map(|part| part.trim().parse()).collect();
-        match numbers.as_deref() {
-            Ok(&[row, column, cells]) => Ok(Self::Window { row, column, rows: cells, columns: cells }),
-            Ok(&[row, column, rows, columns]) => Ok(Self::Window { row, column, rows, columns }),
-            _ => Err(KeywordError::new(
-                "crop",
-                text,
-                "centre, defined, or row, column, rows and columns such as \"10,20,256,512\"",
-            )),
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
-    use super::*;
     use crate::format::Format;
     use crate::options::{Axes, Decimal};
-    use crate::preprocessing::{AlignLines, Detrend, Undefined};
+    use crate::preprocessing::{AlignLines, Crop, Detrend, Fill, Undefined};
 
     #[test]
     fn words_are_read_or_named() {

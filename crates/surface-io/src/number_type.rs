@@ -1,7 +1,15 @@
 //! Numbers as bytes: types and byte orders.
 
-use crate::fields::ByteOrder;
 use std::fmt;
+
+/// Which byte of a number comes first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum ByteOrder {
+    /// The lowest.
+    Little,
+    /// The highest.
+    Big,
+}
 
 /// Type and byte order of a number in a binary file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -13,10 +13,11 @@ pub use scan_lines::AlignLines;
 pub use trend::Detrend;
 
 use crate::error::{ContentError, Error, Place, Result};
-use crate::keyword::keywords;
+use crate::keyword::{KeywordError, keywords};
 use crate::quantity::{Dimension, Quantity, Unit};
 use crate::scan::Scan;
 use contact_model::{Cells, HeightMap, Size};
+use std::str::FromStr;
 use surface_gen::{hann_window, rms_height};
 
 /// What is done to a scan, in this order; nothing unless named.
@@ -124,6 +125,53 @@ pub enum Crop {
         /// Number of columns.
         columns: usize,
     },
+}
+
+impl FromStr for Fill {
+    type Err = KeywordError;
+
+    /// Reads `neighbours`, `plane` or a height such as `-2 um`.
+    ///
+    /// # Errors
+    /// [`KeywordError`] for other words.
+    fn from_str(text: &str) -> Result<Self, KeywordError> {
+        match text {
+            "neighbours" => Ok(Self::Neighbours),
+            "plane" => Ok(Self::Plane),
+            other => other.parse().map(Self::Value).map_err(|quantity| {
+                let error =
+                    KeywordError::new("fill", other, "neighbours, plane or a height such as \"-2 um\"");
+                KeywordError { quantity: Some(quantity), ..error }
+            }),
+        }
+    }
+}
+
+impl FromStr for Crop {
+    type Err = KeywordError;
+
+    /// Reads `centre`, `defined`, or row, column, rows and columns as in `10,20,256,512`; with three numbers
+    /// there are as many columns as rows.
+    ///
+    /// # Errors
+    /// [`KeywordError`] for other words.
+    fn from_str(text: &str) -> Result<Self, KeywordError> {
+        match text {
+            "centre" => return Ok(Self::Centre),
+            "defined" => return Ok(Self::Defined),
+            _ => {}
+        }
+        let numbers: Result<Vec<usize>, _> = text.split(',').map(|part| part.trim().parse()).collect();
+        match numbers.as_deref() {
+            Ok(&[row, column, cells]) => Ok(Self::Window { row, column, rows: cells, columns: cells }),
+            Ok(&[row, column, rows, columns]) => Ok(Self::Window { row, column, rows, columns }),
+            _ => Err(KeywordError::new(
+                "crop",
+                text,
+                "centre, defined, or row, column, rows and columns such as \"10,20,256,512\"",
+            )),
+        }
+    }
 }
 
 keywords! {

@@ -1,8 +1,9 @@
 //! The bytes of a file, read where a format's header says, never beyond its end.
 
 use crate::error::{ContentError, Error, Result};
-use crate::fields::{ByteOrder, Fields, Stored};
+use crate::fields::{Fields, Stored};
 use crate::format::Format;
+use crate::number_type::ByteOrder;
 use crate::subject::Subject;
 use std::fs::File;
 use std::io::{BufReader, Cursor, Read, Seek, SeekFrom, Take};

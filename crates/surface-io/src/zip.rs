@@ -5,9 +5,10 @@
 //! bounded by the claimed size of the directory and not by the file.
 
 use crate::error::{ContentError, Result};
-use crate::fields::{ByteOrder, Fields, header};
+use crate::fields::{Fields, header};
 use crate::format::EXPORT;
 use crate::inflate::{Packed, Packing};
+use crate::number_type::ByteOrder;
 use crate::source::Source;
 use flate2::Crc;
 

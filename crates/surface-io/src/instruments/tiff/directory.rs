@@ -1,8 +1,7 @@
 //! Directories of a TIFF file, read before its images: their bounds, and private tags of instruments.
 
 use crate::error::Result;
-use crate::fields::ByteOrder;
-use crate::number_type::NumberType;
+use crate::number_type::{ByteOrder, NumberType};
 use crate::source::Source;
 
 /// Images in one file that are looked at.
