@@ -8,7 +8,7 @@ use crate::geometry::{CellSet, Grid, Lengths};
 use crate::kernel::KernelTable;
 use crate::linear::Factor;
 use crate::model::Bem3d;
-use crate::operator::{DirectSum, FftConvolution, InfluenceOperator, Split, TwoLevel};
+use crate::operator::{DirectSum, FftConvolution, InfluenceOperator, Split, TwoLevel, TwoTransforms};
 use crate::tuning::Tuning;
 use contact_model::{Boundary, PreparedContact, Result, Scene};
 
@@ -39,7 +39,7 @@ pub fn prepare_recorded(
     model.prepare_with(scene, seed, &Tuning::DEFAULT, recorder)
 }
 
-/// One application of the named operator (`direct`, `two levels`, `f32`, `f64`, `inverse`) between every
+/// One application of the named operator (`direct`, `two levels`, `two transforms`, `f32`, `f64`, `inverse`) between every
 /// `step`-th cell of a grid.
 pub fn timed(name: &str, side: usize, step: usize) -> Option<Box<dyn FnMut() -> f64>> {
     let grid = Grid { columns: side, rows: side, stretch: 1.0 };
@@ -56,6 +56,13 @@ pub fn timed(name: &str, side: usize, step: usize) -> Option<Box<dyn FnMut() -> 
         }),
         "two levels" => {
             let mut operator = TwoLevel::new(window, Split { spacing: 8, reach: 6, order: 6 });
+            Box::new(move || {
+                operator.apply(&set, &p, &set, &mut u);
+                u[0]
+            })
+        }
+        "two transforms" => {
+            let mut operator = TwoTransforms::new(window, TwoTransforms::split_at(12, 6));
             Box::new(move || {
                 operator.apply(&set, &p, &set, &mut u);
                 u[0]

@@ -71,7 +71,7 @@
 //! |---|---|
 //! | small sets | a Cholesky factor: pressure and stiffness from one factorisation |
 //! | larger sets | preconditioned conjugate gradients (`linear`), the same code in single and in double precision |
-//! | influence matrix | direct sum; two levels (smooth far field on a lattice, close pairs exactly); single-precision FFT of the bounding box, for corrections of the pressure a shorter one that is inexact at long lags |
+//! | influence matrix | direct sum; two levels (smooth far field on a lattice, close pairs exactly); two transforms (the same split, what is near by a single-precision FFT of little more than the bounding box); single-precision FFT of the bounding box, for corrections of the pressure a shorter one that is inexact at long lags |
 //! | preconditioner | none; the inverse of G on a torus around the contact, with the residual extended by zeros or through the gaps between contacts: `E' B E >= (G_CC)^-1` for every extension E |
 //! | certificate | exact sums or double-precision transforms, always |
 //!

@@ -16,6 +16,8 @@ pub enum Part {
     Single,
     /// The same on a shorter torus.
     Shortened,
+    /// The smooth part on a lattice, the rest on little more than the window.
+    TwoTransforms,
     /// The preconditioner.
     Preconditioner,
     /// Two-level sums.
@@ -36,12 +38,13 @@ pub enum Part {
 
 impl Part {
     /// All of them, in the order of their numbers.
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 14] = [
         Self::Other,
         Self::Plans,
         Self::Double,
         Self::Single,
         Self::Shortened,
+        Self::TwoTransforms,
         Self::Preconditioner,
         Self::TwoLevel,
         Self::Direct,
@@ -60,6 +63,7 @@ impl Part {
             Self::Double => "transforms, double precision",
             Self::Single => "transforms, single precision",
             Self::Shortened => "transforms, single, shortened",
+            Self::TwoTransforms => "transforms, single, two levels",
             Self::Preconditioner => "preconditioner",
             Self::TwoLevel => "two-level sums",
             Self::Direct => "direct sums",

@@ -113,7 +113,9 @@ pub fn solve(
     let (mut steps, mut unimproved) = (0, 0);
     for round in 0..tuning.stiffness_rounds {
         // A guess will be corrected.
-        let rough = round == 0 && factored.is_none() && tolerance >= tuning.stiffness_single;
+        let rough = round == 0
+            && factored.is_none()
+            && tolerance >= tuning.stiffness_single * operators.roughness(contact, &targets).powi(2);
         if let Some(q) = &q {
             if rough {
                 operators.rough(contact, q, &targets, &mut v);

@@ -28,6 +28,13 @@ pub struct Tuning {
     pub reach: usize,
     /// See `reach`.
     pub order: usize,
+    /// Radius of the near part of the two transforms, in spacings, and points of their interpolation: an error of 2e-7 of the
+    /// largest displacement in the test of `two_transforms`.
+    pub dense_reach: usize,
+    /// See `dense_reach`.
+    pub dense_order: usize,
+    /// ns of a cell and a point of the interpolation of the two transforms, both directions.
+    pub filter_ns: f64,
     /// The two-level operator is for at most one contact cell in so many of the window ...
     pub scattered: usize,
     /// ... and for at most so many cells.
@@ -81,11 +88,11 @@ pub struct Tuning {
     pub better: f64,
     /// Outer iterations without better residuals after which the solve has stagnated.
     pub patience: usize,
-    /// The next gap is evaluated in single precision where the tolerance will not be met: the residuals are
-    /// expected to fall as they did last, by a factor within this range ...
-    pub gain: (f64, f64),
-    /// ... and as long as that gap exceeds the noise of single precision, this share of the approach.
+    /// The next gap is evaluated in single precision where the present one left exceeds the noise of single
+    /// precision, this share of the approach ...
     pub single_noise: f64,
+    /// ... and its change alone where it exceeds so many times what the present gap may be wrong by.
+    pub resolved: f64,
     /// A cell is added when it penetrates by more than this multiple of the rms gap left on the contact:
     /// penetrations below are within the error of the inner solve, and adding those cells would regrow the
     /// set.
@@ -126,8 +133,8 @@ pub struct Tuning {
     pub stiffness_rounds: usize,
     /// Steps of one correction at most.
     pub stiffness_steps: usize,
-    /// Tolerance from which on the residual of a guess of q is evaluated in single precision; what comes of
-    /// it in double.
+    /// Tolerance from which on the residual of a guess of q is evaluated in single precision or with two
+    /// levels, over the square of their error; what comes of it in double precision.
     pub stiffness_single: f64,
     /// Share of the tolerance that the linear solve may use up; the rest is left to undecided cells.
     pub stiffness_share: f64,
@@ -178,6 +185,9 @@ impl Tuning {
         spread_ns: 1.0,
         reach: 6,
         order: 6,
+        dense_reach: 12,
+        dense_order: 6,
+        filter_ns: 0.6,
         scattered: 20,
         largest_scattered: 200_000,
         kept_window: 0.6,
@@ -199,8 +209,8 @@ impl Tuning {
         floor: 0.2,
         better: 0.9,
         patience: 12,
-        gain: (0.1, 0.4),
         single_noise: 1e-4,
+        resolved: 100.0,
         noise: 1.0,
         whole_step: 0.9,
         short_steps: 2,
@@ -216,7 +226,7 @@ impl Tuning {
         undecided_far: 0.125,
         stiffness_rounds: 40,
         stiffness_steps: 60,
-        stiffness_single: 1e-5,
+        stiffness_single: 500.0,
         stiffness_share: 0.5,
         stiffness_aim: 0.3,
         stiffness_reduction: 1e-3,
@@ -250,7 +260,7 @@ macro_rules! constants {
 }
 
 /// Every constant of `Tuning`, for a study of what each is worth.
-pub const CONSTANTS: [Constant; 66] = constants![
+pub const CONSTANTS: [Constant; 68] = constants![
     pair_ns,
     point_ns,
     single,
@@ -258,6 +268,9 @@ pub const CONSTANTS: [Constant; 66] = constants![
     spread_ns,
     reach,
     order,
+    dense_reach,
+    dense_order,
+    filter_ns,
     scattered,
     largest_scattered,
     kept_window,
@@ -280,9 +293,8 @@ pub const CONSTANTS: [Constant; 66] = constants![
     floor,
     better,
     patience,
-    gain.0,
-    gain.1,
     single_noise,
+    resolved,
     noise,
     whole_step,
     short_steps,
@@ -325,7 +337,12 @@ impl Tuning {
     pub fn with_multiple((_, multiply): Constant, factor: f64) -> Self {
         let mut tuning = Self::DEFAULT;
         multiply(&mut tuning, factor);
-        Self { shortened: tuning.shortened.max(1.1), order: tuning.order.next_multiple_of(2), ..tuning }
+        Self {
+            shortened: tuning.shortened.max(1.1),
+            order: tuning.order.next_multiple_of(2),
+            dense_order: tuning.dense_order.next_multiple_of(2),
+            ..tuning
+        }
     }
 }
 

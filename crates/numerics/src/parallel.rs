@@ -52,6 +52,16 @@ pub fn threads_for(work: usize) -> usize {
     threads.min(work / WORK_PER_THREAD).max(1)
 }
 
+/// Does `work` with the widest vector instructions that the processor has. They change no order of operations,
+/// so that no bit of a result depends on them.
+#[inline]
+pub fn widest<R>(work: impl FnOnce() -> R) -> R {
+    #[cfg(feature = "simd")]
+    return pulp::Arch::new().dispatch(work);
+    #[cfg(not(feature = "simd"))]
+    work()
+}
+
 /// Does `work` on each task, on as many threads as there are buffers; each thread has its own.
 pub fn for_each<T: Send, B: Send>(
     buffers: &mut [B],

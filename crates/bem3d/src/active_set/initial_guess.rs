@@ -74,7 +74,7 @@ impl LastState {
         };
         let set = self.contact.filter(&p, |p| p > 0.0);
         p.retain(|&p| p > 0.0);
-        (!set.is_empty()).then(|| Guess { set, p, d: d.max(f64::MIN_POSITIVE), far: false })
+        (!set.is_empty()).then(|| Guess { set, p, d: d.max(f64::MIN_POSITIVE) })
     }
 
     /// Whether a load begins on coarse grids although a state is known.
@@ -130,7 +130,7 @@ pub fn cold_start(problem: &mut Problem, target: Control, limits: Limits, stop: 
             // Any positive value: the first outer iteration evaluates the true gap.
             Control::Approach(d) => d / (own * set.len() as f64),
         };
-        Guess { p: vec![p; set.len()], set, d: reach, far: false }
+        Guess { p: vec![p; set.len()], set, d: reach }
     };
     if grid.count() <= tuning.coarsest * tuning.coarsest || !problem.nested {
         return from_above(problem);
@@ -240,7 +240,7 @@ fn prolonged(problem: &Problem, solved: &Solved) -> Guess {
             rows.push((y, carrying));
         }
     }
-    Guess { set: CellSet::from_rows(rows), p, d, far: true }
+    Guess { set: CellSet::from_rows(rows), p, d }
 }
 
 #[cfg(test)]

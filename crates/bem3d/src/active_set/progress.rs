@@ -13,6 +13,8 @@ pub struct Evaluated {
     pub residuals: Residuals,
     /// Whether the gap is known on every cell below the plane, in double precision.
     pub complete: bool,
+    /// What the gap may be wrong by, as a length.
+    pub uncertainty: f64,
     /// Whether p and d are exact on the set, up to rounding.
     pub factored: bool,
     /// How much was left of the step that led here, where it was shortened.
@@ -28,14 +30,25 @@ pub enum Decision {
     Continue { best: bool },
 }
 
+/// How a gap is evaluated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Look {
+    /// In double precision.
+    Exact,
+    /// What changed in single precision, where the gap before is known, else in double precision.
+    Change,
+    /// In single precision.
+    Rough,
+}
+
 /// The history that decisions rest on.
 #[derive(Debug)]
 pub struct OuterProgress {
     limits: Limits,
     /// Smallest residuals so far, of complete evaluations.
     pub best: f64,
-    /// Whether the next gap is evaluated in single precision.
-    pub rough: bool,
+    /// How the next gap is evaluated.
+    pub look: Look,
     /// The residuals before.
     last: f64,
     iteration: usize,
@@ -50,13 +63,13 @@ pub struct OuterProgress {
 }
 
 impl OuterProgress {
-    /// Nothing is known yet; `rough`: whether the first gap is evaluated in single precision.
-    pub fn new(limits: Limits, rough: bool) -> Self {
+    /// Nothing is known yet.
+    pub fn new(limits: Limits) -> Self {
         let unknown = f64::INFINITY;
         Self {
             limits,
             best: unknown,
-            rough,
+            look: Look::Rough,
             last: unknown,
             iteration: 0,
             since_best: 0,
@@ -93,7 +106,7 @@ impl OuterProgress {
             None if jammed || self.since_lowest > tuning.stalled || (stagnated && resolved) => {
                 self.begun += 1;
                 self.goal = Some(tuning.fall_back.powi(self.begun) * self.lowest);
-                (self.rough, self.since_lowest, self.since_best) = (false, 0, 0);
+                (self.look, self.since_lowest, self.since_best) = (Look::Exact, 0, 0);
             }
             _ => return stagnated,
         }
@@ -102,7 +115,7 @@ impl OuterProgress {
 
     /// Decides after the evaluation of a gap at the approach d.
     pub fn judge(&mut self, evaluated: Evaluated, d: f64, tuning: &Tuning, stop: Stop<'_>) -> Decision {
-        let Evaluated { residuals, complete, factored, step } = evaluated;
+        let Evaluated { residuals, complete, uncertainty, factored, step } = evaluated;
         let jammed = step.is_some_and(|share| share < tuning.jammed);
         let (error, limits) = (residuals.worst(), self.limits);
         let settled = !factored || residuals.deepest <= tuning.factor_rounding * d;
@@ -118,19 +131,23 @@ impl OuterProgress {
             return Decision::End(Status::Stagnated);
         }
         self.iteration += 1;
-        let (least, most) = tuning.gain;
-        let gain = error / self.last;
+        // Small residuals that do not fall may be those of the precision.
+        let falls = error < tuning.better * self.last;
         self.last = error;
-        // Residuals that do not fall may be those of the precision.
-        self.rough = self.goal.is_none()
-            && gain < tuning.better
-            && gain.clamp(least, most) * error > limits.tolerance
-            && length > tuning.single_noise * d;
+        self.look = if self.goal.is_some() {
+            Look::Exact
+        } else if length > tuning.single_noise * d {
+            Look::Rough
+        } else if falls && length > tuning.resolved * uncertainty {
+            Look::Change
+        } else {
+            Look::Exact
+        };
         let best = complete && error < tuning.better * self.best;
         if best {
             (self.best, self.since_best) = (error, 0);
         } else {
-            self.since_best += usize::from(complete && !self.rough);
+            self.since_best += usize::from(complete);
         }
         Decision::Continue { best }
     }
@@ -159,17 +176,17 @@ mod tests {
     /// A complete evaluation with these residuals.
     fn seen(error: f64) -> Evaluated {
         let residuals = Residuals { duality_gap: error, ..Residuals::default() };
-        Evaluated { residuals, complete: true, factored: false, step: None }
+        Evaluated { residuals, complete: true, uncertainty: 0.0, factored: false, step: None }
     }
 
     /// The first decision.
     fn first(evaluated: Evaluated, d: f64) -> Decision {
-        OuterProgress::new(TIGHT, false).judge(evaluated, d, &TUNING, &never)
+        OuterProgress::new(TIGHT).judge(evaluated, d, &TUNING, &never)
     }
 
     /// The decisions on a series of evaluations at an approach of 1.
     fn judged(limits: Limits, errors: &[f64]) -> Vec<Decision> {
-        let mut progress = OuterProgress::new(limits, false);
+        let mut progress = OuterProgress::new(limits);
         errors.iter().map(|&error| progress.judge(seen(error), 1.0, &TUNING, &never)).collect()
     }
 
@@ -196,8 +213,8 @@ mod tests {
         assert_eq!(factored(5e-10), CONVERGED);
         assert_eq!(factored(2e-9), Decision::Continue { best: true });
         // A converged state is not stopped any more.
-        assert_eq!(OuterProgress::new(TIGHT, false).judge(good, 1.0, &TUNING, &|| true), CONVERGED);
-        let stopped = OuterProgress::new(TIGHT, false).judge(seen(1.0), 1.0, &TUNING, &|| true);
+        assert_eq!(OuterProgress::new(TIGHT).judge(good, 1.0, &TUNING, &|| true), CONVERGED);
+        let stopped = OuterProgress::new(TIGHT).judge(seen(1.0), 1.0, &TUNING, &|| true);
         assert_eq!(stopped, Decision::End(Status::Stopped));
     }
 
@@ -208,7 +225,7 @@ mod tests {
         // do so, too.
         for error in [1e-3, 0.5] {
             for (d, rounding) in [(1e-3, false), (2.0 * error / TUNING.rounding, true)] {
-                let mut progress = OuterProgress::new(TIGHT, false);
+                let mut progress = OuterProgress::new(TIGHT);
                 for i in 0..TUNING.patience + 2 {
                     let decision = progress.judge(seen(error), d, &TUNING, &never);
                     assert_eq!(decision, Decision::Continue { best: i == 0 });
@@ -221,7 +238,7 @@ mod tests {
         }
         // What is followed by a gap in single precision takes no patience: only the limit of iterations ends
         // it.
-        let mut progress = OuterProgress::new(TIGHT, false);
+        let mut progress = OuterProgress::new(TIGHT);
         let mut error = 0.5;
         let decisions = (0..=TIGHT.outer_iterations).map(|_| {
             error *= 0.89;
@@ -230,7 +247,7 @@ mod tests {
         let end = Decision::End(Status::IterationLimit);
         assert_eq!(decisions.into_iter().position(|d| d == end), Some(TIGHT.outer_iterations));
         // Nor do those of shortened steps, whose gaps are not evaluated.
-        let mut progress = OuterProgress::new(TIGHT, false);
+        let mut progress = OuterProgress::new(TIGHT);
         let shortened = Evaluated { complete: false, ..seen(1e-5) };
         let mut decisions = (0..2 * TUNING.patience).map(|_| progress.judge(shortened, 1.0, &TUNING, &never));
         assert!(decisions.all(|d| d == Decision::Continue { best: false }));
@@ -250,11 +267,11 @@ mod tests {
         let continued = Decision::Continue { best: false };
         // A step of which nothing is left begins it at once, without a gap in single precision; a tenth of
         // the smallest residuals ends it.
-        let mut progress = OuterProgress::new(TIGHT, false);
+        let mut progress = OuterProgress::new(TIGHT);
         assert_eq!(next(&mut progress, seen(0.1)), (Decision::Continue { best: true }, false));
         assert_eq!(next(&mut progress, jammed(0.2)), (continued, true));
-        assert!(!progress.rough);
-        assert!(next(&mut progress, seen(0.011)).1 && !progress.rough);
+        assert_eq!(progress.look, Look::Exact);
+        assert!(next(&mut progress, seen(0.011)).1 && progress.look == Look::Exact);
         assert!(!next(&mut progress, seen(0.009)).1);
         // The second time it takes a hundredth.
         assert!(next(&mut progress, jammed(0.5)).1);
@@ -264,12 +281,12 @@ mod tests {
         assert!(next(&mut progress, jammed(0.5)).1);
         let mut stagnated = (0..).map(|_| next(&mut progress, seen(8.5e-5)).0);
         assert_eq!(stagnated.position(|d| d == Decision::End(Status::Stagnated)), Some(TUNING.patience + 1));
-        let mut progress = OuterProgress::new(TIGHT, false);
+        let mut progress = OuterProgress::new(TIGHT);
         next(&mut progress, seen(0.1));
         assert!(next(&mut progress, jammed(0.1)).1);
         assert_eq!(next(&mut progress, seen(1e-6)).0, Decision::End(Status::Converged));
         // Shortened steps without better residuals begin it, too.
-        let mut progress = OuterProgress::new(TIGHT, false);
+        let mut progress = OuterProgress::new(TIGHT);
         let shortened = Evaluated { complete: false, ..seen(0.1) };
         let begins = (0..1000).position(|_| next(&mut progress, shortened).1);
         assert_eq!(begins, Some(TUNING.stalled + 1));
@@ -282,7 +299,7 @@ mod tests {
             (0..decisions.len()).filter(|&i| decisions[i] == best).collect()
         };
         assert_eq!(best(&judged(TIGHT, &[1.0, 0.95, TUNING.better, 0.5, 0.46, 0.44])), [0, 3, 5]);
-        let mut progress = OuterProgress::new(TIGHT, false);
+        let mut progress = OuterProgress::new(TIGHT);
         progress.judge(seen(1.0), 1.0, &TUNING, &never);
         let incomplete = Evaluated { complete: false, ..seen(0.1) };
         assert_eq!(progress.judge(incomplete, 1.0, &TUNING, &never), Decision::Continue { best: false });
@@ -290,45 +307,34 @@ mod tests {
     }
 
     #[test]
-    fn a_gap_in_single_precision_follows_large_residuals_that_it_can_resolve() {
+    fn single_precision_looks_as_long_as_it_can_tell() {
         let noise = TUNING.single_noise;
-        // (residuals, tolerance, height, approach) -> whether the next gap is evaluated in single precision.
-        for (error, tolerance, height, d, rough) in [
-            (0.5, 1e-6, 1.0, 1.0, true),
-            (0.02, 1e-6, 1.0, 1.0, true),
-            // Ten times the tolerance is near enough for double precision.
-            (0.5, 0.1, 1.0, 1.0, false),
-            (0.5, 0.05, 1.0, 1.0, false),
-            (0.5, 0.049, 1.0, 1.0, true),
-            // The gap that is measured, residuals x height, against 1e-4 of the approach.
-            (0.5, 1e-6, 1.0, 0.5 / noise, false),
-            (0.5, 1e-6, 1.0, 0.6 / noise, false),
-            (0.5, 1e-6, 1.0, 0.4 / noise, true),
-            (0.5, 1e-6, 4.0, 1.0 / noise, true),
-        ] {
-            let mut progress = OuterProgress::new(Limits { tolerance, height: Some(height), ..TIGHT }, false);
-            assert!(!progress.rough);
-            progress.judge(seen(error), d, &TUNING, &never);
-            assert_eq!(progress.rough, rough, "{error} {tolerance} {height} {d}");
-        }
-        // What they fell by last is expected again; those that do not fall may be noise.
-        for (next, tolerance, rough) in [
-            (0.05, 0.0051, false),
-            (0.05, 0.0049, true),
-            (0.1, 0.021, false),
-            (0.1, 0.019, true),
-            (0.46, 1e-6, false),
-        ] {
-            let mut progress = OuterProgress::new(Limits { tolerance, ..TIGHT }, false);
-            progress.judge(seen(0.5), 1.0, &TUNING, &never);
-            progress.judge(seen(next), 1.0, &TUNING, &never);
-            assert_eq!(progress.rough, rough, "{next} {tolerance}");
-        }
+        let look = |height, evaluations: &[Evaluated], d| {
+            let mut progress = OuterProgress::new(Limits { height: Some(height), ..TIGHT });
+            assert_eq!(progress.look, Look::Rough);
+            for &evaluated in evaluations {
+                progress.judge(evaluated, d, &TUNING, &never);
+            }
+            progress.look
+        };
+        let known = |error, uncertainty| Evaluated { uncertainty, complete: false, ..seen(error) };
+        // The gap that is measured, residuals x height, against 1e-4 of the approach, whatever they did.
+        assert_eq!(look(1.0, &[known(0.5, 1.0)], 0.4 / noise), Look::Rough);
+        assert_eq!(look(1.0, &[known(0.4, 1.0), known(0.5, 1.0)], 0.4 / noise), Look::Rough);
+        assert_eq!(look(4.0, &[known(0.5, 1.0)], 1.0 / noise), Look::Rough);
+        assert_eq!(look(1.0, &[known(0.5, 1.0)], 0.6 / noise), Look::Exact);
+        // Below it against what the gap may be wrong by.
+        let small = |uncertainty| look(1.0, &[known(0.5, uncertainty)], 1e3 / noise);
+        assert_eq!(small(0.0), Look::Change);
+        assert_eq!(small(0.49 / TUNING.resolved), Look::Change);
+        assert_eq!(small(0.51 / TUNING.resolved), Look::Exact);
+        // Those that do not fall may be noise.
+        assert_eq!(look(1.0, &[seen(0.5), seen(0.44)], 1e3 / noise), Look::Change);
+        assert_eq!(look(1.0, &[seen(0.5), seen(0.46)], 1e3 / noise), Look::Exact);
         // Without a height gaps are compared with the approach, whatever its unit.
-        let mut progress = OuterProgress::new(Limits { height: None, ..TIGHT }, true);
-        assert!(progress.rough);
+        let mut progress = OuterProgress::new(Limits { height: None, ..TIGHT });
         progress.judge(seen(0.5), 1e-30, &TUNING, &never);
-        assert!(progress.rough);
+        assert_eq!(progress.look, Look::Rough);
     }
 
     #[test]

@@ -3,13 +3,13 @@
 
 use super::descent::{Feasible, descend};
 use super::line_search::shorten;
-use super::progress::{Decision, Evaluated, OuterProgress, criteria};
+use super::progress::{Decision, Evaluated, Look, OuterProgress, criteria};
 use super::residuals::Residuals;
 use super::state::{Continuation, Control, Guess, Limits, Problem, Solved};
 use crate::geometry::CellSet;
 use crate::linear::{Factor, Fixed};
 use crate::parts::{Part, Recorder};
-use crate::real::{each, largest, sum_of_pairs};
+use crate::real::{each, largest, sum_of_pairs, update};
 use contact_model::{Status, Stop};
 
 /// Solves for one load from a guess.
@@ -22,14 +22,14 @@ use contact_model::{Status, Stop};
 ///
 /// Cost: 20 to 60 applications of G for four digits, a few factorisations for a small set.
 pub fn solve(problem: &mut Problem, target: Control, guess: Guess, limits: Limits, stop: Stop<'_>) -> Solved {
-    let Guess { set, p, d, far } = guess;
+    let Guess { set, p, d } = guess;
     let reach = match target {
         Control::Force(_) => d,
         Control::Approach(asked) => asked,
     };
     let now = Pressure { contact: set, p, d, q: None };
     let solver = Solver::new(problem, target, limits, now, Continuation { reach, ..Continuation::default() });
-    solver.iterate(None, far, stop)
+    solver.iterate(None, stop)
 }
 
 /// Goes on from a solved state to a tighter tolerance; its gap is not evaluated again.
@@ -41,9 +41,10 @@ pub fn resume(
     stop: Stop<'_>,
 ) -> Solved {
     let Solved { contact, p, d, q, residuals, continuation, .. } = solved;
-    let evaluated = Evaluated { residuals, complete: true, factored: q.is_some(), step: None };
+    let evaluated =
+        Evaluated { residuals, complete: true, uncertainty: 0.0, factored: q.is_some(), step: None };
     let solver = Solver::new(problem, target, limits, Pressure { contact, p, d, q }, continuation);
-    solver.iterate(Some(evaluated), false, stop)
+    solver.iterate(Some(evaluated), stop)
 }
 
 /// A pressure on its way to a solution.
@@ -56,6 +57,10 @@ struct Pressure {
     q: Option<Vec<f64>>,
 }
 
+/// Candidates up to one approach serve another of at most so many times it: less than the margin with which
+/// they were chosen.
+const KEPT_REACH: f64 = 1.02;
+
 struct Solver<'a> {
     problem: &'a mut Problem,
     target: Control,
@@ -65,6 +70,10 @@ struct Solver<'a> {
     state: Continuation,
     /// The gap left on its contact set.
     left: Vec<f64>,
+    /// What the gap may be wrong by: nothing in double precision.
+    uncertainty: f64,
+    /// The cells whose pressure has changed since the gap was evaluated, and what it was there, negative.
+    measured: Option<(CellSet, Vec<f64>)>,
     /// Candidates are wanted up to this approach.
     reach: f64,
     /// The best pressure so far, unless it is the present one.
@@ -96,6 +105,8 @@ impl<'a> Solver<'a> {
             now,
             state,
             left,
+            uncertainty: 0.0,
+            measured: None,
             reach,
             best,
             now_is_best: false,
@@ -104,18 +115,18 @@ impl<'a> Solver<'a> {
         }
     }
 
-    fn iterate(mut self, mut known: Option<Evaluated>, rough: bool, stop: Stop<'_>) -> Solved {
+    fn iterate(mut self, mut known: Option<Evaluated>, stop: Stop<'_>) -> Solved {
         let (tuning, recorder) = (*self.problem.operators.tuning(), self.recorder());
-        let mut progress = OuterProgress::new(self.limits, rough);
+        let mut progress = OuterProgress::new(self.limits);
         let (mut steps, tolerance) = (0, self.limits.tolerance);
         let (status, last) = loop {
             let mut evaluated = known
                 .take()
-                .unwrap_or_else(|| recorder.timed(Part::Residuals, || self.evaluate(progress.rough)));
+                .unwrap_or_else(|| recorder.timed(Part::Residuals, || self.evaluate(progress.look)));
             let within = evaluated.residuals.worst() <= tolerance;
-            if within && (progress.rough || evaluated.step.is_some()) {
+            if within && (evaluated.uncertainty > 0.0 || evaluated.step.is_some()) {
                 // Better than expected; the end of a step that was shortened has not been evaluated.
-                evaluated = recorder.timed(Part::Residuals, || self.evaluate(false));
+                evaluated = recorder.timed(Part::Residuals, || self.evaluate(Look::Exact));
             }
             let fell_back = progress.falls_back();
             match progress.judge(evaluated, self.now.d, &tuning, stop) {
@@ -125,7 +136,7 @@ impl<'a> Solver<'a> {
             if progress.falls_back() {
                 if !fell_back {
                     // From the exact gap of a pressure that obeys the bounds and the force.
-                    self.evaluate(false);
+                    self.evaluate(Look::Exact);
                 }
                 steps += self.descend(stop);
                 continue;
@@ -138,10 +149,10 @@ impl<'a> Solver<'a> {
         if status != Status::Converged && !self.now_is_best && progress.best <= residuals.worst() {
             self.now = std::mem::take(&mut self.best);
             (self.state, self.reach) = (Continuation::default(), tuning.candidates * self.now.d);
-            residuals = self.evaluate(false).residuals;
+            residuals = self.evaluate(Look::Exact).residuals;
         } else if !last.complete {
             // What is returned carries residuals of double precision on every candidate, converged or not.
-            residuals = self.evaluate(false).residuals;
+            residuals = self.evaluate(Look::Exact).residuals;
         }
         let Self { now: Pressure { contact, p, d, q }, state: continuation, .. } = self;
         Solved { contact, p, d, q, residuals, steps, status, continuation }
@@ -155,13 +166,13 @@ impl<'a> Solver<'a> {
     /// makes.
     ///
     /// A `rough` evaluation in single precision says how to go on, but is never evidence.
-    fn evaluate(&mut self, rough: bool) -> Evaluated {
+    fn evaluate(&mut self, look: Look) -> Evaluated {
         let Self { problem, target, now, .. } = self;
         let Problem { bounds, candidates, .. } = &**problem;
         let joined = bounds.admit(&mut now.contact, &mut now.p, target.force(), candidates);
-        self.displace(joined, rough);
+        self.displace(joined, look);
         let step = self.shorten();
-        let Self { problem, target, limits, now, state, left, reach, .. } = self;
+        let Self { problem, target, limits, now, state, left, reach, uncertainty, .. } = self;
         let (bounds, tuning) = (problem.bounds, problem.operators.tuning());
         let Continuation { checked, gap, .. } = state;
         problem.operators.recorder().timed(Part::Sets, || now.contact.carry_to(checked, gap, left));
@@ -180,7 +191,8 @@ impl<'a> Solver<'a> {
         let height = limits.height.unwrap_or(d);
         Evaluated {
             residuals: Residuals::measure(bounds, (&now.contact, &now.p, left), (checked, gap), height),
-            complete: !rough && step.is_none() && d <= state.reach,
+            complete: *uncertainty <= 0.0 && step.is_none() && d <= state.reach,
+            uncertainty: *uncertainty,
             factored: now.q.is_some(),
             step,
         }
@@ -188,24 +200,45 @@ impl<'a> Solver<'a> {
 
     /// Evaluates u + z under the present pressure on all cells that could touch; `joined`: cells were added
     /// to the contact set that may not be among the candidates.
-    fn displace(&mut self, joined: bool, rough: bool) {
-        let Self { problem, now, state, reach, .. } = self;
+    ///
+    /// In single precision what changed since the last gap is enough: the error is relative to what is
+    /// transformed.
+    fn displace(&mut self, joined: bool, look: Look) {
+        let Self { problem, now, state, reach, measured, uncertainty, .. } = self;
         let Problem { candidates, operators, .. } = &mut **problem;
         let (kept, recorder) = (operators.tuning().kept_candidates, operators.recorder().clone());
+        let mut before = measured.take();
         // Later contact sets are subsets of the candidates that the first one is joined to.
         recorder.timed(Part::Sets, || {
-            if state.checked.is_empty() || !(kept * state.reach..=state.reach).contains(reach) {
+            if state.checked.is_empty() || !(kept * state.reach..=KEPT_REACH * state.reach).contains(reach) {
                 state.reach = *reach;
                 state.checked = candidates.below(*reach).union(&now.contact);
+                before = None;
             } else if joined {
                 state.checked = state.checked.union(&now.contact);
+                before = None;
             }
         });
         let Continuation { checked, gap, .. } = state;
-        if rough {
-            operators.rough(&now.contact, &now.p, checked, gap);
-        } else {
+        let exact = look == Look::Exact || (look == Look::Change && before.is_none());
+        let error = if exact { 0.0 } else { operators.roughness(&now.contact, checked) };
+        if error <= 0.0 {
             operators.exact(&now.contact, &now.p, checked, gap);
+            *uncertainty = 0.0;
+        } else if let Some((cells, mut change)) = before {
+            recorder.timed(Part::Sets, || cells.add_carried(&now.contact, &now.p, &mut change));
+            let mut displacement = Vec::new();
+            let error = operators.roughness(&cells, checked);
+            operators.rough(&cells, &change, checked, &mut displacement);
+            // A pressure that changes its sign from cell to cell displaces little.
+            let own = operators.table().own() * largest(&change);
+            *uncertainty += error * own.max(largest(&displacement));
+            let d = now.d;
+            update(gap, &displacement, |gap, u| *gap += u + d);
+            return;
+        } else {
+            operators.rough(&now.contact, &now.p, checked, gap);
+            *uncertainty = error * largest(gap);
         }
         recorder.timed(Part::Sets, || candidates.add_to(checked, gap));
     }
@@ -236,7 +269,7 @@ impl<'a> Solver<'a> {
     /// Returns the steps taken.
     fn improve(&mut self, error: f64, stop: Stop<'_>) -> usize {
         let recorder = self.recorder();
-        let Self { problem, target, limits, now, state, left, .. } = self;
+        let Self { problem, target, limits, now, state, left, measured, .. } = self;
         let (bounds, tuning) = (problem.bounds, *problem.operators.tuning());
         let Continuation { checked, gap, .. } = &*state;
         let noise = tuning.noise * root_mean_square(&bounds.of_free(&now.p, left));
@@ -266,8 +299,14 @@ impl<'a> Solver<'a> {
         let outcome = workspace.solve(operators, &mut change, fixed, criteria, stop);
         let set = workspace.set();
         let (contact, p) = recorder.timed(Part::Sets, || {
-            set.add_carried(&now.contact, &now.p, &mut change);
-            bounds.corrected(set, change, &held, target.force())
+            let mut before = set.carry(&now.contact, &now.p);
+            update(&mut change, &before, |change, p| *change += p);
+            let corrected = bounds.corrected(set, change, &held, target.force());
+            if held.is_empty() {
+                each(&mut before, |p| *p = -*p);
+                *measured = Some((set.clone(), before));
+            }
+            corrected
         });
         let d = now.d;
         self.advance(Pressure { contact, p, d, q: None });

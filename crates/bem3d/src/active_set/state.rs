@@ -95,8 +95,6 @@ pub struct Guess {
     pub p: Vec<f64>,
     /// Approach that belongs to it, rather too large than too small.
     pub d: f64,
-    /// Whether it is known to be far off: then single precision is enough for the first gap.
-    pub far: bool,
 }
 
 /// A solved state.

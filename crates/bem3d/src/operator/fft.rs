@@ -3,7 +3,7 @@
 
 use super::influence::InfluenceOperator;
 use crate::geometry::{CellSet, Lengths, Window};
-use crate::real::{Real, binary_unit};
+use crate::real::{Real, binary_unit, update};
 use crate::tuning::{BAND, CACHE_LINE, SQUARE, STRIPE_BYTES};
 use numerics::parallel::{for_each, threads_for};
 use realfft::{ComplexToReal, RealToComplex};
@@ -34,6 +34,7 @@ pub struct FftConvolution<T: Real> {
     /// Which bands of rows were given last.
     given: Vec<bool>,
     buffers: Vec<Buffers<T>>,
+    rounded: Rounded,
 }
 
 /// Buffers of one thread.
@@ -76,6 +77,7 @@ impl<T: Real> FftConvolution<T> {
             start: if start <= Self::TOGETHER { start } else { 0 },
             given: vec![false; window.height.div_ceil(BAND)],
             buffers: Vec::new(),
+            rounded: Rounded::default(),
         }
     }
 
@@ -271,14 +273,29 @@ impl<T: Real> InfluenceOperator<T> for FftConvolution<T> {
 /// Double-precision vectors through a single-precision transform.
 impl InfluenceOperator<f64> for FftConvolution<f32> {
     fn apply(&mut self, sources: &CellSet, p: &[f64], targets: &CellSet, u: &mut [f64]) {
+        let mut rounded = std::mem::take(&mut self.rounded);
+        rounded.apply(p, u, |p, u| self.apply(sources, p, targets, u));
+        self.rounded = rounded;
+    }
+}
+
+/// Double-precision vectors in single precision, over a unit of their own.
+#[derive(Debug, Default)]
+pub struct Rounded {
+    p: Vec<f32>,
+    u: Vec<f32>,
+}
+
+impl Rounded {
+    /// `u` as `apply` finds it from `p` in single precision.
+    pub fn apply(&mut self, p: &[f64], u: &mut [f64], apply: impl FnOnce(&[f32], &mut [f32])) {
         let unit = binary_unit(p);
         let scale = unit.recip();
-        let single: Vec<f32> = p.iter().map(|p| (p * scale) as f32).collect();
-        let mut displacement = vec![0.0f32; u.len()];
-        self.apply(sources, &single, targets, &mut displacement);
-        for (u, &value) in u.iter_mut().zip(&displacement) {
-            *u = f64::from(value) * unit;
-        }
+        self.p.resize(p.len(), 0.0);
+        self.u.resize(u.len(), 0.0);
+        update(&mut self.p, p, |single, p| *single = (p * scale) as f32);
+        apply(&self.p, &mut self.u);
+        update(u, &self.u, |u, &single| *u = f64::from(single) * unit);
     }
 }
 

@@ -6,6 +6,7 @@ mod influence;
 mod operators;
 mod recipe;
 mod two_level;
+mod two_transforms;
 
 pub use direct::DirectSum;
 pub use fft::FftConvolution;
@@ -16,3 +17,5 @@ pub use recipe::Application;
 pub use recipe::{Conditioning, Recipe};
 #[doc(hidden)]
 pub use two_level::{Split, TwoLevel};
+#[doc(hidden)]
+pub use two_transforms::TwoTransforms;

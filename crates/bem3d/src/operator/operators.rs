@@ -5,6 +5,7 @@ use super::fft::FftConvolution;
 use super::influence::InfluenceOperator;
 use super::recipe::{Application, Conditioning, Planner, Recipe};
 use super::two_level::TwoLevel;
+use super::two_transforms::TwoTransforms;
 use crate::geometry::{CellSet, Window};
 use crate::kernel::KernelTable;
 use crate::parts::{Part, Recorder};
@@ -23,6 +24,7 @@ pub struct Operators {
     shortened: Option<FftConvolution<f32>>,
     torus: Option<FftConvolution<f32>>,
     two_level: Option<TwoLevel>,
+    two_transforms: Option<TwoTransforms>,
     /// Applications of the influence matrix so far, all precisions together.
     pub applications: usize,
     /// Linear systems so far: factors and runs of conjugate gradients.
@@ -48,6 +50,8 @@ enum Way<'a> {
     Direct(DirectSum<'a>),
     /// Smooth part on a lattice, near part by pairs.
     TwoLevel(&'a mut TwoLevel),
+    /// Smooth part on a lattice, near part by a transform.
+    TwoTransforms(&'a mut TwoTransforms),
     /// Transform in single precision, exact or shortened.
     Fft(&'a mut FftConvolution<f32>),
 }
@@ -55,12 +59,14 @@ enum Way<'a> {
 impl<T: Real> InfluenceOperator<T> for Planned<'_>
 where
     FftConvolution<f32>: InfluenceOperator<T>,
+    TwoTransforms: InfluenceOperator<T>,
 {
     fn apply(&mut self, sources: &CellSet, p: &[T], targets: &CellSet, u: &mut [T]) {
         let Self { way, part, recorder } = self;
         recorder.timed(*part, || match way {
             Way::Direct(direct) => direct.apply(sources, p, targets, u),
             Way::TwoLevel(two_level) => two_level.apply(sources, p, targets, u),
+            Way::TwoTransforms(transforms) => transforms.apply(sources, p, targets, u),
             Way::Fft(transform) => transform.apply(sources, p, targets, u),
         });
     }
@@ -84,6 +90,7 @@ impl Operators {
             shortened: None,
             torus: None,
             two_level: None,
+            two_transforms: None,
             applications: 0,
             solves: 0,
             two_levels: true,
@@ -131,7 +138,14 @@ impl Operators {
         self.recorder.timed(Part::Double, || transform.apply(sources, p, targets, u));
     }
 
-    /// `u = G p` to five digits or more, for decisions that are checked with [`Self::exact`].
+    /// The error of [`Self::rough`] over the largest displacement, rather too large; 0 where sums over pairs are
+    /// cheapest.
+    pub fn roughness(&self, sources: &CellSet, targets: &CellSet) -> f64 {
+        let windows = sources.window().into_iter().chain(targets.window());
+        windows.reduce(Window::union).map_or(0.0, |w| self.planner().fast(sources, targets, w).error())
+    }
+
+    /// `u = G p` to four digits or more, for decisions that are checked with [`Self::exact`].
     pub fn rough(&mut self, sources: &CellSet, p: &[f64], targets: &CellSet, u: &mut Vec<f64>) {
         let Some(window) = self.begin(sources, targets, u) else { return };
         let application = self.planner().fast(sources, targets, window);
@@ -154,24 +168,37 @@ impl Operators {
     pub fn system(&mut self, recipe: Recipe) -> (Planned<'_>, Option<&mut FftConvolution<f32>>) {
         let Recipe { window, application, conditioning } = recipe;
         self.last = Some(recipe);
-        let Self { table, tuning, recorder, single, shortened, two_level, torus, .. } = self;
+        let Self { table, tuning, recorder, single, shortened, two_level, two_transforms, torus, .. } = self;
         let inverse = match conditioning {
             Conditioning::Identity => None,
             Conditioning::Torus { lengths, .. } => Some(planned(torus, window, (tuning, recorder), || {
                 FftConvolution::new(window, lengths, table.inverse_symbol(lengths))
             })),
         };
-        (plan(application, window, table, (tuning, recorder), (single, shortened, two_level)), inverse)
+        (
+            plan(
+                application,
+                window,
+                table,
+                (tuning, recorder),
+                (single, shortened, two_level, two_transforms),
+            ),
+            inverse,
+        )
     }
 
     fn application(&mut self, application: Application, window: Window) -> Planned<'_> {
-        let Self { table, tuning, recorder, single, shortened, two_level, .. } = self;
-        plan(application, window, table, (tuning, recorder), (single, shortened, two_level))
+        let Self { table, tuning, recorder, single, shortened, two_level, two_transforms, .. } = self;
+        plan(application, window, table, (tuning, recorder), (single, shortened, two_level, two_transforms))
     }
 }
 
-type Slots<'a> =
-    (&'a mut Option<FftConvolution<f32>>, &'a mut Option<FftConvolution<f32>>, &'a mut Option<TwoLevel>);
+type Slots<'a> = (
+    &'a mut Option<FftConvolution<f32>>,
+    &'a mut Option<FftConvolution<f32>>,
+    &'a mut Option<TwoLevel>,
+    &'a mut Option<TwoTransforms>,
+);
 
 /// Plans an application in single precision, or takes a plan that serves.
 fn plan<'a>(
@@ -179,7 +206,7 @@ fn plan<'a>(
     window: Window,
     table: &'a KernelTable,
     (tuning, recorder): (&Tuning, &'a Recorder),
-    (single, shortened, two_level): Slots<'a>,
+    (single, shortened, two_level, two_transforms): Slots<'a>,
 ) -> Planned<'a> {
     let (way, part) = match application {
         Application::Direct => (Way::Direct(DirectSum(table)), Part::Direct),
@@ -189,6 +216,14 @@ fn plan<'a>(
             }
             let make = || recorder.timed(Part::Plans, || TwoLevel::new(window, split));
             (Way::TwoLevel(two_level.get_or_insert_with(make)), Part::TwoLevel)
+        }
+        Application::TwoTransforms(split) => {
+            let serves = |o: &TwoTransforms| o.split() == split && o.window().serves(window, tuning);
+            if !two_transforms.as_ref().is_some_and(serves) {
+                *two_transforms = None;
+            }
+            let make = || recorder.timed(Part::Plans, || TwoTransforms::new(window, split));
+            (Way::TwoTransforms(two_transforms.get_or_insert_with(make)), Part::TwoTransforms)
         }
         Application::Fft(lengths) => {
             let exact = lengths == table.exact_lengths(window);

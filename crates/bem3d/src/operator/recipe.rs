@@ -1,6 +1,7 @@
 //! How one linear system is solved: a pure function of sizes, with the measured constants of [`Tuning`].
 
 use super::two_level::Split;
+use super::two_transforms::TwoTransforms;
 use crate::geometry::{CellSet, Lengths, Window};
 use crate::kernel::{KernelTable, Medium};
 use crate::tuning::Tuning;
@@ -13,8 +14,21 @@ pub enum Application {
     Direct,
     /// Smooth part on a lattice, near part by pairs.
     TwoLevel(Split),
+    /// Smooth part on a lattice, near part by a transform of little more than the window.
+    TwoTransforms(Split),
     /// Transform of the window.
     Fft(Lengths),
+}
+
+impl Application {
+    /// Its error over the largest displacement, rather too large.
+    pub fn error(self) -> f64 {
+        match self {
+            Self::Direct => 0.0,
+            Self::TwoLevel(split) | Self::TwoTransforms(split) => split.error(),
+            Self::Fft(_) => 1e-6,
+        }
+    }
 }
 
 /// The preconditioner of a system.
@@ -47,7 +61,8 @@ pub struct Recipe {
 impl Recipe {
     /// Whether vectors are in single precision: all that a transform in single precision can use.
     pub fn is_single(&self) -> bool {
-        matches!(self.application, Application::Fft(_)) || self.has_preconditioner()
+        matches!(self.application, Application::Fft(_) | Application::TwoTransforms(_))
+            || self.has_preconditioner()
     }
 
     /// Whether there is a preconditioner.
@@ -62,6 +77,9 @@ impl fmt::Display for Recipe {
             Application::Direct => write!(f, "direct")?,
             Application::TwoLevel(Split { spacing, reach, order }) => {
                 write!(f, "two levels, spacing {spacing} reach {reach} order {order}")?;
+            }
+            Application::TwoTransforms(Split { spacing, reach, order }) => {
+                write!(f, "two transforms, spacing {spacing} reach {reach} order {order}, f32 in f64")?;
             }
             Application::Fft(Lengths { x, y }) => write!(f, "fft {x} x {y}, f32 in f64")?,
         }
@@ -95,6 +113,31 @@ impl Planner<'_> {
         self.tuning.pair_ns * sources as f64 * targets as f64
     }
 
+    /// The smooth far field is that of the free kernel of square cells.
+    fn knows_far_field(&self) -> bool {
+        self.two_levels && self.table.medium() == Medium::HalfSpace && self.table.grid().has_square_cells()
+    }
+
+    /// The cheapest transforms of a window in single precision with their time, ns; `every_lag`: whether the
+    /// kernel must be right at every lag.
+    fn transforms(&self, window: Window, every_lag: bool) -> (f64, Application) {
+        let tuning = self.tuning;
+        let lengths = if every_lag {
+            self.table.exact_lengths(window)
+        } else {
+            self.table.shortened_lengths(window, tuning.shortened)
+        };
+        let one = (tuning.single * self.fft_ns(lengths), Application::Fft(lengths));
+        if !self.knows_far_field() {
+            return one;
+        }
+        let split = TwoTransforms::split_at(tuning.dense_reach, tuning.dense_order);
+        let [near, far] = [split.near_lengths(window), Lengths::free(split.lattice(window))];
+        let time = tuning.single * (self.fft_ns(near) + self.fft_ns(far))
+            + tuning.filter_ns * (split.order * window.count()) as f64;
+        if time < one.0 { (time, Application::TwoTransforms(split)) } else { one }
+    }
+
     /// The cheaper exact way between two sets in a window: direct sums or a transform in double precision.
     pub fn exact(&self, sources: usize, targets: usize, window: Window) -> Application {
         let lengths = self.table.exact_lengths(window);
@@ -112,16 +155,14 @@ impl Planner<'_> {
     /// The same with its time, ns.
     fn fastest(&self, sources: &CellSet, targets: &CellSet, window: Window) -> (f64, Application) {
         let tuning = self.tuning;
-        let lengths = self.table.exact_lengths(window);
         let direct = self.direct_ns(sources.len(), targets.len());
-        let fft = tuning.single * self.fft_ns(lengths);
-        let mut best =
-            if direct <= fft { (direct, Application::Direct) } else { (fft, Application::Fft(lengths)) };
+        let mut best = self.transforms(window, true);
+        if direct <= best.0 {
+            best = (direct, Application::Direct);
+        }
         let cells = sources.len().max(targets.len());
-        // The smooth far field is that of the free kernel of square cells.
-        let known = self.table.medium() == Medium::HalfSpace && self.table.grid().has_square_cells();
         let few = cells <= tuning.largest_scattered && cells * tuning.scattered <= window.count();
-        if !(self.two_levels && known && few) {
+        if !(few && self.knows_far_field()) {
             return best;
         }
         for spacing in [4, 8, 16, 32] {
@@ -149,17 +190,14 @@ impl Planner<'_> {
         let share = contact as f64 / window.count() as f64;
         let (fastest, application) = self.fastest(set, set, window);
         let torus = self.table.torus_lengths(window);
-        let exact = self.table.exact_lengths(window);
         // Transforms of the window and of the torus against more steps of what is fastest alone.
-        let conditioned = tuning.single * (self.fft_ns(exact) + self.fft_ns(torus));
+        let conditioned = self.transforms(window, true).0 + tuning.single * self.fft_ns(torus);
         let large = contact > tuning.largest_factor
             && share >= tuning.preconditioned_large
             && conditioned <= tuning.preconditioner_saves * fastest;
-        let application = if large { Application::Fft(exact) } else { application };
         let application = match application {
-            Application::Fft(_) if !every_lag => {
-                Application::Fft(self.table.shortened_lengths(window, tuning.shortened))
-            }
+            Application::Fft(_) | Application::TwoTransforms(_) => self.transforms(window, every_lag).1,
+            _ if large => self.transforms(window, every_lag).1,
             other => other,
         };
         let conditioning = if large || share >= tuning.preconditioned {
@@ -175,8 +213,7 @@ impl Planner<'_> {
     pub fn factors(&self, n: usize, window: Window) -> bool {
         let (cells, tuning) = (n as f64, self.tuning);
         let factor = tuning.factors * (tuning.factor_ns * cells.powi(3) / 3.0 + 4.0 * cells * cells);
-        let fft = tuning.single * self.fft_ns(self.table.exact_lengths(window));
-        let iterate = tuning.applications * fft.min(self.direct_ns(n, n));
+        let iterate = tuning.applications * self.transforms(window, true).0.min(self.direct_ns(n, n));
         n <= tuning.always_factored || (n <= tuning.largest_factor && factor <= iterate)
     }
 }
@@ -246,7 +283,7 @@ mod tests {
         };
         assert_eq!(choice(GRID, Boundary::Free, &every(200_000)), Application::Direct);
         assert!(matches!(choice(GRID, Boundary::Free, &every(400)), Application::TwoLevel(_)));
-        assert!(matches!(choice(GRID, Boundary::Free, &every(3)), Application::Fft(_)));
+        assert!(matches!(choice(GRID, Boundary::Free, &every(3)), Application::TwoTransforms(_)));
         // Its far field is that of square cells on a half-space that does not repeat.
         let oblong = Grid { stretch: 1.2, ..GRID };
         assert!(matches!(choice(oblong, Boundary::Free, &every(400)), Application::Fft(_)));
@@ -259,7 +296,10 @@ mod tests {
         with(GRID, Boundary::Free, |planner| {
             let plan = |set: &CellSet, every_lag| planner.system(set, set.len(), every_lag).unwrap();
             let dense = plan(&every(2), true);
-            assert_eq!(dense.to_string(), "fft 4096 x 4096, f32 in f64, extended torus inverse 2160 x 2160");
+            assert_eq!(
+                dense.to_string(),
+                "two transforms, spacing 4 reach 12 order 6, f32 in f64, extended torus inverse 2304 x 2304"
+            );
             assert!(dense.is_single());
             assert_eq!(plan(&every(2), false).application, Application::Fft(Lengths { x: 3072, y: 3072 }));
             let scattered = plan(&every(400), true);

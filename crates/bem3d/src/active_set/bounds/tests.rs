@@ -167,7 +167,7 @@ fn the_factored_way_ends_where_cells_saturate() {
     // Two summits under a force that one alone would carry above the hardness.
     let grid = Grid::square(2, 1);
     let mut problem = problem(grid, &[0.0, 1.0], 0.5);
-    let guess = Guess { set: CellSet::all(grid), p: vec![0.1; 2], d: 1.0, far: false };
+    let guess = Guess { set: CellSet::all(grid), p: vec![0.1; 2], d: 1.0 };
     let solved = solve(&mut problem, Control::Force(0.8), guess, TIGHT, &never);
     assert_eq!((solved.status, solved.p.len()), (Status::Converged, 2));
     assert!(solved.p[0] >= 0.5 && (solved.p[1] - 0.3).abs() < 1e-12 && solved.q.is_none(), "{:?}", solved.p);

@@ -35,7 +35,7 @@ mod tangent {
             .iter()
             .map(|&force| {
                 let (set, p) = (CellSet::all(grid), vec![1.0; grid.count()]);
-                let guess = Guess { set, p, d: 4.0 * force, far: false };
+                let guess = Guess { set, p, d: 4.0 * force };
                 let solved = solve(&mut problem, Control::Force(force), guess, limits, &never);
                 assert_eq!(solved.status, Status::Converged);
                 let k = stiffness::solve(
@@ -157,8 +157,7 @@ fn a_guess_predicts_the_cells_that_it_makes_penetrate() {
         let z: Vec<f64> = (0..grid.count()).map(|i| (i % 8 + i / 8) as f64 / 8.0).collect();
         let mut problem = problem(grid, z.clone());
         let mut predicted = |cells: &[u32], p: f64, d: f64| {
-            let guess =
-                Guess { set: CellSet::from_index(grid, cells), p: vec![p; cells.len()], d, far: false };
+            let guess = Guess { set: CellSet::from_index(grid, cells), p: vec![p; cells.len()], d };
             predicted_cells(&mut problem, &guess)
         };
         for d in [0.9, 1.3, 2.0] {
@@ -206,7 +205,7 @@ fn a_needle_that_coarse_grids_lose_still_carries() {
         let mut problem = problem(grid, needle(grid));
         let target = Control::Approach(0.3);
         let guess = cold_start(&mut problem, target, limits(), &never);
-        assert!(guess.far && problem.coarser.is_some(), "{grid:?}: this test is about coarse grids");
+        assert!(problem.coarser.is_some(), "{grid:?}: this test is about coarse grids");
         let solved = solve(&mut problem, target, guess, limits(), &never);
         assert_eq!(solved.status, Status::Converged);
         assert!(solved.contact.index(grid).any(|i| i == 3 * grid.columns + 5), "{grid:?}");
@@ -220,7 +219,6 @@ fn a_coarse_grid_keeps_the_force() {
         let mut problem = problem(grid, needle(grid));
         let force = 40.0;
         let guess = cold_start(&mut problem, Control::Force(force), limits(), &never);
-        assert!(guess.far, "{grid:?}");
         assert_relative_eq!(guess.p.iter().sum::<f64>(), force, max_relative = 1e-12);
         assert!(guess.p.iter().all(|&p| p > 0.0));
         assert_eq!(guess.p.len(), guess.set.len());
@@ -246,13 +244,13 @@ fn a_small_set_needs_no_coarse_grid() {
     let grid = GRIDS[0];
     let mut problem = problem(grid, needle(grid));
     let guess = cold_start(&mut problem, Control::Force(0.05), Limits { factor: true, ..limits() }, &never);
-    assert!(problem.coarser.is_none() && !guess.far);
+    assert!(problem.coarser.is_none());
     assert_relative_eq!(guess.p.iter().sum::<f64>(), 0.05, max_relative = 1e-12);
     // All cells with z below what the force sinks one cell alone.
     assert_eq!(guess.set, problem.candidates.below(0.05 * influence(0, 0)));
     problem.nested = false;
     let guess = cold_start(&mut problem, Control::Force(40.0), limits(), &never);
-    assert!(problem.coarser.is_none() && !guess.far && guess.set.len() == grid.count() - 1);
+    assert!(problem.coarser.is_none() && guess.set.len() == grid.count() - 1);
 }
 
 #[test]

@@ -84,7 +84,13 @@ fn the_torus_inverse_undoes_the_operator_on_smooth_pressure() {
         let (_, inverse) = operators.system(system);
         let mut back = vec![0.0; p.len()];
         inverse.unwrap().apply(&all, &u, &all, &mut back);
-        assert!(difference(&back, &p) < 0.05, "{grid:?}: {}", difference(&back, &p));
+        let inner = |x: usize, n: usize| (n / 6..n - n / 6).contains(&x);
+        let errors = all
+            .places()
+            .zip(back.iter().zip(&p))
+            .filter(|((x, y), _)| inner(*x, grid.columns) && inner(*y, grid.rows));
+        let error = errors.map(|(_, (back, p))| (back - p).abs()).fold(0.0, f64::max);
+        assert!(error < 0.05, "{grid:?}: {error}");
         assert_eq!(operators.applications, 1, "the preconditioner is not an application of K");
     }
 }
@@ -240,7 +246,7 @@ fn a_recipe_is_described() {
     let described = |set: &CellSet| operators.planner().system(set, set.len(), true).unwrap().to_string();
     assert_eq!(described(&CellSet::from_index(grid, &[0, 4095])), "direct");
     // 2 (64 - 1) = 126 has a factor 7; 128 is the next good length.
-    assert_eq!(described(&CellSet::all(grid)), "fft 128 x 128, f32 in f64, extended torus inverse 64 x 64");
+    assert_eq!(described(&CellSet::all(grid)), "fft 128 x 128, f32 in f64, extended torus inverse 72 x 72");
 }
 
 proptest! {

@@ -29,13 +29,45 @@ fn a_gap_is_complete_up_to_where_candidates_were_listed() {
     let depth = influence(0, 0);
     let mut problem = summit();
     let mut solver_above = solver(&mut problem, 0, 5.0, true);
-    assert!(solver_above.evaluate(false).complete);
+    assert!(solver_above.evaluate(Look::Exact).complete);
     assert_relative_eq!(solver_above.now.d, depth, max_relative = 1e-14);
     assert_relative_eq!(solver_above.reach, 1.05 * depth, max_relative = 1e-14);
-    assert!(!solver_above.evaluate(true).complete, "single precision is no evidence");
+    assert!(!solver_above.evaluate(Look::Rough).complete, "single precision is no evidence");
     let mut solver_below = solver(&mut problem, 0, 1.0, true);
-    assert!(!solver_below.evaluate(false).complete, "the plane ended above the listed cells");
-    assert!(solver_below.evaluate(false).complete);
+    assert!(!solver_below.evaluate(Look::Exact).complete, "the plane ended above the listed cells");
+    assert!(solver_below.evaluate(Look::Exact).complete);
+}
+
+#[test]
+fn what_changed_is_known_to_its_uncertainty() {
+    let grid = Grid::square(60, 60);
+    let target = Control::Force(900.0);
+    for (tuning, begins, _) in recipes() {
+        let mut single = false;
+        let mut problem = problem(grid, &rough(grid, 7), tuning);
+        let Guess { set, p, d } = everything(grid, target);
+        let now = Pressure { contact: set, p, d, q: None };
+        let mut solver = Solver::new(&mut problem, target, limits(false), now, Continuation::default());
+        solver.evaluate(Look::Exact);
+        for look in [Look::Change, Look::Change, Look::Rough, Look::Exact, Look::Change] {
+            solver.improve(1e-3, &never);
+            let known = solver.measured.is_some();
+            let evaluated = solver.evaluate(look);
+            let Solver { now, state, uncertainty, problem, .. } = &mut solver;
+            let mut exact = Vec::new();
+            problem.operators.exact(&now.contact, &now.p, &state.checked, &mut exact);
+            problem.candidates.add_to(&state.checked, &mut exact);
+            let errors = exact.iter().zip(&state.gap).map(|(u, gap)| (u - now.d - gap).abs());
+            let error = errors.fold(0.0, f64::max);
+            let what = format!("{begins} {look:?}: {error:.1e}, said to be {uncertainty:.1e}");
+            assert!(known && error <= *uncertainty + DOUBLE * now.d, "{what}");
+            // Only a gap in double precision is evidence.
+            assert_eq!(evaluated.complete, *uncertainty <= 0.0, "{what}");
+            single |= *uncertainty > 0.0;
+            assert!(look != Look::Exact || *uncertainty <= 0.0, "{what}");
+        }
+        assert_eq!(single, !begins.starts_with("direct"), "{begins}");
+    }
 }
 
 #[test]
@@ -43,7 +75,7 @@ fn a_factored_approach_is_measured_not_replaced() {
     let mut problem = summit();
     let mut solver = solver(&mut problem, 0, 5.0, true);
     solver.now.q = Some(vec![1.0]);
-    let evaluated = solver.evaluate(false);
+    let evaluated = solver.evaluate(Look::Exact);
     assert!(evaluated.factored);
     assert_relative_eq!(solver.now.d, 5.0);
     let off = 5.0 - influence(0, 0);
@@ -93,7 +125,7 @@ fn the_kept_pressure_is_returned_where_it_is_the_best() {
     // A good pressure, and two that follow it on cells far below.
     let mut problem = summit();
     let mut solver = solver(&mut problem, 0, 5.0, false);
-    let first = solver.evaluate(false).residuals;
+    let first = solver.evaluate(Look::Exact).residuals;
     solver.now_is_best = true;
     for cell in [63, 9] {
         solver.advance(Pressure { contact: set(&[cell]), p: vec![1.0], d: 5.0, q: None });
@@ -103,7 +135,7 @@ fn the_kept_pressure_is_returned_where_it_is_the_best() {
             "kept until another is better"
         );
     }
-    assert!(solver.evaluate(false).residuals.worst() > first.worst());
+    assert!(solver.evaluate(Look::Exact).residuals.worst() > first.worst());
 }
 
 #[test]
@@ -128,7 +160,7 @@ fn residuals_of_ever_more_iterations_never_become_worse() {
                 Continuation { reach: 2.0 * solved.d, ..Continuation::default() },
             );
             // The residuals are those of the pressure that is returned.
-            let measured = solver.evaluate(false).residuals;
+            let measured = solver.evaluate(Look::Exact).residuals;
             assert_relative_eq!(
                 measured.worst(),
                 solved.residuals.worst(),
@@ -157,7 +189,7 @@ fn bowl() -> (Grid, Vec<f64>, Guess) {
         .collect();
     let set = CellSet::of_grid(grid, &z, |z| z < 0.8);
     let p = (0..set.len()).map(|k| 0.2 + (k % 4) as f64 / 10.0).collect();
-    (grid, z, Guess { set, p, d: 1.0, far: false })
+    (grid, z, Guess { set, p, d: 1.0 })
 }
 
 #[test]
@@ -192,7 +224,7 @@ fn a_gap_is_what_plain_sums_say() {
                 let limits = Limits { tolerance: 1e-6, height, ..limits(false) };
                 let from = Continuation { reach: 40.0, ..Continuation::default() };
                 let mut solver = Solver::new(&mut problem, target, limits, now, from);
-                let evaluated = solver.evaluate(false);
+                let evaluated = solver.evaluate(Look::Exact);
                 assert!(evaluated.complete && !evaluated.factored);
                 assert_relative_eq!(solver.now.d, d, max_relative = DOUBLE);
                 for (found, expected) in [
@@ -208,7 +240,8 @@ fn a_gap_is_what_plain_sums_say() {
                     assert_relative_eq!(found, expected, epsilon = 10.0 * DOUBLE);
                 }
                 assert_eq!(solver.left, guess.set.carry(&solver.state.checked, &solver.state.gap));
-                assert!(!solver.evaluate(true).complete, "single precision is no evidence");
+                // Sums over pairs are exact, single precision is no evidence.
+                assert_eq!(solver.evaluate(Look::Rough).complete, recipe.1 == "direct");
             }
         }
     }
@@ -225,7 +258,7 @@ fn without_pressure_the_surface_itself_is_the_gap() {
     let limits = Limits { height: Some(2.0), ..limits(false) };
     let from = Continuation { reach: plane, ..Continuation::default() };
     let mut solver = Solver::new(&mut problem, Control::Approach(plane), limits, now, from);
-    let evaluated = solver.evaluate(false);
+    let evaluated = solver.evaluate(Look::Exact);
     let lowest = z.iter().copied().fold(f64::INFINITY, f64::min);
     assert_relative_eq!(evaluated.residuals.worst(), (plane - lowest) / 2.0, max_relative = 1e-14);
     assert_eq!(solver.state.checked, below.union(&solver.now.contact));
