@@ -11,8 +11,14 @@ use std::path::{Path, PathBuf};
 pub const RELATIVE: f64 = 1e-6;
 
 /// Columns that are compared as numbers; all others must be equal.
-const NUMBERS: [&str; 5] =
-    ["force_bar", "stiffness_bar", "stiffness_bar_se", "stiffness_bar_log_mean", "contact_fraction"];
+const NUMBERS: [&str; 6] = [
+    "force_bar",
+    "stiffness_bar",
+    "stiffness_bar_se",
+    "stiffness_bar_log_mean",
+    "contact_fraction",
+    "approach_over_h",
+];
 
 /// The fixed small run: under half a minute on two cores.
 fn small(out: PathBuf) -> Result<Run> {
