@@ -24,7 +24,9 @@ fn applications(c: &mut Criterion) {
     let side = 512;
     let mut group = c.benchmark_group("one application, N = 512");
     group.sample_size(20);
-    for (name, step) in [("direct", 400), ("two levels", 400), ("f32", 1), ("f64", 1), ("inverse", 1)] {
+    for (name, step) in
+        [("direct", 400), ("two levels", 400), ("two transforms", 1), ("f32", 1), ("f64", 1), ("inverse", 1)]
+    {
         let Some(mut apply) = benchmarks::timed(name, side, step) else { continue };
         group.bench_function(format!("{name}, one cell in {step}"), |b| b.iter(&mut apply));
     }
