@@ -113,9 +113,10 @@ pub fn solve(
     let (mut steps, mut unimproved) = (0, 0);
     for round in 0..tuning.stiffness_rounds {
         // A guess will be corrected.
-        let rough = round == 0
-            && factored.is_none()
-            && tolerance >= tuning.stiffness_single * operators.roughness(contact, &targets).powi(2);
+        let rough = round == 0 && factored.is_none() && {
+            let error = operators.roughness(contact, &targets);
+            error > 0.0 && tolerance >= tuning.stiffness_single * error.powi(2)
+        };
         if let Some(q) = &q {
             if rough {
                 operators.rough(contact, q, &targets, &mut v);

@@ -58,7 +58,7 @@ struct Pressure {
 }
 
 /// Candidates up to one approach serve another of at most so many times it: less than the margin with which
-/// they were chosen.
+/// they were chosen. Chosen without a measurement of other values.
 const KEPT_REACH: f64 = 1.02;
 
 struct Solver<'a> {
@@ -165,7 +165,7 @@ impl<'a> Solver<'a> {
     /// Evaluates the gap under the present pressure, and at a prescribed force finds the approach that it
     /// makes.
     ///
-    /// A `rough` evaluation in single precision says how to go on, but is never evidence.
+    /// One in single precision says how to go on, but is never evidence.
     fn evaluate(&mut self, look: Look) -> Evaluated {
         let Self { problem, target, now, .. } = self;
         let Problem { bounds, candidates, .. } = &**problem;
@@ -221,14 +221,14 @@ impl<'a> Solver<'a> {
         });
         let Continuation { checked, gap, .. } = state;
         let exact = look == Look::Exact || (look == Look::Change && before.is_none());
-        let error = if exact { 0.0 } else { operators.roughness(&now.contact, checked) };
+        let cells = before.as_ref().map_or(&now.contact, |(cells, _)| cells);
+        let error = if exact { 0.0 } else { operators.roughness(cells, checked) };
         if error <= 0.0 {
             operators.exact(&now.contact, &now.p, checked, gap);
             *uncertainty = 0.0;
         } else if let Some((cells, mut change)) = before {
             recorder.timed(Part::Sets, || cells.add_carried(&now.contact, &now.p, &mut change));
             let mut displacement = Vec::new();
-            let error = operators.roughness(&cells, checked);
             operators.rough(&cells, &change, checked, &mut displacement);
             // A pressure that changes its sign from cell to cell displaces little.
             let own = operators.table().own() * largest(&change);

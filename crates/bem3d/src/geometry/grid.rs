@@ -99,7 +99,7 @@ pub struct Lengths {
 
 /// A length of transforms from `least` on that is even (of a real transform along x half of the waves are
 /// kept) and contains a power of two of about its sixteenth part: 576, 1152 and 2304 took 0.95, 0.86 and 1.02
-/// of the time of 540, 1080 and 2160 (2026-11, EPYC, single precision), 2048 0.6 of that of 2000.
+/// of the time of 540, 1080 and 2160 (2026-11, EPYC, single precision), 1024 0.59 of that of 1000.
 fn good_length(least: usize) -> usize {
     let share = (least / 16).max(2);
     fast_length(least, 1 << share.ilog2())

@@ -2,8 +2,8 @@
 //!
 //! The kernel is split as in [`super::two_level`]. What is left of it near by ends at the radius R, so that
 //! its convolution needs a torus of n + R - 1 cells instead of the 2 (n - 1) of the whole kernel. That is a
-//! quarter of the points, but of the whole one half of the rows are empty, and interpolation costs as much as
-//! a fifth: an application takes 0.7 to 0.8 of the time (N = 512 to 2048, all cells, one thread of an EPYC,
+//! quarter of the points, but of the whole one half of the rows are empty, and interpolation takes its
+//! part: an application takes 0.7 to 0.8 of the time (N = 512 to 2048, all cells, one thread of an EPYC,
 //! 2026-11). Interpolation is separable; along rows it is done where they are read and written anyway. In
 //! single precision, for square cells and the free kernel.
 

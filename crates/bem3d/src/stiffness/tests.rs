@@ -213,11 +213,10 @@ fn a_good_guess_costs_no_step_and_a_cold_start_a_few() {
             let before = problem.operators.applications;
             let warm = solve(&mut problem, &state, Some(tight.q), 1e-6, &never);
             assert_eq!(warm.steps, 0);
-            assert_eq!(
-                problem.operators.applications - before,
-                2,
-                "single and then double precision say that it is good enough"
-            );
+            // Where one application would be a transform, the first is one in single precision.
+            let looks =
+                if problem.operators.last().unwrap().to_string().starts_with("direct") { 1 } else { 2 };
+            assert_eq!(problem.operators.applications - before, looks, "it is good enough");
         }
         // That of a factored state is exact.
         let mut problem = flat(grid, Tuning::DEFAULT);
