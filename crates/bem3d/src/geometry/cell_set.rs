@@ -277,6 +277,13 @@ impl CellSet {
 
     /// Number of rows with cells before row y of the grid.
     fn number(&self, y: usize) -> usize {
+        // Where no row before it is empty its place is known.
+        let first = self.rows.first().map_or(0, |row| row.y as usize);
+        if let Some(place) = y.checked_sub(first)
+            && self.rows.get(place).is_some_and(|row| row.y as usize == y)
+        {
+            return place;
+        }
         self.rows.partition_point(|row| (row.y as usize) < y)
     }
 

@@ -107,23 +107,20 @@ impl TorusInverse<'_> {
         );
         transform.multiply(|_| true);
         extension.clear();
-        let decay = extension.decay();
         let outputs = set.split(z, first_rows()).into_iter().zip(extension.bands(bands.len()));
         transform.backward(
             |_| true,
-            outputs.map(|output| (output, Vec::new())),
-            |(((start, z), sums), line), y, u| {
+            outputs,
+            |((start, z), sums), y, u| {
                 let row = set.row(y + y0).map(|row| row.after(*start));
                 if let Some(row) = row {
                     row.collect(u, z, x0);
                 }
                 if sums.is_wanted() {
-                    line.clear();
-                    line.extend(u.iter().map(|u| decay * u));
                     if let Some(row) = row {
-                        row.fill(0.0, line, x0);
+                        row.fill(0.0, u, x0);
                     }
-                    sums.add(y, line);
+                    sums.add_transposed(y, u);
                 }
             },
         );

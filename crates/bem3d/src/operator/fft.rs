@@ -194,13 +194,13 @@ impl<T: Real> FftConvolution<T> {
         });
     }
 
-    /// Transforms rows back: `take` reads row y where it is `wanted`. Each band of rows has its own output,
-    /// of those given in order.
+    /// Transforms rows back: `take` reads row y where it is `wanted`, and may write over it. Each band of rows
+    /// has its own output, of those given in order.
     pub fn backward<O: Send>(
         &mut self,
         wanted: impl Fn(usize) -> bool + Sync,
         outputs: impl ExactSizeIterator<Item = O> + Send,
-        take: impl Fn(&mut O, usize, &[T]) + Sync,
+        take: impl Fn(&mut O, usize, &mut [T]) + Sync,
     ) {
         let Self { window: Window { width, height, .. }, lengths, row_inverse, buffers, .. } = self;
         let (width, height, half) = (*width, *height, lengths.x / 2 + 1);
@@ -221,7 +221,7 @@ impl<T: Real> FftConvolution<T> {
                 }
                 let done = row_inverse.process_with_scratch(line, row, scratch);
                 debug_assert!(done.is_ok());
-                take(&mut output, y, &row[..width]);
+                take(&mut output, y, &mut row[..width]);
             }
         });
     }
