@@ -55,7 +55,7 @@ fn scene(kind: SurfaceKind, boundary: Boundary, effect: Option<Effect>) -> Scene
     let rigid = effect.is_some_and(|effect| effect.key() == "rheology");
     let pair = Pair { first: if rigid { Body::Rigid } else { body }, second: body };
     let mut scene = Scene::of_pair(surface(kind), pair).unwrap();
-    if !matches!(effect, Some(Effect::Friction)) {
+    if effect.is_none_or(|effect| effect.key() != "friction") {
         scene.pair = None;
     }
     scene.outputs.stiffness = false;
@@ -104,7 +104,7 @@ fn pressed(contact: &mut dyn PreparedContact, scene: &Scene) -> Result<ContactSt
     }
     contact.advance(Step::normal(0.0, normal))?;
     let friction = scene.effects.friction != Friction::Off;
-    let tangential = if friction { Tangential::Force(1e-4) } else { Tangential::default() };
+    let tangential = if friction { Tangential::force_along_x(1e-4) } else { Tangential::default() };
     contact.advance(Step { time: 1.0, normal, tangential })
 }
 
@@ -190,7 +190,7 @@ fn what_is_declared_is_done() {
                 let mut told =
                     QUANTITIES.iter().filter(|quantity| quantity.asked_by == AskedBy::Output(output));
                 if output.is_field() {
-                    return state.fields.as_ref().is_some_and(|fields| fields.get(output).is_some());
+                    return state.fields.as_ref().is_some_and(|fields| !fields.get(output).is_empty());
                 }
                 assert!(told.clone().next().is_some(), "{}: the table has no quantity of it", output.name());
                 // A closed form has no cells whose boundary could be corrected.

@@ -19,7 +19,7 @@ fn pair() -> Pair {
 
 fn sliding(surface: Surface) -> Scene {
     let mut scene = Scene::of_pair(surface, pair()).unwrap();
-    scene.effects.friction = Friction::Coulomb { coefficient: MU };
+    scene.effects.friction = Friction::coulomb(MU);
     scene
 }
 
@@ -50,7 +50,7 @@ fn sheared(model: &dyn ContactModel) -> Vec<ContactState> {
     let path = [0.0, 0.25, 0.5, 0.9, -0.4, 0.6].map(|share| Step {
         time: 0.0,
         normal: Load::Force(force),
-        tangential: Tangential::Force(share * MU * force),
+        tangential: Tangential::force_along_x(share * MU * force),
     });
     history.follow(&path).unwrap()
 }
@@ -63,7 +63,7 @@ fn errors(model: &dyn ContactModel) -> [f64; 2] {
     let mut squares = [0.0; 2];
     for (one, other) in exact.iter().zip(&found).skip(1) {
         let (one, other) = (one.tangential.unwrap(), other.tangential.unwrap());
-        squares[0] += (other.displacement / one.displacement - 1.0).powi(2);
+        squares[0] += (other.displacement[0] / one.displacement[0] - 1.0).powi(2);
         squares[1] += (other.dissipated / one.dissipated - 1.0).powi(2);
     }
     squares.map(|square| (square / 5.0).sqrt())
@@ -115,13 +115,14 @@ fn beside_a_difference_of_normal_contacts(model: &dyn ContactModel, depth: f64, 
         history.restart();
         history.advance(Step::normal(0.0, Load::Approach(d))).unwrap();
         let u = share * d * MU / shear;
-        let step = Step { time: 0.0, normal: Load::Approach(d), tangential: Tangential::Displacement(u) };
+        let step =
+            Step { time: 0.0, normal: Load::Approach(d), tangential: Tangential::displacement_along_x(u) };
         let state = history.advance(step).unwrap();
         // The normal part is the model's own, to its tolerance: a warm start may differ.
         assert_relative_eq!(state.force, top.force, max_relative = 1e-6);
         let tangential = state.tangential.unwrap();
         let below = direct.solve(Load::Approach((1.0 - share) * d)).unwrap();
-        let force = (tangential.force - MU * (top.force - below.force)) / (MU * top.force);
+        let force = (tangential.force[0] - MU * (top.force - below.force)) / (MU * top.force);
         let held = 2.0 * scene.modulus * tangential.stick_radius.unwrap();
         let stiffness = (held - below.stiffness.unwrap()) / top.stiffness.unwrap();
         worst = [worst[0].max(force.abs()), worst[1].max(stiffness.abs())];
@@ -170,15 +171,15 @@ fn cycle(
             } else {
                 t - 4.0
             };
-        let step = Step { time: 0.0, normal, tangential: Tangential::Displacement(u) };
+        let step = Step { time: 0.0, normal, tangential: Tangential::displacement_along_x(u) };
         let tangential = history.advance(step)?.tangential.unwrap();
         if t > 1.0 {
-            work += 0.5 * (tangential.force + last.1) * (u - last.0);
+            work += 0.5 * (tangential.force[0] + last.1) * (u - last.0);
         } else {
             lost = tangential.dissipated;
         }
-        last = (u, tangential.force);
-        forces.push(tangential.force);
+        last = (u, tangential.force[0]);
+        forces.push(tangential.force[0]);
         if i == 5 * segments {
             lost = tangential.dissipated - lost;
         }
@@ -266,11 +267,11 @@ fn a_flat_square_slips_as_a_whole_and_sticks_as_mindlin_says() {
     for (share, force) in [(0.5, 0.5), (0.99, 0.99), (1.5, 1.0)] {
         history.restart();
         history.advance(Step::normal(0.0, Load::Force(1e-3))).unwrap();
-        let tangential = Tangential::Displacement(share * reach);
+        let tangential = Tangential::displacement_along_x(share * reach);
         let step = Step { time: 0.0, normal: Load::Force(1e-3), tangential };
         let found = history.advance(step).unwrap().tangential.unwrap();
         // The table's face has the solves' own accuracy.
-        assert_relative_eq!(found.force, force * MU * 1e-3, max_relative = 1e-5);
+        assert_relative_eq!(found.force[0], force * MU * 1e-3, max_relative = 1e-5);
         assert_relative_eq!(
             found.dissipated,
             MU * 1e-3 * reach * (share - force),
@@ -330,11 +331,11 @@ fn hard_surfaces_have_profiles() {
                 let step = Step {
                     time: 0.0,
                     normal: Load::Force(normal * force),
-                    tangential: Tangential::Force(share * MU * normal * force),
+                    tangential: Tangential::force_along_x(share * MU * normal * force),
                 };
                 let state =
                     slides.advance(step).unwrap_or_else(|error| panic!("{which} {force} {normal}: {error}"));
-                assert!(state.tangential.unwrap().displacement.is_finite());
+                assert!(state.tangential.unwrap().displacement[0].is_finite());
             }
             let mut creeps = model.prepare(&creeping(surface.clone()), 0).unwrap();
             let mut last = 0.0;

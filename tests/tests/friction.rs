@@ -20,7 +20,7 @@ fn springs_are_cattaneo_and_mindlin_and_deresiewicz() {
         Pair { first: steel, second: rubber },
     ] {
         let mut scene = Scene::of_pair(Surface::Sphere { radius: 2.0, size: 3.0.into() }, pair).unwrap();
-        scene.effects.friction = Friction::Coulomb { coefficient: 0.35 };
+        scene.effects.friction = Friction::coulomb(0.35);
         let models: [&dyn ContactModel; 2] = [&CattaneoMindlin, &PartialSlip];
         let [mut closed, mut springs] = models.map(|model| model.prepare(&scene, 0).unwrap());
         let normal = Load::Approach(0.01);
@@ -29,7 +29,7 @@ fn springs_are_cattaneo_and_mindlin_and_deresiewicz() {
         // Turns inside turns, loops that close, gross slip and back.
         let shares = [0.5, 0.8, -0.2, 0.3, -0.1, 0.9, -0.9, 0.0, 0.95, -1.0, 0.4, 1.0, 0.0];
         for (i, share) in shares.into_iter().enumerate() {
-            let step = Step { time: i as f64, normal, tangential: Tangential::Force(share * limit) };
+            let step = Step { time: i as f64, normal, tangential: Tangential::force_along_x(share * limit) };
             let [one, other] = [&mut closed, &mut springs].map(|history| history.advance(step).unwrap());
             assert_relative_eq!(
                 one.contact_radius.unwrap(),
@@ -39,8 +39,8 @@ fn springs_are_cattaneo_and_mindlin_and_deresiewicz() {
             let (one, other) = (one.tangential.unwrap(), other.tangential.unwrap());
             let reach = 0.75 * limit / (scene.modulus * 0.1);
             assert_relative_eq!(
-                one.displacement,
-                other.displacement,
+                one.displacement[0],
+                other.displacement[0],
                 max_relative = EXACT,
                 epsilon = EXACT * reach
             );
@@ -71,7 +71,7 @@ fn scene(coefficient: f64) -> Scene {
     let body = Body::Elastic { young: 2.0, poisson: 0.3 };
     let pair = Pair { first: body, second: body };
     let mut scene = Scene::of_pair(Surface::Sphere { radius: 2.0, size: 3.0.into() }, pair).unwrap();
-    scene.effects.friction = Friction::Coulomb { coefficient };
+    scene.effects.friction = Friction::coulomb(coefficient);
     scene
 }
 
@@ -90,8 +90,8 @@ fn without_slip_it_is_mindlins_stiffness() {
     let u = 1e-3;
     let deviations = [1e2, 1e3, 1e4].map(|coefficient| {
         models(coefficient).map(|mut history| {
-            let normal = shear(&mut *history, Tangential::Force(0.0));
-            let state = shear(&mut *history, Tangential::Displacement(u));
+            let normal = shear(&mut *history, Tangential::force_along_x(0.0));
+            let state = shear(&mut *history, Tangential::displacement_along_x(u));
             let tangential = state.tangential.unwrap();
             let sticking = SHEAR * normal.stiffness.unwrap() * u;
             assert!(tangential.dissipated >= 0.0 && tangential.dissipated <= sticking * u / coefficient);
@@ -100,7 +100,7 @@ fn without_slip_it_is_mindlins_stiffness() {
                 state.contact_radius.unwrap(),
                 max_relative = u * SHEAR / (coefficient * D)
             );
-            1.0 - tangential.force / sticking
+            1.0 - tangential.force[0] / sticking
         })
     });
     for (i, coefficient) in [1e2, 1e3, 1e4].into_iter().enumerate() {
@@ -118,21 +118,21 @@ fn little_friction_is_gross_slip_and_none_is_none() {
     let u = 1e-3;
     for coefficient in [1e-3, 1e-6] {
         for mut history in models(coefficient) {
-            let force = shear(&mut *history, Tangential::Force(0.0)).force;
-            let tangential = shear(&mut *history, Tangential::Displacement(u)).tangential.unwrap();
-            assert_relative_eq!(tangential.force, coefficient * force, max_relative = EXACT);
+            let force = shear(&mut *history, Tangential::force_along_x(0.0)).force;
+            let tangential = shear(&mut *history, Tangential::displacement_along_x(u)).tangential.unwrap();
+            assert_relative_eq!(tangential.force[0], coefficient * force, max_relative = EXACT);
             assert!(tangential.stick_radius.unwrap() <= 0.0);
             let reach = coefficient * D / SHEAR;
-            assert!(tangential.dissipated < tangential.force * u);
-            assert!(tangential.dissipated > tangential.force * (u - reach));
+            assert!(tangential.dissipated < tangential.force[0] * u);
+            assert!(tangential.dissipated > tangential.force[0] * (u - reach));
         }
     }
     // The closed form divides by mu and refuses 0; the springs do not.
     assert!(CattaneoMindlin.prepare(&scene(0.0), 0).is_err());
     let mut smooth = PartialSlip.prepare(&scene(0.0), 0).unwrap();
-    shear(&mut *smooth, Tangential::Force(0.0));
-    let tangential = shear(&mut *smooth, Tangential::Displacement(u)).tangential.unwrap();
-    assert!(tangential.force.abs() <= 0.0 && tangential.dissipated <= 0.0);
+    shear(&mut *smooth, Tangential::force_along_x(0.0));
+    let tangential = shear(&mut *smooth, Tangential::displacement_along_x(u)).tangential.unwrap();
+    assert!(tangential.force[0].abs() <= 0.0 && tangential.dissipated <= 0.0);
 }
 
 #[test]
@@ -140,7 +140,7 @@ fn work_along_any_path_is_stored_or_lost() {
     // What friction has lost never falls and never exceeds the work done; after a closed loop of u at T = T
     // the work is the loss.
     for mut history in models(0.4) {
-        let force = shear(&mut *history, Tangential::Force(0.0)).force;
+        let force = shear(&mut *history, Tangential::force_along_x(0.0)).force;
         let reach = 0.4 * D / SHEAR;
         let (mut work, mut lost, mut last) = (0.0, 0.0, [0.0, 0.0]);
         let segments = 200;
@@ -149,13 +149,14 @@ fn work_along_any_path_is_stored_or_lost() {
             let begin = last[0];
             for i in 1..=segments {
                 let u = begin + (turn * reach - begin) * f64::from(i) / f64::from(segments);
-                let tangential = shear(&mut *history, Tangential::Displacement(u)).tangential.unwrap();
-                work += 0.5 * (tangential.force + last[1]) * (u - last[0]);
+                let tangential =
+                    shear(&mut *history, Tangential::displacement_along_x(u)).tangential.unwrap();
+                work += 0.5 * (tangential.force[0] + last[1]) * (u - last[0]);
                 assert!(tangential.dissipated >= lost - EXACT * force * reach);
                 assert!(tangential.dissipated <= work + 1e-4 * force * reach);
-                assert!(tangential.force.abs() <= 0.4 * force * (1.0 + EXACT));
+                assert!(tangential.force[0].abs() <= 0.4 * force * (1.0 + EXACT));
                 lost = tangential.dissipated;
-                last = [u, tangential.force];
+                last = [u, tangential.force[0]];
             }
             loops.push([work, lost]);
         }

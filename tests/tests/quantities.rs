@@ -595,7 +595,7 @@ fn friction(seed: u64) -> Result<Faults, Error> {
     let pair = Pair { first: body, second: if draw.chance(0.5) { Body::Rigid } else { body } };
     let mut scene = Scene::of_pair(Surface::Sphere { radius: 2.0, size: 3.0.into() }, pair)?;
     let coefficient = draw.between(0.1, 0.8);
-    scene.effects.friction = Friction::Coulomb { coefficient };
+    scene.effects.friction = Friction::coulomb(coefficient);
     let normal = Load::Approach(draw.between(1e-3, 2e-2));
     let models: [&dyn ContactModel; 2] = [&analytic::CattaneoMindlin, &mdr1d::PartialSlip];
     let mut faults = Vec::new();
@@ -608,10 +608,12 @@ fn friction(seed: u64) -> Result<Faults, Error> {
             let (mut work, mut begin, mut end) = (0.0, 0.0, 0.0);
             for i in 0..=STEPS {
                 let phase = 2.0 * PI * i as f64 / STEPS as f64;
-                let tangential = Tangential::Force(coefficient * force * share * phase.cos());
+                let tangential = Tangential::force_along_x(coefficient * force * share * phase.cos());
                 let state = history.advance(Step { time: 1.0, normal, tangential })?.tangential.unwrap();
                 if let Some(last) = last {
-                    work += 0.5 * (state.force + last.force) * (state.displacement - last.displacement);
+                    work += 0.5
+                        * (state.force[0] + last.force[0])
+                        * (state.displacement[0] - last.displacement[0]);
                 } else {
                     begin = state.dissipated;
                 }

@@ -104,7 +104,7 @@ fn each_effect() -> [(&'static str, Effects); 6] {
         ("adhesion", Effects { adhesion: Adhesion::ShortRange { work: 0.1 }, ..Effects::default() }),
         ("hardness", Effects { hardness: Hardness::Limit { pressure: 0.1 }, ..Effects::default() }),
         ("exponential", Effects { adhesion: range, ..Effects::default() }),
-        ("friction", Effects { friction: Friction::Coulomb { coefficient: 0.3 }, ..Effects::default() }),
+        ("friction", Effects { friction: Friction::coulomb(0.3), ..Effects::default() }),
         ("rheology", Effects { rheology: Rheology::KelvinVoigt { viscosity: 1.0 }, ..Effects::default() }),
     ]
 }
@@ -258,7 +258,8 @@ fn outputs_are_those_asked_for() {
                     let state = contact.solve(load).unwrap();
                     let normalisation = contact.normalisation();
                     let told = |output: &Output| {
-                        let field = state.fields.as_ref().is_some_and(|fields| fields.get(*output).is_some());
+                        let field =
+                            state.fields.as_ref().is_some_and(|fields| !fields.get(*output).is_empty());
                         let mut of_it = QUANTITIES.iter().filter(|q| q.asked_by == AskedBy::Output(*output));
                         field || of_it.any(|quantity| quantity.number(&state, &normalisation).is_some())
                     };

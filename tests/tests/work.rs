@@ -146,7 +146,7 @@ fn a_history_pays_for_its_table_once() {
     let surface = Surface::SelfAffine(rough(2.3).unwrap());
     let mut scene = Scene::of_pair(surface, Pair { first: body, second: body }).unwrap();
     scene.outputs = Outputs::default();
-    scene.effects.friction = Friction::Coulomb { coefficient: 0.3 };
+    scene.effects.friction = Friction::coulomb(0.3);
     let model = Equivalent { per_decade: 4, decades: 2, model: model(Method::Auto) };
     let run = |outputs: Outputs| {
         let mut contact = model.prepare(&Scene { outputs, ..scene.clone() }, 3).unwrap();

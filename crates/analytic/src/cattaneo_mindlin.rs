@@ -30,10 +30,10 @@ const NAME: &str = "cattaneo_mindlin";
 /// let body = Body::Elastic { young: 2.0, poisson: 0.3 };
 /// let pair = Pair { first: body, second: body };
 /// let mut scene = Scene::of_pair(Surface::Sphere { radius: 1.0, size: 2.0.into() }, pair)?;
-/// scene.effects.friction = Friction::Coulomb { coefficient: 0.5 };
+/// scene.effects.friction = Friction::coulomb(0.5);
 /// let mut contact = CattaneoMindlin.prepare(&scene, 0)?;
 /// // Half of mu F: c/a = 0.5^(1/3) = 0.7937005260.
-/// let state = contact.advance(Step { time: 0.0, normal: Load::Force(0.01), tangential: Tangential::Force(0.0025) })?;
+/// let state = contact.advance(Step { time: 0.0, normal: Load::Force(0.01), tangential: Tangential::force_along_x(0.0025) })?;
 /// let (Some(a), Some(tangential)) = (state.contact_radius, state.tangential) else { panic!("a round contact with friction") };
 /// assert!((tangential.stick_radius.unwrap_or(0.0) / a - 0.7937005260).abs() < 1e-10);
 /// # Ok::<(), contact_model::Error>(())
@@ -71,7 +71,7 @@ impl ContactModel for CattaneoMindlin {
     fn prepare(&self, scene: &Scene, seed: u64) -> Result<Box<dyn PreparedContact>> {
         closed::sphere(self, scene)?;
         let friction = scene.effects.friction;
-        let Friction::Coulomb { coefficient } = friction else {
+        let Friction::Coulomb { coefficient, .. } = friction else {
             return Err(Error::unsupported(NAME, format!("friction ({friction:?}): it needs Coulomb's")));
         };
         if coefficient <= 0.0 {
@@ -249,6 +249,7 @@ impl PreparedContact for PreparedCattaneoMindlin {
     fn advance_until(&mut self, step: Step, stop: Stop<'_>) -> Result<ContactState> {
         check_stop(stop)?;
         let step = step.validated(self.at.time)?;
+        step.tangential.refuse_y(NAME)?;
         let (state, sphere) = self.press(&step)?;
         let unloaded = self.at.curve == SlipCurve::default();
         if let (Some((last, _)), false) = (&self.at.pressed, unloaded)
@@ -265,24 +266,25 @@ impl PreparedContact for PreparedCattaneoMindlin {
         let mut curve = self.at.curve.clone();
         let tangential = if let Some(sphere) = sphere {
             curve.go(match step.tangential {
-                Tangential::Force(force) => SlipLoad::Force(sphere.share(force)?),
-                Tangential::Displacement(u) => SlipLoad::Displacement(u / sphere.reach),
+                Tangential::Force([force, _]) => SlipLoad::Force(sphere.share(force)?),
+                Tangential::Displacement([u, _]) => SlipLoad::Displacement(u / sphere.reach),
                 other => return Err(Error::unsupported_load(NAME, other)),
             });
             let (force, displacement) = match step.tangential {
-                Tangential::Force(force) => (force, curve.now.u * sphere.reach),
-                Tangential::Displacement(u) => (curve.now.t * sphere.limit, u),
+                Tangential::Force([force, _]) => (force, curve.now.u * sphere.reach),
+                Tangential::Displacement([u, _]) => (curve.now.t * sphere.limit, u),
                 other => return Err(Error::unsupported_load(NAME, other)),
             };
-            TangentialState::new(force, displacement)
+            TangentialState::new([force, 0.0], [displacement, 0.0])
+                .with_sliding_force(sphere.limit)
                 .with_stick_radius(curve.stick() * sphere.contact_radius)
                 .with_dissipated(curve.dissipated * sphere.limit * sphere.reach)
         } else {
-            if step.tangential != Tangential::Force(0.0) && step.tangential != Tangential::Displacement(0.0) {
+            if !step.tangential.is_zero() {
                 let what = "a tangential load without a normal one";
                 return Err(Error::unsupported(NAME, what));
             }
-            TangentialState::new(0.0, 0.0).with_stick_radius(0.0).with_dissipated(0.0)
+            TangentialState::new([0.0; 2], [0.0; 2]).with_sliding_force(0.0).with_stick_radius(0.0)
         };
         self.at = SlipPathEnd { time: step.time, pressed: Some((state.clone(), sphere)), curve };
         let radius = sphere.map_or(0.0, |sphere| sphere.contact_radius);
@@ -309,7 +311,7 @@ mod tests {
     fn scene(mu: f64) -> Scene {
         let pair = Pair { first: Body::Rigid, second: Body::Elastic { young: 0.75, poisson: 0.5 } };
         let mut scene = Scene::of_pair(Surface::Sphere { radius: 1.0, size: 2.0.into() }, pair).unwrap();
-        scene.effects.friction = Friction::Coulomb { coefficient: mu };
+        scene.effects.friction = Friction::coulomb(mu);
         scene
     }
 
@@ -326,7 +328,7 @@ mod tests {
         // data/paper/VALUES.md.
         for (share, ratio) in [(0.25, 0.908_560_296_4), (0.5, 0.793_700_526_0), (0.9, 0.464_158_883_4)] {
             let mut contact = CattaneoMindlin.prepare(&scene(MU), 0).unwrap();
-            let state = contact.advance(at(Tangential::Force(share * MU * FORCE))).unwrap();
+            let state = contact.advance(at(Tangential::force_along_x(share * MU * FORCE))).unwrap();
             let stick = state.tangential.unwrap().stick_radius.unwrap();
             assert_relative_eq!(stick / state.contact_radius.unwrap(), ratio, max_relative = 2.0 * PRINTED);
             assert!(state.stiffness.is_some() && state.area.is_none());
@@ -338,9 +340,9 @@ mod tests {
         // k_x = 2 G* a, G* = (2/3) E* for nu = 1/2. Friction without end is the same limit.
         for (mu, force) in [(MU, 1e-9), (1e9, 1e-3)] {
             let mut contact = CattaneoMindlin.prepare(&scene(mu), 0).unwrap();
-            let state = contact.advance(at(Tangential::Force(force))).unwrap();
+            let state = contact.advance(at(Tangential::force_along_x(force))).unwrap();
             let (a, tangential) = (state.contact_radius.unwrap(), state.tangential.unwrap());
-            let stiffness = tangential.force / tangential.displacement;
+            let stiffness = tangential.force[0] / tangential.displacement[0];
             assert_relative_eq!(stiffness, 2.0 * 2.0 / 3.0 * a, max_relative = 1e-6);
             assert_relative_eq!(tangential.stick_radius.unwrap(), a, max_relative = 1e-6);
         }
@@ -359,20 +361,20 @@ mod tests {
     fn a_cycle_closes_and_dissipates_what_mindlin_and_deresiewicz_say() {
         let mut contact = CattaneoMindlin.prepare(&scene(MU), 0).unwrap();
         let top = 0.7 * MU * FORCE;
-        let first = tangential(&mut *contact, Tangential::Force(top));
-        let mut points = vec![(first.force, first.displacement)];
+        let first = tangential(&mut *contact, Tangential::force_along_x(top));
+        let mut points = vec![(first.force[0], first.displacement[0])];
         // To -T and back in small steps; the area of the loop by trapezoids.
         let steps = 2000;
         for i in 1..=2 * steps {
             let phase = f64::from(i) / f64::from(steps);
             let force = if phase <= 1.0 { top * (1.0 - 2.0 * phase) } else { top * (2.0 * phase - 3.0) };
-            let state = tangential(&mut *contact, Tangential::Force(force));
-            points.push((state.force, state.displacement));
+            let state = tangential(&mut *contact, Tangential::force_along_x(force));
+            points.push((state.force[0], state.displacement[0]));
         }
         let area: f64 = points.windows(2).map(|w| 0.5 * (w[0].0 + w[1].0) * (w[1].1 - w[0].1)).sum();
-        let last = tangential(&mut *contact, Tangential::Force(top));
-        assert_relative_eq!(last.displacement, first.displacement, max_relative = 1e-12);
-        let state = contact.advance(at(Tangential::Force(top))).unwrap();
+        let last = tangential(&mut *contact, Tangential::force_along_x(top));
+        assert_relative_eq!(last.displacement[0], first.displacement[0], max_relative = 1e-12);
+        let state = contact.advance(at(Tangential::force_along_x(top))).unwrap();
         let sphere = SlidingSphere::new(FORCE, MU, state.contact_radius.unwrap(), 2.0 / 3.0).unwrap();
         let energy = sphere.energy_per_cycle(top).unwrap();
         assert_relative_eq!(area, energy, max_relative = 1e-5);
@@ -384,39 +386,40 @@ mod tests {
     fn gross_slip_and_the_way_back() {
         let mut contact = CattaneoMindlin.prepare(&scene(MU), 0).unwrap();
         assert!(matches!(
-            contact.advance(at(Tangential::Force(1.01 * MU * FORCE))),
+            contact.advance(at(Tangential::force_along_x(1.01 * MU * FORCE))),
             Err(Error::OutOfRange { .. })
         ));
         // A failed step leaves no trace.
-        let reach = tangential(&mut *contact, Tangential::Force(MU * FORCE)).displacement;
-        let slid = tangential(&mut *contact, Tangential::Displacement(3.0 * reach));
-        assert_relative_eq!(slid.force, MU * FORCE, max_relative = ROUNDING);
+        let reach = tangential(&mut *contact, Tangential::force_along_x(MU * FORCE)).displacement[0];
+        let slid = tangential(&mut *contact, Tangential::displacement_along_x(3.0 * reach));
+        assert_relative_eq!(slid.force[0], MU * FORCE, max_relative = ROUNDING);
         assert!(slid.stick_radius.unwrap() <= 0.0);
         // 1/5 of mu F u_slip before, mu F times the way after.
         assert_relative_eq!(slid.dissipated, MU * FORCE * reach * 2.2, max_relative = 1e-12);
         // Back by twice the reach: full slip the other way.
-        let back = tangential(&mut *contact, Tangential::Displacement(reach));
-        assert_relative_eq!(back.force, -MU * FORCE, max_relative = 1e-12);
-        let on = tangential(&mut *contact, Tangential::Displacement(-reach));
+        let back = tangential(&mut *contact, Tangential::displacement_along_x(reach));
+        assert_relative_eq!(back.force[0], -MU * FORCE, max_relative = 1e-12);
+        let on = tangential(&mut *contact, Tangential::displacement_along_x(-reach));
         assert_relative_eq!(on.dissipated, slid.dissipated + MU * FORCE * reach * 2.4, max_relative = 1e-12);
         contact.restart();
-        let again = tangential(&mut *contact, Tangential::Displacement(reach));
-        assert_relative_eq!(again.force, MU * FORCE, max_relative = 1e-12);
+        let again = tangential(&mut *contact, Tangential::displacement_along_x(reach));
+        assert_relative_eq!(again.force[0], MU * FORCE, max_relative = 1e-12);
     }
 
     #[test]
     fn what_the_theory_does_not_cover_is_refused() {
         let mut contact = CattaneoMindlin.prepare(&scene(MU), 0).unwrap();
-        let alone = Step { time: 0.0, normal: Load::Force(0.0), tangential: Tangential::Force(1.0) };
+        let alone = Step { time: 0.0, normal: Load::Force(0.0), tangential: Tangential::force_along_x(1.0) };
         assert!(matches!(contact.advance(alone), Err(Error::Unsupported { .. })));
         // The normal load may change while there is nothing tangential.
         for force in [0.0, 0.02, FORCE] {
             contact.advance(Step::normal(0.0, Load::Force(force))).unwrap();
         }
-        tangential(&mut *contact, Tangential::Force(1e-4));
-        let heavier = Step { time: 0.0, normal: Load::Force(0.02), tangential: Tangential::Force(1e-4) };
+        tangential(&mut *contact, Tangential::force_along_x(1e-4));
+        let heavier =
+            Step { time: 0.0, normal: Load::Force(0.02), tangential: Tangential::force_along_x(1e-4) };
         assert!(matches!(contact.advance(heavier), Err(Error::Unsupported { .. })));
-        let early = Step { time: -1.0, ..at(Tangential::Force(0.0)) };
+        let early = Step { time: -1.0, ..at(Tangential::force_along_x(0.0)) };
         assert!(matches!(contact.advance(early), Err(Error::Domain { .. })));
 
         let refused = |scene: &Scene| CattaneoMindlin.prepare(scene, 0).map(|_| ()).unwrap_err();

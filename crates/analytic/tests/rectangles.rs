@@ -87,8 +87,8 @@ fn the_constant_of_the_square_is_not_that_of_a_rectangle() {
 fn friction_leaves_the_shorter_side_too() {
     let pair = Pair { first: Body::Rigid, second: Body::Elastic { young: 1.0, poisson: 0.3 } };
     let mut scene = Scene::of_pair(Surface::Sphere { radius: 1.0, size: SIZES[0] }, pair).unwrap();
-    scene.effects.friction = Friction::Coulomb { coefficient: 0.3 };
-    let step = |d| Step { time: 0.0, normal: Load::Approach(d), tangential: Tangential::Force(0.0) };
+    scene.effects.friction = Friction::coulomb(0.3);
+    let step = |d| Step { time: 0.0, normal: Load::Approach(d), tangential: Tangential::force_along_x(0.0) };
     let mut history = CattaneoMindlin.prepare(&scene, 0).unwrap();
     assert_relative_eq!(history.normalisation().length, 2.0);
     assert!(history.advance(step(0.2)).is_ok());

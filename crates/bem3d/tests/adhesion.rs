@@ -360,6 +360,6 @@ fn what_makes_no_sense_is_refused() {
     for load in [Load::Force(f64::NAN), Load::Approach(f64::INFINITY), Load::MeanGap(0.1)] {
         assert!(at(&mut *history, load).is_err(), "{load:?}");
     }
-    let twisted = Step { tangential: Tangential::Force(1.0), ..Step::normal(0.0, Load::Force(0.0)) };
+    let twisted = Step { tangential: Tangential::force_along_x(1.0), ..Step::normal(0.0, Load::Force(0.0)) };
     assert!(matches!(history.advance(twisted), Err(Error::Unsupported { .. })));
 }

@@ -239,7 +239,7 @@ fn what_is_refused() {
     let mut path = TIGHT.prepare(&scene, 5).unwrap();
     path.advance(Step::normal(1.0, Load::Force(0.5))).unwrap();
     for step in [
-        Step { tangential: Tangential::Force(0.1), ..Step::normal(2.0, Load::Force(0.5)) },
+        Step { tangential: Tangential::force_along_x(0.1), ..Step::normal(2.0, Load::Force(0.5)) },
         Step::normal(0.5, Load::Force(0.5)),
         Step::normal(2.0, Load::Force(-0.5)),
         Step::normal(2.0, Load::Force(3.0)),

@@ -126,6 +126,15 @@ pub enum Paths {
     Needed,
 }
 
+/// Directions of the tangential loads that a model answers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Directions {
+    /// Along x alone, to and fro.
+    AlongX,
+    /// Any direction of the plane, which may change along the path.
+    Plane,
+}
+
 /// What a model can do. A scene that asks for more is refused by [`Abilities::refuse`] before anything is
 /// planned.
 ///
@@ -160,6 +169,8 @@ pub struct Abilities {
     pub loads: &'static [LoadKind],
     /// What a path of loads is to it.
     pub paths: Paths,
+    /// Directions of tangential loads, where friction is among the effects.
+    pub directions: Directions,
     /// Outputs.
     pub outputs: &'static [Output],
 }
@@ -174,6 +185,7 @@ impl Abilities {
         needs_effect: false,
         loads: &[LoadKind::Force, LoadKind::Approach],
         paths: Paths::Forgotten,
+        directions: Directions::AlongX,
         outputs: &[Output::Stiffness, Output::StiffnessFixedArea, Output::Conductance],
     };
 

@@ -39,7 +39,7 @@ impl Effects {
                 positive("range of adhesion", range)?;
             }
         }
-        if let Friction::Coulomb { coefficient } = self.friction {
+        if let Friction::Coulomb { coefficient, .. } = self.friction {
             non_negative("coefficient of friction", coefficient)?;
         }
         self.rheology.validate()
@@ -67,7 +67,8 @@ impl Effects {
         };
         let friction = match friction {
             Friction::Off => None,
-            Friction::Coulomb { .. } => Some(Effect::Friction),
+            Friction::Coulomb { coupling: None | Some(Coupling::Neglected), .. } => Some(Effect::Friction),
+            Friction::Coulomb { coupling: Some(Coupling::Full), .. } => Some(Effect::FullCoupling),
         };
         let rheology = match rheology {
             Rheology::Elastic => None,
@@ -132,9 +133,12 @@ effects! {
     /// [`Adhesion::FiniteRange`] with [`AdhesionLaw::Dugdale`].
     DugdaleAdhesion "adhesion" "adhesion by Dugdale's law"
         { adhesion: Adhesion::FiniteRange { work: 1e-4, range: 0.02, law: AdhesionLaw::Dugdale } },
-    /// [`Friction::Coulomb`].
+    /// [`Friction::Coulomb`], normal and tangential problems independent of each other.
     Friction "friction" "friction"
-        { friction: Friction::Coulomb { coefficient: 0.3 } },
+        { friction: Friction::coulomb(0.3) },
+    /// [`Friction::Coulomb`] with [`Coupling::Full`].
+    FullCoupling "friction" "friction with full coupling of normal and tangential tractions"
+        { friction: Friction::Coulomb { coefficient: 0.3, coupling: Some(Coupling::Full) } },
     /// [`Rheology::KelvinVoigt`].
     KelvinVoigt "rheology" "the rheology of Kelvin and Voigt"
         { rheology: Rheology::KelvinVoigt { viscosity: 1.0 } },
@@ -216,9 +220,33 @@ pub enum Friction {
     /// None.
     #[default]
     Off,
-    /// Coulomb's law with this coefficient.
+    /// Coulomb's law: the tangential traction of a cell is at most `coefficient` times its pressure, and where
+    /// the cell slips it is that, in the direction of the slip.
     Coulomb {
-        /// Coefficient of friction.
+        /// Coefficient of friction mu.
         coefficient: f64,
+        /// How normal and tangential tractions act on each other; `None` says nothing of it. It matters for
+        /// bodies whose second Dundurs constant ([`crate::Pair::coupling`]) is not 0: a model that can do
+        /// either then asks ([`crate::Scene::coupling`]), one that neglects it always takes `None`.
+        coupling: Option<Coupling>,
     },
+}
+
+impl Friction {
+    /// Coulomb's law with this coefficient; nothing is said of the coupling.
+    pub fn coulomb(coefficient: f64) -> Self {
+        Self::Coulomb { coefficient, coupling: None }
+    }
+}
+
+/// How normal and tangential tractions act on each other, for bodies whose second Dundurs constant beta
+/// ([`crate::Pair::coupling`]) is not 0. The terms are of the order of `beta mu`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Coupling {
+    /// Not at all: the normal displacements of tangential tractions and the tangential ones of pressures are
+    /// left out.
+    Neglected,
+    /// Both are solved together.
+    Full,
 }

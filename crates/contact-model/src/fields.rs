@@ -82,7 +82,34 @@ impl Field {
     }
 }
 
+/// What a cell does under a tangential load: the values of the map of stick and slip.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum StickSlip {
+    /// It is not in contact.
+    Open,
+    /// It sticks: its traction is below what friction can hold.
+    Stick,
+    /// It slips: its traction is what friction can hold.
+    Slip,
+}
+
+impl StickSlip {
+    /// All of them, in the order of their values.
+    pub const ALL: [Self; 3] = [Self::Open, Self::Stick, Self::Slip];
+
+    /// Its value in the map.
+    pub fn value(self) -> f64 {
+        match self {
+            Self::Open => 0.0,
+            Self::Stick => 1.0,
+            Self::Slip => 2.0,
+        }
+    }
+}
+
 /// Fields of a state on the cells of its map.
+///
+/// Fields of two components have that along x (columns) first and that along y (rows) second.
 #[derive(Debug, Clone, PartialEq, Default)]
 #[non_exhaustive]
 pub struct Fields {
@@ -95,12 +122,20 @@ pub struct Fields {
     pub gap: Option<Field>,
     /// Depth of the plastic indentation >= 0.
     pub plastic_depth: Option<Field>,
+    /// Tangential traction q: its integrals are the components of the tangential force.
+    pub traction: Option<[Field; 2]>,
+    /// Slip s of the bodies relative to each other since the cell came into contact, of the sign of the
+    /// tangential displacement; 0 where there is no contact.
+    pub slip: Option<[Field; 2]>,
+    /// What each cell does, by [`StickSlip::value`].
+    pub stick_slip: Option<Field>,
 }
 
 impl Fields {
-    /// The field of an output; `None` for an output that is no field, and where it was not asked for.
-    pub fn get(&self, output: Output) -> Option<&Field> {
-        output.field().and_then(|quantity| (quantity.get)(self))
+    /// The field of an output, component by component; none for an output that is no field, and where it was
+    /// not asked for.
+    pub fn get(&self, output: Output) -> &[Field] {
+        output.field().map_or(&[], |quantity| (quantity.get)(self))
     }
 }
 
@@ -129,14 +164,18 @@ pub struct FieldQuantity {
     pub unit: &'static str,
     /// What it is, in one sentence.
     pub meaning: &'static str,
-    /// Which cell is shown.
+    /// Number of components: 1, or 2 along x and y.
+    pub components: usize,
+    /// Which cell is shown; of two components their magnitude decides.
     pub shown: Shown,
+    /// What its values 0, 1, ... stand for, where they are no measure; empty for a measure.
+    pub classes: &'static [&'static str],
     /// Whether pictures outline the contact in it.
     pub outlined: bool,
-    /// It among the fields of a state.
-    pub get: fn(&Fields) -> Option<&Field>,
-    /// Takes it away from the fields of a state.
-    pub take: fn(&mut Fields) -> Option<Field>,
+    /// Its components among the fields of a state; none where it was not asked for.
+    pub get: fn(&Fields) -> &[Field],
+    /// Takes its components away from the fields of a state.
+    pub take: fn(&mut Fields) -> Vec<Field>,
 }
 
 /// Every field of a state, in the order of a report.
@@ -147,10 +186,12 @@ pub static FIELDS: &[FieldQuantity] = &[
         symbol: "p",
         unit: "Pa",
         meaning: "pressure of each cell; negative, a tension, with adhesion only",
+        components: 1,
         shown: Shown::Largest,
+        classes: &[],
         outlined: false,
-        get: |fields| fields.pressure.as_ref(),
-        take: |fields| fields.pressure.take(),
+        get: |fields| fields.pressure.as_slice(),
+        take: |fields| fields.pressure.take().into_iter().collect(),
     },
     FieldQuantity {
         name: "gap",
@@ -158,10 +199,12 @@ pub static FIELDS: &[FieldQuantity] = &[
         symbol: "g",
         unit: "m",
         meaning: "gap to the indented surface; infinite at undefined points",
+        components: 1,
         shown: Shown::Smallest,
+        classes: &[],
         outlined: true,
-        get: |fields| fields.gap.as_ref(),
-        take: |fields| fields.gap.take(),
+        get: |fields| fields.gap.as_slice(),
+        take: |fields| fields.gap.take().into_iter().collect(),
     },
     FieldQuantity {
         name: "plastic_depth",
@@ -169,10 +212,12 @@ pub static FIELDS: &[FieldQuantity] = &[
         symbol: "",
         unit: "m",
         meaning: "depth of the plastic indentation >= 0",
+        components: 1,
         shown: Shown::Largest,
+        classes: &[],
         outlined: true,
-        get: |fields| fields.plastic_depth.as_ref(),
-        take: |fields| fields.plastic_depth.take(),
+        get: |fields| fields.plastic_depth.as_slice(),
+        take: |fields| fields.plastic_depth.take().into_iter().collect(),
     },
     FieldQuantity {
         name: "displacement",
@@ -180,10 +225,51 @@ pub static FIELDS: &[FieldQuantity] = &[
         symbol: "u",
         unit: "m",
         meaning: "displacement of the elastic surface",
+        components: 1,
         shown: Shown::Middle,
+        classes: &[],
         outlined: true,
-        get: |fields| fields.displacement.as_ref(),
-        take: |fields| fields.displacement.take(),
+        get: |fields| fields.displacement.as_slice(),
+        take: |fields| fields.displacement.take().into_iter().collect(),
+    },
+    FieldQuantity {
+        name: "traction",
+        words: "tangential traction",
+        symbol: "q",
+        unit: "Pa",
+        meaning: "tangential traction of each cell, along x and along y",
+        components: 2,
+        shown: Shown::Largest,
+        classes: &[],
+        outlined: false,
+        get: |fields| fields.traction.as_slice().as_flattened(),
+        take: |fields| fields.traction.take().into_iter().flatten().collect(),
+    },
+    FieldQuantity {
+        name: "slip",
+        words: "slip",
+        symbol: "s",
+        unit: "m",
+        meaning: "slip of the bodies relative to each other since the cell came into contact, along x and along y",
+        components: 2,
+        shown: Shown::Largest,
+        classes: &[],
+        outlined: true,
+        get: |fields| fields.slip.as_slice().as_flattened(),
+        take: |fields| fields.slip.take().into_iter().flatten().collect(),
+    },
+    FieldQuantity {
+        name: "stick_slip",
+        words: "stick and slip",
+        symbol: "",
+        unit: "",
+        meaning: "0 where there is no contact, 1 where it sticks, 2 where it slips",
+        components: 1,
+        shown: Shown::Largest,
+        classes: &["open", "stick", "slip"],
+        outlined: false,
+        get: |fields| fields.stick_slip.as_slice(),
+        take: |fields| fields.stick_slip.take().into_iter().collect(),
     },
 ];
 
@@ -196,5 +282,35 @@ impl Output {
     /// Whether it is a field over the cells.
     pub fn is_field(self) -> bool {
         self.field().is_some()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::work::Work;
+
+    #[test]
+    fn fields_have_their_components_and_are_taken_away() {
+        let field = |value| Field::new(2, 1.0, vec![value; 4]).unwrap();
+        let mut fields = Fields {
+            pressure: Some(field(1.0)),
+            traction: Some([field(2.0), field(3.0)]),
+            slip: Some([field(4.0), field(5.0)]),
+            stick_slip: Some(field(StickSlip::Slip.value())),
+            ..Fields::default()
+        };
+        assert_eq!(Work::of(0, Some(&fields)), Work { linear_solves: 0, fields: 6, bytes: 6 * 32 });
+        assert_eq!(fields.get(Output::Traction), [field(2.0), field(3.0)]);
+        assert!(fields.get(Output::Gap).is_empty() && fields.get(Output::Area).is_empty());
+        for quantity in FIELDS {
+            let asked = (quantity.get)(&fields).to_vec();
+            assert!(asked.is_empty() || asked.len() == quantity.components, "{}", quantity.name);
+            assert_eq!((quantity.take)(&mut fields), asked);
+        }
+        assert_eq!(fields, Fields::default());
+        let classes = FIELDS.iter().find(|field| field.name == "stick_slip").unwrap().classes;
+        let named = StickSlip::ALL.map(|class| classes[class.value() as usize]);
+        assert_eq!((named, classes.len()), (["open", "stick", "slip"], StickSlip::ALL.len()));
     }
 }

@@ -21,6 +21,7 @@
 //!   derivative of the force in it.
 //! * What depends on the path of the loads (friction, rheology, indentation, adhesion) is followed [`Step`]
 //!   by step.
+//! * What is tangential has two components: along x, the columns of a map, and along y, its rows.
 //! * What is reported of a state stands in one table ([`quantities::QUANTITIES`]), what a model can do in
 //!   another ([`Abilities`]).
 //! * Fields, patches and what follows from the stiffness (conductance) are [`Outputs`]: not asked for, not
@@ -61,12 +62,12 @@ mod validation;
 mod value;
 mod work;
 
-pub use abilities::{Abilities, LoadKind, Paths, SurfaceKind};
+pub use abilities::{Abilities, Directions, LoadKind, Paths, SurfaceKind};
 pub use cells::{Cells, Size};
 pub use conductance::Conductance;
 pub use effects::*;
 pub use error::{Error, Result};
-pub use fields::{FIELDS, Field, FieldQuantity, Fields, Shown};
+pub use fields::{FIELDS, Field, FieldQuantity, Fields, Shown, StickSlip};
 pub use height_map::HeightMap;
 pub use line::Line;
 pub use load::Load;

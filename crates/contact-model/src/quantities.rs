@@ -6,7 +6,7 @@
 //! glossary. Units are those of SI; without units a dimensional number is in the scene's own.
 
 use crate::conductance::Conductance;
-use crate::effects::{Boundary, Effects};
+use crate::effects::{Boundary, Effects, Friction};
 use crate::error::Result;
 use crate::normalisation::Normalisation;
 use crate::state::ContactState;
@@ -95,6 +95,18 @@ outputs! {
     PlasticDepth plastic_depth,
     /// Connected contact areas, their number and sizes.
     ContactPatches contact_patches,
+    /// Areas of the contact that stick and that slip; with friction only.
+    StickArea stick_area,
+    /// Tangential stiffness dQ/ddelta along the branch of states, 2 x 2; with friction only.
+    TangentialStiffness tangential_stiffness,
+    /// Tangential stiffness of the whole contact, sticking, 2 x 2; with friction only.
+    TangentialStiffnessStuck tangential_stiffness_stuck,
+    /// Field of the tangential traction, two components; with friction only.
+    Traction traction,
+    /// Field of the slip, two components; with friction only.
+    Slip slip,
+    /// Map of what sticks and what slips; with friction only.
+    StickSlip stick_slip,
 }
 
 impl Outputs {
@@ -112,6 +124,16 @@ impl Outputs {
     pub fn needs_stiffness(&self) -> bool {
         self.stiffness || self.needs_fixed_area()
     }
+
+    /// Outputs that need friction.
+    pub const OF_FRICTION: &'static [Output] = &[
+        Output::StickArea,
+        Output::TangentialStiffness,
+        Output::TangentialStiffnessStuck,
+        Output::Traction,
+        Output::Slip,
+        Output::StickSlip,
+    ];
 
     /// Whether the stiffness of the held contact area has to be computed: for itself or for the conductance.
     pub fn needs_fixed_area(&self) -> bool {
@@ -151,6 +173,9 @@ pub struct Question<'a> {
     pub path: bool,
     /// Whether an approach or a mean gap is prescribed.
     pub prescribes_distance: bool,
+    /// Whether tangential loads and displacements may have a component along y: one is prescribed, or a model
+    /// answers loads in both directions.
+    pub along_y: bool,
 }
 
 /// What brings a quantity into the tables.
@@ -170,6 +195,10 @@ pub enum AskedBy {
     Output(Output),
     /// A stiffness of either kind, or what follows from one.
     AnyStiffness,
+    /// A tangential stiffness of either kind.
+    AnyTangentialStiffness,
+    /// Friction whose loads or displacements may have a component along y.
+    FrictionAlongY,
     /// An effect, by its key in `[effects]`.
     Effect(&'static str),
 }
@@ -185,6 +214,10 @@ impl AskedBy {
             Self::PrescribedDistance => question.prescribes_distance,
             Self::Output(output) => question.outputs.asks(output),
             Self::AnyStiffness => question.outputs.needs_stiffness(),
+            Self::AnyTangentialStiffness => {
+                question.outputs.tangential_stiffness || question.outputs.tangential_stiffness_stuck
+            }
+            Self::FrictionAlongY => question.along_y && question.effects.friction != Friction::Off,
             Self::Effect(key) => question.effects.named().any(|effect| effect.key() == key),
         }
     }
@@ -199,6 +232,10 @@ impl AskedBy {
             Self::PrescribedDistance => "a prescribed approach or mean gap".into(),
             Self::Output(output) => format!("`{}` in [outputs]", output.name()),
             Self::AnyStiffness => "a stiffness or the conductance in [outputs]".into(),
+            Self::AnyTangentialStiffness => "a tangential stiffness in [outputs]".into(),
+            Self::FrictionAlongY => {
+                "`friction` in [effects] with a tangential load along y, or a model that answers one".into()
+            }
             Self::Effect(key) => format!("`{key}` in [effects]"),
         }
     }
@@ -361,7 +398,10 @@ macro_rules! quantities {
     };
 }
 
-use AskedBy::{Always, AnyStiffness, Effect, FreeBoundary, Path, PrescribedDistance, RoughSurface};
+use AskedBy::{
+    Always, AnyStiffness, AnyTangentialStiffness, Effect, FreeBoundary, FrictionAlongY, Path,
+    PrescribedDistance, RoughSurface,
+};
 use Unit::{One, Si, Word};
 
 /// Every quantity, in the order of the columns of tables.
@@ -384,11 +424,52 @@ pub static QUANTITIES: &[Quantity] = &quantities! {
     "contact_radius" "contact radius" "a" Si("m"); Path;
         "of a round contact; of an equivalent profile that of the round contact of the same stiffness, k/(2 E*)"
         => |s, _| s.contact_radius.into();
-    "tangential_force" "tangential force" "T" Si("N"); Effect("friction"); "tangential force"
-        => |s, _| s.tangential.map(|t| t.force).into();
+    "tangential_force" "tangential force" "T" Si("N"); Effect("friction"); "tangential force along x"
+        => |s, _| s.tangential.map(|t| t.force[0]).into();
+    "tangential_force_y" "tangential force along y" "T_y" Si("N"); FrictionAlongY; "tangential force along y"
+        => |s, _| s.tangential.map(|t| t.force[1]).into();
     "tangential_displacement" "tangential displacement" "u_x" Si("m"); Effect("friction");
-        "of the bodies relative to each other, far from the contact"
-        => |s, _| s.tangential.map(|t| t.displacement).into();
+        "of the bodies relative to each other along x, far from the contact"
+        => |s, _| s.tangential.map(|t| t.displacement[0]).into();
+    "tangential_displacement_y" "tangential displacement along y" "u_y" Si("m"); FrictionAlongY;
+        "of the bodies relative to each other along y, far from the contact"
+        => |s, _| s.tangential.map(|t| t.displacement[1]).into();
+    "sliding_force" "sliding force" "" Si("N"); Effect("friction");
+        "tangential force at which the whole contact slips, the coefficient of friction times the normal force"
+        { drawn: false }
+        => |s, _| s.tangential.and_then(|t| t.sliding_force).into();
+    "stick_area" "stick area" "" Si("m^2"); AskedBy::Output(Output::StickArea);
+        "area of the contact whose traction is below what friction can hold"
+        => |s, _| s.tangential.and_then(|t| t.stick_area).into();
+    "slip_area" "slip area" "" Si("m^2"); AskedBy::Output(Output::StickArea);
+        "area of the contact whose traction is what friction can hold"
+        => |s, _| s.tangential.and_then(|t| t.slip_area).into();
+    "tangential_stiffness" "tangential stiffness" "k_{xx}" Si("N/m"); AskedBy::Output(Output::TangentialStiffness);
+        "dQ_x/ddelta_x along the branch of states under this normal load: what sticks goes on sticking, what slips goes on slipping"
+        => |s, _| s.tangential.and_then(|t| t.stiffness).map(|k| k[0][0]).into();
+    "tangential_stiffness_xy" "tangential stiffness, x of y" "k_{xy}" Si("N/m"); AskedBy::Output(Output::TangentialStiffness);
+        "dQ_x/ddelta_y of the same"
+        { drawn: false }
+        => |s, _| s.tangential.and_then(|t| t.stiffness).map(|k| k[0][1]).into();
+    "tangential_stiffness_yx" "tangential stiffness, y of x" "k_{yx}" Si("N/m"); AskedBy::Output(Output::TangentialStiffness);
+        "dQ_y/ddelta_x of the same; without coupling that of xy"
+        { drawn: false }
+        => |s, _| s.tangential.and_then(|t| t.stiffness).map(|k| k[1][0]).into();
+    "tangential_stiffness_y" "tangential stiffness along y" "k_{yy}" Si("N/m"); AskedBy::Output(Output::TangentialStiffness);
+        "dQ_y/ddelta_y of the same"
+        => |s, _| s.tangential.and_then(|t| t.stiffness).map(|k| k[1][1]).into();
+    "tangential_stiffness_stuck" "tangential stiffness, sticking" "k_{xx}" Si("N/m"); AskedBy::Output(Output::TangentialStiffnessStuck);
+        "dQ_x/ddelta_x with the whole contact sticking: the first answer after a reversal"
+        => |s, _| s.tangential.and_then(|t| t.stiffness_stuck).map(|k| k[0][0]).into();
+    "tangential_stiffness_stuck_xy" "tangential stiffness, sticking, x of y" "k_{xy}" Si("N/m");
+        AskedBy::Output(Output::TangentialStiffnessStuck);
+        "dQ_x/ddelta_y of the same; it is dQ_y/ddelta_x too"
+        { drawn: false }
+        => |s, _| s.tangential.and_then(|t| t.stiffness_stuck).map(|k| k[0][1]).into();
+    "tangential_stiffness_stuck_y" "tangential stiffness along y, sticking" "k_{yy}" Si("N/m");
+        AskedBy::Output(Output::TangentialStiffnessStuck);
+        "dQ_y/ddelta_y of the same"
+        => |s, _| s.tangential.and_then(|t| t.stiffness_stuck).map(|k| k[1][1]).into();
     "stick_radius" "stick radius" "c" Si("m"); Effect("friction"); "inside it nothing slips"
         => |s, _| s.tangential.and_then(|t| t.stick_radius).into();
     "dissipated" "energy dissipated by friction" "" Si("J"); Effect("friction"); "energy lost to friction since the first step"
@@ -490,6 +571,21 @@ pub static QUANTITIES: &[Quantity] = &quantities! {
         { role: Role::Residual("the attraction of each cell is what the law says of its gap: the largest difference, over the largest traction"),
           average: Average::No, drawn: false }
         => |s, _| s.report.certificate.equilibrium.into();
+    "tangential_duality_gap" "tangential duality gap" "" One; Effect("friction");
+        "sum (mu p |w| - w . q)/(mu F |delta|) of the last step, solved cell by cell"
+        { role: Role::Residual("the tractions minimise the elastic energy of the step of friction: by how much it could still fall, over sliding force \
+         times tangential displacement of the step"),
+          average: Average::No, drawn: false }
+        => |s, _| s.report.certificate.tangential_duality_gap.into();
+    "tangential_load_error" "tangential load error" "" One; Effect("friction"); "|Q - Q_asked|/(mu F), solved cell by cell"
+        { role: Role::Residual("the tangential force is the one that was asked for, over the sliding force"),
+          average: Average::No, drawn: false }
+        => |s, _| s.report.certificate.tangential_load_error.into();
+    "tangential_stiffness_error" "error of the tangential stiffness" "" One; AnyTangentialStiffness;
+        "estimated relative error of the tangential stiffness"
+        { role: Role::Residual("an estimate of the relative error of the tangential stiffness, on these cells"),
+          average: Average::No, drawn: false }
+        => |s, _| s.report.certificate.tangential_stiffness_error.into();
     "stiffness_error" "error of the stiffness" "" One; AnyStiffness;
         "estimated relative error of the stiffness; that of a difference quotient with adhesion of short range and Dugdale's law, where \
          the cells decide it and not the tolerance"

@@ -1,7 +1,7 @@
 //! Physics: what is pressed, which effects count, what is asked.
 
 use crate::cells::Size;
-use crate::effects::{Boundary, Effects, Hardness};
+use crate::effects::{Boundary, Coupling, Effects, Friction, Hardness};
 use crate::error::{Error, Result, positive};
 use crate::height_map::HeightMap;
 use crate::line::Line;
@@ -11,6 +11,9 @@ use std::sync::Arc;
 
 /// How far the modulus may be from E* of the pair: it may have been rounded on its way through a file.
 const SAME_MODULUS: f64 = 1e-9;
+
+/// A second Dundurs constant below this is that of bodies that are alike, whose moduli were rounded.
+const SAME_BODIES: f64 = 1e-12;
 
 /// Everything physical about one question. Numerics are a model's own options, chance is the seed.
 #[derive(Debug, Clone, PartialEq)]
@@ -49,6 +52,42 @@ impl Scene {
         Ok(Self { pair: Some(pair), ..Self::new(surface, pair.modulus()?) })
     }
 
+    /// How normal and tangential tractions act on each other; `None` where they do not (the second Dundurs
+    /// constant of the bodies is 0) and without friction. For models that can neglect it and that can solve
+    /// both together.
+    ///
+    /// # Errors
+    /// [`Error::Domain`] with that constant where it is not 0 and the friction does not say which of both;
+    /// [`Error::Unsupported`] in the name of the model where the bodies are not named; as [`Pair::coupling`].
+    ///
+    /// ```
+    /// use contact_model::{Body, Coupling, Friction, Pair, Scene, Surface};
+    /// let pair = Pair { first: Body::Rigid, second: Body::Elastic { young: 1.0, poisson: 0.25 } };
+    /// let mut scene = Scene::of_pair(Surface::Sphere { radius: 1.0, size: 1.0.into() }, pair)?;
+    /// scene.effects.friction = Friction::coulomb(0.3);
+    /// assert!(scene.coupling("mine").is_err());
+    /// scene.effects.friction = Friction::Coulomb { coefficient: 0.3, coupling: Some(Coupling::Full) };
+    /// assert_eq!(scene.coupling("mine")?, Some(Coupling::Full));
+    /// # Ok::<(), contact_model::Error>(())
+    /// ```
+    pub fn coupling(&self, model: &'static str) -> Result<Option<Coupling>> {
+        let Friction::Coulomb { coupling, .. } = self.effects.friction else { return Ok(None) };
+        let Some(pair) = self.pair else {
+            let what = "a scene without both bodies (Scene::of_pair): friction needs their shear moduli";
+            return Err(Error::unsupported(model, what));
+        };
+        let beta = pair.coupling()?;
+        match coupling {
+            _ if beta.abs() <= SAME_BODIES => Ok(None),
+            None => Err(Error::domain(
+                "second Dundurs constant of the bodies",
+                beta,
+                "0, or friction that says whether the coupling is neglected or full",
+            )),
+            stated => Ok(stated),
+        }
+    }
+
     /// Checks the numbers that every model relies on: modulus, bodies, effects, outputs and the surface's own
     /// parameters.
     ///
@@ -71,6 +110,12 @@ impl Scene {
         if self.outputs.plastic_depth && self.effects.hardness == Hardness::Off {
             let what = "a field of the plastic indentation (it needs a hardness)";
             return Err(Error::unsupported("of elastic contact", what));
+        }
+        if self.effects.friction == Friction::Off
+            && let Some(output) = Outputs::OF_FRICTION.iter().find(|output| self.outputs.asks(**output))
+        {
+            let what = format!("the output `{}` (it needs friction)", output.name());
+            return Err(Error::unsupported("of frictionless contact", what));
         }
         self.surface.validate()
     }
@@ -335,7 +380,7 @@ mod tests {
                 adhesion: Adhesion::FiniteRange { work: 1.0, range: f64::NAN, law: AdhesionLaw::Dugdale },
                 ..Effects::default()
             },
-            Effects { friction: Friction::Coulomb { coefficient: f64::INFINITY }, ..Effects::default() },
+            Effects { friction: Friction::coulomb(f64::INFINITY), ..Effects::default() },
             Effects { rheology: Rheology::KelvinVoigt { viscosity: 0.0 }, ..Effects::default() },
         ] {
             scene.effects = effects;
@@ -348,5 +393,49 @@ mod tests {
         scene.modulus = 2.1;
         let text = scene.validate().unwrap_err().to_string();
         assert_eq!(text, "modulus = 2.1: expected 2, E* of the pair");
+    }
+
+    #[test]
+    fn outputs_of_friction_need_it() {
+        for &output in Outputs::OF_FRICTION {
+            let mut scene = Scene::new(Surface::Flat { size: 1.0.into() }, 1.0);
+            scene.outputs.ask(output, true);
+            let text = scene.validate().unwrap_err().to_string();
+            assert!(text.contains("frictionless") && text.contains(output.name()), "{text}");
+            scene.effects.friction = Friction::coulomb(0.0);
+            assert!(scene.validate().is_ok());
+        }
+    }
+
+    #[test]
+    fn bodies_that_couple_are_asked_how() {
+        let elastic = |poisson| Body::Elastic { young: 1.0, poisson };
+        let scene = |first, second, friction| {
+            let flat = Surface::Flat { size: 1.0.into() };
+            let mut scene = Scene::of_pair(flat, Pair { first, second }).unwrap();
+            scene.effects.friction = friction;
+            scene
+        };
+        let [off, silent, neglected, full] = [
+            Friction::Off,
+            Friction::coulomb(0.3),
+            Friction::Coulomb { coefficient: 0.3, coupling: Some(Coupling::Neglected) },
+            Friction::Coulomb { coefficient: 0.3, coupling: Some(Coupling::Full) },
+        ];
+        // Bodies that are alike, and a rigid one on an incompressible one, do not couple.
+        for (first, second) in [(elastic(0.3), elastic(0.3)), (Body::Rigid, elastic(0.5))] {
+            for friction in [off, silent, neglected, full] {
+                assert_eq!(scene(first, second, friction).coupling("a model"), Ok(None));
+            }
+        }
+        let rigid = |friction| scene(Body::Rigid, elastic(0.0), friction).coupling("a model");
+        assert_eq!(rigid(off), Ok(None));
+        assert_eq!(rigid(neglected), Ok(Some(Coupling::Neglected)));
+        assert_eq!(rigid(full), Ok(Some(Coupling::Full)));
+        let text = rigid(silent).unwrap_err().to_string();
+        assert!(text.starts_with("second Dundurs constant of the bodies = -0.5: expected 0"), "{text}");
+        let mut nameless = scene(Body::Rigid, elastic(0.0), full);
+        nameless.pair = None;
+        assert!(matches!(nameless.coupling("a model"), Err(Error::Unsupported { .. })));
     }
 }

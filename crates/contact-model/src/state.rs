@@ -186,15 +186,27 @@ impl ContactState {
     }
 }
 
-/// The tangential part of a state.
+/// The tangential part of a state. Pairs are components along x (columns of a map) and along y (rows).
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct TangentialState {
-    /// Tangential force.
-    pub force: f64,
-    /// Tangential displacement.
-    pub displacement: f64,
+    /// Tangential force Q, the integral of the tangential traction.
+    pub force: [f64; 2],
+    /// Tangential displacement delta of the bodies relative to each other, far from the contact (with
+    /// periodic boundaries the mean one of the surface).
+    pub displacement: [f64; 2],
+    /// Largest tangential force `mu F` under this normal force: at it the whole contact slips.
+    pub sliding_force: Option<f64>,
+    /// Area of the contact that sticks: its traction is below what friction can hold, where asked for.
+    pub stick_area: Option<f64>,
+    /// Area of the contact that slips: its traction is what friction can hold, where asked for.
+    pub slip_area: Option<f64>,
+    /// Tangential stiffness `stiffness[i][j] = dQ_i/ddelta_j` along the branch of the states, where asked for:
+    /// the normal load is held, what sticks goes on sticking and what slips goes on slipping.
+    pub stiffness: Option<[[f64; 2]; 2]>,
+    /// The same with the whole contact sticking, where asked for: the first answer after a reversal.
+    pub stiffness_stuck: Option<[[f64; 2]; 2]>,
     /// Radius inside which the traction is below what friction can hold, of round contacts (of an equivalent
     /// profile as the contact radius): the contact radius without any slip, 0 in full slip.
     pub stick_radius: Option<f64>,
@@ -203,9 +215,43 @@ pub struct TangentialState {
 }
 
 impl TangentialState {
-    /// A state in which nothing slipped yet and no stick radius is known.
-    pub fn new(force: f64, displacement: f64) -> Self {
-        Self { force, displacement, stick_radius: None, dissipated: 0.0 }
+    /// A state in which nothing slipped yet and of which nothing else is known.
+    pub fn new(force: [f64; 2], displacement: [f64; 2]) -> Self {
+        Self {
+            force,
+            displacement,
+            sliding_force: None,
+            stick_area: None,
+            slip_area: None,
+            stiffness: None,
+            stiffness_stuck: None,
+            stick_radius: None,
+            dissipated: 0.0,
+        }
+    }
+
+    /// With the largest tangential force.
+    #[must_use]
+    pub fn with_sliding_force(self, force: impl Into<Option<f64>>) -> Self {
+        Self { sliding_force: force.into(), ..self }
+    }
+
+    /// With the areas that stick and that slip.
+    #[must_use]
+    pub fn with_areas(self, stick: impl Into<Option<f64>>, slip: impl Into<Option<f64>>) -> Self {
+        Self { stick_area: stick.into(), slip_area: slip.into(), ..self }
+    }
+
+    /// With a tangential stiffness along the branch.
+    #[must_use]
+    pub fn with_stiffness(self, stiffness: impl Into<Option<[[f64; 2]; 2]>>) -> Self {
+        Self { stiffness: stiffness.into(), ..self }
+    }
+
+    /// With a tangential stiffness of the sticking contact.
+    #[must_use]
+    pub fn with_stiffness_stuck(self, stiffness: impl Into<Option<[[f64; 2]; 2]>>) -> Self {
+        Self { stiffness_stuck: stiffness.into(), ..self }
     }
 
     /// With a stick radius.
@@ -430,6 +476,19 @@ pub struct Certificate {
     /// Largest difference between the traction of a cell and what the law of adhesion says of its gap, over
     /// `work/range`; `None` without adhesion of finite range.
     pub equilibrium: Option<f64>,
+    /// `sum (mu p |w| - w . q) / (mu F |delta|)`, with the slip w of the step and the tangential displacement
+    /// delta that the step adds: the duality gap of the convex programme of one step of friction, whose
+    /// elastic energy is within it of its minimum. `None` without friction, and where a model does not solve
+    /// it cell by cell.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
+    pub tangential_duality_gap: Option<f64>,
+    /// `|Q - Q_asked| / (mu F)`; 0 where the tangential displacement was prescribed, `None` as above.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
+    pub tangential_load_error: Option<f64>,
+    /// Estimated relative error of the tangential stiffness, the larger one where both are computed; `None`
+    /// where none is.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
+    pub tangential_stiffness_error: Option<f64>,
 }
 
 /// A residual that is not finite is stored as nothing, and nothing is known of it.
@@ -467,6 +526,9 @@ impl Certificate {
             self.load_error,
             self.stiffness_error.unwrap_or(0.0),
             self.equilibrium.unwrap_or(0.0),
+            self.tangential_duality_gap.unwrap_or(0.0),
+            self.tangential_load_error.unwrap_or(0.0),
+            self.tangential_stiffness_error.unwrap_or(0.0),
         ]
         .into_iter()
         .fold(0.0, |a, b| if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) })
@@ -480,17 +542,18 @@ impl fmt::Display for Certificate {
             "duality_gap {:.1e}, penetration {:.1e}, complementarity {:.1e}, load_error {:.1e}",
             self.duality_gap, self.penetration, self.complementarity, self.load_error
         )?;
-        if let Some(e) = self.stiffness_error {
-            write!(f, ", stiffness_error {e:.1e}")?;
-        }
-        if let Some(e) = self.equilibrium {
-            write!(f, ", equilibrium {e:.1e}")?;
-        }
-        if let Some(e) = self.quotient_error {
-            write!(f, ", quotient_error {e:.1e}")?;
-        }
-        if let Some(e) = self.force_error {
-            write!(f, ", force_error {e:.1e}")?;
+        for (name, number) in [
+            ("stiffness_error", self.stiffness_error),
+            ("equilibrium", self.equilibrium),
+            ("quotient_error", self.quotient_error),
+            ("force_error", self.force_error),
+            ("tangential_duality_gap", self.tangential_duality_gap),
+            ("tangential_load_error", self.tangential_load_error),
+            ("tangential_stiffness_error", self.tangential_stiffness_error),
+        ] {
+            if let Some(number) = number {
+                write!(f, ", {name} {number:.1e}")?;
+            }
         }
         Ok(())
     }
@@ -528,5 +591,17 @@ mod tests {
         c.penetration = 0.0;
         c.stiffness_error = Some(2e-3);
         assert!(!c.meets(1e-3) && c.meets(2e-3));
+        for of_friction in [
+            Certificate { tangential_duality_gap: Some(3e-3), ..c },
+            Certificate { tangential_load_error: Some(3e-3), ..c },
+            Certificate { tangential_stiffness_error: Some(3e-3), ..c },
+        ] {
+            assert!(!of_friction.meets(2e-3) && of_friction.meets(3e-3));
+            assert!(
+                of_friction.to_string().ends_with("error 2.0e-3, tangential_duality_gap 3.0e-3")
+                    || of_friction.to_string().ends_with("_error 3.0e-3"),
+                "{of_friction}"
+            );
+        }
     }
 }

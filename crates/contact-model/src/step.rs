@@ -3,20 +3,75 @@
 use crate::error::{Error, Result};
 use crate::load::Load;
 
-/// The tangential load, in one fixed direction. Signed.
+/// The tangential load: its components along x (columns of a map) and along y (rows). Signed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Tangential {
     /// Tangential force.
-    Force(f64),
+    Force([f64; 2]),
     /// Tangential displacement of the bodies relative to each other, far from the contact.
-    Displacement(f64),
+    Displacement([f64; 2]),
+}
+
+impl Tangential {
+    /// A force along x alone.
+    pub fn force_along_x(force: f64) -> Self {
+        Self::Force([force, 0.0])
+    }
+
+    /// A displacement along x alone.
+    pub fn displacement_along_x(displacement: f64) -> Self {
+        Self::Displacement([displacement, 0.0])
+    }
+
+    /// Both components, whichever quantity is prescribed.
+    pub fn components(self) -> [f64; 2] {
+        match self {
+            Self::Force(components) | Self::Displacement(components) => components,
+        }
+    }
+
+    /// Whether nothing is prescribed but zeros.
+    pub fn is_zero(self) -> bool {
+        self.components().iter().all(|component| component.abs() <= 0.0)
+    }
+
+    /// Errors where a model that works along x alone is given a component along y.
+    ///
+    /// # Errors
+    /// [`Error::Unsupported`] naming the model and the component, unless that is 0.
+    ///
+    /// ```
+    /// use contact_model::Tangential;
+    /// assert!(Tangential::Force([3.0, 0.0]).refuse_y("mine").is_ok());
+    /// let refused = Tangential::Displacement([3.0, 4.0]).refuse_y("mine").unwrap_err().to_string();
+    /// assert_eq!(
+    ///     refused,
+    ///     "the model mine does not support a tangential displacement along y (4): it takes the component along x alone"
+    /// );
+    /// ```
+    pub fn refuse_y(self, model: &'static str) -> Result<()> {
+        let [_, y] = self.components();
+        if y.abs() <= 0.0 {
+            return Ok(());
+        }
+        let what = format!("a {} along y ({y}): it takes the component along x alone", self.words());
+        Err(Error::unsupported(model, what))
+    }
+
+    /// What is prescribed.
+    fn words(self) -> &'static str {
+        match self {
+            Self::Force(_) => "tangential force",
+            Self::Displacement(_) => "tangential displacement",
+        }
+    }
 }
 
 impl Default for Tangential {
     /// No tangential force.
     fn default() -> Self {
-        Self::Force(0.0)
+        Self::Force([0.0; 2])
     }
 }
 
@@ -42,7 +97,8 @@ impl Step {
     /// The step itself where its numbers make sense after a step that ended at `last`.
     ///
     /// # Errors
-    /// [`Error::Domain`] for a time before `last`, a normal load as [`Load::validated`], or a tangential load that is not finite.
+    /// [`Error::Domain`] for a time before `last`, a normal load as [`Load::validated`], or a component of the
+    /// tangential load that is not finite.
     pub fn validated(self, last: f64) -> Result<Self> {
         self.normal.validated()?;
         self.validated_with_adhesion(last)
@@ -61,11 +117,13 @@ impl Step {
             ));
         }
         self.normal.validated_with_adhesion()?;
-        let (name, value) = match self.tangential {
-            Tangential::Force(force) => ("tangential force", force),
-            Tangential::Displacement(displacement) => ("tangential displacement", displacement),
-        };
-        if value.is_finite() { Ok(self) } else { Err(Error::domain(name, value, "a finite number")) }
+        for (component, along) in self.tangential.components().into_iter().zip(["x", "y"]) {
+            if !component.is_finite() {
+                let name = format!("{} along {along}", self.tangential.words());
+                return Err(Error::domain(name, component, "a finite number"));
+            }
+        }
+        Ok(self)
     }
 }
 
@@ -80,7 +138,16 @@ mod tests {
         let late = step.validated(2.0).unwrap_err().to_string();
         assert_eq!(late, "time = 1: expected a finite number >= 2, the last time");
         assert!(Step { normal: Load::Force(-1.0), ..step }.validated(0.0).is_err());
-        assert!(Step { tangential: Tangential::Force(f64::NAN), ..step }.validated(0.0).is_err());
-        assert!(Step { tangential: Tangential::Displacement(-3.0), ..step }.validated(0.0).is_ok());
+        for (load, component) in [
+            (Tangential::Force([f64::NAN, 0.0]), "tangential force along x"),
+            (Tangential::Force([0.0, f64::INFINITY]), "tangential force along y"),
+            (Tangential::Displacement([0.0, f64::NAN]), "tangential displacement along y"),
+        ] {
+            let refused = Step { tangential: load, ..step }.validated(0.0).unwrap_err();
+            assert!(refused.to_string().starts_with(&format!("{component} = ")), "{refused}");
+        }
+        assert!(Step { tangential: Tangential::Displacement([-3.0, 2.0]), ..step }.validated(0.0).is_ok());
+        assert!(Tangential::default().is_zero() && Tangential::Displacement([-0.0, 0.0]).is_zero());
+        assert!(!Tangential::Force([0.0, 1e-300]).is_zero() && !Tangential::Force([f64::NAN, 0.0]).is_zero());
     }
 }

@@ -1,6 +1,6 @@
 //! What was done for a state, in counts that no clock changes.
 
-use crate::fields::Fields;
+use crate::fields::{FIELDS, Fields};
 use std::ops::AddAssign;
 
 /// Work beyond iterations and applications of the operator. Closed forms do none.
@@ -12,7 +12,7 @@ use std::ops::AddAssign;
 pub struct Work {
     /// Linear systems solved on the grid itself: factors made and runs of an iteration.
     pub linear_solves: usize,
-    /// Fields over the whole grid that the state holds.
+    /// Fields over the whole grid that the state holds, each component of one counted.
     pub fields: usize,
     /// Their bytes.
     pub bytes: usize,
@@ -30,8 +30,8 @@ impl Work {
     /// ```
     pub fn of(linear_solves: usize, fields: Option<&Fields>) -> Self {
         let mut work = Self { linear_solves, ..Self::default() };
-        if let Some(Fields { pressure, displacement, gap, plastic_depth }) = fields {
-            for field in [pressure, displacement, gap, plastic_depth].into_iter().flatten() {
+        if let Some(fields) = fields {
+            for field in FIELDS.iter().flat_map(|quantity| (quantity.get)(fields)) {
                 work.fields += 1;
                 work.bytes += size_of_val(field.values());
             }

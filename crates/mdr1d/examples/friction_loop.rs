@@ -24,7 +24,7 @@ fn main() -> Result<()> {
     let pair = Pair { first: body, second: body };
     let mut scene = Scene::of_pair(Surface::Sphere { radius: 1.0, size: 2.0.into() }, pair)?;
     let (coefficient, normal, share) = (0.5, Load::Force(0.01), 0.8);
-    scene.effects.friction = Friction::Coulomb { coefficient };
+    scene.effects.friction = Friction::coulomb(coefficient);
     let mut contact = PartialSlip.prepare(&scene, 0)?;
     let limit = coefficient * 0.01; // mu F
 
@@ -32,11 +32,11 @@ fn main() -> Result<()> {
     let mut dissipated = Vec::new();
     println!("{:>6} {:>12} {:>8} {:>12}", "T/mu F", "u_x", "c/a", "dissipated");
     for (i, part) in [share, 0.0, -share, 0.0, share, -share, share].into_iter().enumerate() {
-        let tangential = Tangential::Force(part * limit);
+        let tangential = Tangential::force_along_x(part * limit);
         state = contact.advance(Step { time: (i + 1) as f64, normal, tangential })?;
         let (Some(a), Some(t)) = (state.contact_radius, state.tangential) else { continue };
         let stick = t.stick_radius.unwrap_or(0.0) / a;
-        println!("{part:>6} {:>12.4e} {stick:>8.4} {:>12.4e}", t.displacement, t.dissipated);
+        println!("{part:>6} {:>12.4e} {stick:>8.4} {:>12.4e}", t.displacement[0], t.dissipated);
         dissipated.push(t.dissipated);
     }
 

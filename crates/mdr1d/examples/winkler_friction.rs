@@ -71,7 +71,7 @@ impl PreparedContact for Layer {
 fn main() -> Result<()> {
     let pair = Pair { first: Body::Rigid, second: Body::Elastic { young: 1.0, poisson: 0.4 } };
     let mut scene = Scene::of_pair(Surface::Sphere { radius: 1.0, size: 1.0.into() }, pair)?;
-    scene.effects.friction = Friction::Coulomb { coefficient: 0.3 };
+    scene.effects.friction = Friction::coulomb(0.3);
     let mut contact = Equivalent::new(Winkler { thickness: 0.05 }).prepare(&scene, 0)?;
     let normal = Load::Approach(0.02);
     let force = contact.advance(Step::normal(0.0, normal))?.force;
@@ -79,10 +79,10 @@ fn main() -> Result<()> {
     let largest = 0.3 * 0.02 * scene.modulus / pair.shear_modulus()?;
     println!("{:>7} {:>10} {:>12} {:>12}", "u/u_max", "T/mu F", "closed form", "dissipated");
     for share in [0.1, 0.3, 0.6, 0.9] {
-        let tangential = Tangential::Displacement(share * largest);
+        let tangential = Tangential::displacement_along_x(share * largest);
         let state = contact.advance(Step { time: 0.0, normal, tangential })?;
         let Some(found) = state.tangential else { continue };
-        let (ratio, exact) = (found.force / (0.3 * force), 1.0 - (1.0_f64 - share).powi(2));
+        let (ratio, exact) = (found.force[0] / (0.3 * force), 1.0 - (1.0_f64 - share).powi(2));
         println!("{share:>7} {ratio:>10.6} {exact:>12.6} {:>12.4e}", found.dissipated);
         assert!((ratio - exact).abs() < 1e-6); // a profile through 49 states
     }

@@ -50,11 +50,11 @@ use std::sync::Arc;
 /// let body = Body::Elastic { young: 2.0, poisson: 0.3 };
 /// let pair = Pair { first: body, second: body };
 /// let mut scene = Scene::of_pair(Surface::Sphere { radius: 1.0, size: 2.0.into() }, pair)?;
-/// scene.effects.friction = Friction::Coulomb { coefficient: 0.5 };
+/// scene.effects.friction = Friction::coulomb(0.5);
 /// let mut contact = Equivalent::new(Mdr1d::default()).prepare(&scene, 0)?;
 /// // Half of mu F: c/a = 0.5^(1/3) = 0.7937005260 (Cattaneo, Mindlin).
 /// contact.advance(Step::normal(0.0, Load::Force(0.01)))?;
-/// let state = contact.advance(Step { time: 0.0, normal: Load::Force(0.01), tangential: Tangential::Force(0.0025) })?;
+/// let state = contact.advance(Step { time: 0.0, normal: Load::Force(0.01), tangential: Tangential::force_along_x(0.0025) })?;
 /// let (Some(a), Some(tangential)) = (state.contact_radius, state.tangential) else { panic!("a contact with friction") };
 /// assert!((tangential.stick_radius.unwrap_or(0.0) / a - 0.7937005260).abs() < 1e-4);
 /// # Ok::<(), contact_model::Error>(())
@@ -206,7 +206,7 @@ impl<M: ContactModel> ContactModel for Equivalent<M> {
         }
         self.abilities().refuse(NAME, scene)?;
         let memory = match (friction, Material::new(&rheology, scene.modulus, NAME)?) {
-            (Friction::Coulomb { coefficient }, None) => {
+            (Friction::Coulomb { coefficient, .. }, None) => {
                 let Some(pair) = scene.pair else {
                     let what = "a scene without both bodies (Scene::of_pair): friction needs G*";
                     return Err(Error::unsupported(NAME, what));
@@ -267,6 +267,7 @@ impl PreparedContact for PreparedEquivalent {
         match &mut self.memory {
             Memory::Slip { springs, coefficient, time } => {
                 let step = step.validated(*time)?;
+                step.tangential.refuse_y(NAME)?;
                 let (next, state) = slip(normal, springs, *coefficient, step, stop)?;
                 (*springs, *time) = (next, step.time);
                 Ok(state)
@@ -302,15 +303,16 @@ fn slip(
     let own = springs.normal_force(node.approach);
     let ratio = if own > 0.0 { node.force / own } else { 1.0 };
     let next = match step.tangential {
-        Tangential::Force(force) => {
+        Tangential::Force([force, _]) => {
             let scaled = nondimensional.force_in(force);
             let held = springs.held(node.approach, coefficient * own, scaled / ratio);
             held.ok_or_else(|| Error::gross_slip(force, coefficient * state.force))?
         }
-        Tangential::Displacement(u) => springs.moved(node.approach, nondimensional.length_in(u)),
+        Tangential::Displacement([u, _]) => springs.moved(node.approach, nondimensional.length_in(u)),
         other => return Err(Error::unsupported_load(NAME, other)),
     };
-    let tangential = next.state(step.tangential, ratio, nondimensional)?;
+    let tangential =
+        next.state(step.tangential, ratio, nondimensional)?.with_sliding_force(coefficient * state.force);
     let state = normal
         .reported(state, node.approach)
         .with_time(step.time)

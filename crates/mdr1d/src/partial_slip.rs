@@ -30,11 +30,11 @@ const NAME: &str = "mdr1d_partial_slip";
 /// let body = Body::Elastic { young: 2.0, poisson: 0.3 };
 /// let pair = Pair { first: body, second: body };
 /// let mut scene = Scene::of_pair(Surface::Sphere { radius: 1.0, size: 2.0.into() }, pair)?;
-/// scene.effects.friction = Friction::Coulomb { coefficient: 0.5 };
+/// scene.effects.friction = Friction::coulomb(0.5);
 /// let mut contact = mdr1d::PartialSlip.prepare(&scene, 0)?;
 /// // Half of mu F: c/a = 0.5^(1/3) = 0.7937005260 (Cattaneo, Mindlin).
 /// contact.advance(Step::normal(0.0, Load::Force(0.01)))?;
-/// let state = contact.advance(Step { time: 0.0, normal: Load::Force(0.01), tangential: Tangential::Force(0.0025) })?;
+/// let state = contact.advance(Step { time: 0.0, normal: Load::Force(0.01), tangential: Tangential::force_along_x(0.0025) })?;
 /// let (Some(a), Some(tangential)) = (state.contact_radius, state.tangential) else { panic!("a round contact with friction") };
 /// assert!((tangential.stick_radius.unwrap_or(0.0) / a - 0.7937005260).abs() < 1e-10);
 /// # Ok::<(), contact_model::Error>(())
@@ -73,7 +73,7 @@ impl ContactModel for PartialSlip {
 
     fn prepare(&self, scene: &Scene, _seed: u64) -> Result<Box<dyn PreparedContact>> {
         self.abilities().refuse(NAME, scene)?;
-        let Friction::Coulomb { coefficient } = scene.effects.friction else {
+        let Friction::Coulomb { coefficient, .. } = scene.effects.friction else {
             let what = format!("friction ({:?}): it needs Coulomb's", scene.effects.friction);
             return Err(Error::unsupported(NAME, what));
         };
@@ -119,14 +119,17 @@ impl PreparedContact for PreparedPartialSlip {
     fn advance_until(&mut self, step: Step, stop: Stop<'_>) -> Result<ContactState> {
         check_stop(stop)?;
         let step = step.validated(self.time)?;
+        step.tangential.refuse_y(NAME)?;
         let scaling = &self.body.scaling;
         let nondimensional = scaling.nondimensional;
         let contact = self.body.press(step.normal, NAME)?;
         let springs = match step.tangential {
-            Tangential::Force(force) => {
+            Tangential::Force([force, _]) => {
                 self.reach(contact.approach, contact.force, nondimensional.force_in(force))?
             }
-            Tangential::Displacement(u) => self.springs.moved(contact.approach, nondimensional.length_in(u)),
+            Tangential::Displacement([u, _]) => {
+                self.springs.moved(contact.approach, nondimensional.length_in(u))
+            }
             other => return Err(Error::unsupported_load(NAME, other)),
         };
         let radius = nondimensional.approach(contact.radius)?;
@@ -135,6 +138,7 @@ impl PreparedContact for PreparedPartialSlip {
         let normal = scaling.state(scaled, step.normal, report)?;
         let tangential = springs.state(step.tangential, 1.0, nondimensional)?;
         (self.time, self.springs) = (step.time, springs);
+        let tangential = tangential.with_sliding_force(self.coefficient * normal.force);
         Ok(normal.with_time(step.time).with_contact_radius(radius).with_tangential(tangential))
     }
 

@@ -50,7 +50,7 @@ impl Relaxation {
     /// A step that goes on from here, without a tangential load.
     pub fn validated(&self, step: Step) -> Result<Step> {
         let step = step.validated(self.at.time)?;
-        if step.tangential == Tangential::Force(0.0) {
+        if step.tangential == Tangential::default() {
             Ok(step)
         } else {
             Err(Error::unsupported(self.model, format!("the tangential load {:?}", step.tangential)))

@@ -88,7 +88,7 @@ impl<P: Shape> Springs<P> {
         2.0 * self.shear * sum
     }
 
-    /// The tangential part of a state, what was prescribed as it was prescribed. The factor is that of
+    /// The tangential part of a state, along x, what was prescribed as it was prescribed. The factor is that of
     /// forces, for springs of a profile that agrees with the contact to its accuracy.
     pub fn state(
         &self,
@@ -97,14 +97,14 @@ impl<P: Shape> Springs<P> {
         units: Nondimensionalisation,
     ) -> Result<TangentialState> {
         let force = match prescribed {
-            Tangential::Force(force) => force,
+            Tangential::Force([force, _]) => force,
             _ => units.force(self.force() * factor)?,
         };
         let displacement = match prescribed {
-            Tangential::Displacement(displacement) => displacement,
+            Tangential::Displacement([displacement, _]) => displacement,
             _ => units.approach(self.displacement())?,
         };
-        Ok(TangentialState::new(force, displacement)
+        Ok(TangentialState::new([force, 0.0], [displacement, 0.0])
             .with_stick_radius(units.approach(self.stick_radius())?)
             // E* L^3: a force times a length.
             .with_dissipated(units.approach(units.force(self.dissipated())?)?))

@@ -65,10 +65,10 @@ fn round_bodies_do_not_see_the_rectangle_until_they_leave_it() {
 
 #[test]
 fn histories_leave_the_shorter_side_too() {
-    let step = |d| Step { time: 0.0, normal: Load::Approach(d), tangential: Tangential::Force(0.0) };
+    let step = |d| Step { time: 0.0, normal: Load::Approach(d), tangential: Tangential::force_along_x(0.0) };
     let pair = Pair { first: Body::Rigid, second: Body::Elastic { young: 1.0, poisson: 0.3 } };
     let mut slides = Scene::of_pair(sphere(RECTANGLE), pair).unwrap();
-    slides.effects.friction = Friction::Coulomb { coefficient: 0.3 };
+    slides.effects.friction = Friction::coulomb(0.3);
     let mut creeps = Scene::new(sphere(RECTANGLE), 1.0);
     creeps.effects.rheology = Rheology::Maxwell { viscosity: 2.0 };
     creeps.outputs.stiffness = false;

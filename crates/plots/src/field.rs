@@ -2,9 +2,10 @@
 
 use crate::axis::Axis;
 use crate::colours::UNDEFINED;
-use crate::drawing::Drawing;
+use crate::drawing::{Anchor, Drawing, Paint, Rectangle, polygon, polyline};
 use crate::frame::{Frame, Side, TickStyle};
 use crate::map::share;
+use crate::style::INK;
 use crate::text::Fonts;
 use crate::unit_prefix::prefixed;
 use contact_model::{Cells, Shown, Size};
@@ -37,6 +38,11 @@ pub struct FieldPicture<'a> {
     pub range: Option<(f64, f64)>,
     /// Cells in contact, which are outlined; empty for none.
     pub contact: &'a [bool],
+    /// Components along x and y of what the values are the magnitude of: arrows show its direction.
+    pub arrows: Option<[&'a [f64]; 2]>,
+    /// What the values 0, 1, ... stand for, where they are no measure: a legend with a colour for each takes
+    /// the place of the scale; empty for a measure.
+    pub classes: &'a [&'a str],
 }
 
 /// Longer side of the map, in units of the drawing; the shorter one has at least a twentieth of it.
@@ -61,6 +67,11 @@ const TICKS: TickStyle = TickStyle {
 };
 /// Outline of the contact: far from all of viridis.
 const OUTLINE: [u8; 3] = [228, 26, 28];
+/// Arrows along the longer side of the map, at most.
+const ARROWS: f64 = 26.0;
+/// Length of an arrow and of its head, in distances between arrows.
+const ARROW: f64 = 0.85;
+const ARROW_HEAD: f64 = 0.28;
 /// Where less than this share of the pixels is under pressure, each of these is drawn three pixels wide.
 const SPARSE: f64 = 0.02;
 
@@ -74,12 +85,13 @@ impl FieldPicture<'_> {
     /// Writes a PNG, y upwards. The colours are viridis, from the smallest to the largest value (from 0 under
     /// [`Shown::Largest`], where zero is white) or over the range given; undefined points are grey, the
     /// contact has a red outline. Under [`Shown::Largest`] a field of which less than 2 % of the pixels are
-    /// above zero has each of these drawn three pixels wide.
+    /// above zero has each of these drawn three pixels wide. Arrows have one length; each stands in the middle
+    /// of what it is the sum of, weighted by magnitude.
     ///
     /// Cost: linear in the number of cells.
     ///
     /// # Errors
-    /// [`crate::Error::Content`] for another number of values or cells in contact than cells, no cells or a size that is not positive,
+    /// [`crate::Error::Content`] for another number of values, components or cells in contact than cells, no cells or a size that is not positive,
     /// [`crate::Error::System`] when it cannot be written.
     pub fn save(&self, path: &Path) -> Result<()> {
         let count = self.cells.checked_count().filter(|count| *count > 0);
@@ -91,6 +103,10 @@ impl FieldPicture<'_> {
             );
             return Err(Error::content(path, message));
         }
+        if let Some(component) = self.arrows.into_iter().flatten().find(|c| c.len() != self.values.len()) {
+            let message = format!("{} components of {} values", component.len(), self.values.len());
+            return Err(Error::content(path, message));
+        }
         self.cells.validate(self.size).map_err(|e| Error::content(path, e.to_string()))?;
         let fonts = Fonts::load()?;
         let size = self.size;
@@ -98,7 +114,10 @@ impl FieldPicture<'_> {
         let [w, h] = [size.x, size.y].map(|side| SIDE * (side / longer).max(0.05));
         let mut drawing = Drawing::new(LEFT + w + RIGHT, TOP + h.max(160.0) + BELOW);
         let frame = [LEFT, TOP, w, h];
-        let (low, high) = self.range.unwrap_or_else(|| Self::ends(self.values));
+        let (low, high) = match self.classes.len() {
+            0 => self.range.unwrap_or_else(|| Self::ends(self.values)),
+            count => (0.0, (count - 1) as f64),
+        };
         let low = if self.shown == Shown::Largest { low.min(0.0) } else { low };
         // A constant has a scale around it.
         let room = if high > low { 0.0 } else { high.abs().max(f64::MIN_POSITIVE) };
@@ -111,6 +130,7 @@ impl FieldPicture<'_> {
         let [columns, rows] = [w, h].map(|side| (side * PIXELS).round() as usize);
         let image = self.image(columns, rows, color).into_flattened();
         drawing.image(frame, image, columns);
+        self.draw_arrows(&mut drawing, frame);
         let (length_unit, per_length) = prefixed(self.length_unit, longer);
         let map = Frame { fonts: &fonts, place: frame, style: TICKS };
         map.axis(&mut drawing, Side::Below, Axis::Linear(0.0, per_length * size.x), None);
@@ -121,8 +141,14 @@ impl FieldPicture<'_> {
         };
         map.name_below(&mut drawing, &with("$x$", &length_unit), NAME, TOP + h + 3.2 * TICK);
         map.name_beside(&mut drawing, &with("$y$", &length_unit), NAME, 1.4 * TICK);
+        let beside = LEFT + w + 24.0;
+        if !self.classes.is_empty() {
+            self.draw_classes(&mut drawing, &fonts, (beside, TOP), color);
+            drawing.heading(&fonts, &self.title, (&self.subtitle, 15.0), LEFT);
+            return files::write_whole(path, &drawing.png(&fonts, path)?);
+        }
         // The bar is at least as high as its labels need.
-        let bar = [LEFT + w + 24.0, TOP, BAR, h.max(160.0)];
+        let bar = [beside, TOP, BAR, h.max(160.0)];
         let steps = (bar[3] * PIXELS) as usize;
         let ramp = |i: usize| {
             let t = (i as f64 + 0.5) / steps as f64;
@@ -138,6 +164,75 @@ impl FieldPicture<'_> {
         scale.name_beside(&mut drawing, &with(&self.quantity, &unit), NAME, words);
         drawing.heading(&fonts, &self.title, (&self.subtitle, 15.0), LEFT);
         files::write_whole(path, &drawing.png(&fonts, path)?)
+    }
+
+    /// A square of the colour of each class with its words, the last one on top.
+    fn draw_classes(
+        &self,
+        drawing: &mut Drawing,
+        fonts: &Fonts,
+        (left, top): (f64, f64),
+        color: impl Fn(f64) -> [u8; 3],
+    ) {
+        for (line, (value, words)) in self.classes.iter().enumerate().rev().enumerate() {
+            let y = top + line as f64 * 1.6 * BAR;
+            drawing.image([left, y, BAR, BAR], color(value as f64).to_vec(), 1);
+            let corners = [(left, y), (left + BAR, y), (left + BAR, y + BAR), (left, y + BAR)];
+            drawing.path(polygon(&corners), Paint::stroked(INK, 1.2), None);
+            let at = (left + BAR + 9.0, y + 0.5 * BAR + 0.35 * TICK);
+            drawing.label(fonts.typeset(words, TICK), at, Anchor::Start, false, INK);
+        }
+    }
+
+    /// An arrow for each block of cells, in the direction of the sum of its vectors.
+    fn draw_arrows(&self, drawing: &mut Drawing, frame: Rectangle) {
+        let Some([along_x, along_y]) = self.arrows else { return };
+        let [left, top, w, h] = frame;
+        let Cells { columns, rows } = self.cells;
+        let distance = w.max(h) / ARROWS;
+        // Cells of a block; no arrow is longer than a cell that is larger than the distance.
+        let across = ((distance * columns as f64 / w).round() as usize).max(1);
+        let up = ((distance * rows as f64 / h).round() as usize).max(1);
+        let length = (across as f64 * w / columns as f64).min(up as f64 * h / rows as f64);
+        for (y0, x0) in (0..rows).step_by(up).flat_map(|y| (0..columns).step_by(across).map(move |x| (y, x)))
+        {
+            // Components, and the magnitude with its moments.
+            let (mut sum, mut weight, mut middle) = ([0.0; 2], 0.0, [0.0; 2]);
+            for iy in y0..(y0 + up).min(rows) {
+                for ix in x0..(x0 + across).min(columns) {
+                    let i = iy * columns + ix;
+                    let (x, y) = (along_x[i], along_y[i]);
+                    let magnitude = x.hypot(y);
+                    if magnitude.is_finite() && magnitude > 0.0 {
+                        sum = [sum[0] + x, sum[1] + y];
+                        weight += magnitude;
+                        let at = [ix as f64 + 0.5, iy as f64 + 0.5];
+                        middle = [middle[0] + magnitude * at[0], middle[1] + magnitude * at[1]];
+                    }
+                }
+            }
+            let norm = sum[0].hypot(sum[1]);
+            if !(norm.is_finite() && weight.is_finite() && norm > 0.0) {
+                continue;
+            }
+            let centre = [
+                left + w * middle[0] / weight / columns as f64,
+                top + h - h * middle[1] / weight / rows as f64,
+            ];
+            // The drawing counts y downwards.
+            let (dx, dy) = (sum[0] / norm, -sum[1] / norm);
+            let at = |along: f64, aside: f64| {
+                let [x, y] = centre;
+                (x + length * (along * dx - aside * dy), y + length * (along * dy + aside * dx))
+            };
+            let (tip, back) = (0.5 * ARROW, 0.5 * ARROW - ARROW_HEAD);
+            let shaft = polyline(&[at(-tip, 0.0), at(tip, 0.0)]);
+            let head = polyline(&[at(back, 0.6 * ARROW_HEAD), at(tip, 0.0), at(back, -0.6 * ARROW_HEAD)]);
+            let pieces = [shaft, head].concat();
+            // Seen on dark and on light colours.
+            drawing.path(pieces.clone(), Paint::stroked("#ffffff", 3.2), Some(frame));
+            drawing.path(pieces, Paint::stroked(INK, 1.3), Some(frame));
+        }
     }
 
     /// Colours of all pixels, the upper left one first.
@@ -214,6 +309,8 @@ mod tests {
             shown,
             range: None,
             contact,
+            arrows: None,
+            classes: &[],
         }
     }
 
@@ -277,6 +374,39 @@ mod tests {
         let picture = FieldPicture { contact: &touching, ..self::picture(&field, Shown::Smallest) };
         let image = picture.image(10, 10, viridis);
         assert_eq!(image.iter().filter(|pixel| **pixel == OUTLINE).count(), 8);
+    }
+
+    #[test]
+    fn arrows_point_where_the_vectors_do_and_classes_have_a_legend() {
+        // One arrow in the middle of one cell, to the right and to the upper left.
+        let drawn = |x: f64, y: f64| {
+            let values = [x.hypot(y)];
+            let field = Field::new(1, 1.0, values.to_vec()).unwrap();
+            let (x, y) = ([x], [y]);
+            let picture = FieldPicture { arrows: Some([&x, &y]), ..picture(&field, Shown::Largest) };
+            let mut drawing = Drawing::new(LEFT + SIDE + RIGHT, TOP + SIDE + BELOW);
+            picture.draw_arrows(&mut drawing, [LEFT, TOP, SIDE, SIDE]);
+            drawing.svg(&Fonts::load().unwrap(), Path::new("a picture")).unwrap()
+        };
+        let middle = (LEFT + 0.5 * SIDE, TOP + 0.5 * SIDE);
+        let half = 0.5 * ARROW * SIDE;
+        let shaft = |dx: f64, dy: f64| {
+            let ends = [-half, half].map(|along| (middle.0 + along * dx, middle.1 - along * dy));
+            format!("d=\"M{} {}L{} {}", ends[0].0, ends[0].1, ends[1].0, ends[1].1)
+        };
+        let right = drawn(2.0, 0.0);
+        assert!(right.contains(&shaft(1.0, 0.0)), "{right}");
+        let upwards = drawn(0.0, 3.0);
+        assert!(upwards.contains(&shaft(0.0, 1.0)), "{upwards}");
+        assert!(!drawn(0.0, 0.0).contains("<path d") && !drawn(f64::NAN, 1.0).contains("<path d"));
+        let field = Field::new([3, 1], [3.0, 1.0], vec![0.0, 1.0, 2.0]).unwrap();
+        let classes = &["open", "stick", "slip"][..];
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("c.png");
+        let picture = FieldPicture { classes, ..picture(&field, Shown::Largest) };
+        picture.save(&path).unwrap();
+        let short = FieldPicture { arrows: Some([&[0.0; 3], &[0.0; 2]]), ..picture };
+        assert!(short.save(&path).is_err());
     }
 
     #[test]

@@ -252,6 +252,7 @@ impl AdhesiveContact {
             quotient_error: stiffness.quotient_error,
             equilibrium: Some(equilibrium.mismatch),
             force_error,
+            ..Certificate::default()
         };
         let units = surface.nondimensional;
         let stored = PI * energy(&surface.problem, &self.attraction, &equilibrium);

@@ -13,7 +13,7 @@ use crate::stiffness::{self, Responding, Stiffness};
 use crate::tuning::Tuning;
 use contact_model::{
     ContactState, Error, Load, Normalisation, PreparedContact, RequiredMemory, Result, Scene, Status, Step,
-    Stop, Tangential,
+    Stop,
 };
 use std::borrow::Cow;
 
@@ -151,10 +151,7 @@ impl PreparedContact for PreparedBem3d {
 /// # Errors
 /// [`Error::Unsupported`] for any other.
 fn without_tangential(step: Step) -> Result<()> {
-    let (Tangential::Force(value) | Tangential::Displacement(value)) = step.tangential else {
-        return Err(Error::unsupported(NAME, "a tangential load"));
-    };
-    if value.abs() > 0.0 { Err(Error::unsupported(NAME, "a tangential load")) } else { Ok(()) }
+    if step.tangential.is_zero() { Ok(()) } else { Err(Error::unsupported(NAME, "a tangential load")) }
 }
 
 impl PreparedSurface {

@@ -64,7 +64,19 @@ impl ContactModel for Bem3d {
             ],
             loads: LoadKind::ALL,
             paths: Paths::Remembered,
-            outputs: Output::ALL,
+            // All but those of friction.
+            outputs: &[
+                Output::Stiffness,
+                Output::StiffnessFixedArea,
+                Output::Area,
+                Output::MeanGap,
+                Output::Pressure,
+                Output::Displacement,
+                Output::Gap,
+                Output::PlasticDepth,
+                Output::ContactPatches,
+                Output::Conductance,
+            ],
             ..Abilities::ELASTIC
         }
     }

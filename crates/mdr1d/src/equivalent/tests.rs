@@ -23,7 +23,7 @@ fn rough() -> Surface {
 
 fn sliding(surface: Surface) -> Scene {
     let mut scene = Scene::of_pair(surface, rubber()).unwrap();
-    scene.effects.friction = Friction::Coulomb { coefficient: MU };
+    scene.effects.friction = Friction::coulomb(MU);
     scene
 }
 
@@ -59,14 +59,14 @@ fn difference(surface: &Surface, per_decade: u32) -> [f64; 4] {
         (0.030, 0.95),
     ]
     .iter()
-    .map(|&(normal, share)| step(normal, Tangential::Force(share * MU * normal)))
+    .map(|&(normal, share)| step(normal, Tangential::force_along_x(share * MU * normal)))
     .collect();
     let scene = sliding(surface.clone());
     let exact = PartialSlip.prepare(&scene, 0).unwrap().follow(&path).unwrap();
     let found = equivalent(per_decade).prepare(&scene, 0).unwrap().follow(&path).unwrap();
     let numbers = |state: &ContactState| {
         let t = state.tangential.unwrap();
-        [t.force, t.displacement, t.stick_radius.unwrap(), t.dissipated]
+        [t.force[0], t.displacement[0], t.stick_radius.unwrap(), t.dissipated]
     };
     let mut worst = [0.0_f64; 4];
     for (one, other) in exact.iter().zip(&found) {
@@ -144,7 +144,7 @@ fn the_normal_part_is_the_models_own() {
     assert_eq!(own.normalisation(), contact.normalisation());
     for normal in [1e-3, 4e-3, 2e-3, 0.0, 1e-2] {
         let normal = contact.normalisation().force(normal).unwrap();
-        let state = contact.advance(step(normal, Tangential::Force(0.3 * MU * normal))).unwrap();
+        let state = contact.advance(step(normal, Tangential::force_along_x(0.3 * MU * normal))).unwrap();
         let there = own.solve(Load::Force(normal)).unwrap();
         assert_eq!(
             (state.force, state.approach, state.stiffness),
@@ -159,32 +159,32 @@ fn the_normal_part_is_the_models_own() {
 fn limits_of_friction_on_a_rough_surface() {
     let run = |coefficient: f64, tangential: Tangential| {
         let mut scene = sliding(rough());
-        scene.effects.friction = Friction::Coulomb { coefficient };
+        scene.effects.friction = Friction::coulomb(coefficient);
         let mut contact = equivalent(16).prepare(&scene, 5).unwrap();
         let normal = contact.normalisation().force(0.05).unwrap();
-        let first = contact.advance(step(normal, Tangential::Force(0.0))).unwrap();
+        let first = contact.advance(step(normal, Tangential::force_along_x(0.0))).unwrap();
         let then = contact.advance(Step { time: 0.0, normal: Load::Force(normal), tangential });
         (first, then)
     };
     let shear = rubber().shear_modulus().unwrap() / rubber().modulus().unwrap();
     // mu -> infinity: a spring with k_x = (G*/E*) k, and no loss. The difference falls as 1/mu.
     let deviation = |mu: f64| {
-        let (normal, state) = run(mu, Tangential::Displacement(1e-4));
+        let (normal, state) = run(mu, Tangential::displacement_along_x(1e-4));
         let sticking = shear * normal.stiffness.unwrap() * 1e-4;
         let tangential = state.unwrap().tangential.unwrap();
         assert!(tangential.dissipated >= 0.0 && tangential.dissipated < 1e-4 * sticking);
-        1.0 - tangential.force / sticking
+        1.0 - tangential.force[0] / sticking
     };
     let (low, high) = (deviation(10.0), deviation(1e4));
     assert!(low > 0.0 && high < 1e-2 * low && high.abs() < 1e-6, "{low:e} {high:e}");
     // A wide stroke slips as a whole: mu F, and it stays there.
-    let (normal, state) = run(MU, Tangential::Displacement(1.0));
+    let (normal, state) = run(MU, Tangential::displacement_along_x(1.0));
     let tangential = state.unwrap().tangential.unwrap();
-    assert_relative_eq!(tangential.force, MU * normal.force, max_relative = 1e-9);
+    assert_relative_eq!(tangential.force[0], MU * normal.force, max_relative = 1e-9);
     assert!(tangential.stick_radius.unwrap() <= 0.0 && tangential.dissipated > 0.0);
     // Exactly mu F can be held, more cannot.
-    assert!(run(MU, Tangential::Force(MU * normal.force)).1.is_ok());
-    let error = run(MU, Tangential::Force(1.001 * MU * normal.force)).1.unwrap_err();
+    assert!(run(MU, Tangential::force_along_x(MU * normal.force)).1.is_ok());
+    let error = run(MU, Tangential::force_along_x(1.001 * MU * normal.force)).1.unwrap_err();
     assert!(
         matches!(error, Error::OutOfRange { max, .. } if (max / (MU * normal.force) - 1.0).abs() < 1e-12)
     );
@@ -243,7 +243,8 @@ fn contacts_that_do_not_grow_are_refused_and_leave_no_trace() {
     static SOLVES: AtomicUsize = AtomicUsize::new(0);
     let model = Equivalent::new(Scripted { factor: |d| if d > 0.005 { 0.8 } else { 1.0 }, solves: &SOLVES });
     let mut contact = model.prepare(&sliding(sphere()), 0).unwrap();
-    let held = Step { time: 0.0, normal: Load::Approach(0.003), tangential: Tangential::Displacement(1e-4) };
+    let held =
+        Step { time: 0.0, normal: Load::Approach(0.003), tangential: Tangential::displacement_along_x(1e-4) };
     let before = contact.advance(held).unwrap().tangential.unwrap();
     let error = contact.advance(Step { normal: Load::Approach(0.008), ..held }).unwrap_err();
     assert!(matches!(error, Error::OutOfRange { .. }) && error.to_string().contains("grows"), "{error}");
@@ -269,12 +270,12 @@ fn any_units_do() {
         let pair = Pair { first: Body::Rigid, second: Body::Elastic { young, poisson: 0.5 } };
         let surface = Surface::Sphere { radius: length, size: (2.0 * length).into() };
         let mut scene = Scene::of_pair(surface, pair).unwrap();
-        scene.effects.friction = Friction::Coulomb { coefficient: MU };
+        scene.effects.friction = Friction::coulomb(MU);
         let mut contact = equivalent(8).prepare(&scene, 0).unwrap();
         let force = 0.01 * (scene.modulus * length) * length;
-        contact.advance(step(force, Tangential::Force(0.0))).unwrap();
-        let state = contact.advance(step(force, Tangential::Force(0.5 * MU * force))).unwrap();
-        [state.contact_radius.unwrap() / length, state.tangential.unwrap().displacement / length]
+        contact.advance(step(force, Tangential::force_along_x(0.0))).unwrap();
+        let state = contact.advance(step(force, Tangential::force_along_x(0.5 * MU * force))).unwrap();
+        [state.contact_radius.unwrap() / length, state.tangential.unwrap().displacement[0] / length]
     };
     let here = run(1.0, 0.75);
     for (length, young) in [(1e-90, 1e90), (1e90, 1e-90), (1e-6, 1e11)] {
@@ -350,7 +351,7 @@ fn what_the_wrapper_lacks_is_refused() {
     scene.outputs.stiffness = true;
     assert!(refused(&scene));
     let mut contact = equivalent(8).prepare(&creeping(sphere(), SOLID), 0).unwrap();
-    assert!(contact.advance(step(0.01, Tangential::Force(1e-3))).is_err());
+    assert!(contact.advance(step(0.01, Tangential::force_along_x(1e-3))).is_err());
     for (per_decade, decades) in [(0, 3), (1001, 3), (16, 0), (16, 13)] {
         let model = Equivalent { per_decade, decades, ..Equivalent::new(Mdr1d::default()) };
         assert!(matches!(model.prepare(&sliding(sphere()), 0), Err(Error::Domain { .. })));
@@ -368,15 +369,15 @@ fn a_straight_piece_is_the_sum_of_its_parts() {
         for corner in [[1.0, 0.05], [1.0, -0.03], [2.0, 0.06], [0.5, 0.01]] {
             for cut in cuts.iter().chain(&[1.0]) {
                 let [d, u] = [0, 1].map(|i| from[i] + cut * (corner[i] - from[i]));
-                let tangential = Tangential::Displacement(u * unit);
+                let tangential = Tangential::displacement_along_x(u * unit);
                 contact.advance(Step { time: 0.0, normal: Load::Approach(d * unit), tangential }).unwrap();
             }
             from = corner;
         }
-        let last = Tangential::Displacement(from[1] * unit);
+        let last = Tangential::displacement_along_x(from[1] * unit);
         let step = Step { time: 0.0, normal: Load::Approach(from[0] * unit), tangential: last };
         let tangential = contact.advance(step).unwrap().tangential.unwrap();
-        [tangential.force, tangential.dissipated]
+        [tangential.force[0], tangential.dissipated]
     };
     let whole = run(&[]);
     for cuts in [&[0.5][..], &[0.1, 0.7], &[0.01, 0.02, 0.5, 0.99]] {

@@ -8,7 +8,7 @@ const ROOT: f64 = 1e-11;
 fn scene(surface: Surface, mu: f64) -> Scene {
     let pair = Pair { first: Body::Rigid, second: Body::Elastic { young: 0.75, poisson: 0.5 } };
     let mut scene = Scene::of_pair(surface, pair).unwrap();
-    scene.effects.friction = Friction::Coulomb { coefficient: mu };
+    scene.effects.friction = Friction::coulomb(mu);
     scene
 }
 
@@ -31,12 +31,12 @@ fn reference_numbers_in_any_units() {
         for (share, ratio) in [(0.25, 0.908_560_296_4), (0.5, 0.793_700_526_0), (0.9, 0.464_158_883_4)] {
             contact.restart();
             contact.advance(Step::normal(0.0, Load::Force(force))).unwrap();
-            let state = contact.advance(step(force, Tangential::Force(share * 0.4 * force))).unwrap();
+            let state = contact.advance(step(force, Tangential::force_along_x(share * 0.4 * force))).unwrap();
             let (a, tangential) = (state.contact_radius.unwrap(), state.tangential.unwrap());
             assert_relative_eq!(tangential.stick_radius.unwrap() / a, ratio, max_relative = 1e-9);
             // u = 3 mu F/(4 G* a) (1 - (c/a)^2), G* = (2/3) E*.
             let u = 0.75 * 0.4 * force / (2.0 / 3.0 * a) * (1.0 - ratio * ratio);
-            assert_relative_eq!(tangential.displacement, u, max_relative = 1e-9);
+            assert_relative_eq!(tangential.displacement[0], u, max_relative = 1e-9);
             assert_relative_eq!(state.area.unwrap(), std::f64::consts::PI * a * a, max_relative = 1e-14);
         }
     }
@@ -56,11 +56,12 @@ fn force_and_displacement_drive_the_same_path() {
         for (normal, share) in
             [(0.01, 0.0), (0.01, 0.5), (0.02, 0.1), (0.02, -0.8), (0.005, -0.3), (0.005, 0.9), (0.0, 0.0)]
         {
-            let one = by_force.advance(step(normal, Tangential::Force(share * 0.3 * normal))).unwrap();
-            let u = one.tangential.unwrap().displacement;
-            let other = by_displacement.advance(step(normal, Tangential::Displacement(u))).unwrap();
+            let one =
+                by_force.advance(step(normal, Tangential::force_along_x(share * 0.3 * normal))).unwrap();
+            let u = one.tangential.unwrap().displacement[0];
+            let other = by_displacement.advance(step(normal, Tangential::displacement_along_x(u))).unwrap();
             let (one, other) = (one.tangential.unwrap(), other.tangential.unwrap());
-            assert_relative_eq!(one.force, other.force, max_relative = ROOT, epsilon = ROOT * 0.01);
+            assert_relative_eq!(one.force[0], other.force[0], max_relative = ROOT, epsilon = ROOT * 0.01);
             assert_relative_eq!(
                 one.dissipated,
                 other.dissipated,
@@ -78,8 +79,8 @@ fn the_path_matters() {
     let run = |path: &[(f64, f64)]| {
         let mut contact = PartialSlip.prepare(&scene(sphere(1.0), 0.5), 0).unwrap();
         let steps: Vec<Step> =
-            path.iter().map(|&(normal, u)| step(normal, Tangential::Displacement(u))).collect();
-        contact.follow(&steps).unwrap().pop().unwrap().tangential.unwrap().force
+            path.iter().map(|&(normal, u)| step(normal, Tangential::displacement_along_x(u))).collect();
+        contact.follow(&steps).unwrap().pop().unwrap().tangential.unwrap().force[0]
     };
     let pressed_first = run(&[(0.02, 0.0), (0.02, 1e-3)]);
     let sheared_first = run(&[(0.002, 0.0), (0.002, 1e-3), (0.02, 1e-3)]);
@@ -89,20 +90,24 @@ fn the_path_matters() {
 #[test]
 fn limits_and_failures() {
     let mut contact = PartialSlip.prepare(&scene(sphere(1.0), 0.4), 0).unwrap();
-    let full = contact.advance(step(0.01, Tangential::Force(0.004))).unwrap().tangential.unwrap();
+    let full = contact.advance(step(0.01, Tangential::force_along_x(0.004))).unwrap().tangential.unwrap();
     assert!(full.stick_radius.unwrap() <= 1e-9);
     let before = full;
-    let error = contact.advance(step(0.01, Tangential::Force(0.0041))).unwrap_err();
+    let error = contact.advance(step(0.01, Tangential::force_along_x(0.0041))).unwrap_err();
     assert!(matches!(error, Error::OutOfRange { .. }) && error.to_string().contains("slips as a whole"));
-    assert!(contact.advance(step(0.0, Tangential::Force(1e-9))).is_err());
-    assert!(contact.advance(step(1e3, Tangential::Force(0.0))).is_err());
+    assert!(contact.advance(step(0.0, Tangential::force_along_x(1e-9))).is_err());
+    assert!(contact.advance(step(1e3, Tangential::force_along_x(0.0))).is_err());
     // Failures leave no trace.
-    assert_eq!(contact.advance(step(0.01, Tangential::Force(0.004))).unwrap().tangential.unwrap(), before);
+    assert_eq!(
+        contact.advance(step(0.01, Tangential::force_along_x(0.004))).unwrap().tangential.unwrap(),
+        before
+    );
     // Without friction there is no tangential force.
     let mut smooth = PartialSlip.prepare(&scene(sphere(1.0), 0.0), 0).unwrap();
-    let state = smooth.advance(step(0.01, Tangential::Displacement(0.1))).unwrap().tangential.unwrap();
-    assert!(state.force.abs() <= 0.0 && state.dissipated <= 0.0 && state.stick_radius.unwrap() <= 0.0);
-    assert!(smooth.advance(step(0.01, Tangential::Force(0.0))).is_ok());
+    let state =
+        smooth.advance(step(0.01, Tangential::displacement_along_x(0.1))).unwrap().tangential.unwrap();
+    assert!(state.force[0].abs() <= 0.0 && state.dissipated <= 0.0 && state.stick_radius.unwrap() <= 0.0);
+    assert!(smooth.advance(step(0.01, Tangential::force_along_x(0.0))).is_ok());
 }
 
 #[test]

@@ -207,7 +207,7 @@ fn what_the_model_lacks_is_refused() {
     let rough = Surface::SelfAffine(SelfAffine::new(2.2, 1.0, 0.1).unwrap());
     assert!(refused(&scene(rough, SOLID)) && refused(&scene(sphere(), Rheology::Elastic)));
     let mut other = scene(sphere(), SOLID);
-    other.effects.friction = Friction::Coulomb { coefficient: 0.1 };
+    other.effects.friction = Friction::coulomb(0.1);
     assert!(refused(&other));
     let mut stiffness = scene(sphere(), SOLID);
     stiffness.outputs.stiffness = true;
@@ -223,7 +223,7 @@ fn what_the_model_lacks_is_refused() {
     let compressible = Body::Elastic { young: 3.0, poisson: 0.3 };
     assert!(matches!(Viscoelastic.prepare(&pair(compressible, Body::Rigid), 0), Err(Error::Domain { .. })));
     let mut contact = prepare(sphere(), SOLID);
-    let sheared = Step { time: 0.0, normal: Load::Force(0.0), tangential: Tangential::Force(1.0) };
+    let sheared = Step { time: 0.0, normal: Load::Force(0.0), tangential: Tangential::force_along_x(1.0) };
     assert!(contact.advance(sheared).is_err());
     assert!(contact.advance(Step::normal(-1.0, Load::Force(0.0))).is_err());
 }

@@ -81,11 +81,11 @@ pub static EFFECT_KEYS: &[EffectKey] = &[
         read: |entry, _, effects| {
             let table = entry.table_or("coefficient")?;
             let coefficient = table.require("coefficient", "0.3")?.not_negative_number()?;
-            effects.friction = Friction::Coulomb { coefficient };
+            effects.friction = Friction::coulomb(coefficient);
             table.finish()
         },
         words: |effects| match effects.friction {
-            Friction::Coulomb { coefficient } => Some(format!("Coulomb, coefficient {coefficient}")),
+            Friction::Coulomb { coefficient, .. } => Some(format!("Coulomb, coefficient {coefficient}")),
             _ => None,
         },
     },

@@ -109,6 +109,14 @@ impl LoadRequest {
         }
     }
 
+    /// Whether a component of a tangential load along y is prescribed.
+    pub(crate) fn shears_along_y(&self) -> bool {
+        match self {
+            Self::Loads(_) => false,
+            Self::Path(steps) => steps.iter().any(|step| step.tangential.components()[1].abs() > 0.0),
+        }
+    }
+
     /// Whether an approach or a mean gap may be prescribed, of which the force is a result with an error.
     pub(crate) fn prescribes_distance(&self) -> bool {
         match self {
@@ -234,8 +242,8 @@ fn read_path(entry: &Entry<'_>, system: System, pulls: bool) -> Read<Vec<Step>> 
             None => last.normal,
         };
         let tangential = match table.one_of(&["tangential_force", "tangential_displacement"])? {
-            Some(("tangential_force", e)) => Tangential::Force(e.quantity(Dimension::FORCE, system)?),
-            Some((_, e)) => Tangential::Displacement(e.quantity(Dimension::LENGTH, system)?),
+            Some(("tangential_force", e)) => Tangential::force_along_x(e.quantity(Dimension::FORCE, system)?),
+            Some((_, e)) => Tangential::displacement_along_x(e.quantity(Dimension::LENGTH, system)?),
             None => last.tangential,
         };
         if steps.is_empty() {
@@ -276,8 +284,8 @@ fn beginning(normal: Load, tangential: Tangential) -> Step {
         _ => Load::Force(0.0),
     };
     let tangential = match tangential {
-        Tangential::Displacement(_) => Tangential::Displacement(0.0),
-        _ => Tangential::Force(0.0),
+        Tangential::Displacement(_) => Tangential::Displacement([0.0; 2]),
+        _ => Tangential::default(),
     };
     Step { time: 0.0, normal, tangential }
 }
@@ -285,6 +293,7 @@ fn beginning(normal: Load, tangential: Tangential) -> Step {
 /// A point of a straight piece; a quantity that is prescribed anew begins at its new value.
 fn part(from: Step, to: Step, t: f64) -> Step {
     let mix = |a: f64, b: f64| a + (b - a) * t;
+    let both = |a: [f64; 2], b: [f64; 2]| [mix(a[0], b[0]), mix(a[1], b[1])];
     let normal = match (from.normal, to.normal) {
         (Load::Force(a), Load::Force(b)) => Load::Force(mix(a, b)),
         (Load::Approach(a), Load::Approach(b)) => Load::Approach(mix(a, b)),
@@ -292,8 +301,8 @@ fn part(from: Step, to: Step, t: f64) -> Step {
         (_, other) => other,
     };
     let tangential = match (from.tangential, to.tangential) {
-        (Tangential::Force(a), Tangential::Force(b)) => Tangential::Force(mix(a, b)),
-        (Tangential::Displacement(a), Tangential::Displacement(b)) => Tangential::Displacement(mix(a, b)),
+        (Tangential::Force(a), Tangential::Force(b)) => Tangential::Force(both(a, b)),
+        (Tangential::Displacement(a), Tangential::Displacement(b)) => Tangential::Displacement(both(a, b)),
         (_, other) => other,
     };
     Step { time: mix(from.time, to.time), normal, tangential }

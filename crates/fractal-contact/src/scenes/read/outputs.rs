@@ -36,10 +36,12 @@ pub(crate) static HEIGHTS: FieldQuantity = FieldQuantity {
     symbol: "",
     unit: "m",
     meaning: "heights as they are solved: after crop, fill and detrend, or as drawn",
+    components: 1,
     shown: Shown::Middle,
+    classes: &[],
     outlined: false,
-    get: |_| None,
-    take: |_| None,
+    get: |_| &[],
+    take: |_| Vec::new(),
 };
 
 /// What is asked for: of the models, and as files.

@@ -5,6 +5,7 @@ use crate::scenes::run::{FieldFile, FieldView, ModelResult, StoredFile};
 
 use contact_model::{Cells, FieldQuantity};
 use plots::{Chart, Curve, FieldPicture};
+use std::borrow::Cow;
 use std::io::Write as _;
 use std::path::Path;
 
@@ -30,7 +31,16 @@ pub(crate) fn is_needed(scene: &SceneFile, name: &str) -> bool {
     fields.any(|field| field.name == name || name == PRESSURE && field.outlined)
 }
 
-/// Keeps the values of a field, little-endian, row-major, until it is drawn.
+/// What is shown of a field: its values, or the magnitude of its components.
+pub(crate) fn magnitude<'a>(components: &[Cow<'a, [f64]>]) -> Cow<'a, [f64]> {
+    match components {
+        [values] => values.clone(),
+        [along_x, along_y, ..] => along_x.iter().zip(along_y.iter()).map(|(x, y)| x.hypot(*y)).collect(),
+        [] => Cow::Borrowed(&[]),
+    }
+}
+
+/// Keeps the values of a field, little-endian, row-major, one component after the other, until it is drawn.
 pub(crate) fn keep(out: &Path, file: FieldFile<'_>, values: &[f64]) -> Result<StoredFile> {
     let bytes: Vec<u8> = values.iter().flat_map(|v| v.to_le_bytes()).collect();
     keep_bytes(out, FieldFile { extension: EXTENSION, ..file }, &bytes)
@@ -68,24 +78,30 @@ pub(crate) fn draw(
     result: &mut ModelResult,
 ) -> Result<()> {
     let file = |field, state, extension| FieldFile { field, model, surface, state, extension };
-    let read = |field, state| -> Option<Vec<f64>> {
+    let read = |field, state, components: usize| -> Option<Vec<Cow<'_, [f64]>>> {
         let name = format!("{WAITING}{}", file(field, state, EXTENSION));
         let bytes = runs::files::read(&out.join(name), u64::MAX).ok()?;
         let (values, rest) = bytes.as_chunks();
-        (rest.is_empty() && Some(values.len()) == cells.checked_count())
-            .then(|| values.iter().map(|v| f64::from_le_bytes(*v)).collect())
+        let count = cells.checked_count().filter(|count| *count > 0)?;
+        let whole = rest.is_empty() && Some(values.len()) == count.checked_mul(components);
+        let component = |values: &[[u8; 8]]| values.iter().map(|v| f64::from_le_bytes(*v)).collect();
+        whole.then(|| values.chunks_exact(count).map(component).collect())
     };
     for (field, formats) in scene.requested.fields() {
         if !formats.contains(&FieldFormat::Png) {
             continue;
         }
         let states: Vec<usize> = result.states.iter().map(|state| state.index).collect();
-        let ends = states.iter().filter_map(|&state| Some(FieldPicture::ends(&read(field.name, state)?)));
+        let read_field = |state| read(field.name, state, field.components);
+        let ends =
+            states.iter().filter_map(|&state| Some(FieldPicture::ends(&magnitude(&read_field(state)?))));
         let range = ends.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
         for state in &mut result.states {
-            let Some(values) = read(field.name, state.index) else { continue };
-            let pressure = if field.outlined { read(PRESSURE, state.index) } else { None };
-            let contact: Vec<bool> = pressure.into_iter().flatten().map(|p| p > 0.0).collect();
+            let Some(components) = read_field(state.index) else { continue };
+            let values = magnitude(&components);
+            let pressure = if field.outlined { read(PRESSURE, state.index, 1) } else { None };
+            let contact: Vec<bool> =
+                pressure.iter().flatten().flat_map(|p| p.iter()).map(|p| *p > 0.0).collect();
             let name = file(field.name, state.index, FieldFormat::Png.extension()).to_string();
             let mut drawn = picture(scene, field, model, (surface, state.index), cells, &values);
             if scene.surface.is_profile() {
@@ -100,7 +116,10 @@ pub(crate) fn draw(
                 continue;
             }
             (drawn.range, drawn.contact) = (range, &contact);
-            if states.len() > 1 && field.name != HEIGHTS.name {
+            if let [along_x, along_y] = &components[..] {
+                drawn.arrows = Some([along_x, along_y]);
+            }
+            if states.len() > 1 && field.name != HEIGHTS.name && field.classes.is_empty() {
                 drawn.subtitle += "; one scale for all loads";
             }
             drawn.save(&out.join(&name))?;
@@ -139,7 +158,7 @@ pub(crate) fn picture<'a>(
     cells: Cells,
     values: &'a [f64],
 ) -> FieldPicture<'a> {
-    let &FieldQuantity { name, words, symbol, unit, shown, .. } = field;
+    let &FieldQuantity { name, words, symbol, unit, components, shown, classes, .. } = field;
     let load = if name == HEIGHTS.name { "as solved".to_owned() } else { words::load(scene, state) };
     let mut title = format!("{}, {}", name.replace('_', " "), words::model_name(model));
     title[..1].make_ascii_uppercase();
@@ -150,7 +169,11 @@ pub(crate) fn picture<'a>(
     FieldPicture {
         title,
         subtitle,
-        quantity: if symbol.is_empty() { words.to_owned() } else { format!("{words} ${symbol}$") },
+        quantity: match symbol {
+            "" => words.to_owned(),
+            symbol if components > 1 => format!("{words}, magnitude $|{symbol}|$"),
+            symbol => format!("{words} ${symbol}$"),
+        },
         unit,
         length_unit,
         cells,
@@ -159,6 +182,8 @@ pub(crate) fn picture<'a>(
         shown,
         range: None,
         contact: &[],
+        arrows: None,
+        classes,
     }
 }
 

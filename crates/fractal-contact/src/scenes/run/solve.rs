@@ -166,17 +166,23 @@ impl ModelOnSurface {
         let heights = if first { self.heights(scene)? } else { None };
         for (quantity, formats) in scene.requested.fields() {
             let name = quantity.name;
-            let of_surface = heights.as_ref().filter(|_| name == HEIGHTS.name);
-            let Some(field) = of_surface.or((quantity.get)(&fields)) else { continue };
-            let values = &on_defined_points(name, field, scene);
+            let components: &[Field] =
+                if name == HEIGHTS.name { heights.as_slice() } else { (quantity.get)(&fields) };
+            let Some(field) = components.first() else { continue };
+            let components: Vec<Cow<'_, [f64]>> =
+                components.iter().map(|component| on_defined_points(name, component, scene)).collect();
+            // One component after the other, as files of numbers have them.
+            let all =
+                if let [values] = &components[..] { values.clone() } else { components.concat().into() };
+            let shown = field_pictures::magnitude(&components);
             let (model, surface, state) = (self.numerics(scene).name(), self.surface, kept.index);
             let file = |extension| FieldFile { field: name, model, surface, state, extension };
             if field_pictures::is_needed(scene, name) {
-                kept.files.push(field_pictures::keep(out, file(""), values)?);
+                kept.files.push(field_pictures::keep(out, file(""), &all)?);
             }
             // One surface is shown, and only fields that files are asked of.
             if surface == 0 && !formats.is_empty() {
-                let view = FieldView::new(quantity.shown, field.cells(), values);
+                let view = FieldView::new(quantity.shown, field.cells(), &shown);
                 kept.files.push(field_pictures::keep_view(out, file(""), &view)?);
             }
             for &format in formats {
@@ -184,11 +190,12 @@ impl ModelOnSurface {
                 let path = out.join(&file);
                 match format {
                     FieldFormat::Npy => {
-                        surface_io::write_npy(&path, &[field.rows(), field.columns()], values)?;
+                        let shape = [components.len(), field.rows(), field.columns()];
+                        surface_io::write_npy(&path, &shape[usize::from(components.len() == 1)..], &all)?;
                     }
                     FieldFormat::Png => continue,
-                    FieldFormat::Pixels => plots::write_grey(&path, field.cells(), field.size(), values)?,
-                    FieldFormat::Vti => write_vti(&path, quantity, scene, field.cells(), values)?,
+                    FieldFormat::Pixels => plots::write_grey(&path, field.cells(), field.size(), &shown)?,
+                    FieldFormat::Vti => write_vti(&path, quantity, scene, field.cells(), &components)?,
                 }
                 kept.files.push(StoredFile::of(out, file)?);
             }
@@ -229,11 +236,20 @@ fn write_vti(
     quantity: &FieldQuantity,
     scene: &SceneFile,
     grid: Cells,
-    values: &[f64],
+    components: &[Cow<'_, [f64]>],
 ) -> Result<()> {
     let unit = scene.system.shown(quantity.unit);
-    let field = surface_io::DataArray { name: quantity.name, unit, values };
-    let bytes = surface_io::vti(grid, scene.surface.size(), &[field], surface_io::Encoding::Base64)
+    // Two components are two arrays.
+    let names: Vec<String> = match components.len() {
+        1 => vec![quantity.name.to_owned()],
+        _ => ["x", "y"].map(|along| format!("{}_{along}", quantity.name)).into(),
+    };
+    let arrays: Vec<surface_io::DataArray<'_>> = names
+        .iter()
+        .zip(components)
+        .map(|(name, values)| surface_io::DataArray { name, unit, values })
+        .collect();
+    let bytes = surface_io::vti(grid, scene.surface.size(), &arrays, surface_io::Encoding::Base64)
         .map_err(|e| Error::Argument { name: "vti", reason: format!("{}: {e}", path.display()) })?;
     Ok(runs::files::write_whole(path, &bytes)?)
 }

@@ -4,6 +4,7 @@ use crate::scenes::plan::RMS_SLOPE;
 use crate::scenes::read::{LoadList, LoadRequest, SceneFile};
 use crate::scenes::run::{SolvedUnit, StateRecord};
 use analysis::{Column, Table, Value};
+use contact_model::Directions;
 use contact_model::quantities::{Compared, QUANTITIES, Quantity, Question};
 
 /// The error of a quantity that the cells leave, and the order of convergence.
@@ -51,6 +52,8 @@ pub(crate) fn asked(scene: &SceneFile) -> impl Iterator<Item = &'static Quantity
         rough: scene.surface.is_rough(),
         path: scene.is_history(),
         prescribes_distance: scene.request.prescribes_distance(),
+        along_y: scene.request.shears_along_y()
+            || scene.models.iter().any(|model| model.model().abilities().directions == Directions::Plane),
     };
     QUANTITIES.iter().filter(move |quantity| quantity.asked_by.holds(&question))
 }

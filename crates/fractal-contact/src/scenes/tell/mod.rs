@@ -27,8 +27,8 @@ mod tests {
     use crate::scenes::{LoadKind, LoadList, LoadRequest, Numerics, SceneFile, SceneSurface};
     use contact_model::quantities::{AskedBy, Average, QUANTITIES, Role};
     use contact_model::{
-        Adhesion, Boundary, Conductance, Effect, Friction, Hardness, Load, Output, Rheology, SelfAffine,
-        Step, Surface,
+        Adhesion, Boundary, Conductance, Effect, Friction, Hardness, Load, Output, Outputs, Rheology,
+        SelfAffine, Step, Surface, Tangential,
     };
 
     /// A scene that asks for what this asks for, and for as little else as it can.
@@ -46,15 +46,28 @@ mod tests {
             }
             AskedBy::Output(output) => {
                 outputs.ask(output, true);
+                if Outputs::OF_FRICTION.contains(&output) {
+                    effects.friction = Friction::coulomb(0.3);
+                }
                 if output == Output::MeanGap {
                     effects.boundary = Boundary::Periodic;
                     scene.request =
                         LoadRequest::Loads(LoadList { kind: LoadKind::MeanPressure, values: vec![0.1, 0.2] });
                 }
             }
+            AskedBy::AnyTangentialStiffness => {
+                outputs.tangential_stiffness_stuck = true;
+                effects.friction = Friction::coulomb(0.3);
+            }
+            AskedBy::FrictionAlongY => {
+                effects.friction = Friction::coulomb(0.3);
+                let tangential = Tangential::Force([0.0, 0.1]);
+                let step = Step { tangential, ..Step::normal(0.0, Load::Force(1.0)) };
+                scene.request = LoadRequest::Path(vec![step; 2]);
+            }
             AskedBy::Effect("hardness") => effects.hardness = Hardness::Limit { pressure: 1.0 },
             AskedBy::Effect("adhesion") => effects.adhesion = Adhesion::ShortRange { work: 1.0 },
-            AskedBy::Effect("friction") => effects.friction = Friction::Coulomb { coefficient: 0.3 },
+            AskedBy::Effect("friction") => effects.friction = Friction::coulomb(0.3),
             AskedBy::Effect("rheology") => effects.rheology = Rheology::Maxwell { viscosity: 1.0 },
             AskedBy::Effect(key) => assert!(Effect::ALL.iter().any(|effect| effect.key() == key), "{key}"),
             AskedBy::Path => {

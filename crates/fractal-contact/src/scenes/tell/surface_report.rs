@@ -74,6 +74,8 @@ impl SurfaceReport<'_> {
             shown: HEIGHTS.shown,
             range: None,
             contact: &[],
+            arrows: None,
+            classes: &[],
         };
         if self.statistics.profile {
             return page::chart(&field_pictures::row_chart(&picture, view.row(map.size().x)));
