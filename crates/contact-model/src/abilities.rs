@@ -5,6 +5,7 @@ use crate::error::{Error, Result};
 use crate::load::Load;
 use crate::quantities::Output;
 use crate::scene::{Scene, Surface};
+use crate::step::Directions;
 
 /// A kind of surface, without its numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -124,15 +125,6 @@ pub enum Paths {
     Remembered,
     /// Time or the tangential load is all that the model is about: loads one by one have no answer.
     Needed,
-}
-
-/// Directions of the tangential loads that a model answers.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Directions {
-    /// Along x alone, to and fro.
-    AlongX,
-    /// Any direction of the plane, which may change along the path.
-    Plane,
 }
 
 /// What a model can do. A scene that asks for more is refused by [`Abilities::refuse`] before anything is

@@ -1,7 +1,11 @@
 //! Effects beyond linear elastic normal contact: what each is, and which are on.
 
-use crate::error::{Result, non_negative, positive};
+use crate::error::{Error, Result, non_negative, positive};
+use crate::pair::Pair;
 use crate::rheology::{PronySeries, Relaxing, Rheology};
+
+/// A second Dundurs constant below this is that of bodies that are alike, whose moduli were rounded.
+const SAME_BODIES: f64 = 1e-12;
 
 /// Effects beyond linear elastic normal contact with free boundaries. Off unless named; a model that lacks
 /// one refuses it.
@@ -236,6 +240,26 @@ impl Friction {
     /// Coulomb's law with this coefficient; nothing is said of the coupling.
     pub fn coulomb(coefficient: f64) -> Self {
         Self::Coulomb { coefficient, coupling: None }
+    }
+
+    /// How normal and tangential tractions of these bodies act on each other; `None` where they do not (the
+    /// second Dundurs constant is 0) and without friction.
+    ///
+    /// # Errors
+    /// [`Error::Domain`] with that constant where it is not 0 and the friction does not say; as
+    /// [`Pair::coupling`].
+    pub fn coupling_of(self, pair: &Pair) -> Result<Option<Coupling>> {
+        let Self::Coulomb { coupling, .. } = self else { return Ok(None) };
+        let beta = pair.coupling()?;
+        match coupling {
+            _ if beta.abs() <= SAME_BODIES => Ok(None),
+            None => Err(Error::domain(
+                "second Dundurs constant of the bodies",
+                beta,
+                "0, or friction that says whether the coupling is neglected or full",
+            )),
+            stated => Ok(stated),
+        }
     }
 }
 

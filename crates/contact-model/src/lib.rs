@@ -62,7 +62,7 @@ mod validation;
 mod value;
 mod work;
 
-pub use abilities::{Abilities, Directions, LoadKind, Paths, SurfaceKind};
+pub use abilities::{Abilities, LoadKind, Paths, SurfaceKind};
 pub use cells::{Cells, Size};
 pub use conductance::Conductance;
 pub use effects::*;
@@ -84,6 +84,6 @@ pub use state::{
     AdhesiveState, Branch, Certificate, ContactResolution, ContactState, PlasticState, SolveReport, Status,
     TangentialState,
 };
-pub use step::{Step, Tangential};
+pub use step::{Directions, Step, Tangential};
 pub use value::Value;
 pub use work::Work;

@@ -10,6 +10,7 @@ use crate::effects::{Boundary, Effects, Friction};
 use crate::error::Result;
 use crate::normalisation::Normalisation;
 use crate::state::ContactState;
+use crate::step::Directions;
 use crate::value::Value;
 
 macro_rules! outputs {
@@ -173,9 +174,8 @@ pub struct Question<'a> {
     pub path: bool,
     /// Whether an approach or a mean gap is prescribed.
     pub prescribes_distance: bool,
-    /// Whether tangential loads and displacements may have a component along y: one is prescribed, or a model
-    /// answers loads in both directions.
-    pub along_y: bool,
+    /// Directions of tangential loads and displacements: those that are prescribed, or that a model answers.
+    pub directions: Directions,
 }
 
 /// What brings a quantity into the tables.
@@ -217,7 +217,9 @@ impl AskedBy {
             Self::AnyTangentialStiffness => {
                 question.outputs.tangential_stiffness || question.outputs.tangential_stiffness_stuck
             }
-            Self::FrictionAlongY => question.along_y && question.effects.friction != Friction::Off,
+            Self::FrictionAlongY => {
+                question.directions == Directions::Plane && question.effects.friction != Friction::Off
+            }
             Self::Effect(key) => question.effects.named().any(|effect| effect.key() == key),
         }
     }

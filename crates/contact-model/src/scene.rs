@@ -12,9 +12,6 @@ use std::sync::Arc;
 /// How far the modulus may be from E* of the pair: it may have been rounded on its way through a file.
 const SAME_MODULUS: f64 = 1e-9;
 
-/// A second Dundurs constant below this is that of bodies that are alike, whose moduli were rounded.
-const SAME_BODIES: f64 = 1e-12;
-
 /// Everything physical about one question. Numerics are a model's own options, chance is the seed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scene {
@@ -57,8 +54,8 @@ impl Scene {
     /// both together.
     ///
     /// # Errors
-    /// [`Error::Domain`] with that constant where it is not 0 and the friction does not say which of both;
-    /// [`Error::Unsupported`] in the name of the model where the bodies are not named; as [`Pair::coupling`].
+    /// As [`Friction::coupling_of`]; [`Error::Unsupported`] in the name of the model where there is friction
+    /// and the bodies are not named.
     ///
     /// ```
     /// use contact_model::{Body, Coupling, Friction, Pair, Scene, Surface};
@@ -71,20 +68,13 @@ impl Scene {
     /// # Ok::<(), contact_model::Error>(())
     /// ```
     pub fn coupling(&self, model: &'static str) -> Result<Option<Coupling>> {
-        let Friction::Coulomb { coupling, .. } = self.effects.friction else { return Ok(None) };
-        let Some(pair) = self.pair else {
-            let what = "a scene without both bodies (Scene::of_pair): friction needs their shear moduli";
-            return Err(Error::unsupported(model, what));
-        };
-        let beta = pair.coupling()?;
-        match coupling {
-            _ if beta.abs() <= SAME_BODIES => Ok(None),
-            None => Err(Error::domain(
-                "second Dundurs constant of the bodies",
-                beta,
-                "0, or friction that says whether the coupling is neglected or full",
-            )),
-            stated => Ok(stated),
+        match (self.effects.friction, &self.pair) {
+            (Friction::Off, _) => Ok(None),
+            (friction, Some(pair)) => friction.coupling_of(pair),
+            (_, None) => {
+                let what = "a scene without both bodies (Scene::of_pair): friction needs their shear moduli";
+                Err(Error::unsupported(model, what))
+            }
         }
     }
 

@@ -68,6 +68,15 @@ impl Tangential {
     }
 }
 
+/// Directions of the tangential loads that a model answers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Directions {
+    /// Along x alone, to and fro.
+    AlongX,
+    /// Any direction of the plane, which may change along the path.
+    Plane,
+}
+
 impl Default for Tangential {
     /// No tangential force.
     fn default() -> Self {

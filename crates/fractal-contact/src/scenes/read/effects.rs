@@ -2,7 +2,7 @@
 
 use crate::scenes::read::{Diagnostic, Entries, Entry, Read, System, number};
 use contact_model::{
-    Adhesion, AdhesionLaw, Boundary, Effects, Friction, Hardness, PronySeries, Relaxing, Rheology,
+    Adhesion, AdhesionLaw, Boundary, Coupling, Effects, Friction, Hardness, PronySeries, Relaxing, Rheology,
 };
 use surface_io::Dimension;
 
@@ -75,17 +75,27 @@ pub static EFFECT_KEYS: &[EffectKey] = &[
     },
     EffectKey {
         name: "friction",
-        takes: "`{ coefficient }`, or the coefficient alone",
-        about: "Coulomb's friction under a tangential load, with this coefficient.",
+        takes: "`{ coefficient, coupling }` with the `coupling` `\"none\"` or `\"full\"`, or the coefficient alone",
+        about: "Coulomb's friction under a tangential load, with this coefficient. Where the bodies differ, normal and tangential tractions \
+                act on each other: the coupling is neglected, or both are solved together.",
         off: "no tangential load",
         read: |entry, _, effects| {
             let table = entry.table_or("coefficient")?;
             let coefficient = table.require("coefficient", "0.3")?.not_negative_number()?;
-            effects.friction = Friction::coulomb(coefficient);
+            let words = [("none", Coupling::Neglected), ("full", Coupling::Full)];
+            let coupling = table.optional("coupling", |entry| entry.choice(&words))?;
+            effects.friction = Friction::Coulomb { coefficient, coupling };
             table.finish()
         },
         words: |effects| match effects.friction {
-            Friction::Coulomb { coefficient, .. } => Some(format!("Coulomb, coefficient {coefficient}")),
+            Friction::Coulomb { coefficient, coupling } => {
+                let coupling = match coupling {
+                    Some(Coupling::Full) => ", normal and tangential tractions solved together",
+                    Some(_) => ", coupling of normal and tangential tractions neglected",
+                    None => "",
+                };
+                Some(format!("Coulomb, coefficient {coefficient}{coupling}"))
+            }
             _ => None,
         },
     },
@@ -262,8 +272,20 @@ mod tests {
         {
             assert!(parse_effects(text).is_err_and(|d| d.domain().is_some() && !d.is_type()), "{text}");
         }
-        for text in ["hardnes = 1", "adhesion = { work = 1, reach = 1 }", "boundary = \"round\"", "hardness"]
-        {
+        for (word, coupling) in [("none", Coupling::Neglected), ("full", Coupling::Full)] {
+            let effects =
+                parse_effects(&format!("friction = {{ coefficient = 0.1, coupling = \"{word}\" }}"));
+            let expected = Friction::Coulomb { coefficient: 0.1, coupling: Some(coupling) };
+            assert_eq!(effects.unwrap().friction, expected);
+        }
+        assert_eq!(parse_effects("friction = 0.1").unwrap().friction, Friction::coulomb(0.1));
+        for text in [
+            "hardnes = 1",
+            "adhesion = { work = 1, reach = 1 }",
+            "boundary = \"round\"",
+            "hardness",
+            "friction = { coefficient = 1, coupling = \"half\" }",
+        ] {
             assert!(parse_effects(text).is_err_and(|d| d.domain().is_none() && !d.is_type()), "{text}");
         }
     }

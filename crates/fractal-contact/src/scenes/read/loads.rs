@@ -1,7 +1,7 @@
 //! What is prescribed: loads one by one, or a path.
 
 use crate::scenes::read::{Entries, Entry, Read, System};
-use contact_model::{Load, Normalisation, Step, Tangential};
+use contact_model::{Load, Normalisation, Size, Step, Tangential};
 use surface_io::Dimension;
 
 /// Most loads of a range; more are a slip of the finger.
@@ -128,11 +128,13 @@ impl LoadRequest {
     }
 }
 
-/// Reads the loads or the path of `[scene]`. `pulls`: loads may be negative (adhesion).
+/// Reads the loads or the path of `[scene]`. `pulls`: loads may be negative (adhesion); the size is that of
+/// the nominal contact area, for mean pressures along a path.
 pub(crate) fn read_request<'a>(
     scene: &Entries<'a>,
     system: System,
     pulls: bool,
+    size: Size,
 ) -> Read<(LoadRequest, Entry<'a>)> {
     let keys = LoadKind::ALL.map(LoadKind::key);
     let loads = scene.one_of(&keys)?;
@@ -148,7 +150,7 @@ pub(crate) fn read_request<'a>(
             let kind = LoadKind::ALL.into_iter().find(|kind| kind.key() == key).unwrap_or(LoadKind::Force);
             Ok((LoadRequest::Loads(read_loads(kind, &entry, system, pulls)?), entry))
         }
-        (None, Some(entry)) => Ok((LoadRequest::Path(read_path(&entry, system, pulls)?), entry)),
+        (None, Some(entry)) => Ok((LoadRequest::Path(read_path(&entry, system, pulls, size)?), entry)),
     }
 }
 
@@ -218,7 +220,26 @@ fn between(low: f64, high: f64, count: usize, even: bool) -> Vec<f64> {
     (0..count).map(at).collect()
 }
 
-fn read_path(entry: &Entry<'_>, system: System, pulls: bool) -> Read<Vec<Step>> {
+/// A tangential load: one number along x, or a pair along x and along y.
+fn read_tangential(entry: &Entry<'_>, dimension: Dimension, system: System) -> Read<[f64; 2]> {
+    let component = |item: &Entry<'_>| item.quantity(dimension, system);
+    match &entry.list()[..] {
+        [x, y] => Ok([component(x)?, component(y)?]),
+        [x] if !entry.is_list() => Ok([component(x)?, 0.0]),
+        components => {
+            let example = match (system, dimension) {
+                (System::None, _) => "[25, 10]",
+                (System::Si, Dimension::LENGTH) => "[\"2 um\", \"1 um\"]",
+                (System::Si, _) => "[\"25 N\", \"10 N\"]",
+            };
+            let message = format!("a tangential load of {} components", components.len());
+            let help = format!("give one value along x, or a pair along x and along y, such as {example}");
+            Err(entry.diagnostic(message).with_help(help))
+        }
+    }
+}
+
+fn read_path(entry: &Entry<'_>, system: System, pulls: bool, size: Size) -> Read<Vec<Step>> {
     if !entry.is_list() {
         return Err(entry
             .diagnostic_at_key("`path` is no list of steps")
@@ -230,20 +251,26 @@ fn read_path(entry: &Entry<'_>, system: System, pulls: bool) -> Read<Vec<Step>> 
         let table = item.table()?;
         let mut time = last.time;
         table.set(&mut time, "time", |e| e.quantity(Dimension::TIME, system))?;
-        let normal = match table.one_of(&["force", "approach", "mean_gap"])? {
+        let normal = match table.one_of(&["force", "approach", "mean_pressure", "mean_gap"])? {
             Some(("force", e)) => Load::Force(e.quantity(Dimension::FORCE, system)?),
+            // As a list of mean pressures has them.
+            Some(("mean_pressure", e)) => {
+                Load::Force(e.quantity(Dimension::PRESSURE, system)? * size.length() * size.length())
+            }
             Some(("mean_gap", e)) => Load::MeanGap(e.quantity(Dimension::LENGTH, system)?),
             Some((_, e)) => Load::Approach(e.quantity(Dimension::LENGTH, system)?),
             None if steps.is_empty() => {
                 return Err(item
                     .diagnostic("the first step of the path has no normal load")
-                    .with_help("give `force`, `approach` or (periodic) `mean_gap`"));
+                    .with_help("give `force`, `mean_pressure`, `approach` or (periodic) `mean_gap`"));
             }
             None => last.normal,
         };
         let tangential = match table.one_of(&["tangential_force", "tangential_displacement"])? {
-            Some(("tangential_force", e)) => Tangential::force_along_x(e.quantity(Dimension::FORCE, system)?),
-            Some((_, e)) => Tangential::displacement_along_x(e.quantity(Dimension::LENGTH, system)?),
+            Some(("tangential_force", e)) => {
+                Tangential::Force(read_tangential(&e, Dimension::FORCE, system)?)
+            }
+            Some((_, e)) => Tangential::Displacement(read_tangential(&e, Dimension::LENGTH, system)?),
             None => last.tangential,
         };
         if steps.is_empty() {
@@ -318,5 +345,34 @@ mod tests {
         assert_eq!((values[0], values[4]), (1e-6, 20.0));
         approx::assert_relative_eq!(values[1] / values[0], 2e7_f64.powf(0.25), max_relative = 1e-12);
         assert_eq!(between(1.0, -1.0, 3, true), [1.0, 0.0, -1.0]);
+    }
+
+    fn path(text: &str) -> Read<Vec<Step>> {
+        let size = Size { x: 4.0, y: 1.0 };
+        Entries::of_text("scene", text, |scene| {
+            read_path(&scene.require("path", "")?, System::None, false, size)
+        })
+    }
+
+    #[test]
+    fn tangential_loads_have_two_components_and_every_part_mixes_both() {
+        let steps = path(
+            "[[path]]\nmean_pressure = 3\n[[path]]\ntangential_force = [2, -4]\nstates = 2\n[[path]]\ntangential_force = 1\n\
+             [[path]]\ntangential_displacement = [0.5, 0.25]",
+        )
+        .unwrap();
+        let tangential: Vec<Tangential> = steps.iter().map(|step| step.tangential).collect();
+        let forces = [[0.0, 0.0], [1.0, -2.0], [2.0, -4.0], [1.0, 0.0]].map(Tangential::Force);
+        assert_eq!(tangential[..4], forces);
+        assert_eq!(tangential[4], Tangential::Displacement([0.5, 0.25]));
+        // The mean pressure of a path is the force over the nominal area, and stays as it was.
+        assert!(steps.iter().all(|step| step.normal == Load::Force(12.0)));
+        assert!(LoadRequest::Path(steps).shears_along_y());
+        let along_x = path("[[path]]\nmean_gap = 1\ntangential_displacement = 2").unwrap();
+        assert_eq!(along_x[0].normal, Load::MeanGap(1.0));
+        assert!(!LoadRequest::Path(along_x).shears_along_y());
+        for wrong in ["[]", "[1]", "[1, 2, 3]", "[1, \"2 N\"]", "[1, nan]", "\"1 N\"", "{ x = 1 }"] {
+            assert!(path(&format!("[[path]]\nforce = 1\ntangential_force = {wrong}")).is_err(), "{wrong}");
+        }
     }
 }

@@ -3,11 +3,12 @@
 use crate::scenes::read::{
     Diagnostic, Entries, Entry, LoadKind, LoadRequest, MOST_CELLS, Numerics, Read, Registry,
     RequestedOutputs, Result, SceneSurface, SurfaceEntry, System, outputs, read_accuracy, read_effects,
-    read_models, read_outputs, read_request, read_surface,
+    read_models, read_outputs, read_request, read_surface, short,
 };
 use analysis::AccuracyTarget;
 use contact_model::{
-    Adhesion, Body, Boundary, Cells, Effects, Friction, Hardness, Load, Pair, Paths, Rheology, Scene,
+    Adhesion, Body, Boundary, Cells, Directions, Effect, Effects, Friction, Hardness, Load, Pair, Paths,
+    Rheology, Scene,
 };
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -250,6 +251,8 @@ fn read_scene(root: &Entries<'_>, directory: &Path, registry: &Registry) -> Read
     let options = root.table("models")?;
     let models = read_models(&scene, options.as_ref(), registry.models())?;
     let effects_table = root.table("effects")?;
+    let friction_place =
+        effects_table.as_ref().and_then(|table| table.entry("friction")).map(|entry| entry.key_span());
     let effects = read_effects(effects_table, system)?;
     let outputs_table = root.table("outputs")?;
     let output_places = places(outputs_table.as_ref());
@@ -272,7 +275,8 @@ fn read_scene(root: &Entries<'_>, directory: &Path, registry: &Registry) -> Read
         check_no_grid(options.as_ref())?;
     }
     check_homogeneous(&scene, &models, &surface)?;
-    let (request, request_entry) = read_request(&scene, system, effects.adhesion != Adhesion::Off)?;
+    let pulls = effects.adhesion != Adhesion::Off;
+    let (request, request_entry) = read_request(&scene, system, pulls, surface.size())?;
     let sampling = read_sampling(root, &scene, &models, &surface, &mut notes)?;
     scene.finish()?;
     let places = Places {
@@ -283,6 +287,8 @@ fn read_scene(root: &Entries<'_>, directory: &Path, registry: &Registry) -> Read
     check_request(&request, &request_entry, &surface, &effects)?;
     check_half_plane(&request, &request_entry, &surface, (&effects, &requested), &places)?;
     check_histories(&models, &request, &request_entry, &effects)?;
+    check_tangential(&models, &request, &effects)?;
+    check_coupling(&models, pair.as_ref(), effects.friction, friction_place)?;
     let models = models.into_iter().map(|(numerics, _)| numerics).collect();
     Ok(SceneFile {
         system,
@@ -461,17 +467,25 @@ fn check_request(
     surface: &SceneSurface,
     effects: &Effects,
 ) -> Read<()> {
-    let LoadRequest::Loads(loads) = request else { return Ok(()) };
     let periodic = effects.boundary == Boundary::Periodic;
-    match loads.kind {
-        LoadKind::Approach if periodic => Err(entry
+    let prescribes = |kind: LoadKind, of_step: fn(&Load) -> bool| match request {
+        LoadRequest::Loads(loads) => loads.kind == kind,
+        LoadRequest::Path(steps) => steps.iter().any(|step| of_step(&step.normal)),
+    };
+    if periodic && prescribes(LoadKind::Approach, |load| matches!(load, Load::Approach(_))) {
+        return Err(entry
             .diagnostic_at_key("an approach with periodic boundaries: there is no first touch to count from")
             .with_help(
                 "prescribe `force`, `mean_pressure` or `mean_gap`, or remove `boundary = \"periodic\"`",
-            )),
-        LoadKind::MeanGap if !periodic => Err(entry
+            ));
+    }
+    if !periodic && prescribes(LoadKind::MeanGap, |load| matches!(load, Load::MeanGap(_))) {
+        return Err(entry
             .diagnostic_at_key("a mean gap with free boundaries")
-            .with_help("prescribe `force` or `approach`, or add `boundary = \"periodic\"` to [effects]")),
+            .with_help("prescribe `force` or `approach`, or add `boundary = \"periodic\"` to [effects]"));
+    }
+    let LoadRequest::Loads(loads) = request else { return Ok(()) };
+    match loads.kind {
         LoadKind::ForceBar
             if !surface.is_rough() || matches!(surface, SceneSurface::Drawn { body: Some(_), .. }) =>
         {
@@ -563,6 +577,54 @@ fn check_histories(
         }
     }
     Ok(())
+}
+
+/// A tangential load along y is for models that answer loads in both directions.
+fn check_tangential(models: &[(Numerics, Entry<'_>)], request: &LoadRequest, effects: &Effects) -> Read<()> {
+    let both = |numerics: &Numerics| numerics.model().abilities().directions == Directions::Plane;
+    let Some((numerics, model)) = models.iter().find(|(numerics, _)| !both(numerics)) else { return Ok(()) };
+    if !request.shears_along_y() {
+        return Ok(());
+    }
+    let has_effects = |numerics: &Numerics| {
+        let abilities = numerics.model().abilities();
+        effects.named().all(|effect| abilities.effects.contains(&effect))
+    };
+    let known: Vec<&str> = Numerics::all().filter(|m| both(m) && has_effects(m)).map(|m| m.name()).collect();
+    let help = match &known[..] {
+        [] => "give one value along x: no model has both components with these effects".to_owned(),
+        known => format!("give one value along x; models with both components: {}", known.join(", ")),
+    };
+    Err(model
+        .diagnostic(format!("\"{}\" takes tangential loads along x alone", numerics.name()))
+        .with_help(help))
+}
+
+/// A model that can neglect the coupling of normal and tangential tractions, and that can solve it, is told
+/// which, where these bodies couple.
+fn check_coupling(
+    models: &[(Numerics, Entry<'_>)],
+    pair: Option<&Pair>,
+    friction: Friction,
+    place: Option<Range<usize>>,
+) -> Read<()> {
+    let asks = |(numerics, _): &&(Numerics, Entry<'_>)| {
+        numerics.model().abilities().effects.contains(&Effect::FullCoupling)
+    };
+    let (Some(pair), Some((numerics, _))) = (pair, models.iter().find(asks)) else { return Ok(()) };
+    match friction.coupling_of(pair) {
+        Err(contact_model::Error::Domain { value, .. }) => {
+            let message = format!(
+                "normal and tangential tractions of these bodies act on each other (second Dundurs constant {}), and {} can neglect it or solve it",
+                short(value),
+                numerics.name()
+            );
+            Err(Diagnostic::new(message).at(place).with_help(
+                "`coupling = \"none\"` in `friction` neglects it, `coupling = \"full\"` solves both together",
+            ))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// Columns and rows of boundary elements, elements of a line: a given map brings its own cells.

@@ -308,4 +308,50 @@ mod tests {
         let side = |at: usize| u32::from_be_bytes(png[at..at + 4].try_into().unwrap());
         assert_eq!((side(16), side(20)), (12, 2));
     }
+
+    /// Two components are one array of two in NPY, two arrays in VTI and arrows over their magnitude in PNG.
+    #[test]
+    fn fields_of_two_components_are_whole_in_every_format() {
+        let surface = SceneSurface::Plain(contact_model::Surface::Flat { size: [6.0, 1.0].into() });
+        let steps = LoadRequest::Path(vec![Step::normal(0.0, Load::Force(1.0))]);
+        let mut scene = SceneFile::new(vec![Numerics::Bem3d(bem3d::Bem3d::default())], surface, 1.0, steps);
+        if let Numerics::Bem3d(elements) = &mut scene.models[0] {
+            (elements.cells, elements.rows) = (3, Some(2));
+        }
+        let all = vec![FieldFormat::Npy, FieldFormat::Png, FieldFormat::Pixels, FieldFormat::Vti];
+        scene.requested.files =
+            [Output::Traction, Output::Slip, Output::StickSlip].map(|output| (output, all.clone())).into();
+        let field = |values: [f64; 6]| Field::new([3, 2], [6.0, 1.0], values.to_vec()).unwrap();
+        let (x, y) = ([0.0, 3.0, 0.0, 1.0, 0.0, 0.0], [0.0, 4.0, 0.0, 0.0, 0.0, 2.0]);
+        let mut fields = Fields::default();
+        (fields.traction, fields.slip) = (Some([field(x), field(y)]), Some([field(y), field(x)]));
+        fields.stick_slip = Some(field([0.0, 2.0, 0.0, 1.0, 0.0, 1.0]));
+        let state = ContactState::new(1.0, SolveReport::exact("test")).with_fields(fields);
+        let dir = tempfile::tempdir().unwrap();
+        std::fs::create_dir(dir.path().join(".units")).unwrap();
+        let normalisation = contact_model::Normalisation { modulus: 1.0, length: 1.0, height: None };
+        let solved = Solved { state, normalisation, warnings: Vec::new(), grid: None };
+        let unit = ModelOnSurface { model: 0, surface: 0 };
+        let kept = unit.recorded(&scene, solved, dir.path(), 0).unwrap();
+        let mut result = ModelResult { states: vec![kept], complete: true, ..ModelResult::default() };
+        field_pictures::draw(&scene, ("bem3d", 0), [3, 2].into(), dir.path(), &mut result).unwrap();
+        let files = &result.states[0].files;
+        assert!(files.iter().all(|file| file.is_whole(dir.path())), "{files:?}");
+        for name in ["traction", "slip", "stick_slip"] {
+            for format in &all {
+                let file = format!("{name}-bem3d-0-000.{}", format.extension());
+                assert!(files.iter().any(|known| known.name == file), "{file}: {files:?}");
+            }
+        }
+        let npy = std::fs::read(dir.path().join("traction-bem3d-0-000.npy")).unwrap();
+        assert!(String::from_utf8_lossy(&npy).contains("'shape': (2, 2, 3)"));
+        let numbers: Vec<f64> =
+            npy[npy.len() - 96..].as_chunks().0.iter().map(|bytes| f64::from_le_bytes(*bytes)).collect();
+        assert_eq!(numbers, [x, y].concat());
+        let vti = std::fs::read_to_string(dir.path().join("traction-bem3d-0-000.vti")).unwrap();
+        assert!(vti.contains("Name=\"traction_x\"") && vti.contains("Name=\"traction_y\""), "{vti}");
+        let file = |field| FieldFile { field, model: "bem3d", surface: 0, state: 0, extension: "" };
+        let view = field_pictures::view(dir.path(), file("traction")).unwrap();
+        assert_eq!(view.values, [0.0, 5.0, 0.0, 1.0, 0.0, 2.0]);
+    }
 }

@@ -2,7 +2,7 @@
 
 use crate::scenes::plan::{GridErrors, within};
 use crate::scenes::read::{SceneFile, SceneSurface};
-use contact_model::{ContactState, Hardness, Surface};
+use contact_model::{ContactState, Coupling, Friction, Hardness, Surface};
 use serde::{Deserialize, Serialize};
 
 /// Fewer cells in contact than this are those of the grid.
@@ -24,11 +24,20 @@ pub(crate) enum Warning {
     Area,
     Accuracy,
     Stiffness,
+    Coupling,
 }
 
 impl Warning {
-    pub const ALL: [Self; 7] =
-        [Self::FewCells, Self::OneCell, Self::Edge, Self::Yield, Self::Area, Self::Accuracy, Self::Stiffness];
+    pub const ALL: [Self; 8] = [
+        Self::FewCells,
+        Self::OneCell,
+        Self::Edge,
+        Self::Yield,
+        Self::Area,
+        Self::Accuracy,
+        Self::Stiffness,
+        Self::Coupling,
+    ];
 
     /// What stands in the row of the state, and what to do about it.
     pub fn words(self) -> [&'static str; 2] {
@@ -61,6 +70,10 @@ impl Warning {
                 "stiffness not known",
                 "complete contact has none; at a jump or a kink of the path it is not claimed: take the difference of neighbouring states",
             ],
+            Self::Coupling => [
+                "coupling of normal and tangential tractions neglected",
+                "bodies of different compressibility have it (second Dundurs constant not 0): a model with `coupling = \"full\"` solves both together",
+            ],
         }
     }
 
@@ -77,6 +90,7 @@ impl Warning {
         let holds = |warning: Self| match (warning, resolution) {
             (Self::FewCells, _) => few,
             (Self::Stiffness, _) => wanted && state.stiffness.is_none(),
+            (Self::Coupling, _) => neglects_coupling(scene),
             (_, None) => false,
             (Self::Accuracy, _) => scene
                 .accuracy
@@ -97,4 +111,16 @@ impl Warning {
         let texts: Vec<&str> = all.iter().map(|warning| warning.words()[0]).collect();
         (!texts.is_empty()).then(|| texts.join("; "))
     }
+}
+
+/// Whether normal and tangential tractions of these bodies act on each other, and the friction leaves it out.
+fn neglects_coupling(scene: &SceneFile) -> bool {
+    let Some(pair) = scene.pair.as_ref() else { return false };
+    let friction = match scene.effects.friction {
+        Friction::Coulomb { coefficient, coupling: None } => {
+            Friction::Coulomb { coefficient, coupling: Some(Coupling::Neglected) }
+        }
+        stated => stated,
+    };
+    friction.coupling_of(pair) == Ok(Some(Coupling::Neglected))
 }

@@ -1,7 +1,7 @@
 //! The columns of `results.csv`: the quantities that a scene asks for.
 
 use crate::scenes::plan::RMS_SLOPE;
-use crate::scenes::read::{LoadList, LoadRequest, SceneFile};
+use crate::scenes::read::{LoadList, LoadRequest, Numerics, SceneFile};
 use crate::scenes::run::{SolvedUnit, StateRecord};
 use analysis::{Column, Table, Value};
 use contact_model::Directions;
@@ -46,14 +46,15 @@ pub(crate) fn table<const N: usize>(
 
 /// The quantities that a scene asks for, in the order of the table of all.
 pub(crate) fn asked(scene: &SceneFile) -> impl Iterator<Item = &'static Quantity> + '_ {
+    let answers_both = |model: &Numerics| model.model().abilities().directions == Directions::Plane;
+    let both = scene.request.shears_along_y() || scene.models.iter().any(answers_both);
     let question = Question {
         effects: &scene.effects,
         outputs: &scene.requested.outputs,
         rough: scene.surface.is_rough(),
         path: scene.is_history(),
         prescribes_distance: scene.request.prescribes_distance(),
-        along_y: scene.request.shears_along_y()
-            || scene.models.iter().any(|model| model.model().abilities().directions == Directions::Plane),
+        directions: if both { Directions::Plane } else { Directions::AlongX },
     };
     QUANTITIES.iter().filter(move |quantity| quantity.asked_by.holds(&question))
 }

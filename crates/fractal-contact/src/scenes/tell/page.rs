@@ -128,6 +128,7 @@ pub(crate) fn field(picture: &FieldPicture<'_>, view: &FieldView) -> Result<Mark
             }
             figcaption {
                 strong { (picture.title) } ", " (picture.subtitle)
+                @for (value, words) in picture.classes.iter().enumerate() { (if value == 0 { "; " } else { ", " }) (value) " " (words) }
                 @if view.block > 1 { "; each pixel is " (shown) " of " (view.block) " x " (view.block) " cells" }
             }
             output aria-live="polite" {}
