@@ -257,8 +257,8 @@ impl Contact {
     /// force, approach, mean_pressure, mean_gap : float
     ///     Exactly one of them. ``mean_pressure`` is over Lx Ly, ``mean_gap`` for periodic boundaries. The first three may be negative
     ///     with adhesion.
-    /// tangential_force, tangential_displacement : float, optional
-    ///     At most one of them; no tangential force otherwise.
+    /// tangential_force, tangential_displacement : float or (float, float), optional
+    ///     At most one of them: along x, or along x (columns) and along y (rows); no tangential force otherwise.
     ///
     /// Returns
     /// -------
@@ -281,11 +281,11 @@ impl Contact {
         approach: Option<f64>,
         mean_pressure: Option<f64>,
         mean_gap: Option<f64>,
-        tangential_force: Option<f64>,
-        tangential_displacement: Option<f64>,
+        tangential_force: Option<Bound<'_, PyAny>>,
+        tangential_displacement: Option<Bound<'_, PyAny>>,
     ) -> PyResult<Py<ContactState>> {
         let normal = load(&self.normalisation, force, approach, mean_pressure, mean_gap)?;
-        let tangential = tangential(tangential_force, tangential_displacement)?;
+        let tangential = tangential(tangential_force.as_ref(), tangential_displacement.as_ref())?;
         self.answer(py, &Asked::Step(Step { time, normal, tangential }), None)
     }
 
@@ -300,8 +300,9 @@ impl Contact {
     ///     At the end of each step.
     /// force, approach, mean_pressure, mean_gap : float or iterable of float
     ///     Exactly one of them, as in `advance`.
-    /// tangential_force, tangential_displacement : float or iterable of float, optional
-    ///     At most one of them. Iterables have one number for each step; a number alone is that of every step.
+    /// tangential_force, tangential_displacement : float, iterable of float or of (float, float), optional
+    ///     At most one of them, along x or along x and y. Iterables have one number, or two, for each step; a number alone is
+    ///     that of every step.
     ///
     /// Yields
     /// ------

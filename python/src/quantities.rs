@@ -3,7 +3,7 @@
 use crate::state::ContactState;
 use fractal_contact::quantities::{AskedBy, QUANTITIES, Quantity, Role, Unit};
 use fractal_contact::{
-    ContactState as RustState, FIELDS, FieldQuantity, Normalisation, Patches, SolveReport, Value,
+    ContactState as RustState, FIELDS, FieldQuantity, Normalisation, Outputs, Patches, SolveReport, Value,
 };
 use pyo3::prelude::*;
 use pyo3::types::{PyCFunction, PyDict, PyString};
@@ -21,7 +21,13 @@ pub fn object(py: Python<'_>, value: Value) -> PyResult<Bound<'_, PyAny>> {
 
 /// Whether a state that lacks it does not name it: the quantities of effects and of paths.
 pub fn is_named_where_known(quantity: &Quantity) -> bool {
-    matches!(quantity.asked_by, AskedBy::Effect(_) | AskedBy::Path)
+    match quantity.asked_by {
+        AskedBy::Effect(_) | AskedBy::Path | AskedBy::FrictionAlongY | AskedBy::AnyTangentialStiffness => {
+            true
+        }
+        AskedBy::Output(output) => Outputs::OF_FRICTION.contains(&output),
+        _ => false,
+    }
 }
 
 /// Its type in Python, and whether a state may lack it.
@@ -73,10 +79,16 @@ pub fn make_properties(py: Python<'_>) -> PyResult<()> {
             Ok(state.get().field(args.py(), quantity))
         })?;
         let FieldQuantity { name, meaning, unit, .. } = quantity;
-        let sentence = format!("numpy.ndarray or None: {meaning} [{unit}], shape (rows, columns).");
+        let unit = if unit.is_empty() { String::new() } else { format!(" [{unit}]") };
+        let sentence = format!("numpy.ndarray or None: {meaning}{unit}, shape {}.", shape(quantity));
         class.setattr(*name, property.call1((get, py.None(), py.None(), sentence))?)?;
     }
     Ok(())
+}
+
+/// Shape of the array of a field.
+fn shape(field: &FieldQuantity) -> &'static str {
+    if field.components == 1 { "(rows, columns)" } else { "(2, rows, columns)" }
 }
 
 /// The quantities that are reported of a state, in the order of the columns of tables.
@@ -117,7 +129,7 @@ pub fn quantities(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
 /// Returns
 /// -------
 /// list of dict of str
-///     ``name``, ``words``, ``symbol``, ``unit`` and ``meaning``.
+///     ``name``, ``words``, ``symbol``, ``unit``, ``meaning`` and ``shape``.
 #[pyfunction]
 pub fn fields(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
     let row = |field: &FieldQuantity| {
@@ -127,6 +139,7 @@ pub fn fields(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
         row.set_item("symbol", field.symbol)?;
         row.set_item("unit", field.unit)?;
         row.set_item("meaning", field.meaning)?;
+        row.set_item("shape", shape(field))?;
         Ok(row)
     };
     FIELDS.iter().map(row).collect()

@@ -6,14 +6,21 @@ use fractal_contact::{
     Certificate as RustCertificate, ContactState as RustState, FIELDS, Field, FieldQuantity,
     Normalisation as RustNormalisation, SolveReport, Value,
 };
-use numpy::{PyArray1, PyArray2, PyArrayMethods};
+use numpy::{PyArray1, PyArrayDyn, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// A field as an array `[row, column]` that owns its values; nothing is copied.
-pub fn array(py: Python<'_>, field: Field) -> PyResult<Py<PyArray2<f64>>> {
-    let shape = [field.rows(), field.columns()];
-    Ok(PyArray1::from_vec(py, field.into_values()).reshape(shape)?.unbind())
+/// A field as an array `[row, column]` that owns its values, nothing is copied; of several components
+/// `[component, row, column]`. None without components.
+pub fn array(py: Python<'_>, components: Vec<Field>) -> PyResult<Option<Py<PyArrayDyn<f64>>>> {
+    let count = components.len();
+    let mut components = components.into_iter();
+    let Some(first) = components.next() else { return Ok(None) };
+    let shape = [count, first.rows(), first.columns()];
+    let mut values = first.into_values();
+    values.extend(components.flat_map(Field::into_values));
+    let shape = shape[usize::from(count == 1)..].to_vec();
+    Ok(Some(PyArray1::from_vec(py, values).reshape(shape)?.unbind()))
 }
 
 /// Looks up all that arrays need of numpy, while the module is imported.
@@ -22,7 +29,7 @@ pub fn array(py: Python<'_>, field: Field) -> PyResult<Py<PyArray2<f64>>> {
 /// Ctrl-C that came at that moment would be a panic.
 pub fn look_up_arrays(py: Python<'_>) -> PyResult<()> {
     py.import("numpy")?;
-    let array = PyArray1::from_vec(py, vec![0.0]).reshape([1, 1])?;
+    let array = PyArray1::from_vec(py, vec![0.0]).reshape(vec![1, 1])?;
     array.try_readonly()?;
     Ok(())
 }
@@ -96,6 +103,25 @@ impl Certificate {
         self.0.equilibrium
     }
 
+    /// float or None: duality gap of the last step of friction over sliding force times tangential displacement;
+    /// None without friction, and where a model does not solve it cell by cell.
+    #[getter]
+    fn tangential_duality_gap(&self) -> Option<f64> {
+        self.0.tangential_duality_gap
+    }
+
+    /// float or None: difference of the tangential force from the one asked for, over the sliding force.
+    #[getter]
+    fn tangential_load_error(&self) -> Option<f64> {
+        self.0.tangential_load_error
+    }
+
+    /// float or None: estimated relative error of the tangential stiffness.
+    #[getter]
+    fn tangential_stiffness_error(&self) -> Option<f64> {
+        self.0.tangential_stiffness_error
+    }
+
     /// float: the largest of the numbers that the tolerance bounds.
     #[getter]
     fn worst(&self) -> f64 {
@@ -135,7 +161,7 @@ pub struct ContactState {
     state: RustState,
     normalisation: RustNormalisation,
     /// In the order of `FIELDS`.
-    fields: Vec<Option<Py<PyArray2<f64>>>>,
+    fields: Vec<Option<Py<PyArrayDyn<f64>>>>,
 }
 
 /// Moves a state of a contact with this normalisation into Python.
@@ -145,8 +171,7 @@ pub fn of(
     normalisation: &RustNormalisation,
 ) -> PyResult<Py<ContactState>> {
     let mut taken = state.fields.take().unwrap_or_default();
-    let arrays =
-        FIELDS.iter().map(|quantity| (quantity.take)(&mut taken).map(|field| array(py, field)).transpose());
+    let arrays = FIELDS.iter().map(|quantity| array(py, (quantity.take)(&mut taken)));
     let fields = arrays.collect::<PyResult<_>>()?;
     let normalisation = *normalisation;
     Py::new(py, ContactState { state, normalisation, fields })
@@ -159,7 +184,7 @@ impl ContactState {
     }
 
     /// The array of a field, where it was asked for.
-    pub fn field(&self, py: Python<'_>, quantity: &FieldQuantity) -> Option<Py<PyArray2<f64>>> {
+    pub fn field(&self, py: Python<'_>, quantity: &FieldQuantity) -> Option<Py<PyArrayDyn<f64>>> {
         let known = FIELDS.iter().zip(&self.fields);
         let (_, field) = known.into_iter().find(|(known, _)| known.name == quantity.name)?;
         field.as_ref().map(|field| field.clone_ref(py))

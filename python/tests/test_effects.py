@@ -1,5 +1,6 @@
 """Hardness and adhesion: states, paths, errors."""
 
+import itertools
 import os
 import pickle
 import re
@@ -226,6 +227,39 @@ def test_a_single_load_is_the_path_from_no_contact():
         assert (one.approach, one.stiffness, one.energy) == (step.approach, step.stiffness, step.energy)
 
 
+def test_tangential_loads_have_two_components():
+    body = fc.Body(young=2.0, poisson=0.3)
+    scene = fc.Scene(SPHERE, bodies=(body, body), effects={"friction": {"coefficient": 0.5, "coupling": "none"}})
+    path = fc.CattaneoMindlin().prepare(scene)
+    path.advance(force=0.01)
+    # One number is along x; a pair has a component along y, which this model takes where it is 0.
+    one = path.advance(force=0.01, tangential_force=0.002)
+    for pair in ((0.002, 0.0), [0.002, 0], np.array([0.002, 0.0]), iter([0.002, 0.0])):
+        same = path.advance(force=0.01, tangential_force=pair)
+        assert (same.tangential_force, same.tangential_force_y) == (0.002, 0.0)
+        assert same.tangential_displacement == one.tangential_displacement
+    assert one.sliding_force == pytest.approx(0.005) and one.stick_area is None
+    assert one.to_dict()["tangential_displacement_y"] == 0.0 and "stick_area" not in one.to_dict()
+    loop = list(path.follow(force=0.01, tangential_force=[(0.002, 0.0), (-0.002, 0.0)]))
+    assert [state.tangential_force for state in loop] == [0.002, -0.002]
+    with pytest.raises(fc.Unsupported, match="along y"):
+        path.advance(force=0.01, tangential_displacement=(0.0, 1e-6))
+    for wrong in ((), (1.0,), (1.0, 2.0, 3.0), itertools.count(1.0)):
+        with pytest.raises(ValueError, match="components"):
+            path.advance(force=0.01, tangential_force=wrong)
+    for wrong in ("12", (1.0, "2"), object(), {"x": 1.0, "y": 2.0}):
+        with pytest.raises(TypeError):
+            path.advance(force=0.01, tangential_force=wrong)
+    with pytest.raises(fc.DomainError, match="tangential force along y"):
+        path.advance(force=0.01, tangential_force=(0.0, float("nan")))
+    shapes = {field["name"]: field["shape"] for field in fc._core.fields()}
+    assert shapes["traction"] == shapes["slip"] == "(2, rows, columns)" and shapes["gap"] == "(rows, columns)"
+    # Bodies that couple: a model that neglects it takes the scene, none solves it.
+    coupled = {"coefficient": 0.5, "coupling": "full"}
+    with pytest.raises(fc.Unsupported, match="full coupling"):
+        fc.CattaneoMindlin().prepare(fc.Scene(SPHERE, bodies=(None, body), effects={"friction": coupled}))
+
+
 def test_follow_is_one_step_for_each_number():
     body = fc.Body(young=2.0, poisson=0.3)
     scene = fc.Scene(SPHERE, bodies=(body, body), effects={"friction": 0.5})
@@ -247,6 +281,8 @@ def test_follow_is_one_step_for_each_number():
         path.follow([1.0, 2.0, 3.0], force=[1.0, 2.0])
     with pytest.raises(ValueError, match=r"force \(2, 1\)"):
         path.follow(force=[[1.0], [2.0]])
+    with pytest.raises(ValueError, match=r"tangential_force \(2, 3\)"):
+        path.follow(force=1.0, tangential_force=np.zeros((2, 3)))
     # Checked at the call; a load that the model refuses raises at its place.
     steps = path.follow(3.0, force=[0.01, -0.01])
     assert next(steps).force == pytest.approx(0.01)

@@ -127,7 +127,7 @@ def test_models_say_what_they_support():
 
 
 def test_outputs_are_those_of_the_table():
-    with pytest.raises(ValueError, match=r"there are stiffness, .* and contact_patches$"):
+    with pytest.raises(ValueError, match=r"there are stiffness, .* and stick_slip$"):
         fc.Scene(SPHERE, modulus=1.0, outputs=["conductance"])
     for name in fc.Bem3d().supports["outputs"]:
         if name not in ("conductance", "mean_gap", "plastic_depth"):

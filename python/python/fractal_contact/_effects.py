@@ -32,8 +32,10 @@ class Effects:
         Attraction with this work of adhesion (energy per area): of short range (JKR), or across open gaps with a
         range (a length), by the exponential law if none is named. Not named: no attraction.
     friction : optional
-        { coefficient }, or the coefficient alone
-        Coulomb's friction under a tangential load, with this coefficient. Not named: no tangential load.
+        { coefficient, coupling } with the coupling "none" or "full", or the coefficient alone
+        Coulomb's friction under a tangential load, with this coefficient. Where the bodies differ, normal and
+        tangential tractions act on each other: the coupling is neglected, or both are solved together. Not named:
+        no tangential load.
     rheology : optional
         { kind: "kelvin_voigt" or "maxwell", viscosity }, { kind: "standard_solid", weight, time }, { kind: "prony",
         weights, times }

@@ -176,7 +176,8 @@ class Scene:
     outputs : iterable of str
         What is computed besides force and approach, such as "stiffness", "area" and "pressure": names of
         ``Bem3d().supports["outputs"]``, and of those of the model. "mean_gap" is for periodic boundaries,
-        "plastic_depth" for a hardness.
+        "plastic_depth" for a hardness, "traction", "slip", "stick_slip", "stick_area" and tangential stiffnesses for
+        friction.
     conductance : (str, float, float), optional
         ("electrical", resistivity, resistivity) or ("thermal", conductivity, conductivity).
 

@@ -277,8 +277,8 @@ def follow(
     approach: float | Iterable[float] | None = None,
     mean_pressure: float | Iterable[float] | None = None,
     mean_gap: float | Iterable[float] | None = None,
-    tangential_force: float | Iterable[float] | None = None,
-    tangential_displacement: float | Iterable[float] | None = None,
+    tangential_force: float | Iterable[float] | Iterable[tuple[float, float]] | None = None,
+    tangential_displacement: float | Iterable[float] | Iterable[tuple[float, float]] | None = None,
 ) -> Iterator[ContactState]:
     """Goes along a path; the state at the end of each step as soon as it is there.
 
@@ -290,8 +290,9 @@ def follow(
         At the end of each step, 0 by default.
     force, approach, mean_pressure, mean_gap : float or iterable of float
         Exactly one of them, as in `Contact.advance`.
-    tangential_force, tangential_displacement : float or iterable of float, optional
-        At most one of them. Iterables have one number for each step; a number alone is that of every step.
+    tangential_force, tangential_displacement : float, iterable of float or of (float, float), optional
+        At most one of them, along x or along x and y. Iterables have one number, or two, for each step; a number
+        alone is that of every step.
 
     Yields
     ------
@@ -320,14 +321,19 @@ def follow(
         if values is not None
     }
     arrays = {name: np.asarray(values, dtype=np.float64) for name, values in named.items()}
-    lengths = {name: array.size for name, array in arrays.items() if array.ndim > 0}
-    if any(array.ndim > 1 for array in arrays.values()) or len(set(lengths.values())) > 1:
+    lengths = {len(array) for array in arrays.values() if array.ndim > 0}
+
+    def fits(name: str, array: NDArray[np.float64]) -> bool:
+        # Components along x and y.
+        return array.ndim < 2 or (name.startswith("tangential_") and array.shape[1:] == (2,))
+
+    if not all(fits(name, array) for name, array in arrays.items()) or len(lengths) > 1:
         shapes = ", ".join(f"{name} {array.shape}" for name, array in arrays.items())
         raise ValueError(f"expected one number for each step, or one for all: shapes are {shapes}")
-    columns = np.broadcast_arrays(*(np.atleast_1d(array) for array in arrays.values()))
-    steps = np.stack(columns, axis=-1).tolist()
+    count = lengths.pop() if lengths else 1
+    columns = [array.tolist() if array.ndim else count * [array.item()] for array in arrays.values()]
     # Checked at the call, not at the first state.
-    return (contact.advance(**dict(zip(arrays, step, strict=True))) for step in steps)
+    return (contact.advance(**dict(zip(arrays, step, strict=True))) for step in zip(*columns, strict=True))
 
 
 def ensemble(
