@@ -4,6 +4,7 @@
 
 mod answers;
 mod bad_scenes;
+mod friction;
 mod limits;
 mod measured_maps;
 mod own_models;

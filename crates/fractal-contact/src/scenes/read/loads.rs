@@ -109,12 +109,13 @@ impl LoadRequest {
         }
     }
 
-    /// Whether a component of a tangential load along y is prescribed.
-    pub(crate) fn shears_along_y(&self) -> bool {
-        match self {
-            Self::Loads(_) => false,
-            Self::Path(steps) => steps.iter().any(|step| step.tangential.components()[1].abs() > 0.0),
-        }
+    /// Whether tangential loads along x, and along y, are prescribed.
+    pub(crate) fn shears(&self) -> [bool; 2] {
+        let steps = match self {
+            Self::Loads(_) => &[][..],
+            Self::Path(steps) => steps,
+        };
+        [0, 1].map(|along| steps.iter().any(|step| step.tangential.components()[along].abs() > 0.0))
     }
 
     /// Whether an approach or a mean gap may be prescribed, of which the force is a result with an error.
@@ -367,10 +368,10 @@ mod tests {
         assert_eq!(tangential[4], Tangential::Displacement([0.5, 0.25]));
         // The mean pressure of a path is the force over the nominal area, and stays as it was.
         assert!(steps.iter().all(|step| step.normal == Load::Force(12.0)));
-        assert!(LoadRequest::Path(steps).shears_along_y());
+        assert_eq!(LoadRequest::Path(steps).shears(), [true, true]);
         let along_x = path("[[path]]\nmean_gap = 1\ntangential_displacement = 2").unwrap();
         assert_eq!(along_x[0].normal, Load::MeanGap(1.0));
-        assert!(!LoadRequest::Path(along_x).shears_along_y());
+        assert_eq!(LoadRequest::Path(along_x).shears(), [true, false]);
         for wrong in ["[]", "[1]", "[1, 2, 3]", "[1, \"2 N\"]", "[1, nan]", "\"1 N\"", "{ x = 1 }"] {
             assert!(path(&format!("[[path]]\nforce = 1\ntangential_force = {wrong}")).is_err(), "{wrong}");
         }

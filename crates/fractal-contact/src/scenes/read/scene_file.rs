@@ -583,7 +583,8 @@ fn check_histories(
 fn check_tangential(models: &[(Numerics, Entry<'_>)], request: &LoadRequest, effects: &Effects) -> Read<()> {
     let both = |numerics: &Numerics| numerics.model().abilities().directions == Directions::Plane;
     let Some((numerics, model)) = models.iter().find(|(numerics, _)| !both(numerics)) else { return Ok(()) };
-    if !request.shears_along_y() {
+    let [_, along_y] = request.shears();
+    if !along_y {
         return Ok(());
     }
     let has_effects = |numerics: &Numerics| {

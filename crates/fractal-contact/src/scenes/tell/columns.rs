@@ -47,7 +47,8 @@ pub(crate) fn table<const N: usize>(
 /// The quantities that a scene asks for, in the order of the table of all.
 pub(crate) fn asked(scene: &SceneFile) -> impl Iterator<Item = &'static Quantity> + '_ {
     let answers_both = |model: &Numerics| model.model().abilities().directions == Directions::Plane;
-    let both = scene.request.shears_along_y() || scene.models.iter().any(answers_both);
+    let [_, along_y] = scene.request.shears();
+    let both = along_y || scene.models.iter().any(answers_both);
     let question = Question {
         effects: &scene.effects,
         outputs: &scene.requested.outputs,

@@ -61,7 +61,7 @@ mod tests {
             }
             AskedBy::FrictionAlongY => {
                 effects.friction = Friction::coulomb(0.3);
-                let tangential = Tangential::Force([0.0, 0.1]);
+                let tangential = Tangential::Force([0.1, 0.1]);
                 let step = Step { tangential, ..Step::normal(0.0, Load::Force(1.0)) };
                 scene.request = LoadRequest::Path(vec![step; 2]);
             }

@@ -81,7 +81,11 @@ fn pairs(scene: &SceneFile) -> Vec<(Axis, &'static Quantity)> {
     if scene.effects.friction == contact_model::Friction::Off {
         return over("time");
     }
-    over("tangential_displacement")
+    over(if scene.request.shears() == [false, true] {
+        "tangential_displacement_y"
+    } else {
+        "tangential_displacement"
+    })
 }
 
 /// A constant, such as a force that is held, is no picture.
