@@ -122,10 +122,10 @@ pub struct Fields {
     pub gap: Option<Field>,
     /// Depth of the plastic indentation >= 0.
     pub plastic_depth: Option<Field>,
-    /// Tangential traction q: its integrals are the components of the tangential force.
+    /// Tangential traction q on the first body: its integrals are the components of the tangential force.
     pub traction: Option<[Field; 2]>,
-    /// Slip s of the bodies relative to each other since the cell came into contact, of the sign of the
-    /// tangential displacement; 0 where there is no contact.
+    /// Slip s of the second body relative to the first since the cell came into contact; 0 where there is no
+    /// contact.
     pub slip: Option<[Field; 2]>,
     /// What each cell does, by [`StickSlip::value`].
     pub stick_slip: Option<Field>,

@@ -37,6 +37,9 @@ impl Body {
 
 /// The two bodies of a contact: they give E* for normal and G* for tangential loads.
 ///
+/// Tangential loads move the second over the first ([`crate::Tangential`]); nothing else depends on which is
+/// which.
+///
 /// ```
 /// use contact_model::{Body, Pair};
 /// // A rigid body on one with E = 3, nu = 1/2 (G = 1): E* = 3/(1 - 1/4) = 4, G* = 4 G/(2 - nu) = 8/3.

@@ -447,16 +447,12 @@ pub static QUANTITIES: &[Quantity] = &quantities! {
         "area of the contact whose traction is what friction can hold"
         => |s, _| s.tangential.and_then(|t| t.slip_area).into();
     "tangential_stiffness" "tangential stiffness" "k_{xx}" Si("N/m"); AskedBy::Output(Output::TangentialStiffness);
-        "dQ_x/ddelta_x along the branch of states under this normal load: what sticks goes on sticking, what slips goes on slipping"
+        "dQ_x/ddelta_x along the branch of states, the pressures held: what sticks goes on sticking, what slips goes on slipping"
         => |s, _| s.tangential.and_then(|t| t.stiffness).map(|k| k[0][0]).into();
     "tangential_stiffness_xy" "tangential stiffness, x of y" "k_{xy}" Si("N/m"); AskedBy::Output(Output::TangentialStiffness);
-        "dQ_x/ddelta_y of the same"
+        "dQ_x/ddelta_y of the same; it is dQ_y/ddelta_x too"
         { drawn: false }
         => |s, _| s.tangential.and_then(|t| t.stiffness).map(|k| k[0][1]).into();
-    "tangential_stiffness_yx" "tangential stiffness, y of x" "k_{yx}" Si("N/m"); AskedBy::Output(Output::TangentialStiffness);
-        "dQ_y/ddelta_x of the same; without coupling that of xy"
-        { drawn: false }
-        => |s, _| s.tangential.and_then(|t| t.stiffness).map(|k| k[1][0]).into();
     "tangential_stiffness_y" "tangential stiffness along y" "k_{yy}" Si("N/m"); AskedBy::Output(Output::TangentialStiffness);
         "dQ_y/ddelta_y of the same"
         => |s, _| s.tangential.and_then(|t| t.stiffness).map(|k| k[1][1]).into();
@@ -576,7 +572,7 @@ pub static QUANTITIES: &[Quantity] = &quantities! {
     "tangential_duality_gap" "tangential duality gap" "" One; Effect("friction");
         "sum (mu p |w| - w . q)/(mu F |delta|) of the last step, solved cell by cell"
         { role: Role::Residual("the tractions minimise the elastic energy of the step of friction: by how much it could still fall, over sliding force \
-         times tangential displacement of the step"),
+                                times tangential displacement"),
           average: Average::No, drawn: false }
         => |s, _| s.report.certificate.tangential_duality_gap.into();
     "tangential_load_error" "tangential load error" "" One; Effect("friction"); "|Q - Q_asked|/(mu F), solved cell by cell"

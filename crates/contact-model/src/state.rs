@@ -191,10 +191,10 @@ impl ContactState {
 #[non_exhaustive]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct TangentialState {
-    /// Tangential force Q, the integral of the tangential traction.
+    /// Tangential force Q, the integral of the tangential traction q on the first body ([`crate::Tangential`]).
     pub force: [f64; 2],
-    /// Tangential displacement delta of the bodies relative to each other, far from the contact (with
-    /// periodic boundaries the mean one of the surface).
+    /// Tangential displacement delta of the second body relative to the first, far from the contact (with
+    /// periodic boundaries of their mean planes).
     pub displacement: [f64; 2],
     /// Largest tangential force `mu F` under this normal force: at it the whole contact slips.
     pub sliding_force: Option<f64>,
@@ -203,7 +203,7 @@ pub struct TangentialState {
     /// Area of the contact that slips: its traction is what friction can hold, where asked for.
     pub slip_area: Option<f64>,
     /// Tangential stiffness `stiffness[i][j] = dQ_i/ddelta_j` along the branch of the states, where asked for:
-    /// the normal load is held, what sticks goes on sticking and what slips goes on slipping.
+    /// the pressures are held, what sticks goes on sticking and what slips goes on slipping. Symmetric.
     pub stiffness: Option<[[f64; 2]; 2]>,
     /// The same with the whole contact sticking, where asked for: the first answer after a reversal.
     pub stiffness_stuck: Option<[[f64; 2]; 2]>,
@@ -476,10 +476,11 @@ pub struct Certificate {
     /// Largest difference between the traction of a cell and what the law of adhesion says of its gap, over
     /// `work/range`; `None` without adhesion of finite range.
     pub equilibrium: Option<f64>,
-    /// `sum (mu p |w| - w . q) / (mu F |delta|)`, with the slip w of the step and the tangential displacement
-    /// delta that the step adds: the duality gap of the convex programme of one step of friction, whose
-    /// elastic energy is within it of its minimum. `None` without friction, and where a model does not solve
-    /// it cell by cell.
+    /// `sum (mu p |w| - w . q) / (mu F |delta|)`, with the slip w of the last step and the tangential
+    /// displacement delta (the largest displacement that slip is counted from, where that is larger): the
+    /// duality gap of the convex programme of one step of friction. Half the square of the error of the
+    /// tractions, in the norm of their elastic energy, is at most the gap. 0 where nothing is displaced; `None`
+    /// without friction, and where a model does not solve it cell by cell.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
     pub tangential_duality_gap: Option<f64>,
     /// `|Q - Q_asked| / (mu F)`; 0 where the tangential displacement was prescribed, `None` as above.

@@ -3,13 +3,15 @@
 use crate::error::{Error, Result};
 use crate::load::Load;
 
-/// The tangential load: its components along x (columns of a map) and along y (rows). Signed.
+/// The tangential load: its components along x (columns of a map) and along y (rows). Signed: the second body
+/// is moved over the first ([`crate::Pair`]). Which one is which matters to full coupling alone
+/// ([`crate::Coupling`]).
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Tangential {
-    /// Tangential force.
+    /// Tangential force that the second body exerts on the first.
     Force([f64; 2]),
-    /// Tangential displacement of the bodies relative to each other, far from the contact.
+    /// Tangential displacement of the second body relative to the first, far from the contact.
     Displacement([f64; 2]),
 }
 
