@@ -284,7 +284,7 @@ fn read_path(entry: &Entry<'_>, system: System, pulls: bool, size: Size) -> Read
         {
             return Err(entry
                 .diagnostic(format!("{count} states: expected at most {MOST} along the whole path"))
-                .with_help("a step is exact however long it is: states in between are for looking at"));
+                .with_help("states in between are increments of friction, and else for looking at: ask for fewer"));
         }
         table.finish()?;
         let end = Step { time, normal, tangential };
