@@ -276,6 +276,9 @@ fn read_path(entry: &Entry<'_>, system: System, pulls: bool, size: Size) -> Read
         };
         if steps.is_empty() {
             last = beginning(normal, tangential);
+        } else if steps.iter().all(|step| step.tangential == Tangential::default()) {
+            // Nothing was moved yet, whichever of both is prescribed now.
+            last.tangential = unloaded(tangential);
         }
         let states = table.find("states");
         let count = states.as_ref().map_or(Ok(1), |e| e.count(1))?;
@@ -284,7 +287,9 @@ fn read_path(entry: &Entry<'_>, system: System, pulls: bool, size: Size) -> Read
         {
             return Err(entry
                 .diagnostic(format!("{count} states: expected at most {MOST} along the whole path"))
-                .with_help("states in between are increments of friction, and else for looking at: ask for fewer"));
+                .with_help(
+                    "states in between are increments of friction, and else for looking at: ask for fewer",
+                ));
         }
         table.finish()?;
         let end = Step { time, normal, tangential };
@@ -311,11 +316,15 @@ fn beginning(normal: Load, tangential: Tangential) -> Step {
         Load::MeanGap(gap) => Load::MeanGap(gap),
         _ => Load::Force(0.0),
     };
-    let tangential = match tangential {
+    Step { time: 0.0, normal, tangential: unloaded(tangential) }
+}
+
+/// Zero of what is prescribed.
+fn unloaded(tangential: Tangential) -> Tangential {
+    match tangential {
         Tangential::Displacement(_) => Tangential::Displacement([0.0; 2]),
         _ => Tangential::default(),
-    };
-    Step { time: 0.0, normal, tangential }
+    }
 }
 
 /// A point of a straight piece; a quantity that is prescribed anew begins at its new value.
@@ -369,6 +378,10 @@ mod tests {
         // The mean pressure of a path is the force over the nominal area, and stays as it was.
         assert!(steps.iter().all(|step| step.normal == Load::Force(12.0)));
         assert_eq!(LoadRequest::Path(steps).shears(), [true, true]);
+        let pushed =
+            path("[[path]]\nforce = 1\n[[path]]\ntangential_displacement = [2, 4]\nstates = 2").unwrap();
+        assert_eq!(pushed[0].tangential, Tangential::default());
+        assert_eq!(pushed[1].tangential, Tangential::Displacement([1.0, 2.0]));
         let along_x = path("[[path]]\nmean_gap = 1\ntangential_displacement = 2").unwrap();
         assert_eq!(along_x[0].normal, Load::MeanGap(1.0));
         assert_eq!(LoadRequest::Path(along_x).shears(), [true, false]);
