@@ -197,8 +197,8 @@ pub enum AskedBy {
     AnyStiffness,
     /// A tangential stiffness of either kind.
     AnyTangentialStiffness,
-    /// Friction whose loads or displacements may have a component along y.
-    FrictionAlongY,
+    /// Friction in two directions: a component along y is prescribed, or a model answers one.
+    FrictionInPlane,
     /// An effect, by its key in `[effects]`.
     Effect(&'static str),
 }
@@ -217,7 +217,7 @@ impl AskedBy {
             Self::AnyTangentialStiffness => {
                 question.outputs.tangential_stiffness || question.outputs.tangential_stiffness_stuck
             }
-            Self::FrictionAlongY => {
+            Self::FrictionInPlane => {
                 question.directions == Directions::Plane && question.effects.friction != Friction::Off
             }
             Self::Effect(key) => question.effects.named().any(|effect| effect.key() == key),
@@ -235,7 +235,7 @@ impl AskedBy {
             Self::Output(output) => format!("`{}` in [outputs]", output.name()),
             Self::AnyStiffness => "a stiffness or the conductance in [outputs]".into(),
             Self::AnyTangentialStiffness => "a tangential stiffness in [outputs]".into(),
-            Self::FrictionAlongY => {
+            Self::FrictionInPlane => {
                 "`friction` in [effects] with a tangential load along y, or a model that answers one".into()
             }
             Self::Effect(key) => format!("`{key}` in [effects]"),
@@ -401,7 +401,7 @@ macro_rules! quantities {
 }
 
 use AskedBy::{
-    Always, AnyStiffness, AnyTangentialStiffness, Effect, FreeBoundary, FrictionAlongY, Path,
+    Always, AnyStiffness, AnyTangentialStiffness, Effect, FreeBoundary, FrictionInPlane, Path,
     PrescribedDistance, RoughSurface,
 };
 use Unit::{One, Si, Word};
@@ -428,12 +428,12 @@ pub static QUANTITIES: &[Quantity] = &quantities! {
         => |s, _| s.contact_radius.into();
     "tangential_force" "tangential force" "T" Si("N"); Effect("friction"); "tangential force along x"
         => |s, _| s.tangential.map(|t| t.force[0]).into();
-    "tangential_force_y" "tangential force along y" "T_y" Si("N"); FrictionAlongY; "tangential force along y"
+    "tangential_force_y" "tangential force along y" "T_y" Si("N"); FrictionInPlane; "tangential force along y"
         => |s, _| s.tangential.map(|t| t.force[1]).into();
     "tangential_displacement" "tangential displacement" "u_x" Si("m"); Effect("friction");
         "of the bodies relative to each other along x, far from the contact"
         => |s, _| s.tangential.map(|t| t.displacement[0]).into();
-    "tangential_displacement_y" "tangential displacement along y" "u_y" Si("m"); FrictionAlongY;
+    "tangential_displacement_y" "tangential displacement along y" "u_y" Si("m"); FrictionInPlane;
         "of the bodies relative to each other along y, far from the contact"
         => |s, _| s.tangential.map(|t| t.displacement[1]).into();
     "sliding_force" "sliding force" "" Si("N"); Effect("friction");
@@ -569,13 +569,13 @@ pub static QUANTITIES: &[Quantity] = &quantities! {
         { role: Role::Residual("the attraction of each cell is what the law says of its gap: the largest difference, over the largest traction"),
           average: Average::No, drawn: false }
         => |s, _| s.report.certificate.equilibrium.into();
-    "tangential_duality_gap" "tangential duality gap" "" One; Effect("friction");
+    "tangential_duality_gap" "tangential duality gap" "" One; FrictionInPlane;
         "sum (mu p |w| - w . q)/(mu F |delta|) of the last step, solved cell by cell"
         { role: Role::Residual("the tractions minimise the elastic energy of the step of friction: by how much it could still fall, over sliding force \
                                 times tangential displacement"),
           average: Average::No, drawn: false }
         => |s, _| s.report.certificate.tangential_duality_gap.into();
-    "tangential_load_error" "tangential load error" "" One; Effect("friction"); "|Q - Q_asked|/(mu F), solved cell by cell"
+    "tangential_load_error" "tangential load error" "" One; FrictionInPlane; "|Q - Q_asked|/(mu F), solved cell by cell"
         { role: Role::Residual("the tangential force is the one that was asked for, over the sliding force"),
           average: Average::No, drawn: false }
         => |s, _| s.report.certificate.tangential_load_error.into();

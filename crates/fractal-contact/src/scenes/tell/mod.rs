@@ -59,7 +59,7 @@ mod tests {
                 outputs.tangential_stiffness_stuck = true;
                 effects.friction = Friction::coulomb(0.3);
             }
-            AskedBy::FrictionAlongY => {
+            AskedBy::FrictionInPlane => {
                 effects.friction = Friction::coulomb(0.3);
                 let tangential = Tangential::Force([0.1, 0.1]);
                 let step = Step { tangential, ..Step::normal(0.0, Load::Force(1.0)) };
