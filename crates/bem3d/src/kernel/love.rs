@@ -53,7 +53,7 @@ pub fn influence_row(y: usize, stretch: f64, row: &mut [f64]) {
     }
 }
 
-fn is_far(x: usize, y: usize, stretch: f64) -> bool {
+pub(super) fn is_far(x: usize, y: usize, stretch: f64) -> bool {
     let [(x, a), (y, b)] = ordered(x, y, stretch);
     (x * a).powi(2) + (y * b).powi(2) > (FAR * a.max(b)).powi(2)
 }

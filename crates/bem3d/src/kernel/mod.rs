@@ -1,5 +1,5 @@
 //! Influence coefficients: Love's for a half-space that is unloaded outside the map, the periodic ones, those
-//! of a half-plane, and tables of them.
+//! of a half-plane, those of tangential tractions, and tables of them.
 
 mod alternating;
 mod half_plane;
@@ -7,6 +7,9 @@ pub mod love;
 mod periodic;
 mod symbol;
 mod table;
+mod tangential;
+mod tangential_table;
 
 pub use symbol::Symbol;
 pub use table::{KernelTable, Medium};
+pub use tangential_table::TangentialTable;

@@ -8,7 +8,7 @@
 //! again (`tests/tests/periodic.rs` checks the results).
 
 use super::alternating::{TERMS, alternating_weights};
-use super::symbol::Symbol;
+use super::symbol::{Parity, Symbol};
 use crate::geometry::{Grid, Lengths};
 use std::f64::consts::{PI, TAU};
 
@@ -40,7 +40,7 @@ impl PeriodicKernel {
     /// for oblong cells.
     pub fn new(grid: Grid) -> Self {
         let (columns, rows) = (grid.columns, grid.rows);
-        let symbol = symbol(grid);
+        let symbol = symbol(grid, Integrand::Normal);
         let half = rows / 2 + 1;
         // The transform of an even sequence is its own inverse but for the number of points.
         let lengths = Lengths { x: columns, y: rows };
@@ -76,15 +76,63 @@ impl PeriodicKernel {
     }
 }
 
+/// What a point force does at a wave, over `2 pi`: see [`super::tangential`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Integrand {
+    /// `1/r`: `1/|q|`.
+    Normal,
+    /// `x^2/r^3`: `qy^2/|q|^3`.
+    AlongX,
+    /// `y^2/r^3`: `qx^2/|q|^3`.
+    AlongY,
+    /// `x y/r^3`: `-qx qy/|q|^3`, odd in both.
+    Across,
+    /// `x/r^2`: `qx/|q|^2` times `-i`, odd along x.
+    Coupling,
+}
+
+impl Integrand {
+    /// The value at a wave times a factor.
+    fn at(self, factor: f64, qx: f64, qy: f64) -> f64 {
+        let q = qx.hypot(qy);
+        match self {
+            Self::Normal => factor / q,
+            Self::AlongX => factor * (qy / q).powi(2) / q,
+            Self::AlongY => factor * (qx / q).powi(2) / q,
+            Self::Across => -factor * (qx / q) * (qy / q) / q,
+            Self::Coupling => factor * (qx / q) / q,
+        }
+    }
+
+    /// Parities along x and y.
+    pub(super) fn parity(self) -> [Parity; 2] {
+        match self {
+            Self::Normal | Self::AlongX | Self::AlongY => [Parity::Even; 2],
+            Self::Across => [Parity::Odd; 2],
+            Self::Coupling => [Parity::Odd, Parity::Even],
+        }
+    }
+
+    /// An odd factor, so that the rest is even.
+    fn odd_factor(self, x: f64, y: f64) -> f64 {
+        match self {
+            Self::Normal | Self::AlongX | Self::AlongY => 1.0,
+            Self::Across => x * y,
+            Self::Coupling => x,
+        }
+    }
+}
+
 /// The symbol at the waves of a grid, `[kx * (rows / 2 + 1) + ky]`, 0 at the mean.
-fn symbol(grid: Grid) -> Vec<f64> {
+pub(super) fn symbol(grid: Grid, integrand: Integrand) -> Vec<f64> {
     let (a, b) = grid.cell();
     let (along_x, along_y) = (Interpolation::new(grid.columns, a / b), Interpolation::new(grid.rows, b / a));
     let weights = alternating_weights();
-    let symmetric = grid.has_square_cells();
+    let symmetric = grid.has_square_cells() && integrand == Integrand::Normal;
     let alias = |x: f64, y: f64| {
         let (x, y) = if symmetric { (x.max(y), x.min(y)) } else { (x, y) };
-        aliases(&weights, x, y, a, b)
+        let odd = integrand.odd_factor(x, y);
+        if odd > 0.0 { aliases(integrand, &weights, x, y, a, b) / odd } else { 0.0 }
     };
     let values: Vec<Vec<f64>> =
         along_y.nodes.iter().map(|&y| along_x.nodes.iter().map(|&x| alias(x, y)).collect()).collect();
@@ -94,7 +142,11 @@ fn symbol(grid: Grid) -> Vec<f64> {
         let line: Vec<f64> = values.iter().map(|row| along_x.at(kx, row)).collect();
         for ky in 0..=grid.rows / 2 {
             let (x, y) = (wave(kx, grid.columns), wave(ky, grid.rows));
-            symbol.push(if (kx, ky) == (0, 0) { 0.0 } else { first(x, y, a, b) + along_y.at(ky, &line) });
+            symbol.push(if (kx, ky) == (0, 0) {
+                0.0
+            } else {
+                first(integrand, x, y, a, b) + along_y.at(ky, &line) * integrand.odd_factor(x, y)
+            });
         }
     }
     symbol
@@ -107,8 +159,8 @@ fn sinc(x: f64) -> f64 {
 
 /// The continuum's share of the symbol at a wave (in radians a cell) of cells a x b: `2 pi / |q|` times the
 /// transform of a cell.
-fn first(x: f64, y: f64, a: f64, b: f64) -> f64 {
-    TAU / (x / a).hypot(y / b) * sinc(x / 2.0) * sinc(y / 2.0)
+fn first(integrand: Integrand, x: f64, y: f64, a: f64, b: f64) -> f64 {
+    integrand.at(TAU, x / a, y / b) * sinc(x / 2.0) * sinc(y / 2.0)
 }
 
 /// From the values of an even function at a few waves between 0 and pi to those at the waves of a grid.
@@ -163,8 +215,9 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 }
 
 /// The waves that the grid takes for (x, y): `sum 2 pi / |Q| sinc(X/2) sinc(Y/2)` over `X = x + 2 pi m`,
-/// `Y = y + 2 pi n`, `Q = (X/a, Y/b)`, without `m = n = 0`; `0 <= x, y <= pi`.
-fn aliases(weights: &[f64; TERMS], x: f64, y: f64, a: f64, b: f64) -> f64 {
+/// `Y = y + 2 pi n`, `Q = (X/a, Y/b)`, without `m = n = 0`; `0 <= x, y <= pi`. Of other integrands than
+/// [`Integrand::Normal`] what takes the place of `1 / |Q|`.
+fn aliases(integrand: Integrand, weights: &[f64; TERMS], x: f64, y: f64, a: f64, b: f64) -> f64 {
     // sin((x + 2 pi m)/2) = (-1)^m sin(x/2): alternating sums over m = 1, 2, .. and m = -1, -2, ..
     let terms = |q: f64, side: f64| {
         let sine = 2.0 * (q / 2.0).sin();
@@ -180,7 +233,7 @@ fn aliases(weights: &[f64; TERMS], x: f64, y: f64, a: f64, b: f64) -> f64 {
     let mut sum = 0.0;
     for (i, &(wy, fy)) in y.iter().enumerate() {
         for &(wx, fx) in &x[usize::from(i == 0)..] {
-            sum += fx * fy / wx.hypot(wy);
+            sum += integrand.at(fx * fy, wx, wy);
         }
     }
     TAU * sum
@@ -213,13 +266,13 @@ mod tests {
             let (along_x, along_y) = (Interpolation::new(nx, a / b), Interpolation::new(ny, b / a));
             assert!(!along_x.weights.is_empty() && !along_y.weights.is_empty());
             let value = |y: f64| -> Vec<f64> {
-                along_x.nodes.iter().map(|&x| aliases(&weights, x, y, a, b)).collect()
+                along_x.nodes.iter().map(|&x| aliases(Integrand::Normal, &weights, x, y, a, b)).collect()
             };
             let values: Vec<Vec<f64>> = along_y.nodes.iter().map(|&y| value(y)).collect();
             for (kx, ky) in [(0, 0), (1000, 0), (100, 290), (1000, 300), (3, 111), (700, 150)] {
                 let line: Vec<f64> = values.iter().map(|row| along_x.at(kx, row)).collect();
                 let (x, y) = (TAU * kx as f64 / nx as f64, TAU * ky as f64 / ny as f64);
-                let (sum, smooth) = (aliases(&weights, x, y, a, b), along_y.at(ky, &line));
+                let (sum, smooth) = (aliases(Integrand::Normal, &weights, x, y, a, b), along_y.at(ky, &line));
                 assert!((sum - smooth).abs() < 1e-13, "aspect {aspect}, {kx} {ky}: {sum} {smooth}");
             }
         }
@@ -230,10 +283,11 @@ mod tests {
         let weights = alternating_weights();
         for stretch in [3.0f64, 0.4] {
             let grid = Grid { columns: 420, rows: 390, stretch };
-            let ((a, b), symbol) = (grid.cell(), symbol(grid));
+            let ((a, b), symbol) = (grid.cell(), symbol(grid, Integrand::Normal));
             for (kx, ky) in [(1, 0), (0, 1), (7, 190), (210, 195), (209, 3), (100, 100)] {
                 let (x, y) = (TAU * kx as f64 / 420.0, TAU * ky as f64 / 390.0);
-                let sum = first(x, y, a, b) + aliases(&weights, x, y, a, b);
+                let sum =
+                    first(Integrand::Normal, x, y, a, b) + aliases(Integrand::Normal, &weights, x, y, a, b);
                 assert_relative_eq!(symbol[kx * 196 + ky], sum, max_relative = 1e-12);
             }
         }
@@ -243,7 +297,7 @@ mod tests {
     fn no_wave_is_softer_than_the_checkerboard() {
         for (columns, rows, stretch) in [(40, 40, 1.0), (30, 42, 2.0), (31, 8, 0.4), (12, 13, 5.0)] {
             let grid = Grid { columns, rows, stretch };
-            let lowest = symbol(grid)[1..].iter().copied().fold(f64::INFINITY, f64::min);
+            let lowest = symbol(grid, Integrand::Normal)[1..].iter().copied().fold(f64::INFINITY, f64::min);
             let expected = smallest_eigenvalue(stretch);
             assert!(lowest >= (1.0 - 1e-6) * expected, "{grid:?}: {lowest} {expected}");
             if columns % 2 == 0 && rows % 2 == 0 {

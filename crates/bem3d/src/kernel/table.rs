@@ -228,9 +228,15 @@ impl KernelTable {
 }
 
 /// The symbols made last.
-#[derive(Default)]
-struct Kept<T> {
+#[derive(Debug)]
+pub(super) struct Kept<T> {
     made: Vec<(Lengths, Arc<Vec<T>>)>,
+}
+
+impl<T> Default for Kept<T> {
+    fn default() -> Self {
+        Self { made: Vec::new() }
+    }
 }
 
 impl<T> Kept<T> {
@@ -254,7 +260,11 @@ impl<T> Kept<T> {
 ///
 /// Nothing is locked while it is made: threads share that work, and one that waits may begin another solve,
 /// which would wait for the lock for ever. Two threads may make the same symbol; one of them is kept.
-fn cached<T>(kept: &Mutex<Kept<T>>, lengths: Lengths, make: impl FnOnce() -> Arc<Vec<T>>) -> Arc<Vec<T>> {
+pub(super) fn cached<T>(
+    kept: &Mutex<Kept<T>>,
+    lengths: Lengths,
+    make: impl FnOnce() -> Arc<Vec<T>>,
+) -> Arc<Vec<T>> {
     let found = lock(kept).find(lengths);
     found.unwrap_or_else(|| {
         let symbol = make();
@@ -263,7 +273,7 @@ fn cached<T>(kept: &Mutex<Kept<T>>, lengths: Lengths, make: impl FnOnce() -> Arc
 }
 
 /// Locks; a panic of another thread while it filled a cache leaves nothing half-made behind.
-fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+pub(super) fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 

@@ -5,8 +5,10 @@ mod fft;
 mod influence;
 mod operators;
 mod recipe;
+mod transform;
 mod two_level;
 mod two_transforms;
+mod vector;
 
 pub use direct::DirectSum;
 pub use fft::FftConvolution;
@@ -19,3 +21,4 @@ pub use recipe::{Conditioning, Recipe};
 pub use two_level::{Split, TwoLevel};
 #[doc(hidden)]
 pub use two_transforms::TwoTransforms;
+pub use vector::{DirectVectorSum, VectorConvolution};
