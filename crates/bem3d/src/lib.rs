@@ -133,6 +133,7 @@
 
 mod active_set;
 mod adhesion;
+mod friction;
 mod geometry;
 mod kernel;
 mod linear;

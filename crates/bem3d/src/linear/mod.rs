@@ -4,6 +4,10 @@ mod cholesky;
 mod extension;
 mod pcg;
 mod preconditioner;
+mod tensor_torus;
 
 pub use cholesky::Factor;
-pub use pcg::{Energy, Fixed, StoppingCriteria, Workspace};
+pub use extension::Extension;
+pub use pcg::{Energy, Fixed, StoppingCriteria, Vectors, Workspace, pcg};
+pub use preconditioner::{Preconditioned, Preconditioner};
+pub use tensor_torus::TensorTorusInverse;

@@ -171,13 +171,19 @@ pub struct Vectors<T> {
 }
 
 impl<T: Real> Vectors<T> {
-    /// Takes a new set; the right-hand side is zero.
-    pub fn take(&mut self, set: CellSet) {
-        let last = std::mem::replace(&mut self.set, set);
+    /// Takes a new set with several numbers a cell; the right-hand side is zero.
+    pub fn take_fields(&mut self, set: CellSet, fields: usize) {
+        self.set = set;
         for vector in [&mut self.r, &mut self.x, &mut self.t, &mut self.kt, &mut self.z] {
             vector.clear();
-            vector.resize(self.set.len(), T::default());
+            vector.resize(fields * self.set.len(), T::default());
         }
+    }
+
+    /// Takes a new set; the right-hand side is zero.
+    pub fn take(&mut self, set: CellSet) {
+        let last = std::mem::take(&mut self.set);
+        self.take_fields(set, 1);
         if !self.weights.is_empty() {
             self.set.carry_to(&last, &self.weights, &mut self.z);
             std::mem::swap(&mut self.weights, &mut self.z);
@@ -190,11 +196,13 @@ impl<T: Real> Vectors<T> {
         self.weights.clear();
     }
 
-    fn load(&mut self, right: &[f64], unit: f64) {
+    /// Takes a right-hand side in units of its size.
+    pub fn load(&mut self, right: &[f64], unit: f64) {
         update(&mut self.r, right, |r, right| *r = T::of(right / unit));
     }
 
-    fn unload(&self, solution: &mut [f64], unit: f64) {
+    /// Gives the solution.
+    pub fn unload(&self, solution: &mut [f64], unit: f64) {
         update(solution, &self.x, |solution, x| *solution = unit * x.to_f64());
     }
 

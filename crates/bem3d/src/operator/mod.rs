@@ -5,6 +5,7 @@ mod fft;
 mod influence;
 mod operators;
 mod recipe;
+mod tangential;
 mod transform;
 mod two_level;
 mod two_transforms;
@@ -17,6 +18,7 @@ pub use operators::Operators;
 #[cfg(test)]
 pub use recipe::Application;
 pub use recipe::{Conditioning, Recipe};
+pub use tangential::{PlannedVector, TangentialOperators};
 #[doc(hidden)]
 pub use two_level::{Split, TwoLevel};
 #[doc(hidden)]

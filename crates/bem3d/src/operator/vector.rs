@@ -46,34 +46,43 @@ impl<T: Real> VectorConvolution<T> {
         bands.take(count)
     }
 
-    /// Convolves: `fill` writes row y of each component (given as zeros) where `given` says so, `take` reads it where
-    /// it is `wanted`; each band of rows of each component has its own output, those of the first component first.
-    pub fn convolve<O: Send>(
+    /// Transforms both components: `fill` writes row y of each (given as zeros) where `given` says so.
+    pub fn forward(
         &mut self,
         given: impl Fn(usize) -> bool + Sync,
         fill: impl Fn(usize, usize, &mut [T]) + Sync,
+    ) {
+        let (rows, height) = (self.transform.rows(), self.window().height);
+        self.transform.forward(
+            |at| at % rows < height && given(at % rows),
+            |at, line| fill(at / rows, at % rows, line),
+        );
+    }
+
+    /// Multiplies the spectra by the symbol. Only the bands of rows `wanted` are right afterwards.
+    pub fn multiply(&mut self, wanted: impl Fn(usize) -> bool) {
+        let (rows, height) = (self.transform.rows(), self.window().height);
+        let (symbol, half) = (&self.symbol, self.transform.lengths().y / 2 + 1);
+        self.transform.change(
+            |at| at % rows < height && wanted(at % rows),
+            |kx, [x, y]| multiply(x, y, &symbol[kx * half..][..half]),
+        );
+    }
+
+    /// Transforms back: `take` reads row y of each component where it is `wanted`. Each band of rows has its own
+    /// output, those of the first component before those of the second.
+    pub fn backward<O: Send>(
+        &mut self,
         wanted: impl Fn(usize) -> bool + Sync,
         outputs: impl ExactSizeIterator<Item = O> + Send,
         take: impl Fn(&mut O, usize, usize, &[T]) + Sync,
     ) {
-        let Self { transform, symbol } = self;
-        let (height, half) = (transform.window().height, transform.lengths().y / 2 + 1);
-        let rows = transform.rows();
-        let row = |at: usize| (at / rows, at % rows);
-        let inside = |at: usize, has: &dyn Fn(usize) -> bool| at % rows < height && has(at % rows);
-        transform.forward(
-            |at| inside(at, &given),
-            |at, line| {
-                let (component, y) = row(at);
-                fill(component, y, line);
-            },
+        let (rows, height) = (self.transform.rows(), self.window().height);
+        self.transform.backward(
+            |at| at % rows < height && wanted(at % rows),
+            outputs,
+            |output, at, line| take(output, at / rows, at % rows, line),
         );
-        let wanted = |at: usize| inside(at, &wanted);
-        transform.change(wanted, |kx, [x, y]| multiply(x, y, &symbol[kx * half..][..half]));
-        transform.backward(wanted, outputs, |output, at, line| {
-            let (component, y) = row(at);
-            take(output, component, y, line);
-        });
     }
 }
 
@@ -82,24 +91,24 @@ impl<T: Real> InfluenceOperator<T> for VectorConvolution<T> {
     fn apply(&mut self, sources: &CellSet, q: &[T], targets: &CellSet, u: &mut [T]) {
         let Window { x: x0, y: y0, .. } = self.window();
         let (n, rows) = (sources.len(), self.bands());
-        let (along_x, along_y) = u.split_at_mut(targets.len());
-        let mut outputs = targets.split(along_x, rows.clone().map(|y| y + y0));
-        outputs.extend(targets.split(along_y, rows.map(|y| y + y0)));
-        self.convolve(
+        let held = |y: usize| targets.row(y + y0).is_some();
+        self.forward(
             |y| sources.row(y + y0).is_some(),
             |component, y, line| {
                 if let Some(row) = sources.row(y + y0) {
                     row.spread(&q[component * n..][..n], line, x0);
                 }
             },
-            |y| targets.row(y + y0).is_some(),
-            outputs.into_iter(),
-            |(start, u), _, y, line| {
-                if let Some(row) = targets.row(y + y0) {
-                    row.after(*start).collect(line, u, x0);
-                }
-            },
         );
+        self.multiply(held);
+        let (along_x, along_y) = u.split_at_mut(targets.len());
+        let mut outputs = targets.split(along_x, rows.clone().map(|y| y + y0));
+        outputs.extend(targets.split(along_y, rows.map(|y| y + y0)));
+        self.backward(held, outputs.into_iter(), |(start, u), _, y, line| {
+            if let Some(row) = targets.row(y + y0) {
+                row.after(*start).collect(line, u, x0);
+            }
+        });
     }
 }
 

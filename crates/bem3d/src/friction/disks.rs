@@ -1,0 +1,184 @@
+//! The tractions that friction admits: in each cell a disk, and with a prescribed force their sum.
+//!
+//! Vectors hold the components along x of all cells, then those along y.
+
+use crate::tuning::CHUNK;
+use numerics::parallel::map;
+
+/// Newton's steps at most to the multiplier of a force; a handful are the rule, some sixty where all but a
+/// billionth of the friction is asked for.
+const STEPS: usize = 200;
+/// A force is met where it is off by less than this share of the largest one: the rounding of a sum.
+const ROUNDING: f64 = 2e-15;
+/// Evaluations of a line search at most, and the share of the first slope at which it ends.
+const SEARCH: usize = 30;
+/// See `SEARCH`.
+const FLAT: f64 = 0.3;
+/// Longest step in units of the vectors and of the multiplier itself.
+const LONGEST: f64 = 4.0;
+
+/// The sum of a vector field.
+pub fn total(v: &[f64]) -> [f64; 2] {
+    let (x, y) = v.split_at(v.len() / 2);
+    [crate::real::sum(x), crate::real::sum(y)]
+}
+
+/// Sums over the cells of what `term` makes of a vector, another one and a number.
+pub fn sums<const N: usize>(
+    (a, b): (&[f64], &[f64]),
+    limit: &[f64],
+    term: impl Fn([f64; 2], [f64; 2], f64) -> [f64; N] + Sync,
+) -> [f64; N] {
+    let n = limit.len();
+    let ((ax, ay), (bx, by)) = (a.split_at(n), b.split_at(n));
+    let chunks = ax.chunks(CHUNK).zip(ay.chunks(CHUNK)).zip(bx.chunks(CHUNK).zip(by.chunks(CHUNK)));
+    let parts = map(n, chunks.zip(limit.chunks(CHUNK)), |(((ax, ay), (bx, by)), limit)| {
+        let mut sums = [0.0; N];
+        for ((((&ax, &ay), &bx), &by), &limit) in ax.iter().zip(ay).zip(bx).zip(by).zip(limit) {
+            for (sum, term) in sums.iter_mut().zip(term([ax, ay], [bx, by], limit)) {
+                *sum += term;
+            }
+        }
+        Some(sums)
+    });
+    let mut sums = [0.0; N];
+    for part in parts.into_iter().flatten() {
+        sums.iter_mut().zip(part).for_each(|(sum, part)| *sum += part);
+    }
+    sums
+}
+
+/// The nearest vector to one within a disk.
+fn within([x, y]: [f64; 2], limit: f64) -> [f64; 2] {
+    let length = x.hypot(y);
+    if length <= limit {
+        return [x, y];
+    }
+    // Rounding does not lead out of the disk again.
+    let scale = limit / length * (1.0 - f64::EPSILON);
+    [x * scale, y * scale]
+}
+
+/// Moves each vector by `shift` and to the nearest one within its disk.
+pub fn project(v: &mut [f64], limit: &[f64], shift: [f64; 2]) {
+    let n = limit.len();
+    let (x, y) = v.split_at_mut(n);
+    let chunks = x.chunks_mut(CHUNK).zip(y.chunks_mut(CHUNK)).zip(limit.chunks(CHUNK));
+    map(n, chunks, |((x, y), limit)| {
+        for ((x, y), &limit) in x.iter_mut().zip(y).zip(limit) {
+            [*x, *y] = within([*x + shift[0], *y + shift[1]], limit);
+        }
+    });
+}
+
+/// The shift with which the projections of some vectors add up to a force.
+///
+/// It is where the gradient of a convex function vanishes: `sum h(v + shift) - force . shift`, where `h(z)` is
+/// `z^2/2` within the disk and `b |z| - b^2/2` outside. Newton's method finds it, with a line search on the
+/// slope, which rounding leaves more digits than the value. A force of more than the sum of the limits has none;
+/// there and just below it the last shift is given.
+///
+/// Cost: O(n) a step.
+pub fn multiplier(v: &[f64], limit: &[f64], force: [f64; 2], start: [f64; 2]) -> [f64; 2] {
+    let most = crate::real::sum(limit);
+    let size = crate::real::largest(v) + crate::real::largest(limit);
+    // Gradient and second derivatives.
+    let evaluate = |[sx, sy]: [f64; 2]| -> [f64; 5] {
+        let mut all = sums((v, v), limit, |[x, y], _, b| {
+            let (x, y) = (x + sx, y + sy);
+            let length = x.hypot(y);
+            if length <= b {
+                return [x, y, 1.0, 1.0, 0.0];
+            }
+            let (ex, ey, softness) = (x / length, y / length, b / length);
+            [b * ex, b * ey, softness * ey * ey, softness * ex * ex, -softness * ex * ey]
+        });
+        all[0] -= force[0];
+        all[1] -= force[1];
+        all
+    };
+    let mut shift = start;
+    let mut now = evaluate(shift);
+    for _ in 0..STEPS {
+        let [gx, gy, xx, yy, xy] = now;
+        if gx.hypot(gy) <= ROUNDING * most {
+            break;
+        }
+        // A hair of the trace keeps directions finite in which nothing resists.
+        let hair = 1e-14 * (xx + yy) + f64::MIN_POSITIVE;
+        let (xx, yy) = (xx + hair, yy + hair);
+        let determinant = xx * yy - xy * xy;
+        let step = [(xy * gy - yy * gx) / determinant, (xy * gx - xx * gy) / determinant];
+        let longest = LONGEST * (size + shift[0].hypot(shift[1]));
+        let whole = (longest / step[0].hypot(step[1])).min(1.0);
+        if !whole.is_finite() {
+            break;
+        }
+        let begin = gx * step[0] + gy * step[1];
+        // The slope rises along the step, from `begin < 0`.
+        let (mut low, mut high) = ((0.0, begin), None);
+        let mut share = whole;
+        let mut next = now;
+        for _ in 0..SEARCH {
+            next = evaluate([shift[0] + share * step[0], shift[1] + share * step[1]]);
+            let slope = next[0] * step[0] + next[1] * step[1];
+            if slope <= FLAT * begin.abs() && (slope >= -FLAT * begin.abs() || share >= whole) {
+                break;
+            }
+            if slope > 0.0 {
+                high = Some((share, slope));
+            } else {
+                low = (share, slope);
+            }
+            let Some(high) = high else { break };
+            let (width, weight) = (high.0 - low.0, low.1 / (low.1 - high.1));
+            share = low.0 + width * weight.clamp(0.1, 0.9);
+        }
+        shift = [shift[0] + share * step[0], shift[1] + share * step[1]];
+        if share * step[0].hypot(step[1]) <= f64::EPSILON * shift[0].hypot(shift[1]) {
+            break;
+        }
+        now = next;
+    }
+    shift
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn projections_by_hand() {
+        // 3-4-5: the vector of length 5 in a disk of radius 2.5, one that is inside, and one that is moved there.
+        let mut v = [3.0, 0.1, -1.0, 4.0, 0.2, 0.0];
+        project(&mut v, &[2.5, 1.0, 1.0], [0.0, 0.0]);
+        approx::assert_relative_eq!(v[..], [1.5, 0.1, -1.0, 2.0, 0.2, 0.0], max_relative = 1e-15);
+        project(&mut v[..], &[0.0, 10.0, 10.0], [1.0, -2.0]);
+        assert_eq!(v, [0.0, 1.1, 0.0, -0.0, -1.8, -2.0]);
+        // Never outside, whatever the rounding.
+        for k in 0..1000 {
+            let angle = f64::from(k) * 0.7;
+            let [x, y] = within([angle.cos() * 7.3, angle.sin() * 1.9], 0.3);
+            assert!(x.hypot(y) <= 0.3);
+        }
+    }
+
+    #[test]
+    fn projections_add_up_to_the_force() {
+        let n = 50;
+        let limit: Vec<f64> = (0..n).map(|k| (0.3 * f64::from(k)).sin().powi(2) + 0.01).collect();
+        let v: Vec<f64> = (0..2 * n).map(|k| (1.7 * f64::from(k)).cos()).collect();
+        let most = crate::real::sum(&limit);
+        for share in [0.0, 0.3, -0.7, 0.99, 1.0 - 1e-6, 1.0 - 1e-9] {
+            for angle in [0.0_f64, 1.0, 2.5] {
+                let force = [share * most * angle.cos(), share * most * angle.sin()];
+                let shift = multiplier(&v, &limit, force, [0.0; 2]);
+                let mut q = v.clone();
+                project(&mut q, &limit, shift);
+                let [x, y] = total(&q);
+                let off = (x - force[0]).hypot(y - force[1]);
+                assert!(off < 1e-13 * most, "{share} {angle}: {off}");
+            }
+        }
+    }
+}

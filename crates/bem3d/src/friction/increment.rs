@@ -1,0 +1,491 @@
+//! One increment: the tractions at its end from those at its beginning.
+
+use super::disks::{multiplier, project, sums, total};
+use super::linearised::{Branch, Linearised, Room, Split, TorusWindow, extend};
+use crate::geometry::CellSet;
+use crate::linear::{Extension, Fixed, StoppingCriteria, TensorTorusInverse, Vectors, pcg};
+use crate::operator::{InfluenceOperator, TangentialOperators};
+use crate::parts::Part;
+use crate::real::{dot, largest, sum};
+use contact_model::{Status, Stop};
+
+/// What is prescribed, nondimensional; components along x and y.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum TangentialControl {
+    /// Tangential displacement of the bodies; with periodic boundaries that of their mean planes.
+    Displacement([f64; 2]),
+    /// Sum of the tractions.
+    Force([f64; 2]),
+}
+
+/// The conditions of one increment on a contact of n cells; vectors hold n components along x, then n along y.
+#[derive(Debug, Clone, Copy)]
+pub struct Increment<'a> {
+    /// The contact at its end.
+    pub cells: &'a CellSet,
+    /// Largest traction of each cell, the coefficient of friction times its pressure at the end.
+    pub limit: &'a [f64],
+    /// What the elastic displacement and the slip have added up to at the beginning: the slip of the increment is
+    /// `w = delta - K q - reference`.
+    pub reference: &'a [f64],
+    /// Tangential load at the end.
+    pub control: TangentialControl,
+    /// Displacement at the beginning: that at the end where nothing decides it.
+    pub displacement: [f64; 2],
+}
+
+/// How accurate, how long.
+#[derive(Debug, Clone, Copy)]
+pub struct FrictionLimits {
+    /// Bound of the duality gap relative to its scale.
+    pub tolerance: f64,
+    /// Newton's steps at most.
+    pub iterations: usize,
+}
+
+/// Tractions on their way, and at the end of an increment.
+#[derive(Debug, Clone)]
+pub struct Sliding {
+    /// Tractions, admissible to rounding.
+    pub traction: Vec<f64>,
+    /// Slip of the increment.
+    pub slip: Vec<f64>,
+    /// Tangential displacement of the bodies.
+    pub displacement: [f64; 2],
+    /// `sum(b |w| - q . w)` with the exact operator, relative to `sum(b)` times the larger of `|delta|` and of the
+    /// largest reference.
+    pub duality_gap: f64,
+    /// What the force misses of the one that is prescribed, over the largest one.
+    pub load_error: f64,
+    /// The cells that stick.
+    pub stick: CellSet,
+    /// Newton's steps.
+    pub iterations: usize,
+    /// Steps of conjugate gradients.
+    pub steps: usize,
+    /// How it ended.
+    pub status: Status,
+}
+
+/// Room for the systems of an increment, kept from one to the next.
+#[derive(Debug, Default)]
+pub struct FrictionRoom {
+    /// Vectors of conjugate gradients.
+    pub vectors: Vectors<f32>,
+    /// Extension of each component.
+    pub extensions: [Extension; 2],
+    /// Vectors of the preconditioner.
+    pub split: Room,
+}
+
+/// `rho` times the own compliance: y = q + rho w decides between stick and slip.
+const STEP: f64 = 0.4;
+/// Reduction asked of a linear solve while the sets change.
+const REDUCTION: (f64, f64) = (0.02, 0.1);
+/// Steps of a linear solve at most.
+const INNER_STEPS: usize = 40;
+/// Share of a step from which it is taken whole.
+const WHOLE: f64 = 0.75;
+/// Rounding of the work of a change over that of the tractions themselves.
+const ROUNDING: f64 = 8.0 * f64::EPSILON;
+/// Share below which Newton's step is of no use.
+const USELESS: f64 = 0.02;
+/// Newton's steps without a better gap after which projected gradients take over ...
+const PATIENCE: usize = 4;
+/// ... for so many steps, twice as many each time.
+const GRADIENTS: usize = 8;
+/// A gap is better when it falls by this factor.
+const BETTER: f64 = 0.7;
+/// Share of the friction of all cells that a force may ask for: at the whole of it the displacement has no bound.
+pub const LARGEST_SHARE: f64 = 1.0 - 1e-9;
+
+struct Solver<'a> {
+    operators: &'a mut TangentialOperators,
+    room: &'a mut FrictionRoom,
+    increment: Increment<'a>,
+    limits: FrictionLimits,
+    /// Largest limit: the unit of all vectors.
+    friction: f64,
+    rho: f64,
+    /// Tractions, and the displacements that they make.
+    q: Vec<f64>,
+    u: Vec<f64>,
+    /// Slip, and the tangential displacement.
+    w: Vec<f64>,
+    delta: [f64; 2],
+    gap: f64,
+    iterations: usize,
+    steps: usize,
+}
+
+/// Solves an increment from tractions `start`.
+///
+/// The conditions `|q| <= b`, `q . w = b |w|` with `w = delta - K q - reference` are those of the minimum of the convex
+/// function `q'Kq/2 - q'(delta - reference)` over the disks `|q| <= b`, at a prescribed force over those of them
+/// that have this sum; delta is then its multiplier. Half the square of the error of q in the norm of K is at
+/// most the duality gap `sum(b |w| - q . w)`.
+///
+/// Each step linearises the conditions for the cells that stick and slip by `y = q + rho w`: `w = 0` where
+/// `|y| <= b`; elsewhere `q = b y/|y| + tau t` with the tangent t and `(K tau)_t + tau |w|/b = w_t`, which is
+/// symmetric and positive definite. Conjugate gradients solve it roughly; the result is projected onto the
+/// admissible tractions, and the energy is minimised on the way there, along which it is a parabola: no step
+/// raises it. Where these steps come to nothing projected gradients with the same line search take over,
+/// which converge from everywhere; Newton's steps go on from there.
+///
+/// Cost: some 5 to 10 steps, of 2 applications and those of a handful of conjugate gradients each.
+/// Source: the conditions are those of Kalker's variational principle (J. J. Kalker, Three-Dimensional Elastic
+/// Bodies in Rolling Contact, 1990, chapter 4), the linearisation is that of P. Alart and A. Curnier, Comput.
+/// Methods Appl. Mech. Eng. 92, 353 (1991), made symmetric by the bound that does not depend on the slip.
+pub fn solve(
+    operators: &mut TangentialOperators,
+    room: &mut FrictionRoom,
+    increment: Increment<'_>,
+    start: Vec<f64>,
+    limits: FrictionLimits,
+    stop: Stop<'_>,
+) -> Sliding {
+    let (most, friction) = (sum(increment.limit), largest(increment.limit));
+    let control = match increment.control {
+        TangentialControl::Force([x, y]) => {
+            let share = x.hypot(y) / most;
+            let less = if share > LARGEST_SHARE { LARGEST_SHARE / share } else { 1.0 };
+            TangentialControl::Force([x * less, y * less])
+        }
+        displacement @ TangentialControl::Displacement(_) => displacement,
+    };
+    if friction <= 0.0 {
+        return free(increment);
+    }
+    let rho = step(operators);
+    let increment = Increment { control, ..increment };
+    let delta = increment.displacement;
+    let solver = Solver {
+        operators,
+        room,
+        increment,
+        limits,
+        friction,
+        rho,
+        q: start,
+        u: Vec::new(),
+        w: Vec::new(),
+        delta,
+        gap: f64::INFINITY,
+        iterations: 0,
+        steps: 0,
+    };
+    solver.iterate(stop)
+}
+
+/// The step rho of `y = q + rho w`, which decides between stick and slip.
+pub fn step(operators: &TangentialOperators) -> f64 {
+    STEP / operators.table().own()
+}
+
+/// Nothing resists: no traction, all displacement is slip.
+fn free(increment: Increment<'_>) -> Sliding {
+    let displacement = match increment.control {
+        TangentialControl::Displacement(delta) => delta,
+        TangentialControl::Force(_) => increment.displacement,
+    };
+    let n = increment.limit.len();
+    let slip = (increment.reference.iter().enumerate())
+        .map(|(i, reference)| displacement[usize::from(i >= n)] - reference)
+        .collect();
+    Sliding {
+        traction: vec![0.0; 2 * n],
+        slip,
+        displacement,
+        duality_gap: 0.0,
+        load_error: 0.0,
+        stick: CellSet::default(),
+        iterations: 0,
+        steps: 0,
+        status: Status::Converged,
+    }
+}
+
+impl Solver<'_> {
+    fn iterate(mut self, stop: Stop<'_>) -> Sliding {
+        self.admit();
+        self.displace();
+        self.room.vectors.take_fields(self.increment.cells.clone(), 2);
+        let mut best = self.state(Status::IterationLimit);
+        let (mut since_best, mut gradients) = (0, GRADIENTS);
+        let status = loop {
+            if self.gap < BETTER * best.duality_gap || self.gap <= self.limits.tolerance {
+                since_best = 0;
+            } else {
+                since_best += 1;
+            }
+            if self.gap <= best.duality_gap {
+                best = self.state(Status::IterationLimit);
+            }
+            if self.gap <= self.limits.tolerance {
+                break Status::Converged;
+            } else if stop() {
+                break Status::Stopped;
+            } else if self.iterations >= self.limits.iterations {
+                break Status::IterationLimit;
+            }
+            self.iterations += 1;
+            if since_best > PATIENCE || !self.newton(stop) {
+                if gradients > 1 << 12 {
+                    break Status::Stagnated;
+                }
+                self.descend(gradients, stop);
+                (gradients, since_best) = (2 * gradients, 0);
+            }
+        };
+        Sliding { status, iterations: self.iterations, steps: self.steps, ..best }
+    }
+
+    fn force(&self) -> Option<[f64; 2]> {
+        match self.increment.control {
+            TangentialControl::Force(force) => Some(force),
+            TangentialControl::Displacement(_) => None,
+        }
+    }
+
+    /// Moves the tractions to admissible ones.
+    fn admit(&mut self) {
+        let limit = self.increment.limit;
+        let shift = self.force().map_or([0.0; 2], |force| multiplier(&self.q, limit, force, [0.0; 2]));
+        project(&mut self.q, limit, shift);
+    }
+
+    /// Evaluates the displacements of the present tractions.
+    fn displace(&mut self) {
+        self.u = self.exact(&self.q.clone());
+        self.slide();
+    }
+
+    /// `K q` without the constant of a periodic kernel.
+    fn exact(&mut self, q: &[f64]) -> Vec<f64> {
+        let mut u = Vec::new();
+        exact(self.operators, self.increment.cells, q, self.increment.cells, &mut u);
+        u
+    }
+
+    /// The slip under the present displacements, and the duality gap.
+    fn slide(&mut self) {
+        let Self { increment, q, u, w, delta, rho, .. } = self;
+        let n = increment.limit.len();
+        w.clear();
+        w.extend(u.iter().zip(increment.reference).map(|(u, reference)| -u - reference));
+        *delta = match increment.control {
+            TangentialControl::Displacement(delta) => delta,
+            TangentialControl::Force(force) => {
+                let y: Vec<f64> = q.iter().zip(&*w).map(|(q, w)| q + *rho * w).collect();
+                let start = delta.map(|delta| *rho * delta);
+                multiplier(&y, increment.limit, force, start).map(|shift| shift / *rho)
+            }
+        };
+        for (w, delta) in w.chunks_exact_mut(n).zip(*delta) {
+            w.iter_mut().for_each(|w| *w += delta);
+        }
+        let [gap] = sums((q, w), increment.limit, |[qx, qy], [wx, wy], b| {
+            [(b * wx.hypot(wy) - qx * wx - qy * wy).max(0.0)]
+        });
+        let [square] = [largest_length(increment.reference)];
+        let length = square.max(delta[0].hypot(delta[1]));
+        let scale = sum(increment.limit) * length;
+        self.gap = if scale > 0.0 { gap / scale } else { 0.0 };
+    }
+
+    fn state(&self, status: Status) -> Sliding {
+        let Self { increment, q, w, delta, rho, .. } = self;
+        let most = sum(increment.limit);
+        let load_error = self.force().map_or(0.0, |[fx, fy]| {
+            let [x, y] = total(q);
+            (x - fx).hypot(y - fy) / most
+        });
+        let n = increment.limit.len();
+        let sticks: Vec<bool> = (increment.limit.iter().enumerate())
+            .map(|(i, b)| (q[i] + rho * w[i]).hypot(q[n + i] + rho * w[n + i]) <= *b)
+            .collect();
+        let mut traction = q.clone();
+        project(&mut traction, increment.limit, [0.0; 2]);
+        Sliding {
+            traction,
+            slip: w.clone(),
+            displacement: *delta,
+            duality_gap: self.gap,
+            load_error,
+            stick: increment.cells.filter(&sticks, |sticks| sticks),
+            iterations: self.iterations,
+            steps: self.steps,
+            status,
+        }
+    }
+
+    /// One step of Newton's method; whether it was of use.
+    fn newton(&mut self, stop: Stop<'_>) -> bool {
+        let Increment { cells, limit, .. } = self.increment;
+        let n = limit.len();
+        let y: Vec<f64> = self.q.iter().zip(&self.w).map(|(q, w)| q + self.rho * w).collect();
+        let branch = Branch::of(cells, &y, &self.w, limit);
+        // Slip cells onto their circles.
+        let mut next = self.q.clone();
+        for (i, &b) in limit.iter().enumerate().filter(|(i, _)| branch.slips(*i)) {
+            let length = y[i].hypot(y[n + i]);
+            (next[i], next[n + i]) = (y[i] * b / length, y[n + i] * b / length);
+        }
+        let force = self.force();
+        let recorder = self.operators.recorder().clone();
+        let tuning = *self.operators.tuning();
+        let (own, shift) = (self.operators.table().own(), self.operators.table().shift());
+        let wanted = (0.5 * self.limits.tolerance / self.gap).clamp(REDUCTION.0, REDUCTION.1);
+        let criteria = StoppingCriteria { reduction: wanted, energy: None, floor: 0.0, steps: INNER_STEPS };
+        self.operators.solves += 1;
+        let Some((kernel, transform)) = self.operators.system(cells) else { return false };
+        let FrictionRoom { vectors, extensions, split: room } = &mut *self.room;
+        let torus =
+            TorusWindow { window: transform.window(), decay: tuning.decay, extended: tuning.extended };
+        recorder.timed(Part::Sets, || extend(extensions, &torus, &branch.stick));
+        let mut split = Split {
+            torus: TensorTorusInverse { transform, extensions },
+            branch: &branch,
+            own: 0.5 * own as f32,
+            sums: None,
+            room: std::mem::take(room),
+            recorder: recorder.clone(),
+        };
+        let mut linearised = Linearised { kernel, shift: shift as f32, branch: &branch };
+        let unit = self.friction;
+        // The change of the tractions so far, whose displacements the residual needs.
+        let mut change: Vec<f32> =
+            next.iter().zip(&self.q).map(|(next, q)| ((next - q) / unit) as f32).collect();
+        let mut spread = vec![0.0; 2 * n];
+        if let Some([fx, fy]) = force {
+            split.fix_sums(cells);
+            let [x, y] = total(&next);
+            if let Some(sums) = &split.sums {
+                sums.spread([(fx - x) / unit, (fy - y) / unit], &mut spread);
+                change.iter_mut().zip(&spread).for_each(|(change, spread)| *change += spread);
+            }
+        }
+        let mut applications = 0;
+        let mut displaced = vec![0.0; 2 * n];
+        if change.iter().any(|change| *change != 0.0) {
+            linearised.kernel.apply(cells, &change, cells, &mut displaced);
+            applications += 1;
+            for (displaced, change) in displaced.chunks_exact_mut(n).zip(change.chunks_exact(n)) {
+                let mean = shift * sum(change);
+                displaced.iter_mut().for_each(|u| *u -= mean as f32);
+            }
+        }
+        let mut right: Vec<f64> =
+            self.w.iter().zip(&displaced).map(|(w, u)| w / unit - f64::from(*u)).collect();
+        branch.restrict_f64(&mut right);
+        let moved: Vec<f64> = spread.iter().map(|&spread| f64::from(spread)).collect();
+        branch.add_turning(&moved, &mut right, -1.0);
+        let size = largest(&right);
+        if size > 0.0 && size.is_finite() {
+            let outcome = recorder.timed(Part::Vectors, || {
+                vectors.load(&right, size);
+                let outcome = pcg(&mut linearised, &mut split, vectors, Fixed::Approach, criteria, stop);
+                vectors.unload(&mut right, size);
+                outcome
+            });
+            applications += outcome.applications;
+            self.steps += outcome.steps;
+        } else {
+            right.fill(0.0);
+        }
+        *room = std::mem::take(&mut split.room);
+        self.operators.applications += applications;
+        for ((next, x), spread) in next.iter_mut().zip(&right).zip(&moved) {
+            *next += unit * (x + spread);
+        }
+        self.go_to(next)
+    }
+
+    /// Projects tractions onto the admissible ones and goes there, or as far as the energy falls. Whether that
+    /// was of use.
+    fn go_to(&mut self, mut next: Vec<f64>) -> bool {
+        let limit = self.increment.limit;
+        let shift = self.force().map_or([0.0; 2], |force| multiplier(&next, limit, force, [0.0; 2]));
+        project(&mut next, limit, shift);
+        let u = self.exact(&next);
+        let (mut slope, mut curvature, mut rounding) = (0.0, 0.0, 0.0);
+        let unit = self.friction;
+        for ((((q, next), w), from), to) in self.q.iter().zip(&next).zip(&self.w).zip(&self.u).zip(&u) {
+            let d = (next - q) / unit;
+            slope += d * (w / unit);
+            rounding += ROUNDING * (q / unit * (w / unit)).abs();
+            curvature += d * ((to - from) / unit);
+        }
+        // A change of the energy below its rounding tells nothing.
+        let slope = slope + rounding;
+        let share = if curvature > 0.0 { slope / curvature } else { f64::from(u8::from(slope > 0.0)) };
+        if share.is_nan() || share < USELESS {
+            return false;
+        }
+        if share >= WHOLE {
+            (self.q, self.u) = (next, u);
+        } else {
+            for (from, to) in [(&mut self.q, &next), (&mut self.u, &u)] {
+                from.iter_mut().zip(to).for_each(|(from, to)| *from += share * (to - *from));
+            }
+        }
+        self.slide();
+        true
+    }
+
+    /// Projected gradients of Barzilai and Borwein's lengths with exact line searches.
+    fn descend(&mut self, steps: usize, stop: Stop<'_>) {
+        let (limit, unit) = (self.increment.limit, self.friction);
+        let mut length = self.rho;
+        for _ in 0..steps {
+            if stop() || self.gap <= self.limits.tolerance {
+                return;
+            }
+            self.steps += 1;
+            let mut next: Vec<f64> = self.q.iter().zip(&self.w).map(|(q, w)| q + length * w).collect();
+            let shift = self.force().map_or([0.0; 2], |force| multiplier(&next, limit, force, [0.0; 2]));
+            project(&mut next, limit, shift);
+            let d: Vec<f64> = next.iter().zip(&self.q).map(|(next, q)| (next - q) / unit).collect();
+            let v = self.exact(&d);
+            let (square, curvature) = (dot(&d, &d), dot(&d, &v));
+            let slope = d.iter().zip(&self.w).map(|(d, w)| d * (w / unit)).sum::<f64>();
+            if slope.is_nan() || slope <= 0.0 || square <= 0.0 {
+                return;
+            }
+            let share = if curvature > 0.0 { (slope / curvature).min(1.0) } else { 1.0 };
+            for (q, d) in self.q.iter_mut().zip(&d) {
+                *q += unit * share * d;
+            }
+            for (u, v) in self.u.iter_mut().zip(&v) {
+                *u += unit * share * v;
+            }
+            length = if curvature > 0.0 { square / curvature } else { self.rho };
+            self.slide();
+        }
+        self.admit();
+        self.displace();
+    }
+}
+
+/// `u = K q` in double precision, without the constant of a periodic kernel.
+pub fn exact(
+    operators: &mut TangentialOperators,
+    sources: &CellSet,
+    q: &[f64],
+    targets: &CellSet,
+    u: &mut Vec<f64>,
+) {
+    operators.exact(sources, q, targets, u);
+    let shift = operators.table().shift();
+    if shift > 0.0 && !targets.is_empty() {
+        for (u, sum) in u.chunks_exact_mut(targets.len()).zip(total(q)) {
+            u.iter_mut().for_each(|u| *u -= shift * sum);
+        }
+    }
+}
+
+/// Largest length of the vectors of a field.
+fn largest_length(v: &[f64]) -> f64 {
+    let (x, y) = v.split_at(v.len() / 2);
+    x.iter().zip(y).fold(0.0, |longest: f64, (x, y)| longest.max(x.hypot(*y)))
+}

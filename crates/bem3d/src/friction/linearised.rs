@@ -1,0 +1,301 @@
+//! The linearised conditions of friction on a contact: stick cells have two unknowns, slip cells one, along the
+//! tangent of their disk.
+
+use crate::geometry::CellSet;
+use crate::linear::{Extension, Preconditioned, Preconditioner, TensorTorusInverse};
+use crate::operator::{InfluenceOperator, PlannedVector};
+use crate::parts::{Part, Recorder};
+use crate::real::{dot, largest, sum};
+
+/// Softness at most, `|w|/b` of a slip cell: beyond it nothing moves.
+const STIFFEST: f64 = 1e15;
+/// Share of the larger resistance below which the sum of the tractions cannot be moved in a direction.
+const IMMOVABLE: f64 = 1e-5;
+
+/// What the traction of each cell may do.
+#[derive(Debug, Clone, Default)]
+pub struct Branch {
+    /// Unit vectors along which slip cells move; zero for stick cells. In double precision: of a slip that is
+    /// large beside what is left on stick cells an angle of single precision would be as much.
+    tangent: Vec<[f64; 2]>,
+    /// `|w|/b` of slip cells: what turns the traction into the direction of the slip.
+    turning: Vec<f32>,
+    /// The cells that stick.
+    pub stick: CellSet,
+}
+
+impl Branch {
+    /// All cells stick.
+    pub fn stuck(cells: &CellSet) -> Self {
+        let n = cells.len();
+        Self { tangent: vec![[0.0; 2]; n], turning: vec![0.0; n], stick: cells.clone() }
+    }
+
+    /// From the traction `y = q + rho w` that a cell without a limit would have: cells of `|y| > b` slip in its
+    /// direction.
+    pub fn of(cells: &CellSet, y: &[f64], w: &[f64], limit: &[f64]) -> Self {
+        let n = cells.len();
+        let mut branch =
+            Self { tangent: Vec::with_capacity(n), turning: Vec::with_capacity(n), ..Self::default() };
+        for (i, &b) in limit.iter().enumerate() {
+            let (x, y) = (y[i], y[n + i]);
+            let length = x.hypot(y);
+            if length > b {
+                branch.tangent.push([-y / length, x / length]);
+                branch.turning.push((w[i].hypot(w[n + i]) / b).min(STIFFEST) as f32);
+            } else {
+                branch.tangent.push([0.0; 2]);
+                branch.turning.push(0.0);
+            }
+        }
+        branch.stick = cells.filter(&branch.tangent, |[x, y]| x == 0.0 && y == 0.0);
+        branch
+    }
+
+    /// Whether cell i slips.
+    pub fn slips(&self, i: usize) -> bool {
+        let [x, y] = self.tangent[i];
+        x != 0.0 || y != 0.0
+    }
+
+    /// Removes what slip cells may not do.
+    pub fn restrict(&self, v: &mut [f32]) {
+        let (x, y) = v.split_at_mut(self.tangent.len());
+        for ((x, y), tangent) in x.iter_mut().zip(y).zip(&self.tangent) {
+            let [tx, ty] = tangent.map(|t| t as f32);
+            if tx != 0.0 || ty != 0.0 {
+                let along = *x * tx + *y * ty;
+                (*x, *y) = (along * tx, along * ty);
+            }
+        }
+    }
+
+    /// The same in double precision.
+    pub fn restrict_f64(&self, v: &mut [f64]) {
+        let (x, y) = v.split_at_mut(self.tangent.len());
+        for ((x, y), tangent) in x.iter_mut().zip(y).zip(&self.tangent) {
+            let [tx, ty] = *tangent;
+            if tx != 0.0 || ty != 0.0 {
+                let along = *x * tx + *y * ty;
+                (*x, *y) = (along * tx, along * ty);
+            }
+        }
+    }
+
+    /// Adds what turns tractions into the direction of the slip.
+    pub fn add_turning(&self, t: &[f64], u: &mut [f64], factor: f64) {
+        let n = self.turning.len();
+        for (i, &turning) in self.turning.iter().enumerate() {
+            u[i] += factor * f64::from(turning) * t[i];
+            u[n + i] += factor * f64::from(turning) * t[n + i];
+        }
+    }
+}
+
+/// The linearised conditions as an operator on restricted tractions.
+#[derive(Debug)]
+pub struct Linearised<'a> {
+    /// The kernel.
+    pub kernel: PlannedVector<'a>,
+    /// The constant in its diagonal entries, which belongs to no displacement.
+    pub shift: f32,
+    /// What cells may do.
+    pub branch: &'a Branch,
+}
+
+impl InfluenceOperator<f32> for Linearised<'_> {
+    fn apply(&mut self, sources: &CellSet, t: &[f32], targets: &CellSet, u: &mut [f32]) {
+        let Self { kernel, shift, branch } = self;
+        kernel.apply(sources, t, targets, u);
+        let n = sources.len();
+        if *shift > 0.0 {
+            for (t, u) in t.chunks_exact(n).zip(u.chunks_exact_mut(n)) {
+                let mean = *shift * sum(t) as f32;
+                u.iter_mut().for_each(|u| *u -= mean);
+            }
+        }
+        branch.restrict(u);
+        let ((tx, ty), (ux, uy)) = (t.split_at(n), u.split_at_mut(n));
+        let turned = ux.iter_mut().zip(uy).zip(tx.iter().zip(ty)).zip(&branch.turning);
+        for (((ux, uy), (tx, ty)), turning) in turned {
+            *ux += turning * tx;
+            *uy += turning * ty;
+        }
+    }
+}
+
+/// The preconditioner, split by stick and slip cells: the inverse of the kernel on a torus where cells stick,
+/// a number where they slip. Between the two nothing is passed: what an unsplit inverse passes on to slip
+/// cells, which do not follow it, makes it poor.
+///
+/// With a prescribed force corrections have no sum: `P M P'` with `P = 1 - W (B W)^-1 B`, B the sums of both
+/// components and `W = M B'`, which is symmetric and keeps the sums.
+#[derive(Debug)]
+pub struct Split<'a> {
+    /// On stick cells.
+    pub torus: TensorTorusInverse<'a>,
+    /// What cells may do.
+    pub branch: &'a Branch,
+    /// Own displacement of a slip cell: with its softness the diagonal.
+    pub own: f32,
+    /// How the sums are kept; `None` where they are free.
+    pub sums: Option<FixedSums>,
+    /// Vectors on the stick cells.
+    pub room: Room,
+    /// What time is charged to.
+    pub recorder: Recorder,
+}
+
+/// Vectors on the stick cells, and the residual of a component.
+#[derive(Debug, Default)]
+pub struct Room {
+    r: Vec<f32>,
+    z: Vec<f32>,
+    component: Vec<f32>,
+}
+
+/// How the sums of both components are kept.
+#[derive(Debug, Clone, Default)]
+pub struct FixedSums {
+    /// `W = M B'`.
+    weights: [Vec<f32>; 2],
+    /// The inverse of `B W` where the sums can be moved, `[xx, yy, xy]`.
+    inverse: [f64; 3],
+}
+
+impl FixedSums {
+    /// The combination of the weights with these sums, as far as they can be moved.
+    pub fn spread(&self, sums: [f64; 2], v: &mut [f32]) {
+        let factors = times(self.inverse, sums).map(|factor| factor as f32);
+        for (weights, factor) in self.weights.iter().zip(factors) {
+            v.iter_mut().zip(weights).for_each(|(v, w)| *v += factor * w);
+        }
+    }
+}
+
+fn times([xx, yy, xy]: [f64; 3], [x, y]: [f64; 2]) -> [f64; 2] {
+    [xx * x + xy * y, xy * x + yy * y]
+}
+
+/// The sums of both components.
+fn sums_of(v: &[f32]) -> [f64; 2] {
+    let (x, y) = v.split_at(v.len() / 2);
+    [sum(x), sum(y)]
+}
+
+/// The inverse of a symmetric matrix `[xx, yy, xy]` on the directions of eigenvalues that are more than a share
+/// of the larger one.
+pub fn inverse_of([xx, yy, xy]: [f64; 3], share: f64) -> [f64; 3] {
+    let (mean, half) = (f64::midpoint(xx, yy), 0.5 * (xx - yy));
+    let radius = half.hypot(xy);
+    let (large, small) = (mean + radius, mean - radius);
+    if large <= 0.0 || !large.is_finite() {
+        return [0.0; 3];
+    }
+    // The direction of the larger one: (1 + cos)/2, (1 - cos)/2, sin/2 of twice its angle.
+    let (cos, sin) = if radius > 0.0 { (half / radius, xy / radius) } else { (1.0, 0.0) };
+    let (a, b) = (large.recip(), if small > share * large { small.recip() } else { 0.0 });
+    let (middle, difference) = (f64::midpoint(a, b), 0.5 * (a - b));
+    [middle + difference * cos, middle - difference * cos, difference * sin]
+}
+
+impl Split<'_> {
+    /// Keeps the sums from now on.
+    pub fn fix_sums(&mut self, set: &CellSet) {
+        let n = set.len();
+        let mut fixed = FixedSums::default();
+        for (component, weights) in fixed.weights.iter_mut().enumerate() {
+            let mut ones = vec![0.0; 2 * n];
+            ones[component * n..][..n].fill(1.0);
+            self.branch.restrict(&mut ones);
+            weights.resize(2 * n, 0.0);
+            self.precondition(set, &ones, weights);
+        }
+        let [x, y] = fixed.weights.each_ref().map(|weights| sums_of(weights));
+        fixed.inverse = inverse_of([x[0], y[1], f64::midpoint(x[1], y[0])], IMMOVABLE);
+        self.sums = Some(fixed);
+    }
+
+    /// `z = M r` of a restricted residual.
+    fn precondition(&mut self, set: &CellSet, r: &[f32], z: &mut [f32]) {
+        let Self { torus, branch, own, room: Room { r: on_stick, z: stuck, component }, .. } = self;
+        let (n, stick) = (set.len(), &branch.stick);
+        let slip = branch.turning.iter().map(|turning| 1.0 / (turning + *own));
+        for (r, z) in r.chunks_exact(n).zip(z.chunks_exact_mut(n)) {
+            for ((z, r), softness) in z.iter_mut().zip(r).zip(slip.clone()) {
+                *z = softness * r;
+            }
+        }
+        if stick.is_empty() {
+            return;
+        }
+        on_stick.clear();
+        for r in r.chunks_exact(n) {
+            stick.carry_to(set, r, component);
+            on_stick.extend_from_slice(component);
+        }
+        stuck.resize(on_stick.len(), 0.0);
+        torus.apply(stick, on_stick, stuck);
+        let whole = stick.len() == n;
+        for (stuck, z) in stuck.chunks_exact(stick.len()).zip(z.chunks_exact_mut(n)) {
+            if whole {
+                z.copy_from_slice(stuck);
+                continue;
+            }
+            set.carry_to(stick, stuck, component);
+            for ((z, stuck), [tx, ty]) in z.iter_mut().zip(&*component).zip(&branch.tangent) {
+                if *tx == 0.0 && *ty == 0.0 {
+                    *z = *stuck;
+                }
+            }
+        }
+    }
+}
+
+impl Preconditioner<f32> for Split<'_> {
+    fn apply(&mut self, set: &CellSet, _: f32, r: &mut [f32], z: &mut [f32]) -> Preconditioned {
+        let recorder = self.recorder.clone();
+        recorder.timed(Part::Preconditioner, || {
+            let n = set.len();
+            if let Some(sums) = self.sums.take() {
+                let products = sums.weights.each_ref().map(|weights| dot(weights, r));
+                let offset = times(sums.inverse, products).map(|offset| offset as f32);
+                let mut plane = vec![0.0; 2 * n];
+                for (plane, offset) in plane.chunks_exact_mut(n).zip(offset) {
+                    plane.fill(offset);
+                }
+                self.branch.restrict(&mut plane);
+                r.iter_mut().zip(&plane).for_each(|(r, plane)| *r -= plane);
+                self.precondition(set, r, z);
+                let [x, y] = sums_of(z);
+                sums.spread([-x, -y], z);
+                self.sums = Some(sums);
+            } else {
+                self.precondition(set, r, z);
+            }
+            Preconditioned { largest: f64::from(largest(r)), product: dot(r, z), sum: 0.0 }
+        })
+    }
+
+    fn energy_factor(&self) -> f64 {
+        TensorTorusInverse::SAFETY
+    }
+}
+
+/// Takes the stick cells of a branch for the extension of the preconditioner.
+pub fn extend(extensions: &mut [Extension; 2], torus: &TorusWindow, stick: &CellSet) {
+    for extension in extensions {
+        extension.set(stick, torus.window, if stick.len() >= torus.extended { torus.decay } else { 0.0 });
+    }
+}
+
+/// The window of the torus, and how residuals are extended in it.
+#[derive(Debug, Clone, Copy)]
+pub struct TorusWindow {
+    /// The window.
+    pub window: crate::geometry::Window,
+    /// What a gap takes over of a coarser value.
+    pub decay: f32,
+    /// From so many cells on.
+    pub extended: usize,
+}

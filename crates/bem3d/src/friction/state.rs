@@ -1,0 +1,256 @@
+//! A surface with friction on its way through increments.
+
+use super::disks::total;
+use super::increment::{self, FrictionLimits, FrictionRoom, Increment, Sliding, TangentialControl, exact};
+use super::linearised::Branch;
+use super::stiffness::{self, Held, TangentialStiffness, Undecided};
+use crate::geometry::{CellSet, Grid};
+use crate::kernel::{Medium, TangentialTable};
+use crate::operator::TangentialOperators;
+use crate::parts::Recorder;
+use crate::real::{dot, sum};
+use crate::tuning::Tuning;
+use contact_model::{Status, Stop};
+
+/// The contact at the end of an increment, nondimensional: pressures so that `u = sum I p`.
+#[derive(Debug, Clone, Copy)]
+pub struct PressedCells<'a> {
+    /// Cells with pressure.
+    pub cells: &'a CellSet,
+    /// Pressure on them.
+    pub pressure: &'a [f64],
+}
+
+/// What the next increment begins from. The default is no contact, no traction and no displacement.
+#[derive(Debug, Clone, Default)]
+pub struct SlipMemory {
+    /// The contact.
+    pub cells: CellSet,
+    /// Tractions on it: components along x, then those along y.
+    pub traction: Vec<f64>,
+    /// Tangential displacement of the bodies.
+    pub displacement: [f64; 2],
+    /// `delta - K q` on the contact: what has slipped altogether, counted for each cell from where it would lie
+    /// without any traction.
+    pub offset: Vec<f64>,
+    /// Slip of each cell since it touched.
+    pub slip: Vec<f64>,
+}
+
+/// The state at the end of an increment.
+#[derive(Debug, Clone)]
+pub struct FrictionState {
+    /// What the next increment begins from: contact, tractions, displacement, slip since each cell touched.
+    pub memory: SlipMemory,
+    /// Largest traction of each cell.
+    pub limit: Vec<f64>,
+    /// Slip of the increment.
+    pub slip: Vec<f64>,
+    /// Sum of the tractions.
+    pub force: [f64; 2],
+    /// `sum(q . w)`: what friction dissipated in the increment.
+    pub dissipated: f64,
+    /// The cells that stick.
+    pub stick: CellSet,
+    /// Relative duality gap, see [`Sliding::duality_gap`].
+    pub duality_gap: f64,
+    /// What the force misses of the one prescribed, over the largest one.
+    pub load_error: f64,
+    /// Newton's steps and those of conjugate gradients.
+    pub iterations: [usize; 2],
+    /// How it ended.
+    pub status: Status,
+}
+
+/// A tangential force that friction does not hold.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ForceTooLarge {
+    /// The largest one.
+    pub largest: f64,
+}
+
+/// What is held while a stiffness is asked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum StiffnessOf {
+    /// The branch as the load goes on: stick cells, and slip cells in the directions in which they may move.
+    Branch,
+    /// The whole contact: what the branch begins with after a reversal.
+    FullStick,
+}
+
+/// Coulomb's friction on one surface: operators and room, kept from increment to increment.
+#[derive(Debug)]
+pub struct Friction {
+    operators: TangentialOperators,
+    room: FrictionRoom,
+}
+
+impl Friction {
+    /// A surface on bodies of the constant `compliance = E* sum nu/(2 G)`, see [`TangentialTable`].
+    pub fn new(
+        grid: Grid,
+        medium: impl Into<Medium>,
+        compliance: f64,
+        tuning: &Tuning,
+        recorder: &Recorder,
+    ) -> Self {
+        let table = TangentialTable::shared(grid, medium, compliance);
+        Self { operators: TangentialOperators::new(table, tuning, recorder), room: FrictionRoom::default() }
+    }
+
+    /// Applications and linear systems so far.
+    pub fn work(&self) -> [usize; 2] {
+        [self.operators.applications, self.operators.solves]
+    }
+
+    /// The state at the end of an increment, from the one before.
+    ///
+    /// A cell that comes into contact takes its slip reference from where it was at the beginning. Where it touches
+    /// within the increment does not matter to the tractions: a later reference, linear in the increment, is
+    /// `w` times a positive number, which changes neither the direction of the slip nor whether there is any. A
+    /// cell that leaves forgets its slip.
+    ///
+    /// `guess` are tractions on the contact to begin with, admissible or not; `None`: those before.
+    ///
+    /// # Errors
+    /// [`ForceTooLarge`] for a force of more than `coefficient` times the sum of the pressures, beyond a
+    /// billionth of it.
+    pub fn advance(
+        &mut self,
+        before: &SlipMemory,
+        contact: PressedCells<'_>,
+        coefficient: f64,
+        control: TangentialControl,
+        guess: Option<Vec<f64>>,
+        limits: FrictionLimits,
+        stop: Stop<'_>,
+    ) -> Result<FrictionState, ForceTooLarge> {
+        let PressedCells { cells, pressure } = contact;
+        let limit: Vec<f64> = pressure.iter().map(|p| coefficient * p).collect();
+        if let TangentialControl::Force([x, y]) = control {
+            let largest = sum(&limit);
+            if x.hypot(y) > largest * (1.0 + FORCE_ROUNDING) {
+                return Err(ForceTooLarge { largest });
+            }
+        }
+        let reference = self.reference(before, cells);
+        let start = guess.unwrap_or_else(|| carried(cells, &before.cells, &before.traction));
+        let increment = Increment {
+            cells,
+            limit: &limit,
+            reference: &reference,
+            control,
+            displacement: before.displacement,
+        };
+        let Self { operators, room } = self;
+        let Sliding {
+            traction,
+            slip,
+            displacement,
+            duality_gap,
+            load_error,
+            stick,
+            iterations,
+            steps,
+            status,
+        } = increment::solve(operators, room, increment, start, limits, stop);
+        let mut since = carried(cells, &before.cells, &before.slip);
+        since.iter_mut().zip(&slip).for_each(|(since, slip)| *since += slip);
+        Ok(FrictionState {
+            force: total(&traction),
+            dissipated: dot(&traction, &slip),
+            memory: SlipMemory {
+                cells: cells.clone(),
+                traction,
+                displacement,
+                offset: reference.iter().zip(&slip).map(|(reference, slip)| reference + slip).collect(),
+                slip: since,
+            },
+            limit,
+            slip,
+            stick,
+            duality_gap,
+            load_error,
+            iterations: [iterations, steps],
+            status,
+        })
+    }
+
+    /// `delta - K q` of the state before on the cells of the next contact.
+    fn reference(&mut self, before: &SlipMemory, cells: &CellSet) -> Vec<f64> {
+        if *cells == before.cells {
+            return before.offset.clone();
+        }
+        let mut u = Vec::new();
+        exact(&mut self.operators, &before.cells, &before.traction, cells, &mut u);
+        for (u, delta) in u.chunks_exact_mut(cells.len().max(1)).zip(before.displacement) {
+            u.iter_mut().for_each(|u| *u = delta - *u);
+        }
+        u
+    }
+
+    /// `dT/d(delta)` of a state, to about `tolerance` relative to its larger eigenvalue.
+    pub fn stiffness(
+        &mut self,
+        state: &FrictionState,
+        of: StiffnessOf,
+        tolerance: f64,
+        stop: Stop<'_>,
+    ) -> TangentialStiffness {
+        let Self { operators, room } = self;
+        let cells = &state.memory.cells;
+        let (branch, undecided) = match of {
+            StiffnessOf::FullStick => (Branch::stuck(cells), Vec::new()),
+            StiffnessOf::Branch => {
+                let rho = increment::step(operators);
+                let moved = |(q, w): (&f64, &f64)| q + rho * w;
+                let y: Vec<f64> = state.memory.traction.iter().zip(&state.slip).map(moved).collect();
+                let branch = Branch::of(cells, &y, &state.slip, &state.limit);
+                let smallest = operators.table().smallest_eigenvalue();
+                let undecided = undecided(state, &branch, smallest);
+                (branch, undecided)
+            }
+        };
+        stiffness::solve(
+            operators,
+            room,
+            Held { cells, branch: &branch, undecided: &undecided },
+            tolerance,
+            stop,
+        )
+    }
+}
+
+/// A force that misses the largest one by less than this share of it is that.
+const FORCE_ROUNDING: f64 = 1e-9;
+
+/// Vectors on one set carried to another.
+fn carried(cells: &CellSet, from: &CellSet, v: &[f64]) -> Vec<f64> {
+    let mut carried = Vec::with_capacity(2 * cells.len());
+    if from.is_empty() {
+        carried.resize(2 * cells.len(), 0.0);
+    } else {
+        v.chunks_exact(from.len()).for_each(|v| carried.extend(cells.carry(from, v)));
+    }
+    carried
+}
+
+/// The cells that may be on the other side of stick and slip: by what the slip left on stick cells can change of
+/// their traction, and slip cells of no more slip than that.
+fn undecided(state: &FrictionState, branch: &Branch, smallest: f64) -> Vec<Undecided> {
+    let (n, q, w) = (state.limit.len(), &state.memory.traction, &state.slip);
+    let slipped = |i: usize| w[i].hypot(w[n + i]);
+    let squares: f64 = (0..n).filter(|&i| !branch.slips(i)).map(|i| slipped(i).powi(2)).sum();
+    let noise = (squares / state.stick.len().max(1) as f64).sqrt();
+    let candidates = (0..n).filter_map(|cell| {
+        let (sticks, length) = (!branch.slips(cell), q[cell].hypot(q[n + cell]));
+        let doubtful = if sticks {
+            state.limit[cell] - length < noise.max(slipped(cell)) / smallest
+        } else {
+            slipped(cell) < noise
+        };
+        let radial = [q[cell] / length, q[n + cell] / length];
+        (doubtful && length > 0.0).then_some(Undecided { cell, radial, sticks })
+    });
+    candidates.collect()
+}
