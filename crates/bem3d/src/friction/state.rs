@@ -81,7 +81,7 @@ pub enum StiffnessOf {
 /// Coulomb's friction on one surface: operators and room, kept from increment to increment.
 #[derive(Debug)]
 pub struct Friction {
-    operators: TangentialOperators,
+    pub(super) operators: TangentialOperators,
     room: FrictionRoom,
 }
 

@@ -164,3 +164,258 @@ fn paths_are_those_of_the_dense_oracle() {
         }
     }
 }
+
+/// Applies the tensor to the tractions of a state and gives the stored energy of it and of a change.
+fn energies(friction: &mut Friction, [a, b]: [&SlipMemory; 2]) -> [f64; 3] {
+    let cells = a.cells.union(&b.cells);
+    let on_both = |memory: &SlipMemory| -> Vec<f64> {
+        if memory.cells.is_empty() {
+            return vec![0.0; 2 * cells.len()];
+        }
+        memory.traction.chunks_exact(memory.cells.len()).flat_map(|q| cells.carry(&memory.cells, q)).collect()
+    };
+    let (qa, qb) = (on_both(a), on_both(b));
+    let change: Vec<f64> = qb.iter().zip(&qa).map(|(b, a)| b - a).collect();
+    [&qa, &qb, &change].map(|q| {
+        let mut u = Vec::new();
+        increment::exact(&mut friction.operators, &cells, q, &cells, &mut u);
+        0.5 * q.iter().zip(&u).map(|(q, u)| q * u).sum::<f64>()
+    })
+}
+
+#[test]
+fn energy_is_balanced_over_a_loop() {
+    use TangentialControl::{Displacement, Force};
+    let (grid, states) = pressed(20, 2, Boundary::Free, &[0.3, 0.5]);
+    let mut solver = friction(grid, Boundary::Free, 0.43);
+    let most = states[0].friction();
+    let force = |x: f64, y: f64| Force([x * most, y * most]);
+    let path = [
+        (0, force(0.6, 0.0)),
+        (0, force(-0.6, 0.0)),
+        (0, force(0.6, 0.0)),
+        (1, force(0.6, 0.3)),
+        (0, force(0.1, 0.8)),
+        (0, Displacement([0.0, 0.0])),
+        (1, Displacement([0.1, 0.0])),
+    ];
+    let mut before = SlipMemory::default();
+    let (mut work, mut dissipated) = (0.0, 0.0);
+    for (normal, control) in path {
+        let state = advance(&mut solver, &before, &states[normal], control);
+        let [from, to, change] = energies(&mut solver, [&before, &state.memory]);
+        let moved = [0, 1].map(|k| state.memory.displacement[k] - before.displacement[k]);
+        // With the force at the end of the increment: T . d(delta) = D + dU + dq'K dq/2, exactly.
+        let done = state.force[0] * moved[0] + state.force[1] * moved[1];
+        let expected = state.dissipated + to - from + change;
+        assert!((done - expected).abs() < 1e-9 * (done.abs() + to), "{control:?}: {done} {expected}");
+        work += done;
+        dissipated += state.dissipated;
+        assert!(state.dissipated >= -1e-10 * to, "friction takes energy: {}", state.dissipated);
+        before = state.memory;
+    }
+    assert!(work > dissipated && dissipated > 0.0);
+    // Cells that slipped, and those that did not.
+    assert!(largest(&before.slip) > 0.0);
+}
+
+#[test]
+fn a_turned_and_a_mirrored_surface_have_the_turned_and_mirrored_tractions() {
+    let n = 17;
+    let (grid, states) = pressed(n, 4, Boundary::Free, &[0.3]);
+    let cells: Vec<(usize, usize)> = states[0].cells.places().collect();
+    let most = states[0].friction();
+    let (fx, fy) = (0.5 * most, 0.2 * most);
+    let solve = |map: &dyn Fn(usize, usize) -> (usize, usize), force: [f64; 2]| {
+        // The field of pressure moved, and the tractions at the places of the first one.
+        let mut field = vec![0.0; n * n];
+        for (&(x, y), p) in cells.iter().zip(&states[0].pressure) {
+            let (x, y) = map(x, y);
+            field[y * n + x] = *p;
+        }
+        let set = CellSet::of_grid(grid, &field, |p| p > 0.0);
+        let pressure: Vec<f64> = field.iter().copied().filter(|p| *p > 0.0).collect();
+        let moved = Pressed { cells: set.clone(), pressure, approach: 0.0 };
+        let mut solver = friction(grid, Boundary::Free, 0.43);
+        let state = advance(&mut solver, &SlipMemory::default(), &moved, TangentialControl::Force(force));
+        let q = |component: usize, (x, y): (usize, usize)| {
+            let at = set.index(grid).position(|i| i == y * n + x).unwrap();
+            state.memory.traction[component * set.len() + at]
+        };
+        let at = |&(x, y): &(usize, usize)| [q(0, map(x, y)), q(1, map(x, y))];
+        (cells.iter().map(at).collect::<Vec<_>>(), state.memory.displacement)
+    };
+    let (plain, delta) = solve(&|x, y| (x, y), [fx, fy]);
+    // A quarter turn takes (x, y) to (-y, x); a mirror x to -x.
+    let (turned, turned_delta) = solve(&|x, y| (n - 1 - y, x), [-fy, fx]);
+    let (mirrored, mirrored_delta) = solve(&|x, y| (n - 1 - x, y), [-fx, fy]);
+    let scale = 1e-8 * MU * largest(&states[0].pressure);
+    for ((q, turned), mirrored) in plain.iter().zip(&turned).zip(&mirrored) {
+        close(turned, &[-q[1], q[0]], scale);
+        close(mirrored, &[-q[0], q[1]], scale);
+    }
+    close(&turned_delta, &[-delta[1], delta[0]], 1e-8 * delta[0]);
+    close(&mirrored_delta, &[-delta[0], delta[1]], 1e-8 * delta[0]);
+}
+
+#[test]
+fn a_force_is_held_up_to_gross_slip() {
+    let (grid, states) = pressed(20, 6, Boundary::Free, &[0.3]);
+    let (all, most) = (&states[0], states[0].friction());
+    let mut last = 0.0;
+    for share in [0.99, 1.0 - 1e-6, 1.0 - 1e-9, 1.0] {
+        let mut solver = friction(grid, Boundary::Free, 0.43);
+        let (sin, cos) = 0.7_f64.sin_cos();
+        let control = TangentialControl::Force([share * most * cos, share * most * sin]);
+        let limits = FrictionLimits { tolerance: 1e-9, ..LIMITS };
+        let state =
+            solver.advance(&SlipMemory::default(), all.cells(), MU, control, None, limits, &never).unwrap();
+        assert_eq!(state.status, Status::Converged, "{share}: {:e}", state.duality_gap);
+        let held = state.force[0].hypot(state.force[1]);
+        assert!((held / (share * most) - 1.0).abs() < 1.1e-9, "{share}: {held}");
+        assert!(state.load_error < 1.1e-9);
+        let moved = state.memory.displacement[0].hypot(state.memory.displacement[1]);
+        assert!(moved.is_finite() && moved >= last);
+        last = moved;
+    }
+    let beyond = TangentialControl::Force([0.0, -1.001 * most]);
+    let refused = friction(grid, Boundary::Free, 0.43).advance(
+        &SlipMemory::default(),
+        all.cells(),
+        MU,
+        beyond,
+        None,
+        LIMITS,
+        &never,
+    );
+    let largest = refused.map(|_| ()).unwrap_err().largest;
+    assert_relative_eq!(largest, most, max_relative = 1e-14);
+    // With the displacement prescribed gross slip is a state: all cells slip, and the force is that of friction
+    // but for the angles between the tractions.
+    let mut solver = friction(grid, Boundary::Free, 0.43);
+    let far = TangentialControl::Displacement([100.0 * last, 0.0]);
+    let state = advance(&mut solver, &SlipMemory::default(), all, far);
+    assert!(state.stick.is_empty());
+    assert!(state.force[0] <= most && state.force[0] > 0.999 * most);
+}
+
+#[test]
+fn limits_of_the_coefficient_and_of_the_number_of_cells() {
+    use TangentialControl::{Displacement, Force};
+    let (grid, states) = pressed(14, 6, Boundary::Free, &[0.3]);
+    let all = &states[0];
+    let mut solver = friction(grid, Boundary::Free, 0.43);
+    let begin = SlipMemory::default();
+    let solve = |solver: &mut Friction, mu: f64, control| {
+        let state = solver.advance(&begin, all.cells(), mu, control, None, LIMITS, &never).unwrap();
+        assert_eq!(state.status, Status::Converged, "{mu} {control:?}: {:e}", state.duality_gap);
+        state
+    };
+    // No load, and no friction.
+    let none = solve(&mut solver, MU, Force([0.0, 0.0]));
+    assert!(largest(&none.memory.traction) == 0.0 && none.duality_gap == 0.0);
+    let none = solve(&mut solver, 0.0, Displacement([0.3, 0.1]));
+    assert!(none.force == [0.0, 0.0] && none.slip[0] == 0.3 && none.dissipated == 0.0);
+    assert_eq!(solve(&mut solver, 0.0, Force([0.0, 0.0])).memory.displacement, [0.0, 0.0]);
+    assert_eq!(
+        solver
+            .advance(&begin, all.cells(), 0.0, Force([1e-9, 0.0]), None, LIMITS, &never)
+            .map(|_| ())
+            .unwrap_err(),
+        ForceTooLarge { largest: 0.0 }
+    );
+    // No slip: linear, and the stiffness of full stick is that of the force.
+    let total = all.friction();
+    let stuck = solve(&mut solver, 1e3, Force([0.3 * total, 0.1 * total]));
+    assert!(stuck.stick.len() > all.cells.len() / 2);
+    let k = solver.stiffness(&stuck, StiffnessOf::FullStick, 1e-9, &never);
+    let [dx, dy] = stuck.memory.displacement;
+    let [xx, yy, xy] = k.value;
+    assert!(k.solve_error < 1e-9);
+    assert_relative_eq!(xx * dx + xy * dy, 0.3 * total, max_relative = 1e-3);
+    assert_relative_eq!(xy * dx + yy * dy, 0.1 * total, max_relative = 1e-3);
+    // No contact.
+    let nothing = CellSet::default();
+    let empty = PressedCells { cells: &nothing, pressure: &[] };
+    let state = solver.advance(&begin, empty, MU, Displacement([1.0, 0.0]), None, LIMITS, &never).unwrap();
+    assert!(state.force == [0.0, 0.0] && state.memory.traction.is_empty());
+    assert_eq!(solver.stiffness(&state, StiffnessOf::Branch, 1e-6, &never).value, [0.0; 3]);
+    // And back into contact from there.
+    let again = solver
+        .advance(&state.memory, all.cells(), MU, Displacement([1.0, 0.0]), None, LIMITS, &never)
+        .unwrap();
+    assert!(largest(&again.memory.traction) < 1e-10 * total, "touched where it lies");
+}
+
+#[test]
+fn one_and_two_cells_by_hand() {
+    let grid = Grid::square(6, 6);
+    let c = 0.6;
+    let table = TangentialTable::shared(grid, Boundary::Free, c);
+    for cells in [vec![14], vec![14, 21], vec![14, 16]] {
+        let set = CellSet::from_index(grid, &cells);
+        let pressure = vec![1.0; cells.len()];
+        let pressed = Pressed { cells: set, pressure, approach: 0.0 };
+        let (x, y) = ((cells.last().unwrap() % 6) - 2, cells.last().unwrap() / 6 - 2);
+        let ([own, _, _], [xx, yy, xy]) = (table.lag(0, 0), table.lag(x as usize, y as usize));
+        let pair = if cells.len() == 1 { [own, own, 0.0] } else { [own + xx, own + yy, xy] };
+        // Both cells carry the same traction by symmetry, however it is directed.
+        for (fx, fy) in [(0.1, 0.0), (0.2, -0.1), (0.0, 0.3)] {
+            let count = cells.len() as f64;
+            let control = TangentialControl::Force([fx * count, fy * count]);
+            let mut solver = friction(grid, Boundary::Free, c);
+            let state = advance(&mut solver, &SlipMemory::default(), &pressed, control);
+            close(&state.memory.traction[..1], &[fx], 1e-9);
+            let expected = [pair[0] * fx + pair[2] * fy, pair[2] * fx + pair[1] * fy];
+            close(&state.memory.displacement, &expected, 1e-8);
+            let k = solver.stiffness(&state, StiffnessOf::Branch, 1e-10, &never);
+            let determinant = pair[0] * pair[1] - pair[2] * pair[2];
+            let inverse = [pair[1], pair[0], -pair[2]].map(|k| count * k / determinant);
+            close(&k.value, &inverse, 1e-8);
+        }
+    }
+}
+
+#[test]
+fn stiffnesses_are_difference_quotients() {
+    use TangentialControl::Displacement;
+    for (boundary, seed) in [(Boundary::Free, 3), (Boundary::Periodic, 8)] {
+        let (grid, states) = pressed(20, seed, boundary, &[0.3]);
+        let all = &states[0];
+        let mut solver = friction(grid, boundary, 0.43);
+        let most = all.friction();
+        let limits = FrictionLimits { tolerance: 1e-14, iterations: 100 };
+        let advance = |solver: &mut Friction, before: &SlipMemory, control| {
+            solver.advance(before, all.cells(), MU, control, None, limits, &never).unwrap()
+        };
+        let begin = SlipMemory::default();
+        let state = advance(&mut solver, &begin, TangentialControl::Force([0.45 * most, 0.2 * most]));
+        let [dx, dy] = state.memory.displacement;
+        let size = dx.hypot(dy);
+        let branch = solver.stiffness(&state, StiffnessOf::Branch, 1e-8, &never);
+        let stuck = solver.stiffness(&state, StiffnessOf::FullStick, 1e-8, &never);
+        assert!(branch.solve_error < 1e-8 && stuck.solve_error < 1e-8);
+        println!("{boundary:?} {branch:?} {stuck:?} stick {} of {}", state.stick.len(), all.cells.len());
+        // From the beginning of the increment to displacements on both sides.
+        let h = 1e-5 * size;
+        for (ex, ey) in [(1.0, 0.0), (0.0, 1.0)] {
+            let mut at = |h: f64| {
+                let control = Displacement([dx + h * ex, dy + h * ey]);
+                advance(&mut solver, &begin, control).force
+            };
+            let (up, down) = (at(h), at(-h));
+            let quotient = [0, 1].map(|k| (up[k] - down[k]) / (2.0 * h));
+            let [xx, yy, xy] = branch.value;
+            let expected = [xx * ex + xy * ey, xy * ex + yy * ey];
+            close(&quotient, &expected, 1e-4 * xx);
+        }
+        // Back from the end by a little: all cells stick.
+        let h = 1e-7 * size;
+        let (ex, ey) = (-dx / size, -dy / size);
+        let control = Displacement([dx + h * ex, dy + h * ey]);
+        let back = advance(&mut solver, &state.memory, control).force;
+        let quotient = [0, 1].map(|k| (back[k] - state.force[k]) / h);
+        let [xx, yy, xy] = stuck.value;
+        close(&quotient, &[xx * ex + xy * ey, xy * ex + yy * ey], 1e-3 * xx);
+    }
+}
