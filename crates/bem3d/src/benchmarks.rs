@@ -4,13 +4,16 @@
 pub use crate::parts::{Part, Recorder, Spent};
 pub use crate::tuning::{CONSTANTS, Constant};
 
+use crate::friction::{
+    Friction, FrictionLimits, FrictionLoad, PressedCells, SlipMemory, StiffnessOf, TangentialControl,
+};
 use crate::geometry::{CellSet, Grid, Lengths};
 use crate::kernel::KernelTable;
 use crate::linear::Factor;
 use crate::model::Bem3d;
 use crate::operator::{DirectSum, FftConvolution, InfluenceOperator, Split, TwoLevel, TwoTransforms};
 use crate::tuning::Tuning;
-use contact_model::{Boundary, PreparedContact, Result, Scene};
+use contact_model::{Boundary, Field, PreparedContact, Result, Scene, Status, never};
 
 /// A surface prepared with half, twice or another multiple of one constant.
 ///
@@ -95,4 +98,86 @@ pub fn factor(side: usize, count: usize) -> bool {
     let grid = Grid { columns: side, rows: side, stretch: 1.0 };
     let set = CellSet::from_index(grid, &(0..count as u32).collect::<Vec<_>>());
     Factor::new(&KernelTable::shared(grid, Boundary::Free), &set).is_some()
+}
+
+/// Work and result of one increment of friction.
+#[derive(Debug, Clone, Copy)]
+pub struct PartialSlip {
+    /// Applications of the tangential kernel.
+    pub applications: usize,
+    /// Newton's steps and those of conjugate gradients.
+    pub iterations: [usize; 2],
+    /// Relative duality gap.
+    pub duality_gap: f64,
+    /// Whether it met the tolerance.
+    pub converged: bool,
+    /// Shares of the contact that stick, and tangential displacement over that of full stick.
+    pub stick: f64,
+    /// Applications of the stiffness of the branch, and its value along x with its error.
+    pub stiffness: (usize, f64, f64),
+}
+
+/// One surface under a field of pressure (square cells, free boundaries), loaded tangentially from nothing by a
+/// share of its friction: one increment with `compliance = E* sum nu/(2 G)`, and the stiffness where asked for.
+pub struct PartialSlipBench {
+    friction: Friction,
+    cells: CellSet,
+    pressure: Vec<f64>,
+}
+
+impl std::fmt::Debug for PartialSlipBench {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "PartialSlipBench({} cells)", self.cells.len())
+    }
+}
+
+impl PartialSlipBench {
+    /// A pressure over E*.
+    pub fn new(pressure: &Field, compliance: f64, recorder: &Recorder) -> Self {
+        let (columns, rows) = (pressure.columns(), pressure.rows());
+        let grid = Grid { columns, rows, stretch: 1.0 };
+        let cells = CellSet::of_grid(grid, pressure.values(), |p| p > 0.0);
+        let friction = Friction::new(grid, Boundary::Free, compliance, &Tuning::DEFAULT, recorder);
+        Self { friction, cells, pressure: pressure.values().iter().copied().filter(|p| *p > 0.0).collect() }
+    }
+
+    /// The increment, from tractions that are given as a field along x or from none.
+    pub fn run(
+        &mut self,
+        coefficient: f64,
+        share: f64,
+        tolerance: f64,
+        guess: Option<&[f64]>,
+        stiffness: bool,
+    ) -> Option<PartialSlip> {
+        let Self { friction, cells, pressure } = self;
+        let [before, _] = friction.work();
+        let force = share * coefficient * pressure.iter().sum::<f64>();
+        let guess = guess.map(|field| {
+            let columns = friction.grid().columns;
+            let mut q: Vec<f64> = cells.places().map(|(x, y)| field[y * columns + x]).collect();
+            q.resize(2 * cells.len(), 0.0);
+            q
+        });
+        let contact = PressedCells { cells, pressure };
+        let limits = FrictionLimits { tolerance, iterations: 100 };
+        let control = TangentialControl::Force([force, 0.0]);
+        let load = FrictionLoad { coefficient, control };
+        let state = friction.advance(&SlipMemory::default(), contact, load, guess, limits, &never).ok()?;
+        let [after, _] = friction.work();
+        let k = stiffness.then(|| friction.stiffness(&state, StiffnessOf::Branch, tolerance, &never));
+        let [end, _] = friction.work();
+        Some(PartialSlip {
+            applications: after - before,
+            iterations: state.iterations,
+            duality_gap: state.duality_gap,
+            converged: state.status == Status::Converged,
+            stick: state.stick.len() as f64 / cells.len().max(1) as f64,
+            stiffness: (
+                end - after,
+                k.map_or(0.0, |k| k.value[0]),
+                k.map_or(0.0, |k| k.solve_error + k.set_error),
+            ),
+        })
+    }
 }

@@ -282,7 +282,9 @@ impl Solver<'_> {
             }
         };
         for (w, delta) in w.chunks_exact_mut(n).zip(*delta) {
-            w.iter_mut().for_each(|w| *w += delta);
+            for w in w.iter_mut() {
+                *w += delta;
+            }
         }
         let [gap] = sums((q, w), increment.limit, |[qx, qy], [wx, wy], b| {
             [(b * wx.hypot(wy) - qx * wx - qy * wy).max(0.0)]
@@ -372,7 +374,9 @@ impl Solver<'_> {
             applications += 1;
             for (displaced, change) in displaced.chunks_exact_mut(n).zip(change.chunks_exact(n)) {
                 let mean = shift * sum(change);
-                displaced.iter_mut().for_each(|u| *u -= mean as f32);
+                for u in displaced.iter_mut() {
+                    *u -= mean as f32;
+                }
             }
         }
         let mut right: Vec<f64> =
@@ -479,7 +483,9 @@ pub fn exact(
     let shift = operators.table().shift();
     if shift > 0.0 && !targets.is_empty() {
         for (u, sum) in u.chunks_exact_mut(targets.len()).zip(total(q)) {
-            u.iter_mut().for_each(|u| *u -= shift * sum);
+            for u in u.iter_mut() {
+                *u -= shift * sum;
+            }
         }
     }
 }

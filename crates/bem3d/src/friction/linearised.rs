@@ -111,7 +111,9 @@ impl InfluenceOperator<f32> for Linearised<'_> {
         if *shift > 0.0 {
             for (t, u) in t.chunks_exact(n).zip(u.chunks_exact_mut(n)) {
                 let mean = *shift * sum(t) as f32;
-                u.iter_mut().for_each(|u| *u -= mean);
+                for u in u.iter_mut() {
+                    *u -= mean;
+                }
             }
         }
         branch.restrict(u);

@@ -8,6 +8,5 @@ mod stiffness;
 #[cfg(test)]
 mod tests;
 
-pub use increment::{FrictionLimits, Sliding, TangentialControl};
-pub use state::{ForceTooLarge, Friction, FrictionState, PressedCells, SlipMemory, StiffnessOf};
-pub use stiffness::TangentialStiffness;
+pub use increment::{FrictionLimits, TangentialControl};
+pub use state::{Friction, FrictionLoad, PressedCells, SlipMemory, StiffnessOf};

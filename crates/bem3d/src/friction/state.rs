@@ -69,6 +69,15 @@ pub struct ForceTooLarge {
     pub largest: f64,
 }
 
+/// The tangential load of an increment, and the coefficient of friction.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FrictionLoad {
+    /// Coefficient of friction.
+    pub coefficient: f64,
+    /// What is prescribed at the end of the increment.
+    pub control: TangentialControl,
+}
+
 /// What is held while a stiffness is asked for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum StiffnessOf {
@@ -82,7 +91,7 @@ pub enum StiffnessOf {
 #[derive(Debug)]
 pub struct Friction {
     pub(super) operators: TangentialOperators,
-    room: FrictionRoom,
+    pub(super) room: FrictionRoom,
 }
 
 impl Friction {
@@ -96,6 +105,11 @@ impl Friction {
     ) -> Self {
         let table = TangentialTable::shared(grid, medium, compliance);
         Self { operators: TangentialOperators::new(table, tuning, recorder), room: FrictionRoom::default() }
+    }
+
+    /// The grid.
+    pub fn grid(&self) -> Grid {
+        self.operators.table().grid()
     }
 
     /// Applications and linear systems so far.
@@ -119,13 +133,13 @@ impl Friction {
         &mut self,
         before: &SlipMemory,
         contact: PressedCells<'_>,
-        coefficient: f64,
-        control: TangentialControl,
+        load: FrictionLoad,
         guess: Option<Vec<f64>>,
         limits: FrictionLimits,
         stop: Stop<'_>,
     ) -> Result<FrictionState, ForceTooLarge> {
         let PressedCells { cells, pressure } = contact;
+        let FrictionLoad { coefficient, control } = load;
         let limit: Vec<f64> = pressure.iter().map(|p| coefficient * p).collect();
         if let TangentialControl::Force([x, y]) = control {
             let largest = sum(&limit);
@@ -184,7 +198,9 @@ impl Friction {
         let mut u = Vec::new();
         exact(&mut self.operators, &before.cells, &before.traction, cells, &mut u);
         for (u, delta) in u.chunks_exact_mut(cells.len().max(1)).zip(before.displacement) {
-            u.iter_mut().for_each(|u| *u = delta - *u);
+            for u in u.iter_mut() {
+                *u = delta - *u;
+            }
         }
         u
     }

@@ -23,4 +23,4 @@ pub use tangential::{PlannedVector, TangentialOperators};
 pub use two_level::{Split, TwoLevel};
 #[doc(hidden)]
 pub use two_transforms::TwoTransforms;
-pub use vector::{DirectVectorSum, VectorConvolution};
+pub use vector::VectorConvolution;

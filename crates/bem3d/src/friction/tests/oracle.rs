@@ -53,11 +53,6 @@ impl Oracle {
         self.matrix.iter().map(|row| row.iter().zip(q).map(|(k, q)| k * q).sum()).collect()
     }
 
-    pub fn energy(&self) -> f64 {
-        let u = self.displaced(&self.traction);
-        0.5 * self.traction.iter().zip(&u).map(|(q, u)| q * u).sum::<f64>()
-    }
-
     /// The next state; tractions and slip on the cells.
     pub fn advance(&mut self, cells: &CellSet, limit: &[f64], control: TangentialControl) -> Expected {
         let n = self.grid.count();
