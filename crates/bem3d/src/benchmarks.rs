@@ -137,7 +137,7 @@ impl PartialSlipBench {
         let (columns, rows) = (pressure.columns(), pressure.rows());
         let grid = Grid { columns, rows, stretch: 1.0 };
         let cells = CellSet::of_grid(grid, pressure.values(), |p| p > 0.0);
-        let friction = Friction::new(grid, Boundary::Free, compliance, &Tuning::DEFAULT, recorder);
+        let friction = Friction::new(grid, Boundary::Free, [compliance, 0.0], &Tuning::DEFAULT, recorder);
         Self { friction, cells, pressure: pressure.values().iter().copied().filter(|p| *p > 0.0).collect() }
     }
 
@@ -163,6 +163,7 @@ impl PartialSlipBench {
         let limits = FrictionLimits { tolerance, iterations: 100 };
         let control = TangentialControl::Force([force, 0.0]);
         let load = FrictionLoad { coefficient, control };
+        let guess = guess.as_ref().map(|q| (&*cells, &q[..]));
         let state = friction.advance(&SlipMemory::default(), contact, load, guess, limits, &never).ok()?;
         let [after, _] = friction.work();
         let k = stiffness.then(|| friction.stiffness(&state, StiffnessOf::Branch, tolerance, &never));

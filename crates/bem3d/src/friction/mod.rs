@@ -1,5 +1,6 @@
 //! Coulomb's friction in three dimensions.
 
+mod coupled;
 mod disks;
 mod increment;
 mod linearised;

@@ -6,7 +6,7 @@ use super::linearised::Branch;
 use super::stiffness::{self, Held, TangentialStiffness, Undecided};
 use crate::geometry::{CellSet, Grid};
 use crate::kernel::{Medium, TangentialTable};
-use crate::operator::TangentialOperators;
+use crate::operator::{CouplingOperator, TangentialOperators};
 use crate::parts::Recorder;
 use crate::real::{dot, sum};
 use crate::tuning::Tuning;
@@ -30,11 +30,13 @@ pub struct SlipMemory {
     pub traction: Vec<f64>,
     /// Tangential displacement of the bodies.
     pub displacement: [f64; 2],
-    /// `delta - K q` on the contact: what has slipped altogether, counted for each cell from where it would lie
-    /// without any traction.
+    /// `delta - u` on the contact, u being its tangential displacement: what has slipped altogether, counted for
+    /// each cell from where it would lie without any traction.
     pub offset: Vec<f64>,
     /// Slip of each cell since it touched.
     pub slip: Vec<f64>,
+    /// Pressure on the contact, which displaces tangentially where both problems are coupled.
+    pub pressure: Vec<f64>,
 }
 
 /// The state at the end of an increment.
@@ -92,19 +94,51 @@ pub enum StiffnessOf {
 pub struct Friction {
     pub(super) operators: TangentialOperators,
     pub(super) room: FrictionRoom,
+    /// What tractions displace normally and pressures tangentially; `None` where that is nothing or neglected.
+    coupling: Option<CouplingOperator>,
 }
 
 impl Friction {
     /// A surface on bodies of the constant `compliance = E* sum nu/(2 G)`, see [`TangentialTable`].
+    ///
+    /// `beta` is Dundurs' second constant with the body as the first one on which the tractions act; 0 leaves the
+    /// normal and the tangential problem independent of each other.
     pub fn new(
         grid: Grid,
         medium: impl Into<Medium>,
-        compliance: f64,
+        [compliance, beta]: [f64; 2],
         tuning: &Tuning,
         recorder: &Recorder,
     ) -> Self {
+        let medium = medium.into();
         let table = TangentialTable::shared(grid, medium, compliance);
-        Self { operators: TangentialOperators::new(table, tuning, recorder), room: FrictionRoom::default() }
+        let coupling = (beta.abs() > 0.0).then(|| CouplingOperator::new(grid, medium, beta));
+        let operators = TangentialOperators::new(table, tuning, recorder);
+        Self { operators, room: FrictionRoom::default(), coupling }
+    }
+
+    /// Whether tractions displace normally, and pressures tangentially.
+    pub fn is_coupled(&self) -> bool {
+        self.coupling.is_some()
+    }
+
+    /// Normal displacement of the whole grid under the tractions of a state; nothing where it is not coupled.
+    pub fn normal_displacement(&mut self, state: &SlipMemory) -> Option<Vec<f64>> {
+        Some(self.coupling.as_mut()?.normal(&state.cells, &state.traction))
+    }
+
+    /// Adds the tangential displacement that pressures make, times a sign.
+    fn add_pressed(
+        &mut self,
+        (from, pressure): (&CellSet, &[f64]),
+        sign: f64,
+        cells: &CellSet,
+        u: &mut [f64],
+    ) {
+        if let Some(coupling) = &mut self.coupling {
+            let pressed = coupling.tangential(from, pressure, cells);
+            u.iter_mut().zip(pressed).for_each(|(u, pressed)| *u += sign * pressed);
+        }
     }
 
     /// The grid.
@@ -114,7 +148,8 @@ impl Friction {
 
     /// Applications and linear systems so far.
     pub fn work(&self) -> [usize; 2] {
-        [self.operators.applications, self.operators.solves]
+        let coupled = self.coupling.as_ref().map_or(0, |coupling| coupling.applications);
+        [self.operators.applications + coupled, self.operators.solves]
     }
 
     /// The state at the end of an increment, from the one before.
@@ -124,7 +159,7 @@ impl Friction {
     /// `w` times a positive number, which changes neither the direction of the slip nor whether there is any. A
     /// cell that leaves forgets its slip.
     ///
-    /// `guess` are tractions on the contact to begin with, admissible or not; `None`: those before.
+    /// `guess` are tractions on some cells to begin with, admissible or not; `None`: those before.
     ///
     /// # Errors
     /// [`ForceTooLarge`] for a force of more than `coefficient` times the sum of the pressures, beyond a
@@ -134,7 +169,7 @@ impl Friction {
         before: &SlipMemory,
         contact: PressedCells<'_>,
         load: FrictionLoad,
-        guess: Option<Vec<f64>>,
+        guess: Option<(&CellSet, &[f64])>,
         limits: FrictionLimits,
         stop: Stop<'_>,
     ) -> Result<FrictionState, ForceTooLarge> {
@@ -147,8 +182,11 @@ impl Friction {
                 return Err(ForceTooLarge { largest });
             }
         }
-        let reference = self.reference(before, cells);
-        let start = guess.unwrap_or_else(|| carried(cells, &before.cells, &before.traction));
+        let offset = self.offset(before, cells);
+        let mut reference = offset.clone();
+        self.add_pressed((cells, pressure), 1.0, cells, &mut reference);
+        let (from, tractions) = guess.unwrap_or((&before.cells, &before.traction));
+        let start = carried(cells, from, tractions);
         let increment = Increment {
             cells,
             limit: &limit,
@@ -156,7 +194,7 @@ impl Friction {
             control,
             displacement: before.displacement,
         };
-        let Self { operators, room } = self;
+        let Self { operators, room, .. } = self;
         let Sliding {
             traction,
             slip,
@@ -177,8 +215,9 @@ impl Friction {
                 cells: cells.clone(),
                 traction,
                 displacement,
-                offset: reference.iter().zip(&slip).map(|(reference, slip)| reference + slip).collect(),
+                offset: offset.iter().zip(&slip).map(|(offset, slip)| offset + slip).collect(),
                 slip: since,
+                pressure: pressure.to_vec(),
             },
             limit,
             slip,
@@ -190,8 +229,8 @@ impl Friction {
         })
     }
 
-    /// `delta - K q` of the state before on the cells of the next contact.
-    fn reference(&mut self, before: &SlipMemory, cells: &CellSet) -> Vec<f64> {
+    /// `delta - u` of the state before on the cells of the next contact.
+    fn offset(&mut self, before: &SlipMemory, cells: &CellSet) -> Vec<f64> {
         if *cells == before.cells {
             return before.offset.clone();
         }
@@ -201,6 +240,9 @@ impl Friction {
             for u in u.iter_mut() {
                 *u = delta - *u;
             }
+        }
+        if !before.cells.is_empty() {
+            self.add_pressed((&before.cells, &before.pressure), -1.0, cells, &mut u);
         }
         u
     }
@@ -213,7 +255,7 @@ impl Friction {
         tolerance: f64,
         stop: Stop<'_>,
     ) -> TangentialStiffness {
-        let Self { operators, room } = self;
+        let Self { operators, room, .. } = self;
         let cells = &state.memory.cells;
         let (branch, undecided) = match of {
             StiffnessOf::FullStick => (Branch::stuck(cells), Vec::new()),

@@ -1,3 +1,4 @@
+mod coupled;
 mod oracle;
 
 use super::state::{ForceTooLarge, FrictionState};
@@ -52,7 +53,7 @@ fn pressed(n: usize, seed: u64, boundary: Boundary, forces: &[f64]) -> (Grid, Ve
 }
 
 fn friction(grid: Grid, boundary: Boundary, c: f64) -> Friction {
-    Friction::new(grid, boundary, c, &Tuning::DEFAULT, &Recorder::default())
+    Friction::new(grid, boundary, [c, 0.0], &Tuning::DEFAULT, &Recorder::default())
 }
 
 fn load(control: TangentialControl) -> FrictionLoad {

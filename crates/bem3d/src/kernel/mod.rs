@@ -2,6 +2,7 @@
 //! of a half-plane, those of tangential tractions, and tables of them.
 
 mod alternating;
+mod coupling_table;
 mod half_plane;
 pub mod love;
 mod periodic;
@@ -10,6 +11,7 @@ mod table;
 mod tangential;
 mod tangential_table;
 
+pub use coupling_table::CouplingTable;
 pub use symbol::Symbol;
 pub use table::{KernelTable, Medium};
 pub use tangential_table::TangentialTable;

@@ -8,7 +8,7 @@
 //! again (`tests/tests/periodic.rs` checks the results).
 
 use super::alternating::{TERMS, alternating_weights};
-use super::symbol::{Parity, Symbol};
+use super::symbol::Symbol;
 use crate::geometry::{Grid, Lengths};
 use std::f64::consts::{PI, TAU};
 
@@ -101,15 +101,6 @@ impl Integrand {
             Self::AlongY => factor * (qx / q).powi(2) / q,
             Self::Across => -factor * (qx / q) * (qy / q) / q,
             Self::Coupling => factor * (qx / q) / q,
-        }
-    }
-
-    /// Parities along x and y.
-    pub(super) fn parity(self) -> [Parity; 2] {
-        match self {
-            Self::Normal | Self::AlongX | Self::AlongY => [Parity::Even; 2],
-            Self::Across => [Parity::Odd; 2],
-            Self::Coupling => [Parity::Odd, Parity::Even],
         }
     }
 

@@ -1,5 +1,6 @@
 //! The influence matrix in the forms that a solve uses.
 
+mod coupling;
 mod direct;
 mod fft;
 mod influence;
@@ -11,6 +12,7 @@ mod two_level;
 mod two_transforms;
 mod vector;
 
+pub use coupling::CouplingOperator;
 pub use direct::DirectSum;
 pub use fft::FftConvolution;
 pub use influence::InfluenceOperator;

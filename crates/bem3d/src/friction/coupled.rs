@@ -1,0 +1,136 @@
+//! Normal and tangential contact together, where tractions displace normally and pressures tangentially.
+
+use super::increment::FrictionLimits;
+use super::state::{ForceTooLarge, Friction, FrictionLoad, FrictionState, PressedCells, SlipMemory};
+use crate::active_set::{self, Candidates, Control, Guess, Limits, Problem, Residuals, Solved};
+use contact_model::{Status, Stop};
+use std::sync::Arc;
+
+/// Rounds at most.
+const ROUNDS: usize = 60;
+/// Rounds that may bring the normal displacements no nearer before the alternation is taken not to contract.
+const PATIENCE: usize = 4;
+
+/// A pair of states, certified together.
+#[derive(Debug)]
+pub struct CoupledState {
+    /// The pressure, in contact on the surface that the tractions deform.
+    pub normal: Solved,
+    /// The tractions.
+    pub tangential: FrictionState,
+    /// Rounds, and how much nearer the last ones came to each other; above 1 the alternation does not contract.
+    pub rounds: usize,
+    /// See `rounds`; `None` after a single round.
+    pub contraction: Option<f64>,
+}
+
+impl CoupledState {
+    /// How it ended: converged where both states are, each with the other one.
+    pub fn status(&self) -> Status {
+        match (self.normal.status, self.tangential.status) {
+            (Status::Converged, status) => status,
+            (status, _) => status,
+        }
+    }
+}
+
+/// What an increment of both loads is asked for.
+#[derive(Debug, Clone, Copy)]
+pub struct CoupledLoad {
+    /// The normal load at its end.
+    pub normal: Control,
+    /// The tangential load at its end.
+    pub tangential: FrictionLoad,
+    /// How accurate the pressure is to be.
+    pub normal_limits: Limits,
+    /// How accurate the tractions are to be.
+    pub tangential_limits: FrictionLimits,
+}
+
+/// The state at the end of an increment, from the tractions before and a guess of the pressure.
+///
+/// Alternates: the pressure on the surface that the last tractions deform, the tractions with the tangential
+/// displacement of that pressure. It ends when the gap of the pressure with the normal displacement of the last
+/// tractions, evaluated exactly, meets its tolerance: the certificates are those of one pair. Each round is about
+/// `beta mu` times as far from the solution as the one before; for a large product there need not be only one, and
+/// a pair that no longer comes nearer is [`Status::Stagnated`].
+///
+/// `z` are the undeformed gaps of the surface; the problem is left with those that the tractions deform.
+///
+/// # Errors
+/// As [`Friction::advance`].
+pub fn advance(
+    (problem, z): (&mut Problem, &[f64]),
+    friction: &mut Friction,
+    before: &SlipMemory,
+    load: CoupledLoad,
+    guess: Option<Guess>,
+    stop: Stop<'_>,
+) -> Result<CoupledState, ForceTooLarge> {
+    let CoupledLoad { normal: control, tangential, normal_limits, tangential_limits } = load;
+    let grid = problem.grid();
+    let mut raised = friction.normal_displacement(before).unwrap_or_else(|| vec![0.0; z.len()]);
+    let (mut guess, mut tractions): (_, Option<SlipMemory>) = (guess, None);
+    let (mut last, mut contraction, mut idle, mut rounds) = (f64::INFINITY, None, 0, 0);
+    loop {
+        rounds += 1;
+        let deformed = z.iter().zip(&raised).map(|(z, raised)| z + raised).collect();
+        problem.candidates = Candidates::new(grid, Arc::new(deformed));
+        problem.coarser = None;
+        let from = match guess.take() {
+            Some(guess) => guess,
+            None => active_set::cold_start(problem, control, normal_limits, stop),
+        };
+        let mut normal = active_set::solve(problem, control, from, normal_limits, stop);
+        let contact = PressedCells { cells: &normal.contact, pressure: &normal.p };
+        let start = tractions.as_ref().map(|last| (&last.cells, &last.traction[..]));
+        let state = friction.advance(before, contact, tangential, start, tangential_limits, stop)?;
+        let next = friction.normal_displacement(&state.memory).unwrap_or_else(|| vec![0.0; z.len()]);
+        let far = next.iter().zip(&raised).fold(0.0, |far: f64, (a, b)| far.max((a - b).abs()));
+        measure(problem, &mut normal, control, normal_limits, (&next, &raised));
+        if rounds > 1 {
+            contraction = Some(far / last);
+        }
+        idle = if far < 0.9 * last { 0 } else { idle + 1 };
+        last = far;
+        let met = normal.residuals.worst() <= normal_limits.tolerance;
+        let whole = normal.status == Status::Converged && state.status == Status::Converged;
+        let gives_up = idle > PATIENCE || rounds >= ROUNDS || !whole || stop();
+        if met || gives_up {
+            if !met && normal.status == Status::Converged {
+                normal.status = if stop() { Status::Stopped } else { Status::Stagnated };
+            }
+            return Ok(CoupledState { normal, tangential: state, rounds, contraction });
+        }
+        guess = Some(Guess { set: normal.contact, p: normal.p, d: normal.d });
+        (tractions, raised) = (Some(state.memory), next);
+    }
+}
+
+/// Measures the residuals of a pressure with the normal displacement of other tractions than it was found with.
+fn measure(
+    problem: &Problem,
+    solved: &mut Solved,
+    control: Control,
+    limits: Limits,
+    (next, raised): (&[f64], &[f64]),
+) {
+    let (grid, bounds) = (problem.grid(), problem.bounds);
+    let checked = &solved.continuation.checked;
+    let gap = &mut solved.continuation.gap;
+    for (i, gap) in checked.index(grid).zip(&mut *gap) {
+        *gap += next[i] - raised[i] + solved.d;
+    }
+    let left = solved.contact.carry(checked, gap);
+    if control.force().is_some() {
+        solved.d = bounds.approach(&solved.p, &left, gap).unwrap_or(solved.d);
+    }
+    let d = solved.d;
+    for gap in &mut *gap {
+        *gap -= d;
+    }
+    let left = solved.contact.carry(checked, gap);
+    let height = limits.height.unwrap_or(d);
+    solved.residuals =
+        Residuals::measure(bounds, (&solved.contact, &solved.p, &left), (checked, gap), height);
+}

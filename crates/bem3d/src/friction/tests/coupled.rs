@@ -1,0 +1,178 @@
+use super::*;
+use crate::active_set::{Control, Limits, Problem};
+use crate::friction::coupled::{self, CoupledLoad, CoupledState};
+use crate::kernel::{CouplingTable, KernelTable, Medium};
+use contact_model::Status;
+use std::sync::Arc;
+
+/// What one rigid body and one elastic body have in common.
+struct Pair {
+    c: f64,
+    beta: f64,
+}
+
+impl Pair {
+    /// A rigid body on an elastic one, on which the tractions act.
+    fn on_rigid(nu: f64) -> Self {
+        Self { c: nu / (1.0 - nu), beta: (1.0 - 2.0 * nu) / (2.0 * (1.0 - nu)) }
+    }
+}
+
+const NORMAL: Limits = Limits { tolerance: 1e-10, height: None, outer_iterations: 200, factor: true };
+const TANGENTIAL: FrictionLimits = FrictionLimits { tolerance: 1e-11, iterations: 100 };
+
+/// Undeformed gaps of a surface that is curved and rough.
+fn gaps(grid: Grid) -> Vec<f64> {
+    let mut next = noise(17);
+    (0..grid.count())
+        .map(|i| {
+            let x = (i % grid.columns) as f64 - 0.5 * (grid.columns - 1) as f64;
+            let y = (i / grid.columns) as f64 - 0.5 * (grid.rows - 1) as f64;
+            0.05 * (x * x + y * y) + 0.2 * next().abs()
+        })
+        .collect()
+}
+
+struct Contact {
+    grid: Grid,
+    medium: Medium,
+    pair: Pair,
+    z: Vec<f64>,
+    problem: Problem,
+    friction: Friction,
+}
+
+impl Contact {
+    fn new(grid: Grid, medium: Medium, pair: Pair, z: Vec<f64>) -> Self {
+        let problem = Problem::new(grid, Arc::new(z.clone()), medium, &Tuning::DEFAULT);
+        let constants = [pair.c, pair.beta];
+        let friction = Friction::new(grid, medium, constants, &Tuning::DEFAULT, &Recorder::default());
+        Self { grid, medium, pair, z, problem, friction }
+    }
+
+    fn advance(
+        &mut self,
+        before: &SlipMemory,
+        mu: f64,
+        force: f64,
+        control: TangentialControl,
+    ) -> CoupledState {
+        let load = CoupledLoad {
+            normal: Control::Force(force),
+            tangential: FrictionLoad { coefficient: mu, control },
+            normal_limits: NORMAL,
+            tangential_limits: TANGENTIAL,
+        };
+        coupled::advance((&mut self.problem, &self.z), &mut self.friction, before, load, None, &never)
+            .unwrap()
+    }
+
+    /// Normal and tangential displacement of all cells, by pairs.
+    fn displaced(&self, state: &SlipMemory) -> (Vec<f64>, Vec<[f64; 2]>) {
+        let normal = KernelTable::shared(self.grid, self.medium);
+        let table = TangentialTable::shared(self.grid, self.medium, self.pair.c);
+        let cross = CouplingTable::new(self.grid, self.medium);
+        let (places, n): (Vec<_>, usize) = (state.cells.places().collect(), state.cells.len());
+        let (beta, shift) = (self.pair.beta, table.shift());
+        let all = CellSet::all(self.grid);
+        let sums = all.places().map(|(x, y)| {
+            let (mut z, mut u) = (0.0, [0.0; 2]);
+            for (j, &(xs, ys)) in places.iter().enumerate() {
+                let (p, q) = (state.pressure[j], [state.traction[j], state.traction[n + j]]);
+                let sign = |a: usize, b: usize| if a < b { -1.0 } else { 1.0 };
+                let (lx, ly) = (x.abs_diff(xs), y.abs_diff(ys));
+                let [xx, yy, xy] = table.lag(lx, ly);
+                let xy = sign(x, xs) * sign(y, ys) * xy;
+                let [jx, jy] = cross.lag(lx, ly);
+                let (jx, jy) = (beta * sign(x, xs) * jx, beta * sign(y, ys) * jy);
+                z += normal.row(ly)[lx] * p + jx * q[0] + jy * q[1];
+                u[0] += (xx - shift) * q[0] + xy * q[1] - jx * p;
+                u[1] += xy * q[0] + (yy - shift) * q[1] - jy * p;
+            }
+            (z, u)
+        });
+        sums.unzip()
+    }
+
+    /// Checks the conditions of both problems with sums over pairs.
+    fn check(&self, before: &SlipMemory, state: &CoupledState, mu: f64, force: f64) {
+        assert_eq!(state.status(), Status::Converged, "{} rounds", state.rounds);
+        let (tangential, memory) = (&state.tangential, &state.tangential.memory);
+        let (z, u) = self.displaced(memory);
+        let (_, u_before) = self.displaced(before);
+        let d = state.normal.d;
+        let cells: Vec<usize> = memory.cells.index(self.grid).collect();
+        for (i, (u, z)) in z.iter().zip(&self.z).enumerate() {
+            let gap = u + z - d;
+            let touches = cells.contains(&i);
+            assert!(if touches { gap.abs() < 1e-8 * d } else { gap > -1e-8 * d }, "{gap} {d}");
+        }
+        assert_relative_eq!(memory.pressure.iter().sum::<f64>(), force, max_relative = 1e-9);
+        let n = cells.len();
+        let size = memory.displacement[0].hypot(memory.displacement[1]).max(d);
+        for (k, &i) in cells.iter().enumerate() {
+            let (q, b) = ([memory.traction[k], memory.traction[n + k]], mu * memory.pressure[k]);
+            let w: [f64; 2] = std::array::from_fn(|c| {
+                memory.displacement[c] - u[i][c] - (before.displacement[c] - u_before[i][c])
+            });
+            let found = [tangential.slip[k], tangential.slip[n + k]];
+            close(&found, &w, 1e-9 * size);
+            assert!(q[0].hypot(q[1]) <= b);
+            let excess = b * w[0].hypot(w[1]) - q[0] * w[0] - q[1] * w[1];
+            assert!(excess < 1e-7 * size * mu * force, "{excess}");
+        }
+    }
+}
+
+#[test]
+fn a_coupled_path_meets_the_conditions_of_both_problems() {
+    use TangentialControl::{Displacement, Force};
+    for (medium, nu) in [(Medium::HalfSpace, 0.0), (Medium::HalfSpace, 0.3), (Medium::Periodic, 0.3)] {
+        let grid = Grid::square(14, 14);
+        let mut contact = Contact::new(grid, medium, Pair::on_rigid(nu), gaps(grid));
+        let (mu, force) = (0.4, 30.0);
+        let most = mu * force;
+        let mut before = SlipMemory::default();
+        for (force, control) in [
+            (force, Force([0.0, 0.0])),
+            (force, Force([0.5 * most, 0.1 * most])),
+            (1.5 * force, Force([0.5 * most, -0.3 * most])),
+            (force, Displacement([0.0, 0.1])),
+        ] {
+            let state = contact.advance(&before, mu, force, control);
+            println!("{medium:?} {nu}: {} rounds, contraction {:?}", state.rounds, state.contraction);
+            contact.check(&before, &state, mu, force);
+            assert!(state.contraction.is_none_or(|contraction| contraction < 0.9));
+            before = state.tangential.memory;
+        }
+    }
+}
+
+#[test]
+fn pressed_without_a_force_the_surface_is_held_back_from_moving_inwards() {
+    let grid = Grid::square(15, 15);
+    let z: Vec<f64> = (0..225)
+        .map(|i| {
+            let (x, y) = (f64::from(i % 15) - 7.0, f64::from(i / 15) - 7.0);
+            0.05 * (x * x + y * y)
+        })
+        .collect();
+    let mut contact = Contact::new(grid, Medium::HalfSpace, Pair::on_rigid(0.1), z);
+    let state = contact.advance(&SlipMemory::default(), 0.2, 30.0, TangentialControl::Force([0.0, 0.0]));
+    contact.check(&SlipMemory::default(), &state, 0.2, 30.0);
+    let memory = &state.tangential.memory;
+    close(&memory.displacement, &[0.0, 0.0], 1e-9 * state.normal.d);
+    let n = memory.cells.len();
+    for (k, (x, y)) in memory.cells.places().enumerate() {
+        let outwards = (x as f64 - 7.0) * memory.traction[k] + (y as f64 - 7.0) * memory.traction[n + k];
+        // The friction on the surface that moves inwards.
+        assert!(outwards > 0.0 || (x, y) == (7, 7), "{x} {y}: {outwards}");
+    }
+    // Held by friction, it takes more force to the same approach.
+    let free = {
+        let mut contact =
+            Contact::new(grid, Medium::HalfSpace, Pair { c: 0.1 / 0.9, beta: 0.0 }, contact.z.clone());
+        contact.advance(&SlipMemory::default(), 0.2, 30.0, TangentialControl::Force([0.0, 0.0])).normal.d
+    };
+    assert!(state.normal.d < free, "{} {free}", state.normal.d);
+}

@@ -1,0 +1,167 @@
+//! What tractions displace normally and pressures tangentially.
+
+use super::transform::Transform;
+use crate::geometry::{CellSet, Grid, Window};
+use crate::kernel::{CouplingTable, Medium};
+use rustfft::num_complex::Complex;
+use std::sync::Arc;
+
+/// `u_z = beta (J_x q_x + J_y q_y)` and `(u_x, u_y) = -beta (J_x, J_y) p` on a grid in double precision, see
+/// [`CouplingTable`]; beta is that of the body on which the tractions act as the first one.
+#[derive(Debug)]
+pub struct CouplingOperator {
+    beta: f64,
+    grid: Grid,
+    table: CouplingTable,
+    plan: Option<(Transform<f64, 3>, Arc<Vec<[f64; 2]>>)>,
+    /// Applications so far.
+    pub applications: usize,
+}
+
+impl CouplingOperator {
+    /// Nothing is planned yet.
+    pub fn new(grid: Grid, medium: Medium, beta: f64) -> Self {
+        Self { beta, grid, table: CouplingTable::new(grid, medium), plan: None, applications: 0 }
+    }
+
+    /// Normal displacement on the whole grid under tractions on a set, two numbers a cell.
+    pub fn normal(&mut self, sources: &CellSet, q: &[f64]) -> Vec<f64> {
+        let n = sources.len();
+        let targets = CellSet::all(self.grid);
+        self.apply(sources, &[None, Some(&q[..n]), Some(&q[n..])], &targets).swap_remove(0)
+    }
+
+    /// Tangential displacement of cells under pressures on a set, two numbers a cell.
+    pub fn tangential(&mut self, sources: &CellSet, p: &[f64], targets: &CellSet) -> Vec<f64> {
+        let mut fields = self.apply(sources, &[Some(p), None, None], targets);
+        let y = fields.pop().unwrap_or_default();
+        let mut u = fields.pop().unwrap_or_default();
+        u.extend(y);
+        u
+    }
+
+    /// All displacements under the fields given, `(p, q_x, q_y)`.
+    ///
+    /// Cost: the transforms of three fields of the grid, rows of zeros apart.
+    fn apply(&mut self, sources: &CellSet, given: &[Option<&[f64]>; 3], targets: &CellSet) -> Vec<Vec<f64>> {
+        let mut u = vec![vec![0.0; targets.len()]; 3];
+        if sources.is_empty() || targets.is_empty() || self.beta.abs() <= 0.0 {
+            return u;
+        }
+        self.applications += 1;
+        let Self { table, grid, beta, plan, .. } = self;
+        let (transform, symbol) = plan.get_or_insert_with(|| {
+            let window = grid.window();
+            let lengths = table.exact_lengths(window);
+            (Transform::new(window, lengths), table.symbol(lengths))
+        });
+        let (rows, Window { height, .. }) = (transform.rows(), grid.window());
+        transform.forward(
+            |at| at % rows < height && given[at / rows].is_some() && sources.row(at % rows).is_some(),
+            |at, line| {
+                if let (Some(row), Some(values)) = (sources.row(at % rows), given[at / rows]) {
+                    row.spread(values, line, 0);
+                }
+            },
+        );
+        let (half, beta) = (transform.lengths().y / 2 + 1, *beta);
+        let held = |at: usize| at % rows < height && targets.row(at % rows).is_some();
+        transform.change(held, |kx, [p, x, y]| {
+            let symbol = &symbol[kx * half..][..half];
+            let length = p.len();
+            let turned = |z: Complex<f64>| Complex::new(z.im, -z.re);
+            let fields = p.iter_mut().zip(x.iter_mut()).zip(y.iter_mut()).enumerate();
+            for (ky, ((p, x), y)) in fields {
+                // The component along y changes its sign with that of the wave.
+                let [sx, sy] = if ky < half {
+                    symbol[ky]
+                } else {
+                    let [sx, sy] = symbol[length - ky];
+                    [sx, -sy]
+                };
+                let (normal, pressed) = (turned(*x * sx + *y * sy) * beta, turned(*p) * -beta);
+                (*p, *x, *y) = (normal, pressed * sx, pressed * sy);
+            }
+        });
+        let bands: Vec<usize> = transform.bands().take(transform.bands().len() / 3).collect();
+        let outputs: Vec<_> = u.iter_mut().flat_map(|u| targets.split(u, bands.iter().copied())).collect();
+        transform.backward(held, outputs.into_iter(), |(start, u), at, line| {
+            if let Some(row) = targets.row(at % rows) {
+                row.after(*start).collect(line, u, 0);
+            }
+        });
+        u
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn displacements_are_sums_over_pairs_and_reciprocal() {
+        for (grid, medium) in [
+            (Grid { columns: 9, rows: 7, stretch: 1.0 }, Medium::HalfSpace),
+            (Grid { columns: 6, rows: 40, stretch: 1.3 }, Medium::HalfSpace),
+            (Grid { columns: 8, rows: 9, stretch: 0.7 }, Medium::Periodic),
+        ] {
+            let beta = 0.27;
+            let table = CouplingTable::new(grid, medium);
+            let mut operator = CouplingOperator::new(grid, medium, beta);
+            let sources = CellSet::numbered(grid, |i| i % 5 != 2);
+            let (all, n) = (CellSet::all(grid), sources.len());
+            let q: Vec<f64> = (0..2 * n).map(|k| (1.1 * k as f64).sin()).collect();
+            let p: Vec<f64> = (0..n).map(|k| 1.0 + (0.7 * k as f64).cos()).collect();
+            let normal = operator.normal(&sources, &q);
+            let tangential = operator.tangential(&sources, &p, &all);
+            let places: Vec<(usize, usize)> = sources.places().collect();
+            for (i, (x, y)) in all.places().enumerate() {
+                let (mut expected, mut pressed) = (0.0, [0.0; 2]);
+                for (j, &(xs, ys)) in places.iter().enumerate() {
+                    let sign = |a: usize, b: usize| if a < b { -1.0 } else { 1.0 };
+                    let [jx, jy] = table.lag(x.abs_diff(xs), y.abs_diff(ys));
+                    let (jx, jy) = (sign(x, xs) * jx, sign(y, ys) * jy);
+                    expected += beta * (jx * q[j] + jy * q[n + j]);
+                    pressed = [pressed[0] - beta * jx * p[j], pressed[1] - beta * jy * p[j]];
+                }
+                assert!((normal[i] - expected).abs() < 1e-12, "{grid:?}: {} {expected}", normal[i]);
+                assert!((tangential[i] - pressed[0]).abs() < 1e-12);
+                assert!((tangential[grid.count() + i] - pressed[1]).abs() < 1e-12);
+            }
+            // The work of the pressure on the displacement of the tractions is that of the tractions on the
+            // displacement of the pressure.
+            let on_sources = sources.carry(&all, &normal);
+            let work: f64 = on_sources.iter().zip(&p).map(|(u, p)| u * p).sum();
+            let tangential = operator.tangential(&sources, &p, &sources);
+            let other: f64 = tangential.iter().zip(&q).map(|(u, q)| u * q).sum();
+            approx::assert_relative_eq!(work, other, max_relative = 1e-11);
+        }
+    }
+
+    #[test]
+    fn periodic_differences_are_sums_over_images() {
+        // Over images in squares, those at the edges by half, the lattice sum of x/r^2 converges as one over
+        // the square of its side.
+        let grid = Grid { columns: 5, rows: 5, stretch: 1.0 };
+        let periodic = CouplingTable::new(grid, Medium::Periodic);
+        let free = CouplingTable::new(grid, Medium::HalfSpace);
+        let images = |(x, y): (usize, usize), m: isize| -> f64 {
+            let lag = |a: usize, i: isize| a.cast_signed() + 5 * i;
+            let weight = |i: isize| if i.abs() == m { 0.5 } else { 1.0 };
+            let mut sum = 0.0;
+            for (i, j) in (-m..=m).flat_map(|i| (-m..=m).map(move |j| (i, j))) {
+                let (lx, ly) = (lag(x, i), lag(y, j));
+                let value = free.lag(lx.unsigned_abs(), ly.unsigned_abs())[0];
+                sum += weight(i) * weight(j) * lx.signum() as f64 * value;
+            }
+            sum
+        };
+        for to in [(1, 0), (2, 1), (1, 2)] {
+            // The field of a uniform charge on a square, pi x over its area, is that of the mean.
+            let (one, two) = (images(to, 20), images(to, 40));
+            let expected = two + (two - one) / 3.0 - std::f64::consts::PI * to.0 as f64 / 25.0;
+            let found = periodic.lag(to.0, to.1)[0];
+            assert!((found - expected).abs() < 1e-9, "{to:?}: {found} {expected}");
+        }
+    }
+}
