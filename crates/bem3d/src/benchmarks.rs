@@ -8,10 +8,12 @@ use crate::friction::{
     Friction, FrictionLimits, FrictionLoad, PressedCells, SlipMemory, StiffnessOf, TangentialControl,
 };
 use crate::geometry::{CellSet, Grid, Lengths};
-use crate::kernel::KernelTable;
+use crate::kernel::{KernelTable, TangentialTable};
 use crate::linear::Factor;
 use crate::model::Bem3d;
-use crate::operator::{DirectSum, FftConvolution, InfluenceOperator, Split, TwoLevel, TwoTransforms};
+use crate::operator::{
+    DirectSum, FftConvolution, InfluenceOperator, Split, TwoLevel, TwoTransforms, VectorConvolution,
+};
 use crate::tuning::Tuning;
 use contact_model::{Boundary, Field, PreparedContact, Result, Scene, Status, never};
 
@@ -42,8 +44,8 @@ pub fn prepare_recorded(
     model.prepare_with(scene, seed, &Tuning::DEFAULT, recorder)
 }
 
-/// One application of the named operator (`direct`, `two levels`, `two transforms`, `f32`, `f64`, `inverse`) between every
-/// `step`-th cell of a grid.
+/// One application of the named operator (`direct`, `two levels`, `two transforms`, `f32`, `f64`, `inverse`, and of
+/// tangential tractions `tangential f32`, `tangential f64`, `tangential inverse`) between every `step`-th cell of a grid.
 pub fn timed(name: &str, side: usize, step: usize) -> Option<Box<dyn FnMut() -> f64>> {
     let grid = Grid { columns: side, rows: side, stretch: 1.0 };
     let set = CellSet::from_index(grid, &(0..(side * side) as u32).step_by(step).collect::<Vec<_>>());
@@ -89,9 +91,39 @@ pub fn timed(name: &str, side: usize, step: usize) -> Option<Box<dyn FnMut() -> 
                 u[0]
             })
         }
+        "tangential f64" => {
+            let table = TangentialTable::shared(grid, Boundary::Free, TANGENTIAL);
+            let lengths = table.exact_lengths(window);
+            let mut operator = VectorConvolution::<f64>::new(window, lengths, table.symbol_f64(lengths));
+            let (q, mut u) = ([&p[..], &p].concat(), [&u[..], &u].concat());
+            Box::new(move || {
+                operator.apply(&set, &q, &set, &mut u);
+                u[0]
+            })
+        }
+        "tangential f32" | "tangential inverse" => {
+            let table = TangentialTable::shared(grid, Boundary::Free, TANGENTIAL);
+            let (lengths, symbol) = if name == "tangential f32" {
+                let lengths = table.exact_lengths(window);
+                (lengths, table.symbol_f32(lengths))
+            } else {
+                let lengths = table.torus_lengths(window);
+                (lengths, table.inverse_symbol(lengths))
+            };
+            let mut operator = VectorConvolution::<f32>::new(window, lengths, symbol);
+            let q: Vec<f32> = p.iter().chain(&p).map(|&p| p as f32).collect();
+            let mut u = vec![0.0; q.len()];
+            Box::new(move || {
+                operator.apply(&set, &q, &set, &mut u);
+                f64::from(u[0])
+            })
+        }
         _ => return None,
     })
 }
+
+/// The constant of bodies of Poisson's ratio 0.3.
+const TANGENTIAL: f64 = 0.3 / 0.7;
 
 /// Factors the first `count` cells of a grid; whether it was positive definite.
 pub fn factor(side: usize, count: usize) -> bool {

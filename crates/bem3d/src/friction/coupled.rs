@@ -27,10 +27,7 @@ pub struct CoupledState {
 impl CoupledState {
     /// How it ended: converged where both states are, each with the other one.
     pub fn status(&self) -> Status {
-        match (self.normal.status, self.tangential.status) {
-            (Status::Converged, status) => status,
-            (status, _) => status,
-        }
+        if self.normal.status == Status::Converged { self.tangential.status } else { self.normal.status }
     }
 }
 

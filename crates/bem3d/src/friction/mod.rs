@@ -1,4 +1,33 @@
-//! Coulomb's friction in three dimensions.
+//! Coulomb's friction in three dimensions, one increment of a path at a time.
+//!
+//! **Signs.** delta is the tangential displacement of one body, far away, relative to the other; q is the traction
+//! that this body exerts on the other, and T, the sum of q, is the force that moves it. The surfaces give way by
+//! `u = K q`, so that the slip of an increment is `w = (delta - u) - (delta - u)_before`, and friction holds
+//! `|q| <= mu p` and `q . w = mu p |w|` in every cell: the traction on the other body has the direction of the slip,
+//! and what friction dissipates, `sum(q . w)`, is never negative. Dundurs' beta is that with the other body, on
+//! which q acts, as the first one.
+//!
+//! **Slip references.** What is subtracted, `(delta - u)_before`, is known on every cell of the surface, in contact or
+//! not: a cell that comes into contact takes its reference from there, one that leaves forgets its slip. Where
+//! within the increment a cell touches changes no traction (`Friction::advance`).
+//!
+//! **Certificate.** The duality gap `sum(mu p |w| - q . w)` of admissible tractions bounds half the square of their
+//! error in the norm of K. It is given relative to `mu F` times a length, the larger of |delta| and of the largest
+//! reference: a force-weighted mean of the slip that stick cells still have. The length vanishes only where delta
+//! and all references do, and the tractions with them; it does not at `delta = 0` after a reversal. The
+//! displacement and the energy are accurate to about the gap times `mu F/T`.
+//!
+//! Vectors hold the components along x of all cells, then those along y. Lengths and tractions are nondimensional as
+//! in the normal problem: cells of area 1, tractions so that `u = sum K q`.
+//!
+//! | part | does | reference implementation in the tests |
+//! |---|---|---|
+//! | `disks` | projections onto the admissible tractions, with a given sum | by hand |
+//! | `linearised` | the linear system of stick and slip cells, and its preconditioner | `increment` |
+//! | `increment` | Newton's method with line searches, projected gradients where it fails, certificate | dense matrices and accelerated gradients along paths; differences of two pressures without Poisson's ratio |
+//! | `stiffness` | `dT/d(delta)` of a branch and of full stick, with bounds | difference quotients; tighter solves |
+//! | `state` | what a path remembers; increments as the model asks for them | energy balance over loops |
+//! | `coupled` | normal and tangential contact in turn where beta is not 0 | sums over pairs |
 
 mod coupled;
 mod disks;

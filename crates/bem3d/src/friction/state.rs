@@ -3,7 +3,7 @@
 use super::disks::total;
 use super::increment::{self, FrictionLimits, FrictionRoom, Increment, Sliding, TangentialControl, exact};
 use super::linearised::Branch;
-use super::stiffness::{self, Held, TangentialStiffness, Undecided};
+use super::stiffness::{self, Held, TangentialStiffness, Uncertain, Undecided};
 use crate::geometry::{CellSet, Grid};
 use crate::kernel::{Medium, TangentialTable};
 use crate::operator::{CouplingOperator, TangentialOperators};
@@ -257,25 +257,20 @@ impl Friction {
     ) -> TangentialStiffness {
         let Self { operators, room, .. } = self;
         let cells = &state.memory.cells;
-        let (branch, undecided) = match of {
-            StiffnessOf::FullStick => (Branch::stuck(cells), Vec::new()),
+        let (branch, (undecided, uncertain)) = match of {
+            StiffnessOf::FullStick => (Branch::stuck(cells), (Vec::new(), Vec::new())),
             StiffnessOf::Branch => {
                 let rho = increment::step(operators);
                 let moved = |(q, w): (&f64, &f64)| q + rho * w;
                 let y: Vec<f64> = state.memory.traction.iter().zip(&state.slip).map(moved).collect();
                 let branch = Branch::of(cells, &y, &state.slip, &state.limit);
                 let smallest = operators.table().smallest_eigenvalue();
-                let undecided = undecided(state, &branch, smallest);
-                (branch, undecided)
+                let unknown = unknown(state, &branch, smallest);
+                (branch, unknown)
             }
         };
-        stiffness::solve(
-            operators,
-            room,
-            Held { cells, branch: &branch, undecided: &undecided },
-            tolerance,
-            stop,
-        )
+        let held = Held { cells, branch: &branch, undecided: &undecided, uncertain: &uncertain };
+        stiffness::solve(operators, room, held, tolerance, stop)
     }
 }
 
@@ -294,21 +289,24 @@ fn carried(cells: &CellSet, from: &CellSet, v: &[f64]) -> Vec<f64> {
 }
 
 /// The cells that may be on the other side of stick and slip: by what the slip left on stick cells can change of
-/// their traction, and slip cells of no more slip than that.
-fn undecided(state: &FrictionState, branch: &Branch, smallest: f64) -> Vec<Undecided> {
+/// their traction, and slip cells of no more slip than that. Then the other slip cells, whose slip is known to as
+/// much.
+fn unknown(state: &FrictionState, branch: &Branch, smallest: f64) -> (Vec<Undecided>, Vec<Uncertain>) {
     let (n, q, w) = (state.limit.len(), &state.memory.traction, &state.slip);
     let slipped = |i: usize| w[i].hypot(w[n + i]);
     let squares: f64 = (0..n).filter(|&i| !branch.slips(i)).map(|i| slipped(i).powi(2)).sum();
     let noise = (squares / state.stick.len().max(1) as f64).sqrt();
-    let candidates = (0..n).filter_map(|cell| {
-        let (sticks, length) = (!branch.slips(cell), q[cell].hypot(q[n + cell]));
-        let doubtful = if sticks {
-            state.limit[cell] - length < noise.max(slipped(cell)) / smallest
-        } else {
-            slipped(cell) < noise
-        };
+    let (mut undecided, mut uncertain) = (Vec::new(), Vec::new());
+    for cell in 0..n {
+        let (sticks, length, limit) = (!branch.slips(cell), q[cell].hypot(q[n + cell]), state.limit[cell]);
+        let doubtful =
+            if sticks { limit - length < noise.max(slipped(cell)) / smallest } else { slipped(cell) < noise };
         let radial = [q[cell] / length, q[n + cell] / length];
-        (doubtful && length > 0.0).then_some(Undecided { cell, radial, sticks })
-    });
-    candidates.collect()
+        if length > 0.0 && doubtful {
+            undecided.push(Undecided { cell, radial, sticks });
+        } else if length > 0.0 && !sticks {
+            uncertain.push(Uncertain { cell, radial, turning: noise / limit });
+        }
+    }
+    (undecided, uncertain)
 }

@@ -6,7 +6,7 @@ use crate::geometry::CellSet;
 use crate::linear::{Fixed, StoppingCriteria, TensorTorusInverse, pcg};
 use crate::operator::TangentialOperators;
 use crate::parts::Part;
-use crate::real::{dot, largest, sum};
+use crate::real::{dot, largest};
 use contact_model::Stop;
 
 /// `dT/d(delta)`, symmetric: `[xx, yy, xy]`, nondimensional, with its evidence.
@@ -16,7 +16,8 @@ pub struct TangentialStiffness {
     pub value: [f64; 3],
     /// Estimated error of the linear solves, relative to the larger eigenvalue.
     pub solve_error: f64,
-    /// Estimated error from cells that may be on the wrong side of stick and slip, relative to the same.
+    /// Estimated error from the state: cells that may be on the wrong side of stick and slip, directions and slips that
+    /// are not known exactly; relative to the same.
     pub set_error: f64,
     /// Conjugate gradient steps.
     pub steps: usize,
@@ -29,8 +30,21 @@ pub struct Held<'a> {
     pub cells: &'a CellSet,
     /// What each cell may do.
     pub branch: &'a Branch,
-    /// Cells that may be on the other side of stick and slip, with the direction in which they then may move as well or no longer.
+    /// Cells that may be on the other side of stick and slip.
     pub undecided: &'a [Undecided],
+    /// Slip cells of which the direction is known to so much of an angle, and the turning `|w|/b` to so much.
+    pub uncertain: &'a [Uncertain],
+}
+
+/// A slip cell of which the direction of the traction and of the slip are not known exactly.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Uncertain {
+    /// Its position.
+    pub cell: usize,
+    /// Direction of its traction.
+    pub radial: [f64; 2],
+    /// What may be wrong with the slip over the limit of the traction.
+    pub turning: f64,
 }
 
 /// A cell of which it is not known whether it sticks.
@@ -48,10 +62,14 @@ pub struct Undecided {
 const ROUNDS: usize = 40;
 /// Reduction of the residual in one correction at most: single precision has no more to give.
 const REDUCTION: f64 = 1e-3;
+/// Reduction asked at least of a correction.
+const LEAST_REDUCTION: f64 = 0.3;
 /// Steps of a correction at most.
 const STEPS: usize = 60;
 /// Share of the tolerance that the linear solve may use up.
 const SHARE: f64 = 0.5;
+/// Share of it that a correction aims at.
+const AIM: f64 = 0.2;
 
 /// Solves `A x = B'` for both directions, where A are the linearised conditions of the branch ([`Linearised`]) and
 /// `B'` are the restricted unit displacements, until the stiffness `B A^-1 B'` is known to half of `tolerance`,
@@ -86,7 +104,7 @@ pub fn solve(
     let mut residual = right.clone();
     let mut displaced = [Vec::new(), Vec::new()];
     let whole = Branch::stuck(cells);
-    let (mut best, mut steps, mut unimproved) = (unknown, 0, 0);
+    let (mut best, mut steps, mut unimproved, mut reduction) = (unknown, 0, 0, REDUCTION);
     room.vectors.take_fields(cells.clone(), 2);
     for round in 0..ROUNDS {
         if round > 0 {
@@ -105,12 +123,14 @@ pub fn solve(
                 let set_error = if set_error.is_finite() { set_error } else { 0.0 };
                 best = TangentialStiffness { value, solve_error: error, set_error, steps };
             }
+            // Errors are quadratic in the residual.
+            reduction = (AIM * tolerance / error).sqrt().clamp(REDUCTION, LEAST_REDUCTION);
             if error <= SHARE * tolerance || unimproved > 2 || stop() {
                 break;
             }
         }
         for (x, r) in x.iter_mut().zip(&mut residual) {
-            steps += correct(operators, room, (cells, branch), r, stop);
+            steps += correct(operators, room, (cells, branch), (r, reduction), stop);
             x.iter_mut().zip(&*r).for_each(|(x, r)| *x += r);
         }
     }
@@ -122,7 +142,7 @@ fn correct(
     operators: &mut TangentialOperators,
     room: &mut FrictionRoom,
     (cells, branch): (&CellSet, &Branch),
-    r: &mut [f64],
+    (r, reduction): (&mut [f64], f64),
     stop: Stop<'_>,
 ) -> usize {
     let size = largest(r);
@@ -130,7 +150,7 @@ fn correct(
     let recorder = operators.recorder().clone();
     let (own, shift) = (operators.table().own(), operators.table().shift());
     operators.solves += 1;
-    let Some((kernel, transform)) = operators.system(cells).filter(|_| size > 0.0) else { return 0 };
+    let Some((kernel, transform)) = operators.system(cells, true).filter(|_| size > 0.0) else { return 0 };
     let FrictionRoom { vectors, extensions, split: vectors_of_split } = room;
     let torus = TorusWindow { window: transform.window(), decay: tuning.decay, extended: tuning.extended };
     recorder.timed(Part::Sets, || extend(extensions, &torus, &branch.stick));
@@ -143,7 +163,7 @@ fn correct(
         recorder: recorder.clone(),
     };
     let mut linearised = Linearised { kernel, shift: shift as f32, branch };
-    let criteria = StoppingCriteria { reduction: REDUCTION, energy: None, floor: 0.0, steps: STEPS };
+    let criteria = StoppingCriteria { reduction, energy: None, floor: 0.0, steps: STEPS };
     let outcome = recorder.timed(Part::Vectors, || {
         vectors.load(r, size);
         let outcome = pcg(&mut linearised, &mut split, vectors, Fixed::Approach, criteria, stop);
@@ -165,7 +185,7 @@ fn energy(
     let size = largest(&residual[0]).max(largest(&residual[1]));
     let tuning = *operators.tuning();
     let recorder = operators.recorder().clone();
-    let Some((_, transform)) = operators.system(cells).filter(|_| size > 0.0) else { return [0.0; 3] };
+    let Some((_, transform)) = operators.system(cells, true).filter(|_| size > 0.0) else { return [0.0; 3] };
     let torus = TorusWindow { window: transform.window(), decay: tuning.decay, extended: tuning.extended };
     recorder.timed(Part::Preconditioner, || {
         extend(&mut room.extensions, &torus, &whole.stick);
@@ -212,10 +232,12 @@ pub fn larger([xx, yy, xy]: [f64; 3]) -> f64 {
     f64::midpoint(xx, yy) + (0.5 * (xx - yy)).hypot(xy)
 }
 
-/// Change of the stiffness if the undecided cells changed sides, of both directions together.
+/// Change of the stiffness by what is not known of the state, of both directions together.
 ///
-/// A slip cell that sticks adds at most `(e - (K x)_e)^2 / s` with the smallest eigenvalue s, where e is the direction of its
-/// traction; a stick cell that slips takes away at most `x_e^2` times its own compliance.
+/// An undecided slip cell that sticks adds at most `(e - K x)_e^2 / s` with the smallest eigenvalue s, where e is the
+/// direction of its traction; a stick cell that slips takes away at most `x_e^2` times its own compliance. To first
+/// order a change h of `|w|/b` of a slip cell takes away `x^2 h`, and a turn of its tangent adds `2 x (e - K x)_e` times
+/// the angle, which is estimated as h over s.
 fn set_error(
     operators: &TangentialOperators,
     held: Held<'_>,
@@ -223,17 +245,24 @@ fn set_error(
 ) -> f64 {
     let table = operators.table();
     let (own, smallest, n) = (table.own(), table.smallest_eigenvalue(), held.cells.len());
-    let change = |undecided: &Undecided| -> f64 {
-        let (i, e) = (undecided.cell, undecided.radial);
-        let along = |v: &[f64]| v[i] * e[0] + v[n + i] * e[1];
+    let along = |v: &[f64], i: usize, e: [f64; 2]| v[i] * e[0] + v[n + i] * e[1];
+    let held_back = |k: usize, i: usize, e: [f64; 2]| e[k] - along(&displaced[k], i, e);
+    let undecided = held.undecided.iter().map(|&Undecided { cell, radial, sticks }| -> f64 {
         let terms = (0..2).map(|k| {
-            if undecided.sticks {
-                along(&x[k]).powi(2) * own
+            if sticks {
+                along(&x[k], cell, radial).powi(2) * own
             } else {
-                (e[k] - along(&displaced[k])).powi(2) / smallest
+                held_back(k, cell, radial).powi(2) / smallest
             }
         });
         terms.sum()
-    };
-    sum(&held.undecided.iter().map(change).collect::<Vec<f64>>())
+    });
+    let uncertain = held.uncertain.iter().map(|&Uncertain { cell, radial, turning }| -> f64 {
+        let terms = (0..2).map(|k| {
+            let moved = x[k][cell].hypot(x[k][n + cell]);
+            turning * moved * (moved + 2.0 * held_back(k, cell, radial).abs() / smallest)
+        });
+        terms.sum()
+    });
+    undecided.chain(uncertain).fold(0.0, |sum, change| sum + change)
 }

@@ -496,3 +496,69 @@ fn every_increment_converges() {
     }
     println!("at most {} steps, {} applications", most.0, most.1);
 }
+
+#[test]
+fn projected_gradients_alone_converge() {
+    // What takes over where Newton's steps come to nothing, on a path with a reversal.
+    let (grid, states) = pressed(12, 5, Boundary::Free, &[0.3]);
+    let (all, most) = (&states[0], states[0].friction());
+    let limit: Vec<f64> = all.pressure.iter().map(|p| MU * p).collect();
+    let mut solver = friction(grid, Boundary::Free, 0.43);
+    let first =
+        advance(&mut solver, &SlipMemory::default(), all, TangentialControl::Force([0.6 * most, 0.0]));
+    for control in [
+        TangentialControl::Force([-0.3 * most, 0.2 * most]),
+        TangentialControl::Displacement([0.3 * first.memory.displacement[0], 0.0]),
+    ] {
+        let expected = advance(&mut solver, &first.memory, all, control);
+        let increment = increment::Increment {
+            cells: &all.cells,
+            limit: &limit,
+            reference: &first.memory.offset,
+            control,
+            displacement: first.memory.displacement,
+        };
+        let limits = FrictionLimits { tolerance: 1e-9, iterations: 0 };
+        let start = vec![0.0; 2 * limit.len()];
+        let found =
+            increment::by_gradients(&mut solver.operators, &mut solver.room, increment, start, limits, 2000);
+        assert!(found.duality_gap < 1e-9, "{:e}", found.duality_gap);
+        close(&found.traction, &expected.memory.traction, 1e-4 * largest(&limit));
+    }
+}
+
+#[test]
+fn the_error_of_a_stiffness_holds_its_true_error() {
+    // Loads solved roughly: stiffnesses of sets with cells on the wrong side, against those of tight solves.
+    let (mut worst, mut largest_error) = (0.0_f64, 0.0_f64);
+    for seed in 1..=4 {
+        let (grid, states) = pressed(32, seed, Boundary::Free, &[0.6]);
+        let (all, most) = (&states[0], states[0].friction());
+        let mut solver = friction(grid, Boundary::Free, 0.43);
+        for share in [0.2, 0.5, 0.8] {
+            let mut stiffness = |tolerance: f64| {
+                let control = TangentialControl::Force([share * most, 0.1 * most]);
+                let limits = FrictionLimits { tolerance, ..LIMITS };
+                let begin = SlipMemory::default();
+                let state = solver.advance(&begin, all.cells(), load(control), None, limits, &never).unwrap();
+                solver.stiffness(&state, StiffnessOf::Branch, tolerance, &never)
+            };
+            let exact = stiffness(1e-13).value;
+            for tolerance in [1e-2, 1e-3, 1e-4, 1e-6] {
+                let found = stiffness(tolerance);
+                let off = (0..3).map(|k| (found.value[k] - exact[k]).abs()).fold(0.0, f64::max) / exact[0];
+                let claimed = found.solve_error + found.set_error;
+                println!(
+                    "{seed} {share} {tolerance:.0e}: off {off:.1e}, {:.1e} + {:.1e}",
+                    found.solve_error, found.set_error
+                );
+                worst = worst.max(off / (claimed + 1e-9));
+                if tolerance <= 1e-6 {
+                    largest_error = largest_error.max(claimed);
+                }
+            }
+        }
+    }
+    println!("worst {worst}, at 1e-6 at most {largest_error:e}");
+    assert!(worst < 1.0 && largest_error < 1e-4, "{worst} {largest_error:e}");
+}

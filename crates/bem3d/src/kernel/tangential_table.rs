@@ -196,6 +196,12 @@ impl TangentialTable {
         self.within_period(Lengths::reaching(window, usize::MAX))
     }
 
+    /// Circular lengths for corrections of the tractions ([`Lengths::shortened`]).
+    pub fn shortened_lengths(&self, window: Window, share: f64) -> Lengths {
+        let (short, exact) = (Lengths::shortened(window, share), Lengths::reaching(window, usize::MAX));
+        self.within_period(Lengths { x: short.x.min(exact.x), y: short.y.min(exact.y) })
+    }
+
     /// Circular lengths of the preconditioner of a window.
     pub fn torus_lengths(&self, window: Window) -> Lengths {
         self.within_period(Lengths::torus(window))
@@ -216,6 +222,11 @@ impl TangentialTable {
         cached(&self.single, lengths, || {
             Arc::new(double.iter().map(|entries| entries.map(|value| value as f32)).collect())
         })
+    }
+
+    /// The same for lengths that no operator in double precision takes.
+    pub fn shortened_symbol(&self, lengths: Lengths) -> Arc<Vec<[f32; 3]>> {
+        cached(&self.single, lengths, || self.tensor(lengths).scaled())
     }
 
     /// Scaled inverse symbol of the kernel wrapped on a torus.

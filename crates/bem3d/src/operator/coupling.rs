@@ -13,9 +13,16 @@ pub struct CouplingOperator {
     beta: f64,
     grid: Grid,
     table: CouplingTable,
-    plan: Option<(Transform<f64, 3>, Arc<Vec<[f64; 2]>>)>,
+    plan: Option<Plan>,
     /// Applications so far.
     pub applications: usize,
+}
+
+/// The transforms of `(p, q_x, q_y)`, and the symbol.
+#[derive(Debug)]
+struct Plan {
+    transform: Transform<f64, 3>,
+    symbol: Arc<Vec<[f64; 2]>>,
 }
 
 impl CouplingOperator {
@@ -50,10 +57,10 @@ impl CouplingOperator {
         }
         self.applications += 1;
         let Self { table, grid, beta, plan, .. } = self;
-        let (transform, symbol) = plan.get_or_insert_with(|| {
+        let Plan { transform, symbol } = plan.get_or_insert_with(|| {
             let window = grid.window();
             let lengths = table.exact_lengths(window);
-            (Transform::new(window, lengths), table.symbol(lengths))
+            Plan { transform: Transform::new(window, lengths), symbol: table.symbol(lengths) }
         });
         let (rows, Window { height, .. }) = (transform.rows(), grid.window());
         transform.forward(

@@ -22,6 +22,7 @@ pub struct TangentialOperators {
     recorder: Recorder,
     double: Option<VectorConvolution<f64>>,
     single: Option<VectorConvolution<f32>>,
+    shortened: Option<VectorConvolution<f32>>,
     torus: Option<VectorConvolution<f32>>,
     /// Applications so far, all precisions together; each moves two components.
     pub applications: usize,
@@ -34,8 +35,8 @@ pub struct TangentialOperators {
 pub enum PlannedVector<'a> {
     /// Sum over all pairs.
     Direct(DirectVectorSum<'a>, &'a Recorder),
-    /// Transforms in single precision.
-    Fft(&'a mut VectorConvolution<f32>, &'a Recorder),
+    /// Transforms in single precision, with what their time is charged to.
+    Fft(&'a mut VectorConvolution<f32>, Part, &'a Recorder),
 }
 
 impl InfluenceOperator<f32> for PlannedVector<'_> {
@@ -44,8 +45,8 @@ impl InfluenceOperator<f32> for PlannedVector<'_> {
             Self::Direct(direct, recorder) => {
                 recorder.timed(Part::Direct, || direct.apply(sources, q, targets, u));
             }
-            Self::Fft(transform, recorder) => {
-                recorder.timed(Part::Single, || transform.apply(sources, q, targets, u));
+            Self::Fft(transform, part, recorder) => {
+                recorder.timed(*part, || transform.apply(sources, q, targets, u));
             }
         }
     }
@@ -60,6 +61,7 @@ impl TangentialOperators {
             recorder: recorder.clone(),
             double: None,
             single: None,
+            shortened: None,
             torus: None,
             applications: 0,
             solves: 0,
@@ -107,22 +109,36 @@ impl TangentialOperators {
     }
 
     /// The kernel on a set in single precision, and the transform of its torus inverse; `None` on no cells.
-    pub fn system(&mut self, set: &CellSet) -> Option<(PlannedVector<'_>, &mut VectorConvolution<f32>)> {
+    ///
+    /// `every_lag`: whether the kernel must be exact at every lag, as for a stiffness, or may be that of a shorter
+    /// torus, as for corrections that the exact displacement is evaluated after.
+    pub fn system(
+        &mut self,
+        set: &CellSet,
+        every_lag: bool,
+    ) -> Option<(PlannedVector<'_>, &mut VectorConvolution<f32>)> {
         let window = set.window()?;
-        let lengths = self.table.exact_lengths(window);
+        let exact = self.table.exact_lengths(window);
+        let lengths =
+            if every_lag { exact } else { self.table.shortened_lengths(window, self.tuning.shortened) };
         let direct = self.is_direct(set.len(), set.len(), lengths, self.tuning.single);
-        let Self { table, tuning, recorder, single, torus, .. } = self;
+        let Self { table, tuning, recorder, single, shortened, torus, .. } = self;
         let inverse = planned(torus, window, (tuning, recorder), || {
             let lengths = table.torus_lengths(window);
             VectorConvolution::new(window, lengths, table.inverse_symbol(lengths))
         });
         let kernel = if direct {
             PlannedVector::Direct(DirectVectorSum(table), recorder)
-        } else {
+        } else if lengths == exact {
             let transform = planned(single, window, (tuning, recorder), || {
                 VectorConvolution::new(window, lengths, table.symbol_f32(lengths))
             });
-            PlannedVector::Fft(transform, recorder)
+            PlannedVector::Fft(transform, Part::Single, recorder)
+        } else {
+            let transform = planned(shortened, window, (tuning, recorder), || {
+                VectorConvolution::new(window, lengths, table.shortened_symbol(lengths))
+            });
+            PlannedVector::Fft(transform, Part::Shortened, recorder)
         };
         Some((kernel, inverse))
     }

@@ -96,6 +96,7 @@ impl Contact {
 
     /// Checks the conditions of both problems with sums over pairs.
     fn check(&self, before: &SlipMemory, state: &CoupledState, mu: f64, force: f64) {
+        assert!(self.friction.is_coupled());
         assert_eq!(state.status(), Status::Converged, "{} rounds", state.rounds);
         let (tangential, memory) = (&state.tangential, &state.tangential.memory);
         let (z, u) = self.displaced(memory);
