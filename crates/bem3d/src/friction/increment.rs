@@ -76,6 +76,8 @@ pub struct FrictionRoom {
     pub extensions: [Extension; 2],
     /// Vectors of the preconditioner.
     pub split: Room,
+    /// What the sums of corrections are taken from, in the present increment.
+    weights: Option<[Vec<f32>; 2]>,
 }
 
 /// `rho` times the own compliance: y = q + rho w decides between stick and slip.
@@ -236,6 +238,7 @@ impl<'a> Solver<'a> {
         self.admit();
         self.displace();
         self.room.vectors.take_fields(self.increment.cells.clone(), 2);
+        self.room.weights = None;
         let mut best = self.state(Status::IterationLimit);
         let (mut since_best, mut gradients) = (0, GRADIENTS);
         let status = loop {
@@ -367,7 +370,7 @@ impl<'a> Solver<'a> {
             StoppingCriteria { reduction: REDUCTION, energy: None, floor: 0.0, steps: INNER_STEPS };
         self.operators.solves += 1;
         let Some((kernel, transform)) = self.operators.system(cells, false) else { return false };
-        let FrictionRoom { vectors, extensions, split: room } = &mut *self.room;
+        let FrictionRoom { vectors, extensions, split: room, weights } = &mut *self.room;
         let torus =
             TorusWindow { window: transform.window(), decay: tuning.decay, extended: tuning.extended };
         recorder.timed(Part::Sets, || extend(extensions, &torus, &branch.stick));
@@ -386,7 +389,7 @@ impl<'a> Solver<'a> {
             next.iter().zip(&self.q).map(|(next, q)| ((next - q) / unit) as f32).collect();
         let mut spread = vec![0.0; 2 * n];
         if let Some([fx, fy]) = force {
-            split.fix_sums(cells);
+            split.fix_sums(cells, weights);
             let [x, y] = total(&next);
             if let Some(sums) = &split.sums {
                 sums.spread([(fx - x) / unit, (fy - y) / unit], &mut spread);

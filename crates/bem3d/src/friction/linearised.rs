@@ -131,7 +131,7 @@ impl InfluenceOperator<f32> for Linearised<'_> {
 /// cells, which do not follow it, makes it poor.
 ///
 /// With a prescribed force corrections have no sum: `P M P'` with `P = 1 - W (B W)^-1 B`, B the sums of both
-/// components and `W = M B'`, which is symmetric and keeps the sums.
+/// components, which is symmetric and keeps the sums whatever W is; it is `M B'` of the first branch of an increment.
 #[derive(Debug)]
 pub struct Split<'a> {
     /// On stick cells.
@@ -159,10 +159,10 @@ pub struct Room {
 /// How the sums of both components are kept.
 #[derive(Debug, Clone, Default)]
 pub struct FixedSums {
-    /// `W = M B'`.
+    /// W.
     weights: [Vec<f32>; 2],
-    /// The inverse of `B W` where the sums can be moved, `[xx, yy, xy]`.
-    inverse: [f64; 3],
+    /// Rows of the inverse of `B W`, where the sums can be moved.
+    inverse: [[f64; 2]; 2],
 }
 
 impl FixedSums {
@@ -175,8 +175,8 @@ impl FixedSums {
     }
 }
 
-fn times([xx, yy, xy]: [f64; 3], [x, y]: [f64; 2]) -> [f64; 2] {
-    [xx * x + xy * y, xy * x + yy * y]
+fn times(matrix: [[f64; 2]; 2], [x, y]: [f64; 2]) -> [f64; 2] {
+    matrix.map(|[a, b]| a * x + b * y)
 }
 
 /// The sums of both components.
@@ -202,20 +202,58 @@ pub fn inverse_of([xx, yy, xy]: [f64; 3], share: f64) -> [f64; 3] {
 }
 
 impl Split<'_> {
-    /// Keeps the sums from now on.
-    pub fn fix_sums(&mut self, set: &CellSet) {
+    /// Keeps the sums from now on. `weights` are those of the first branch of the increment, which are found where
+    /// there are none; stick cells keep them.
+    pub fn fix_sums(&mut self, set: &CellSet, weights: &mut Option<[Vec<f32>; 2]>) {
         let n = set.len();
-        let mut fixed = FixedSums::default();
-        for (component, weights) in fixed.weights.iter_mut().enumerate() {
+        let ones = [0, 1].map(|component| {
             let mut ones = vec![0.0; 2 * n];
             ones[component * n..][..n].fill(1.0);
             self.branch.restrict(&mut ones);
-            weights.resize(2 * n, 0.0);
-            self.precondition(set, &ones, weights);
+            ones
+        });
+        let known = weights.is_some();
+        let mut made = |split: &mut Self| {
+            let mut fixed = FixedSums {
+                weights: weights.get_or_insert_with(|| split.weights(set, &ones)).clone(),
+                ..FixedSums::default()
+            };
+            for (weights, ones) in fixed.weights.iter_mut().zip(&ones) {
+                for (k, (weight, one)) in weights.iter_mut().zip(ones).enumerate() {
+                    if split.branch.slips(k % n) {
+                        *weight = one / (split.branch.turning[k % n] + split.own);
+                    }
+                }
+            }
+            let [x, y] = fixed.weights.each_ref().map(|weights| sums_of(weights));
+            let determinant = x[0] * y[1] - x[1] * y[0];
+            let movable = determinant > IMMOVABLE * x[0].max(y[1]).powi(2);
+            fixed.inverse = if movable {
+                [[y[1] / determinant, -y[0] / determinant], [-x[1] / determinant, x[0] / determinant]]
+            } else {
+                let [xx, yy, xy] = inverse_of([x[0], y[1], f64::midpoint(x[1], y[0])], IMMOVABLE);
+                [[xx, xy], [xy, yy]]
+            };
+            if !movable {
+                *weights = None;
+            }
+            (fixed, movable)
+        };
+        let (mut fixed, movable) = made(self);
+        if known && !movable {
+            // Those of another branch move no sum of this one.
+            fixed = made(self).0;
         }
-        let [x, y] = fixed.weights.each_ref().map(|weights| sums_of(weights));
-        fixed.inverse = inverse_of([x[0], y[1], f64::midpoint(x[1], y[0])], IMMOVABLE);
         self.sums = Some(fixed);
+    }
+
+    /// `M B'` of the branch.
+    fn weights(&mut self, set: &CellSet, ones: &[Vec<f32>; 2]) -> [Vec<f32>; 2] {
+        ones.each_ref().map(|ones| {
+            let mut weights = vec![0.0; ones.len()];
+            self.precondition(set, ones, &mut weights);
+            weights
+        })
     }
 
     /// `z = M r` of a restricted residual.
@@ -261,7 +299,8 @@ impl Preconditioner<f32> for Split<'_> {
             let n = set.len();
             if let Some(sums) = self.sums.take() {
                 let products = sums.weights.each_ref().map(|weights| dot(weights, r));
-                let offset = times(sums.inverse, products).map(|offset| offset as f32);
+                let [[a, b], [c, d]] = sums.inverse;
+                let offset = times([[a, c], [b, d]], products).map(|offset| offset as f32);
                 let mut plane = vec![0.0; 2 * n];
                 for (plane, offset) in plane.chunks_exact_mut(n).zip(offset) {
                     plane.fill(offset);

@@ -151,7 +151,7 @@ fn correct(
     let (own, shift) = (operators.table().own(), operators.table().shift());
     operators.solves += 1;
     let Some((kernel, transform)) = operators.system(cells, true).filter(|_| size > 0.0) else { return 0 };
-    let FrictionRoom { vectors, extensions, split: vectors_of_split } = room;
+    let FrictionRoom { vectors, extensions, split: vectors_of_split, .. } = room;
     let torus = TorusWindow { window: transform.window(), decay: tuning.decay, extended: tuning.extended };
     recorder.timed(Part::Sets, || extend(extensions, &torus, &branch.stick));
     let mut split = Split {
