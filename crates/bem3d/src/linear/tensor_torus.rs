@@ -53,7 +53,6 @@ impl TensorTorusInverse<'_> {
             },
         );
         transform.multiply(|_| true);
-        let decay = extensions[0].decay();
         let mut outputs = Vec::with_capacity(2 * bands.len());
         for (extension, z) in extensions.iter_mut().zip(z.chunks_exact_mut(n)) {
             extension.clear();
@@ -61,19 +60,17 @@ impl TensorTorusInverse<'_> {
         }
         transform.backward(
             |_| true,
-            outputs.into_iter().map(|output| (output, Vec::new())),
-            |(((start, z), sums), line), _, y, u| {
+            outputs.into_iter(),
+            |((start, z), sums), _, y, u| {
                 let row = set.row(y + y0).map(|row| row.after(*start));
                 if let Some(row) = row {
                     row.collect(u, z, x0);
                 }
                 if sums.is_wanted() {
-                    line.clear();
-                    line.extend(u.iter().map(|u| decay * u));
                     if let Some(row) = row {
-                        row.fill(0.0, line, x0);
+                        row.fill(0.0, u, x0);
                     }
-                    sums.add(y, line);
+                    sums.add_transposed(y, u);
                 }
             },
         );

@@ -75,7 +75,7 @@ impl<T: Real> VectorConvolution<T> {
         &mut self,
         wanted: impl Fn(usize) -> bool + Sync,
         outputs: impl ExactSizeIterator<Item = O> + Send,
-        take: impl Fn(&mut O, usize, usize, &[T]) + Sync,
+        take: impl Fn(&mut O, usize, usize, &mut [T]) + Sync,
     ) {
         let (rows, height) = (self.transform.rows(), self.window().height);
         self.transform.backward(
