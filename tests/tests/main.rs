@@ -15,6 +15,7 @@ mod grid_error;
 mod hard;
 mod modules;
 mod oracle;
+mod partial_slip;
 mod peers;
 mod periodic;
 mod properties;

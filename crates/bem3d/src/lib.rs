@@ -133,7 +133,6 @@
 
 mod active_set;
 mod adhesion;
-#[cfg_attr(not(test), expect(dead_code, reason = "scenes with friction do not lead here yet"))]
 mod friction;
 mod geometry;
 mod kernel;

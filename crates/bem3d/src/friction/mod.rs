@@ -38,5 +38,9 @@ mod stiffness;
 #[cfg(test)]
 mod tests;
 
+pub use coupled::{CoupledLoad, advance as advance_coupled};
 pub use increment::{FrictionLimits, TangentialControl};
-pub use state::{Friction, FrictionLoad, PressedCells, SlipMemory, StiffnessOf};
+pub use state::{
+    ForceTooLarge, Friction, FrictionLoad, FrictionState, PressedCells, SlipMemory, StiffnessOf,
+};
+pub use stiffness::TangentialStiffness;

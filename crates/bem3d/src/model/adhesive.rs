@@ -280,6 +280,7 @@ impl AdhesiveContact {
             fixed_area: stiffness.fixed_area.map(|k| PI * k),
             adhesive: Some(AdhesiveState::new(branch, stored, response.stability)),
             resolution: None,
+            slid: None,
         })?;
         Ok(Last { equilibrium, control, branch, state: returned(state)? })
     }

@@ -6,6 +6,7 @@ use super::certificate::LoadError;
 use super::load::{LoadSequence, ScaledLoad};
 use super::options::{Bem3d, NAME, bytes_per_cell};
 use super::prepared::{PreparedSurface, Tangent};
+use super::sliding::Sliding;
 use crate::active_set::{self, Control, Limits, Solved};
 use crate::geometry::{CellSet, Grid};
 use crate::parts::{Part, Recorder};
@@ -13,7 +14,7 @@ use crate::stiffness::{self, Responding, Stiffness};
 use crate::tuning::Tuning;
 use contact_model::{
     ContactState, Error, Load, Normalisation, PreparedContact, RequiredMemory, Result, Scene, Status, Step,
-    Stop,
+    Stop, Tangential,
 };
 use std::borrow::Cow;
 
@@ -74,22 +75,42 @@ impl PreparedBem3d {
     }
 
     /// The state of a load among others.
-    fn at(&mut self, load: ScaledLoad, loads: LoadSequence, stop: Stop<'_>) -> Result<ContactState> {
+    fn at(
+        &mut self,
+        load: ScaledLoad,
+        tangential: Tangential,
+        loads: LoadSequence,
+        stop: Stop<'_>,
+    ) -> Result<ContactState> {
         if self.loads != loads {
             let solved = self.solved.take();
             self.begin(loads);
             if let (LoadSequence::Path, Some(solved)) = (loads, solved) {
-                self.state_at(solved, loads, stop)?;
+                self.state_at(solved, Tangential::default(), loads, stop)?;
             }
         }
-        let state = self.state_at(load, loads, stop)?;
+        let state = self.state_at(load, tangential, loads, stop)?;
         self.solved = (loads == LoadSequence::Single).then_some(load);
         Ok(state)
     }
 
-    fn state_at(&mut self, load: ScaledLoad, loads: LoadSequence, stop: Stop<'_>) -> Result<ContactState> {
+    fn state_at(
+        &mut self,
+        load: ScaledLoad,
+        tangential: Tangential,
+        loads: LoadSequence,
+        stop: Stop<'_>,
+    ) -> Result<ContactState> {
         match &mut self.contact {
-            Contact::WithoutAdhesion(surface) => surface.at(load, stop),
+            Contact::WithoutAdhesion(surface) => {
+                if let Some(sliding) = &mut surface.sliding {
+                    if loads == LoadSequence::Single {
+                        sliding.begin();
+                    }
+                    sliding.ask(tangential);
+                }
+                surface.at(load, stop)
+            }
             Contact::WithAdhesion(contact) => contact.at(load, loads, stop),
         }
     }
@@ -111,7 +132,7 @@ impl PreparedContact for PreparedBem3d {
 
     fn solve_until(&mut self, load: Load, stop: Stop<'_>) -> Result<ContactState> {
         let load = self.scaled_load(load)?;
-        self.at(load, LoadSequence::Single, stop)
+        self.at(load, Tangential::default(), LoadSequence::Single, stop)
     }
 
     /// Cost O(N).
@@ -131,12 +152,14 @@ impl PreparedContact for PreparedBem3d {
             Contact::WithoutAdhesion(_) => step.validated(self.time)?,
             Contact::WithAdhesion(_) => step.validated_with_adhesion(self.time)?,
         };
-        without_tangential(step)?;
+        if self.surface().sliding.is_none() {
+            without_tangential(step)?;
+        }
         if stop() {
             return Err(Error::Stopped { best: None });
         }
         let load = self.scaled_load(step.normal)?;
-        let state = self.at(load, LoadSequence::Path, stop)?;
+        let state = self.at(load, step.tangential, LoadSequence::Path, stop)?;
         self.time = step.time;
         Ok(state.with_time(step.time))
     }
@@ -157,6 +180,7 @@ fn without_tangential(step: Step) -> Result<()> {
 impl PreparedSurface {
     /// The state of a load without adhesion.
     fn at(&mut self, load: ScaledLoad, stop: Stop<'_>) -> Result<ContactState> {
+        self.undeform();
         // 0 but for an indented surface.
         let first = self.problem.candidates.range().first;
         let state = match load {
@@ -174,13 +198,33 @@ impl PreparedSurface {
 
     fn at_target(&mut self, target: Control, stop: Stop<'_>) -> Result<ContactState> {
         self.begin_count();
+        if self.sliding.as_ref().is_some_and(Sliding::is_coupled) {
+            return self.at_coupled(target, stop);
+        }
         let (solved, tangent) = self.settle(target, self.limits(), stop);
-        let error = match target {
-            Control::Force(asked) => LoadError::of_force((solved.p.iter().sum::<f64>() - asked) / asked),
-            Control::Approach(_) => self.force_error(&solved, self.stiffest(&solved, tangent.as_ref()), 0.0),
-        };
+        let error = self.load_error(target, &solved, tangent.as_ref());
+        let slid = self.slide(&solved, stop)?;
         let recorder = self.problem.operators.recorder().clone();
-        recorder.timed(Part::Results, || self.state(solved, tangent, error, stop))
+        recorder.timed(Part::Results, || self.state(solved, tangent, error, slid, stop))
+    }
+
+    /// The state of a load whose tractions displace normally.
+    fn at_coupled(&mut self, target: Control, stop: Stop<'_>) -> Result<ContactState> {
+        let Some((solved, slid)) = self.slide_coupled(target, stop)? else {
+            return Err(Error::unsupported(NAME, "coupling without friction"));
+        };
+        let wanted = self.outputs.needs_stiffness() && !self.is_complete(&solved);
+        let tangent = wanted.then(|| self.tangent(&solved, (None, None), None, stop));
+        let error = self.load_error(target, &solved, tangent.as_ref());
+        self.state(solved, tangent, error, Some(slid), stop)
+    }
+
+    /// How far a state is from its load.
+    fn load_error(&self, target: Control, solved: &Solved, tangent: Option<&Tangent>) -> LoadError {
+        match target {
+            Control::Force(asked) => LoadError::of_force((solved.p.iter().sum::<f64>() - asked) / asked),
+            Control::Approach(_) => self.force_error(solved, self.stiffest(solved, tangent), 0.0),
+        }
     }
 
     /// About which share of the cells a load brings into contact.

@@ -73,7 +73,7 @@ impl PreparedSurface {
 }
 
 /// A load in the units of the surface, unless no f64 holds it.
-fn held(name: &'static str, value: f64, result: f64) -> Result<f64> {
+pub(super) fn held(name: &'static str, value: f64, result: f64) -> Result<f64> {
     if result.is_finite() && (value == 0.0 || result != 0.0) {
         Ok(result)
     } else {

@@ -2,7 +2,9 @@
 //! with a constant in it.
 
 use super::certificate::LoadError;
+use super::options::NAME;
 use super::prepared::PreparedSurface;
+use super::sliding::Sliding;
 use crate::active_set::{Bounds, Control, Solved};
 use crate::tuning::{GAP_LOADS, GAP_STEP};
 use contact_model::{ContactState, Error, Result, Status, Stop};
@@ -35,6 +37,10 @@ impl PreparedSurface {
                 expected,
             ));
         }
+        if self.sliding.as_ref().is_some_and(Sliding::is_coupled) {
+            let what = "a mean gap with full coupling: prescribe a force or a pressure";
+            return Err(Error::unsupported(NAME, what));
+        }
         self.begin_count();
         let (limits, side) = (self.limits(), (self.problem.grid().count() as f64).sqrt());
         // A wave of the rms height and the length of the map closes at about side x rms.
@@ -58,7 +64,8 @@ impl PreparedSurface {
                 };
                 let error = self.force_error(&solved, k, miss.abs());
                 let error = LoadError { load: miss.abs() / limits.height.unwrap_or(self.mean), ..error };
-                return self.state(solved, tangent, error, stop);
+                let slid = self.slide(&solved, stop)?;
+                return self.state(solved, tangent, error, slid, stop);
             }
             if miss > 0.0 {
                 low = low.max(x);

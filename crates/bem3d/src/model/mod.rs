@@ -4,12 +4,14 @@ mod adhesive;
 mod adhesive_stiffness;
 mod certificate;
 mod contact;
+mod increment;
 mod load;
 mod mean_gap;
 mod memory;
 mod options;
 mod prepared;
 mod profile;
+mod sliding;
 mod state;
 
 pub use options::{BYTES_PER_CELL, Bem3d, Method, bytes_per_cell};
@@ -18,8 +20,8 @@ use crate::parts::Recorder;
 use crate::tuning::Tuning;
 use contact::PreparedBem3d;
 use contact_model::{
-    Abilities, Adhesion, Boundary, ContactModel, Effect, Effects, Error, Hardness, LoadKind, Output, Paths,
-    PreparedContact, RequiredMemory, Result, Scene, Source, SurfaceKind,
+    Abilities, Adhesion, Boundary, ContactModel, Directions, Effect, Effects, Error, Friction, Hardness,
+    LoadKind, Output, Paths, PreparedContact, RequiredMemory, Result, Scene, Source, SurfaceKind,
 };
 use options::NAME;
 
@@ -61,22 +63,13 @@ impl ContactModel for Bem3d {
                 Effect::ShortRangeAdhesion,
                 Effect::ExponentialAdhesion,
                 Effect::DugdaleAdhesion,
+                Effect::Friction,
+                Effect::FullCoupling,
             ],
             loads: LoadKind::ALL,
             paths: Paths::Remembered,
-            // All but those of friction.
-            outputs: &[
-                Output::Stiffness,
-                Output::StiffnessFixedArea,
-                Output::Area,
-                Output::MeanGap,
-                Output::Pressure,
-                Output::Displacement,
-                Output::Gap,
-                Output::PlasticDepth,
-                Output::ContactPatches,
-                Output::Conductance,
-            ],
+            directions: Directions::Plane,
+            outputs: Output::ALL,
             ..Abilities::ELASTIC
         }
     }
@@ -120,15 +113,23 @@ impl Bem3d {
     }
 }
 
-/// Hardness and adhesion together: attraction that indents is solved by neither.
+/// Effects that no solver here takes together: attraction that indents, and friction of pressures that flow or
+/// pull.
 ///
 /// # Errors
-/// [`Error::Unsupported`] where both are on.
+/// [`Error::Unsupported`] for the first two that are on.
 fn refuse_together(effects: &Effects) -> Result<()> {
-    if effects.hardness == Hardness::Off || effects.adhesion == Adhesion::Off {
+    let (hardness, adhesion) = (effects.hardness != Hardness::Off, effects.adhesion != Adhesion::Off);
+    let friction = effects.friction != Friction::Off;
+    let what = if hardness && adhesion {
+        "hardness and adhesion together: where a contact flows, pull-off depends on the indentation that the attraction made"
+    } else if hardness && friction {
+        "hardness and friction together: what flows under a pressure and a traction is not Coulomb's law on an indentation"
+    } else if adhesion && friction {
+        "adhesion and friction together: how much friction holds under tension is not said by Coulomb's law"
+    } else {
         return Ok(());
-    }
-    let what = "hardness and adhesion together: where a contact flows, pull-off depends on the indentation that the attraction made";
+    };
     Err(Error::unsupported(NAME, what))
 }
 

@@ -3,6 +3,7 @@
 use super::memory::Memory;
 use super::options::{Bem3d, Method, NAME};
 use super::profile;
+use super::sliding::Sliding;
 use crate::active_set::{self, Bounds, Candidates, Control, Guess, LastState, Limits, Problem, Solved};
 use crate::geometry::{CellSet, Grid};
 use crate::kernel::Medium;
@@ -52,6 +53,8 @@ pub struct PreparedSurface {
     pub(super) last: Option<LastState>,
     /// What a path remembers. `None`: no path.
     pub(super) memory: Option<Memory>,
+    /// Friction, and what it remembers of a path.
+    pub(super) sliding: Option<Sliding>,
     /// Sides of the map.
     pub(super) size: Size,
     /// Whether it is a profile: a body uniform along y.
@@ -121,6 +124,7 @@ impl PreparedSurface {
             }
             problem.bounds = Bounds::UpTo(upper);
         }
+        let sliding = Sliding::new(scene, &problem, (tuning, recorder))?;
         let normalisation =
             Normalisation { modulus: scene.modulus, length: map.length(), height: has_rms.then_some(rms) };
         Ok(Self {
@@ -134,6 +138,7 @@ impl PreparedSurface {
             defined,
             last: None,
             memory: None,
+            sliding,
             size: map.size(),
             is_profile: matches!(scene.surface, Surface::Profile(_)),
         })
@@ -147,6 +152,9 @@ impl PreparedSurface {
             self.problem.coarser = None;
         }
         self.last = None;
+        if let Some(sliding) = &mut self.sliding {
+            sliding.begin();
+        }
         if path && self.problem.bounds != Bounds::Unlimited {
             self.memory = Some(Memory::new(self.problem.candidates.shared()));
         }

@@ -2,7 +2,7 @@
 
 use super::options::NAME;
 use crate::kernel::Medium;
-use contact_model::{Adhesion, Boundary, Conductance, Error, Outputs, Result, Scene, Surface};
+use contact_model::{Adhesion, Boundary, Conductance, Error, Friction, Outputs, Result, Scene, Surface};
 
 /// What deforms under a scene's surface: under a profile with free boundaries a half-plane. With periodic
 /// ones the kernel of one row is that of plane strain by itself, because a pressure that repeats itself with
@@ -17,13 +17,17 @@ pub(super) fn medium(scene: &Scene) -> Medium {
 /// Refuses what profiles do not have.
 ///
 /// # Errors
-/// [`Error::Unsupported`] for adhesion, and for a displacement or a conductance of a half-plane.
+/// [`Error::Unsupported`] for adhesion and friction, and for a displacement or a conductance of a half-plane.
 pub(super) fn check(scene: &Scene) -> Result<()> {
     if !matches!(scene.surface, Surface::Profile(_)) {
         return Ok(());
     }
     if scene.effects.adhesion != Adhesion::Off {
         let what = "adhesion of a profile: its attraction is corrected for fronts in three dimensions and was not checked in two";
+        return Err(Error::unsupported(NAME, what));
+    }
+    if scene.effects.friction != Friction::Off {
+        let what = "friction of a profile: the tangential kernel is that of three dimensions";
         return Err(Error::unsupported(NAME, what));
     }
     if medium(scene) != Medium::HalfPlane {

@@ -2,6 +2,7 @@
 
 use super::certificate::LoadError;
 use super::prepared::{PreparedSurface, Tangent};
+use super::sliding::Slid;
 use crate::active_set::{Bounds, Solved};
 use crate::geometry::CellSet;
 use crate::stiffness::Stiffness;
@@ -46,6 +47,8 @@ pub(super) struct Assembly<'a> {
     pub adhesive: Option<AdhesiveState>,
     /// How well the cells resolve the contact.
     pub resolution: Option<ContactResolution>,
+    /// What friction adds.
+    pub slid: Option<&'a Slid>,
 }
 
 /// The state as a result: an error with the state in it unless it has converged.
@@ -61,7 +64,11 @@ impl PreparedSurface {
     /// The state in the units of the scene, with what is asked for.
     pub(super) fn assemble(&mut self, found: Assembly<'_>) -> Result<ContactState> {
         let units = self.nondimensional;
-        let fields = self.fields(found.pressure, found.d, found.indented)?;
+        let mut fields = self.fields(found.pressure, found.d, found.indented)?;
+        if let (Some(fields), Some(slid)) = (&mut fields, found.slid) {
+            self.slip_fields(slid, fields)?;
+        }
+        let tangential = found.slid.map(|slid| self.tangential(slid)).transpose()?.flatten();
         let mut report = SolveReport::new(found.status, found.strategy);
         report.work = Work::of(std::mem::take(&mut self.problem.operators.solves), fields.as_ref());
         report.iterations = found.iterations;
@@ -80,6 +87,7 @@ impl PreparedSurface {
             .with_area(self.outputs.area.then(|| units.area(found.area)).transpose()?)
             .with_plastic(self.plastic(found.yielded, found.indented.1)?)
             .with_adhesive(found.adhesive)
+            .with_tangential(tangential)
             .with_patches(self.patches(found.contact)?)
             .with_resolution(found.resolution)
             .with_fields(fields)
@@ -99,11 +107,16 @@ impl PreparedSurface {
         self.begin_count();
         let nothing = CellSet::default();
         let stiffness = self.outputs.needs_stiffness().then_some(0.0);
-        self.assemble(Assembly {
+        let slid = self.slide_apart()?;
+        let mut certificate = Certificate::default();
+        if let Some(slid) = &slid {
+            slid.certify(&mut certificate);
+        }
+        let state = self.assemble(Assembly {
             status: Status::Converged,
             strategy: "no contact".to_owned(),
             iterations: 0,
-            certificate: Certificate::default(),
+            certificate,
             force: 0.0,
             d,
             complete: false,
@@ -116,7 +129,10 @@ impl PreparedSurface {
             fixed_area: stiffness,
             adhesive: None,
             resolution: None,
-        })
+            slid: slid.as_ref(),
+        })?;
+        self.remember_slip(slid);
+        Ok(state)
     }
 
     /// The state of a contact without adhesion; the next load begins from it.
@@ -125,6 +141,7 @@ impl PreparedSurface {
         solved: Solved,
         mut tangent: Option<Tangent>,
         error: LoadError,
+        slid: Option<Slid>,
         stop: Stop<'_>,
     ) -> Result<ContactState> {
         let force: f64 = solved.p.iter().sum();
@@ -137,6 +154,9 @@ impl PreparedSurface {
             force_error: error.force,
             ..Certificate::default()
         };
+        if let Some(slid) = &slid {
+            slid.certify(&mut certificate);
+        }
         if self.memory.is_some() && !certificate.meets(self.options.tolerance) {
             let rest = Certificate { stiffness_error: None, ..certificate };
             if rest.meets(self.options.tolerance) {
@@ -154,8 +174,10 @@ impl PreparedSurface {
         };
         let state = self.assemble(Assembly {
             status: self.ended(solved.status, &certificate, stop),
-            strategy: self.strategy(&solved),
-            iterations: solved.steps + tangent.as_ref().map_or(0, Tangent::steps),
+            strategy: self.strategy(&solved, slid.as_ref()),
+            iterations: solved.steps
+                + tangent.as_ref().map_or(0, Tangent::steps)
+                + slid.as_ref().map_or(0, Slid::steps),
             certificate,
             force,
             d: solved.d,
@@ -169,6 +191,7 @@ impl PreparedSurface {
             fixed_area,
             adhesive: None,
             resolution: Some(self.resolution(&solved)?),
+            slid: slid.as_ref(),
         })?;
         if state.report.status == Status::Converged {
             if let Some(memory) = &mut self.memory {
@@ -176,17 +199,19 @@ impl PreparedSurface {
             }
             self.indent(&saturated, &depth);
             self.remember(solved, tangent);
+            self.remember_slip(slid);
         }
         returned(state)
     }
 
     /// How a state was found, in one short phrase.
-    fn strategy(&self, solved: &Solved) -> String {
-        match (solved.q.is_some(), self.problem.operators.last()) {
+    fn strategy(&self, solved: &Solved, slid: Option<&Slid>) -> String {
+        let pressed = match (solved.q.is_some(), self.problem.operators.last()) {
             (true, _) => format!("dense {}", solved.contact.len()),
             (false, Some(recipe)) => recipe.to_string(),
             (false, None) => format!("direct {}", solved.contact.len()),
-        }
+        };
+        slid.map_or_else(|| pressed.clone(), |slid| format!("{pressed}; {}", slid.strategy()))
     }
 
     /// What has yielded, with a hardness: the number of cells at it, and the depths of new indentation.
@@ -258,7 +283,7 @@ impl PreparedSurface {
         self.field(depths)
     }
 
-    fn field(&self, values: Vec<f64>) -> Result<Field> {
+    pub(super) fn field(&self, values: Vec<f64>) -> Result<Field> {
         let grid = self.problem.grid();
         Field::new([grid.columns, grid.rows], self.size, values)
     }

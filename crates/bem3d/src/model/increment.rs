@@ -1,0 +1,254 @@
+//! Friction of a surface on its path: from the tangential load of a step to an increment, and from its tractions
+//! to the tangential part of a state.
+
+use super::load::held;
+use super::options::NAME;
+use super::prepared::PreparedSurface;
+use super::sliding::{Slid, Sliding};
+use crate::active_set::{Candidates, Control, Solved};
+use crate::friction::{
+    CoupledLoad, ForceTooLarge, Friction, FrictionLimits, FrictionLoad, FrictionState, PressedCells,
+    SlipMemory, StiffnessOf, TangentialControl, TangentialStiffness, advance_coupled,
+};
+use crate::geometry::CellSet;
+use contact_model::{Error, Fields, Result, Status, StickSlip, Stop, Tangential, TangentialState};
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+impl PreparedSurface {
+    fn tangential_control(&self, load: Tangential) -> Result<TangentialControl> {
+        let units = self.nondimensional;
+        let each = |values: [f64; 2], name, of: &dyn Fn(f64) -> f64| -> Result<[f64; 2]> {
+            let [x, y] = values.map(|value| held(name, value, of(value.abs()).copysign(value)));
+            Ok([x?, y?])
+        };
+        match load {
+            Tangential::Force(force) => {
+                each(force, "tangential force", &|f| units.force_in(f) / PI).map(TangentialControl::Force)
+            }
+            Tangential::Displacement(delta) => {
+                let displacement = each(delta, "tangential displacement", &|d| units.approach_in(d));
+                displacement.map(TangentialControl::Displacement)
+            }
+            other => Err(Error::unsupported(NAME, format!("the tangential load {other:?}"))),
+        }
+    }
+
+    /// Takes the surface again that no traction displaces, where tractions do.
+    pub(super) fn undeform(&mut self) {
+        if let Some(sliding) = self.sliding.as_ref().filter(|sliding| sliding.is_coupled()) {
+            self.problem.candidates = Candidates::new(self.problem.grid(), Arc::clone(&sliding.undeformed));
+            self.problem.coarser = None;
+        }
+    }
+
+    fn friction_limits(&self) -> FrictionLimits {
+        FrictionLimits { tolerance: self.options.tolerance, iterations: self.options.max_outer_iterations }
+    }
+
+    /// The increment of friction under a pressure; `None` without friction.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] for a tangential force that friction does not hold.
+    pub(super) fn slide(&mut self, solved: &Solved, stop: Stop<'_>) -> Result<Option<Slid>> {
+        let Some(mut sliding) = self.sliding.take() else { return Ok(None) };
+        let slid = self.slide_by(&mut sliding, solved, stop);
+        self.sliding = Some(sliding);
+        slid.map(Some)
+    }
+
+    fn slide_by(&mut self, sliding: &mut Sliding, solved: &Solved, stop: Stop<'_>) -> Result<Slid> {
+        let Sliding { friction, coefficient, before, load, .. } = sliding;
+        let control = self.tangential_control(*load)?;
+        let limits = self.friction_limits();
+        let work = friction.work();
+        let contact = PressedCells { cells: &solved.contact, pressure: &solved.p };
+        let load = FrictionLoad { coefficient: *coefficient, control };
+        let state = friction.advance(before, contact, load, None, limits, stop);
+        let state = state.map_err(|beyond| self.gross_slip(control, beyond))?;
+        let stiffness = self.tangential_stiffness(friction, &state, stop);
+        self.count(work, friction.work());
+        Ok(Slid { state, stiffness, rounds: None })
+    }
+
+    /// The state of a load where tractions displace normally.
+    pub(super) fn slide_coupled(
+        &mut self,
+        target: Control,
+        stop: Stop<'_>,
+    ) -> Result<Option<(Solved, Slid)>> {
+        let Some(mut sliding) = self.sliding.take() else { return Ok(None) };
+        let found = self.slide_coupled_by(&mut sliding, target, stop);
+        self.sliding = Some(sliding);
+        found.map(Some)
+    }
+
+    fn slide_coupled_by(
+        &mut self,
+        sliding: &mut Sliding,
+        target: Control,
+        stop: Stop<'_>,
+    ) -> Result<(Solved, Slid)> {
+        let Sliding { friction, coefficient, before, load, undeformed, .. } = sliding;
+        let control = self.tangential_control(*load)?;
+        let load = CoupledLoad {
+            normal: target,
+            tangential: FrictionLoad { coefficient: *coefficient, control },
+            normal_limits: self.limits(),
+            tangential_limits: self.friction_limits(),
+        };
+        let work = friction.work();
+        let surface = (&mut self.problem, &undeformed[..]);
+        let found = advance_coupled(surface, friction, before, load, None, stop);
+        let found = found.map_err(|beyond| self.gross_slip(control, beyond))?;
+        let stiffness = self.tangential_stiffness(friction, &found.tangential, stop);
+        self.count(work, friction.work());
+        let (status, rounds) = (found.status(), Some((found.rounds, found.contraction)));
+        let normal = Solved { status, ..found.normal };
+        Ok((normal, Slid { state: found.tangential, stiffness, rounds }))
+    }
+
+    /// The tangential stiffnesses that are asked for.
+    fn tangential_stiffness(
+        &self,
+        friction: &mut Friction,
+        state: &FrictionState,
+        stop: Stop<'_>,
+    ) -> [Option<TangentialStiffness>; 2] {
+        let asked = [
+            (self.outputs.tangential_stiffness, StiffnessOf::Branch),
+            (self.outputs.tangential_stiffness_stuck, StiffnessOf::FullStick),
+        ];
+        asked.map(|(asked, of)| asked.then(|| friction.stiffness(state, of, self.options.tolerance, stop)))
+    }
+
+    /// Enters the work of friction into that of the load.
+    fn count(&mut self, [applications, solves]: [usize; 2], now: [usize; 2]) {
+        self.problem.operators.applications += now[0] - applications;
+        self.problem.operators.solves += now[1] - solves;
+    }
+
+    fn gross_slip(&self, control: TangentialControl, beyond: ForceTooLarge) -> Error {
+        let TangentialControl::Force([x, y]) = control else {
+            return Error::unsupported(NAME, "a displacement that friction does not hold");
+        };
+        let unit = |force: f64| self.nondimensional.force(PI * force);
+        match (unit(x.hypot(y)), unit(beyond.largest)) {
+            (Ok(force), Ok(limit)) => Error::gross_slip(force, limit),
+            (Err(error), _) | (_, Err(error)) => error,
+        }
+    }
+
+    /// The tangential part without contact; `None` without friction.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] for a tangential force: nothing holds it.
+    pub(super) fn slide_apart(&mut self) -> Result<Option<Slid>> {
+        let Some(sliding) = &self.sliding else { return Ok(None) };
+        let displacement = match self.tangential_control(sliding.load)? {
+            TangentialControl::Displacement(displacement) => displacement,
+            force @ TangentialControl::Force([x, y]) => {
+                if x.hypot(y) > 0.0 {
+                    return Err(self.gross_slip(force, ForceTooLarge { largest: 0.0 }));
+                }
+                sliding.before.displacement
+            }
+        };
+        let state = FrictionState {
+            memory: SlipMemory { displacement, ..SlipMemory::default() },
+            limit: Vec::new(),
+            slip: Vec::new(),
+            force: [0.0; 2],
+            dissipated: 0.0,
+            stick: CellSet::default(),
+            duality_gap: 0.0,
+            load_error: 0.0,
+            iterations: [0; 2],
+            status: Status::Converged,
+        };
+        let nothing = |asked: bool| asked.then(TangentialStiffness::default);
+        let stiffness =
+            [self.outputs.tangential_stiffness, self.outputs.tangential_stiffness_stuck].map(nothing);
+        Ok(Some(Slid { state, stiffness, rounds: None }))
+    }
+
+    /// Keeps an increment to begin the next from.
+    pub(super) fn remember_slip(&mut self, slid: Option<Slid>) {
+        if let (Some(sliding), Some(Slid { state, .. })) = (&mut self.sliding, slid) {
+            sliding.dissipated += state.dissipated;
+            sliding.before = state.memory;
+        }
+    }
+
+    /// The tangential part of a state in the units of the scene.
+    pub(super) fn tangential(&self, slid: &Slid) -> Result<Option<TangentialState>> {
+        let Some(sliding) = &self.sliding else { return Ok(None) };
+        let (units, Slid { state, stiffness, .. }) = (self.nondimensional, slid);
+        let signed = |value: f64, of: &dyn Fn(f64) -> Result<f64>| Ok(of(value.abs())?.copysign(value));
+        let pair = |values: [f64; 2], of: &dyn Fn(f64) -> Result<f64>| -> Result<[f64; 2]> {
+            Ok([signed(values[0], of)?, signed(values[1], of)?])
+        };
+        let force = |value: f64| units.force(PI * value);
+        let length = |value: f64| units.approach(value);
+        // What is prescribed is given back as it was.
+        let (asked_force, asked_displacement) = match sliding.load {
+            Tangential::Force(asked) => (Some(asked), None),
+            Tangential::Displacement(asked) => (None, Some(asked)),
+            _ => (None, None),
+        };
+        let found = TangentialState::new(
+            asked_force.map_or_else(|| pair(state.force, &force), Ok)?,
+            asked_displacement.map_or_else(|| pair(state.memory.displacement, &length), Ok)?,
+        );
+        let matrix = |k: &TangentialStiffness| -> Result<[[f64; 2]; 2]> {
+            let of = |value: f64| signed(PI * value, &|k| units.stiffness(k));
+            let [xx, yy, xy] = k.value;
+            let (xx, yy, xy) = (of(xx)?, of(yy)?, of(xy)?);
+            Ok([[xx, xy], [xy, yy]])
+        };
+        let [branch, stuck] = stiffness.each_ref().map(|k| k.as_ref().map(matrix).transpose());
+        let areas = self.outputs.stick_area.then(|| -> Result<(f64, f64)> {
+            let (stick, all) = (state.stick.len(), state.memory.cells.len());
+            Ok((units.area(stick as f64)?, units.area((all - stick) as f64)?))
+        });
+        let (stick, slip) = areas.transpose()?.unzip();
+        Ok(Some(
+            found
+                .with_sliding_force(force(state.limit.iter().sum())?)
+                .with_areas(stick, slip)
+                .with_stiffness(branch?)
+                .with_stiffness_stuck(stuck?)
+                .with_dissipated(length(force((sliding.dissipated + state.dissipated).max(0.0))?)?),
+        ))
+    }
+
+    /// Adds the fields of an increment that are asked for.
+    pub(super) fn slip_fields(&self, slid: &Slid, fields: &mut Fields) -> Result<()> {
+        let (grid, Slid { state, .. }) = (self.problem.grid(), slid);
+        let cells = &state.memory.cells;
+        let components = |values: &[f64], of: &dyn Fn(f64) -> Result<f64>| {
+            let mut whole = [vec![0.0; grid.count()], vec![0.0; grid.count()]];
+            for (whole, values) in whole.iter_mut().zip(values.chunks_exact(cells.len().max(1))) {
+                for (i, value) in cells.index(grid).zip(values) {
+                    whole[i] = of(value.abs())?.copysign(*value);
+                }
+            }
+            let [x, y] = whole;
+            Ok([self.field(x)?, self.field(y)?])
+        };
+        if self.outputs.traction {
+            let pressure = |value: f64| self.nondimensional.pressure(PI * value);
+            fields.traction = Some(components(&state.memory.traction, &pressure)?);
+        }
+        if self.outputs.slip {
+            fields.slip = Some(components(&state.memory.slip, &|value| self.nondimensional.approach(value))?);
+        }
+        if self.outputs.stick_slip {
+            let mut classes = vec![StickSlip::Open.value(); grid.count()];
+            cells.index(grid).for_each(|i| classes[i] = StickSlip::Slip.value());
+            state.stick.index(grid).for_each(|i| classes[i] = StickSlip::Stick.value());
+            fields.stick_slip = Some(self.field(classes)?);
+        }
+        Ok(())
+    }
+}

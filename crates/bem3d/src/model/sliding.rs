@@ -1,0 +1,106 @@
+//! What friction adds to a surface and to a state.
+
+use super::options::NAME;
+use crate::active_set::Problem;
+use crate::friction::{Friction, FrictionState, SlipMemory, TangentialStiffness};
+use crate::parts::Recorder;
+use crate::tuning::Tuning;
+use contact_model::{Certificate, Coupling, Friction as Law, Result, Scene, Tangential};
+use std::sync::Arc;
+
+/// What friction adds to a surface.
+#[derive(Debug)]
+pub(super) struct Sliding {
+    pub(super) friction: Friction,
+    pub(super) coefficient: f64,
+    /// The gaps that no traction deforms.
+    pub(super) undeformed: Arc<Vec<f64>>,
+    /// What the next increment begins from.
+    pub(super) before: SlipMemory,
+    /// Nondimensional energy that friction dissipated since the first step.
+    pub(super) dissipated: f64,
+    /// The tangential load at the end of the present step.
+    pub(super) load: Tangential,
+}
+
+/// The tangential part of a state, nondimensional.
+#[derive(Debug)]
+pub(super) struct Slid {
+    pub(super) state: FrictionState,
+    /// Along the branch, and of the whole contact sticking.
+    pub(super) stiffness: [Option<TangentialStiffness>; 2],
+    /// How the alternation of normal and tangential contact went, where they act on each other.
+    pub(super) rounds: Option<(usize, Option<f64>)>,
+}
+
+impl Slid {
+    /// How it was found, in one short phrase.
+    pub(super) fn strategy(&self) -> String {
+        let [newton, steps] = self.state.iterations;
+        let coupled = match self.rounds {
+            None => String::new(),
+            Some((rounds, None)) => format!(", {rounds} rounds of coupling"),
+            Some((rounds, Some(by))) => {
+                format!(", {rounds} rounds of coupling, the last {by:.1e} of the one before")
+            }
+        };
+        format!("friction {newton} x {steps}{coupled}")
+    }
+
+    /// Steps of conjugate gradients.
+    pub(super) fn steps(&self) -> usize {
+        self.state.iterations[1] + self.stiffness.iter().flatten().map(|k| k.steps).sum::<usize>()
+    }
+
+    /// Enters what certifies it.
+    pub(super) fn certify(&self, certificate: &mut Certificate) {
+        certificate.tangential_duality_gap = Some(self.state.duality_gap);
+        certificate.tangential_load_error = Some(self.state.load_error);
+        let errors = self.stiffness.iter().flatten().map(|k| k.solve_error + k.set_error);
+        certificate.tangential_stiffness_error = errors.reduce(f64::max);
+    }
+}
+
+impl Sliding {
+    /// The friction of a scene on the cells of a problem; `None` without.
+    ///
+    /// # Errors
+    /// As [`Scene::coupling`].
+    pub(super) fn new(
+        scene: &Scene,
+        problem: &Problem,
+        (tuning, recorder): (&Tuning, &Recorder),
+    ) -> Result<Option<Self>> {
+        let coupling = scene.coupling(NAME)?;
+        let (Law::Coulomb { coefficient, .. }, Some(pair)) = (scene.effects.friction, scene.pair) else {
+            return Ok(None);
+        };
+        // E* sum nu/(2 G), from 1/G* = 1/E* + sum nu/(4 G).
+        let compliance = (2.0 * (pair.modulus()? / pair.shear_modulus()? - 1.0)).max(0.0);
+        let beta = if coupling == Some(Coupling::Full) { pair.coupling()? } else { 0.0 };
+        let medium = problem.operators.table().medium();
+        Ok(Some(Self {
+            friction: Friction::new(problem.grid(), medium, [compliance, beta], tuning, recorder),
+            coefficient,
+            undeformed: problem.candidates.shared(),
+            before: SlipMemory::default(),
+            dissipated: 0.0,
+            load: Tangential::default(),
+        }))
+    }
+
+    /// Takes the surface again as it is before any load.
+    pub(super) fn begin(&mut self) {
+        (self.before, self.dissipated, self.load) = (SlipMemory::default(), 0.0, Tangential::default());
+    }
+
+    /// The tangential load at the end of the step that comes next.
+    pub(super) fn ask(&mut self, load: Tangential) {
+        self.load = load;
+    }
+
+    /// Whether tractions displace normally.
+    pub(super) fn is_coupled(&self) -> bool {
+        self.friction.is_coupled()
+    }
+}

@@ -1,0 +1,204 @@
+//! Friction cell by cell: boundary elements against closed forms and against their own normal contact.
+
+use analytic::CattaneoMindlin;
+use approx::assert_relative_eq;
+use bem3d::Bem3d;
+use contact_model::{
+    Body, ContactModel, ContactState, Coupling, Effects, Error, Friction, Load, Outputs, Pair,
+    PreparedContact, Scene, SelfAffine, Step, StickSlip, Surface, Tangential,
+};
+
+const MU: f64 = 0.3;
+const TOLERANCE: f64 = 1e-9;
+
+fn alike(poisson: f64) -> Pair {
+    let body = Body::Elastic { young: 2.0, poisson };
+    Pair { first: body, second: body }
+}
+
+fn scene(surface: Surface, pair: Pair, outputs: Outputs) -> Scene {
+    let mut scene = Scene::of_pair(surface, pair).unwrap();
+    scene.effects.friction = Friction::coulomb(MU);
+    scene.outputs = outputs;
+    scene
+}
+
+fn rough() -> Surface {
+    Surface::SelfAffine(SelfAffine::new(2.3, 1.0, 0.02).unwrap())
+}
+
+fn model(cells: usize) -> Bem3d {
+    Bem3d { cells, tolerance: TOLERANCE, ..Bem3d::default() }
+}
+
+fn step(time: f64, force: f64, tangential: [f64; 2]) -> Step {
+    Step { time, normal: Load::Force(force), tangential: Tangential::Force(tangential) }
+}
+
+fn advance(contact: &mut dyn PreparedContact, step: Step) -> ContactState {
+    contact.advance(step).unwrap()
+}
+
+/// Without Poisson's ratio `q = mu (p(F) - p(F - Q/mu))` and `delta = mu (d(F) - d(F - Q/mu))` hold cell by cell,
+/// whatever the surface (Ciavarella 1998, Jaeger 1998), in one step and in many.
+#[test]
+fn without_poissons_ratio_tractions_are_differences_of_pressures() {
+    let outputs = Outputs { pressure: true, traction: true, stick_slip: true, ..Outputs::default() };
+    let scene = scene(rough(), alike(0.0), outputs);
+    let (force, share) = (0.02, 0.6);
+    let frictionless = Scene {
+        effects: Effects::default(),
+        outputs: Outputs { pressure: true, ..Outputs::default() },
+        ..scene.clone()
+    };
+    let mut normal = model(48).prepare(&frictionless, 3).unwrap();
+    let [whole, rest] = [force, force * (1.0 - share)].map(|f| normal.solve(Load::Force(f)).unwrap());
+    for steps in [1, 3] {
+        let mut contact = model(48).prepare(&scene, 3).unwrap();
+        advance(&mut *contact, step(0.0, force, [0.0; 2]));
+        let mut state = None;
+        for i in 1..=steps {
+            // Along a line that is no axis.
+            let q = MU * force * share * f64::from(i) / f64::from(steps);
+            state = Some(advance(&mut *contact, step(0.0, force, [0.6 * q, 0.8 * q])));
+        }
+        let state = state.unwrap();
+        let tangential = state.tangential.unwrap();
+        let delta = MU * (whole.approach.unwrap() - rest.approach.unwrap());
+        assert_relative_eq!(tangential.displacement[0], 0.6 * delta, max_relative = 1e-7);
+        assert_relative_eq!(tangential.displacement[1], 0.8 * delta, max_relative = 1e-7);
+        assert_relative_eq!(tangential.sliding_force.unwrap(), MU * force, max_relative = 1e-12);
+        let fields = state.fields.as_ref().unwrap();
+        let [x, y] = fields.traction.as_ref().unwrap();
+        let pressures = whole.pressure().unwrap().values().iter().zip(rest.pressure().unwrap().values());
+        let largest = whole.pressure().unwrap().values().iter().copied().fold(0.0, f64::max);
+        let mut slipping = 0;
+        for ((p, rest), (x, y)) in pressures.zip(x.values().iter().zip(y.values())) {
+            let q = MU * (p - rest);
+            assert!((x - 0.6 * q).hypot(y - 0.8 * q) < 1e-6 * MU * largest, "{x} {y} for {q}");
+            slipping += usize::from(*p > 0.0 && *rest <= 0.0);
+        }
+        let classes = fields.stick_slip.as_ref().unwrap().values();
+        let slip = classes.iter().filter(|&&class| class > StickSlip::Stick.value()).count();
+        assert!(
+            slip.abs_diff(slipping) <= 2,
+            "{slip} cells slip, {slipping} are pressed by the last of the force"
+        );
+    }
+}
+
+/// Q = 8 G a delta/(2 - nu) on one body, and the stiffness is that number.
+#[test]
+fn a_disc_that_sticks_has_mindlins_stiffness() {
+    let pair = Pair { first: Body::Rigid, second: Body::Elastic { young: 3.0, poisson: 0.5 } };
+    let outputs =
+        Outputs { tangential_stiffness: true, tangential_stiffness_stuck: true, ..Outputs::default() };
+    let errors = [32, 64, 128].map(|cells| {
+        let disc = Surface::FlatCircle { radius: 0.4, size: 1.0.into() };
+        let mut scene = scene(disc, pair, outputs);
+        scene.effects.friction = Friction::coulomb(1e3);
+        let mut contact = model(cells).prepare(&scene, 0).unwrap();
+        let delta = 1e-4;
+        let tangential = Tangential::Displacement([delta, 0.0]);
+        let state = contact.advance(Step { time: 0.0, normal: Load::Force(1.0), tangential }).unwrap();
+        let found = state.tangential.unwrap();
+        let k = found.stiffness_stuck.unwrap();
+        assert_relative_eq!(found.force[0] / delta, k[0][0], max_relative = 1e-6);
+        assert_relative_eq!(k[0][0], k[1][1], max_relative = 1e-6);
+        assert!(k[0][1].abs() < 1e-6 * k[0][0] && found.force[1].abs() < 1e-6 * found.force[0]);
+        k[0][0] / (2.0 * pair.shear_modulus().unwrap() * 0.4) - 1.0
+    });
+    println!("{errors:?}");
+    // The number of cells whose centres lie in the disc is not monotonic.
+    assert!(errors.iter().all(|error| error.abs() < 0.006), "{errors:?}");
+}
+
+/// Loading, reversal and a smaller loop of a sphere, against Cattaneo, Mindlin and Deresiewicz, who neglect what
+/// tractions displace across: exact without Poisson's ratio.
+#[test]
+fn a_sphere_follows_cattaneo_mindlin_and_deresiewicz() {
+    let shares = [0.5, 0.8, -0.2, 0.3, -0.9];
+    let run = |model: &dyn ContactModel| -> Vec<[f64; 2]> {
+        let sphere = Surface::Sphere { radius: 1.0, size: 0.25.into() };
+        let mut contact = model.prepare(&scene(sphere, alike(0.0), Outputs::default()), 0).unwrap();
+        let force = 1e-3;
+        contact.advance(Step::normal(0.0, Load::Force(force))).unwrap();
+        let along = |share: f64| {
+            let state = contact.advance(step(0.0, force, [share * MU * force, 0.0])).unwrap();
+            let tangential = state.tangential.unwrap();
+            [tangential.displacement[0], tangential.dissipated]
+        };
+        shares.map(along).to_vec()
+    };
+    let exact = run(&CattaneoMindlin);
+    let errors: Vec<[f64; 2]> = [32, 64, 128]
+        .map(|cells| {
+            let found = run(&model(cells));
+            [0, 1].map(|i| {
+                let scale = exact.iter().map(|e| e[i].abs()).fold(0.0, f64::max);
+                found.iter().zip(&exact).map(|(f, e)| (f[i] - e[i]).abs() / scale).fold(0.0, f64::max)
+            })
+        })
+        .to_vec();
+    println!("{errors:?}");
+    assert!(
+        errors[2].iter().zip(&errors[0]).all(|(fine, coarse)| *fine < 0.01 && fine < coarse),
+        "{errors:?}"
+    );
+}
+
+#[test]
+fn more_than_friction_holds_is_an_error_or_gross_slip() {
+    let outputs = Outputs { stick_area: true, ..Outputs::default() };
+    let mut contact = model(32).prepare(&scene(rough(), alike(0.3), outputs), 1).unwrap();
+    let force = 0.01;
+    let before = advance(&mut *contact, step(0.0, force, [0.5 * MU * force, 0.0]));
+    let refused = contact.advance(step(1.0, force, [1.01 * MU * force, 0.0])).unwrap_err();
+    assert!(
+        matches!(refused, Error::OutOfRange { max, .. } if (max / (MU * force) - 1.0).abs() < 1e-8),
+        "{refused}"
+    );
+    // The path is where it was.
+    let again = advance(&mut *contact, step(1.0, force, [0.5 * MU * force, 0.0]));
+    let [one, other] = [&before, &again].map(|state| state.tangential.unwrap());
+    assert_relative_eq!(one.displacement[0], other.displacement[0], max_relative = 1e-7);
+    let far = Tangential::Displacement([0.5, 0.0]);
+    let state = contact.advance(Step { time: 2.0, normal: Load::Force(force), tangential: far }).unwrap();
+    let sliding = state.tangential.unwrap();
+    // Elastic displacements across turn the slip of single cells by some 1e-4.
+    assert_relative_eq!(sliding.force[0], MU * force, max_relative = 1e-6);
+    assert!(sliding.stick_area.unwrap() <= 0.0 && sliding.slip_area.unwrap() > 0.0);
+    assert!(sliding.dissipated > 0.9 * MU * force * 0.5 * 0.9, "{sliding:?}");
+    // Lifted off, nothing holds a force.
+    assert!(contact.advance(step(3.0, 0.0, [1e-6, 0.0])).is_err());
+    let apart = advance(&mut *contact, step(3.0, 0.0, [0.0; 2]));
+    assert!(apart.tangential.unwrap().sliding_force.unwrap() <= 0.0);
+}
+
+#[test]
+fn bodies_that_couple_are_asked_about_it() {
+    let pair = Pair { first: Body::Rigid, second: Body::Elastic { young: 3.0, poisson: 0.2 } };
+    let mut scene = scene(rough(), pair, Outputs::default());
+    let asked = model(24).prepare(&scene, 1).err().unwrap().to_string();
+    assert!(asked.contains("Dundurs"), "{asked}");
+    let force = 0.01;
+    let mut displacements = Vec::new();
+    for coupling in [Coupling::Neglected, Coupling::Full] {
+        scene.effects.friction = Friction::Coulomb { coefficient: MU, coupling: Some(coupling) };
+        let mut contact = model(24).prepare(&scene, 1).unwrap();
+        advance(&mut *contact, step(0.0, force, [0.0; 2]));
+        let mut dissipated = 0.0;
+        // A loop: friction never gives energy back.
+        for (i, share) in [0.4, -0.3, 0.4, 0.1].into_iter().enumerate() {
+            let state = advance(&mut *contact, step(i as f64, force, [share * MU * force, 0.0]));
+            let tangential = state.tangential.unwrap();
+            assert!(tangential.dissipated >= dissipated, "{tangential:?}");
+            assert!(state.report.certificate.meets(TOLERANCE));
+            dissipated = tangential.dissipated;
+            displacements.push(tangential.displacement[0]);
+        }
+    }
+    let (neglected, full) = displacements.split_at(4);
+    let change = full.iter().zip(neglected).map(|(a, b)| (a / b - 1.0).abs()).fold(0.0, f64::max);
+    assert!(change > 1e-4 && change < 0.5, "coupling changes displacements by {change}");
+}
