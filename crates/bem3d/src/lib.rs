@@ -128,8 +128,9 @@
 //!
 //! # What it does not do
 //!
-//! Hardness together with adhesion, friction and rheology are refused at `prepare`; adhesion of profiles is
-//! refused too, and of profiles with free boundaries displacement fields, conductances and loads by approach.
+//! Two of hardness, adhesion and friction together, and rheology, are refused at `prepare`; adhesion and friction
+//! of profiles are refused too, and of profiles with free boundaries displacement fields, conductances and loads
+//! by approach.
 
 mod active_set;
 mod adhesion;
