@@ -202,3 +202,26 @@ fn bodies_that_couple_are_asked_about_it() {
     let change = full.iter().zip(neglected).map(|(a, b)| (a / b - 1.0).abs()).fold(0.0, f64::max);
     assert!(change > 1e-4 && change < 0.5, "coupling changes displacements by {change}");
 }
+
+/// A stiffness of the branch is as accurate as the tolerance asks, and is the difference quotient of two steps.
+#[test]
+fn the_stiffness_of_the_branch_is_a_difference_quotient() {
+    let outputs = Outputs { tangential_stiffness: true, ..Outputs::default() };
+    let scene = scene(rough(), alike(0.3), outputs);
+    let model = Bem3d { cells: 48, tolerance: 1e-6, ..Bem3d::default() };
+    let force = 0.02;
+    let mut contact = model.prepare(&scene, 3).unwrap();
+    advance(&mut *contact, step(0.0, force, [0.0; 2]));
+    let at = |contact: &mut dyn PreparedContact, share: f64| {
+        let state = advance(contact, step(0.0, force, [share * MU * force, 0.0]));
+        assert!(state.report.certificate.meets(1e-6), "{}", state.report.certificate);
+        state.tangential.unwrap()
+    };
+    let (before, h) = (at(&mut *contact, 0.5), 1e-3);
+    let after = at(&mut *contact, 0.5 + h);
+    let k = before.stiffness.unwrap();
+    let moved = [0, 1].map(|i| after.displacement[i] - before.displacement[i]);
+    let found = [0, 1].map(|i| k[i][0] * moved[0] + k[i][1] * moved[1]);
+    assert_relative_eq!(found[0], h * MU * force, max_relative = 0.01);
+    assert!(found[1].abs() < 0.01 * h * MU * force, "{found:?}");
+}

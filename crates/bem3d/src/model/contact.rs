@@ -4,7 +4,7 @@
 use super::adhesive::{AdhesiveContact, attraction};
 use super::certificate::LoadError;
 use super::load::{LoadSequence, ScaledLoad};
-use super::options::{Bem3d, NAME, bytes_per_cell};
+use super::options::{Bem3d, NAME, bytes_per_cell, friction_bytes_per_cell};
 use super::prepared::{PreparedSurface, Tangent};
 use super::sliding::Sliding;
 use crate::active_set::{self, Control, Limits, Solved};
@@ -143,7 +143,9 @@ impl PreparedContact for PreparedBem3d {
         }
         let surface = self.surface();
         let Grid { columns, rows, .. } = surface.problem.grid();
-        let bytes = bytes_per_cell(surface.expected_contact(load)) * columns as f64 * rows as f64;
+        let contact = surface.expected_contact(load);
+        let friction = surface.sliding.as_ref().map_or(0.0, |_| friction_bytes_per_cell(contact));
+        let bytes = (bytes_per_cell(contact) + friction) * columns as f64 * rows as f64;
         Some(RequiredMemory { what: format!("a solve on {columns} columns x {rows} rows").into(), bytes })
     }
 

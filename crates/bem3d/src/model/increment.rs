@@ -15,6 +15,9 @@ use contact_model::{Error, Fields, Result, Status, StickSlip, Stop, Tangential, 
 use std::f64::consts::PI;
 use std::sync::Arc;
 
+/// Times at most that an increment is solved further for the sake of its stiffness.
+const TIGHTENINGS: usize = 4;
+
 impl PreparedSurface {
     fn tangential_control(&self, load: Tangential) -> Result<TangentialControl> {
         let units = self.nondimensional;
@@ -60,13 +63,28 @@ impl PreparedSurface {
     fn slide_by(&mut self, sliding: &mut Sliding, solved: &Solved, stop: Stop<'_>) -> Result<Slid> {
         let Sliding { friction, coefficient, before, load, .. } = sliding;
         let control = self.tangential_control(*load)?;
-        let limits = self.friction_limits();
+        let (mut limits, tolerance) = (self.friction_limits(), self.options.tolerance);
         let work = friction.work();
         let contact = PressedCells { cells: &solved.contact, pressure: &solved.p };
         let load = FrictionLoad { coefficient: *coefficient, control };
-        let state = friction.advance(before, contact, load, None, limits, stop);
-        let state = state.map_err(|beyond| self.gross_slip(control, beyond))?;
-        let stiffness = self.tangential_stiffness(friction, &state, stop);
+        let first = friction.advance(before, contact, load, None, limits, stop);
+        let mut state = first.map_err(|beyond| self.gross_slip(control, beyond))?;
+        let mut stiffness = self.tangential_stiffness(friction, &state, stop);
+        // The error of a stiffness by the cells that may stick or slip falls as the square root of the gap.
+        for _ in 0..TIGHTENINGS {
+            let error = stiffness[0].as_ref().map_or(0.0, |k| k.solve_error + k.set_error);
+            if error <= tolerance || state.status != Status::Converged || stop() {
+                break;
+            }
+            limits.tolerance *= (0.5 * tolerance / error).powi(2).clamp(1e-4, 0.1);
+            let guess = Some((&solved.contact, &state.memory.traction[..]));
+            let Ok(next) = friction.advance(before, contact, load, guess, limits, stop) else { break };
+            if next.duality_gap >= state.duality_gap {
+                break;
+            }
+            state = next;
+            stiffness = self.tangential_stiffness(friction, &state, stop);
+        }
         self.count(work, friction.work());
         Ok(Slid { state, stiffness, rounds: None })
     }
@@ -95,7 +113,12 @@ impl PreparedSurface {
             normal: target,
             tangential: FrictionLoad { coefficient: *coefficient, control },
             normal_limits: self.limits(),
-            tangential_limits: self.friction_limits(),
+            tangential_limits: FrictionLimits {
+                // That of the branch's stiffness falls as its square root.
+                tolerance: self.options.tolerance
+                    * if self.outputs.tangential_stiffness { 1e-2 } else { 1.0 },
+                ..self.friction_limits()
+            },
         };
         let work = friction.work();
         let surface = (&mut self.problem, &undeformed[..]);

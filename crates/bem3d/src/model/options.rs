@@ -11,6 +11,8 @@ pub const BYTES_PER_CELL: f64 = 50.0;
 
 /// How much more contact takes that fills the grid, bytes for each cell, by the same table.
 const FILLED_BYTES: f64 = 150.0;
+/// How much more friction takes in it: 580 bytes at N = 1025 with 94 % in contact (2026-11), rounded up.
+const FRICTION_BYTES: f64 = 600.0;
 /// The box around a contact of a share s of the cells fills about so many times s of the grid.
 const BOX_OVER_CONTACT: f64 = 6.0;
 
@@ -18,6 +20,11 @@ const BOX_OVER_CONTACT: f64 = 6.0;
 /// is in contact.
 pub fn bytes_per_cell(contact: f64) -> f64 {
     FILLED_BYTES * (BOX_OVER_CONTACT * contact).min(1.0)
+}
+
+/// Memory of friction beyond [`bytes_per_cell`], in the same way.
+pub(super) fn friction_bytes_per_cell(contact: f64) -> f64 {
+    FRICTION_BYTES * (BOX_OVER_CONTACT * contact).min(1.0)
 }
 
 /// Numerics of the boundary-element model.
@@ -104,9 +111,8 @@ impl Bem3d {
             Surface::Heights(map) | Surface::Profile(map) => map.cells(),
             surface => self.grid(surface.size()),
         };
-        let outputs = &scene.outputs;
-        let fields = [outputs.pressure, outputs.displacement, outputs.gap, outputs.plastic_depth];
-        let fields = fields.iter().filter(|asked| **asked).count() as f64;
+        let fields = scene.outputs.asked().filter_map(|output| output.field());
+        let fields = fields.map(|field| field.components).sum::<usize>() as f64;
         let Cells { columns, rows } = cells;
         RequiredMemory {
             what: format!("a contact of {columns} columns x {rows} rows").into(),
