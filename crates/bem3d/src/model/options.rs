@@ -1,6 +1,6 @@
 //! Numerics of the boundary-element model.
 
-use contact_model::{Cells, RequiredMemory, Scene, Size, Surface};
+use contact_model::{Cells, Output, RequiredMemory, Scene, Size, Surface};
 
 /// Name of the model.
 pub const NAME: &str = "bem3d";
@@ -111,7 +111,7 @@ impl Bem3d {
             Surface::Heights(map) | Surface::Profile(map) => map.cells(),
             surface => self.grid(surface.size()),
         };
-        let fields = scene.outputs.asked().filter_map(|output| output.field());
+        let fields = scene.outputs.asked().filter_map(Output::field);
         let fields = fields.map(|field| field.components).sum::<usize>() as f64;
         let Cells { columns, rows } = cells;
         RequiredMemory {
