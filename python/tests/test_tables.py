@@ -129,8 +129,19 @@ def test_models_say_what_they_support():
 def test_outputs_are_those_of_the_table():
     with pytest.raises(ValueError, match=r"there are stiffness, .* and stick_slip$"):
         fc.Scene(SPHERE, modulus=1.0, outputs=["conductance"])
+    of_friction = (
+        "stick_area",
+        "tangential_stiffness",
+        "tangential_stiffness_stuck",
+        "traction",
+        "slip",
+        "stick_slip",
+    )
     for name in fc.Bem3d().supports["outputs"]:
-        if name not in ("conductance", "mean_gap", "plastic_depth"):
+        if name in of_friction:
+            with pytest.raises(fc.Unsupported, match="needs friction"):
+                fc.Scene(SPHERE, modulus=1.0, outputs=[name])
+        elif name not in ("conductance", "mean_gap", "plastic_depth"):
             assert fc.Scene(SPHERE, modulus=1.0, outputs=[name]).outputs == (name,)
 
 
