@@ -1,12 +1,12 @@
 //! One increment: the tractions at its end from those at its beginning.
 
-use super::disks::{multiplier, project, sums, total};
-use super::linearised::{Branch, Linearised, Room, Split, TorusWindow, extend};
+use super::disks::{length, multiplier, project, sums, total};
+use super::linearised::{Branch, Linearised, Room, SLIPPING, Split, TorusWindow, extend};
 use crate::geometry::CellSet;
 use crate::linear::{Extension, Fixed, StoppingCriteria, TensorTorusInverse, Vectors, pcg};
 use crate::operator::{InfluenceOperator, TangentialOperators};
 use crate::parts::Part;
-use crate::real::{dot, largest, sum};
+use crate::real::{binary_unit, dot, each, largest, sum, update};
 use contact_model::{Status, Stop};
 
 /// What is prescribed, nondimensional; components along x and y.
@@ -100,6 +100,15 @@ const PATIENCE: usize = 4;
 const GRADIENTS: usize = 8;
 /// A gap is better when it falls by this factor.
 const BETTER: f64 = 0.7;
+/// Where a whole step leaves more than this of the gap, linear systems are solved further from then on ...
+const SLOW: f64 = 0.3;
+/// ... by this factor ...
+const FURTHER: f64 = 0.2;
+/// ... down to this reduction. In the norm in which conjugate gradients fall fast, slip cells count more than what is
+/// left on stick cells at long waves, of which the gap consists.
+const LEAST_REDUCTION: f64 = 0.02;
+/// Units of tractions are at least this share of displacements: squares of these stay finite.
+const SMALLEST_UNIT: f64 = 1e-100;
 /// Share of the friction of all cells that a force may ask for: at the whole of it the displacement has no bound.
 pub const LARGEST_SHARE: f64 = 1.0 - 1e-9;
 
@@ -108,8 +117,9 @@ struct Solver<'a> {
     room: &'a mut FrictionRoom,
     increment: Increment<'a>,
     limits: FrictionLimits,
-    /// Largest limit: the unit of all vectors.
-    friction: f64,
+    /// Sum of the limits, and largest length of the references.
+    most: f64,
+    reach: f64,
     rho: f64,
     /// Tractions, and the displacements that they make.
     q: Vec<f64>,
@@ -118,6 +128,10 @@ struct Solver<'a> {
     w: Vec<f64>,
     delta: [f64; 2],
     gap: f64,
+    /// Reduction of the residual of linear systems.
+    reduction: f64,
+    /// Whether the last step was taken whole.
+    whole: bool,
     iterations: usize,
     steps: usize,
 }
@@ -151,7 +165,40 @@ pub fn solve(
     if largest(increment.limit) <= 0.0 {
         return free(increment);
     }
-    Solver::new(operators, room, increment, start, limits).iterate(stop)
+    in_units(increment, start, |increment, start| {
+        Solver::new(operators, room, increment, start, limits).iterate(stop)
+    })
+}
+
+/// Solves in units of about the largest limit, a power of two.
+fn in_units(
+    increment: Increment<'_>,
+    mut start: Vec<f64>,
+    solve: impl FnOnce(Increment<'_>, Vec<f64>) -> Sliding,
+) -> Sliding {
+    let Increment { limit, reference, control, displacement, .. } = increment;
+    let [dx, dy] = match control {
+        TangentialControl::Displacement(displacement) => displacement,
+        TangentialControl::Force(_) => displacement,
+    };
+    let unit = binary_unit(limit).max(SMALLEST_UNIT * largest(reference).max(dx.abs()).max(dy.abs()));
+    let unit = binary_unit(&[unit]);
+    let less = |v: &[f64]| v.iter().map(|v| v / unit).collect::<Vec<f64>>();
+    let pair = |[x, y]: [f64; 2]| [x / unit, y / unit];
+    let (limit, reference) = (less(limit), less(reference));
+    let control = match control {
+        TangentialControl::Displacement(displacement) => TangentialControl::Displacement(pair(displacement)),
+        TangentialControl::Force(force) => TangentialControl::Force(pair(force)),
+    };
+    each(&mut start, |q| *q /= unit);
+    let displacement = pair(displacement);
+    let scaled = Increment { limit: &limit, reference: &reference, control, displacement, ..increment };
+    let mut found = solve(scaled, start);
+    for vector in [&mut found.traction, &mut found.slip] {
+        each(vector, |v| *v *= unit);
+    }
+    found.displacement = found.displacement.map(|delta| delta * unit);
+    found
 }
 
 /// The same by projected gradients alone, so many at most.
@@ -164,11 +211,13 @@ pub fn by_gradients(
     limits: FrictionLimits,
     steps: usize,
 ) -> Sliding {
-    let mut solver = Solver::new(operators, room, increment, start, limits);
-    solver.admit();
-    solver.displace();
-    solver.descend(steps, &contact_model::never);
-    solver.state(Status::IterationLimit)
+    in_units(increment, start, |increment, start| {
+        let mut solver = Solver::new(operators, room, increment, start, limits);
+        solver.admit();
+        solver.displace();
+        solver.descend(steps, &contact_model::never);
+        solver.state(Status::IterationLimit)
+    })
 }
 
 /// The step rho of `y = q + rho w`, which decides between stick and slip.
@@ -223,12 +272,15 @@ impl<'a> Solver<'a> {
             room,
             increment: Increment { control, ..increment },
             limits,
-            friction: largest(increment.limit),
+            most,
+            reach: largest_length(increment.reference),
             q: start,
             u: Vec::new(),
             w: Vec::new(),
             delta: increment.displacement,
             gap: f64::INFINITY,
+            reduction: REDUCTION,
+            whole: false,
             iterations: 0,
             steps: 0,
         }
@@ -258,7 +310,13 @@ impl<'a> Solver<'a> {
                 break Status::IterationLimit;
             }
             self.iterations += 1;
-            if since_best > PATIENCE || !self.newton(stop) {
+            let before = self.gap;
+            let moved = since_best <= PATIENCE && self.newton(stop);
+            if moved {
+                if self.whole && self.gap > SLOW * before {
+                    self.reduction = (FURTHER * self.reduction).max(LEAST_REDUCTION);
+                }
+            } else {
                 if gradients > 1 << 12 {
                     break Status::Stagnated;
                 }
@@ -300,40 +358,36 @@ impl<'a> Solver<'a> {
     fn slide(&mut self) {
         let Self { increment, q, u, w, delta, rho, .. } = self;
         let n = increment.limit.len();
-        w.clear();
-        w.extend(u.iter().zip(increment.reference).map(|(u, reference)| -u - reference));
+        w.clone_from(u);
+        update(w, increment.reference, |w, reference| *w = -*w - reference);
         *delta = match increment.control {
             TangentialControl::Displacement(delta) => delta,
             TangentialControl::Force(force) => {
-                let y: Vec<f64> = q.iter().zip(&*w).map(|(q, w)| q + *rho * w).collect();
+                let mut y = w.clone();
+                update(&mut y, q, |y, q| *y = q + *rho * *y);
                 let start = delta.map(|delta| *rho * delta);
                 multiplier(&y, increment.limit, force, start).map(|shift| shift / *rho)
             }
         };
         for (w, delta) in w.chunks_exact_mut(n).zip(*delta) {
-            for w in w.iter_mut() {
-                *w += delta;
-            }
+            each(w, |w| *w += delta);
         }
         let [gap] = sums((q, w), increment.limit, |[qx, qy], [wx, wy], b| {
-            [(b * wx.hypot(wy) - qx * wx - qy * wy).max(0.0)]
+            [(b * length([wx, wy]) - qx * wx - qy * wy).max(0.0)]
         });
-        let [square] = [largest_length(increment.reference)];
-        let length = square.max(delta[0].hypot(delta[1]));
-        let scale = sum(increment.limit) * length;
+        let scale = self.most * self.reach.max(length(*delta));
         self.gap = if scale > 0.0 { gap / scale } else { 0.0 };
     }
 
     fn state(&self, status: Status) -> Sliding {
         let Self { increment, q, w, delta, rho, .. } = self;
-        let most = sum(increment.limit);
         let load_error = self.force().map_or(0.0, |[fx, fy]| {
             let [x, y] = total(q);
-            (x - fx).hypot(y - fy) / most
+            length([x - fx, y - fy]) / self.most
         });
         let n = increment.limit.len();
         let sticks: Vec<bool> = (increment.limit.iter().enumerate())
-            .map(|(i, b)| (q[i] + rho * w[i]).hypot(q[n + i] + rho * w[n + i]) <= *b)
+            .map(|(i, b)| length([q[i] + rho * w[i], q[n + i] + rho * w[n + i]]) <= *b)
             .collect();
         let mut traction = q.clone();
         project(&mut traction, increment.limit, [0.0; 2]);
@@ -359,7 +413,7 @@ impl<'a> Solver<'a> {
         // Slip cells onto their circles.
         let mut next = self.q.clone();
         for (i, &b) in limit.iter().enumerate().filter(|(i, _)| branch.slips(*i)) {
-            let length = y[i].hypot(y[n + i]);
+            let length = length([y[i], y[n + i]]);
             (next[i], next[n + i]) = (y[i] * b / length, y[n + i] * b / length);
         }
         let force = self.force();
@@ -367,7 +421,7 @@ impl<'a> Solver<'a> {
         let tuning = *self.operators.tuning();
         let (own, shift) = (self.operators.table().own(), self.operators.table().shift());
         let criteria =
-            StoppingCriteria { reduction: REDUCTION, energy: None, floor: 0.0, steps: INNER_STEPS };
+            StoppingCriteria { reduction: self.reduction, energy: None, floor: 0.0, steps: INNER_STEPS };
         self.operators.solves += 1;
         let Some((kernel, transform)) = self.operators.system(cells, false) else { return false };
         let FrictionRoom { vectors, extensions, split: room, weights } = &mut *self.room;
@@ -377,22 +431,20 @@ impl<'a> Solver<'a> {
         let mut split = Split {
             torus: TensorTorusInverse { transform, extensions },
             branch: &branch,
-            own: 0.5 * own as f32,
+            own: SLIPPING * own as f32,
             sums: None,
             room: std::mem::take(room),
             recorder: recorder.clone(),
         };
         let mut linearised = Linearised { kernel, shift: shift as f32, branch: &branch };
-        let unit = self.friction;
         // The change of the tractions so far, whose displacements the residual needs.
-        let mut change: Vec<f32> =
-            next.iter().zip(&self.q).map(|(next, q)| ((next - q) / unit) as f32).collect();
+        let mut change: Vec<f32> = next.iter().zip(&self.q).map(|(next, q)| (next - q) as f32).collect();
         let mut spread = vec![0.0; 2 * n];
         if let Some([fx, fy]) = force {
             split.fix_sums(cells, weights);
             let [x, y] = total(&next);
             if let Some(sums) = &split.sums {
-                sums.spread([(fx - x) / unit, (fy - y) / unit], &mut spread);
+                sums.spread([fx - x, fy - y], &mut spread);
                 change.iter_mut().zip(&spread).for_each(|(change, spread)| *change += spread);
             }
         }
@@ -408,8 +460,7 @@ impl<'a> Solver<'a> {
                 }
             }
         }
-        let mut right: Vec<f64> =
-            self.w.iter().zip(&displaced).map(|(w, u)| w / unit - f64::from(*u)).collect();
+        let mut right: Vec<f64> = self.w.iter().zip(&displaced).map(|(w, u)| w - f64::from(*u)).collect();
         branch.restrict_f64(&mut right);
         let moved: Vec<f64> = spread.iter().map(|&spread| f64::from(spread)).collect();
         branch.add_turning(&moved, &mut right, -1.0);
@@ -429,7 +480,7 @@ impl<'a> Solver<'a> {
         *room = std::mem::take(&mut split.room);
         self.operators.applications += applications;
         for ((next, x), spread) in next.iter_mut().zip(&right).zip(&moved) {
-            *next += unit * (x + spread);
+            *next += x + spread;
         }
         self.go_to(next)
     }
@@ -442,12 +493,11 @@ impl<'a> Solver<'a> {
         project(&mut next, limit, shift);
         let u = self.exact(&next);
         let (mut slope, mut curvature, mut rounding) = (0.0, 0.0, 0.0);
-        let unit = self.friction;
         for ((((q, next), w), from), to) in self.q.iter().zip(&next).zip(&self.w).zip(&self.u).zip(&u) {
-            let d = (next - q) / unit;
-            slope += d * (w / unit);
-            rounding += ROUNDING * (q / unit * (w / unit)).abs();
-            curvature += d * ((to - from) / unit);
+            let d = next - q;
+            slope += d * w;
+            rounding += ROUNDING * (q * w).abs();
+            curvature += d * (to - from);
         }
         // A change of the energy below its rounding tells nothing.
         let slope = slope + rounding;
@@ -455,7 +505,8 @@ impl<'a> Solver<'a> {
         if share.is_nan() || share < USELESS {
             return false;
         }
-        if share >= WHOLE {
+        self.whole = share >= WHOLE;
+        if self.whole {
             (self.q, self.u) = (next, u);
         } else {
             for (from, to) in [(&mut self.q, &next), (&mut self.u, &u)] {
@@ -468,7 +519,7 @@ impl<'a> Solver<'a> {
 
     /// Projected gradients of Barzilai and Borwein's lengths with exact line searches.
     fn descend(&mut self, steps: usize, stop: Stop<'_>) {
-        let (limit, unit) = (self.increment.limit, self.friction);
+        let limit = self.increment.limit;
         let mut length = self.rho;
         for _ in 0..steps {
             if stop() || self.gap <= self.limits.tolerance {
@@ -478,19 +529,19 @@ impl<'a> Solver<'a> {
             let mut next: Vec<f64> = self.q.iter().zip(&self.w).map(|(q, w)| q + length * w).collect();
             let shift = self.force().map_or([0.0; 2], |force| multiplier(&next, limit, force, [0.0; 2]));
             project(&mut next, limit, shift);
-            let d: Vec<f64> = next.iter().zip(&self.q).map(|(next, q)| (next - q) / unit).collect();
+            let d: Vec<f64> = next.iter().zip(&self.q).map(|(next, q)| next - q).collect();
             let v = self.exact(&d);
             let (square, curvature) = (dot(&d, &d), dot(&d, &v));
-            let slope = d.iter().zip(&self.w).map(|(d, w)| d * (w / unit)).sum::<f64>();
+            let slope = dot(&d, &self.w);
             if slope.is_nan() || slope <= 0.0 || square <= 0.0 {
                 return;
             }
             let share = if curvature > 0.0 { (slope / curvature).min(1.0) } else { 1.0 };
             for (q, d) in self.q.iter_mut().zip(&d) {
-                *q += unit * share * d;
+                *q += share * d;
             }
             for (u, v) in self.u.iter_mut().zip(&v) {
-                *u += unit * share * v;
+                *u += share * v;
             }
             length = if curvature > 0.0 { square / curvature } else { self.rho };
             self.slide();
@@ -522,5 +573,5 @@ pub fn exact(
 /// Largest length of the vectors of a field.
 fn largest_length(v: &[f64]) -> f64 {
     let (x, y) = v.split_at(v.len() / 2);
-    x.iter().zip(y).fold(0.0, |longest: f64, (x, y)| longest.max(x.hypot(*y)))
+    x.iter().zip(y).fold(0.0, |longest: f64, (x, y)| longest.max(length([*x, *y])))
 }

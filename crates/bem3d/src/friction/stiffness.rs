@@ -1,7 +1,7 @@
 //! The tangential stiffness of a branch of friction: two linear solves with two-sided bounds.
 
 use super::increment::{FrictionRoom, exact};
-use super::linearised::{Branch, Linearised, Split, TorusWindow, extend, inverse_of};
+use super::linearised::{Branch, Linearised, SLIPPING, Split, TorusWindow, extend, inverse_of};
 use crate::geometry::CellSet;
 use crate::linear::{Fixed, StoppingCriteria, TensorTorusInverse, pcg};
 use crate::operator::TangentialOperators;
@@ -157,7 +157,7 @@ fn correct(
     let mut split = Split {
         torus: TensorTorusInverse { transform, extensions },
         branch,
-        own: 0.5 * own as f32,
+        own: SLIPPING * own as f32,
         sums: None,
         room: std::mem::take(vectors_of_split),
         recorder: recorder.clone(),
