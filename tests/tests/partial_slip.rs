@@ -4,7 +4,7 @@ use analytic::CattaneoMindlin;
 use approx::assert_relative_eq;
 use bem3d::Bem3d;
 use contact_model::{
-    Body, ContactModel, ContactState, Coupling, Effects, Error, Friction, Load, Outputs, Pair,
+    Body, Boundary, ContactModel, ContactState, Coupling, Effects, Error, Friction, Load, Outputs, Pair,
     PreparedContact, Scene, SelfAffine, Step, StickSlip, Surface, Tangential,
 };
 
@@ -224,4 +224,34 @@ fn the_stiffness_of_the_branch_is_a_difference_quotient() {
     let found = [0, 1].map(|i| k[i][0] * moved[0] + k[i][1] * moved[1]);
     assert_relative_eq!(found[0], h * MU * force, max_relative = 0.01);
     assert!(found[1].abs() < 0.01 * h * MU * force, "{found:?}");
+}
+
+/// In full contact with periodic boundaries a mean traction displaces nothing: what would have to be solved is rounding,
+/// and there is no stiffness.
+#[test]
+fn a_periodic_surface_that_sticks_as_a_whole_does_not_move() {
+    let outputs = Outputs {
+        tangential_stiffness: true,
+        tangential_stiffness_stuck: true,
+        traction: true,
+        ..Outputs::default()
+    };
+    let mut scene = scene(rough(), alike(0.3), outputs);
+    scene.effects.boundary = Boundary::Periodic;
+    let mut contact = model(8).prepare(&scene, 3).unwrap();
+    let force = 5.0;
+    advance(&mut *contact, step(0.0, force, [0.0; 2]));
+    for share in [0.3, 0.5, -0.5] {
+        let q = share * MU * force;
+        let state = advance(&mut *contact, step(0.0, force, [q, 0.5 * q]));
+        let found = state.tangential.unwrap();
+        assert!(found.displacement.iter().all(|d| d.abs() < 1e-12), "{found:?}");
+        assert!(found.stiffness.is_none() && found.stiffness_stuck.is_none(), "{found:?}");
+        // The side is 1: the force is the mean traction.
+        let [x, y] = state.fields.as_ref().unwrap().traction.as_ref().unwrap();
+        for (x, y) in x.values().iter().zip(y.values()) {
+            assert_relative_eq!(*x, q, max_relative = 1e-9);
+            assert_relative_eq!(*y, 0.5 * q, max_relative = 1e-9);
+        }
+    }
 }

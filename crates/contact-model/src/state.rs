@@ -203,7 +203,8 @@ pub struct TangentialState {
     /// Area of the contact that slips: its traction is what friction can hold, where asked for.
     pub slip_area: Option<f64>,
     /// Tangential stiffness `stiffness[i][j] = dQ_i/ddelta_j` along the branch of the states, where asked for:
-    /// the pressures are held, what sticks goes on sticking and what slips goes on slipping. Symmetric.
+    /// the pressures are held, what sticks goes on sticking and what slips goes on slipping. Symmetric. `None` of a
+    /// periodic surface that sticks as a whole, which moves under no force.
     pub stiffness: Option<[[f64; 2]; 2]>,
     /// The same with the whole contact sticking, where asked for: the first answer after a reversal.
     pub stiffness_stuck: Option<[[f64; 2]; 2]>,

@@ -131,16 +131,19 @@ impl PreparedSurface {
         Ok((normal, Slid { state: found.tangential, stiffness, rounds }))
     }
 
-    /// The tangential stiffnesses that are asked for.
+    /// The tangential stiffnesses that are asked for; none of a periodic surface that sticks as a whole, which moves
+    /// under no force.
     fn tangential_stiffness(
         &self,
         friction: &mut Friction,
         state: &FrictionState,
         stop: Stop<'_>,
     ) -> [Option<TangentialStiffness>; 2] {
+        let cells = &state.memory.cells;
+        let (full, sticks) = (self.is_full(cells), state.stick.len() == cells.len());
         let asked = [
-            (self.outputs.tangential_stiffness, StiffnessOf::Branch),
-            (self.outputs.tangential_stiffness_stuck, StiffnessOf::FullStick),
+            (self.outputs.tangential_stiffness && !(full && sticks), StiffnessOf::Branch),
+            (self.outputs.tangential_stiffness_stuck && !full, StiffnessOf::FullStick),
         ];
         asked.map(|(asked, of)| asked.then(|| friction.stiffness(state, of, self.options.tolerance, stop)))
     }
