@@ -147,7 +147,7 @@ pub fn largest(field: &[f64]) -> f64 {
     field.iter().fold(0.0, |largest, value| value.abs().max(largest))
 }
 
-fn known<T>(name: &'static str, value: Option<T>) -> Result<T> {
+pub(crate) fn known<T>(name: &'static str, value: Option<T>) -> Result<T> {
     value.ok_or(Error::Shape { name: name.into(), found: 0, expected: "what was asked for".into() })
 }
 

@@ -16,13 +16,14 @@
 //! * Besides its certificate a state has a witness that shares nothing with the solver but Love's kernel: the
 //!   contact conditions and the force from plain sums over pairs (free boundaries, modulus 1, up to 129 cells
 //!   a side), the stiffness by Gauss's elimination (up to 220 cells).
+//! * A step of friction has a witness that shares nothing with the solver: Coulomb's conditions, forces, slip and
+//!   dissipated energy from plain sums of a tangential kernel that is integrated by Gauss's rule.
 //! * A case that fails, with an error or a panic, is a row like any other; the others still run.
 //!
 //! # How accurate
 //!
 //! The reference implementations are [`every_contact_set`] (all sets of up to 16 cells), [`relaxed`]
-//! (projected Gauss-Seidel, to rounding) and
-//! [`PlainSum`]. Bounds are stated beside each case with their reason.
+//! (projected Gauss-Seidel, to rounding), [`Dragged`] (the same for friction), [`PlainSum`] and [`PlainShear`]. Bounds are stated beside each case with their reason.
 //!
 //! # How fast
 //!
@@ -47,9 +48,12 @@ mod ledger;
 mod maps;
 mod plain;
 mod press;
+mod shear;
+mod slide;
 
 pub use case::{Case, CaseResult, Effort, run};
 pub use cases::cases;
 pub use enumerate::{SmallContact, every_contact_set};
 pub use maps::{embedded, hard_map, map, rough, rough_map, scene};
 pub use plain::{PlainSum, Relaxed, relaxed, relaxed_by};
+pub use shear::{Dragged, PlainShear, compliance};

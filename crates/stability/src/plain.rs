@@ -48,43 +48,12 @@ impl PlainSum {
     pub fn periodic(map: &HeightMap) -> Self {
         let (columns, rows) = (map.columns(), map.rows());
         let (unit, stretch) = scales(map.dx(), map.dy());
-        // As many images in each direction as make about a square.
-        let ratio = map.size().x / map.size().y;
-        let odd = |r: f64| 2 * ((r - 1.0) / 2.0).round() as isize + 1;
-        let (along_x, along_y) = (odd((1.0 / ratio).max(1.0)), odd(ratio.max(1.0)));
-        let image = |lag: usize, i: isize, n: usize| (lag.cast_signed() + i * n.cast_signed()).unsigned_abs();
-        let sum = |x: usize, y: usize, m: isize| -> f64 {
-            // A window of images of one shape: (m + 1/2) along_x periods on each side along x.
-            let (mx, my) = (m * along_x + (along_x - 1) / 2, m * along_y + (along_y - 1) / 2);
-            (-mx..=mx)
-                .flat_map(|i| (-my..=my).map(move |j| (i, j)))
-                .map(|(i, j)| influence_of_rectangle(image(x, i, columns), image(y, j, rows), stretch))
-                .sum()
-        };
-        let origin = IMAGES.map(|m| sum(0, 0, m));
-        let (half_x, half_y) = (columns / 2 + 1, rows / 2 + 1);
-        let mut quarter = vec![0.0; half_x * half_y];
-        for (i, value) in quarter.iter_mut().enumerate().skip(1) {
-            let below: Vec<f64> = IMAGES
-                .iter()
-                .zip(origin)
-                .map(|(&m, origin)| sum(i % half_x, i / half_x, m) - origin)
-                .collect();
-            // value + c1 / M + c3 / M^3 + c5 / M^5 = below.
-            let row = |&m: &isize| {
-                let inverse = (m as f64 + 0.5).recip();
-                vec![1.0, inverse, inverse.powi(3), inverse.powi(5)]
-            };
-            *value = eliminate(IMAGES.iter().map(row).collect(), below)[0];
-        }
+        let kernel = images(map, |x, y| {
+            influence_of_rectangle(x.unsigned_abs(), y.unsigned_abs(), stretch) / (PI * unit)
+        });
         // Below every value, and below 0 where there is one cell.
-        let lowest = quarter.iter().copied().fold(-0.1, f64::min);
-        let fold = |lag: usize, n: usize| lag.min(n - lag);
-        let at = |i: usize| {
-            let (x, y) = (fold(i % columns, columns), fold(i / columns, rows));
-            (quarter[y * half_x + x] - 1.1 * lowest) / (PI * unit)
-        };
-        Self { columns, rows, kernel: (0..columns * rows).map(at).collect() }
+        let lowest = kernel.iter().copied().fold(-0.1 / (PI * unit), f64::min);
+        Self { columns, rows, kernel: kernel.iter().map(|value| value - 1.1 * lowest).collect() }
     }
 
     /// Mean of a periodic kernel: the displacement of all cells under a unit force spread over all of them.
@@ -119,6 +88,41 @@ impl PlainSum {
         let row = |&i: &usize| contact.iter().map(|&j| self.between(i, j)).collect();
         eliminate(contact.iter().map(row).collect(), vec![1.0; contact.len()]).iter().sum()
     }
+}
+
+/// Sums of a kernel over the images of a map that repeats itself, at all lags, less that at no lag.
+pub(crate) fn images(map: &HeightMap, kernel: impl Fn(isize, isize) -> f64) -> Vec<f64> {
+    let (columns, rows) = (map.columns(), map.rows());
+    // As many images in each direction as make about a square.
+    let ratio = map.size().x / map.size().y;
+    let odd = |r: f64| 2 * ((r - 1.0) / 2.0).round() as isize + 1;
+    let (along_x, along_y) = (odd((1.0 / ratio).max(1.0)), odd(ratio.max(1.0)));
+    let image = |lag: usize, i: isize, n: usize| lag.cast_signed() + i * n.cast_signed();
+    let sum = |x: usize, y: usize, m: isize| -> f64 {
+        // A window of images of one shape: (m + 1/2) along_x periods on each side along x.
+        let (mx, my) = (m * along_x + (along_x - 1) / 2, m * along_y + (along_y - 1) / 2);
+        (-mx..=mx)
+            .flat_map(|i| (-my..=my).map(move |j| (i, j)))
+            .map(|(i, j)| kernel(image(x, i, columns), image(y, j, rows)))
+            .sum()
+    };
+    let origin = IMAGES.map(|m| sum(0, 0, m));
+    let (half_x, half_y) = (columns / 2 + 1, rows / 2 + 1);
+    let mut quarter = vec![0.0; half_x * half_y];
+    for (i, value) in quarter.iter_mut().enumerate().skip(1) {
+        let below: Vec<f64> =
+            IMAGES.iter().zip(origin).map(|(&m, origin)| sum(i % half_x, i / half_x, m) - origin).collect();
+        // value + c1 / M + c3 / M^3 + c5 / M^5 = below.
+        let row = |&m: &isize| {
+            let inverse = (m as f64 + 0.5).recip();
+            vec![1.0, inverse, inverse.powi(3), inverse.powi(5)]
+        };
+        *value = eliminate(IMAGES.iter().map(row).collect(), below)[0];
+    }
+    let fold = |lag: usize, n: usize| lag.min(n - lag);
+    (0..columns * rows)
+        .map(|i| quarter[fold(i / columns, rows) * half_x + fold(i % columns, columns)])
+        .collect()
 }
 
 /// Side of the square cell of the same area, and the side along x in units of it.

@@ -3,6 +3,8 @@
 mod adhesion;
 mod chance;
 mod few;
+mod friction;
+mod friction_paths;
 mod hardness;
 mod limits;
 mod periodic;
@@ -35,6 +37,8 @@ pub fn cases() -> Vec<Case> {
         &hardness::CASES,
         &adhesion::CASES,
         &short_range::CASES,
+        &friction::CASES,
+        &friction_paths::CASES,
         &chance::CASES,
     ]
     .concat()
