@@ -11,6 +11,8 @@ mod equivalent;
 mod exact_bodies;
 mod exponents;
 mod friction;
+mod friction_exact;
+mod friction_properties;
 mod grid_error;
 mod hard;
 mod modules;
