@@ -382,6 +382,8 @@ pub const STRIPE_BYTES: usize = 256;
 pub const CACHE_LINE: usize = 64;
 /// Side of the squares in which columns and rows are exchanged: it divides the columns of a cache line.
 pub const SQUARE: usize = 4;
+/// Waves of a row that are taken apart or put together at a time: two registers of single precision.
+pub const WAVES: usize = 8;
 /// Accumulators side by side in a sum: one 512-bit register of single precision.
 pub const LANES: usize = 16;
 /// Numbers that they take in before a sum goes on in double precision.

@@ -272,7 +272,8 @@ impl CellSet {
 
     /// The cells in one row of the grid, where there are any.
     pub fn row(&self, y: usize) -> Option<SetRow<'_>> {
-        self.rows_within(y..y + 1).next()
+        let number = self.number(y);
+        (self.rows.get(number)?.y as usize == y).then(|| self.numbered_row(number))
     }
 
     /// Number of rows with cells before row y of the grid.
@@ -293,16 +294,18 @@ impl CellSet {
     }
 
     fn numbered_rows(&self, numbers: Range<usize>) -> impl Iterator<Item = SetRow<'_>> + Clone {
+        numbers.map(move |number| self.numbered_row(number))
+    }
+
+    fn numbered_row(&self, number: usize) -> SetRow<'_> {
         let end = RowStart { y: u32::MAX, cells: self.columns.len() as u32, runs: self.runs.len() as u32 };
-        numbers.map(move |i| {
-            let (row, next) = (self.rows[i], self.rows.get(i + 1).copied().unwrap_or(end));
-            SetRow {
-                y: row.y as usize,
-                start: row.cells as usize,
-                columns: &self.columns[row.cells as usize..next.cells as usize],
-                runs: &self.runs[row.runs as usize..next.runs as usize],
-            }
-        })
+        let (row, next) = (self.rows[number], self.rows.get(number + 1).copied().unwrap_or(end));
+        SetRow {
+            y: row.y as usize,
+            start: row.cells as usize,
+            columns: &self.columns[row.cells as usize..next.cells as usize],
+            runs: &self.runs[row.runs as usize..next.runs as usize],
+        }
     }
 
     /// Cuts values on the set into those of bands of rows that begin at these rows of the grid, each with its

@@ -224,22 +224,22 @@ impl Level {
         let (own, next) = (&self.row(own)[..blocks], &self.row(next)[..blocks]);
         widest(
             #[inline(always)]
-            || {
-                let at = |x: usize| factor * (NEAR * own[x] + NEXT * next[x]);
-                let ends = |x: usize| [x.saturating_sub(1), x, (x + 1).min(blocks - 1)].map(at);
-                let pair = |[left, middle, right]: [f32; 3]| {
+            move || {
+                let at = |own: f32, next: f32| factor * (NEAR * own + NEXT * next);
+                let pair = |left: f32, middle: f32, right: f32| {
                     [NEAR * middle + NEXT * left, NEAR * middle + NEXT * right]
                 };
                 let (pairs, odd) = fine.as_chunks_mut::<2>();
                 let inner = zip(own.windows(3), next.windows(3));
                 for (fine, (own, next)) in zip(pairs.iter_mut().skip(1), inner) {
-                    let at = |i: usize| factor * (NEAR * own[i] + NEXT * next[i]);
-                    *fine = pair([at(0), at(1), at(2)]);
+                    *fine = pair(at(own[0], next[0]), at(own[1], next[1]), at(own[2], next[2]));
                 }
+                let at = |x: usize| at(own[x], next[x]);
                 for x in [0, blocks - 1] {
+                    let ends = pair(at(x.saturating_sub(1)), at(x), at((x + 1).min(blocks - 1)));
                     match pairs.get_mut(x) {
-                        Some(fine) => *fine = pair(ends(x)),
-                        None => odd.copy_from_slice(&pair(ends(x))[..1]),
+                        Some(fine) => *fine = ends,
+                        None => odd.copy_from_slice(&ends[..1]),
                     }
                 }
             },
@@ -255,12 +255,15 @@ impl Level {
         for fine in (2 * y).saturating_sub(1)..(2 * y + 3).min(height) {
             let (own, next) = rows_around(fine, coarse);
             let share = factor * (if own == y { NEAR } else { 0.0 } + if next == y { NEXT } else { 0.0 });
-            let weights = &self.weight[fine * width..][..width];
+            let (values, weights) = (self.row(fine), &self.weight[fine * width..][..width]);
+            let sums = &mut *sums;
             widest(
                 #[inline(always)]
-                || {
-                    for ((sum, &value), &weight) in zip(zip(&mut *sums, self.row(fine)), weights) {
-                        *sum += if weight > 0.0 { 0.0 } else { share * value };
+                move || {
+                    for ((sum, &value), &weight) in zip(zip(sums, values), weights) {
+                        // Without a branch: contact and gaps have no order.
+                        let share = if weight > 0.0 { 0.0 } else { share };
+                        *sum += share * value;
                     }
                 },
             );
@@ -272,7 +275,7 @@ impl Level {
 fn spread_back(fine: &[f32], blocks: &mut [f32]) {
     widest(
         #[inline(always)]
-        || {
+        move || {
             let count = fine.len().div_ceil(2);
             let at = |i: usize| fine.get(i).copied().unwrap_or(0.0);
             // Two cells, and the nearest one on each side.

@@ -1,13 +1,18 @@
-//! Transforms of fields on a window of the grid: real ones of their rows and complex ones of their columns.
+//! Transforms of fields on a window of the grid: of pairs of their rows, and of their columns.
+//!
+//! Two real rows a and b are one complex row `z = a + i b`, whose transform has those of both in it:
+//! `A(k) = (Z(k) + Z*(-k)) / 2` and `B(k) = (Z(k) - Z*(-k)) / 2i`. They are taken apart where the spectra of
+//! rows are stored, and put together where they are read: a complex transform of length n is as fast as a
+//! real one, which is a complex one of half the length and a pass over its result.
 
 use crate::geometry::{Lengths, Window};
 use crate::real::Real;
-use crate::tuning::{BAND, CACHE_LINE, SQUARE, STRIPE_BYTES};
-use numerics::parallel::{for_each, threads_for};
-use realfft::{ComplexToReal, RealToComplex};
+use crate::tuning::{BAND, CACHE_LINE, SQUARE, STRIPE_BYTES, WAVES};
+use numerics::parallel::{for_each, threads_for, widest};
 use rustfft::Fft;
 use rustfft::num_complex::Complex;
 use std::fmt;
+use std::iter::zip;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -23,8 +28,8 @@ pub struct Transform<T: Real, const N: usize> {
     /// Rows of a field, and those from one field to the next.
     height: usize,
     field: usize,
-    row_forward: Arc<dyn RealToComplex<T>>,
-    row_inverse: Arc<dyn ComplexToReal<T>>,
+    row_forward: Arc<dyn Fft<T>>,
+    row_inverse: Arc<dyn Fft<T>>,
     column_forward: Arc<dyn Fft<T>>,
     column_inverse: Arc<dyn Fft<T>>,
     /// Row spectra: of each stripe all rows, of each row the columns of the stripe; from `start` on (where a
@@ -38,8 +43,12 @@ pub struct Transform<T: Real, const N: usize> {
 
 /// Buffers of one thread.
 struct Buffers<T: Real> {
-    row: Vec<T>,
-    line: Vec<Complex<T>>,
+    /// Two rows, one after the other.
+    rows: Vec<T>,
+    /// Both as one complex row.
+    pair: Vec<Complex<T>>,
+    /// Its spectrum, the first value once more at the end.
+    spectrum: Vec<Complex<T>>,
     /// Columns that share cache lines, one after the other.
     columns: Vec<Complex<T>>,
     scratch: Vec<Complex<T>>,
@@ -71,8 +80,8 @@ impl<T: Real, const N: usize> Transform<T, N> {
             lengths,
             height: window.height,
             field,
-            row_forward: T::real_forward(lengths.x),
-            row_inverse: T::real_inverse(lengths.x),
+            row_forward: T::forward(lengths.x),
+            row_inverse: T::inverse(lengths.x),
             column_forward: T::forward(lengths.y),
             column_inverse: T::inverse(lengths.y),
             spectrum,
@@ -107,15 +116,16 @@ impl<T: Real, const N: usize> Transform<T, N> {
         let zero = Complex::default();
         let Lengths { x, y } = self.lengths;
         let scratch = [
-            self.row_forward.get_scratch_len(),
-            self.row_inverse.get_scratch_len(),
+            self.row_forward.get_outofplace_scratch_len(),
+            self.row_inverse.get_outofplace_scratch_len(),
             self.column_forward.get_inplace_scratch_len(),
             self.column_inverse.get_inplace_scratch_len(),
         ];
         let scratch = scratch.into_iter().max().unwrap_or(0);
         self.buffers.resize_with(threads_for(self.lengths.points()), || Buffers {
-            row: vec![T::default(); x],
-            line: vec![zero; x / 2 + 1],
+            rows: vec![T::default(); 2 * self.window.width],
+            pair: vec![zero; x],
+            spectrum: vec![zero; x + 1],
             columns: vec![zero; N * Self::TOGETHER * Self::pitch(y)],
             scratch: vec![zero; scratch],
         });
@@ -144,22 +154,30 @@ impl<T: Real, const N: usize> Transform<T, N> {
         let known = &self.given;
         let bands: Vec<_> = bands.into_iter().enumerate().filter(|(band, _)| known[*band]).collect();
         for_each(buffers, bands.into_iter(), |buffer, (band, mut pieces)| {
-            for (j, y) in (band * BAND..((band + 1) * BAND).min(height)).enumerate() {
-                let at = j * Self::STRIPE;
-                if !given(y) {
+            let Buffers { rows, pair, spectrum, scratch, .. } = buffer;
+            let first = band * BAND;
+            let mut numbers = Vec::with_capacity(BAND);
+            for y in first..(first + BAND).min(height) {
+                if given(y) {
+                    numbers.push(y);
+                } else {
                     for piece in &mut pieces {
-                        piece[at..at + Self::STRIPE].fill(Complex::default());
+                        piece[(y - first) * Self::STRIPE..][..Self::STRIPE].fill(Complex::default());
                     }
-                    continue;
                 }
-                buffer.row.fill(T::default());
-                fill(y, &mut buffer.row[..width]);
-                let Buffers { row, line, scratch, .. } = buffer;
-                let done = row_forward.process_with_scratch(row, line, scratch);
-                debug_assert!(done.is_ok());
-                for (piece, values) in pieces.iter_mut().zip(line.chunks(Self::STRIPE)) {
-                    piece[at..at + values.len()].copy_from_slice(values);
+            }
+            for numbers in numbers.chunks(2) {
+                rows.fill(T::default());
+                for (&y, row) in zip(numbers, rows.chunks_exact_mut(width)) {
+                    fill(y, row);
                 }
+                let (a, b) = rows.split_at(width);
+                pair_up(a, b, pair);
+                let length = pair.len();
+                row_forward.process_outofplace_with_scratch(pair, &mut spectrum[..length], scratch);
+                spectrum[length] = spectrum[0];
+                let at = |i: usize| Some((numbers.get(i)? - first) * Self::STRIPE);
+                take_apart(spectrum, &mut pieces, Self::STRIPE, [at(0), at(1)]);
             }
         });
     }
@@ -235,28 +253,159 @@ impl<T: Real, const N: usize> Transform<T, N> {
         outputs: impl ExactSizeIterator<Item = O> + Send,
         take: impl Fn(&mut O, usize, &mut [T]) + Sync,
     ) {
-        let Self { window: Window { width, .. }, field, lengths, row_inverse, buffers, .. } = self;
-        let (width, height, half) = (*width, N * *field, lengths.x / 2 + 1);
-        let even = lengths.x.is_multiple_of(2);
-        let spectrum = &self.spectrum[self.start..];
+        let Self { window: Window { width, .. }, field, row_inverse, buffers, .. } = self;
+        let (width, height) = (*width, N * *field);
+        let stripes: Vec<_> = self.spectrum[self.start..].chunks_exact(Self::STRIPE * height).collect();
         for_each(buffers, outputs.enumerate(), |buffer, (band, mut output)| {
-            let Buffers { row, line, scratch, .. } = buffer;
-            for y in (band * BAND..((band + 1) * BAND).min(height)).filter(|&y| wanted(y)) {
-                let stripes = spectrum.chunks_exact(Self::STRIPE * height);
-                for (values, stripe) in line.chunks_mut(Self::STRIPE).zip(stripes) {
-                    values.copy_from_slice(&stripe[y * Self::STRIPE..][..values.len()]);
+            let Buffers { rows, pair, spectrum, scratch, .. } = buffer;
+            let mut numbers = (band * BAND..((band + 1) * BAND).min(height)).filter(|&y| wanted(y));
+            while let Some(y) = numbers.next() {
+                // The last one may be alone: then it is both.
+                let numbers = [y, numbers.next().unwrap_or(y)];
+                put_together(&stripes, Self::STRIPE, numbers.map(|y| y * Self::STRIPE), spectrum);
+                let length = pair.len();
+                row_inverse.process_outofplace_with_scratch(&mut spectrum[..length], pair, scratch);
+                let (a, b) = rows.split_at_mut(width);
+                separate(pair, a, b);
+                take(&mut output, y, a);
+                if numbers[1] != y {
+                    take(&mut output, numbers[1], b);
                 }
-                // The spectrum of a real row has real ends; rounding may say otherwise and the plan would
-                // complain.
-                line[0].im = T::default();
-                if even {
-                    line[half - 1].im = T::default();
-                }
-                let done = row_inverse.process_with_scratch(line, row, scratch);
-                debug_assert!(done.is_ok());
-                take(&mut output, y, &mut row[..width]);
             }
         });
+    }
+}
+
+/// Two real rows as a complex one, which is zero beyond them.
+fn pair_up<T: Real>(a: &[T], b: &[T], pair: &mut [Complex<T>]) {
+    widest(
+        #[inline(always)]
+        move || {
+            let (values, beyond) = pair.split_at_mut(a.len());
+            for (value, (&re, &im)) in zip(values, zip(a, b)) {
+                *value = Complex { re, im };
+            }
+            beyond.fill(Complex::default());
+        },
+    );
+}
+
+/// The inverse of [`pair_up`], as far as both rows go.
+fn separate<T: Real>(pair: &[Complex<T>], a: &mut [T], b: &mut [T]) {
+    widest(
+        #[inline(always)]
+        move || {
+            for (value, (a, b)) in zip(pair, zip(a, b)) {
+                (*a, *b) = (value.re, value.im);
+            }
+        },
+    );
+}
+
+/// Writes the spectra of two real rows to the places `at` in each stripe, from that of the complex row that
+/// both were, given on all waves and once more at the end on the first.
+fn take_apart<T: Real>(
+    spectrum: &[Complex<T>],
+    stripes: &mut [&mut [Complex<T>]],
+    width: usize,
+    at: [Option<usize>; 2],
+) {
+    let length = spectrum.len() - 1;
+    let waves = length / 2 + 1;
+    let half = T::of(0.5);
+    let parts = move |own: Complex<T>, opposite: Complex<T>| {
+        let (a, b) = (
+            Complex { re: own.re + opposite.re, im: own.im - opposite.im },
+            Complex { re: own.im + opposite.im, im: opposite.re - own.re },
+        );
+        [Complex { re: half * a.re, im: half * a.im }, Complex { re: half * b.re, im: half * b.im }]
+    };
+    widest(
+        #[inline(always)]
+        move || {
+            for (stripe, first) in zip(stripes, (0..waves).step_by(width)) {
+                let end = (first + width).min(waves);
+                let (own, own_rest) = spectrum[first..end].as_chunks::<WAVES>();
+                let opposite = &spectrum[length + 1 - end..=length - first];
+                let (opposite_rest, opposite) = opposite.as_rchunks::<WAVES>();
+                let both = || zip(own, opposite.iter().rev());
+                let rest = || zip(own_rest, opposite_rest.iter().rev());
+                for (at, part) in zip(at, 0..) {
+                    let Some(at) = at else { continue };
+                    let (to, to_rest) = stripe[at..][..end - first].as_chunks_mut::<WAVES>();
+                    for (to, (own, opposite)) in zip(to, both()) {
+                        let mut values = [Complex::default(); WAVES];
+                        for (value, (&own, &opposite)) in zip(&mut values, zip(own, opposite.iter().rev())) {
+                            *value = parts(own, opposite)[part];
+                        }
+                        *to = values;
+                    }
+                    for (to, (&own, &opposite)) in zip(to_rest, rest()) {
+                        *to = parts(own, opposite)[part];
+                    }
+                }
+            }
+        },
+    );
+}
+
+/// The inverse of [`take_apart`]: the spectrum of the complex row from those of two real ones at the places
+/// `at` in each stripe.
+fn put_together<T: Real>(
+    stripes: &[&[Complex<T>]],
+    width: usize,
+    at: [usize; 2],
+    spectrum: &mut [Complex<T>],
+) {
+    let length = spectrum.len() - 1;
+    let waves = length / 2 + 1;
+    let end = |k: usize| {
+        let [re, im] = at.map(|at| stripes[k / width][at + k % width].re);
+        Complex { re, im }
+    };
+    let ends = [end(0), end(waves - 1)];
+    let (own, opposite) = spectrum.split_at_mut(waves);
+    widest(
+        #[inline(always)]
+        move || {
+            for (stripe, first) in zip(stripes, (0..waves).step_by(width)) {
+                let own = &mut own[first..(first + width).min(waves)];
+                let (a, b) = (&stripe[at[0]..][..own.len()], &stripe[at[1]..][..own.len()]);
+                let ((a, a_rest), (b, b_rest)) = (a.as_chunks::<WAVES>(), b.as_chunks::<WAVES>());
+                let end = opposite.len().saturating_sub(first);
+                let (opposite_rest, opposite) =
+                    opposite[end.saturating_sub(own.len())..end].as_rchunks_mut::<WAVES>();
+                let (own, own_rest) = own.as_chunks_mut::<WAVES>();
+                for (own, (a, b)) in zip(own, zip(a, b)) {
+                    let mut values = [Complex::default(); WAVES];
+                    for (value, (a, b)) in zip(&mut values, zip(a, b)) {
+                        *value = Complex { re: a.re - b.im, im: a.im + b.re };
+                    }
+                    *own = values;
+                }
+                for (own, (a, b)) in zip(own_rest, zip(a_rest, b_rest)) {
+                    *own = Complex { re: a.re - b.im, im: a.im + b.re };
+                }
+                let left_out = a.len() - opposite.len();
+                for (opposite, (a, b)) in zip(opposite.iter_mut().rev(), zip(a, b)) {
+                    let mut values = [Complex::default(); WAVES];
+                    for (value, (a, b)) in zip(values.iter_mut().rev(), zip(a, b)) {
+                        *value = Complex { re: a.re + b.im, im: b.re - a.im };
+                    }
+                    *opposite = values;
+                }
+                let (a, b) = (&a[a.len() - left_out..], &b[b.len() - left_out..]);
+                let rest = zip(a.as_flattened().iter().chain(a_rest), b.as_flattened().iter().chain(b_rest));
+                for (opposite, (a, b)) in zip(opposite_rest.iter_mut().rev(), rest) {
+                    *opposite = Complex { re: a.re + b.im, im: b.re - a.im };
+                }
+            }
+        },
+    );
+    // The spectrum of a real row has real ends; rounding may say otherwise.
+    spectrum[0] = ends[0];
+    if length.is_multiple_of(2) {
+        spectrum[waves - 1] = ends[1];
     }
 }
 
@@ -290,15 +439,20 @@ fn to_columns<T: Real>(
     pitch: usize,
 ) {
     let count = columns.len() / pitch;
-    let squares = rows.start..rows.end - rows.len() % SQUARE;
-    for y in squares.clone().step_by(SQUARE) {
-        let lines: [&[Complex<T>]; SQUARE] =
-            std::array::from_fn(|j| &stripe[(y + j) * width + first..][..count]);
-        for (i, column) in columns.chunks_exact_mut(pitch).enumerate() {
-            column[y..y + SQUARE].copy_from_slice(&lines.map(|line| line[i]));
-        }
-    }
-    for y in squares.end..rows.end {
+    let (begin, end) = (rows.start, rows.end - rows.len() % SQUARE);
+    let to = &mut *columns;
+    widest(
+        #[inline(always)]
+        move || {
+            for y in (begin..end).step_by(SQUARE) {
+                for i in (0..count).step_by(SQUARE) {
+                    let square = square(&stripe[y * width + first + i..], width);
+                    put_square(&square, &mut to[i * pitch + y..], pitch);
+                }
+            }
+        },
+    );
+    for y in end..rows.end {
         let line = &stripe[y * width + first..][..count];
         for (column, &value) in columns.chunks_exact_mut(pitch).zip(line) {
             column[y] = value;
@@ -316,22 +470,44 @@ fn to_rows<T: Real>(
     rows: Range<usize>,
 ) {
     let count = columns.len() / pitch;
-    let squares = rows.start..rows.end - rows.len() % SQUARE;
-    for y in squares.clone().step_by(SQUARE) {
-        for i in (0..count).step_by(SQUARE) {
-            let square: [&[Complex<T>]; SQUARE] =
-                std::array::from_fn(|k| &columns[(i + k) * pitch + y..][..SQUARE]);
-            for j in 0..SQUARE {
-                let line = &mut stripe[(y + j) * width + first + i..][..SQUARE];
-                line.copy_from_slice(&square.map(|column| column[j]));
+    let (begin, end) = (rows.start, rows.end - rows.len() % SQUARE);
+    let to = &mut *stripe;
+    widest(
+        #[inline(always)]
+        move || {
+            for y in (begin..end).step_by(SQUARE) {
+                for i in (0..count).step_by(SQUARE) {
+                    let square = square(&columns[i * pitch + y..], pitch);
+                    put_square(&square, &mut to[y * width + first + i..], width);
+                }
             }
-        }
-    }
-    for y in squares.end..rows.end {
+        },
+    );
+    for y in end..rows.end {
         let line = &mut stripe[y * width + first..][..count];
         for (value, column) in line.iter_mut().zip(columns.chunks_exact(pitch)) {
             *value = column[y];
         }
+    }
+}
+
+/// A square out of lines, with lines and columns exchanged.
+#[inline(always)]
+fn square<T: Real>(from: &[Complex<T>], pitch: usize) -> [[Complex<T>; SQUARE]; SQUARE] {
+    let mut square = [[Complex::default(); SQUARE]; SQUARE];
+    for k in 0..SQUARE {
+        for (line, &value) in zip(&mut square, &from[k * pitch..][..SQUARE]) {
+            line[k] = value;
+        }
+    }
+    square
+}
+
+/// Writes a square to lines.
+#[inline(always)]
+fn put_square<T: Real>(square: &[[Complex<T>; SQUARE]; SQUARE], to: &mut [Complex<T>], pitch: usize) {
+    for (k, line) in square.iter().enumerate() {
+        to[k * pitch..][..SQUARE].copy_from_slice(line);
     }
 }
 

@@ -107,16 +107,22 @@ impl TwoTransforms {
         far.forward(
             |_| true,
             |ny, out| {
-                // The cells between which nodes this one is.
-                for block in (ny + 1).saturating_sub(order)..(ny + 1).min(blocks) {
-                    for (phase, weights) in interpolation.weights.iter().enumerate() {
-                        let y = (lattice.y + block) * SPACING + phase;
-                        if (window.y..window.y + window.height).contains(&y) {
-                            let line = &rows[(y - window.y) * nodes..];
-                            add(out, weights[ny - block], line);
+                let (window, lattice, interpolation, rows) =
+                    (&*window, &*lattice, &*interpolation, &rows[..]);
+                widest(
+                    #[inline(always)]
+                    move || {
+                        // The cells between which nodes this one is.
+                        for block in (ny + 1).saturating_sub(order)..(ny + 1).min(blocks) {
+                            for (phase, weight) in interpolation.of_nodes[ny - block].iter().enumerate() {
+                                let y = (lattice.y + block) * SPACING + phase;
+                                if (window.y..window.y + window.height).contains(&y) {
+                                    add(out, *weight, &rows[(y - window.y) * nodes..]);
+                                }
+                            }
                         }
-                    }
-                }
+                    },
+                );
             },
         );
         far.multiply(|_| true);
@@ -148,14 +154,22 @@ impl TwoTransforms {
         near.backward(held, outputs, |((start, u), between, cells), y, line| {
             let Some(row) = targets.row(y + y0) else { return };
             let block = row.y / SPACING - lattice.y;
-            between.fill(0.0);
-            for (k, &weight) in interpolation.weights[row.y % SPACING].iter().enumerate() {
-                add(between, weight, &potential[(block + k) * nodes..]);
-            }
-            interpolation.interpolate(between, cells);
-            let cells = &mut cells[begin..begin + width];
-            add(cells, 1.0, line);
-            row.after(*start).collect(cells, u, x0);
+            let weights = &interpolation.weights[row.y % SPACING];
+            let (interpolation, potential, line) = (&*interpolation, &potential[block * nodes..], &*line);
+            let (between, cells) = (&mut between[..], &mut cells[..]);
+            let far = &mut *cells;
+            widest(
+                #[inline(always)]
+                move || {
+                    between.fill(0.0);
+                    for (&weight, potential) in weights.iter().zip(potential.chunks_exact(nodes)) {
+                        add(between, weight, potential);
+                    }
+                    interpolation.interpolate(between, far);
+                    add(&mut far[begin..begin + width], 1.0, line);
+                },
+            );
+            row.after(*start).collect(&cells[begin..begin + width], u, x0);
         });
     }
 }
@@ -182,21 +196,11 @@ impl InfluenceOperator<f64> for TwoTransforms {
 }
 
 /// `to += factor from`, as far as both go.
+#[inline(always)]
 fn add(to: &mut [f32], factor: f32, from: &[f32]) {
-    widest(
-        #[inline(always)]
-        || {
-            for (to, &from) in to.iter_mut().zip(from) {
-                *to += factor * from;
-            }
-        },
-    );
-}
-
-/// A register of numbers from one place on.
-#[inline]
-fn lanes(values: &[f32], at: usize) -> &[f32; LANES] {
-    values[at..].first_chunk().unwrap_or(&[0.0; LANES])
+    for (to, &from) in to.iter_mut().zip(from) {
+        *to += factor * from;
+    }
 }
 
 /// Interpolation between the nodes of a line and its cells, and its transpose.
@@ -209,18 +213,25 @@ struct Interpolation {
     nodes: usize,
     /// Weights of the nodes around a cell, for each place between two nodes.
     weights: [Vec<f32>; SPACING],
+    /// The same node by node.
+    of_nodes: Vec<[f32; SPACING]>,
 }
+
+/// Cells that are interpolated at a time.
+const GROUP: usize = 4 * SPACING;
 
 impl Interpolation {
     fn new(split: Split, nodes: usize) -> Self {
         let order = split.order;
         let blocks = (nodes + 1 - order).next_multiple_of(LANES);
         let weights = |i| split.weights(i).into_iter().map(|w| w as f32).collect();
+        let weights: [Vec<f32>; SPACING] = std::array::from_fn(weights);
         Self {
             order,
             blocks,
             nodes: (blocks + order - 1).next_multiple_of(LANES),
-            weights: std::array::from_fn(weights),
+            of_nodes: (0..order).map(|k| weights.each_ref().map(|of_phase| of_phase[k])).collect(),
+            weights,
         }
     }
 
@@ -237,21 +248,20 @@ impl Interpolation {
 
     /// Cells to nodes: the transpose of [`Self::interpolate`].
     fn restrict(&self, cells: &[f32], phases: &mut [Vec<f32>; SPACING], nodes: &mut [f32]) {
+        let (first, (blocks, _)) = (self.order - 1, cells.as_chunks());
         widest(
             #[inline(always)]
-            || {
-                let first = self.order - 1;
-                for (i, phase) in phases.iter_mut().enumerate() {
-                    for (value, block) in phase[first..].iter_mut().zip(cells.as_chunks::<SPACING>().0) {
-                        *value = block[i];
-                    }
+            move || {
+                let [a, b, c, d] = phases;
+                let (a, b, c, d) = (&mut a[first..], &mut b[first..], &mut c[first..], &mut d[first..]);
+                for ((((a, b), c), d), block) in a.iter_mut().zip(b).zip(c).zip(d).zip(blocks) {
+                    [*a, *b, *c, *d] = *block;
                 }
                 for (n, nodes) in nodes.as_chunks_mut::<LANES>().0.iter_mut().enumerate() {
                     let mut sum = [0.0; LANES];
-                    for (phase, weights) in phases.iter().zip(&self.weights) {
-                        for (k, weight) in weights.iter().enumerate() {
-                            let values = lanes(phase, n * LANES + first - k);
-                            for (sum, value) in sum.iter_mut().zip(values) {
+                    for (k, weights) in self.of_nodes.iter().enumerate() {
+                        for (phase, weight) in phases.iter().zip(weights) {
+                            for (sum, value) in sum.iter_mut().zip(&phase[n * LANES + first - k..][..LANES]) {
                                 *sum += weight * value;
                             }
                         }
@@ -263,28 +273,21 @@ impl Interpolation {
     }
 
     /// Nodes to cells.
+    #[inline(always)]
     fn interpolate(&self, nodes: &[f32], cells: &mut [f32]) {
-        widest(
-            #[inline(always)]
-            || {
-                let (cells, _) = cells.as_chunks_mut::<SPACING>();
-                for (n, cells) in cells.as_chunks_mut::<LANES>().0.iter_mut().enumerate() {
-                    let mut sums = [[0.0; LANES]; SPACING];
-                    for k in 0..self.order {
-                        let values = lanes(nodes, n * LANES + k);
-                        for (sum, weights) in sums.iter_mut().zip(&self.weights) {
-                            let weight = weights[k];
-                            for (sum, value) in sum.iter_mut().zip(values) {
-                                *sum += weight * value;
-                            }
-                        }
-                    }
-                    for (j, cell) in cells.iter_mut().enumerate() {
-                        *cell = sums.map(|sum| sum[j]);
+        let (cells, _) = cells.as_chunks_mut::<GROUP>();
+        for (n, cells) in cells.iter_mut().enumerate() {
+            let mut sums = [0.0; GROUP];
+            for (k, weights) in self.of_nodes.iter().enumerate() {
+                let nodes = &nodes[n * GROUP / SPACING + k..][..GROUP / SPACING];
+                for (sums, node) in sums.as_chunks_mut::<SPACING>().0.iter_mut().zip(nodes) {
+                    for (sum, weight) in sums.iter_mut().zip(weights) {
+                        *sum += weight * node;
                     }
                 }
-            },
-        );
+            }
+            *cells = sums;
+        }
     }
 }
 
