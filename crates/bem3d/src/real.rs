@@ -1,7 +1,7 @@
 //! Single and double precision.
 
 use crate::tuning::{BLOCK, CHUNK, LANES};
-use numerics::parallel::map;
+use numerics::parallel::{map, widest};
 use numerics::plan::Precision;
 use std::ops::AddAssign;
 
@@ -66,13 +66,19 @@ pub fn smallest(values: &[f64]) -> f64 {
 
 /// Folds values in an order that a vector loop can take; `start` changes nothing.
 fn fold<T: Copy>(values: &[T], start: T, take: impl Fn(T, T) -> T) -> T {
-    let (chunks, rest) = values.as_chunks::<LANES>();
-    let mut lanes = [start; LANES];
-    for chunk in chunks {
-        for (lane, &value) in lanes.iter_mut().zip(chunk) {
-            *lane = take(*lane, value);
-        }
-    }
+    let ((chunks, rest), take) = (values.as_chunks::<LANES>(), &take);
+    let lanes = widest(
+        #[inline(always)]
+        move || {
+            let mut lanes = [start; LANES];
+            for chunk in chunks {
+                for (lane, &value) in lanes.iter_mut().zip(chunk) {
+                    *lane = take(*lane, value);
+                }
+            }
+            lanes
+        },
+    );
     lanes.iter().chain(rest).fold(start, |a, &b| take(a, b))
 }
 
@@ -86,12 +92,18 @@ pub fn dot<T: Real>(a: &[T], b: &[T]) -> f64 {
 
 fn block<T: Real>(a: &[T], b: &[T]) -> T {
     let ((a, rest_a), (b, rest_b)) = (a.as_chunks::<LANES>(), b.as_chunks::<LANES>());
-    let mut lanes = [T::default(); LANES];
-    for (a, b) in a.iter().zip(b) {
-        for ((lane, &a), &b) in lanes.iter_mut().zip(a).zip(b) {
-            *lane += a * b;
-        }
-    }
+    let lanes = widest(
+        #[inline(always)]
+        move || {
+            let mut lanes = [T::default(); LANES];
+            for (a, b) in a.iter().zip(b) {
+                for ((lane, &a), &b) in lanes.iter_mut().zip(a).zip(b) {
+                    *lane += a * b;
+                }
+            }
+            lanes
+        },
+    );
     let products = rest_a.iter().zip(rest_b).map(|(&a, &b)| a * b);
     lanes.into_iter().chain(products).fold(T::default(), |sum, value| sum + value)
 }
@@ -114,14 +126,21 @@ pub fn sum<T: Real>(values: &[T]) -> f64 {
 
 /// Sum over two lists of what `value` makes of the numbers at one place.
 pub fn sum_of_pairs(a: &[f64], b: &[f64], value: impl Fn(f64, f64) -> f64 + Sync) -> f64 {
+    let value = &value;
     let chunk = |(a, b): (&[f64], &[f64])| -> f64 {
         let ((a, rest_a), (b, rest_b)) = (a.as_chunks::<LANES>(), b.as_chunks::<LANES>());
-        let mut lanes = [0.0; LANES];
-        for (a, b) in a.iter().zip(b) {
-            for ((lane, &a), &b) in lanes.iter_mut().zip(a).zip(b) {
-                *lane += value(a, b);
-            }
-        }
+        let lanes = widest(
+            #[inline(always)]
+            move || {
+                let mut lanes = [0.0; LANES];
+                for (a, b) in a.iter().zip(b) {
+                    for ((lane, &a), &b) in lanes.iter_mut().zip(a).zip(b) {
+                        *lane += value(a, b);
+                    }
+                }
+                lanes
+            },
+        );
         lanes.into_iter().chain(rest_a.iter().zip(rest_b).map(|(&a, &b)| value(a, b))).sum()
     };
     map(a.len(), a.chunks(CHUNK).zip(b.chunks(CHUNK)), chunk).into_iter().sum()
@@ -129,15 +148,27 @@ pub fn sum_of_pairs(a: &[f64], b: &[f64], value: impl Fn(f64, f64) -> f64 + Sync
 
 /// Changes each number of a list.
 pub fn each<A: Send>(values: &mut [A], change: impl Fn(&mut A) + Sync) {
-    map(values.len(), values.chunks_mut(CHUNK), |values| values.iter_mut().for_each(&change));
+    let change = &change;
+    map(values.len(), values.chunks_mut(CHUNK), |values| {
+        widest(
+            #[inline(always)]
+            move || values.iter_mut().for_each(change),
+        );
+    });
 }
 
 /// Changes each number of one list by those of another at its place.
 pub fn update<A: Send, B: Sync>(a: &mut [A], b: &[B], change: impl Fn(&mut A, &B) + Sync) {
+    let change = &change;
     map(a.len(), a.chunks_mut(CHUNK).zip(b.chunks(CHUNK)), |(a, b)| {
-        for (a, b) in a.iter_mut().zip(b) {
-            change(a, b);
-        }
+        widest(
+            #[inline(always)]
+            move || {
+                for (a, b) in a.iter_mut().zip(b) {
+                    change(a, b);
+                }
+            },
+        );
     });
 }
 

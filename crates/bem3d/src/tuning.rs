@@ -394,6 +394,9 @@ pub const COUNTED_CHUNKS: usize = 32;
 pub const CHUNK: usize = 8 * BLOCK;
 /// From so many cells a run on, values move run by run; below it, cell by cell is faster.
 pub const LONG_RUN: usize = 8;
+/// Cells that are passed one by one in a search for the next one of another set, which then goes on by
+/// halving.
+pub const PASSED_SINGLY: usize = 8;
 /// Levels of the preconditioner's extension at most: below `decay^8` nothing is left.
 pub const EXTENSION_LEVELS: usize = 8;
 /// Numbers kept at most in the symbols of one kind: 134 MB of f64, four times the largest symbol of 2049

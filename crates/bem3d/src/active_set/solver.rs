@@ -70,6 +70,8 @@ struct Solver<'a> {
     state: Continuation,
     /// The gap left on its contact set.
     left: Vec<f64>,
+    /// Room for what a change of the pressure displaces.
+    displacement: Vec<f64>,
     /// What the gap may be wrong by: nothing in double precision.
     uncertainty: f64,
     /// The cells whose pressure has changed since the gap was evaluated, and what it was there, negative.
@@ -105,6 +107,7 @@ impl<'a> Solver<'a> {
             now,
             state,
             left,
+            displacement: Vec::new(),
             uncertainty: 0.0,
             measured: None,
             reach,
@@ -204,7 +207,7 @@ impl<'a> Solver<'a> {
     /// In single precision what changed since the last gap is enough: the error is relative to what is
     /// transformed.
     fn displace(&mut self, joined: bool, look: Look) {
-        let Self { problem, now, state, reach, measured, uncertainty, .. } = self;
+        let Self { problem, now, state, reach, measured, displacement, uncertainty, .. } = self;
         let Problem { candidates, operators, .. } = &mut **problem;
         let (kept, recorder) = (operators.tuning().kept_candidates, operators.recorder().clone());
         let mut before = measured.take();
@@ -228,13 +231,12 @@ impl<'a> Solver<'a> {
             *uncertainty = 0.0;
         } else if let Some((cells, mut change)) = before {
             recorder.timed(Part::Sets, || cells.add_carried(&now.contact, &now.p, &mut change));
-            let mut displacement = Vec::new();
-            operators.rough(&cells, &change, checked, &mut displacement);
+            operators.rough(&cells, &change, checked, displacement);
             // A pressure that changes its sign from cell to cell displaces little.
             let own = operators.table().own() * largest(&change);
-            *uncertainty += error * own.max(largest(&displacement));
+            *uncertainty += error * own.max(largest(displacement));
             let d = now.d;
-            update(gap, &displacement, |gap, u| *gap += u + d);
+            update(gap, displacement, |gap, u| *gap += u + d);
             return;
         } else {
             operators.rough(&now.contact, &now.p, checked, gap);

@@ -1,7 +1,7 @@
 //! Sets of cells of a grid: work follows the contact, not the grid.
 
 use super::grid::{Grid, Window};
-use crate::tuning::{BAND, LANES, LONG_RUN};
+use crate::tuning::{BAND, LANES, LONG_RUN, PASSED_SINGLY};
 use numerics::parallel::{map, threads_for};
 use std::ops::{AddAssign, Range};
 
@@ -204,6 +204,31 @@ impl CellSet {
         self.end_row(y, first);
     }
 
+    /// Adds the next row from two increasing lists of its columns.
+    ///
+    /// Cost: what lies between cells of the shorter list is copied as a whole.
+    fn push_merged(&mut self, y: usize, a: &[u32], b: &[u32]) {
+        let first = self.columns.len();
+        let (few, mut many) = if a.len() < b.len() { (a, b) } else { (b, a) };
+        for &x in few {
+            // A few steps, then halving: the next cell is near where both lists are long.
+            let near = many.iter().take(PASSED_SINGLY).take_while(|&&other| other < x).count();
+            let before = if near < PASSED_SINGLY {
+                near
+            } else {
+                near + many[near..].partition_point(|&other| other < x)
+            };
+            let (passed, rest) = many.split_at(before);
+            self.columns.extend_from_slice(passed);
+            many = rest;
+            if many.first() != Some(&x) {
+                self.columns.push(x);
+            }
+        }
+        self.columns.extend_from_slice(many);
+        self.end_row(y, first);
+    }
+
     /// Adds the cells of the next row whose value is kept; `column` gives that of the k-th value.
     ///
     /// Cost: a comparison a cell where nothing is kept; elsewhere no branch depends on the pattern.
@@ -380,7 +405,7 @@ impl CellSet {
             for y in band * BAND..(band + 1) * BAND {
                 let (a, b) = (self.row(y), other.row(y));
                 if a.is_some() || b.is_some() {
-                    both.push_row(y, merged(columns(a), columns(b)));
+                    both.push_merged(y, columns(a), columns(b));
                 }
             }
         })
@@ -401,9 +426,11 @@ impl CellSet {
         values: &[T],
         carried: &mut Vec<T>,
     ) {
-        carried.clear();
         carried.resize(self.len(), T::default());
-        self.beside(other, values, carried, |row, line, own, x0| row.collect(line, own, x0));
+        self.beside(other, values, carried, |row, line, own, x0| match line {
+            Some(line) => row.collect(line, own, x0),
+            None => own[row.span()].fill(T::default()),
+        });
     }
 
     /// Adds values on `other` to values on this set.
@@ -413,7 +440,11 @@ impl CellSet {
         values: &[T],
         sums: &mut [T],
     ) {
-        self.beside(other, values, sums, |row, line, own, x0| row.add(line, own, x0));
+        self.beside(other, values, sums, |row, line, own, x0| {
+            if let Some(line) = line {
+                row.add(line, own, x0);
+            }
+        });
     }
 
     /// Changes values on the set row by row, `work` in all.
@@ -431,14 +462,14 @@ impl CellSet {
         });
     }
 
-    /// Changes the values `own` of each row that both sets have by those on `other`, given as a line that
-    /// begins at a column and is zero elsewhere.
+    /// Changes the values `own` of each row by those on `other`, given as a line that begins at a column and is
+    /// zero elsewhere; `None` where `other` has no cell in the row.
     fn beside<T: Copy + Default + Send + Sync>(
         &self,
         other: &Self,
         values: &[T],
         own: &mut [T],
-        change: impl Fn(SetRow<'_>, &[T], &mut [T], usize) + Sync,
+        change: impl Fn(SetRow<'_>, Option<&[T]>, &mut [T], usize) + Sync,
     ) {
         let window = self.window().into_iter().chain(other.window()).reduce(Window::union);
         let Some(window) = window else { return };
@@ -446,9 +477,12 @@ impl CellSet {
         map(self.len() + other.len(), self.bands().zip(parts), |(ys, (start, own))| {
             let mut line = vec![T::default(); window.width];
             for row in self.rows_within(ys) {
-                let Some(other) = other.row(row.y) else { continue };
+                let Some(other) = other.row(row.y) else {
+                    change(row.after(start), None, own, window.x);
+                    continue;
+                };
                 other.spread(values, &mut line, window.x);
-                change(row.after(start), &line, own, window.x);
+                change(row.after(start), Some(&line), own, window.x);
                 other.fill(T::default(), &mut line, window.x);
             }
         });
@@ -457,20 +491,6 @@ impl CellSet {
 
 fn columns(row: Option<SetRow<'_>>) -> &[u32] {
     row.map_or(&[], |row| row.columns)
-}
-
-/// Two increasing sequences as one, without repetitions.
-fn merged<'a>(mut a: &'a [u32], mut b: &'a [u32]) -> impl Iterator<Item = u32> + 'a {
-    std::iter::from_fn(move || {
-        let x = match (a.first(), b.first()) {
-            (Some(&x), Some(&y)) => x.min(y),
-            (Some(&x), None) | (None, Some(&x)) => x,
-            (None, None) => return None,
-        };
-        a = &a[usize::from(a.first() == Some(&x))..];
-        b = &b[usize::from(b.first() == Some(&x))..];
-        Some(x)
-    })
 }
 
 #[cfg(test)]

@@ -9,7 +9,7 @@ use crate::parts::Part;
 use crate::real::{Real, dot, each, largest, sum, update};
 use crate::tuning::CHUNK;
 use contact_model::Stop;
-use numerics::parallel::map;
+use numerics::parallel::{map, widest};
 
 /// When an iteration ends: at the first of these, or one step earlier where the next step, if it gains as
 /// much as the last one, would meet a criterion. The caller measures the result.
@@ -174,9 +174,14 @@ impl<T: Real> Vectors<T> {
     /// Takes a new set with several numbers a cell; the right-hand side is zero.
     pub fn take_fields(&mut self, set: CellSet, fields: usize) {
         self.set = set;
-        for vector in [&mut self.r, &mut self.x, &mut self.t, &mut self.kt, &mut self.z] {
+        let length = fields * self.set.len();
+        for vector in [&mut self.r, &mut self.t] {
             vector.clear();
-            vector.resize(fields * self.set.len(), T::default());
+            vector.resize(length, T::default());
+        }
+        // These are written before they are read.
+        for vector in [&mut self.x, &mut self.kt, &mut self.z] {
+            vector.resize(length, T::default());
         }
     }
 
@@ -305,10 +310,15 @@ fn add<T: Real>(a: &mut [T], factor: T, b: &[T]) {
 fn advance<T: Real>(x: &mut [T], step: T, t: &mut [T], beta: T, z: &[T]) {
     let chunks = x.chunks_mut(CHUNK).zip(t.chunks_mut(CHUNK)).zip(z.chunks(CHUNK));
     map(z.len(), chunks, |((x, t), z)| {
-        for ((x, t), &z) in x.iter_mut().zip(t).zip(z) {
-            *x += step * *t;
-            *t = z + beta * *t;
-        }
+        widest(
+            #[inline(always)]
+            move || {
+                for ((x, t), &z) in x.iter_mut().zip(t).zip(z) {
+                    *x += step * *t;
+                    *t = z + beta * *t;
+                }
+            },
+        );
     });
 }
 

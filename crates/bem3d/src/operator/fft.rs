@@ -1,4 +1,4 @@
-//! Convolution with an even kernel on a window of the grid, by real FFTs of its rows and complex ones of its
+//! Convolution with an even kernel on a window of the grid, by FFTs of pairs of its rows and of its
 //! columns.
 
 use super::influence::InfluenceOperator;

@@ -313,40 +313,53 @@ fn take_apart<T: Real>(
     let length = spectrum.len() - 1;
     let waves = length / 2 + 1;
     let half = T::of(0.5);
-    let parts = move |own: Complex<T>, opposite: Complex<T>| {
-        let (a, b) = (
-            Complex { re: own.re + opposite.re, im: own.im - opposite.im },
-            Complex { re: own.im + opposite.im, im: opposite.re - own.re },
-        );
-        [Complex { re: half * a.re, im: half * a.im }, Complex { re: half * b.re, im: half * b.im }]
+    let of_a = move |own: Complex<T>, opposite: Complex<T>| {
+        let (re, im) = (own.re + opposite.re, own.im - opposite.im);
+        Complex { re: half * re, im: half * im }
+    };
+    let of_b = move |own: Complex<T>, opposite: Complex<T>| {
+        let (re, im) = (own.im + opposite.im, opposite.re - own.re);
+        Complex { re: half * re, im: half * im }
     };
     widest(
         #[inline(always)]
         move || {
             for (stripe, first) in zip(stripes, (0..waves).step_by(width)) {
                 let end = (first + width).min(waves);
-                let (own, own_rest) = spectrum[first..end].as_chunks::<WAVES>();
-                let opposite = &spectrum[length + 1 - end..=length - first];
-                let (opposite_rest, opposite) = opposite.as_rchunks::<WAVES>();
-                let both = || zip(own, opposite.iter().rev());
-                let rest = || zip(own_rest, opposite_rest.iter().rev());
-                for (at, part) in zip(at, 0..) {
-                    let Some(at) = at else { continue };
-                    let (to, to_rest) = stripe[at..][..end - first].as_chunks_mut::<WAVES>();
-                    for (to, (own, opposite)) in zip(to, both()) {
-                        let mut values = [Complex::default(); WAVES];
-                        for (value, (&own, &opposite)) in zip(&mut values, zip(own, opposite.iter().rev())) {
-                            *value = parts(own, opposite)[part];
-                        }
-                        *to = values;
-                    }
-                    for (to, (&own, &opposite)) in zip(to_rest, rest()) {
-                        *to = parts(own, opposite)[part];
-                    }
+                let (own, opposite) = (&spectrum[first..end], &spectrum[length + 1 - end..=length - first]);
+                if let Some(at) = at[0] {
+                    from_both(own, opposite, &mut stripe[at..][..own.len()], of_a);
+                }
+                if let Some(at) = at[1] {
+                    from_both(own, opposite, &mut stripe[at..][..own.len()], of_b);
                 }
             }
         },
     );
+}
+
+/// Writes what `value` makes of each number of one list and of that of another at the same place from its end.
+#[expect(clippy::inline_always, reason = "a call would lose the instructions of its caller")]
+#[inline(always)]
+fn from_both<T: Real>(
+    own: &[Complex<T>],
+    opposite: &[Complex<T>],
+    to: &mut [Complex<T>],
+    value: impl Fn(Complex<T>, Complex<T>) -> Complex<T>,
+) {
+    let (own, own_rest) = own.as_chunks::<WAVES>();
+    let (opposite_rest, opposite) = opposite.as_rchunks::<WAVES>();
+    let (to, to_rest) = to.as_chunks_mut::<WAVES>();
+    for (to, (own, opposite)) in zip(to, zip(own, opposite.iter().rev())) {
+        let mut values = [Complex::default(); WAVES];
+        for (to, (&own, &opposite)) in zip(&mut values, zip(own, opposite.iter().rev())) {
+            *to = value(own, opposite);
+        }
+        *to = values;
+    }
+    for (to, (&own, &opposite)) in zip(to_rest, zip(own_rest, opposite_rest.iter().rev())) {
+        *to = value(own, opposite);
+    }
 }
 
 /// The inverse of [`take_apart`]: the spectrum of the complex row from those of two real ones at the places
@@ -492,6 +505,7 @@ fn to_rows<T: Real>(
 }
 
 /// A square out of lines, with lines and columns exchanged.
+#[expect(clippy::inline_always, reason = "a call would lose the instructions of its caller")]
 #[inline(always)]
 fn square<T: Real>(from: &[Complex<T>], pitch: usize) -> [[Complex<T>; SQUARE]; SQUARE] {
     let mut square = [[Complex::default(); SQUARE]; SQUARE];
@@ -504,6 +518,7 @@ fn square<T: Real>(from: &[Complex<T>], pitch: usize) -> [[Complex<T>; SQUARE]; 
 }
 
 /// Writes a square to lines.
+#[expect(clippy::inline_always, reason = "a call would lose the instructions of its caller")]
 #[inline(always)]
 fn put_square<T: Real>(square: &[[Complex<T>; SQUARE]; SQUARE], to: &mut [Complex<T>], pitch: usize) {
     for (k, line) in square.iter().enumerate() {

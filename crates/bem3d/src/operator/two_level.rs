@@ -63,13 +63,13 @@ impl Split {
     /// Symbol of the smooth kernel between the nodes of a lattice.
     pub fn far_symbol(self, lattice: Window) -> Symbol {
         let (spacing, radius) = (self.spacing as f64, self.radius() as f64);
-        let far = |x: usize, y: usize| smooth((x as f64).hypot(y as f64) * spacing, radius);
+        let far = |x: usize, y: usize| smooth(distance(x, y) * spacing, radius);
         Symbol::of_kernel(Lengths::free(lattice), far)
     }
 
     /// What the smooth kernel leaves at a lag: nothing from the radius on.
     pub fn near(self, x: usize, y: usize) -> f64 {
-        let (r, radius) = ((x as f64).hypot(y as f64), self.radius() as f64);
+        let (r, radius) = (distance(x, y), self.radius() as f64);
         if r < radius { influence(x, y) - smooth(r, radius) } else { 0.0 }
     }
 }
@@ -207,6 +207,11 @@ impl<T: Real> InfluenceOperator<T> for TwoLevel {
         self.interpolate(targets, u);
         self.add_near(sources, p, targets, u);
     }
+}
+
+/// Distance of two places of a lattice: its square is exact.
+fn distance(x: usize, y: usize) -> f64 {
+    ((x * x + y * y) as f64).sqrt()
 }
 
 /// The smooth part of the kernel: `1/r + 1/(24 r^3)` from `radius` on, inside its Taylor series in r^2 about

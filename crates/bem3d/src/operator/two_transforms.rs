@@ -196,6 +196,7 @@ impl InfluenceOperator<f64> for TwoTransforms {
 }
 
 /// `to += factor from`, as far as both go.
+#[expect(clippy::inline_always, reason = "a call would lose the instructions of its caller")]
 #[inline(always)]
 fn add(to: &mut [f32], factor: f32, from: &[f32]) {
     for (to, &from) in to.iter_mut().zip(from) {
@@ -218,7 +219,7 @@ struct Interpolation {
 }
 
 /// Cells that are interpolated at a time.
-const GROUP: usize = 4 * SPACING;
+const GROUP: usize = 8 * SPACING;
 
 impl Interpolation {
     fn new(split: Split, nodes: usize) -> Self {
@@ -273,6 +274,7 @@ impl Interpolation {
     }
 
     /// Nodes to cells.
+    #[expect(clippy::inline_always, reason = "a call would lose the instructions of its caller")]
     #[inline(always)]
     fn interpolate(&self, nodes: &[f32], cells: &mut [f32]) {
         let (cells, _) = cells.as_chunks_mut::<GROUP>();
