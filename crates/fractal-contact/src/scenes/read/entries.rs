@@ -384,7 +384,9 @@ impl<'a> Entry<'a> {
         };
         match digits.parse::<f64>() {
             Ok(value) if value.is_finite() => Ok(value),
-            value => Err(self.outside(value.unwrap_or(f64::NAN), "a finite number")),
+            value => Err(self
+                .outside(value.unwrap_or(f64::NAN), "a finite number")
+                .with_help("write it in digits")),
         }
     }
 
