@@ -2,8 +2,9 @@
 
 use crate::ledger::{Ledger, known, largest, pressure};
 use crate::maps::scene;
+use crate::plain::{PlainSum, relaxed_by};
 use crate::press::{TOLERANCE, tight};
-use crate::shear::{PlainShear, compliance};
+use crate::shear::{Dragged, PlainShear, compliance};
 use bem3d::Bem3d;
 use contact_model::{
     Body, Boundary, ContactModel, ContactState, Field, Friction, HeightMap, Load, Outputs, Pair,
@@ -12,6 +13,9 @@ use contact_model::{
 
 /// The coefficient of friction of most cases.
 pub(crate) const MU: f64 = 0.4;
+/// Where tractions and forces are compared that no force prescribes: their square is of the order of the gap, which
+/// has to be that much smaller.
+pub(crate) const TIGHTER: f64 = 1e-13;
 /// Rounding of sums over a few hundred cells, and of the way into the solver's units and out again.
 pub(crate) const ROUNDING: f64 = 1e-12;
 /// Sums of the witness and of a transform, and what the kernel of images leaves.
@@ -261,4 +265,35 @@ pub(crate) fn longest(v: &[[f64; 2]]) -> f64 {
 /// Enters the deviation of each vector from the exact one, over `largest`.
 pub(crate) fn compare(ledger: &mut Ledger, found: &[[f64; 2]], exact: &[[f64; 2]], largest: f64) {
     found.iter().zip(exact).for_each(|(a, b)| ledger.enter((a[0] - b[0]).hypot(a[1] - b[1]) / largest));
+}
+
+/// Follows approaches and displacements, beside relaxation of both problems: tractions over the largest, a tenth of
+/// their deviation; forces and energies.
+pub(crate) fn against_dragging(
+    ledger: &mut Ledger,
+    map: &HeightMap,
+    slide: &mut Slide<'_>,
+    mu: f64,
+    path: &[(f64, [f64; 2])],
+) -> Result<()> {
+    let (normal, shear) = (PlainSum::of(map), slide.sum().clone());
+    let mut dragged = Dragged::new(&shear);
+    let area = map.dx() * map.dy();
+    for &(d, delta) in path {
+        let pressed = relaxed_by(&normal, map, d);
+        let limits: Vec<(usize, f64)> =
+            pressed.contact.iter().copied().zip(pressed.forces.iter().map(|f| mu * f)).collect();
+        dragged.advance(&limits, delta);
+        let state = slide.displace(ledger, Load::Approach(d), delta)?;
+        let found = tangential(&state)?;
+        let most = mu * pressed.force;
+        ledger.near("normal force", state.force, pressed.force);
+        compare(ledger, &[found.force], &[dragged.force()], most);
+        let q: Vec<[f64; 2]> =
+            vectors(&state, Fields::Traction)?.iter().map(|q| q.map(|q| 0.1 * q * area)).collect();
+        let exact: Vec<[f64; 2]> = dragged.forces.iter().map(|f| f.map(|f| 0.1 * f)).collect();
+        compare(ledger, &q, &exact, limits.iter().fold(0.0, |most, (_, b)| b.max(most)));
+        ledger.enter((found.dissipated - dragged.dissipated).abs() / (most * longest(&[delta])));
+    }
+    Ok(())
 }

@@ -4,7 +4,9 @@ use super::few::faces;
 use crate::case::{Case, Effort};
 use crate::ledger::{Ledger, approach, pressure};
 use crate::maps::{map, rough_map};
-use crate::slide::{Fields, MU, Slide, alike, compare, longest, rubbed, tangential, vectors};
+use crate::slide::{
+    Fields, MU, Slide, TIGHTER, against_dragging, alike, compare, longest, rubbed, tangential, vectors,
+};
 use contact_model::{Body, ContactState, Error, HeightMap, Load, Pair, Result, Tangential};
 use std::f64::consts::PI;
 
@@ -13,9 +15,6 @@ const BY_HAND: f64 = 1e-7;
 /// A duality gap of 1e-10 leaves tractions their square root in the energy norm: displacements, forces and energies
 /// are of second order.
 const SECOND_ORDER: f64 = 1e-8;
-/// Where tractions and forces are compared that no force prescribes: their square is of the order of the gap, which
-/// has to be that much smaller.
-pub(super) const TIGHTER: f64 = 1e-13;
 /// A direction that is no axis.
 const ALONG: [f64; 2] = [0.6, 0.8];
 
@@ -59,7 +58,7 @@ pub(super) const CASES: [Case; 9] = [
         name: "islands with holes between",
         why: "punches of undefined surroundings: windows almost empty, no cell between to carry a correction",
         asserted: "stiffness of full stick by elimination; partial slip, turned and reversed, by relaxation",
-        bound: SECOND_ORDER,
+        bound: 1e-7,
         solve: islands,
     },
     Case {
@@ -289,7 +288,7 @@ fn islands(ledger: &mut Ledger, effort: Effort) -> Result<()> {
         let mut scene = rubbed(&map, alike(nu), MU);
         scene.outputs.tangential_stiffness_stuck = true;
         let mut slide = Slide::to(TIGHTER, &map, &scene, MU)?;
-        super::friction_paths::against_dragging(
+        against_dragging(
             ledger,
             &map,
             &mut slide,
@@ -333,7 +332,7 @@ fn plateau(ledger: &mut Ledger, effort: Effort) -> Result<()> {
     // Terraces: heights in three steps.
     let terraces = map(n, 1.0, |x, y| -0.05 * ((x / 3 + 2 * (y / 4)) % 3) as f64)?;
     let mut slide = Slide::to(TIGHTER, &terraces, &rubbed(&terraces, alike(0.3), MU), MU)?;
-    super::friction_paths::against_dragging(
+    against_dragging(
         ledger,
         &terraces,
         &mut slide,

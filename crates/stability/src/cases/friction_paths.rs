@@ -1,13 +1,12 @@
 //! Paths of friction: reversals, turns, loads that rise and fall.
 
-use super::friction::TIGHTER;
 use crate::case::{Case, Effort};
 use crate::ledger::{Ledger, approach, largest, mean_gap, pressure};
 use crate::maps::{map, rough_map};
-use crate::plain::{PlainSum, relaxed_by};
 use crate::press::{tight, watched, watched_periodic};
-use crate::shear::Dragged;
-use crate::slide::{Fields, MU, Slide, alike, compare, longest, rubbed, tangential, vectors};
+use crate::slide::{
+    Fields, MU, Slide, TIGHTER, against_dragging, alike, compare, longest, rubbed, tangential, vectors,
+};
 use contact_model::{Boundary, ContactModel, Error, HeightMap, Load, Result, Scene, Step, Tangential};
 use std::f64::consts::PI;
 
@@ -67,37 +66,6 @@ pub(super) const CASES: [Case; 7] = [
         solve: wave,
     },
 ];
-
-/// Follows approaches and displacements, beside relaxation of both problems: tractions over the largest, a tenth of
-/// their deviation; forces and energies.
-pub(super) fn against_dragging(
-    ledger: &mut Ledger,
-    map: &HeightMap,
-    slide: &mut Slide<'_>,
-    mu: f64,
-    path: &[(f64, [f64; 2])],
-) -> Result<()> {
-    let (normal, shear) = (PlainSum::of(map), slide.sum().clone());
-    let mut dragged = Dragged::new(&shear);
-    let area = map.dx() * map.dy();
-    for &(d, delta) in path {
-        let pressed = relaxed_by(&normal, map, d);
-        let limits: Vec<(usize, f64)> =
-            pressed.contact.iter().copied().zip(pressed.forces.iter().map(|f| mu * f)).collect();
-        dragged.advance(&limits, delta);
-        let state = slide.displace(ledger, Load::Approach(d), delta)?;
-        let found = tangential(&state)?;
-        let most = mu * pressed.force;
-        ledger.near("normal force", state.force, pressed.force);
-        compare(ledger, &[found.force], &[dragged.force()], most);
-        let q: Vec<[f64; 2]> =
-            vectors(&state, Fields::Traction)?.iter().map(|q| q.map(|q| 0.1 * q * area)).collect();
-        let exact: Vec<[f64; 2]> = dragged.forces.iter().map(|f| f.map(|f| 0.1 * f)).collect();
-        compare(ledger, &q, &exact, limits.iter().fold(0.0, |most, (_, b)| b.max(most)));
-        ledger.enter((found.dissipated - dragged.dissipated).abs() / (most * longest(&[delta])));
-    }
-    Ok(())
-}
 
 fn paths(ledger: &mut Ledger, effort: Effort) -> Result<()> {
     let n = effort.pick(11, 16);
