@@ -44,15 +44,32 @@ pub(crate) fn rubbed(map: &HeightMap, pair: Pair, coefficient: f64) -> Scene {
     scene
 }
 
+/// The end of the step before.
+struct Before {
+    /// Tractions times areas, of the cells in contact.
+    forces: Vec<(usize, [f64; 2])>,
+    displacement: [f64; 2],
+    slip: Vec<[f64; 2]>,
+    dissipated: f64,
+}
+
+impl Before {
+    fn nothing(map: &HeightMap) -> Self {
+        let slip = vec![[0.0; 2]; map.heights().len()];
+        Self { forces: Vec::new(), displacement: [0.0; 2], slip, dissipated: 0.0 }
+    }
+}
+
 /// A contact on its path, watched.
 pub(crate) struct Slide<'a> {
     map: &'a HeightMap,
     coefficient: f64,
     tolerance: f64,
+    /// What the kernel of images leaves of a duality gap; nothing with free boundaries.
+    images: f64,
     sum: PlainShear,
     contact: Box<dyn PreparedContact>,
-    /// Tractions times areas, displacement, slip and dissipated energy of the step before.
-    before: (Vec<(usize, [f64; 2])>, [f64; 2], Vec<[f64; 2]>, f64),
+    before: Before,
 }
 
 impl<'a> Slide<'a> {
@@ -81,8 +98,9 @@ impl<'a> Slide<'a> {
             _ => PlainShear::of(map, constant),
         };
         let contact = Bem3d { tolerance, ..tight() }.prepare(scene, 0)?;
-        let before = (Vec::new(), [0.0; 2], vec![[0.0; 2]; map.heights().len()], 0.0);
-        Ok(Self { map, coefficient, tolerance, sum, contact, before })
+        let before = Before::nothing(map);
+        let images = if scene.effects.boundary == Boundary::Periodic { SUMS } else { 0.0 };
+        Ok(Self { map, coefficient, tolerance, images, sum, contact, before })
     }
 
     /// The kernel of the witness.
@@ -93,7 +111,7 @@ impl<'a> Slide<'a> {
     /// Forgets the path.
     pub(crate) fn restart(&mut self) {
         self.contact.restart();
-        self.before = (Vec::new(), [0.0; 2], vec![[0.0; 2]; self.map.heights().len()], 0.0);
+        self.before = Before::nothing(self.map);
     }
 
     /// One step, without the witness.
@@ -157,7 +175,8 @@ impl<'a> Slide<'a> {
         ledger.must(asked <= 0.0, || format!("{load:?}: {found:?}"));
         ledger.near("sliding force", known("sliding force", found.sliding_force)?, friction);
         // The slip of the step, everywhere.
-        let (q_before, delta_before, s_before, lost) = &self.before;
+        let Before { forces: q_before, displacement: delta_before, slip: s_before, dissipated: lost } =
+            &self.before;
         let (u, u_before) = (self.sum.displacement(&forces), self.sum.displacement(q_before));
         let delta = found.displacement;
         let slip = |i: usize| [0, 1].map(|k| (delta[k] - u[i][k]) - (delta_before[k] - u_before[i][k]));
@@ -190,12 +209,13 @@ impl<'a> Slide<'a> {
         });
         // The gap of the solver is told over the larger of delta and of the largest reference, which is not above
         // twice the longest displacement here.
-        let allowed =
-            2.0 * WITNESS * self.tolerance * scale.max(friction * reach(s_before)) + rounding * friction;
+        let allowed = 2.0 * WITNESS * self.tolerance * scale.max(friction * reach(s_before))
+            + rounding * friction
+            + self.images * scale;
         ledger.must(gap <= allowed, || format!("{load:?}: duality gap {} by plain sums", gap / scale));
         ledger.enter((gap - rounding * friction).max(0.0) / scale.max(f64::MIN_POSITIVE));
         self.classes(ledger, load, state)?;
-        self.before = (forces, delta, s, found.dissipated);
+        self.before = Before { forces, displacement: delta, slip: s, dissipated: found.dissipated };
         Ok(())
     }
 

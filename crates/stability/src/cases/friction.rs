@@ -420,7 +420,7 @@ fn units(ledger: &mut Ledger, effort: Effort) -> Result<()> {
 
 fn threads(ledger: &mut Ledger, effort: Effort) -> Result<()> {
     // Above the size from which sums and transforms are shared among threads.
-    let map = rough_map(2.3, effort.pick(140, 400), 6)?;
+    let map = rough_map(2.3, effort.pick(140, 180), 6)?;
     let mut scene = rubbed(&map, alike(0.3), MU);
     (scene.outputs.tangential_stiffness, scene.outputs.tangential_stiffness_stuck) = (true, true);
     let path = |threads: usize| -> Result<Vec<u64>> {

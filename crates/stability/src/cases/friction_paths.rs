@@ -117,7 +117,7 @@ fn falling(ledger: &mut Ledger, effort: Effort) -> Result<()> {
         for share in [0.499, 0.1, 1e-6] {
             match slide.attempt(Load::Force(share * force), Tangential::Force(q)) {
                 Err(Error::OutOfRange { max, .. }) => {
-                    ledger.near("the largest force", max, MU * share * force)
+                    ledger.near("the largest force", max, MU * share * force);
                 }
                 other => ledger.must(false, || format!("F = {share}: {other:?}")),
             }
