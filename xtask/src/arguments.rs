@@ -15,8 +15,8 @@ use runs::ShardChoice;
 use sizes::{Both, LineSizes, Maps, Reduced, Solid, SolveSizes};
 use std::path::PathBuf;
 use studies::{
-    AccuracyCost, Audit, BookArguments, BudgetCheck, ExponentArguments, Reference, StabilityArguments,
-    TwoCasesArguments,
+    AccuracyCost, Audit, BookArguments, BudgetCheck, ExponentArguments, PartialSlipArguments, Reference,
+    StabilityArguments, TwoCasesArguments,
 };
 pub use studies::{Redraw, TuningArguments};
 
@@ -103,6 +103,10 @@ pub enum Command {
     /// (exponent.csv and others).
     #[command(after_help = EXPAND)]
     Exponent(ExponentArguments),
+    /// Partial slip of rough surfaces cell by cell, tangential over normal stiffness, and what approximations
+    /// by the normal contact miss (partial-slip.csv and others).
+    #[command(after_help = EXPAND)]
+    PartialSlip(PartialSlipArguments),
     /// What a command takes on many machines: jobs, core-hours, memory of a task, makespan, disk. Solves
     /// nothing.
     Plan(PlanArguments),
@@ -182,6 +186,7 @@ impl Command {
             }
             Self::Audit(a) => a.solid.fill(&mut request),
             Self::Exponent(a) => a.fill(&mut request),
+            Self::PartialSlip(a) => a.fill(&mut request),
             Self::BudgetCheck(a) => (request.out, request.threads) = (Some(a.out.clone()), Some(a.threads)),
             Self::ReproduceTwoCases(a) => (request.out, request.threads) = (Some(a.out.clone()), a.threads),
             Self::AccuracyCost(a) => (request.out, request.fresh) = (Some(a.out.clone()), a.fresh),

@@ -1,6 +1,6 @@
 //! The project's runner: `cargo xtask reproduce-fig1` .. `reproduce-fig7`, `reproduce-all`, `verify`,
-//! `audit`, `bench`, `reproduce-two-cases`, `accuracy-cost`, `budget-check`, `exponent`, `redraw`,
-//! `check-reference`, `stability`, `book`.
+//! `audit`, `bench`, `reproduce-two-cases`, `accuracy-cost`, `budget-check`, `exponent`,
+//! `partial-slip`, `redraw`, `check-reference`, `stability`, `book`.
 //!
 //! Argument parsing and exit codes; the figures are in the crate `paper`.
 //!
@@ -123,6 +123,7 @@ fn solve(command: Command, typed: &[String]) -> Result<ExitCode> {
             // The plan has dealt with what was stored.
             vec![paper::exponent(&paper::Exponent { fresh: false, ..study }, &reporter)?]
         }
+        Command::PartialSlip(options) => vec![paper::partial_slip(&options.study(&run)?, &reporter)?],
         Command::Audit(options) => {
             let (outcome, summary) = evaluation::audit(&run, options.share, options.tight, &reporter)?;
             runs::out!("{summary}");

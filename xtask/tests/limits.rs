@@ -49,7 +49,7 @@ fn refused(words: &[&str], flag: &str) -> Option<String> {
 /// The command, its flag, and values that it takes all the same.
 type Case = (&'static [&'static str], &'static str, &'static [&'static str]);
 
-const WITH_COUNTS: [Case; 24] = [
+const WITH_COUNTS: [Case; 28] = [
     (&["reproduce-fig1"], "--cells", &[]),
     (&["reproduce-fig2"], "--cells", &[]),
     (&["reproduce-fig2"], "--surfaces", &[]),
@@ -66,6 +66,10 @@ const WITH_COUNTS: [Case; 24] = [
     (&["exponent", "--surfaces", "2", "--lines", "2", "--elements", "64"], "--grids", &[]),
     (&["exponent", "--surfaces", "2", "--lines", "2", "--grids", "33"], "--elements", &[]),
     (&["exponent", "--surfaces", "2", "--grids", "33", "--elements", "64"], "--lines", &[]),
+    (&["partial-slip"], "--cells", &[]),
+    (&["partial-slip"], "--cells-per-wave", &[]),
+    (&["partial-slip"], "--surfaces", &[]),
+    (&["partial-slip"], "--increments", &[]),
     (&["budget-check"], "--cases", &[]),
     (&["budget-check"], "--threads", &["0"]),
     (&["bench"], "--cells", &[]),
@@ -76,7 +80,7 @@ const WITH_COUNTS: [Case; 24] = [
     (&["plan", "reproduce-two-cases"], "--surfaces", &[]),
 ];
 
-const WITH_NUMBERS: [Case; 12] = [
+const WITH_NUMBERS: [Case; 15] = [
     (&["reproduce-fig2"], "--tolerance", &[]),
     (&["reproduce-fig2"], "--accuracy", &[]),
     (&["reproduce-fig2", "--accuracy", "5%"], "--budget", &[]),
@@ -84,6 +88,9 @@ const WITH_NUMBERS: [Case; 12] = [
     (&["reproduce-fig2"], "--fractal-dimensions", &[]),
     (&["reproduce-two-cases"], "--tolerance", &[]),
     (&["reproduce-two-cases"], "--roll-off", &[]),
+    (&["partial-slip"], "--tolerance", &[]),
+    (&["partial-slip"], "--df", &[]),
+    (&["partial-slip"], "--poisson", &["0"]),
     (&["exponent"], "--error", &[]),
     (&["exponent", "--plan"], "--budget", &[]),
     (&["bench", "--cells", "33"], "--tolerance", &[]),

@@ -12,7 +12,7 @@
 //! # What it does not do
 //!
 //! No mechanics of its own, no argument parsing (that is `xtask`), no figure beyond the paper's but
-//! [`two_cases`].
+//! [`two_cases`], [`exponent()`] and its sequel for friction, [`partial_slip()`].
 //!
 //! ```no_run
 //! use evaluation::{Preset, Request, Run};
@@ -39,6 +39,7 @@ mod fig6;
 mod fig7;
 mod fitted;
 mod judged;
+mod partial_slip;
 mod redraw;
 mod reference;
 mod two_cases;
@@ -56,6 +57,7 @@ pub use fig5::fig5;
 pub use fig6::fig6;
 pub use fig7::fig7;
 pub use judged::Judged;
+pub use partial_slip::{PartialSlip, PartialSlipSizes, draw_partial_slip, partial_slip};
 pub use redraw::{Beside, redraw};
 pub use reference::{RELATIVE, check_reference};
 pub use two_cases::{TwoCases, two_cases, two_cases_jobs};

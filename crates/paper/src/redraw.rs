@@ -1,6 +1,6 @@
 //! Pictures drawn again from tables, without solving anything.
 
-use crate::{curves, fig1, fig3, fig4, fig5, fig7, two_cases};
+use crate::{curves, fig1, fig3, fig4, fig5, fig7, partial_slip, two_cases};
 use runs::{Error, Result};
 use std::path::{Path, PathBuf};
 
@@ -43,6 +43,9 @@ pub fn redraw(directory: &Path, beside: &Beside) -> Result<Vec<PathBuf>> {
     files.extend(evaluation::redraw_benches(directory)?);
     if directory.join("exponent.csv").exists() {
         files.extend(crate::draw_exponent(directory)?);
+    }
+    if directory.join(partial_slip::SLIPS).exists() {
+        files.extend(partial_slip::draw_partial_slip(directory)?);
     }
     if files.is_empty() {
         return Err(Error::content(directory, "no table that a picture is drawn from"));

@@ -6,7 +6,7 @@ use super::words::{Words, words};
 use clap::Args;
 use evaluation::{Depth, Forces, Request, Run};
 use paper::TwoCases;
-use paper::{Exponent, ExponentSizes};
+use paper::{Exponent, ExponentSizes, PartialSlip, PartialSlipSizes};
 use std::path::PathBuf;
 
 /// Flags of the second look.
@@ -237,6 +237,86 @@ impl ExponentArguments {
             out: run.out.clone(),
             fresh: run.fresh,
             ..study
+        })
+    }
+}
+
+/// Sizes of the study of partial slip.
+const PARTIAL_SLIP_SIZES: Words<PartialSlipSizes> = &[
+    ("quick", PartialSlipSizes::Quick, "32 cells, 3 surfaces: seconds"),
+    ("default", PartialSlipSizes::Default, "128 cells, 10 surfaces of two fractal dimensions"),
+];
+
+/// Flags of the study of partial slip.
+#[derive(Debug, Args)]
+pub struct PartialSlipArguments {
+    /// Sizes to start from; the other flags override them.
+    #[arg(long, value_parser = words(PARTIAL_SLIP_SIZES), default_value = "default")]
+    preset: PartialSlipSizes,
+    /// Cells a side.
+    #[arg(long, allow_hyphen_values = true)]
+    cells: Option<usize>,
+    /// Cells of the shortest wave.
+    #[arg(long, allow_hyphen_values = true)]
+    cells_per_wave: Option<usize>,
+    /// Surfaces of each boundary and fractal dimension.
+    #[arg(long, allow_hyphen_values = true)]
+    surfaces: Option<usize>,
+    /// Fractal dimensions, separated by commas.
+    #[arg(long = "df", value_name = "LIST", value_delimiter = ',', allow_hyphen_values = true)]
+    fractal_dimensions: Option<Vec<f64>>,
+    /// Poisson's ratios, increasing from 0, separated by commas.
+    #[arg(long = "poisson", value_name = "LIST", value_delimiter = ',', allow_hyphen_values = true)]
+    poissons: Option<Vec<f64>>,
+    /// Loads F_bar: numbers and logarithmic ranges MIN:MAX:COUNT.
+    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
+    forces: Option<String>,
+    /// Increments from no tangential force to the end of a loop, and half of those back.
+    #[arg(long, allow_hyphen_values = true)]
+    increments: Option<usize>,
+    /// Tolerance of every certificate.
+    #[arg(long, allow_hyphen_values = true)]
+    tolerance: Option<f64>,
+    /// Master seed.
+    #[arg(long, default_value_t = evaluation::SEED)]
+    seed: u64,
+    /// Threads; 0 is one per core. Changes no byte of a CSV.
+    #[arg(long, default_value_t = 0)]
+    threads: usize,
+    /// Ignore stored results and solve everything again.
+    #[arg(long)]
+    fresh: bool,
+    /// Directory of the results.
+    #[arg(long, value_name = "DIR", default_value = "out")]
+    out: PathBuf,
+}
+
+impl PartialSlipArguments {
+    pub(super) fn fill(&self, request: &mut Request) {
+        (request.seed, request.threads) = (Some(self.seed), Some(self.threads));
+        (request.out, request.fresh) = (Some(self.out.clone()), self.fresh);
+    }
+
+    /// What it asks for; seed, threads and directory are those of the run.
+    ///
+    /// # Errors
+    /// [`runs::Error::Parameter`] for a list of loads that is none.
+    pub fn study(&self, run: &Run) -> runs::Result<PartialSlip> {
+        let sizes = PartialSlip::new(self.preset)?;
+        let forces = self.forces.as_deref().map(Forces::parse).transpose()?;
+        Ok(PartialSlip {
+            cells: self.cells.unwrap_or(sizes.cells),
+            cells_per_wave: self.cells_per_wave.unwrap_or(sizes.cells_per_wave),
+            surfaces: self.surfaces.unwrap_or(sizes.surfaces),
+            fractal_dimensions: self.fractal_dimensions.clone().unwrap_or(sizes.fractal_dimensions),
+            poissons: self.poissons.clone().unwrap_or(sizes.poissons),
+            forces: forces.unwrap_or(sizes.forces),
+            increments: self.increments.unwrap_or(sizes.increments),
+            tolerance: self.tolerance.unwrap_or(sizes.tolerance),
+            seed: run.seed,
+            threads: run.threads,
+            out: run.out.clone(),
+            fresh: run.fresh,
         })
     }
 }
