@@ -23,6 +23,7 @@ scene fractal-3d-and-1d curve-stiffness.svg
 scene contact-conductance curve-conductance.svg
 scene periodic-theories curve-stiffness.svg curve-area.svg
 scene rough-friction curve-tangential_force.svg
+scene fretting-loop curve-tangential_force.svg traction-bem3d-0-006.png slip-bem3d-0-003.png stick_slip-bem3d-0-003.png
 scene rough-creep curve-approach.svg
 scene rough-plastic plastic_depth-bem3d-0-003.png
 scene plastic-path curve-force.svg

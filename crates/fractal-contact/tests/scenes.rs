@@ -125,7 +125,7 @@ fn a_plastic_path_keeps_its_indentation() {
         approx::assert_relative_eq!(work[i], 1e9 * volume[i], max_relative = EXACT);
     }
     let report = std::fs::read_to_string(dir.path().join("report.html")).unwrap();
-    assert!(report.contains("Plastic depth"));
+    assert!(report.contains("Plastic indentation"));
 }
 
 #[test]

@@ -160,7 +160,7 @@ pub(crate) fn picture<'a>(
 ) -> FieldPicture<'a> {
     let &FieldQuantity { name, words, symbol, unit, components, shown, classes, .. } = field;
     let load = if name == HEIGHTS.name { "as solved".to_owned() } else { words::load(scene, state) };
-    let mut title = format!("{}, {}", name.replace('_', " "), words::model_name(model));
+    let mut title = format!("{words}, {}", words::model_name(model));
     title[..1].make_ascii_uppercase();
     let number = if scene.sampling.surfaces > 1 { format!(", surface {surface}") } else { String::new() };
     let subtitle = format!("{}{number}: {load}", words::scene_name(scene));
