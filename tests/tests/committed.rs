@@ -321,3 +321,60 @@ fn exponents_of_the_two_problems_are_those_of_their_table() {
         }
     }
 }
+
+/// The surfaces of the study of partial slip with this load and Poisson's ratio.
+fn slip_samples<'a>(all: &'a [Row], boundary: &str, at: [f64; 3]) -> BTreeMap<&'a str, &'a Row> {
+    let own = all.iter().filter(|row| {
+        row["model"] == "bem3d"
+            && row["boundary"] == boundary
+            && ["fractal_dimension", "force_bar", "poisson"]
+                .iter()
+                .zip(at)
+                .all(|(column, value)| (number(row, column) - value).abs() < 1e-9)
+    });
+    own.map(|row| (row["surface"].as_str(), row)).collect()
+}
+
+/// Student's 97.5 % quantile, by Cornish and Fisher's series.
+fn student(freedom: f64) -> f64 {
+    let z = 1.959_964_f64;
+    z + (z.powi(3) + z) / (4.0 * freedom)
+        + (5.0 * z.powi(5) + 16.0 * z.powi(3) + 3.0 * z) / (96.0 * freedom * freedom)
+}
+
+#[test]
+fn means_of_partial_slip_are_those_of_its_samples() {
+    let agree = |values: &[f64], row: &Row, column: &str| {
+        let (mean, error) = mean_and_error(values);
+        let half = student(values.len() as f64 - 1.0) * error;
+        let (stated, stated_half) = (number(row, column), number(row, &format!("{column}_half")));
+        assert!((mean - stated).abs() < 2e-6, "{column}: {mean}, stated {stated}");
+        assert!((half - stated_half).abs() < 0.01 * half + 2e-6, "{column}: {half}, stated {stated_half}");
+    };
+    let all = rows("data/partial-slip/partial-slip-samples.csv");
+    for row in rows("data/partial-slip/partial-slip-stiffness.csv") {
+        let [d, force, nu] = ["fractal_dimension", "force_bar", "poisson"].map(|column| number(&row, column));
+        let mindlin = (2.0 - 2.0 * nu) / (2.0 - nu);
+        let surfaces = slip_samples(&all, &row["boundary"], [d, force, nu]);
+        assert!(surfaces.len() >= 8);
+        let [xx, yy] =
+            ["k_xx", "k_yy"].map(|k| surfaces.values().map(|s| number(s, k) / mindlin).collect::<Vec<_>>());
+        agree(&xx, &row, "ratio_x");
+        agree(&yy, &row, "ratio_y");
+        let middle: Vec<f64> = xx.iter().zip(&yy).map(|(x, y)| 0.5 * (x + y)).collect();
+        agree(&middle, &row, "ratio");
+    }
+    let shares = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95];
+    for row in rows("data/partial-slip/partial-slip.csv").iter().filter(|row| number(row, "poisson") > 0.2) {
+        let [d, force, nu, share] =
+            ["fractal_dimension", "force_bar", "poisson", "share"].map(|column| number(row, column));
+        let place = shares.iter().position(|s| (s - share).abs() < 1e-9).unwrap();
+        let [solved, without] = [nu, 0.0].map(|nu| slip_samples(&all, "free", [d, force, nu]));
+        let value = |row: &Row, column: &str| list(row, column)[place].unwrap();
+        agree(&solved.values().map(|s| value(s, "stick")).collect::<Vec<_>>(), row, "stick");
+        let miss = solved
+            .iter()
+            .map(|(surface, s)| value(&without[surface], "displacement") / value(s, "displacement") - 1.0);
+        agree(&miss.collect::<Vec<_>>(), row, "displacement_miss");
+    }
+}
