@@ -155,7 +155,6 @@ impl SlipJob {
 
     /// The equivalent profile of the bodies without Poisson's ratio: in these units it is that of all.
     fn equivalent(
-        &self,
         contact: &mut dyn PreparedContact,
         force: f64,
         stop: Stop<'_>,
@@ -304,7 +303,7 @@ impl Job for SlipJob {
                     all.solved.push(converged(solved)?);
                 }
                 if let Some(profile) = &mut profile {
-                    all.equivalent.push(converged(self.equivalent(&mut **profile, force, stop))?);
+                    all.equivalent.push(converged(Self::equivalent(&mut **profile, force, stop))?);
                 }
             }
             Ok(())
