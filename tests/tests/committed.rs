@@ -374,7 +374,7 @@ fn means_of_partial_slip_are_those_of_its_samples() {
         agree(&solved.values().map(|s| value(s, "stick")).collect::<Vec<_>>(), row, "stick");
         let miss = solved
             .iter()
-            .map(|(surface, s)| value(&without[surface], "displacement") / value(s, "displacement") - 1.0);
+            .map(|(surface, s)| value(without[surface], "displacement") / value(s, "displacement") - 1.0);
         agree(&miss.collect::<Vec<_>>(), row, "displacement_miss");
     }
 }

@@ -9,7 +9,8 @@
 //!
 //! **Slip references.** What is subtracted, `(delta - u)_before`, is known on every cell of the surface, in contact or
 //! not: a cell that comes into contact takes its reference from there, one that leaves forgets its slip. Where
-//! within the increment a cell touches changes no traction (`Friction::advance`).
+//! within the increment a cell touches changes no traction (`Friction::advance`), unless pressures displace
+//! tangentially: then steps of a growing contact are to be small.
 //!
 //! **Certificate.** The duality gap `sum(mu p |w| - q . w)` of admissible tractions bounds half the square of their
 //! error in the norm of K. It is given relative to `mu F` times a length, the larger of |delta| and of the largest
