@@ -82,7 +82,7 @@ pub struct FrictionRoom {
 
 /// `rho` times the own compliance: y = q + rho w decides between stick and slip.
 const STEP: f64 = 0.4;
-/// Reduction of the residual in one step: of 0.02 to 0.3 the one of fewest applications for N = 512 and 1024, D_f = 2.2
+/// Reduction of the residual in one step, at first: of 0.02 to 0.3 the one of fewest applications for N = 512 and 1024, D_f = 2.2
 /// and 2.4, F_bar = 1 (2026-11, Xeon). A tighter one solves well on sets that will change, a looser one takes more than
 /// twice as many steps.
 const REDUCTION: f64 = 0.1;
@@ -100,12 +100,12 @@ const PATIENCE: usize = 4;
 const GRADIENTS: usize = 8;
 /// A gap is better when it falls by this factor.
 const BETTER: f64 = 0.7;
-/// Where a whole step leaves more than this of the gap, linear systems are solved further from then on ...
+/// Share of the gap above which a whole step counts as slow: linear systems are solved further from then on.
 const SLOW: f64 = 0.3;
-/// ... by this factor ...
+/// Factor of the reduction after a slow step.
 const FURTHER: f64 = 0.2;
-/// ... down to this reduction. In the norm in which conjugate gradients fall fast, slip cells count more than what is
-/// left on stick cells at long waves, of which the gap consists.
+/// Smallest reduction. The norm of conjugate gradients is mostly that of slip cells, the gap that of stick cells, whose
+/// residual has long waves and falls later.
 const LEAST_REDUCTION: f64 = 0.02;
 /// Units of tractions are at least this share of displacements: squares of these stay finite.
 const SMALLEST_UNIT: f64 = 1e-100;
