@@ -189,7 +189,7 @@ impl Tuning {
         order: 6,
         dense_reach: 12,
         dense_order: 6,
-        filter_ns: 0.6,
+        filter_ns: 0.15,
         scattered: 20,
         largest_scattered: 200_000,
         kept_window: 0.6,
