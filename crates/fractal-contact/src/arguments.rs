@@ -33,6 +33,7 @@ A scene:
   cells = 129
 
 Examples:
+  fractal-contact press map.sur --modulus '115 GPa' --pressure '1 MPa,10 MPa'    the contact of a measured map
   fractal-contact plan scene.toml              what will be computed, what not and why, what it will cost
   fractal-contact run scene.toml               results.csv, manifest.json and what the scene asks for, in out/scene/
   fractal-contact run scene.toml --out DIR --threads 2
@@ -55,8 +56,38 @@ Examples:
 
 An NPY file holds heights only: a scene that reads it says `unit`, and `size` or `cell`. Text and XYZ say them themselves.";
 
+const PRESS: &str = "\
+Examples:
+  fractal-contact press map.sur --modulus '115 GPa' --pressure '1 MPa,10 MPa'
+  fractal-contact press map.npy --unit nm --cell '0.5 um' --modulus '115 GPa' --pressure '1 MPa,10 MPa'
+  fractal-contact press map.sur --bodies 'rigid, 70 GPa 0.33' --force '1 N' --hardness '1 GPa' --fill neighbours
+  fractal-contact press map.sur --bodies '210 GPa 0.3, 210 GPa 0.3' --force '1 N' --friction 0.3 --tangential-force '0.1 N'
+
+What neither the file nor the flags say is asked for, with the whole command. A tilt is subtracted unless --detrend says what is.";
+
 #[derive(Debug, Subcommand)]
 pub enum Command {
+    /// The contact of a map at once: writes the scene that flags describe, and runs it.
+    #[command(after_help = PRESS)]
+    Press {
+        #[command(flatten)]
+        asked: Box<PressArguments>,
+        /// Directory of the results and of scene.toml [default: out/NAME of the map].
+        #[arg(long, value_name = "DIR")]
+        out: Option<PathBuf>,
+        /// Threads; each takes one model on one surface [default: all].
+        #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..).map(usize::from))]
+        threads: Option<usize>,
+    },
+    /// The scene of `press` without its run, to be edited.
+    #[command(after_help = PRESS)]
+    New {
+        #[command(flatten)]
+        asked: Box<PressArguments>,
+        /// The scene [default: NAME.toml of the map]; a file that exists is left alone.
+        #[arg(long, value_name = "FILE")]
+        scene: Option<PathBuf>,
+    },
     /// Which models and grids, which effects and outputs and why, accuracy, time and memory to expect.
     Plan {
         /// The scene.
@@ -153,6 +184,106 @@ pub enum Command {
     },
 }
 
+/// What is pressed and how.
+#[derive(Debug, clap::Args)]
+pub struct PressArguments {
+    /// The map: files of instruments and programs, NPY, text.
+    pub map: PathBuf,
+    /// E* of the pair, such as "115 GPa".
+    #[arg(long, value_name = "MODULUS", conflicts_with = "bodies")]
+    pub modulus: Option<String>,
+    /// Young's modulus and Poisson's ratio of both bodies, such as "210 GPa 0.3, 70 GPa 0.33"; of one, and the other
+    /// is rigid.
+    #[arg(long)]
+    pub bodies: Option<Bodies>,
+    /// Mean pressures over the map, such as "1 MPa,10 MPa".
+    #[arg(long, value_name = "LIST", conflicts_with_all = ["force", "approach"])]
+    pressure: Option<String>,
+    /// Normal forces, such as "1 N,10 N".
+    #[arg(long, value_name = "LIST", conflicts_with = "approach")]
+    force: Option<String>,
+    /// Approaches from first touch, such as "10 nm,100 nm".
+    #[arg(long, value_name = "LIST")]
+    approach: Option<String>,
+    /// What lies outside of the map: free (nothing that carries load) or periodic (the map again).
+    #[arg(long, value_parser = ["free", "periodic"])]
+    pub boundary: Option<String>,
+    /// Hardness of the softer body, such as "2 GPa": the contact flows there.
+    #[arg(long, value_name = "PRESSURE")]
+    pub hardness: Option<String>,
+    /// Coefficient of friction; with --bodies and --tangential-force.
+    #[arg(long, value_name = "MU")]
+    pub friction: Option<f64>,
+    /// Tangential force along x, such as "0.1 N".
+    #[arg(long, value_name = "FORCE", requires = "friction")]
+    pub tangential_force: Option<String>,
+    /// Of normal and tangential tractions where the bodies differ: none or full.
+    #[arg(long, value_parser = ["none", "full"], requires = "friction")]
+    pub coupling: Option<String>,
+    /// Error of the cells that is allowed, such as "1 %": as few cells as reach it.
+    #[arg(long, value_name = "SHARE", conflicts_with_all = ["cells", "hardness", "friction"])]
+    pub accuracy: Option<String>,
+    /// Columns after averaging over larger cells [default: those of the map].
+    #[arg(long, value_name = "N")]
+    cells: Option<usize>,
+    /// What becomes of points without a height: no_contact (they cannot touch); see --fill.
+    #[arg(long, conflicts_with = "fill")]
+    pub undefined: Option<surface_io::Undefined>,
+    #[command(flatten)]
+    more: MapArguments,
+}
+
+impl PressArguments {
+    /// How the file is read, and what is done to its map.
+    pub fn map_options(&self) -> (ReadOptions, Preprocessing) {
+        self.more.clone().options()
+    }
+
+    /// Key and values of the loads.
+    pub fn load(&self) -> Option<(&'static str, &str)> {
+        let Self { pressure, force, approach, .. } = self;
+        let loads = [("mean_pressure", pressure), ("force", force), ("approach", approach)];
+        loads.into_iter().find_map(|(key, values)| Some((key, values.as_deref()?)))
+    }
+}
+
+/// Two elastic bodies, or one on a rigid one: Young's modulus as it was written, and Poisson's ratio.
+#[derive(Debug, Clone)]
+pub struct Bodies([Option<(String, f64)>; 2]);
+
+impl Bodies {
+    /// As `bodies` in a scene.
+    pub fn toml(&self) -> String {
+        let one = |body: &Option<(String, f64)>| match body {
+            Some((young, poisson)) => {
+                format!("{{ young = {}, poisson = {poisson:?} }}", runs::cluster::toml(young))
+            }
+            None => "\"rigid\"".to_owned(),
+        };
+        format!("[{}, {}]", one(&self.0[0]), one(&self.0[1]))
+    }
+}
+
+impl std::str::FromStr for Bodies {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let expected = "expected Young's modulus and Poisson's ratio of both bodies, such as \"210 GPa 0.3, 70 GPa 0.33\" or \"rigid, 70 GPa 0.33\"";
+        let body = |text: &str| match text.trim() {
+            "rigid" => Ok(None),
+            other => other
+                .rsplit_once(char::is_whitespace)
+                .and_then(|(young, poisson)| Some(Some((young.trim().to_owned(), poisson.parse().ok()?))))
+                .ok_or_else(|| format!("`{other}`: {expected}")),
+        };
+        match text.split(',').collect::<Vec<_>>()[..] {
+            [one] => Ok(Self([None, body(one)?])),
+            [first, second] => Ok(Self([body(first)?, body(second)?])),
+            _ => Err(expected.to_owned()),
+        }
+    }
+}
+
 /// Flags of a surface that is drawn.
 #[derive(Debug, clap::Args)]
 pub struct SurfaceArguments {
@@ -215,7 +346,7 @@ pub struct ShardsArguments {
 
 /// The keys of [scene.surface] in a scene: how a file is meant, and what is done to the map before it is
 /// described.
-#[derive(Debug, Default, clap::Args)]
+#[derive(Debug, Default, Clone, clap::Args)]
 pub struct MapArguments {
     /// Number, from 0, or name of the channel of a file with several.
     #[arg(long)]

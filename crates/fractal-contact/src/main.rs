@@ -2,36 +2,63 @@
 
 mod arguments;
 mod cluster;
+mod press;
 mod start;
 
-use arguments::{Arguments, Command};
-use clap::{CommandFactory as _, Parser as _};
+use arguments::{Arguments, Command, PressArguments};
+use clap::{ArgMatches, CommandFactory as _, FromArgMatches as _};
 use fractal_contact::models::{MODELS, ModelRecord};
 use fractal_contact::scenes::{
-    Error, GeneratedSurface, Options, Plan, Result, SceneOutcome, info, info_json, info_statistics, run,
-    write_twin,
+    Error, GeneratedSurface, Options, Plan, Result, SceneFile, SceneOutcome, info, info_json,
+    info_statistics, run, write_twin,
 };
 use fractal_contact::surface_gen::{Anisotropy, HeightDistribution, TwinSpectrum};
+use press::SurfaceKeys;
 use start::{read_scene, stopped_by_signals};
 use std::path::Path;
 use std::process::ExitCode;
 use std::sync::atomic::Ordering;
 
 fn main() -> ExitCode {
-    let arguments = Arguments::parse();
+    let matches = Arguments::command().get_matches();
+    let arguments = Arguments::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
     let asked = std::env::var_os(runs::THREADS_VARIABLE);
-    let done = runs::with_threads(asked.as_deref(), || execute(arguments));
+    let done = runs::with_threads(asked.as_deref(), || execute(arguments, &matches));
     match done.map_err(Error::from).and_then(|done| done) {
         Ok(code) => code,
         Err(error) => {
             runs::err!("{error}");
-            ExitCode::from(if error.is_scene() { 2 } else { 1 })
+            let mistake = error.is_scene() || matches!(error, Error::Argument { .. });
+            ExitCode::from(if mistake { 2 } else { 1 })
         }
     }
 }
 
-fn execute(arguments: Arguments) -> Result<ExitCode> {
+fn execute(arguments: Arguments, matches: &ArgMatches) -> Result<ExitCode> {
     match arguments.command {
+        Command::Press { asked, out, threads } => {
+            let out = out.unwrap_or_else(|| default_directory(&asked.map));
+            let path = out.join("scene.toml");
+            let scene = scene_of(&asked, matches, &path)?;
+            runs::files::write_whole(&path, scene.text.as_bytes())?;
+            runs::err!("{}", path.display());
+            run_scene(&path, &Options { out, threads: threads.unwrap_or_else(all_threads), fresh: false })
+        }
+        Command::New { asked, scene } => {
+            let path = scene.unwrap_or_else(|| {
+                Path::new(asked.map.file_name().unwrap_or_default()).with_extension("toml")
+            });
+            if path.exists() {
+                let reason = format!("{} exists: move it away, or name another with --scene", path.display());
+                return Err(Error::Argument { name: "scene", reason });
+            }
+            let scene = scene_of(&asked, matches, &path)?;
+            runs::files::write_whole(&path, scene.text.as_bytes())?;
+            let shown = runs::cluster::quoted(&path.to_string_lossy());
+            runs::out!("{}", path.display());
+            runs::err!("fractal-contact run {shown}");
+            Ok(ExitCode::SUCCESS)
+        }
         Command::Plan { scene, nodes, node_cores, division } => {
             let scene = read_scene(&scene)?;
             let plan = Plan::calibrated(&scene)?;
@@ -112,6 +139,15 @@ fn execute(arguments: Arguments) -> Result<ExitCode> {
             Ok(ExitCode::SUCCESS)
         }
     }
+}
+
+/// The scene that flags describe.
+fn scene_of(asked: &PressArguments, matches: &ArgMatches, at: &Path) -> Result<SceneFile> {
+    // `press` or `new`: the flags of a map are theirs.
+    let Some((_, given)) = matches.subcommand() else {
+        return press::scene(asked, &SurfaceKeys::default(), at);
+    };
+    press::scene(asked, &SurfaceKeys::given(given), at)
 }
 
 /// The models of the library, or one of them, with their abilities.

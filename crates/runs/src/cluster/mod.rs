@@ -24,4 +24,4 @@ pub use plan::{ShardPlan, without_flags};
 pub use shard_run::{ShardReport, run_shard};
 pub use status::{Status, status, submitted_tasks};
 pub use submission::{Engine, Submission, Submitted};
-pub use words::quoted;
+pub use words::{quoted, toml};

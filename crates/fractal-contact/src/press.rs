@@ -1,0 +1,345 @@
+//! `press` and `new`: the scene of the commonest question, how large the contact of a measured map is, from
+//! flags.
+
+use crate::arguments::{MapArguments, PressArguments};
+use clap::parser::ValueSource;
+use clap::{ArgMatches, Args as _};
+use fractal_contact::scenes::{Error, Result, SceneFile};
+use runs::cluster::{quoted, toml};
+use std::fmt::Write as _;
+use std::path::{Component, Path, PathBuf};
+use surface_io::{Metadata, SurfaceFile};
+
+/// Flags whose values are numbers in a scene.
+const NUMBERS: [&str; 6] = ["missing", "skip_lines", "scars", "outliers", "rotate", "cells"];
+/// A line of the scene begins its comment in this column.
+const COMMENT: usize = 40;
+
+/// Flags of a map as they were written, by the names of their keys in [scene.surface].
+#[derive(Default)]
+pub struct SurfaceKeys(Vec<(String, String)>);
+
+impl SurfaceKeys {
+    /// Those on the command line.
+    pub fn given(matches: &ArgMatches) -> Self {
+        let flags = MapArguments::augment_args(clap::Command::default());
+        let names = flags.get_arguments().map(|flag| flag.get_id().to_string()).chain(["cells".to_owned()]);
+        let given = names.filter(|name| matches.value_source(name) == Some(ValueSource::CommandLine));
+        let raw = |name: String| {
+            let value = matches.get_raw(&name)?.next()?.to_string_lossy().into_owned();
+            Some((name, value))
+        };
+        Self(given.filter_map(raw).collect())
+    }
+
+    fn has(&self, keys: &[&str]) -> bool {
+        keys.iter().any(|key| self.value(key).is_some())
+    }
+
+    fn value(&self, key: &str) -> Option<&str> {
+        self.0.iter().find(|(name, _)| name == key).map(|(_, value)| value.as_str())
+    }
+}
+
+/// What a command lacks.
+struct Lacking {
+    flag: &'static str,
+    example: String,
+    why: String,
+}
+
+/// The scene of a map, at the place where it will stand.
+///
+/// # Errors
+/// [`Error::Argument`] with everything that neither the flags nor the file say, and the whole command; what is
+/// wrong with the file or with the scene.
+pub fn scene(asked: &PressArguments, keys: &SurfaceKeys, at: &Path) -> Result<SceneFile> {
+    if asked.map.extension().is_some_and(|ending| ending == "toml") {
+        let reason = format!("{} is a scene: `fractal-contact run` takes it", asked.map.display());
+        return Err(Error::Argument { name: "map", reason });
+    }
+    let (declared, _) = asked.map_options();
+    let known = SurfaceFile::open(&asked.map, &declared).and_then(SurfaceFile::scan)?;
+    let lacking = lacking(asked, keys, known.metadata());
+    if !lacking.is_empty() {
+        return Err(Error::Argument { name: "command", reason: question(&asked.map, &lacking) });
+    }
+    // The path of the map counts from a folder that has to exist.
+    let folder = at.parent().filter(|folder| !folder.as_os_str().is_empty() && !folder.exists());
+    if let Some(folder) = folder {
+        runs::files::create_directory(folder)?;
+    }
+    let scene = SceneFile::parse(at, text(asked, keys, at));
+    if let (Err(_), Some(folder)) = (&scene, folder) {
+        std::fs::remove_dir(folder).ok();
+    }
+    scene
+}
+
+fn lacking(asked: &PressArguments, keys: &SurfaceKeys, map: &Metadata) -> Vec<Lacking> {
+    let mut lacking = Vec::new();
+    let mut add = |missing: bool, flag, example: &str, why: String| {
+        if missing {
+            lacking.push(Lacking { flag, example: example.to_owned(), why });
+        }
+    };
+    add(
+        map.unit.is_none() && !keys.has(&["unit", "height_scale"]),
+        "--unit",
+        "nm",
+        format!("unit of the heights: numbers alone in {}", map.format),
+    );
+    add(
+        map.size.is_none() && !keys.has(&["size", "cell"]),
+        "--cell",
+        "0.5 um",
+        format!("side of one of the {} x {} cells, or --size of the map", map.columns, map.rows),
+    );
+    add(
+        map.undefined > 0
+            && asked.undefined.is_none()
+            && !keys.has(&["fill"])
+            && keys.value("crop") != Some("defined"),
+        "--undefined",
+        "no_contact",
+        format!(
+            "{} points have no height: they cannot touch, or --fill neighbours gives them one",
+            map.undefined
+        ),
+    );
+    add(
+        asked.friction.is_some() && asked.bodies.is_none(),
+        "--bodies",
+        "rigid, 210 GPa 0.3",
+        "Young's modulus and Poisson's ratio of both bodies: friction needs them".to_owned(),
+    );
+    add(
+        asked.friction.is_none() && asked.modulus.is_none() && asked.bodies.is_none(),
+        "--modulus",
+        "115 GPa",
+        "E* of the pair: 115 GPa is steel on steel; or --bodies".to_owned(),
+    );
+    add(
+        asked.load().is_none(),
+        "--pressure",
+        "1 MPa,10 MPa",
+        "mean pressure over the map, one or several; or --force or --approach".to_owned(),
+    );
+    add(
+        asked.friction.is_some() && asked.tangential_force.is_none(),
+        "--tangential-force",
+        "10 mN",
+        "what friction has to hold".to_owned(),
+    );
+    lacking
+}
+
+/// One message with everything that is missing and the command with an example of each.
+fn question(map: &Path, lacking: &[Lacking]) -> String {
+    let mut text = format!("{} and the flags do not say", map.display());
+    for Lacking { flag, why, .. } in lacking {
+        let _ = write!(text, "\n  {flag:<19} {why}");
+    }
+    let mut command = vec!["fractal-contact".to_owned()];
+    command.extend(std::env::args().skip(1).map(|word| quoted(&word)));
+    for Lacking { flag, example, .. } in lacking {
+        command.extend([(*flag).to_owned(), quoted(example)]);
+    }
+    let examples: Vec<&str> = lacking.iter().map(|lacking| lacking.example.as_str()).collect();
+    let _ =
+        write!(text, "\nwith examples ({}) for your values:\n  {}", examples.join("; "), command.join(" "));
+    text
+}
+
+/// The scene as TOML with comments.
+fn text(asked: &PressArguments, keys: &SurfaceKeys, at: &Path) -> String {
+    let mut scene = Lines::default();
+    scene.text += &format!(
+        "# Contact of the map {}. `fractal-contact run` takes this file; every key: \"What a scene may say\" in the book.\n",
+        asked.map.file_name().unwrap_or_default().to_string_lossy().escape_default()
+    );
+    scene.table("scene");
+    scene.line("models", "[\"bem3d\"]", "boundary elements: every cell of the map");
+    match (&asked.bodies, &asked.modulus) {
+        (Some(bodies), _) => scene.line("bodies", &bodies.toml(), "Young's modulus, Poisson's ratio"),
+        (None, Some(modulus)) => {
+            scene.line("modulus", &toml(modulus), "E*: 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2");
+        }
+        (None, None) => {}
+    }
+    if let Some(accuracy) = &asked.accuracy {
+        scene.line("accuracy", &toml(accuracy), "error of the cells that is allowed: fewer are taken");
+    }
+    if let Some((key, values)) = asked.load() {
+        let comment = match key {
+            "mean_pressure" => "force over the area of the map",
+            "approach" => "from first touch",
+            _ => "",
+        };
+        match asked.friction {
+            Some(_) => {
+                scene.array_of_tables("scene.path");
+                scene.line(key, &value_or_list(values), comment);
+                scene.array_of_tables("scene.path");
+                let force = asked.tangential_force.as_deref().unwrap_or_default();
+                scene.line("tangential_force", &toml(force), "along x, in equal parts");
+                scene.line("states", "8", "");
+            }
+            None => scene.line(key, &value_or_list(values), comment),
+        }
+    }
+    scene.table("scene.surface");
+    scene.line("kind", "\"file\"", "");
+    scene.line("path", &toml(&seen_from(&asked.map, at)), "from the folder of this file");
+    for (key, value) in &keys.0 {
+        scene.line(key, &surface_value(key, value), "");
+    }
+    if let Some(undefined) = &asked.undefined {
+        scene.line("undefined", &toml(undefined.word()), "points without a height cannot touch");
+    }
+    if !keys.has(&["detrend"]) {
+        scene.line("detrend", "\"plane\"", "a tilt is taken for one of the measurement; \"none\" keeps it");
+    }
+    let effects = [
+        ("boundary", asked.boundary.as_deref().map(toml)),
+        (
+            "hardness",
+            asked.hardness.as_deref().map(|pressure| format!("{{ pressure = {} }}", toml(pressure))),
+        ),
+        (
+            "friction",
+            asked.friction.map(|coefficient| match &asked.coupling {
+                Some(coupling) => format!("{{ coefficient = {coefficient}, coupling = {} }}", toml(coupling)),
+                None => format!("{{ coefficient = {coefficient} }}"),
+            }),
+        ),
+    ];
+    if effects.iter().any(|(_, value)| value.is_some()) {
+        scene.table("effects");
+        for (key, value) in effects {
+            if let Some(value) = value {
+                scene.line(key, &value, "");
+            }
+        }
+    }
+    scene.table("outputs");
+    scene.line("area", "true", "only named outputs are computed");
+    scene.line("stiffness", "true", "");
+    scene.line("contact_patches", "true", "");
+    scene.line("pressure", "[\"npy\", \"png\"]", "field of each load");
+    scene.line("gap", "[\"png\"]", "");
+    if asked.friction.is_some() {
+        scene.line("stick_area", "true", "");
+        scene.line("curves", "true", "");
+    } else {
+        scene.line("distributions", "[\"pressure\", \"gap\"]", "");
+        if asked.accuracy.is_none() && asked.hardness.is_none() {
+            scene.line(
+                "grid_error",
+                "true",
+                "the error of the cells, from cells twice and four times as large",
+            );
+        }
+    }
+    scene.text
+}
+
+/// Lines of TOML.
+#[derive(Default)]
+struct Lines {
+    text: String,
+}
+
+impl Lines {
+    fn table(&mut self, name: &str) {
+        self.text += &format!("\n[{name}]\n");
+    }
+
+    fn array_of_tables(&mut self, name: &str) {
+        self.text += &format!("\n[[{name}]]\n");
+    }
+
+    fn line(&mut self, key: &str, value: &str, comment: &str) {
+        let line = format!("{key} = {value}");
+        self.text += &match comment {
+            "" => format!("{line}\n"),
+            comment => format!("{line:COMMENT$} # {comment}\n"),
+        };
+    }
+}
+
+/// One value or, with commas, a list.
+fn value_or_list(text: &str) -> String {
+    let values: Vec<String> = text.split(',').map(|value| toml(value.trim())).collect();
+    match &values[..] {
+        [value] => value.clone(),
+        _ => format!("[{}]", values.join(", ")),
+    }
+}
+
+/// The value of a key of [scene.surface], from the flag of the same name.
+fn surface_value(key: &str, value: &str) -> String {
+    let is_number = value.parse::<f64>().is_ok();
+    match (key, value.split_once('x')) {
+        ("size" | "cell", Some((x, y))) => format!("[{}, {}]", toml(x.trim()), toml(y.trim())),
+        ("crop", _) if value.contains(',') => {
+            let numbers: Vec<&str> = value.split(',').map(str::trim).collect();
+            match numbers[..] {
+                [row, column, rows, columns] => {
+                    format!("{{ row = {row}, column = {column}, rows = {rows}, columns = {columns} }}")
+                }
+                [row, column, cells] => format!("{{ row = {row}, column = {column}, cells = {cells} }}"),
+                _ => toml(value),
+            }
+        }
+        ("channel", _) if value.parse::<u32>().is_ok() => value.to_owned(),
+        _ if NUMBERS.contains(&key) && is_number => value.to_owned(),
+        _ => toml(value),
+    }
+}
+
+/// The path of a map as the scene at `at` has to say it.
+fn seen_from(map: &Path, at: &Path) -> String {
+    let folder = at.parent().unwrap_or(Path::new(""));
+    let below = folder.components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir));
+    let steps = folder.components().filter(|part| matches!(part, Component::Normal(_))).count();
+    let path = if map.is_absolute() {
+        map.to_owned()
+    } else if below {
+        let up: PathBuf = std::iter::repeat_n("..", steps).collect();
+        up.join(map)
+    } else {
+        std::path::absolute(map).unwrap_or_else(|_| map.to_owned())
+    };
+    path.to_string_lossy().replace(std::path::MAIN_SEPARATOR, "/")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_path_is_seen_from_the_folder_of_the_scene() {
+        let seen = |map: &str, at: &str| seen_from(Path::new(map), Path::new(at));
+        assert_eq!(seen("map.npy", "map.toml"), "map.npy");
+        assert_eq!(seen("data/map.npy", "out/map/scene.toml"), "../../data/map.npy");
+        assert_eq!(seen("map.npy", "./out/scene.toml"), "../map.npy");
+        assert_eq!(seen("/a/map.npy", "out/scene.toml"), "/a/map.npy");
+        assert!(Path::new(&seen("map.npy", "/tmp/scene.toml")).is_absolute());
+    }
+
+    #[test]
+    fn values_are_those_of_a_scene() {
+        assert_eq!(surface_value("size", "2 mm x 1 mm"), "[\"2 mm\", \"1 mm\"]");
+        assert_eq!(surface_value("cell", "0.5 um"), "\"0.5 um\"");
+        assert_eq!(surface_value("crop", "1,2,30,40"), "{ row = 1, column = 2, rows = 30, columns = 40 }");
+        assert_eq!(surface_value("crop", "1,2,30"), "{ row = 1, column = 2, cells = 30 }");
+        assert_eq!(surface_value("crop", "centre"), "\"centre\"");
+        assert_eq!(surface_value("channel", "2"), "2");
+        assert_eq!(surface_value("channel", "Height \"up\""), "\"Height \\\"up\\\"\"");
+        assert_eq!(surface_value("missing", "-9999"), "-9999");
+        assert_eq!(surface_value("fill", "3 nm"), "\"3 nm\"");
+        assert_eq!(value_or_list("1 MPa, 10 MPa"), "[\"1 MPa\", \"10 MPa\"]");
+        assert_eq!(value_or_list("1 MPa"), "\"1 MPa\"");
+    }
+}

@@ -1,0 +1,119 @@
+//! `press` and `new`: the scene of a map from flags, and what they ask for.
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+const FLAGS: [&str; 6] = ["--unit", "nm", "--cell", "0.5 um", "--detrend", "none"];
+
+/// A folder with a map of 8 x 8 heights, two of which are undefined in `holes.txt`.
+fn folder() -> tempfile::TempDir {
+    let dir = tempfile::tempdir().unwrap();
+    let rows = |hole: &str| -> String {
+        (0..8)
+            .map(|y| {
+                let row: Vec<String> = (0..8)
+                    .map(|x| match (x, y) {
+                        (2, 3) => hole.to_owned(),
+                        _ => format!("{}", 20 - (x - 4) * (x - 4) - (y - 4) * (y - 4)),
+                    })
+                    .collect();
+                row.join(" ") + "\n"
+            })
+            .collect()
+    };
+    std::fs::write(dir.path().join("map.txt"), rows("7")).unwrap();
+    std::fs::write(dir.path().join("holes.txt"), rows("nan")).unwrap();
+    dir
+}
+
+fn program(folder: &Path, arguments: &[&str]) -> (Option<i32>, String, String) {
+    let Output { status, stdout, stderr } = Command::new(env!("CARGO_BIN_EXE_fractal-contact"))
+        .current_dir(folder)
+        .args(arguments)
+        .output()
+        .unwrap();
+    (status.code(), String::from_utf8(stdout).unwrap(), String::from_utf8(stderr).unwrap())
+}
+
+#[test]
+fn what_is_missing_is_asked_for_at_once_and_the_command_told_does_it() {
+    let dir = folder();
+    let (code, _, said) = program(dir.path(), &["press", "holes.txt"]);
+    assert_eq!(code, Some(2), "{said}");
+    for flag in ["--unit", "--cell", "--undefined", "--modulus", "--pressure"] {
+        assert!(said.contains(&format!("\n  {flag}")), "{flag}: {said}");
+    }
+    assert!(!dir.path().join("out").exists());
+    // The command to copy, as a shell takes it.
+    let command = said.trim_end().lines().next_back().unwrap().trim();
+    let words: Vec<&str> = command
+        .split('\'')
+        .enumerate()
+        .flat_map(|(i, part)| if i % 2 == 1 { vec![part] } else { part.split_whitespace().collect() })
+        .collect();
+    let (code, told, said) = program(dir.path(), &words[1..]);
+    assert_eq!(code, Some(0), "{said}");
+    assert!(told.contains("results.csv"), "{told}");
+    let scene = std::fs::read_to_string(dir.path().join("out/holes/scene.toml")).unwrap();
+    assert!(scene.contains("detrend = \"plane\"") && scene.contains("undefined = \"no_contact\""), "{scene}");
+    // The scene alone gives the same table.
+    let table = || std::fs::read(dir.path().join("out/holes/results.csv")).unwrap();
+    let first = table();
+    let (code, _, said) =
+        program(dir.path(), &["run", "out/holes/scene.toml", "--out", "out/holes", "--fresh"]);
+    assert_eq!(code, Some(0), "{said}");
+    assert_eq!(table(), first);
+}
+
+#[test]
+fn flags_are_keys_of_the_scene() {
+    let dir = folder();
+    let flags = ["new", "map.txt", "--bodies", "rigid, 70 GPa 0.33", "--force", "1 mN,2 mN"];
+    let more = ["--hardness", "1 GPa", "--boundary", "periodic", "--crop", "0,0,6", "--rotate", "90"];
+    let (code, told, said) = program(dir.path(), &[&flags[..], &FLAGS, &more].concat());
+    assert_eq!((code, told.as_str()), (Some(0), "map.toml\n"), "{said}");
+    let scene = std::fs::read_to_string(dir.path().join("map.toml")).unwrap();
+    for line in [
+        "bodies = [\"rigid\", { young = \"70 GPa\", poisson = 0.33 }]",
+        "force = [\"1 mN\", \"2 mN\"]",
+        "path = \"map.txt\"",
+        "crop = { row = 0, column = 0, cells = 6 }",
+        "detrend = \"none\"",
+        "rotate = 90",
+        "boundary = \"periodic\"",
+        "hardness = { pressure = \"1 GPa\" }",
+    ] {
+        assert!(scene.contains(line), "{line} in {scene}");
+    }
+    assert_eq!(program(dir.path(), &["plan", "map.toml"]).0, Some(0));
+    // It is not written over, nor is the scene taken for a map.
+    let (code, _, said) = program(dir.path(), &[&flags[..], &FLAGS].concat());
+    assert!(code == Some(2) && said.contains("map.toml exists"), "{said}");
+    let (code, _, said) = program(dir.path(), &["press", "map.toml"]);
+    assert!(code == Some(2) && said.contains("`fractal-contact run` takes it"), "{said}");
+}
+
+#[test]
+fn friction_is_a_path_under_a_force() {
+    let dir = folder();
+    let asked = ["press", "map.txt", "--friction", "0.3", "--pressure", "1 MPa"];
+    let (code, _, said) = program(dir.path(), &[&asked[..], &FLAGS].concat());
+    assert!(code == Some(2) && said.contains("--bodies") && said.contains("--tangential-force"), "{said}");
+    let more = ["--bodies", "210 GPa 0.3, 210 GPa 0.3", "--tangential-force", "2 uN"];
+    let (code, told, said) = program(dir.path(), &[&asked[..], &FLAGS, &more].concat());
+    assert_eq!(code, Some(0), "{said}");
+    assert!(told.contains("stick"), "{told}");
+}
+
+#[test]
+fn mistakes_leave_nothing_behind() {
+    let dir = folder();
+    let asked = ["press", "map.txt", "--modulus", "1 GPx", "--pressure", "1 MPa"];
+    let (code, _, said) = program(dir.path(), &[&asked[..], &FLAGS].concat());
+    assert!(code == Some(2) && said.contains("unknown unit \"GPx\""), "{said}");
+    assert!(!dir.path().join("out/map").exists());
+    let (code, _, said) = program(dir.path(), &["press", "nowhere.txt"]);
+    assert!(code == Some(1) && said.contains("cannot open nowhere.txt"), "{said}");
+    let (code, _, said) = program(dir.path(), &["press", "map.txt", "--bodies", "a, b, c"]);
+    assert!(code == Some(2) && said.contains("70 GPa 0.33"), "{said}");
+}
