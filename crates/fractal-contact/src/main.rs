@@ -15,7 +15,7 @@ use fractal_contact::scenes::{
 use fractal_contact::surface_gen::{Anisotropy, HeightDistribution, TwinSpectrum};
 use press::SurfaceKeys;
 use start::{read_scene, stopped_by_signals};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::atomic::Ordering;
 
@@ -36,29 +36,8 @@ fn main() -> ExitCode {
 
 fn execute(arguments: Arguments, matches: &ArgMatches) -> Result<ExitCode> {
     match arguments.command {
-        Command::Press { asked, out, threads } => {
-            let out = out.unwrap_or_else(|| default_directory(&asked.map));
-            let path = out.join("scene.toml");
-            let scene = scene_of(&asked, matches, &path)?;
-            runs::files::write_whole(&path, scene.text.as_bytes())?;
-            runs::err!("{}", path.display());
-            run_scene(&path, &Options { out, threads: threads.unwrap_or_else(all_threads), fresh: false })
-        }
-        Command::New { asked, scene } => {
-            let path = scene.unwrap_or_else(|| {
-                Path::new(asked.map.file_name().unwrap_or_default()).with_extension("toml")
-            });
-            if path.exists() {
-                let reason = format!("{} exists: move it away, or name another with --scene", path.display());
-                return Err(Error::Argument { name: "scene", reason });
-            }
-            let scene = scene_of(&asked, matches, &path)?;
-            runs::files::write_whole(&path, scene.text.as_bytes())?;
-            let shown = runs::cluster::quoted(&path.to_string_lossy());
-            runs::out!("{}", path.display());
-            runs::err!("fractal-contact run {shown}");
-            Ok(ExitCode::SUCCESS)
-        }
+        Command::Press { asked, out, threads } => press_map(&asked, out, threads, matches),
+        Command::New { asked, scene } => write_scene(&asked, scene, matches),
         Command::Plan { scene, nodes, node_cores, division } => {
             let scene = read_scene(&scene)?;
             let plan = Plan::calibrated(&scene)?;
@@ -141,6 +120,36 @@ fn execute(arguments: Arguments, matches: &ArgMatches) -> Result<ExitCode> {
     }
 }
 
+/// Writes the scene that flags describe beside its results, and runs it.
+fn press_map(
+    asked: &PressArguments,
+    out: Option<PathBuf>,
+    threads: Option<usize>,
+    matches: &ArgMatches,
+) -> Result<ExitCode> {
+    let out = out.unwrap_or_else(|| default_directory(&asked.map));
+    let path = out.join("scene.toml");
+    let scene = scene_of(asked, matches, &path)?;
+    runs::files::write_whole(&path, scene.text.as_bytes())?;
+    runs::err!("{}", path.display());
+    run_scene(&path, &Options { out, threads: threads.unwrap_or_else(all_threads), fresh: false })
+}
+
+/// Writes the scene that flags describe.
+fn write_scene(asked: &PressArguments, scene: Option<PathBuf>, matches: &ArgMatches) -> Result<ExitCode> {
+    let path =
+        scene.unwrap_or_else(|| Path::new(asked.map.file_name().unwrap_or_default()).with_extension("toml"));
+    if path.exists() {
+        let reason = format!("{} exists: move it away, or name another with --scene", path.display());
+        return Err(Error::Argument { name: "scene", reason });
+    }
+    let scene = scene_of(asked, matches, &path)?;
+    runs::files::write_whole(&path, scene.text.as_bytes())?;
+    runs::out!("{}", path.display());
+    runs::err!("fractal-contact run {}", runs::cluster::quoted(&path.to_string_lossy()));
+    Ok(ExitCode::SUCCESS)
+}
+
 /// The scene that flags describe.
 fn scene_of(asked: &PressArguments, matches: &ArgMatches, at: &Path) -> Result<SceneFile> {
     // `press` or `new`: the flags of a map are theirs.
@@ -167,7 +176,7 @@ fn all_threads() -> usize {
 }
 
 /// `out/NAME` beside where the program is called.
-fn default_directory(scene: &Path) -> std::path::PathBuf {
+fn default_directory(scene: &Path) -> PathBuf {
     Path::new("out").join(scene.file_stem().unwrap_or_default())
 }
 

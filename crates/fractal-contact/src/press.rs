@@ -154,8 +154,9 @@ fn question(map: &Path, lacking: &[Lacking]) -> String {
 /// The scene as TOML with comments.
 fn text(asked: &PressArguments, keys: &SurfaceKeys, at: &Path) -> String {
     let mut scene = Lines::default();
-    scene.text += &format!(
-        "# Contact of the map {}. `fractal-contact run` takes this file; every key: \"What a scene may say\" in the book.\n",
+    let _ = writeln!(
+        scene.text,
+        "# Contact of the map {}. `fractal-contact run` takes this file; every key: \"What a scene may say\" in the book.",
         asked.map.file_name().unwrap_or_default().to_string_lossy().escape_default()
     );
     scene.table("scene");
@@ -252,18 +253,18 @@ struct Lines {
 
 impl Lines {
     fn table(&mut self, name: &str) {
-        self.text += &format!("\n[{name}]\n");
+        let _ = write!(self.text, "\n[{name}]\n");
     }
 
     fn array_of_tables(&mut self, name: &str) {
-        self.text += &format!("\n[[{name}]]\n");
+        let _ = write!(self.text, "\n[[{name}]]\n");
     }
 
     fn line(&mut self, key: &str, value: &str, comment: &str) {
         let line = format!("{key} = {value}");
-        self.text += &match comment {
-            "" => format!("{line}\n"),
-            comment => format!("{line:COMMENT$} # {comment}\n"),
+        let _ = match comment {
+            "" => writeln!(self.text, "{line}"),
+            comment => writeln!(self.text, "{line:COMMENT$} # {comment}"),
         };
     }
 }

@@ -15,6 +15,9 @@ use contact_model::{
 };
 use std::f64::consts::PI;
 
+/// Name of the quantity of [`Error::Domain`] where cells are too large for the range of an attraction.
+pub const UNRESOLVED_RANGE: &str = "side of a cell";
+
 /// Largest product of the slope of the law and the own compliance of a cell. At 1 a single open cell would be
 /// unstable alone, whatever the surface does; at a fifth of it the cohesive zone, about `E* range^2/work`
 /// long, is five cells long.
@@ -346,7 +349,7 @@ pub(super) fn attraction(surface: &PreparedSurface, adhesion: Adhesion) -> Resul
     if own > RESOLVED && matches!(adhesion, Adhesion::FiniteRange { .. }) {
         let most = dx.max(dy) * RESOLVED / own;
         let expected = format!("at most {most:.3e}, a fifth of the cell that the attraction closes alone");
-        return Err(Error::domain("side of a cell", dx.max(dy), expected));
+        return Err(Error::domain(UNRESOLVED_RANGE, dx.max(dy), expected));
     }
     Ok(Some(attraction))
 }

@@ -68,7 +68,8 @@ impl PreparedSurface {
             return Ok(());
         }
         let max = self.nondimensional.force(PI * capacity)?;
-        Err(Error::OutOfRange { name: "force".into(), value: asked, min: 0.0, max })
+        let name = "force (at the end every cell is at the hardness)".into();
+        Err(Error::OutOfRange { name, value: asked, min: 0.0, max })
     }
 }
 

@@ -14,6 +14,7 @@ mod profile;
 mod sliding;
 mod state;
 
+pub use adhesive::UNRESOLVED_RANGE;
 pub use options::{BYTES_PER_CELL, Bem3d, Method, bytes_per_cell};
 
 use crate::parts::Recorder;

@@ -4,6 +4,7 @@ use crate::scenes::plan::{Assumptions, Cost, ModelOnSurface, calibration, probe}
 use crate::scenes::read::{
     Diagnostic, EffectLine, Numerics, Result, SceneFile, System, cells, effect_lines, number, short,
 };
+use bem3d::UNRESOLVED_RANGE;
 use contact_model::Cells;
 use runs::amounts::{memory, time};
 use std::fmt;
@@ -64,10 +65,24 @@ pub fn check(scene: &SceneFile) -> Result<()> {
     for model in 0..scene.models.len() {
         let unit = ModelOnSurface { model, surface: 0 };
         if let Err(error) = unit.probe(scene) {
-            return Err(scene.at_model(model, refused(scene, &error)).into());
+            return Err(match &error {
+                contact_model::Error::Domain { name, .. } if name == UNRESOLVED_RANGE => {
+                    scene.at_effect("adhesion", unresolved(scene, &error))
+                }
+                _ => scene.at_model(model, refused(scene, &error)),
+            }
+            .into());
         }
     }
     Ok(())
+}
+
+/// Cells too large for the range of an attraction.
+fn unresolved(scene: &SceneFile, error: &contact_model::Error) -> Diagnostic {
+    let unit = if scene.system == System::Si { " (lengths in m)" } else { "" };
+    Diagnostic::new(format!("{error}{unit}")).with_help(
+        "more cells, a smaller part of the surface or a longer `range`; without `range` the adhesion is of short range (JKR), which any cell resolves",
+    )
 }
 
 fn refused(scene: &SceneFile, error: &contact_model::Error) -> Diagnostic {
@@ -107,7 +122,7 @@ impl Plan {
             })
             .collect();
         let prepared = prepared(scene);
-        let steep = steep(scene, prepared.as_ref());
+        let of_slopes = of_slopes(scene, prepared.as_ref());
         Ok(Self {
             shows: scene.comment(),
             surface: scene.surface.describe(),
@@ -118,7 +133,7 @@ impl Plan {
                 .iter()
                 .cloned()
                 .chain(assumptions.iter().flat_map(|a| a.notes(scene)))
-                .chain(steep)
+                .chain(of_slopes)
                 .collect(),
             modulus: scene.modulus,
             units: match scene.system {
@@ -175,14 +190,22 @@ impl Plan {
 const LARGEST_DESCRIBED: usize = 1 << 24;
 /// Largest rms slope of which linear elasticity of half-spaces is an approximation of some per cent.
 const SMALL_SLOPE: f64 = 0.3;
+/// Below it a unit or a size is more often wrong than a surface so smooth; chosen, not measured.
+const FLAT_SLOPE: f64 = 3e-4;
 
 /// Without units, heights may have a scale of their own.
-fn steep(scene: &SceneFile, map: Option<&surface_io::Description>) -> Option<Diagnostic> {
+fn of_slopes(scene: &SceneFile, map: Option<&surface_io::Description>) -> Option<Diagnostic> {
     let slope = map?.rms_slope;
-    let message =
-        format!("the rms slope of the map is {}, and every model here assumes small slopes", short(slope));
-    let help = "is the unit of the heights right? beyond 0.3 take the results as those of a linear theory";
-    (scene.system == System::Si && slope > SMALL_SLOPE).then(|| Diagnostic::note(message).with_help(help))
+    let (what, help) = if slope > SMALL_SLOPE {
+        ("every model here assumes small slopes", "beyond 0.3 take the results as those of a linear theory")
+    } else if slope > 0.0 && slope < FLAT_SLOPE {
+        ("few surfaces are that smooth", "a contact closes under a pressure of E* times the slope")
+    } else {
+        return None;
+    };
+    let message = format!("the rms slope of the map is {}, and {what}", short(slope));
+    let help = format!("are the unit of the heights and the size of the map right? {help}");
+    (scene.system == System::Si).then(|| Diagnostic::note(message).with_help(help))
 }
 
 fn prepared(scene: &SceneFile) -> Option<surface_io::Description> {

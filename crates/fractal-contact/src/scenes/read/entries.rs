@@ -144,7 +144,8 @@ impl<'a> Entries<'a> {
     /// The value of a key that has to be there.
     pub fn require(&self, key: &'static str, example: &str) -> Read<Entry<'a>> {
         self.find(key).ok_or_else(|| {
-            let near = |name: &&str| distance(name, key) <= 1 + key.len() / 4;
+            let known = self.known.borrow();
+            let near = |name: &&str| !known.contains(name) && distance(name, key) <= 1 + key.len() / 4;
             if let Some(found) = self.keys().find(near).and_then(|name| self.entry(name)) {
                 return found
                     .diagnostic_at_key(format!("`{key}` is missing in {}", self.title()))

@@ -294,7 +294,14 @@ fn read_path(entry: &Entry<'_>, system: System, pulls: bool, size: Size) -> Read
         table.finish()?;
         let end = Step { time, normal, tangential };
         let checked = if pulls { end.validated_with_adhesion(last.time) } else { end.validated(last.time) };
-        checked.map_err(|e| item.diagnostic(e.to_string()).with_help("times never decrease along a path"))?;
+        checked.map_err(|e| {
+            let help = match &e {
+                contact_model::Error::Domain { name, .. } if name == "time" => "times never decrease along a path",
+                _ if pulls => "loads of a path are finite numbers",
+                _ => "loads of a path are finite and at least 0: only `adhesion` in [effects] lets a contact pull",
+            };
+            item.diagnostic(e.to_string()).with_help(help)
+        })?;
         for i in 1..=count {
             steps.push(if i == count { end } else { part(last, end, i as f64 / count as f64) });
         }

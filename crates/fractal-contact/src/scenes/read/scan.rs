@@ -75,6 +75,13 @@ pub(crate) fn read_map(table: &Entries<'_>, system: System, directory: &Path) ->
                     `fill` or `undefined = \"no_contact\"` says what stands there instead";
         notes.push(Diagnostic::note(message).at(file.span()).with_help(help));
     }
+    if let (Some(entry), Some([dx, dy])) = (table.find("size"), swapped(&declared, metadata)) {
+        let [dx, dy] = [dx, dy].map(|side| number(format!("{side:.3e}").parse().unwrap_or(side)));
+        let message =
+            format!("cells of {dx} x {dy}: with the sides of `size` exchanged they would be squares");
+        let help = "`size` is [Lx, Ly], x along the columns; where the cells are oblong, all is well";
+        notes.push(Diagnostic::note(message).at(entry.span()).with_help(help));
+    }
     let profile = metadata.profile;
     notes.extend(profile.then(|| uniform(&file, &map)));
     let mut metadata = metadata.to_string();
@@ -184,6 +191,16 @@ fn spike(map: &HeightMap) -> Option<(usize, usize, f64)> {
     let (place, highest) = map.heights().iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1))?;
     let above = (highest - mean) / surface_gen::rms_height(&known);
     (above.is_finite() && above > ALONE).then(|| (place / map.columns(), place % map.columns(), above))
+}
+
+/// The sides of oblong cells that would be squares if both declared sides of the map were exchanged.
+fn swapped(declared: &ReadOptions, map: &surface_io::Metadata) -> Option<[f64; 2]> {
+    const SQUARE: f64 = 1e-2;
+    let Sides::Two([x, y]) = declared.size? else { return None };
+    let (columns, rows) = (map.columns as f64, map.rows as f64);
+    let square = |x: f64, y: f64| ((x / columns) / (y / rows) - 1.0).abs() < SQUARE;
+    let [x, y] = [x, y].map(Quantity::value);
+    (!square(x, y) && square(y, x)).then(|| [x / columns, y / rows])
 }
 
 /// The tilt of a map over its whole size in rms heights of what is left without it, where that changes its

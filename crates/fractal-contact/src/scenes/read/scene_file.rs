@@ -1,5 +1,6 @@
 //! A scene as it stands in a file.
 
+use crate::scenes::EFFECT_KEYS;
 use crate::scenes::read::{
     Diagnostic, Entries, Entry, LoadKind, LoadRequest, MOST_CELLS, Numerics, Read, Registry,
     RequestedOutputs, Result, SceneSurface, SurfaceEntry, System, outputs, read_accuracy, read_effects,
@@ -72,12 +73,17 @@ pub struct Sampling {
 struct Places {
     models: Vec<Range<usize>>,
     outputs: Vec<(&'static str, Range<usize>)>,
+    effects: Vec<(&'static str, Range<usize>)>,
     accuracy: Option<Range<usize>>,
 }
 
 impl Places {
     fn of_output(&self, name: &str) -> Option<Range<usize>> {
         self.outputs.iter().find(|(key, _)| *key == name).map(|(_, span)| span.clone())
+    }
+
+    fn of_effect(&self, name: &str) -> Option<Range<usize>> {
+        self.effects.iter().find(|(key, _)| *key == name).map(|(_, span)| span.clone())
     }
 }
 
@@ -213,6 +219,11 @@ impl SceneFile {
         self.placed(diagnostic, self.places.of_output(name))
     }
 
+    /// A mistake of an effect.
+    pub(crate) fn at_effect(&self, name: &str, diagnostic: Diagnostic) -> Diagnostic {
+        self.placed(diagnostic, self.places.of_effect(name))
+    }
+
     /// A mistake of the accuracy that is asked for.
     pub(crate) fn at_accuracy(&self, diagnostic: Diagnostic) -> Diagnostic {
         self.placed(diagnostic, self.places.accuracy.clone())
@@ -248,16 +259,15 @@ fn read_scene(root: &Entries<'_>, directory: &Path, registry: &Registry) -> Read
     };
     let mut system = System::Si;
     scene.set(&mut system, "units", |e| e.choice(&[("none", System::None), ("si", System::Si)]))?;
+    let (modulus, pair) = read_material(&scene, system)?;
     let options = root.table("models")?;
     let models = read_models(&scene, options.as_ref(), registry.models())?;
     let effects_table = root.table("effects")?;
-    let friction_place =
-        effects_table.as_ref().and_then(|table| table.entry("friction")).map(|entry| entry.key_span());
+    let effect_places = places(effects_table.as_ref(), EFFECT_KEYS.iter().map(|key| key.name));
     let effects = read_effects(effects_table, system)?;
     let outputs_table = root.table("outputs")?;
-    let output_places = places(outputs_table.as_ref());
+    let output_places = places(outputs_table.as_ref(), outputs::names());
     let requested = read_outputs(outputs_table, system)?;
-    let (modulus, pair) = read_material(&scene, system)?;
     let hardness_entry = scene.find("hardness");
     let hardness = hardness_entry.as_ref().map(|e| e.positive(Dimension::PRESSURE, system)).transpose()?;
     if let Some(entry) = &hardness_entry
@@ -282,13 +292,14 @@ fn read_scene(root: &Entries<'_>, directory: &Path, registry: &Registry) -> Read
     let places = Places {
         models: models.iter().map(|(_, entry)| entry.span()).collect(),
         outputs: output_places,
+        effects: effect_places,
         accuracy: accuracy.as_ref().map(|(_, entry)| entry.key_span()),
     };
     check_request(&request, &request_entry, &surface, &effects)?;
     check_half_plane(&request, &request_entry, &surface, (&effects, &requested), &places)?;
     check_histories(&models, &request, &request_entry, &effects)?;
     check_tangential(&models, &request, &effects)?;
-    check_coupling(&models, pair.as_ref(), effects.friction, friction_place)?;
+    check_coupling(&models, pair.as_ref(), effects.friction, places.of_effect("friction"))?;
     let models = models.into_iter().map(|(numerics, _)| numerics).collect();
     Ok(SceneFile {
         system,
@@ -306,9 +317,12 @@ fn read_scene(root: &Entries<'_>, directory: &Path, registry: &Registry) -> Read
     })
 }
 
-fn places(table: Option<&Entries<'_>>) -> Vec<(&'static str, Range<usize>)> {
+fn places(
+    table: Option<&Entries<'_>>,
+    names: impl Iterator<Item = &'static str>,
+) -> Vec<(&'static str, Range<usize>)> {
     let Some(table) = table else { return Vec::new() };
-    outputs::names().filter_map(|name| Some((name, table.entry(name)?.key_span()))).collect()
+    names.filter_map(|name| Some((name, table.entry(name)?.key_span()))).collect()
 }
 
 /// E*, from itself or from both bodies.
