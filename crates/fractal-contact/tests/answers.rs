@@ -77,7 +77,7 @@ fn a_tilt_that_decides_is_told_unless_the_scene_says_what_to_do() {
         scene.notes.iter().map(ToString::to_string).collect::<String>()
     };
     let text = MAP.replace("FORCE", "1 mN");
-    assert!(notes(&text).contains("the map is tilted") && notes(&text).contains("detrend = \"plane\""));
+    assert!(notes(&text).contains("the map is tilted") && notes(&text).contains("`detrend` by \"plane\""));
     for detrend in ["plane", "none"] {
         assert_eq!(notes(&text.replace("unit =", &format!("detrend = \"{detrend}\"\nunit ="))), "");
     }

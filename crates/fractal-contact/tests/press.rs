@@ -117,3 +117,17 @@ fn mistakes_leave_nothing_behind() {
     let (code, _, said) = program(dir.path(), &["press", "map.txt", "--bodies", "a, b, c"]);
     assert!(code == Some(2) && said.contains("70 GPa 0.33"), "{said}");
 }
+
+#[test]
+fn a_tilt_is_told_before_a_map_is_pressed() {
+    let dir = folder();
+    let tilted: String = (0..8)
+        .map(|y| (0..8).map(|x| format!("{} ", 9 * x + (x * y) % 3)).collect::<String>() + "\n")
+        .collect();
+    std::fs::write(dir.path().join("tilted.txt"), tilted).unwrap();
+    let asked = ["info", "tilted.txt", "--unit", "nm", "--cell", "1 um"];
+    let (code, told, _) = program(dir.path(), &asked);
+    assert!(code == Some(0) && told.contains("note       the map is tilted"), "{told}");
+    let level = program(dir.path(), &[&asked[..], &["--detrend", "plane"]].concat()).1;
+    assert!(!level.contains("tilted: "), "{level}");
+}

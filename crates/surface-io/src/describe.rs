@@ -128,9 +128,9 @@ impl fmt::Display for Description {
         let Cells { columns, rows } = self.cells;
         let Size { x, y } = self.size;
         writeln!(f, "cells              {columns} x {rows} (columns x rows)")?;
-        writeln!(f, "size               {x:e} x {y:e}")?;
         // Seven digits, without the zeros at their end.
         let short = |v: f64| format!("{v:.6e}").parse().unwrap_or(v);
+        writeln!(f, "size               {:e} x {:e}", short(x), short(y))?;
         writeln!(f, "cell               {:e} x {:e}", short(x / columns as f64), short(y / rows as f64))?;
         writeln!(f, "undefined points   {} of {}", self.undefined, columns * rows)?;
         writeln!(f, "range of heights   {low:.6e} to {high:.6e}")?;

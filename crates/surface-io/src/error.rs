@@ -369,8 +369,8 @@ pub enum ContentError {
     },
     /// Undefined points without an instruction how to treat them.
     #[error(
-        "{undefined} of {points} points are undefined, the first in {first}: say undefined = \"no_contact\" (they cannot touch), \
-         or fill = \"neighbours\", \"plane\" or a height"
+        "{undefined} of {points} points are undefined, the first in {first}: say undefined (no_contact: they cannot touch) or \
+         fill (neighbours, plane or a height)"
     )]
     Undefined {
         /// Points without a height.
@@ -556,7 +556,7 @@ impl ContentError {
 
     /// Heights without a unit, of a file with these notes.
     pub(crate) fn no_unit(seen: &[String]) -> Self {
-        let remedy = "say unit = \"nm\" or another unit of length";
+        let remedy = "say unit, such as nm";
         Self::unspecified("the unit of the heights", seen.to_vec(), remedy)
     }
 

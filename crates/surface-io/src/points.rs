@@ -148,7 +148,7 @@ fn lateral_unit(declared: &ReadOptions, table: &TextTable) -> Result<Option<Unit
     let unit = given.clone().or_else(|| file.clone());
     check_unit("lateral_unit", unit.as_ref())?;
     if unit.is_none() && heights_have_length {
-        let remedy = "say lateral_unit = \"um\" or another unit of length";
+        let remedy = "say lateral_unit, such as um";
         let seen = table.heading.notes([None; 2]);
         return Err(ContentError::unspecified("the unit of x and y", seen, remedy));
     }

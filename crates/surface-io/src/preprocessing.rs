@@ -399,7 +399,7 @@ impl Scan {
         let metadata = self.metadata();
         let unit = metadata.unit.as_ref().map(|u| u.value.dimension());
         let (Some(size), Some(cell)) = (metadata.size, &metadata.cell) else {
-            let remedy = "say size = [\"1 mm\", \"2 mm\"] or cell = \"0.5 um\", or numbers where the heights have no unit";
+            let remedy = "say size, such as 2 mm x 1 mm, or cell, such as 0.5 um; numbers where the heights have no unit";
             return Err(ContentError::unspecified("the size of the map", metadata.notes.clone(), remedy));
         };
         let dx = cell.value[0];

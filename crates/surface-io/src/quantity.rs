@@ -155,7 +155,9 @@ fn split(text: &str) -> Result<(&str, i64, &str), QuantityError> {
 impl fmt::Display for Quantity {
     /// The value in SI units, such as `0.001 m`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (value, size) = (self.value, self.value.abs());
+        // Rounding of a product shows in the last two of 17 digits.
+        let value: f64 = format!("{:.14e}", self.value).parse().unwrap_or(self.value);
+        let size = value.abs();
         if size > 0.0 && !(1e-4..1e6).contains(&size) {
             write!(f, "{value:e}")?;
         } else {

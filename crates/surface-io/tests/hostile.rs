@@ -765,7 +765,7 @@ fn impossible_rectangles_are_named() {
         ),
         (
             error("a.xyz", b"0 0 1\n1 0 2\n2 0 2\n", &|d| d.lateral_unit = "m".parse().ok()),
-            "a.xyz: the size of the map is neither in the file nor given: say size = ",
+            "a.xyz: the size of the map is neither in the file nor given: say size, ",
         ),
     ] {
         assert!(found.starts_with(expected), "{found}\n{expected}");

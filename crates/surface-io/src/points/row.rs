@@ -21,7 +21,7 @@ pub(crate) fn row(table: &TextTable, declared: &ReadOptions) -> Result<StoredCha
     let given = declared.cell.map(|cell| spacing_of(cell.both()[0], Some(&lateral))).transpose()?;
     let axis = axis(table, 'x', 0, given)?;
     let Some(spacing) = axis.spacing else {
-        let remedy = "say cell = \"0.5 um\"; one point has no step";
+        let remedy = "say cell, such as 0.5 um; one point has no step";
         return Err(ContentError::Unspecified { what: "the step of the profile", seen: Vec::new(), remedy });
     };
     let heights = placed(table, &[&axis])?;

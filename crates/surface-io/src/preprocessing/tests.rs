@@ -42,7 +42,7 @@ fn units_are_metres_or_none() {
     let map = read("0.5", None).unwrap();
     assert_eq!((map.length().to_bits(), map.heights()), (1_f64.to_bits(), &[1.0, 2.0, 3.0, 4.0][..]));
     assert_eq!(read("0.5", Some("none")).unwrap(), map);
-    assert!(read("0.5 um", None).unwrap_err().contains("say unit = \"nm\""));
+    assert!(read("0.5 um", None).unwrap_err().contains("say unit, such as nm"));
     assert!(
         read("0.5", Some("nm")).unwrap_err().contains("the side of a cell is 0.5, but the heights have nm")
     );
@@ -50,7 +50,7 @@ fn units_are_metres_or_none() {
     assert!(
         read("", Some("none"))
             .unwrap_err()
-            .contains("the size of the map is neither in the file nor given: say size = ")
+            .contains("the size of the map is neither in the file nor given: say size, ")
     );
 }
 

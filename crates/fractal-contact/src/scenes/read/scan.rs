@@ -50,14 +50,6 @@ pub(crate) fn read_map(table: &Entries<'_>, system: System, directory: &Path) ->
             .diagnostic(format!("the heights have {found}, but the scene has {scene}"))
             .with_help("say `unit = \"nm\"` for heights of a scene with units, `unit = \"none\"` with `units = \"none\"`"));
     }
-    if let (None, Some(share)) = (table.find("detrend"), tilt(&scan, &preprocessing, &map)) {
-        let message = format!(
-            "the map is tilted: from edge to edge by {share:.1} times its rms height without the tilt"
-        );
-        let help =
-            "its highest corner carries the load: `detrend = \"plane\"`, or \"none\" where the tilt is real";
-        notes.push(Diagnostic::note(message).at(file.span()).with_help(help));
-    }
     if let (Some(entry), Some([before, after])) = (table.find("window"), tapered) {
         let [before, after] = [before, after].map(|h| number(format!("{h:.3e}").parse().unwrap_or(h)));
         let message = format!(
@@ -67,12 +59,7 @@ pub(crate) fn read_map(table: &Entries<'_>, system: System, directory: &Path) ->
                     load: on self-affine maps its contact fraction was 0.4 to 2.6 times that without the window";
         notes.push(Diagnostic::note(message).at(entry.span()).with_help(help));
     }
-    if let Some((row, column, height)) = spike(&map) {
-        let message = format!(
-            "the highest point, in row {row}, column {column} (from 0) of the map as solved, stands {height:.0} times the rms height above the mean"
-        );
-        let help = "it carries the first load; where it is a spike of the measurement, `missing = HEIGHT` (as in the file) takes it out, and \
-                    `fill` or `undefined = \"no_contact\"` says what stands there instead";
+    for Remark { message, help } in remarks(&scan, &preprocessing, &map, table.find("detrend").is_some()) {
         notes.push(Diagnostic::note(message).at(file.span()).with_help(help));
     }
     if let (Some(entry), Some([dx, dy])) = (table.find("size"), swapped(&declared, metadata)) {
@@ -180,6 +167,40 @@ fn uniform(file: &Entry<'_>, map: &HeightMap) -> Diagnostic {
         "a profile: the body is taken as uniform along y, and forces are those on a width of {width}"
     );
     Diagnostic::note(message).at(file.span()).with_help(help)
+}
+
+/// What makes a map answer otherwise than its owner may expect.
+pub(crate) struct Remark {
+    pub message: String,
+    pub help: &'static str,
+}
+
+/// Remarks on a map after its preprocessing: a tilt, unless what becomes of it is `declared`, and a spike.
+pub(crate) fn remarks(
+    scan: &Scan,
+    preprocessing: &Preprocessing,
+    map: &HeightMap,
+    declared: bool,
+) -> Vec<Remark> {
+    let mut remarks = Vec::new();
+    if !declared && let Some(share) = tilt(scan, preprocessing, map) {
+        remarks.push(Remark {
+            message: format!(
+                "the map is tilted: from edge to edge by {share:.1} times its rms height without the tilt"
+            ),
+            help: "its highest corner carries the load: `detrend` by \"plane\", or \"none\" where the tilt is real",
+        });
+    }
+    if let Some((row, column, height)) = spike(map) {
+        remarks.push(Remark {
+            message: format!(
+                "the highest point, in row {row}, column {column} (from 0) of the map as solved, stands {height:.0} times the rms height above the mean"
+            ),
+            help: "it carries the first load; where it is a spike of the measurement, declare its height (as in the file) as `missing`, and \
+                   say with `fill` or `undefined` what stands there instead",
+        });
+    }
+    remarks
 }
 
 /// The highest point in rms heights above the mean, where it stands alone: a Gaussian map of 1e8 points

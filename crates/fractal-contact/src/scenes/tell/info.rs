@@ -1,14 +1,14 @@
 //! What a file holds: a scene, a surface or a table of results.
 
 use crate::scenes::plan::Plan;
-use crate::scenes::read::{Error, Result, SceneFile, System, number};
+use crate::scenes::read::{Error, Remark, Result, SceneFile, System, number, remarks};
 use crate::scenes::tell::{MapStatisticsTables, SurfaceReport};
 use contact_model::Boundary;
 use runs::Header;
 use std::path::Path;
 use surface_io::{
-    Description, Dimension, Metadata, Preprocessed, Preprocessing, Quantity, ReadOptions, Scan, SurfaceFile,
-    describe,
+    Description, Detrend, Dimension, Metadata, Preprocessed, Preprocessing, Quantity, ReadOptions, Scan,
+    SurfaceFile, describe,
 };
 
 /// A few lines on a scene (`.toml`), a table (`.csv` with a header that explains itself) or a surface
@@ -71,7 +71,23 @@ fn surface(path: &Path, declared: &ReadOptions, preprocessing: &Preprocessing) -
     }
     let scan = file.scan()?;
     Ok(match scan.preprocessed(preprocessing) {
-        Ok(found) => described(&scan, &found, &describe(&found.map)),
+        Ok(found) => {
+            let mut description = describe(&found.map);
+            let mut fit = "";
+            if description.hurst.is_ok() {
+                // One exponent is told: that with an interval, of the statistics.
+                description = description.without_fit();
+                fit = "fractal dimension  with --out DIR, which fits the spectrum, with its interval\n";
+            }
+            let text = described(&scan, &found, &description);
+            let remarks =
+                remarks(&scan, preprocessing, &found.map, preprocessing.detrend != Detrend::default());
+            let remarks: String = remarks
+                .iter()
+                .map(|Remark { message, help }| format!("note       {message}\n           {help}\n"))
+                .collect();
+            format!("{text}{fit}{remarks}")
+        }
         // What stands in the way of a map is part of the answer.
         Err(error) => format!("{}\n\nno map as it is: {error}\n", scan.metadata()),
     })
@@ -148,12 +164,13 @@ fn each(file: SurfaceFile<'_>) -> Result<String> {
 }
 
 /// All channels of a surface's file as JSON:
-/// `{"channels": [{"name", "columns", "rows", "profile", "size": [x, y], "unit", "undefined", "minimum", "maximum", "rms"}]}`.
+/// `{"channels": [{"name", "columns", "rows", "profile", "size": [x, y], "heights", "unit", "undefined", "minimum", "maximum", "rms"}]}`.
 ///
 /// Heights as the file has them, before anything is done to them. Lengths are in metres, and then `unit` is
-/// "m"; values of another or no unit stand as they are in the file. `rms` is about the mean, `undefined` a
-/// share of the points; what the file does not say and `declared` does not either is null. A channel that is
-/// not read beside others is `{"error"}`; `notes` are remarks on what the file says.
+/// "m"; values of another or no unit stand as they are in the file. `heights` is false where the file says
+/// that they are none (a phase, a current). `rms` is about the mean, `undefined` a share of the points; what
+/// the file does not say and `declared` does not either is null. A channel that is not read beside others is
+/// `{"error"}`; `notes` are remarks on what the file says.
 ///
 /// # Errors
 /// [`Error::Surface`] with what is wrong with the file.
@@ -185,6 +202,7 @@ fn channel(metadata: &Metadata) -> serde_json::Value {
         "rows": metadata.rows,
         "profile": metadata.profile,
         "size": metadata.size.map(|size| size.map(Quantity::value)),
+        "heights": metadata.no_heights.is_none(),
         "unit": unit,
         "undefined": metadata.undefined_share(),
         "minimum": metadata.range.map(|[low, _]| height(low)),
