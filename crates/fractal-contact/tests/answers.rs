@@ -186,6 +186,14 @@ fn an_accuracy_chooses_the_grid() {
         coarse.surface.describe().contains("a map of 20 x 15 cells")
             || coarse.surface.describe().contains("40 x 30")
     );
+    // The best is all cells, where the budget allows them; the run does not call it missed.
+    let best = read(&map("best")).unwrap();
+    let all = read(&map("best").replace("accuracy = \"best\"\n", "")).unwrap();
+    assert_eq!(best.surface.describe(), all.surface.describe());
+    let notes: String = best.notes.iter().map(ToString::to_string).collect();
+    assert!(notes.contains("the best accuracy within the budget: bem3d on "), "{notes}");
+    let outcome = run(&best, &Plan::new(&best).unwrap(), &options, &Silent, &|| false).unwrap();
+    assert!(!outcome.notes.join("\n").contains("accuracy not reached"), "{outcome:?}");
     std::fs::write(dir.path().join("one.csv"), "1.0\n").unwrap();
     for (text, words) in [
         (map("1 %").replace("map.csv", "one.csv"), "the map's own cells are too few to compare"),

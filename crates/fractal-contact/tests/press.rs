@@ -121,9 +121,11 @@ fn mistakes_leave_nothing_behind() {
 #[test]
 fn a_tilt_is_told_before_a_map_is_pressed() {
     let dir = folder();
-    let tilted: String = (0..8)
-        .map(|y| (0..8).map(|x| format!("{} ", 9 * x + (x * y) % 3)).collect::<String>() + "\n")
-        .collect();
+    let rows = (0..8).map(|y| {
+        let row: Vec<String> = (0..8).map(|x| (9 * x + (x * y) % 3).to_string()).collect();
+        row.join(" ")
+    });
+    let tilted = rows.collect::<Vec<_>>().join("\n");
     std::fs::write(dir.path().join("tilted.txt"), tilted).unwrap();
     let asked = ["info", "tilted.txt", "--unit", "nm", "--cell", "1 um"];
     let (code, told, _) = program(dir.path(), &asked);

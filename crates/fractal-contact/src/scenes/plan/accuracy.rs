@@ -21,7 +21,8 @@ const WITH_COARSER: f64 = 1.25;
 
 /// Whether errors of a state are within a share, in all of what an accuracy is about.
 pub(crate) fn within(scene: &SceneFile, errors: &GridErrors, share: f64) -> bool {
-    largest(scene, errors).is_some_and(|error| error <= share)
+    // The best is not missed.
+    share <= 0.0 || largest(scene, errors).is_some_and(|error| error <= share)
 }
 
 /// Which numbers an accuracy is about: those asked for whose error of the grid is estimated. Of the area it
@@ -46,7 +47,8 @@ impl SceneFile {
     /// (of a given map: with every so many-th of its cells, at last with all of them) and estimates the
     /// errors of stiffness (of either kind), corrected area, conductance and mean gap, as far as they are
     /// outputs, from three grids each ([`analysis::grid_error`]). It stops at the first grid with small
-    /// enough errors of which the coarser one's were at most twice as large: nothing is extrapolated. The run
+    /// enough errors of which the coarser one's were at most twice as large: nothing is extrapolated. The best
+    /// accuracy is that of the finest grid within the budget and the memory. The run
     /// then compares every state with coarser grids itself (`grid_error`): on surface 0 it finds what the
     /// pilot found, and of other surfaces it says where the accuracy is missed. For one surface the pilot
     /// takes as long as the run.
@@ -82,8 +84,8 @@ impl SceneFile {
         let Cells { columns, rows } = cells(&chosen.scene, &chosen.scene.models[0]);
         let percent = |share: f64| format!("{} %", short(100.0 * share));
         let note = Diagnostic::note(format!(
-            "accuracy of {}: bem3d on {columns} x {rows} cells, which leave {} on surface 0, in about {}",
-            percent(target.share),
+            "{}: bem3d on {columns} x {rows} cells, which leave {} on surface 0, in about {}",
+            asked(target),
             percent(chosen.error),
             time(chosen.seconds)
         ));
@@ -97,8 +99,13 @@ impl SceneFile {
     /// The first grid that gives an accuracy, with its scene.
     fn first_grid(&self, model: &Numerics, target: AccuracyTarget, stop: SharedStop<'_>) -> Result<Chosen> {
         let failed = |error| runs::Error::model("the pilot of `accuracy`")(error);
-        let given = self.surface.own_cells().is_some();
-        let (model, grids) = (with_tolerance(self, model, target), grids(self));
+        let own = self.surface.own_cells().map(|Cells { columns, rows }| columns.max(rows));
+        let given = own.is_some();
+        let model = with_tolerance(self, model, target);
+        let fits = |longer: &usize| {
+            on_grid(self, &model, *longer).is_ok_and(|scene| calibration::jobs_in_memory(&scene, 1).is_ok())
+        };
+        let grids: Vec<usize> = grids(self).into_iter().take_while(fits).collect();
         let normalised_on = if given { grids.last() } else { grids.first() };
         let loads = loads(self, &model, normalised_on.copied().unwrap_or(COARSEST)).map_err(failed)?;
         let runs = WITH_COARSER * self.sampling.surfaces as f64;
@@ -117,7 +124,7 @@ impl SceneFile {
         let found = analysis::first_grid(&grids, target, calibration::TIME_EXPONENT, trial)?;
         let (_, GridTrial { error, rest, kept, .. }) = found.map_err(|none| {
             let grid = |longer: usize| {
-                if given && Some(&longer) == grids.last() {
+                if given && Some(longer) == own {
                     "the map's own cells".to_owned()
                 } else {
                     format!("{longer} cells along the longer side")
@@ -127,13 +134,21 @@ impl SceneFile {
                 kept.1.as_ref().map_or_else(String::new, |worst| worst.words(self))
             };
             let reason = none.words(target.seconds, &grid, &place, &time);
-            let message = format!("an accuracy of {} %: {reason}", short(100.0 * target.share));
-            let help =
-                "ask for less, for larger loads or fewer outputs, for smaller cells, or raise `budget`";
+            let message = format!("{}: {reason}", asked(target));
+            let help = "`accuracy = \"best\"` takes what the `budget` and the memory reach; or ask for larger loads, fewer outputs, less, or a \
+                        larger `budget`";
             crate::scenes::Error::from(self.at_accuracy(Diagnostic::new(message).with_help(help)))
         })?;
         Ok(Chosen { scene: kept.0, error: error.unwrap_or(0.0), seconds: rest })
     }
+}
+
+/// What was asked for.
+fn asked(target: AccuracyTarget) -> String {
+    if target.is_best() {
+        return "the best accuracy within the budget".to_owned();
+    }
+    format!("an accuracy of {} %", short(100.0 * target.share))
 }
 
 /// A grid that was chosen.
