@@ -59,6 +59,11 @@ impl Quantity {
         self.value
     }
 
+    /// Rounded to 12 digits, for people: without the rounding errors of a product.
+    pub(crate) fn rounded(self) -> Self {
+        Self { value: format!("{:.11e}", self.value).parse().unwrap_or(self.value), ..self }
+    }
+
     /// Dimension: what is measured.
     pub fn dimension(self) -> Dimension {
         self.dimension
@@ -95,7 +100,7 @@ impl FromStr for Quantity {
 
     /// Reads a number and a unit, with or without a space between; a number alone has no dimension.
     ///
-    /// For units that are powers of ten of SI units (all but minutes and hours) the result is the double
+    /// For units that are powers of ten of SI units (all but those of time and of feet and pounds) the result is the double
     /// nearest to what is written.
     ///
     /// # Errors
@@ -155,9 +160,7 @@ fn split(text: &str) -> Result<(&str, i64, &str), QuantityError> {
 impl fmt::Display for Quantity {
     /// The value in SI units, such as `0.001 m`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        // Rounding of a product shows in the last two of 17 digits.
-        let value: f64 = format!("{:.14e}", self.value).parse().unwrap_or(self.value);
-        let size = value.abs();
+        let (value, size) = (self.value, self.value.abs());
         if size > 0.0 && !(1e-4..1e6).contains(&size) {
             write!(f, "{value:e}")?;
         } else {

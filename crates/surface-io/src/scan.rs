@@ -56,6 +56,12 @@ impl Metadata {
     }
 }
 
+/// Five digits, without the zeros at their end and without a power of ten where it is not needed.
+fn number(value: f64) -> String {
+    let value: f64 = format!("{value:.4e}").parse().unwrap_or(value);
+    if value == 0.0 || (1e-3..1e6).contains(&value.abs()) { value.to_string() } else { format!("{value:e}") }
+}
+
 impl fmt::Display for Metadata {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "format     {} ({})", self.format, self.details)?;
@@ -67,15 +73,17 @@ impl fmt::Display for Metadata {
         } else {
             writeln!(f, "shape      {} rows of {}", self.rows, self.columns)?;
         }
-        match (&self.size, &self.cell) {
-            (Some([x, _]), Some(Sourced { value: [dx, dy], origin })) if self.profile => {
+        let size = self.size.map(|size| size.map(Quantity::rounded));
+        let cell = self.cell.as_ref().map(|cell| (cell.value.map(Quantity::rounded), cell.origin));
+        match (size, cell) {
+            (Some([x, _]), Some(([dx, dy], origin))) if self.profile => {
                 writeln!(
                     f,
                     "length     {x} ({origin}), steps of {dx}
 body       uniform along y: forces are those on {dy} of it"
                 )?;
             }
-            (Some([x, y]), Some(Sourced { value: [dx, dy], origin })) => {
+            (Some([x, y]), Some(([dx, dy], origin))) => {
                 writeln!(
                     f,
                     "size       {x} x {y} ({origin})
@@ -92,7 +100,13 @@ cell       {dx} x {dy}"
         }
         match (self.range, self.rms_height) {
             (Some([low, high]), Some(rms)) => {
-                writeln!(f, "range      {low:e} to {high:e}, rms about the mean {rms:.4e}")?;
+                writeln!(
+                    f,
+                    "range      {} to {}, rms about the mean {}",
+                    number(low),
+                    number(high),
+                    number(rms)
+                )?;
             }
             _ => writeln!(f, "range      none")?,
         }

@@ -59,7 +59,7 @@ pub enum QuantityError {
 /// What a unit may be: those that differ in case only, or all.
 fn known(alike: &[String]) -> String {
     if alike.is_empty() {
-        return "expected m, g, s, A, K, N, Pa, J, W, V, Ohm, Hz or bar, with a prefix from f to T, angstrom, min, h, % or \"none\""
+        return "expected m, g, s, A, K, N, Pa, J, W, V, Ohm, Hz or bar, with a prefix from f to T, angstrom, micron, inch, mil, psi, kgf, min, h, % or \"none\""
             .to_owned();
     }
     format!("upper and lower case differ, is it {}?", alike.join(" or "))

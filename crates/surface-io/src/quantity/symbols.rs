@@ -43,7 +43,7 @@ pub(super) const PREFIXES: [(&str, i32); 12] = [
 ];
 
 /// No prefixed symbol equals another symbol (a test looks).
-pub(super) const SYMBOLS: [UnitSymbol; 17] = [
+pub(super) const SYMBOLS: [UnitSymbol; 22] = [
     symbol("m", [1, 0, 0, 0, 0], 0),
     symbol("g", [0, 1, 0, 0, 0], -3),
     symbol("s", [0, 0, 1, 0, 0], 0),
@@ -58,6 +58,12 @@ pub(super) const SYMBOLS: [UnitSymbol; 17] = [
     symbol("Hz", [0, 0, -1, 0, 0], 0),
     symbol("bar", [-1, 1, -2, 0, 0], 5),
     other("angstrom", [1, 0, 0, 0, 0], -10, 1.0),
+    other("micron", [1, 0, 0, 0, 0], -6, 1.0),
+    // 25.4 mm, 9.80665 m/s^2 and 0.45359237 kg by definition.
+    other("inch", [1, 0, 0, 0, 0], -4, 254.0),
+    other("mil", [1, 0, 0, 0, 0], -7, 254.0),
+    other("psi", [-1, 1, -2, 0, 0], 0, 0.453_592_37 * 9.806_65 / (0.0254 * 0.0254)),
+    other("kgf", [1, 1, -2, 0, 0], 0, 9.806_65),
     other("min", [0, 0, 1, 0, 0], 0, 60.0),
     other("h", [0, 0, 1, 0, 0], 0, 3600.0),
     other("%", [0, 0, 0, 0, 0], -2, 1.0),

@@ -22,6 +22,7 @@ fn what_a_scene_writes() {
         ("70 GPa", Dimension::PRESSURE, 7e10),
         ("70 N/mm^2", Dimension::PRESSURE, 7e7),
         ("2 kbar", Dimension::PRESSURE, 2e8),
+        ("3 micron", Dimension::LENGTH, 3e-6),
         ("10 mN", Dimension::FORCE, 1e-2),
         ("3 kg m/s^2", Dimension::FORCE, 3.0),
         ("0.05 J/m^2", Dimension::ENERGY_PER_AREA, 0.05),
@@ -44,6 +45,19 @@ fn what_a_scene_writes() {
         ("0 mm", Dimension::LENGTH, 0.0),
     ] {
         assert_eq!(value(text, dimension), f64::to_bits(expected), "{text}");
+    }
+}
+
+#[test]
+fn feet_and_pounds_are_those_of_the_definitions() {
+    for (text, dimension, expected) in [
+        ("30000 psi", Dimension::PRESSURE, 206_842_718.795_050_83),
+        ("2 kgf", Dimension::FORCE, 19.6133),
+        ("0.5 inch", Dimension::LENGTH, 0.0127),
+        ("2 mil", Dimension::LENGTH, 50.8e-6),
+    ] {
+        let found = Quantity::parse_as(text, dimension).unwrap();
+        approx::assert_relative_eq!(found, expected, max_relative = 4.0 * f64::EPSILON);
     }
 }
 

@@ -15,9 +15,9 @@ const LONGEST: usize = 64;
 /// A unit such as `um`, `GPa`, `J/m^2` or `W/(m K)`.
 ///
 /// Symbols m, g, s, A, K, N, Pa, J, W, V, Ohm, Hz, bar with the prefixes f, p, n, u (also the Greek letter),
-/// m, c, d, k, M, G, T; angstrom, min, h, %. Products by a space, `*` or a centred dot, one `/` with brackets
-/// around more than one symbol behind it, powers as `^2` or as superscripts. The empty text and `none` are
-/// the unit of plain numbers.
+/// m, c, d, k, M, G, T; angstrom, micron, inch, mil, psi, kgf, min, h, %. Products by a space, `*` or a
+/// centred dot, one `/` with brackets around more than one symbol behind it, powers as `^2` or as
+/// superscripts. The empty text and `none` are the unit of plain numbers.
 ///
 /// ```
 /// let unit: surface_io::Unit = "um".parse()?;
@@ -59,7 +59,7 @@ impl Unit {
 
     /// Whether both are one unit, however spelled.
     pub(crate) fn same(&self, other: &Self) -> bool {
-        // The factors are products of 60 and 3600, exact in doubles up to far larger powers than are read.
+        // The factors are products of whole numbers, exact in doubles; that of psi is equal to itself.
         self.dimension == other.dimension
             && self.exponent == other.exponent
             && self.factor.to_bits() == other.factor.to_bits()
