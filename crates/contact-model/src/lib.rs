@@ -4,7 +4,7 @@
 //! **chance** (the `seed` of [`ContactModel::prepare`]). This crate defines the first, the trait that joins
 //! them, and what comes back: a
 //! [`ContactState`] that always carries its evidence in a [`SolveReport`]. It has no numerics, no input or output, and no
-//! dependency besides `std` (with the feature `serde`, states can be stored).
+//! dependency besides `std` (with the feature `serde`, states and memories of paths can be stored).
 //!
 //! # Conventions
 //!
@@ -47,11 +47,13 @@ mod height_map;
 mod heights;
 mod line;
 mod load;
+mod memory;
 mod model;
 mod nondimensionalisation;
 mod normalisation;
 mod pair;
 mod patches;
+mod pull_off;
 pub mod quantities;
 mod rheology;
 mod scaling;
@@ -71,11 +73,13 @@ pub use fields::{FIELDS, Field, FieldQuantity, Fields, Shown, StickSlip};
 pub use height_map::HeightMap;
 pub use line::Line;
 pub use load::Load;
+pub use memory::PathMemory;
 pub use model::{ContactModel, PreparedContact, RequiredMemory, Source, Stop, check_stop, never};
 pub use nondimensionalisation::Nondimensionalisation;
 pub use normalisation::{Normalisation, PAPER_STIFFNESS_FACTOR};
 pub use pair::{Body, Pair};
 pub use patches::Patches;
+pub use pull_off::{LargestPull, PullOff};
 pub use quantities::{Output, Outputs};
 pub use rheology::{PronySeries, Relaxing, Rheology};
 pub use scaling::{ScaledState, Scaling};

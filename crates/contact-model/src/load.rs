@@ -50,7 +50,7 @@ impl Load {
     /// The error of this load where it is below the smallest of its kind under which an adhesive contact holds.
     pub fn pull_off(self, smallest: f64) -> Error {
         let (name, value) = match self {
-            Self::Force(force) => ("force (the contact pulls off under a prescribed force)", force),
+            Self::Force(force) => (Error::PULLED_OFF, force),
             Self::Approach(approach) => {
                 ("approach (the contact pulls off under a prescribed approach)", approach)
             }

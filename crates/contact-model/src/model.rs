@@ -3,7 +3,9 @@
 use crate::abilities::Abilities;
 use crate::error::{Error, Result};
 use crate::load::Load;
+use crate::memory::PathMemory;
 use crate::normalisation::Normalisation;
+use crate::pull_off::LargestPull;
 use crate::scene::Scene;
 use crate::state::ContactState;
 use crate::step::{Step, Tangential};
@@ -158,13 +160,35 @@ pub trait PreparedContact: Send {
         self.advance_until(step, &never)
     }
 
-    /// Goes along a whole path from where it is, one state per step.
+    /// Goes along a whole path from where it is, one state per step, each with the largest pull so far.
     ///
     /// # Errors
     /// As [`PreparedContact::advance_until`], at the first step that fails; the contact then stands at the
     /// end of the step before it.
     fn follow(&mut self, path: &[Step]) -> Result<Vec<ContactState>> {
-        path.iter().map(|step| self.advance(*step)).collect()
+        let mut largest = LargestPull::default();
+        path.iter().map(|step| Ok(largest.enter(step.normal, self.advance(*step)?))).collect()
+    }
+
+    /// What decides the next step of the path besides its load: with it another contact of the same model,
+    /// scene and seed goes on to the same bits ([`PreparedContact::recall`]). `None` where a model cannot tell:
+    /// its paths begin anew.
+    ///
+    /// # Errors
+    /// [`Error::OutOfMemory`] where there is no room for it.
+    fn memory(&self) -> Result<Option<PathMemory>> {
+        Ok(None)
+    }
+
+    /// Goes where a contact of the same model, scene and seed stood on its path. The next step is to be
+    /// [`PreparedContact::advance_until`].
+    ///
+    /// # Errors
+    /// [`Error::Shape`] for a memory that this model did not write on this surface; the contact is then as
+    /// after [`PreparedContact::restart`].
+    fn recall(&mut self, memory: &PathMemory) -> Result<()> {
+        self.restart();
+        Err(PathMemory::unreadable(memory.bytes().len()))
     }
 
     /// Forgets the path: back to no contact at time 0.

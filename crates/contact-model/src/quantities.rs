@@ -201,6 +201,8 @@ pub enum AskedBy {
     FrictionInPlane,
     /// An effect, by its key in `[effects]`.
     Effect(&'static str),
+    /// All of these together.
+    All(&'static [AskedBy]),
 }
 
 impl AskedBy {
@@ -221,6 +223,7 @@ impl AskedBy {
                 question.directions == Directions::Plane && question.effects.friction != Friction::Off
             }
             Self::Effect(key) => question.effects.named().any(|effect| effect.key() == key),
+            Self::All(each) => each.iter().all(|asked| asked.holds(question)),
         }
     }
 
@@ -239,6 +242,7 @@ impl AskedBy {
                 "`friction` in [effects] with a tangential load along y, or a model that answers one".into()
             }
             Self::Effect(key) => format!("`{key}` in [effects]"),
+            Self::All(each) => each.iter().map(|asked| asked.words()).collect::<Vec<_>>().join(", "),
         }
     }
 }
@@ -286,6 +290,8 @@ pub enum Role {
     Answer,
     /// An answer in other units or over something else: in files, not in short tables.
     Normalised,
+    /// An answer about the path up to a state: that of its end is shown once, below the states.
+    OfPath,
     /// How exactly the equations hold; with what it proves when it is small.
     Residual(&'static str),
     /// How the answer was found, and what that cost.
@@ -401,10 +407,13 @@ macro_rules! quantities {
 }
 
 use AskedBy::{
-    Always, AnyStiffness, AnyTangentialStiffness, Effect, FreeBoundary, FrictionInPlane, Path,
+    All, Always, AnyStiffness, AnyTangentialStiffness, Effect, FreeBoundary, FrictionInPlane, Path,
     PrescribedDistance, RoughSurface,
 };
 use Unit::{One, Si, Word};
+
+/// A path with adhesion.
+const PULLED: &[AskedBy] = &[Path, Effect("adhesion")];
 
 /// Every quantity, in the order of the columns of tables.
 pub static QUANTITIES: &[Quantity] = &quantities! {
@@ -488,6 +497,23 @@ pub static QUANTITIES: &[Quantity] = &quantities! {
         "a minimum of the energy where > 0: its least curvature over that without adhesion"
         { drawn: false }
         => |s, _| s.adhesive.map(|a| a.stability).into();
+    "pull_off" "largest pull" "" Si("N"); All(PULLED);
+        "largest pull of the path so far: the most negative normal force of its loads, with a positive sign; at most the pull-off force"
+        { role: Role::OfPath, drawn: false }
+        => |s, _| s.pull_off.map(|p| p.force).into();
+    "pull_off_error" "error of the largest pull" "" Si("N"); All(PULLED);
+        "what the steps of the path leave open: the pull-off force is at most pull_off + pull_off_error; empty where no load is beyond it"
+        { role: Role::OfPath, drawn: false }
+        => |s, _| s.pull_off.and_then(|p| p.error).into();
+    "pull_off_approach" "approach at the largest pull" "" Si("m"); All(&[Path, Effect("adhesion"), FreeBoundary]);
+        "approach at which the path pulled most"
+        { role: Role::OfPath, drawn: false }
+        => |s, _| s.pull_off.and_then(|p| p.approach).into();
+    "pull_off_mean_gap" "mean gap at the largest pull" "" Si("m");
+        All(&[Path, Effect("adhesion"), AskedBy::Output(Output::MeanGap)]);
+        "mean gap at which the path pulled most"
+        { role: Role::OfPath, drawn: false }
+        => |s, _| s.pull_off.and_then(|p| p.mean_gap).into();
     "stiffness" "stiffness" "k" Si("N/m"); AskedBy::Output(Output::Stiffness);
         "dF/dd along the branch of states (periodic: -dF/d(mean gap)): fronts of an adhesive contact move, saturated cells flow"
         { compared: Compared::Yes }

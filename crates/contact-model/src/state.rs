@@ -2,6 +2,7 @@
 
 use crate::fields::{Field, Fields};
 use crate::patches::Patches;
+use crate::pull_off::PullOff;
 use crate::work::Work;
 use std::fmt;
 
@@ -47,6 +48,8 @@ pub struct ContactState {
     pub plastic: Option<PlasticState>,
     /// The adhesive part, of contacts with adhesion that are solved cell by cell.
     pub adhesive: Option<AdhesiveState>,
+    /// The largest pull of the path so far, where one is followed ([`crate::LargestPull`]) and pulled.
+    pub pull_off: Option<PullOff>,
     /// What the cells of the contact say about how well they resolve it, where the model has cells.
     pub resolution: Option<ContactResolution>,
     /// Contact radius, of round contacts; of an equivalent profile that of the round contact of the same
@@ -76,6 +79,7 @@ impl ContactState {
             patches: None,
             plastic: None,
             adhesive: None,
+            pull_off: None,
             resolution: None,
             contact_radius: None,
             tangential: None,
@@ -426,6 +430,8 @@ pub enum Status {
     Stagnated,
     /// The caller's closure said stop.
     Stopped,
+    /// A prescribed pull was not held: the last stable state before it.
+    PulledOff,
 }
 
 impl Status {
@@ -436,6 +442,7 @@ impl Status {
             Self::IterationLimit => "iteration_limit",
             Self::Stagnated => "stagnated",
             Self::Stopped => "stopped",
+            Self::PulledOff => "pulled_off",
         }
     }
 }
@@ -482,14 +489,11 @@ pub struct Certificate {
     /// duality gap of the convex programme of one step of friction. Half the square of the error of the
     /// tractions, in the norm of their elastic energy, is at most the gap. 0 where nothing is displaced; `None`
     /// without friction, and where a model does not solve it cell by cell.
-    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
     pub tangential_duality_gap: Option<f64>,
     /// `|Q - Q_asked| / (mu F)`; 0 where the tangential displacement was prescribed, `None` as above.
-    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
     pub tangential_load_error: Option<f64>,
     /// Estimated relative error of the tangential stiffness, the larger one where both are computed; `None`
     /// where none is.
-    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
     pub tangential_stiffness_error: Option<f64>,
 }
 
