@@ -8,11 +8,11 @@ use crate::memory;
 use crate::pool;
 use crate::state::{self, ContactState};
 use fractal_contact::{
-    ContactState as RustState, Error, Hardness, Load, Normalisation as RustNormalisation, PreparedContact,
-    Scene, Step,
+    ContactState as RustState, Error, Hardness, LargestPull, Load, Normalisation as RustNormalisation,
+    PathMemory, PreparedContact, Scene, Status, Step,
 };
 use pyo3::prelude::*;
-use pyo3::types::IntoPyDict as _;
+use pyo3::types::{IntoPyDict as _, PyBytes};
 use std::sync::{Mutex, PoisonError};
 
 /// The loads that a call may name one of.
@@ -92,6 +92,8 @@ struct Inner {
     contact: Box<dyn PreparedContact>,
     /// Of a contact that yields.
     highest: Option<Highest>,
+    /// Of the path.
+    largest: LargestPull,
 }
 
 /// What is asked of a contact.
@@ -104,7 +106,7 @@ impl Contact {
     /// A contact of a scene whose solves are long, or not.
     pub fn new(contact: Box<dyn PreparedContact>, scene: &Scene, long: bool, large: bool) -> Self {
         let normalisation = contact.normalisation();
-        let inner = Exclusive::new(Inner { contact, highest: None });
+        let inner = Exclusive::new(Inner { contact, highest: None, largest: LargestPull::default() });
         let yields = scene.effects.hardness != Hardness::Off;
         let (best, last) = (Mutex::new(None), Mutex::new(None));
         Self { inner, normalisation, long, large, yields, best, last }
@@ -124,7 +126,7 @@ impl Contact {
             Asked::Step(step) => step.normal,
         };
         let mut inner = self.inner.take(py)?;
-        let Inner { contact, highest } = &mut *inner;
+        let Inner { contact, highest, largest } = &mut *inner;
         if let (Asked::Load(load), Some(highest)) = (asked, &highest) {
             highest.check(py, *load, area)?;
         }
@@ -139,6 +141,17 @@ impl Contact {
             pool::run(py, &mut |_| Ok(()), work)?
         } else {
             (py.detach(|| work(&fractal_contact::never)), None)
+        };
+        let result = match (asked, result) {
+            (Asked::Step(_), Ok(state)) => Ok(largest.enter(normal, state)),
+            (Asked::Step(_), Err(Error::NotConverged { best })) if best.report.status == Status::PulledOff => {
+                Err(Error::NotConverged { best: Box::new(largest.enter(normal, *best)) })
+            }
+            (Asked::Step(_), failed) => failed,
+            (Asked::Load(_), result) => {
+                *largest = LargestPull::default();
+                result
+            }
         };
         if let (Ok(state), true) = (&result, self.yields) {
             *highest = Some(Highest::of(highest.take(), normal, state));
@@ -331,11 +344,59 @@ impl Contact {
     fn restart(&self, py: Python<'_>) -> PyResult<()> {
         let mut inner = self.inner.take(py)?;
         inner.contact.restart();
-        inner.highest = None;
+        (inner.highest, inner.largest) = (None, LargestPull::default());
         let before = replaced(&self.last, None);
         drop(inner);
         drop(before);
         Ok(())
+    }
+
+    /// What decides the next step of the path besides its load, as bytes to keep: `recall` of a contact of the
+    /// same model, scene and seed goes on from there to the same bits, also in another process of the same
+    /// version on the same kind of processor.
+    ///
+    /// Returns
+    /// -------
+    /// bytes or None
+    ///     None where no path has begun, and of models that cannot go on: their paths begin anew.
+    fn memory<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyBytes>>> {
+        let inner = self.inner.take(py)?;
+        let Inner { contact, highest, largest } = &*inner;
+        let kept = py.detach(|| {
+            let Some(memory) = contact.memory()? else { return Ok(None) };
+            PathMemory::of(&(highest, largest, memory.bytes())).map(Some)
+        });
+        let kept = kept.map_err(|error| of_model(py, error))?;
+        Ok(kept.map(|kept| PyBytes::new(py, kept.bytes())))
+    }
+
+    /// Goes where a contact of the same model, scene and seed stood on its path when `memory` was asked of it.
+    /// The states before that are not in the memory: `last` is None.
+    ///
+    /// Parameters
+    /// ----------
+    /// memory : bytes
+    ///
+    /// Raises
+    /// ------
+    /// ShapeError
+    ///     For bytes of another model or surface. The contact is then as after `restart`.
+    fn recall(&self, py: Python<'_>, memory: &[u8]) -> PyResult<()> {
+        let mut inner = self.inner.take(py)?;
+        let Inner { contact, highest, largest } = &mut *inner;
+        let kept = PathMemory::from_bytes(memory.to_vec());
+        (*highest, *largest) = (None, LargestPull::default());
+        let recalled = py.detach(|| {
+            contact.restart();
+            let (before, pulled, memory): (_, _, Vec<u8>) = kept.read()?;
+            contact.recall(&PathMemory::from_bytes(memory))?;
+            Ok((before, pulled))
+        });
+        let recalled = recalled.map(|found| (*highest, *largest) = found);
+        let before = replaced(&self.last, None);
+        drop(inner);
+        drop(before);
+        recalled.map_err(|error| of_model(py, error))
     }
 
     /// Refuses the loads of a sweep that a solve would refuse later, because of their order.

@@ -6,6 +6,7 @@
 use crate::errors::of_model;
 use fractal_contact::{ContactState, Error, Load};
 use pyo3::prelude::*;
+use serde::{Deserialize, Serialize};
 
 /// How far a load may lie below a state that was solved for a load of another kind: what was not asked for is
 /// known within the tolerance of a solve.
@@ -15,7 +16,7 @@ const REMEDY: &str = "with a hardness each load is solved from the virgin surfac
                       forgotten: advance() and follow() keep it, restart() and a new contact begin again";
 
 /// The highest load of a contact, and what it led to.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Serialize, Deserialize)]
 pub struct Highest {
     load: Load,
     force: f64,

@@ -106,6 +106,7 @@ pub fn quantities(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
         let role = match quantity.role {
             Role::Answer => "answer",
             Role::Normalised => "normalised",
+            Role::OfPath => "of_path",
             Role::Residual(_) => "residual",
             Role::Work => "work",
         };

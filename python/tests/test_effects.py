@@ -207,8 +207,11 @@ def test_a_path_ends_at_pull_off_with_its_last_stable_state():
         and best.branch == "withdrawal"
         and best.stability > 0
     )
-    assert best.status == "stagnated" and held[-1].status == "converged"
+    assert best.status == "pulled_off" and held[-1].status == "converged"
     assert np.array_equal(best.pressure, held[-1].pressure) and best.pressure.min() < 0
+    # The largest pull lies between it and the force that was not held.
+    assert best.pull_off == pytest.approx(4e-3) and best.pull_off_error == pytest.approx(1.0 - 4e-3)
+    assert held[-1].pull_off == best.pull_off and held[-1].pull_off_error is None and held[0].pull_off is None
     # The contact stands where it was.
     assert path.advance(force=-4e-3).area == held[-1].area
     # A pull without a step before it: the bodies hold each other at first.

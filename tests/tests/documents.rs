@@ -106,7 +106,7 @@ fn quantities_page() -> String {
          `grid_error = true` a quantity whose grid error is estimated has `_grid_error` and `_grid_order` too.\n\n\
          ## Answers\n\n{}\n## Residuals\n\nSmall numbers prove that the equations were solved:\n\n{}\n{}\n\
          ## How it was found, and what it cost\n\n{}\n## Sources\n\n{sources}",
-        rows(&|role| matches!(role, Role::Answer | Role::Normalised)),
+        rows(&|role| matches!(role, Role::Answer | Role::Normalised | Role::OfPath)),
         rows(&|role| matches!(role, Role::Residual(_))),
         table(&["residual", "what it proves"], proves),
         rows(&|role| matches!(role, Role::Work)),

@@ -4,6 +4,9 @@
 //! contact, and prints its path in Maugis's units and the pull-off force over pi w R; HALF_SIDE is half of
 //! the side in units of `(pi w R^2/K)^(1/3)`, K = 4/3. `adhesion jkr CELLS OFF STEPS` draws a sphere with
 //! short-range adhesion from its contact without load, CELLS in its radius.
+//! `adhesion cycle LAW MU CELLS HALF_SIDE STEPS` brings that sphere into contact and draws it off again, STEPS
+//! each way, and prints the energy of the cycle over pi w (pi w R^2/K)^(2/3), and its share outside of the two
+//! jumps in and out of contact.
 //! `adhesion heights CELLS HURST SEED FILE` writes the heights of that map, one a line.
 //! `adhesion map CELLS HURST SEED WORK RANGE TOLERANCE F1,F2,...` loads a periodic self-affine map (L = E* =
 //! h = 1) along these forces; WORK 0: without adhesion, RANGE 0: of short range.
@@ -27,6 +30,9 @@ fn main() -> Result<(), Box<dyn StdError>> {
         ["sphere", law, mu, cells, half, steps] => {
             sphere(law_of(law)?, mu.parse()?, cells.parse()?, half.parse()?, steps.parse()?)
         }
+        ["cycle", law, mu, cells, half, steps] => {
+            cycle(law_of(law)?, mu.parse()?, cells.parse()?, half.parse()?, steps.parse()?)
+        }
         ["jkr", cells, off, steps] => jkr(cells.parse()?, off.parse()?, steps.parse()?),
         ["heights", cells, hurst, seed, file] => {
             let surface = SelfAffine { hurst: hurst.parse()?, ..SelfAffine::new(2.5, 1.0, 1.0)? };
@@ -46,7 +52,7 @@ fn main() -> Result<(), Box<dyn StdError>> {
             let [side, roll_off, range] = lengths.map(|length| length.map(|nm| nm * 1e-9));
             challenge(cells.parse()?, (side?, roll_off?, range?), seed.parse()?, &pressures)
         }
-        _ => Err("usage: adhesion sphere LAW MU CELLS HALF_SIDE STEPS | jkr CELLS OFF STEPS | heights CELLS HURST SEED FILE | map CELLS HURST SEED WORK RANGE TOLERANCE F1,... | challenge CELLS SIDE ROLL_OFF RANGE SEED P1,...".into()),
+        _ => Err("usage: adhesion sphere LAW MU CELLS HALF_SIDE STEPS | cycle LAW MU CELLS HALF_SIDE STEPS | jkr CELLS OFF STEPS | heights CELLS HURST SEED FILE | map CELLS HURST SEED WORK RANGE TOLERANCE F1,... | challenge CELLS SIDE ROLL_OFF RANGE SEED P1,...".into()),
     }
 }
 
@@ -97,17 +103,65 @@ fn law_of(word: &str) -> Result<AdhesionLaw, Box<dyn StdError>> {
     }
 }
 
+/// A sphere (R = E* = 1) of Tabor's parameter `mu` with Maugis's units.
+struct Sphere {
+    scene: Scene,
+    work: f64,
+    /// Unit of lengths along the surface, and of approaches.
+    unit: f64,
+    approach_unit: f64,
+}
+
+impl Sphere {
+    fn new(law: AdhesionLaw, mu: f64, half: f64) -> Self {
+        // Range = 1e-4: w^2 = mu^3 range^3.
+        let range = 1e-4f64;
+        let work = (mu * range).powf(1.5);
+        let k = 4.0 / 3.0;
+        let unit = (PI * work / k).cbrt();
+        let approach_unit = (PI * PI * work * work / (k * k)).cbrt();
+        let surface = Surface::Sphere { radius: 1.0, size: (2.0 * half * unit).into() };
+        let mut scene = Scene::new(surface, 1.0);
+        scene.outputs.area = true;
+        scene.effects.adhesion = Adhesion::FiniteRange { work, range, law };
+        Self { scene, work, unit, approach_unit }
+    }
+}
+
+/// The energy of a cycle of that sphere, and how much of it is lost outside of the jumps in and out of contact.
+fn cycle(law: AdhesionLaw, mu: f64, cells: usize, half: f64, steps: usize) -> Result<(), Box<dyn StdError>> {
+    let Sphere { mut scene, work, approach_unit, .. } = Sphere::new(law, mu, half);
+    scene.outputs.stiffness = false;
+    let model = Bem3d { cells, tolerance: 1e-5, ..Bem3d::default() };
+    let mut history = ContactModel::prepare(&model, &scene, 0)?;
+    let way = (0..=steps).map(|i| 1.0 - 4.0 * (i as f64 / steps as f64));
+    let there: Vec<f64> = way.clone().collect();
+    let path = there.iter().rev().copied().chain(way.skip(1));
+    let (mut before, mut lost, mut jumped) = (None, 0.0, 0.0);
+    for (i, approach) in path.enumerate() {
+        let state = history.advance(Step::normal(i as f64, Load::Approach(approach * approach_unit)))?;
+        let energy = state.adhesive.map_or(0.0, |adhesive| adhesive.energy);
+        let now = (approach * approach_unit, state.force, energy, state.area.unwrap_or(0.0) > 0.0);
+        if let Some((d, force, stored, touched)) = before {
+            let done = 0.5 * (force + now.1) * (now.0 - d);
+            let dissipated: f64 = done - (energy - stored);
+            lost += dissipated;
+            jumped += if touched == now.3 { 0.0 } else { dissipated };
+        }
+        before = Some(now);
+    }
+    let unit = PI * work * approach_unit;
+    println!(
+        "energy of the cycle {:.4}, of the jumps in and out of contact {:.4}, rest {:.1} %",
+        lost / unit,
+        jumped / unit,
+        100.0 * (1.0 - jumped / lost)
+    );
+    Ok(())
+}
+
 fn sphere(law: AdhesionLaw, mu: f64, cells: usize, half: f64, steps: usize) -> Result<(), Box<dyn StdError>> {
-    // R = E* = 1 and range = 1e-4: w^2 = mu^3 range^3.
-    let range = 1e-4f64;
-    let work = (mu * range).powf(1.5);
-    let k = 4.0 / 3.0;
-    let unit = (PI * work / k).cbrt();
-    let approach_unit = (PI * PI * work * work / (k * k)).cbrt();
-    let surface = Surface::Sphere { radius: 1.0, size: (2.0 * half * unit).into() };
-    let mut scene = Scene::new(surface, 1.0);
-    scene.outputs.area = true;
-    scene.effects.adhesion = Adhesion::FiniteRange { work, range, law };
+    let Sphere { scene, work, unit, approach_unit } = Sphere::new(law, mu, half);
     let model = Bem3d { cells, tolerance: 1e-5, ..Bem3d::default() };
     let mut history = ContactModel::prepare(&model, &scene, 0)?;
     let mut lowest = f64::INFINITY;

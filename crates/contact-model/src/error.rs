@@ -88,18 +88,6 @@ impl Error {
         Self::unsupported(model, format!("the load {load:?}"))
     }
 
-    /// Whether a prescribed pull is more than a model holds ([`crate::Load::pull_off`]).
-    pub fn is_pull_off(&self) -> bool {
-        match self {
-            Self::OutOfRange { name, .. } => name == Self::PULLED_OFF,
-            Self::NotConverged { best } => best.report.status == Status::PulledOff,
-            _ => false,
-        }
-    }
-
-    /// The quantity of the error for a force below that of pull-off.
-    pub(crate) const PULLED_OFF: &'static str = "force (the contact pulls off under a prescribed force)";
-
     /// Shorthand for [`Error::OutOfMemory`] where the system refused `bytes`.
     pub fn out_of_memory(what: impl Into<Cow<'static, str>>, bytes: f64) -> Self {
         Self::OutOfMemory { what: what.into(), bytes, available: None }

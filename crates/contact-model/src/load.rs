@@ -5,6 +5,7 @@ use crate::error::{Error, Result, non_negative};
 /// What is prescribed in one solve: the normal force, the approach or the mean gap, never two of them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Load {
     /// Normal force F >= 0; with adhesion it may be negative (a pull).
     Force(f64),
@@ -50,7 +51,7 @@ impl Load {
     /// The error of this load where it is below the smallest of its kind under which an adhesive contact holds.
     pub fn pull_off(self, smallest: f64) -> Error {
         let (name, value) = match self {
-            Self::Force(force) => (Error::PULLED_OFF, force),
+            Self::Force(force) => ("force (the contact pulls off under a prescribed force)", force),
             Self::Approach(approach) => {
                 ("approach (the contact pulls off under a prescribed approach)", approach)
             }

@@ -45,7 +45,8 @@ pub struct PullOff {
 /// last.report.status = Status::PulledOff;
 /// assert_eq!(largest.enter(Load::Force(-3.0), last).pull_off.unwrap().error, Some(1.0));
 /// ```
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct LargestPull {
     /// The states that were held, in their order.
     held: Vec<Point>,
@@ -54,23 +55,14 @@ pub struct LargestPull {
 }
 
 /// A state of the path.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Point {
-    load: Load,
+    /// The prescribed distance by which the bodies are pressed together; `None` under a prescribed force.
+    distance: Option<f64>,
     force: f64,
     approach: Option<f64>,
     mean_gap: Option<f64>,
-}
-
-impl Point {
-    /// The prescribed distance by which the bodies are pressed together.
-    fn distance(self) -> Option<f64> {
-        match self.load {
-            Load::Approach(approach) => Some(approach),
-            Load::MeanGap(gap) => Some(-gap),
-            Load::Force(_) => None,
-        }
-    }
 }
 
 impl LargestPull {
@@ -89,7 +81,12 @@ impl LargestPull {
             if self.held.get(self.largest).is_some_and(|largest| force < largest.force) {
                 self.largest = self.held.len();
             }
-            self.held.push(Point { load, force, approach, mean_gap });
+            let distance = match load {
+                Load::Approach(approach) => Some(approach),
+                Load::MeanGap(gap) => Some(-gap),
+                Load::Force(_) => None,
+            };
+            self.held.push(Point { distance, force, approach, mean_gap });
         }
         ContactState { pull_off: self.pull_off(beyond), ..state }
     }
@@ -108,7 +105,7 @@ impl LargestPull {
     fn left_by_steps(&self) -> Option<f64> {
         let at = |i: Option<usize>| {
             let point = self.held.get(i?)?;
-            Some((point.distance()?, point.force))
+            Some((point.distance?, point.force))
         };
         let i = self.largest;
         let (x, force) = at(Some(i))?;
@@ -127,11 +124,8 @@ impl LargestPull {
             Some(earlier) => {
                 let fall = slope(before, earlier).max(0.0);
                 // Where `force - away s` and `before - fall (width - s)` meet.
-                let s = if away + fall > 0.0 {
-                    (force - before.1 + fall * width) / (away + fall)
-                } else {
-                    0.0
-                };
+                let s =
+                    if away + fall > 0.0 { (force - before.1 + fall * width) / (away + fall) } else { 0.0 };
                 away * s.clamp(0.0, width)
             }
         };
@@ -200,7 +194,8 @@ mod tests {
 
     #[test]
     fn later_smaller_pulls_change_nothing() {
-        let mut path = vec![(Load::MeanGap(-1.0), 1.0), (Load::MeanGap(0.0), -1.0), (Load::MeanGap(1.0), 0.0)];
+        let mut path =
+            vec![(Load::MeanGap(-1.0), 1.0), (Load::MeanGap(0.0), -1.0), (Load::MeanGap(1.0), 0.0)];
         let first = follow(&path);
         assert_eq!(first.unwrap().error, Some(2.0));
         path.extend([(Load::MeanGap(-1.0), 1.0), (Load::MeanGap(0.0), -0.5), (Load::MeanGap(1.0), 0.0)]);

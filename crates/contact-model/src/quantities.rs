@@ -510,7 +510,7 @@ pub static QUANTITIES: &[Quantity] = &quantities! {
         { role: Role::OfPath, drawn: false }
         => |s, _| s.pull_off.and_then(|p| p.approach).into();
     "pull_off_mean_gap" "mean gap at the largest pull" "" Si("m");
-        All(&[Path, Effect("adhesion"), AskedBy::Output(Output::MeanGap)]);
+        All(&[Effect("adhesion"), AskedBy::Output(Output::MeanGap), Path]);
         "mean gap at which the path pulled most"
         { role: Role::OfPath, drawn: false }
         => |s, _| s.pull_off.and_then(|p| p.mean_gap).into();

@@ -211,10 +211,9 @@ fn run_scene(path: &Path, options: &Options) -> Result<ExitCode> {
         runs::err!("             {failed} were refused or did not reach their tolerance");
     }
     if outcome.stopped {
-        // The states of a path depend on those before them, of which only the table is kept.
-        let next =
-            if scene.is_history() { "begins an interrupted path again" } else { "goes on with the others" };
-        runs::err!("stopped: {states} of {requested} states are kept; the same command {next}");
+        runs::err!(
+            "stopped: {states} of {requested} states are kept; the same command goes on with the others"
+        );
         return Ok(ExitCode::from(130));
     }
     if not_attempted > 0 {

@@ -143,3 +143,181 @@ fn links_in_the_store_are_not_followed() {
     let refused = run(&scene, &plan, &options, &Silent, &|| false).unwrap_err().to_string();
     assert!(refused.contains("lock") && refused.contains("not a regular file"), "{refused}");
 }
+
+const PATH: &str = "[scene]\nunits = \"none\"\nmodels = [\"bem3d\"]\nPAIR\n[scene.surface]\nkind = \"self_affine\"\nside = 1\n\
+    hurst = 0.7\nrms_height = 0.01\n[outputs]\npressure = [\"npy\"]\n[effects]\nEFFECT\n[models.bem3d]\ncells = 49\n\
+    [sampling]\nseed = 3\nSTEPS";
+
+/// Paths on which something is remembered, each of seven steps.
+fn paths() -> Vec<(&'static str, String)> {
+    let steps = |values: [f64; 7], key: &str, tangential: bool| -> String {
+        let step = |(i, value): (usize, f64)| {
+            let tangential = if tangential {
+                format!("tangential_force = {}\n", 1e-4 * [0.0, 1.0, 2.0, -1.0, 1.0, 0.5, -2.0][i])
+            } else {
+                String::new()
+            };
+            format!("[[scene.path]]\ntime = {i}\n{key} = {value:e}\n{tangential}")
+        };
+        values.into_iter().enumerate().map(step).collect()
+    };
+    let pressed = [1e-3, 4e-3, 8e-3, 2e-3, 6e-3, 9e-3, 1e-3];
+    let pulled = [0.004, 0.012, 0.02, 0.008, 0.0, -0.002, -0.004];
+    let forces = |tangential| steps(pressed, "force", tangential);
+    let approaches = || steps(pulled, "approach", false);
+    let modulus = "modulus = 1";
+    let scene = |pair: &str, effect: &str, steps: String| {
+        PATH.replace("PAIR", pair).replace("EFFECT", effect).replace("STEPS", &steps)
+    };
+    let bodies = "bodies = [\"rigid\", { young = 0.75, poisson = 0.5 }]";
+    vec![
+        ("hardness", scene(modulus, "hardness = 0.05", forces(false))),
+        ("friction", scene(bodies, "friction = 0.4", forces(true))),
+        ("short range", scene(modulus, "adhesion = { work = 4e-5 }", approaches())),
+        (
+            "exponential",
+            scene(modulus, "adhesion = { work = 4e-5, range = 3e-3, law = \"exponential\" }", approaches()),
+        ),
+    ]
+}
+
+fn path_scene(directory: &Path, text: &str) -> SceneFile {
+    let path = directory.join("scene.toml");
+    std::fs::write(&path, text).unwrap();
+    SceneFile::read(&path).unwrap_or_else(|error| panic!("{error}\n{text}"))
+}
+
+/// The bytes of a table and of all fields.
+fn bytes_of(out: &Path) -> Vec<Vec<u8>> {
+    let fields = (0..7).map(|state| std::fs::read(field(out, state)).unwrap_or_default());
+    std::iter::once(std::fs::read(out.join("results.csv")).unwrap()).chain(fields).collect()
+}
+
+fn checkpoint(out: &Path) -> PathBuf {
+    out.join(".units/bem3d-0.checkpoint")
+}
+
+#[test]
+fn a_path_goes_on_to_the_same_bytes() {
+    for (name, text) in paths() {
+        let dir = tempfile::tempdir().unwrap();
+        let (out, whole) = (dir.path().join("out"), dir.path().join("whole"));
+        let scene = path_scene(dir.path(), &text);
+        let all = run_whole(&scene, &whole);
+        assert!(all.failed == 0 && all.notes.iter().all(|note| !note.contains("anew")), "{name}: {all:?}");
+        assert!(!checkpoint(&whole).exists());
+        // Interrupted after one state, after four, and in the last.
+        for (before, states) in [(0, 1), (1, 4), (4, 6)] {
+            let stopped = run_until(&scene, &out, &|| field(&out, states - 1).exists()).unwrap();
+            assert!(stopped.stopped, "{name}");
+            assert_eq!((stopped.states, stopped.kept), (states, before), "{name}: {:?}", stopped.notes);
+            assert!(checkpoint(&out).exists(), "{name}");
+        }
+        let options = Options { out: out.clone(), threads: 3, fresh: false };
+        let resumed = run(&scene, &Plan::new(&scene).unwrap(), &options, &Silent, &|| false).unwrap();
+        assert_eq!((resumed.states, resumed.kept, resumed.failed), (7, 6, 0), "{name}: {:?}", resumed.notes);
+        assert!(bytes_of(&out) == bytes_of(&whole), "{name}");
+        assert!(!checkpoint(&out).exists(), "{name}");
+        assert_eq!(run_whole(&scene, &out).kept, 7, "{name}");
+    }
+}
+
+#[test]
+fn a_path_whose_checkpoint_is_not_whole_begins_anew_and_says_so() {
+    let dir = tempfile::tempdir().unwrap();
+    let (out, whole) = (dir.path().join("out"), dir.path().join("whole"));
+    let texts = paths();
+    let scene = path_scene(dir.path(), &texts[2].1);
+    run_whole(&scene, &whole);
+    let interrupt = || {
+        let _ = std::fs::remove_dir_all(&out);
+        run_until(&scene, &out, &|| field(&out, 2).exists()).unwrap();
+        std::fs::read(checkpoint(&out)).unwrap()
+    };
+    let right = interrupt();
+    let mut turned = right.clone();
+    *turned.last_mut().unwrap() ^= 1;
+    for (bytes, reason) in [
+        (Vec::new(), "damaged or cut off"),
+        (right[..right.len() / 2].to_vec(), "damaged or cut off"),
+        (turned, "damaged or cut off"),
+        (b"# fractal-contact checkpoint 1\n".repeat(300), "damaged or cut off"),
+        (right[..20].iter().chain(b"\n\n").copied().collect(), "damaged or cut off"),
+        (String::from_utf8_lossy(&right).replacen("# build 0", "# build 9", 1).into_bytes(), "another build"),
+    ] {
+        interrupt();
+        std::fs::write(checkpoint(&out), bytes).unwrap();
+        let outcome = run_whole(&scene, &out);
+        let note = outcome.notes.iter().find(|note| note.contains("begins anew"));
+        assert!(note.is_some_and(|note| note.contains(reason)), "{reason}: {outcome:?}");
+        assert_eq!(outcome.kept, 0);
+        assert!(bytes_of(&out) == bytes_of(&whole), "{reason}");
+        assert!(!checkpoint(&out).exists());
+    }
+    // A field of a state before it was changed.
+    interrupt();
+    std::fs::write(field(&out, 1), "changed").unwrap();
+    let outcome = run_whole(&scene, &out);
+    assert!(outcome.notes.iter().any(|note| note.contains("missing or were changed")), "{outcome:?}");
+    assert!(bytes_of(&out) == bytes_of(&whole));
+    // Another scene in the same directory, and the first one again.
+    interrupt();
+    let other = path_scene(dir.path(), &texts[2].1.replace("4e-5", "3e-5"));
+    let outcome = run_whole(&other, &out);
+    assert!(outcome.notes.iter().any(|note| note.contains("another scene")), "{outcome:?}");
+    run_whole(&scene, &out);
+    assert!(bytes_of(&out) == bytes_of(&whole));
+    // A fresh run begins anew without a word.
+    interrupt();
+    let options = Options { out: out.clone(), threads: 1, fresh: true };
+    let outcome = run(&scene, &Plan::new(&scene).unwrap(), &options, &Silent, &|| false).unwrap();
+    assert!(outcome.kept == 0 && outcome.notes.iter().all(|note| !note.contains("anew")), "{outcome:?}");
+    // A checkpoint that cannot be written is told of, and the path goes on.
+    let _ = std::fs::remove_dir_all(&out);
+    std::fs::create_dir_all(checkpoint(&out)).unwrap();
+    let outcome = run_until(&scene, &out, &|| field(&out, 2).exists()).unwrap();
+    assert!(outcome.notes.iter().any(|note| note.contains("goes on, and begins anew")), "{outcome:?}");
+    assert_eq!(outcome.states, 3);
+    std::fs::remove_dir(checkpoint(&out)).unwrap();
+    run_whole(&scene, &out);
+    assert!(bytes_of(&out) == bytes_of(&whole));
+}
+
+/// The row at which a path under a force ends holds the last stable state, and the largest pull is bounded from
+/// both sides.
+#[test]
+fn a_path_that_pulls_off_ends_with_its_last_stable_state() {
+    let dir = tempfile::tempdir().unwrap();
+    let out = dir.path().join("out");
+    let steps: String = [1e-3, 0.0, -1e-4, -2e-4, -4e-4, -8e-4, -1.6e-3, -3.2e-3]
+        .iter()
+        .enumerate()
+        .map(|(i, force)| format!("[[scene.path]]\ntime = {i}\nforce = {force:e}\n"))
+        .collect();
+    let text = format!(
+        "[scene]\nunits = \"none\"\nmodels = [\"bem3d\"]\nmodulus = 1\n[scene.body]\nkind = \"sphere\"\nradius = 1\n\
+         side = 0.3\n[effects]\nadhesion = {{ work = 1e-4 }}\n[models.bem3d]\ncells = 49\n{steps}"
+    );
+    let scene = path_scene(dir.path(), &text);
+    let outcome = run_whole(&scene, &out);
+    let file = runs::CsvFile::read(&out.join("results.csv")).unwrap();
+    let column = |name: &str| file.columns.iter().position(|c| c == name).unwrap();
+    let exact = 1.5 * std::f64::consts::PI * 1e-4;
+    let (last, before) = (&file.rows[file.rows.len() - 1], &file.rows[file.rows.len() - 2]);
+    let number = |row: &[String], name: &str| row[column(name)].parse::<f64>().unwrap();
+    assert_eq!((&*last[column("status")], &*before[column("status")]), ("pulled_off", "converged"));
+    assert!(last[column("note")].contains("pull-off before the force -8e-4"), "{last:?}");
+    assert!(outcome.notes.contains(&last[column("note")]), "{outcome:?}");
+    for name in ["time", "force", "approach", "energy", "stability"] {
+        assert_eq!(last[column(name)], before[column(name)], "{name}");
+    }
+    assert!((number(last, "force") + 4e-4).abs() < 1e-9);
+    let (pull, error) = (number(last, "pull_off"), number(last, "pull_off_error"));
+    assert!((pull - 4e-4).abs() < 1e-9 && (error - 4e-4).abs() < 1e-9, "{pull} {error}");
+    assert!(pull <= exact && exact <= pull + error);
+    assert_eq!(before[column("pull_off_error")], "", "nothing is beyond it yet");
+    assert_eq!(file.rows[1][column("pull_off")], "", "no pull: absent");
+    assert!(outcome.summary.contains("path as a whole: pull_off 4.000e-4"), "{}", outcome.summary);
+    let report = std::fs::read_to_string(out.join("report.html")).unwrap();
+    assert!(report.contains("path as a whole: pull off 4.000e-4"));
+}

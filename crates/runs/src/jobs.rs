@@ -150,7 +150,7 @@ pub trait Job: Sync {
 
     /// Does the rest of the work: `stored` is what the store holds of this job and [`Job::is_whole`] refused,
     /// such as the part that was done before an interruption; `store` replaces it at any moment. A job
-    /// without parts begins anew.
+    /// without parts begins anew. `progress` is told what the user should know at once.
     ///
     /// # Errors
     /// Whatever ends the whole command.
@@ -158,9 +158,10 @@ pub trait Job: Sync {
         &self,
         stored: Option<Self::Output>,
         store: &dyn Fn(&Self::Output) -> Result<(), Error>,
+        progress: &dyn Progress,
         stop: Stop<'_>,
     ) -> Result<Self::Output, Self::Error> {
-        let _ = (stored, store);
+        let _ = (stored, store, progress);
         self.solve(stop)
     }
 
@@ -234,7 +235,7 @@ fn solve_stored<J: Job>(
         newest_part.get_or_insert(output);
     }
     let save = |output: &J::Output| store.save(&key, &J::KIND.encode(output));
-    let output = job.resume(newest_part, &save, stop)?;
+    let output = job.resume(newest_part, &save, progress, stop)?;
     if job.is_stored() {
         save(&output)?;
     }
@@ -476,13 +477,14 @@ mod tests {
         }
 
         fn solve(&self, stop: Stop<'_>) -> Result<Vec<usize>, Error> {
-            self.resume(None, &|_| Ok(()), stop)
+            self.resume(None, &|_| Ok(()), &Counter::default(), stop)
         }
 
         fn resume(
             &self,
             stored: Option<Vec<usize>>,
             store: &dyn Fn(&Vec<usize>) -> Result<(), Error>,
+            _: &dyn Progress,
             _: Stop<'_>,
         ) -> Result<Vec<usize>, Error> {
             let mut counted = stored.unwrap_or_default();

@@ -6,7 +6,8 @@
 //! [`run_stored`] does a list of them, one per thread, the most expensive first. Each finished job is kept in
 //! the [`Store`] at once, whole or not at all, and checked on reading: a damaged or foreign result is
 //! computed again. Results have the same bytes for any number of threads. They are stored as JSON that names
-//! their [`ResultKind`] and keeps every bit of their numbers.
+//! their [`ResultKind`] and keeps every bit of their numbers. A job whose parts depend on each other keeps a
+//! [`Checkpoint`] beside its stored part.
 //!
 //! # Files
 //!
@@ -29,6 +30,7 @@
 
 pub mod amounts;
 mod cgroup;
+mod checkpoint;
 pub mod cluster;
 mod csv_file;
 mod encoding;
@@ -44,6 +46,7 @@ mod store;
 mod terminal;
 mod threads;
 
+pub use checkpoint::{Checkpoint, Unused};
 pub use csv_file::{CsvFile, Header, number, write_csv};
 pub use encoding::ResultKind;
 pub use error::{Error, Result};

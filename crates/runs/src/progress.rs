@@ -8,7 +8,7 @@ pub trait Progress: Sync {
     fn advance(&self, cost: u64, reused: bool);
     /// The stage is over.
     fn end(&self);
-    /// Something that the user should know, in whole sentences; told outside of stages.
+    /// Something that the user should know, in whole sentences.
     fn note(&self, text: &str) {
         let _ = text;
     }

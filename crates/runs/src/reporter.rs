@@ -92,6 +92,7 @@ impl Progress for Reporter {
     }
 
     fn note(&self, text: &str) {
-        crate::err!("note: {text}");
+        // A bar would be written over.
+        self.with(|s| s.bar.suspend(|| crate::err!("note: {text}")));
     }
 }

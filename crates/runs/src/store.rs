@@ -514,7 +514,8 @@ fn read_at(path: &Path, place: Place) -> Result<String> {
     String::from_utf8(bytes).map_err(|_| Error::content(path, "not text"))
 }
 
-fn directory(out: &Path) -> PathBuf {
+/// Where the store of a directory is.
+pub(crate) fn directory(out: &Path) -> PathBuf {
     out.join(".units")
 }
 

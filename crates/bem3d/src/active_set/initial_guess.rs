@@ -8,12 +8,13 @@ use crate::geometry::{CellSet, Grid};
 use crate::tuning::Tuning;
 use contact_model::Stop;
 use numerics::parallel::{for_each, threads_for};
+use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 use std::ops::Range;
 use std::sync::Arc;
 
 /// The state solved last, from which the next is extrapolated.
-#[derive(Debug)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct LastState {
     /// The contact set.
     pub contact: CellSet,

@@ -3,9 +3,10 @@
 use super::bounds::{Bounds, Extremes};
 use crate::geometry::CellSet;
 use crate::real::{sum, sum_of_pairs};
+use serde::{Deserialize, Serialize};
 
 /// The numbers of [`contact_model::Certificate`] that do not concern the load or the stiffness.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Residuals {
     /// `(sum p g - min sum q g) / (F s)` over all q between the bounds with the same sum F: without an upper
     /// bound the minimum is `F min g`.

@@ -52,6 +52,12 @@ impl Problem {
         }
     }
 
+    /// Forgets what the loads before were solved with: plans, coarser grids, room.
+    pub fn forget_plans(&mut self) {
+        self.operators.forget_plans();
+        (self.workspace, self.coarser) = (Workspace::default(), None);
+    }
+
     /// The same; no time is charged.
     #[cfg(test)]
     pub fn new(grid: Grid, z: Arc<Vec<f64>>, medium: impl Into<Medium>, tuning: &Tuning) -> Self {

@@ -17,6 +17,7 @@ use crate::geometry::CellSet;
 use crate::linear::{Fixed, StoppingCriteria};
 use crate::real::{dot, each, largest, smallest, sum};
 use contact_model::{Status, Stop};
+use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// An update lowers the gaps left on the contact by this factor: less than the attraction changes by would be
@@ -57,7 +58,7 @@ const FAR: f64 = 2.0;
 const FIRST: f64 = 1e-2;
 
 /// What is prescribed, nondimensional; of either sign.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum AdhesiveControl {
     /// Sum of the net pressure.
     Force(f64),
@@ -79,7 +80,7 @@ impl AdhesiveControl {
 }
 
 /// A state: contact pressure, attraction and gap on the cells within reach.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct Equilibrium {
     /// Approach.
     pub d: f64,

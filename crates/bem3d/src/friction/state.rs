@@ -11,6 +11,7 @@ use crate::parts::Recorder;
 use crate::real::{dot, sum};
 use crate::tuning::Tuning;
 use contact_model::{Status, Stop};
+use serde::{Deserialize, Serialize};
 
 /// The contact at the end of an increment, nondimensional: pressures so that `u = sum I p`.
 #[derive(Debug, Clone, Copy)]
@@ -22,7 +23,7 @@ pub struct PressedCells<'a> {
 }
 
 /// What the next increment begins from. The default is no contact, no traction and no displacement.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct SlipMemory {
     /// The contact.
     pub cells: CellSet,
@@ -115,6 +116,12 @@ impl Friction {
         let coupling = (beta.abs() > 0.0).then(|| CouplingOperator::new(grid, medium, beta));
         let operators = TangentialOperators::new(table, tuning, recorder);
         Self { operators, room: FrictionRoom::default(), coupling }
+    }
+
+    /// Forgets the plans of the increments before, and their room. The coupling has one plan, of the grid.
+    pub fn forget_plans(&mut self) {
+        self.operators.forget_plans();
+        self.room = FrictionRoom::default();
     }
 
     /// Whether tractions displace normally, and pressures tangentially.

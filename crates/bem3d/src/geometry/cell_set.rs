@@ -3,6 +3,8 @@
 use super::grid::{Grid, Window};
 use crate::tuning::{BAND, LANES, LONG_RUN, PASSED_SINGLY};
 use numerics::parallel::{map, threads_for};
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::ops::{AddAssign, Range};
 
 /// A set of cells, row by row. Values on it stand one after the other in the order of the cells.
@@ -117,6 +119,32 @@ impl SetRow<'_> {
                 row[columns].fill(value);
             }
         }
+    }
+}
+
+/// Its rows with the number of cells in each, then the columns of all.
+impl Serialize for CellSet {
+    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        let rows: Vec<(u32, u32)> = self.rows().map(|row| (row.y as u32, row.columns.len() as u32)).collect();
+        (rows, &self.columns).serialize(to)
+    }
+}
+
+impl<'de> Deserialize<'de> for CellSet {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        let (rows, columns) = <(Vec<(u32, u32)>, Vec<u32>)>::deserialize(from)?;
+        let mut set = Self::default();
+        let mut rest = &columns[..];
+        for (y, length) in rows {
+            let row = rest.split_at_checked(length as usize).filter(|(row, _)| {
+                let follows = set.rows.last().is_none_or(|last| last.y < y);
+                follows && !row.is_empty() && row.is_sorted_by(|a, b| a < b)
+            });
+            let (row, after) = row.ok_or_else(|| D::Error::custom("rows of cells in order"))?;
+            set.push_row(y as usize, row.iter().copied());
+            rest = after;
+        }
+        if rest.is_empty() { Ok(set) } else { Err(D::Error::custom("cells in rows")) }
     }
 }
 
@@ -273,6 +301,12 @@ impl CellSet {
             }
         }
         self.runs.push(run);
+    }
+
+    /// Whether a grid has all its cells.
+    pub fn is_on(&self, grid: Grid) -> bool {
+        let on_row = |row: SetRow<'_>| row.columns.last().is_none_or(|&x| (x as usize) < grid.columns);
+        self.rows().all(|row| row.y < grid.rows && on_row(row))
     }
 
     /// Number of cells.

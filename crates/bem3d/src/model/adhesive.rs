@@ -13,6 +13,7 @@ use crate::kernel::love::influence_of_rectangle;
 use contact_model::{
     Adhesion, AdhesiveState, Branch, Certificate, ContactState, Error, Result, Status, Stop,
 };
+use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
 /// Name of the quantity of [`Error::Domain`] where cells are too large for the range of an attraction.
@@ -33,14 +34,14 @@ const ON_BRANCH: f64 = 1e-3;
 pub struct AdhesiveContact {
     pub(super) surface: PreparedSurface,
     pub(super) attraction: Attraction,
-    last: Option<Last>,
+    pub(super) last: Option<Last>,
     plain: bool,
 }
 
 /// The end of the last step.
-#[derive(Debug, Clone)]
-struct Last {
-    equilibrium: Equilibrium,
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(super) struct Last {
+    pub(super) equilibrium: Equilibrium,
     control: AdhesiveControl,
     branch: Branch,
     state: ContactState,
@@ -226,7 +227,7 @@ impl AdhesiveContact {
         Ok(match &self.last {
             Some(last) => {
                 let mut best = last.state.clone();
-                best.report.status = Status::Stagnated;
+                best.report.status = Status::PulledOff;
                 best.report.strategy = format!("pull-off before the force {value:e}; the last stable state");
                 Error::NotConverged { best: Box::new(best) }
             }

@@ -5,6 +5,7 @@ use super::adhesive::{AdhesiveContact, attraction};
 use super::certificate::LoadError;
 use super::load::{LoadSequence, ScaledLoad};
 use super::options::{Bem3d, NAME, bytes_per_cell, friction_bytes_per_cell};
+use super::path_memory::Remembered;
 use super::prepared::{PreparedSurface, Tangent};
 use super::sliding::Sliding;
 use crate::active_set::{self, Control, Limits, Solved};
@@ -13,8 +14,8 @@ use crate::parts::{Part, Recorder};
 use crate::stiffness::{self, Responding, Stiffness};
 use crate::tuning::Tuning;
 use contact_model::{
-    ContactState, Error, Load, Normalisation, PreparedContact, RequiredMemory, Result, Scene, Status, Step,
-    Stop, Tangential,
+    ContactState, Error, Load, Normalisation, PathMemory, PreparedContact, RequiredMemory, Result, Scene,
+    Status, Step, Stop, Tangential,
 };
 use std::borrow::Cow;
 
@@ -63,6 +64,13 @@ impl PreparedBem3d {
         }
     }
 
+    fn surface_mut(&mut self) -> &mut PreparedSurface {
+        match &mut self.contact {
+            Contact::WithoutAdhesion(surface) => surface,
+            Contact::WithAdhesion(contact) => &mut contact.surface,
+        }
+    }
+
     /// A load in the units of the surface; with adhesion it may pull.
     fn scaled_load(&self, load: Load) -> Result<ScaledLoad> {
         let load = match (&self.contact, load) {
@@ -101,6 +109,9 @@ impl PreparedBem3d {
         loads: LoadSequence,
         stop: Stop<'_>,
     ) -> Result<ContactState> {
+        if loads == LoadSequence::Path {
+            self.surface_mut().forget_plans();
+        }
         match &mut self.contact {
             Contact::WithoutAdhesion(surface) => {
                 if let Some(sliding) = &mut surface.sliding {
@@ -161,13 +172,49 @@ impl PreparedContact for PreparedBem3d {
             return Err(Error::Stopped { best: None });
         }
         let load = self.scaled_load(step.normal)?;
-        let state = self.at(load, step.tangential, LoadSequence::Path, stop)?;
+        let state = match self.at(load, step.tangential, LoadSequence::Path, stop) {
+            Err(Error::NotConverged { best }) => {
+                // The last stable state is that of the step before.
+                let time = if best.report.status == Status::PulledOff { self.time } else { step.time };
+                return Err(Error::NotConverged { best: Box::new(best.with_time(time)) });
+            }
+            found => found?,
+        };
         self.time = step.time;
         Ok(state.with_time(step.time))
     }
 
     fn restart(&mut self) {
         self.begin(LoadSequence::Path);
+    }
+
+    fn memory(&self) -> Result<Option<PathMemory>> {
+        if self.loads == LoadSequence::Single {
+            // No path has begun, or it goes on from a load that is solved first.
+            return Ok(None);
+        }
+        let adhesive = match &self.contact {
+            Contact::WithoutAdhesion(_) => None,
+            Contact::WithAdhesion(contact) => contact.last.as_ref(),
+        };
+        PathMemory::of(&Remembered::of(self.time, self.surface(), adhesive)).map(Some)
+    }
+
+    fn recall(&mut self, memory: &PathMemory) -> Result<()> {
+        self.restart();
+        let remembered: Remembered<'_> = memory.read()?;
+        let unreadable = PathMemory::unreadable(memory.bytes().len());
+        let time = remembered.time;
+        match &mut self.contact {
+            Contact::WithoutAdhesion(_) if remembered.adhesive.is_some() => return Err(unreadable),
+            Contact::WithoutAdhesion(surface) => remembered.recall(surface).map(|_| ()),
+            Contact::WithAdhesion(contact) => {
+                remembered.recall(&mut contact.surface).map(|last| contact.last = last)
+            }
+        }
+        .map_err(|_| unreadable)?;
+        self.time = time;
+        Ok(())
     }
 }
 

@@ -38,6 +38,21 @@ impl Memory {
         if same { self.rising } else { force > self.force }
     }
 
+    /// The undeformed gaps of the indented surface.
+    pub fn indented(&self) -> Arc<Vec<f64>> {
+        Arc::new(self.virgin.iter().zip(&self.indentation).map(|(z, depth)| z + depth).collect())
+    }
+
+    /// Force of the last state, and whether it was reached with a growing load.
+    pub fn reached(&self) -> (f64, bool) {
+        (self.force, self.rising)
+    }
+
+    /// Goes where a path stood.
+    pub fn recall(&mut self, force: f64, rising: bool) {
+        (self.force, self.rising) = (force, rising);
+    }
+
     /// Goes on to the next state.
     pub fn advance(&mut self, force: f64, tolerance: f64) {
         self.rising = self.rises_to(force, tolerance);

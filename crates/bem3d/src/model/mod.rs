@@ -9,6 +9,7 @@ mod load;
 mod mean_gap;
 mod memory;
 mod options;
+mod path_memory;
 mod prepared;
 mod profile;
 mod sliding;

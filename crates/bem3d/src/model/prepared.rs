@@ -160,6 +160,14 @@ impl PreparedSurface {
         }
     }
 
+    /// Forgets what loads before leave besides the memory of the path: plans of operators, coarser grids, room.
+    pub(super) fn forget_plans(&mut self) {
+        self.problem.forget_plans();
+        if let Some(sliding) = &mut self.sliding {
+            sliding.friction.forget_plans();
+        }
+    }
+
     pub(super) fn is_periodic(&self) -> bool {
         self.problem.operators.table().boundary() == Boundary::Periodic
     }
@@ -226,16 +234,14 @@ impl PreparedSurface {
     /// Adds the indentation of saturated cells to that of the path.
     pub(super) fn indent(&mut self, saturated: &CellSet, depth: &[f64]) {
         let grid = self.problem.grid();
-        let Some(Memory { indentation, .. }) = &mut self.memory else { return };
+        let Some(memory) = &mut self.memory else { return };
         if saturated.is_empty() {
             return;
         }
-        let mut z = self.problem.candidates.z().to_vec();
         for (i, depth) in saturated.index(grid).zip(depth) {
-            indentation[i] += depth;
-            z[i] += depth;
+            memory.indentation[i] += depth;
         }
-        self.problem.candidates = Candidates::new(grid, Arc::new(z));
+        self.problem.candidates = Candidates::new(grid, memory.indented());
         self.problem.coarser = None;
     }
 

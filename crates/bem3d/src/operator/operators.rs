@@ -98,6 +98,15 @@ impl Operators {
         }
     }
 
+    /// Forgets all plans. How a displacement is rounded then follows from what is asked for from here on alone,
+    /// and no longer from the windows before.
+    pub fn forget_plans(&mut self) {
+        let Self { table, tuning, recorder, applications, solves, two_levels, .. } = self;
+        let (applications, solves, two_levels) = (*applications, *solves, *two_levels);
+        let fresh = Self::recorded(Arc::clone(table), tuning, recorder);
+        *self = Self { applications, solves, two_levels, ..fresh };
+    }
+
     /// The kernel.
     pub fn table(&self) -> &KernelTable {
         &self.table

@@ -68,6 +68,12 @@ impl TangentialOperators {
         }
     }
 
+    /// Forgets all plans, as [`super::Operators::forget_plans`].
+    pub fn forget_plans(&mut self) {
+        let fresh = Self::new(Arc::clone(&self.table), &self.tuning, &self.recorder);
+        *self = Self { applications: self.applications, solves: self.solves, ..fresh };
+    }
+
     /// The kernel.
     pub fn table(&self) -> &TangentialTable {
         &self.table

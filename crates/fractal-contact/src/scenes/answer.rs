@@ -10,7 +10,7 @@ use crate::scenes::tell::{
 };
 use analysis::Table;
 use runs::cluster::{ShardPlan, ShardReport, run_shard};
-use runs::{Failure, Header, Progress, Shard, Store, Threads, run_stored, write_csv};
+use runs::{Checkpoint, Failure, Header, Progress, Shard, Store, Threads, run_stored, write_csv};
 use std::time::Instant;
 
 /// Answers a scene: every model on every surface under every load, and writes what is asked for.
@@ -19,7 +19,8 @@ use std::time::Instant;
 /// several; `patches.csv`, fields and curves where the scene asks for them. A theory, which is the same for
 /// every seed, has one surface. Finished states are kept in `OUT/.units` and reused by the next run of the
 /// same scene: with a state that is solved again, the ones after it differ from those of an uninterrupted run
-/// within the tolerance, no more. Where `stop` says so, the states so far are written and
+/// within the tolerance, no more. A path goes on from a checkpoint beside them, to the bits of an uninterrupted
+/// run. Where `stop` says so, the states so far are written and
 /// [`SceneOutcome::stopped`] is true.
 ///
 /// The directory belongs to one run: what an earlier run wrote there and this one does not is removed.
@@ -44,6 +45,9 @@ pub fn run(
     runs::files::clean(&options.out)?;
     let folder = ResultFolder::claim(&options.out, scene)?;
     manifest::write_begun(scene, options, &folder.files(scene))?;
+    if options.fresh {
+        Checkpoint::remove_all(&options.out);
+    }
     let units = units(scene);
     let jobs = scene_jobs(scene, &options.out);
     let done = run_stored(&title(scene), &jobs, &store, threads, progress, stop);
@@ -111,6 +115,7 @@ pub fn run(
     outcome.files.push(options.out.join("manifest.json"));
     if !outcome.stopped {
         field_pictures::sweep(&options.out);
+        Checkpoint::remove_all(&options.out);
     }
     let removed = folder.remove_others(&outcome.files)?;
     if removed > 0 {
@@ -126,7 +131,7 @@ pub fn run(
 ///
 /// Shards of one scene may run at the same time, here or on other machines that share the directory. A job
 /// that is interrupted goes on from its last state: the states after it are then those of an undivided run
-/// within the tolerance, not to the last digit.
+/// within the tolerance, not to the last digit; those of a path, whose memory is kept, are the same bits.
 ///
 /// # Errors
 /// As [`crate::scenes::run`]; the first job that fails.
@@ -164,6 +169,7 @@ fn count(
         };
         outcome.stopped |= !result.complete;
         outcome.kept += result.kept;
+        outcome.notes.extend(result.notes.iter().cloned());
         for record in &result.states {
             outcome.states += 1;
             outcome.failed += usize::from(record.converged().is_none());
@@ -174,6 +180,11 @@ fn count(
                 }
                 Answer::Refused(_) => {}
                 Answer::State(solved) => {
+                    if let Some(ended) = record.note().filter(|_| record.is_pulled_off())
+                        && !outcome.notes.contains(&ended)
+                    {
+                        outcome.notes.push(ended);
+                    }
                     for &warning in &solved.warnings {
                         warned[warning as usize] += 1;
                     }

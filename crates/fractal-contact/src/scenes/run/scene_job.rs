@@ -2,14 +2,10 @@
 
 use crate::scenes::plan::{FORMAT, ModelOnSurface, calibration};
 use crate::scenes::read::{Error, Result, SceneFile};
-use crate::scenes::run::ModelResult;
+use crate::scenes::run::{Keeper, ModelResult};
 use contact_model::Stop;
-use runs::{Job, JobList, ResultKind};
+use runs::{Checkpoint, Job, JobList, Progress, ResultKind, Silent};
 use std::path::Path;
-use std::time::{Duration, Instant};
-
-/// What is solved is kept at most so often: an interruption loses what is younger, and the state in hand.
-const KEEP_EVERY: Duration = Duration::from_secs(1);
 
 /// A unit with what all units of a run share.
 pub(crate) struct SceneJob<'a> {
@@ -50,27 +46,26 @@ impl Job for SceneJob<'_> {
     }
 
     fn solve(&self, stop: Stop<'_>) -> Result<ModelResult> {
-        self.resume(None, &|_| Ok(()), stop)
+        self.resume(None, &|_| Ok(()), &Silent, stop)
     }
 
     fn resume(
         &self,
         stored: Option<ModelResult>,
         store: &dyn Fn(&ModelResult) -> runs::Result<()>,
+        progress: &dyn Progress,
         stop: Stop<'_>,
     ) -> Result<ModelResult> {
         let mut begun = stored.unwrap_or_default();
         begun.states.retain(|state| state.is_whole(self.out));
         begun.kept = begun.states.len();
-        let mut last = Instant::now();
-        let mut keep = |result: &ModelResult| {
-            if last.elapsed() >= KEEP_EVERY && self.is_stored() {
-                store(result)?;
-                last = Instant::now();
-            }
-            Ok(())
-        };
-        self.unit.solve(self.scene, self.out, begun, &mut keep, stop)
+        let (model, surface) = (self.unit.numerics(self.scene).name(), self.unit.surface);
+        let checkpoint = Checkpoint::new(self.out, &format!("{model}-{surface}"), &self.stored_key());
+        let store = self.is_stored().then_some(store);
+        let mut keeper = Keeper::new(store, checkpoint, progress, self.name());
+        let result = self.unit.solve(self.scene, self.out, begun, &mut keeper, stop)?;
+        keeper.finish(&result)?;
+        Ok(result)
     }
 
     /// A result with a state or a file missing or changed is as good as absent.
@@ -130,7 +125,8 @@ mod tests {
         first.distributions.push((Distributed::Gap, vec![[0.0, 0.1, 1e-300], [0.1, 0.2, 3.0]]));
         first.files.push(StoredFile { name: "a b.npy".into(), bytes: 3, digest: u128::MAX - 7 });
         let second = StateRecord::new(2, Answer::Refused("too much\n".into()));
-        let result = ModelResult { seconds: 0.25, states: vec![first, second], complete: false, kept: 2 };
+        let states = vec![first, second];
+        let result = ModelResult { seconds: 0.25, states, kept: 2, ..ModelResult::default() };
         let kind = ResultKind::new("scene", FORMAT);
         let text = kind.encode(&result);
         assert_eq!(kind.decode(&text), Some(result));

@@ -5,16 +5,20 @@ use crate::scenes::read::{
     Error, FieldFormat, HEIGHTS, LoadRequest, Numerics, Result, SceneFile, cells, distributed,
 };
 use crate::scenes::run::{
-    Answer, FieldFile, FieldView, ModelResult, Solved, StateRecord, StoredFile, Warning, field_pictures,
+    Answer, FieldFile, FieldView, Keeper, ModelResult, Solved, StateRecord, StoredFile, Warning,
+    field_pictures,
 };
-use contact_model::{Cells, ContactState, Field, FieldQuantity, Load, Step, Stop};
+use contact_model::{
+    Cells, ContactState, Field, FieldQuantity, LargestPull, Load, PreparedContact, Step, Stop,
+};
 use std::borrow::Cow;
 use std::path::Path;
 use std::time::Instant;
 
 impl ModelOnSurface {
     /// Answers the loads that `result` lacks, in their order, and gives the result to `keep` after each. A
-    /// load that a model refuses has its row with the reason, and the others go on. A path begins anew.
+    /// load that a model refuses has its row with the reason, and the others go on. A path goes on from its
+    /// checkpoint, or begins anew.
     ///
     /// # Errors
     /// [`Error::Run`] where the scene cannot be prepared, and files that cannot be written. A stop is no
@@ -24,7 +28,7 @@ impl ModelOnSurface {
         scene: &SceneFile,
         out: &Path,
         mut result: ModelResult,
-        keep: &mut dyn FnMut(&ModelResult) -> Result<()>,
+        keeper: &mut Keeper<'_>,
         stop: Stop<'_>,
     ) -> Result<ModelResult> {
         let start = Instant::now();
@@ -39,13 +43,18 @@ impl ModelOnSurface {
             LoadRequest::Loads(_) => {
                 let mut keep = |result: &mut ModelResult| {
                     result.seconds = before + start.elapsed().as_secs_f64();
-                    keep(result)
+                    keeper.keep(result)
                 };
                 self.loads(scene, contact.as_mut(), out, stop, &mut result, &mut keep)?;
             }
             LoadRequest::Path(steps) => {
-                result = ModelResult::default();
-                self.path(scene, contact.as_mut(), (steps, out), stop, &mut result)?;
+                keeper.resume(&mut result, contact.as_mut());
+                let mut keep =
+                    |result: &mut ModelResult, contact: &dyn PreparedContact, interrupted: bool| {
+                        result.seconds = before + start.elapsed().as_secs_f64();
+                        keeper.keep_path(result, contact, interrupted);
+                    };
+                self.path(scene, contact.as_mut(), (steps, out), stop, &mut result, &mut keep)?;
             }
         }
         let of = (numerics.name(), self.surface);
@@ -57,7 +66,7 @@ impl ModelOnSurface {
     fn loads(
         &self,
         scene: &SceneFile,
-        contact: &mut dyn contact_model::PreparedContact,
+        contact: &mut dyn PreparedContact,
         out: &Path,
         stop: Stop<'_>,
         result: &mut ModelResult,
@@ -120,27 +129,48 @@ impl ModelOnSurface {
     fn path(
         &self,
         scene: &SceneFile,
-        contact: &mut dyn contact_model::PreparedContact,
+        contact: &mut dyn PreparedContact,
         (steps, out): (&[Step], &Path),
         stop: Stop<'_>,
         result: &mut ModelResult,
+        keep: &mut dyn FnMut(&mut ModelResult, &dyn PreparedContact, bool),
     ) -> Result<()> {
         let normalisation = contact.normalisation();
-        for (index, step) in steps.iter().enumerate() {
+        let mut largest = LargestPull::default();
+        for (step, record) in steps.iter().zip(&result.states) {
+            if let Some(solved) = record.solved() {
+                let _ = largest.enter(step.normal, solved.state.clone());
+            }
+        }
+        for (index, step) in steps.iter().enumerate().skip(result.states.len()) {
             let record = match contact.advance_until(*step, stop) {
                 Ok(state) => {
+                    let state = largest.enter(step.normal, state);
                     let warnings = Warning::of(scene, &state, None);
                     self.recorded(scene, Solved { state, normalisation, warnings, grid: None }, out, index)?
                 }
-                Err(contact_model::Error::Stopped { .. }) => return Ok(()),
-                Err(error) => StateRecord::new(index, Answer::Refused(error.to_string())),
+                Err(contact_model::Error::Stopped { .. }) => {
+                    keep(result, contact, true);
+                    return Ok(());
+                }
+                Err(error) => match error.into_best() {
+                    Ok(best) => {
+                        // The best one of a solve that missed its tolerance, and where a pull was not held the
+                        // last stable one.
+                        let state = largest.enter(step.normal, best.with_fields(None).with_patches(None));
+                        let solved = Solved { state, normalisation, warnings: Vec::new(), grid: None };
+                        StateRecord::new(index, Answer::State(Box::new(solved)))
+                    }
+                    Err(error) => StateRecord::new(index, Answer::Refused(error.to_string())),
+                },
             };
-            let refused = record.solved().is_none();
+            let failed = record.converged().is_none();
             result.states.push(record);
-            if refused {
+            if failed {
                 // What comes after a step that failed would be another path.
                 break;
             }
+            keep(result, contact, false);
         }
         result.complete = true;
         Ok(())

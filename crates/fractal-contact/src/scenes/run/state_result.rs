@@ -22,6 +22,9 @@ pub(crate) struct ModelResult {
     /// How many states an earlier run had kept: all of a result that is read back.
     #[serde(skip_serializing)]
     pub kept: usize,
+    /// What the user should know of this run.
+    #[serde(skip_serializing)]
+    pub notes: Vec<String>,
 }
 
 /// What is read back of a [`ModelResult`].
@@ -35,7 +38,7 @@ struct StoredResult {
 
 impl From<StoredResult> for ModelResult {
     fn from(StoredResult { seconds, complete, states }: StoredResult) -> Self {
-        Self { seconds, complete, kept: states.len(), states }
+        Self { seconds, complete, kept: states.len(), states, notes: Vec::new() }
     }
 }
 
@@ -92,6 +95,11 @@ impl StateRecord {
         self.solved().filter(|solved| solved.state.report.status == Status::Converged)
     }
 
+    /// Whether it is the last stable state before a pull that was not held.
+    pub fn is_pulled_off(&self) -> bool {
+        self.solved().is_some_and(|solved| solved.state.report.status == Status::PulledOff)
+    }
+
     /// How it ended, in the word of tables.
     pub fn status(&self) -> &'static str {
         self.solved().map_or("refused", |solved| solved.state.report.status.as_str())
@@ -101,6 +109,9 @@ impl StateRecord {
     pub fn note(&self) -> Option<String> {
         match &self.answer {
             Answer::Refused(reason) => Some(reason.clone()),
+            Answer::State(_) if self.is_pulled_off() => {
+                self.solved().map(|solved| solved.state.report.strategy.clone())
+            }
             Answer::State(solved) => Warning::note(&solved.warnings),
         }
     }

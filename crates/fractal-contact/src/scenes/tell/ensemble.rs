@@ -1,10 +1,10 @@
 //! Means over the surfaces of a scene.
 
 use crate::scenes::read::SceneFile;
-use crate::scenes::run::{Solved, SolvedUnit};
+use crate::scenes::run::{Solved, SolvedUnit, StateRecord};
 use crate::scenes::tell::columns;
 use analysis::{Column, Table, Value, mean_and_deviation};
-use contact_model::quantities::{Average, Quantity};
+use contact_model::quantities::{Average, Quantity, Role};
 
 /// A mean, and the standard deviation of one number where there are two.
 type MeanAndDeviation = (f64, Option<f64>);
@@ -29,8 +29,9 @@ pub(crate) struct Mean {
     /// The number that the load prescribes; none along a path.
     pub prescribed: Option<f64>,
     pub surfaces: usize,
-    /// Mean and standard deviation of each quantity; `None` where a surface does not have it.
-    values: Vec<(Averaged, Option<MeanAndDeviation>)>,
+    /// Mean and standard deviation of each quantity, with the number of surfaces; `None` where a surface does
+    /// not have it.
+    values: Vec<(Averaged, Option<MeanAndDeviation>, usize)>,
 }
 
 impl Mean {
@@ -46,22 +47,29 @@ impl Mean {
 
     fn find(&self, quantity: &Quantity, of_grid: bool) -> Option<MeanAndDeviation> {
         let is = |(of, grid): &Averaged| of.name == quantity.name && *grid == of_grid;
-        let (_, value) = self.values.iter().find(|(of, _)| is(of))?;
+        let (_, value, surfaces) = self.values.iter().find(|(of, ..)| is(of))?;
         let (mean, deviation) = (*value)?;
-        Some((mean, deviation.map(|deviation| deviation / (self.surfaces as f64).sqrt())))
+        Some((mean, deviation.map(|deviation| deviation / (*surfaces as f64).sqrt())))
     }
 }
 
 /// The means in the order of models and loads.
-pub(crate) fn means(scene: &SceneFile, units: &[SolvedUnit<'_>]) -> Vec<Mean> {
+pub(crate) fn means<'a>(scene: &SceneFile, units: &[SolvedUnit<'a>]) -> Vec<Mean> {
     let averaged = averaged(scene);
     let mut means = Vec::new();
     for model in scene.models.iter().map(crate::scenes::Numerics::name) {
         for state in 0..scene.request.count() {
-            let of_model = units.iter().filter(|unit| unit.model == model);
-            let records = of_model.filter_map(|unit| unit.states.iter().find(|record| record.index == state));
-            let solved: Vec<&Solved> = records.filter_map(|record| record.converged()).collect();
+            let of_model = || units.iter().filter(|unit| unit.model == model);
+            let at = |unit: &SolvedUnit<'a>| unit.states.iter().find(|record| record.index == state);
+            let solved: Vec<&Solved> = of_model().filter_map(at).filter_map(StateRecord::converged).collect();
+            // A path that has ended keeps what is told of it as a whole.
+            let until = |unit: &SolvedUnit<'a>| {
+                let records = unit.states.iter().filter(|record| record.index <= state);
+                records.filter_map(StateRecord::solved).next_back()
+            };
+            let of_paths: Vec<&Solved> = of_model().filter_map(until).collect();
             let value = |&(quantity, of_grid): &Averaged| {
+                let solved = if quantity.role == Role::OfPath { &of_paths } else { &solved };
                 let number = |solved: &&Solved| {
                     if of_grid {
                         return Some(solved.grid.as_ref()?.of(quantity.name)?.error);
@@ -69,7 +77,8 @@ pub(crate) fn means(scene: &SceneFile, units: &[SolvedUnit<'_>]) -> Vec<Mean> {
                     quantity.number(&solved.state, &solved.normalisation)
                 };
                 let numbers: Option<Vec<f64>> = solved.iter().map(number).collect();
-                ((quantity, of_grid), numbers.and_then(|numbers| mean_and_deviation(&numbers)))
+                let value = numbers.and_then(|numbers| mean_and_deviation(&numbers));
+                ((quantity, of_grid), value, solved.len())
             };
             means.push(Mean {
                 model,
@@ -107,9 +116,9 @@ pub(crate) fn table(scene: &SceneFile, title: String, means: &[Mean]) -> contact
     for of in means {
         let mut row: Vec<Value> =
             vec![of.model.into(), of.state.into(), of.prescribed.into(), of.surfaces.into()];
-        for ((quantity, _), value) in &of.values {
+        for ((quantity, _), value, surfaces) in &of.values {
             let deviation = value.and_then(|(_, deviation)| deviation);
-            let error = deviation.map(|deviation| deviation / (of.surfaces as f64).sqrt());
+            let error = deviation.map(|deviation| deviation / (*surfaces as f64).sqrt());
             row.push(value.map(|(mean, _)| mean).into());
             if quantity.average == Average::Mean {
                 row.extend([error.into(), deviation.into()]);

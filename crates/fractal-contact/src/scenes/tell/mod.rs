@@ -33,12 +33,22 @@ mod tests {
 
     /// A scene that asks for what this asks for, and for as little else as it can.
     fn asking(asked: AskedBy) -> SceneFile {
+        let mut scene = asking_nothing();
+        ask(&mut scene, asked);
+        scene
+    }
+
+    fn asking_nothing() -> SceneFile {
         let rough = Surface::SelfAffine(SelfAffine::new(2.2, 1.0, 0.01).unwrap());
         let loads = LoadRequest::Loads(LoadList { kind: LoadKind::Approach, values: vec![0.1, 0.2] });
         let models = vec![Numerics::named("bem3d").unwrap()];
         let mut scene = SceneFile::new(models, SceneSurface::Plain(rough), 1.0, loads);
         scene.sampling.surfaces = 2;
         scene.requested.grid_error = true;
+        scene
+    }
+
+    fn ask(scene: &mut SceneFile, asked: AskedBy) {
         let (effects, outputs) = (&mut scene.effects, &mut scene.requested.outputs);
         match asked {
             AskedBy::Output(Output::Conductance) | AskedBy::AnyStiffness => {
@@ -73,10 +83,10 @@ mod tests {
             AskedBy::Path => {
                 scene.request = LoadRequest::Path(vec![Step::normal(0.0, Load::Force(1.0)); 2]);
             }
+            AskedBy::All(each) => each.iter().for_each(|asked| ask(scene, *asked)),
             AskedBy::Always | AskedBy::RoughSurface | AskedBy::FreeBoundary | AskedBy::PrescribedDistance => {
             }
         }
-        scene
     }
 
     /// A quantity of the table that a scene asks for is in its CSV, in the table of the console and of the
@@ -89,7 +99,8 @@ mod tests {
             let csv = columns::columns(&scene);
             assert!(csv.iter().any(|column| column.name == name), "{name} is not in results.csv");
             let shown = summary::names(&scene).any(|shown| shown == name);
-            assert_eq!(shown, quantity.role == Role::Answer, "{name} in the tables of console and report");
+            let answer = matches!(quantity.role, Role::Answer | Role::OfPath);
+            assert_eq!(shown, answer, "{name} in the tables of console and report");
             let means = ensemble::table(&scene, String::new(), &[]).unwrap();
             let averaged = means.columns().iter().any(|column| column.name == name);
             assert_eq!(averaged, quantity.average != Average::No, "{name} in ensemble.csv");

@@ -91,6 +91,7 @@ impl Report<'_> {
                         }
                     }
                 }
+                @for line in &model.of_paths { p { (line.replace('_', " ")) "." } }
             }
             p { "All columns, with their meaning and unit, are in results.csv." }
         }

@@ -18,12 +18,14 @@ pub(crate) struct ModelStates {
     pub lines: Vec<Vec<String>>,
     /// States that are left to the files.
     pub left_out: usize,
+    /// What is told of each path as a whole, one line a surface or one of means.
+    pub of_paths: Vec<String>,
 }
 
 /// The states of each model as aligned text.
 pub(crate) fn summary(scene: &SceneFile, units: &[SolvedUnit<'_>], means: &[Mean]) -> String {
     let mut text = String::new();
-    for ModelStates { name, lines, left_out } in of_models(scene, units, means) {
+    for ModelStates { name, lines, left_out, of_paths } in of_models(scene, units, means) {
         let brackets = if means.is_empty() { "" } else { ": means over surfaces (standard error)" };
         text += &format!("{name}{brackets}\n");
         let columns = lines.first().map_or(0, Vec::len);
@@ -37,6 +39,9 @@ pub(crate) fn summary(scene: &SceneFile, units: &[SolvedUnit<'_>], means: &[Mean
         }
         if left_out > 0 {
             text += &format!("  ... {left_out} more states\n");
+        }
+        for line in of_paths {
+            text += &format!("  {line}\n");
         }
     }
     text
@@ -61,10 +66,12 @@ fn shown(scene: &SceneFile) -> Vec<Shown> {
     shown
 }
 
-/// Names of the answers that are shown.
+/// Names of the answers that are shown, those of paths as a whole among them.
 #[cfg(test)]
 pub(crate) fn names(scene: &SceneFile) -> impl Iterator<Item = &'static str> {
-    shown(scene).into_iter().filter_map(|of| match of {
+    let of_paths = columns::asked(scene).filter(|quantity| quantity.role == Role::OfPath);
+    let of_paths: Vec<Shown> = of_paths.map(Shown::Answer).collect();
+    shown(scene).into_iter().chain(of_paths).filter_map(|of| match of {
         Shown::Answer(quantity) => Some(quantity.name),
         Shown::GridError(_) => None,
     })
@@ -145,9 +152,36 @@ pub(crate) fn of_models(scene: &SceneFile, units: &[SolvedUnit<'_>], means: &[Me
         let left_out = lines.len().saturating_sub(MOST);
         let lines = std::iter::once(head).chain(lines.into_iter().take(MOST));
         let lines = lines.map(|line| kept.iter().map(|&i| line[i].clone()).collect()).collect();
-        of_models.push(ModelStates { name, lines, left_out });
+        of_models.push(ModelStates { name, lines, left_out, of_paths: of_paths(scene, name, units, means) });
     }
     of_models
+}
+
+/// What a model's paths are as a whole: the quantities of paths at their ends, in words.
+fn of_paths(scene: &SceneFile, model: &str, units: &[SolvedUnit<'_>], means: &[Mean]) -> Vec<String> {
+    let quantities: Vec<&'static Quantity> =
+        columns::asked(scene).filter(|quantity| quantity.role == Role::OfPath).collect();
+    let line = |of: &dyn Fn(Shown) -> String| {
+        let known = quantities.iter().filter_map(|&quantity| {
+            let value = of(Shown::Answer(quantity));
+            let unit = match columns::column(scene, quantity).unit {
+                "1" | "-" => String::new(),
+                unit => format!(" {unit}"),
+            };
+            (value != NOTHING).then(|| format!("{} {value}{unit}", quantity.name))
+        });
+        known.collect::<Vec<_>>().join(", ")
+    };
+    let mut lines: Vec<String> = Vec::new();
+    if means.is_empty() {
+        let of_model = units.iter().filter(|unit| unit.model == model);
+        let ends = of_model.filter_map(|unit| unit.states.iter().rfind(|record| record.solved().is_some()));
+        lines.extend(ends.map(|end| line(&|shown| shown.of_state(end))));
+    } else if let Some(end) = means.iter().rfind(|mean| mean.model == model) {
+        lines.push(line(&|shown| shown.of_mean(end)));
+    }
+    lines.retain(|line| !line.is_empty());
+    lines.into_iter().map(|line| format!("path as a whole: {line}")).collect()
 }
 
 /// A standard error as a share of its mean.

@@ -1,0 +1,142 @@
+//! What decides the next step of a path: the last state that was reached, and what an effect remembers.
+//!
+//! Whatever else a contact keeps from load to load (plans of transforms, coarser grids, room) is forgotten
+//! before each step of a path ([`PreparedSurface::forget_plans`]): the window that a plan was made for decides
+//! how a displacement is rounded. A contact that recalls a memory therefore goes on to the same bits as the
+//! one that never stopped.
+
+use super::adhesive::Last;
+use super::memory::Memory;
+use super::prepared::PreparedSurface;
+use crate::active_set::{Candidates, LastState};
+use crate::friction::SlipMemory;
+use crate::geometry::{CellSet, Grid};
+use contact_model::{PathMemory, Result};
+use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
+
+/// All that a contact remembers of its path.
+#[derive(Serialize, Deserialize)]
+pub(super) struct Remembered<'a> {
+    /// Time of the last step.
+    pub time: f64,
+    /// Where the solve of the next load begins.
+    last: Option<Cow<'a, LastState>>,
+    hardness: Option<Indented>,
+    friction: Option<Slipped<'a>>,
+    /// The end of the last step, of contacts with adhesion.
+    pub adhesive: Option<Cow<'a, Last>>,
+}
+
+/// What a hardness leaves.
+#[derive(Serialize, Deserialize)]
+struct Indented {
+    cells: CellSet,
+    depth: Vec<f64>,
+    force: f64,
+    rising: bool,
+}
+
+/// What friction leaves.
+#[derive(Serialize, Deserialize)]
+struct Slipped<'a> {
+    memory: Cow<'a, SlipMemory>,
+    dissipated: f64,
+}
+
+impl<'a> Remembered<'a> {
+    /// Of a surface on its path, and of the attraction on it.
+    pub fn of(time: f64, surface: &'a PreparedSurface, adhesive: Option<&'a Last>) -> Self {
+        let grid = surface.problem.grid();
+        Self {
+            time,
+            last: surface.last.as_ref().map(Cow::Borrowed),
+            hardness: surface.memory.as_ref().map(|memory| Indented::of(grid, memory)),
+            friction: surface.sliding.as_ref().map(|sliding| Slipped {
+                memory: Cow::Borrowed(&sliding.before),
+                dissipated: sliding.dissipated,
+            }),
+            adhesive: adhesive.map(Cow::Borrowed),
+        }
+    }
+
+    /// Puts a surface at the beginning of a path where it was.
+    ///
+    /// # Errors
+    /// [`PathMemory::unreadable`] for what is not of this surface and its effects.
+    pub fn recall(self, surface: &mut PreparedSurface) -> Result<Option<Last>> {
+        let grid = surface.problem.grid();
+        let Self { time, last, hardness, friction, adhesive } = self;
+        let fits = time.is_finite()
+            && last.as_ref().is_none_or(|last| last.fits(grid))
+            && adhesive.as_ref().is_none_or(|last| last.fits(grid))
+            && hardness.as_ref().is_none_or(|indented| indented.fits(grid))
+            && friction.as_ref().is_none_or(|slipped| slipped.fits(grid))
+            && hardness.is_some() == surface.memory.is_some()
+            && friction.is_some() == surface.sliding.is_some();
+        if !fits {
+            return Err(PathMemory::unreadable(0));
+        }
+        if let (Some(indented), Some(memory)) = (hardness, &mut surface.memory) {
+            for (i, depth) in indented.cells.index(grid).zip(&indented.depth) {
+                memory.indentation[i] = *depth;
+            }
+            memory.recall(indented.force, indented.rising);
+            surface.problem.candidates = Candidates::new(grid, memory.indented());
+        }
+        if let (Some(slipped), Some(sliding)) = (friction, &mut surface.sliding) {
+            (sliding.before, sliding.dissipated) = (slipped.memory.into_owned(), slipped.dissipated);
+        }
+        surface.last = last.map(Cow::into_owned);
+        Ok(adhesive.map(Cow::into_owned))
+    }
+}
+
+impl Indented {
+    fn of(grid: Grid, memory: &Memory) -> Self {
+        let cells = CellSet::of_grid(grid, &memory.indentation, |depth| depth > 0.0);
+        let depth = cells.index(grid).map(|i| memory.indentation[i]).collect();
+        let (force, rising) = memory.reached();
+        Self { cells, depth, force, rising }
+    }
+
+    fn fits(&self, grid: Grid) -> bool {
+        self.cells.is_on(grid) && self.force.is_finite() && are_of(&self.cells, 1, &[&self.depth])
+    }
+}
+
+impl Slipped<'_> {
+    fn fits(&self, grid: Grid) -> bool {
+        let SlipMemory { cells, traction, displacement, offset, slip, pressure } = &*self.memory;
+        cells.is_on(grid)
+            && are_of(cells, 2, &[traction, offset, slip])
+            && are_of(cells, 1, &[pressure])
+            && displacement.iter().all(|d| d.is_finite())
+            && self.dissipated.is_finite()
+    }
+}
+
+impl LastState {
+    fn fits(&self, grid: Grid) -> bool {
+        let Self { contact, p, d, force, tangent } = self;
+        contact.is_on(grid)
+            && are_of(contact, 1, &[p])
+            && tangent.as_ref().is_none_or(|(q, k)| k.is_finite() && are_of(contact, 1, &[q]))
+            && d.is_finite()
+            && force.is_finite()
+    }
+}
+
+impl Last {
+    fn fits(&self, grid: Grid) -> bool {
+        let of = &self.equilibrium;
+        of.cells.is_on(grid)
+            && are_of(&of.cells, 1, &[&of.pressure, &of.attraction, &of.gap])
+            && of.d.is_finite()
+    }
+}
+
+/// Whether vectors have so many finite numbers for each cell.
+fn are_of(cells: &CellSet, each: usize, vectors: &[&Vec<f64>]) -> bool {
+    vectors.iter().all(|v| v.len() == each * cells.len() && v.iter().all(|value| value.is_finite()))
+}

@@ -1,0 +1,160 @@
+//! A path that is interrupted after any step goes on from its memory to the bits of the whole path.
+
+use bem3d::{
+    Adhesion, AdhesionLaw, Bem3d, Boundary, ContactModel, ContactState, Friction, Hardness, Load, Pair,
+    PathMemory, PreparedContact, Scene, SelfAffine, Step, Surface, Tangential,
+};
+
+fn rough(hurst: f64, rms: f64) -> Surface {
+    Surface::SelfAffine(SelfAffine::new(3.0 - hurst, 1.0, rms).unwrap())
+}
+
+fn prepare(scene: &Scene, cells: usize) -> Box<dyn PreparedContact> {
+    Bem3d { cells, ..Bem3d::default() }.prepare(scene, 3).unwrap()
+}
+
+/// Follows a path whole, and from the memory after each of its steps.
+fn check(name: &str, scene: &Scene, cells: usize, path: &[Step]) {
+    let mut contact = prepare(scene, cells);
+    let mut memories = Vec::new();
+    let mut states: Vec<ContactState> = Vec::new();
+    for step in path {
+        states.push(contact.advance(*step).unwrap());
+        memories.push(contact.memory().unwrap().unwrap());
+    }
+    for (done, memory) in memories.iter().enumerate() {
+        let kept = PathMemory::from_bytes(memory.bytes().to_vec());
+        let mut other = prepare(scene, cells);
+        // What was solved before leaves no trace.
+        other.solve(path[0].normal).unwrap();
+        other.recall(&kept).unwrap();
+        assert_eq!(other.memory().unwrap().as_ref(), Some(memory), "{name}, step {done}");
+        for (i, step) in path.iter().enumerate().skip(done + 1) {
+            let state = other.advance(*step).unwrap();
+            assert_eq!(state, states[i], "{name}: step {i} of a path that goes on after step {done}");
+            assert_eq!(other.memory().unwrap().as_ref(), Some(&memories[i]), "{name}, step {i}");
+        }
+    }
+}
+
+fn normal(loads: impl IntoIterator<Item = Load>) -> Vec<Step> {
+    loads.into_iter().enumerate().map(|(i, load)| Step::normal(i as f64, load)).collect()
+}
+
+#[test]
+fn elastic() {
+    let scene = Scene::new(rough(0.6, 0.01), 1.0);
+    let forces = [1e-4, 1e-3, 2e-3, 4e-3, 2e-2, 1e-2, 1e-3, 3e-3].map(Load::Force);
+    check("elastic", &scene, 129, &normal(forces));
+    let approaches = [0.002, 0.004, 0.02, 0.03, 0.01, 0.0, 0.02].map(Load::Approach);
+    check("elastic by approach", &scene, 65, &normal(approaches));
+    let mut periodic = scene;
+    periodic.effects.boundary = Boundary::Periodic;
+    (periodic.outputs.mean_gap, periodic.outputs.area) = (true, true);
+    let gaps = [0.02, 0.015, 0.01, 0.012, 0.03, 0.01].map(Load::MeanGap);
+    check("elastic by mean gap", &periodic, 64, &normal(gaps));
+}
+
+#[test]
+fn hardness() {
+    let mut scene = Scene::new(rough(0.7, 0.01), 1.0);
+    scene.effects.hardness = Hardness::Limit { pressure: 0.05 };
+    scene.outputs.plastic_depth = true;
+    let forces = [1e-3, 4e-3, 8e-3, 2e-3, 0.0, 5e-3, 8e-3, 1.2e-2, 6e-3].map(Load::Force);
+    check("hardness", &scene, 129, &normal(forces));
+}
+
+#[test]
+fn friction() {
+    let path: Vec<Step> = [
+        (4e-3, [0.0, 0.0]),
+        (4e-3, [1e-3, 0.0]),
+        (6e-3, [2e-3, 1e-3]),
+        (6e-3, [-1e-3, 0.5e-3]),
+        (3e-3, [-0.5e-3, 0.5e-3]),
+        (3e-3, [0.6e-3, 0.0]),
+    ]
+    .iter()
+    .enumerate()
+    .map(|(i, &(force, tangential))| Step {
+        time: i as f64,
+        normal: Load::Force(force),
+        tangential: Tangential::Force(tangential),
+    })
+    .collect();
+    for (full, cells) in [(false, 129), (true, 49)] {
+        let pair = Pair {
+            first: bem3d::Body::Rigid,
+            second: bem3d::Body::Elastic { young: 0.9, poisson: if full { 0.2 } else { 0.5 } },
+        };
+        let mut scene = Scene::of_pair(rough(0.7, 0.01), pair).unwrap();
+        scene.effects.friction = Friction::coulomb(0.4);
+        if full {
+            scene.effects.friction =
+                Friction::Coulomb { coefficient: 0.4, coupling: Some(bem3d::Coupling::Full) };
+        }
+        scene.outputs.tangential_stiffness = !full;
+        check(if full { "friction, coupled" } else { "friction" }, &scene, cells, &path);
+    }
+}
+
+#[test]
+fn adhesion() {
+    let approaches = [0.004, 0.012, 0.02, 0.012, 0.004, -0.002, -0.01].map(Load::Approach);
+    let forces = [1e-3, 5e-3, 1e-3, 0.0, -2e-5, 1e-3].map(Load::Force);
+    let gaps = [0.03, 0.02, 0.015, 0.02, 0.03, 0.05].map(Load::MeanGap);
+    let (work, range) = (4e-5, 2e-3);
+    for (name, adhesion) in [
+        ("short range", Adhesion::ShortRange { work }),
+        ("exponential", Adhesion::FiniteRange { work, range, law: AdhesionLaw::Exponential }),
+        ("Dugdale", Adhesion::FiniteRange { work, range, law: AdhesionLaw::Dugdale }),
+    ] {
+        let mut scene = Scene::new(rough(0.8, 0.01), 1.0);
+        scene.effects.adhesion = adhesion;
+        scene.outputs.area = true;
+        check(name, &scene, 65, &normal(approaches));
+        check(name, &scene, 65, &normal(forces));
+        scene.effects.boundary = Boundary::Periodic;
+        scene.outputs.mean_gap = true;
+        check(name, &scene, 64, &normal(gaps));
+    }
+}
+
+#[test]
+fn memories_that_are_not_of_the_surface_are_refused() {
+    let mut scene = Scene::new(rough(0.7, 0.01), 1.0);
+    let path = normal([1e-3, 4e-3].map(Load::Force));
+    let memory = |scene: &Scene, cells: usize| {
+        let mut contact = prepare(scene, cells);
+        contact.follow(&path).unwrap();
+        contact.memory().unwrap().unwrap()
+    };
+    let elastic = memory(&scene, 65);
+    let larger = memory(&scene, 129);
+    scene.effects.hardness = Hardness::Limit { pressure: 0.05 };
+    let plastic = memory(&scene, 65);
+    scene.effects.hardness = Hardness::Off;
+    scene.effects.adhesion = Adhesion::ShortRange { work: 1e-5 };
+    let adhesive = memory(&scene, 65);
+    scene.effects.adhesion = Adhesion::Off;
+    let mut contact = prepare(&scene, 65);
+    assert_eq!(contact.memory(), Ok(None), "no path has begun");
+    for other in [&larger, &plastic, &adhesive] {
+        assert!(contact.recall(other).is_err());
+    }
+    for cut in 0..elastic.bytes().len().min(400) {
+        assert!(contact.recall(&PathMemory::from_bytes(elastic.bytes()[..cut].to_vec())).is_err());
+    }
+    // Any change of a byte is refused, or another memory; nothing ends the program.
+    for at in 0..elastic.bytes().len().min(2000) {
+        let mut bytes = elastic.bytes().to_vec();
+        bytes[at] ^= 0xff;
+        if contact.recall(&PathMemory::from_bytes(bytes)).is_ok() {
+            let _ = contact.advance(path[1]);
+        }
+    }
+    // Afterwards the contact is at the beginning of a path.
+    let _ = contact.recall(&larger);
+    let whole = prepare(&scene, 65).follow(&path).unwrap();
+    assert_eq!(contact.follow(&path).unwrap(), whole);
+}
