@@ -11,6 +11,7 @@ mod own_models;
 mod press;
 mod profiles;
 mod program;
+mod pull_off;
 mod rectangles;
 mod report;
 mod resume;

@@ -163,12 +163,9 @@ fn of_paths(scene: &SceneFile, model: &str, units: &[SolvedUnit<'_>], means: &[M
         columns::asked(scene).filter(|quantity| quantity.role == Role::OfPath).collect();
     let line = |of: &dyn Fn(Shown) -> String| {
         let known = quantities.iter().filter_map(|&quantity| {
-            let value = of(Shown::Answer(quantity));
-            let unit = match columns::column(scene, quantity).unit {
-                "1" | "-" => String::new(),
-                unit => format!(" {unit}"),
-            };
-            (value != NOTHING).then(|| format!("{} {value}{unit}", quantity.name))
+            let shown = Shown::Answer(quantity);
+            let value = of(shown);
+            (value != NOTHING).then(|| format!("{} {value}", shown.head(scene)))
         });
         known.collect::<Vec<_>>().join(", ")
     };

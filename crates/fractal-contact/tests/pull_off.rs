@@ -1,0 +1,110 @@
+//! The largest pull of a path and the interval of the pull-off force, against the closed forms of a sphere.
+
+use fractal_contact::analytic::MaugisDugdale;
+use fractal_contact::{
+    Adhesion, AdhesionLaw, Bem3d, ContactModel, Error, LargestPull, Load, PullOff, Scene, Step, Surface,
+};
+use std::f64::consts::PI;
+
+const WORK: f64 = 1e-4;
+/// What the cells leave of a sphere's pull-off: as [`bem3d`] states it for some 20 cells in the radius.
+const CELLS: f64 = 0.03;
+/// The same of Dugdale's law, which converges to first order.
+const ZONE: f64 = 0.1;
+
+fn sphere(adhesion: Adhesion) -> Scene {
+    let radius = (4.5 * PI * WORK).cbrt();
+    let mut scene = Scene::new(Surface::Sphere { radius: 1.0, size: (3.2 * radius).into() }, 1.0);
+    scene.effects.adhesion = adhesion;
+    scene.outputs.stiffness = false;
+    scene
+}
+
+/// The largest pull of a path by approach or under forces, to its end or its failure.
+fn pulled(scene: &Scene, cells: usize, loads: impl IntoIterator<Item = Load>) -> PullOff {
+    let mut contact = Bem3d { cells, ..Bem3d::default() }.prepare(scene, 0).unwrap();
+    let mut largest = LargestPull::default();
+    let mut pull = None;
+    for (i, load) in loads.into_iter().enumerate() {
+        let state = match contact.advance(Step::normal(i as f64, load)) {
+            Err(Error::NotConverged { best }) => *best,
+            found => found.unwrap(),
+        };
+        pull = largest.enter(load, state).pull_off;
+    }
+    pull.unwrap()
+}
+
+/// Drawn from contact to beyond pull-off.
+fn drawn(steps: u32, offset: f64) -> impl Iterator<Item = Load> {
+    let unit = (PI * PI * WORK * WORK).cbrt();
+    (0..=steps).map(move |i| Load::Approach(unit * (0.8 - 2.2 * (f64::from(i) + offset) / f64::from(steps))))
+}
+
+#[test]
+fn the_interval_of_a_path_by_approach_holds_the_pull_off_force() {
+    let dugdale = Adhesion::FiniteRange { work: WORK, range: 2.5e-3, law: AdhesionLaw::Dugdale };
+    let maugis = {
+        let mut contact = MaugisDugdale.prepare(&sphere(dugdale), 0).unwrap();
+        match contact.solve(Load::Force(-1.0)) {
+            Err(Error::OutOfRange { min, .. }) => -min,
+            other => panic!("{other:?}"),
+        }
+    };
+    for (name, adhesion, exact, cells) in [
+        ("JKR", Adhesion::ShortRange { work: WORK }, 1.5 * PI * WORK, CELLS),
+        ("Maugis", dugdale, maugis, ZONE),
+    ] {
+        let scene = sphere(adhesion);
+        let fine = pulled(&scene, 64, drawn(96, 0.0));
+        assert!((fine.force / exact - 1.0).abs() < cells, "{name}: {fine:?}, exact {exact:e}");
+        let mut errors = Vec::new();
+        for steps in [8, 16, 32] {
+            let mut worst = 0.0f64;
+            for offset in [0.0, 0.4, 0.8] {
+                let found = pulled(&scene, 64, drawn(steps, offset));
+                let error = found.error.unwrap();
+                worst = worst.max(error / exact);
+                // On the same cells, so that nothing but the steps is between them; Dugdale's zone moves by whole
+                // cells, and its force by about a thousandth.
+                let most = found.force + error + 2e-3 * exact;
+                assert!(
+                    found.force <= fine.force + fine.error.unwrap(),
+                    "{name}, {steps}: {found:?} {fine:?}"
+                );
+                assert!(fine.force <= most, "{name}, {steps} steps: {found:?}, {fine:?}");
+                // The force is flat there: of the fine path one cell more or less in the front decides where it is
+                // lowest.
+                let unit = (PI * PI * WORK * WORK).cbrt();
+                let off = (found.approach.unwrap() - fine.approach.unwrap()).abs();
+                let step = 2.2 * unit / f64::from(steps);
+                assert!(off < 1.5 * step + 0.1 * unit, "{name}: {found:?} {fine:?}");
+            }
+            errors.push(worst);
+        }
+        assert!(errors[2] < 0.7 * errors[0] && errors[2] < 0.1, "{name}: {errors:?}");
+    }
+}
+
+#[test]
+fn the_interval_under_a_force_lies_between_what_was_held_and_what_was_not() {
+    let scene = sphere(Adhesion::ShortRange { work: WORK });
+    let exact = 1.5 * PI * WORK;
+    let forces =
+        |steps: u32| (0..=steps).map(move |i| Load::Force(-1.3 * exact * f64::from(i) / f64::from(steps)));
+    for steps in [5, 20] {
+        // The path ends at the first force that is not held.
+        let loads = forces(steps).take_while(|load| match load {
+            Load::Force(force) => -force < exact * (1.0 + CELLS) + 1.3 * exact / f64::from(steps),
+            _ => false,
+        });
+        let found = pulled(&scene, 64, loads);
+        let step = 1.3 * exact / f64::from(steps);
+        let error = found.error.unwrap();
+        assert!(error > 0.0 && error <= 2.0 * step * (1.0 + 1e-6), "{found:?}");
+        assert!(
+            found.force <= exact * (1.0 + CELLS) && exact * (1.0 - CELLS) <= found.force + error,
+            "{found:?}"
+        );
+    }
+}
