@@ -22,9 +22,11 @@ pub fn object(py: Python<'_>, value: Value) -> PyResult<Bound<'_, PyAny>> {
 /// Whether a state that lacks it does not name it: the quantities of effects and of paths.
 pub fn is_named_where_known(quantity: &Quantity) -> bool {
     match quantity.asked_by {
-        AskedBy::Effect(_) | AskedBy::Path | AskedBy::FrictionInPlane | AskedBy::AnyTangentialStiffness => {
-            true
-        }
+        AskedBy::Effect(_)
+        | AskedBy::Path
+        | AskedBy::FrictionInPlane
+        | AskedBy::AnyTangentialStiffness
+        | AskedBy::All(_) => true,
         AskedBy::Output(output) => Outputs::OF_FRICTION.contains(&output),
         _ => false,
     }

@@ -1,11 +1,11 @@
 //! What models declare is what they do: each ability is tried, and each thing that is not among them is
 //! refused.
 
-use contact_model::quantities::{AskedBy, QUANTITIES, Quantity};
+use contact_model::quantities::{AskedBy, QUANTITIES, Quantity, Role};
 use contact_model::{
-    Body, Boundary, Conductance, ContactModel, ContactState, Effect, Effects, Error, Friction, HeightMap,
-    Line, Load, LoadKind, Output, Pair, Paths, PreparedContact, Rheology, Scene, SelfAffine, Step, Surface,
-    SurfaceKind, Tangential, Value,
+    Adhesion, Body, Boundary, Conductance, ContactModel, ContactState, Effect, Effects, Error, Friction,
+    HeightMap, LargestPull, Line, Load, LoadKind, Output, Pair, Paths, PreparedContact, Rheology, Scene,
+    SelfAffine, Step, Surface, SurfaceKind, Tangential, Value,
 };
 use fractal_contact::models::MODELS;
 use std::collections::BTreeSet;
@@ -145,6 +145,20 @@ pub fn told(model: &dyn ContactModel) -> BTreeSet<&'static str> {
             let step = Step::normal(2.0, Load::Force(0.001));
             let state = contact.advance(step);
             told.extend(state.is_ok_and(|state| state.time.is_some()).then_some("time"));
+        }
+        if scene.effects.adhesion != Adhesion::Off && model.abilities().paths != Paths::Forgotten {
+            // Pressed, pulled, and pulled by more than it holds.
+            contact.restart();
+            let mut largest = LargestPull::default();
+            for force in [1e-3, -1e-9, -1e3] {
+                let load = Load::Force(force);
+                let reached = contact.advance(Step::normal(0.0, load)).or_else(Error::into_best);
+                let Ok(state) = reached.map(|state| largest.enter(load, state)) else { break };
+                let has = |quantity: &&Quantity| {
+                    quantity.role == Role::OfPath && (quantity.value)(&state, &normalisation) != Value::Empty
+                };
+                told.extend(QUANTITIES.iter().filter(has).map(|quantity| quantity.name));
+            }
         }
         // An error of the force is known where a distance is prescribed.
         if contact

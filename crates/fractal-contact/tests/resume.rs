@@ -289,11 +289,9 @@ fn a_path_whose_checkpoint_is_not_whole_begins_anew_and_says_so() {
 fn a_path_that_pulls_off_ends_with_its_last_stable_state() {
     let dir = tempfile::tempdir().unwrap();
     let out = dir.path().join("out");
-    let steps: String = [1e-3, 0.0, -1e-4, -2e-4, -4e-4, -8e-4, -1.6e-3, -3.2e-3]
-        .iter()
-        .enumerate()
-        .map(|(i, force)| format!("[[scene.path]]\ntime = {i}\nforce = {force:e}\n"))
-        .collect();
+    let forces = [1e-3, 0.0, -1e-4, -2e-4, -4e-4, -8e-4, -1.6e-3, -3.2e-3];
+    let step = |(i, force)| format!("[[scene.path]]\ntime = {i}\nforce = {force:e}\n");
+    let steps = forces.iter().enumerate().map(step).collect::<Vec<_>>().concat();
     let text = format!(
         "[scene]\nunits = \"none\"\nmodels = [\"bem3d\"]\nmodulus = 1\n[scene.body]\nkind = \"sphere\"\nradius = 1\n\
          side = 0.3\n[effects]\nadhesion = {{ work = 1e-4 }}\n[models.bem3d]\ncells = 49\n{steps}"

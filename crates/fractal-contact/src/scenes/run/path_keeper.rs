@@ -12,10 +12,13 @@ const KEEP_EVERY: Duration = Duration::from_secs(1);
 /// Time between two checkpoints, over that of writing one, at least.
 const SHARE: u32 = 20;
 
+/// Keeps a result in the store.
+type KeepResult<'a> = dyn Fn(&ModelResult) -> runs::Result<()> + 'a;
+
 /// Keeps the states of one model on one surface.
 pub(crate) struct Keeper<'a> {
     /// Keeps a result in the store; `None` where it is not worth storing.
-    pub store: Option<&'a dyn Fn(&ModelResult) -> runs::Result<()>>,
+    pub store: Option<&'a KeepResult<'a>>,
     pub checkpoint: Checkpoint,
     pub progress: &'a dyn Progress,
     /// What the path is called in notes.
@@ -30,7 +33,7 @@ pub(crate) struct Keeper<'a> {
 
 impl<'a> Keeper<'a> {
     pub fn new(
-        store: Option<&'a dyn Fn(&ModelResult) -> runs::Result<()>>,
+        store: Option<&'a KeepResult<'a>>,
         checkpoint: Checkpoint,
         progress: &'a dyn Progress,
         name: String,
