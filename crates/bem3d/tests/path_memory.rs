@@ -1,5 +1,7 @@
 //! A path that is interrupted after any step goes on from its memory to the bits of the whole path.
 
+#![allow(clippy::unwrap_used)] // Helpers of tests.
+
 use bem3d::{
     Adhesion, AdhesionLaw, Bem3d, Boundary, ContactModel, ContactState, Friction, Hardness, Load, Pair,
     PathMemory, PreparedContact, Scene, SelfAffine, Step, Surface, Tangential,

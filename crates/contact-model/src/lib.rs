@@ -79,14 +79,14 @@ pub use nondimensionalisation::Nondimensionalisation;
 pub use normalisation::{Normalisation, PAPER_STIFFNESS_FACTOR};
 pub use pair::{Body, Pair};
 pub use patches::Patches;
-pub use pull_off::{LargestPull, PullOff};
+pub use pull_off::LargestPull;
 pub use quantities::{Output, Outputs};
 pub use rheology::{PronySeries, Relaxing, Rheology};
 pub use scaling::{ScaledState, Scaling};
 pub use scene::{Amplitude, Scene, SelfAffine, Surface, line_length};
 pub use state::{
-    AdhesiveState, Branch, Certificate, ContactResolution, ContactState, PlasticState, SolveReport, Status,
-    TangentialState,
+    AdhesiveState, Branch, Certificate, ContactResolution, ContactState, PlasticState, PullOff, SolveReport,
+    Status, TangentialState,
 };
 pub use step::{Directions, Step, Tangential};
 pub use value::Value;

@@ -14,23 +14,7 @@
 //! Elsewhere (the loads turn, or end, at the largest pull) no load is beyond pull-off, and nothing bounds it.
 
 use crate::load::Load;
-use crate::state::{ContactState, Status};
-
-/// The largest pull along a path.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[non_exhaustive]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct PullOff {
-    /// The largest pull P > 0 over the loads of the path: the most negative normal force, with a positive
-    /// sign. At most the pull-off force.
-    pub force: f64,
-    /// The pull-off force is at most `force + error`. `None` where no load of the path is beyond it.
-    pub error: Option<f64>,
-    /// Approach at the largest pull; `None` with periodic boundaries.
-    pub approach: Option<f64>,
-    /// Mean gap at the largest pull, where asked for.
-    pub mean_gap: Option<f64>,
-}
+use crate::state::{ContactState, PullOff, Status};
 
 /// Follows a path and tells the largest pull so far.
 ///

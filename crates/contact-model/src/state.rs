@@ -2,7 +2,6 @@
 
 use crate::fields::{Field, Fields};
 use crate::patches::Patches;
-use crate::pull_off::PullOff;
 use crate::work::Work;
 use std::fmt;
 
@@ -315,6 +314,22 @@ impl AdhesiveState {
     pub fn new(branch: Branch, energy: f64, stability: f64) -> Self {
         Self { branch, energy, stability }
     }
+}
+
+/// The largest pull along a path ([`crate::LargestPull`]).
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct PullOff {
+    /// The largest pull P > 0 over the loads of the path: the most negative normal force, with a positive
+    /// sign. At most the pull-off force.
+    pub force: f64,
+    /// The pull-off force is at most `force + error`. `None` where no load of the path is beyond it.
+    pub error: Option<f64>,
+    /// Approach at the largest pull; `None` with periodic boundaries.
+    pub approach: Option<f64>,
+    /// Mean gap at the largest pull, where asked for.
+    pub mean_gap: Option<f64>,
 }
 
 /// On which branch of a path with adhesion a state lies: between snap-in and pull-off both are stable.

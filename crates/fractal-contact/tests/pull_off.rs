@@ -1,9 +1,11 @@
 //! The largest pull of a path and the interval of the pull-off force, against the closed forms of a sphere.
 
 use fractal_contact::analytic::MaugisDugdale;
+use fractal_contact::scenes::{Options, Plan, SceneFile, run};
 use fractal_contact::{
     Adhesion, AdhesionLaw, Bem3d, ContactModel, Error, LargestPull, Load, PullOff, Scene, Step, Surface,
 };
+use runs::{CsvFile, Silent};
 use std::f64::consts::PI;
 
 const WORK: f64 = 1e-4;
@@ -107,4 +109,46 @@ fn the_interval_under_a_force_lies_between_what_was_held_and_what_was_not() {
             "{found:?}"
         );
     }
+}
+
+/// Paths of three surfaces that pull off at different loads: the mean at the end is over all of them.
+#[test]
+fn means_are_over_the_ends_of_all_paths() {
+    let dir = tempfile::tempdir().unwrap();
+    let mut steps = vec![1e-3, 0.0];
+    steps.extend((0..40).map(|i| -3e-5 * 1.15f64.powi(i)));
+    let step = |(i, force)| format!("[[scene.path]]\ntime = {i}\nforce = {force:e}\n");
+    let text = format!(
+        "[scene]\nunits = \"none\"\nmodels = [\"bem3d\"]\nmodulus = 1\n[scene.surface]\nkind = \"self_affine\"\nside = 1\n\
+         hurst = 0.8\nrms_height = 0.01\n[effects]\nadhesion = {{ work = 1e-4 }}\n[models.bem3d]\ncells = 33\n[sampling]\n\
+         surfaces = 3\nseed = 1\n{}",
+        steps.iter().enumerate().map(step).collect::<Vec<_>>().concat()
+    );
+    let (path, out) = (dir.path().join("scene.toml"), dir.path().join("out"));
+    std::fs::write(&path, text).unwrap();
+    let scene = SceneFile::read(&path).unwrap();
+    let options = Options { out: out.clone(), threads: 1, fresh: false };
+    let outcome = run(&scene, &Plan::new(&scene).unwrap(), &options, &Silent, &|| false).unwrap();
+    let read = |name: &str| CsvFile::read(&out.join(name)).unwrap();
+    let number = |file: &CsvFile, row: &[String], name: &str| -> f64 {
+        row[file.columns.iter().position(|c| c == name).unwrap()].parse().unwrap()
+    };
+    let (states, means) = (read("results.csv"), read("ensemble.csv"));
+    let ends: Vec<f64> = (0..3)
+        .map(|surface| {
+            let of = |row: &&Vec<String>| row[1] == surface.to_string();
+            let end = states.rows.iter().rfind(of).unwrap();
+            assert!(end.iter().any(|word| word == "pulled_off"), "{end:?}");
+            number(&states, end, "pull_off")
+        })
+        .collect();
+    let lengths: Vec<usize> =
+        (0..3).map(|s| states.rows.iter().filter(|row| row[1] == s.to_string()).count()).collect();
+    assert!(lengths.iter().any(|length| *length != lengths[0]), "{lengths:?}: all end at one load");
+    let (mean, end) = (ends.iter().sum::<f64>() / 3.0, means.rows.last().unwrap());
+    assert!((number(&means, end, "pull_off") / mean - 1.0).abs() < 1e-12, "{ends:?} {end:?}");
+    let squares: f64 = ends.iter().map(|pull| (pull - mean).powi(2)).sum();
+    let error = (squares / 2.0 / 3.0).sqrt();
+    assert!((number(&means, end, "pull_off_se") / error - 1.0).abs() < 1e-9, "{ends:?} {end:?}");
+    assert!(outcome.summary.contains("path as a whole: pull_off"), "{}", outcome.summary);
 }

@@ -276,7 +276,10 @@ fn a_path_whose_checkpoint_is_not_whole_begins_anew_and_says_so() {
     let _ = std::fs::remove_dir_all(&out);
     std::fs::create_dir_all(checkpoint(&out)).unwrap();
     let outcome = run_until(&scene, &out, &|| field(&out, 2).exists()).unwrap();
-    assert!(outcome.notes.iter().any(|note| note.contains("goes on, and begins anew")), "{outcome:?}");
+    assert!(
+        outcome.notes.iter().any(|note| note.contains("goes on; an interruption would lose")),
+        "{outcome:?}"
+    );
     assert_eq!(outcome.states, 3);
     std::fs::remove_dir(checkpoint(&out)).unwrap();
     run_whole(&scene, &out);

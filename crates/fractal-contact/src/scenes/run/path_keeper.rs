@@ -117,8 +117,9 @@ impl<'a> Keeper<'a> {
             Err(error) if !self.told => {
                 self.told = true;
                 let name = &self.name;
-                let text =
-                    format!("{error}. The path of {name} goes on, and begins anew if it is interrupted");
+                let text = format!(
+                    "{error}. The path of {name} goes on; an interruption would lose what follows its last checkpoint"
+                );
                 self.tell(result, text);
             }
             Err(_) => {}
