@@ -59,12 +59,13 @@ impl PathMemory {
 mod tests {
     use super::*;
 
+    type Remembered = (Vec<f64>, Option<f64>, String);
+
     #[test]
     fn comes_back_bit_for_bit_or_not_at_all() {
         let remembered = (vec![0.1 + 0.2, -0.0, 5e-324], Some(f64::INFINITY), "branch".to_owned());
         let memory = PathMemory::of(&remembered).unwrap();
         assert_eq!(PathMemory::from_bytes(memory.bytes().to_vec()).read(), Ok(remembered));
-        type Remembered = (Vec<f64>, Option<f64>, String);
         for cut in 0..memory.bytes().len() {
             assert!(PathMemory::from_bytes(memory.bytes()[..cut].to_vec()).read::<Remembered>().is_err());
         }
