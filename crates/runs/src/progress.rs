@@ -6,6 +6,10 @@ pub trait Progress: Sync {
     fn begin(&self, what: &str, total: u64);
     /// A job of this relative cost is done; `reused` when it was found on disk.
     fn advance(&self, cost: u64, reused: bool);
+    /// A job of this relative cost has `done` of its `all` states.
+    fn states(&self, job: &str, cost: u64, done: usize, all: usize) {
+        let _ = (job, cost, done, all);
+    }
     /// The stage is over.
     fn end(&self);
     /// Something that the user should know, in whole sentences.

@@ -23,6 +23,8 @@ pub(crate) struct Keeper<'a> {
     pub progress: &'a dyn Progress,
     /// What the path is called in notes.
     pub name: String,
+    /// Relative cost of all of its states, and their number.
+    work: (u64, usize),
     last: Instant,
     /// Time that the last checkpoint took.
     took: Duration,
@@ -37,9 +39,10 @@ impl<'a> Keeper<'a> {
         checkpoint: Checkpoint,
         progress: &'a dyn Progress,
         name: String,
+        work: (u64, usize),
     ) -> Self {
         let (last, took) = (Instant::now(), Duration::ZERO);
-        Self { store, checkpoint, progress, name, last, took, kept: 0, told: false }
+        Self { store, checkpoint, progress, name, work, last, took, kept: 0, told: false }
     }
 
     /// Keeps states that do not depend on each other.
@@ -47,6 +50,7 @@ impl<'a> Keeper<'a> {
     /// # Errors
     /// What cannot be written.
     pub fn keep(&mut self, result: &ModelResult) -> Result<()> {
+        self.count(result);
         if let Some(store) = self.store.filter(|_| self.last.elapsed() >= KEEP_EVERY) {
             store(result)?;
             self.last = Instant::now();
@@ -97,6 +101,7 @@ impl<'a> Keeper<'a> {
     /// Keeps the states of a path and its memory, where the last time was long ago or the path is interrupted
     /// now. What cannot be kept is told of once, and the path goes on.
     pub fn keep_path(&mut self, result: &mut ModelResult, contact: &dyn PreparedContact, interrupted: bool) {
+        self.count(result);
         let done = result.states.len();
         let long = KEEP_EVERY.max(SHARE * self.took);
         if done == self.kept || !interrupted && self.last.elapsed() < long {
@@ -137,6 +142,11 @@ impl<'a> Keeper<'a> {
             self.checkpoint.remove();
         }
         Ok(())
+    }
+
+    fn count(&self, result: &ModelResult) {
+        let (cost, all) = self.work;
+        self.progress.states(&self.name, cost, result.states.len(), all);
     }
 
     fn tell(&self, result: &mut ModelResult, text: String) {

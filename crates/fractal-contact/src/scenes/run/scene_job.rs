@@ -62,7 +62,10 @@ impl Job for SceneJob<'_> {
         let (model, surface) = (self.unit.numerics(self.scene).name(), self.unit.surface);
         let checkpoint = Checkpoint::new(self.out, &format!("{model}-{surface}"), &self.stored_key());
         let store = self.is_stored().then_some(store);
-        let mut keeper = Keeper::new(store, checkpoint, progress, self.name());
+        let mut keeper = {
+            let work = (self.cost(), self.scene.request.count());
+            Keeper::new(store, checkpoint, progress, self.name(), work)
+        };
         let result = self.unit.solve(self.scene, self.out, begun, &mut keeper, stop)?;
         keeper.finish(&result)?;
         Ok(result)
