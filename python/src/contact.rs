@@ -360,11 +360,12 @@ impl Contact {
     /// bytes or None
     ///     None where no path has begun, and of models that cannot go on: their paths begin anew.
     fn memory<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyBytes>>> {
-        let inner = self.inner.take(py)?;
-        let Inner { contact, highest, largest } = &*inner;
-        let kept = py.detach(|| {
+        let mut inner = self.inner.take(py)?;
+        // Exclusive, for another thread.
+        let Inner { contact, highest, largest } = &mut *inner;
+        let kept = py.detach(move || {
             let Some(memory) = contact.memory()? else { return Ok(None) };
-            PathMemory::of(&(highest, largest, memory.bytes())).map(Some)
+            PathMemory::of(&(&*highest, &*largest, memory.bytes())).map(Some)
         });
         let kept = kept.map_err(|error| of_model(py, error))?;
         Ok(kept.map(|kept| PyBytes::new(py, kept.bytes())))

@@ -195,6 +195,31 @@ def test_pull_off_is_that_of_maugis():
     assert 0.0 < errors[1] < 0.08 and errors[1] < 0.7 * errors[0], errors
 
 
+def test_a_path_goes_on_from_its_memory_to_the_same_bits():
+    rough = fc.Surface.self_affine(hurst=0.7, size=1.0, rms_height=0.01)
+    scene = fc.Scene(rough, modulus=1.0, effects={"adhesion": 4e-5}, outputs=["area"])
+    steps = [0.004, 0.012, 0.02, 0.012, 0.002, -0.002, -0.006]
+    model = fc.Bem3d(cells=48)
+    whole = list(model.prepare(scene, seed=3).follow(approach=steps))
+    begun = model.prepare(scene, seed=3)
+    assert begun.memory() is None
+    list(begun.follow(approach=steps[:4]))
+    kept = begun.memory()
+    other = model.prepare(scene, seed=3)
+    other.recall(kept)
+    assert other.memory() == kept and other.last is None
+    for state, there in zip(other.follow(approach=steps[4:]), whole[4:], strict=True):
+        assert state.to_dict() == there.to_dict()
+    assert whole[-1].pull_off > 0.0 and whole[0].pull_off is None
+    for wrong in (b"", kept[:-1], kept + b"0", bytes(100)):
+        with pytest.raises(fc.ShapeError):
+            other.recall(wrong)
+    with pytest.raises(fc.ShapeError):
+        fc.Bem3d(cells=32).prepare(scene, seed=3).recall(kept)
+    # As after `restart`.
+    assert other.advance(approach=0.004).force == whole[0].force
+
+
 def test_a_path_ends_at_pull_off_with_its_last_stable_state():
     path, held = adhesive_path(outputs=["area", "pressure"]), []
     with pytest.raises(fc.NotConverged, match="pull-off before the force") as caught:
