@@ -6,20 +6,27 @@
 //! contact, and one of 0.02 E*; a work of adhesion of 4e-4 and 1.6e-3 E* times the side of a cell, of short
 //! range and with the exponential law over a fifth of a cell. Each is solved from nothing on one thread and
 //! on two; below two seconds twice, and the shorter time counts. `effects CELLS EFFECT THREADS`, EFFECT from
-//! 0 to 6 in the order of the table, solves one of them once and prints area, applications and seconds, so
-//! that its memory can be measured from outside.
+//! 0 to 6 in the order of the table, solves one of them once and prints area, applications and seconds, and
+//! where the time went, so that its memory can be measured from outside.
 
+use bem3d::benchmarks::{Recorder, prepare_recorded};
 use bem3d::{
     Adhesion, AdhesionLaw, Bem3d, Boundary, ContactModel, ContactState, Effects, Error, Hardness, HeightMap,
     Load, Outputs, Scene, SelfAffine, Surface,
 };
 use rayon::ThreadPoolBuilder;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 use std::time::Instant;
 
 const GRADIENT: f64 = 0.1;
 const PRESSURE: f64 = 0.01;
 const TOLERANCE: f64 = 1e-6;
+
+/// ns since the first call.
+fn clock() -> u64 {
+    static START: OnceLock<Instant> = OnceLock::new();
+    START.get_or_init(Instant::now).elapsed().as_nanos() as u64
+}
 
 /// A map whose rms gradient is [`GRADIENT`].
 fn surface(cells: usize) -> Result<HeightMap, Error> {
@@ -49,11 +56,19 @@ fn effects(cell: f64) -> Vec<(String, Effects)> {
     rows
 }
 
-fn solve(map: &Arc<HeightMap>, effects: &Effects) -> Result<ContactState, Error> {
+fn scene(map: &Arc<HeightMap>, effects: &Effects) -> Scene {
     let mut scene = Scene::new(Surface::Heights(Arc::clone(map)), 1.0);
     scene.outputs = Outputs { area: true, ..Outputs::default() };
     scene.effects = *effects;
-    Bem3d { tolerance: TOLERANCE, ..Bem3d::default() }.prepare(&scene, 0)?.solve(Load::Force(PRESSURE))
+    scene
+}
+
+fn model() -> Bem3d {
+    Bem3d { tolerance: TOLERANCE, ..Bem3d::default() }
+}
+
+fn solve(map: &Arc<HeightMap>, effects: &Effects) -> Result<ContactState, Error> {
+    model().prepare(&scene(map, effects), 0)?.solve(Load::Force(PRESSURE))
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -62,10 +77,18 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let pool = ThreadPoolBuilder::new().num_threads(threads).build()?;
         let map = Arc::new(surface(cells)?);
         let (name, effects) = effects(1.0 / cells as f64).swap_remove(effect);
+        let recorder = Recorder::new(clock);
         let start = Instant::now();
-        let state = pool.install(|| solve(&map, &effects))?;
-        let (area, applications) = (state.area.unwrap_or(f64::NAN), state.report.applications);
-        println!("{cells}, {name}, {area:.4}, {applications}, {:.3}", start.elapsed().as_secs_f64());
+        let state = pool.install(|| {
+            prepare_recorded(&model(), &scene(&map, &effects), 0, &recorder)?.solve(Load::Force(PRESSURE))
+        })?;
+        let seconds = start.elapsed().as_secs_f64();
+        let (area, report) = (state.area.unwrap_or(f64::NAN), state.report);
+        println!("{cells}, {name}, {area:.4}, {}, {seconds:.3}", report.applications);
+        println!("{} iterations, {}", report.iterations, report.strategy);
+        for (part, spent) in recorder.take().into_iter().filter(|(_, spent)| spent.time > 1_000_000) {
+            println!("{}: {} times, {:.3} s", part.name(), spent.times, spent.time as f64 * 1e-9);
+        }
         return Ok(());
     }
     let sizes = if given.is_empty() { vec![257, 513, 1025, 2049] } else { given };

@@ -57,6 +57,16 @@ pub fn largest<T: Real>(values: &[T]) -> T {
     fold(&chunks, T::default(), T::or_larger)
 }
 
+/// Largest magnitude of a difference.
+pub fn largest_difference(a: &[f64], b: &[f64]) -> f64 {
+    let pairs = a.chunks(CHUNK).zip(b.chunks(CHUNK));
+    let chunks = map(a.len(), pairs, |(a, b)| {
+        let differences = a.iter().zip(b).map(|(a, b)| (a - b).abs());
+        differences.fold(0.0, |largest: f64, d| if d > largest { d } else { largest })
+    });
+    fold(&chunks, 0.0, f64::or_larger)
+}
+
 /// Smallest number; infinite if there is none.
 pub fn smallest(values: &[f64]) -> f64 {
     let smaller = |smallest: f64, value: f64| if value < smallest { value } else { smallest };

@@ -9,47 +9,19 @@
 //! contracts exactly where the energy has a minimum.
 
 use super::attraction::Attraction;
-use super::bottleneck::Bottleneck;
 use super::law::Shape;
-use super::mixing::Mixing;
+use super::update::Progress;
 use crate::active_set::{self, Bounds, Candidates, Control, Limits, Problem, Residuals};
 use crate::geometry::CellSet;
-use crate::linear::{Fixed, StoppingCriteria};
-use crate::real::{dot, each, largest, smallest, sum};
+use crate::linear::Fixed;
+use crate::real::{dot, each, largest_difference, smallest, sum};
 use contact_model::{Status, Stop};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// An update lowers the gaps left on the contact by this factor: less than the attraction changes by would be
-/// lost, more is gone after the next change of the attraction.
-const REDUCTION: f64 = 0.05;
-/// The same for the plain iteration, whose contact is solved before the attraction is changed.
-const PLAIN_REDUCTION: f64 = 1e-2;
-/// Steps of conjugate gradients in an update at most.
-const STEPS: usize = 40;
-/// The plain iteration changes the attraction where no gap of the contact is wrong by more than this share of
-/// the range.
-const SETTLED: f64 = 1e-3;
-/// With acceleration: by more than this share of what the attraction changes its gaps by ...
-const BALANCE: f64 = 0.1;
-/// ... and at most this.
-const SETTLED_FIRST: f64 = 0.05;
-/// Acceleration begins when no gap changes by more than this share of the range in an update: the attraction
-/// is then nearly linear in them.
-const ACCELERATED: f64 = 0.5;
-/// An accelerated step changes no attraction by more than this factor beyond that of the plain one, else it
-/// is not taken.
-const LONGEST: f64 = 2.0;
-/// Attractions below this share of the largest one do not limit an accelerated step.
-const FELT: f64 = 1e-6;
-/// Updates of the plain iteration, and of a short range, for each outer iteration allowed: it contracts by
-/// the spectral radius only.
-const PLAIN_UPDATES: usize = 20;
-/// At a mean gap more attraction here opens gaps elsewhere, and cells may change sides for ever; from so many
-/// updates on the attraction changes by a share only ...
-const PATIENT: usize = 100;
-/// ... which is this.
-const DAMPED: f64 = 0.3;
+/// Updates for each outer iteration allowed: the plain iteration contracts by the spectral radius only, and
+/// fronts of a short range move by a cell or so in an update.
+const UPDATES: usize = 20;
 /// Room above the cells within reach, in ranges, so that small changes of the load keep the set.
 const AHEAD: f64 = 0.5;
 /// A contact whose force changes by more than this factor is solved from coarse grids.
@@ -70,7 +42,7 @@ pub enum AdhesiveControl {
 impl AdhesiveControl {
     /// What stays as it is while the contact is corrected; `shift` is the constant in the kernel, 0 with free
     /// boundaries.
-    fn fixed(self, shift: f64) -> Fixed {
+    pub(super) fn fixed(self, shift: f64) -> Fixed {
         match self {
             Self::Force(_) => Fixed::Force,
             Self::Plane(_) if shift > 0.0 => Fixed::MeanPlane(shift),
@@ -94,6 +66,8 @@ pub struct Equilibrium {
     pub attraction: Vec<f64>,
     /// Gap on them, with the exact operator.
     pub gap: Vec<f64>,
+    /// What the law attracts with at that gap.
+    pub(super) lawful: Vec<f64>,
     /// Residuals of the contact conditions.
     pub residuals: Residuals,
     /// Largest mismatch of attraction and gap.
@@ -213,17 +187,13 @@ impl Search<'_> {
         stop: Stop<'_>,
     ) -> Result<Equilibrium, Box<(Ended, Equilibrium)>> {
         let tolerance = self.limits.tolerance;
-        // Fronts of a short range move by a cell or so in an update.
-        let many = self.plain || self.attraction.law.shape == Shape::Linear;
-        let most = self.limits.outer_iterations * if many { PLAIN_UPDATES } else { 1 };
-        let (mut mixing, mut bottleneck) = (Mixing::default(), Bottleneck::default());
-        let mut last = f64::INFINITY;
-        self.evaluate(&mut state, &mut mixing);
+        let mut progress = Progress::default();
+        self.evaluate(&mut state);
         if self.is_far(&state) {
             self.contact_afresh(&mut state, stop);
-            self.evaluate(&mut state, &mut mixing);
+            self.evaluate(&mut state);
         }
-        for _ in 0..most {
+        for _ in 0..self.limits.outer_iterations * UPDATES {
             let worst = state.residuals.worst().max(state.mismatch).max(self.load_error(&state));
             if worst <= tolerance {
                 return Ok(state);
@@ -231,14 +201,10 @@ impl Search<'_> {
             if stop() {
                 return Err(Box::new((Ended::Status(Status::Stopped), state)));
             }
-            if worst > 2.0 * last {
-                mixing.clear();
-            }
-            last = worst;
-            if !self.update(&mut state, &mut mixing, &mut bottleneck, stop) {
+            if !self.update(&mut state, &mut progress, stop) {
                 return Err(Box::new((Ended::PulledOff, state)));
             }
-            self.evaluate(&mut state, &mut mixing);
+            self.evaluate(&mut state);
             state.updates += 1;
         }
         Err(Box::new((Ended::Status(Status::IterationLimit), state)))
@@ -302,7 +268,7 @@ impl Search<'_> {
     }
 
     /// Evaluates the gap with the exact operator on all cells within reach.
-    fn evaluate(&mut self, state: &mut Equilibrium, mixing: &mut Mixing) {
+    fn evaluate(&mut self, state: &mut Equilibrium) {
         let Self { problem, attraction, control, limits, .. } = self;
         let law = attraction.law;
         let shift = problem.operators.table().shift();
@@ -312,7 +278,6 @@ impl Search<'_> {
         if state.reach < state.d + law.reach() {
             let reach = state.d + law.reach() + AHEAD * law.range;
             state.take_cells(problem.candidates.below(reach).union(&state.contact()), reach);
-            mixing.clear();
         }
         loop {
             let net = state.net();
@@ -343,7 +308,6 @@ impl Search<'_> {
             if state.cells.len() == before {
                 break;
             }
-            mixing.clear();
         }
         let contact = state.contact();
         let (p, left) =
@@ -351,166 +315,10 @@ impl Search<'_> {
         let length = limits.height.unwrap_or_else(|| state.d.abs().max(law.range));
         let everywhere = (&state.cells, &state.gap[..]);
         state.residuals = Residuals::measure(Bounds::Unlimited, (&contact, &p, &left), everywhere, length);
-        state.mismatch = attraction.mismatch(&state.cells, &state.attraction, &state.gap);
-    }
-
-    /// One update: the attraction of the present gaps, and the pressure that then closes the contact. `false`
-    /// where the attraction cannot hold the force.
-    #[allow(clippy::too_many_lines)] // One update, in the order of its steps.
-    fn update(
-        &mut self,
-        state: &mut Equilibrium,
-        mixing: &mut Mixing,
-        bottleneck: &mut Bottleneck,
-        stop: Stop<'_>,
-    ) -> bool {
-        let Self { problem, attraction, control, plain, limits } = self;
-        let tolerance = limits.tolerance;
-        let law = attraction.law;
-        let plain = *plain || law.shape == Shape::Uniform;
-        let tuning = *problem.operators.tuning();
-        let held = sum(&state.pressure);
-        // Where the contact is not yet settled, the plain iteration waits with the attraction.
-        let off = state.largest_gap_left();
-        let mut next = attraction.tractions(&state.cells, &state.gap);
-        let fixed = control.fixed(problem.operators.table().shift());
-        if matches!(fixed, Fixed::MeanPlane(_)) && state.updates > PATIENT {
-            next.iter_mut()
-                .zip(&state.attraction)
-                .for_each(|(next, now)| *next = now + DAMPED * (*next - now));
-        }
-        let change = (next.iter().zip(&state.attraction))
-            .map(|(a, b)| (a - b).abs() / (a.max(*b) * law.peak).sqrt().max(f64::MIN_POSITIVE))
-            .fold(0.0, f64::max);
-        let settled =
-            if plain { SETTLED } else { (BALANCE * change).max(0.5 * tolerance).min(SETTLED_FIRST) };
-        let waits = off > settled * law.range && held > 0.0;
-        let next = if waits { state.attraction.clone() } else { next };
-        let mut factor = 1.0;
-        let mut pressure = state.pressure.clone();
-        if let AdhesiveControl::Force(force) = *control {
-            let wanted = force + sum(&next);
-            if wanted <= 0.0 {
-                return false;
-            }
-            if held > 0.0 {
-                factor = wanted / held;
-            } else if let Some(first) =
-                (0..pressure.len()).min_by(|&i, &j| state.gap[i].total_cmp(&state.gap[j]))
-            {
-                pressure[first] = wanted;
-            }
-        }
-        each(&mut pressure, |p| *p *= factor);
-        // The gap that follows.
-        let changed: Vec<f64> = (pressure.iter().zip(&state.pressure))
-            .zip(next.iter().zip(&state.attraction))
-            .map(|((p, p0), (s, s0))| (p - p0) - (s - s0))
-            .collect();
-        let mut gap = Vec::new();
-        if largest(&changed) > 0.0 {
-            problem.operators.rough(&state.cells, &changed, &state.cells, &mut gap);
-            gap.iter_mut().zip(&state.gap).for_each(|(g, g0)| *g += g0);
-        } else {
-            gap.clone_from(&state.gap);
-        }
-        let offset: f64 = match fixed {
-            Fixed::Force => {
-                let force = sum(&pressure);
-                pressure.iter().zip(&gap).map(|(p, g)| p / force * g).sum()
-            }
-            Fixed::MeanPlane(shift) => shift * sum(&changed),
-            Fixed::Approach => 0.0,
+        state.lawful = attraction.tractions(&state.cells, &state.gap);
+        state.mismatch = match law.shape {
+            Shape::Uniform => attraction.mismatch(&state.cells, &state.attraction, &state.gap),
+            _ => largest_difference(&state.attraction, &state.lawful) / law.peak,
         };
-        each(&mut gap, |g| *g -= offset);
-        let (square, count) = (pressure.iter().zip(&gap))
-            .filter(|(p, _)| **p > 0.0)
-            .fold((0.0, 0usize), |(square, count), (_, g)| (square + g * g, count + 1));
-        let noise = if count > 0 { tuning.noise * (square / count as f64).sqrt() } else { 0.0 };
-        let marked: Vec<f64> = (pressure.iter().zip(&gap))
-            .map(|(&p, &g)| if p > 0.0 || g < -noise { 1.0 } else { 0.0 })
-            .collect();
-        let set = state.cells.filter(&marked, |m| m > 0.0);
-        if let Some(recipe) = problem.operators.planner().system(&set, count, false) {
-            let mut right: Vec<f64> = set.carry(&state.cells, &gap);
-            each(&mut right, |r| *r = -*r);
-            let reduction = if plain { PLAIN_REDUCTION } else { REDUCTION };
-            let criteria = StoppingCriteria { reduction, energy: None, floor: 0.0, steps: STEPS };
-            let Problem { operators, workspace, .. } = &mut **problem;
-            workspace.begin_load();
-            workspace.take(operators, set, recipe);
-            let outcome = workspace.solve(operators, &mut right, fixed, criteria, stop);
-            state.steps += outcome.steps;
-            let correction = state.cells.carry(workspace.set(), &right);
-            pressure.iter_mut().zip(&correction).for_each(|(p, x)| *p = (*p + x).max(0.0));
-        }
-        let mut pull = next;
-        if waits {
-            // The contact alone.
-        } else if plain || change > ACCELERATED {
-            mixing.clear();
-            bottleneck.clear();
-        } else {
-            let moved = pull.iter().zip(&state.attraction).map(|(s, s0)| (s - s0) / law.peak).collect();
-            if let Some(factor) = bottleneck.factor(change, moved) {
-                mixing.clear();
-                extrapolate(factor, &state.pressure, &mut pressure, f64::INFINITY);
-                extrapolate(factor, &state.attraction, &mut pull, attraction.strongest());
-            } else {
-                let own = problem.operators.table().own();
-                accelerate(attraction, own, state, mixing, (&mut pressure, &mut pull));
-            }
-        }
-        if let AdhesiveControl::Force(force) = *control {
-            let (wanted, sum) = (force + sum(&pull), sum(&pressure));
-            if wanted <= 0.0 {
-                return false;
-            }
-            if sum > 0.0 {
-                each(&mut pressure, |p| *p *= wanted / sum);
-            }
-        }
-        (state.pressure, state.attraction) = (pressure, pull);
-        true
-    }
-}
-
-/// Goes so many times from one state to the next, between zero and `most`.
-fn extrapolate(factor: f64, from: &[f64], to: &mut [f64], most: f64) {
-    to.iter_mut().zip(from).for_each(|(to, from)| *to = (from + factor * (*to - from)).clamp(0.0, most));
-}
-
-/// Replaces what an update made of a state by the combination of the last updates, unless that would change
-/// an attraction too much.
-fn accelerate(
-    attraction: &Attraction,
-    own: f64,
-    state: &Equilibrium,
-    mixing: &mut Mixing,
-    (pressure, pull): (&mut Vec<f64>, &mut Vec<f64>),
-) {
-    let law = attraction.law;
-    // Both parts as roots of energies: of the gaps left on the contact, and of the changes of open gaps.
-    let residual: Vec<f64> = (state.pressure.iter().zip(&state.gap))
-        .zip(pull.iter().zip(&state.attraction))
-        .map(|((&p, &g), (&s, &s0))| {
-            if p > 0.0 {
-                g / own.sqrt()
-            } else {
-                (s - s0) / (s.max(s0) / law.range).sqrt().max(f64::MIN_POSITIVE)
-            }
-        })
-        .collect();
-    let (mut p, mut s) = (pressure.clone(), pull.clone());
-    mixing.combine(&mut p, &mut s, residual);
-    let allowed = |(new, plain): (&f64, &f64)| {
-        *plain < FELT * law.peak || (*new <= LONGEST * plain && *new * LONGEST >= *plain)
-    };
-    if s.iter().zip(&*pull).all(allowed) {
-        each(&mut p, |p| *p = p.max(0.0));
-        each(&mut s, |s| *s = s.clamp(0.0, attraction.strongest()));
-        (*pressure, *pull) = (p, s);
-    } else {
-        mixing.clear();
     }
 }

@@ -6,13 +6,13 @@ mod bottleneck;
 mod equilibrium;
 mod law;
 mod linearised;
-mod mixing;
+mod newton;
+mod update;
 
 pub use attraction::Attraction;
 pub use equilibrium::{AdhesiveControl, Ended, Equilibrium, Search, energy};
 pub use law::Law;
 pub use linearised::{Response, fixed_area, respond};
-pub use mixing::solved;
 
 #[cfg(test)]
 mod fronts;

@@ -2,12 +2,14 @@
 
 mod cholesky;
 mod extension;
+mod minres;
 mod pcg;
 mod preconditioner;
 mod tensor_torus;
 
 pub use cholesky::Factor;
 pub use extension::Extension;
+pub use minres::minres;
 pub use pcg::{Energy, Fixed, StoppingCriteria, Vectors, Workspace, pcg};
-pub use preconditioner::{Preconditioned, Preconditioner};
+pub use preconditioner::{Preconditioned, Preconditioner, TorusInverse};
 pub use tensor_torus::TensorTorusInverse;

@@ -8,7 +8,7 @@
 
 use super::adhesive::AdhesiveContact;
 use super::load::LoadSequence;
-use crate::adhesion::{AdhesiveControl, Equilibrium, Response, fixed_area, solved};
+use crate::adhesion::{AdhesiveControl, Equilibrium, Response, fixed_area};
 use contact_model::{Branch, Status, Stop};
 
 /// The first step of the plane, in ranges of the law.
@@ -212,5 +212,45 @@ impl Fit {
         let (slope, spread) = (coefficients[1] / unit, inverse[1].max(0.0).sqrt() / unit);
         let fit = Self { slope, spread, scatter: (misfit / freedom).sqrt() };
         (slope.is_finite() && spread.is_finite()).then_some(fit)
+    }
+}
+
+/// Gauss's elimination of a small symmetric system with its right-hand side as the last column; `None` where
+/// it is singular.
+fn solved(mut rows: Vec<Vec<f64>>) -> Option<Vec<f64>> {
+    let n = rows.len();
+    for k in 0..n {
+        let pivot = (k..n).max_by(|&i, &j| rows[i][k].abs().total_cmp(&rows[j][k].abs()))?;
+        rows.swap(k, pivot);
+        if rows[k][k].abs() <= 0.0 || !rows[k][k].is_finite() {
+            return None;
+        }
+        for i in k + 1..n {
+            let factor = rows[i][k] / rows[k][k];
+            let (above, below) = rows.split_at_mut(i);
+            for (value, pivot) in below[0][k..].iter_mut().zip(&above[k][k..]) {
+                *value -= factor * pivot;
+            }
+        }
+    }
+    let mut x = vec![0.0; n];
+    for k in (0..n).rev() {
+        let known: f64 = (k + 1..n).map(|j| rows[k][j] * x[j]).sum();
+        x[k] = (rows[k][n] - known) / rows[k][k];
+    }
+    x.iter().all(|x| x.is_finite()).then_some(x)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_system_that_needs_its_rows_exchanged() {
+        let rows = vec![vec![0.0, 2.0, 1.0, 7.0], vec![2.0, 1.0, 3.0, 13.0], vec![1.0, 3.0, 4.0, 19.0]];
+        for (found, expected) in solved(rows).unwrap().iter().zip([1.0, 2.0, 3.0]) {
+            approx::assert_relative_eq!(*found, expected, max_relative = 1e-14);
+        }
+        assert!(solved(vec![vec![0.0, 1.0]]).is_none());
     }
 }

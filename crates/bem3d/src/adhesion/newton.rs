@@ -1,0 +1,355 @@
+//! A Newton step for contact pressure and attraction together, and which of them stay on the branch.
+//!
+//! # The system
+//!
+//! With the contact C kept closed and the law linearised on the open cells Z, slopes D and the couplings of
+//! neighbours C', the change x of the net pressure satisfies `G x = -g` on C and `G x - (D + C')^-1 (x + m) =
+//! 0` on Z, m the mismatch of attraction and law. With `N = 1 + D^(-1/2) C' D^(-1/2)` and `x_Z = D^(1/2) N v`
+//! it is symmetric, and indefinite with as many negative eigenvalues as open cells where the state is stable:
+//!
+//! ```text
+//! [ G_CC             G_CZ D^(1/2) N             ] [x_C]
+//! [ N D^(1/2) G_ZC   N D^(1/2) G_ZZ D^(1/2) N - N ] [ v ]
+//! ```
+//!
+//! Minimal residuals need one product by G a step; the inverse of the kernel on a torus stands for G_CC^-1,
+//! a diagonal for the block of Z.
+//!
+//! # Which steps stay on the branch
+//!
+//! Let `T(s) = s(g(s))` be the map of the plain iteration: g(s) the gap of the elastic contact under the
+//! attraction s. T is monotone; from s with `T(s) >= s` the plain iteration rises to the least equilibrium s*
+//! above s. A trial t with `T(t) >= t` may lie beyond an unstable equilibrium above s*. It does not where
+//! `T(r) > r` holds on the whole segment from s to t in every component that changes: at the first r that
+//! touched s* in a component, that component of T(r) would be larger than that of `T(s*) = s*`, although `r <=
+//! s*`.
+//!
+//! The law is convex in the gap where it is linear or exponential, also with the factor of the neighbours,
+//! and cells that enter its range keep it so; the gap of the contact is convex in s, because it is the least
+//! one of all that obey the inequalities of an M-matrix. So T is a convex function, the law, of a concave
+//! one, the negative gap:
+//!
+//! - rising: the law linearised at g(s), after the gap of the true contact, lies below T and is concave. A
+//!   solution t >= T(s) of that problem, in which cells that close join the contact, has `T(r) >= r` on the
+//!   segment.
+//! - falling: the law itself, after the gap of the contact kept closed, lies above T and is convex. The
+//!   segment to t with `T(r) <= r` is found by halving: close to s there always is one.
+//!
+//! Steps whose changes have the other sign, or in which a contact cell would open while the load rises, are
+//! not taken. A system that is solved to a share of its residual leaves as much; so does contact that is not
+//! quite settled: signs hold up to [`SLACK`] of the present mismatch. Within [`NEAR`] of an equilibrium,
+//! where rounding and the contact decide the signs, a short step of either sign is taken. Stability is
+//! measured at the end in any case.
+
+use super::attraction::Attraction;
+use super::equilibrium::Equilibrium;
+use crate::active_set::Problem;
+use crate::geometry::CellSet;
+use crate::linear::{Extension, Fixed, Preconditioner, TorusInverse, minres};
+use crate::operator::{Conditioning, InfluenceOperator};
+use crate::real::{dot, largest, sum, update};
+use contact_model::Stop;
+
+/// Slopes below this share of the largest one are left out of a step.
+const FLAT: f64 = 1e-3;
+/// Steps begin when no attraction changes by more than this in an update, over the peak: before, fronts move
+/// by whole cells and the plain iteration is as fast.
+pub const BEGIN: f64 = 0.02;
+/// Sign of changes hold up to this share of the largest one.
+const SLACK: f64 = 0.1;
+/// With changes below this, over the peak, steps of either sign are taken ...
+const NEAR: f64 = 1e-2;
+/// ... that move no attraction by more than this.
+const SHORT: f64 = 0.1;
+/// No step moves an attraction by more than this, over the peak.
+const LONGEST: f64 = 1.0;
+/// Solutions of the linear system on a growing contact, at most.
+const ROUNDS: usize = 2;
+/// Steps of minimal residuals at most.
+const STEPS: usize = 100;
+/// Halvings of a falling step.
+const HALVINGS: usize = 3;
+/// The own part of the block of Z is at least this share of N.
+const LEAST: f64 = 0.1;
+
+/// What the plain iteration would do to a state.
+pub struct Predicted<'a> {
+    /// Contact pressure, brought to the force.
+    pub pressure: &'a [f64],
+    /// Attraction.
+    pub attraction: &'a [f64],
+    /// The gap that follows from both.
+    pub gap: &'a [f64],
+    /// Cells of the contact set, 1, and others, 0.
+    pub contact: &'a [f64],
+    /// Gaps below this are those of the contact before it is corrected.
+    pub noise: f64,
+}
+
+/// A state that a step leads to.
+pub struct Trial {
+    /// Contact pressure.
+    pub pressure: Vec<f64>,
+    /// Attraction.
+    pub attraction: Vec<f64>,
+}
+
+/// The linear system of a state.
+struct Linear {
+    /// Cells that stay closed.
+    contact: CellSet,
+    /// Open cells whose attraction moves with their gaps.
+    open: CellSet,
+    both: CellSet,
+    /// On both: roots of the slopes, 1 on contact.
+    root: Vec<f32>,
+    /// On both: 1 on open cells, 0 on contact.
+    is_open: Vec<f32>,
+}
+
+/// What solves it, on both sets of cells.
+struct Solution {
+    /// Change of the net pressure.
+    change: Vec<f64>,
+    /// Gap of open cells, beyond the one at which the law is linearised.
+    opening: Vec<f64>,
+    steps: usize,
+}
+
+/// A Newton step from a state, `None` where it may lead off the branch; and the steps of minimal residuals
+/// that were taken for it. `reduction`: of the residual of the linear system.
+///
+/// Cost: a product by G and two means over neighbours a step.
+pub fn step(
+    problem: &mut Problem,
+    attraction: &Attraction,
+    (state, predicted): (&Equilibrium, &Predicted<'_>),
+    fixed: Fixed,
+    reduction: f64,
+    stop: Stop<'_>,
+) -> (Option<Trial>, usize) {
+    let (peak, range) = (attraction.law.peak, attraction.law.range);
+    let moved = predicted.attraction.iter().zip(&state.attraction).map(|(next, now)| next - now);
+    let (low, high) = moved.fold((0.0f64, 0.0f64), |(low, high), change| (low.min(change), high.max(change)));
+    let change = high.max(-low);
+    let slack = SLACK * change;
+    let direction = if low >= -slack {
+        Some(1.0)
+    } else if high <= slack {
+        Some(-1.0)
+    } else if change <= NEAR * peak {
+        None
+    } else {
+        return (None, 0);
+    };
+    let farthest = peak * if direction.is_some() { LONGEST } else { SHORT };
+    let closes = -predicted.noise.max(slack / peak * range);
+    let mut contact = predicted.contact.to_vec();
+    let mut steps = 0;
+    for _ in 0..ROUNDS {
+        let linear = Linear::new(attraction, state, &contact);
+        let left: Vec<f64> = (predicted.gap.iter().zip(&state.gap).zip(&contact))
+            .map(|((after, before), &c)| if c > 0.0 { *after } else { after - before })
+            .collect();
+        let left = linear.both.carry(&state.cells, &left);
+        let Some(solution) = linear.solve(problem, attraction, (state, &left), fixed, reduction, stop) else {
+            break;
+        };
+        steps += solution.steps;
+        let change = state.cells.carry(&linear.both, &solution.change);
+        let opening = state.cells.carry(&linear.both, &solution.opening);
+        let open = |i: &usize| contact[*i] <= 0.0;
+        // Beyond the plain update.
+        let (low, high) = (0..change.len())
+            .filter(open)
+            .fold((0.0f64, 0.0f64), |(low, high), i| (low.min(-change[i]), high.max(-change[i])));
+        let allowed = slack + reduction * high.max(-low);
+        let wrong = direction.map_or(0.0, |sign| if sign > 0.0 { -low } else { high });
+        if stop() || wrong > allowed || high.max(-low) > farthest {
+            break;
+        }
+        let closing: Vec<usize> =
+            (0..change.len()).filter(open).filter(|&i| state.gap[i] + opening[i] < closes).collect();
+        if !closing.is_empty() && direction.is_none_or(|sign| sign > 0.0) {
+            closing.into_iter().for_each(|i| contact[i] = 1.0);
+            continue;
+        }
+        let step = Taken { state, predicted, contact: &contact, change: &change, opening: &opening };
+        let trial = match direction {
+            Some(sign) if sign < 0.0 => step.falling(attraction, slack),
+            _ => Some(step.trial(attraction, 1.0).0),
+        };
+        return (trial, steps);
+    }
+    (None, steps)
+}
+
+/// A step as it is taken.
+struct Taken<'a> {
+    state: &'a Equilibrium,
+    predicted: &'a Predicted<'a>,
+    contact: &'a [f64],
+    change: &'a [f64],
+    opening: &'a [f64],
+}
+
+impl Taken<'_> {
+    /// The longest step that falls everywhere, as a share of the whole one.
+    fn falling(&self, attraction: &Attraction, slack: f64) -> Option<Trial> {
+        (0..HALVINGS).find_map(|halvings| {
+            let (trial, excess) = self.trial(attraction, 0.5f64.powi(halvings as i32));
+            (excess <= slack).then_some(trial)
+        })
+    }
+
+    /// The state at a share of the step, and by how much the law at the gaps of the closed contact exceeds
+    /// its attraction at most.
+    fn trial(&self, attraction: &Attraction, share: f64) -> (Trial, f64) {
+        let Self { state, predicted, contact, change, opening } = *self;
+        let between = |from: f64, to: f64| from + share * (to - from);
+        let gap: Vec<f64> = (state.gap.iter().zip(opening).zip(contact))
+            .map(|((g, o), &c)| if c > 0.0 { 0.0 } else { (g + share * o).max(0.0) })
+            .collect();
+        let mut pull = attraction.tractions(&state.cells, &gap);
+        let mut pressure = vec![0.0; gap.len()];
+        let (mut excess, strongest) = (0.0f64, attraction.strongest());
+        for i in 0..gap.len() {
+            let to = predicted.pressure[i] - predicted.attraction[i] + change[i];
+            let net = between(state.pressure[i] - state.attraction[i], to);
+            if contact[i] > 0.0 {
+                pressure[i] = (net + pull[i]).max(0.0);
+            } else {
+                let linear = between(state.attraction[i], -to).clamp(0.0, strongest);
+                excess = excess.max(pull[i] - linear);
+                pull[i] = linear;
+            }
+        }
+        (Trial { pressure, attraction: pull }, excess)
+    }
+}
+
+impl Linear {
+    fn new(attraction: &Attraction, state: &Equilibrium, contact: &[f64]) -> Self {
+        let mut slopes = attraction.slopes(&state.cells, &state.gap);
+        let least = FLAT * attraction.law.peak / attraction.law.range;
+        slopes.iter_mut().zip(contact).filter(|(_, c)| **c > 0.0).for_each(|(s, _)| *s = 0.0);
+        let open = state.cells.filter(&slopes, |s| s > least);
+        let contact = state.cells.filter(contact, |c| c > 0.0);
+        let both = contact.union(&open);
+        let is_open = both.carry(&open, &vec![1.0; open.len()]);
+        let mut root: Vec<f32> = both.carry(&state.cells, &slopes).iter().map(|s| s.sqrt() as f32).collect();
+        root.iter_mut().zip(&is_open).filter(|(_, open)| **open <= 0.0).for_each(|(r, _)| *r = 1.0);
+        Self { contact, open, both, root, is_open }
+    }
+
+    /// Solves for the change of net pressure that closes `left` on contact, the gap there, and with which the
+    /// attraction of open cells follows the linearised law; `left` is on them how far the gap is from where
+    /// the law is linearised. `None` where nothing is left.
+    fn solve(
+        &self,
+        problem: &mut Problem,
+        attraction: &Attraction,
+        (state, left): (&Equilibrium, &[f64]),
+        fixed: Fixed,
+        reduction: f64,
+        stop: Stop<'_>,
+    ) -> Option<Solution> {
+        let Self { contact, open, both, root, is_open } = self;
+        let (n, unit, operators) = (both.len(), largest(left), &mut problem.operators);
+        let recipe = operators.planner().system(both, contact.len(), false)?;
+        if unit.is_nan() || unit <= 0.0 {
+            return None;
+        }
+        let zone_root: Vec<f64> = open.carry(both, root).into_iter().map(f64::from).collect();
+        let coupling = attraction.coupling(open, &open.carry(&state.cells, &state.gap), &zone_root);
+        // N y, which changes nothing on contact.
+        let neighbours = |y: &[f32], out: &mut [f32]| {
+            out.copy_from_slice(y);
+            if let Some(coupled) = &coupling {
+                let v: Vec<f64> = open.carry(both, y).into_iter().map(f64::from).collect();
+                let more: Vec<f32> = coupled(&v).into_iter().map(|c| c as f32).collect();
+                both.add_carried(open, &more, out);
+            }
+        };
+        let times_root = |values: &mut [f32]| update(values, root, |value, root| *value *= root);
+        let own = operators.table().own() as f32;
+        let diagonal: Vec<f32> = (root.iter().zip(is_open))
+            .map(|(r, &open)| if open > 0.0 { (1.0 - r * r * own).max(LEAST as f32) } else { own }.recip())
+            .collect();
+        let (decay, recorder) = (operators.tuning().decay, operators.recorder().clone());
+        let (mut matrix, mut torus) = operators.system(recipe);
+        let mut extension = Extension::default();
+        if let (Conditioning::Torus { extended, .. }, Some(torus)) = (recipe.conditioning, &torus) {
+            extension.set(contact, torus.window(), if extended { decay } else { 0.0 });
+        }
+        let mut inverse = |r: &[f32], z: &mut [f32]| {
+            z.copy_from_slice(r);
+            update(z, &diagonal, |z, d| *z *= d);
+            if let Some(transform) = torus.as_deref_mut() {
+                let mut on_contact = contact.carry(both, r);
+                let mut found = vec![0.0; contact.len()];
+                let (extension, recorder) = (&mut extension, recorder.clone());
+                TorusInverse { transform, extension, recorder }.apply(
+                    contact,
+                    0.0,
+                    &mut on_contact,
+                    &mut found,
+                );
+                update(z, is_open, |z, open| *z *= open);
+                both.add_carried(contact, &found, z);
+            }
+        };
+        // A net force that is fixed is a product with these; what is taken from it are the weights.
+        let mut force = vec![0.0f32; n];
+        neighbours(root, &mut force);
+        let (mut weights, mut total) = (vec![0.0f32; n], 0.0);
+        if fixed == Fixed::Force {
+            inverse(&force, &mut weights);
+            total = dot(&force, &weights);
+        }
+        let less = |values: &mut [f32], share: f64, of: &[f32]| {
+            let share = share as f32;
+            update(values, of, |value, of| *value -= share * of);
+        };
+        let precondition = |r: &mut [f32], z: &mut [f32]| {
+            if total > 0.0 {
+                less(r, dot(&weights, r) / total, &force);
+            }
+            inverse(r, z);
+            if total > 0.0 {
+                less(z, dot(&force, z) / total, &weights);
+            }
+        };
+        let (mut applications, mut source, mut u) = (0, vec![0.0f32; n], vec![0.0f32; n]);
+        let product = |y: &[f32], out: &mut [f32]| {
+            applications += 1;
+            neighbours(y, &mut source);
+            let own: Vec<f32> = source.iter().zip(is_open).map(|(s, open)| s * open).collect();
+            times_root(&mut source);
+            matrix.apply(both, &source, both, &mut u);
+            if let Fixed::MeanPlane(constant) = fixed {
+                let offset = (constant * sum(&source)) as f32;
+                u.iter_mut().for_each(|u| *u -= offset);
+            }
+            times_root(&mut u);
+            neighbours(&u, out);
+            update(out, &own, |out, own| *out -= own);
+        };
+        let mut right: Vec<f32> = left.iter().map(|l| -(l / unit) as f32).collect();
+        times_root(&mut right);
+        let mut b = vec![0.0f32; n];
+        neighbours(&right, &mut b);
+        let (y, outcome) = minres(product, precondition, b, (reduction, STEPS), stop);
+        operators.applications += applications;
+        operators.solves += 1;
+        let mut change = vec![0.0f32; n];
+        neighbours(&y, &mut change);
+        times_root(&mut change);
+        let opening = y.iter().zip(root).zip(is_open);
+        Some(Solution {
+            change: change.into_iter().map(|c| unit * f64::from(c)).collect(),
+            opening: opening.map(|((y, root), open)| unit * f64::from(y * open / root)).collect(),
+            steps: outcome.steps,
+        })
+    }
+}

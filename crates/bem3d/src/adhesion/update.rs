@@ -1,0 +1,258 @@
+//! One update of contact pressure and attraction: a plain one, one far along a slow change, or a Newton step.
+
+use super::bottleneck::Bottleneck;
+use super::equilibrium::{AdhesiveControl, Equilibrium, Search};
+use super::law::Shape;
+use super::newton::{BEGIN, Predicted, step};
+use crate::active_set::Problem;
+use crate::linear::{Fixed, StoppingCriteria};
+use crate::real::{each, largest, largest_difference, sum, update};
+use contact_model::Stop;
+
+/// An update lowers the gaps left on the contact by this factor: less than the attraction changes by would be
+/// lost, more is gone after the next change of the attraction.
+const REDUCTION: f64 = 0.05;
+/// The same for the plain iteration, whose contact is solved before the attraction is changed.
+const PLAIN_REDUCTION: f64 = 1e-2;
+/// Steps of conjugate gradients in an update at most.
+const STEPS: usize = 40;
+/// The plain iteration changes the attraction where no gap of the contact is wrong by more than this share of
+/// the range.
+const SETTLED: f64 = 1e-3;
+/// Otherwise: by more than this share of what the attraction changes its gaps by ...
+const BALANCE: f64 = 0.3;
+/// ... and at most this.
+const SETTLED_FIRST: f64 = 0.1;
+/// Bottlenecks are looked for when no gap changes by more than this share of the range in an update.
+const SLOW: f64 = 0.5;
+/// At a mean gap more attraction here opens gaps elsewhere, and cells may change sides for ever; from so many
+/// updates on the attraction changes by a share only ...
+const PATIENT: usize = 100;
+/// ... which is this.
+const DAMPED: f64 = 0.3;
+/// Reduction of the residual in a first Newton step, which cells that change sides limit ...
+const FIRST_STEP: f64 = 0.03;
+/// ... and the least of a later one: that of single precision.
+const LAST_STEP: f64 = 2e-4;
+/// A Newton step aims at this share of the tolerance.
+const AIM: f64 = 0.1;
+/// A Newton step that does not lower the mismatch by this factor was of no use.
+const USEFUL: f64 = 0.5;
+/// After such a step the next one is solved better by this factor ...
+const CLOSER: f64 = 0.1;
+/// ... unless that would be beyond this.
+const ENOUGH: f64 = 5e-4;
+/// Plain updates at most from a Newton step that was refused, or of no use, to the next one.
+const REST: usize = 16;
+
+/// What the updates before say about the next one.
+#[derive(Debug, Default)]
+pub struct Progress {
+    bottleneck: Bottleneck,
+    /// Plain updates before the next Newton step, and how many after one that is refused.
+    rest: usize,
+    pause: usize,
+    /// The mismatch before the last Newton step and the reduction of its linear system, where that step was
+    /// the last update of the attraction.
+    last: Option<(f64, f64)>,
+}
+
+impl Progress {
+    /// The reduction of the linear system of a Newton step with this mismatch; `None`: a plain update.
+    fn newton(&mut self, mismatch: f64, tolerance: f64) -> Option<f64> {
+        let before = self.last.take();
+        // A step that was of no use is solved better, or was as good as it can be.
+        let useless = before.is_some_and(|(before, _)| mismatch > USEFUL * before);
+        let closer = before.filter(|_| useless).map_or(1.0, |(_, reduction)| CLOSER * reduction);
+        if useless && closer < ENOUGH {
+            self.refuse();
+        }
+        if self.rest > 0 {
+            self.rest -= 1;
+            return None;
+        }
+        // What the last step left, squared: the next one need not be solved better (Eisenstat and Walker, SIAM
+        // J. Sci. Comput. 17, 16 (1996)).
+        let wanted = before.map_or(FIRST_STEP, |(before, _)| (mismatch / before).powi(2));
+        let reduction = wanted.max(AIM * tolerance / mismatch).min(closer).clamp(LAST_STEP, FIRST_STEP);
+        self.last = Some((mismatch, reduction));
+        Some(reduction)
+    }
+
+    fn refuse(&mut self) {
+        self.pause = (2 * self.pause + 1).min(REST);
+        (self.rest, self.last) = (self.pause, None);
+    }
+}
+
+impl Search<'_> {
+    /// One update: the attraction of the present gaps, and the pressure that then closes the contact. `false`
+    /// where the attraction cannot hold the force.
+    pub(super) fn update(
+        &mut self,
+        state: &mut Equilibrium,
+        progress: &mut Progress,
+        stop: Stop<'_>,
+    ) -> bool {
+        let tolerance = self.limits.tolerance;
+        let law = self.attraction.law;
+        let plain = self.plain || law.shape == Shape::Uniform;
+        let fixed = self.control.fixed(self.problem.operators.table().shift());
+        let mut next = state.lawful.clone();
+        if matches!(fixed, Fixed::MeanPlane(_)) && state.updates > PATIENT {
+            update(&mut next, &state.attraction, |next, now| *next = now + DAMPED * (*next - now));
+        }
+        let change = largest_difference(&next, &state.attraction) / law.peak;
+        // Where the contact is not yet settled, the attraction waits.
+        let settled =
+            if plain { SETTLED } else { (BALANCE * change).max(0.5 * tolerance).min(SETTLED_FIRST) };
+        let waits = state.largest_gap_left() > settled * law.range && sum(&state.pressure) > 0.0;
+        if waits {
+            next.clone_from(&state.attraction);
+        }
+        let Some(mut pressure) = self.held(state, &next) else { return false };
+        let gap = self.gap_after(state, (&pressure, &next), fixed);
+        let contact = Contact::new(&pressure, &gap, self.problem.operators.tuning().noise);
+        if !plain
+            && !waits
+            && change <= BEGIN
+            && let Some(reduction) = progress.newton(change, tolerance)
+        {
+            let Contact { marked, noise, .. } = &contact;
+            let predicted = Predicted {
+                pressure: &pressure,
+                attraction: &next,
+                gap: &gap,
+                contact: marked,
+                noise: *noise,
+            };
+            let (trial, steps) =
+                step(self.problem, self.attraction, (state, &predicted), fixed, reduction, stop);
+            state.steps += steps;
+            if let Some(trial) = trial {
+                (state.pressure, state.attraction) = (trial.pressure, trial.attraction);
+                return self.bring_to_force(state);
+            }
+            progress.refuse();
+        }
+        let reduction = if plain { PLAIN_REDUCTION } else { REDUCTION };
+        state.steps += self.close(state, (&gap, &contact), &mut pressure, (fixed, reduction), stop);
+        if plain || change > SLOW {
+            progress.bottleneck.clear();
+        } else if !waits {
+            let moved = next.iter().zip(&state.attraction).map(|(s, s0)| (s - s0) / law.peak).collect();
+            if let Some(factor) = progress.bottleneck.factor(change, moved) {
+                extrapolate(factor, &state.pressure, &mut pressure, f64::INFINITY);
+                extrapolate(factor, &state.attraction, &mut next, self.attraction.strongest());
+            }
+        }
+        (state.pressure, state.attraction) = (pressure, next);
+        self.bring_to_force(state)
+    }
+
+    /// The pressure of a state brought to the force that an attraction leaves to it; `None` where that is
+    /// none.
+    fn held(&self, state: &Equilibrium, attraction: &[f64]) -> Option<Vec<f64>> {
+        let mut pressure = state.pressure.clone();
+        let AdhesiveControl::Force(force) = self.control else { return Some(pressure) };
+        let (held, wanted) = (sum(&pressure), force + sum(attraction));
+        if wanted <= 0.0 {
+            return None;
+        }
+        if held > 0.0 {
+            each(&mut pressure, |p| *p *= wanted / held);
+        } else if let Some(first) = (0..pressure.len()).min_by(|&i, &j| state.gap[i].total_cmp(&state.gap[j]))
+        {
+            pressure[first] = wanted;
+        }
+        Some(pressure)
+    }
+
+    /// Brings the pressure of a state to the force. `false` where the attraction cannot hold it.
+    fn bring_to_force(&self, state: &mut Equilibrium) -> bool {
+        let AdhesiveControl::Force(force) = self.control else { return true };
+        let (wanted, sum) = (force + sum(&state.attraction), sum(&state.pressure));
+        if wanted > 0.0 && sum > 0.0 {
+            each(&mut state.pressure, |p| *p *= wanted / sum);
+        }
+        wanted > 0.0
+    }
+
+    /// The gap of a state after pressure and attraction have changed, in single precision: the error is
+    /// relative to the change.
+    fn gap_after(
+        &mut self,
+        state: &Equilibrium,
+        (pressure, next): (&[f64], &[f64]),
+        fixed: Fixed,
+    ) -> Vec<f64> {
+        let mut changed: Vec<f64> = pressure.iter().zip(next).map(|(p, s)| p - s).collect();
+        let before = state.pressure.iter().zip(&state.attraction);
+        changed.iter_mut().zip(before).for_each(|(changed, (p, s))| *changed -= p - s);
+        let mut gap = state.gap.clone();
+        if largest(&changed) > 0.0 {
+            let mut u = Vec::new();
+            self.problem.operators.rough(&state.cells, &changed, &state.cells, &mut u);
+            update(&mut gap, &u, |gap, u| *gap += u);
+        }
+        let offset: f64 = match fixed {
+            Fixed::Force => {
+                let force = sum(pressure);
+                pressure.iter().zip(&gap).map(|(p, g)| p / force * g).sum()
+            }
+            Fixed::MeanPlane(shift) => shift * sum(&changed),
+            Fixed::Approach => 0.0,
+        };
+        each(&mut gap, |g| *g -= offset);
+        gap
+    }
+
+    /// Corrects the pressure of the contact so that its gap vanishes. Returns the steps.
+    fn close(
+        &mut self,
+        state: &Equilibrium,
+        (gap, contact): (&[f64], &Contact),
+        pressure: &mut [f64],
+        (fixed, reduction): (Fixed, f64),
+        stop: Stop<'_>,
+    ) -> usize {
+        let set = state.cells.filter(&contact.marked, |m| m > 0.0);
+        let Problem { operators, workspace, .. } = &mut *self.problem;
+        let Some(recipe) = operators.planner().system(&set, contact.count, false) else { return 0 };
+        let mut right: Vec<f64> = set.carry(&state.cells, gap);
+        each(&mut right, |r| *r = -*r);
+        let criteria = StoppingCriteria { reduction, energy: None, floor: 0.0, steps: STEPS };
+        workspace.begin_load();
+        workspace.take(operators, set, recipe);
+        let outcome = workspace.solve(operators, &mut right, fixed, criteria, stop);
+        let correction = state.cells.carry(workspace.set(), &right);
+        update(pressure, &correction, |p, x| *p = (*p + x).max(0.0));
+        outcome.steps
+    }
+}
+
+/// The contact that a pressure and its gap make: cells that carry, and those that penetrate.
+struct Contact {
+    /// 1 on its cells.
+    marked: Vec<f64>,
+    /// Cells that carry.
+    count: usize,
+    /// Penetrations below this are within the error of the last correction.
+    noise: f64,
+}
+
+impl Contact {
+    fn new(pressure: &[f64], gap: &[f64], noise: f64) -> Self {
+        let (square, count) = (pressure.iter().zip(gap))
+            .filter(|(p, _)| **p > 0.0)
+            .fold((0.0, 0usize), |(square, count), (_, g)| (square + g * g, count + 1));
+        let noise = if count > 0 { noise * (square / count as f64).sqrt() } else { 0.0 };
+        let marked = |(&p, &g): (&f64, &f64)| if p > 0.0 || g < -noise { 1.0 } else { 0.0 };
+        Self { marked: pressure.iter().zip(gap).map(marked).collect(), count, noise }
+    }
+}
+
+/// Goes so many times from one state to the next, between zero and `most`.
+fn extrapolate(factor: f64, from: &[f64], to: &mut [f64], most: f64) {
+    update(to, from, |to, from| *to = (from + factor * (*to - from)).clamp(0.0, most));
+}
