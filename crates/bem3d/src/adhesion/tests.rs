@@ -385,6 +385,88 @@ fn acceleration_finds_the_states_of_the_plain_iteration() {
     }
 }
 
+/// Gaps of all cells; beyond the reach of the attraction, where cells need not be known, the reach.
+fn known(grid: Grid, state: &Equilibrium, reach: f64) -> Vec<f64> {
+    let beyond: Vec<f64> = state.gap.iter().map(|g| reach - g.min(reach)).collect();
+    CellSet::all(grid).carry(&state.cells, &beyond).iter().map(|b| reach - b).collect()
+}
+
+/// Follows paths of random loads from the states of the plain iteration, with and without acceleration.
+/// Returns the number of states and those that differ, in words.
+fn compared(seeds: std::ops::Range<u64>) -> (usize, Vec<String>) {
+    let (mut count, mut different) = (0, Vec::new());
+    for seed in seeds {
+        let mut numbers = Numbers(seed + 1000);
+        let grid = if seed % 2 == 0 {
+            Grid::square(12, 9)
+        } else {
+            Grid { columns: 8, rows: 10, stretch: 0.8 + numbers.next() }
+        };
+        let boundary = if seed % 4 < 2 { Boundary::Free } else { Boundary::Periodic };
+        let z = heights(grid, seed);
+        let mut problem = problem(grid, &z, boundary);
+        let range = 0.05 + 0.5 * numbers.next();
+        let short = Attraction::short((0.35 * range).powi(2) / PI, grid, boundary);
+        for law in [short, law(range, 0.1 + 0.1 * numbers.next())] {
+            let mut last: Option<Equilibrium> = None;
+            // A force that holds the surface at its first touch, and a multiple of what the law pulls with.
+            let by_force = numbers.next() < 0.5;
+            for step in 0..10 {
+                let share = if step < 4 { 1.0 } else { -1.0 } * numbers.next();
+                let control = if by_force {
+                    AdhesiveControl::Force(law.law.peak * (20.0 * share).max(-8.0))
+                } else {
+                    AdhesiveControl::Plane(share)
+                };
+                let mut found = Vec::new();
+                for plain in [true, false] {
+                    let mut search = search(&mut problem, &law, control, plain);
+                    let start = last.as_ref().map_or_else(|| search.first(&never), Equilibrium::again);
+                    found.push(search.from(start, &never).map_err(|ended| ended.0));
+                }
+                count += 1;
+                let what = format!("{seed} {boundary:?} {:?} {range:.3} {step} {control:?}", law.law.shape);
+                let fast = found.pop().unwrap();
+                match (found.pop().unwrap(), fast) {
+                    (Ok(plain), Ok(fast)) => {
+                        let reach = law.law.reach();
+                        let apart = (known(grid, &plain, reach).iter().zip(known(grid, &fast, reach)))
+                            .fold(0.0, |m: f64, (a, b)| m.max((a - b).abs()));
+                        if apart > 1e-4 * law.law.range {
+                            let energies = [&plain, &fast].map(|state| energy(&problem, &law, state));
+                            different.push(format!("{what}: {apart:.2e} energies {energies:?}"));
+                        }
+                        last = Some(plain);
+                    }
+                    (Err(plain), Err(fast)) if plain == fast => break,
+                    (plain, fast) => {
+                        let ended = |state: Result<_, Ended>| state.err();
+                        different.push(format!("{what}: {:?} {:?}", ended(plain), ended(fast)));
+                        break;
+                    }
+                }
+            }
+        }
+    }
+    (count, different)
+}
+
+#[test]
+fn newton_steps_stay_on_the_branch_of_the_plain_iteration() {
+    let (count, different) = compared(0..24);
+    assert!(count > 300 && different.is_empty(), "{count} {different:#?}");
+}
+
+/// Some minutes.
+#[test]
+#[ignore = "a study"]
+fn of_thousands_of_states_how_many_leave_the_branch() {
+    let (count, different) = compared(0..400);
+    println!("{count} states, {} of them elsewhere", different.len());
+    different.iter().for_each(|what| println!("{what}"));
+    assert!(count > 4000 && different.is_empty());
+}
+
 #[test]
 fn the_stiffness_is_the_difference_of_forces() {
     for boundary in [Boundary::Free, Boundary::Periodic] {
