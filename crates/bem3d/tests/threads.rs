@@ -1,6 +1,8 @@
 //! No bit of a state depends on the number of threads, nor on what else they do.
 
-use bem3d::{Bem3d, Boundary, ContactModel, ContactState, Field, Load, Result, Scene, SelfAffine, Surface};
+use bem3d::{
+    Adhesion, Bem3d, Boundary, ContactModel, ContactState, Field, Load, Result, Scene, SelfAffine, Surface,
+};
 use rayon::ThreadPoolBuilder;
 use rayon::prelude::*;
 
@@ -95,4 +97,14 @@ fn a_parallel_iterator_over_surfaces_ends() {
         let all: Vec<_> = pool.install(|| scenes.par_iter().with_max_len(1).map(solved).collect());
         assert!(all[7] == solved(&scenes[7]));
     }
+}
+
+#[test]
+fn no_bit_of_an_adhesive_state_depends_on_the_number_of_threads() {
+    let model = Bem3d { cells: 400, tolerance: 1e-6, ..Bem3d::default() };
+    let mut scene = scene(2.2, Boundary::Periodic).unwrap();
+    scene.effects.adhesion = Adhesion::ShortRange { work: 1e-6 };
+    let pool = |threads| ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+    let on = |threads| bits(&pool(threads).install(|| path(model, &scene, &[0.1]).unwrap()));
+    assert_eq!(on(1), on(3));
 }

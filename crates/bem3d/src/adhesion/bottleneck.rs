@@ -1,13 +1,13 @@
 //! Passing a bottleneck: where a branch has just ended, or a jump is under way along an unstable direction.
 //!
-//! The plain iteration creeps there, each update changing little, until the jump has gone on; its change has
-//! a minimum above zero. Acceleration, which looks for the state of least change, stays at the minimum, or
-//! turns back to the unstable equilibrium. So the plain iteration goes on, and now and then far along its own
+//! Each update of the plain iteration changes little there until the system has left the bottleneck; the
+//! change has a minimum above zero. A Newton step looks for a state without change: it leads back to the
+//! unstable equilibrium, and is refused. So the plain iteration goes on, and now and then far along its own
 //! change, until it contracts or turns.
 
 use crate::real::dot;
 
-/// Updates in which acceleration has to halve the residual.
+/// Updates in which the residual has to be halved.
 const PATIENCE: usize = 15;
 /// Plain updates between two extrapolations: what does not belong to the slow direction decays.
 const BETWEEN: usize = 3;
@@ -43,7 +43,7 @@ impl Bottleneck {
     }
 
     /// How many times its change the iteration is to go, with this residual and this change of the attraction
-    /// over its peak; `None`: acceleration makes progress.
+    /// over its peak; `None`: once, the residual falls.
     pub fn factor(&mut self, residual: f64, change: Vec<f64>) -> Option<f64> {
         let Some(passage) = &mut self.passage else {
             if self.least.is_none_or(|least| residual <= 0.5 * least) {

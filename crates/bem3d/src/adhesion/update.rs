@@ -38,50 +38,60 @@ const LAST_STEP: f64 = 2e-4;
 const AIM: f64 = 0.1;
 /// A Newton step that does not lower the mismatch by this factor was of no use.
 const USEFUL: f64 = 0.5;
-/// After such a step the next one is solved better by this factor ...
+/// After such a step, or one that was refused, the next one is solved better by this factor.
 const CLOSER: f64 = 0.1;
-/// ... unless that would be beyond this.
-const ENOUGH: f64 = 5e-4;
 /// Plain updates at most from a Newton step that was refused, or of no use, to the next one.
-const REST: usize = 16;
+const REST: usize = 8;
 
 /// What the updates before say about the next one.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct Progress {
     bottleneck: Bottleneck,
     /// Plain updates before the next Newton step, and how many after one that is refused.
     rest: usize,
     pause: usize,
-    /// The mismatch before the last Newton step and the reduction of its linear system, where that step was
-    /// the last update of the attraction.
-    last: Option<(f64, f64)>,
+    /// The reduction of the linear system of the last Newton step, at most that of the next one while steps
+    /// are refused or of no use.
+    reduction: f64,
+    /// The mismatch before the last Newton step, where that step was the last update of the attraction.
+    before: Option<f64>,
+}
+
+impl Default for Progress {
+    fn default() -> Self {
+        Self { bottleneck: Bottleneck::default(), rest: 0, pause: 0, reduction: FIRST_STEP, before: None }
+    }
 }
 
 impl Progress {
     /// The reduction of the linear system of a Newton step with this mismatch; `None`: a plain update.
     fn newton(&mut self, mismatch: f64, tolerance: f64) -> Option<f64> {
-        let before = self.last.take();
-        // A step that was of no use is solved better, or was as good as it can be.
-        let useless = before.is_some_and(|(before, _)| mismatch > USEFUL * before);
-        let closer = before.filter(|_| useless).map_or(1.0, |(_, reduction)| CLOSER * reduction);
-        if useless && closer < ENOUGH {
-            self.refuse();
+        let before = self.before.take();
+        match before {
+            Some(before) if mismatch > USEFUL * before => self.refuse(),
+            Some(before) => {
+                // What the last step left, squared: the next one need not be solved better (Eisenstat and
+                // Walker, SIAM J. Sci. Comput. 17, 16 (1996)).
+                self.reduction = (mismatch / before).powi(2).min(FIRST_STEP);
+                self.pause = 0;
+            }
+            None => {}
         }
         if self.rest > 0 {
             self.rest -= 1;
             return None;
         }
-        // What the last step left, squared: the next one need not be solved better (Eisenstat and Walker, SIAM
-        // J. Sci. Comput. 17, 16 (1996)).
-        let wanted = before.map_or(FIRST_STEP, |(before, _)| (mismatch / before).powi(2));
-        let reduction = wanted.max(AIM * tolerance / mismatch).min(closer).clamp(LAST_STEP, FIRST_STEP);
-        self.last = Some((mismatch, reduction));
-        Some(reduction)
+        self.reduction = self.reduction.max(AIM * tolerance / mismatch).clamp(LAST_STEP, FIRST_STEP);
+        self.before = Some(mismatch);
+        Some(self.reduction)
     }
 
+    /// After a step that was refused or of no use plain updates follow, and the next one is solved better: a
+    /// loose solution leaves out the slowest changes.
     fn refuse(&mut self) {
         self.pause = (2 * self.pause + 1).min(REST);
-        (self.rest, self.last) = (self.pause, None);
+        (self.rest, self.before) = (self.pause, None);
+        self.reduction *= CLOSER;
     }
 }
 
