@@ -7,12 +7,14 @@ mod equilibrium;
 mod law;
 mod linearised;
 mod newton;
+mod search;
 mod update;
 
 pub use attraction::Attraction;
-pub use equilibrium::{AdhesiveControl, Ended, Equilibrium, Search, energy};
+pub use equilibrium::{AdhesiveControl, Equilibrium, energy};
 pub use law::Law;
 pub use linearised::{Response, fixed_area, respond};
+pub use search::{Ended, Search};
 
 #[cfg(test)]
 mod fronts;

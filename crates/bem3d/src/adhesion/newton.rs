@@ -47,7 +47,7 @@ use crate::active_set::Problem;
 use crate::geometry::CellSet;
 use crate::linear::{Extension, Fixed, Preconditioner, TorusInverse, minres};
 use crate::operator::{Conditioning, InfluenceOperator};
-use crate::real::{dot, largest, sum, update};
+use crate::real::{dot, each, largest, sum, update};
 use contact_model::Stop;
 
 /// Slopes below this share of the largest one are left out of a step.
@@ -67,8 +67,6 @@ const LONGEST: f64 = 1.0;
 const ROUNDS: usize = 2;
 /// Steps of minimal residuals at most.
 const STEPS: usize = 100;
-/// Halvings of a falling step.
-const HALVINGS: usize = 3;
 /// The own part of the block of Z is at least this share of N.
 const LEAST: f64 = 0.1;
 
@@ -171,7 +169,9 @@ pub fn step(
         let closing: Vec<usize> =
             (0..change.len()).filter(open).filter(|&i| state.gap[i] + opening[i] < closes).collect();
         if !closing.is_empty() && direction.is_none_or(|sign| sign > 0.0) {
-            closing.into_iter().for_each(|i| contact[i] = 1.0);
+            for i in closing {
+                contact[i] = 1.0;
+            }
             continue;
         }
         let step = Taken { state, predicted, contact: &contact, change: &change, opening: &opening };
@@ -196,8 +196,8 @@ struct Taken<'a> {
 impl Taken<'_> {
     /// The longest step that falls everywhere, as a share of the whole one.
     fn falling(&self, attraction: &Attraction, slack: f64) -> Option<Trial> {
-        (0..HALVINGS).find_map(|halvings| {
-            let (trial, excess) = self.trial(attraction, 0.5f64.powi(halvings as i32));
+        [1.0, 0.5, 0.25].into_iter().find_map(|share| {
+            let (trial, excess) = self.trial(attraction, share);
             (excess <= slack).then_some(trial)
         })
     }
@@ -329,7 +329,7 @@ impl Linear {
             matrix.apply(both, &source, both, &mut u);
             if let Fixed::MeanPlane(constant) = fixed {
                 let offset = (constant * sum(&source)) as f32;
-                u.iter_mut().for_each(|u| *u -= offset);
+                each(&mut u, |u| *u -= offset);
             }
             times_root(&mut u);
             neighbours(&u, out);

@@ -1,7 +1,8 @@
 //! One update of contact pressure and attraction: a plain one, one far along a slow change, or a Newton step.
 
+use super::attraction::Attraction;
 use super::bottleneck::Bottleneck;
-use super::equilibrium::{AdhesiveControl, Equilibrium, Search};
+use super::equilibrium::{AdhesiveControl, Equilibrium};
 use super::law::Shape;
 use super::newton::{BEGIN, Predicted, step};
 use crate::active_set::Problem;
@@ -95,16 +96,26 @@ impl Progress {
     }
 }
 
-impl Search<'_> {
+/// Updates at one load.
+#[derive(Debug)]
+pub struct Updates<'a> {
+    /// The surface.
+    pub problem: &'a mut Problem,
+    /// The attraction.
+    pub attraction: &'a Attraction,
+    /// The load.
+    pub control: AdhesiveControl,
+    /// Tolerance of the certificate.
+    pub tolerance: f64,
+    /// Whether the plain iteration alone may be used.
+    pub plain: bool,
+}
+
+impl Updates<'_> {
     /// One update: the attraction of the present gaps, and the pressure that then closes the contact. `false`
     /// where the attraction cannot hold the force.
-    pub(super) fn update(
-        &mut self,
-        state: &mut Equilibrium,
-        progress: &mut Progress,
-        stop: Stop<'_>,
-    ) -> bool {
-        let tolerance = self.limits.tolerance;
+    pub fn update(&mut self, state: &mut Equilibrium, progress: &mut Progress, stop: Stop<'_>) -> bool {
+        let tolerance = self.tolerance;
         let law = self.attraction.law;
         let plain = self.plain || law.shape == Shape::Uniform;
         let fixed = self.control.fixed(self.problem.operators.table().shift());

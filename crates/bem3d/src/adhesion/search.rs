@@ -1,0 +1,225 @@
+//! Equilibrium of contact pressure and attraction at one load: the attraction lags, the contact follows.
+//!
+//! With the attraction s given, the pressure of the contact solves an elastic contact problem of the gaps
+//! `z - G s`; then `s <- s(g)`. Where G on every set is an inverse M-matrix this map of s is monotone: more
+//! attraction here closes gaps everywhere, and never opens one. From a state whose load has risen it rises to
+//! the nearest equilibrium above, from one whose load has fallen it falls to the nearest one below: the
+//! branches of approach and withdrawal. Its derivative is `D^(1/2) G^ D^(1/2)` up to similarity, D the slopes
+//! of the law on open cells and G^ the compliance of the open cells with the contact kept closed, so that it
+//! contracts exactly where the energy has a minimum.
+
+use super::attraction::Attraction;
+use super::equilibrium::{AdhesiveControl, Equilibrium};
+use super::law::Shape;
+use super::update::{Progress, Updates};
+use crate::active_set::{self, Bounds, Candidates, Control, Limits, Problem, Residuals};
+use crate::geometry::CellSet;
+use crate::real::{each, largest_difference, smallest, sum};
+use contact_model::{Status, Stop};
+use std::sync::Arc;
+
+/// Updates for each outer iteration allowed: the plain iteration contracts by the spectral radius only, and
+/// fronts of a short range move by a cell or so in an update.
+const UPDATES: usize = 20;
+/// Room above the cells within reach, in ranges, so that small changes of the load keep the set.
+const AHEAD: f64 = 0.5;
+/// A contact whose force changes by more than this factor is solved from coarse grids.
+const FAR: f64 = 2.0;
+/// Tolerance of the elastic contact that a first load begins with.
+const FIRST: f64 = 1e-2;
+
+/// Why there is no state.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Ended {
+    /// As the elastic solver.
+    Status(Status),
+    /// The attraction cannot hold the force.
+    PulledOff,
+}
+
+/// A search for the equilibrium at one load.
+#[derive(Debug)]
+pub struct Search<'a> {
+    /// The surface.
+    pub problem: &'a mut Problem,
+    /// The attraction.
+    pub attraction: &'a Attraction,
+    /// The load.
+    pub control: AdhesiveControl,
+    /// Tolerance and length of the certificate.
+    pub limits: Limits,
+    /// Whether the plain iteration alone may be used.
+    pub plain: bool,
+}
+
+impl Search<'_> {
+    /// The elastic state of the load without attraction, where the load presses: where a first load begins.
+    pub fn first(&mut self, stop: Stop<'_>) -> Equilibrium {
+        let first = self.problem.candidates.range().first;
+        let target = match self.control {
+            AdhesiveControl::Force(f) if f > 0.0 => Control::Force(f),
+            // Of a periodic surface the approach under which the plane begins.
+            AdhesiveControl::Plane(plane) if plane > first => Control::Approach(plane),
+            AdhesiveControl::Force(_) => return Equilibrium { d: first, ..Equilibrium::default() },
+            AdhesiveControl::Plane(d) => return Equilibrium { d, ..Equilibrium::default() },
+        };
+        let limits = Limits { tolerance: FIRST, ..self.limits };
+        let guess = active_set::cold_start(self.problem, target, limits, stop);
+        let solved = active_set::solve(self.problem, target, guess, limits, stop);
+        let reach = solved.d + self.attraction.law.reach();
+        let cells = self.problem.candidates.below(reach).union(&solved.contact);
+        let pressure = cells.carry(&solved.contact, &solved.p);
+        let zeros = vec![0.0; cells.len()];
+        let (attraction, gap) = (zeros.clone(), zeros);
+        let steps = solved.steps;
+        Equilibrium { d: solved.d, cells, reach, pressure, attraction, gap, steps, ..Equilibrium::default() }
+    }
+
+    /// Iterates from a state to the equilibrium of the load.
+    ///
+    /// # Errors
+    /// Why it ended without one, with the state reached.
+    pub fn from(
+        &mut self,
+        mut state: Equilibrium,
+        stop: Stop<'_>,
+    ) -> Result<Equilibrium, Box<(Ended, Equilibrium)>> {
+        let tolerance = self.limits.tolerance;
+        let mut progress = Progress::default();
+        self.evaluate(&mut state);
+        if self.is_far(&state) {
+            self.contact_afresh(&mut state, stop);
+            self.evaluate(&mut state);
+        }
+        for _ in 0..self.limits.outer_iterations * UPDATES {
+            let worst = state.residuals.worst().max(state.mismatch).max(self.load_error(&state));
+            if worst <= tolerance {
+                return Ok(state);
+            }
+            if stop() {
+                return Err(Box::new((Ended::Status(Status::Stopped), state)));
+            }
+            let Self { problem, attraction, control, limits, plain } = self;
+            let (control, tolerance, plain) = (*control, limits.tolerance, *plain);
+            let mut updates = Updates { problem, attraction, control, tolerance, plain };
+            if !updates.update(&mut state, &mut progress, stop) {
+                return Err(Box::new((Ended::PulledOff, state)));
+            }
+            self.evaluate(&mut state);
+            state.updates += 1;
+        }
+        Err(Box::new((Ended::Status(Status::IterationLimit), state)))
+    }
+
+    /// Whether the contact of a state is of another load than the one asked for: then it is solved from
+    /// coarse grids.
+    fn is_far(&self, state: &Equilibrium) -> bool {
+        let AdhesiveControl::Force(asked) = self.control else { return false };
+        let (held, wanted) = (sum(&state.pressure), asked + sum(&state.attraction));
+        held > 0.0 && wanted > 0.0 && !(1.0 / FAR..=FAR).contains(&(wanted / held))
+    }
+
+    /// Where a load begins that follows a smaller one on the branch of approach: with the attraction of that
+    /// state, which lies below the one to come, and the contact that the new load makes under it.
+    pub fn continued(&mut self, last: &Equilibrium, stop: Stop<'_>) -> Equilibrium {
+        let mut state = last.again();
+        self.contact_afresh(&mut state, stop);
+        state
+    }
+
+    /// The contact under the present attraction, by nested iteration: the elastic problem of the gaps
+    /// `z - G s`.
+    fn contact_afresh(&mut self, state: &mut Equilibrium, stop: Stop<'_>) {
+        let grid = self.problem.grid();
+        let mut lifted = Vec::new();
+        self.problem.operators.exact(&state.cells, &state.attraction, &CellSet::all(grid), &mut lifted);
+        lifted.iter_mut().zip(self.problem.candidates.z()).for_each(|(u, z)| *u = z - *u);
+        // The plane of first touch is that of these gaps.
+        let first = smallest(&lifted);
+        let target = match self.control {
+            AdhesiveControl::Force(asked) => Control::Force(asked + sum(&state.attraction)),
+            AdhesiveControl::Plane(plane) => Control::Approach(plane - first),
+        };
+        let (Control::Force(load) | Control::Approach(load)) = target;
+        if load <= 0.0 {
+            return;
+        }
+        each(&mut lifted, |z| *z -= first);
+        let lifted = Candidates::new(grid, Arc::new(lifted));
+        let candidates = std::mem::replace(&mut self.problem.candidates, lifted);
+        let coarser = self.problem.coarser.take();
+        let limits = Limits { tolerance: FIRST, ..self.limits };
+        let guess = active_set::cold_start(self.problem, target, limits, stop);
+        let solved = active_set::solve(self.problem, target, guess, limits, stop);
+        (self.problem.candidates, self.problem.coarser) = (candidates, coarser);
+        let cells = state.cells.union(&solved.contact);
+        state.take_cells(cells, state.reach);
+        state.pressure = state.cells.carry(&solved.contact, &solved.p);
+        state.d = solved.d + first;
+        state.steps += solved.steps;
+    }
+
+    /// How far the force of a state is from the one prescribed, relative to it; where a force of zero is
+    /// prescribed, relative to the pressure of the contact.
+    pub fn load_error(&self, state: &Equilibrium) -> f64 {
+        let AdhesiveControl::Force(asked) = self.control else { return 0.0 };
+        let miss = (state.force() - asked).abs();
+        let scale = if asked.abs() > 0.0 { asked.abs() } else { sum(&state.pressure) };
+        if miss > 0.0 { miss / scale } else { 0.0 }
+    }
+
+    /// Evaluates the gap with the exact operator on all cells within reach.
+    fn evaluate(&mut self, state: &mut Equilibrium) {
+        let Self { problem, attraction, control, limits, .. } = self;
+        let law = attraction.law;
+        let shift = problem.operators.table().shift();
+        if let AdhesiveControl::Plane(plane) = *control {
+            state.d = plane + shift * state.force();
+        }
+        if state.reach < state.d + law.reach() {
+            let reach = state.d + law.reach() + AHEAD * law.range;
+            state.take_cells(problem.candidates.below(reach).union(&state.contact()), reach);
+        }
+        loop {
+            let net = state.net();
+            problem.operators.exact(&state.cells, &net, &state.cells, &mut state.gap);
+            let lowest = smallest(&state.gap).min(0.0);
+            problem.candidates.add_to(&state.cells, &mut state.gap);
+            let force = sum(&state.pressure);
+            match *control {
+                AdhesiveControl::Plane(plane) => state.d = plane + shift * sum(&net),
+                AdhesiveControl::Force(_) if force > 0.0 => {
+                    state.d = state.pressure.iter().zip(&state.gap).map(|(p, g)| p / force * g).sum();
+                }
+                // Nothing touches yet: the flat comes down to the highest point.
+                AdhesiveControl::Force(_) if !state.gap.is_empty() => state.d = smallest(&state.gap),
+                AdhesiveControl::Force(_) => {}
+            }
+            let d = state.d;
+            each(&mut state.gap, |g| *g -= d);
+            // A cell outside is lifted by the attraction no farther than the one lifted most.
+            let reach = d + law.reach() - lowest;
+            if reach <= state.reach {
+                break;
+            }
+            let reach = reach + AHEAD * law.range;
+            let cells = problem.candidates.below(reach).union(&state.cells);
+            let before = state.cells.len();
+            state.take_cells(cells, reach);
+            if state.cells.len() == before {
+                break;
+            }
+        }
+        let contact = state.contact();
+        let (p, left) =
+            (contact.carry(&state.cells, &state.pressure), contact.carry(&state.cells, &state.gap));
+        let length = limits.height.unwrap_or_else(|| state.d.abs().max(law.range));
+        let everywhere = (&state.cells, &state.gap[..]);
+        state.residuals = Residuals::measure(Bounds::Unlimited, (&contact, &p, &left), everywhere, length);
+        state.lawful = attraction.tractions(&state.cells, &state.gap);
+        state.mismatch = match law.shape {
+            Shape::Uniform => attraction.mismatch(&state.cells, &state.attraction, &state.gap),
+            _ => largest_difference(&state.attraction, &state.lawful) / law.peak,
+        };
+    }
+}
