@@ -35,11 +35,12 @@
 //! - falling: the law itself, after the gap of the contact kept closed, lies above T and is convex. The
 //!   segment to t with `T(r) <= r` is found by halving: close to s there always is one.
 //!
-//! Steps whose changes have the other sign, or in which a contact cell would open while the load rises, are
-//! not taken. A system that is solved to a share of its residual leaves as much; so does contact that is not
-//! quite settled: signs hold up to [`SLACK`] of the present mismatch. Within [`NEAR`] of an equilibrium,
-//! where rounding and the contact decide the signs, a short step of either sign is taken. Stability is
-//! measured at the end in any case.
+//! Steps whose changes have the other sign are not taken. Not tested is that no cell closes from beyond the
+//! range in a rising step and that none opens, which small changes make unlikely; a contact cell whose pressure
+//! would be negative opens. A system that is solved to a share of its residual leaves as much; so does contact
+//! that is not quite settled: signs hold up to [`SLACK`] of the present mismatch. Within [`NEAR`] of an
+//! equilibrium, where rounding and the contact decide the signs, a short step of either sign is taken. Stability
+//! is measured at the end in any case.
 
 use super::attraction::Attraction;
 use super::equilibrium::Equilibrium;
@@ -55,7 +56,7 @@ const FLAT: f64 = 1e-3;
 /// Steps begin when no attraction changes by more than this in an update, over the peak: before, fronts move
 /// by whole cells and the plain iteration is as fast.
 pub const BEGIN: f64 = 0.02;
-/// Sign of changes hold up to this share of the largest one.
+/// Signs of changes hold up to this share of the largest one.
 const SLACK: f64 = 0.1;
 /// With changes below this, over the peak, steps of either sign are taken ...
 const NEAR: f64 = 1e-2;

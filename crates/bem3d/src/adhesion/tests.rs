@@ -354,7 +354,7 @@ fn every_state_of_a_path_is_a_minimum_that_newton_finds_too() {
 }
 
 #[test]
-fn acceleration_finds_the_states_of_the_plain_iteration() {
+fn newton_steps_find_the_states_of_the_plain_iteration() {
     for seed in 1..6 {
         let grid = Grid::square(16, 12);
         let z = heights(grid, seed);
@@ -391,7 +391,7 @@ fn known(grid: Grid, state: &Equilibrium, reach: f64) -> Vec<f64> {
     CellSet::all(grid).carry(&state.cells, &beyond).iter().map(|b| reach - b).collect()
 }
 
-/// Follows paths of random loads from the states of the plain iteration, with and without acceleration.
+/// Follows paths of random loads from the states of the plain iteration, with and without Newton steps.
 /// Returns the number of states and those that differ, in words.
 fn compared(seeds: std::ops::Range<u64>) -> (usize, Vec<String>) {
     let (mut count, mut different) = (0, Vec::new());

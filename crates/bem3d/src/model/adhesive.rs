@@ -210,7 +210,7 @@ impl AdhesiveContact {
         }
     }
 
-    /// Whether a gap has moved against the load: then an accelerated step has gone beyond an equilibrium.
+    /// Whether a gap has moved against the load: then a step has gone beyond an equilibrium.
     fn left_branch(&self, last: &Equilibrium, now: &Equilibrium, rises: bool) -> bool {
         let before = now.cells.carry(&last.cells, &last.attraction);
         let known = now.cells.carry(&last.cells, &vec![1.0; last.cells.len()]);
