@@ -27,9 +27,10 @@
 //! calibration.
 
 use super::law::{Law, Shape};
-use crate::geometry::{CellSet, Grid};
-use crate::real::each;
+use crate::geometry::{CellSet, Grid, Window};
+use crate::real::{Real, each};
 use contact_model::Boundary;
+use numerics::parallel::widest;
 
 /// The factor b of the length of fronts in the energy, in longer sides of a cell times the work of adhesion:
 /// their line tension then is zero.
@@ -230,36 +231,74 @@ impl Neighbours {
         Self { grid, periodic, reach: (across, along), weights, strength }
     }
 
-    /// Means over the neighbours of the cells of a set; cells outside of it count 0.
-    fn mean(&self, cells: &CellSet, values: &[f64]) -> Vec<f64> {
-        let Some(window) = cells.window() else { return Vec::new() };
-        let (across, along) = self.reach;
-        let (width, height) = (window.width + 2 * across, window.height + 2 * along);
-        let mut around = vec![0.0; width * height];
-        // A periodic map has all cells of the window that are whole periods apart.
-        let images = |at: usize, period: usize, length: usize| {
-            let (first, end) = if self.periodic { (at % period, length) } else { (at, at + 1) };
-            (first..end).step_by(period)
-        };
-        for ((x, y), &value) in cells.places().zip(values) {
-            for row in images(y + along - window.y, self.grid.rows, height) {
-                for column in images(x + across - window.x, self.grid.columns, width) {
-                    around[row * width + column] = value;
+    /// Columns and rows of a window with the neighbours around it.
+    fn room(&self, window: Window) -> (usize, usize) {
+        (window.width + 2 * self.reach.0, window.height + 2 * self.reach.1)
+    }
+
+    /// Writes values on a set where they belong in its window with the neighbours around it.
+    fn spread<T: Real>(&self, cells: &CellSet, values: &[T], window: Window, around: &mut [T]) {
+        let ((across, along), (width, _)) = (self.reach, self.room(window));
+        around.fill(T::default());
+        for row in cells.rows() {
+            row.spread(values, &mut around[(row.y + along - window.y) * width + across..], window.x);
+        }
+        if self.periodic {
+            // The window has all cells that are whole periods apart.
+            let columns = images(across, window.width, self.grid.columns);
+            for line in around.chunks_exact_mut(width) {
+                for &(to, from) in &columns {
+                    line[to] = line[from];
                 }
             }
+            for (to, from) in images(along, window.height, self.grid.rows) {
+                around.copy_within(from * width..(from + 1) * width, to * width);
+            }
         }
-        let row = 2 * across + 1;
-        let mean = |(x, y): (usize, usize)| {
-            let (left, top) = (x - window.x, y - window.y);
-            (self.weights.chunks_exact(row).enumerate())
-                .map(|(j, weights)| {
-                    let from = (top + j) * width + left;
-                    weights.iter().zip(&around[from..from + row]).map(|(w, v)| w * v).sum::<f64>()
-                })
-                .sum()
-        };
-        cells.places().map(mean).collect()
     }
+
+    /// Means over the neighbours of the cells of a set; cells outside of it count 0.
+    ///
+    /// Cost: half an addition and half a multiplication for each neighbour.
+    fn mean(&self, cells: &CellSet, values: &[f64]) -> Vec<f64> {
+        let Some(window) = cells.window() else { return Vec::new() };
+        let ((across, along), (width, height)) = (self.reach, self.room(window));
+        let mut around = vec![0.0; width * height];
+        self.spread(cells, values, window, &mut around);
+        let (row_length, mut means) = (2 * across + 1, vec![0.0; cells.len()]);
+        let line = |y: usize| &around[y * width..][..width];
+        cells.update(cells.len() * self.weights.len() / 2, &mut means, |row, means| {
+            let (mut pair, mut sums) = (vec![0.0; width], vec![0.0; window.width]);
+            let centre = row.y + along - window.y;
+            // Rows and columns at the same distance have the same weight.
+            for j in 0..=along {
+                pair.copy_from_slice(line(centre - j));
+                if j > 0 {
+                    pair.iter_mut().zip(line(centre + j)).for_each(|(pair, v)| *pair += v);
+                }
+                let weights = &self.weights[(along + j) * row_length + across..][..=across];
+                let own = pair[across..].iter();
+                sums.iter_mut().zip(own).for_each(|(sum, v)| *sum += weights[0] * v);
+                for (i, &weight) in weights.iter().enumerate().skip(1).take_while(|(_, w)| **w > 0.0) {
+                    let sides = pair[across - i..].iter().zip(&pair[across + i..]);
+                    widest(
+                        #[inline(always)]
+                        || sums.iter_mut().zip(sides).for_each(|(sum, (a, b))| *sum += weight * (a + b)),
+                    );
+                }
+            }
+            row.collect(&sums, means, window.x);
+        });
+        means
+    }
+}
+
+/// Which places of a line have their values from which others, where `length` places after a margin repeat
+/// with a period that is no shorter.
+fn images(margin: usize, length: usize, period: usize) -> Vec<(usize, usize)> {
+    let place = |to: usize| (to + period * margin - margin) % period + margin;
+    let beside = (0..margin).chain(margin + length..2 * margin + length);
+    beside.map(|to| (to, place(to))).filter(|&(_, from)| from < margin + length).collect()
 }
 
 #[cfg(test)]
