@@ -21,8 +21,8 @@
 //! attraction s. T is monotone; from s with `T(s) >= s` the plain iteration rises to the least equilibrium s*
 //! above s. A trial t with `T(t) >= t` may lie beyond an unstable equilibrium above s*. It does not where
 //! `T(r) > r` holds on the whole segment from s to t in every component that changes: at the first r that
-//! touched s* in a component, that component of T(r) would be larger than that of `T(s*) = s*`, although `r <=
-//! s*`.
+//! touched s* in a component, that component of T(r) would be larger than that of `T(s*) = s*`, although `r
+//! <= s*`.
 //!
 //! The law is convex in the gap where it is linear or exponential, also with the factor of the neighbours,
 //! and cells that enter its range keep it so; the gap of the contact is convex in s, because it is the least
@@ -36,11 +36,11 @@
 //!   segment to t with `T(r) <= r` is found by halving: close to s there always is one.
 //!
 //! Steps whose changes have the other sign are not taken. Not tested is that no cell closes from beyond the
-//! range in a rising step and that none opens, which small changes make unlikely; a contact cell whose pressure
-//! would be negative opens. A system that is solved to a share of its residual leaves as much; so does contact
-//! that is not quite settled: signs hold up to [`SLACK`] of the present mismatch. Within [`NEAR`] of an
-//! equilibrium, where rounding and the contact decide the signs, a short step of either sign is taken. Stability
-//! is measured at the end in any case.
+//! range in a rising step and that none opens, which small changes make unlikely; a contact cell whose
+//! pressure would be negative opens. A system that is solved to a share of its residual leaves as much; so
+//! does contact that is not quite settled: signs hold up to [`SLACK`] of the present mismatch. Within
+//! [`NEAR`] of an equilibrium, where rounding and the contact decide the signs, a short step of either sign
+//! is taken. Stability is measured at the end in any case.
 
 use super::attraction::Attraction;
 use super::equilibrium::Equilibrium;
