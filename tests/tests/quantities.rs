@@ -499,9 +499,13 @@ fn moving_front(seed: u64, law: Option<AdhesionLaw>) -> Result<(Faults, Option<b
     check(&mut faults, "prescribed plane", plane(&state), last, ROUNDING);
     if let Adhesion::ShortRange { work } = scene.effects.adhesion {
         let map = map_of(&scene);
-        let peak = 0.7 * (scene.modulus * work / map.dx().max(map.dy())).sqrt();
-        let range = 2.0 * work / peak;
-        let attached = |g: f64| (1.0 - g / range).clamp(0.0, 1.0).powi(2);
+        let peak = 0.59 * (scene.modulus * work / map.dx().max(map.dy())).sqrt();
+        let range = 15.0 / 8.0 * work / peak;
+        // The integral of `y (0.4 + 2.2 y - 1.6 y^2)`.
+        let attached = |g: f64| {
+            let y = (1.0 - g / range).clamp(0.0, 1.0);
+            y * y * (3.0 + y * (11.0 - 6.0 * y)) / 8.0
+        };
         let area: f64 = state.gap().unwrap().values().iter().map(|&g| attached(g.max(0.0))).sum();
         let area = area * map.dx() * map.dy();
         check(&mut faults, "area", state.area.unwrap(), area, 1e-6 * area);

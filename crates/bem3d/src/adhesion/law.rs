@@ -9,7 +9,9 @@ const FARTHEST: f64 = 36.7;
 
 /// Traction in contact of a short range, in `sqrt(E* w/a)` with the longer side a of a cell; see
 /// [`super::attraction`]. Larger ones trap fronts between the rows of cells, smaller ones draw them apart.
-const FRONT_TRACTION: f64 = 0.7;
+const FRONT_TRACTION: f64 = 0.59;
+/// Work of a short range over its peak times its range, `int_0^1 y (0.4 + 2.2 y - 1.6 y^2) dy`.
+const FRONT_WORK: f64 = 8.0 / 15.0;
 
 /// How the attraction falls.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -18,8 +20,9 @@ pub enum Shape {
     Exponential,
     /// `peak` below the range.
     Uniform,
-    /// `peak (1 - g/range)` below the range.
-    Linear,
+    /// `peak y (0.4 + 2.2 y - 1.6 y^2)` below the range, with `y = 1 - g/range`: level in contact, with 0.4 of
+    /// the slope of a line at the range.
+    Smooth,
 }
 
 impl From<AdhesionLaw> for Shape {
@@ -44,7 +47,12 @@ impl Law {
     /// longer side.
     pub fn short(work: f64, side: f64) -> Self {
         let peak = FRONT_TRACTION * (work / (PI * side)).sqrt();
-        Self { peak, range: 2.0 * work / peak, shape: Shape::Linear }
+        Self { peak, range: work / (FRONT_WORK * peak), shape: Shape::Smooth }
+    }
+
+    /// 1 in contact, 0 from the range on.
+    fn nearness(self, gap: f64) -> f64 {
+        (1.0 - gap / self.range).clamp(0.0, 1.0)
     }
 
     /// Traction of a gap; penetrations count as contact.
@@ -52,7 +60,10 @@ impl Law {
         match self.shape {
             Shape::Uniform if gap < self.range => self.peak,
             Shape::Uniform => 0.0,
-            Shape::Linear => self.peak * (1.0 - gap / self.range).clamp(0.0, 1.0),
+            Shape::Smooth => {
+                let y = self.nearness(gap);
+                self.peak * y * (0.4 + y * (2.2 - 1.6 * y))
+            }
             Shape::Exponential => self.peak * (-gap.max(0.0) / self.range).exp(),
         }
     }
@@ -60,8 +71,11 @@ impl Law {
     /// Magnitude of the derivative of the traction; 0 for Dugdale's law away from its jump.
     pub fn slope(self, gap: f64) -> f64 {
         match self.shape {
-            Shape::Linear if gap < self.range => self.peak / self.range,
-            Shape::Uniform | Shape::Linear => 0.0,
+            Shape::Smooth if gap < self.range => {
+                let y = self.nearness(gap);
+                self.peak / self.range * (0.4 + y * (4.4 - 4.8 * y))
+            }
+            Shape::Uniform | Shape::Smooth => 0.0,
             Shape::Exponential => self.traction(gap) / self.range,
         }
     }
@@ -70,7 +84,10 @@ impl Law {
     pub fn energy(self, gap: f64) -> f64 {
         match self.shape {
             Shape::Uniform => self.peak * (gap.max(0.0) - self.range).min(0.0),
-            Shape::Linear => -0.5 * self.peak * self.range * (1.0 - gap / self.range).clamp(0.0, 1.0).powi(2),
+            Shape::Smooth => {
+                let y = self.nearness(gap);
+                -self.peak * self.range * y * y * (0.2 + y * (2.2 / 3.0 - 0.4 * y))
+            }
             Shape::Exponential => -self.range * self.traction(gap),
         }
     }
@@ -94,7 +111,7 @@ impl Law {
     /// The gap from which on there is no attraction.
     pub fn reach(self) -> f64 {
         match self.shape {
-            Shape::Uniform | Shape::Linear => self.range,
+            Shape::Uniform | Shape::Smooth => self.range,
             Shape::Exponential => FARTHEST * self.range,
         }
     }

@@ -6,6 +6,7 @@ mod bottleneck;
 mod equilibrium;
 mod law;
 mod linearised;
+mod neighbours;
 mod newton;
 mod search;
 mod update;

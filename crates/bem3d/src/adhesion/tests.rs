@@ -257,7 +257,11 @@ fn law(range: f64, share: f64) -> Attraction {
 fn a_short_range_does_the_work_with_the_traction_of_its_longer_side() {
     for (work, side) in [(0.3, 1.0), (0.3, 2.0), (0.02, 1.0)] {
         let law = Law::short(work, side);
-        approx::assert_relative_eq!(law.peak.powi(2) * PI * side, 0.49 * work, max_relative = 1e-12);
+        approx::assert_relative_eq!(
+            law.peak.powi(2) * PI * side,
+            0.59f64.powi(2) * work,
+            max_relative = 1e-12
+        );
         approx::assert_relative_eq!(law.energy(0.0), -work, max_relative = 1e-12);
     }
 }
@@ -515,7 +519,7 @@ fn a_force_that_nothing_holds_is_told() {
 
 #[test]
 fn a_law_is_its_energy_differentiated() {
-    for shape in [Shape::Exponential, Shape::Uniform, Shape::Linear] {
+    for shape in [Shape::Exponential, Shape::Uniform, Shape::Smooth] {
         let law = Law { peak: 2.0, range: 0.5, shape };
         for gap in [0.1, 0.3, 0.49, 0.6, 3.0] {
             let h = 1e-6;
@@ -525,7 +529,7 @@ fn a_law_is_its_energy_differentiated() {
             approx::assert_relative_eq!(-slope, law.slope(gap), epsilon = 1e-6);
             assert!(law.mismatch(law.traction(gap), gap) <= 0.0);
         }
-        let work = if shape == Shape::Linear { 0.5 } else { 1.0 };
+        let work = if shape == Shape::Smooth { 8.0 / 15.0 } else { 1.0 };
         approx::assert_relative_eq!(law.energy(0.0), -work);
         approx::assert_relative_eq!(law.attached(0.0), 1.0);
     }

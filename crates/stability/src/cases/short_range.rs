@@ -29,11 +29,12 @@ pub(super) const CASES: [Case; 2] = [
 ];
 
 /// Largest traction of a cell on a straight front, over `sqrt(E* w/a)`; a is the longer side of a cell.
-const STRENGTH: f64 = 0.7;
+const STRENGTH: f64 = 0.59;
 /// Energy of a front that its neighbours take away, over `a w` and its length.
-const FRONT: f64 = 0.389;
-/// Neighbours lie within so many a.
-const NEAR: isize = 4;
+const FRONT: f64 = 0.415;
+/// Neighbours lie on a ring of this radius and half width, within so many a.
+const RING: (f64, f64) = (4.0, 1.5);
+const NEAR: isize = 6;
 /// Share of the area in nearly full contact.
 const NEARLY: f64 = 0.85;
 
@@ -56,14 +57,18 @@ fn conditions(
     // A periodic kernel leaves the plane open: where the least gap is, the bodies touch.
     let d = if periodic { gap.iter().copied().fold(f64::INFINITY, f64::min) } else { approach(state)? };
     let largest = STRENGTH * (work / cell).sqrt();
-    let range = 2.0 * work / largest;
+    let range = 15.0 / 8.0 * work / largest;
     for g in &mut gap {
         *g = (*g - d) / range;
     }
-    let attached: Vec<f64> = gap.iter().map(|g| (1.0 - g.max(0.0)).max(0.0).powi(2)).collect();
+    let nearness = |g: &f64| (1.0 - g.max(0.0)).max(0.0);
+    // The law is a cubic in the nearness, the share of the work its integral.
+    let attached: Vec<f64> =
+        (gap.iter().map(nearness)).map(|y| y * y * (3.0 + y * (11.0 - 6.0 * y)) / 8.0).collect();
     for ((p, g), factor) in p.iter().zip(&gap).zip(factors(map, periodic, &attached)) {
         ledger.enter((-g).max(0.0));
-        let contact = p / largest + factor * (1.0 - g.max(0.0)).max(0.0);
+        let y = nearness(g);
+        let contact = p / largest + factor * y * (0.4 + y * (2.2 - 1.6 * y));
         // Where there is contact pressure there is no gap.
         ledger.enter((-contact).max(0.0));
         ledger.enter(contact.min(g.max(0.0)).max(0.0));
@@ -75,7 +80,9 @@ fn conditions(
 fn factors(map: &HeightMap, periodic: bool, attached: &[f64]) -> Vec<f64> {
     let (columns, rows) = (map.columns().cast_signed(), map.rows().cast_signed());
     let lags = || (-NEAR..=NEAR).flat_map(|y| (-NEAR..=NEAR).map(move |x| (x, y)));
-    let weight = |x: isize, y: isize| (1.0 - (x * x + y * y) as f64 / (NEAR * NEAR) as f64).max(0.0);
+    let weight = |x: isize, y: isize| {
+        (1.0 - (((x * x + y * y) as f64).sqrt() - RING.0).powi(2) / (RING.1 * RING.1)).max(0.0)
+    };
     let total: f64 = lags().map(|(x, y)| weight(x, y)).sum();
     // The mean distance along x or y, in cells.
     let distance: f64 =
