@@ -36,7 +36,7 @@ fn stiffness_of_a_sphere_with_short_range_is_the_slope_of_its_branch() {
         let (state, a) = (&state, sphere.radius_at_approach(d).unwrap());
         let (k, error) = (state.stiffness.unwrap(), state.report.certificate.quotient_error.unwrap());
         let exact = sphere.slope(a).unwrap();
-        assert!((k / exact - 1.0).abs() <= error && error < 0.2, "{d}: {k} {exact} {error}");
+        assert!((k / exact - 1.0).abs() <= error && error < 0.25, "{d}: {k} {exact} {error}");
         let held = state.stiffness_fixed_area.unwrap();
         assert_relative_eq!(held, 2.0 * a, max_relative = 0.02);
         assert_relative_eq!(state.conductance.unwrap(), held, max_relative = 1e-12);

@@ -44,11 +44,12 @@
 //! With [`Adhesion::ShortRange`], JKR's limit, the work of adhesion is put into the last cells of a contact,
 //! by a law of the cell's own gap whose range is a share of the cell and by a factor of its neighbours that
 //! takes the line tension of fronts out (`adhesion`): pull-off forces of smooth bodies have an error of
-//! second order in the cell over the radius of the contact, and one of half a percent because fronts are
-//! trapped between cells; a contact that ends at a vertical edge is pulled off at a force of first order. The
-//! area is that of the attached shares of all cells, the stiffness that of the cells that hold more than half
-//! of their work, where fronts stay (`2 E* a` of a round contact). A cell that touches nothing attracts over
-//! `g0 = 2.9 sqrt(w a/E*)`, a the longer side of a cell, which is how far from touch a contact snaps in.
+//! second order in the cell over the radius of the contact, and one of 0.2 % (round contacts) to 0.9 %
+//! (straight fronts) because fronts are trapped between cells; a contact that ends at a vertical edge is
+//! pulled off at a force of first order. The area is that of the attached shares of all cells, the stiffness
+//! that of the cells that hold more than half of their work, where fronts stay (`2 E* a` of a round contact).
+//! A cell that touches nothing attracts over `g0 = 3.2 sqrt(w a/E*)`, a the longer side of a cell, which is
+//! how far from touch a contact snaps in.
 //!
 //! With [`Adhesion::FiniteRange`] an attractive traction s(g) acts across open gaps: the net pressure is
 //! `p - s(g)`, p >= 0 still with p g = 0. Approach and withdrawal differ, so that such a scene is a path

@@ -31,6 +31,9 @@ const STEPS: usize = 14;
 const FEWEST: usize = 5;
 /// A step in which fronts advance by more than so many cells is a jump, which has no slope.
 const JUMP: f64 = 4.0;
+/// Neighbouring points leave a parabola on the same side, so that their scatter says less than that of as many
+/// points without relation: chosen so that the claimed error holds of 85 in 100 small random contacts.
+const SMOOTH: f64 = 1.4;
 /// A slope with a larger relative error is not claimed.
 const CLAIMED: f64 = 0.5;
 
@@ -165,7 +168,7 @@ fn first_slope(points: &[(f64, f64)], fewest: usize) -> Option<(f64, f64)> {
     // What shorter and longer ones find says how much a parabola leaves out.
     let next = Fit::new(&points[..(slopes.len() + fewest).min(points.len())], 2)?.slope;
     let drift = slopes.iter().map(|s| (s.0 - slope).abs()).fold((next - slope).abs(), f64::max);
-    Some((slope, error + drift))
+    Some((slope, SMOOTH * (error + drift)))
 }
 
 /// A polynomial of least squares.
