@@ -22,9 +22,10 @@ use std::f64::consts::{E, PI};
 
 /// Cells of a row that are summed to each side; the rest of the row is an integral.
 const ROW: i64 = 6000;
-/// Half of the width of the strip and how far rows beyond it are unknowns, in longer sides of a cell: the
-/// release rate is off by the square of the zone over it.
+/// Half of the width of the strip, in longer sides of a cell: the release rate is off by the square of the
+/// zone over it.
 const HALF: f64 = 30.0;
+/// How far rows beyond the strip are unknowns, in longer sides of a cell.
 const BEYOND: f64 = 10.0;
 /// Places of the front in each row.
 const PLACES: usize = 16;

@@ -47,7 +47,9 @@ impl Neighbours {
             };
             rows.push((half, (0..=2 * half).map(weight).collect::<Vec<f64>>()));
         }
-        rows.iter_mut().for_each(|(_, weights)| each(weights, |w| *w /= total));
+        for (_, weights) in &mut rows {
+            each(weights, |w| *w /= total);
+        }
         let across = within(farthest, dx);
         Self { grid, periodic, reach: (across, along), rows, distance: moment / total }
     }
@@ -82,6 +84,7 @@ impl Neighbours {
     }
 
     /// Of cells side by side, whose neighbourhood begins with these values.
+    #[expect(clippy::inline_always, reason = "a call would lose the instructions of its caller")]
     #[inline(always)]
     fn sums(&self, around: &[f64], width: usize) -> [f64; LANES] {
         let mut sums = [0.0; LANES];
