@@ -23,7 +23,7 @@
 //! distance and the mean m of |x| over J, a front has the length `(2/m) sum x_i (1 - (J x)_i)`. Adding `b a w`
 //! times that to the energy makes the attraction of a cell `(1 + B (2 (J x)_i - 1)) s(g)`, `B = 2 b a/m`: as
 //! before on a straight front, less in a corner of the contact. The tension vanishes at b = 0.48; b = 0.415
-//! leaves -0.06, which balances the error of second order, -0.4 (a/R)^2 and more of the force, where R at
+//! leaves -0.06, which balances the error of second order, about -1.3 (a/R)^2 of the force, where R at
 //! pull-off is 10 to 50 cells.
 //!
 //! # Trapping
@@ -32,17 +32,17 @@
 //! rate reaches the largest over its places, and advances at the least. Three choices make them nearly equal.
 //!
 //! - Neighbours are a ring, weights `1 - ((r - 4 a)/1.5 a)^2`. The factor falls across a front with
-//!   the slope `B p`, p the share of the neighbours in a strip of width 1 along it, and what makes the cells
-//!   of a front differ more traps it. A ring of radius r has `B p = b a/r^2`, a disc with weights
-//!   `1 - (r/R)^2` has `5 b a/R^2`: a ring of 4 cells traps as little as a disc of 9, and takes contacts
-//!   less far from each other for one.
+//!   the slope `2 B p`, p the share of the neighbours in a strip of unit width along it, and this fall
+//!   sharpens the front and traps it. A ring of radius r has the slope `2 b a/r^2`, a disc with weights
+//!   `1 - (r/R)^2` has `10 b a/R^2`: a ring of 4 cells traps as little as a disc of 9, and mixes less of other
+//!   contacts nearby.
 //! - The law is level in contact. Its kink there and that at the range trap fronts; the latter is needed,
 //!   since a law that is level at both ends has a longer range.
 //! - c = 0.59 is where waves of 64 to 256 cells come off within 1 % at all places of their fronts on the grid;
 //!   a longer zone of open cells traps less, but its error of second order grows with the square of b.
 //!
 //! Along the rows of square cells the release rates are 1.013 w receding and 0.991 w advancing, along the
-//! diagonals 1.006 and 0.997, along (1, 2) 1.002 and 0.999; the line with c = 0.7 and a disc of 4 cells had
+//! diagonals 1.005 and 0.997, along (1, 2) 1.002 and 0.999; the line with c = 0.7 and a disc of 4 cells had
 //! 1.059 and 0.962 along the rows. On oblong cells they are nearer to w. `fronts` repeats the calibration.
 
 use super::law::{Law, Shape};
