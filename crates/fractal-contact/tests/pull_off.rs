@@ -67,9 +67,9 @@ fn the_interval_of_a_path_by_approach_holds_the_pull_off_force() {
                 let found = pulled(&scene, 64, drawn(steps, offset));
                 let error = found.error.unwrap();
                 worst = worst.max(error / exact);
-                // On the same cells, so that nothing but the steps is between them; Dugdale's zone moves by whole
-                // cells, and its force by about a thousandth.
-                let most = found.force + error + 2e-3 * exact;
+                // On the same cells, so that nothing but the steps is between them; Dugdale's zone and the front of
+                // a short range move by whole cells, and the force by some thousandths, which coarse steps miss.
+                let most = found.force + error + 4e-3 * exact;
                 assert!(
                     found.force <= fine.force + fine.error.unwrap(),
                     "{name}, {steps}: {found:?} {fine:?}"
