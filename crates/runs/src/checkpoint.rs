@@ -25,8 +25,8 @@ const DAMAGED: &str = "it is damaged or cut off";
 #[derive(Debug, Clone)]
 pub struct Checkpoint {
     path: PathBuf,
-    /// Lines of the head that say what it belongs to.
-    owner: [String; 3],
+    /// Line of the head that names the job.
+    key: String,
 }
 
 /// Why a checkpoint is not used.
@@ -46,10 +46,7 @@ impl Checkpoint {
     /// The checkpoint called `name` in the store of a directory, of the job of a key.
     pub fn new(out: &Path, name: &str, key: &str) -> Self {
         let path = crate::store::directory(out).join(format!("{name}.{ENDING}"));
-        let build = format!("# build {} {:032x}", env!("CARGO_PKG_VERSION"), digest_of_program());
-        let instructions = format!("# instructions {}", crate::manifest::instructions().join(" "));
-        let key = format!("# key {:032x}", fnv1a_128(key.as_bytes()));
-        Self { path, owner: [build, instructions, key] }
+        Self { path, key: format!("# key {:032x}", fnv1a_128(key.as_bytes())) }
     }
 
     /// How much was done, and the bytes that were kept; `None` where there is no checkpoint.
@@ -78,13 +75,13 @@ impl Checkpoint {
         let head = std::str::from_utf8(&all[..end]).map_err(|_| DAMAGED)?;
         let lines: Vec<&str> = head.lines().collect();
         let [format, build, instructions, key, digest] = lines[..] else { return Err(DAMAGED) };
-        if format != format!("{CHECKPOINT}{FORMAT}") || build != self.owner[0] {
+        if format != format!("{CHECKPOINT}{FORMAT}") || build != build_line() {
             return Err("it is of another build of the program");
         }
-        if instructions != self.owner[1] {
+        if instructions != instructions_line() {
             return Err("it was made on a processor with other vector instructions");
         }
-        if key != self.owner[2] {
+        if key != self.key {
             return Err("it is of another scene, or of other numerics");
         }
         let start = end + 2;
@@ -101,7 +98,7 @@ impl Checkpoint {
     /// # Errors
     /// [`crate::Error::File`] where it cannot be written: those before are still there.
     pub fn write(&self, done: u64, bytes: &[u8]) -> Result<()> {
-        let [build, instructions, key] = &self.owner;
+        let (build, instructions, key) = (build_line(), instructions_line(), &self.key);
         let bytes = [&done.to_le_bytes(), bytes].concat();
         let digest = digest_line(&bytes);
         let head = format!("{CHECKPOINT}{FORMAT}\n{build}\n{instructions}\n{key}\n{digest}\n\n");
@@ -126,6 +123,16 @@ impl Checkpoint {
             let _ = std::fs::remove_file(path);
         }
     }
+}
+
+/// The line of a head that says of which build it is.
+fn build_line() -> String {
+    format!("# build {} {:032x}", env!("CARGO_PKG_VERSION"), digest_of_program())
+}
+
+/// The line that says on which kind of processor it was made.
+fn instructions_line() -> String {
+    format!("# instructions {}", crate::manifest::instructions().join(" "))
 }
 
 /// The last line of a head: the digest of what follows it.
