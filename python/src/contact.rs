@@ -144,7 +144,9 @@ impl Contact {
         };
         let result = match (asked, result) {
             (Asked::Step(_), Ok(state)) => Ok(largest.enter(normal, state)),
-            (Asked::Step(_), Err(Error::NotConverged { best })) if best.report.status == Status::PulledOff => {
+            (Asked::Step(_), Err(Error::NotConverged { best }))
+                if best.report.status == Status::PulledOff =>
+            {
                 Err(Error::NotConverged { best: Box::new(largest.enter(normal, *best)) })
             }
             (Asked::Step(_), failed) => failed,
