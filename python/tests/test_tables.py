@@ -65,7 +65,8 @@ def test_quantities_have_values_of_their_types():
     for quantity in fc.quantities():
         name, told = quantity["name"], found.to_dict()
         kind, _, optional = quantity["type"].partition(" | ")
-        assert quantity["role"] in ("answer", "normalised", "residual", "work", "of_path") and quantity["symbol"] is not None
+        assert quantity["role"] in ("answer", "normalised", "residual", "work", "of_path")
+        assert quantity["symbol"] is not None
         if told.get(name) is None:
             assert optional == "None", name
             continue
