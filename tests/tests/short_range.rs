@@ -371,7 +371,7 @@ fn waves_in_other_directions_pull_off_and_snap_in_alike() {
 /// The table of the book's page on adhesion of short range:
 /// `cargo test --release -p tests how_far_straight_fronts_are_trapped -- --ignored --nocapture`.
 #[test]
-#[ignore = "a table, half an hour"]
+#[ignore = "a table, minutes"]
 fn how_far_straight_fronts_are_trapped() {
     for (cells, direction) in [
         (64, (1, 0)),

@@ -9,8 +9,8 @@ use arguments::{Arguments, Command, PressArguments};
 use clap::{ArgMatches, CommandFactory as _, FromArgMatches as _};
 use fractal_contact::models::{MODELS, ModelRecord};
 use fractal_contact::scenes::{
-    Error, GeneratedSurface, Options, Plan, Result, SceneFile, SceneOutcome, info, info_json,
-    info_statistics, run, write_twin,
+    Error, GeneratedSurface, Options, Plan, Result, SceneOutcome, info, info_json, info_statistics, run,
+    write_twin,
 };
 use fractal_contact::surface_gen::{Anisotropy, HeightDistribution, TwinSpectrum};
 use press::SurfaceKeys;
@@ -36,8 +36,10 @@ fn main() -> ExitCode {
 
 fn execute(arguments: Arguments, matches: &ArgMatches) -> Result<ExitCode> {
     match arguments.command {
-        Command::Press { asked, out, threads } => press_map(&asked, out, threads, matches),
-        Command::New { asked, scene } => write_scene(&asked, scene, matches),
+        Command::Press { asked, out, threads } => {
+            press_map((&asked, &SurfaceKeys::given(matches)), out, threads)
+        }
+        Command::New { asked, scene } => write_scene((&asked, &SurfaceKeys::given(matches)), scene),
         Command::Plan { scene, nodes, node_cores, division } => {
             let scene = read_scene(&scene)?;
             let plan = Plan::calibrated(&scene)?;
@@ -122,41 +124,31 @@ fn execute(arguments: Arguments, matches: &ArgMatches) -> Result<ExitCode> {
 
 /// Writes the scene that flags describe beside its results, and runs it.
 fn press_map(
-    asked: &PressArguments,
+    (asked, keys): (&PressArguments, &SurfaceKeys),
     out: Option<PathBuf>,
     threads: Option<usize>,
-    matches: &ArgMatches,
 ) -> Result<ExitCode> {
     let out = out.unwrap_or_else(|| default_directory(&asked.map));
     let path = out.join("scene.toml");
-    let scene = scene_of(asked, matches, &path)?;
+    let scene = press::scene(asked, keys, &path)?;
     runs::files::write_whole(&path, scene.text.as_bytes())?;
     runs::err!("{}", path.display());
     run_scene(&path, &Options { out, threads: threads.unwrap_or_else(all_threads), fresh: false })
 }
 
 /// Writes the scene that flags describe.
-fn write_scene(asked: &PressArguments, scene: Option<PathBuf>, matches: &ArgMatches) -> Result<ExitCode> {
+fn write_scene((asked, keys): (&PressArguments, &SurfaceKeys), scene: Option<PathBuf>) -> Result<ExitCode> {
     let path =
         scene.unwrap_or_else(|| Path::new(asked.map.file_name().unwrap_or_default()).with_extension("toml"));
     if path.exists() {
         let reason = format!("{} exists: move it away, or name another with --scene", path.display());
         return Err(Error::Argument { name: "scene", reason });
     }
-    let scene = scene_of(asked, matches, &path)?;
+    let scene = press::scene(asked, keys, &path)?;
     runs::files::write_whole(&path, scene.text.as_bytes())?;
     runs::out!("{}", path.display());
     runs::err!("fractal-contact run {}", runs::cluster::quoted(&path.to_string_lossy()));
     Ok(ExitCode::SUCCESS)
-}
-
-/// The scene that flags describe.
-fn scene_of(asked: &PressArguments, matches: &ArgMatches, at: &Path) -> Result<SceneFile> {
-    // `press` or `new`: the flags of a map are theirs.
-    let Some((_, given)) = matches.subcommand() else {
-        return press::scene(asked, &SurfaceKeys::default(), at);
-    };
-    press::scene(asked, &SurfaceKeys::given(given), at)
 }
 
 /// The models of the library, or one of them, with their abilities.

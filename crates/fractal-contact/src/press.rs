@@ -16,12 +16,12 @@ const NUMBERS: [&str; 6] = ["missing", "skip_lines", "scars", "outliers", "rotat
 const COMMENT: usize = 40;
 
 /// Flags of a map as they were written, by the names of their keys in [scene.surface].
-#[derive(Default)]
 pub struct SurfaceKeys(Vec<(String, String)>);
 
 impl SurfaceKeys {
-    /// Those on the command line.
+    /// Those of the command that was called.
     pub fn given(matches: &ArgMatches) -> Self {
+        let matches = matches.subcommand().map_or(matches, |(_, own)| own);
         let flags = MapArguments::augment_args(clap::Command::default());
         let names = flags.get_arguments().map(|flag| flag.get_id().to_string()).chain(["cells".to_owned()]);
         let given = names.filter(|name| matches.value_source(name) == Some(ValueSource::CommandLine));

@@ -41,12 +41,12 @@ pub fn minres<T: Real>(
         product(&v, &mut y);
         outcome.steps += 1;
         if outcome.steps > 1 {
-            let share = T::of(beta / beta_before);
-            update(&mut y, &last, |y, &r| *y += T::default() - share * r);
+            let share = T::of(-beta / beta_before);
+            update(&mut y, &last, |y, &r| *y += share * r);
         }
         let alpha = dot(&v, &y);
-        let share = T::of(alpha / beta);
-        update(&mut y, &b, |y, &r| *y += T::default() - share * r);
+        let share = T::of(-alpha / beta);
+        update(&mut y, &b, |y, &r| *y += share * r);
         // The two last residuals of Lanczos are y and b.
         std::mem::swap(&mut last, &mut b);
         std::mem::swap(&mut b, &mut y);
@@ -65,9 +65,9 @@ pub fn minres<T: Real>(
         (cosine, sine) = (g / gamma, beta / gamma);
         let step = T::of(cosine * left);
         left *= sine;
-        let (one, two, scale) = (T::of(epsilon_before), T::of(delta), T::of(gamma.recip()));
+        let (one, two, scale) = (T::of(-epsilon_before), T::of(-delta), T::of(gamma.recip()));
         // w is the last direction, `before` the one before it and then the new one.
-        update(&mut before, &w, |before, &w| *before = T::default() - one * *before - two * w);
+        update(&mut before, &w, |before, &w| *before = one * *before + two * w);
         update(&mut before, &v, |direction, &v| *direction = scale * (*direction + v));
         std::mem::swap(&mut before, &mut w);
         update(&mut x, &w, |x, &w| *x += step * w);

@@ -102,8 +102,9 @@ impl SceneFile {
         let own = self.surface.own_cells().map(|Cells { columns, rows }| columns.max(rows));
         let given = own.is_some();
         let model = with_tolerance(self, model, target);
+        // What else is wrong with a grid is told by its trial.
         let fits = |longer: &usize| {
-            on_grid(self, &model, *longer).is_ok_and(|scene| calibration::jobs_in_memory(&scene, 1).is_ok())
+            !on_grid(self, &model, *longer).is_ok_and(|scene| calibration::jobs_in_memory(&scene, 1).is_err())
         };
         let grids: Vec<usize> = grids(self).into_iter().take_while(fits).collect();
         let normalised_on = if given { grids.last() } else { grids.first() };

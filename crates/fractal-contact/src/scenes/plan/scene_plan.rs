@@ -199,7 +199,10 @@ fn of_slopes(scene: &SceneFile, map: Option<&surface_io::Description>) -> Option
     let (what, help) = if slope > SMALL_SLOPE {
         ("every model here assumes small slopes", "beyond 0.3 take the results as those of a linear theory")
     } else if slope > 0.0 && slope < FLAT_SLOPE {
-        ("few surfaces are that smooth", "a contact closes under a pressure of E* times the slope")
+        (
+            "few surfaces are that smooth",
+            "a mean pressure of E* times the slope closes nearly all of such a contact",
+        )
     } else {
         return None;
     };

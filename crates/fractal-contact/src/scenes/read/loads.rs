@@ -297,8 +297,8 @@ fn read_path(entry: &Entry<'_>, system: System, pulls: bool, size: Size) -> Read
         checked.map_err(|e| {
             let help = match &e {
                 contact_model::Error::Domain { name, .. } if name == "time" => "times never decrease along a path",
-                _ if pulls => "loads of a path are finite numbers",
-                _ => "loads of a path are finite and at least 0: only `adhesion` in [effects] lets a contact pull",
+                _ if pulls => "loads are finite numbers",
+                _ => "loads are finite, and normal loads at least 0: only `adhesion` in [effects] lets a contact pull",
             };
             item.diagnostic(e.to_string()).with_help(help)
         })?;
