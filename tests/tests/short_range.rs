@@ -380,6 +380,7 @@ fn how_far_straight_fronts_are_trapped() {
         (512, (1, 0)),
         (1024, (1, 0)),
         (91, (1, 1)),
+        (181, (1, 1)),
         (143, (1, 2)),
     ] {
         let length = cells as f64 / f64::from(direction.0).hypot(f64::from(direction.1));
