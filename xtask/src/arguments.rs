@@ -48,6 +48,8 @@ Results go to out/ (--out). Finished surfaces are kept in out/.units and reused 
 interruption loses at most the surfaces in flight, and the same command resumes. The same command gives the same bytes of CSV
 for any number of threads; times and the machine are in manifest.json.
 
+Completion: alias xtask='cargo xtask'; source <(cargo xtask completions bash)
+
 Exit codes: 0 done; 1 error; 2 bad arguments; 3 done, but some solves did not converge, stored numbers differ or a hard case fails; 130 stopped by Ctrl-C,
 SIGTERM or SIGHUP; 141 nobody reads the output any more.";
 
@@ -127,6 +129,11 @@ pub enum Command {
     CheckReference(Reference),
     /// Hard cases: why each is hard, what is asserted, the figure reached (stability.csv, stability.md).
     Stability(StabilityArguments),
+    /// A script that completes arguments in a shell, for the program `xtask` or an alias of that name.
+    Completions {
+        /// The shell.
+        shell: clap_complete::Shell,
+    },
     /// Links of every Markdown file, commands of the book, and its pages where mdbook is installed.
     Book(BookArguments),
 }

@@ -13,7 +13,7 @@ mod book;
 mod cluster;
 
 use arguments::{Arguments, BenchArguments, Command, Redraw, TuningArguments};
-use clap::Parser as _;
+use clap::{CommandFactory as _, Parser as _};
 use evaluation::{BenchRow, Outcome, Run};
 use paper::{Claim, Judged};
 use runs::{Error, Failure, Reporter, Result, Store};
@@ -67,6 +67,12 @@ fn solve(command: Command, typed: &[String]) -> Result<ExitCode> {
         Command::Bench(options) => return bench(options),
         Command::Tuning(options) => return tuning(options),
         Command::Redraw(options) => return redraw(options),
+        Command::Completions { shell } => {
+            let mut script = Vec::new();
+            clap_complete::generate(*shell, &mut Arguments::command(), "xtask", &mut script);
+            runs::print(format_args!("{}", String::from_utf8_lossy(&script)));
+            return Ok(ExitCode::SUCCESS);
+        }
         Command::Book(options) => return book::book(options.pictures),
         _ => {}
     }

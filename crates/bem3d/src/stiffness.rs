@@ -152,7 +152,7 @@ pub fn solve(
             let set_error = set_error(operators.table(), &room, &left, &at_undecided, q) / ritz;
             best = Stiffness { value: ritz, solve_error: error, set_error, q: q.clone(), steps };
         }
-        if !rough && (error <= tuning.stiffness_share * tolerance || last || stop()) {
+        if !rough && (error <= tuning.stiffness_share * tolerance || last || stop.stops()) {
             break;
         }
         steps += outcome.steps;

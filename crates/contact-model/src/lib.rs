@@ -74,7 +74,7 @@ pub use height_map::HeightMap;
 pub use line::Line;
 pub use load::Load;
 pub use memory::PathMemory;
-pub use model::{ContactModel, PreparedContact, RequiredMemory, Source, Stop, check_stop, never};
+pub use model::{ContactModel, PreparedContact, RequiredMemory, Source, Stop, Watch, check_stop, never};
 pub use nondimensionalisation::Nondimensionalisation;
 pub use normalisation::{Normalisation, PAPER_STIFFNESS_FACTOR};
 pub use pair::{Body, Pair};

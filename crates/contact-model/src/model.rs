@@ -29,8 +29,49 @@ pub struct RequiredMemory {
     pub bytes: f64,
 }
 
-/// Asked between iterations: `true` means stop now. A solver never reads a clock itself.
-pub type Stop<'a> = &'a dyn Fn() -> bool;
+/// Whoever waits for a solve: may end it between iterations, and is told how far it is.
+///
+/// Every `Fn() -> bool` is one that is told nothing. A solver never reads a clock itself.
+///
+/// ```
+/// use contact_model::{Stop, Watch};
+/// use std::cell::Cell;
+///
+/// struct Last(Cell<f64>);
+///
+/// impl Watch for Last {
+///     fn stops(&self) -> bool {
+///         false
+///     }
+///     fn residual(&self, residual: f64, _tolerance: f64) {
+///         self.0.set(residual);
+///     }
+/// }
+/// let last = Last(Cell::new(f64::NAN));
+/// let solve = |stop: Stop<'_>| stop.residual(1e-3, 1e-6);
+/// solve(&last);
+/// solve(&|| false);
+/// assert_eq!(last.0.get(), 1e-3);
+/// ```
+pub trait Watch {
+    /// `true` means stop now.
+    fn stops(&self) -> bool;
+
+    /// After an iteration of the load in hand: its largest residual, dimensionless, and the tolerance that
+    /// ends the solve. Residuals need not fall from one iteration to the next.
+    fn residual(&self, residual: f64, tolerance: f64) {
+        let _ = (residual, tolerance);
+    }
+}
+
+impl<F: Fn() -> bool> Watch for F {
+    fn stops(&self) -> bool {
+        self()
+    }
+}
+
+/// Polled between iterations.
+pub type Stop<'a> = &'a dyn Watch;
 
 /// The [`Stop`] that never stops.
 pub fn never() -> bool {
@@ -42,7 +83,7 @@ pub fn never() -> bool {
 /// # Errors
 /// [`Error::Stopped`] without one.
 pub fn check_stop(stop: Stop<'_>) -> Result<()> {
-    if stop() { Err(Error::Stopped { best: None }) } else { Ok(()) }
+    if stop.stops() { Err(Error::Stopped { best: None }) } else { Ok(()) }
 }
 
 /// A way to answer "what force, approach and stiffness": plan once.

@@ -46,6 +46,7 @@ mod realisation_jobs;
 mod run;
 mod sample;
 mod session;
+mod so_far;
 mod square_map;
 mod table_of;
 mod tables;
@@ -65,7 +66,9 @@ pub use forces::Forces;
 pub use hard_cases::hard_cases;
 pub use header::{PAPER, describe, flags, header};
 pub use manifest::write_manifest;
-pub use measured::{COARSER_SURFACES, Measured, Series, ensemble_jobs, measure, transformed};
+pub use measured::{
+    COARSER_SURFACES, Measured, Series, ensemble_jobs, measure, measure_showing, transformed,
+};
 pub use outcome::Outcome;
 pub use realisation::{Discretisation, FORMAT, Model, Models, RealisationJob, RealisationResult};
 pub use realisation_jobs::{is_solved, solve_realisations};

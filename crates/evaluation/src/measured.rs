@@ -1,11 +1,13 @@
 //! An ensemble of one model over all fractal dimensions.
 
 use crate::realisation::{Discretisation, Model, Models, RealisationJob, RealisationResult};
-use crate::realisation_jobs::solve_realisations;
+use crate::realisation_jobs::{is_solved, solve_in_order};
 use crate::run::Run;
 use crate::sample::{FLOOR_CELLS, Sample};
+use crate::so_far::SoFar;
 use analysis::{CollapsePoint, Curves, EnsemblePoint, ensemble, relative_differences};
-use runs::{Error, Progress, Result, Store};
+use runs::amounts::duration;
+use runs::{Error, Job as _, Ordered, Progress, Result, Store};
 use std::sync::Arc;
 
 /// Surfaces that are solved on the coarser grids as well: enough to know the scatter of a difference to a
@@ -40,16 +42,73 @@ pub struct Measured {
 /// The ensemble of a model, from the store where it is there, with its first surfaces on coarser grids.
 ///
 /// # Errors
-/// See [`solve_realisations`].
+/// See [`crate::solve_realisations`].
 pub fn measure(model: Model, run: &Run, store: &Store, progress: &dyn Progress) -> Result<Measured> {
-    let mut all = Vec::new();
-    for (grid, surfaces) in grids(model, run) {
-        all.push(measure_on(grid, surfaces, run, store, progress)?);
+    measure_showing(model, run, store, progress, &|_| Ok(()))
+}
+
+/// As [`measure`]; `show` gets what there is now and then, from any thread: whole ensembles of fewer surfaces
+/// or on a coarser grid, without their own coarser grids.
+///
+/// The coarse grids come first, then the surfaces one by one.
+///
+/// # Errors
+/// Those of `show` too.
+pub fn measure_showing(
+    model: Model,
+    run: &Run,
+    store: &Store,
+    progress: &dyn Progress,
+    show: &(dyn Fn(&Measured) -> Result<()> + Sync),
+) -> Result<Measured> {
+    let ensembles: Vec<Vec<RealisationJob>> =
+        grids(model, run).map(|(grid, surfaces)| jobs(grid, surfaces, run)).collect();
+    let all: Vec<RealisationJob> = ensembles.iter().rev().flatten().cloned().collect();
+    let mut order: Vec<usize> = (0..all.len()).collect();
+    for of_surface in order.chunks_mut(run.dimensions().len().max(1)) {
+        of_surface.sort_by_key(|&job| std::cmp::Reverse(all[job].cost()));
     }
-    let mut all = all.into_iter();
-    let measured = all.next().ok_or_else(|| Error::parameter("model", model.name(), "a grid"))?;
-    let coarser = all.next().zip(all.next()).map(|(half, quarter)| Box::new([half, quarter]));
-    Ok(Measured { coarser, ..measured })
+    let what = words(model, run, &ensembles, store);
+    let so_far = SoFar::new(&ensembles, run, show);
+    let solved = |job: usize, result: &RealisationResult| so_far.add(job, result);
+    let ordered = Ordered { jobs: &all, order: &order, solved: &solved };
+    let mut results = solve_in_order(&what, &ordered, store, run.threads, progress)?.into_iter();
+    let mut measured = Vec::new();
+    for jobs in ensembles.into_iter().rev() {
+        let results = results.by_ref().take(jobs.len()).collect();
+        measured.push(Measured::new(jobs, results, run)?);
+    }
+    let measured_on = measured.pop().ok_or_else(|| Error::parameter("model", model.name(), "a grid"))?;
+    let coarser = measured.pop().zip(measured.pop()).map(|(half, quarter)| Box::new([half, quarter]));
+    Ok(Measured { coarser, ..measured_on })
+}
+
+/// What is solved, and how long that takes.
+fn words(model: Model, run: &Run, ensembles: &[Vec<RealisationJob>], store: &Store) -> String {
+    let kind = match model {
+        Model::Bem3d => "surfaces",
+        Model::Mdr1d => "lines",
+    };
+    let of = |jobs: &Vec<RealisationJob>| {
+        let size = match jobs.first()?.discretisation {
+            Discretisation::Bem3d { cells, .. } => format!("{cells} x {cells} cells"),
+            Discretisation::Mdr1d { elements } => format!("{elements} elements"),
+        };
+        Some(format!("{} {kind} of {size}", jobs.len()))
+    };
+    let sizes: Vec<String> = ensembles.iter().filter_map(of).collect();
+    let missing = ensembles.iter().flatten().filter(|job| !is_solved(job, store));
+    // Processor milliseconds.
+    let seconds = missing.map(|job| 1e-3 * job.cost() as f64).sum::<f64>() / run.threads.max(1) as f64;
+    let time = match seconds {
+        s if s > 0.0 => {
+            let threads = if run.threads == 1 { "1 thread" } else { &format!("{} threads", run.threads) };
+            format!("; about {} on {threads}", duration(s.max(1.0)))
+        }
+        _ => String::new(),
+    };
+    let loads = run.ensemble(model).2.values().len();
+    format!("{}: {}, {loads} loads{time}", model.name(), sizes.join(", "))
 }
 
 /// The grid of a model with its number of surfaces, and the two coarser ones.
@@ -84,37 +143,24 @@ fn jobs(discretisation: Discretisation, surfaces: usize, run: &Run) -> Vec<Reali
     (0..surfaces).flat_map(of_surface).collect()
 }
 
-/// An ensemble on its own grid alone.
-///
-/// # Errors
-/// See [`solve_realisations`].
-fn measure_on(
-    discretisation: Discretisation,
-    surfaces: usize,
-    run: &Run,
-    store: &Store,
-    progress: &dyn Progress,
-) -> Result<Measured> {
-    let dimensions = run.dimensions();
-    let forces = run.ensemble(discretisation.of()).2.values();
-    let jobs = jobs(discretisation, surfaces, run);
-    let (kind, size) = match discretisation {
-        Discretisation::Bem3d { cells, .. } => ("surfaces", format!("{cells} x {cells} cells")),
-        Discretisation::Mdr1d { elements } => ("lines", format!("{elements} elements")),
-    };
-    let what = format!("{}: {} {kind} of {size}, {} loads", discretisation.name(), jobs.len(), forces.len());
-    let results = solve_realisations(&what, &jobs, store, run.threads, progress)?;
-    let mut pairs: Vec<Vec<(RealisationJob, RealisationResult)>> =
-        dimensions.iter().map(|_| Vec::new()).collect();
-    for (i, pair) in jobs.into_iter().zip(results).enumerate() {
-        pairs[i % dimensions.len()].push(pair);
+impl Measured {
+    /// An ensemble on its own grid alone, from its jobs and their results.
+    pub(crate) fn new(jobs: Vec<RealisationJob>, results: Vec<RealisationResult>, run: &Run) -> Result<Self> {
+        let dimensions = run.dimensions();
+        let first = jobs.first().ok_or_else(|| Error::parameter("surfaces", 0, "at least 1"))?;
+        let (discretisation, forces) = (first.discretisation, Arc::clone(&first.forces));
+        let mut pairs: Vec<Vec<(RealisationJob, RealisationResult)>> =
+            dimensions.iter().map(|_| Vec::new()).collect();
+        for (i, pair) in jobs.into_iter().zip(results).enumerate() {
+            pairs[i % dimensions.len()].push(pair);
+        }
+        let series = pairs
+            .into_iter()
+            .zip(&dimensions)
+            .map(|(realisations, &d)| Series::new(d, realisations, &forces))
+            .collect::<Result<_>>()?;
+        Ok(Self { discretisation, series, coarser: None })
     }
-    let series = pairs
-        .into_iter()
-        .zip(&dimensions)
-        .map(|(realisations, &d)| Series::new(d, realisations, forces))
-        .collect::<Result<_>>()?;
-    Ok(Measured { discretisation, series, coarser: None })
 }
 
 impl Series {

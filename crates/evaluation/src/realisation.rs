@@ -8,7 +8,7 @@ use contact_model::{
     ContactModel, Outputs, PAPER_STIFFNESS_FACTOR, Scene, SelfAffine, Stop, Surface, line_length,
 };
 use mdr1d::{Ensemble, Mdr1d};
-use runs::{Error, Job, Result, ResultKind};
+use runs::{Error, Job, Progress, Result, ResultKind, Silent, StatesInHand};
 use serde::{Deserialize, Serialize};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
@@ -288,13 +288,24 @@ impl Job for RealisationJob {
         1000 + 500 * self.forces.len() as u64
     }
 
-    /// From the smallest load upwards with one prepared contact. A solve that does not converge is recorded
-    /// with its status.
     fn solve(&self, stop: Stop<'_>) -> Result<RealisationResult> {
+        self.resume(None, &|_| Ok(()), &Silent, stop)
+    }
+
+    /// From the smallest load upwards with one prepared contact. A solve that does not converge is recorded
+    /// with its status. Nothing is stored before the end.
+    fn resume(
+        &self,
+        _: Option<RealisationResult>,
+        _: &dyn Fn(&RealisationResult) -> Result<()>,
+        progress: &dyn Progress,
+        stop: Stop<'_>,
+    ) -> Result<RealisationResult> {
         let what = || format!("{} at D_f = {:?}", self.discretisation.name(), self.fractal_dimension);
         let surface = self.surface().map_err(|e| Error::model(what())(e))?;
         let model = self.models.of(self, &surface).map_err(|e| Error::model(what())(e))?;
-        self.solve_with(&*model, stop)
+        let states = [0, self.forces.len()];
+        self.solve_with(&*model, &StatesInHand::new((self.name(), self.cost()), states, progress, stop))
     }
 
     /// The loads are part of the key; the samples must be of those loads.
@@ -309,7 +320,7 @@ impl RealisationJob {
         SelfAffine::new(self.fractal_dimension, 1.0, 1.0)
     }
 
-    fn solve_with(&self, model: &dyn ContactModel, stop: Stop<'_>) -> Result<RealisationResult> {
+    fn solve_with(&self, model: &dyn ContactModel, told: &StatesInHand<'_>) -> Result<RealisationResult> {
         let start = Instant::now();
         let what =
             || format!("{} at D_f = {:?}, surface {}", model.name(), self.fractal_dimension, self.index);
@@ -323,9 +334,10 @@ impl RealisationJob {
             let normalisation = contact.normalisation();
             let loads = normalisation.loads(&self.forces)?;
             let mut samples = Vec::with_capacity(loads.len());
-            contact.sweep(&loads, stop, &mut |i, state| {
+            contact.sweep(&loads, told, &mut |i, state| {
                 let state = state.or_else(contact_model::Error::into_best)?;
                 samples.push(Sample::new(self.forces[i], &state, &normalisation)?);
+                told.solved(samples.len());
                 Ok(())
             })?;
             Ok((normalisation.rms_height()?, samples))
@@ -392,7 +404,8 @@ mod tests {
             forces: [0.1, 1.0].into(),
             models: Arc::default(),
         };
-        let result = job.solve_with(&Failing, &contact_model::never).unwrap();
+        let told = StatesInHand::new((job.name(), job.cost()), [0, 2], &Silent, &contact_model::never);
+        let result = job.solve_with(&Failing, &told).unwrap();
         approx::assert_relative_eq!(result.samples[0].force, 0.2);
         assert!(result.samples[0].converged() && !result.samples[1].converged());
         assert_eq!(result.samples[1].status, "iteration_limit");

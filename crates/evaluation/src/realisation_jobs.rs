@@ -2,7 +2,10 @@
 
 use crate::realisation::{Model, RealisationJob, RealisationResult};
 use contact_model::never;
-use runs::{Job as _, Progress, Result, Store, Threads, collect, run_stored, threads_for_memory};
+use runs::{
+    Job as _, Ordered, Progress, Result, Store, Threads, collect, largest_first, run_in_order,
+    threads_for_memory,
+};
 
 /// Solves what the store does not hold, the largest first, and gives the results in the order of
 /// `jobs`. The results do not depend on `threads`.
@@ -20,6 +23,19 @@ pub fn solve_realisations(
     threads: usize,
     progress: &dyn Progress,
 ) -> Result<Vec<RealisationResult>> {
+    let order = largest_first(jobs.len(), |i| jobs[i].cost());
+    solve_in_order(what, &Ordered { jobs, order: &order, solved: &|_, _| Ok(()) }, store, threads, progress)
+}
+
+/// As [`solve_realisations`], in another order than that of the costs.
+pub(crate) fn solve_in_order(
+    what: &str,
+    ordered: &Ordered<'_, RealisationJob>,
+    store: &Store,
+    threads: usize,
+    progress: &dyn Progress,
+) -> Result<Vec<RealisationResult>> {
+    let jobs = ordered.jobs;
     let largest = jobs.iter().map(|job| job.discretisation).max_by(|a, b| a.memory().total_cmp(&b.memory()));
     let in_flight = largest.map_or(Ok(threads), |largest| {
         let name = match largest.of() {
@@ -29,7 +45,7 @@ pub fn solve_realisations(
         threads_for_memory(threads, largest.memory(), name, largest.size())
     })?;
     let threads = Threads { total: threads, jobs: in_flight };
-    collect(run_stored(what, jobs, store, threads, progress, &never))
+    collect(run_in_order(what, ordered, store, threads, progress, &never))
 }
 
 /// Whether the store holds a result of this job; its numbers are not read.

@@ -1,10 +1,14 @@
 //! The command line.
 
-use clap::builder::TypedValueParser as _;
+use clap::builder::{PossibleValue, PossibleValuesParser, StringValueParser, TypedValueParser};
 use clap::{Parser, Subcommand};
 use runs::ShardChoice;
 use runs::cluster::{Division, Submission};
+use std::error::Error;
+use std::ffi::OsStr;
+use std::marker::PhantomData;
 use std::path::PathBuf;
+use std::str::FromStr;
 use surface_io::{Preprocessing, ReadOptions};
 
 /// Contact of rough and smooth elastic bodies from a short text file: it says what is pressed, what is asked
@@ -42,6 +46,7 @@ Examples:
   fractal-contact info results.csv             also scenes and surfaces
   fractal-contact surface rough.txt --seed 1 --size '1 mm' --rms-height '1 um'
   fractal-contact completions bash > /etc/bash_completion.d/fractal-contact
+  fractal-contact man ~/.local/share/man/man1
 
 Exit codes: 0 done; 1 error; 2 a mistake in the scene or the arguments; 3 done, but some loads were refused or did not converge; 130 stopped
 by Ctrl-C, SIGTERM or SIGHUP, with the states so far in the files (a second signal ends at once); 141 nobody reads the output any more.
@@ -182,6 +187,53 @@ pub enum Command {
         /// The shell.
         shell: clap_complete::Shell,
     },
+    /// Manual pages of the program and of each command, for `man`.
+    Man {
+        /// Directory of the pages, such as ~/.local/share/man/man1.
+        directory: PathBuf,
+    },
+}
+
+/// The words of a kind, listed by help and completed by shells.
+macro_rules! words {
+    ($kind:ty) => {
+        PossibleValuesParser::new(<$kind>::ALL.map(<$kind>::word)).try_map(|word| word.parse::<$kind>())
+    };
+}
+
+/// Values with some words among them, which shells complete.
+struct Open<T>(&'static [&'static str], PhantomData<fn() -> T>);
+
+impl<T> Open<T> {
+    fn new(words: &'static [&'static str]) -> Self {
+        Self(words, PhantomData)
+    }
+}
+
+impl<T> Clone for Open<T> {
+    fn clone(&self) -> Self {
+        Self::new(self.0)
+    }
+}
+
+impl<T> TypedValueParser for Open<T>
+where
+    T: FromStr<Err: Error + Send + Sync + 'static> + Clone + Send + Sync + 'static,
+{
+    type Value = T;
+
+    fn parse_ref(
+        &self,
+        command: &clap::Command,
+        arg: Option<&clap::Arg>,
+        value: &OsStr,
+    ) -> Result<T, clap::Error> {
+        StringValueParser::new().try_map(|text| text.parse::<T>()).parse_ref(command, arg, value)
+    }
+
+    fn possible_values(&self) -> Option<Box<dyn Iterator<Item = PossibleValue> + '_>> {
+        Some(Box::new(self.0.iter().map(|word| PossibleValue::new(*word))))
+    }
 }
 
 /// What is pressed and how.
@@ -227,7 +279,7 @@ pub struct PressArguments {
     #[arg(long, value_name = "N")]
     cells: Option<usize>,
     /// What becomes of points without a height: no_contact (they cannot touch); see --fill.
-    #[arg(long, conflicts_with = "fill")]
+    #[arg(long, conflicts_with = "fill", value_parser = words!(surface_io::Undefined))]
     pub undefined: Option<surface_io::Undefined>,
     #[command(flatten)]
     more: MapArguments,
@@ -351,8 +403,8 @@ pub struct MapArguments {
     /// Number, from 0, or name of the channel of a file with several.
     #[arg(long)]
     channel: Option<surface_io::ChannelChoice>,
-    /// Format of a surface, where its name and content do not tell: text or xyz, for instance.
-    #[arg(long)]
+    /// Format of a surface, where its name and content do not tell.
+    #[arg(long, value_parser = words!(surface_io::Format))]
     format: Option<surface_io::Format>,
     /// Unit of its heights, such as nm.
     #[arg(long)]
@@ -369,15 +421,15 @@ pub struct MapArguments {
     /// Height of one count of a file of counts, such as "0.25 nm".
     #[arg(long, value_name = "LENGTH")]
     height_scale: Option<surface_io::Quantity>,
-    /// How decimals are written: point or comma.
-    #[arg(long, default_value = "point")]
+    /// How decimals are written.
+    #[arg(long, default_value = "point", value_parser = words!(surface_io::Decimal))]
     decimal: surface_io::Decimal,
     /// What the two indices of an array are, where its file does not say: xy (the first is x) or yx.
-    #[arg(long)]
+    #[arg(long, value_parser = words!(surface_io::Axes))]
     axes: Option<surface_io::Axes>,
     /// What the first line and the first column of a text matrix are, where they may be coordinates: axes or
     /// heights.
-    #[arg(long)]
+    #[arg(long, value_parser = words!(surface_io::Border))]
     border: Option<surface_io::Border>,
     /// A number that stands for an undefined point, such as -9999.
     #[arg(long, allow_negative_numbers = true)]
@@ -387,10 +439,10 @@ pub struct MapArguments {
     skip_lines: usize,
     /// Part of the map: centre, defined (the largest rectangle without undefined points), or
     /// "row,column,rows,columns".
-    #[arg(long)]
+    #[arg(long, value_parser = Open::<surface_io::Crop>::new(&["centre", "defined"]), hide_possible_values = true)]
     crop: Option<surface_io::Crop>,
     /// Shifts scan lines (rows) to a common height: median_difference (to the line before) or median.
-    #[arg(long, value_name = "HOW")]
+    #[arg(long, value_name = "HOW", value_parser = words!(surface_io::AlignLines))]
     align_lines: Option<surface_io::AlignLines>,
     /// Streaks along x, at most four rows tall, become undefined beyond so many robust standard deviations of
     /// the differences between rows.
@@ -403,22 +455,22 @@ pub struct MapArguments {
     #[arg(long, value_name = "LENGTH")]
     tip_radius: Option<surface_io::Quantity>,
     /// Heights for undefined points: neighbours, plane or one height [default: they stay undefined].
-    #[arg(long)]
+    #[arg(long, value_name = "HEIGHTS", value_parser = Open::<surface_io::Fill>::new(&["neighbours", "plane"]), hide_possible_values = true)]
     fill: Option<surface_io::Fill>,
-    /// What is subtracted: none, mean, plane, quadric, sphere or cylinder.
-    #[arg(long, default_value = "none")]
+    /// What is subtracted.
+    #[arg(long, default_value = "none", value_parser = words!(surface_io::Detrend))]
     detrend: surface_io::Detrend,
     /// Cut-off wavelength of a Gaussian low-pass filter across the scan lines, along y, such as "2 nm".
     #[arg(long, value_name = "LENGTH")]
     filter_across: Option<surface_io::Quantity>,
-    /// Which axis is reversed: x or y.
-    #[arg(long)]
+    /// Which axis is reversed.
+    #[arg(long, value_parser = words!(surface_io::Mirror))]
     mirror: Option<surface_io::Mirror>,
-    /// Degrees by which the map is turned: 0, 90, 180 or 270.
+    /// Degrees by which the map is turned.
     #[arg(long, default_value = "0", value_parser = ["0", "90", "180", "270"])]
     rotate: String,
-    /// Taper towards the edges: hann.
-    #[arg(long)]
+    /// Taper towards the edges.
+    #[arg(long, value_parser = words!(surface_io::Window))]
     window: Option<surface_io::Window>,
 }
 

@@ -119,6 +119,13 @@ fn execute(arguments: Arguments, matches: &ArgMatches) -> Result<ExitCode> {
             runs::print(format_args!("{}", String::from_utf8_lossy(&script)));
             Ok(ExitCode::SUCCESS)
         }
+        Command::Man { directory } => {
+            runs::files::create_directory(&directory)?;
+            let unwritten = runs::Error::file("write the pages of", &directory);
+            clap_mangen::generate_to(Arguments::command(), &directory).map_err(unwritten)?;
+            runs::out!("{}", directory.join("fractal-contact.1").display());
+            Ok(ExitCode::SUCCESS)
+        }
     }
 }
 

@@ -166,6 +166,17 @@ fn what_a_map_lacks_is_said() {
     of(&changed(|map, ix, iy| map.heights()[64 * iy + ix].min(0.001)), "heights are not Gaussian");
     let few = surface_gen::self_affine_map(&SelfAffine::new(2.1, 1.0, 0.01).unwrap(), 64, 1).unwrap();
     of(&few, "of the variance of heights is in the longest waves");
+    // A tilt and a point that stands out are one cause each.
+    let causes = |map: &HeightMap| {
+        let own = |n: &String| n.contains("greenwood_williamson: ") || n.contains("the highest point");
+        notes(map, PERIODIC).into_iter().filter(own).collect::<Vec<_>>()
+    };
+    let tilted = causes(&changed(|map, ix, iy| map.heights()[64 * iy + ix] + 5e-4 * ix as f64));
+    assert!(tilted.len() == 1 && tilted[0].contains("the map is tilted: "), "{tilted:#?}");
+    let spiked = causes(&changed(
+        |map, ix, iy| if ix + iy == 40 && ix == 9 { 0.2 } else { map.heights()[64 * iy + ix] },
+    ));
+    assert!(spiked.len() == 1 && spiked[0].contains("the highest point, in row 31, column 9"), "{spiked:#?}");
     // In units the slope counts.
     let steep = PERIODIC.replace("units = \"none\"\n", "").replace("modulus = 1", "modulus = \"1 GPa\"");
     let steep = steep.replace("[0.002, 0.01]", "\"1 MPa\"").replace("unit = \"none\"", "unit = \"um\"");

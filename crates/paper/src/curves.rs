@@ -5,12 +5,14 @@ use crate::judged::Judged;
 use crate::words;
 use analysis::Table;
 use evaluation::{
-    Measured, Model, Outcome, Run, Session, compact_table, curves_table, describe, flags, header, measure,
-    samples_table, write_budget,
+    Measured, Model, Outcome, Run, Session, compact_table, curves_table, describe, flags, header,
+    measure_showing, samples_table, write_budget,
 };
 use plots::{Axis, Key, LineStyle, Mark, MarkShape, NEUTRAL, Picture, REFERENCE, color, logarithmic, shape};
 use runs::{CsvFile, Error, Header, Progress, Result, write_csv};
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// A figure of mean curves.
 pub(crate) struct CurveFigure {
@@ -24,8 +26,10 @@ impl CurveFigure {
     pub fn reproduce(&self, run: &Run, progress: &dyn Progress) -> Result<(Judged, Measured)> {
         check(run.over.as_deref())?;
         let session = Session::open(&run.out, run.fresh)?;
-        let measured = measure(self.model, run, &session.store, progress)?;
+        let so_far = SoFar { figure: self, run, progress, told: AtomicBool::new(false) };
+        let measured = measure_showing(self.model, run, &session.store, progress, &|seen| so_far.draw(seen))?;
         let mut outcome = Outcome::of(self.name, self.write(run, &measured)?, &[&measured]);
+        so_far.remove()?;
         outcome.add_budget(write_budget(self.name, run, &measured)?);
         let claims = claims::of_figure(self.name, &[&measured])?;
         Ok((Judged::new(session.close(outcome)?, claims), measured))
@@ -49,6 +53,56 @@ impl CurveFigure {
         let mut files = written(run, name, &curves_table(title, measured)?, &header, draw)?;
         files.splice(1..1, [samples, compact]);
         Ok(files)
+    }
+}
+
+/// The figure while it is solved: `name-so-far.csv`, `.svg`, `.png`, of coarser grids first, then of the
+/// surfaces that are whole. Another name than the figure's: what is there of an earlier run stays until this
+/// one is done.
+struct SoFar<'a> {
+    figure: &'a CurveFigure,
+    run: &'a Run,
+    progress: &'a dyn Progress,
+    told: AtomicBool,
+}
+
+impl SoFar<'_> {
+    fn name(&self) -> String {
+        format!("{}-so-far", self.figure.name)
+    }
+
+    fn draw(&self, measured: &Measured) -> Result<()> {
+        let (Self { figure, run, .. }, name) = (self, self.name());
+        let surfaces = measured.series.first().map_or(0, |series| series.realisations.len());
+        let sized = run.with_sizes(figure.model, measured.discretisation.size(), surfaces);
+        let command = sized.command(&format!("reproduce-{}", figure.name), flags(figure.model));
+        let header = describe(header(command), &sized, &[measured]);
+        let table = curves_table(&format!("{}, so far", figure.title), measured)?;
+        let csv = run.out.join(format!("{name}.csv"));
+        write_csv(&csv, &table, &header)?;
+        draw(&name, &csv, run.over.as_deref(), &run.out)?;
+        if !self.told.swap(true, Ordering::Relaxed) {
+            let picture = run.out.join(format!("{name}.png"));
+            self.progress.note(&format!(
+                "a first picture is in {}; it is drawn anew as surfaces come in",
+                picture.display()
+            ));
+        }
+        Ok(())
+    }
+
+    /// The figure itself is there.
+    fn remove(&self) -> Result<()> {
+        for extension in ["csv", "svg", "png"] {
+            let path = self.run.out.join(format!("{}.{extension}", self.name()));
+            match std::fs::remove_file(&path) {
+                Err(error) if error.kind() != ErrorKind::NotFound => {
+                    return Err(Error::file("remove", &path)(error));
+                }
+                _ => {}
+            }
+        }
+        Ok(())
     }
 }
 

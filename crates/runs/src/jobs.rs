@@ -210,10 +210,47 @@ pub fn run_stored<J: Job>(
     progress: &dyn Progress,
     stop: &(dyn Fn() -> bool + Sync),
 ) -> Vec<Option<Result<J::Output, J::Error>>> {
+    let order = largest_first(jobs.len(), |i| jobs[i].cost());
+    let ordered = Ordered { jobs, order: &order, solved: &|_, _| Ok(()) };
+    run_in_order(what, &ordered, store, threads, progress, stop)
+}
+
+/// Jobs that begin in an order of their own.
+pub struct Ordered<'a, J: Job> {
+    /// The jobs.
+    pub jobs: &'a [J],
+    /// The number of each job once: those that stand first begin first.
+    pub order: &'a [usize],
+    /// Gets the number and the output of each job as soon as it is there, on the thread that did it; its
+    /// error is that of the job.
+    #[allow(clippy::type_complexity)] // A function of a job and its output.
+    pub solved: &'a (dyn Fn(usize, &J::Output) -> Result<(), J::Error> + Sync),
+}
+
+impl<J: Job> std::fmt::Debug for Ordered<'_, J> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Ordered").field("order", &self.order).finish_non_exhaustive()
+    }
+}
+
+/// As [`run_stored`], in another order than that of the costs.
+#[allow(clippy::type_complexity)] // As there.
+pub fn run_in_order<J: Job>(
+    what: &str,
+    ordered: &Ordered<'_, J>,
+    store: &Store,
+    threads: Threads,
+    progress: &dyn Progress,
+    stop: &(dyn Fn() -> bool + Sync),
+) -> Vec<Option<Result<J::Output, J::Error>>> {
+    let Ordered { jobs, order, solved } = ordered;
     store.tell_unused(progress);
     progress.begin(what, jobs.iter().map(Job::cost).sum());
-    let order = largest_first(jobs.len(), |i| jobs[i].cost());
-    let done = run_jobs(threads, &order, stop, |i, stop| solve_stored(&jobs[i], store, progress, stop));
+    let done = run_jobs(threads, order, stop, |i, stop| {
+        let output = solve_stored(&jobs[i], store, progress, stop)?;
+        solved(i, &output)?;
+        Ok(output)
+    });
     progress.end();
     done
 }
@@ -523,7 +560,7 @@ mod tests {
     fn a_failure_and_a_stop_begin_nothing_more() {
         let order = largest_first(3, |_| 0);
         let failing = run_jobs(Threads::all(1), &order, &never, |i, halt| {
-            assert!(!halt());
+            assert!(!halt.stops());
             if i == 1 { Err("no") } else { Ok(i) }
         });
         assert_eq!(failing, [Some(Ok(0)), Some(Err("no")), None]);

@@ -51,13 +51,15 @@ pub use csv_file::{CsvFile, Header, number, write_csv};
 pub use encoding::ResultKind;
 pub use error::{Error, Result};
 pub use files;
-pub use jobs::{Failure, Job, JobList, Threads, collect, on_one_thread, run_jobs, run_stored};
+pub use jobs::{
+    Failure, Job, JobList, Ordered, Threads, collect, on_one_thread, run_in_order, run_jobs, run_stored,
+};
 pub use manifest::{file_names, machine, write_manifest};
 pub use meters::{
     available_memory, check_memory, cpu_seconds, peak_memory, process_cpu_seconds, reset_peak_memory,
     resident_memory, threads_for_memory,
 };
-pub use progress::{Progress, Silent};
+pub use progress::{JobInHand, Progress, Silent, StatesInHand};
 pub use reporter::Reporter;
 pub use shard::{MOST_SHARDS, Shard, ShardChoice, TASKS, assign, largest_first};
 pub use store::{Pack, PackHead, Store, fnv1a_128};

@@ -1,14 +1,17 @@
 //! What a run tells while it works.
 
+use contact_model::{Stop, Watch};
+use std::cell::Cell;
+
 /// Listens to a run. All methods may be called from any thread.
 pub trait Progress: Sync {
     /// A stage begins; `total` is its relative cost.
     fn begin(&self, what: &str, total: u64);
     /// A job of this relative cost is done; `reused` when it was found on disk.
     fn advance(&self, cost: u64, reused: bool);
-    /// A job of this relative cost has `done` of its `all` states.
-    fn states(&self, job: &str, cost: u64, done: usize, all: usize) {
-        let _ = (job, cost, done, all);
+    /// A job is under way.
+    fn states(&self, job: &JobInHand<'_>) {
+        let _ = job;
     }
     /// The stage is over.
     fn end(&self);
@@ -26,4 +29,69 @@ impl Progress for Silent {
     fn begin(&self, _: &str, _: u64) {}
     fn advance(&self, _: u64, _: bool) {}
     fn end(&self) {}
+}
+
+/// How far a job is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct JobInHand<'a> {
+    /// Its name.
+    pub name: &'a str,
+    /// Relative cost of all of it.
+    pub cost: u64,
+    /// States that are solved.
+    pub done: usize,
+    /// All of its states.
+    pub all: usize,
+    /// Of the state in hand: the largest residual, and the tolerance that ends its solve.
+    pub residual: Option<(f64, f64)>,
+}
+
+/// Tells the residuals of the states of a job, and passes on who ends it.
+pub struct StatesInHand<'a> {
+    name: String,
+    cost: u64,
+    all: usize,
+    done: Cell<usize>,
+    progress: &'a dyn Progress,
+    stop: Stop<'a>,
+}
+
+impl<'a> StatesInHand<'a> {
+    /// A job of this name and relative cost with `done` of its `all` states solved before.
+    pub fn new(
+        (name, cost): (String, u64),
+        [done, all]: [usize; 2],
+        progress: &'a dyn Progress,
+        stop: Stop<'a>,
+    ) -> Self {
+        Self { name, cost, all, done: Cell::new(done), progress, stop }
+    }
+
+    /// So many states are solved.
+    pub fn solved(&self, done: usize) {
+        self.done.set(done);
+        self.tell(None);
+    }
+
+    fn tell(&self, residual: Option<(f64, f64)>) {
+        let Self { name, cost, all, done, .. } = self;
+        self.progress.states(&JobInHand { name, cost: *cost, done: done.get(), all: *all, residual });
+    }
+}
+
+impl std::fmt::Debug for StatesInHand<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { name, done, all, .. } = self;
+        write!(f, "{name}: {} of {all} states", done.get())
+    }
+}
+
+impl Watch for StatesInHand<'_> {
+    fn stops(&self) -> bool {
+        self.stop.stops()
+    }
+
+    fn residual(&self, residual: f64, tolerance: f64) {
+        self.tell(Some((residual, tolerance)));
+    }
 }

@@ -1,10 +1,12 @@
 //! What a run tells on standard error: a bar with the time left on a terminal, plain lines otherwise.
 
-use crate::progress::Progress;
-use indicatif::{HumanDuration, ProgressBar, ProgressState, ProgressStyle};
+use crate::amounts::duration;
+use crate::progress::{JobInHand, Progress};
+use indicatif::{ProgressBar, ProgressState, ProgressStyle};
 use std::collections::BTreeMap;
 use std::io::IsTerminal as _;
-use std::sync::Mutex;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 /// Steps of the bar for a unit of cost: a job may be all that there is.
@@ -12,6 +14,12 @@ const STEPS: f64 = 1000.0;
 
 /// Without a terminal, at most one line in this time.
 const EVERY: Duration = Duration::from_secs(10);
+
+/// Time between two changes of the bar that iterations make.
+const FRAME: Duration = Duration::from_millis(100);
+
+/// Of less work, in seconds, no time left follows.
+const FIRST: f64 = 1.0;
 
 /// Tells on standard error how far a run is: for programs.
 #[derive(Debug)]
@@ -23,16 +31,16 @@ pub struct Reporter {
 #[derive(Debug)]
 struct Stage {
     bar: ProgressBar,
-    total: u64,
-    done: u64,
-    /// Cost of what is done of jobs under way, by their names.
-    parts: BTreeMap<String, f64>,
+    /// Bits of the seconds left, for the bar, which is drawn by a thread of its own.
+    left: Arc<AtomicU64>,
+    done: Done,
     /// What was told last of a job under way.
     words: String,
     jobs: usize,
     reused: usize,
     begun: Instant,
     told: Instant,
+    shown: Instant,
 }
 
 impl Default for Reporter {
@@ -44,9 +52,8 @@ impl Default for Reporter {
 impl Reporter {
     /// Looks once whether standard error is a terminal.
     pub fn new() -> Self {
-        let now = Instant::now();
-        let bar = ProgressBar::hidden();
-        Self { terminal: std::io::stderr().is_terminal(), stage: Mutex::new(Stage::new(bar, 0, now)) }
+        let stage = Stage::new(ProgressBar::hidden(), 0, Instant::now());
+        Self { terminal: std::io::stderr().is_terminal(), stage: Mutex::new(stage) }
     }
 
     fn with(&self, change: impl FnOnce(&mut Stage)) {
@@ -57,28 +64,110 @@ impl Reporter {
     }
 }
 
-impl Stage {
-    fn new(bar: ProgressBar, total: u64, begun: Instant) -> Self {
-        let (parts, words) = (BTreeMap::new(), String::new());
-        Self { bar, total, done: 0, parts, words, jobs: 0, reused: 0, begun, told: begun }
+/// Work of a stage, as relative costs.
+#[derive(Debug, Default)]
+struct Done {
+    total: f64,
+    /// Of whole jobs.
+    whole: f64,
+    /// Of jobs under way, by their names.
+    parts: BTreeMap<String, Part>,
+    /// Of that, what was found on disk: it says nothing about the time that the rest takes.
+    found: f64,
+}
+
+/// Of a job under way.
+#[derive(Debug, Clone, Copy)]
+struct Part {
+    cost: f64,
+    /// States that are solved.
+    states: usize,
+    /// First residual of the state in hand.
+    first: f64,
+}
+
+impl Done {
+    /// A job is done.
+    fn add(&mut self, cost: u64, reused: bool) {
+        self.whole += cost as f64;
+        if reused {
+            self.found += cost as f64;
+        }
     }
 
-    /// Cost of what is done, of the total.
+    /// A job is as far as this.
+    fn set(&mut self, job: &JobInHand<'_>) {
+        let of_state = job.cost as f64 / job.all.max(1) as f64;
+        if !self.parts.contains_key(job.name) {
+            // What this run has not solved: the state that it tells of was solved by it.
+            let solved_now = usize::from(job.residual.is_none());
+            self.found += of_state * job.done.saturating_sub(solved_now) as f64;
+        }
+        if job.done >= job.all {
+            // The whole job counts in a moment.
+            self.parts.remove(job.name);
+            return;
+        }
+        let new = Part { cost: 0.0, states: job.done, first: 0.0 };
+        let part = self.parts.entry(job.name.to_owned()).or_insert(new);
+        if part.states != job.done {
+            *part = new;
+        }
+        let share = job.residual.map_or(0.0, |(residual, tolerance)| {
+            part.first = if residual.is_finite() { part.first.max(residual) } else { part.first };
+            of_the_way(part.first, residual, tolerance)
+        });
+        part.cost = part.cost.max(of_state * (job.done as f64 + share));
+    }
+
+    /// What is done.
     fn cost(&self) -> f64 {
-        (self.done as f64 + self.parts.values().sum::<f64>()).min(self.total as f64)
+        (self.whole + self.parts.values().map(|part| part.cost).sum::<f64>()).min(self.total)
+    }
+
+    /// Seconds that the rest takes, after so many: as long as what this run has done did. `None` where that
+    /// says nothing yet.
+    fn left(&self, seconds: f64) -> Option<f64> {
+        let (cost, solved) = (self.cost(), self.cost() - self.found);
+        (solved > 0.0 && seconds >= FIRST).then(|| seconds * (self.total - cost) / solved)
+    }
+}
+
+/// Share of the way of a residual from the first one to the tolerance, in orders of magnitude: iterations
+/// reduce it by about the same factor each.
+fn of_the_way(first: f64, residual: f64, tolerance: f64) -> f64 {
+    let (all, gone) = ((first / tolerance).ln(), (first / residual).ln());
+    if all > 0.0 && gone > 0.0 && all.is_finite() { (gone / all).min(1.0) } else { 0.0 }
+}
+
+impl Stage {
+    fn new(bar: ProgressBar, total: u64, begun: Instant) -> Self {
+        Self {
+            bar,
+            left: Arc::new(AtomicU64::new(f64::NAN.to_bits())),
+            done: Done { total: total as f64, ..Done::default() },
+            words: String::new(),
+            jobs: 0,
+            reused: 0,
+            begun,
+            told: begun,
+            shown: begun,
+        }
     }
 
     /// Moves the bar, or now and then writes a line.
     fn show(&mut self, terminal: bool) {
+        let (gone, cost) = (self.begun.elapsed().as_secs_f64(), self.done.cost());
+        let left = self.done.left(gone);
         if terminal {
-            self.bar.set_position((STEPS * self.cost()) as u64);
+            self.left.store(left.unwrap_or(f64::NAN).to_bits(), Ordering::Relaxed);
+            self.bar.set_position((STEPS * cost) as u64);
             self.bar.set_message(self.words.clone());
-        } else if self.told.elapsed() >= EVERY && self.cost() > 0.0 {
+        } else if self.told.elapsed() >= EVERY {
             self.told = Instant::now();
-            let share = self.cost() / self.total.max(1) as f64;
-            let gone = self.begun.elapsed().as_secs_f64();
-            let left = gone * (1.0 / share - 1.0);
-            crate::err!("{:3.0} %  {gone:.0} s gone, about {left:.0} s left  {}", 100.0 * share, self.words);
+            let share = 100.0 * cost / self.done.total.max(1.0);
+            let left = left.map_or_else(String::new, |left| format!(", about {} left", duration(left)));
+            crate::err!("{share:3.0} %  {} gone{left}  {}", duration(gone), self.words);
         }
     }
 }
@@ -92,12 +181,14 @@ impl Progress for Reporter {
         } else {
             ProgressBar::hidden()
         };
+        let stage = Stage::new(bar.clone(), total, now);
         let template = "{bar:16} {percent:>3} %  {elapsed} gone{left}  {wide_msg}";
         if let Ok(style) = ProgressStyle::with_template(template) {
-            // Of nothing done no time follows.
-            let left = |state: &ProgressState, text: &mut dyn std::fmt::Write| {
-                if state.pos() > 0 {
-                    let _ = write!(text, ", {:#} left", HumanDuration(state.eta()));
+            let seconds = Arc::clone(&stage.left);
+            let left = move |_: &ProgressState, text: &mut dyn std::fmt::Write| {
+                let seconds = f64::from_bits(seconds.load(Ordering::Relaxed));
+                if seconds.is_finite() {
+                    let _ = write!(text, ", about {} left", duration(seconds));
                 }
             };
             bar.set_style(style.with_key("left", left));
@@ -105,32 +196,27 @@ impl Progress for Reporter {
         if self.terminal {
             bar.enable_steady_tick(Duration::from_secs(1));
         }
-        self.with(|s| *s = Stage::new(bar, total, now));
+        self.with(|s| *s = stage);
     }
 
     fn advance(&self, cost: u64, reused: bool) {
         self.with(|s| {
-            s.done += cost;
+            s.done.add(cost, reused);
             s.jobs += 1;
             s.reused += usize::from(reused);
             s.show(self.terminal);
-            if reused {
-                // What lies on disk says nothing about the time the rest takes.
-                s.bar.reset_eta();
-            }
         });
     }
 
-    fn states(&self, job: &str, cost: u64, done: usize, all: usize) {
+    fn states(&self, job: &JobInHand<'_>) {
         self.with(|s| {
-            if done < all {
-                s.parts.insert(job.to_owned(), cost as f64 * done as f64 / all as f64);
-                s.words = format!("{job}: {done} of {all} states");
-            } else {
-                // The whole job counts in a moment.
-                s.parts.remove(job);
-                s.words.clear();
+            // Of a small contact there are thousands of iterations a second.
+            if job.residual.is_some() && s.shown.elapsed() < FRAME {
+                return;
             }
+            s.shown = Instant::now();
+            s.done.set(job);
+            s.words = words(job);
             s.show(self.terminal);
         });
     }
@@ -146,5 +232,71 @@ impl Progress for Reporter {
     fn note(&self, text: &str) {
         // A bar would be written over.
         self.with(|s| s.bar.suspend(|| crate::err!("note: {text}")));
+    }
+}
+
+/// A job under way in words.
+fn words(job: &JobInHand<'_>) -> String {
+    let JobInHand { name, done, all, residual, .. } = job;
+    match residual {
+        _ if done >= all => String::new(),
+        None => format!("{name}: {done} of {all} states"),
+        Some((residual, tolerance)) => {
+            format!("{name}: state {} of {all}, residual {residual:.0e} of {tolerance:.0e}", done + 1)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn time_left_follows_from_what_this_run_has_done() {
+        let mut done = Done { total: 100.0, ..Done::default() };
+        done.add(40, true);
+        assert_eq!(done.left(5.0), None);
+        done.add(10, false);
+        // Ten took five seconds, fifty are left.
+        assert_eq!(done.left(5.0), Some(25.0));
+        assert_eq!(done.left(0.5), None);
+        // A path of four states with two of them on disk, the third half way to its tolerance.
+        let mut job = JobInHand { name: "path", cost: 40, done: 2, all: 4, residual: Some((1e-2, 1e-6)) };
+        done.set(&job);
+        assert_eq!((done.cost(), done.found), (70.0, 60.0));
+        job.residual = Some((1e-4, 1e-6));
+        done.set(&job);
+        approx::assert_relative_eq!(done.cost(), 75.0, max_relative = 1e-12);
+        approx::assert_relative_eq!(done.left(15.0).unwrap(), 15.0 * 25.0 / 15.0, max_relative = 1e-12);
+        // Residuals that rise take nothing back.
+        job.residual = Some((1e-1, 1e-6));
+        done.set(&job);
+        approx::assert_relative_eq!(done.cost(), 75.0, max_relative = 1e-12);
+        // The whole job is counted when it is done.
+        done.set(&JobInHand { done: 4, residual: None, ..job });
+        done.add(40, false);
+        assert_eq!((done.cost(), done.parts.len()), (90.0, 0));
+    }
+
+    #[test]
+    fn words_of_a_job_name_its_state_and_residual() {
+        let mut job = JobInHand { name: "bem3d", cost: 1, done: 3, all: 10, residual: None };
+        assert_eq!(words(&job), "bem3d: 3 of 10 states");
+        job.residual = Some((3.2e-5, 1e-8));
+        assert_eq!(words(&job), "bem3d: state 4 of 10, residual 3e-5 of 1e-8");
+        job.done = 10;
+        assert_eq!(words(&job), "");
+    }
+
+    #[test]
+    fn the_way_to_the_tolerance_is_counted_in_orders() {
+        let way = |residual| of_the_way(1.0, residual, 1e-8);
+        let none = |share: f64| share.abs() < 1e-300;
+        assert!(none(way(2.0)) && none(way(1.0)) && none(of_the_way(1e-9, 1e-9, 1e-8)));
+        assert!(none(way(1e-9) - 1.0));
+        approx::assert_relative_eq!(way(1e-2), 0.25, max_relative = 1e-12);
+        for unknown in [f64::INFINITY, f64::NAN] {
+            assert!(none(of_the_way(unknown, 1.0, 1e-8)) && none(of_the_way(1.0, unknown, 1e-8)));
+        }
     }
 }

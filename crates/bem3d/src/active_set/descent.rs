@@ -112,7 +112,7 @@ pub fn descend(
     // The square of the last gradient on the cells between their bounds, while conjugate gradients go on.
     let mut conjugate: Option<f64> = None;
     for taken in 0..steps {
-        if stop() {
+        if stop.stops() {
             return taken;
         }
         let (inside, outside, plane) = project_gradient(p, gap, feasible, &mut residual);

@@ -156,8 +156,10 @@ pub fn cold_start(problem: &mut Problem, target: Control, limits: Limits, stop: 
         Control::Force(force) => Control::Force(force / pressure_ratio(grid, &tuning)),
         approach @ Control::Approach(_) => approach,
     };
-    let guess = cold_start(&mut coarse, coarse_target, limits, stop);
-    let solved = solve(&mut coarse, coarse_target, guess, limits, stop);
+    // Residuals of coarse grids say nothing about this one's.
+    let unheard = || stop.stops();
+    let guess = cold_start(&mut coarse, coarse_target, limits, &unheard);
+    let solved = solve(&mut coarse, coarse_target, guess, limits, &unheard);
     let guess = prolonged(problem, &solved);
     problem.coarser = Some(coarse);
     guess

@@ -118,10 +118,11 @@ impl OuterProgress {
         let Evaluated { residuals, complete, uncertainty, factored, step } = evaluated;
         let jammed = step.is_some_and(|share| share < tuning.jammed);
         let (error, limits) = (residuals.worst(), self.limits);
+        stop.residual(error, limits.tolerance);
         let settled = !factored || residuals.deepest <= tuning.factor_rounding * d;
         if complete && settled && error <= limits.tolerance {
             return Decision::End(Status::Converged);
-        } else if stop() {
+        } else if stop.stops() {
             return Decision::End(Status::Stopped);
         } else if self.iteration >= limits.outer_iterations {
             return Decision::End(Status::IterationLimit);

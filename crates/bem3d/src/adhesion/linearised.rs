@@ -168,7 +168,7 @@ impl Linearised<'_> {
         let mut found = Reduced { v: Vec::new(), smallest: 1.0, smallest_at_force: 1.0 };
         let mut before = f64::INFINITY;
         for _ in 0..STEPS {
-            if rr <= 0.0 || (self.stop)() {
+            if rr <= 0.0 || self.stop.stops() {
                 break;
             }
             let snt = self.apply(&nt);

@@ -168,7 +168,7 @@ pub fn step(
             .fold((0.0f64, 0.0f64), |(low, high), i| (low.min(-change[i]), high.max(-change[i])));
         let allowed = slack + reduction * high.max(-low);
         let wrong = direction.map_or(0.0, |sign| if sign > 0.0 { -low } else { high });
-        if stop() || wrong > allowed || high.max(-low) > farthest {
+        if stop.stops() || wrong > allowed || high.max(-low) > farthest {
             break;
         }
         let closing: Vec<usize> =

@@ -64,8 +64,10 @@ impl Search<'_> {
             AdhesiveControl::Plane(d) => return Equilibrium { d, ..Equilibrium::default() },
         };
         let limits = Limits { tolerance: FIRST, ..self.limits };
-        let guess = active_set::cold_start(self.problem, target, limits, stop);
-        let solved = active_set::solve(self.problem, target, guess, limits, stop);
+        // Without its attraction it is no state of the load.
+        let unheard = || stop.stops();
+        let guess = active_set::cold_start(self.problem, target, limits, &unheard);
+        let solved = active_set::solve(self.problem, target, guess, limits, &unheard);
         let reach = solved.d + self.attraction.law.reach();
         let cells = self.problem.candidates.below(reach).union(&solved.contact);
         let pressure = cells.carry(&solved.contact, &solved.p);
@@ -93,10 +95,11 @@ impl Search<'_> {
         }
         for _ in 0..self.limits.outer_iterations * UPDATES {
             let worst = state.residuals.worst().max(state.mismatch).max(self.load_error(&state));
+            stop.residual(worst, tolerance);
             if worst <= tolerance {
                 return Ok(state);
             }
-            if stop() {
+            if stop.stops() {
                 return Err(Box::new((Ended::Status(Status::Stopped), state)));
             }
             let Self { problem, attraction, control, limits, plain } = self;
@@ -149,8 +152,10 @@ impl Search<'_> {
         let candidates = std::mem::replace(&mut self.problem.candidates, lifted);
         let coarser = self.problem.coarser.take();
         let limits = Limits { tolerance: FIRST, ..self.limits };
-        let guess = active_set::cold_start(self.problem, target, limits, stop);
-        let solved = active_set::solve(self.problem, target, guess, limits, stop);
+        // A contact under an attraction that is not its own yet.
+        let unheard = || stop.stops();
+        let guess = active_set::cold_start(self.problem, target, limits, &unheard);
+        let solved = active_set::solve(self.problem, target, guess, limits, &unheard);
         (self.problem.candidates, self.problem.coarser) = (candidates, coarser);
         let cells = state.cells.union(&solved.contact);
         state.take_cells(cells, state.reach);

@@ -92,10 +92,10 @@ pub fn advance(
         last = far;
         let met = normal.residuals.worst() <= normal_limits.tolerance;
         let whole = normal.status == Status::Converged && state.status == Status::Converged;
-        let gives_up = idle > PATIENCE || rounds >= ROUNDS || !whole || stop();
+        let gives_up = idle > PATIENCE || rounds >= ROUNDS || !whole || stop.stops();
         if met || gives_up {
             if !met && normal.status == Status::Converged {
-                normal.status = if stop() { Status::Stopped } else { Status::Stagnated };
+                normal.status = if stop.stops() { Status::Stopped } else { Status::Stagnated };
             }
             return Ok(CoupledState { normal, tangential: state, rounds, contraction });
         }

@@ -302,9 +302,10 @@ impl<'a> Solver<'a> {
             if self.gap <= best.duality_gap {
                 best = self.state(Status::IterationLimit);
             }
+            stop.residual(self.gap, self.limits.tolerance);
             if self.gap <= self.limits.tolerance {
                 break Status::Converged;
-            } else if stop() {
+            } else if stop.stops() {
                 break Status::Stopped;
             } else if self.iterations >= self.limits.iterations {
                 break Status::IterationLimit;
@@ -526,7 +527,7 @@ impl<'a> Solver<'a> {
         let limit = self.increment.limit;
         let mut length = self.rho;
         for _ in 0..steps {
-            if stop() || self.gap <= self.limits.tolerance {
+            if stop.stops() || self.gap <= self.limits.tolerance {
                 return;
             }
             self.steps += 1;

@@ -125,7 +125,7 @@ pub fn solve(
             }
             // Errors are quadratic in the residual.
             reduction = (AIM * tolerance / error).sqrt().clamp(REDUCTION, LEAST_REDUCTION);
-            if error <= SHARE * tolerance || unimproved > 2 || stop() {
+            if error <= SHARE * tolerance || unimproved > 2 || stop.stops() {
                 break;
             }
         }

@@ -35,7 +35,7 @@ pub fn minres<T: Real>(
     // The last two rotations of the QR factors of Lanczos's matrix.
     let (mut cosine, mut sine, mut d, mut epsilon, mut left) = (-1.0, 0.0, 0.0, 0.0, start);
     let mut outcome = MinresOutcome { steps: 0, reduction: 1.0 };
-    while start > 0.0 && outcome.steps < steps && beta > 0.0 && beta.is_finite() && !stop() {
+    while start > 0.0 && outcome.steps < steps && beta > 0.0 && beta.is_finite() && !stop.stops() {
         let scale = T::of(beta.recip());
         update(&mut v, &z, |v, &z| *v = scale * z);
         product(&v, &mut y);

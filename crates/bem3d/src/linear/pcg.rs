@@ -263,7 +263,7 @@ pub fn pcg<T: Real>(
         }
         let wanted = criteria.reduction * criteria.reduction * start;
         let reached = small(next, gain) || (steps > 0 && next <= wanted) || found.largest <= criteria.floor;
-        if reached || next.is_nan() || next <= 0.0 || steps >= criteria.steps || stop() {
+        if reached || next.is_nan() || next <= 0.0 || steps >= criteria.steps || stop.stops() {
             break;
         }
         if steps > 0 {

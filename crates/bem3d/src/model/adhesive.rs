@@ -178,7 +178,7 @@ impl AdhesiveContact {
             let search_error = match &ended {
                 Ok(equilibrium) | Err((_, equilibrium)) => search.load_error(equilibrium),
             };
-            let again = !plain && !stop();
+            let again = !plain && !stop.stops();
             let (mut equilibrium, status) = match ended {
                 Ok(equilibrium) => (equilibrium, Status::Converged),
                 Err((Ended::PulledOff, equilibrium)) if again => {

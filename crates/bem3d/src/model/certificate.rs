@@ -31,7 +31,7 @@ impl PreparedSurface {
     pub(super) fn ended(&self, found: Status, certificate: &Certificate, stop: Stop<'_>) -> Status {
         match found {
             Status::Converged if certificate.meets(self.options.tolerance) => Status::Converged,
-            Status::Converged if stop() => Status::Stopped,
+            Status::Converged if stop.stops() => Status::Stopped,
             Status::Converged => Status::Stagnated,
             other => other,
         }

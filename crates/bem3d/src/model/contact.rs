@@ -168,7 +168,7 @@ impl PreparedContact for PreparedBem3d {
         if self.surface().sliding.is_none() {
             without_tangential(step)?;
         }
-        if stop() {
+        if stop.stops() {
             return Err(Error::Stopped { best: None });
         }
         let load = self.scaled_load(step.normal)?;
@@ -323,7 +323,7 @@ impl PreparedSurface {
         let mut tangent = self.tangent(&solved, (q, None), k, stop);
         for _ in 0..tuning.tightenings {
             let (error, before) = (self.tangent_error(&tangent), solved.residuals.worst());
-            if solved.status != Status::Converged || error <= self.options.tolerance || stop() {
+            if solved.status != Status::Converged || error <= self.options.tolerance || stop.stops() {
                 break;
             }
             // The state may be better than it was asked to be: begin there.
@@ -390,7 +390,7 @@ impl PreparedSurface {
             steps += found.steps;
             found.steps = steps;
             let magnified = self.magnification(found.value);
-            if magnified <= misjudged * expected || factored.is_some() || found.q.is_empty() || stop() {
+            if magnified <= misjudged * expected || factored.is_some() || found.q.is_empty() || stop.stops() {
                 return found;
             }
             expected = magnified;

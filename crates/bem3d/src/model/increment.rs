@@ -73,7 +73,7 @@ impl PreparedSurface {
         // The error of a stiffness by the cells that may stick or slip falls as the square root of the gap.
         for _ in 0..TIGHTENINGS {
             let error = stiffness[0].as_ref().map_or(0.0, |k| k.solve_error + k.set_error);
-            if error <= tolerance || state.status != Status::Converged || stop() {
+            if error <= tolerance || state.status != Status::Converged || stop.stops() {
                 break;
             }
             limits.tolerance *= (0.5 * tolerance / error).powi(2).clamp(1e-4, 0.1);

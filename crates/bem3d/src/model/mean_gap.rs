@@ -55,7 +55,7 @@ impl PreparedSurface {
             steps += solved.steps;
             let miss = self.gap_of(&solved) - asked;
             let met = miss.abs() <= limits.tolerance * limits.height.unwrap_or(self.mean);
-            if met || solved.status != Status::Converged || stop() {
+            if met || solved.status != Status::Converged || stop.stops() {
                 solved.steps = steps;
                 let k = match &tangent {
                     Some(tangent) => self.stiffest(&solved, Some(tangent)),

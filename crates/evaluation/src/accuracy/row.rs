@@ -166,7 +166,7 @@ impl StudyRow {
 /// A measurement has a thread of its own, to which `stop` cannot be sent: it is asked before each
 /// measurement.
 pub(crate) fn unless_stopped(stop: Stop<'_>) -> Result<()> {
-    if stop() {
+    if stop.stops() {
         return Err(Error::model("accuracy against time")(contact_model::Error::Stopped { best: None }));
     }
     Ok(())

@@ -223,7 +223,7 @@ impl PreparedContact for ScriptedContact {
         Normalisation { modulus: 1.0, length: 2.0, height: None }
     }
     fn solve_until(&mut self, load: Load, stop: Stop<'_>) -> Result<ContactState> {
-        if stop() {
+        if stop.stops() {
             return Err(Error::Stopped { best: None });
         }
         self.solves.fetch_add(1, Ordering::Relaxed);

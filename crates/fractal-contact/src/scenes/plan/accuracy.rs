@@ -115,7 +115,7 @@ impl SceneFile {
         let trial = |longer: usize| -> Result<GridTrial<(SceneFile, Option<Worst>)>> {
             let start = Instant::now();
             let scene = on_grid(self, &model, longer).map_err(failed)?;
-            let timed = || solve(&scene, self.seed(0), &loads, stop);
+            let timed = || solve(&scene, self.seed(0), &loads, &stop);
             solved.push(runs::on_one_thread(timed).map_err(failed)?);
             let seconds = start.elapsed().as_secs_f64();
             let worst = Worst::of(&controlled, &solved);

@@ -1,6 +1,6 @@
 //! What theories assume of a given map, measured on it and said in the plan.
 
-use crate::scenes::read::{Diagnostic, Numerics, SceneFile, number};
+use crate::scenes::read::{Diagnostic, Numerics, SceneFile, number, spike};
 use analytic::greenwood_williamson::Summits;
 use contact_model::Boundary;
 use std::f64::consts::TAU;
@@ -14,6 +14,9 @@ const SKEWNESS: f64 = 0.5;
 const KURTOSIS: f64 = 1.0;
 /// Share of the longest waves in the variance of heights from which the map is a sample of one.
 const LONGEST: f64 = 0.5;
+/// Share of a plane in the variance of heights from which a tilt explains edges, long waves and directions:
+/// that of a tilt as large as the rms height of the rest.
+const TILTED: f64 = 1.0 / 13.0;
 /// The map of a scene, as theories see it.
 pub(crate) struct Assumptions(MapStatistics, Option<SelfAffineFit>);
 
@@ -67,7 +70,19 @@ impl Assumptions {
                 notes.push(scene.at_model(first, note));
             }
         };
+        let spiked = scene.surface.given_map().is_some_and(|map| spike(map).is_some());
         let statistical = |m: &Numerics| matches!(m, Numerics::Persson(_) | Numerics::GreenwoodWilliamson(_));
+        let periodic = scene.effects.boundary == Boundary::Periodic;
+        let concerned = |m: &Numerics| m.is_statistical() || (periodic && m.boundary_elements().is_some());
+        // One cause is said once; a point that stands out is said of the map itself.
+        let tilted = map.tilt > TILTED;
+        let message = format!(
+            "the map is tilted: {:.0} % of the variance of heights is a plane, which makes opposite edges differ by {:.1} times the largest step inside",
+            100.0 * map.tilt,
+            map.edge_step
+        );
+        let help = "`detrend = \"plane\"` where the tilt is that of the measurement; theories take it for waves as long as the map";
+        note(!tilted, &concerned, message, help);
         let message = format!(
             "opposite edges of the map differ by {:.1} times the largest step inside: it is no period of a surface",
             map.edge_step
@@ -77,29 +92,27 @@ impl Assumptions {
         } else {
             "waves as long as the map are known least: prefer a larger map, and `detrend = \"plane\"` where it is tilted"
         };
-        let periodic = scene.effects.boundary == Boundary::Periodic;
-        let concerned = |m: &Numerics| m.is_statistical() || (periodic && m.boundary_elements().is_some());
-        note(!map.windowed, &concerned, message, help);
+        note(tilted || !map.windowed, &concerned, message, help);
         let message = format!(
             "the map is anisotropic: the rms slope along one direction is {:.2} of that along another, and the theory has one spectrum for all",
             map.isotropy
         );
         let help = "the mean over directions is taken; compare with `bem3d`, which solves the map as it is";
-        note(map.isotropy >= ISOTROPIC, &Numerics::is_statistical, message, help);
+        note(tilted || map.isotropy >= ISOTROPIC, &Numerics::is_statistical, message, help);
         let message = format!(
             "heights are not Gaussian (skewness {:.2}, kurtosis {:.2} instead of 0 and 3), and the theory knows the spectrum alone",
             map.skewness, map.kurtosis
         );
         let help = "the highest summits decide at light loads: compare with `bem3d` there, and fill spikes of the measurement";
         let gaussian = map.skewness.abs() <= SKEWNESS && (map.kurtosis - 3.0).abs() <= KURTOSIS;
-        note(gaussian, &Numerics::is_statistical, message, help);
+        note(spiked || gaussian, &Numerics::is_statistical, message, help);
         let message = format!(
             "{:.0} % of the variance of heights is in the longest waves: mean gap and stiffness of one map scatter around the theory's",
             100.0 * map.longest_waves
         );
         let help =
             "the theory is one of many long waves: take a map several times larger, or trust the area alone";
-        note(map.longest_waves <= LONGEST, &statistical, message, help);
+        note(tilted || map.longest_waves <= LONGEST, &statistical, message, help);
         notes
     }
 }

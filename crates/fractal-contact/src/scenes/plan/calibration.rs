@@ -173,7 +173,7 @@ fn small_solves(
                 let requested = loads.values[i * (count - 1) / (used - 1).max(1)];
                 let begun = Instant::now();
                 let Ok(state) =
-                    loads.load(requested, &normalisation).and_then(|load| contact.solve_until(load, stop))
+                    loads.load(requested, &normalisation).and_then(|load| contact.solve_until(load, &stop))
                 else {
                     continue;
                 };
@@ -183,7 +183,7 @@ fn small_solves(
         LoadRequest::Path(steps) => {
             for step in steps {
                 let begun = Instant::now();
-                let Ok(state) = contact.advance_until(*step, stop) else { break };
+                let Ok(state) = contact.advance_until(*step, &stop) else { break };
                 solved.count(begun, &state, size);
             }
         }

@@ -205,7 +205,7 @@ pub(crate) fn remarks(
 
 /// The highest point in rms heights above the mean, where it stands alone: a Gaussian map of 1e8 points
 /// reaches 6.
-fn spike(map: &HeightMap) -> Option<(usize, usize, f64)> {
+pub(crate) fn spike(map: &HeightMap) -> Option<(usize, usize, f64)> {
     const ALONE: f64 = 8.0;
     let known: Vec<f64> = map.defined().collect();
     let mean = known.iter().sum::<f64>() / known.len() as f64;

@@ -4,7 +4,7 @@
 use crate::scenes::read::Result;
 use crate::scenes::run::ModelResult;
 use contact_model::{PathMemory, PreparedContact};
-use runs::{Checkpoint, Progress};
+use runs::{Checkpoint, Progress, StatesInHand};
 use std::time::{Duration, Instant};
 
 /// What is solved is kept at most so often: a kill loses what is younger, and the state in hand.
@@ -23,8 +23,8 @@ pub(crate) struct Keeper<'a> {
     pub progress: &'a dyn Progress,
     /// What the path is called in notes.
     pub name: String,
-    /// Relative cost of all of its states, and their number.
-    work: (u64, usize),
+    /// Is told how many of its states are solved.
+    told_states: &'a StatesInHand<'a>,
     last: Instant,
     /// Time that the last checkpoint took.
     took: Duration,
@@ -39,10 +39,10 @@ impl<'a> Keeper<'a> {
         checkpoint: Checkpoint,
         progress: &'a dyn Progress,
         name: String,
-        work: (u64, usize),
+        told_states: &'a StatesInHand<'a>,
     ) -> Self {
         let (last, took) = (Instant::now(), Duration::ZERO);
-        Self { store, checkpoint, progress, name, work, last, took, kept: 0, told: false }
+        Self { store, checkpoint, progress, name, told_states, last, took, kept: 0, told: false }
     }
 
     /// Keeps states that do not depend on each other.
@@ -50,7 +50,7 @@ impl<'a> Keeper<'a> {
     /// # Errors
     /// What cannot be written.
     pub fn keep(&mut self, result: &ModelResult) -> Result<()> {
-        self.count(result);
+        self.told_states.solved(result.states.len());
         if let Some(store) = self.store.filter(|_| self.last.elapsed() >= KEEP_EVERY) {
             store(result)?;
             self.last = Instant::now();
@@ -64,6 +64,7 @@ impl<'a> Keeper<'a> {
         let (done, unused) = self.resumed(result, contact);
         (result.kept, self.kept) = (done, done);
         result.states.truncate(done);
+        self.told_states.solved(done);
         if let Some(unused) = unused {
             contact.restart();
             self.tell(result, format!("{unused}. It is not used: the path of {} begins anew", self.name));
@@ -101,7 +102,7 @@ impl<'a> Keeper<'a> {
     /// Keeps the states of a path and its memory, where the last time was long ago or the path is interrupted
     /// now. What cannot be kept is told of once, and the path goes on.
     pub fn keep_path(&mut self, result: &mut ModelResult, contact: &dyn PreparedContact, interrupted: bool) {
-        self.count(result);
+        self.told_states.solved(result.states.len());
         let done = result.states.len();
         let long = KEEP_EVERY.max(SHARE * self.took);
         if done == self.kept || !interrupted && self.last.elapsed() < long {
@@ -142,11 +143,6 @@ impl<'a> Keeper<'a> {
             self.checkpoint.remove();
         }
         Ok(())
-    }
-
-    fn count(&self, result: &ModelResult) {
-        let (cost, all) = self.work;
-        self.progress.states(&self.name, cost, result.states.len(), all);
     }
 
     fn tell(&self, result: &mut ModelResult, text: String) {

@@ -4,7 +4,7 @@ use crate::scenes::plan::{FORMAT, ModelOnSurface, calibration};
 use crate::scenes::read::{Error, Result, SceneFile};
 use crate::scenes::run::{Keeper, ModelResult};
 use contact_model::Stop;
-use runs::{Checkpoint, Job, JobList, Progress, ResultKind, Silent};
+use runs::{Checkpoint, Job, JobList, Progress, ResultKind, Silent, StatesInHand};
 use std::path::Path;
 
 /// A unit with what all units of a run share.
@@ -62,11 +62,10 @@ impl Job for SceneJob<'_> {
         let (model, surface) = (self.unit.numerics(self.scene).name(), self.unit.surface);
         let checkpoint = Checkpoint::new(self.out, &format!("{model}-{surface}"), &self.stored_key());
         let store = self.is_stored().then_some(store);
-        let mut keeper = {
-            let work = (self.cost(), self.scene.request.count());
-            Keeper::new(store, checkpoint, progress, self.name(), work)
-        };
-        let result = self.unit.solve(self.scene, self.out, begun, &mut keeper, stop)?;
+        let states = [begun.kept, self.scene.request.count()];
+        let told = StatesInHand::new((self.name(), self.cost()), states, progress, stop);
+        let mut keeper = Keeper::new(store, checkpoint, progress, self.name(), &told);
+        let result = self.unit.solve(self.scene, self.out, begun, &mut keeper, &told)?;
         keeper.finish(&result)?;
         Ok(result)
     }
