@@ -182,13 +182,14 @@ impl Progress for Reporter {
             ProgressBar::hidden()
         };
         let stage = Stage::new(bar.clone(), total, now);
-        let template = "{bar:16} {percent:>3} %  {elapsed} gone{left}  {wide_msg}";
+        // With 80 columns there is room for the residual.
+        let template = "{bar:10} {percent:>3} %  {elapsed} gone{left}  {wide_msg}";
         if let Ok(style) = ProgressStyle::with_template(template) {
             let seconds = Arc::clone(&stage.left);
             let left = move |_: &ProgressState, text: &mut dyn std::fmt::Write| {
                 let seconds = f64::from_bits(seconds.load(Ordering::Relaxed));
                 if seconds.is_finite() {
-                    let _ = write!(text, ", about {} left", duration(seconds));
+                    let _ = write!(text, ", {} left", duration(seconds));
                 }
             };
             bar.set_style(style.with_key("left", left));
@@ -240,9 +241,10 @@ fn words(job: &JobInHand<'_>) -> String {
     let JobInHand { name, done, all, residual, .. } = job;
     match residual {
         _ if done >= all => String::new(),
-        None => format!("{name}: {done} of {all} states"),
+        None => format!("{done} of {all} states of {name}"),
         Some((residual, tolerance)) => {
-            format!("{name}: state {} of {all}, residual {residual:.0e} of {tolerance:.0e}", done + 1)
+            let state = done + 1;
+            format!("state {state} of {all}, residual {residual:.0e} of {tolerance:.0e}, {name}")
         }
     }
 }
@@ -281,9 +283,9 @@ mod tests {
     #[test]
     fn words_of_a_job_name_its_state_and_residual() {
         let mut job = JobInHand { name: "bem3d", cost: 1, done: 3, all: 10, residual: None };
-        assert_eq!(words(&job), "bem3d: 3 of 10 states");
+        assert_eq!(words(&job), "3 of 10 states of bem3d");
         job.residual = Some((3.2e-5, 1e-8));
-        assert_eq!(words(&job), "bem3d: state 4 of 10, residual 3e-5 of 1e-8");
+        assert_eq!(words(&job), "state 4 of 10, residual 3e-5 of 1e-8, bem3d");
         job.done = 10;
         assert_eq!(words(&job), "");
     }
