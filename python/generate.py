@@ -1,9 +1,13 @@
-"""Writes what follows from the tables of the library: `_formulas.py`, `_effects.py`, the properties in `_core.pyi`.
+"""Writes what follows from the library: `_formulas.py`, `_effects.py`, properties and docstrings in `_core.pyi`.
 
-``python generate.py`` with the package installed whose tables they are to have.
+``python generate.py`` with the package installed whose tables they are to have; ``python generate.py notebooks`` runs
+the notebooks and keeps what they give (nbclient, ipykernel).
 """
 
+import ast
+import inspect
 import re
+import sys
 import textwrap
 from pathlib import Path
 
@@ -40,13 +44,12 @@ EFFECTS = '''"""The effects. Written by python/generate.py from the keys of `[ef
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from typing import Any
 
 from . import _core
-
-EffectValue = float | str | Mapping[str, Any] | None
+from ._plain import named, plain
+from .typing import {types}
 
 
 @dataclass(frozen=True)
@@ -65,6 +68,9 @@ class Effects:
     >>> import fractal_contact as fc
     >>> fc.Effects(adhesion={{"work": 0.05, "range": 1e-9, "law": "dugdale"}}).adhesion["law"]
     'dugdale'
+    >>> fc.Effects.of({{"hardnes": 1.0}})
+    Traceback (most recent call last):
+    TypeError: no effect is called 'hardnes': did you mean hardness?
     >>> fc.Effects(hardness=-1.0)  # doctest: +IGNORE_EXCEPTION_DETAIL
     Traceback (most recent call last):
     DomainError: effects.hardness = -1: expected a number > 0
@@ -75,10 +81,15 @@ class Effects:
     def __post_init__(self) -> None:
         # Copies: a change of the caller's mapping is none of the effect.
         for name, value in self._values().items():
-            if isinstance(value, Mapping):
-                object.__setattr__(self, name, dict(value))
+            object.__setattr__(self, name, plain(value))
         # Mistakes are told where they are made.
         _core.check_effects(self._values())
+
+    @classmethod
+    def of(cls, effects: Effects | EffectsDict) -> Effects:
+        """Effects from a mapping of these names."""
+        known = [one.name for one in fields(cls)]
+        return effects if isinstance(effects, Effects) else cls(**named(effects, "effect", known))
 
     def _values(self) -> dict[str, Any]:
         """The effects as the compiled part takes them."""
@@ -98,7 +109,8 @@ def effects():
 
     return EFFECTS.format(
         parameters="\n".join(map(parameter, keys)),
-        fields="\n".join(f"    {key['name']}: EffectValue = None" for key in keys),
+        fields="\n".join(f"    {key['name']}: {key['name'].capitalize()} | None = None" for key in keys),
+        types=", ".join(sorted([*(key["name"].capitalize() for key in keys), "EffectsDict"])),
     )
 
 
@@ -112,14 +124,69 @@ def properties():
     }
 
 
+def documented(text):
+    """A stub with the docstrings of the compiled module in place of those that it has."""
+    lines = text.splitlines()
+    for node, doc in reversed(list(definitions(ast.parse(text).body, _core))):
+        body, indent = node.body[0], " " * (node.col_offset + 4)
+        # A docstring, or the three dots in its place, behind the head or below it.
+        stands = isinstance(body, ast.Expr)
+        first = body.lineno - 1 if stands else node.lineno
+        last = body.end_lineno if stands else first
+        head = lines[first][: body.col_offset].rstrip() if stands else ""
+        if doc is None:
+            if stands and not head:
+                lines[first:last] = [f"{indent}..."] if len(node.body) == 1 else []
+            continue
+        told = [piece for line in f'"""{doc}'.split("\n") for piece in wrapped(line, indent)]
+        told = [*told, f'{indent}"""'] if len(told) > 1 else [f'{told[0]}"""']
+        if node.col_offset == 0 and isinstance(node, ast.FunctionDef) and lines[last : last + 1] > [""]:
+            told.append("")
+        lines[first:last] = [head, *told] if head else told
+    return "\n".join(lines) + "\n"
+
+
+def wrapped(line, indent):
+    """A line of a docstring in lines that are not too long."""
+    hanging = indent + " " * (len(line) - len(line.lstrip()))
+    return textwrap.wrap(line, 117, initial_indent=hanging, subsequent_indent=hanging, break_long_words=False) or [""]
+
+
+def definitions(body, owner):
+    """Each class and function of a stub and its docstring, in their order."""
+    for node in body:
+        if isinstance(node, ast.ClassDef | ast.FunctionDef):
+            value = getattr(owner, node.name)
+            yield node, None if node.name.startswith("_") else inspect.getdoc(value)
+            if isinstance(node, ast.ClassDef):
+                yield from definitions(node.body, value)
+
+
 def stub(text):
-    """A stub with these properties in place of those that it has."""
-    return re.sub(
-        f"({BEGIN}[^\n]*\n).*?({END})", lambda m: m[1] + "".join(properties().values()) + m[2], text, flags=re.S
+    """A stub with these properties in place of those that it has, and with docstrings."""
+    return documented(
+        re.sub(f"({BEGIN}[^\n]*\n).*?({END})", lambda m: m[1] + "".join(properties().values()) + m[2], text, flags=re.S)
     )
 
 
-if __name__ == "__main__":
+def run_notebooks():
+    """Keeps each notebook with its outputs, without the times at which they came."""
+    import nbclient
+    import nbformat
+
+    for path in sorted((Path(__file__).resolve().parent / "notebooks").glob("*.ipynb")):
+        book = nbformat.read(path, as_version=4)
+        where = {"metadata": {"path": str(path.parent)}}
+        nbclient.NotebookClient(
+            book, timeout=600, record_timing=False, coalesce_streams=True, resources=where
+        ).execute()
+        book.metadata.language_info = {"name": "python"}
+        nbformat.write(book, path)
+
+
+if __name__ == "__main__" and sys.argv[1:] == ["notebooks"]:
+    run_notebooks()
+elif __name__ == "__main__":
     (PACKAGE / "_formulas.py").write_text(formulas())
     (PACKAGE / "_effects.py").write_text(effects())
     path = PACKAGE / "_core.pyi"

@@ -32,7 +32,7 @@ ALIASES = 12
 
 def surface(n):
     rough = fc.Surface.self_affine(fractal_dimension=2.2, size=1.0, rms_height=1.0, roll_off_wavelength=0.25)
-    h = fc.surface_gen.self_affine_map(rough, n, fc.surface_gen.surface_seed(1, 0)).heights
+    h = np.array(fc.surface_gen.self_affine_map(rough, n, fc.surface_gen.surface_seed(1, 0)))
     slopes = [(np.roll(h, 1, axis) - h) * n for axis in (0, 1)]
     return h * GRADIENT / np.sqrt(np.mean(slopes[0] ** 2 + slopes[1] ** 2))
 

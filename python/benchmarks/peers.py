@@ -101,7 +101,7 @@ def compare(n: int) -> None:
     """Prints a line for each program that is installed."""
     fc.set_threads(1)
     rough = fc.Surface.self_affine(fractal_dimension=2.2, size=1.0, rms_height=0.01)
-    h = fc.surface_gen.self_affine_map(rough, n, fc.surface_gen.surface_seed(1, 0)).heights
+    h = np.array(fc.surface_gen.self_affine_map(rough, n, fc.surface_gen.surface_seed(1, 0)))
     kernel = coefficients(n)
     print(f"{n} x {n} cells, forces {FORCES.round(5).tolist()}, tolerance {TOLERANCE:g}")
     for name, solve in PROGRAMS.items():

@@ -1,26 +1,27 @@
 //! Planned contacts.
 
-use crate::errors::{of_model, of_solve};
+use crate::errors::{of_model, of_solve, stopped};
 use crate::exclusive::Exclusive;
 use crate::load_order::{Highest, check_rising};
 use crate::loads::{load, load_of, tangential};
 use crate::memory;
-use crate::pool;
-use crate::state::{self, ContactState};
+use crate::numbers::Real;
+use crate::pool::{self, StopToken};
+use crate::state::{self, ContactState, Origin};
 use fractal_contact::{
     ContactState as RustState, Error, Hardness, LargestPull, Load, Normalisation as RustNormalisation,
     PathMemory, PreparedContact, Scene, Status, Step,
 };
 use pyo3::prelude::*;
-use pyo3::types::{IntoPyDict as _, PyBytes};
+use pyo3::types::{IntoPyDict as _, PyBytes, PyTuple};
 use std::sync::{Mutex, PoisonError};
 
 /// The loads that a call may name one of.
 const LOADS: [&str; 4] = ["force", "approach", "mean_pressure", "mean_gap"];
 
 /// What turns forces and stiffnesses into the dimensionless ones of the paper.
-#[pyclass(frozen, module = "fractal_contact")]
-#[derive(Clone)]
+#[pyclass(frozen, eq, module = "fractal_contact")]
+#[derive(Clone, PartialEq)]
 pub struct Normalisation(pub RustNormalisation);
 
 #[pymethods]
@@ -44,18 +45,28 @@ impl Normalisation {
     }
 
     /// F for F_bar = F/(E* h L).
-    fn force(&self, py: Python<'_>, force_bar: f64) -> PyResult<f64> {
-        self.0.force(force_bar).map_err(|error| of_model(py, error))
+    fn force(&self, py: Python<'_>, force_bar: Real) -> PyResult<f64> {
+        self.0.force(force_bar.0).map_err(|error| of_model(py, error))
     }
 
     /// F_bar = F/(E* h L) for F.
-    fn force_bar(&self, py: Python<'_>, force: f64) -> PyResult<f64> {
-        self.0.force_bar(force).map_err(|error| of_model(py, error))
+    fn force_bar(&self, py: Python<'_>, force: Real) -> PyResult<f64> {
+        self.0.force_bar(force.0).map_err(|error| of_model(py, error))
     }
 
     /// k_bar = k/(1.1419 E* L) for k.
-    fn stiffness_bar(&self, stiffness: f64) -> f64 {
-        self.0.stiffness_bar(stiffness)
+    fn stiffness_bar(&self, stiffness: Real) -> f64 {
+        self.0.stiffness_bar(stiffness.0)
+    }
+
+    /// From the bytes of `__reduce__`.
+    #[staticmethod]
+    fn _of_bytes(py: Python<'_>, bytes: &[u8]) -> PyResult<Self> {
+        state::of_bytes(py, bytes).map(Self)
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        state::reduced(py, "normalisation", (state::bytes(py, &self.0)?,))
     }
 
     fn __repr__(&self) -> String {
@@ -78,7 +89,7 @@ impl Normalisation {
 #[pyclass(frozen, module = "fractal_contact")]
 pub struct Contact {
     inner: Exclusive<Inner>,
-    normalisation: RustNormalisation,
+    origin: Origin,
     long: bool,
     /// Whether its memory is looked at before each solve.
     large: bool,
@@ -105,27 +116,40 @@ enum Asked {
 impl Contact {
     /// A contact of a scene whose solves are long, or not.
     pub fn new(contact: Box<dyn PreparedContact>, scene: &Scene, long: bool, large: bool) -> Self {
-        let normalisation = contact.normalisation();
+        let origin = Origin::new(scene, contact.normalisation());
         let inner = Exclusive::new(Inner { contact, highest: None, largest: LargestPull::default() });
         let yields = scene.effects.hardness != Hardness::Off;
         let (best, last) = (Mutex::new(None), Mutex::new(None));
-        Self { inner, normalisation, long, large, yields, best, last }
+        Self { inner, origin, long, large, yields, best, last }
+    }
+
+    fn normalisation(&self) -> &RustNormalisation {
+        &self.origin.normalisation
     }
 
     fn area(&self) -> f64 {
-        self.normalisation.length.powi(2)
+        self.normalisation().length.powi(2)
     }
 
     /// Solves, on the pool where that may be long; Ctrl-C and errors become exceptions.
     ///
     /// States that are replaced end outside of all locks: the end of an array may call Python, which may ask
     /// for this contact.
-    fn answer(&self, py: Python<'_>, asked: &Asked, area: Option<f64>) -> PyResult<Py<ContactState>> {
+    fn answer(
+        &self,
+        py: Python<'_>,
+        asked: &Asked,
+        area: Option<f64>,
+        token: StopToken<'_>,
+    ) -> PyResult<Py<ContactState>> {
+        if token.is_set(py)? {
+            return Err(stopped(py));
+        }
         let normal = match asked {
             Asked::Load(load) => *load,
             Asked::Step(step) => step.normal,
         };
-        let mut inner = self.inner.take(py)?;
+        let mut inner = self.inner.take_unless(py, token)?;
         let Inner { contact, highest, largest } = &mut *inner;
         if let (Asked::Load(load), Some(highest)) = (asked, &highest) {
             highest.check(py, *load, area)?;
@@ -138,7 +162,7 @@ impl Contact {
             Asked::Step(step) => contact.advance_until(*step, &|| stop()),
         };
         let (result, raised) = if self.long {
-            pool::run(py, &mut |_| Ok(()), work)?
+            pool::run(py, token, &mut |_| Ok(()), work)?
         } else {
             (py.detach(|| work(&fractal_contact::never)), None)
         };
@@ -158,7 +182,7 @@ impl Contact {
         if let (Ok(state), true) = (&result, self.yields) {
             *highest = Some(Highest::of(highest.take(), normal, state));
         }
-        let of = |state: RustState| state::of(py, state, &self.normalisation);
+        let of = |state: RustState| state::of(py, state, &self.origin);
         let mut ended = Vec::new();
         let answer = match (result, raised) {
             (Ok(state), raised) => {
@@ -182,7 +206,7 @@ impl Contact {
                         }
                         Err(raised)
                     }
-                    (error, _) => Err(of_solve(py, error, &self.normalisation)),
+                    (error, _) => Err(of_solve(py, error, &self.origin)),
                 }
             }
         };
@@ -213,6 +237,8 @@ impl Contact {
     /// ----------
     /// force, approach, mean_pressure, mean_gap : float
     ///     Exactly one of them. ``mean_pressure`` is over Lx Ly, ``mean_gap`` for periodic boundaries.
+    /// stop : threading.Event, optional
+    ///     Set by another thread, it stops the solve between two iterations.
     ///
     /// Returns
     /// -------
@@ -225,19 +251,21 @@ impl Contact {
     ///     With a hardness also for a load smaller than one before.
     /// OutOfMemory
     ///     For contact that fills so much of a large grid that it does not fit in memory.
-    /// NotConverged
+    /// NotConverged, Stopped
     ///     With the state that was reached as ``best``.
-    #[pyo3(signature = (*, force=None, approach=None, mean_pressure=None, mean_gap=None))]
+    #[pyo3(signature = (*, force=None, approach=None, mean_pressure=None, mean_gap=None, stop=None))]
     fn solve(
         &self,
         py: Python<'_>,
-        force: Option<f64>,
-        approach: Option<f64>,
-        mean_pressure: Option<f64>,
-        mean_gap: Option<f64>,
+        force: Option<Real>,
+        approach: Option<Real>,
+        mean_pressure: Option<Real>,
+        mean_gap: Option<Real>,
+        stop: Option<Py<PyAny>>,
     ) -> PyResult<Py<ContactState>> {
-        let load = load(&self.normalisation, force, approach, mean_pressure, mean_gap)?;
-        self.answer(py, &Asked::Load(load), mean_pressure.map(|_| self.area()))
+        let token = StopToken::new(py, stop.as_ref())?;
+        let load = load(self.normalisation(), force, approach, mean_pressure, mean_gap)?;
+        self.answer(py, &Asked::Load(load), mean_pressure.map(|_| self.area()), token)
     }
 
     /// Solves for loads in their order: an iterator that yields each state as soon as it is there.
@@ -246,20 +274,23 @@ impl Contact {
     /// ----------
     /// force, approach, mean_pressure, mean_gap : iterable of float
     ///     Exactly one of them. Increasing loads are the fastest order, and the only one with a hardness.
+    /// stop : threading.Event, optional
+    ///     As in `solve`.
     ///
     /// Yields
     /// ------
     /// ContactState
-    #[pyo3(signature = (*, force=None, approach=None, mean_pressure=None, mean_gap=None))]
+    #[pyo3(signature = (*, force=None, approach=None, mean_pressure=None, mean_gap=None, stop=None))]
     fn sweep<'py>(
         slf: &Bound<'py, Self>,
         force: Option<Bound<'py, PyAny>>,
         approach: Option<Bound<'py, PyAny>>,
         mean_pressure: Option<Bound<'py, PyAny>>,
         mean_gap: Option<Bound<'py, PyAny>>,
+        stop: Option<Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let values = [force, approach, mean_pressure, mean_gap];
-        let loads = LOADS.into_iter().zip(values).into_py_dict(slf.py())?;
+        let values = [force, approach, mean_pressure, mean_gap, stop];
+        let loads = LOADS.into_iter().chain(["stop"]).zip(values).into_py_dict(slf.py())?;
         slf.py().import("fractal_contact._models")?.call_method("sweep", (slf,), Some(&loads))
     }
 
@@ -270,10 +301,12 @@ impl Contact {
     /// time : float
     ///     At the end of the step; it never decreases. Friction alone does not look at it.
     /// force, approach, mean_pressure, mean_gap : float
-    ///     Exactly one of them. ``mean_pressure`` is over Lx Ly, ``mean_gap`` for periodic boundaries. The first three may be negative
-    ///     with adhesion.
+    ///     Exactly one of them. ``mean_pressure`` is over Lx Ly, ``mean_gap`` for periodic boundaries. The first
+    ///     three may be negative with adhesion.
     /// tangential_force, tangential_displacement : float or (float, float), optional
     ///     At most one of them: along x, or along x (columns) and along y (rows); no tangential force otherwise.
+    /// stop : threading.Event, optional
+    ///     As in `solve`.
     ///
     /// Returns
     /// -------
@@ -283,25 +316,29 @@ impl Contact {
     /// ------
     /// DomainError, OutOfRange, Unsupported
     ///     For a load that makes no sense or that the model does not hold for.
-    /// NotConverged
+    /// NotConverged, Stopped
     ///     With the state that was reached as ``best``; beyond pull-off that is the last stable state.
-    #[pyo3(signature = (time=0.0, *, force=None, approach=None, mean_pressure=None, mean_gap=None, tangential_force=None,
-                        tangential_displacement=None))]
+    #[pyo3(signature = (time=Real(0.0), *, force=None, approach=None, mean_pressure=None, mean_gap=None,
+                        tangential_force=None, tangential_displacement=None, stop=None),
+           text_signature = "($self, time=0.0, *, force=None, approach=None, mean_pressure=None, mean_gap=None, \
+                             tangential_force=None, tangential_displacement=None, stop=None)")]
     #[allow(clippy::too_many_arguments)] // One for each keyword.
     fn advance(
         &self,
         py: Python<'_>,
-        time: f64,
-        force: Option<f64>,
-        approach: Option<f64>,
-        mean_pressure: Option<f64>,
-        mean_gap: Option<f64>,
+        time: Real,
+        force: Option<Real>,
+        approach: Option<Real>,
+        mean_pressure: Option<Real>,
+        mean_gap: Option<Real>,
         tangential_force: Option<Bound<'_, PyAny>>,
         tangential_displacement: Option<Bound<'_, PyAny>>,
+        stop: Option<Py<PyAny>>,
     ) -> PyResult<Py<ContactState>> {
-        let normal = load(&self.normalisation, force, approach, mean_pressure, mean_gap)?;
+        let token = StopToken::new(py, stop.as_ref())?;
+        let normal = load(self.normalisation(), force, approach, mean_pressure, mean_gap)?;
         let tangential = tangential(tangential_force.as_ref(), tangential_displacement.as_ref())?;
-        self.answer(py, &Asked::Step(Step { time, normal, tangential }), None)
+        self.answer(py, &Asked::Step(Step { time: time.0, normal, tangential }), None, token)
     }
 
     /// Goes along a path: an iterator that yields the state at the end of each step as soon as it is there.
@@ -316,14 +353,16 @@ impl Contact {
     /// force, approach, mean_pressure, mean_gap : float or iterable of float
     ///     Exactly one of them, as in `advance`.
     /// tangential_force, tangential_displacement : float, iterable of float or of (float, float), optional
-    ///     At most one of them, along x or along x and y. Iterables have one number, or two, for each step; a number alone is
-    ///     that of every step.
+    ///     At most one of them, along x or along x and y. Iterables have one number, or two, for each step; a
+    ///     number alone is that of every step.
+    /// stop : threading.Event, optional
+    ///     As in `solve`.
     ///
     /// Yields
     /// ------
     /// ContactState
-    #[pyo3(signature = (time=None, *, force=None, approach=None, mean_pressure=None, mean_gap=None, tangential_force=None,
-                        tangential_displacement=None))]
+    #[pyo3(signature = (time=None, *, force=None, approach=None, mean_pressure=None, mean_gap=None,
+                        tangential_force=None, tangential_displacement=None, stop=None))]
     #[allow(clippy::too_many_arguments)] // One for each keyword.
     fn follow<'py>(
         slf: &Bound<'py, Self>,
@@ -334,10 +373,11 @@ impl Contact {
         mean_gap: Option<Bound<'py, PyAny>>,
         tangential_force: Option<Bound<'py, PyAny>>,
         tangential_displacement: Option<Bound<'py, PyAny>>,
+        stop: Option<Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let values =
-            [force, approach, mean_pressure, mean_gap, time, tangential_force, tangential_displacement];
-        let names = LOADS.into_iter().chain(["time", "tangential_force", "tangential_displacement"]);
+            [force, approach, mean_pressure, mean_gap, time, tangential_force, tangential_displacement, stop];
+        let names = LOADS.into_iter().chain(["time", "tangential_force", "tangential_displacement", "stop"]);
         let steps = names.zip(values).into_py_dict(slf.py())?;
         slf.py().import("fractal_contact._models")?.call_method("follow", (slf,), Some(&steps))
     }
@@ -409,7 +449,7 @@ impl Contact {
         }
         let area = (kind == "mean_pressure").then(|| self.area());
         let loads: Vec<Load> =
-            values.iter().map(|value| load_of(&self.normalisation, kind, *value)).collect();
+            values.iter().map(|value| load_of(self.normalisation(), kind, *value)).collect();
         if let (Some(highest), Some(first)) = (&self.inner.take(py)?.highest, loads.first()) {
             highest.check(py, *first, area)?;
         }
@@ -417,9 +457,9 @@ impl Contact {
     }
 
     /// Normalisation: of this very surface.
-    #[getter]
-    fn normalisation(&self) -> Normalisation {
-        Normalisation(self.normalisation)
+    #[getter(normalisation)]
+    fn shown_normalisation(&self) -> Normalisation {
+        Normalisation(self.origin.normalisation)
     }
 
     /// ContactState or None: what the last solve had reached that a signal such as Ctrl-C interrupted.
@@ -439,7 +479,7 @@ impl Contact {
     }
 
     fn __repr__(&self) -> String {
-        let RustNormalisation { modulus, length, height, .. } = self.normalisation;
+        let RustNormalisation { modulus, length, height, .. } = self.origin.normalisation;
         let height = height.map_or("none".into(), |h| format!("{h:.4e}"));
         format!("<Contact: modulus={modulus:e}, length={length:e}, rms height {height}>")
     }

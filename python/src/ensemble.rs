@@ -1,17 +1,18 @@
 //! Many surfaces at a time.
 
-use crate::errors::{of_planning, of_solve, plain};
+use crate::errors::{of_planning, of_solve, plain, stopped};
 use crate::load_order::check_rising;
 use crate::loads::load_of;
 use crate::memory;
 use crate::model::{Model, Shared};
-use crate::pool;
+use crate::numbers::Seed;
+use crate::pool::{self, StopToken};
 use crate::scene::Scene;
-use crate::state;
+use crate::state::{self, Origin};
 use fractal_contact::runs::{Threads, run_jobs, threads_for_memory};
 use fractal_contact::{
-    ContactModel, ContactState as RustState, Error, Hardness, Load, Normalisation, Outputs, RequiredMemory,
-    Result, Scene as RustScene, Stop,
+    ContactModel, ContactState as RustState, Error, Hardness, Load, Outputs, RequiredMemory, Result,
+    Scene as RustScene, Stop,
 };
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -43,18 +44,22 @@ fn surfaces_in_memory(
 ///
 /// `progress` is called with the number of surfaces that are done and that of all.
 #[pyfunction]
-#[pyo3(signature = (model, scene, loads, seed, surfaces, progress))]
+#[pyo3(signature = (model, scene, loads, seed, surfaces, progress, stop=None))]
+#[allow(clippy::too_many_arguments)] // One for each keyword.
 pub fn ensemble(
     py: Python<'_>,
     model: &Model,
     scene: &Scene,
     loads: Vec<(String, f64)>,
-    seed: u64,
+    seed: Seed,
     surfaces: usize,
     progress: Option<Py<PyAny>>,
+    stop: Option<Py<PyAny>>,
 ) -> PyResult<Vec<Vec<Py<PyAny>>>> {
+    let token = StopToken::new(py, stop.as_ref())?;
     let model = &model.model;
-    let (scene, done, mut told) = (scene.0.clone(), AtomicUsize::new(0), 0);
+    let (asked, done, mut told) = (scene, AtomicUsize::new(0), 0);
+    let scene = &asked.scene;
     if scene.effects.hardness != Hardness::Off {
         // The order of the values is that of the loads on every surface.
         let values: Vec<Load> = loads
@@ -68,14 +73,16 @@ pub fn ensemble(
         let pressures = loads.first().is_some_and(|(kind, _)| kind == "mean_pressure");
         check_rising(py, &values, pressures.then_some(1.0))?;
     }
-    let threads = surfaces_in_memory(py, model, &scene, (surfaces, loads.len()))?;
+    let threads = surfaces_in_memory(py, model, scene, (surfaces, loads.len()))?;
     let answer = |index: usize, stop: Stop<'_>| {
-        let seed = fractal_contact::surface_gen::surface_seed(seed, index as u64);
-        let mut contact = model.prepare(&scene, seed)?;
-        let normalisation = contact.normalisation();
+        let seed = fractal_contact::surface_gen::surface_seed(seed.0, index as u64);
+        let (scene, contact) = Model::planned(model, asked, seed);
+        let mut contact = contact?;
+        let origin = Origin::new(&scene, contact.normalisation());
+        let unit = &origin.normalisation;
         let given = |(kind, value): &(String, f64)| match kind.as_str() {
-            "force_bar" => Ok(Load::Force(normalisation.force(*value)?)),
-            kind => Ok(load_of(&normalisation, kind, *value)),
+            "force_bar" => Ok(Load::Force(unit.force(*value)?)),
+            kind => Ok(load_of(unit, kind, *value)),
         };
         let loads = loads.iter().map(given).collect::<Result<Vec<Load>>>()?;
         let mut found = Vec::new();
@@ -84,7 +91,7 @@ pub fn ensemble(
             Ok(())
         })?;
         done.fetch_add(1, Ordering::Relaxed);
-        Ok((normalisation, found))
+        Ok((origin, found))
     };
     let mut listen = |py: Python<'_>| {
         let now = done.load(Ordering::Relaxed);
@@ -94,24 +101,24 @@ pub fn ensemble(
         }
         Ok(())
     };
-    let (found, raised) = pool::run(py, &mut listen, |stop| {
+    let (found, raised) = pool::run(py, token, &mut listen, |stop| {
         // A loop for each thread: one that waits for helpers does not begin another surface, which would need
         // memory of its own.
         run_jobs(threads, &(0..surfaces).collect::<Vec<usize>>(), stop, answer)
     })?;
     // A load that was refused stands for itself among the others.
-    let one = |normalisation: &Normalisation, state: Result<RustState>| -> PyResult<Py<PyAny>> {
+    let one = |origin: &Origin, state: Result<RustState>| -> PyResult<Py<PyAny>> {
         match state {
-            Ok(state) => Ok(state::of(py, state, normalisation)?.into_any()),
-            Err(error) => Ok(of_solve(py, error, normalisation).into_value(py).into_any()),
+            Ok(state) => Ok(state::of(py, state, origin)?.into_any()),
+            Err(error) => Ok(of_solve(py, error, origin).into_value(py).into_any()),
         }
     };
     let mut surfaces_done = Vec::new();
     let mut failed = None;
     for (index, states) in found.into_iter().enumerate() {
         match states {
-            Some(Ok((normalisation, states))) => {
-                let states = states.into_iter().map(|state| one(&normalisation, state));
+            Some(Ok((origin, states))) => {
+                let states = states.into_iter().map(|state| one(&origin, state));
                 surfaces_done.push((index, states.collect::<PyResult<Vec<_>>>()?));
             }
             // After a failure those in flight are stopped: their reason is not the reason.
@@ -120,8 +127,9 @@ pub fn ensemble(
         }
     }
     if let (Some(error), None) = (failed, &raised) {
-        return Err(of_planning(py, error, &scene));
+        return Err(of_planning(py, error, scene));
     }
+    let raised = raised.or_else(|| (surfaces_done.len() < surfaces).then(|| stopped(py)));
     if let Some(raised) = raised {
         // What is finished goes with the exception.
         let finished = PyDict::new(py);

@@ -1,9 +1,10 @@
 //! Errors of the library as the exceptions of `fractal_contact._errors`, with their numbers as attributes.
 
-use crate::state::{self, ContactState};
+use crate::state::{self, ContactState, Origin};
 use fractal_contact::models::{ModelRecord, able};
-use fractal_contact::{ContactState as RustState, Error, Normalisation, Scene, scenes};
-use pyo3::exceptions::{PyTypeError, PyValueError};
+use fractal_contact::runs::{self, files};
+use fractal_contact::{ContactState as RustState, Error, Scene, scenes, surface_io};
+use pyo3::exceptions::{PyOSError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyDict, PyTuple, PyType};
@@ -39,10 +40,15 @@ pub fn of_model(py: Python<'_>, error: Error) -> PyErr {
     of_any(py, error, &message, &PyDict::new(py), None)
 }
 
-/// An error of a contact with this normalisation.
-pub fn of_solve(py: Python<'_>, error: Error, normalisation: &Normalisation) -> PyErr {
+/// An error of a contact of this origin.
+pub fn of_solve(py: Python<'_>, error: Error, origin: &Origin) -> PyErr {
     let message = error.to_string();
-    of_any(py, error, &message, &PyDict::new(py), Some(normalisation))
+    of_any(py, error, &message, &PyDict::new(py), Some(origin))
+}
+
+/// What was stopped before it had begun, or without a state.
+pub fn stopped(py: Python<'_>) -> PyErr {
+    of_model(py, Error::Stopped { best: None })
 }
 
 /// An error of a model that plans a scene: what the model lacks is told with the models that have it.
@@ -68,10 +74,10 @@ fn of_any(
     error: Error,
     message: &str,
     attributes: &Bound<'_, PyDict>,
-    normalisation: Option<&Normalisation>,
+    origin: Option<&Origin>,
 ) -> PyErr {
     let state = |best: RustState| -> PyResult<Option<Py<ContactState>>> {
-        normalisation.map(|normalisation| state::of(py, best, normalisation)).transpose()
+        origin.map(|origin| state::of(py, best, origin)).transpose()
     };
     let fill = || -> PyResult<&str> {
         Ok(match error {
@@ -123,11 +129,34 @@ fn of_any(
     }
 }
 
+/// A refusal of the system as Python has it: `FileNotFoundError`, `PermissionError` and other classes of
+/// `OSError`.
+fn of_system(error: &files::Error) -> Option<PyErr> {
+    let files::Error::System { path, source, .. } = error else { return None };
+    let code = source.raw_os_error()?;
+    let reason = source.to_string();
+    let reason = reason.split(" (os error").next().unwrap_or_default().to_owned();
+    Some(PyOSError::new_err((code, reason, path.clone().into_os_string())))
+}
+
+/// An error of the file of a surface.
+pub fn of_surface(py: Python<'_>, error: &surface_io::Error) -> PyErr {
+    let system = if let surface_io::Error::System(error) = error { of_system(error) } else { None };
+    system.unwrap_or_else(|| plain(py, "ReadError", &error.to_string()))
+}
+
 /// An error of a scene or its files.
 pub fn of_scene(py: Python<'_>, error: &scenes::Error) -> PyErr {
+    let system = match error {
+        scenes::Error::Run(runs::Error::File(error)) => of_system(error),
+        scenes::Error::Surface(error) => return of_surface(py, error),
+        _ => None,
+    };
+    if let Some(system) = system {
+        return system;
+    }
     let name = match error {
         scenes::Error::Scene(_) => "SceneError",
-        scenes::Error::Surface(_) => "ReadError",
         _ => "Error",
     };
     plain(py, name, error.to_string().trim_start_matches("error: "))

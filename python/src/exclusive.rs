@@ -5,7 +5,8 @@
 //! inside a job can wait for ever: a thread of the pool that waits for helpers may be given another job,
 //! which would wait for the lock that its own thread holds.
 
-use crate::pool::LOOK;
+use crate::errors::stopped;
+use crate::pool::{LOOK, StopToken};
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use std::collections::VecDeque;
@@ -46,6 +47,14 @@ impl<T: Send> Exclusive<T> {
     /// What the handler of a signal raises meanwhile; `RuntimeError` where this very thread has the value or
     /// waits for it, as in the handler of a signal that came during a solve.
     pub fn take(&self, py: Python<'_>) -> PyResult<InUse<'_, T>> {
+        self.take_unless(py, StopToken::NONE)
+    }
+
+    /// The same, unless the token is set while it waits.
+    ///
+    /// # Errors
+    /// `Stopped` then.
+    pub fn take_unless(&self, py: Python<'_>, token: StopToken<'_>) -> PyResult<InUse<'_, T>> {
         let mut state = self.locked();
         if state.waiting.is_empty()
             && let Some(value) = state.take()
@@ -67,6 +76,9 @@ impl<T: Send> Exclusive<T> {
                 return Ok(InUse { of: self, value: Some(value) });
             }
             py.check_signals()?;
+            if token.is_set(py)? {
+                return Err(stopped(py));
+            }
         }
     }
 

@@ -2,29 +2,30 @@
 
 use crate::errors::of_model;
 use crate::memory;
+use crate::numbers::{OneOrTwo, Pair, Real, pair};
 use crate::pool;
-use fractal_contact::surface_io::{Dimension, Sides, Unit};
+use crate::state::reduced;
+use fractal_contact::surface_io::{Dimension, Sides as TextSides, Unit};
 use fractal_contact::{Cells, HeightMap as RustMap, Size};
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods};
-use pyo3::IntoPyObjectExt;
-use pyo3::exceptions::PyValueError;
+use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::PyTuple;
+use pyo3::types::{IntoPyDict as _, PyDict, PyString, PyTuple};
 use std::sync::Arc;
 
-/// Most values along a side of the picture in a notebook.
-const MOST: usize = 256;
-
 /// Heights on a rectangle of equal cells, seen from outside its body: large values touch first.
+///
+/// ``np.asarray(map)`` is an array of them. Maps of the same size are added and subtracted; numbers, and arrays of
+/// the map's shape, are added, subtracted, multiplied and divided by. Undefined points stay undefined.
 ///
 /// Parameters
 /// ----------
 /// heights : array_like
 ///     Two-dimensional, ``[row, column]``: columns along x, rows along y, of any real type. A masked array has
 ///     undefined points where it is masked.
-/// size : float, str, (float, float) or (str, str)
-///     Side of a square or sides ``(Lx, Ly)`` of the rectangle, in the unit of the heights; texts with a unit, such as
-///     ``"1 mm"`` or ``"2 mm x 1 mm"``, are metres.
+/// size : float, str, or two of them
+///     Side of a square or sides ``(Lx, Ly)`` of the rectangle, in the unit of the heights; texts with a unit, such
+///     as ``"1 mm"`` or ``"2 mm x 1 mm"``, are metres.
 /// unit : str, optional
 ///     Unit of the heights in the array, such as ``"nm"``: the map is then in metres.
 /// undefined : {"error", "no_contact"}
@@ -39,48 +40,68 @@ impl From<RustMap> for HeightMap {
     }
 }
 
-/// A number or a pair of numbers, as sides or cells.
-#[derive(FromPyObject)]
-pub enum OneOrTwo<T> {
-    One(T),
-    Two((T, T)),
-}
-
-impl OneOrTwo<f64> {
-    pub fn size(self) -> Size {
-        match self {
-            Self::One(side) => side.into(),
-            Self::Two((x, y)) => [x, y].into(),
-        }
+/// The sides of a rectangle.
+pub fn size(of: OneOrTwo<f64>) -> Size {
+    match of {
+        OneOrTwo::One(side) => side.into(),
+        OneOrTwo::Two(sides) => sides.into(),
     }
 }
 
 /// Sides as numbers, or as texts with units.
-#[derive(FromPyObject)]
-enum Extent {
-    Numbers(OneOrTwo<f64>),
-    Text(String),
-    Texts((String, String)),
-}
+struct Sides(Size);
 
-impl Extent {
-    fn size(self) -> PyResult<Size> {
-        let text = match self {
-            Self::Numbers(numbers) => return Ok(numbers.size()),
-            Self::Text(text) => text,
-            Self::Texts((x, y)) => format!("{x} x {y}"),
+impl<'py> FromPyObject<'_, 'py> for Sides {
+    type Error = PyErr;
+
+    fn extract(of: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
+        if let Some(numbers) = OneOrTwo::of(&of) {
+            return Ok(Self(size(numbers)));
+        }
+        let text = match (of.cast::<PyString>(), pair::<String>(&of)) {
+            (Ok(text), _) => text.to_string(),
+            (_, Some([x, y])) => format!("{x} x {y}"),
+            _ => {
+                return Err(PyTypeError::new_err(format!(
+                    "size = {}: expected a number, a text with a unit such as \"1 mm\", or two of them",
+                    of.repr()?
+                )));
+            }
         };
-        let sides: Sides =
-            text.parse().map_err(|error| PyValueError::new_err(format!("size = {text:?}: {error}")))?;
+        let wrong = |reason: &str| PyValueError::new_err(format!("size = {text:?}: {reason}"));
+        let sides: TextSides = text.parse().map_err(|error| wrong(&format!("{error}")))?;
         let [x, y] = sides.both();
         if [x, y].iter().any(|side| ![Dimension::LENGTH, Dimension::NONE].contains(&side.dimension())) {
-            return Err(PyValueError::new_err(format!("size = {text:?}: expected lengths")));
+            return Err(wrong("expected lengths"));
         }
-        Ok([x.value(), y.value()].into())
+        Ok(Self([x.value(), y.value()].into()))
     }
 }
 
+/// The centres of so many cells of this side.
+fn centres(py: Python<'_>, count: usize, side: f64) -> Bound<'_, PyArray1<f64>> {
+    PyArray1::from_iter(py, (0..count).map(|i| (i as f64 + 0.5) * side))
+}
+
+/// An operation on a map and a number or an array, of `fractal_contact._arrays`.
+fn combined<'py>(
+    map: &Bound<'py, HeightMap>,
+    other: &Bound<'py, PyAny>,
+    operation: &str,
+    reflected: bool,
+) -> PyResult<Bound<'py, PyAny>> {
+    let arrays = map.py().import("fractal_contact._arrays")?;
+    arrays.call_method1("combined", (map, other, operation, reflected))
+}
+
 impl HeightMap {
+    /// A copy of the heights, NaN at undefined points.
+    fn array<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        self.copied(py)?;
+        let values = self.0.heights().iter().map(|h| if h.is_finite() { *h } else { f64::NAN }).collect();
+        PyArray1::from_vec(py, values).reshape([self.0.rows(), self.0.columns()])
+    }
+
     /// An error where there is no memory for another map of this size.
     fn copied(&self, py: Python<'_>) -> PyResult<()> {
         let cells = self.0.cells();
@@ -95,11 +116,11 @@ impl HeightMap {
     fn new(
         py: Python<'_>,
         heights: &Bound<'_, PyAny>,
-        size: Extent,
+        size: Sides,
         unit: Option<&str>,
         undefined: &str,
     ) -> PyResult<Self> {
-        let size = size.size()?;
+        let Sides(size) = size;
         // Numpy's own rules for types, masks and memory orders.
         let prepared = py.import("fractal_contact._arrays")?.call_method1("heights", (heights, undefined))?;
         let (array, partly): (PyReadonlyArray2<'_, f64>, bool) = prepared.extract()?;
@@ -125,12 +146,44 @@ impl HeightMap {
         map.map(Self::from).map_err(|error| of_model(py, error))
     }
 
-    /// numpy.ndarray: a copy of the heights, [row, column]; NaN at undefined points.
+    /// numpy.ndarray: the heights, [row, column]; NaN at undefined points. Read-only: ``np.array(map)`` is a copy to
+    /// change.
     #[getter]
     fn heights<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        self.copied(py)?;
-        let values = self.0.heights().iter().map(|h| if h.is_finite() { *h } else { f64::NAN }).collect();
-        PyArray1::from_vec(py, values).reshape([self.0.rows(), self.0.columns()])
+        let array = self.array(py)?;
+        array.try_readwrite()?.make_nonwriteable();
+        Ok(array)
+    }
+
+    #[pyo3(signature = (dtype=None, *, copy=None))]
+    fn __array__<'py>(
+        &self,
+        py: Python<'py>,
+        dtype: Option<Bound<'py, PyAny>>,
+        copy: Option<bool>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        if copy == Some(false) {
+            return Err(PyValueError::new_err(
+                "the heights of a map are copied: an array without a copy is none",
+            ));
+        }
+        let array = self.array(py)?.into_any();
+        match dtype {
+            None => Ok(array),
+            Some(dtype) => array.call_method("astype", (dtype,), Some(&[("copy", false)].into_py_dict(py)?)),
+        }
+    }
+
+    /// Operations of arrays with a map are the map's.
+    #[classattr]
+    #[pyo3(name = "__array_priority__")]
+    fn array_priority() -> f64 {
+        1000.0
+    }
+
+    /// Number of rows, as of the array.
+    fn __len__(&self) -> usize {
+        self.0.rows()
     }
 
     /// (int, int): rows and columns.
@@ -151,6 +204,25 @@ impl HeightMap {
         (self.0.dx(), self.0.dy())
     }
 
+    /// (float, float, float, float): left, right, bottom and top of the rectangle, as ``imshow`` takes it with
+    /// ``origin="lower"``.
+    #[getter]
+    fn extent(&self) -> (f64, f64, f64, f64) {
+        (0.0, self.0.size().x, 0.0, self.0.size().y)
+    }
+
+    /// numpy.ndarray: where the centres of the columns are along x, shape (columns,).
+    #[getter]
+    fn x<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        centres(py, self.0.columns(), self.0.dx())
+    }
+
+    /// numpy.ndarray: where the centres of the rows are along y, shape (rows,).
+    #[getter]
+    fn y<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        centres(py, self.0.rows(), self.0.dy())
+    }
+
     /// int: number of undefined points.
     #[getter]
     fn undefined(&self) -> usize {
@@ -162,8 +234,9 @@ impl HeightMap {
     fn rms_height(&self, py: Python<'_>) -> PyResult<f64> {
         // On the pool, as all that shares its work: the threads of rayon's own pool do not survive a fork.
         self.copied(py)?;
-        pool::call(py, || {
-            let defined: Vec<f64> = self.0.defined().collect();
+        let map = Arc::clone(&self.0);
+        pool::call(py, move || {
+            let defined: Vec<f64> = map.defined().collect();
             fractal_contact::surface_gen::rms_height(&defined)
         })
     }
@@ -192,38 +265,100 @@ impl HeightMap {
     /// ----------
     /// rows, columns : (int, int)
     ///     First, and the one after the last.
-    fn cropped(&self, py: Python<'_>, rows: (usize, usize), columns: (usize, usize)) -> PyResult<Self> {
-        let [wide, high] = [columns, rows].map(|(first, end)| end.saturating_sub(first));
+    fn cropped(&self, py: Python<'_>, rows: Pair, columns: Pair) -> PyResult<Self> {
+        let (Pair(rows), Pair(columns)) = (rows, columns);
+        let [wide, high] = [columns, rows].map(|[first, end]| end.saturating_sub(first));
         let cells = Cells { columns: wide.min(self.0.columns()), rows: high.min(self.0.rows()) };
         memory::check_grid(py, "a map", cells, cells.map_bytes())?;
-        let map = self.0.cropped(columns.0..columns.1, rows.0..rows.1);
+        let map = self.0.cropped(columns[0]..columns[1], rows[0]..rows[1]);
         map.map(Self::from).map_err(|error| of_model(py, error))
     }
 
     /// The map with its sides and its heights multiplied.
-    fn scaled(&self, py: Python<'_>, lateral: f64, vertical: f64) -> PyResult<Self> {
+    fn scaled(&self, py: Python<'_>, lateral: Real, vertical: Real) -> PyResult<Self> {
         self.copied(py)?;
-        self.0.scaled(lateral, vertical).map(Self::from).map_err(|error| of_model(py, error))
+        self.0.scaled(lateral.0, vertical.0).map(Self::from).map_err(|error| of_model(py, error))
     }
 
-    fn __add__(&self, py: Python<'_>, other: &Self) -> PyResult<Self> {
-        self.copied(py)?;
-        self.0.plus(&other.0).map(Self::from).map_err(|error| of_model(py, error))
+    /// Draws the map with matplotlib: cells in their shape, the first row at the bottom, a colour bar.
+    ///
+    /// Parameters
+    /// ----------
+    /// ax : matplotlib.axes.Axes, optional
+    ///     Where; the current axes by default.
+    /// **options
+    ///     Of ``imshow``.
+    ///
+    /// Returns
+    /// -------
+    /// matplotlib.image.AxesImage
+    #[pyo3(signature = (ax=None, **options))]
+    fn plot<'py>(
+        slf: &Bound<'py, Self>,
+        ax: Option<Bound<'py, PyAny>>,
+        options: Option<Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        slf.py().import("fractal_contact._arrays")?.call_method("plot", (slf, ax), options.as_ref())
     }
 
-    fn __sub__(&self, py: Python<'_>, other: &Self) -> PyResult<Self> {
-        self.copied(py)?;
-        self.0.minus(&other.0).map(Self::from).map_err(|error| of_model(py, error))
+    /// The map for xarray, with the dimensions y and x and their coordinates.
+    ///
+    /// Returns
+    /// -------
+    /// xarray.DataArray
+    fn to_xarray<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        slf.py().import("fractal_contact._arrays")?.call_method1("to_xarray", (slf,))
+    }
+
+    fn __add__<'py>(slf: &Bound<'py, Self>, other: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        let Ok(other) = other.cast::<Self>() else { return combined(slf, other, "add", false) };
+        slf.get().copied(slf.py())?;
+        let sum = slf.get().0.plus(&other.get().0).map_err(|error| of_model(slf.py(), error))?;
+        Ok(Self::from(sum).into_pyobject(slf.py())?.into_any())
+    }
+
+    fn __radd__<'py>(slf: &Bound<'py, Self>, other: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        combined(slf, other, "add", true)
+    }
+
+    fn __sub__<'py>(slf: &Bound<'py, Self>, other: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        let Ok(other) = other.cast::<Self>() else { return combined(slf, other, "subtract", false) };
+        slf.get().copied(slf.py())?;
+        let difference = slf.get().0.minus(&other.get().0).map_err(|error| of_model(slf.py(), error))?;
+        Ok(Self::from(difference).into_pyobject(slf.py())?.into_any())
+    }
+
+    fn __rsub__<'py>(slf: &Bound<'py, Self>, other: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        combined(slf, other, "subtract", true)
+    }
+
+    fn __mul__<'py>(slf: &Bound<'py, Self>, other: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        combined(slf, other, "multiply", false)
+    }
+
+    fn __rmul__<'py>(slf: &Bound<'py, Self>, other: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        combined(slf, other, "multiply", true)
+    }
+
+    fn __truediv__<'py>(slf: &Bound<'py, Self>, other: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        combined(slf, other, "divide", false)
+    }
+
+    fn __neg__(&self, py: Python<'_>) -> PyResult<Self> {
+        self.scaled(py, Real(1.0), Real(-1.0))
+    }
+
+    fn __pos__(&self) -> Self {
+        self.clone()
     }
 
     fn __eq__(&self, other: &Self) -> bool {
         self.0 == other.0
     }
 
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         let undefined = if self.undefined() > 0 { "no_contact" } else { "error" };
-        let arguments = (self.heights(py)?, self.size(), undefined).into_pyobject(py)?;
-        Ok((py.import("fractal_contact._arrays")?.getattr("restored")?, arguments))
+        reduced(py, "height_map", (self.array(py)?, self.size(), undefined))
     }
 
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
@@ -237,22 +372,16 @@ impl HeightMap {
         ))
     }
 
-    fn _repr_html_(&self, py: Python<'_>) -> PyResult<String> {
-        let (rows, columns) = self.shape();
-        let step = rows.max(columns).div_ceil(MOST);
-        let (down, across) = (rows.div_ceil(step), columns.div_ceil(step));
-        let at = |i: usize| self.0.heights()[(i / across) * step * columns + (i % across) * step] as f32;
-        let values: Vec<f32> = (0..down * across).map(at).collect();
-        let finite = || values.iter().copied().filter(|v| v.is_finite());
-        let ends = [finite().fold(f32::INFINITY, f32::min), finite().fold(f32::NEG_INFINITY, f32::max)];
-        let png = fractal_contact::plots::encode_viridis(across, &values, ends, false)
-            .map_err(|error| crate::errors::plain(py, "Error", &error.to_string()))?;
-        let image = py.import("base64")?.call_method1("b64encode", (png.into_py_any(py)?,))?;
-        let image: String = image.call_method1("decode", ("ascii",))?.extract()?;
-        let told = self.__repr__(py)?.replace('<', "&lt;").replace('>', "&gt;");
-        Ok(format!(
-            "<div>{told}</div><img alt=\"heights, the first row at the bottom\" width=\"320\" \
-             style=\"image-rendering: pixelated\" src=\"data:image/png;base64,{image}\">"
-        ))
+    /// Every so many heights along both sides, for pictures.
+    fn _sampled<'py>(&self, py: Python<'py>, step: usize) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let step = step.max(1);
+        let rows = self.0.heights().chunks(self.0.columns()).step_by(step);
+        let values = rows.flat_map(|row| row.iter().step_by(step).copied()).collect();
+        PyArray1::from_vec(py, values)
+            .reshape([self.0.rows().div_ceil(step), self.0.columns().div_ceil(step)])
+    }
+
+    fn _repr_html_(slf: Bound<'_, Self>) -> PyResult<Bound<'_, PyAny>> {
+        slf.py().import("fractal_contact._html")?.call_method1("height_map", (&slf,))
     }
 }

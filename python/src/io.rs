@@ -1,6 +1,6 @@
 //! Surfaces from files.
 
-use crate::errors::plain;
+use crate::errors::{of_surface, plain};
 use crate::height_map::HeightMap;
 use crate::pool;
 use crate::scene::optional;
@@ -14,6 +14,7 @@ use pyo3::types::PyDict;
 use std::fmt::Display;
 use std::path::PathBuf;
 use std::str::FromStr;
+use std::sync::Arc;
 
 /// A word of the program's options.
 fn word<T: FromStr>(of: &Bound<'_, PyDict>, name: &str) -> PyResult<Option<T>>
@@ -75,10 +76,6 @@ fn options(of: &Bound<'_, PyDict>) -> PyResult<(ReadOptions, Preprocessing)> {
     Ok((declared, preprocessing))
 }
 
-fn failed(py: Python<'_>, error: &Error) -> PyErr {
-    plain(py, "ReadError", &error.to_string())
-}
-
 /// What a file says of a channel.
 fn metadata<'py>(py: Python<'py>, of: &Metadata) -> PyResult<Bound<'py, PyDict>> {
     let dict = PyDict::new(py);
@@ -108,12 +105,13 @@ pub fn read_surface<'py>(
     options: &Bound<'py, PyDict>,
 ) -> PyResult<Read<'py>> {
     let (declared, preprocessing) = self::options(options)?;
-    let read = || -> Result<_, Error> {
-        let scan = SurfaceFile::open(&path, &declared)?.scan()?;
+    let file = path.clone();
+    let read = move || -> Result<_, Error> {
+        let scan = SurfaceFile::open(&file, &declared)?.scan()?;
         let found = scan.preprocessed(&preprocessing)?;
         Ok((scan.metadata().clone(), found))
     };
-    let (described, found) = pool::call(py, read)?.map_err(|error| failed(py, &error))?;
+    let (described, found) = pool::call(py, read)?.map_err(|error| of_surface(py, &error))?;
     if described.profile {
         let reason = "a profile x, z stands for a body uniform along y, which a HeightMap is not: run_scene presses it (a map of two columns: \
                       format=\"text\")";
@@ -131,7 +129,7 @@ pub fn channels<'py>(
     options: &Bound<'py, PyDict>,
 ) -> PyResult<Vec<Bound<'py, PyDict>>> {
     let (declared, _) = self::options(options)?;
-    let read = || -> Result<Vec<Result<Metadata, String>>, Error> {
+    let read = move || -> Result<Vec<Result<Metadata, String>>, Error> {
         let one = |scan: Result<Scan, Error>| match scan {
             Ok(scan) => Ok(Ok(scan.metadata().clone())),
             Err(error) if error.problem().is_some() => Ok(Err(error.to_string())),
@@ -139,7 +137,7 @@ pub fn channels<'py>(
         };
         SurfaceFile::open(&path, &declared)?.scans().map(one).collect()
     };
-    let found = pool::call(py, read)?.map_err(|error| failed(py, &error))?;
+    let found = pool::call(py, read)?.map_err(|error| of_surface(py, &error))?;
     let one = |of: &Result<Metadata, String>| match of {
         Ok(of) => metadata(py, of),
         Err(error) => {
@@ -162,6 +160,7 @@ pub fn si(text: &str) -> PyResult<f64> {
 #[pyfunction]
 pub fn write_surface(py: Python<'_>, path: PathBuf, map: &HeightMap, metres: bool) -> PyResult<()> {
     let metric = if metres { Metric::Metres } else { Metric::Unitless };
-    let map = &map.0;
-    pool::call(py, || surface_io::write_map(&path, map, metric))?.map_err(|error| failed(py, &error))
+    let map = Arc::clone(&map.0);
+    pool::call(py, move || surface_io::write_map(&path, &map, metric))?
+        .map_err(|error| of_surface(py, &error))
 }

@@ -16,6 +16,8 @@ mod load_order;
 mod loads;
 mod memory;
 mod model;
+mod numbers;
+mod picture;
 mod pool;
 mod quantities;
 mod scene;
@@ -46,6 +48,8 @@ mod _core {
     use crate::io::{channels, read_surface, si, write_surface};
     #[pymodule_export]
     use crate::model::{Model, model, models};
+    #[pymodule_export]
+    use crate::picture::picture;
     #[pymodule_export]
     use crate::pool::{set_threads, threads};
     #[pymodule_export]

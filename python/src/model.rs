@@ -3,13 +3,15 @@
 use crate::contact::Contact;
 use crate::errors::{of_planning, of_values};
 use crate::memory;
+use crate::numbers::Seed;
 use crate::pool;
 use crate::scene::Scene;
 use crate::toml_text::toml_text;
 use fractal_contact::models::{MODELS, ModelRecord, abilities};
 use fractal_contact::scenes::Numerics;
 use fractal_contact::{
-    Abilities, ContactModel, Equivalent, Paths, PreparedContact, RequiredMemory, Scene as RustScene, Source,
+    Abilities, ContactModel, Equivalent, Error, Outputs, Paths, PreparedContact, RequiredMemory,
+    Scene as RustScene, Source,
 };
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -102,6 +104,22 @@ pub fn model(
 }
 
 impl Model {
+    /// A contact of a scene, and the scene that it is of. Where the caller named no outputs that is the stiffness,
+    /// or nothing of a model that has none.
+    pub fn planned(
+        model: &Shared,
+        scene: &Scene,
+        seed: u64,
+    ) -> (RustScene, fractal_contact::Result<Box<dyn PreparedContact>>) {
+        let contact = model.prepare(&scene.scene, seed);
+        let (true, Err(Error::Unsupported { .. })) = (scene.default_outputs, &contact) else {
+            return (scene.scene.clone(), contact);
+        };
+        let bare = RustScene { outputs: Outputs::default(), ..scene.scene.clone() };
+        let contact = model.prepare(&bare, seed);
+        (bare, contact)
+    }
+
     /// `MemoryError` where a contact of a scene needs more than there is; otherwise whether that is much.
     fn check_memory(&self, py: Python<'_>, scene: &RustScene) -> PyResult<bool> {
         let least = self.model.least_memory(scene);
@@ -135,11 +153,11 @@ impl Model {
         Ok(dict)
     }
 
-    fn prepare(&self, py: Python<'_>, scene: &Scene, seed: u64) -> PyResult<Contact> {
-        let large = self.check_memory(py, &scene.0)?;
-        let scene = scene.0.clone();
+    fn prepare(&self, py: Python<'_>, scene: &Scene, seed: Seed) -> PyResult<Contact> {
+        let large = self.check_memory(py, &scene.scene)?;
         // Any model may measure a map.
-        let contact = pool::call(py, || self.model.prepare(&scene, seed))?;
+        let (model, scene) = (self.model.clone(), scene.clone());
+        let (scene, contact) = pool::call(py, move || Self::planned(&model, &scene, seed.0))?;
         contact
             .map(|contact| Contact::new(contact, &scene, self.long, large))
             .map_err(|error| of_planning(py, error, &scene))

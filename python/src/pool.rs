@@ -1,6 +1,7 @@
 //! Solves on the threads of one pool, without the interpreter's lock, and with Ctrl-C heard meanwhile.
 
-use pyo3::exceptions::PyRuntimeError;
+use fractal_contact::runs::MOST_THREADS;
+use pyo3::exceptions::{PyRuntimeError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
@@ -14,10 +15,6 @@ pub const LOOK: Duration = Duration::from_millis(50);
 /// The pool of this process. Threads do not survive a fork: a child has a pool of its own.
 static POOL: Mutex<Option<(u32, Arc<ThreadPool>)>> = Mutex::new(None);
 
-fn available() -> usize {
-    std::thread::available_parallelism().map_or(1, usize::from)
-}
-
 fn pool() -> PyResult<Arc<ThreadPool>> {
     let process = std::process::id();
     let mut known = POOL.lock().unwrap_or_else(PoisonError::into_inner);
@@ -27,7 +24,8 @@ fn pool() -> PyResult<Arc<ThreadPool>> {
         Some(_) => std::mem::forget(known.take()),
         None => {}
     }
-    let pool = new_pool(available())?;
+    // As many threads as RAYON_NUM_THREADS says, or as there are processors.
+    let pool = new_pool(0)?;
     *known = Some((process, Arc::clone(&pool)));
     Ok(pool)
 }
@@ -37,16 +35,31 @@ fn new_pool(threads: usize) -> PyResult<Arc<ThreadPool>> {
     built.map(Arc::new).map_err(|error| PyRuntimeError::new_err(error.to_string()))
 }
 
-/// Number of threads that one solve, or one ensemble, may use.
+/// Number of threads that one solve, or one ensemble, may use: by default what the variable ``RAYON_NUM_THREADS`` of the
+/// environment says, or as many as there are processors.
+///
+/// Returns
+/// -------
+/// int
 #[pyfunction]
 pub fn threads() -> PyResult<usize> {
     Ok(pool()?.current_num_threads())
 }
 
 /// Sets the number of threads; no bit of a result depends on it.
+///
+/// Parameters
+/// ----------
+/// count : int
+///     At least 1.
 #[pyfunction]
-pub fn set_threads(py: Python<'_>, count: usize) -> PyResult<()> {
-    let count = count.clamp(1, 1024);
+pub fn set_threads(py: Python<'_>, count: i64) -> PyResult<()> {
+    let count =
+        usize::try_from(count).ok().filter(|count| (1..=MOST_THREADS).contains(count)).ok_or_else(|| {
+            PyValueError::new_err(format!(
+                "count = {count}: expected a number of threads from 1 to {MOST_THREADS}"
+            ))
+        })?;
     let pool = new_pool(count)?;
     let before = POOL.lock().unwrap_or_else(PoisonError::into_inner).replace((std::process::id(), pool));
     if let Some((of, pool)) = before {
@@ -59,13 +72,38 @@ pub fn set_threads(py: Python<'_>, count: usize) -> PyResult<()> {
     Ok(())
 }
 
-/// Runs `work` on the pool. `work` is given what says that it should stop; where a signal's handler raised,
-/// that exception comes with the result.
+/// What another thread of Python sets to stop a solve: a `threading.Event`, or anything that has its `is_set`.
+#[derive(Clone, Copy)]
+pub struct StopToken<'a>(Option<&'a Py<PyAny>>);
+
+impl<'a> StopToken<'a> {
+    /// An error for what cannot be asked.
+    pub fn new(py: Python<'_>, token: Option<&'a Py<PyAny>>) -> PyResult<Self> {
+        match token {
+            Some(token) if !token.bind(py).hasattr("is_set")? => Err(PyTypeError::new_err(format!(
+                "stop is {}: expected a threading.Event, or what has its is_set()",
+                token.bind(py).repr()?
+            ))),
+            token => Ok(Self(token)),
+        }
+    }
+
+    pub const NONE: Self = Self(None);
+
+    /// Whether it is set.
+    pub fn is_set(self, py: Python<'_>) -> PyResult<bool> {
+        self.0.map_or(Ok(false), |token| token.call_method0(py, "is_set")?.is_truthy(py))
+    }
+}
+
+/// Runs `work` on the pool. `work` is given what says that it should stop: a signal whose handler raised, and
+/// then that exception comes with the result, or `token`.
 ///
 /// `listen` is called about twenty times a second, with the interpreter's lock; an error of it stops the work
 /// as well.
 pub fn run<R: Send>(
     py: Python<'_>,
+    token: StopToken<'_>,
     listen: &mut (dyn FnMut(Python<'_>) -> PyResult<()> + Send),
     work: impl FnOnce(&(dyn Fn() -> bool + Sync)) -> R + Send,
 ) -> PyResult<(R, Option<PyErr>)> {
@@ -89,6 +127,7 @@ pub fn run<R: Send>(
                 drop(found);
                 let heard = Python::attach(|py| {
                     py.check_signals()?;
+                    stopped.fetch_or(token.is_set(py)?, Ordering::Relaxed);
                     listen(py)
                 });
                 if let Err(error) = heard {
@@ -106,8 +145,28 @@ pub fn run<R: Send>(
     }
 }
 
-/// Runs `work` on the pool, which cannot be stopped.
-pub fn call<R: Send>(py: Python<'_>, work: impl FnOnce() -> R + Send) -> PyResult<R> {
-    let (result, raised) = run(py, &mut |_| Ok(()), |_| work())?;
-    raised.map_or(Ok(result), Err)
+/// Runs `work` that cannot be stopped on the pool. Where the handler of a signal raises, the caller has that
+/// exception at once; the work goes on to its end, and its result is dropped.
+pub fn call<R: Send + 'static>(py: Python<'_>, work: impl FnOnce() -> R + Send + 'static) -> PyResult<R> {
+    let shared = Arc::new((Mutex::new(None), Condvar::new()));
+    let told = Arc::clone(&shared);
+    pool()?.spawn(move || {
+        let result = catch_unwind(AssertUnwindSafe(work));
+        let (done, changed) = &*told;
+        *done.lock().unwrap_or_else(PoisonError::into_inner) = Some(result);
+        changed.notify_all();
+    });
+    let (done, changed) = &*shared;
+    loop {
+        let found = py.detach(|| {
+            let found = done.lock().unwrap_or_else(PoisonError::into_inner);
+            let waiting = changed.wait_timeout_while(found, LOOK, |found| found.is_none());
+            waiting.unwrap_or_else(PoisonError::into_inner).0.take()
+        });
+        match found {
+            Some(Ok(result)) => return Ok(result),
+            Some(Err(panic)) => resume_unwind(panic),
+            None => py.check_signals()?,
+        }
+    }
 }

@@ -49,6 +49,11 @@ fn kind(quantity: &Quantity) -> (&'static str, bool) {
     (kind, value(&bare) == Value::Empty)
 }
 
+/// Whether a quantity of this name is a number of things.
+pub fn is_count(name: &str) -> bool {
+    QUANTITIES.iter().any(|quantity| quantity.name == name && kind(quantity).0 == "int")
+}
+
 /// What a property says of itself.
 fn sentence(quantity: &Quantity) -> String {
     let (kind, optional) = kind(quantity);
@@ -82,7 +87,8 @@ pub fn make_properties(py: Python<'_>) -> PyResult<()> {
         })?;
         let FieldQuantity { name, meaning, unit, .. } = quantity;
         let unit = if unit.is_empty() { String::new() } else { format!(" [{unit}]") };
-        let sentence = format!("numpy.ndarray or None: {meaning}{unit}, shape {}.", shape(quantity));
+        let sentence =
+            format!("numpy.ndarray or None: {meaning}{unit}, shape {}. Read-only.", shape(quantity));
         class.setattr(*name, property.call1((get, py.None(), py.None(), sentence))?)?;
     }
     Ok(())
@@ -98,9 +104,9 @@ fn shape(field: &FieldQuantity) -> &'static str {
 /// Returns
 /// -------
 /// list of dict of str
-///     ``name``, ``words``, ``symbol`` (TeX), ``unit`` (SI; ``1`` for a pure number, ``-`` for text), ``meaning``, ``source``,
-///     ``asked_by`` (what brings it into a table), ``role`` (``answer``, ``normalised``, ``residual`` or ``work``) and ``type`` in
-///     Python.
+///     ``name``, ``words``, ``symbol`` (TeX), ``unit`` (SI; ``1`` for a pure number, ``-`` for text), ``meaning``,
+///     ``source``, ``asked_by`` (what brings it into a table), ``role`` (``answer``, ``normalised``, ``residual``,
+///     ``work`` or ``of_path``) and ``type`` in Python.
 #[pyfunction]
 pub fn quantities(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
     let row = |quantity: &Quantity| {

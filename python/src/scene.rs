@@ -1,7 +1,8 @@
 //! Scenes from the values of the Python classes.
 
 use crate::errors::{of_model, of_values};
-use crate::height_map::{HeightMap, OneOrTwo};
+use crate::height_map::HeightMap;
+use crate::numbers::{OneOrTwo, Real, Seed};
 use crate::toml_text::toml_text;
 use fractal_contact::scenes::{EFFECT_KEYS, EffectKey, parse_effects};
 use fractal_contact::{
@@ -48,15 +49,39 @@ pub fn optional<'py, T: FromPyObjectOwned<'py>>(of: &Bound<'py, PyDict>, name: &
 #[derive(Clone)]
 pub struct Surface(pub RustSurface);
 
+/// The kinds of surfaces and their parameters.
+const KINDS: [(&str, &[&str]); 8] = [
+    ("self_affine", &["size", "hurst", "rms_height", "roll_off_wavelength", "shortest_wavelength"]),
+    ("sphere", &["radius", "size"]),
+    ("cone", &["slope", "size"]),
+    ("power_law", &["coefficient", "exponent", "size"]),
+    ("flat_circle", &["radius", "size"]),
+    ("flat", &["size"]),
+    ("sine", &["amplitude", "wavelength", "size"]),
+    ("line", &["heights", "length", "size"]),
+];
+
 /// A surface of a kind.
 #[pyfunction]
 pub fn surface(py: Python<'_>, kind: &str, parameters: &Bound<'_, PyDict>) -> PyResult<Surface> {
-    let number = |name: &str| required::<f64>(parameters, name);
-    let size = required::<OneOrTwo<f64>>(parameters, "size")?.size();
+    let Some((_, known)) = KINDS.iter().find(|(name, _)| *name == kind) else {
+        let kinds: Vec<&str> = KINDS.iter().map(|(name, _)| *name).collect();
+        let message = format!("no surface is of the kind {kind:?}: there are {}", kinds.join(", "));
+        return Err(PyValueError::new_err(message));
+    };
+    for key in parameters.keys() {
+        let key: String = key.extract()?;
+        if !known.contains(&key.as_str()) {
+            let message = format!("a {kind} has no {key:?}: there are {}", known.join(", "));
+            return Err(PyTypeError::new_err(message));
+        }
+    }
+    let number = |name: &str| required::<Real>(parameters, name).map(|Real(value)| value);
+    let size = crate::height_map::size(required::<OneOrTwo<f64>>(parameters, "size")?);
     let surface = match kind {
         "self_affine" => {
             let wavenumber = |name: &str| -> PyResult<Option<f64>> {
-                Ok(optional::<f64>(parameters, name)?.map(|wavelength| TAU / wavelength))
+                Ok(optional::<Real>(parameters, name)?.map(|Real(wavelength)| TAU / wavelength))
             };
             RustSurface::SelfAffine(SelfAffine {
                 size,
@@ -90,19 +115,24 @@ pub fn surface(py: Python<'_>, kind: &str, parameters: &Bound<'_, PyDict>) -> Py
 
 /// The height of each cell of a surface.
 #[pyfunction]
-pub fn height_map(py: Python<'_>, of: &Surface, cells: OneOrTwo<usize>, seed: u64) -> PyResult<HeightMap> {
+pub fn height_map(py: Python<'_>, of: &Surface, cells: OneOrTwo<usize>, seed: Seed) -> PyResult<HeightMap> {
     let cells = crate::surface_gen::cells(cells, of.0.size());
     let surface = of.0.clone();
     let bytes = fractal_contact::surface_gen::height_map_memory(&surface, cells);
     crate::memory::check_grid(py, "a map", cells, bytes)?;
-    let map = crate::pool::call(py, || fractal_contact::surface_gen::height_map(&surface, cells, seed))?;
+    let map =
+        crate::pool::call(py, move || fractal_contact::surface_gen::height_map(&surface, cells, seed.0))?;
     map.map(HeightMap).map_err(|error| of_model(py, error))
 }
 
 /// Everything physical about one question.
 #[pyclass(frozen, module = "fractal_contact._core")]
 #[derive(Clone)]
-pub struct Scene(pub RustScene);
+pub struct Scene {
+    pub scene: RustScene,
+    /// Whether the caller named no outputs: the scene then asks for the stiffness.
+    pub default_outputs: bool,
+}
 
 #[derive(FromPyObject)]
 pub enum AnySurface {
@@ -110,8 +140,8 @@ pub enum AnySurface {
     Described(Py<Surface>),
 }
 
-fn body(of: Option<(f64, f64)>) -> Body {
-    of.map_or(Body::Rigid, |(young, poisson)| Body::Elastic { young, poisson })
+fn body(of: Option<(Real, Real)>) -> Body {
+    of.map_or(Body::Rigid, |(Real(young), Real(poisson))| Body::Elastic { young, poisson })
 }
 
 /// The output of this name. The conductance is none of them: it needs what it is of.
@@ -133,11 +163,11 @@ fn output(name: &str) -> PyResult<Output> {
 pub fn scene(
     py: Python<'_>,
     surface: AnySurface,
-    modulus: Option<f64>,
-    bodies: Option<[Option<(f64, f64)>; 2]>,
+    modulus: Option<Real>,
+    bodies: Option<[Option<(Real, Real)>; 2]>,
     effects: &Bound<'_, PyDict>,
-    outputs: Vec<String>,
-    conductance: Option<(String, f64, f64)>,
+    outputs: Option<Vec<String>>,
+    conductance: Option<(String, Real, Real)>,
 ) -> PyResult<Scene> {
     let surface = match surface {
         AnySurface::Map(map) => RustSurface::Heights(Arc::clone(&map.get().0)),
@@ -145,20 +175,28 @@ pub fn scene(
     };
     let pair = bodies.map(|[first, second]| Pair { first: body(first), second: body(second) });
     let made = match (modulus, pair) {
-        (Some(modulus), None) => Ok(RustScene::new(surface, modulus)),
+        (Some(Real(modulus)), None) => Ok(RustScene::new(surface, modulus)),
         (None, Some(pair)) => RustScene::of_pair(surface, pair),
-        _ => return Err(PyTypeError::new_err("give modulus or bodies, and not both")),
+        (None, None) => return Err(PyTypeError::new_err("give modulus or bodies")),
+        (Some(_), Some(_)) => return Err(PyTypeError::new_err("give modulus or bodies, not both")),
     };
     let mut scene = made.map_err(|error| of_model(py, error))?;
     scene.effects = self::effects(py, effects)?;
-    scene.outputs = Outputs::default();
-    for name in &outputs {
-        scene.outputs.ask(output(name)?, true);
+    let default_outputs = outputs.is_none();
+    if let Some(names) = outputs {
+        scene.outputs = Outputs::default();
+        for name in &names {
+            scene.outputs.ask(output(name)?, true);
+        }
     }
     scene.outputs.conductance = match conductance {
         None => Conductance::Off,
-        Some((kind, first, second)) if kind == "electrical" => Conductance::Electrical { first, second },
-        Some((kind, first, second)) if kind == "thermal" => Conductance::Thermal { first, second },
+        Some((kind, Real(first), Real(second))) if kind == "electrical" => {
+            Conductance::Electrical { first, second }
+        }
+        Some((kind, Real(first), Real(second))) if kind == "thermal" => {
+            Conductance::Thermal { first, second }
+        }
         Some((kind, ..)) => {
             return Err(PyValueError::new_err(format!(
                 "no conductance is called {kind:?}: there are electrical and thermal"
@@ -166,7 +204,7 @@ pub fn scene(
         }
     };
     scene.validate().map_err(|error| of_model(py, error))?;
-    Ok(Scene(scene))
+    Ok(Scene { scene, default_outputs })
 }
 
 /// Errors for effects whose numbers or words make no sense.

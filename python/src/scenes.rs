@@ -1,12 +1,14 @@
 //! Scene files.
 
-use crate::errors::{of_scene, plain};
-use crate::pool;
+use crate::errors::{of_scene, plain, stopped};
+use crate::pool::{self, StopToken};
+use crate::quantities::is_count;
+use crate::state;
 use fractal_contact::runs::{CsvFile, Progress};
 use fractal_contact::scenes::{Options, Plan, SceneFile as RustSceneFile, SceneOutcome, run};
 use numpy::PyArray1;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyDict, PyTuple};
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -19,7 +21,7 @@ impl SceneFile {
     /// Reads a file.
     #[staticmethod]
     fn read(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
-        pool::call(py, || RustSceneFile::read(&path))?.map(Self).map_err(|error| of_scene(py, &error))
+        pool::call(py, move || RustSceneFile::read(&path))?.map(Self).map_err(|error| of_scene(py, &error))
     }
 
     /// Reads a text; relative paths in it count from `directory`.
@@ -27,7 +29,9 @@ impl SceneFile {
     #[pyo3(signature = (text, *, directory=PathBuf::new(), name="scene".to_owned()))]
     fn from_toml(py: Python<'_>, text: String, directory: PathBuf, name: String) -> PyResult<Self> {
         let path = directory.join(format!("{name}.toml"));
-        pool::call(py, || RustSceneFile::parse(&path, text))?.map(Self).map_err(|error| of_scene(py, &error))
+        pool::call(py, move || RustSceneFile::parse(&path, text))?
+            .map(Self)
+            .map_err(|error| of_scene(py, &error))
     }
 
     /// str: the file itself.
@@ -44,8 +48,14 @@ impl SceneFile {
 
     /// What will be computed, what not and why, what it will cost.
     fn plan(&self, py: Python<'_>) -> PyResult<String> {
-        let planned = pool::call(py, || Plan::new(&self.0).map(|plan| plan.to_string()))?;
+        let file = self.0.clone();
+        let planned = pool::call(py, move || Plan::new(&file).map(|plan| plan.to_string()))?;
         planned.map_err(|error| of_scene(py, &error))
+    }
+
+    /// The text and where it stands: files that it names are read again.
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        state::reduced(py, "scene_file", (&self.0.text, self.0.path.as_os_str()))
     }
 
     fn __repr__(&self) -> String {
@@ -73,12 +83,19 @@ impl Progress for Counter {
     fn end(&self) {}
 }
 
-/// The columns of a table: numbers as arrays with NaN where there is none, texts as lists.
+/// Columns of numbers of surfaces and states, from 0.
+const NUMBERS_OF: [&str; 2] = ["surface", "state"];
+
+/// The columns of a table: counts that all rows have as arrays of whole numbers, other numbers as arrays with NaN
+/// where there is none, texts as lists.
 fn columns<'py>(py: Python<'py>, table: &CsvFile) -> PyResult<Bound<'py, PyDict>> {
     let dict = PyDict::new(py);
     for name in &table.columns {
         let texts = table.texts(name).map_err(|error| plain(py, "Error", &error.to_string()))?;
-        if texts.iter().all(|text| text.is_empty() || text.parse::<f64>().is_ok()) {
+        let whole = texts.iter().map(|text| text.parse::<i64>().ok()).collect::<Option<Vec<_>>>();
+        if let Some(whole) = whole.filter(|_| NUMBERS_OF.contains(&name.as_str()) || is_count(name)) {
+            dict.set_item(name, PyArray1::from_vec(py, whole))?;
+        } else if texts.iter().all(|text| text.is_empty() || text.parse::<f64>().is_ok()) {
             let number = |text: &&str| text.parse().unwrap_or(f64::NAN);
             dict.set_item(name, PyArray1::from_vec(py, texts.iter().map(number).collect()))?;
         } else {
@@ -90,7 +107,7 @@ fn columns<'py>(py: Python<'py>, table: &CsvFile) -> PyResult<Bound<'py, PyDict>
 
 /// Runs a scene as the program does; the files, the summary and the counts by their names.
 #[pyfunction]
-#[pyo3(signature = (scene, out, threads, fresh, progress))]
+#[pyo3(signature = (scene, out, threads, fresh, progress, stop=None))]
 pub fn run_scene<'py>(
     py: Python<'py>,
     scene: &SceneFile,
@@ -98,7 +115,9 @@ pub fn run_scene<'py>(
     threads: Option<usize>,
     fresh: bool,
     progress: Option<Py<PyAny>>,
+    stop: Option<Py<PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
+    let token = StopToken::new(py, stop.as_ref())?;
     let threads = threads.map_or_else(pool::threads, Ok)?.max(1);
     let (counter, file, table) = (Counter::default(), scene.0.clone(), out.join("results.csv"));
     let mut told = 0;
@@ -110,12 +129,16 @@ pub fn run_scene<'py>(
         }
         Ok(())
     };
-    let (outcome, raised) = pool::run(py, &mut listen, |stop| {
+    let (outcome, raised) = pool::run(py, token, &mut listen, |stop| {
         let chosen = file.with_grid_for_accuracy(stop)?;
         let plan = Plan::calibrated(&chosen)?;
         run(&chosen, &plan, &Options { out, threads, fresh }, &counter, stop)
     })?;
     raised.map_or(Ok(()), Err)?;
+    // What was finished is kept, and the next run goes on from it.
+    if token.is_set(py)? && !outcome.as_ref().is_ok_and(|outcome| !outcome.stopped) {
+        return Err(stopped(py));
+    }
     if let (Some(progress), true) = (&progress, outcome.is_ok()) {
         let total = counter.total.load(Ordering::Relaxed);
         progress.call1(py, (total, total))?;

@@ -1,17 +1,21 @@
 //! States of a contact.
 
+use crate::errors::of_model;
 use crate::quantities::{is_named_where_known, object};
 use fractal_contact::quantities::{QUANTITIES, Quantity, Role};
+use fractal_contact::scenes::StateNotes;
 use fractal_contact::{
     Certificate as RustCertificate, ContactState as RustState, FIELDS, Field, FieldQuantity,
-    Normalisation as RustNormalisation, SolveReport, Value,
+    Normalisation as RustNormalisation, PathMemory, Scene, SolveReport, Value,
 };
 use numpy::{PyArray1, PyArrayDyn, PyArrayMethods};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyBytes, PyDict, PyTuple};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
 
 /// A field as an array `[row, column]` that owns its values, nothing is copied; of several components
-/// `[component, row, column]`. None without components.
+/// `[component, row, column]`. None without components. Nobody writes into it: all who ask have the same.
 pub fn array(py: Python<'_>, components: Vec<Field>) -> PyResult<Option<Py<PyArrayDyn<f64>>>> {
     let count = components.len();
     let mut components = components.into_iter();
@@ -20,7 +24,51 @@ pub fn array(py: Python<'_>, components: Vec<Field>) -> PyResult<Option<Py<PyArr
     let mut values = first.into_values();
     values.extend(components.flat_map(Field::into_values));
     let shape = shape[usize::from(count == 1)..].to_vec();
-    Ok(Some(PyArray1::from_vec(py, values).reshape(shape)?.unbind()))
+    let flat = PyArray1::from_vec(py, values);
+    flat.try_readwrite()?.make_nonwriteable();
+    Ok(Some(flat.reshape(shape)?.unbind()))
+}
+
+/// What a value is made of, as bytes for another process of the same version.
+pub fn bytes<'py>(py: Python<'py>, of: &impl Serialize) -> PyResult<Bound<'py, PyBytes>> {
+    let kept = PathMemory::of(of).map_err(|error| of_model(py, error))?;
+    Ok(PyBytes::new(py, kept.bytes()))
+}
+
+/// The value of such bytes.
+///
+/// # Errors
+/// `ShapeError` for bytes of something else.
+pub fn of_bytes<T: DeserializeOwned>(py: Python<'_>, bytes: &[u8]) -> PyResult<T> {
+    PathMemory::from_bytes(bytes.to_vec()).read().map_err(|_| {
+        let expected = "the bytes of one, pickled by this version".into();
+        of_model(py, fractal_contact::Error::Shape { name: "pickle".into(), found: bytes.len(), expected })
+    })
+}
+
+/// How a value is made again from the function `name` of `fractal_contact._restored`.
+pub fn reduced<'py, A>(py: Python<'py>, name: &str, arguments: A) -> PyResult<Bound<'py, PyTuple>>
+where
+    A: IntoPyObject<'py>,
+{
+    (py.import("fractal_contact._restored")?.getattr(name)?, arguments).into_pyobject(py)
+}
+
+/// What a contact tells its states, besides what was solved.
+#[derive(Debug, Clone, Copy)]
+pub struct Origin {
+    pub normalisation: RustNormalisation,
+    notes: StateNotes,
+    /// Sides of the rectangle.
+    size: [f64; 2],
+}
+
+impl Origin {
+    /// Of a contact of this scene.
+    pub fn new(scene: &Scene, normalisation: RustNormalisation) -> Self {
+        let size = scene.surface.size();
+        Self { normalisation, notes: StateNotes::new(scene), size: [size.x, size.y] }
+    }
 }
 
 /// Looks up all that arrays need of numpy, while the module is imported.
@@ -37,8 +85,8 @@ pub fn look_up_arrays(py: Python<'_>) -> PyResult<()> {
 /// How exactly the contact conditions hold, measured with the exact operator in double precision.
 ///
 /// All numbers are relative and dimensionless.
-#[pyclass(frozen, module = "fractal_contact")]
-#[derive(Clone)]
+#[pyclass(frozen, eq, module = "fractal_contact")]
+#[derive(Clone, PartialEq)]
 pub struct Certificate(RustCertificate);
 
 #[pymethods]
@@ -146,6 +194,16 @@ impl Certificate {
         Ok(dict)
     }
 
+    /// From the bytes of `__reduce__`.
+    #[staticmethod]
+    fn _of_bytes(py: Python<'_>, bytes: &[u8]) -> PyResult<Self> {
+        of_bytes(py, bytes).map(Self)
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        reduced(py, "certificate", (bytes(py, &self.0)?,))
+    }
+
     fn __repr__(&self) -> String {
         format!("<Certificate: {}>", self.0)
     }
@@ -160,21 +218,20 @@ impl Certificate {
 pub struct ContactState {
     state: RustState,
     normalisation: RustNormalisation,
+    notes: Vec<String>,
+    size: [f64; 2],
     /// In the order of `FIELDS`.
     fields: Vec<Option<Py<PyArrayDyn<f64>>>>,
 }
 
-/// Moves a state of a contact with this normalisation into Python.
-pub fn of(
-    py: Python<'_>,
-    mut state: RustState,
-    normalisation: &RustNormalisation,
-) -> PyResult<Py<ContactState>> {
+/// Moves a state of a contact of this origin into Python.
+pub fn of(py: Python<'_>, mut state: RustState, origin: &Origin) -> PyResult<Py<ContactState>> {
+    let Origin { normalisation, notes, size } = *origin;
+    let notes = notes.of(&state);
     let mut taken = state.fields.take().unwrap_or_default();
     let arrays = FIELDS.iter().map(|quantity| array(py, (quantity.take)(&mut taken)));
     let fields = arrays.collect::<PyResult<_>>()?;
-    let normalisation = *normalisation;
-    Py::new(py, ContactState { state, normalisation, fields })
+    Py::new(py, ContactState { state, normalisation, notes, size, fields })
 }
 
 impl ContactState {
@@ -200,10 +257,26 @@ impl ContactState {
     }
 
     /// numpy.ndarray or None: areas of the connected contacts (length^2), the largest first; shape
-    /// (patches,).
+    /// (patches,). Read-only.
     #[getter]
-    fn patches<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
-        self.state.patches.as_ref().map(|patches| PyArray1::from_slice(py, patches.areas()))
+    fn patches<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray1<f64>>>> {
+        let Some(patches) = self.state.patches.as_ref() else { return Ok(None) };
+        let array = PyArray1::from_slice(py, patches.areas());
+        array.try_readwrite()?.make_nonwriteable();
+        Ok(Some(array))
+    }
+
+    /// tuple of str: what may be wrong with the state though it is solved, such as few cells in contact or contact at
+    /// the edge, and what to do about it: the notes of scenes.
+    #[getter]
+    fn notes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        PyTuple::new(py, &self.notes)
+    }
+
+    /// (float, float): sides (Lx, Ly) of the rectangle.
+    #[getter]
+    fn size(&self) -> (f64, f64) {
+        self.size.into()
     }
 
     /// Certificate: how exactly the contact conditions hold.
@@ -230,9 +303,36 @@ impl ContactState {
             for quantity in FIELDS {
                 dict.set_item(quantity.name, self.field(py, quantity))?;
             }
-            dict.set_item("patches", self.patches(py))?;
+            dict.set_item("patches", self.patches(py)?)?;
         }
         Ok(dict)
+    }
+
+    /// From the bytes of `__reduce__` and the fields, in the order of `FIELDS`.
+    #[staticmethod]
+    fn _of_bytes(
+        py: Python<'_>,
+        bytes: &[u8],
+        fields: Vec<Option<Bound<'_, PyArrayDyn<f64>>>>,
+    ) -> PyResult<Self> {
+        for field in fields.iter().flatten() {
+            field.try_readwrite()?.make_nonwriteable();
+        }
+        let (state, normalisation, notes, size) = of_bytes(py, bytes)?;
+        let mut fields: Vec<_> = fields.into_iter().map(|field| field.map(Bound::unbind)).collect();
+        fields.resize_with(FIELDS.len(), || None);
+        Ok(Self { state, normalisation, notes, size, fields })
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        let kept = bytes(py, &(&self.state, &self.normalisation, &self.notes, &self.size))?;
+        let fields: Vec<_> =
+            self.fields.iter().map(|field| field.as_ref().map(|field| field.bind(py))).collect();
+        reduced(py, "state", (kept, fields))
+    }
+
+    fn _repr_html_(slf: Bound<'_, Self>) -> PyResult<Bound<'_, PyAny>> {
+        slf.py().import("fractal_contact._html")?.call_method1("state", (&slf,))
     }
 
     fn __repr__(&self) -> String {
@@ -247,6 +347,9 @@ impl ContactState {
             }
         }
         let report = &self.state.report;
-        format!("<ContactState: {}, {}, {}>", known.join(", "), report.status.as_str(), report.certificate)
+        let notes: Vec<&str> = self.notes.iter().filter_map(|note| note.split(": ").next()).collect();
+        let notes = if notes.is_empty() { String::new() } else { format!(", notes: {}", notes.join("; ")) };
+        let (known, status) = (known.join(", "), report.status.as_str());
+        format!("<ContactState: {known}, {status}, {}{notes}>", report.certificate)
     }
 }

@@ -3,6 +3,7 @@
 use crate::errors::of_model;
 use crate::height_map::HeightMap;
 use crate::memory;
+use crate::numbers::Real;
 use crate::pool;
 use fractal_contact::surface_statistics::{
     Bins, Derivatives, DifferenceBands, DifferenceMap, FeatureParameters, HeightParameters, HybridParameters,
@@ -14,6 +15,7 @@ use numpy::PyArray1;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use std::sync::Arc;
 
 fn boundary(periodic: bool) -> Boundary {
     if periodic { Boundary::Periodic } else { Boundary::Free }
@@ -45,9 +47,9 @@ fn arrays(dict: &Bound<'_, PyDict>, of: &[(&str, Vec<f64>)]) -> PyResult<()> {
 #[pyfunction]
 pub fn parameters<'py>(py: Python<'py>, map: &HeightMap, periodic: bool) -> PyResult<Bound<'py, PyDict>> {
     check_memory(py, map, DIFFERENCES[1])?;
-    let of = &map.0;
-    let found = pool::call(py, || -> Result<Vec<(&str, Option<f64>)>> {
-        let mut all = Vec::new();
+    let of = Arc::clone(&map.0);
+    let found = pool::call(py, move || -> Result<Vec<(&'static str, Option<f64>)>> {
+        let (of, mut all) = (&*of, Vec::new());
         let h = HeightParameters::new(of)?;
         for (name, value) in [
             ("Sa", h.sa),
@@ -91,17 +93,17 @@ pub fn power_spectrum<'py>(
     map: &HeightMap,
     direction: &str,
     periodic: bool,
-    per_decade: f64,
-    level: f64,
+    per_decade: Real,
+    level: Real,
 ) -> PyResult<Bound<'py, PyDict>> {
     check_memory(py, map, SPECTRUM)?;
-    let (of, taper) = (&map.0, if periodic { Taper::None } else { Taper::Hann });
+    let (of, taper) = (Arc::clone(&map.0), if periodic { Taper::None } else { Taper::Hann });
     let found = match direction {
-        "radial" => {
-            pool::call(py, || PowerSpectrum::radial(of, taper, &Bins::of_wavenumbers(of, per_decade)?))
-        }
-        "x" => pool::call(py, || PowerSpectrum::along_x(of, taper)),
-        "y" => pool::call(py, || PowerSpectrum::along_y(of, taper)),
+        "radial" => pool::call(py, move || {
+            PowerSpectrum::radial(&of, taper, &Bins::of_wavenumbers(&of, per_decade.0)?)
+        }),
+        "x" => pool::call(py, move || PowerSpectrum::along_x(&of, taper)),
+        "y" => pool::call(py, move || PowerSpectrum::along_y(&of, taper)),
         other => {
             return Err(PyValueError::new_err(format!(
                 "direction is {other:?}: expected \"radial\", \"x\" or \"y\""
@@ -109,7 +111,7 @@ pub fn power_spectrum<'py>(
         }
     };
     let found = known(py, found)?;
-    let (low, high) = known(py, Ok(found.band(level)))?.into_iter().map(|[low, high]| (low, high)).unzip();
+    let (low, high) = known(py, Ok(found.band(level.0)))?.into_iter().map(|[low, high]| (low, high)).unzip();
     let dict = PyDict::new(py);
     arrays(
         &dict,
@@ -137,16 +139,17 @@ pub fn height_difference<'py>(
     py: Python<'py>,
     map: &HeightMap,
     periodic: bool,
-    per_decade: f64,
-    level: f64,
+    per_decade: Real,
+    level: Real,
 ) -> PyResult<Bound<'py, PyDict>> {
     check_memory(py, map, DIFFERENCES[usize::from(!periodic)])?;
-    let of = &map.0;
-    let found = pool::call(py, || -> Result<_> {
+    let of = Arc::clone(&map.0);
+    let found = pool::call(py, move || -> Result<_> {
+        let of = &*of;
         let found =
-            DifferenceMap::new(of, boundary(periodic)).radial(&Bins::of_distances(of, per_decade)?)?;
+            DifferenceMap::new(of, boundary(periodic)).radial(&Bins::of_distances(of, per_decade.0)?)?;
         let bands = DifferenceBands::new(of, boundary(periodic)).ok();
-        let bands = bands.map(|bands| bands.of_differences(&found, level)).transpose()?;
+        let bands = bands.map(|bands| bands.of_differences(&found, level.0)).transpose()?;
         Ok((found, bands))
     });
     let (found, bands) = known(py, found)?;
@@ -173,21 +176,22 @@ pub fn scale_dependence<'py>(
     of_curvature: bool,
     along_y: bool,
     periodic: bool,
-    level: f64,
+    level: Real,
 ) -> PyResult<Bound<'py, PyDict>> {
     check_memory(py, map, SPECTRUM)?;
-    let (of, boundary, axis) = (&map.0, boundary(periodic), usize::from(along_y));
-    let found = pool::call(py, || -> Result<_> {
+    let (of, boundary, axis) = (Arc::clone(&map.0), boundary(periodic), usize::from(along_y));
+    let found = pool::call(py, move || -> Result<_> {
+        let of = &*of;
         let bands = DifferenceBands::new(of, boundary).ok();
         let (found, bands) = if of_curvature {
             let along = [ScaleDependence::curvature_along_x, ScaleDependence::curvature_along_y][axis];
             let found = along(of, boundary)?;
-            let bands = bands.map(|bands| bands.of_curvatures(&found, axis, level)).transpose()?;
+            let bands = bands.map(|bands| bands.of_curvatures(&found, axis, level.0)).transpose()?;
             (found, bands)
         } else {
             let along = [ScaleDependence::slope_along_x, ScaleDependence::slope_along_y][axis];
             let found = along(of, boundary)?;
-            let bands = bands.map(|bands| bands.of_slopes(&found, axis, level)).transpose()?;
+            let bands = bands.map(|bands| bands.of_slopes(&found, axis, level.0)).transpose()?;
             (found, bands)
         };
         Ok((found, bands))
@@ -206,13 +210,14 @@ pub fn fit_spectrum<'py>(
     py: Python<'py>,
     map: &HeightMap,
     periodic: bool,
-    instrument: Option<f64>,
+    instrument: Option<Real>,
 ) -> PyResult<Bound<'py, PyDict>> {
     check_memory(py, map, SPECTRUM)?;
-    let (of, boundary) = (&map.0, boundary(periodic));
-    let found = pool::call(py, || {
-        let reliable = ReliableWavelengths::new(of, boundary, instrument)?;
-        SpectrumFit::new(of, &reliable.fit_options(boundary))
+    let (of, boundary) = (Arc::clone(&map.0), boundary(periodic));
+    let instrument = instrument.map(|Real(wavelength)| wavelength);
+    let found = pool::call(py, move || {
+        let reliable = ReliableWavelengths::new(&of, boundary, instrument)?;
+        SpectrumFit::new(&of, &reliable.fit_options(boundary))
     });
     let fit = known(py, found)?;
     let interval = |of: &Interval| (Some(of.value), Some(of.low), Some(of.high));

@@ -1,8 +1,9 @@
 //! Generated maps.
 
 use crate::errors::of_model;
-use crate::height_map::{HeightMap, OneOrTwo};
+use crate::height_map::HeightMap;
 use crate::memory;
+use crate::numbers::{OneOrTwo, Real, Seed};
 use crate::pool;
 use crate::scene::Surface;
 use fractal_contact::scenes::{RandomSpectrum, RandomSurface};
@@ -16,20 +17,20 @@ use std::sync::Arc;
 pub fn cells(given: OneOrTwo<usize>, size: Size) -> Cells {
     match given {
         OneOrTwo::One(columns) => Cells::nearly_square(columns, size),
-        OneOrTwo::Two((columns, rows)) => Cells { columns, rows },
+        OneOrTwo::Two([columns, rows]) => Cells { columns, rows },
     }
 }
 
-fn drawn(py: Python<'_>, random: &RandomSurface, cells: Cells, seed: u64) -> PyResult<HeightMap> {
+fn drawn(py: Python<'_>, random: RandomSurface, cells: Cells, seed: u64) -> PyResult<HeightMap> {
     memory::check_grid(py, "a map", cells, random.memory(cells))?;
-    let map: Result<RustMap> = pool::call(py, || random.map(cells, seed))?;
+    let map: Result<RustMap> = pool::call(py, move || random.map(cells, seed))?;
     map.map(HeightMap::from).map_err(|error| of_model(py, error))
 }
 
 /// Seed of surface number `index` of the ensemble of a master seed.
 #[pyfunction]
-pub fn surface_seed(seed: u64, index: u64) -> u64 {
-    surface_gen::surface_seed(seed, index)
+pub fn surface_seed(seed: Seed, index: Seed) -> u64 {
+    surface_gen::surface_seed(seed.0, index.0)
 }
 
 /// A self-affine map: isotropic, with a lay, with a distribution of heights.
@@ -39,21 +40,21 @@ pub fn self_affine_map(
     py: Python<'_>,
     surface: &Surface,
     cells: OneOrTwo<usize>,
-    seed: u64,
-    anisotropy: Option<(f64, f64)>,
-    weibull: Option<f64>,
+    seed: Seed,
+    anisotropy: Option<(Real, Real)>,
+    weibull: Option<Real>,
 ) -> PyResult<HeightMap> {
     let RustSurface::SelfAffine(described) = &surface.0 else {
         return Err(PyTypeError::new_err("the surface is not self-affine"));
     };
     let spectrum = RandomSpectrum::SelfAffine {
         surface: *described,
-        anisotropy: anisotropy.map(|(ratio, lay)| Anisotropy { ratio, lay }),
+        anisotropy: anisotropy.map(|(Real(ratio), Real(lay))| Anisotropy { ratio, lay }),
     };
-    let heights = weibull.map(|shape| HeightDistribution::Weibull { shape });
+    let heights = weibull.map(|Real(shape)| HeightDistribution::Weibull { shape });
     let random = RandomSurface::new(spectrum, heights);
     let cells = self::cells(cells, random.size());
-    drawn(py, &random, cells, seed)
+    drawn(py, random, cells, seed.0)
 }
 
 /// An artificial twin of a map.
@@ -62,7 +63,7 @@ pub fn self_affine_map(
 pub fn twin(
     py: Python<'_>,
     map: &HeightMap,
-    seed: u64,
+    seed: Seed,
     rings: bool,
     keep_heights: bool,
 ) -> PyResult<HeightMap> {
@@ -70,5 +71,5 @@ pub fn twin(
     let (cells, like) = (of.cells(), if rings { TwinSpectrum::Rings } else { TwinSpectrum::EachWave });
     let heights = keep_heights.then(|| HeightDistribution::Of(Arc::clone(&of)));
     let random = RandomSurface::new(RandomSpectrum::Twin { of, like }, heights);
-    drawn(py, &random, cells, seed)
+    drawn(py, random, cells, seed.0)
 }

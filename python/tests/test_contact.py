@@ -83,7 +83,7 @@ def test_arrays_stay_after_later_solves():
 
 
 def test_undefined_points_cannot_touch():
-    h = rough().heights
+    h = np.array(rough())
     mask = np.zeros(h.shape, dtype=bool)
     mask[np.unravel_index(h.argmax(), h.shape)] = True
     masked = fc.HeightMap(np.ma.masked_array(h, mask), size=1.0)

@@ -305,11 +305,11 @@ def test_follow_is_one_step_for_each_number():
             path.follow(**wrong)
     with pytest.raises(TypeError, match="at most one of"):
         path.follow(force=[1.0], tangential_force=[0.0], tangential_displacement=[0.0])
-    with pytest.raises(ValueError, match=r"time \(3,\), force \(2,\)"):
+    with pytest.raises(ValueError, match="time has 3, force has 2"):
         path.follow([1.0, 2.0, 3.0], force=[1.0, 2.0])
-    with pytest.raises(ValueError, match=r"force \(2, 1\)"):
+    with pytest.raises(TypeError, match=r"force\[0\] is \[1\.0\]: expected a real number"):
         path.follow(force=[[1.0], [2.0]])
-    with pytest.raises(ValueError, match=r"tangential_force \(2, 3\)"):
+    with pytest.raises(ValueError, match=r"tangential_force has \[3\] components: expected two"):
         path.follow(force=1.0, tangential_force=np.zeros((2, 3)))
     # Checked at the call; a load that the model refuses raises at its place.
     steps = path.follow(3.0, force=[0.01, -0.01])

@@ -56,9 +56,27 @@ def test_files_that_are_no_surfaces(tmp_path):
     (tmp_path / "empty.npy").write_bytes(b"")
     (tmp_path / "noise.npy").write_bytes(os.urandom(1000))
     (tmp_path / "half.npy").write_bytes(b"\x93NUMPY\x01\x00v\x00{'descr': '<f8'")
-    for path in [*tmp_path.iterdir(), tmp_path, tmp_path / "absent.npy"]:
+    for path in [*tmp_path.iterdir(), tmp_path]:
         with pytest.raises(fc.ReadError, match=path.name):
             fc.read_surface(path, unit="nm", size="1 um")
+
+
+def test_what_the_system_refuses_is_an_error_of_the_system(tmp_path):
+    rough = fc.Surface.self_affine(hurst=0.8, size=1.0, rms_height=0.01).height_map(8, seed=1)
+    for refused in (
+        lambda path: fc.read_surface(path),
+        lambda path: fc.channels(path),
+        lambda path: fc.run_scene(path, tmp_path / "out"),
+        lambda path: fc.SceneFile.read(path),
+        lambda path: fc.write_surface(path / "map.npy", rough),
+    ):
+        with pytest.raises(FileNotFoundError, match="No such file") as caught:
+            refused(tmp_path / "absent")
+        assert isinstance(caught.value, OSError) and "absent" in caught.value.filename
+    # A map that a scene names is a mistake in the scene, with its line.
+    text = SCENE.split("[scene.surface]")[0] + '[scene.surface]\nkind = "file"\npath = "absent.npy"\n'
+    with pytest.raises(fc.SceneError, match="absent"):
+        fc.Scene.from_toml(text, directory=tmp_path)
 
 
 @pytest.mark.parametrize("ending", ["npy", "txt", "xyz", "h5", "x3p", "gwy", "nc"])
@@ -70,6 +88,39 @@ def test_maps_go_to_files_and_back(tmp_path, ending):
     again = fc.read_surface(file, **told).heights
     assert again.shape == (16, 32)
     assert np.allclose(again.heights, rough.heights, rtol=0, atol=1e-12)
+
+
+def test_options_are_those_of_scenes(tmp_path):
+    rough = fc.Surface.self_affine(hurst=0.8, size=(2e-3, 1e-3), rms_height=1e-6).height_map((32, 16), seed=1)
+    file = tmp_path / "rough.npy"
+    fc.write_surface(file, rough)
+    texts = fc.read_surface(file, unit="m", size="2 mm x 1 mm", crop="2,4,8,16").heights
+    part = {"row": 2, "column": 4, "rows": 8, "columns": 16}
+    assert fc.read_surface(file, unit="m", size=["2 mm", "1 mm"], crop=part).heights == texts
+    assert texts.shape == (8, 16) and np.array_equal(texts.heights, rough.heights[2:10, 4:20])
+    square = fc.read_surface(file, unit="m", size="2 mm x 1 mm", crop={"row": 2, "column": 4, "cells": 8})
+    assert square.heights.shape == (8, 8)
+    for wrong in ({"row": 2, "column": 4}, {"row": 2, "colum": 4}):
+        with pytest.raises(TypeError, match="crop"):
+            fc.read_surface(file, unit="m", size="2 mm x 1 mm", crop=wrong)
+
+
+def test_the_density_is_that_of_its_docstring():
+    # A wave of amplitude a along x: its variance a^2/2 is that of two waves of both signs, each a^2/4.
+    a, m, columns = 0.3, 5, 64
+    x = (np.arange(columns) + 0.5) * 2.0 / columns
+    heights = np.tile(a * np.cos(2 * np.pi * m * x / 2.0), (32, 1))
+    wave = fc.HeightMap(heights, size=(2.0, 1.0))
+    profile = fc.statistics.power_spectrum(wave, "x", periodic=True)
+    assert profile["wavenumber"][m - 1] == pytest.approx(2 * np.pi * m / 2.0)
+    assert profile["density"][m - 1] == pytest.approx(2.0 / (2 * np.pi) * a**2 / 4)
+    assert 2 * profile["density"].sum() * np.pi == pytest.approx(a**2 / 2)
+    # Of a map: the square of the transform, times the area over (2 pi)^2, in the mean over a ring.
+    rough = fc.Surface.self_affine(hurst=0.8, size=(2.0, 1.0), rms_height=0.01).height_map((64, 32), seed=1)
+    square = np.abs(np.fft.fft2(rough.heights) / rough.heights.size) ** 2 * 2.0 / (2 * np.pi) ** 2
+    assert square[1:].sum() + square[0, 1:].sum() == pytest.approx(rough.heights.var() * 2.0 / (2 * np.pi) ** 2)
+    found = fc.statistics.power_spectrum(rough, periodic=True, per_decade=1000.0)
+    assert found["wavenumber"][0] == pytest.approx(np.pi) and found["density"][0] == pytest.approx(square[0, 1])
 
 
 def test_statistics_with_bands():
@@ -112,6 +163,8 @@ def test_scenes_are_run_as_by_the_program(tmp_path):
     assert outcome.states == 3 and outcome.failed == 0 and told
     assert (tmp_path / "python/report.html") in outcome.files
     assert outcome.results["model"].tolist() == ["bem3d"] * 3
+    assert outcome.results["state"].dtype == np.int64 and outcome.results["state"].tolist() == [0, 1, 2]
+    assert outcome.results["contact_cells"].dtype == np.int64 and outcome.results["force"].dtype == np.float64
     assert np.all(outcome.results["stiffness"] > 0)
     again = fc.run_scene(file, tmp_path / "python")
     assert again.kept == 3
@@ -142,7 +195,7 @@ def test_scenes_are_run_as_by_the_program(tmp_path):
 def test_mistakes_in_scenes_show_their_place(tmp_path):
     with pytest.raises(fc.SceneError, match=r"fractal_dimension = 3\.4(.|\n)*\^\^\^"):
         fc.Scene.from_toml(SCENE.replace("2.4", "3.4"))
-    with pytest.raises(fc.Error, match=r"absent\.toml"):
+    with pytest.raises(FileNotFoundError, match=r"absent\.toml"):
         fc.run_scene(tmp_path / "absent.toml", tmp_path / "out")
     assert not (tmp_path / "out").exists()
 

@@ -1,6 +1,7 @@
 """Manners of a library: pickling, processes, threads, Ctrl-C, memory."""
 
 import concurrent.futures
+import copy
 import gc
 import multiprocessing
 import os
@@ -40,6 +41,57 @@ def stiffness(force, cells=129):
 )
 def test_inputs_are_pickled(value):
     assert pickle.loads(pickle.dumps(value)) == value
+
+
+def solved(force=0.01, **options):
+    outputs = ["stiffness", "area", "pressure", "gap", "contact_patches"]
+    return fc.Bem3d(**options).prepare(fc.Scene(rough(33), modulus=1.0, outputs=outputs)).solve(force=force)
+
+
+def same(one, other):
+    """Whether two states are the same, to the last bit and with all that they say."""
+    told, again = one.to_dict(fields=True), other.to_dict(fields=True)
+    assert told.keys() == again.keys()
+    for name, value in told.items():
+        assert np.array_equal(value, again[name]) if isinstance(value, np.ndarray) else value == again[name], name
+    assert (one.certificate, one.notes, one.size) == (other.certificate, other.notes, other.size)
+    assert repr(one) == repr(other)
+
+
+def test_states_and_what_belongs_to_them_are_pickled():
+    state = solved()
+    for again in (pickle.loads(pickle.dumps(state)), copy.deepcopy(state)):
+        same(state, again)
+        assert not again.pressure.flags.writeable
+    contact = fc.Hertz().prepare(fc.Scene(fc.Surface.sphere(radius=1.0, size=1.0), modulus=2.0))
+    for value in (state.certificate, contact.normalisation):
+        assert pickle.loads(pickle.dumps(value)) == value
+    with pytest.raises(fc.ShapeError, match="pickled by this version"):
+        fc.Certificate._of_bytes(b"\xff")
+    text = '[scene]\nunits = "none"\nmodels = ["hertz"]\nmodulus = 1\nforce = 1\n'
+    scene = fc.Scene.from_toml(text + '[scene.body]\nkind = "sphere"\nradius = 1\nside = 4\n')
+    again = pickle.loads(pickle.dumps(scene))
+    assert (again.text, again.models, again.plan()) == (scene.text, scene.models, scene.plan())
+
+
+def fails(kind):
+    if kind == "domain":
+        return solved(tolerance=-1.0)
+    return solved(max_outer_iterations=1)
+
+
+def test_a_pool_returns_states_and_errors():
+    with concurrent.futures.ProcessPoolExecutor(1, mp_context=multiprocessing.get_context("spawn")) as pool:
+        same(pool.submit(solved).result(timeout=120), solved())
+        with pytest.raises(fc.DomainError) as domain:
+            pool.submit(fails, "domain").result(timeout=120)
+        with pytest.raises(fc.NotConverged) as missed:
+            pool.submit(fails, "missed").result(timeout=120)
+    assert domain.value.value == -1.0
+    with pytest.raises(fc.NotConverged) as here:
+        fails("missed")
+    same(missed.value.best, here.value.best)
+    assert missed.value.best.status == "iteration_limit"
 
 
 def test_errors_are_pickled():
@@ -167,6 +219,111 @@ def test_an_exception_of_a_callback_ends_an_ensemble():
     # What was done is not lost.
     finished = caught.value.finished
     assert 0 < len(finished) < 2000 and all(states[0].status == "converged" for states in finished.values())
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
+@pytest.mark.parametrize(
+    "work",
+    [
+        "fc.surface_gen.self_affine_map(surface, 4096, 1)",
+        "[fc.statistics.height_difference(map_) for _ in range(99)]",
+        "[fc.statistics.fit_spectrum(map_) for _ in range(999)]",
+    ],
+)
+def test_ctrl_c_is_heard_by_what_cannot_be_stopped(work):
+    code = f"""
+import os, signal, sys, threading, time
+import fractal_contact as fc
+surface = fc.Surface.self_affine(hurst=0.6, size=1.0, rms_height=0.01)
+map_ = surface.height_map(1025, seed=1)
+at = []
+def ring():
+    at.append(time.perf_counter())
+    os.kill(os.getpid(), signal.SIGINT)
+threading.Timer(0.1, ring).start()
+try:
+    {work}
+    print("done before", flush=True)
+except KeyboardInterrupt:
+    print(time.perf_counter() - at[0], flush=True)
+os._exit(0)
+"""
+    told = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True, timeout=120)
+    # Far below the time that any of them takes; a machine that is busy has some time to look.
+    assert told.stdout == "done before\n" or float(told.stdout) < 1.0, told.stdout
+
+
+def test_another_thread_stops_a_solve():
+    stop = threading.Event()
+    contact = fc.Bem3d(tolerance=1e-12).prepare(fc.Scene(rough(1025, hurst=0.3), modulus=1.0))
+    timer = threading.Timer(0.3, stop.set)
+    timer.start()
+    with pytest.raises(fc.Stopped) as caught:
+        for _ in contact.sweep(force=np.geomspace(1e-2, 10.0, 2000), stop=stop):
+            pass
+    assert caught.value.best is None or caught.value.best.status == "stopped"
+    # What is set already begins nothing.
+    for refused in (
+        lambda: contact.solve(force=0.5, stop=stop),
+        lambda: contact.advance(force=0.5, stop=stop),
+        lambda: next(contact.follow(force=[0.5], stop=stop)),
+        lambda: next(contact.sweep(force=[0.5], stop=stop)),
+    ):
+        with pytest.raises(fc.Stopped):
+            refused()
+    stop.clear()
+    assert contact.solve(force=0.01, stop=stop).status == "converged"
+    with pytest.raises(TypeError, match=r"expected a threading\.Event"):
+        contact.solve(force=0.01, stop=True)
+
+
+def test_another_thread_stops_an_ensemble_and_a_scene(tmp_path):
+    stop = threading.Event()
+
+    def soon(done, of):
+        if done:
+            stop.set()
+
+    surface = fc.Surface.self_affine(hurst=0.5, size=1.0, rms_height=0.01)
+    scene = fc.Scene(surface, modulus=1.0)
+    with pytest.raises(fc.Stopped) as caught:
+        fc.ensemble(fc.Bem3d(cells=129), scene, seed=1, surfaces=5000, force_bar=[1.0], progress=soon, stop=stop)
+    assert 0 < len(caught.value.finished) < 5000
+    stop.clear()
+    text = """[scene]
+units = "none"
+models = ["bem3d"]
+modulus = 1
+force_bar = [0.1, 1.0]
+[scene.surface]
+kind = "self_affine"
+side = 1
+hurst = 0.5
+rms_height = 0.01
+[outputs]
+stiffness = true
+[models.bem3d]
+cells = 129
+[sampling]
+seed = 1
+surfaces = SURFACES
+"""
+    many = fc.Scene.from_toml(text.replace("SURFACES", "1000"))
+    with pytest.raises(fc.Stopped):
+        fc.run_scene(many, tmp_path / "many", progress=soon, stop=stop)
+    few = fc.run_scene(fc.Scene.from_toml(text.replace("SURFACES", "2")), tmp_path / "few", stop=threading.Event())
+    assert few.states == 4
+
+
+@pytest.mark.parametrize(("asked", "expected"), [("1", 1), ("3", 3)])
+def test_the_variable_of_threads_is_obeyed(asked, expected):
+    code = "import fractal_contact as fc; print(fc.threads())"
+    environment = {**os.environ, "RAYON_NUM_THREADS": asked}
+    told = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True, env=environment)
+    assert int(told.stdout) == expected
+    for wrong in (0, -1, 10**6):
+        with pytest.raises(ValueError, match="expected a number of threads"):
+            fc.set_threads(wrong)
 
 
 def resident():

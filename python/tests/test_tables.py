@@ -1,5 +1,6 @@
 """The tables of the library in Python: quantities of states, models, and the files that are written from them."""
 
+import ast
 import importlib.util
 import inspect
 import re
@@ -32,9 +33,10 @@ def state(**outputs):
 
 
 def test_every_quantity_is_a_property_and_in_the_stub(generate):
-    text = (PACKAGE / "_core.pyi").read_text()
-    body = re.search(r"class ContactState:\n(.*?)\n(?=@final|def )", text, re.DOTALL)[1]
-    in_stub = dict(re.findall(r"def (\w+)\(self\) -> (.*): \.\.\.", body))
+    module = ast.parse((PACKAGE / "_core.pyi").read_text())
+    [state_class] = [node for node in module.body if getattr(node, "name", None) == "ContactState"]
+    members = [node for node in state_class.body if isinstance(node, ast.FunctionDef) and node.name[0] != "_"]
+    in_stub = {node.name: ast.unparse(node.returns) for node in members}
     for quantity in fc.quantities():
         name = quantity["name"]
         member = vars(fc.ContactState)[name]

@@ -308,7 +308,7 @@ impl Law for WaveLaw {
     fn state(&self, load: Load, scaling: &Scaling) -> Result<ContactState> {
         let force = match load.validated_with_adhesion()? {
             Load::Force(force) => force,
-            other => return Err(Error::unsupported(NAME, format!("the load {other:?} (it takes a force)"))),
+            other => return Err(Error::unsupported(NAME, format!("{other}: it takes a force"))),
         };
         let Scaling { nondimensional, outputs, .. } = *scaling;
         // Mean pressure over p*; infinite where no `f64` holds it.

@@ -70,9 +70,8 @@ impl ContactModel for CattaneoMindlin {
 
     fn prepare(&self, scene: &Scene, seed: u64) -> Result<Box<dyn PreparedContact>> {
         closed::sphere(self, scene)?;
-        let friction = scene.effects.friction;
-        let Friction::Coulomb { coefficient, .. } = friction else {
-            return Err(Error::unsupported(NAME, format!("friction ({friction:?}): it needs Coulomb's")));
+        let Friction::Coulomb { coefficient, .. } = scene.effects.friction else {
+            return Err(Error::unsupported(NAME, "friction of another law than Coulomb's"));
         };
         if coefficient <= 0.0 {
             return Err(Error::domain("coefficient of friction", coefficient, "a finite number > 0"));
@@ -80,7 +79,7 @@ impl ContactModel for CattaneoMindlin {
         let Some(pair) = scene.pair else {
             return Err(Error::unsupported(
                 NAME,
-                "a scene without both bodies (Scene::of_pair): friction needs G*",
+                "a scene without both bodies: friction needs their shear moduli",
             ));
         };
         let elastic = Scene {

@@ -41,7 +41,7 @@ impl<L: PeriodicLaw> Periodic<L> {
             Load::Force(force) => (force > 0.0, scaling.nondimensional.force_in(force)),
             Load::MeanGap(gap) => (false, self.law.pressure(scaling.nondimensional.approach_in(gap))?),
             Load::Approach(_) => {
-                let what = "an approach: a periodic contact has a mean gap (Load::MeanGap)";
+                let what = "an approach: a periodic contact has a mean gap in its place";
                 return Err(Error::unsupported(self.model, what));
             }
             _ => return Err(Error::unsupported_load(self.model, load)),

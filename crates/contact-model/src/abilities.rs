@@ -198,7 +198,8 @@ impl Abilities {
         let mut lacks = Vec::new();
         let boundary = scene.effects.boundary;
         if !self.boundaries.contains(&boundary) {
-            lacks.push(format!("the boundary {boundary:?}"));
+            let words = if boundary == Boundary::Free { "free boundaries" } else { "periodic boundaries" };
+            lacks.push(words.to_owned());
         }
         for effect in scene.effects.named().filter(|effect| !self.effects.contains(effect)) {
             lacks.push(effect.words().to_owned());
@@ -225,7 +226,7 @@ impl Abilities {
         if self.loads.contains(&LoadKind::of(load)) {
             Ok(())
         } else {
-            Err(Error::unsupported(model, format!("the load {load:?}")))
+            Err(Error::unsupported_load(model, load))
         }
     }
 }

@@ -84,8 +84,8 @@ impl Error {
     }
 
     /// [`Error::Unsupported`] for a load that a model has no answer to.
-    pub fn unsupported_load(model: &'static str, load: impl fmt::Debug) -> Self {
-        Self::unsupported(model, format!("the load {load:?}"))
+    pub fn unsupported_load(model: &'static str, load: impl fmt::Display) -> Self {
+        Self::unsupported(model, load.to_string())
     }
 
     /// Shorthand for [`Error::OutOfMemory`] where the system refused `bytes`.

@@ -35,7 +35,16 @@ impl HeightMap {
     /// ```
     pub fn new(cells: impl Into<Cells>, size: impl Into<Size>, heights: Vec<f64>) -> Result<Self> {
         let (cells, size) = checked_grid(cells.into(), size.into(), heights.len())?;
-        check_heights(&heights, |i| place(cells, i))?;
+        check_heights(&heights, |i| place(cells, i)).map_err(|error| match error {
+            Error::Domain { name, value, expected } if value.is_nan() && name.starts_with("heights[") => {
+                Error::domain(
+                    name,
+                    value,
+                    format!("{expected}; `HeightMap::with_undefined` takes undefined points"),
+                )
+            }
+            error => error,
+        })?;
         Ok(Self { cells, size, heights, undefined: 0 })
     }
 
@@ -43,12 +52,15 @@ impl HeightMap {
     /// `((ix + 1/2) dx, (iy + 1/2) dy)`.
     ///
     /// # Errors
-    /// As [`HeightMap::new`]; [`Error::OutOfMemory`] when the map does not fit in memory.
+    /// As [`HeightMap::new`]; [`Error::OutOfMemory`] when the map does not fit in memory. Heights that are NaN
+    /// at undefined points are those of [`HeightMap::with_undefined`], which the error names.
     ///
     /// ```
     /// use contact_model::HeightMap;
     /// let map = HeightMap::from_fn([2, 3], [2.0, 3.0], |ix, iy| (10 * iy + ix) as f64)?;
     /// assert_eq!(map.heights(), [0.0, 1.0, 10.0, 11.0, 20.0, 21.0]);
+    /// let undefined = HeightMap::from_fn(2, 1.0, |ix, _| if ix == 0 { 0.0 } else { f64::NAN });
+    /// assert!(undefined.unwrap_err().to_string().ends_with("`HeightMap::with_undefined` takes undefined points"));
     /// # Ok::<(), contact_model::Error>(())
     /// ```
     pub fn from_fn(
@@ -328,7 +340,12 @@ mod tests {
     #[test]
     fn bad_maps_are_named() {
         let e = HeightMap::new(2, 1.0, vec![0.0, 1.0, f64::NAN, 0.0]).unwrap_err();
-        assert_eq!(e.to_string(), "heights[1, 0] = NaN: expected a finite height");
+        let expected = "heights[1, 0] = NaN: expected a finite height; `HeightMap::with_undefined` takes undefined points";
+        assert_eq!(e.to_string(), expected);
+        let e = HeightMap::from_fn(2, 1.0, |ix, iy| if ix < iy { f64::NAN } else { 0.0 }).unwrap_err();
+        assert_eq!(e.to_string(), expected);
+        let e = HeightMap::new(2, 1.0, vec![0.0, 1.0, f64::INFINITY, 0.0]).unwrap_err();
+        assert_eq!(e.to_string(), "heights[1, 0] = inf: expected a finite height");
         let e = HeightMap::new(2, 1.0, vec![0.0; 3]).unwrap_err();
         assert_eq!(e.to_string(), "heights has 3 values: expected 2 rows x 2 columns");
         assert!(HeightMap::new(0, 1.0, vec![]).is_err());

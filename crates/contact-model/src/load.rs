@@ -1,6 +1,7 @@
 //! What is prescribed in one solve.
 
 use crate::error::{Error, Result, non_negative};
+use std::fmt;
 
 /// What is prescribed in one solve: the normal force, the approach or the mean gap, never two of them.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -58,5 +59,16 @@ impl Load {
             Self::MeanGap(gap) => ("mean gap (the contact pulls off under a prescribed mean gap)", gap),
         };
         Error::OutOfRange { name: name.into(), value, min: smallest, max: f64::INFINITY }
+    }
+}
+
+impl fmt::Display for Load {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (what, value) = match self {
+            Self::Force(force) => ("a force", force),
+            Self::Approach(approach) => ("an approach", approach),
+            Self::MeanGap(gap) => ("a mean gap", gap),
+        };
+        write!(f, "{what} of {value}")
     }
 }

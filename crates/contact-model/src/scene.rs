@@ -72,7 +72,7 @@ impl Scene {
             (Friction::Off, _) => Ok(None),
             (friction, Some(pair)) => friction.coupling_of(pair),
             (_, None) => {
-                let what = "a scene without both bodies (Scene::of_pair): friction needs their shear moduli";
+                let what = "a scene without both bodies: friction needs their shear moduli";
                 Err(Error::unsupported(model, what))
             }
         }

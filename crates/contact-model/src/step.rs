@@ -2,6 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::load::Load;
+use std::fmt;
 
 /// The tangential load: its components along x (columns of a map) and along y (rows). Signed: the second body
 /// is moved over the first ([`crate::Pair`]). Which one is which matters to full coupling alone
@@ -67,6 +68,13 @@ impl Tangential {
             Self::Force(_) => "tangential force",
             Self::Displacement(_) => "tangential displacement",
         }
+    }
+}
+
+impl fmt::Display for Tangential {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [x, y] = self.components();
+        write!(f, "a {} of ({x}, {y})", self.words())
     }
 }
 

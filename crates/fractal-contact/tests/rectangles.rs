@@ -248,7 +248,7 @@ fn a_rectangle_is_pressed() {
     );
     let read = |name: &str| {
         let declared = surface_io::ReadOptions { cell: "1 x 0.5".parse().ok(), ..Default::default() };
-        surface_io::Scan::read(&dir.path().join(name), &declared).unwrap()
+        surface_io::Scan::read(dir.path().join(name), &declared).unwrap()
     };
     let pressure = read("pressure-bem3d-0-000.npy");
     assert_eq!((pressure.metadata().rows, pressure.metadata().columns), (rows, columns));

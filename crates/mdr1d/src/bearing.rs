@@ -158,7 +158,7 @@ impl Bearing {
                 let (approach, elements) = self.at_sum(sum);
                 (force, nondimensional.approach(approach)?, elements)
             }
-            _ => return Err(Error::unsupported("mdr1d", format!("the load {load:?}"))),
+            _ => return Err(Error::unsupported_load("mdr1d", load)),
         };
         let stiffness = nondimensional.stiffness(elements as f64)?;
         Ok(Support { force, approach, stiffness, elements })

@@ -208,7 +208,7 @@ impl<M: ContactModel> ContactModel for Equivalent<M> {
         let memory = match (friction, Material::new(&rheology, scene.modulus, NAME)?) {
             (Friction::Coulomb { coefficient, .. }, None) => {
                 let Some(pair) = scene.pair else {
-                    let what = "a scene without both bodies (Scene::of_pair): friction needs G*";
+                    let what = "a scene without both bodies: friction needs their shear moduli";
                     return Err(Error::unsupported(NAME, what));
                 };
                 let shear = pair.shear_modulus()? / scene.modulus;
@@ -234,10 +234,7 @@ impl<M: ContactModel> ContactModel for Equivalent<M> {
                     "an elastic contact without friction (nothing to remember)",
                 ));
             }
-            (friction, _) => {
-                let what = format!("friction ({friction:?}) together with the rheology {rheology:?}");
-                return Err(Error::unsupported(NAME, what));
-            }
+            _ => return Err(Error::unsupported(NAME, "friction together with a rheology")),
         };
         Ok(Box::new(PreparedEquivalent { normal: self.normal(scene, seed)?, memory }))
     }

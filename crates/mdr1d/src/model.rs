@@ -108,11 +108,8 @@ impl ContactModel for Mdr1d {
             return Ok(Box::new(RoundIndenter { body, adhesive: adhesive(body.profile, scene)? }));
         }
         if scene.effects.adhesion != Adhesion::Off {
-            let what = format!(
-                "adhesion ({:?}) of {}: the rule needs the radius of a round contact",
-                scene.effects.adhesion,
-                scene.surface.kind()
-            );
+            let what =
+                format!("adhesion of {}: the rule needs the radius of a round contact", scene.surface.kind());
             return Err(Error::unsupported(NAME, what));
         }
         if outputs.area

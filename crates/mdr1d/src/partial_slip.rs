@@ -74,14 +74,13 @@ impl ContactModel for PartialSlip {
     fn prepare(&self, scene: &Scene, _seed: u64) -> Result<Box<dyn PreparedContact>> {
         self.abilities().refuse(NAME, scene)?;
         let Friction::Coulomb { coefficient, .. } = scene.effects.friction else {
-            let what = format!("friction ({:?}): it needs Coulomb's", scene.effects.friction);
-            return Err(Error::unsupported(NAME, what));
+            return Err(Error::unsupported(NAME, "friction of another law than Coulomb's"));
         };
         let body = RoundBody::required(scene, NAME, "friction by springs needs a round contact")?;
         let Some(pair) = scene.pair else {
             return Err(Error::unsupported(
                 NAME,
-                "a scene without both bodies (Scene::of_pair): friction needs G*",
+                "a scene without both bodies: friction needs their shear moduli",
             ));
         };
         let springs = Springs::new(body.profile, coefficient, pair.shear_modulus()? / scene.modulus);

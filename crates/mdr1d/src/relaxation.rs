@@ -53,7 +53,7 @@ impl Relaxation {
         if step.tangential == Tangential::default() {
             Ok(step)
         } else {
-            Err(Error::unsupported(self.model, format!("the tangential load {:?}", step.tangential)))
+            Err(Error::unsupported_load(self.model, step.tangential))
         }
     }
 

@@ -46,7 +46,8 @@ impl<'a> SurfaceFile<'a> {
     ///
     /// # Errors
     /// [`Error::System`] where the system refuses; [`Error::Content`] for everything that is wrong in the headers.
-    pub fn open(path: &Path, declared: &ReadOptions) -> Result<Self> {
+    pub fn open(path: impl AsRef<Path>, declared: &ReadOptions) -> Result<Self> {
+        let path = path.as_ref();
         let (input, length) = opened(path)?;
         Self::new(path, input, length, declared)
     }
@@ -159,7 +160,13 @@ impl Scan {
     ///
     /// # Errors
     /// As [`SurfaceFile::open`] and [`SurfaceFile::scan`].
-    pub fn read(path: &Path, declared: &ReadOptions) -> Result<Self> {
+    ///
+    /// ```no_run
+    /// use surface_io::{ReadOptions, Scan};
+    /// let scan = Scan::read("map.txt", &ReadOptions::default())?;
+    /// # Ok::<(), surface_io::Error>(())
+    /// ```
+    pub fn read(path: impl AsRef<Path>, declared: &ReadOptions) -> Result<Self> {
         SurfaceFile::open(path, declared)?.scan()
     }
 

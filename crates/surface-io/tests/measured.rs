@@ -98,7 +98,7 @@ fn real_files_are_read_as_an_independent_reader_does() {
     let mut wrong = Vec::new();
     for entry in &expected {
         let name = entry["file"].as_str().unwrap();
-        let file = SurfaceFile::open(&directory.join(name), &ReadOptions::default());
+        let file = SurfaceFile::open(directory.join(name), &ReadOptions::default());
         let found = match (file, entry.get("refused")) {
             (Err(error), Some(_)) => {
                 println!("refused: {error}");
@@ -144,7 +144,7 @@ fn real_files_of_more_formats_are_read_as_an_independent_reader_does() {
         let channel =
             (!name.eq_ignore_ascii_case("Default")).then(|| surface_io::ChannelChoice::Name(name.to_owned()));
         let options = ReadOptions { channel, ..ReadOptions::default() };
-        let scan = Scan::read(&directory.join(file), &options).map_err(|error| error.to_string());
+        let scan = Scan::read(directory.join(file), &options).map_err(|error| error.to_string());
         if let Err(problem) = scan.and_then(|scan| check(entry, &scan)) {
             wrong.push(format!("{file}, {name}: {problem}"));
         }
@@ -212,7 +212,7 @@ fn reported_files_are_read() {
     let Some(directory) = directory("reports") else { return };
     let read = |name: &str, axes| {
         let options = ReadOptions { axes, ..ReadOptions::default() };
-        Scan::read(&directory.join(name), &options).unwrap()
+        Scan::read(directory.join(name), &options).unwrap()
     };
     let jpk = read("h5-jpk.h5", None);
     assert_eq!(jpk.metadata().unit.as_ref().map(|unit| unit.value.to_string()).as_deref(), Some("m"));
@@ -245,7 +245,7 @@ fn reports_have_their_expected_values() {
             border: matches!(name.as_str(), "pandas.csv" | "axes-matrix.txt").then_some(Border::Axes),
             ..ReadOptions::default()
         };
-        let found = match (name.as_str(), Scan::read(&directory.join(name), &options)) {
+        let found = match (name.as_str(), Scan::read(directory.join(name), &options)) {
             ("x3p-upsidedown.x3p", Err(error)) if error.to_string().contains("third axis") => Ok(()),
             (_, Err(error)) => Err(error.to_string()),
             ("nano-aspect-2to1.spm", Ok(scan)) if scan.metadata().size.is_none() => {

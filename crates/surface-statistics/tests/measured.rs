@@ -127,7 +127,7 @@ fn measures_of_real_maps_are_those_of_an_independent_program() {
     for entry in expected.iter().filter(|entry| entry.get("psd").is_some()) {
         let name = entry["file"].as_str().unwrap();
         let channel = entry["channel"].as_u64().unwrap() as usize;
-        let file = SurfaceFile::open(&directory.join(name), &ReadOptions::default()).unwrap();
+        let file = SurfaceFile::open(directory.join(name), &ReadOptions::default()).unwrap();
         let scan = file.scans().nth(channel).unwrap().unwrap();
         match map_of(&scan, entry).and_then(|map| check(entry, &map)) {
             Ok(Some(found)) => (count, worst) = (count + 1, worst.max(found)),

@@ -15,7 +15,7 @@ Arrays are ``[row, column]``: columns along x, rows along y. Lengths, forces and
 fit together; files have metres and pascals. The same words mean the same as in Rust and in scene files.
 """
 
-from . import _formulas, statistics, surface_gen
+from . import _formulas, statistics, surface_gen, typing
 from ._core import (
     VERSION as __version__,
 )
@@ -106,6 +106,7 @@ __all__ = [
     "sweep",
     "table",
     "threads",
+    "typing",
     "write_surface",
 ]
 __all__ += _formulas.__all__

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import importlib
+from typing import Any
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -50,6 +53,44 @@ def _undefined(found: NDArray[np.float64], among: NDArray[np.bool_]) -> DomainEr
     return error
 
 
-def restored(values: NDArray[np.float64], size: tuple[float, float], undefined: str) -> HeightMap:
-    """Unpickles a map."""
-    return HeightMap(values, size, undefined=undefined)
+def combined(map_: HeightMap, other: Any, operation: str, reflected: bool) -> Any:
+    """The map added to a number or an array of its shape, and so on; what is neither is left to the other operand."""
+    if isinstance(other, HeightMap | str | bytes | bool | complex) or (reflected and operation == "divide"):
+        return NotImplemented
+    if np.ma.isMaskedArray(other):
+        # A masked array would take the heights for its own operation.
+        raise TypeError("a map and a masked array: expected an array of numbers")
+    array = np.asarray(other)
+    if array.dtype.kind not in "fiu":
+        return NotImplemented
+    if array.ndim and array.shape != map_.shape:
+        error = ShapeError(f"an array of the shape {array.shape} and a map of the shape {map_.shape}")
+        error.quantity, error.value, error.expected = "values", array.size, f"{map_.shape}"
+        raise error
+    if np.isnan(array).any():
+        error_ = DomainError("NaN and a map: expected finite numbers")
+        error_.quantity, error_.value, error_.expected = "values", float("nan"), "finite numbers"
+        raise error_
+    operands = (array, map_.heights) if reflected else (map_.heights, array)
+    # What overflows, or is divided by 0, is refused with its place.
+    with np.errstate(all="ignore"):
+        heights = getattr(np, operation)(*operands)
+    undefined = map_.undefined > 0
+    if undefined and (np.isnan(heights) != np.isnan(map_.heights)).any():
+        raise DomainError("a height that is no number: 0 divided by 0")
+    return HeightMap(heights, map_.size, undefined="no_contact" if undefined else "error")
+
+
+def plot(map_: HeightMap, ax: Any = None, **options: Any) -> Any:
+    """Draws a map with matplotlib."""
+    ax = importlib.import_module("matplotlib.pyplot").gca() if ax is None else ax
+    image = ax.imshow(map_.heights, **{"extent": map_.extent, "origin": "lower", **options})
+    ax.set(xlabel="x", ylabel="y")
+    ax.figure.colorbar(image, ax=ax, label="height")
+    return image
+
+
+def to_xarray(map_: HeightMap) -> Any:
+    """The map with its coordinates."""
+    xarray = importlib.import_module("xarray")
+    return xarray.DataArray(np.array(map_), coords={"y": map_.y, "x": map_.x}, dims=("y", "x"), name="height")

@@ -1,11 +1,17 @@
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from os import PathLike
 from pathlib import Path
-from typing import Any, final
+from typing import Any, Never, final
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from ._errors import Error
+from ._inputs import Cells, Size
+from ._models import StopToken
+from .typing import Undefined
+
+_Heights = float | NDArray[np.floating[Any] | np.integer[Any]]
 
 VERSION: str
 __all__ = [
@@ -30,6 +36,7 @@ __all__ = [
     "model",
     "models",
     "parameters",
+    "picture",
     "power_spectrum",
     "quantities",
     "read_surface",
@@ -48,227 +55,510 @@ __all__ = [
 
 @final
 class HeightMap:
+    """Heights on a rectangle of equal cells, seen from outside its body: large values touch first.
+
+    ``np.asarray(map)`` is an array of them. Maps of the same size are added and subtracted; numbers, and arrays of
+    the map's shape, are added, subtracted, multiplied and divided by. Undefined points stay undefined.
+
+    Parameters
+    ----------
+    heights : array_like
+            Two-dimensional, ``[row, column]``: columns along x, rows along y, of any real type. A masked array has
+            undefined points where it is masked.
+    size : float, str, or two of them
+            Side of a square or sides ``(Lx, Ly)`` of the rectangle, in the unit of the heights; texts with a unit,
+        such
+            as ``"1 mm"`` or ``"2 mm x 1 mm"``, are metres.
+    unit : str, optional
+            Unit of the heights in the array, such as ``"nm"``: the map is then in metres.
+    undefined : {"error", "no_contact"}
+            What NaN means: an error, or a point that cannot touch. Masked points cannot touch either way.
+    """
     def __new__(
         cls,
         heights: ArrayLike,
-        size: float | str | tuple[float, float] | tuple[str, str],
+        size: Size | str | Sequence[str],
         *,
         unit: str | None = None,
-        undefined: str = "error",
+        undefined: Undefined = "error",
     ) -> HeightMap: ...
+    __array_priority__: float
+    def __array__(self, dtype: DTypeLike | None = None, *, copy: bool | None = None) -> NDArray[Any]: ...
+    def __len__(self) -> int: ...
     @property
-    def heights(self) -> NDArray[np.float64]: ...
+    def heights(self) -> NDArray[np.float64]:
+        """numpy.ndarray: the heights, [row, column]; NaN at undefined points. Read-only: ``np.array(map)`` is a copy
+        to
+        change.
+        """
     @property
-    def shape(self) -> tuple[int, int]: ...
+    def shape(self) -> tuple[int, int]:
+        """(int, int): rows and columns."""
     @property
-    def size(self) -> tuple[float, float]: ...
+    def size(self) -> tuple[float, float]:
+        """(float, float): sides (Lx, Ly)."""
     @property
-    def cell(self) -> tuple[float, float]: ...
+    def cell(self) -> tuple[float, float]:
+        """(float, float): sides of a cell (dx, dy)."""
     @property
-    def undefined(self) -> int: ...
+    def extent(self) -> tuple[float, float, float, float]:
+        """(float, float, float, float): left, right, bottom and top of the rectangle, as ``imshow`` takes it with
+        ``origin="lower"``.
+        """
     @property
-    def rms_height(self) -> float: ...
-    def transposed(self) -> HeightMap: ...
-    def mirrored(self) -> HeightMap: ...
-    def rotated(self) -> HeightMap: ...
-    def cropped(self, rows: tuple[int, int], columns: tuple[int, int]) -> HeightMap: ...
-    def scaled(self, lateral: float, vertical: float) -> HeightMap: ...
-    def __add__(self, other: HeightMap, /) -> HeightMap: ...
-    def __radd__(self, other: HeightMap, /) -> HeightMap: ...
-    def __sub__(self, other: HeightMap, /) -> HeightMap: ...
-    def __rsub__(self, other: HeightMap, /) -> HeightMap: ...
+    def x(self) -> NDArray[np.float64]:
+        """numpy.ndarray: where the centres of the columns are along x, shape (columns,)."""
+    @property
+    def y(self) -> NDArray[np.float64]:
+        """numpy.ndarray: where the centres of the rows are along y, shape (rows,)."""
+    @property
+    def undefined(self) -> int:
+        """int: number of undefined points."""
+    @property
+    def rms_height(self) -> float:
+        """float: rms height about the mean of the defined points."""
+    def transposed(self) -> HeightMap:
+        """The map with x and y exchanged."""
+    def mirrored(self) -> HeightMap:
+        """The map with x reversed."""
+    def rotated(self) -> HeightMap:
+        """The map turned by a quarter from x to y."""
+    def cropped(self, rows: Sequence[int], columns: Sequence[int]) -> HeightMap:
+        """The map of the rows and columns from the first to before the second of each pair.
+
+        Parameters
+        ----------
+        rows, columns : (int, int)
+                First, and the one after the last.
+        """
+    def scaled(self, lateral: float, vertical: float) -> HeightMap:
+        """The map with its sides and its heights multiplied."""
+    def plot(self, ax: Any = None, **options: Any) -> Any:
+        """Draws the map with matplotlib: cells in their shape, the first row at the bottom, a colour bar.
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, optional
+                Where; the current axes by default.
+        **options
+                Of ``imshow``.
+
+        Returns
+        -------
+        matplotlib.image.AxesImage
+        """
+    def to_xarray(self) -> Any:
+        """The map for xarray, with the dimensions y and x and their coordinates.
+
+        Returns
+        -------
+        xarray.DataArray
+        """
+    def __add__(self, other: HeightMap | _Heights, /) -> HeightMap: ...
+    def __radd__(self, other: _Heights, /) -> HeightMap: ...
+    def __sub__(self, other: HeightMap | _Heights, /) -> HeightMap: ...
+    def __rsub__(self, other: _Heights, /) -> HeightMap: ...
+    def __mul__(self, other: _Heights, /) -> HeightMap: ...
+    def __rmul__(self, other: _Heights, /) -> HeightMap: ...
+    def __truediv__(self, other: _Heights, /) -> HeightMap: ...
+    def __rtruediv__(self, other: Never, /) -> HeightMap: ...
+    def __neg__(self) -> HeightMap: ...
+    def __pos__(self) -> HeightMap: ...
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
     def __reduce__(self) -> tuple[Any, ...]: ...
+    def _sampled(self, step: int) -> NDArray[np.float64]: ...
     def _repr_html_(self) -> str: ...
 
 @final
 class Certificate:
+    """How exactly the contact conditions hold, measured with the exact operator in double precision.
+
+    All numbers are relative and dimensionless.
+    """
     @property
-    def duality_gap(self) -> float: ...
+    def duality_gap(self) -> float:
+        """float: duality gap of the quadratic programme over force times rms height."""
     @property
-    def penetration(self) -> float: ...
+    def penetration(self) -> float:
+        """float: deepest penetration over the rms height."""
     @property
-    def complementarity(self) -> float: ...
+    def complementarity(self) -> float:
+        """float: sum of pressure times gap over force times rms height."""
     @property
-    def load_error(self) -> float: ...
+    def load_error(self) -> float:
+        """float: relative difference of the force from the one asked for; of a mean gap its miss over the rms
+        height.
+        """
     @property
-    def stiffness_error(self) -> float | None: ...
+    def stiffness_error(self) -> float | None:
+        """float or None: estimated relative error of the stiffness; None where it is a difference quotient
+        (`quotient_error`).
+        """
     @property
-    def quotient_error(self) -> float | None: ...
+    def quotient_error(self) -> float | None:
+        """float or None: estimated relative error of a stiffness that is a difference quotient, with adhesion of
+        short range and Dugdale's law. The cells decide it, not the tolerance: no part of `worst`.
+        """
     @property
-    def force_error(self) -> float | None: ...
+    def force_error(self) -> float | None:
+        """float or None: bound of the relative error of the force under a prescribed approach or mean gap, an
+        estimate with adhesion; no part of `worst`.
+        """
     @property
-    def error_of_stiffness(self) -> float | None: ...
+    def error_of_stiffness(self) -> float | None:
+        """float or None: estimated relative error of the stiffness, however it was found; ``stiffness_error`` in
+        tables.
+        """
     @property
-    def equilibrium(self) -> float | None: ...
+    def equilibrium(self) -> float | None:
+        """float or None: largest difference between the traction of a cell and what the law of adhesion says of
+        its gap, over work/range; None without adhesion of finite range.
+        """
     @property
-    def tangential_duality_gap(self) -> float | None: ...
+    def tangential_duality_gap(self) -> float | None:
+        """float or None: duality gap of the last step of friction over sliding force times tangential displacement;
+        None without friction, and where a model does not solve it cell by cell.
+        """
     @property
-    def tangential_load_error(self) -> float | None: ...
+    def tangential_load_error(self) -> float | None:
+        """float or None: difference of the tangential force from the one asked for, over the sliding force."""
     @property
-    def tangential_stiffness_error(self) -> float | None: ...
+    def tangential_stiffness_error(self) -> float | None:
+        """float or None: estimated relative error of the tangential stiffness."""
     @property
-    def worst(self) -> float: ...
-    def meets(self, tolerance: float) -> bool: ...
-    def to_dict(self) -> dict[str, float | None]: ...
+    def worst(self) -> float:
+        """float: the largest of the numbers that the tolerance bounds."""
+    def meets(self, tolerance: float) -> bool:
+        """Whether every number that the tolerance bounds is at most `tolerance`."""
+    def to_dict(self) -> dict[str, float | None]:
+        """The numbers by the names of the columns of scenes; ``stiffness_error`` is `error_of_stiffness`."""
+    @staticmethod
+    def _of_bytes(bytes: bytes) -> Certificate: ...
+    def __reduce__(self) -> tuple[Any, ...]: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
 
 @final
 class ContactState:
+    """One contact state, alone or at the end of a step of a path. What was not asked for, or what the model does
+    not claim, is None.
+
+    Its numbers and words are those of `quantities`. Units in brackets are those of SI; a scene in other units
+    has its own.
+    """
     # The numbers and words of the table of quantities: written by python/generate.py.
     @property
-    def time(self) -> float | None: ...
+    def time(self) -> float | None:
+        """float or None: time at the end of the step [s]."""
     @property
-    def force(self) -> float: ...
+    def force(self) -> float:
+        """float: normal force; negative where adhesion holds against a pull [N]."""
     @property
-    def force_bar(self) -> float | None: ...
+    def force_bar(self) -> float | None:
+        """float or None: force, F/(E* h L), L = sqrt(Lx Ly)."""
     @property
-    def approach(self) -> float | None: ...
+    def approach(self) -> float | None:
+        """float or None: approach, from first touch of the highest point [m]."""
     @property
-    def mean_gap(self) -> float | None: ...
+    def mean_gap(self) -> float | None:
+        """float or None: mean gap, distance between the mean plane of the defined heights and that of the deformed
+        half-space; without undefined points the mean of the gap field; with them it may be negative [m].
+        """
     @property
-    def contact_radius(self) -> float | None: ...
+    def contact_radius(self) -> float | None:
+        """float or None: contact radius, of a round contact; of an equivalent profile that of the round contact of
+        the same stiffness, k/(2 E*) [m].
+        """
     @property
-    def tangential_force(self) -> float | None: ...
+    def tangential_force(self) -> float | None:
+        """float or None: tangential force along x [N]."""
     @property
-    def tangential_force_y(self) -> float | None: ...
+    def tangential_force_y(self) -> float | None:
+        """float or None: tangential force along y [N]."""
     @property
-    def tangential_displacement(self) -> float | None: ...
+    def tangential_displacement(self) -> float | None:
+        """float or None: tangential displacement, of the bodies relative to each other along x, far from the contact
+        [m].
+        """
     @property
-    def tangential_displacement_y(self) -> float | None: ...
+    def tangential_displacement_y(self) -> float | None:
+        """float or None: tangential displacement along y, of the bodies relative to each other along y, far from the
+        contact [m].
+        """
     @property
-    def sliding_force(self) -> float | None: ...
+    def sliding_force(self) -> float | None:
+        """float or None: sliding force, tangential force at which the whole contact slips, the coefficient of
+        friction times the normal force [N].
+        """
     @property
-    def stick_area(self) -> float | None: ...
+    def stick_area(self) -> float | None:
+        """float or None: stick area, area of the contact whose traction is below what friction can hold [m^2]."""
     @property
-    def slip_area(self) -> float | None: ...
+    def slip_area(self) -> float | None:
+        """float or None: slip area, area of the contact whose traction is what friction can hold [m^2]."""
     @property
-    def tangential_stiffness(self) -> float | None: ...
+    def tangential_stiffness(self) -> float | None:
+        """float or None: tangential stiffness, dQ_x/ddelta_x along the branch of states, the pressures held: what
+        sticks goes on sticking, what slips goes on slipping [N/m].
+        """
     @property
-    def tangential_stiffness_xy(self) -> float | None: ...
+    def tangential_stiffness_xy(self) -> float | None:
+        """float or None: tangential stiffness, x of y, dQ_x/ddelta_y of the same; it is dQ_y/ddelta_x too [N/m]."""
     @property
-    def tangential_stiffness_y(self) -> float | None: ...
+    def tangential_stiffness_y(self) -> float | None:
+        """float or None: tangential stiffness along y, dQ_y/ddelta_y of the same [N/m]."""
     @property
-    def tangential_stiffness_stuck(self) -> float | None: ...
+    def tangential_stiffness_stuck(self) -> float | None:
+        """float or None: tangential stiffness, sticking, dQ_x/ddelta_x with the whole contact sticking: the first
+        answer after a reversal [N/m].
+        """
     @property
-    def tangential_stiffness_stuck_xy(self) -> float | None: ...
+    def tangential_stiffness_stuck_xy(self) -> float | None:
+        """float or None: tangential stiffness, sticking, x of y, dQ_x/ddelta_y of the same; it is dQ_y/ddelta_x too
+        [N/m].
+        """
     @property
-    def tangential_stiffness_stuck_y(self) -> float | None: ...
+    def tangential_stiffness_stuck_y(self) -> float | None:
+        """float or None: tangential stiffness along y, sticking, dQ_y/ddelta_y of the same [N/m]."""
     @property
-    def stick_radius(self) -> float | None: ...
+    def stick_radius(self) -> float | None:
+        """float or None: stick radius, inside it nothing slips [m]."""
     @property
-    def dissipated(self) -> float | None: ...
+    def dissipated(self) -> float | None:
+        """float or None: energy dissipated by friction, energy lost to friction since the first step [J]."""
     @property
-    def plastic_area(self) -> float | None: ...
+    def plastic_area(self) -> float | None:
+        """float or None: area under the hardness [m^2]."""
     @property
-    def plastic_volume(self) -> float | None: ...
+    def plastic_volume(self) -> float | None:
+        """float or None: volume of the plastic indentation, since the virgin surface [m^3]."""
     @property
-    def plastic_work(self) -> float | None: ...
+    def plastic_work(self) -> float | None:
+        """float or None: plastic work, energy dissipated in the plastic indentation, hardness times volume [J]."""
     @property
-    def branch(self) -> str | None: ...
+    def branch(self) -> str | None:
+        """str or None: branch, whether the bodies were brought nearer or drawn apart."""
     @property
-    def energy(self) -> float | None: ...
+    def energy(self) -> float | None:
+        """float or None: elastic energy less the work of adhesion done [J]."""
     @property
-    def stability(self) -> float | None: ...
+    def stability(self) -> float | None:
+        """float or None: stability, a minimum of the energy where > 0: its least curvature over that without
+        adhesion.
+        """
     @property
-    def pull_off(self) -> float | None: ...
+    def pull_off(self) -> float | None:
+        """float or None: largest pull of the path so far: the most negative normal force of its loads, with a
+        positive sign; at most the pull-off force [N].
+        """
     @property
-    def pull_off_error(self) -> float | None: ...
+    def pull_off_error(self) -> float | None:
+        """float or None: error of the largest pull, what the steps of the path leave open: the pull-off force is at
+        most pull_off + pull_off_error; empty where no load is beyond it [N].
+        """
     @property
-    def pull_off_approach(self) -> float | None: ...
+    def pull_off_approach(self) -> float | None:
+        """float or None: approach at the largest pull, approach at which the path pulled most [m]."""
     @property
-    def pull_off_mean_gap(self) -> float | None: ...
+    def pull_off_mean_gap(self) -> float | None:
+        """float or None: mean gap at the largest pull, mean gap at which the path pulled most [m]."""
     @property
-    def stiffness(self) -> float | None: ...
+    def stiffness(self) -> float | None:
+        """float or None: stiffness, dF/dd along the branch of states (periodic: -dF/d(mean gap)): fronts of an
+        adhesive contact move, saturated cells flow [N/m].
+        """
     @property
-    def stiffness_bar(self) -> float | None: ...
+    def stiffness_bar(self) -> float | None:
+        """float or None: k/(1.1419 E* L) of this stiffness, L = sqrt(Lx Ly)."""
     @property
-    def stiffness_fixed_area(self) -> float | None: ...
+    def stiffness_fixed_area(self) -> float | None:
+        """float or None: stiffness of the held area, stiffness of the whole contact area, held (periodic: -dF/d(mean
+        gap)) [N/m].
+        """
     @property
-    def area(self) -> float | None: ...
+    def area(self) -> float | None:
+        """float or None: real contact area [m^2]."""
     @property
-    def area_corrected(self) -> float | None: ...
+    def area_corrected(self) -> float | None:
+        """float or None: corrected area, area less what cells add at its boundary (Yastrebov et al. 2017) [m^2]."""
     @property
-    def contact_fraction(self) -> float | None: ...
+    def contact_fraction(self) -> float | None:
+        """float or None: contact fraction, A/(Lx Ly), undefined points included."""
     @property
-    def conductance(self) -> float | None: ...
+    def conductance(self) -> float | None:
+        """float or None: conductance, 2 k/(E* (rho_1 + rho_2)) with the stiffness of the whole contact area, held
+        (Barber) [S, W/K].
+        """
     @property
-    def largest_patch(self) -> float | None: ...
+    def largest_patch(self) -> float | None:
+        """float or None: area of the largest contact, area of the largest [m^2]."""
     @property
-    def largest_pressure(self) -> float | None: ...
+    def largest_pressure(self) -> float | None:
+        """float or None: largest pressure, of a cell; grows with smaller cells until they resolve the shortest wave,
+        at an edge of the rectangle or a spike without limit [Pa].
+        """
     @property
-    def status(self) -> str: ...
+    def status(self) -> str:
+        """str: status, how the solve ended."""
     @property
-    def strategy(self) -> str: ...
+    def strategy(self) -> str:
+        """str: strategy, which way the solver took."""
     @property
-    def contact_cells(self) -> int | None: ...
+    def contact_cells(self) -> int | None:
+        """int or None: contact cells, cells or elements in contact; fewer than 10 are the grid's own."""
     @property
-    def iterations(self) -> int: ...
+    def iterations(self) -> int:
+        """int: iterations, of the linear solvers."""
     @property
-    def applications(self) -> int: ...
+    def applications(self) -> int:
+        """int: operator applications, of the elastic operator."""
     @property
-    def linear_solves(self) -> int: ...
+    def linear_solves(self) -> int:
+        """int: linear solves, linear systems solved."""
     @property
-    def fields(self) -> int: ...
+    def fields(self) -> int:
+        """int: fields over the grid that the state holds."""
     @property
-    def field_bytes(self) -> int: ...
+    def field_bytes(self) -> int:
+        """int: bytes of fields, their bytes."""
     @property
-    def duality_gap(self) -> float: ...
+    def duality_gap(self) -> float:
+        """float: duality gap, sum p (g - min g)/(F s)."""
     @property
-    def penetration(self) -> float: ...
+    def penetration(self) -> float:
+        """float: penetration, max(0, -min g)/s."""
     @property
-    def complementarity(self) -> float: ...
+    def complementarity(self) -> float:
+        """float: complementarity, sum p |g|/(F s)."""
     @property
-    def load_error(self) -> float: ...
+    def load_error(self) -> float:
+        """float: load error, |F - F_asked|/F_asked; of a mean gap its miss over s."""
     @property
-    def force_error(self) -> float | None: ...
+    def force_error(self) -> float | None:
+        """float or None: bound of the relative error of the force under a prescribed approach or mean gap; an
+        estimate with adhesion.
+        """
     @property
-    def equilibrium(self) -> float | None: ...
+    def equilibrium(self) -> float | None:
+        """float or None: equilibrium, largest difference of an attraction from the law of its gap, over the traction
+        in contact.
+        """
     @property
-    def tangential_duality_gap(self) -> float | None: ...
+    def tangential_duality_gap(self) -> float | None:
+        """float or None: tangential duality gap, sum (mu p |w| - w . q)/(mu F |delta|) of the last step, solved cell
+        by cell.
+        """
     @property
-    def tangential_load_error(self) -> float | None: ...
+    def tangential_load_error(self) -> float | None:
+        """float or None: tangential load error, |Q - Q_asked|/(mu F), solved cell by cell."""
     @property
-    def tangential_stiffness_error(self) -> float | None: ...
+    def tangential_stiffness_error(self) -> float | None:
+        """float or None: estimated relative error of the tangential stiffness."""
     @property
-    def stiffness_error(self) -> float | None: ...
+    def stiffness_error(self) -> float | None:
+        """float or None: estimated relative error of the stiffness; that of a difference quotient with adhesion of
+        short range and Dugdale's law, where the cells decide it and not the tolerance.
+        """
     @property
-    def pressure(self) -> NDArray[np.float64] | None: ...
+    def pressure(self) -> NDArray[np.float64] | None:
+        """numpy.ndarray or None: pressure of each cell; negative, a tension, with adhesion only [Pa], shape (rows,
+        columns). Read-only.
+        """
     @property
-    def gap(self) -> NDArray[np.float64] | None: ...
+    def gap(self) -> NDArray[np.float64] | None:
+        """numpy.ndarray or None: gap to the indented surface; infinite at undefined points [m], shape (rows,
+        columns). Read-only.
+        """
     @property
-    def plastic_depth(self) -> NDArray[np.float64] | None: ...
+    def plastic_depth(self) -> NDArray[np.float64] | None:
+        """numpy.ndarray or None: depth of the plastic indentation >= 0 [m], shape (rows, columns). Read-only."""
     @property
-    def displacement(self) -> NDArray[np.float64] | None: ...
+    def displacement(self) -> NDArray[np.float64] | None:
+        """numpy.ndarray or None: displacement of the elastic surface [m], shape (rows, columns). Read-only."""
     @property
-    def traction(self) -> NDArray[np.float64] | None: ...
+    def traction(self) -> NDArray[np.float64] | None:
+        """numpy.ndarray or None: tangential traction of each cell, along x and along y [Pa], shape (2, rows,
+        columns). Read-only.
+        """
     @property
-    def slip(self) -> NDArray[np.float64] | None: ...
+    def slip(self) -> NDArray[np.float64] | None:
+        """numpy.ndarray or None: slip of the bodies relative to each other since the cell came into contact, along x
+        and along y [m], shape (2, rows, columns). Read-only.
+        """
     @property
-    def stick_slip(self) -> NDArray[np.float64] | None: ...
+    def stick_slip(self) -> NDArray[np.float64] | None:
+        """numpy.ndarray or None: 0 where there is no contact, 1 where it sticks, 2 where it slips, shape (rows,
+        columns). Read-only.
+        """
     # The end of the table.
     @property
-    def edge_cells(self) -> int | None: ...
+    def edge_cells(self) -> int | None:
+        """int or None: cells in contact at an edge of a free rectangle."""
     @property
-    def patches(self) -> NDArray[np.float64] | None: ...
+    def patches(self) -> NDArray[np.float64] | None:
+        """numpy.ndarray or None: areas of the connected contacts (length^2), the largest first; shape
+        (patches,). Read-only.
+        """
     @property
-    def certificate(self) -> Certificate: ...
-    def to_dict(self, *, fields: bool = False) -> dict[str, Any]: ...
+    def notes(self) -> tuple[str, ...]:
+        """tuple of str: what may be wrong with the state though it is solved, such as few cells in contact or
+        contact at
+        the edge, and what to do about it: the notes of scenes.
+        """
+    @property
+    def size(self) -> tuple[float, float]:
+        """(float, float): sides (Lx, Ly) of the rectangle."""
+    @property
+    def certificate(self) -> Certificate:
+        """Certificate: how exactly the contact conditions hold."""
+    def to_dict(self, *, fields: bool = False) -> dict[str, Any]:
+        """The numbers and words by their names, which are those of the columns of scenes; arrays only with
+        ``fields=True``.
+
+        Those of effects and of paths are there where the state has them; any other that it lacks is None.
+        ``patches`` is the number of connected contacts, and with ``fields=True`` the array.
+        """
+    @staticmethod
+    def _of_bytes(bytes: bytes, fields: list[NDArray[np.float64] | None]) -> ContactState: ...
+    def __reduce__(self) -> tuple[Any, ...]: ...
+    def _repr_html_(self) -> str: ...
 
 @final
 class Normalisation:
+    """What turns forces and stiffnesses into the dimensionless ones of the paper."""
     @property
-    def modulus(self) -> float: ...
+    def modulus(self) -> float:
+        """float: effective modulus E*."""
     @property
-    def length(self) -> float: ...
+    def length(self) -> float:
+        """float: L = sqrt(Lx Ly)."""
     @property
-    def rms_height(self) -> float | None: ...
-    def force(self, force_bar: float) -> float: ...
-    def force_bar(self, force: float) -> float: ...
-    def stiffness_bar(self, stiffness: float) -> float: ...
+    def rms_height(self) -> float | None:
+        """float or None: measured rms height of this very surface."""
+    def force(self, force_bar: float) -> float:
+        """F for F_bar = F/(E* h L)."""
+    def force_bar(self, force: float) -> float:
+        """F_bar = F/(E* h L) for F."""
+    def stiffness_bar(self, stiffness: float) -> float:
+        """k_bar = k/(1.1419 E* L) for k."""
+    @staticmethod
+    def _of_bytes(bytes: bytes) -> Normalisation: ...
+    def __reduce__(self) -> tuple[Any, ...]: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
 
 @final
 class Contact:
+    """A planned contact: solve often, follow paths. It keeps tables, plans and the last state, from which the
+    next solve starts.
+
+    `solve` and `sweep` answer each load from no contact; `advance` and `follow` go along a path of loads,
+    from where the contact is. Threads that use one contact do so one after the other, in the order of asking.
+
+    With a hardness `solve` begins with the virgin surface: a load smaller than one before is refused, because
+    the indentation of that one would be forgotten. `advance` and `follow` keep it, along any path.
+    """
     def solve(
         self,
         *,
@@ -276,7 +566,31 @@ class Contact:
         approach: float | None = None,
         mean_pressure: float | None = None,
         mean_gap: float | None = None,
-    ) -> ContactState: ...
+        stop: StopToken | None = None,
+    ) -> ContactState:
+        """Solves for one load, from no contact: a path that was followed is forgotten.
+
+        Parameters
+        ----------
+        force, approach, mean_pressure, mean_gap : float
+                Exactly one of them. ``mean_pressure`` is over Lx Ly, ``mean_gap`` for periodic boundaries.
+        stop : threading.Event, optional
+                Set by another thread, it stops the solve between two iterations.
+
+        Returns
+        -------
+        ContactState
+
+        Raises
+        ------
+        DomainError, OutOfRange, Unsupported
+                For a load that makes no sense or that the model does not hold for.
+                With a hardness also for a load smaller than one before.
+        OutOfMemory
+                For contact that fills so much of a large grid that it does not fit in memory.
+        NotConverged, Stopped
+                With the state that was reached as ``best``.
+        """
     def sweep(
         self,
         *,
@@ -284,7 +598,21 @@ class Contact:
         approach: Iterable[float] | None = None,
         mean_pressure: Iterable[float] | None = None,
         mean_gap: Iterable[float] | None = None,
-    ) -> Iterator[ContactState]: ...
+        stop: StopToken | None = None,
+    ) -> Iterator[ContactState]:
+        """Solves for loads in their order: an iterator that yields each state as soon as it is there.
+
+        Parameters
+        ----------
+        force, approach, mean_pressure, mean_gap : iterable of float
+                Exactly one of them. Increasing loads are the fastest order, and the only one with a hardness.
+        stop : threading.Event, optional
+                As in `solve`.
+
+        Yields
+        ------
+        ContactState
+        """
     def advance(
         self,
         time: float = 0.0,
@@ -295,7 +623,33 @@ class Contact:
         mean_gap: float | None = None,
         tangential_force: float | Sequence[float] | NDArray[np.float64] | None = None,
         tangential_displacement: float | Sequence[float] | NDArray[np.float64] | None = None,
-    ) -> ContactState: ...
+        stop: StopToken | None = None,
+    ) -> ContactState:
+        """Goes to the end of the next step of a path. A step that fails leaves the contact as it was.
+
+        Parameters
+        ----------
+        time : float
+                At the end of the step; it never decreases. Friction alone does not look at it.
+        force, approach, mean_pressure, mean_gap : float
+                Exactly one of them. ``mean_pressure`` is over Lx Ly, ``mean_gap`` for periodic boundaries. The first
+                three may be negative with adhesion.
+        tangential_force, tangential_displacement : float or (float, float), optional
+                At most one of them: along x, or along x (columns) and along y (rows); no tangential force otherwise.
+        stop : threading.Event, optional
+                As in `solve`.
+
+        Returns
+        -------
+        ContactState
+
+        Raises
+        ------
+        DomainError, OutOfRange, Unsupported
+                For a load that makes no sense or that the model does not hold for.
+        NotConverged, Stopped
+                With the state that was reached as ``best``; beyond pull-off that is the last stable state.
+        """
     def follow(
         self,
         time: float | Iterable[float] | None = None,
@@ -306,62 +660,168 @@ class Contact:
         mean_gap: float | Iterable[float] | None = None,
         tangential_force: float | Iterable[float] | Iterable[tuple[float, float]] | None = None,
         tangential_displacement: float | Iterable[float] | Iterable[tuple[float, float]] | None = None,
-    ) -> Iterator[ContactState]: ...
-    def restart(self) -> None: ...
-    def memory(self) -> bytes | None: ...
-    def recall(self, memory: bytes) -> None: ...
+        stop: StopToken | None = None,
+    ) -> Iterator[ContactState]:
+        """Goes along a path: an iterator that yields the state at the end of each step as soon as it is there.
+
+        What was yielded stays where a later step raises; the contact then stands at the end of the step
+        before that one.
+
+        Parameters
+        ----------
+        time : float or iterable of float
+                At the end of each step.
+        force, approach, mean_pressure, mean_gap : float or iterable of float
+                Exactly one of them, as in `advance`.
+        tangential_force, tangential_displacement : float, iterable of float or of (float, float), optional
+                At most one of them, along x or along x and y. Iterables have one number, or two, for each step; a
+                number alone is that of every step.
+        stop : threading.Event, optional
+                As in `solve`.
+
+        Yields
+        ------
+        ContactState
+        """
+    def restart(self) -> None:
+        """Forgets the loads and the path before: back to no contact at time 0."""
+    def memory(self) -> bytes | None:
+        """What decides the next step of the path besides its load, as bytes to keep: `recall` of a contact of the
+        same model, scene and seed goes on from there to the same bits, also in another process of the same
+        version on the same kind of processor.
+
+        Returns
+        -------
+        bytes or None
+                None where no path has begun, and of models that cannot go on: their paths begin anew.
+        """
+    def recall(self, memory: bytes) -> None:
+        """Goes where a contact of the same model, scene and seed stood on its path when `memory` was asked of it.
+        The states before that are not in the memory: `last` is None.
+
+        Parameters
+        ----------
+        memory : bytes
+
+        Raises
+        ------
+        ShapeError
+                For bytes of another model or surface. The contact is then as after `restart`.
+        """
     def _check_order(self, kind: str, values: list[float]) -> None: ...
     @property
-    def normalisation(self) -> Normalisation: ...
+    def normalisation(self) -> Normalisation:
+        """Normalisation: of this very surface."""
     @property
-    def best(self) -> ContactState | None: ...
+    def best(self) -> ContactState | None:
+        """ContactState or None: what the last solve had reached that a signal such as Ctrl-C interrupted."""
     @property
-    def last(self) -> ContactState | None: ...
+    def last(self) -> ContactState | None:
+        """ContactState or None: the state at the end of the last solve or step that was complete, where the next
+        step begins; None before the first, and after a solve that failed.
+
+        It says where the contact stands after a step that failed, or that a signal such as Ctrl-C
+        interrupted.
+        """
 
 @final
-class Surface: ...
+class Surface:
+    """What carries the relief."""
 
 @final
-class Scene: ...
+class Scene:
+    """Everything physical about one question."""
 
 @final
 class Model:
+    """A way to answer what force, approach and stiffness belong together."""
     @property
-    def name(self) -> str: ...
+    def name(self) -> str:
+        """Name of the model, as in scenes."""
     @property
-    def sources(self) -> list[tuple[str, str]]: ...
+    def sources(self) -> list[tuple[str, str]]:
+        """What it is built on: (citation, what is taken from it)."""
     @property
-    def supports(self) -> dict[str, tuple[str, ...]]: ...
+    def supports(self) -> dict[str, tuple[str, ...]]:
+        """What it can do, in words."""
     def prepare(self, scene: Scene, seed: int) -> Contact: ...
 
 @final
 class SceneFile:
+    """A scene file: what is pressed, what is asked and which effects count."""
     @staticmethod
-    def read(path: str | Path) -> SceneFile: ...
+    def read(path: str | PathLike[str]) -> SceneFile:
+        """Reads a file."""
     @staticmethod
-    def from_toml(text: str, *, directory: str | Path = ..., name: str = ...) -> SceneFile: ...
+    def from_toml(text: str, *, directory: str | PathLike[str] = ..., name: str = ...) -> SceneFile:
+        """Reads a text; relative paths in it count from `directory`."""
+    def __reduce__(self) -> tuple[Any, ...]: ...
     @property
-    def text(self) -> str: ...
+    def text(self) -> str:
+        """str: the file itself."""
     @property
-    def models(self) -> list[str]: ...
-    def plan(self) -> str: ...
+    def models(self) -> list[str]:
+        """list of str: its models."""
+    def plan(self) -> str:
+        """What will be computed, what not and why, what it will cost."""
 
-def surface(kind: str, parameters: Mapping[str, Any]) -> Surface: ...
-def height_map(of: Surface, cells: int | tuple[int, int], seed: int) -> HeightMap: ...
-def check_effects(of: Mapping[str, Any]) -> None: ...
-def effect_keys() -> list[dict[str, str]]: ...
+def surface(kind: str, parameters: Mapping[str, Any]) -> Surface:
+    """A surface of a kind."""
+
+def height_map(of: Surface, cells: Cells, seed: int) -> HeightMap:
+    """The height of each cell of a surface."""
+
+def check_effects(of: Mapping[str, Any]) -> None:
+    """Errors for effects whose numbers or words make no sense."""
+
+def effect_keys() -> list[dict[str, str]]:
+    """The keys of `[effects]`."""
+
 def scene(
     surface: HeightMap | Surface,
     modulus: float | None,
     bodies: Any,
     effects: Mapping[str, Any],
-    outputs: list[str],
+    outputs: Sequence[str] | None,
     conductance: tuple[str, float, float] | None,
-) -> Scene: ...
-def quantities() -> list[dict[str, str]]: ...
-def fields() -> list[dict[str, str]]: ...
-def models() -> list[dict[str, Any]]: ...
-def model(name: str, options: Mapping[str, Any], inner: Model | None = None) -> Model: ...
+) -> Scene:
+    """A scene of the values of the Python class."""
+
+def quantities() -> list[dict[str, str]]:
+    """The quantities that are reported of a state, in the order of the columns of tables.
+
+    Returns
+    -------
+    list of dict of str
+            ``name``, ``words``, ``symbol`` (TeX), ``unit`` (SI; ``1`` for a pure number, ``-`` for text),
+        ``meaning``,
+            ``source``, ``asked_by`` (what brings it into a table), ``role`` (``answer``, ``normalised``,
+        ``residual``,
+            ``work`` or ``of_path``) and ``type`` in Python.
+    """
+
+def fields() -> list[dict[str, str]]:
+    """The fields of states.
+
+    Returns
+    -------
+    list of dict of str
+            ``name``, ``words``, ``symbol``, ``unit``, ``meaning`` and ``shape``.
+    """
+
+def models() -> list[dict[str, Any]]:
+    """The models of the library.
+
+    Returns
+    -------
+    list of dict
+            ``name`` (in scenes and tables), ``title``, ``class`` (in Python), ``about``, ``accuracy`` and
+        ``has_options``.
+    """
+
+def model(name: str, options: Mapping[str, Any], inner: Model | None = None) -> Model:
+    """A model by the name that scenes give it."""
+
 def ensemble(
     model: Model,
     scene: Scene,
@@ -369,39 +829,93 @@ def ensemble(
     seed: int,
     surfaces: int,
     progress: Callable[[int, int], object] | None,
-) -> list[list[ContactState | Error]]: ...
-def threads() -> int: ...
-def set_threads(count: int) -> None: ...
-def surface_seed(seed: int, index: int) -> int: ...
+    stop: StopToken | None = None,
+) -> list[list[ContactState | Error]]:
+    """The states of many surfaces under the same loads, surfaces in parallel.
+
+    `progress` is called with the number of surfaces that are done and that of all.
+    """
+
+def picture(values: NDArray[np.float64], low: float, high: float) -> bytes:
+    """A PNG with a pixel for each value, the last row on top: viridis from `low` to `high`, values that are not
+    finite grey.
+    """
+
+def threads() -> int:
+    """Number of threads that one solve, or one ensemble, may use: by default what the variable ``RAYON_NUM_THREADS``
+    of the
+    environment says, or as many as there are processors.
+
+    Returns
+    -------
+    int
+    """
+
+def set_threads(count: int) -> None:
+    """Sets the number of threads; no bit of a result depends on it.
+
+    Parameters
+    ----------
+    count : int
+            At least 1.
+    """
+
+def surface_seed(seed: int, index: int) -> int:
+    """Seed of surface number `index` of the ensemble of a master seed."""
+
 def self_affine_map(
     surface: Surface,
-    cells: int | tuple[int, int],
+    cells: Cells,
     seed: int,
     anisotropy: tuple[float, float] | None,
     weibull: float | None,
-) -> HeightMap: ...
-def twin(map: HeightMap, seed: int, rings: bool, keep_heights: bool) -> HeightMap: ...
-def parameters(map: HeightMap, periodic: bool) -> dict[str, float | None]: ...
+) -> HeightMap:
+    """A self-affine map: isotropic, with a lay, with a distribution of heights."""
+
+def twin(map: HeightMap, seed: int, rings: bool, keep_heights: bool) -> HeightMap:
+    """An artificial twin of a map."""
+
+def parameters(map: HeightMap, periodic: bool) -> dict[str, float | None]:
+    """Parameters of ISO 25178-2 and of the derivatives; None where the map does not define one."""
+
 def power_spectrum(
     map: HeightMap, direction: str, periodic: bool, per_decade: float, level: float
-) -> dict[str, NDArray[np.float64]]: ...
+) -> dict[str, NDArray[np.float64]]:
+    """A power spectral density with its band."""
+
 def height_difference(
     map: HeightMap, periodic: bool, per_decade: float, level: float
-) -> dict[str, NDArray[np.float64]]: ...
+) -> dict[str, NDArray[np.float64]]:
+    """Half the mean square height difference over distances, with its band."""
+
 def scale_dependence(
     map: HeightMap, of_curvature: bool, along_y: bool, periodic: bool, level: float
-) -> dict[str, NDArray[np.float64]]: ...
-def fit_spectrum(map: HeightMap, periodic: bool, instrument: float | None) -> dict[str, Any]: ...
-def read_surface(
-    path: Path, options: Mapping[str, Any]
-) -> tuple[HeightMap, dict[str, Any], list[str], float | None]: ...
-def channels(path: Path, options: Mapping[str, Any]) -> list[dict[str, Any]]: ...
-def si(text: str) -> float: ...
-def write_surface(path: Path, map: HeightMap, metres: bool) -> None: ...
+) -> dict[str, NDArray[np.float64]]:
+    """Rms slope or curvature over distances along an axis, with its band."""
+
+def fit_spectrum(map: HeightMap, periodic: bool, instrument: float | None) -> dict[str, Any]:
+    """The fit of a self-affine spectrum: each quantity as (value, low, high), None where there is only a bound."""
+
+def read_surface(path: Path, options: Mapping[str, Any]) -> tuple[HeightMap, dict[str, Any], list[str], float | None]:
+    """A surface of a file: its map, what the file says, what was done to the map, from which distance on the tip
+    lets heights be seen.
+    """
+
+def channels(path: Path, options: Mapping[str, Any]) -> list[dict[str, Any]]:
+    """What a file says of each of its channels; of one that is not read beside others, `error`."""
+
+def si(text: str) -> float:
+    """A text with a unit in SI units."""
+
+def write_surface(path: Path, map: HeightMap, metres: bool) -> None:
+    """Writes a map by the ending of the file's name; lengths are in metres, or without a unit."""
+
 def run_scene(
     scene: SceneFile,
     out: Path,
     threads: int | None,
     fresh: bool,
     progress: Callable[[int, int], object] | None,
-) -> dict[str, Any]: ...
+    stop: StopToken | None = None,
+) -> dict[str, Any]:
+    """Runs a scene as the program does; the files, the summary and the counts by their names."""

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from typing import Any
 
 from . import _core
-
-EffectValue = float | str | Mapping[str, Any] | None
+from ._plain import named, plain
+from .typing import Adhesion, Boundary, EffectsDict, Friction, Hardness, Rheology
 
 
 @dataclass(frozen=True)
@@ -46,24 +45,32 @@ class Effects:
     >>> import fractal_contact as fc
     >>> fc.Effects(adhesion={"work": 0.05, "range": 1e-9, "law": "dugdale"}).adhesion["law"]
     'dugdale'
+    >>> fc.Effects.of({"hardnes": 1.0})
+    Traceback (most recent call last):
+    TypeError: no effect is called 'hardnes': did you mean hardness?
     >>> fc.Effects(hardness=-1.0)  # doctest: +IGNORE_EXCEPTION_DETAIL
     Traceback (most recent call last):
     DomainError: effects.hardness = -1: expected a number > 0
     """
 
-    boundary: EffectValue = None
-    hardness: EffectValue = None
-    adhesion: EffectValue = None
-    friction: EffectValue = None
-    rheology: EffectValue = None
+    boundary: Boundary | None = None
+    hardness: Hardness | None = None
+    adhesion: Adhesion | None = None
+    friction: Friction | None = None
+    rheology: Rheology | None = None
 
     def __post_init__(self) -> None:
         # Copies: a change of the caller's mapping is none of the effect.
         for name, value in self._values().items():
-            if isinstance(value, Mapping):
-                object.__setattr__(self, name, dict(value))
+            object.__setattr__(self, name, plain(value))
         # Mistakes are told where they are made.
         _core.check_effects(self._values())
+
+    @classmethod
+    def of(cls, effects: Effects | EffectsDict) -> Effects:
+        """Effects from a mapping of these names."""
+        known = [one.name for one in fields(cls)]
+        return effects if isinstance(effects, Effects) else cls(**named(effects, "effect", known))
 
     def _values(self) -> dict[str, Any]:
         """The effects as the compiled part takes them."""

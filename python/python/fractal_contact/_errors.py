@@ -112,9 +112,12 @@ class Stopped(Error):
     ----------
     best : ContactState or None
         The best state so far.
+    finished : dict
+        Of an ensemble: the states of the surfaces that were finished, by their number.
     """
 
     best: ContactState | None
+    finished: dict[int, list[ContactState | Error]]
 
 
 class SceneError(Error, ValueError):
@@ -122,4 +125,4 @@ class SceneError(Error, ValueError):
 
 
 class ReadError(Error, ValueError):
-    """A file of a surface cannot be read or written."""
+    """A file holds no surface that can be read, or cannot hold one; what the system refuses is an `OSError`."""

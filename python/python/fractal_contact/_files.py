@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from os import PathLike
 from pathlib import Path
-from typing import Any
+from typing import Any, Unpack
 
 import numpy as np
 from numpy.typing import NDArray
 
 from . import _core
 from ._core import HeightMap, SceneFile
+from ._models import StopToken
+from ._plain import named
+from .typing import ReadOptions
 
 
 @dataclass(frozen=True)
@@ -28,25 +32,46 @@ class ReadSurface:
     """From which distance on the tip lets heights be seen, where it is known."""
 
 
-def read_surface(path: str | Path, **options: Any) -> ReadSurface:
+def read_surface(path: str | PathLike[str], **options: Unpack[ReadOptions]) -> ReadSurface:
     """Reads a surface: files of instruments and programs, NPY, text.
 
     Parameters
     ----------
-    path : str or Path
+    path : str or path-like
         The format is told by the content.
     **options
-        As in ``[scene.surface]`` of a scene: ``channel``, ``format``, ``unit``, ``lateral_unit``, ``size``, ``cell``,
-        ``height_scale``, ``decimal``, ``axes``, ``border``, ``missing``, ``skip_lines``, ``crop``, ``align_lines``,
-        ``scars``, ``outliers``, ``tip_radius``, ``undefined``, ``fill``, ``detrend``, ``filter_across``, ``cells``,
-        ``rows``, ``mirror``, ``rotate``, ``window``. Lengths are texts with a unit, such as ``cell="0.5 um"``.
+        As in ``[scene.surface]`` of a scene (`fractal_contact.typing.ReadOptions`): ``channel``, ``format``, ``unit``,
+        ``lateral_unit``, ``size``, ``cell``, ``height_scale``, ``decimal``, ``axes``, ``border``, ``missing``,
+        ``skip_lines``, ``crop``, ``align_lines``, ``scars``, ``outliers``, ``tip_radius``, ``undefined``, ``fill``,
+        ``detrend``, ``filter_across``, ``cells``, ``rows``, ``mirror``, ``rotate``, ``window``. Lengths are texts with
+        a unit, such as ``cell="0.5 um"``.
 
     Raises
     ------
+    OSError
+        Where the system refuses, such as FileNotFoundError.
     ReadError
         With what is wrong with the file or stands in the way of a map.
     """
-    return ReadSurface(*_core.read_surface(Path(path), options))
+    return ReadSurface(*_core.read_surface(Path(path), _words(options)))
+
+
+def _words(options: ReadOptions) -> dict[str, Any]:
+    """The options as the program takes them: pairs of lengths and the window of a crop as texts."""
+    given: dict[str, Any] = dict(options)
+    crop = given.get("crop")
+    if isinstance(crop, Mapping):
+        window = named(crop, "key of crop", ["row", "column", "rows", "columns", "cells"])
+        cells = window.pop("cells", None)
+        window = {"row": 0, "column": 0, **({} if cells is None else {"rows": cells, "columns": cells}), **window}
+        if len(window) != 4:
+            raise TypeError(f"crop is {crop!r}: expected rows and columns, or cells, and where they begin: row, column")
+        given["crop"] = ",".join(str(window[key]) for key in ("row", "column", "rows", "columns"))
+    for name in ("size", "cell"):
+        lengths = given.get(name)
+        if isinstance(lengths, list | tuple) and len(lengths) == 2:
+            given[name] = f"{lengths[0]} x {lengths[1]}"
+    return given
 
 
 def si(text: str) -> float:
@@ -61,12 +86,12 @@ def si(text: str) -> float:
     return _core.si(text)
 
 
-def channels(path: str | Path, **options: Any) -> list[dict[str, Any]]:
+def channels(path: str | PathLike[str], **options: Unpack[ReadOptions]) -> list[dict[str, Any]]:
     """What a file says of each of its channels; ``{"error": ...}`` of one that is not read beside others."""
-    return _core.channels(Path(path), options)
+    return _core.channels(Path(path), _words(options))
 
 
-def write_surface(path: str | Path, heights: HeightMap, *, metres: bool = True) -> None:
+def write_surface(path: str | PathLike[str], heights: HeightMap, *, metres: bool = True) -> None:
     """Writes a map by the ending of the name: .npy, .txt, .xyz, .vti, .h5, .x3p, .gwy or .nc."""
     _core.write_surface(Path(path), heights, metres)
 
@@ -92,16 +117,17 @@ class SceneOutcome:
     seconds: float
     """Wall-clock time."""
     results: dict[str, NDArray[Any]] = field(repr=False)
-    """Columns of ``results.csv``: numbers with NaN where a state has none, or texts."""
+    """Columns of ``results.csv``: whole numbers, numbers with NaN where a state has none, or texts."""
 
 
 def run_scene(
-    scene: SceneFile | str | Path,
-    out: str | Path,
+    scene: SceneFile | str | PathLike[str],
+    out: str | PathLike[str],
     *,
     threads: int | None = None,
     fresh: bool = False,
     progress: Callable[[int, int], object] | None = None,
+    stop: StopToken | None = None,
 ) -> SceneOutcome:
     """Runs a scene as the program does: the same files with the same numbers; an interrupted run goes on.
 
@@ -117,10 +143,12 @@ def run_scene(
         Whether stored results are computed again.
     progress : callable, optional
         Called with the relative cost that is done and that of all.
+    stop : threading.Event, optional
+        Set by another thread, it ends the run with `Stopped`; the next run goes on from what was finished.
     """
     if not isinstance(scene, SceneFile):
         scene = SceneFile.read(Path(scene))
-    found = _core.run_scene(scene, Path(out), threads, fresh, progress)
+    found = _core.run_scene(scene, Path(out), threads, fresh, progress, stop)
     files = [Path(file) for file in found.pop("files")]
     results = {name: np.asarray(values) for name, values in found.pop("results").items()}
     return SceneOutcome(files=files, results=results, **found)

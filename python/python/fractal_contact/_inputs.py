@@ -2,20 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from os import PathLike
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from . import _core
 from ._core import HeightMap, SceneFile
 from ._effects import Effects
+from ._numbers import number
+from ._plain import named, pair
+from .typing import BodyDict, ConductanceDict, EffectsDict, Output, SurfaceKind
 
-Size = float | tuple[float, float]
-Cells = int | tuple[int, int]
+Size = float | Sequence[float] | NDArray[np.float64]
+Cells = int | Sequence[int] | NDArray[np.integer[Any]]
+Conductance = tuple[str, float, float]
 
 
 @dataclass(frozen=True)
@@ -31,10 +36,13 @@ class Surface:
     Surface.sphere(radius=1.0, size=2.0)
     """
 
-    kind: str
+    kind: SurfaceKind
     parameters: Mapping[str, Any]
 
     def __post_init__(self) -> None:
+        # A copy, with sizes that compare.
+        parameters = {name: pair(value) if name == "size" else value for name, value in self.parameters.items()}
+        object.__setattr__(self, "parameters", parameters)
         self._core()
 
     def _core(self) -> _core.Surface:
@@ -98,8 +106,21 @@ class Surface:
         return cls("cone", {"slope": slope, "size": size})
 
     @classmethod
-    def power_law(cls, *, coefficient: float, exponent: float, size: Size) -> Surface:
-        """Body of depth coefficient * r^exponent."""
+    def power_law(
+        cls,
+        *,
+        exponent: float,
+        size: Size,
+        coefficient: float | None = None,
+        depth: float | None = None,
+        radius: float | None = None,
+    ) -> Surface:
+        """Body of depth coefficient * r^exponent, or of this depth at a radius."""
+        if (coefficient is None) == (depth is None) or (depth is None) != (radius is None):
+            raise TypeError("give coefficient, or depth and radius")
+        if coefficient is None:
+            assert depth is not None and radius is not None
+            coefficient = number(depth, "depth") / number(radius, "radius") ** number(exponent, "exponent")
         return cls("power_law", {"coefficient": coefficient, "exponent": exponent, "size": size})
 
     @classmethod
@@ -159,6 +180,45 @@ class Body:
     poisson: float
 
 
+AnyBody = Body | BodyDict | Literal["rigid"] | None
+
+
+def _body(body: AnyBody, name: str) -> Body | None:
+    if body is None or isinstance(body, Body):
+        return body
+    if isinstance(body, str) and body == "rigid":
+        return None
+    if isinstance(body, Mapping):
+        values = named(body, "number of a body", ["young", "poisson"])
+        if len(values) == 2:
+            return Body(**values)
+    raise TypeError(f'{name} is {body!r}: expected fc.Body(young, poisson), or "rigid" or None for a rigid one')
+
+
+def _both(bodies: Any) -> tuple[Body | None, Body | None]:
+    if not isinstance(bodies, Sequence) or isinstance(bodies, str) or len(bodies) != 2:
+        raise TypeError(f"bodies is {bodies!r}: expected two of them")
+    return _body(bodies[0], "bodies[0]"), _body(bodies[1], "bodies[1]")
+
+
+def _conductance(given: Any) -> Conductance:
+    values_of = {"electrical": "resistivities", "thermal": "conductivities"}
+    if isinstance(given, Mapping):
+        known = named(given, "key of a conductance", ["kind", *values_of.values()])
+        kind = known.pop("kind", None)
+        if kind in values_of and list(known) == [values_of[kind]]:
+            given = (kind, *pair(known[values_of[kind]]))
+    if not isinstance(given, tuple | list) or len(given) != 3:
+        raise TypeError(
+            f"conductance is {given!r}: expected {{'kind': 'electrical', 'resistivities': (first, second)}} or "
+            "{'kind': 'thermal', 'conductivities': (first, second)}"
+        )
+    kind, first, second = given
+    if kind not in values_of:
+        raise ValueError(f"no conductance is called {kind!r}: there are electrical and thermal")
+    return kind, number(first, f"conductance, {values_of[kind]}"), number(second, f"conductance, {values_of[kind]}")
+
+
 @dataclass(frozen=True)
 class Scene:
     """Everything physical about one question. Numerics are options of a model, chance is the seed.
@@ -169,17 +229,18 @@ class Scene:
         What carries the relief.
     modulus : float, optional
         Effective modulus E*, 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2.
-    bodies : (Body or None, Body or None), optional
-        Both bodies in place of ``modulus``, None for a rigid one: where E* does not say enough (friction).
+    bodies : pair of Body, mapping, "rigid" or None, optional
+        Both bodies in place of ``modulus``, None or "rigid" for a rigid one: where E* does not say enough (friction).
     effects : Effects or mapping
         Off unless named.
-    outputs : iterable of str
+    outputs : iterable of str, optional
         What is computed besides force and approach, such as "stiffness", "area" and "pressure": names of
         ``Bem3d().supports["outputs"]``, and of those of the model. "mean_gap" is for periodic boundaries,
         "plastic_depth" for a hardness, "traction", "slip", "stick_slip", "stick_area" and tangential stiffnesses for
-        friction.
-    conductance : (str, float, float), optional
-        ("electrical", resistivity, resistivity) or ("thermal", conductivity, conductivity).
+        friction. By default the stiffness, of models that have it.
+    conductance : mapping or (str, float, float), optional
+        {"kind": "electrical", "resistivities": (of the first, of the second)} or {"kind": "thermal",
+        "conductivities": (...)}, or kind and both values as a tuple.
 
     Examples
     --------
@@ -194,41 +255,43 @@ class Scene:
     modulus: float | None = None
     bodies: tuple[Body | None, Body | None] | None = None
     effects: Effects = field(default_factory=Effects)
-    outputs: tuple[str, ...] = ("stiffness",)
-    conductance: tuple[str, float, float] | None = None
+    outputs: tuple[Output, ...] | None = None
+    conductance: Conductance | None = None
 
     def __init__(
         self,
         surface: HeightMap | Surface,
         modulus: float | None = None,
         *,
-        bodies: tuple[Body | None, Body | None] | None = None,
-        effects: Effects | Mapping[str, Any] | None = None,
-        outputs: Iterable[str] = ("stiffness",),
-        conductance: tuple[str, float, float] | None = None,
+        bodies: Sequence[AnyBody] | None = None,
+        effects: Effects | EffectsDict | None = None,
+        outputs: Iterable[Output] | None = None,
+        conductance: ConductanceDict | Conductance | None = None,
     ) -> None:
-        if isinstance(outputs, str):
-            raise TypeError(f"outputs is the text {outputs!r}: expected a list of names")
-        if effects is None:
-            effects = Effects()
-        elif not isinstance(effects, Effects):
-            effects = Effects(**effects)
+        if not isinstance(surface, HeightMap | Surface):
+            raise TypeError(
+                f"the surface is of the type {type(surface).__name__}: expected a Surface or a HeightMap; "
+                "fc.HeightMap(array, size=...) makes one of heights, fc.read_surface(...).heights is that of a file"
+            )
+        if isinstance(outputs, str) or not isinstance(outputs, Iterable | None):
+            raise TypeError(f"outputs is {outputs!r}: expected a list of names")
         put = object.__setattr__
         put(self, "surface", surface)
-        put(self, "modulus", modulus)
-        put(self, "bodies", None if bodies is None else tuple(bodies))
-        put(self, "effects", effects)
-        put(self, "outputs", tuple(outputs))
-        put(self, "conductance", conductance)
+        put(self, "modulus", None if modulus is None else number(modulus, "modulus"))
+        put(self, "bodies", None if bodies is None else _both(bodies))
+        put(self, "effects", Effects() if effects is None else Effects.of(effects))
+        put(self, "outputs", None if outputs is None else tuple(outputs))
+        put(self, "conductance", None if conductance is None else _conductance(conductance))
         # Mistakes are told where they are made.
         self._core()
 
     def _core(self) -> _core.Scene:
         surface = self.surface._core() if isinstance(self.surface, Surface) else self.surface
         bodies = self.bodies and [body and (body.young, body.poisson) for body in self.bodies]
-        return _core.scene(surface, self.modulus, bodies, self.effects._values(), list(self.outputs), self.conductance)
+        outputs = None if self.outputs is None else list(self.outputs)
+        return _core.scene(surface, self.modulus, bodies, self.effects._values(), outputs, self.conductance)
 
     @staticmethod
-    def from_toml(text: str, *, directory: str | Path = ".") -> SceneFile:
+    def from_toml(text: str, *, directory: str | PathLike[str] = ".") -> SceneFile:
         """A scene file from its text: the same keys as the program takes; relative paths count from `directory`."""
         return SceneFile.from_toml(text, directory=Path(directory))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,8 +12,18 @@ from . import _core
 from ._core import Contact, ContactState
 from ._errors import Error
 from ._inputs import Scene
+from ._numbers import numbers, steps
+from .typing import Heights, Method
 
 LOADS = ("force", "approach", "mean_pressure", "mean_gap")
+
+
+class StopToken(Protocol):
+    """What another thread sets to stop a solve: a `threading.Event`."""
+
+    def is_set(self) -> bool:
+        """Whether it was set."""
+        ...
 
 
 class Model:
@@ -144,7 +154,7 @@ class Bem3d(Model):
         rows: int | None = None,
         tolerance: float | None = None,
         max_outer_iterations: int | None = None,
-        method: str | None = None,
+        method: Method | None = None,
     ) -> None:
         super().__init__(
             cells=cells,
@@ -196,7 +206,7 @@ class GreenwoodWilliamson(Model):
 
     _name = "greenwood_williamson"
 
-    def __init__(self, *, heights: str | None = None) -> None:
+    def __init__(self, *, heights: Heights | None = None) -> None:
         super().__init__(heights=heights)
 
 
@@ -230,7 +240,7 @@ def _one_of(given: Mapping[str, Iterable[float] | None]) -> tuple[str, list[floa
     if len(named) != 1:
         raise TypeError(f"give exactly one of {', '.join(given)}")
     name, values = named[0]
-    return name, [float(value) for value in np.asarray(values, dtype=np.float64).ravel()]
+    return name, numbers(values, name)
 
 
 def sweep(
@@ -240,6 +250,7 @@ def sweep(
     approach: Iterable[float] | None = None,
     mean_pressure: Iterable[float] | None = None,
     mean_gap: Iterable[float] | None = None,
+    stop: StopToken | None = None,
 ) -> Iterator[ContactState]:
     """Solves for loads in their order; each state as soon as it is there.
 
@@ -250,6 +261,8 @@ def sweep(
         from the virgin surface, and a smaller one after a larger one is a `DomainError`. `follow` goes along a path.
     force, approach, mean_pressure, mean_gap : iterable of float
         Exactly one of them.
+    stop : threading.Event, optional
+        Set by another thread, it stops the solve between two iterations: `Stopped`.
 
     Yields
     ------
@@ -266,7 +279,7 @@ def sweep(
     name, values = _one_of(given)
     # Checked at the call, not at the first state.
     contact._check_order(name, values)
-    return (contact.solve(**{name: value}) for value in values)
+    return (contact.solve(**{name: value}, stop=stop) for value in values)
 
 
 def follow(
@@ -279,6 +292,7 @@ def follow(
     mean_gap: float | Iterable[float] | None = None,
     tangential_force: float | Iterable[float] | Iterable[tuple[float, float]] | None = None,
     tangential_displacement: float | Iterable[float] | Iterable[tuple[float, float]] | None = None,
+    stop: StopToken | None = None,
 ) -> Iterator[ContactState]:
     """Goes along a path; the state at the end of each step as soon as it is there.
 
@@ -293,6 +307,8 @@ def follow(
     tangential_force, tangential_displacement : float, iterable of float or of (float, float), optional
         At most one of them, along x or along x and y. Iterables have one number, or two, for each step; a number
         alone is that of every step.
+    stop : threading.Event, optional
+        As in `sweep`.
 
     Yields
     ------
@@ -315,25 +331,19 @@ def follow(
         raise TypeError("give at most one of tangential_force and tangential_displacement")
     given = {"time": time, **normal, "tangential_force": tangential_force}
     given["tangential_displacement"] = tangential_displacement
-    named = {
-        name: values if isinstance(values, np.ndarray) or not isinstance(values, Iterable) else list(values)
+    found = {
+        name: steps(values, name, pairs=name.startswith("tangential_"))
         for name, values in given.items()
         if values is not None
     }
-    arrays = {name: np.asarray(values, dtype=np.float64) for name, values in named.items()}
-    lengths = {len(array) for array in arrays.values() if array.ndim > 0}
-
-    def fits(name: str, array: NDArray[np.float64]) -> bool:
-        # Components along x and y.
-        return array.ndim < 2 or (name.startswith("tangential_") and array.shape[1:] == (2,))
-
-    if not all(fits(name, array) for name, array in arrays.items()) or len(lengths) > 1:
-        shapes = ", ".join(f"{name} {array.shape}" for name, array in arrays.items())
-        raise ValueError(f"expected one number for each step, or one for all: shapes are {shapes}")
-    count = lengths.pop() if lengths else 1
-    columns = [array.tolist() if array.ndim else count * [array.item()] for array in arrays.values()]
+    counts = {name: len(values) for name, values in found.items() if isinstance(values, list)}
+    if len(set(counts.values())) > 1:
+        told = ", ".join(f"{name} has {count}" for name, count in counts.items())
+        raise ValueError(f"expected one number for each step, or one for all: {told}")
+    count = next(iter(counts.values()), 1)
+    columns = [values if isinstance(values, list) else count * [values] for values in found.values()]
     # Checked at the call, not at the first state.
-    return (contact.advance(**dict(zip(arrays, step, strict=True))) for step in zip(*columns, strict=True))
+    return (contact.advance(**dict(zip(found, step, strict=True)), stop=stop) for step in zip(*columns, strict=True))
 
 
 def ensemble(
@@ -348,6 +358,7 @@ def ensemble(
     mean_gap: Iterable[float] | None = None,
     force_bar: Iterable[float] | None = None,
     progress: Callable[[int, int], object] | None = None,
+    stop: StopToken | None = None,
 ) -> list[list[ContactState | Error]]:
     """The same loads on many surfaces of a seed, on all threads (`set_threads`).
 
@@ -366,12 +377,15 @@ def ensemble(
         `sweep`.
     progress : callable, optional
         Called with the number of surfaces that are done and that of all.
+    stop : threading.Event, optional
+        Set by another thread, it ends the ensemble: `Stopped`.
 
     Returns
     -------
     list of list of ContactState
         ``[surface][load]``; a load that the model refused is the exception in its place. An exception that ends it
-        early, such as KeyboardInterrupt, has the surfaces that were finished as ``finished``, a dict by their number.
+        early, such as KeyboardInterrupt or `Stopped`, has the surfaces that were finished as ``finished``, a dict by
+        their number.
 
     Raises
     ------
@@ -387,7 +401,7 @@ def ensemble(
     }
     name, values = _one_of(given)
     loads = [(name, value) for value in values]
-    return _core.ensemble(model._core(), scene._core(), loads, seed, surfaces, progress)
+    return _core.ensemble(model._core(), scene._core(), loads, seed, surfaces, progress, stop)
 
 
 def quantities() -> list[dict[str, str]]:
@@ -397,8 +411,8 @@ def quantities() -> list[dict[str, str]]:
     -------
     list of dict
         In the order of columns: ``name``, ``words``, ``symbol`` (TeX), ``unit`` (SI; ``1`` for a pure number, ``-`` for
-        text), ``meaning``, ``source``, ``asked_by``, ``role`` (``answer``, ``normalised``, ``residual``, ``work``) and
-        ``type``.
+        text), ``meaning``, ``source``, ``asked_by``, ``role`` (``answer``, ``normalised``, ``residual``, ``work``,
+        ``of_path``) and ``type``.
 
     Examples
     --------
@@ -432,7 +446,8 @@ def table(states: Iterable[ContactState]) -> NDArray[np.void]:
 
     Columns are the names of ``to_dict()`` in the order of `quantities`, which are those of the tables of scenes.
     Columns of an effect or of a path (such as ``plastic_area``, ``branch``, ``tangential_force``, ``time``) are there
-    where a state has them. Numbers that a state has not are NaN, texts empty.
+    where a state has them. Columns of counts that all states have are whole numbers; other numbers that a state has not
+    are NaN, texts empty.
 
     Parameters
     ----------
@@ -452,14 +467,19 @@ def table(states: Iterable[ContactState]) -> NDArray[np.void]:
     >>> rows["force"].tolist()
     [0.5, 1.0]
     """
-    rows = [state.to_dict() for state in states]
+    rows = []
+    for i, state in enumerate(states):
+        if not isinstance(state, ContactState):
+            raise TypeError(f"states[{i}] is {state!r}: expected a ContactState")
+        rows.append(state.to_dict())
     known = {name for row in rows for name in row} or {"force"}
     names = [quantity["name"] for quantity in quantities() if quantity["name"] in known]
     longest = {
         name: max(len(v) if isinstance(v := row.get(name), str) else 0 for row in rows) for name in known if rows
     }
     texts = {name for name, length in longest.items() if length}
-    kinds = [(name, f"U{longest[name]}" if name in texts else "f8") for name in names]
+    counts = {name for name in known if rows and all(type(row.get(name)) is int for row in rows)}
+    kinds = [(name, f"U{longest[name]}" if name in texts else "i8" if name in counts else "f8") for name in names]
 
     def value(row: Mapping[str, Any], name: str) -> Any:
         found = row.get(name)

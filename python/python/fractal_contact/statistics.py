@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from . import _core
 from ._core import HeightMap
+from .typing import Axis, Direction
 
 Curves = dict[str, NDArray[np.float64]]
 
@@ -30,13 +31,24 @@ def parameters(heights: HeightMap, *, periodic: bool = False) -> dict[str, float
 
 def power_spectrum(
     heights: HeightMap,
-    direction: str = "radial",
+    direction: Direction = "radial",
     *,
     periodic: bool = False,
     per_decade: float = 10.0,
     level: float = 0.95,
 ) -> Curves:
     """Two-sided power spectral density over q = 2 pi/wavelength.
+
+    Of a periodic map with N cells on Lx x Ly, ``H(q) = 1/N sum h(x) exp(-i q x)`` has the squares ``|H(q)|^2`` whose
+    sum over all waves of both signs, without the mean, is the variance of the heights. The densities are
+
+    - of a map ``C(q) = Lx Ly/(2 pi)^2 |H(q)|^2`` (length^4): the integral of C over the plane of wavenumbers is the
+      variance;
+    - of profiles along x ``C(q) = Lx/(2 pi) mean |H(q)|^2`` (length^3), the mean over rows: the integral over q of both
+      signs is the mean variance of the rows. For an isotropic power law it is ``pi q`` times the density of the map.
+
+    Without ``periodic`` the deviations from the mean are first multiplied by Hann's window over its rms. The program
+    SurfaceTopography and Jacobs, Junge and Pastewka (2017) have ``(2 pi)^2`` times the density of a map.
 
     Parameters
     ----------
@@ -72,12 +84,12 @@ def height_difference(
     return _core.height_difference(heights, periodic, per_decade, level)
 
 
-def slope(heights: HeightMap, axis: str = "x", *, periodic: bool = False, level: float = 0.95) -> Curves:
+def slope(heights: HeightMap, axis: Axis = "x", *, periodic: bool = False, level: float = 0.95) -> Curves:
     """Rms slope over distances along an axis: distance, rms, low, high."""
     return _core.scale_dependence(heights, False, _along_y(axis), periodic, level)
 
 
-def curvature(heights: HeightMap, axis: str = "x", *, periodic: bool = False, level: float = 0.95) -> Curves:
+def curvature(heights: HeightMap, axis: Axis = "x", *, periodic: bool = False, level: float = 0.95) -> Curves:
     """Rms curvature over distances along an axis: distance, rms, low, high."""
     return _core.scale_dependence(heights, True, _along_y(axis), periodic, level)
 
@@ -103,7 +115,7 @@ def fit_spectrum(heights: HeightMap, *, periodic: bool = False, instrument: floa
     return _core.fit_spectrum(heights, periodic, instrument)
 
 
-def _along_y(axis: str) -> bool:
+def _along_y(axis: Axis) -> bool:
     if axis not in ("x", "y"):
         raise ValueError(f'axis is {axis!r}: expected "x" or "y"')
     return axis == "y"

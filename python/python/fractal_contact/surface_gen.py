@@ -5,6 +5,7 @@ from __future__ import annotations
 from . import _core
 from ._core import HeightMap, surface_seed
 from ._inputs import Cells, Surface
+from .typing import Waves
 
 __all__ = ["self_affine_map", "surface_seed", "twin"]
 
@@ -46,7 +47,7 @@ def self_affine_map(
     return _core.self_affine_map(surface._core(), cells, seed, given, weibull)
 
 
-def twin(heights: HeightMap, seed: int, *, rings: bool = False, keep_heights: bool = False) -> HeightMap:
+def twin(heights: HeightMap, seed: int, *, twin: Waves = "waves", keep_heights: bool = False) -> HeightMap:
     """Draws an artificial twin of a map: its spectrum, the phases of a seed.
 
     Parameters
@@ -55,9 +56,11 @@ def twin(heights: HeightMap, seed: int, *, rings: bool = False, keep_heights: bo
         Without undefined points.
     seed : int
         Of the phases.
-    rings : bool
-        An isotropic twin: means over rings of the spectrum.
+    twin : {"waves", "rings"}
+        With the amplitude of each wave, or isotropic: with their means over rings of the spectrum.
     keep_heights : bool
         With the distribution of the heights of the map.
     """
-    return _core.twin(heights, seed, rings, keep_heights)
+    if twin not in ("waves", "rings"):
+        raise ValueError(f'twin is {twin!r}: expected "waves" or "rings"')
+    return _core.twin(heights, seed, twin == "rings", keep_heights)

@@ -33,7 +33,7 @@ impl PreparedSurface {
                 let displacement = each(delta, "tangential displacement", &|d| units.approach_in(d));
                 displacement.map(TangentialControl::Displacement)
             }
-            other => Err(Error::unsupported(NAME, format!("the tangential load {other:?}"))),
+            other => Err(Error::unsupported_load(NAME, other)),
         }
     }
 

@@ -53,10 +53,10 @@ impl PreparedSurface {
                 return Err(Error::unsupported(NAME, what));
             }
             Load::Approach(_) => {
-                let what = "an approach: a periodic contact has a mean gap (Load::MeanGap)";
+                let what = "an approach: a periodic contact has a mean gap in its place";
                 return Err(Error::unsupported(NAME, what));
             }
-            other => return Err(Error::unsupported(NAME, format!("the load {other:?} (free boundaries)"))),
+            other => return Err(Error::unsupported(NAME, format!("{other} with free boundaries"))),
         })
     }
 

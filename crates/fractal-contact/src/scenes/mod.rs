@@ -96,4 +96,5 @@ pub use read::scene_file::{Sampling, SceneFile};
 pub use read::scene_surface::SceneSurface;
 pub use run::outcome::{Options, SceneOutcome};
 pub use run::scene_job::jobs;
+pub use run::warnings::StateNotes;
 pub use tell::info::{info, info_json, info_statistics};

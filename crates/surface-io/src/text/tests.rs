@@ -370,10 +370,10 @@ fn files_that_are_none() {
     let dir = tempfile::tempdir().unwrap();
     let error = Scan::read(dir.path(), &ReadOptions::default()).unwrap_err().to_string();
     assert!(error.contains("not a regular file"), "{error}");
-    let error = Scan::read(&dir.path().join("none.txt"), &ReadOptions::default()).unwrap_err().to_string();
+    let error = Scan::read(dir.path().join("none.txt"), &ReadOptions::default()).unwrap_err().to_string();
     assert!(error.starts_with("cannot open "), "{error}");
     std::fs::write(dir.path().join("a.txt"), "1 2\n3 4\n").unwrap();
-    let scan = Scan::read(&dir.path().join("a.txt"), &ReadOptions::default()).unwrap();
+    let scan = Scan::read(dir.path().join("a.txt"), &ReadOptions::default()).unwrap();
     assert_eq!(heights(&scan), [1.0, 2.0, 3.0, 4.0]);
 }
 

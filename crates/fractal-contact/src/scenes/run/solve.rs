@@ -322,7 +322,7 @@ mod tests {
         assert!(files.iter().all(|file| file.is_whole(dir.path())), "{files:?}");
         assert_eq!(std::fs::read_dir(dir.path().join(".units")).unwrap().count(), 2);
         let scan = |name: &str| {
-            surface_io::Scan::read(&dir.path().join(name), &surface_io::ReadOptions::default()).unwrap()
+            surface_io::Scan::read(dir.path().join(name), &surface_io::ReadOptions::default()).unwrap()
         };
         let read = scan("pressure-bem3d-0-000.npy");
         assert_eq!((read.metadata().rows, read.metadata().columns), (2, 3));

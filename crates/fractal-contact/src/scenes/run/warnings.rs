@@ -2,7 +2,7 @@
 
 use crate::scenes::plan::{GridErrors, within};
 use crate::scenes::read::{SceneFile, SceneSurface};
-use contact_model::{ContactState, Coupling, Friction, Hardness, Surface};
+use contact_model::{ContactState, Coupling, Friction, Hardness, Scene, Surface};
 use serde::{Deserialize, Serialize};
 
 /// Fewer cells in contact than this are those of the grid.
@@ -79,37 +79,94 @@ impl Warning {
 
     /// All that concern a state.
     pub fn of(scene: &SceneFile, state: &ContactState, errors: Option<&GridErrors>) -> Vec<Self> {
-        let mut found = Vec::new();
-        let few = state.report.contact_cells.is_some_and(|cells| (1..FEW_CELLS).contains(&cells));
-        let flat = matches!(scene.surface, SceneSurface::Plain(Surface::Flat { .. }));
-        // Below a hardness that limits the pressure nothing is marked.
-        let limited = scene.effects.hardness != Hardness::Off;
-        let hardness = if limited { f64::INFINITY } else { scene.hardness.unwrap_or(YIELD * scene.modulus) };
-        let resolution = state.resolution;
-        let wanted = scene.requested.outputs.stiffness && state.report.contact_cells.is_some();
-        let holds = |warning: Self| match (warning, resolution) {
-            (Self::FewCells, _) => few,
-            (Self::Stiffness, _) => wanted && state.stiffness.is_none(),
-            (Self::Coupling, _) => neglects_coupling(scene),
-            (_, None) => false,
-            (Self::Accuracy, _) => scene
-                .accuracy
-                .is_some_and(|target| !errors.is_some_and(|errors| within(scene, errors, target.share))),
-            (Self::OneCell, Some(r)) => r.largest_share > ALONE,
-            (Self::Edge, Some(r)) => r.edge_cells > 0 && !flat,
-            (Self::Yield, Some(r)) => r.largest_pressure > hardness,
-            (Self::Area, Some(r)) => {
-                state.area.zip(r.corrected_area).is_some_and(|(a, corrected)| a - corrected > UNRESOLVED * a)
-            }
+        let circumstances = Circumstances {
+            flat: matches!(scene.surface, SceneSurface::Plain(Surface::Flat { .. })),
+            // Below a hardness that limits the pressure nothing is marked.
+            hardness: match scene.effects.hardness {
+                Hardness::Off => scene.hardness.unwrap_or(YIELD * scene.modulus),
+                _ => f64::INFINITY,
+            },
+            stiffness: scene.requested.outputs.stiffness,
+            neglects_coupling: neglects_coupling(scene),
         };
-        found.extend(Self::ALL.into_iter().filter(|&warning| holds(warning)));
-        found
+        let missed = scene
+            .accuracy
+            .is_some_and(|target| !errors.is_some_and(|errors| within(scene, errors, target.share)));
+        circumstances.warnings(state, missed)
     }
 
     /// All of them as one note; `None` for none.
     pub fn note(all: &[Self]) -> Option<String> {
         let texts: Vec<&str> = all.iter().map(|warning| warning.words()[0]).collect();
         (!texts.is_empty()).then(|| texts.join("; "))
+    }
+}
+
+/// What decides, besides a state, whether a warning concerns it.
+#[derive(Debug, Clone, Copy)]
+struct Circumstances {
+    /// All of a flat rectangle touches, its edges too.
+    flat: bool,
+    /// The pressure from which a state is marked.
+    hardness: f64,
+    /// Whether the stiffness is asked for.
+    stiffness: bool,
+    neglects_coupling: bool,
+}
+
+impl Circumstances {
+    /// All warnings that concern a state, whose accuracy target was `missed` or not.
+    fn warnings(&self, state: &ContactState, missed: bool) -> Vec<Warning> {
+        let few = state.report.contact_cells.is_some_and(|cells| (1..FEW_CELLS).contains(&cells));
+        let wanted = self.stiffness && state.report.contact_cells.is_some();
+        let holds = |warning: Warning| match (warning, state.resolution) {
+            (Warning::FewCells, _) => few,
+            (Warning::Stiffness, _) => wanted && state.stiffness.is_none(),
+            (Warning::Coupling, _) => self.neglects_coupling,
+            (_, None) => false,
+            (Warning::Accuracy, _) => missed,
+            (Warning::OneCell, Some(r)) => r.largest_share > ALONE,
+            (Warning::Edge, Some(r)) => r.edge_cells > 0 && !self.flat,
+            (Warning::Yield, Some(r)) => r.largest_pressure > self.hardness,
+            (Warning::Area, Some(r)) => {
+                state.area.zip(r.corrected_area).is_some_and(|(a, corrected)| a - corrected > UNRESOLVED * a)
+            }
+        };
+        Warning::ALL.into_iter().filter(|&warning| holds(warning)).collect()
+    }
+}
+
+/// Notes on the states of a scene: those that a run of a scene file has in its results.
+///
+/// ```
+/// use contact_model::{ContactModel, Load, Scene, Surface};
+/// let scene = Scene::new(Surface::Sphere { radius: 1.0, size: 1.0.into() }, 1.0);
+/// let state = bem3d::Bem3d { cells: 17, ..Default::default() }.prepare(&scene, 0)?.solve(Load::Force(1e-4))?;
+/// let notes = fractal_contact::scenes::StateNotes::new(&scene).of(&state);
+/// assert!(notes[0].starts_with("fewer than 10 contact cells: "));
+/// # Ok::<(), contact_model::Error>(())
+/// ```
+#[derive(Debug, Clone, Copy)]
+pub struct StateNotes(Circumstances);
+
+impl StateNotes {
+    /// On the states of this scene.
+    pub fn new(scene: &Scene) -> Self {
+        Self(Circumstances {
+            flat: matches!(scene.surface, Surface::Flat { .. }),
+            hardness: match scene.effects.hardness {
+                Hardness::Off => YIELD * scene.modulus,
+                _ => f64::INFINITY,
+            },
+            stiffness: scene.outputs.stiffness,
+            neglects_coupling: scene.coupling("") == Ok(Some(Coupling::Neglected)),
+        })
+    }
+
+    /// What may be wrong with a state, and after a colon what to do about it.
+    pub fn of(&self, state: &ContactState) -> Vec<String> {
+        let told = |warning: Warning| warning.words().join(": ");
+        self.0.warnings(state, false).into_iter().map(told).collect()
     }
 }
 

@@ -1,0 +1,192 @@
+"""Words and mappings that functions take, for type checkers.
+
+A mapping in a variable of its own is checked where the variable has one of these types:
+
+>>> from fractal_contact.typing import EffectsDict
+>>> effects: EffectsDict = {"hardness": 0.1}
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Literal, NotRequired, TypedDict
+
+__all__ = [
+    "Adhesion",
+    "AdhesionDict",
+    "Axis",
+    "BodyDict",
+    "Boundary",
+    "ConductanceDict",
+    "CropDict",
+    "Direction",
+    "EffectsDict",
+    "ElectricalDict",
+    "Friction",
+    "FrictionDict",
+    "Hardness",
+    "HardnessDict",
+    "Heights",
+    "Method",
+    "Output",
+    "PronyDict",
+    "ReadOptions",
+    "Rheology",
+    "StandardSolidDict",
+    "SurfaceKind",
+    "ThermalDict",
+    "Undefined",
+    "ViscousDict",
+    "Waves",
+]
+
+Output = Literal[
+    "stiffness",
+    "stiffness_fixed_area",
+    "area",
+    "mean_gap",
+    "pressure",
+    "displacement",
+    "gap",
+    "plastic_depth",
+    "contact_patches",
+    "stick_area",
+    "tangential_stiffness",
+    "tangential_stiffness_stuck",
+    "traction",
+    "slip",
+    "stick_slip",
+]
+SurfaceKind = Literal["self_affine", "sphere", "cone", "power_law", "flat_circle", "flat", "sine", "line"]
+Method = Literal["auto", "iterative", "single_level"]
+Heights = Literal["gaussian", "exponential"]
+Undefined = Literal["error", "no_contact"]
+Direction = Literal["radial", "x", "y"]
+Axis = Literal["x", "y"]
+Waves = Literal["waves", "rings"]
+Boundary = Literal["free", "periodic"]
+
+
+class HardnessDict(TypedDict):
+    """Hardness."""
+
+    pressure: float
+
+
+class AdhesionDict(TypedDict):
+    """Adhesion, of short range or with a range."""
+
+    work: float
+    range: NotRequired[float]
+    law: NotRequired[Literal["exponential", "dugdale"]]
+
+
+class FrictionDict(TypedDict):
+    """Coulomb's friction."""
+
+    coefficient: float
+    coupling: NotRequired[Literal["none", "full"]]
+
+
+class ViscousDict(TypedDict):
+    """Rheology of a spring and a dashpot."""
+
+    kind: Literal["kelvin_voigt", "maxwell"]
+    viscosity: float
+
+
+class StandardSolidDict(TypedDict):
+    """Rheology of a standard solid."""
+
+    kind: Literal["standard_solid"]
+    weight: float
+    time: float
+
+
+class PronyDict(TypedDict):
+    """Rheology of a Prony series."""
+
+    kind: Literal["prony"]
+    weights: Sequence[float]
+    times: Sequence[float]
+
+
+Hardness = float | HardnessDict
+Adhesion = float | AdhesionDict
+Friction = float | FrictionDict
+Rheology = ViscousDict | StandardSolidDict | PronyDict
+
+
+class EffectsDict(TypedDict, total=False):
+    """Effects of a scene."""
+
+    boundary: Boundary | None
+    hardness: Hardness | None
+    adhesion: Adhesion | None
+    friction: Friction | None
+    rheology: Rheology | None
+
+
+class BodyDict(TypedDict):
+    """An elastic body."""
+
+    young: float
+    poisson: float
+
+
+class ElectricalDict(TypedDict):
+    """Electrical conductance, with the resistivities of both bodies."""
+
+    kind: Literal["electrical"]
+    resistivities: Sequence[float]
+
+
+class ThermalDict(TypedDict):
+    """Thermal conductance, with the conductivities of both bodies."""
+
+    kind: Literal["thermal"]
+    conductivities: Sequence[float]
+
+
+ConductanceDict = ElectricalDict | ThermalDict
+
+
+class CropDict(TypedDict):
+    """The part of a map: ``cells`` stands for as many rows as columns."""
+
+    row: NotRequired[int]
+    column: NotRequired[int]
+    rows: NotRequired[int]
+    columns: NotRequired[int]
+    cells: NotRequired[int]
+
+
+class ReadOptions(TypedDict, total=False):
+    """Options of `read_surface`: the keys of ``[scene.surface]`` in a scene."""
+
+    channel: int | str
+    format: str
+    unit: str
+    lateral_unit: str
+    size: str | Sequence[str]
+    cell: str | Sequence[str]
+    height_scale: str
+    decimal: str
+    axes: Literal["xy", "yx"]
+    border: Literal["axes", "heights"]
+    missing: float
+    skip_lines: int
+    crop: str | CropDict
+    align_lines: Literal["median_difference", "median"]
+    scars: float
+    outliers: float
+    tip_radius: str
+    undefined: Literal["no_contact"]
+    fill: str
+    detrend: Literal["none", "mean", "plane", "quadric", "sphere", "cylinder"]
+    filter_across: str
+    cells: int
+    rows: int
+    mirror: Axis
+    rotate: Literal[0, 90, 180, 270]
+    window: Literal["hann"]

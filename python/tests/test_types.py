@@ -1,0 +1,89 @@
+"""What a type checker finds."""
+
+import subprocess
+import sys
+import typing
+
+import pytest
+
+import fractal_contact as fc
+from fractal_contact import _core
+from fractal_contact import typing as words
+
+GOOD = """
+import threading
+import numpy as np
+import fractal_contact as fc
+from fractal_contact.typing import EffectsDict
+
+effects: EffectsDict = {"hardness": 0.1, "adhesion": None}
+solid = fc.Effects(rheology={"kind": "prony", "weights": [1.0], "times": [1.0]})
+ball = fc.Surface.sphere(radius=1.0, size=np.array([1.0, 2.0]))
+rough = fc.HeightMap(np.zeros((4, 4)), size=["1 mm", "1 mm"], undefined="no_contact")
+scene = fc.Scene(2 * rough - 1.0, bodies=(fc.Body(1.0, 0.3), "rigid"), effects=effects, outputs=["stiffness", "area"])
+contact = fc.Bem3d(method="iterative").prepare(scene)
+state = contact.solve(force=1.0, stop=threading.Event())
+total: float = np.asarray(rough).sum() + len(state.notes)
+for state in contact.sweep(force=(value for value in (1.0, 2.0))):
+    print(state.force)
+fc.read_surface("map.npy", unit="nm", detrend="plane")
+fc.Scene(ball, 1.0, effects={"friction": {"coefficient": 0.1, "coupling": "full"}}, conductance=("thermal", 1.0, 1.0))
+"""
+
+BAD = [
+    'fc.Scene(ball, 1.0, effects={"hardnes": 1})',
+    'fc.Scene(ball, 1.0, effects={"hardness": {"pressur": 1.0}})',
+    'fc.Scene(ball, 1.0, effects={"hardness": "2 GPa"})',
+    'fc.Scene(ball, 1.0, effects={"boundary": "round"})',
+    'fc.Scene(ball, 1.0, effects={"rheology": {"kind": "maxwell"}})',
+    'fc.Effects(adhesion={"work": 1.0, "law": "jkr"})',
+    'fc.Scene(ball, 1.0, outputs=["stifness"])',
+    'fc.Scene(ball, 1.0, conductance={"kind": "thermal", "resistivities": (1.0, 1.0)})',
+    'fc.Scene("map.npy", 1.0)',
+    'fc.Bem3d(method="magic")',
+    'fc.GreenwoodWilliamson(heights="normal")',
+    'fc.HeightMap([[1.0]], size=1.0, undefined="perhaps")',
+    'fc.read_surface("map.npy", chanel=1)',
+    'fc.read_surface("map.npy", detrend="pane")',
+    'fc.statistics.slope(ball.height_map(8), "z")',
+    'fc.surface_gen.twin(ball.height_map(8), 1, twin="ring")',
+    "fc.Hertz().prepare(fc.Scene(ball, 1.0)).sweep(force=1.0)",
+    "fc.Hertz().prepare(fc.Scene(ball, 1.0)).solve(force=1.0, stop=True)",
+]
+
+
+def checked(tmp_path, text):
+    """What mypy says of a program, by its lines."""
+    pytest.importorskip("mypy")
+    path = tmp_path / "program.py"
+    path.write_text(text)
+    command = [sys.executable, "-m", "mypy", "--strict", "--hide-error-context", "--no-error-summary", path.name]
+    told = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
+    assert told.stderr == "", told.stderr
+    return told.stdout.splitlines()
+
+
+def test_programs_are_accepted(tmp_path):
+    assert checked(tmp_path, GOOD) == []
+
+
+def test_mistakes_are_found(tmp_path):
+    head = ["import fractal_contact as fc", "ball = fc.Surface.sphere(radius=1.0, size=1.0)"]
+    told = checked(tmp_path, "\n".join([*head, *BAD, ""]))
+    for number, line in enumerate(BAD, len(head) + 1):
+        assert any(text.startswith(f"program.py:{number}: error") for text in told), (line, told)
+
+
+def test_the_words_are_those_of_the_library():
+    assert [key["name"] for key in _core.effect_keys()] == list(words.EffectsDict.__annotations__)
+    with pytest.raises(ValueError, match="no output is called") as caught:
+        fc.Scene(fc.Surface.flat(size=1.0), 1.0, outputs=["?"])
+    listed = str(caught.value).split("there are ")[1].replace(" and ", ", ").split(", ")
+    assert set(listed) == set(typing.get_args(words.Output))
+    with pytest.raises(TypeError, match="no option is called") as caught:
+        fc.read_surface("absent.npy", absent=1)
+    listed = str(caught.value).split("there are ")[1].split(", ")
+    assert set(listed) == set(words.ReadOptions.__annotations__)
+    with pytest.raises(ValueError, match="no surface is of the kind") as caught:
+        fc.Surface("?", {})
+    assert set(str(caught.value).split("there are ")[1].split(", ")) == set(typing.get_args(words.SurfaceKind))
