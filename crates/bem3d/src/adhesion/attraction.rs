@@ -47,6 +47,7 @@
 
 use super::law::{Law, Shape};
 use super::neighbours::Neighbours;
+use super::pairs::Pairs;
 use crate::geometry::{CellSet, Grid};
 use crate::real::each;
 use contact_model::Boundary;
@@ -78,7 +79,7 @@ impl Attraction {
         let (x, y) = grid.cell();
         let side = x.max(y);
         let ring = (RING.0 * side, RING.1 * side);
-        let neighbours = Neighbours::new(grid, boundary == Boundary::Periodic, ring);
+        let neighbours = Neighbours::ring(grid, boundary == Boundary::Periodic, ring);
         Self {
             law: Law::short(work, side),
             strength: 2.0 * FRONT_WIDTH * side / neighbours.distance,
@@ -177,25 +178,16 @@ impl Attraction {
         }
     }
 
-    /// How the attraction of open cells with these gaps follows the gaps of the others:
-    /// `coupled(v) = R^-1 C R^-1 v`, C the negative of those derivatives and R the roots of the slopes.
-    /// `None`: it does not.
-    pub fn coupling<'a>(
-        &'a self,
-        open: &'a CellSet,
-        gap: &[f64],
-        root: &[f64],
-    ) -> Option<impl Fn(&[f64]) -> Vec<f64> + 'a> {
+    /// How the attraction of open cells follows the gaps of the others: `R^-1 C R^-1`, C the negative of those
+    /// derivatives and R the roots of the slopes. In the numbers of a set of cells with these gaps and roots, 0
+    /// on contact. `None`: the attraction of a cell follows its own gap alone.
+    pub fn coupling(&self, cells: &CellSet, gap: &[f64], root: &[f64]) -> Option<Pairs> {
         let neighbours = self.neighbours.as_ref()?;
-        let work = -self.law.energy(0.0);
-        let share: Vec<f64> =
-            gap.iter().zip(root).map(|(&g, r)| self.law.traction(g) / (r * work.sqrt())).collect();
-        Some(move |v: &[f64]| {
-            let weighted: Vec<f64> = v.iter().zip(&share).map(|(v, s)| v * s).collect();
-            let mut mean = neighbours.mean(open, &weighted);
-            mean.iter_mut().zip(&share).for_each(|(m, s)| *m *= 2.0 * self.strength * s);
-            mean
-        })
+        let factor = -2.0 * self.strength / self.law.energy(0.0);
+        let share = |g: f64, r: f64| if r > 0.0 { self.law.traction(g) / r } else { 0.0 };
+        let share: Vec<f64> = gap.iter().zip(root).map(|(&g, &r)| share(g, r)).collect();
+        let value = |i: usize, k: usize, weight: f64| factor * weight * (share[i] * share[k]);
+        Some(neighbours.pairs(cells, |i| share[i] > 0.0, value))
     }
 }
 
@@ -207,7 +199,7 @@ impl Attraction {
     }
 
     /// Columns, rows and weights of the neighbours.
-    pub fn weights(&self) -> impl Iterator<Item = (i64, i64, f64)> + '_ {
+    pub fn weights(&self) -> impl Iterator<Item = (isize, isize, f64)> + '_ {
         self.neighbours.iter().flat_map(Neighbours::weights)
     }
 }
@@ -237,7 +229,7 @@ mod tests {
             let on_open = open.carry(&cells, &gap);
             let root: Vec<f64> =
                 open.carry(&cells, &attraction.slopes(&cells, &gap)).iter().map(|s| s.sqrt()).collect();
-            let coupled = attraction.coupling(&open, &on_open, &root).unwrap();
+            let coupling = attraction.coupling(&open, &on_open, &root).unwrap();
             let places: Vec<(usize, usize)> = cells.places().collect();
             for (k, place) in open.places().enumerate() {
                 let i = places.iter().position(|p| *p == place).unwrap();
@@ -249,8 +241,9 @@ mod tests {
                     (attraction.tractions(&cells, &moved(i, h)), attraction.tractions(&cells, &moved(i, -h)));
                 let expected: Vec<f64> = above.iter().zip(&below).map(|(a, b)| (b - a) / (2.0 * h)).collect();
                 let unit: Vec<f64> = (0..open.len()).map(|j| if j == k { root[k] } else { 0.0 }).collect();
-                let found: Vec<f64> =
-                    (coupled(&unit).iter().zip(&unit).zip(&root)).map(|((c, u), r)| r * (c + u)).collect();
+                let mut found = unit.clone();
+                coupling.add_product(1.0, &unit, &mut found);
+                found.iter_mut().zip(&root).for_each(|(found, root)| *found *= root);
                 for (found, expected) in found.iter().zip(open.carry(&cells, &expected)) {
                     approx::assert_relative_eq!(
                         *found,

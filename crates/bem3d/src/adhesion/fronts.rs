@@ -157,7 +157,7 @@ impl Strip {
             (0..n).map(|i| (0..n).map(|k| single[i.abs_diff(k)] + single[i + k + 1] + 2.0 * reach).collect());
         let mut weights = vec![vec![0.0; n]; n];
         for (i, j, weight) in attraction.weights() {
-            let across = direction.q * i - direction.p * j;
+            let across = direction.q * i as i64 - direction.p * j as i64;
             for row in 0..n {
                 let other = row as i64 + across;
                 let other = if other < 0 { -other - 1 } else { other };

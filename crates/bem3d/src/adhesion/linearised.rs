@@ -17,26 +17,30 @@
 use super::attraction::Attraction;
 use super::equilibrium::{AdhesiveControl, Equilibrium};
 use super::law::Shape;
+use super::near::Near;
+use super::pairs::Pairs;
 use crate::active_set::Problem;
 use crate::geometry::CellSet;
-use crate::linear::{Fixed, StoppingCriteria};
-use crate::real::{dot, each, sum};
+use crate::linear::{Energy, Fixed, StoppingCriteria};
+use crate::real::{dot, each, sum, update};
 use contact_model::Stop;
 use numerics::root::bisect;
 
 /// Slopes below this share of the largest one are left out: what they change is below the rounding of the
 /// sums.
 const FLAT: f64 = 1e-12;
-/// Inner solves on the contact reduce their residual by this factor: the eigenvalue is then right to a
-/// thousandth, and the response is corrected by rounds.
+/// Solves on the contact reduce their residual by this factor; the response is corrected by rounds.
 const INNER: f64 = 1e-2;
+/// In the reduced iteration the energy of their error is estimated at this share of `v'v` or less, the
+/// measure of the eigenvalue, which is then right to a thousandth.
+const ENERGY: f64 = 3e-3;
 /// The reduced iteration ends where its residual has fallen by this factor.
 const REDUCED: f64 = 1e-6;
 /// Steps of inner solves at most.
 const INNER_STEPS: usize = 60;
 /// Steps of the reduced iteration at most.
 const STEPS: usize = 200;
-/// The stability may still change in a step by so much of itself.
+/// The stability may still change by so much of itself in each of two steps: in one it may pause.
 const SETTLED: f64 = 1e-3;
 /// Rounds of correction of the response with the exact operator.
 const ROUNDS: usize = 4;
@@ -83,11 +87,12 @@ struct Linearised<'a> {
     both: CellSet,
     /// Roots of the slopes on the open cells.
     root: Vec<f64>,
-    /// Their gaps.
-    gap: Vec<f64>,
-    attraction: &'a Attraction,
+    /// How their attractions follow the gaps of others.
+    coupling: Option<Pairs>,
     /// The constant that is taken from the kernel: all of it where the mean plane is held.
     constant: f64,
+    /// What takes their displacement of the contact back.
+    near: Near,
     steps: usize,
     stop: Stop<'a>,
 }
@@ -102,14 +107,14 @@ struct Reduced {
 
 impl Linearised<'_> {
     /// `G_CC^-1 r`, in place; returns the energy of r.
-    fn contact_solve(&mut self, r: &mut [f64]) -> f64 {
+    fn contact_solve(&mut self, r: &mut [f64], reduction: f64, energy: Option<Energy>) -> f64 {
         let Problem { operators, workspace, .. } = &mut *self.problem;
         let Some(recipe) = operators.planner().system(&self.contact, self.contact.len(), true) else {
             return 0.0;
         };
         workspace.begin_load();
         workspace.take(operators, self.contact.clone(), recipe);
-        let criteria = StoppingCriteria { reduction: INNER, energy: None, floor: 0.0, steps: INNER_STEPS };
+        let criteria = StoppingCriteria { reduction, energy, floor: 0.0, steps: INNER_STEPS };
         let fixed = if self.constant > 0.0 { Fixed::MeanPlane(self.constant) } else { Fixed::Approach };
         let outcome = workspace.solve(operators, r, fixed, criteria, self.stop);
         self.steps += outcome.steps;
@@ -133,10 +138,16 @@ impl Linearised<'_> {
     fn apply(&mut self, v: &[f64]) -> Vec<f64> {
         let w: Vec<f64> = v.iter().zip(&self.root).map(|(v, d)| v * d).collect();
         let (open, both) = (self.open.clone(), self.both.clone());
-        let u = self.rough(&open, &w, &both);
+        // Pressure on the contact beside the open cells takes most of its displacement back.
+        let mut sources = both.carry(&open, &w);
+        let mut taken = vec![0.0f32; both.len()];
+        let mut pressed: Vec<f32> = sources.iter().map(|&w| w as f32).collect();
+        self.near.subtract_transposed(&mut pressed, &mut taken);
+        update(&mut sources, &taken, |source, &taken| *source += f64::from(taken));
+        let u = self.rough(&both, &sources, &both);
         let mut x = self.contact.carry(&self.both, &u);
         let mut direct = self.open.carry(&self.both, &u);
-        self.contact_solve(&mut x);
+        self.contact_solve(&mut x, 0.0, Some(Energy { share: ENERGY, base: dot(v, v) }));
         let through = self.rough(&self.contact.clone(), &x, &open);
         for ((u, t), d) in direct.iter_mut().zip(&through).zip(&self.root) {
             *u = d * (*u - t);
@@ -147,8 +158,8 @@ impl Linearised<'_> {
     /// `N v`.
     fn with_neighbours(&self, v: &[f64]) -> Vec<f64> {
         let mut sum = v.to_vec();
-        if let Some(coupled) = self.attraction.coupling(&self.open, &self.gap, &self.root) {
-            sum.iter_mut().zip(coupled(v)).for_each(|(sum, more)| *sum += more);
+        if let Some(coupling) = &self.coupling {
+            coupling.add_product(1.0, v, &mut sum);
         }
         sum
     }
@@ -166,7 +177,7 @@ impl Linearised<'_> {
         let (mut diagonal, mut beside) = (Vec::new(), Vec::new());
         let mut last = (0.0, 0.0);
         let mut found = Reduced { v: Vec::new(), smallest: 1.0, smallest_at_force: 1.0 };
-        let mut before = f64::INFINITY;
+        let (mut before, mut settled) = (f64::INFINITY, 0);
         for _ in 0..STEPS {
             if rr <= 0.0 || self.stop.stops() {
                 break;
@@ -194,8 +205,8 @@ impl Linearised<'_> {
             let next = dot(&r, &nr);
             let beta = next / rr;
             let least = found.smallest.min(found.smallest_at_force);
-            let settled = (before - least).abs() <= SETTLED * least.abs();
-            let done = settled && wanted.is_none_or(|wanted| next / found.smallest <= wanted);
+            settled = if (before - least).abs() <= SETTLED * least.abs() { settled + 1 } else { 0 };
+            let done = settled > 1 && wanted.is_none_or(|wanted| next / found.smallest <= wanted);
             before = least;
             if done || next <= REDUCED * REDUCED * start {
                 break;
@@ -235,10 +246,12 @@ pub fn respond(
     slopes.iter_mut().zip(&state.pressure).filter(|(_, p)| **p > 0.0).for_each(|(s, _)| *s = 0.0);
     let open = state.cells.filter(&slopes, |s| s > least);
     let root: Vec<f64> = open.carry(&state.cells, &slopes).iter().map(|s| s.sqrt()).collect();
-    let gap = open.carry(&state.cells, &state.gap);
+    let coupling = attraction.coupling(&open, &open.carry(&state.cells, &state.gap), &root);
     let both = contact.union(&open);
+    let is_open = both.carry(&open, &vec![1.0; open.len()]);
+    let near = Near::new((problem.grid(), problem.operators.table().boundary()), &both, &is_open);
     let mut linearised =
-        Linearised { problem, contact, open, both, root, gap, attraction, constant, steps: 0, stop };
+        Linearised { problem, contact, open, both, root, coupling, constant, near, steps: 0, stop };
     let mut response = linearised.response(control, tolerance);
     response.steps = linearised.steps;
     if let AdhesiveControl::Force(_) = control {
@@ -270,9 +283,10 @@ pub fn fixed_area(
     if constant > 0.0 && contact.len() == problem.grid().count() {
         return (None, 0);
     }
-    let (both, open, root, gap) = (contact.clone(), CellSet::default(), Vec::new(), Vec::new());
+    let (both, open, root) = (contact.clone(), CellSet::default(), Vec::new());
+    let (coupling, near) = (None, Near::default());
     let mut linearised =
-        Linearised { problem, contact, open, both, root, gap, attraction, constant, steps: 0, stop };
+        Linearised { problem, contact, open, both, root, coupling, constant, near, steps: 0, stop };
     let response = linearised.response(AdhesiveControl::Plane(state.d), Some(tolerance));
     (response.stiffness, linearised.steps)
 }
@@ -292,7 +306,7 @@ impl Linearised<'_> {
         let mut r = vec![1.0; self.both.len()];
         for round in 0..ROUNDS {
             let mut on_contact = self.contact.carry(&self.both, &r);
-            let energy = self.contact_solve(&mut on_contact);
+            let energy = self.contact_solve(&mut on_contact, INNER, None);
             let through = self.rough(&contact, &on_contact, &open);
             let left = self.open.carry(&self.both, &r);
             let b: Vec<f64> =
@@ -332,7 +346,7 @@ impl Linearised<'_> {
             let u = self.rough(&open, &on_open, &contact);
             let mut more = self.contact.carry(&self.both, &r);
             more.iter_mut().zip(&u).for_each(|(m, u)| *m -= u);
-            self.contact_solve(&mut more);
+            self.contact_solve(&mut more, INNER, None);
             self.both.add_carried(&self.contact, &more, &mut x);
             self.both.add_carried(&self.open, &on_open, &mut x);
             // What is left, with the exact operator.

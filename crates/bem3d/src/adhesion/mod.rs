@@ -6,8 +6,10 @@ mod bottleneck;
 mod equilibrium;
 mod law;
 mod linearised;
+mod near;
 mod neighbours;
 mod newton;
+mod pairs;
 mod search;
 mod update;
 

@@ -4,6 +4,7 @@
 //! lie side by side, and the accumulators stay in registers. The order of the terms is that of the weights,
 //! whatever the width of the registers and the number of threads.
 
+use super::pairs::Pairs;
 use crate::geometry::{CellSet, Grid, Window};
 use crate::real::each;
 use crate::tuning::LANES;
@@ -25,11 +26,21 @@ pub struct Neighbours {
 }
 
 impl Neighbours {
-    /// With weights `1 - ((r - radius)/width)^2` where that is positive, in units of the sides of the grid's
-    /// cells.
-    pub fn new(grid: Grid, periodic: bool, (radius, width): (f64, f64)) -> Self {
+    /// A ring, weights `1 - ((r - radius)/width)^2` where that is positive, in units of the sides of the
+    /// grid's cells.
+    pub fn ring(grid: Grid, periodic: bool, (radius, width): (f64, f64)) -> Self {
+        Self::new(grid, periodic, radius + width, |r| 1.0 - ((r - radius) / width).powi(2))
+    }
+
+    /// All cells nearer than `farthest`, weights `1/r^3`: what the inverse of the kernel couples a cell with
+    /// the others by.
+    pub fn around(grid: Grid, periodic: bool, farthest: f64) -> Self {
+        Self::new(grid, periodic, farthest, |r| if r > 0.0 { r.powi(-3) } else { 0.0 })
+    }
+
+    /// With a weight of the distance, where that is positive, up to the farthest.
+    fn new(grid: Grid, periodic: bool, farthest: f64, weight_at: impl Fn(f64) -> f64) -> Self {
         let (dx, dy) = grid.cell();
-        let farthest = radius + width;
         // So many cells of one side lie within a distance.
         let within = |distance: f64, cell: f64| ((distance / cell).ceil() as usize).saturating_sub(1);
         let along = within(farthest, dy);
@@ -40,7 +51,7 @@ impl Neighbours {
             let half = within((farthest * farthest - y * y).max(0.0).sqrt(), dx);
             let weight = |i: usize| {
                 let x = dx * (i as f64 - half as f64);
-                let weight = (1.0 - ((x.hypot(y) - radius) / width).powi(2)).max(0.0);
+                let weight = weight_at(x.hypot(y)).max(0.0);
                 total += weight;
                 moment += 0.5 * weight * (x.abs() + y.abs());
                 weight
@@ -54,11 +65,54 @@ impl Neighbours {
         Self { grid, periodic, reach: (across, along), rows, distance: moment / total }
     }
 
+    /// The matrix of the values of all pairs of a cell and its neighbours, from their numbers in the set and
+    /// the weight; a value of zero is left out. `row`: cells that have a row.
+    pub fn pairs(
+        &self,
+        cells: &CellSet,
+        row: impl Fn(usize) -> bool,
+        value: impl Fn(usize, usize, f64) -> f64,
+    ) -> Pairs {
+        const NONE: u32 = u32::MAX;
+        let (columns, rows) = (self.grid.columns.cast_signed(), self.grid.rows.cast_signed());
+        let mut numbers = vec![NONE; self.grid.count()];
+        for (number, place) in cells.index(self.grid).enumerate() {
+            numbers[place] = number as u32;
+        }
+        let lags: Vec<(isize, isize, f64)> = self.weights().filter(|lag| lag.2 > 0.0).collect();
+        let number = |x: isize, y: isize| {
+            let inside = (0..columns).contains(&x) && (0..rows).contains(&y);
+            if !inside && !self.periodic {
+                return NONE;
+            }
+            numbers[(y.rem_euclid(rows) * columns + x.rem_euclid(columns)).unsigned_abs()]
+        };
+        Pairs::new(cells.places().enumerate().map(|(i, (x, y))| {
+            let lags = if row(i) { &lags[..] } else { &[] };
+            let (number, value) = (&number, &value);
+            (lags.iter())
+                .map(move |&(a, b, weight)| (number(x.cast_signed() + a, y.cast_signed() + b), weight))
+                .filter(|(k, _)| *k != NONE)
+                .map(move |(k, weight)| (k, value(i, k as usize, weight) as f32))
+                .filter(|(_, value)| *value != 0.0)
+        }))
+    }
+
+    /// Columns, rows and weights of the neighbours.
+    pub fn weights(&self) -> impl Iterator<Item = (isize, isize, f64)> + '_ {
+        (self.rows.iter().enumerate()).flat_map(move |(j, (half, weights))| {
+            let place = move |i: usize| {
+                (i.cast_signed() - half.cast_signed(), j.cast_signed() - self.reach.1.cast_signed())
+            };
+            weights.iter().enumerate().map(move |(i, &w)| (place(i).0, place(i).1, w))
+        })
+    }
+
     /// Means over the neighbours of the cells of a set; cells outside of it count 0.
     pub fn mean(&self, cells: &CellSet, values: &[f64]) -> Vec<f64> {
         let mut mean = vec![0.0; cells.len()];
         let Some(window) = cells.window() else { return mean };
-        let (around, width) = self.around(cells, window, values);
+        let (around, width) = self.values_around(cells, window, values);
         let work = cells.len() * self.rows.iter().map(|(_, weights)| weights.len()).sum::<usize>();
         cells.update(work, &mut mean, |row, mean| {
             let top = (row.y - window.y) * width;
@@ -101,7 +155,7 @@ impl Neighbours {
 
     /// The values in the window of the set and as far around it as neighbours reach, rows of the length that
     /// is returned.
-    fn around(&self, cells: &CellSet, window: Window, values: &[f64]) -> (Vec<f64>, usize) {
+    fn values_around(&self, cells: &CellSet, window: Window, values: &[f64]) -> (Vec<f64>, usize) {
         let (across, along) = self.reach;
         // Sums of cells side by side read beyond the neighbours of the last column.
         let width = window.width + 2 * across + LANES;
@@ -124,18 +178,6 @@ impl Neighbours {
             }
         }
         (around, width)
-    }
-}
-
-#[cfg(test)]
-#[allow(clippy::cast_possible_wrap)] // Small numbers.
-impl Neighbours {
-    /// Columns, rows and weights of the neighbours.
-    pub fn weights(&self) -> impl Iterator<Item = (i64, i64, f64)> + '_ {
-        (self.rows.iter().enumerate()).flat_map(move |(j, (half, weights))| {
-            (weights.iter().enumerate())
-                .map(move |(i, &w)| (i as i64 - *half as i64, j as i64 - self.reach.1 as i64, w))
-        })
     }
 }
 
@@ -168,12 +210,21 @@ mod tests {
             (Grid { columns: 4, rows: 14, stretch: 1.7 }, true, (6.8, 2.5)),
         ] {
             for cells in [CellSet::numbered(grid, sparse), CellSet::numbered(grid, in_runs)] {
-                let neighbours = Neighbours::new(grid, periodic, ring);
+                let neighbours = Neighbours::ring(grid, periodic, ring);
                 let values: Vec<f64> = (0..cells.len()).map(|i| (i as f64).sin()).collect();
-                for (found, expected) in
-                    neighbours.mean(&cells, &values).iter().zip(by_pairs(&neighbours, &cells, &values))
-                {
-                    approx::assert_relative_eq!(*found, expected, epsilon = 1e-14);
+                let expected = by_pairs(&neighbours, &cells, &values);
+                let found = neighbours.mean(&cells, &values);
+                // Of each second row, and the transpose of the whole, which is symmetric.
+                let whole = neighbours.pairs(&cells, |_| true, |_, _, weight| weight);
+                let half = neighbours.pairs(&cells, |i| i % 2 == 0, |_, _, weight| weight);
+                let (mut transposed, mut rows) = (vec![0.0; values.len()], vec![0.0; values.len()]);
+                whole.transposed().add_product(2.0, &values, &mut transposed);
+                half.add_product(1.0, &values, &mut rows);
+                for (i, expected) in expected.iter().enumerate() {
+                    approx::assert_relative_eq!(found[i], *expected, epsilon = 1e-14);
+                    approx::assert_relative_eq!(transposed[i], 2.0 * expected, epsilon = 1e-6);
+                    let row = if i % 2 == 0 { *expected } else { 0.0 };
+                    approx::assert_relative_eq!(rows[i], row, epsilon = 1e-6);
                 }
             }
         }
@@ -182,11 +233,11 @@ mod tests {
     /// The definition, with the weights from the distance of each cell from each image of each other.
     fn by_pairs(neighbours: &Neighbours, cells: &CellSet, values: &[f64]) -> Vec<f64> {
         let Neighbours { grid, periodic, .. } = *neighbours;
-        let (columns, rows) = (grid.columns as i64, grid.rows as i64);
-        let weights: Vec<(i64, i64, f64)> = neighbours.weights().collect();
+        let (columns, rows) = (grid.columns as isize, grid.rows as isize);
+        let weights: Vec<(isize, isize, f64)> = neighbours.weights().collect();
         let at = |(x, y): (usize, usize), (a, b): (usize, usize)| {
-            let (i, j) = (a as i64 - x as i64, b as i64 - y as i64);
-            let same = |k: &&(i64, i64, f64)| {
+            let (i, j) = (a as isize - x as isize, b as isize - y as isize);
+            let same = |k: &&(isize, isize, f64)| {
                 let (p, q) = (k.0 - i, k.1 - j);
                 if periodic { p % columns == 0 && q % rows == 0 } else { p == 0 && q == 0 }
             };
@@ -213,7 +264,7 @@ mod tests {
             ("every seventh", CellSet::numbered(grid, |i| i % 7 == 0)),
         ] {
             for radius in [2.5, 4.0, 6.5] {
-                let neighbours = Neighbours::new(grid, false, (radius, 1.5));
+                let neighbours = Neighbours::ring(grid, false, (radius, 1.5));
                 let values = vec![1.0; cells.len()];
                 let time = |mean: &dyn Fn() -> Vec<f64>| {
                     let start = std::time::Instant::now();
@@ -234,10 +285,10 @@ mod tests {
         let row = 2 * across + 1;
         let mut dense = vec![0.0; row * (2 * along + 1)];
         for (i, j, weight) in neighbours.weights() {
-            dense[(j + along as i64) as usize * row + (i + across as i64) as usize] = weight;
+            dense[(j + along as isize) as usize * row + (i + across as isize) as usize] = weight;
         }
         let window = cells.window().unwrap();
-        let (around, width) = neighbours.around(cells, window, values);
+        let (around, width) = neighbours.values_around(cells, window, values);
         let mean = |(x, y): (usize, usize)| {
             (dense.chunks_exact(row).enumerate())
                 .map(|(j, weights)| {

@@ -12,8 +12,23 @@
 //! [ N D^(1/2) G_ZC   N D^(1/2) G_ZZ D^(1/2) N - N ] [ v ]
 //! ```
 //!
-//! Minimal residuals need one product by G a step; the inverse of the kernel on a torus stands for G_CC^-1,
-//! a diagonal for the block of Z.
+//! Minimal residuals need one product by G a step. The block of Z is far from its Schur complement `-N + ...`
+//! with G^ for G: pressures on a front displace the contact and all other fronts, and the contact takes that
+//! back. So the preconditioner is
+//!
+//! ```text
+//! [ 1  -E' D^(1/2) ] [ T     ] [      1         ]
+//! [ 0      1       ] [    d  ] [ -D^(1/2) E   1 ]
+//! ```
+//!
+//! with the inverse T of the kernel on a torus for G_CC^-1, a diagonal d, and a rough E for `G_ZC G_CC^-1`
+//! ([`super::near`]) that costs two sums over nearby cells: 15 steps instead of 25 where a residual is to fall
+//! by two digits.
+//!
+//! Near contact the law of a short range is level. With D -> 0 the matrix of both terms, `D + C'`, is
+//! indefinite there and N large; a state that is far from instability (r = 0.6) then takes 100 steps instead
+//! of 25. Cells with a slope below [`LEVEL`] are therefore left out: their attraction is that of the plain
+//! iteration. A step then leaves 0.01 to 0.06 of the mismatch.
 //!
 //! # Which steps stay on the branch
 //!
@@ -48,6 +63,8 @@
 
 use super::attraction::Attraction;
 use super::equilibrium::Equilibrium;
+use super::law::Shape;
+use super::near::Near;
 use crate::active_set::Problem;
 use crate::geometry::CellSet;
 use crate::linear::{Extension, Fixed, Preconditioner, TorusInverse, minres};
@@ -55,8 +72,11 @@ use crate::operator::{Conditioning, InfluenceOperator};
 use crate::real::{dot, each, largest, sum, update};
 use contact_model::Stop;
 
-/// Slopes below this share of the largest one are left out of a step.
+/// Slopes below this share of the peak over the range are left out of a step ...
 const FLAT: f64 = 1e-3;
+/// ... and of a short range, whose law is level in contact, those below this: cells that have just opened
+/// hardly change their attraction, and a system with them is far worse conditioned than the state.
+const LEVEL: f64 = 0.05;
 /// Steps begin when no attraction changes by more than this in an update, over the peak: before, fronts move
 /// by whole cells and the plain iteration is as fast.
 pub const BEGIN: f64 = 0.02;
@@ -101,8 +121,7 @@ pub struct Trial {
 struct Linear {
     /// Cells that stay closed.
     contact: CellSet,
-    /// Open cells whose attraction moves with their gaps.
-    open: CellSet,
+    /// They and the open cells whose attraction moves with their gaps.
     both: CellSet,
     /// On both: roots of the slopes, 1 on contact.
     root: Vec<f32>,
@@ -236,7 +255,8 @@ impl Taken<'_> {
 impl Linear {
     fn new(attraction: &Attraction, state: &Equilibrium, contact: &[f64]) -> Self {
         let mut slopes = attraction.slopes(&state.cells, &state.gap);
-        let least = FLAT * attraction.law.peak / attraction.law.range;
+        let flat = if attraction.law.shape == Shape::Smooth { LEVEL } else { FLAT };
+        let least = flat * attraction.law.peak / attraction.law.range;
         slopes.iter_mut().zip(contact).filter(|(_, c)| **c > 0.0).for_each(|(s, _)| *s = 0.0);
         let open = state.cells.filter(&slopes, |s| s > least);
         let contact = state.cells.filter(contact, |c| c > 0.0);
@@ -244,7 +264,7 @@ impl Linear {
         let is_open = both.carry(&open, &vec![1.0; open.len()]);
         let mut root: Vec<f32> = both.carry(&state.cells, &slopes).iter().map(|s| s.sqrt() as f32).collect();
         root.iter_mut().zip(&is_open).filter(|(_, open)| **open <= 0.0).for_each(|(r, _)| *r = 1.0);
-        Self { contact, open, both, root, is_open }
+        Self { contact, both, root, is_open }
     }
 
     /// Solves for the change of net pressure that closes `left` on contact, the gap there, and with which the
@@ -259,24 +279,25 @@ impl Linear {
         reduction: f64,
         stop: Stop<'_>,
     ) -> Option<Solution> {
-        let Self { contact, open, both, root, is_open } = self;
+        let Self { contact, both, root, is_open } = self;
+        let grid = problem.grid();
         let (n, unit, operators) = (both.len(), largest(left), &mut problem.operators);
         let recipe = operators.planner().system(both, contact.len(), false)?;
         if unit.is_nan() || unit <= 0.0 {
             return None;
         }
-        let zone_root: Vec<f64> = open.carry(both, root).into_iter().map(f64::from).collect();
-        let coupling = attraction.coupling(open, &open.carry(&state.cells, &state.gap), &zone_root);
+        let gap = both.carry(&state.cells, &state.gap);
+        let zone_root: Vec<f64> = root.iter().zip(is_open).map(|(r, open)| f64::from(r * open)).collect();
+        let coupling = attraction.coupling(both, &gap, &zone_root);
         // N y, which changes nothing on contact.
         let neighbours = |y: &[f32], out: &mut [f32]| {
             out.copy_from_slice(y);
-            if let Some(coupled) = &coupling {
-                let v: Vec<f64> = open.carry(both, y).into_iter().map(f64::from).collect();
-                let more: Vec<f32> = coupled(&v).into_iter().map(|c| c as f32).collect();
-                both.add_carried(open, &more, out);
+            if let Some(coupling) = &coupling {
+                coupling.add_product(1.0, y, out);
             }
         };
         let times_root = |values: &mut [f32]| update(values, root, |value, root| *value *= root);
+        let boundary = operators.table().boundary();
         let own = operators.table().own() as f32;
         let diagonal: Vec<f32> = (root.iter().zip(is_open))
             .map(|(r, &open)| if open > 0.0 { (1.0 - r * r * own).max(LEAST as f32) } else { own }.recip())
@@ -287,22 +308,26 @@ impl Linear {
         if let (Conditioning::Torus { extended, .. }, Some(torus)) = (recipe.conditioning, &torus) {
             extension.set(contact, torus.window(), if extended { decay } else { 0.0 });
         }
+        let near = torus.is_some().then(|| Near::new((grid, boundary), both, is_open));
+        let mut beside = vec![0.0f32; n];
         let mut inverse = |r: &[f32], z: &mut [f32]| {
             z.copy_from_slice(r);
-            update(z, &diagonal, |z, d| *z *= d);
-            if let Some(transform) = torus.as_deref_mut() {
-                let mut on_contact = contact.carry(both, r);
-                let mut found = vec![0.0; contact.len()];
-                let (extension, recorder) = (&mut extension, recorder.clone());
-                TorusInverse { transform, extension, recorder }.apply(
-                    contact,
-                    0.0,
-                    &mut on_contact,
-                    &mut found,
-                );
-                update(z, is_open, |z, open| *z *= open);
-                both.add_carried(contact, &found, z);
+            if let Some(near) = &near {
+                near.extend(r, &mut beside);
+                times_root(&mut beside);
+                update(z, &beside, |z, beside| *z -= beside);
             }
+            update(z, &diagonal, |z, d| *z *= d);
+            let (Some(transform), Some(near)) = (torus.as_deref_mut(), &near) else { return };
+            update(z, is_open, |z, open| *z *= open);
+            beside.copy_from_slice(z);
+            times_root(&mut beside);
+            near.subtract_transposed(&mut beside, z);
+            let mut on_contact = contact.carry(both, r);
+            let mut found = vec![0.0; contact.len()];
+            let (extension, recorder) = (&mut extension, recorder.clone());
+            TorusInverse { transform, extension, recorder }.apply(contact, 0.0, &mut on_contact, &mut found);
+            both.add_carried(contact, &found, z);
         };
         // A net force that is fixed is a product with these; what is taken from it are the weights.
         let mut force = vec![0.0f32; n];

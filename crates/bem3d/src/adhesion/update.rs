@@ -175,6 +175,12 @@ impl Updates<'_> {
     /// none.
     fn held(&self, state: &Equilibrium, attraction: &[f64]) -> Option<Vec<f64>> {
         let mut pressure = state.pressure.clone();
+        // A contact cell that is attracted more bears as much more: its net pressure stays.
+        for ((p, now), before) in pressure.iter_mut().zip(attraction).zip(&state.attraction) {
+            if *p > 0.0 && *p + now - before > 0.0 {
+                *p += now - before;
+            }
+        }
         let AdhesiveControl::Force(force) = self.control else { return Some(pressure) };
         let (held, wanted) = (sum(&pressure), force + sum(attraction));
         if wanted <= 0.0 {
