@@ -2,8 +2,9 @@
 
 use approx::assert_relative_eq;
 use bem3d::Bem3d;
-use contact_model::{ContactModel, ContactState, HeightMap, Load, PreparedContact};
+use contact_model::{ContactModel, ContactState, Load, PreparedContact};
 use std::path::PathBuf;
+use surface_io::{Preprocessing, ReadOptions, Scan};
 use tests::scene;
 
 /// What the reference states of itself: approach and stiffness to 1e-6.
@@ -38,10 +39,10 @@ fn rows() -> Vec<Row> {
 }
 
 fn prepared() -> Box<dyn PreparedContact> {
-    let bytes = std::fs::read(data("surface_N256_Df2.4_seed1.npy")).unwrap();
-    let file = npyz::NpyFile::new(&bytes[..]).unwrap();
-    assert_eq!(file.shape(), [256, 256]);
-    let map = HeightMap::new(256, 1.0, file.into_vec::<f64>().unwrap()).unwrap();
+    let declared = ReadOptions { size: "1".parse().ok(), ..ReadOptions::default() };
+    let scan = Scan::read(&data("surface_N256_Df2.4_seed1.npy"), &declared).unwrap();
+    let map = scan.map(&Preprocessing::default()).unwrap();
+    assert_eq!([map.columns(), map.rows()], [256, 256]);
     Bem3d { tolerance: 1e-8, ..Bem3d::default() }.prepare(&scene(map), 0).unwrap()
 }
 

@@ -2,11 +2,12 @@
 
 use crate::closed;
 use crate::periodic::{self, Periodic, PeriodicLaw};
-use crate::special::{erf, exponential_integral, exponential_integral_of_square};
+use crate::special::{exponential_integral, exponential_integral_of_square};
 use crate::spectrum::Spectrum;
 use contact_model::{
     Abilities, ContactModel, Error, PreparedContact, Result, Scaling, Scene, Source, Surface,
 };
+use libm::erf;
 use numerics::gauss::Gauss;
 use numerics::root;
 use std::f64::consts::{FRAC_2_SQRT_PI, SQRT_2};

@@ -35,7 +35,8 @@
 //! are asked for. `faer` (default): small contact sets are solved by a Cholesky factor. `simd` (default):
 //! transforms take the widest vector instructions that the processor has; without it and without `faer`,
 //! results are the same bytes on every processor of one architecture, as far as its mathematical functions
-//! are. Without default features the solvers and theories remain.
+//! are. `hdf5`, `tiff` and `x3p` (default): these formats of maps, with the crates that they need. Without
+//! default features the solvers, theories and other formats remain.
 
 #![allow(clippy::format_push_string, clippy::format_collect)] // Text is built once per file: clear beats one allocation less.
 

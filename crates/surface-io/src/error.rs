@@ -153,6 +153,15 @@ pub enum ContentError {
         /// The byte.
         byte: u8,
     },
+    /// A format that this build leaves out.
+    #[error(
+        "{format}: left out of this build, with the feature {} of the crate surface-io it is read and written",
+        .format.word()
+    )]
+    LeftOut {
+        /// The format; its word is the name of the feature.
+        format: Format,
+    },
     /// Not the binary format that was asked for.
     #[error("expected {expected}, but the file does not begin like one")]
     Other {

@@ -94,9 +94,17 @@
 //! [`vti`] (for ParaView) give bytes, and [`files::write_whole`] puts them into a file whole or not at all;
 //! [`write_npy`] does both for an array.
 //!
+//! # Features
+//!
+//! `hdf5`, `tiff` and `x3p`, all on by default, bring the crates that these formats need (12 packages). A
+//! file of a format that is left out is an error that names its feature ([`ContentError::LeftOut`]).
+//!
 //! # What it does not do
 //!
 //! Surfaces in finer cells than measured, formats that are not in [`Format`].
+
+// What only the formats that are left out need.
+#![cfg_attr(not(all(feature = "hdf5", feature = "tiff", feature = "x3p")), allow(dead_code))]
 
 mod channel;
 mod choice;

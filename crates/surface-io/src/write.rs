@@ -58,7 +58,8 @@ impl Metric {
 /// GWY; VTI also hides their cells ([`vti`]), NetCDF masks them too.
 ///
 /// # Errors
-/// [`Error::System`] where the system refuses, [`Error::Content`] for another ending, and X3P without a unit.
+/// [`Error::System`] where the system refuses, [`Error::Content`] for another ending, for a format that the
+/// build leaves out, and for X3P without a unit.
 ///
 /// ```no_run
 /// use surface_io::{Metric, write_map};

@@ -57,7 +57,6 @@ use hdf5_pure::{
 use std::collections::{HashSet, VecDeque};
 use std::io::Read as _;
 
-const MAGIC: &[u8] = b"\x89HDF\r\n\x1a\n";
 /// Groups inside groups, and objects, that are looked at: links may form loops.
 const DEEPEST: usize = 8;
 const MOST: usize = 1000;
@@ -74,12 +73,8 @@ const SIZE: &str = "size";
 const SIZE_UNIT: &str = "size_unit";
 const LABELS: &str = "DIMENSION_LABELS";
 
-/// Other programs put up to 512 bytes of their own before the file (MATLAB).
-pub(crate) const READER: Reader = Reader {
-    format: Format::Hdf5,
-    recognises: |start, _| start.starts_with(MAGIC) || start.get(512..).is_some_and(|s| s.starts_with(MAGIC)),
-    channels,
-};
+pub(crate) const READER: Reader =
+    Reader { format: Format::Hdf5, recognises: super::magic::is_hdf5, channels };
 
 fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
     let budget = Budget::new(source.length().saturating_mul(REREAD).saturating_add(LEAST));

@@ -1,5 +1,6 @@
 //! Notes of channels.
 
+#![cfg(all(feature = "hdf5", feature = "tiff", feature = "x3p"))]
 #![allow(clippy::unwrap_used)] // Tests, as a whole.
 
 use super::{READERS, mat, opdx};

@@ -40,18 +40,13 @@ use tiff::decoder::{ChunkType, Decoder, DecodingResult, Limits};
 use tiff::tags::Tag;
 use tiff::{ColorType, TiffError, TiffResult};
 
-/// The beginning of TIFF and of its kind for more than 4 GB, in either byte order.
-const MAGIC: [&[u8]; 4] = [b"II*\0", b"MM\0*", b"II+\0", b"MM\0+"];
 /// GDAL's mark of undefined points, as text.
 const NODATA: Tag = Tag::GdalNodata;
 /// Longest text or list in a directory, in bytes.
 const LONGEST: usize = 1 << 20;
 
-pub(crate) const READER: Reader = Reader {
-    format: Format::Tiff,
-    recognises: |start, _| MAGIC.iter().any(|magic| start.starts_with(magic)),
-    channels,
-};
+pub(crate) const READER: Reader =
+    Reader { format: Format::Tiff, recognises: super::magic::is_tiff, channels };
 
 /// A decoder that stands at the first image.
 fn open(source: &mut Source<'_>) -> Result<Decoder<impl Read + Seek>> {

@@ -19,20 +19,17 @@ mod write;
 
 pub use write::x3p;
 
+use super::magic::{self, MAIN};
 use super::prelude::*;
 use crate::error::Error;
 use crate::zip::{self, Member};
 use main_xml::{Axis, Main};
 
-/// The member that describes the others.
-const MAIN: &str = "main.xml";
 /// Bytes of it: a description has a few thousand, a list of a million heights as text about this many. It is
 /// unpacked as a whole.
 const LONGEST: u64 = 16 << 20;
 
-/// Every archive: its members tell whether it is an X3P file.
-pub(crate) const READER: Reader =
-    Reader { format: Format::X3p, recognises: |start, _| start.starts_with(zip::MAGIC), channels };
+pub(crate) const READER: Reader = Reader { format: Format::X3p, recognises: magic::is_archive, channels };
 
 /// Where the numbers are.
 enum Numbers {
@@ -44,10 +41,9 @@ enum Numbers {
 
 fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
     let members = zip::members(source)?;
-    // Archives that were packed by hand have everything in one folder.
-    let in_folder = |m: &&Member| m.name.split_once('/').is_some_and(|(_, name)| name == MAIN);
-    let found = members.iter().find(|m| m.name == MAIN).or_else(|| members.iter().find(in_folder));
-    let Some(main_member) = found else { return Err(source.content(zip::refused(&members))) };
+    let Some(main_member) = magic::main_member(&members) else {
+        return Err(source.content(zip::refused(&members)));
+    };
     let text = main_member.unpack_text(source, LONGEST)?;
     let Some(main) = Main::read(&text) else {
         return Err(source.content(zip::refused(&members)));

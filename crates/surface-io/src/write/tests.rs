@@ -1,3 +1,5 @@
+#![cfg(all(feature = "hdf5", feature = "x3p"))]
+
 use super::*;
 use crate::{Preprocessing, ReadOptions, Scan, Undefined};
 use proptest::prelude::*;
