@@ -40,7 +40,7 @@ fn rows() -> Vec<Row> {
 
 fn prepared() -> Box<dyn PreparedContact> {
     let declared = ReadOptions { size: "1".parse().ok(), ..ReadOptions::default() };
-    let scan = Scan::read(&data("surface_N256_Df2.4_seed1.npy"), &declared).unwrap();
+    let scan = Scan::read(data("surface_N256_Df2.4_seed1.npy"), &declared).unwrap();
     let map = scan.map(&Preprocessing::default()).unwrap();
     assert_eq!([map.columns(), map.rows()], [256, 256]);
     Bem3d { tolerance: 1e-8, ..Bem3d::default() }.prepare(&scene(map), 0).unwrap()
