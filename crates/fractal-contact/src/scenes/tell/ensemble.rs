@@ -107,9 +107,11 @@ pub(crate) fn means<'a>(scene: &SceneFile, units: &[SolvedUnit<'a>]) -> Vec<Mean
 }
 
 /// How many surfaces these means are of and what is told with them; empty where none is of several surfaces.
-pub(crate) fn words<'a>(means: impl Iterator<Item = &'a Mean> + Clone) -> String {
-    let several = || means.clone().map(|mean| mean.surfaces).filter(|surfaces| *surfaces > 1);
-    let (Some(few), Some(many)) = (several().min(), several().max()) else { return String::new() };
+pub(crate) fn words<'a>(means: impl Iterator<Item = &'a Mean>) -> String {
+    let counts: Vec<usize> = means.map(|mean| mean.surfaces).filter(|surfaces| *surfaces > 1).collect();
+    let (Some(few), Some(many)) = (counts.iter().copied().min(), counts.iter().copied().max()) else {
+        return String::new();
+    };
     let surfaces = if few == many { few.to_string() } else { format!("{few} to {many}") };
     format!("means over {surfaces} surfaces ± half of the 95 % interval, {}", distribution(few, many))
 }

@@ -238,14 +238,14 @@ impl Report<'_> {
                 views.extend(self.scene.requested.fields().filter_map(|(field, _)| {
                     let file =
                         FieldFile { field: field.name, model, surface, state: state.index, extension: "" };
-                    Some(View { view: field_pictures::view(out, file)?, field, model, state: Some(state) })
+                    Some(View { shown: field_pictures::view(out, file)?, field, model, state: Some(state) })
                 }));
             }
         }
         if let (Some(map), false) = (self.scene.surface.given_map(), views.iter().any(View::is_surface)) {
             let model = self.scene.models.first().map_or("", |model| model.name());
-            let view = FieldView::new(HEIGHTS.shown, map.cells(), map.heights());
-            views.insert(0, View { view, field: &HEIGHTS, model, state: None });
+            let shown = FieldView::new(HEIGHTS.shown, map.cells(), map.heights());
+            views.insert(0, View { shown, field: &HEIGHTS, model, state: None });
         }
         // The map first.
         views.sort_by_key(|view| !view.is_surface());
@@ -258,7 +258,7 @@ impl Report<'_> {
                 zeros += 1;
                 continue;
             }
-            let View { view: shown, field, model, state } = view;
+            let View { shown, field, model, state } = view;
             let mut picture =
                 field_pictures::picture(self.scene, field, model, (0, *state), shown.cells, &[]);
             picture.range = ranges.get(&(field.name, *model)).copied();
@@ -316,7 +316,7 @@ impl Report<'_> {
 
 /// What is shown of a field of a state.
 struct View<'a> {
-    view: FieldView,
+    shown: FieldView,
     field: &'static FieldQuantity,
     model: &'a str,
     /// None of the surface.
@@ -330,15 +330,15 @@ impl View<'_> {
 
     /// A traction before anything was moved, for example.
     fn is_zero(&self) -> bool {
-        !self.is_surface() && self.view.ends() == Some([0.0; 2])
+        !self.is_surface() && self.shown.ends() == Some([0.0; 2])
     }
 }
 
 /// The smallest and the largest value of each quantity in all states of a model.
 fn ranges<'a>(views: &[View<'a>]) -> BTreeMap<(&'static str, &'a str), (f64, f64)> {
     let mut ranges = BTreeMap::new();
-    for View { view, field, model, .. } in views {
-        let Some([low, high]) = view.ends().map(|ends| ends.map(f64::from)) else { continue };
+    for View { shown, field, model, .. } in views {
+        let Some([low, high]) = shown.ends().map(|ends| ends.map(f64::from)) else { continue };
         let range = ranges.entry((field.name, *model)).or_insert((low, high));
         *range = (low.min(range.0), high.max(range.1));
     }

@@ -304,17 +304,12 @@ pub(crate) fn of_models(scene: &SceneFile, units: &[SolvedUnit<'_>], means: &[Me
          -> Vec<Cell> {
             states().filter(|_| means().next().is_none()).map(of_state).chain(means().map(of_mean)).collect()
         };
-        let first = match prescribed {
-            Some((key, unit)) => {
-                let cells = column(&|record| scene.request.prescribed(record.index).into(), &|mean| {
-                    mean.prescribed.into()
-                });
-                (key, scene.system.unit(unit), cells)
-            }
-            None => {
-                let step = |index: usize| Cell::Word(index.to_string());
-                ("state", "", column(&|record| step(record.index), &|mean| step(mean.state)))
-            }
+        let first = if let Some((key, unit)) = prescribed {
+            let of_state = |record: &StateRecord| scene.request.prescribed(record.index).into();
+            (key, scene.system.unit(unit), column(&of_state, &|mean| mean.prescribed.into()))
+        } else {
+            let step = |index: usize| Cell::Word(index.to_string());
+            ("state", "", column(&|record| step(record.index), &|mean| step(mean.state)))
         };
         let rest = shown.iter().map(|of| {
             (of.name(), of.unit(scene), column(&|record| of.of_state(record), &|mean| of.of_mean(mean)))
@@ -374,14 +369,12 @@ fn of_paths(scene: &SceneFile, model: &str, units: &[SolvedUnit<'_>], mean: Opti
         });
         known.collect::<Vec<_>>().join(", ")
     };
-    let mut lines: Vec<String> = match mean {
-        Some(mean) => vec![line(&|shown| shown.of_mean(mean))],
-        None => {
-            let of_model = units.iter().filter(|unit| unit.model == model);
-            let ends =
-                of_model.filter_map(|unit| unit.states.iter().rfind(|record| record.solved().is_some()));
-            ends.map(|end| line(&|shown| shown.of_state(end))).collect()
-        }
+    let mut lines: Vec<String> = if let Some(mean) = mean {
+        vec![line(&|shown| shown.of_mean(mean))]
+    } else {
+        let of_model = units.iter().filter(|unit| unit.model == model);
+        let ends = of_model.filter_map(|unit| unit.states.iter().rfind(|record| record.solved().is_some()));
+        ends.map(|end| line(&|shown| shown.of_state(end))).collect()
     };
     lines.retain(|line| !line.is_empty());
     lines.into_iter().map(|line| format!("path as a whole: {line}")).collect()
@@ -432,8 +425,9 @@ mod tests {
             text.lines().next().map(str::trim_start),
             Some("tangential_    tangential_    tangential_    tangential_    tangential_")
         );
-        assert_eq!(text.matches("displacement_0").count(), text.lines().count() / 23);
+        // Two blocks: three lines of words and one of units above twenty rows in each.
+        assert_eq!((text.lines().count(), text.matches("[nm]").count()), (2 * 24, 10));
         let few = table_text(&heads[..2], &rows[..1].iter().map(|row| row[..2].to_vec()).collect::<Vec<_>>());
-        assert_eq!(few.lines().count(), 4, "{few}");
+        assert_eq!(few.lines().count(), 4 + 1, "{few}");
     }
 }
