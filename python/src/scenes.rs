@@ -59,7 +59,7 @@ impl SceneFile {
     }
 
     fn __repr__(&self) -> String {
-        format!("<SceneFile: {} by {}>", self.0.surface.describe(), self.models().join(", "))
+        format!("<SceneFile: {} by {}>", self.0.surface.describe(self.0.system), self.models().join(", "))
     }
 }
 

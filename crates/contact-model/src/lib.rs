@@ -60,6 +60,7 @@ mod scaling;
 mod scene;
 mod state;
 mod step;
+pub mod units;
 mod validation;
 mod value;
 mod work;

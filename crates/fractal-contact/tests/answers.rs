@@ -111,9 +111,9 @@ fn several_surfaces_have_a_mean_and_theories_one_surface() {
         max_relative = 1e-12
     );
     assert_eq!((at("surfaces", 0), at("surfaces", 2), at("stiffness_se", 2)), (Some(3.0), Some(1.0), None));
-    assert!(outcome.summary.contains("stiffness") && outcome.summary.contains(" %)"), "{}", outcome.summary);
+    assert!(outcome.summary.contains("stiffness") && outcome.summary.contains(" ± "), "{}", outcome.summary);
     let drawn = std::fs::read_to_string(dir.path().join("out/curve-stiffness.svg")).unwrap();
-    assert!(drawn.contains("standard errors"));
+    assert!(drawn.contains("95 % interval by Student") && drawn.contains("t with 2 degrees of freedom"));
     // The map of each surface, once.
     let maps = std::fs::read_dir(dir.path().join("out")).unwrap().flatten();
     let maps: Vec<_> = maps.filter(|e| e.file_name().to_string_lossy().starts_with("heights-")).collect();
@@ -183,13 +183,13 @@ fn an_accuracy_chooses_the_grid() {
     };
     let coarse = read(&map("60 %")).unwrap();
     assert!(
-        coarse.surface.describe().contains("a map of 20 x 15 cells")
-            || coarse.surface.describe().contains("40 x 30")
+        coarse.surface.describe(coarse.system).contains("a map of 20 x 15 cells")
+            || coarse.surface.describe(coarse.system).contains("40 x 30")
     );
     // The best is all cells, where the budget allows them; the run does not call it missed.
     let best = read(&map("best")).unwrap();
     let all = read(&map("best").replace("accuracy = \"best\"\n", "")).unwrap();
-    assert_eq!(best.surface.describe(), all.surface.describe());
+    assert_eq!(best.surface.describe(best.system), all.surface.describe(all.system));
     let notes: String = best.notes.iter().map(ToString::to_string).collect();
     assert!(notes.contains("the best accuracy within the budget: bem3d on "), "{notes}");
     let outcome = run(&best, &Plan::new(&best).unwrap(), &options, &Silent, &|| false).unwrap();

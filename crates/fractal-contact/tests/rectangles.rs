@@ -47,11 +47,11 @@ fn files_take_two_sides_or_the_sides_of_a_cell() {
         // Rows along y.
         assert_eq!((map.heights()[4], map.heights()[6]), (4e-6, f64::NEG_INFINITY));
         assert!(
-            scene.surface.describe().contains("a map of 4 x 3 cells, sides "),
+            scene.surface.describe(scene.system).contains("a map of 4 x 3 cells, sides "),
             "{}",
-            scene.surface.describe()
+            scene.surface.describe(scene.system)
         );
-        assert!(scene.surface.describe().ends_with("1 undefined points"));
+        assert!(scene.surface.describe(scene.system).ends_with("1 undefined points"));
         // The map is a tilted one as well.
         assert_eq!(scene.notes.len(), 1 + usize::from(keys.starts_with("width")));
     }
@@ -165,8 +165,8 @@ fn the_program_makes_and_tells_rectangles() {
     let path = |name: &str| dir.path().join(name).to_str().unwrap().to_owned();
     let told = [
         "cells              64 x 16",
-        "size               4e-3 x 1e-3",
-        "cell               6.25e-5 x 6.25e-5",
+        "size               4 mm x 1 mm",
+        "cell               62.5 um x 62.5 um",
     ];
     for name in ["s.txt", "s.xyz", "s.npy", "s.vti"] {
         let made = program(&[
@@ -186,13 +186,13 @@ fn the_program_makes_and_tells_rectangles() {
     for file in ["s.txt", "s.xyz"] {
         let (done, info) = program(&["info", &path(file)]);
         assert!(done && told.iter().all(|line| info.contains(line)), "{info}");
-        assert!(info.contains("size       0.004 m x 0.001 m (from the file)"), "{info}");
-        assert!(info.contains("rms height         1.000000e-6"), "{info}");
+        assert!(info.contains("size       4 mm x 1 mm (from the file)"), "{info}");
+        assert!(info.contains("rms height         1 um"), "{info}");
     }
     let (_, info) = program(&["info", &path("s.npy"), "--unit", "m", "--size", "4 mm x 1 mm"]);
     assert!(told.iter().all(|line| info.contains(line)) && info.contains("(as given)"), "{info}");
     let (_, info) = program(&["info", &path("s.npy"), "--unit", "m", "--cell", "1 um x 2 um"]);
-    assert!(info.contains("cell               1e-6 x 2e-6"), "{info}");
+    assert!(info.contains("cell               1 um x 2 um"), "{info}");
     let (done, text) = program(&["info", &path("s.npy"), "--size", "4 mm", "--unit", "m"]);
     assert!(!done && text.contains("there are 16 rows of 64"), "{text}");
     let oblong = program(&[
@@ -207,7 +207,7 @@ fn the_program_makes_and_tells_rectangles() {
         "--size",
         "4 x 1",
     ]);
-    assert!(oblong.0 && oblong.1.contains("cell               6.25e-2 x 1.5625e-2"), "{oblong:?}");
+    assert!(oblong.0 && oblong.1.contains("cell               0.0625 x 0.015625"), "{oblong:?}");
     let mixed = program(&["surface", &path("m.txt"), "--seed", "1", "--size", "4 mm x 1"]);
     assert!(!mixed.0 && mixed.1.contains("all lengths"), "{mixed:?}");
     std::fs::write(path("u.txt"), "# Width: 3 um\n# Height: 2 um\n# Value units: nm\n1 2 3\n4 nan 6\n")
@@ -236,7 +236,7 @@ fn a_rectangle_is_pressed() {
     let scene = SceneFile::parse(&dir.path().join("a.toml"), text.into()).unwrap_or_else(|e| panic!("{e}"));
     let options = Options { out: dir.path().into(), threads: 1, fresh: true };
     let plan = Plan::calibrated(&scene).unwrap_or_else(|e| panic!("{e}"));
-    assert!(plan.to_string().contains("24 x 8 cells of 1.0000e-6 x 5.0000e-7"), "{plan}");
+    assert!(plan.to_string().contains("24 x 8 cells of 1 um x 500 nm"), "{plan}");
     run(&scene, &plan, &options, &Silent, &contact_model::never).unwrap();
     let file = CsvFile::read(&dir.path().join("results.csv")).unwrap();
     let force = number(&file, "force");

@@ -127,8 +127,14 @@ fn compare(text: &str, file: &Path, [columns, rows]: [usize; 2]) {
     let (_, values) = bytes.split_at(bytes.len() - 8 * columns * rows);
     let (column, row): (usize, usize) = (word("column ").parse().unwrap(), word("row ").parse().unwrap());
     let value = f64::from_le_bytes(values[8 * (row * columns + column)..][..8].try_into().unwrap());
-    let read: f64 = text.split(' ').nth(1).unwrap().parse().unwrap();
-    // Seven digits are shown.
+    let mut words = text.split(' ').skip(1);
+    let (read, unit): (f64, &str) = (words.next().unwrap().parse().unwrap(), words.next().unwrap());
+    // Seven digits are shown, in the multiple of the unit that suits the field.
+    let (prefixes, plain) =
+        (["n", "µ", "m", "k", "M", "G"], ["m", "Pa"].into_iter().find(|plain| unit.ends_with(plain)));
+    let prefix = plain.and_then(|plain| unit.strip_suffix(plain)).unwrap_or_default();
+    let power = prefixes.iter().position(|p| *p == prefix).map_or(0, |i| [-9, -6, -3, 3, 6, 9][i]);
+    let read = read * 10f64.powi(power);
     assert!((read - value).abs() <= 5e-7 * value.abs(), "{text}: {value} in {}", file.display());
 }
 

@@ -318,7 +318,7 @@ fn a_path_that_pulls_off_ends_with_its_last_stable_state() {
     assert!(pull <= exact && exact <= pull + error);
     assert_eq!(before[column("pull_off_error")], "", "nothing is beyond it yet");
     assert_eq!(file.rows[1][column("pull_off")], "", "no pull: absent");
-    assert!(outcome.summary.contains("path as a whole: pull_off [scene] 4.000e-4"), "{}", outcome.summary);
+    assert!(outcome.summary.contains("path as a whole: pull_off 4e-4"), "{}", outcome.summary);
     let report = std::fs::read_to_string(out.join("report.html")).unwrap();
-    assert!(report.contains("path as a whole: pull off [scene] 4.000e-4"));
+    assert!(report.contains("path as a whole: pull off 4e-4"));
 }

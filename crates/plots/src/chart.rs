@@ -3,7 +3,8 @@
 use crate::axis::{Axis, linear, logarithmic};
 use crate::panels::Panels;
 use crate::plot::Picture;
-use crate::style::{COLORS, Key, LineStyle, Mark, SHAPES};
+use crate::style::{COLORS, Key, LineStyle, Mark, MarkShape, NEUTRAL, SHAPES};
+use contact_model::units::multiple;
 use files::Result;
 use std::path::{Path, PathBuf};
 
@@ -33,9 +34,37 @@ pub struct Chart {
     pub curves: Vec<Curve>,
     /// Whether logarithmic axes serve.
     pub logarithmic: bool,
+    /// Whether points follow each other in time: arrows along the lines, rings at the first points, and lines
+    /// through the origin.
+    pub directed: bool,
 }
 
 impl Chart {
+    /// The chart of numbers in these units of SI along x and y, in the multiples in which its largest numbers
+    /// are read; the units stand behind the labels. Without a unit, or with `1` or `-`, the numbers stay; so
+    /// they do in `scene`, the units of a scene that names none.
+    #[must_use]
+    pub fn in_units(mut self, [x, y]: [&str; 2]) -> Self {
+        let points = || self.curves.iter().flat_map(|curve| &curve.points);
+        let largest = |sizes: &mut dyn Iterator<Item = f64>| {
+            sizes.map(f64::abs).filter(|size| size.is_finite()).fold(0.0, f64::max)
+        };
+        let (x, per_x) = multiple(x, largest(&mut points().map(|point| point.0)));
+        let (y, per_y) = multiple(y, largest(&mut points().map(|point| point.1)));
+        for curve in &mut self.curves {
+            curve.points.iter_mut().for_each(|p| *p = (per_x * p.0, per_y * p.1));
+            curve.band.iter_mut().for_each(|p| *p = (per_x * p.0, per_y * p.1, per_y * p.2));
+        }
+        for (label, unit) in [(&mut self.x_label, x), (&mut self.y_label, y)] {
+            match unit.as_str() {
+                "" | "1" | "-" => {}
+                "scene" => *label += " (units of the scene)",
+                unit => *label += &format!(" ($\\rm{{{unit}}}$)"),
+            }
+        }
+        self
+    }
+
     /// Writes `NAME.svg` and `NAME.png`.
     ///
     /// # Errors
@@ -69,6 +98,9 @@ impl Chart {
         let mut picture = Picture::new(x, y, &self.x_label, &self.y_label)
             .with_title(&self.title)
             .with_subtitle(&self.subtitle);
+        if self.directed {
+            picture.zeros();
+        }
         let styles = COLORS.iter().zip(SHAPES).cycle();
         for (i, (curve, (color, shape))) in self.curves.iter().zip(styles).enumerate() {
             // Earlier curves are wider and their marks larger, so that they show where later ones lie on
@@ -83,8 +115,20 @@ impl Chart {
             if marked {
                 picture.points(&curve.points, color, 3.4 + 1.1 * above, mark);
             }
+            if self.directed {
+                picture.arrows(&curve.points, color);
+                picture.points(
+                    &curve.points[..curve.points.len().min(1)],
+                    color,
+                    9.0,
+                    Mark::Ring(MarkShape::Circle),
+                );
+            }
             let key = if marked { Key::Curve(mark) } else { Key::Line(LineStyle::Solid) };
             picture.legend(&curve.label, color, key);
+        }
+        if self.directed && self.curves.iter().any(|curve| !curve.points.is_empty()) {
+            picture.legend("first state", NEUTRAL, Key::Sized(Mark::Ring(MarkShape::Circle), 7.0));
         }
         picture
     }
@@ -141,10 +185,11 @@ mod tests {
             points in prop::collection::vec((number(), number()), 0..5),
             band in prop::collection::vec((number(), number(), number()), 0..4),
             logarithmic in any::<bool>(),
+            directed in any::<bool>(),
         ) {
             let errors: Vec<(f64, f64, Option<f64>)> = band.iter().map(|&(x, y, e)| (x, y, Some(e))).collect();
             let curve = Curve { label: "a".into(), points, band };
-            let chart = Chart { curves: vec![curve], logarithmic, ..Chart::default() };
+            let chart = Chart { curves: vec![curve], logarithmic, directed, ..Chart::default() };
             let mut picture = chart.picture();
             picture.errors(&errors, "#000000");
             let fonts = crate::text::Fonts::load().unwrap();
@@ -154,6 +199,26 @@ mod tests {
             prop_assert!(!svg.contains("NaN") && !svg.contains("inf"), "{svg}");
             prop_assert!(drawing.png(&fonts, path).is_ok());
         }
+    }
+
+    #[test]
+    fn axes_have_units_that_suit_their_numbers() {
+        let curve = Curve {
+            points: vec![(1e6, 2e-12), (1e8, 1.7e-10)],
+            band: vec![(1e8, 1e-10, 2e-10)],
+            ..Curve::default()
+        };
+        let chart =
+            Chart { x_label: "p".into(), y_label: "A".into(), curves: vec![curve], ..Chart::default() };
+        let shown = chart.clone().in_units(["Pa", "m^2"]);
+        assert_eq!((shown.x_label.as_str(), shown.y_label.as_str()), ("p ($\\rm{MPa}$)", "A ($\\rm{µm^2}$)"));
+        let near =
+            |found: f64, wanted: f64| assert!((found / wanted - 1.0).abs() < 1e-12, "{found} {wanted}");
+        near(shown.curves[0].points[1].0, 100.0);
+        near(shown.curves[0].points[1].1, 170.0);
+        near(shown.curves[0].band[0].2, 200.0);
+        assert_eq!(chart.clone().in_units(["1", ""]), chart);
+        assert_eq!(chart.in_units(["scene", "-"]).x_label, "p (units of the scene)");
     }
 
     #[test]

@@ -1,20 +1,121 @@
 //! Values as colours.
 
-use crate::map::encode_rgb;
+use crate::map::{encode_rgb, share};
+use contact_model::Shown;
 use files::Result;
 use std::path::Path;
 
 /// Undefined points.
 pub(crate) const UNDEFINED: [u8; 3] = [205, 205, 205];
+/// A field has two signs where the lesser one reaches this share of the other; below, it is rounding.
+const TWO_SIGNS: f64 = 1e-3;
 
-/// 256 colours of viridis, which is even to the eye and to that of the colour-blind, from the lowest to the
-/// highest value.
+/// Colours from the lowest to the highest value, even to the eye.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Palette {
+    /// Viridis, which is even to the eye of the colour-blind too.
+    Viridis,
+    /// Blue below zero, white at it, red above.
+    BlueRed,
+}
+
+impl Palette {
+    /// All of them.
+    pub const ALL: [Self; 2] = [Self::Viridis, Self::BlueRed];
+
+    /// The colour at 0, the lowest value, to 1.
+    fn at(self, t: f64) -> [u8; 3] {
+        match self {
+            Self::Viridis => colorous::VIRIDIS.eval_continuous(t).into_array(),
+            Self::BlueRed => colorous::RED_BLUE.eval_continuous(1.0 - t).into_array(),
+        }
+    }
+
+    /// 256 colours from the lowest to the highest value.
+    pub fn colours(self) -> [[u8; 3]; 256] {
+        std::array::from_fn(|i| self.at(i as f64 / 255.0))
+    }
+}
+
+/// Which colour a value has.
+///
+/// ```
+/// use contact_model::Shown;
+/// use plots::{ColourScale, Palette};
+/// let scale = ColourScale::new((-1.0, 3.0), Shown::Middle, true);
+/// assert_eq!((scale.ends(), scale.palette()), ((-3.0, 3.0), Palette::BlueRed));
+/// assert_eq!(ColourScale::new((2.0, 3.0), Shown::Largest, true).ends(), (0.0, 3.0));
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ColourScale {
+    low: f64,
+    high: f64,
+    palette: Palette,
+    zero_is_white: bool,
+}
+
+impl ColourScale {
+    /// Of values in this range. Viridis from end to end, from 0 under [`Shown::Largest`], where zero is white;
+    /// of a `signed` field with values of both signs blue to red, as far on either side of a white zero.
+    pub fn new((low, high): (f64, f64), shown: Shown, signed: bool) -> Self {
+        let zero_is_white = shown == Shown::Largest;
+        let (least, most) = (low.abs().min(high.abs()), low.abs().max(high.abs()));
+        if signed && low < 0.0 && high > 0.0 && least >= TWO_SIGNS * most && most.is_finite() {
+            return Self { low: -most, high: most, palette: Palette::BlueRed, zero_is_white };
+        }
+        let low = if zero_is_white { low.min(0.0) } else { low };
+        Self { low, high, palette: Palette::Viridis, zero_is_white }
+    }
+
+    /// The scale of a constant with room around it.
+    pub(crate) fn widened(self) -> Self {
+        let room = if self.high > self.low { 0.0 } else { self.high.abs().max(f64::MIN_POSITIVE) };
+        Self { low: (self.low - room).max(-f64::MAX), high: (self.high + room).min(f64::MAX), ..self }
+    }
+
+    /// The lowest and the highest value.
+    pub fn ends(self) -> (f64, f64) {
+        (self.low, self.high)
+    }
+
+    /// From the lowest to the highest value.
+    pub fn palette(self) -> Palette {
+        self.palette
+    }
+
+    /// Whether zero has no colour.
+    pub fn zero_is_white(self) -> bool {
+        self.zero_is_white
+    }
+
+    /// The colour of a value; undefined ones are grey, a scale without a length has its middle colour.
+    pub fn colour(self, value: f64) -> [u8; 3] {
+        match value {
+            v if !v.is_finite() => UNDEFINED,
+            v if self.zero_is_white && v.abs() <= 0.0 => [255; 3],
+            v if self.high > self.low => self.palette.at(share(v, self.low, self.high).clamp(0.0, 1.0)),
+            _ => self.palette.at(0.5),
+        }
+    }
+
+    /// A PNG with a pixel for each value, the last row on top.
+    ///
+    /// # Errors
+    /// [`crate::Error::Content`] where the encoder refuses.
+    pub fn encode(self, columns: usize, values: &[f32]) -> Result<Vec<u8>> {
+        let colour = |v: &f32| self.colour(f64::from(*v));
+        let pixels: Vec<[u8; 3]> = values.chunks(columns.max(1)).rev().flatten().map(colour).collect();
+        encode_rgb(Path::new("a picture"), columns, &pixels.into_flattened())
+    }
+}
+
+/// 256 colours of viridis, from the lowest to the highest value.
 ///
 /// ```
 /// assert_eq!(plots::viridis()[0], [68, 1, 84]);
 /// ```
 pub fn viridis() -> [[u8; 3]; 256] {
-    std::array::from_fn(|i| colorous::VIRIDIS.eval_rational(i, 256).into_array())
+    Palette::Viridis.colours()
 }
 
 /// A PNG with a pixel for each value, the last row on top: viridis from the lowest to the highest of the
@@ -28,13 +129,29 @@ pub fn encode_viridis(
     [low, high]: [f32; 2],
     zero_is_white: bool,
 ) -> Result<Vec<u8>> {
-    let colours = viridis();
-    let colour = |v: &f32| match *v {
-        v if !v.is_finite() => UNDEFINED,
-        v if zero_is_white && v.abs() <= 0.0 => [255; 3],
-        v if high > low => colours[(256.0 * ((v - low) / (high - low)).clamp(0.0, 1.0)).min(255.0) as usize],
-        _ => colours[128],
-    };
-    let pixels: Vec<[u8; 3]> = values.chunks(columns.max(1)).rev().flatten().map(colour).collect();
-    encode_rgb(Path::new("a picture"), columns, &pixels.into_flattened())
+    let (low, high) = (f64::from(low), f64::from(high));
+    ColourScale { low, high, palette: Palette::Viridis, zero_is_white }.encode(columns, values)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn zero_is_in_the_middle_where_a_field_has_signs() {
+        let scale = ColourScale::new((-2.0, 6.0), Shown::Largest, true);
+        let [r, g, b] = scale.colour(1e-9);
+        assert!(r.min(g).min(b) > 235, "{r} {g} {b}");
+        let ([low, .., blue], [red, .., high]) = (scale.colour(-6.0), scale.colour(6.0));
+        assert!(blue > low && red > high && scale.colour(0.0) == [255; 3]);
+        // Rounding is no sign, and neither has a height one.
+        for (range, signed) in [((-1e-9, 6.0), true), ((-2.0, 6.0), false), ((2.0, 6.0), true)] {
+            let scale = ColourScale::new(range, Shown::Middle, signed);
+            assert_eq!((scale.palette(), scale.ends()), (Palette::Viridis, range));
+        }
+        let nothing = ColourScale::new((f64::INFINITY, f64::NEG_INFINITY), Shown::Middle, true);
+        assert_eq!(nothing.colour(f64::NAN), UNDEFINED);
+        let constant = ColourScale::new((3.0, 3.0), Shown::Middle, true).widened();
+        assert_eq!((constant.ends(), constant.colour(3.0)), ((0.0, 6.0), Palette::Viridis.at(0.5)));
+    }
 }

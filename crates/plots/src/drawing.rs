@@ -85,8 +85,9 @@ impl Drawing {
 
     /// A title and a line below it, of its own size, at the top from so far across.
     pub fn heading(&mut self, fonts: &Fonts, title: &str, (subtitle, size): (&str, f64), across: f64) {
-        self.label(fonts.typeset(title, 19.0), (across, 27.0), Anchor::Start, false, INK);
-        self.label(fonts.typeset(subtitle, size), (across, 49.0), Anchor::Start, false, NEUTRAL);
+        let room = self.width - across;
+        self.label(fonts.fitted(title, 19.0, room), (across, 27.0), Anchor::Start, false, INK);
+        self.label(fonts.fitted(subtitle, size, room), (across, 49.0), Anchor::Start, false, NEUTRAL);
     }
 
     /// Colours of three bytes in rows of so many, first row on top, stretched over a rectangle.

@@ -1,13 +1,12 @@
 //! A field over a rectangle: axes, colour bar and title.
 
 use crate::axis::Axis;
-use crate::colours::UNDEFINED;
+use crate::colours::ColourScale;
 use crate::drawing::{Anchor, Drawing, Paint, Rectangle, polygon, polyline};
 use crate::frame::{Frame, Side, TickStyle};
-use crate::map::share;
 use crate::style::INK;
 use crate::text::Fonts;
-use crate::unit_prefix::prefixed;
+use contact_model::units::multiple;
 use contact_model::{Cells, Shown, Size};
 use files::{Error, Result};
 use std::ops::Range;
@@ -34,6 +33,8 @@ pub struct FieldPicture<'a> {
     pub values: &'a [f64],
     /// Which value a pixel shows.
     pub shown: Shown,
+    /// Whether zero parts two signs, such as pressures from tensions: a field that has both is blue to red.
+    pub signed: bool,
     /// Ends of the colour scale, so that several pictures share one; `None`: those of the values.
     pub range: Option<(f64, f64)>,
     /// Cells in contact, which are outlined; empty for none.
@@ -82,9 +83,17 @@ impl FieldPicture<'_> {
         finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)))
     }
 
-    /// Writes a PNG, y upwards. The colours are viridis, from the smallest to the largest value (from 0 under
-    /// [`Shown::Largest`], where zero is white) or over the range given; undefined points are grey, the
-    /// contact has a red outline. Under [`Shown::Largest`] a field of which less than 2 % of the pixels are
+    /// The colours of its values: those of the range or of the classes.
+    pub fn scale(&self) -> ColourScale {
+        let range = match self.classes.len() {
+            0 => self.range.unwrap_or_else(|| Self::ends(self.values)),
+            count => (0.0, (count - 1) as f64),
+        };
+        ColourScale::new(range, self.shown, self.signed)
+    }
+
+    /// Writes a PNG, y upwards. The colours are those of [`FieldPicture::scale`]; undefined points are grey,
+    /// the contact has a red outline. Under [`Shown::Largest`] a field of which less than 2 % of the pixels are
     /// above zero has each of these drawn three pixels wide. Arrows have one length; each stands in the middle
     /// of what it is the sum of, weighted by magnitude.
     ///
@@ -114,24 +123,14 @@ impl FieldPicture<'_> {
         let [w, h] = [size.x, size.y].map(|side| SIDE * (side / longer).max(0.05));
         let mut drawing = Drawing::new(LEFT + w + RIGHT, TOP + h.max(160.0) + BELOW);
         let frame = [LEFT, TOP, w, h];
-        let (low, high) = match self.classes.len() {
-            0 => self.range.unwrap_or_else(|| Self::ends(self.values)),
-            count => (0.0, (count - 1) as f64),
-        };
-        let low = if self.shown == Shown::Largest { low.min(0.0) } else { low };
-        // A constant has a scale around it.
-        let room = if high > low { 0.0 } else { high.abs().max(f64::MIN_POSITIVE) };
-        let (low, high) = ((low - room).max(-f64::MAX), (high + room).min(f64::MAX));
-        let color = |v: f64| match v {
-            v if !v.is_finite() => UNDEFINED,
-            v if self.shown == Shown::Largest && v.abs() <= 0.0 => [255; 3],
-            v => colorous::VIRIDIS.eval_continuous(share(v, low, high)).into_array(),
-        };
+        let scale = self.scale().widened();
+        let (low, high) = scale.ends();
+        let color = |v: f64| scale.colour(v);
         let [columns, rows] = [w, h].map(|side| (side * PIXELS).round() as usize);
         let image = self.image(columns, rows, color).into_flattened();
         drawing.image(frame, image, columns);
         self.draw_arrows(&mut drawing, frame);
-        let (length_unit, per_length) = prefixed(self.length_unit, longer);
+        let (length_unit, per_length) = multiple(self.length_unit, longer);
         let map = Frame { fonts: &fonts, place: frame, style: TICKS };
         map.axis(&mut drawing, Side::Below, Axis::Linear(0.0, per_length * size.x), None);
         map.axis(&mut drawing, Side::Left, Axis::Linear(0.0, per_length * size.y), None);
@@ -155,13 +154,13 @@ impl FieldPicture<'_> {
             color(low * t + high * (1.0 - t))
         };
         drawing.image(bar, (0..steps).flat_map(ramp).collect(), 1);
-        let (unit, per_unit) = prefixed(self.unit, low.abs().max(high.abs()));
+        let (unit, per_unit) = multiple(self.unit, low.abs().max(high.abs()));
         let style = TickStyle { beside: [9.0, 0.5 * TICK], ..TICKS };
-        let scale = Frame { fonts: &fonts, place: bar, style };
-        scale.axis(&mut drawing, Side::Right, Axis::Linear(per_unit * low, per_unit * high), None);
-        scale.outline(&mut drawing, 1.2);
+        let beside = Frame { fonts: &fonts, place: bar, style };
+        beside.axis(&mut drawing, Side::Right, Axis::Linear(per_unit * low, per_unit * high), None);
+        beside.outline(&mut drawing, 1.2);
         let words = LEFT + w + RIGHT - 0.6 * TICK;
-        scale.name_beside(&mut drawing, &with(&self.quantity, &unit), NAME, words);
+        beside.name_beside(&mut drawing, &with(&self.quantity, &unit), NAME, words);
         drawing.heading(&fonts, &self.title, (&self.subtitle, 15.0), LEFT);
         files::write_whole(path, &drawing.png(&fonts, path)?)
     }
@@ -307,6 +306,7 @@ mod tests {
             size,
             values,
             shown,
+            signed: false,
             range: None,
             contact,
             arrows: None,
@@ -344,7 +344,7 @@ mod tests {
             &[(0.15, 0.25), (0.5, 0.25), (0.85, 0.25), (0.15, 0.75), (0.5, 0.75)],
         );
         let viridis = |t| colorous::VIRIDIS.eval_continuous(t).into_array();
-        assert_eq!(found, [[255; 3], UNDEFINED, viridis(0.5), viridis(1.0), [255; 3]]);
+        assert_eq!(found, [[255; 3], crate::colours::UNDEFINED, viridis(0.5), viridis(1.0), [255; 3]]);
         // One of a million cells.
         let mut values = vec![0.0; 2000 * 2000];
         values[1000 * 2000 + 500] = 1.0;

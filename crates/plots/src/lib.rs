@@ -29,11 +29,10 @@ mod panels;
 mod plot;
 mod style;
 mod text;
-mod unit_prefix;
 
 pub use axis::{Axis, extent, linear, logarithmic};
 pub use chart::{Chart, Curve};
-pub use colours::{encode_viridis, viridis};
+pub use colours::{ColourScale, Palette, encode_viridis, viridis};
 pub use field::FieldPicture;
 pub use files::{Error, Result};
 pub use legend::Legend;
@@ -43,4 +42,3 @@ pub use panels::Panels;
 pub use plot::Picture;
 pub use style::{COLORS, Key, LineStyle, Mark, MarkShape, NEUTRAL, REFERENCE, SHAPES, color, shape};
 pub use text::number;
-pub use unit_prefix::prefixed;

@@ -48,6 +48,8 @@ enum Drawn {
     Line { points: Vec<(f64, f64)>, color: String, width: f64, style: LineStyle },
     Points { points: Vec<(f64, f64)>, color: String, radius: f64, mark: Mark },
     Band { points: Vec<(f64, f64, f64)>, color: String },
+    Arrows { points: Vec<(f64, f64)>, color: String },
+    Zeros,
     Bars { points: Vec<(f64, f64, f64)>, color: String },
 }
 
@@ -120,6 +122,16 @@ impl Picture {
         self.drawn.push(Drawn::Band { points: points.to_vec(), color: color.to_owned() });
     }
 
+    /// Heads of arrows along a line through the points, in their order.
+    pub fn arrows(&mut self, points: &[(f64, f64)], color: &str) {
+        self.drawn.push(Drawn::Arrows { points: points.to_vec(), color: color.to_owned() });
+    }
+
+    /// Thin lines through the origin, where the axes have a place for them inside.
+    pub fn zeros(&mut self) {
+        self.drawn.push(Drawn::Zeros);
+    }
+
     /// Vertical bars of (x, value, half width), with short ends.
     pub fn errors(&mut self, points: &[(f64, f64, Option<f64>)], color: &str) {
         let bar = |&(x, y, e): &(f64, f64, Option<f64>)| e.map(|e| (x, y - e, y + e));
@@ -135,7 +147,7 @@ impl Picture {
     /// Whether nothing is drawn between the axes.
     pub fn is_empty(&self) -> bool {
         self.drawn.iter().all(
-            |d| matches!(d, Drawn::Points { points, .. } | Drawn::Line { points, .. } if points.is_empty()),
+            |d| matches!(d, Drawn::Points { points, .. } | Drawn::Line { points, .. } | Drawn::Arrows { points, .. } if points.is_empty()),
         )
     }
 
@@ -245,6 +257,37 @@ impl Picture {
                     drawing.path(polygon(&corners), Paint::filled(color, 0.25), Some(frame));
                 }
             }
+            Drawn::Arrows { points, color } => {
+                let places: Vec<(f64, f64)> = points.iter().filter_map(|p| place(*p)).collect();
+                let [left, top, w, h] = frame;
+                let inside = |&((x, y), _): &((f64, f64), (f64, f64))| {
+                    (left..=left + w).contains(&x) && (top..=top + h).contains(&y)
+                };
+                for (tip, (dx, dy)) in arrow_heads(&places).into_iter().filter(inside) {
+                    let corner = |along: f64, aside: f64| {
+                        (tip.0 + along * dx - aside * dy, tip.1 + along * dy + aside * dx)
+                    };
+                    let corners = [
+                        corner(0.5 * HEAD, 0.0),
+                        corner(-0.5 * HEAD, 0.4 * HEAD),
+                        corner(-0.5 * HEAD, -0.4 * HEAD),
+                    ];
+                    drawing.path(polygon(&corners), Paint::filled(color, 1.0), Some(frame));
+                }
+            }
+            Drawn::Zeros => {
+                let inside = |axis: Axis| matches!(axis, Axis::Linear(low, high) if low < 0.0 && high > 0.0);
+                let [left, top, w, h] = frame;
+                let mut line = |ends: [(f64, f64); 2]| {
+                    drawing.path(polyline(&ends), Paint::stroked("#b8bcc2", 1.0), Some(frame));
+                };
+                if let Some(x) = self.axes[0].place(0.0).filter(|_| inside(self.axes[0])) {
+                    line([(left + x * w, top), (left + x * w, top + h)]);
+                }
+                if let Some(y) = self.axes[1].place(0.0).filter(|_| inside(self.axes[1])) {
+                    line([(left, top + (1.0 - y) * h), (left + w, top + (1.0 - y) * h)]);
+                }
+            }
             Drawn::Bars { points, color } => {
                 /// Half the width of the ends.
                 const END: f64 = 3.5;
@@ -278,13 +321,39 @@ impl Picture {
         frame.name_below(drawing, &self.labels[0], LABEL * scale, below);
         frame.name_beside(drawing, &self.labels[1], LABEL * scale, corner.0 + 1.15 * LABEL * scale);
         let mut above = y - 0.6 * WORDS * scale;
+        let room = corner.0 + self.size.0 - x;
         if !self.subtitle.is_empty() {
-            let set = fonts.typeset(&self.subtitle, WORDS * scale);
+            let set = fonts.fitted(&self.subtitle, WORDS * scale, room);
             drawing.label(set, (x, above), Anchor::Start, false, NEUTRAL);
             above -= 1.4 * WORDS * scale;
         }
-        drawing.label(fonts.typeset(&self.title, TITLE * scale), (x, above), Anchor::Start, false, INK);
+        drawing.label(fonts.fitted(&self.title, TITLE * scale, room), (x, above), Anchor::Start, false, INK);
     }
+}
+
+/// Length of the head of an arrow, and from one to the next along a line.
+const HEAD: f64 = 13.0;
+const BETWEEN: f64 = 130.0;
+
+/// Middles and directions of arrow heads along a line: the first after half the distance between two, each in
+/// the middle of its straight piece where that is shorter.
+fn arrow_heads(places: &[(f64, f64)]) -> Vec<((f64, f64), (f64, f64))> {
+    let mut heads = Vec::new();
+    let mut rest = 0.5 * BETWEEN;
+    for pair in places.windows(2) {
+        let (dx, dy) = (pair[1].0 - pair[0].0, pair[1].1 - pair[0].1);
+        let length = dx.hypot(dy);
+        let mut at = rest;
+        while at < length {
+            // Beside the marks at the ends of a piece.
+            let along =
+                at.clamp((1.2 * HEAD).min(0.5 * length), (length - 1.2 * HEAD).max(0.5 * length)) / length;
+            heads.push(((pair[0].0 + along * dx, pair[0].1 + along * dy), (dx / length, dy / length)));
+            at += BETWEEN;
+        }
+        rest = at - length;
+    }
+    heads
 }
 
 /// Points every few units of a straight line, for what must not be covered.
@@ -316,6 +385,22 @@ mod tests {
         picture.band(&[(0.1, 0.0, 0.1), (1.0, 0.1, 0.2)], "#aa0000");
         picture.legend("$D_f$ = 2", "#aa0000", Key::Curve(Mark::Solid(MarkShape::Circle)));
         picture
+    }
+
+    #[test]
+    fn arrows_are_spread_along_a_line() {
+        // Two sides of a square to the right and down.
+        let heads = arrow_heads(&[(0.0, 0.0), (400.0, 0.0), (400.0, 400.0)]);
+        assert_eq!(heads.len(), 6);
+        assert!(heads[..3].iter().all(|head| head.1 == (1.0, 0.0) && head.0.1 == 0.0));
+        assert!(heads[3..].iter().all(|head| head.1 == (0.0, 1.0) && head.0.0 == 400.0));
+        assert_eq!(heads[0].0, (0.5 * BETWEEN, 0.0));
+        // Short pieces have one in their middle, now and then; points upon each other none.
+        let short: Vec<(f64, f64)> = (0..50).map(|i| (10.0 * f64::from(i), 0.0)).collect();
+        let heads = arrow_heads(&short);
+        assert_eq!(heads.len(), 4);
+        assert!(heads.iter().all(|head| (head.0.0 % 10.0 - 5.0).abs() < 1e-9), "{heads:?}");
+        assert!(arrow_heads(&[(1.0, 1.0); 3]).is_empty() && arrow_heads(&[]).is_empty());
     }
 
     #[test]

@@ -93,6 +93,12 @@ impl Fonts {
         self.typeset(&format!("$×10^{{{power}}}$"), size)
     }
 
+    /// Sets a label in one line, smaller where it would be wider than this, down to six tenths of its size.
+    pub fn fitted(&self, label: &str, size: f64, width: f64) -> Typeset {
+        let set = self.typeset(label, size);
+        if set.width <= width { set } else { self.typeset(label, size * (width / set.width).max(0.6)) }
+    }
+
     /// Sets a label in one line.
     pub fn typeset(&self, label: &str, size: f64) -> Typeset {
         let mut line = LineOfText { fonts: self, set: Typeset::default(), lean: 0.0 };

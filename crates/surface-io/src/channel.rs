@@ -7,6 +7,7 @@ use crate::number_type::NumberType;
 use crate::options::Axes;
 use crate::quantity::{Dimension, QuantityError, Unit};
 use crate::source::Source;
+use contact_model::units::number;
 use files::escaped;
 
 /// Unit of a channel's values as the file says it.
@@ -419,7 +420,7 @@ impl StoredChannel {
     pub(crate) fn note_sides(&mut self, sides: [Option<f64>; 2], unit: &str) {
         if let ([None, None], [Some(x), Some(y)]) = (self.extent, sides) {
             let unit = if unit.is_empty() { "without a unit" } else { unit };
-            self.note(format!("the file has sides {x:e} x {y:e} {unit}, which is no length"));
+            self.note(format!("the file has sides {} x {} {unit}, which is no length", number(x), number(y)));
         }
     }
 

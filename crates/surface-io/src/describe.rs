@@ -1,5 +1,6 @@
 //! What a map holds.
 
+use contact_model::units::{ascii, short, to_digits};
 use contact_model::{Cells, HeightMap, Size};
 use std::f64::consts::TAU;
 use std::fmt;
@@ -7,7 +8,8 @@ use surface_gen::{
     fit_range, hurst_from_spectrum, radial_spectrum, rms_height, rms_slope_differences, windowed,
 };
 
-/// Numbers that describe a map, in its own unit of length.
+/// Numbers that describe a map, in its own unit of length; as text in that which suits them where the unit is
+/// metres ([`Description::in_metres`]).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Description {
     /// Columns and rows.
@@ -29,6 +31,8 @@ pub struct Description {
     pub hurst: Result<f64, Absent>,
     /// Wavenumbers from and to which the exponent was fitted.
     pub fitted: [f64; 2],
+    /// `m` where lengths are in metres, else empty.
+    unit: &'static str,
 }
 
 /// Why a map has no Hurst exponent.
@@ -65,6 +69,12 @@ impl Description {
     /// (within 0.1, the error of a fit).
     pub fn fractal_dimension(&self) -> Option<f64> {
         self.hurst.ok().map(|h| 3.0 - h).filter(|d| (1.9..=3.1).contains(d))
+    }
+
+    /// The description of a map in metres, whose text has units.
+    #[must_use]
+    pub fn in_metres(self) -> Self {
+        Self { unit: "m", ..self }
     }
 
     /// The description without the straight-line fit of the exponent: where a fit with an interval is told
@@ -119,6 +129,7 @@ pub fn describe(map: &HeightMap) -> Description {
         spectrum,
         hurst,
         fitted,
+        unit: "",
     }
 }
 
@@ -127,23 +138,23 @@ impl fmt::Display for Description {
         let [low, high] = self.range;
         let Cells { columns, rows } = self.cells;
         let Size { x, y } = self.size;
+        let length = |value: f64| ascii(&to_digits(value, self.unit, 7));
+        let about = |value: f64| ascii(&to_digits(value, self.unit, 4));
         writeln!(f, "cells              {columns} x {rows} (columns x rows)")?;
-        // Seven digits, without the zeros at their end.
-        let short = |v: f64| format!("{v:.6e}").parse().unwrap_or(v);
-        writeln!(f, "size               {:e} x {:e}", short(x), short(y))?;
-        writeln!(f, "cell               {:e} x {:e}", short(x / columns as f64), short(y / rows as f64))?;
+        writeln!(f, "size               {} x {}", length(x), length(y))?;
+        writeln!(f, "cell               {} x {}", length(x / columns as f64), length(y / rows as f64))?;
         writeln!(f, "undefined points   {} of {}", self.undefined, columns * rows)?;
-        writeln!(f, "range of heights   {low:.6e} to {high:.6e}")?;
-        writeln!(f, "rms height         {:.6e}", self.rms_height)?;
-        write!(f, "rms slope          {:.6e}", self.rms_slope)?;
-        let [longest, shortest] = self.fitted.map(|q| TAU / q);
+        writeln!(f, "range of heights   {} to {}", about(low), about(high))?;
+        writeln!(f, "rms height         {}", about(self.rms_height))?;
+        write!(f, "rms slope          {}", short(self.rms_slope))?;
+        let [longest, shortest] = self.fitted.map(|q| about(TAU / q));
         match (self.fractal_dimension(), self.hurst) {
             (Some(d), _) => {
-                write!(f, "\nfractal dimension  {d:.3} (waves of length {longest:.3e} to {shortest:.3e})")?;
+                write!(f, "\nfractal dimension  {d:.3} (waves of length {longest} to {shortest})")?;
             }
             (None, Ok(h)) => write!(
                 f,
-                "\nfractal dimension  none: C_2D of waves of length {longest:.3e} to {shortest:.3e} goes as q^{:.1}, that of a \
+                "\nfractal dimension  none: C_2D of waves of length {longest} to {shortest} goes as q^{:.1}, that of a \
                  self-affine surface as q^-4 to q^-2",
                 -2.0 * (h + 1.0)
             )?,
@@ -156,7 +167,8 @@ impl fmt::Display for Description {
         // Rings 1, 2, 4, ...: one for each octave.
         for ring in (0..).map(|k| 1_usize << k).take_while(|&ring| ring <= self.spectrum.len()) {
             let (q, c) = self.spectrum[ring - 1];
-            write!(f, "\n                   {:.3e}  {c:.3e}", TAU / q)?;
+            let density = if self.unit.is_empty() { String::new() } else { format!(" {}^4", self.unit) };
+            write!(f, "\n                   {:9}  {c:.3e}{density}", about(TAU / q))?;
         }
         Ok(())
     }

@@ -2,6 +2,7 @@
 
 use crate::format::Format;
 use crate::quantity::{Quantity, QuantityError};
+use contact_model::units::number;
 use files::Escaping;
 use std::fmt::{self, Write as _};
 use std::io;
@@ -480,7 +481,8 @@ pub enum ContentError {
     },
     /// A cut-off wavelength across the scan lines that the map does not have.
     #[error(
-        "filter_across = {value:e}: expected a wavelength from {least:e}, four cells, to {side:e}, the side of the map across the scan lines"
+        "filter_across = {}: expected a wavelength from {}, four cells, to {}, the side of the map across the scan lines",
+        number(*.value), number(*.least), number(*.side)
     )]
     CutOff {
         /// The cut-off.

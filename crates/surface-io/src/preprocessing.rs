@@ -16,6 +16,7 @@ use crate::error::{ContentError, Error, Place, Result};
 use crate::keyword::{KeywordError, keywords};
 use crate::quantity::{Dimension, Quantity, Unit};
 use crate::scan::Scan;
+use contact_model::units::{five, number};
 use contact_model::{Cells, HeightMap, Size};
 use std::str::FromStr;
 use surface_gen::{hann_window, rms_height};
@@ -311,9 +312,9 @@ impl Scan {
             form.subtract(&mut heights);
             let radius = form.radius();
             steps.push(format!(
-                "the {} of least squares subtracted: radius {:e} ({})",
+                "the {} of least squares subtracted: radius {} ({})",
                 preprocessing.detrend.word(),
-                radius.abs(),
+                number(radius.abs()),
                 if radius > 0.0 { "a hill" } else { "a hollow" }
             ));
         }
@@ -355,7 +356,7 @@ impl Scan {
         let found = tip::reliable_from(cells, cell, heights, value);
         let step = match found {
             Some(distance) if distance > 0.0 => {
-                format!("with a tip of radius {radius}, heights are reliable from {distance:e} on")
+                format!("with a tip of radius {radius}, heights are reliable from {} on", number(distance))
             }
             Some(_) => format!("with a tip of radius {radius}, heights are reliable at all distances"),
             None => format!("with a tip of radius {radius}, heights are reliable at no distance"),
@@ -384,7 +385,9 @@ impl Scan {
         scan_lines::filter_across(cells, value / dy, heights);
         let after = rms(heights);
         Ok(format!(
-            "filtered across the scan lines, cut-off {cut_off}: rms height {before:.4e} before, {after:.4e} after"
+            "filtered across the scan lines, cut-off {cut_off}: rms height {} before, {} after",
+            five(before),
+            five(after)
         ))
     }
 
@@ -560,7 +563,9 @@ fn windowed(
     };
     let [before, after] = [&map, &tapered].map(|map| rms_height(map.heights()));
     steps.push(format!(
-        "deviations from the mean tapered by Hann's window over its rms: rms height {before:.4e} before, {after:.4e} after"
+        "deviations from the mean tapered by Hann's window over its rms: rms height {} before, {} after",
+        five(before),
+        five(after)
     ));
     Ok((tapered, Some([before, after])))
 }

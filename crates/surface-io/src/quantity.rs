@@ -13,6 +13,7 @@ pub use dimension::Dimension;
 pub use error::QuantityError;
 pub use unit::Unit;
 
+use contact_model::units::number;
 use std::fmt;
 use std::str::FromStr;
 
@@ -57,11 +58,6 @@ impl Quantity {
     /// Value in SI units.
     pub fn value(self) -> f64 {
         self.value
-    }
-
-    /// Rounded to 12 digits, for people: without the rounding errors of a product.
-    pub(crate) fn rounded(self) -> Self {
-        Self { value: format!("{:.11e}", self.value).parse().unwrap_or(self.value), ..self }
     }
 
     /// Dimension: what is measured.
@@ -158,14 +154,9 @@ fn split(text: &str) -> Result<(&str, i64, &str), QuantityError> {
 }
 
 impl fmt::Display for Quantity {
-    /// The value in SI units, such as `0.001 m`.
+    /// The value in SI units without the digits that rounding leaves, such as `0.001 m`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (value, size) = (self.value, self.value.abs());
-        if size > 0.0 && !(1e-4..1e6).contains(&size) {
-            write!(f, "{value:e}")?;
-        } else {
-            write!(f, "{value}")?;
-        }
+        f.write_str(&number(self.value))?;
         if self.dimension == Dimension::NONE { Ok(()) } else { write!(f, " {}", self.dimension.symbol()) }
     }
 }

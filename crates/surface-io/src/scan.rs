@@ -7,6 +7,7 @@ use crate::format::Format;
 use crate::options::ReadOptions;
 use crate::provenance::{Origin, Sourced, contradiction, sourced};
 use crate::quantity::{Dimension, Quantity, Unit};
+use contact_model::units::{ascii, five, number, to_digits};
 use std::fmt;
 use std::path::{Path, PathBuf};
 
@@ -56,12 +57,6 @@ impl Metadata {
     }
 }
 
-/// Five digits, without the zeros at their end and without a power of ten where it is not needed.
-fn number(value: f64) -> String {
-    let value: f64 = format!("{value:.4e}").parse().unwrap_or(value);
-    if value == 0.0 || (1e-3..1e6).contains(&value.abs()) { value.to_string() } else { format!("{value:e}") }
-}
-
 impl fmt::Display for Metadata {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "format     {} ({})", self.format, self.details)?;
@@ -73,8 +68,9 @@ impl fmt::Display for Metadata {
         } else {
             writeln!(f, "shape      {} rows of {}", self.rows, self.columns)?;
         }
-        let size = self.size.map(|size| size.map(Quantity::rounded));
-        let cell = self.cell.as_ref().map(|cell| (cell.value.map(Quantity::rounded), cell.origin));
+        let length = |length: Quantity| ascii(&to_digits(length.value(), &length.dimension().symbol(), 7));
+        let size = self.size.map(|size| size.map(length));
+        let cell = self.cell.as_ref().map(|cell| (cell.value.map(length), cell.origin));
         match (size, cell) {
             (Some([x, _]), Some(([dx, dy], origin))) if self.profile => {
                 writeln!(
@@ -100,13 +96,8 @@ cell       {dx} x {dy}"
         }
         match (self.range, self.rms_height) {
             (Some([low, high]), Some(rms)) => {
-                writeln!(
-                    f,
-                    "range      {} to {}, rms about the mean {}",
-                    number(low),
-                    number(high),
-                    number(rms)
-                )?;
+                let [low, high, rms] = [low, high, rms].map(five);
+                writeln!(f, "range      {low} to {high}, rms about the mean {rms}")?;
             }
             _ => writeln!(f, "range      none")?,
         }
@@ -275,7 +266,7 @@ fn lone_extremes(heights: &[f64]) -> Vec<String> {
         let alone = to > from && (value - next).abs() > ALONE * (to - from);
         let count = heights.iter().filter(|h| (**h - value).abs() <= 0.0).count();
         alone.then(|| {
-            let (value, from, to) = (shown(value), shown(from), shown(to));
+            let (value, from, to) = (number(value), number(from), number(to));
             let points = if count == 1 { "1 point".to_owned() } else { format!("{count} points") };
             format!(
                 "{points} of {value}, all others are from {from} to {to}: a mark of undefined points? missing = {value} makes them so"
@@ -297,11 +288,6 @@ fn lowest_two(values: impl Iterator<Item = f64>) -> [f64; 2] {
             [first, next]
         }
     })
-}
-
-/// Large and small numbers with an exponent.
-fn shown(value: f64) -> String {
-    if value.abs() >= 1e6 || value.abs() < 1e-3 { format!("{value:e}") } else { value.to_string() }
 }
 
 /// Rms height of the defined points about their mean: about the middle of the range and in units of half of

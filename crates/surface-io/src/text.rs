@@ -12,6 +12,7 @@ use crate::error::{ContentError, NumberKind, Place};
 use crate::fields::decoded;
 use crate::format::Format;
 use crate::options::{Decimal, ReadOptions};
+use contact_model::units::number;
 use number::unquoted;
 use std::borrow::Cow;
 use std::fmt;
@@ -270,7 +271,7 @@ impl TextTable {
     /// Delimiter and what else was found, for people.
     pub(crate) fn details(&self) -> String {
         let commas = if self.found_commas { ", decimal commas" } else { "" };
-        let scale = self.scale.map(|scale| format!(", times {scale:e}")).unwrap_or_default();
+        let scale = self.scale.map(|scale| format!(", times {}", number(scale))).unwrap_or_default();
         format!("{}{commas}{scale}", self.delimiter)
     }
 

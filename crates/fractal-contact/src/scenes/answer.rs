@@ -9,6 +9,7 @@ use crate::scenes::tell::{
     MapStatisticsTables, Report, ResultFolder, columns, distributions, ensemble, manifest, pictures, summary,
 };
 use analysis::Table;
+use contact_model::units::ascii;
 use runs::cluster::{ShardPlan, ShardReport, run_shard};
 use runs::{Checkpoint, Failure, Header, Progress, Shard, Store, Threads, run_stored, write_csv};
 use std::time::Instant;
@@ -225,7 +226,7 @@ fn patches_table(scene: &SceneFile, units: &[SolvedUnit<'_>]) -> Result<Table> {
 /// What the tables are called.
 pub(crate) fn title(scene: &SceneFile) -> String {
     let name = scene.path.file_stem().map_or_else(|| "scene".into(), |n| n.to_string_lossy().into_owned());
-    format!("{name}: {}", scene.surface.describe())
+    format!("{name}: {}", ascii(&scene.surface.describe(scene.system)))
 }
 
 fn header(scene: &SceneFile, plan: &Plan) -> Header {
@@ -258,7 +259,7 @@ fn header(scene: &SceneFile, plan: &Plan) -> Header {
     for ModelPlan { name, grid, accuracy, .. } in &plan.models {
         header = header.with_note(format!("model {name}: grid: {grid}; {accuracy}"));
     }
-    for line in effect_lines(&scene.effects) {
+    for line in effect_lines(&scene.effects, scene.system) {
         header = header.with_note(format!(
             "effect {}: {} ({})",
             line.name,

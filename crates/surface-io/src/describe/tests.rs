@@ -72,7 +72,7 @@ fn rectangles_keep_their_dimension() {
     let shown = oblong.to_string();
     assert!(
         shown.contains("cells              256 x 200")
-            && shown.contains("cell               3.90625e-3 x 1.953125e-3"),
+            && shown.contains("cell               0.00390625 x 0.001953125"),
         "{shown}"
     );
     let strip = map.cropped(0..512, 0..20).unwrap();

@@ -4,6 +4,7 @@
 use super::defects::GAUSSIAN;
 use crate::keyword::keywords;
 use contact_model::Cells;
+use contact_model::units::five;
 
 keywords! {
     /// How scan lines (rows, the fast axis along x) are shifted to a common height. The mean height of the map is
@@ -61,7 +62,7 @@ impl AlignLines {
             }
         }
         let rms = mean(&shifts.iter().map(|s| s * s).collect::<Vec<_>>()).sqrt();
-        Ok(format!("scan lines shifted by {rms:.4e} rms: {}; mean height kept", self.result()))
+        Ok(format!("scan lines shifted by {} rms: {}; mean height kept", five(rms), self.result()))
     }
 }
 
@@ -166,8 +167,9 @@ pub(super) fn remove_scars(cells: Cells, times: f64, heights: &mut [f64]) -> Str
         *h = f64::NAN;
     }
     format!(
-        "{removed} points of scars made undefined, in {runs} runs along x: beyond {times} times {deviation:.4e}, the \
-         robust standard deviation of differences between lines"
+        "{removed} points of scars made undefined, in {runs} runs along x: beyond {times} times {}, the \
+         robust standard deviation of differences between lines",
+        five(deviation)
     )
 }
 

@@ -398,7 +398,7 @@ fn mirrors_turns_and_tapers() {
     let found = half.preprocessed(&window).unwrap();
     let [before, after] = found.tapered.unwrap();
     assert_relative_eq!(after, before, max_relative = 1e-3);
-    assert!(found.steps[0].contains("rms height 1.0000e0 before, 1.0000e0 after"), "{:?}", found.steps);
+    assert!(found.steps[0].contains("rms height 1 before, 1 after"), "{:?}", found.steps);
     let steps = scan.preprocessed(&Preprocessing {
         crop: Some(Crop::Window { row: 0, column: 1, rows: 2, columns: 2 }),
         outliers: Some(1e9),
@@ -537,7 +537,7 @@ fn errors_of_scanning_are_repaired_in_order_and_told() {
     let line = scan_of("1", 1, 30, |x, _| x);
     let filter = Preprocessing { filter_across: "4".parse().ok(), ..Preprocessing::default() };
     let error = line.map(&filter).unwrap_err().to_string();
-    assert!(error.contains("from 4e0, four cells, to 1e0, the side"), "{error}");
+    assert!(error.contains("from 4, four cells, to 1, the side"), "{error}");
     let rest = Preprocessing {
         align_lines: Some(AlignLines::MedianDifference),
         scars: Some(3.0),

@@ -2,10 +2,12 @@
 
 use crate::scenes::plan::{Assumptions, Cost, ModelOnSurface, calibration, probe};
 use crate::scenes::read::{
-    Diagnostic, EffectLine, Numerics, Result, SceneFile, System, cells, effect_lines, number, short,
+    Diagnostic, EffectLine, Numerics, Result, SceneFile, System, amount, cells, description, effect_lines,
+    short,
 };
 use bem3d::UNRESOLVED_RANGE;
 use contact_model::Cells;
+use contact_model::units::ascii;
 use runs::amounts::{memory, time};
 use std::fmt;
 
@@ -38,8 +40,8 @@ pub struct Plan {
     pub notes: Vec<Diagnostic>,
     /// E*.
     pub modulus: f64,
-    /// Whether numbers are in SI.
-    pub units: &'static str,
+    /// Whether numbers carry units.
+    pub system: System,
     /// Number of states for each surface, and of surfaces.
     pub states: usize,
     /// Surfaces.
@@ -125,7 +127,7 @@ impl Plan {
         let of_slopes = of_slopes(scene, prepared.as_ref());
         Ok(Self {
             shows: scene.comment(),
-            surface: scene.surface.describe(),
+            surface: scene.surface.describe(scene.system),
             metadata: scene.metadata.clone(),
             prepared,
             notes: scene
@@ -136,16 +138,21 @@ impl Plan {
                 .chain(of_slopes)
                 .collect(),
             modulus: scene.modulus,
-            units: match scene.system {
-                crate::scenes::System::Si => "SI (m, N, Pa, s)",
-                crate::scenes::System::None => "none: the scene's own",
-            },
+            system: scene.system,
             states: scene.request.count(),
             surfaces: scene.sampling.surfaces,
-            effects: effect_lines(&scene.effects),
+            effects: effect_lines(&scene.effects, scene.system),
             outputs: scene.requested.lines(),
             models,
         })
+    }
+
+    /// In which units files hold their numbers.
+    pub fn units(&self) -> &'static str {
+        match self.system {
+            System::Si => "SI in files (m, N, Pa, s)",
+            System::None => "none: the scene's own",
+        }
     }
 
     /// The map as it is solved, without the exponent where statistics are asked for: theirs has an interval,
@@ -213,7 +220,7 @@ fn of_slopes(scene: &SceneFile, map: Option<&surface_io::Description>) -> Option
 
 fn prepared(scene: &SceneFile) -> Option<surface_io::Description> {
     let map = scene.surface.given_map().filter(|map| map.heights().len() <= LARGEST_DESCRIBED)?;
-    Some(surface_io::describe(map))
+    Some(description(map, scene.system))
 }
 
 fn grid(scene: &SceneFile, numerics: &Numerics) -> String {
@@ -225,10 +232,11 @@ fn grid(scene: &SceneFile, numerics: &Numerics) -> String {
             let (cells, size) = (cells(scene, numerics), scene.surface.size());
             let Cells { columns, rows } = cells;
             let (dx, dy) = (size.x / columns as f64, size.y / rows as f64);
+            let [across, down] = [dx, dy].map(|side| ascii(&amount(side, scene.system.shown("m"))));
             if dx.to_bits() == dy.to_bits() {
-                format!("{columns} x {rows} cells of {dx:.4e}")
+                format!("{columns} x {rows} cells of {across}")
             } else {
-                format!("{columns} x {rows} cells of {dx:.4e} x {dy:.4e}")
+                format!("{columns} x {rows} cells of {across} x {down}")
             }
         }
         Numerics::Mdr1d(m) if scene.surface.is_rough() => format!("a line of {} elements", m.elements),
@@ -263,7 +271,7 @@ impl fmt::Display for Plan {
         for note in &self.notes {
             writeln!(f, "{note}\n")?;
         }
-        writeln!(f, "surface   {}", self.surface)?;
+        writeln!(f, "surface   {}", ascii(&self.surface))?;
         for line in self.metadata.iter().flat_map(|u| u.lines()) {
             writeln!(f, "          {line}")?;
         }
@@ -273,12 +281,18 @@ impl fmt::Display for Plan {
                 writeln!(f, "          {line}")?;
             }
         }
-        writeln!(f, "modulus   {} (E*)", number(self.modulus))?;
-        writeln!(f, "units     {}", self.units)?;
+        writeln!(f, "modulus   {} (E*)", ascii(&amount(self.modulus, self.system.shown("Pa"))))?;
+        writeln!(f, "units     {}", self.units())?;
         writeln!(f, "states    {} on each of {} surface(s)", self.states, self.surfaces)?;
         writeln!(f, "\neffects")?;
         for line in &self.effects {
-            writeln!(f, "  {:10} {:4} {}", line.name, if line.on { "on" } else { "off" }, line.reason)?;
+            writeln!(
+                f,
+                "  {:10} {:4} {}",
+                line.name,
+                if line.on { "on" } else { "off" },
+                ascii(&line.reason)
+            )?;
         }
         let names = |requested: bool| {
             let list: Vec<&str> =

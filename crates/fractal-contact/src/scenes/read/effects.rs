@@ -1,6 +1,6 @@
 //! `[effects]`: each off unless named.
 
-use crate::scenes::read::{Diagnostic, Entries, Entry, Read, System, number};
+use crate::scenes::read::{Diagnostic, Entries, Entry, Read, System, amount, number};
 use contact_model::{
     Adhesion, AdhesionLaw, Boundary, Coupling, Effects, Friction, Hardness, PronySeries, Relaxing, Rheology,
 };
@@ -20,7 +20,7 @@ pub struct EffectKey {
     pub off: &'static str,
     read: fn(&Entry<'_>, System, &mut Effects) -> Read<()>,
     /// Its numbers, where it is on.
-    words: fn(&Effects) -> Option<String>,
+    words: fn(&Effects, System) -> Option<String>,
 }
 
 /// Every key of `[effects]`.
@@ -34,7 +34,7 @@ pub static EFFECT_KEYS: &[EffectKey] = &[
             let words = [("free", Boundary::Free), ("periodic", Boundary::Periodic)];
             entry.choice(&words).map(|boundary| effects.boundary = boundary)
         },
-        words: |effects| {
+        words: |effects, _| {
             (effects.boundary == Boundary::Periodic).then(|| "periodic copies of the rectangle".into())
         },
     },
@@ -49,8 +49,10 @@ pub static EFFECT_KEYS: &[EffectKey] = &[
             effects.hardness = Hardness::Limit { pressure };
             table.finish()
         },
-        words: |effects| match effects.hardness {
-            Hardness::Limit { pressure } => Some(format!("no pressure above {}", number(pressure))),
+        words: |effects, system| match effects.hardness {
+            Hardness::Limit { pressure } => {
+                Some(format!("no pressure above {}", amount(pressure, system.shown("Pa"))))
+            }
             _ => None,
         },
     },
@@ -63,12 +65,18 @@ pub static EFFECT_KEYS: &[EffectKey] = &[
         read: |entry, system, effects| {
             read_adhesion(&entry.table_or("work")?, system).map(|adhesion| effects.adhesion = adhesion)
         },
-        words: |effects| match effects.adhesion {
+        words: |effects, system| match effects.adhesion {
             Adhesion::Off => None,
-            Adhesion::ShortRange { work } => Some(format!("short range, work {} per area", number(work))),
+            Adhesion::ShortRange { work } => {
+                Some(format!("short range, work {}", amount(work, system.shown("J/m^2"))))
+            }
             Adhesion::FiniteRange { work, range, law } => {
                 let law = if law == AdhesionLaw::Dugdale { "Dugdale" } else { "exponential" };
-                Some(format!("{law}, work {} per area, range {}", number(work), number(range)))
+                Some({
+                    let (work, range) =
+                        (amount(work, system.shown("J/m^2")), amount(range, system.shown("m")));
+                    format!("{law}, work {work}, range {range}")
+                })
             }
             other => Some(format!("{other:?}")),
         },
@@ -87,7 +95,7 @@ pub static EFFECT_KEYS: &[EffectKey] = &[
             effects.friction = Friction::Coulomb { coefficient, coupling };
             table.finish()
         },
-        words: |effects| match effects.friction {
+        words: |effects, _| match effects.friction {
             Friction::Coulomb { coefficient, coupling } => {
                 let coupling = match coupling {
                     Some(Coupling::Full) => ", normal and tangential tractions solved together",
@@ -108,7 +116,9 @@ pub static EFFECT_KEYS: &[EffectKey] = &[
         read: |entry, system, effects| {
             read_rheology(entry, system).map(|rheology| effects.rheology = rheology)
         },
-        words: |effects| (effects.rheology != Rheology::Elastic).then(|| rheology_words(&effects.rheology)),
+        words: |effects, system| {
+            (effects.rheology != Rheology::Elastic).then(|| rheology_words(&effects.rheology, system))
+        },
     },
 ];
 
@@ -124,9 +134,9 @@ pub struct EffectLine {
 }
 
 /// All effects of a scene, on or off.
-pub fn effect_lines(effects: &Effects) -> Vec<EffectLine> {
+pub fn effect_lines(effects: &Effects, system: System) -> Vec<EffectLine> {
     let line = |key: &EffectKey| {
-        let words = (key.words)(effects);
+        let words = (key.words)(effects, system);
         let (on, off) = (words.is_some(), format!("not named: {}", key.off));
         EffectLine { name: key.name, on, reason: words.unwrap_or(off) }
     };
@@ -184,15 +194,19 @@ fn read_adhesion(table: &Entries<'_>, system: System) -> Read<Adhesion> {
     Ok(adhesion)
 }
 
-fn rheology_words(rheology: &Rheology) -> String {
+fn rheology_words(rheology: &Rheology, system: System) -> String {
+    let pascal_seconds = |viscosity: f64| amount(viscosity, system.shown("Pa s"));
+    let time = |time: f64| amount(time, system.shown("s"));
     let arms = |arms: &[Relaxing]| {
         let list: Vec<String> =
-            arms.iter().map(|a| format!("weight {} time {}", number(a.weight), number(a.time))).collect();
+            arms.iter().map(|a| format!("weight {} time {}", number(a.weight), time(a.time))).collect();
         list.join(", ")
     };
     match rheology {
-        Rheology::KelvinVoigt { viscosity } => format!("Kelvin-Voigt, viscosity {}", number(*viscosity)),
-        Rheology::Maxwell { viscosity } => format!("Maxwell, viscosity {}", number(*viscosity)),
+        Rheology::KelvinVoigt { viscosity } => {
+            format!("Kelvin-Voigt, viscosity {}", pascal_seconds(*viscosity))
+        }
+        Rheology::Maxwell { viscosity } => format!("Maxwell, viscosity {}", pascal_seconds(*viscosity)),
         Rheology::StandardSolid { arm } => format!("standard solid, {}", arms(&[*arm])),
         Rheology::Prony(series) => format!("Prony series, {}", arms(series.arms())),
         other => format!("{other:?}"),
@@ -248,7 +262,7 @@ mod tests {
     #[test]
     fn every_effect_has_its_key() {
         for effect in Effect::ALL {
-            let on = effect_lines(&effect.example()).into_iter().filter(|line| line.on);
+            let on = effect_lines(&effect.example(), System::None).into_iter().filter(|line| line.on);
             assert_eq!(on.map(|line| line.name).collect::<Vec<_>>(), [effect.key()], "{effect:?}");
         }
         for key in EFFECT_KEYS.iter().filter(|key| key.name != "boundary") {
@@ -257,9 +271,9 @@ mod tests {
         let text = "boundary = \"periodic\"\nhardness = 2\nadhesion = 0.5\nfriction = { coefficient = 0.1 }\n\
                     rheology = { kind = \"maxwell\", viscosity = 3 }";
         let effects = parse_effects(text).unwrap();
-        assert!(effect_lines(&effects).iter().all(|line| line.on));
+        assert!(effect_lines(&effects, System::None).iter().all(|line| line.on));
         assert_eq!(effects.adhesion, Adhesion::ShortRange { work: 0.5 });
-        assert!(effect_lines(&Effects::default()).iter().all(|line| !line.on));
+        assert!(effect_lines(&Effects::default(), System::None).iter().all(|line| !line.on));
     }
 
     #[test]

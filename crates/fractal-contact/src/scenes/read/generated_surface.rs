@@ -1,12 +1,12 @@
 //! Generated surfaces as files: self-affine ones, and twins of a map.
 
-use crate::scenes::read::{Drawn, Error, RandomSpectrum, RandomSurface, Result};
+use crate::scenes::read::{Drawn, Error, RandomSpectrum, RandomSurface, Result, System, description};
 use contact_model::{Amplitude, Cells, SelfAffine, Size};
 use std::f64::consts::PI;
 use std::path::Path;
 use std::sync::Arc;
 use surface_gen::{Anisotropy, HeightDistribution, TwinSpectrum};
-use surface_io::{Dimension, Metric, Preprocessing, Quantity, ReadOptions, Scan, Sides, describe, write_map};
+use surface_io::{Dimension, Metric, Preprocessing, Quantity, ReadOptions, Scan, Sides, write_map};
 
 /// Memory of drawing a surface and writing it, bytes per cell.
 const BYTES: f64 = 24.0;
@@ -124,8 +124,8 @@ pub fn write_twin(
 /// Writes a surface and says what it is.
 fn write(path: &Path, Drawn { map, spectrum_residual }: &Drawn, metric: Metric) -> Result<String> {
     write_map(path, map, metric)?;
-    let unit = if metric == Metric::Metres { "m" } else { "none" };
-    let mut text = format!("{}\nunit               {unit}\n{}\n", path.display(), describe(map));
+    let (unit, system) = if metric == Metric::Metres { ("m", System::Si) } else { ("none", System::None) };
+    let mut text = format!("{}\nunit               {unit}\n{}\n", path.display(), description(map, system));
     if let Some(residual) = spectrum_residual {
         text += &format!(
             "heights            as prescribed; amplitudes of the waves within {residual:.2e} of the rms height\n"

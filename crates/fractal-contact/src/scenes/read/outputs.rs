@@ -38,6 +38,7 @@ pub(crate) static HEIGHTS: FieldQuantity = FieldQuantity {
     meaning: "heights as they are solved: after crop, fill and detrend, or as drawn",
     components: 1,
     shown: Shown::Middle,
+    signed: false,
     classes: &[],
     outlined: false,
     get: |_| &[],
@@ -61,6 +62,8 @@ pub struct RequestedOutputs {
     pub statistics: bool,
     /// Whether curves are drawn.
     pub curves: bool,
+    /// Numbers of the loads or steps whose fields are drawn; `None`: of all.
+    pub drawn_states: Option<Vec<usize>>,
 }
 
 impl RequestedOutputs {
@@ -69,6 +72,12 @@ impl RequestedOutputs {
         [(&HEIGHTS, &self.heights[..])]
             .into_iter()
             .chain(FIELDS.iter().map(|field| (field, self.formats(field))))
+    }
+
+    /// Whether a field of a state is drawn; the heights are those of every state.
+    pub fn draws(&self, field: &str, state: usize) -> bool {
+        let drawn = self.drawn_states.as_ref().is_none_or(|states| states.contains(&state));
+        drawn || field == HEIGHTS.name
     }
 
     /// Formats of the files of a field.
@@ -91,9 +100,12 @@ impl RequestedOutputs {
     }
 }
 
+/// The key that says which states are drawn.
+pub(crate) const DRAWN_STATES: &str = "drawn_states";
+
 /// The keys of `[outputs]`.
 pub(crate) fn names() -> impl Iterator<Item = &'static str> {
-    RequestedOutputs::default().lines().into_iter().map(|(name, _)| name)
+    RequestedOutputs::default().lines().into_iter().map(|(name, _)| name).chain([DRAWN_STATES])
 }
 
 /// Reads `[outputs]`.
@@ -122,6 +134,10 @@ pub(crate) fn read_outputs(table: Option<Entries<'_>>, system: System) -> Read<R
     requested.curves = flag("curves")?;
     requested.statistics = flag("statistics")?;
     requested.heights = formats(HEIGHTS.name)?;
+    if let Some(entry) = table.find(DRAWN_STATES) {
+        let states = entry.list().iter().map(|state| state.size(0)).collect::<Read<_>>()?;
+        requested.drawn_states = Some(states);
+    }
     if let Some(entry) = table.find("distributions") {
         for item in entry.list() {
             let of = item.choice(&Distributed::ALL)?;

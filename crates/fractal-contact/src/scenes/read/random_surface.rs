@@ -1,7 +1,7 @@
 //! What a seed draws on cells: self-affine surfaces, isotropic or with a lay, artificial twins of a map, and
 //! either with a prescribed distribution of heights.
 
-use crate::scenes::read::{number, sampled, sampled_cells};
+use crate::scenes::read::{System, amount, number, sampled, sampled_cells};
 use contact_model::{Amplitude, Cells, HeightMap, Result, SelfAffine, Size};
 use runs::fnv1a_128;
 use std::f64::consts::PI;
@@ -138,10 +138,10 @@ impl RandomSurface {
     }
 
     /// In a phrase.
-    pub(crate) fn describe(&self) -> String {
+    pub(crate) fn describe(&self, system: System) -> String {
         let mut text = match &self.spectrum {
             RandomSpectrum::SelfAffine { surface, anisotropy } => {
-                let mut text = describe_self_affine(surface);
+                let mut text = describe_self_affine(surface, system);
                 if let Some(Anisotropy { ratio, lay }) = anisotropy {
                     text += &format!(
                         ", waves {} times as long along the lay at {} degrees as across",
@@ -156,7 +156,7 @@ impl RandomSurface {
                 let (columns, rows) = (of.columns(), of.rows());
                 format!(
                     "an artificial {rings}twin of a map of {columns} x {rows} cells, {}",
-                    describe_sides(of.size())
+                    describe_sides(of.size(), system)
                 )
             }
         };
@@ -192,26 +192,28 @@ pub(crate) fn map_key(map: &HeightMap) -> String {
 }
 
 /// One side of a square or both of a rectangle.
-pub(crate) fn describe_sides(size: Size) -> String {
+pub(crate) fn describe_sides(size: Size, system: System) -> String {
+    let length = |length| amount(length, system.shown("m"));
     if size.is_square() {
-        format!("side {}", number(size.x))
+        format!("side {}", length(size.x))
     } else {
-        format!("sides {} x {}", number(size.x), number(size.y))
+        format!("sides {} x {}", length(size.x), length(size.y))
     }
 }
 
 /// A self-affine surface in a phrase.
-pub(crate) fn describe_self_affine(s: &SelfAffine) -> String {
+pub(crate) fn describe_self_affine(s: &SelfAffine, system: System) -> String {
+    let length = |length| amount(length, system.shown("m"));
     let mut text =
-        format!("a self-affine surface, D_f = {}, {}", s.fractal_dimension(), describe_sides(s.size));
+        format!("a self-affine surface, D_f = {}, {}", s.fractal_dimension(), describe_sides(s.size, system));
     if let Amplitude::RmsHeight(h) = s.amplitude {
-        text += &format!(", rms height {}", number(h));
+        text += &format!(", rms height {}", length(h));
     }
     if let Some(q) = s.roll_off {
-        text += &format!(", roll-off at the wavelength {}", number(2.0 * PI / q));
+        text += &format!(", roll-off at the wavelength {}", length(2.0 * PI / q));
     }
     if let Some(q) = s.short_cutoff {
-        text += &format!(", shortest wavelength {}", number(2.0 * PI / q));
+        text += &format!(", shortest wavelength {}", length(2.0 * PI / q));
     }
     text
 }

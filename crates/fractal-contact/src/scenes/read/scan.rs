@@ -1,11 +1,12 @@
 //! `[scene.surface]` with `kind = "file"`: a measured map, as it is declared.
 
-use crate::scenes::read::{Diagnostic, Entries, Entry, LengthOrPair, Read, System, number};
+use crate::scenes::read::{Diagnostic, Entries, Entry, LengthOrPair, Read, System, amount, number};
 use contact_model::HeightMap;
+use contact_model::units::{ascii, rounded};
 use std::path::Path;
 use surface_io::{
-    AlignLines, Axes, Border, ChannelChoice, Crop, Decimal, Detrend, Dimension, Fill, Format, Mirror,
-    Preprocessed, Preprocessing, Quantity, ReadOptions, Scan, Sides, Undefined, Unit, Window,
+    AlignLines, Axes, Border, ChannelChoice, Crop, Decimal, Description, Detrend, Dimension, Fill, Format,
+    Mirror, Preprocessed, Preprocessing, Quantity, ReadOptions, Scan, Sides, Undefined, Unit, Window,
 };
 
 /// A map from a file.
@@ -19,6 +20,12 @@ pub(crate) struct FileMap {
     pub notes: Vec<Diagnostic>,
     /// Whether it is a profile: one row that stands for a body uniform along y.
     pub profile: bool,
+}
+
+/// A map in numbers, which have units as text where it is in metres.
+pub(crate) fn description(map: &HeightMap, system: System) -> Description {
+    let description = surface_io::describe(map);
+    if system == System::Si { description.in_metres() } else { description }
 }
 
 /// Reads the file of a surface.
@@ -51,7 +58,7 @@ pub(crate) fn read_map(table: &Entries<'_>, system: System, directory: &Path) ->
             .with_help("say `unit = \"nm\"` for heights of a scene with units, `unit = \"none\"` with `units = \"none\"`"));
     }
     if let (Some(entry), Some([before, after])) = (table.find("window"), tapered) {
-        let [before, after] = [before, after].map(|h| number(format!("{h:.3e}").parse().unwrap_or(h)));
+        let [before, after] = [before, after].map(|h| number(rounded(h, 4)));
         let message = format!(
             "the map is tapered to its edges and divided by the rms of the taper: rms height {before} before, {after} after"
         );
@@ -63,7 +70,7 @@ pub(crate) fn read_map(table: &Entries<'_>, system: System, directory: &Path) ->
         notes.push(Diagnostic::note(message).at(file.span()).with_help(help));
     }
     if let (Some(entry), Some([dx, dy])) = (table.find("size"), swapped(&declared, metadata)) {
-        let [dx, dy] = [dx, dy].map(|side| number(format!("{side:.3e}").parse().unwrap_or(side)));
+        let [dx, dy] = [dx, dy].map(|side| number(rounded(side, 4)));
         let message =
             format!("cells of {dx} x {dy}: with the sides of `size` exchanged they would be squares");
         let help = "`size` is [Lx, Ly], x along the columns; where the cells are oblong, all is well";
@@ -148,12 +155,13 @@ pub(crate) fn read_second(
     };
     let sum = surface_io::composite(first, &map, offset).map_err(|e| table.diagnostic(e.to_string()))?;
     metadata += &format!("\nthen       laid on the first: {how}, its middle moved by {offset:?}");
+    let length = |length: f64| ascii(&amount(length, system.shown("m")));
     metadata += &format!(
-        "\ncomposite  {} rows of {} over {:e} x {:e}",
+        "\ncomposite  {} rows of {} over {} x {}",
         sum.rows(),
         sum.columns(),
-        sum.size().x,
-        sum.size().y
+        length(sum.size().x),
+        length(sum.size().y)
     );
     Ok(FileMap { map: sum, metadata, reliable_from, notes, profile: false })
 }

@@ -297,6 +297,7 @@ fn read_scene(root: &Entries<'_>, directory: &Path, registry: &Registry) -> Read
     };
     check_request(&request, &request_entry, &surface, &effects)?;
     check_half_plane(&request, &request_entry, &surface, (&effects, &requested), &places)?;
+    check_drawn_states(&requested, &request, &places)?;
     check_histories(&models, &request, &request_entry, &effects)?;
     check_tangential(&models, &request, &effects)?;
     check_coupling(&models, pair.as_ref(), effects.friction, places.of_effect("friction"))?;
@@ -544,6 +545,17 @@ fn check_half_plane(
     let Some((name, _)) = asked.iter().find(|(_, asked)| *asked) else { return Ok(()) };
     let message = format!("{name} of a profile with free boundaries: {why}");
     Err(Diagnostic::new(message).at(places.of_output(name)).with_help(help))
+}
+
+/// States that are drawn are states of the scene.
+fn check_drawn_states(requested: &RequestedOutputs, request: &LoadRequest, places: &Places) -> Read<()> {
+    let count = request.count();
+    let Some(state) = requested.drawn_states.iter().flatten().find(|state| **state >= count) else {
+        return Ok(());
+    };
+    Err(Diagnostic::new(format!("state {state} is to be drawn, but there are {count} states"))
+        .at(places.of_output(outputs::DRAWN_STATES))
+        .with_help(format!("numbers of loads or steps from 0 to {}", count.saturating_sub(1))))
 }
 
 /// Whether boundary elements have an effect that depends on the path.

@@ -1,8 +1,8 @@
 //! The surface of a scene: `[scene.surface]`, and `[scene.body]` added to it.
 
 use crate::scenes::read::{
-    Diagnostic, Entries, Entry, LengthOrPair, Numerics, RandomSpectrum, RandomSurface, Read, System,
-    describe_self_affine, describe_sides, map_key, number, sampled, scan,
+    Diagnostic, Entries, Entry, LengthOrPair, Numerics, RandomSpectrum, RandomSurface, Read, System, amount,
+    describe_self_affine, describe_sides, map_key, sampled, scan,
 };
 use contact_model::{Amplitude, Cells, Error, HeightMap, Result, SelfAffine, Size, Surface};
 use std::f64::consts::PI;
@@ -103,12 +103,12 @@ impl SceneSurface {
         })
     }
 
-    /// In a phrase.
-    pub fn describe(&self) -> String {
+    /// In a phrase, lengths in the units of a scene of this system.
+    pub fn describe(&self, system: System) -> String {
         match self {
-            Self::Plain(Surface::SelfAffine(s)) => describe_self_affine(s),
+            Self::Plain(Surface::SelfAffine(s)) => describe_self_affine(s, system),
             Self::Plain(Surface::Heights(map)) => {
-                let sides = describe_sides(map.size());
+                let sides = describe_sides(map.size(), system);
                 let mut text = format!("a map of {} x {} cells, {sides}", map.columns(), map.rows());
                 if map.undefined() > 0 {
                     text += &format!(", {} undefined points", map.undefined());
@@ -116,7 +116,8 @@ impl SceneSurface {
                 text
             }
             Self::Plain(Surface::Profile(map)) => {
-                let [length, width] = [map.size().x, map.size().y].map(number);
+                let [length, width] =
+                    [map.size().x, map.size().y].map(|side| amount(side, system.shown("m")));
                 let undefined = if map.undefined() > 0 {
                     format!(", {} undefined points", map.undefined())
                 } else {
@@ -130,10 +131,12 @@ impl SceneSurface {
             Self::Plain(surface) => {
                 let size = surface.size();
                 let shape = if size.is_square() { "square" } else { "rectangle" };
-                format!("{} on a {shape} of {}", surface.kind(), describe_sides(size))
+                format!("{} on a {shape} of {}", surface.kind(), describe_sides(size, system))
             }
-            Self::Drawn { rough, body: None } => rough.describe(),
-            Self::Drawn { rough, body: Some(body) } => format!("{} on {}", rough.describe(), body.kind()),
+            Self::Drawn { rough, body: None } => rough.describe(system),
+            Self::Drawn { rough, body: Some(body) } => {
+                format!("{} on {}", rough.describe(system), body.kind())
+            }
         }
     }
 

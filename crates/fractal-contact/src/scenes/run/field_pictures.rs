@@ -1,7 +1,7 @@
 //! Pictures of fields. They are drawn last, when the range of all loads is known: one surface has one scale.
 
 use crate::scenes::read::{FieldFormat, HEIGHTS, Result, SceneFile, words};
-use crate::scenes::run::{FieldFile, FieldView, ModelResult, StoredFile};
+use crate::scenes::run::{FieldFile, FieldView, ModelResult, StateRecord, StoredFile};
 
 use contact_model::{Cells, FieldQuantity};
 use plots::{Chart, Curve, FieldPicture};
@@ -103,7 +103,7 @@ pub(crate) fn draw(
             let contact: Vec<bool> =
                 pressure.iter().flatten().flat_map(|p| p.iter()).map(|p| *p > 0.0).collect();
             let name = file(field.name, state.index, FieldFormat::Png.extension()).to_string();
-            let mut drawn = picture(scene, field, model, (surface, state.index), cells, &values);
+            let mut drawn = picture(scene, field, model, (surface, Some(state)), cells, &values);
             if scene.surface.is_profile() {
                 let step = scene.surface.size().x / cells.columns as f64;
                 let points = values.iter().enumerate().map(|(i, v)| ((i as f64 + 0.5) * step, *v));
@@ -120,7 +120,11 @@ pub(crate) fn draw(
                 drawn.arrows = Some([along_x, along_y]);
             }
             if states.len() > 1 && field.name != HEIGHTS.name && field.classes.is_empty() {
-                drawn.subtitle += "; one scale for all loads";
+                drawn.subtitle += if scene.is_history() {
+                    "; one scale for all steps"
+                } else {
+                    "; one scale for all loads"
+                };
             }
             drawn.save(&out.join(&name))?;
             state.files.retain(|file| file.name != name);
@@ -149,17 +153,20 @@ pub(crate) fn sweep(out: &Path) {
     }
 }
 
-/// A field of a state, by number of the surface and of the load.
+/// A field of a state of a surface; the heights need no state.
 pub(crate) fn picture<'a>(
     scene: &SceneFile,
     field: &FieldQuantity,
     model: &str,
-    (surface, state): (usize, usize),
+    (surface, state): (usize, Option<&StateRecord>),
     cells: Cells,
     values: &'a [f64],
 ) -> FieldPicture<'a> {
-    let &FieldQuantity { name, words, symbol, unit, components, shown, classes, .. } = field;
-    let load = if name == HEIGHTS.name { "as solved".to_owned() } else { words::load(scene, state) };
+    let &FieldQuantity { name, words, symbol, unit, components, shown, signed, classes, .. } = field;
+    let load = match state {
+        Some(state) if name != HEIGHTS.name => state.words(scene),
+        _ => "as solved".to_owned(),
+    };
     let mut title = format!("{words}, {}", words::model_name(model));
     title[..1].make_ascii_uppercase();
     let number = if scene.sampling.surfaces > 1 { format!(", surface {surface}") } else { String::new() };
@@ -180,6 +187,7 @@ pub(crate) fn picture<'a>(
         size,
         values,
         shown,
+        signed,
         range: None,
         contact: &[],
         arrows: None,
@@ -190,24 +198,14 @@ pub(crate) fn picture<'a>(
 /// A field of one row as a curve over x, instead of a picture one cell high; the points are (x, value), x in
 /// the scene's unit.
 pub(crate) fn row_chart(picture: &FieldPicture<'_>, points: Vec<(f64, f64)>) -> Chart {
-    let extreme = |of: &dyn Fn(&(f64, f64)) -> f64| {
-        points.iter().map(|p| of(p).abs()).filter(|v| v.is_finite()).fold(0.0, f64::max)
-    };
-    let (length, per_length) = plots::prefixed(picture.length_unit, extreme(&|p| p.0));
-    let (unit, per_unit) = plots::prefixed(picture.unit, extreme(&|p| p.1));
-    let label = |words: &str, unit: &str| {
-        if unit.is_empty() { words.to_owned() } else { format!("{words} ({})", words::unit_label(unit)) }
-    };
     Chart {
         title: picture.title.replace("3D boundary elements", "boundary elements in plane strain"),
         subtitle: picture.subtitle.clone(),
-        x_label: label("$x$", &length),
-        y_label: label(&picture.quantity, &unit),
-        curves: vec![Curve {
-            label: "profile".into(),
-            points: points.into_iter().map(|(x, v)| (per_length * x, per_unit * v)).collect(),
-            band: Vec::new(),
-        }],
+        x_label: "$x$".into(),
+        y_label: picture.quantity.clone(),
+        curves: vec![Curve { label: "profile".into(), points, band: Vec::new() }],
         logarithmic: false,
+        directed: false,
     }
+    .in_units([picture.length_unit, picture.unit])
 }

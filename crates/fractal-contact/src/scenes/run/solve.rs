@@ -207,11 +207,12 @@ impl ModelOnSurface {
             let shown = field_pictures::magnitude(&components);
             let (model, surface, state) = (self.numerics(scene).name(), self.surface, kept.index);
             let file = |extension| FieldFile { field: name, model, surface, state, extension };
-            if field_pictures::is_needed(scene, name) {
+            let drawn = scene.requested.draws(name, kept.index);
+            if drawn && field_pictures::is_needed(scene, name) {
                 kept.files.push(field_pictures::keep(out, file(""), &all)?);
             }
             // One surface is shown, and only fields that files are asked of.
-            if surface == 0 && !formats.is_empty() {
+            if drawn && surface == 0 && !formats.is_empty() {
                 let view = FieldView::new(quantity.shown, field.cells(), &shown);
                 kept.files.push(field_pictures::keep_view(out, file(""), &view)?);
             }
@@ -224,6 +225,7 @@ impl ModelOnSurface {
                         surface_io::write_npy(&path, &shape[usize::from(components.len() == 1)..], &all)?;
                     }
                     FieldFormat::Png => continue,
+                    FieldFormat::Pixels if !drawn => continue,
                     FieldFormat::Pixels => plots::write_grey(&path, field.cells(), field.size(), &shown)?,
                     FieldFormat::Vti => write_vti(&path, quantity, scene, field.cells(), &components)?,
                 }

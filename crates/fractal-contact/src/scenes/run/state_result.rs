@@ -1,8 +1,9 @@
 //! What is kept of a model's states, and the names of their files.
 
 use crate::scenes::plan::GridErrors;
-use crate::scenes::read::{Bin, Distributed, HEIGHTS, Result};
+use crate::scenes::read::{Bin, Distributed, HEIGHTS, Result, SceneFile, amount, words};
 use crate::scenes::run::Warning;
+use contact_model::quantities::Quantity;
 use contact_model::{ContactState, FIELDS, Normalisation, Status};
 use runs::fnv1a_128;
 use serde::{Deserialize, Serialize};
@@ -41,6 +42,10 @@ impl From<StoredResult> for ModelResult {
         Self { seconds, complete, kept: states.len(), states, notes: Vec::new() }
     }
 }
+
+/// Quantities that say where a state of a path is.
+const REACHED: [&str; 5] =
+    ["force", "approach", "mean_gap", "tangential_displacement", "tangential_displacement_y"];
 
 /// One state as it is kept. All that is told of it is a view of this.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -114,6 +119,22 @@ impl StateRecord {
             }
             Answer::State(solved) => Warning::note(&solved.warnings),
         }
+    }
+
+    /// The load in words; of a path the step with what was reached there: forces and distances.
+    pub fn words(&self, scene: &SceneFile) -> String {
+        let mut text = words::load(scene, self.index);
+        let Some(solved) = self.solved().filter(|_| scene.is_history()) else { return text };
+        for quantity in REACHED.into_iter().filter_map(Quantity::named) {
+            let Some(value) = quantity.number(&solved.state, &solved.normalisation) else { continue };
+            // What is along y is told where something is.
+            if quantity.name.ends_with("_y") && value == 0.0 {
+                continue;
+            }
+            let unit = scene.system.shown(quantity.unit.si(&scene.requested.outputs));
+            text += &format!(", {} {}", quantity.words, amount(value, unit));
+        }
+        text
     }
 
     /// Whether all its files are still what they were.

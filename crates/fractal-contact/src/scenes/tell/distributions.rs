@@ -1,7 +1,7 @@
 //! Distributions of pressure, gap and contact areas: `distribution-NAME.csv`, and a picture of surface 0.
 
-use crate::scenes::read::{Bin, Distributed, Result, SceneFile, System, words};
-use crate::scenes::run::SolvedUnit;
+use crate::scenes::read::{Bin, Distributed, Result, SceneFile, System, multiple, words};
+use crate::scenes::run::{SolvedUnit, StateRecord};
 use crate::scenes::tell::columns;
 use analysis::{Table, Value};
 use plots::{Chart, Curve};
@@ -50,9 +50,9 @@ pub(crate) fn table(
 pub(crate) fn chart(scene: &SceneFile, of: Distributed, units: &[SolvedUnit<'_>]) -> Option<Chart> {
     let mut curves = Vec::new();
     for &SolvedUnit { model, states, .. } in units.iter().filter(|unit| unit.surface == 0) {
-        let with: Vec<(usize, &Vec<Bin>)> = states
+        let with: Vec<(&StateRecord, &Vec<Bin>)> = states
             .iter()
-            .filter_map(|s| Some((s.index, &s.distributions.iter().find(|d| d.0 == of)?.1)))
+            .filter_map(|s| Some((s, &s.distributions.iter().find(|d| d.0 == of)?.1)))
             .filter(|(_, bins)| !bins.is_empty())
             .collect();
         let shown = with.len().min(CURVES);
@@ -62,13 +62,18 @@ pub(crate) fn chart(scene: &SceneFile, of: Distributed, units: &[SolvedUnit<'_>]
                 Distributed::Patches => ((lower * upper).sqrt(), *density),
                 _ => (f64::midpoint(*lower, *upper), *density),
             };
-            let load = words::load(scene, state);
+            let load = state.words(scene);
             let label =
                 if scene.models.len() > 1 { format!("{}, {load}", words::model_name(model)) } else { load };
             curves.push(Curve { label, points: bins.iter().map(middle).collect(), band: Vec::new() });
         }
     }
-    let (words, unit, per_unit) = of.words();
+    let (words, unit, _) = of.words();
+    let largest = curves.iter().flat_map(|curve| &curve.points).map(|point| point.0).fold(0.0, f64::max);
+    let (unit, factor) = multiple(scene.system.shown(unit), largest);
+    for point in curves.iter_mut().flat_map(|curve| &mut curve.points) {
+        *point = (factor * point.0, point.1 / factor);
+    }
     let with = |unit: &str| match scene.system {
         System::Si => format!(" ({})", words::unit_label(unit)),
         System::None => String::new(),
@@ -80,10 +85,11 @@ pub(crate) fn chart(scene: &SceneFile, of: Distributed, units: &[SolvedUnit<'_>]
     let number = if scene.sampling.surfaces > 1 { ", surface 0" } else { "" };
     (!curves.is_empty()).then(|| Chart {
         title,
-        subtitle: format!("scene: {}{number}", words::scene_name(scene)),
-        x_label: format!("{words}{}", with(unit)),
-        y_label: format!("{density}{}", with(per_unit)),
+        subtitle: format!("{}{number}", words::scene_name(scene)),
+        x_label: format!("{words}{}", with(&unit)),
+        y_label: format!("{density}{}", with(&format!("1/{unit}"))),
         curves,
         logarithmic: of == Distributed::Patches,
+        directed: false,
     })
 }

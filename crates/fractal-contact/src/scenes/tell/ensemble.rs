@@ -3,7 +3,7 @@
 use crate::scenes::read::SceneFile;
 use crate::scenes::run::{Solved, SolvedUnit, StateRecord};
 use crate::scenes::tell::columns;
-use analysis::{Column, Table, Value, mean_and_deviation};
+use analysis::{Column, Table, Value, mean_and_deviation, student};
 use contact_model::quantities::{Average, Quantity, Role};
 
 /// A mean, and the standard deviation of one number where there are two.
@@ -37,19 +37,33 @@ pub(crate) struct Mean {
 impl Mean {
     /// Mean and, for two surfaces or more, its standard error, of a quantity.
     pub fn of(&self, quantity: &Quantity) -> Option<MeanAndDeviation> {
-        self.find(quantity, false)
+        self.with_error(quantity, false)
+    }
+
+    /// Mean and, for two surfaces or more, half of its 95 % interval: so many standard errors as Student's
+    /// distribution with a degree of freedom less than surfaces asks for.
+    pub fn interval(&self, quantity: &Quantity) -> Option<MeanAndDeviation> {
+        let (mean, deviation, surfaces) = self.find(quantity, false)?;
+        let half = |deviation: f64| student(surfaces as f64 - 1.0) * deviation / (surfaces as f64).sqrt();
+        Some((mean, deviation.map(half)))
     }
 
     /// The same of the error that the grid leaves in it.
     pub fn grid_error(&self, quantity: &Quantity) -> Option<MeanAndDeviation> {
-        self.find(quantity, true)
+        self.with_error(quantity, true)
     }
 
-    fn find(&self, quantity: &Quantity, of_grid: bool) -> Option<MeanAndDeviation> {
+    fn with_error(&self, quantity: &Quantity, of_grid: bool) -> Option<MeanAndDeviation> {
+        let (mean, deviation, surfaces) = self.find(quantity, of_grid)?;
+        Some((mean, deviation.map(|deviation| deviation / (surfaces as f64).sqrt())))
+    }
+
+    /// Mean, standard deviation and number of surfaces.
+    fn find(&self, quantity: &Quantity, of_grid: bool) -> Option<(f64, Option<f64>, usize)> {
         let is = |(of, grid): &Averaged| of.name == quantity.name && *grid == of_grid;
         let (_, value, surfaces) = self.values.iter().find(|(of, ..)| is(of))?;
         let (mean, deviation) = (*value)?;
-        Some((mean, deviation.map(|deviation| deviation / (*surfaces as f64).sqrt())))
+        Some((mean, deviation, *surfaces))
     }
 }
 
@@ -90,6 +104,25 @@ pub(crate) fn means<'a>(scene: &SceneFile, units: &[SolvedUnit<'a>]) -> Vec<Mean
         }
     }
     means
+}
+
+/// How many surfaces these means are of and what is told with them; empty where none is of several surfaces.
+pub(crate) fn words<'a>(means: impl Iterator<Item = &'a Mean>) -> String {
+    let counts: Vec<usize> = means.map(|mean| mean.surfaces).filter(|surfaces| *surfaces > 1).collect();
+    let (Some(few), Some(many)) = (counts.iter().copied().min(), counts.iter().copied().max()) else {
+        return String::new();
+    };
+    let surfaces = if few == many { few.to_string() } else { format!("{few} to {many}") };
+    format!("means over {surfaces} surfaces ± half of the 95 % interval, {}", distribution(few, many))
+}
+
+/// What intervals of means over surfaces follow from.
+pub(crate) fn distribution(few: usize, many: usize) -> String {
+    match few {
+        2 if few == many => "by Student's t with 1 degree of freedom".to_owned(),
+        few if few == many => format!("by Student's t with {} degrees of freedom", few - 1),
+        _ => "by Student's t with a degree of freedom less than surfaces".to_owned(),
+    }
 }
 
 /// The means as a table: `surfaces`, and for each quantity its mean, standard error and standard deviation.

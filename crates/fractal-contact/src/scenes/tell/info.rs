@@ -1,14 +1,14 @@
 //! What a file holds: a scene, a surface or a table of results.
 
 use crate::scenes::plan::Plan;
-use crate::scenes::read::{Error, Remark, Result, SceneFile, System, number, remarks};
+use crate::scenes::read::{Error, Remark, Result, SceneFile, System, description, number, remarks};
 use crate::scenes::tell::{MapStatisticsTables, SurfaceReport};
 use contact_model::Boundary;
 use runs::Header;
 use std::path::Path;
 use surface_io::{
     Description, Detrend, Dimension, Metadata, Preprocessed, Preprocessing, Quantity, ReadOptions, Scan,
-    SurfaceFile, describe,
+    SurfaceFile,
 };
 
 /// A few lines on a scene (`.toml`), a table (`.csv` with a header that explains itself) or a surface
@@ -72,7 +72,7 @@ fn surface(path: &Path, declared: &ReadOptions, preprocessing: &Preprocessing) -
     let scan = file.scan()?;
     Ok(match scan.preprocessed(preprocessing) {
         Ok(found) => {
-            let mut description = describe(&found.map);
+            let mut description = description(&found.map, system(scan.metadata()));
             let mut fit = "";
             if description.hurst.is_ok() {
                 // One exponent is told: that with an interval, of the statistics.
@@ -113,8 +113,7 @@ pub fn info_statistics(
     }
     let scan = SurfaceFile::open(path, declared).and_then(SurfaceFile::scan)?;
     let found = scan.preprocessed(preprocessing)?;
-    let metric = scan.metadata().unit.as_ref().is_some_and(|u| u.value.dimension() == Dimension::LENGTH);
-    let system = if metric { System::Si } else { System::None };
+    let system = system(scan.metadata());
     let statistics = MapStatisticsTables::new(
         &found.map,
         scan.metadata().profile,
@@ -139,8 +138,14 @@ pub fn info_statistics(
     files.push(report.write(out)?);
     let names: Vec<String> = runs::file_names(&files);
     // One exponent is told: that with an interval, of the statistics.
-    let text = described(&scan, &found, &describe(&found.map).without_fit());
+    let text = described(&scan, &found, &description(&found.map, system).without_fit());
     Ok(format!("{text}\n{}\n{}: {}\n", statistics.text(), out.display(), names.join(", ")))
+}
+
+/// Whether lengths are in metres.
+fn system(of: &Metadata) -> System {
+    let metric = of.unit.as_ref().is_some_and(|unit| unit.value.dimension() == Dimension::LENGTH);
+    if metric { System::Si } else { System::None }
 }
 
 /// What was understood of a file, what was done to its map, and what the map is.

@@ -10,6 +10,7 @@ pub(crate) mod pictures;
 pub(crate) mod profile_statistics;
 pub(crate) mod report;
 pub(crate) mod result_folder;
+pub(crate) mod smooth_ball;
 pub(crate) mod statistics;
 pub(crate) mod statistics_files;
 pub(crate) mod summary;

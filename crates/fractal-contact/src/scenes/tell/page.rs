@@ -1,13 +1,13 @@
 //! A page of HTML that needs no network and no other file: its frame, charts, fields and statistics.
 
-use crate::scenes::read::{Result, human_readable};
+use crate::scenes::read::{Result, multiple, short};
 use crate::scenes::run::{FieldView, shown_words};
 use crate::scenes::tell::MapStatisticsTables;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
-use contact_model::Shown;
+use contact_model::units::number;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
-use plots::{Chart, FieldPicture, prefixed};
+use plots::{Chart, FieldPicture, Palette};
 use std::path::{Path, PathBuf};
 
 const STYLE: &str = include_str!("page/page.css");
@@ -41,7 +41,7 @@ pub(crate) fn write(
                 } }
                 main { @for (id, _, heading, content) in sections { section id=(id) { h2 { (heading) } (content) } } }
                 footer { p { "fractal-contact " (env!("CARGO_PKG_VERSION")) } }
-                script id="palette" type="application/octet-stream" { (PreEscaped(STANDARD.encode(plots::viridis().as_flattened()))) }
+                script id="palette" type="application/octet-stream" { (PreEscaped(STANDARD.encode(Palette::ALL.map(Palette::colours).as_flattened().as_flattened()))) }
                 script { (PreEscaped(SCRIPT)) }
             }
         }
@@ -49,6 +49,20 @@ pub(crate) fn write(
     let path = out.join("report.html");
     runs::files::write_whole(&path, page.into_string().as_bytes())?;
     Ok(path)
+}
+
+/// A sentence whose words between backticks are those of scenes and files.
+pub(crate) fn words(text: &str) -> Markup {
+    html! { @for (i, part) in text.split('`').enumerate() { @if i % 2 == 1 { code { (part) } } @else { (part) } } }
+}
+
+/// A unit with its powers raised: `µm^2`.
+pub(crate) fn unit(unit: &str) -> Markup {
+    let mut parts = unit.split('^');
+    let first = parts.next().unwrap_or_default();
+    // A power is a sign and digits; what follows stands on the line.
+    let power = |part: &str| part.find(|c: char| !c.is_ascii_digit() && c != '-').unwrap_or(part.len());
+    html! { (first) @for part in parts { @let (raised, rest) = part.split_at(power(part)); sup { (raised) } (rest) } }
 }
 
 /// A chart as a picture that keeps its names to itself.
@@ -73,54 +87,89 @@ pub(crate) fn statistics(of: &MapStatisticsTables) -> Markup {
             table.words.parameters {
                 tr { @for h in ["parameter", "value", "95 % interval", "meaning"] { th scope="col" { (h) } } }
                 @for [symbol, value, interval, meaning] in of.rows() {
-                    tr { th scope="row" { (symbol) } td { (value) } td { (interval) } td { (meaning) } }
+                    tr { th scope="row" { (symbol) } td { (unit(&value)) } td { (interval) } td { (words(&meaning)) } }
                 }
             }
         }
-        @for note in &of.notes { p { "Not known: " (note) } }
-        @for remark in &of.remarks { p { (remark) } }
+        @for note in &of.notes { p { "Not known: " (words(note)) } }
+        @for remark in &of.remarks { p { (words(remark)) } }
     }
 }
 
-/// A field that is read by clicks and keys, with a picture in its place where no script runs.
+/// Most ticks along the longer side of a map, and along one however short.
+const TICKS: [f64; 2] = [6.0, 2.0];
+
+/// Where the ticks of an axis from 0 to its length are, at most so many steps: multiples of 1, 2 or 5 times a
+/// power of ten.
+fn ticks(length: f64, most: f64) -> Vec<f64> {
+    let least = length / most;
+    let power = 10f64.powf(least.log10().floor());
+    let steps = [1.0, 2.0, 5.0, 10.0].map(|step| step * power);
+    let step = steps.into_iter().find(|step| *step >= least * (1.0 - 1e-9)).unwrap_or(length);
+    let count = (length / step * (1.0 + 1e-9)) as usize;
+    (0..=count.min(most as usize)).map(|i| i as f64 * step).collect()
+}
+
+/// A field with axes that is read by clicks and keys, with a picture in its place where no script runs.
 ///
 /// # Errors
 /// A picture that cannot be encoded.
 pub(crate) fn field(picture: &FieldPicture<'_>, view: &FieldView) -> Result<Markup> {
-    let [low, high] = view.ends().unwrap_or_default();
-    let zero = picture.shown == Shown::Largest;
-    let low_end = if zero { low.min(0.0) } else { low };
-    let png = plots::encode_viridis(view.columns, &view.values, [low_end, high], zero)?;
+    let [least, most] = view.ends().unwrap_or_default().map(f64::from);
+    let own = FieldPicture { range: Some(picture.range.unwrap_or((least, most))), ..picture.clone() };
+    let scale = own.scale();
+    let (low, high) = scale.ends();
+    let png = scale.encode(view.columns, &view.values)?;
     let size = picture.size;
-    let (length, scale) = prefixed(picture.length_unit, size.x.max(size.y));
-    let (unit, per_unit) = prefixed(picture.unit, f64::from(high.abs().max(low.abs())));
-    let end =
-        |v: f32| format!("{} {unit}", human_readable::short(per_unit * f64::from(v))).trim_end().to_owned();
-    let words = picture.quantity.split('$').next().unwrap_or_default().trim();
+    let (length, per_length) = multiple(picture.length_unit, size.x.max(size.y));
+    let (unit_name, per_unit) = multiple(picture.unit, high.abs().max(low.abs()));
+    let with = |text: String| html! { (text) " " (unit(&unit_name)) };
+    let end = |v: f64| with(short(per_unit * v));
+    let words = picture.quantity.split('$').next().unwrap_or_default().trim().trim_end_matches(", magnitude");
     let shown = shown_words(picture.shown);
     let data = serde_json::json!({
         "across": view.columns, "down": view.rows, "block": view.block, "picked": shown,
         "dx": size.x / view.cells.columns as f64, "dy": size.y / view.cells.rows as f64,
-        "low": low_end, "high": high, "zero": zero,
-        "quantity": words, "unit": picture.unit, "length": length, "scale": scale,
+        "low": low, "high": high, "zero": scale.zero_is_white(), "palette": scale.palette() as usize,
+        "quantity": words, "unit": unit_name, "per": per_unit, "classes": picture.classes,
+        "length": length, "scale": per_length,
     });
-    let alt = format!(
-        "{}, {}: {} columns and {} rows, from {} to {}.",
-        picture.title,
-        picture.subtitle,
-        view.cells.columns,
-        view.cells.rows,
-        end(low),
-        end(high)
-    );
+    let plain = |v: f64| format!("{} {unit_name}", short(per_unit * v)).trim_end().to_owned();
+    let of_cells = format!("{} columns and {} rows", view.cells.columns, view.cells.rows);
+    let range = if picture.classes.is_empty() {
+        format!(", from {} to {}", plain(least), plain(most))
+    } else {
+        String::new()
+    };
+    let alt = format!("{}, {}: {of_cells}{range}.", picture.title, picture.subtitle);
     let mut ramp = "linear-gradient(to right".to_owned();
-    for [r, g, b] in plots::viridis().into_iter().step_by(17) {
+    for [r, g, b] in scale.palette().colours().into_iter().step_by(17) {
         ramp += &format!(",rgb({r},{g},{b})");
     }
+    let colour = |value: usize| {
+        let [r, g, b] = scale.colour(value as f64);
+        format!("background:rgb({r},{g},{b})")
+    };
+    let axis = |side: f64, edge: &str| {
+        let most = (TICKS[0] * side / size.x.max(size.y)).max(TICKS[1]);
+        let side = side * per_length;
+        html! { @for tick in ticks(side, most) { span style=(format!("{edge}:{:.3}%", 100.0 * tick / side)) { (number(contact_model::units::rounded(tick, 12))) } } }
+    };
+    let name = |axis: &str| html! { i { (axis) } @if !length.is_empty() { " (" (length) ")" } };
     Ok(html! {
         figure.field data-field=(data.to_string()) {
-            img src={ "data:image/png;base64," (STANDARD.encode(png)) } alt=(alt);
-            div.bar aria-hidden="true" { span { (end(low_end)) } i style={ "background:" (ramp) ")" } {} span { (end(high)) } }
+            div.map {
+                div.name aria-hidden="true" { (name("y")) }
+                div.y aria-hidden="true" { (axis(size.y, "bottom")) }
+                img src={ "data:image/png;base64," (STANDARD.encode(png)) } alt=(alt);
+                div.x aria-hidden="true" { (axis(size.x, "left")) }
+                div.name aria-hidden="true" { (name("x")) }
+            }
+            @if picture.classes.is_empty() {
+                div.bar aria-hidden="true" { span { (end(low)) } i style={ "background:" (ramp) ")" } {} span { (end(high)) } }
+            } @else {
+                div.bar aria-hidden="true" { @for (value, words) in picture.classes.iter().enumerate() { b style=(colour(value)) {} span { (words) } } }
+            }
             div.tools {
                 button type="button" aria-label={ "Enlarge: " (words) } { "+" }
                 button type="button" aria-label={ "Reduce: " (words) } { "-" }
@@ -128,7 +177,6 @@ pub(crate) fn field(picture: &FieldPicture<'_>, view: &FieldView) -> Result<Mark
             }
             figcaption {
                 strong { (picture.title) } ", " (picture.subtitle)
-                @for (value, words) in picture.classes.iter().enumerate() { (if value == 0 { "; " } else { ", " }) (value) " " (words) }
                 @if view.block > 1 { "; each pixel is " (shown) " of " (view.block) " x " (view.block) " cells" }
             }
             output aria-live="polite" {}
@@ -140,4 +188,31 @@ pub(crate) fn field(picture: &FieldPicture<'_>, view: &FieldView) -> Result<Mark
             }
         }
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn units_and_words_become_marks() {
+        assert_eq!(unit("N/µm^2 x").into_string(), "N/µm<sup>2</sup> x");
+        assert_eq!(unit("1/m").into_string(), "1/m");
+        assert_eq!(words("a `b < c` d").into_string(), "a <code>b &lt; c</code> d");
+    }
+
+    #[test]
+    fn ticks_are_few_and_round() {
+        assert_eq!(ticks(12.0, 2.0), [0.0, 10.0]);
+        assert_eq!(ticks(48.0, 6.0), [0.0, 10.0, 20.0, 30.0, 40.0]);
+        assert_eq!(ticks(1.0, 6.0), [0.0, 0.2, 0.4, 0.6000000000000001, 0.8, 1.0]);
+        for i in 1..400 {
+            let length = 1.037_f64.powi(i - 200);
+            let found = ticks(length, 6.0);
+            assert!(
+                (3..=7).contains(&found.len()) && found.last().unwrap() <= &(length * 1.000_001),
+                "{length}: {found:?}"
+            );
+        }
+    }
 }

@@ -2,7 +2,7 @@
 
 use crate::scenes::read::{LoadKind, LoadRequest, Result, SceneFile, depends_on_path, words};
 use crate::scenes::run::{SolvedUnit, StateRecord};
-use crate::scenes::tell::{Mean, columns};
+use crate::scenes::tell::{Mean, columns, ensemble, smooth_ball};
 use contact_model::Boundary;
 use contact_model::quantities::Quantity;
 use plots::{Chart, Curve};
@@ -88,10 +88,19 @@ fn pairs(scene: &SceneFile) -> Vec<(Axis, &'static Quantity)> {
     })
 }
 
-/// A constant, such as a force that is held, is no picture.
+/// A number that changes by less than this share of the largest is held: what is left is the tolerance of the
+/// solver.
+const HELD: f64 = 1e-5;
+
+/// A constant, such as a force that is held, is no picture, and neither is anything over a time that does not
+/// pass.
 fn varies(points: &[(f64, f64)]) -> bool {
-    let Some(first) = points.first() else { return false };
-    points.len() == 1 || points.iter().any(|p| p.1.total_cmp(&first.1).is_ne())
+    let changes = |of: fn(&(f64, f64)) -> f64| {
+        let ends = |(low, high): (f64, f64), value: f64| (low.min(value), high.max(value));
+        let (low, high) = points.iter().map(of).fold((f64::INFINITY, f64::NEG_INFINITY), ends);
+        high - low > HELD * low.abs().max(high.abs())
+    };
+    points.len() == 1 || changes(|p| p.0) && changes(|p| p.1)
 }
 
 impl Axis {
@@ -110,14 +119,10 @@ impl Axis {
         }
     }
 
-    fn label(self, scene: &SceneFile) -> String {
+    /// Without its unit.
+    fn label(self) -> String {
         let (words, symbol) = self.words();
-        let label = if symbol.is_empty() { words.to_owned() } else { format!("{words} ${symbol}$") };
-        match self.unit(scene) {
-            "1" | "-" => label,
-            "scene" => format!("{label} (units of the scene)"),
-            unit => format!("{label} ({})", words::unit_label(unit)),
-        }
+        if symbol.is_empty() { words.to_owned() } else { format!("{words} ${symbol}$") }
     }
 
     fn of_mean(self, mean: &Mean) -> Option<f64> {
@@ -125,6 +130,16 @@ impl Axis {
             Self::Quantity(quantity) => Some(mean.of(quantity)?.0),
             Self::Load => mean.prescribed,
         }
+    }
+}
+
+/// What is drawn in a chart of a quantity: itself, and of an area that which is less by what cells add at its
+/// boundary.
+fn drawn_with(scene: &SceneFile, y: &'static Quantity) -> Vec<(&'static Quantity, &'static str)> {
+    let corrected = columns::asked(scene).find(|quantity| quantity.name == "area_corrected");
+    match corrected {
+        Some(corrected) if y.name == "area" => vec![(y, ", as counted"), (corrected, ", corrected")],
+        _ => vec![(y, "")],
     }
 }
 
@@ -161,8 +176,8 @@ fn curve(
     let of = || means.iter().filter(move |mean| mean.model == model && mean.surfaces > 0);
     let points = of().filter_map(|mean| Some((x.of_mean(mean)?, mean.of(y)?.0)));
     let band = of().filter_map(|mean| {
-        let (x, (y, error)) = (x.of_mean(mean)?, mean.of(y)?);
-        Some((x, y - 2.0 * error?, y + 2.0 * error?))
+        let (x, (y, half)) = (x.of_mean(mean)?, mean.interval(y)?);
+        Some((x, y - half?, y + half?))
     });
     Curve { label, points: points.filter(shown).collect(), band: band.collect() }
 }
@@ -174,38 +189,76 @@ fn chart(
     x: Axis,
     y: &'static Quantity,
 ) -> Chart {
-    let curves: Vec<Curve> = scene
-        .models
-        .iter()
-        .map(|m| curve(scene, (units, means), m.name(), (x, y)))
-        .filter(|curve| !curve.points.is_empty())
-        .collect();
+    let quantities = drawn_with(scene, y);
+    let of_model = |model: &'static str| {
+        let curve = |(y, suffix): &(&'static Quantity, &'static str)| {
+            (curve(scene, (units, means), model, (x, y)), *suffix)
+        };
+        let mut curves: Vec<(Curve, &str)> =
+            quantities.iter().map(curve).filter(|(curve, _)| !curve.points.is_empty()).collect();
+        // A model without cells has nothing to correct.
+        let several = curves.len() > 1;
+        curves.iter_mut().filter(|_| several).for_each(|(curve, suffix)| curve.label += suffix);
+        curves.into_iter().map(|(curve, _)| curve).collect::<Vec<_>>()
+    };
+    let mut curves: Vec<Curve> = scene.models.iter().flat_map(|m| of_model(m.name())).collect();
+    let smooth = smooth_ball::states(scene);
+    let points = smooth.iter().filter_map(|(index, state, normalisation)| {
+        let x = match x {
+            Axis::Quantity(quantity) => quantity.number(state, normalisation)?,
+            Axis::Load => scene.request.prescribed(*index)?,
+        };
+        Some((x, y.number(state, normalisation)?))
+    });
+    let points: Vec<(f64, f64)> = points.collect();
+    if !points.is_empty() {
+        curves.push(Curve { label: smooth_ball::LABEL.into(), points, band: Vec::new() });
+    }
     let mut title = format!("{} over {}", y.words, x.words().0);
     title[..1].make_ascii_uppercase();
-    let has_error = columns::with_grid_errors(scene).any(|compared| compared.name == y.name);
+    // One load makes no band.
+    let shaded = curves.iter().any(|curve| curve.band.len() > 1);
     let surfaces = match scene.sampling.surfaces {
-        1 if has_error => ", shaded: the factor 1 + grid error".to_owned(),
+        1 if shaded => "; shaded: the estimated error of the grid, as a factor".to_owned(),
         1 => String::new(),
         asked => {
             // A run that was interrupted has fewer.
             let solved = |mean: &&Mean| mean.surfaces > 1 || asked == 1;
             let counts: Vec<usize> = means.iter().filter(solved).map(|mean| mean.surfaces).collect();
-            let surfaces = match (counts.iter().min(), counts.iter().max()) {
-                (Some(few), Some(many)) if few == many && *many < asked => format!("{few} of {asked}"),
-                (Some(few), Some(many)) if few < many => {
-                    format!("{few} to {many} of {asked}")
-                }
+            let (few, many) = (counts.iter().min().copied(), counts.iter().max().copied());
+            let surfaces = match (few, many) {
+                (Some(few), Some(many)) if few == many && many < asked => format!("{few} of {asked}"),
+                (Some(few), Some(many)) if few < many => format!("{few} to {many} of {asked}"),
                 _ => asked.to_string(),
             };
-            format!(", means of {surfaces} surfaces, shaded: ± 2 standard errors")
+            let shaded = match few.zip(many).filter(|_| shaded) {
+                Some((few, many)) => format!("; shaded: 95 % interval {}", ensemble::distribution(few, many)),
+                None => String::new(),
+            };
+            format!("; means over {surfaces} surfaces{shaded}")
         }
     };
     Chart {
         title,
-        subtitle: format!("scene: {}{surfaces}", words::scene_name(scene)),
-        x_label: x.label(scene),
-        y_label: Axis::Quantity(y).label(scene),
+        subtitle: format!("{}{surfaces}", words::scene_name(scene)),
+        x_label: x.label(),
+        y_label: Axis::Quantity(y).label(),
         curves,
         logarithmic: !scene.is_history(),
+        directed: scene.is_history(),
+    }
+    .in_units([x, Axis::Quantity(y)].map(|axis| axis.unit(scene)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::varies;
+
+    #[test]
+    fn what_is_held_is_no_picture() {
+        let points = |values: &[f64]| (1_u8..).map(f64::from).zip(values.iter().copied()).collect::<Vec<_>>();
+        assert!(varies(&points(&[1.0])) && varies(&points(&[1.0, 1.1])) && varies(&points(&[0.0, 1e-300])));
+        assert!(!varies(&[]) && !varies(&points(&[0.2, 0.2 + 1e-9])) && !varies(&points(&[0.0, 0.0])));
+        assert!(!varies(&[(0.0, 1.0), (0.0, 2.0)]));
     }
 }

@@ -1,8 +1,8 @@
 //! `report.html`: a run in one page, which needs no network and no other file.
 
 use crate::scenes::plan::{Cost, Plan};
-use crate::scenes::read::{HEIGHTS, Result, SceneFile, System, human_readable, number, words};
-use crate::scenes::run::{FieldFile, FieldView, SceneOutcome, SolvedUnit, field_pictures};
+use crate::scenes::read::{HEIGHTS, Result, SceneFile, amount, number, short, words};
+use crate::scenes::run::{FieldFile, FieldView, SceneOutcome, SolvedUnit, StateRecord, field_pictures};
 use crate::scenes::tell::{MapStatisticsTables, Mean, columns, distributions, page, pictures, summary};
 use analysis::Value;
 use contact_model::FieldQuantity;
@@ -10,6 +10,7 @@ use contact_model::quantities::{Quantity, Role};
 use maud::{Markup, PreEscaped, html};
 use plots::{Chart, Curve};
 use runs::amounts::{memory, time};
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// Bytes that the fields of a page may take: it stays below 5 MB.
@@ -35,10 +36,10 @@ impl Report<'_> {
         let (curves, fields, distributions) = (self.curves()?, self.fields(out)?, self.distributions()?);
         let spectrum = self.spectrum()?;
         let head = html! {
-            @if !self.plan.shows.is_empty() { p.lead { (self.plan.shows) } }
+            @if !self.plan.shows.is_empty() { p.lead { (page::words(&self.plan.shows)) } }
             (self.verdict())
         };
-        let results = html! { (self.states()) div.charts { (curves) } (distributions) };
+        let results = html! { (self.states()) (self.warnings()) div.charts { (curves) } (distributions) };
         let surface = html! { (self.surface()) (spectrum) };
         let scene = html! { pre { (self.scene.text) } };
         let sections = [
@@ -58,18 +59,26 @@ impl Report<'_> {
         let SceneOutcome { requested, states, failed, stopped, .. } = *self.outcome;
         let rest = requested - states;
         let fine = failed == 0 && rest == 0;
+        let warnings = self.outcome.notes.len() + self.plan.notes.len();
         html! {
             p.verdict.warned[!fine] {
                 @if fine { "All " (states) " states asked for were answered and are certified." }
                 @else { (states) " of " (requested) " states were attempted; " (failed) " of them were refused or missed their tolerance." }
                 @if stopped { " The run was stopped before its end." }
+                @if warnings > 0 { " " a href="#beware" { (warnings) @if warnings == 1 { " thing" } @else { " things" } " to beware of" } "." }
             }
+        }
+    }
+
+    /// Below the numbers that they are about.
+    fn warnings(&self) -> Markup {
+        html! {
             @if !self.outcome.notes.is_empty() || !self.plan.notes.is_empty() {
-                div.verdict.warned {
+                div.verdict.warned id="beware" {
                     strong { "To beware of" }
                     ul {
-                        @for note in &self.plan.notes { li { (note.message()) @if let Some(help) = note.help() { ": " (help) } } }
-                        @for note in &self.outcome.notes { li { (note) } }
+                        @for note in &self.plan.notes { li { (page::words(note.message())) @if let Some(help) = note.help() { ": " (page::words(help)) } } }
+                        @for note in &self.outcome.notes { li { (page::words(note)) } }
                     }
                 }
             }
@@ -80,20 +89,20 @@ impl Report<'_> {
         html! {
             @for model in summary::of_models(self.scene, self.units, self.means) {
                 div.scroll tabindex="0" role="region" aria-label={ "States of " (words::model_name(model.name)) } {
-                    table {
+                    @let short = summary::is_short(model.heads.len(), model.rows.len());
+                    table.short[short] {
                         caption {
                             (words::model_name(model.name))
-                            @if !self.means.is_empty() { ": means over surfaces (standard error)" }
-                            @if model.left_out > 0 { ": " (model.left_out) " more states are in results.csv" }
+                            @if !model.of_surfaces.is_empty() { ": " (model.of_surfaces) }
+                            @if model.left_out > 0 { "; " (model.left_out) " more states are in results.csv" }
                         }
-                        @for (i, line) in model.lines.iter().enumerate() {
-                            tr { @for cell in line { @if i == 0 { th scope="col" { (cell.replace('_', " ")) } } @else { td { (cell) } } } }
-                        }
+                        @if short { (below_each_other(&model)) } @else { (in_rows(&model)) }
                     }
                 }
-                @for line in &model.of_paths { p { (line.replace('_', " ")) "." } }
+                @if !model.same.is_empty() { p { "In all states: " (page::unit(&model.same.join(", ").replace('_', " "))) "." } }
+                @for line in &model.of_paths { p { (page::unit(&line.replace('_', " "))) "." } }
             }
-            p { "All columns, with their meaning and unit, are in results.csv." }
+            p { "All columns, with their meaning and in plain SI, are in results.csv." }
         }
     }
 
@@ -118,15 +127,16 @@ impl Report<'_> {
         let Some(map) = self.plan.prepared.as_ref().filter(|map| map.spectrum.len() > 1) else {
             return Ok(html! {});
         };
-        let [m, m4] = if self.scene.system == System::Si { [" (1/m)", " ($\\rm{m^4}$)"] } else { [""; 2] };
         let spectrum = Chart {
             title: "Power spectral density".into(),
             subtitle: "averaged over rings of the wavenumber, two-sided".into(),
-            x_label: format!("wavenumber $q${m}"),
-            y_label: format!("$C${m4}"),
+            x_label: "wavenumber $q$".into(),
+            y_label: "$C$".into(),
             curves: vec![Curve { label: "as solved".into(), points: map.spectrum.clone(), band: Vec::new() }],
             logarithmic: true,
+            directed: false,
         };
+        let spectrum = spectrum.in_units(["1/m", "m^4"].map(|unit| self.scene.system.shown(unit)));
         Ok(html! { div.charts { (page::chart(&spectrum)?) } })
     }
 
@@ -135,7 +145,7 @@ impl Report<'_> {
             p { (self.plan.surface) }
             @if let Some(told) = &self.plan.metadata { h3 { "What the file says, and what was done to it" } pre { (told) } }
             @if let Some(map) = self.plan.as_solved() { h3 { "As solved" } pre { (map) } }
-            p { "Modulus E*: " (number(self.plan.modulus)) "; units: " (self.plan.units) "." }
+            p { "Modulus E*: " (amount(self.plan.modulus, self.scene.system.shown("Pa"))) "; units: " (self.plan.units()) "." }
         }
     }
 
@@ -163,11 +173,11 @@ impl Report<'_> {
                 div.scroll { table.words {
                     caption { "The largest over all states" }
                     tr { th scope="col" { "residual" } th scope="col" { "largest" } th scope="col" { "what it proves" } }
-                    @for (name, words, value) in found { tr { td { (name.replace('_', " ")) } td { (human_readable::short(value)) } td { (words) } } }
+                    @for (name, words, value) in found { tr { td { (name.replace('_', " ")) } td { (short(value)) } td { (words) } } }
                 } }
             }
             @for model in &self.plan.models {
-                p { strong { (words::model_name(model.name)) } ", " (model.grid) ": " (model.accuracy) "." }
+                p { strong { (words::model_name(model.name)) } ", " (model.grid) ": " (page::words(&model.accuracy)) "." }
             }
         }
     }
@@ -181,7 +191,7 @@ impl Report<'_> {
         html! {
             div.scroll { table.words {
                 tr { th scope="col" { "effect" } th scope="col" { "" } th scope="col" { "why" } }
-                @for e in &self.plan.effects { tr { td { (e.name) } td { @if e.on { "on" } @else { "off" } } td { (e.reason) } } }
+                @for e in &self.plan.effects { tr { td { (e.name) } td { @if e.on { "on" } @else { "off" } } td { (page::words(&e.reason)) } } }
             } }
             p { "Computed: " (names(true)) ". Not asked for, so neither computed nor stored: " (names(false)) "." }
         }
@@ -220,62 +230,142 @@ impl Report<'_> {
     }
 
     /// The map and the fields of the first surface as long as there is room: of the largest loads first, or
-    /// of steps spread over a path.
+    /// of steps spread over a path; shown in the order of the loads, each quantity in one scale.
     fn fields(&self, out: &Path) -> Result<Markup> {
-        let mut views: Vec<(FieldView, &'static FieldQuantity, &str, usize)> = Vec::new();
+        let mut views: Vec<View<'_>> = Vec::new();
         for &SolvedUnit { model, surface, states } in self.units.iter().filter(|of| of.surface == 0) {
-            let order = if self.scene.is_history() {
-                spread(states.len())
-            } else {
-                (0..states.len()).rev().collect()
-            };
-            for state in order.into_iter().map(|i| &states[i]) {
+            for state in self.by_importance(states) {
                 views.extend(self.scene.requested.fields().filter_map(|(field, _)| {
                     let file =
                         FieldFile { field: field.name, model, surface, state: state.index, extension: "" };
-                    Some((field_pictures::view(out, file)?, field, model, state.index))
+                    Some(View { shown: field_pictures::view(out, file)?, field, model, state: Some(state) })
                 }));
             }
         }
-        let of_surface = |view: &(_, &FieldQuantity, _, _)| view.1.name == HEIGHTS.name;
-        if let (Some(map), false) = (self.scene.surface.given_map(), views.iter().any(of_surface)) {
+        if let (Some(map), false) = (self.scene.surface.given_map(), views.iter().any(View::is_surface)) {
             let model = self.scene.models.first().map_or("", |model| model.name());
-            views.insert(0, (FieldView::new(HEIGHTS.shown, map.cells(), map.heights()), &HEIGHTS, model, 0));
+            let shown = FieldView::new(HEIGHTS.shown, map.cells(), map.heights());
+            views.insert(0, View { shown, field: &HEIGHTS, model, state: None });
         }
         // The map first.
-        views.sort_by_key(|view| !of_surface(view));
+        views.sort_by_key(|view| !view.is_surface());
+        let ranges = ranges(&views);
         let count = views.len();
         let mut drawn = Vec::new();
-        let mut bytes = 0;
+        let (mut bytes, mut zeros) = (0, 0);
         for view in &views {
-            let (view, field, model, state) = view;
-            let picture = field_pictures::picture(self.scene, field, model, (0, *state), view.cells, &[]);
+            if view.is_zero() {
+                zeros += 1;
+                continue;
+            }
+            let View { shown, field, model, state } = view;
+            let mut picture =
+                field_pictures::picture(self.scene, field, model, (0, *state), shown.cells, &[]);
+            picture.range = ranges.get(&(field.name, *model)).copied();
             let figure = if self.scene.surface.is_profile() {
-                page::chart(&field_pictures::row_chart(&picture, view.row(self.scene.surface.size().x)))?
+                page::chart(&field_pictures::row_chart(&picture, shown.row(self.scene.surface.size().x)))?
             } else {
-                page::field(&picture, view)?
+                page::field(&picture, shown)?
             };
             let figure = figure.into_string();
             bytes += figure.len();
             if bytes > MOST_BYTES {
                 break;
             }
-            drawn.push((*state, figure));
+            drawn.push((view.is_surface(), *state, figure));
         }
-        if self.scene.is_history() {
-            drawn.sort_by_key(|(state, _)| *state);
-        }
+        let order = |(surface, state, _): &(bool, Option<&StateRecord>, String)| {
+            (!surface, state.map_or(0.0, |state| self.load(state)))
+        };
+        drawn.sort_by(|a, b| {
+            let (a, b) = (order(a), order(b));
+            a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
+        });
         let which =
             if self.scene.is_history() { "spread over the path" } else { "those of the largest loads" };
         Ok(html! {
             @if drawn.is_empty() {
-                p { "No field was asked for: name `pressure`, `gap` or `heights` in [outputs]." }
+                p { "No field was asked for: name " code { "pressure" } ", " code { "gap" } " or " code { "heights" } " in [outputs]." }
             } @else {
-                p { @if !self.scene.surface.is_profile() { (page::READING) } @if drawn.len() < count { " " (drawn.len()) " of " (count) " fields are shown, " (which) "; the \
-                     others are files beside this page." } }
-                div.fields { @for (_, figure) in &drawn { (PreEscaped(figure)) } }
+                p {
+                    @if !self.scene.surface.is_profile() { (page::READING) }
+                    @if count > 2 { " Each quantity has one scale." }
+                    @if zeros > 0 { " Fields that are zero everywhere are not drawn." }
+                    @if drawn.len() + zeros < count { " " (drawn.len()) " of " (count) " fields are shown, " (which) "; the others are files beside this page." }
+                }
+                div.fields { @for (_, _, figure) in &drawn { (PreEscaped(figure)) } }
             }
         })
+    }
+
+    /// What states are sorted by: the load that is prescribed, along a path the step.
+    fn load(&self, state: &StateRecord) -> f64 {
+        self.scene.request.prescribed(state.index).unwrap_or(state.index as f64)
+    }
+
+    /// States in the order in which their fields are given room.
+    fn by_importance<'b>(&self, states: &'b [StateRecord]) -> Vec<&'b StateRecord> {
+        if self.scene.is_history() {
+            return spread(states.len()).into_iter().map(|i| &states[i]).collect();
+        }
+        let mut sorted: Vec<&StateRecord> = states.iter().collect();
+        sorted.sort_by(|a, b| self.load(b).total_cmp(&self.load(a)));
+        sorted
+    }
+}
+
+/// What is shown of a field of a state.
+struct View<'a> {
+    shown: FieldView,
+    field: &'static FieldQuantity,
+    model: &'a str,
+    /// None of the surface.
+    state: Option<&'a StateRecord>,
+}
+
+impl View<'_> {
+    fn is_surface(&self) -> bool {
+        self.field.name == HEIGHTS.name
+    }
+
+    /// A traction before anything was moved, for example.
+    fn is_zero(&self) -> bool {
+        !self.is_surface() && self.shown.ends() == Some([0.0; 2])
+    }
+}
+
+/// The smallest and the largest value of each quantity in all states of a model.
+fn ranges<'a>(views: &[View<'a>]) -> BTreeMap<(&'static str, &'a str), (f64, f64)> {
+    let mut ranges = BTreeMap::new();
+    for View { shown, field, model, .. } in views {
+        let Some([low, high]) = shown.ends().map(|ends| ends.map(f64::from)) else { continue };
+        let range = ranges.entry((field.name, *model)).or_insert((low, high));
+        *range = (low.min(range.0), high.max(range.1));
+    }
+    ranges
+}
+
+fn head(head: &summary::Head) -> Markup {
+    html! { (head.name.replace('_', " ")) @if !head.unit.is_empty() { " " span.unit { "(" (page::unit(&head.unit)) ")" } } }
+}
+
+/// A row for each state.
+fn in_rows(model: &summary::ModelStates) -> Markup {
+    html! {
+        thead { tr { @for name in &model.heads { th scope="col" { (head(name)) } } } }
+        tbody { @for row in &model.rows { tr {
+            @for (i, cell) in row.iter().enumerate() { @if i == 0 { th scope="row" { (cell) } } @else { td { (cell) } } }
+        } } }
+    }
+}
+
+/// A row for each quantity, a column for each of a few states.
+fn below_each_other(model: &summary::ModelStates) -> Markup {
+    html! {
+        @for (i, name) in model.heads.iter().enumerate() {
+            @let cells = html! { th scope="row" { (head(name)) } @for row in &model.rows { td { (row[i]) } } };
+            tr { (cells) }
+        }
     }
 }
 

@@ -2,7 +2,8 @@
 //! `scale-dependence.csv`.
 
 use crate::scenes::plan::solved_map;
-use crate::scenes::read::{Result, SceneFile, System, short};
+use crate::scenes::read::{Result, SceneFile, System, multiple, short};
+use contact_model::units::ascii;
 use contact_model::{Boundary, HeightMap};
 use std::sync::Arc;
 use surface_statistics::{
@@ -278,17 +279,21 @@ impl MapStatisticsTables {
         Ok(Self::new(&map, profile, scene.effects.boundary, scene.reliable_from, scene.system))
     }
 
-    /// The parameters as texts: symbol, value, interval, meaning.
+    /// The parameters as texts: symbol, value, interval, meaning; value and interval in one multiple of the
+    /// unit.
     pub fn rows(&self) -> impl Iterator<Item = [String; 4]> {
         self.parameters.iter().map(|p| {
-            let unit = p.power.map_or(" degrees".to_owned(), |power| match self.unit(power) {
-                "1" | "scene" => String::new(),
-                unit => format!(" {unit}"),
-            });
-            let known = |v: f64| format!("{}{unit}", short(v));
+            let size = p.value.or(p.ends[0]).or(p.ends[1]).unwrap_or_default();
+            let (unit, factor) = match p.power {
+                None => ("degrees".to_owned(), 1.0),
+                Some(power) => multiple(self.unit(power), size),
+            };
+            let unit = if ["1", "scene"].contains(&&*unit) { String::new() } else { format!(" {unit}") };
+            let digits = |v: f64| short(factor * v);
+            let known = |v: f64| format!("{}{unit}", digits(v));
             let (value, interval) = match (p.value, p.ends) {
                 (Some(v), [Some(low), Some(high)]) => {
-                    (known(v), format!("{} to {}", short(low), short(high)))
+                    (known(v), format!("{} to {}", digits(low), digits(high)))
                 }
                 (Some(v), _) => (known(v), String::new()),
                 (None, [Some(low), None]) => (format!("at least {}", known(low)), String::new()),
@@ -304,7 +309,7 @@ impl MapStatisticsTables {
         let mut text = String::new();
         for [symbol, value, interval, meaning] in self.rows() {
             let value = if interval.is_empty() { value } else { format!("{value} ({interval})") };
-            text += &format!("{symbol:14} {value:36} {meaning}\n");
+            text += &format!("{symbol:14} {:36} {meaning}\n", ascii(&value));
         }
         for note in &self.notes {
             text += &format!("not known      {note}\n");

@@ -1,6 +1,6 @@
 //! Files of the statistics of a map: tables as CSV, pictures of spectrum, height differences and slopes.
 
-use crate::scenes::read::{Result, System};
+use crate::scenes::read::Result;
 use crate::scenes::tell::{Bands, FILES, LEVEL, MapStatisticsTables, columns};
 use analysis::{Table, Value};
 use plots::{Chart, Curve};
@@ -20,6 +20,12 @@ fn limits(bands: &[Option<[f64; 2]>], index: usize) -> [Value; 2] {
 /// A band in a picture.
 fn shaded(x: &[f64], bands: &[Option<[f64; 2]>]) -> Vec<(f64, f64, f64)> {
     x.iter().zip(bands).filter_map(|(&x, band)| band.map(|[low, high]| (x, low, high))).collect()
+}
+
+/// What a band is, where there is one.
+fn shade_words(curves: &[Curve]) -> &'static str {
+    let shaded = curves.iter().any(|curve| curve.band.len() > 1);
+    if shaded { "; shaded: where 95 % of Gaussian surfaces are" } else { "" }
 }
 
 fn points(x: &[f64], y: &[f64]) -> Vec<(f64, f64)> {
@@ -147,11 +153,6 @@ impl MapStatisticsTables {
         charts.into_iter().filter_map(|(file, chart)| Some((file, chart?))).collect()
     }
 
-    /// A unit behind a symbol.
-    fn si(&self, unit: &str) -> String {
-        if self.system == System::Si { format!(" ($\\rm{{{unit}}}$)") } else { String::new() }
-    }
-
     fn spectrum_chart(&self, name: &str) -> Option<Chart> {
         let shown = if self.profile { "x" } else { "radial" };
         let (_, s) = self.spectra.iter().find(|(direction, _)| *direction == shown)?;
@@ -175,34 +176,43 @@ impl MapStatisticsTables {
         } else if !unsure.is_empty() {
             curves.push(Curve { label: unsure_label.into(), points: unsure, band: Vec::new() });
         }
-        Some(Chart {
-            title: "Power spectral density".into(),
-            subtitle: format!("{name}: {averaged}, two-sided; shaded: 95 % of Gaussian heights"),
-            x_label: format!("wavenumber $q${}", self.si("1/m")),
-            y_label: format!("{symbol}{}", self.si(unit)),
-            curves,
-            logarithmic: true,
-        })
+        Some(
+            Chart {
+                title: "Power spectral density".into(),
+                subtitle: format!("{name}: {averaged}, two-sided{}", shade_words(&curves)),
+                x_label: "wavenumber $q$".into(),
+                y_label: symbol.into(),
+                curves,
+                logarithmic: true,
+                directed: false,
+            }
+            .in_units(["1/m", unit].map(|unit| self.system.shown(unit))),
+        )
     }
 
     fn difference_chart(&self, name: &str) -> Option<Chart> {
         let (d, bands) = self.differences.as_ref()?;
-        Some(Chart {
-            title: "Height differences".into(),
-            subtitle: if self.profile {
-                format!("{name}: half the mean square along the profile")
-            } else {
-                format!("{name}: half the mean square over all directions; shaded: 95 % of Gaussian heights")
-            },
-            x_label: format!("distance $r${}", self.si("m")),
-            y_label: format!("$A${}", self.si("m^2")),
-            curves: vec![Curve {
-                label: if self.profile { "profile".into() } else { "map".into() },
-                points: points(&d.distance, &d.half_square),
-                band: shaded(&d.distance, bands),
-            }],
-            logarithmic: true,
-        })
+        let curves = vec![Curve {
+            label: if self.profile { "profile".into() } else { "map".into() },
+            points: points(&d.distance, &d.half_square),
+            band: shaded(&d.distance, bands),
+        }];
+        Some(
+            Chart {
+                title: "Height differences".into(),
+                subtitle: if self.profile {
+                    format!("{name}: half the mean square along the profile")
+                } else {
+                    format!("{name}: half the mean square over all directions{}", shade_words(&curves))
+                },
+                x_label: "distance $r$".into(),
+                y_label: "$A$".into(),
+                curves,
+                logarithmic: true,
+                directed: false,
+            }
+            .in_units(["m", "m^2"].map(|unit| self.system.shown(unit))),
+        )
     }
 
     fn slope_chart(&self, name: &str) -> Option<Chart> {
@@ -212,17 +222,17 @@ impl MapStatisticsTables {
             band: shaded(&slope.distance, bands),
         };
         let curves: Vec<Curve> = self.scales.iter().map(|of| curve(of.axis, &of.slope)).collect();
-        (!curves.is_empty()).then(|| Chart {
-            title: "Slope by scale".into(),
-            subtitle: if self.profile {
-                format!("{name}: rms of differences over a distance")
-            } else {
-                format!("{name}: rms of differences over a distance; shaded: 95 % of Gaussian heights")
-            },
-            x_label: format!("distance $r${}", self.si("m")),
-            y_label: "rms slope".into(),
-            curves,
-            logarithmic: true,
+        (!curves.is_empty()).then(|| {
+            Chart {
+                title: "Slope by scale".into(),
+                subtitle: format!("{name}: rms of differences over a distance{}", shade_words(&curves)),
+                x_label: "distance $r$".into(),
+                y_label: "rms slope".into(),
+                curves,
+                logarithmic: true,
+                directed: false,
+            }
+            .in_units(["m", ""].map(|unit| self.system.shown(unit)))
         })
     }
 }

@@ -1,50 +1,163 @@
-//! The states of a run as a table for a terminal.
+//! The states of a run as tables for a terminal and for the report: each column in the multiple of its unit
+//! that suits its numbers. Files have plain SI.
 
-use crate::scenes::read::{SceneFile, short};
+use crate::scenes::read::{LoadList, LoadRequest, SceneFile, amount, multiple, number, short};
 use crate::scenes::run::{SolvedUnit, StateRecord};
-use crate::scenes::tell::{Mean, columns};
+use crate::scenes::tell::{Mean, columns, ensemble};
 use analysis::Value;
-use contact_model::quantities::{Quantity, Role};
+use contact_model::quantities::{Quantity, Role, Unit};
+use contact_model::units::rounded;
 
 /// More states of a model than these are left to the files.
 const MOST: usize = 24;
+/// Characters of a line on a terminal.
+const WIDTH: usize = 80;
 /// What stands where there is nothing.
 const NOTHING: &str = "-";
+/// Below this many states nothing is said to be the same in all of them.
+const SEVERAL: usize = 3;
 
 /// A few columns of the states of a model.
 pub(crate) struct ModelStates {
     pub name: &'static str,
-    /// Cells of the table, its head first.
-    pub lines: Vec<Vec<String>>,
+    /// What the numbers are of several surfaces; empty for one.
+    pub of_surfaces: String,
+    pub heads: Vec<Head>,
+    /// Cells of the table, one row a state.
+    pub rows: Vec<Vec<String>>,
     /// States that are left to the files.
     pub left_out: usize,
+    /// What is the same in all states, in words.
+    pub same: Vec<String>,
     /// What is told of each path as a whole, one line a surface or one of means.
     pub of_paths: Vec<String>,
 }
 
-/// The states of each model as aligned text.
+/// The head of a column.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Head {
+    pub name: String,
+    /// Of its numbers; empty for a pure number.
+    pub unit: String,
+}
+
+impl Head {
+    /// In a line.
+    fn text(&self) -> String {
+        if self.unit.is_empty() { self.name.clone() } else { format!("{} [{}]", self.name, self.unit) }
+    }
+
+    /// In lines of at most this many characters where words allow it, the unit at the end.
+    fn lines(&self, width: usize) -> Vec<String> {
+        let mut lines: Vec<String> = Vec::new();
+        for word in self.name.split('_') {
+            match lines.last_mut() {
+                Some(line) if line.chars().count() + 1 + word.chars().count() <= width => {
+                    line.push('_');
+                    line.push_str(word);
+                }
+                Some(line) => {
+                    line.push('_');
+                    lines.push(word.to_owned());
+                }
+                None => lines.push(word.to_owned()),
+            }
+        }
+        if !self.unit.is_empty() {
+            lines.push(format!("[{}]", self.unit));
+        }
+        lines
+    }
+}
+
+/// The states of each model as aligned text of at most 80 characters a line where the words allow it.
 pub(crate) fn summary(scene: &SceneFile, units: &[SolvedUnit<'_>], means: &[Mean]) -> String {
     let mut text = String::new();
-    for ModelStates { name, lines, left_out, of_paths } in of_models(scene, units, means) {
-        let brackets = if means.is_empty() { "" } else { ": means over surfaces (standard error)" };
-        text += &format!("{name}{brackets}\n");
-        let columns = lines.first().map_or(0, Vec::len);
-        let width = |i: usize| lines.iter().map(|line| line[i].chars().count()).max().unwrap_or(0);
-        let widths: Vec<usize> = (0..columns).map(width).collect();
-        for line in &lines {
-            for (cell, width) in line.iter().zip(&widths) {
-                text += &format!("  {cell:>width$}");
-            }
-            text.push('\n');
+    for mut model in of_models(scene, units, means) {
+        // Terminals and fonts without it are still in use, and scenes are written with `um`.
+        model.heads.iter_mut().for_each(|head| head.unit = head.unit.replace('µ', "u"));
+        let brackets = if model.of_surfaces.is_empty() { "" } else { ": " };
+        text += &format!("{}{brackets}{}\n", model.name, model.of_surfaces);
+        text += &table_text(&model.heads, &model.rows);
+        if model.left_out > 0 {
+            text += &format!("  ... {} more states\n", model.left_out);
         }
-        if left_out > 0 {
-            text += &format!("  ... {left_out} more states\n");
+        if !model.same.is_empty() {
+            text += &format!("  in all states: {}\n", model.same.join(", ").replace('µ', "u"));
         }
-        for line in of_paths {
-            text += &format!("  {line}\n");
+        for line in model.of_paths {
+            text += &format!("  {}\n", line.replace('µ', "u"));
         }
     }
     text
+}
+
+/// A table as text: quantities below each other where that is narrower, else columns in as many blocks as the
+/// width of a terminal asks for, the first column in each.
+fn table_text(heads: &[Head], rows: &[Vec<String>]) -> String {
+    let count = |text: &str| text.chars().count();
+    let widest = |column: usize| rows.iter().map(|row| count(&row[column])).max().unwrap_or(0);
+    let names: Vec<String> = heads.iter().map(Head::text).collect();
+    let first = names.iter().map(|name| count(name)).max().unwrap_or(0);
+    let width = (0..heads.len()).map(widest).max().unwrap_or(0);
+    if is_short(heads.len(), rows.len()) && 2 + first + rows.len() * (2 + width) <= WIDTH {
+        let line = |(column, name): (usize, &String)| {
+            let cells: String = rows.iter().map(|row| format!("  {:>width$}", row[column])).collect();
+            format!("  {name:first$}{cells}\n")
+        };
+        return names.iter().enumerate().map(line).collect();
+    }
+    // Heads take the lines that they need not to be wider than the numbers.
+    let heads: Vec<Vec<String>> =
+        heads.iter().enumerate().map(|(column, head)| head.lines(widest(column).max(8))).collect();
+    let widths: Vec<usize> = (heads.iter().enumerate())
+        .map(|(column, lines)| lines.iter().map(|line| count(line)).max().unwrap_or(0).max(widest(column)))
+        .collect();
+    let mut blocks: Vec<Vec<usize>> = Vec::new();
+    let mut used = 0;
+    for (column, width) in widths.iter().enumerate() {
+        match blocks.last_mut() {
+            Some(block) if used + 2 + width <= WIDTH || block.len() < 2 => {
+                block.push(column);
+                used += 2 + width;
+            }
+            Some(_) => {
+                blocks.push(vec![0, column]);
+                used = 2 + widths[0] + 2 + width;
+            }
+            None => {
+                blocks.push(vec![column]);
+                used = 2 + width;
+            }
+        }
+    }
+    let mut text = String::new();
+    for block in blocks {
+        let mut line = |cell: &dyn Fn(usize) -> String| {
+            let cells: String =
+                block.iter().map(|&i| format!("  {:>width$}", cell(i), width = widths[i])).collect();
+            text += cells.trim_end();
+            text.push('\n');
+        };
+        let deepest = block.iter().map(|&column| heads[column].len()).max().unwrap_or(0);
+        for i in 0..deepest {
+            // Units stand in one line.
+            line(&|column| {
+                (i + heads[column].len())
+                    .checked_sub(deepest)
+                    .map_or_else(String::new, |i| heads[column][i].clone())
+            });
+        }
+        for row in rows {
+            line(&|column| row[column].clone());
+        }
+    }
+    text
+}
+
+/// Whether a table is read with its quantities below each other: few states have many of them.
+pub(crate) fn is_short(columns: usize, states: usize) -> bool {
+    states <= 5 && states + 1 < columns
 }
 
 /// What is shown of a state: an answer, or what the grid leaves in it.
@@ -52,6 +165,20 @@ pub(crate) fn summary(scene: &SceneFile, units: &[SolvedUnit<'_>], means: &[Mean
 enum Shown {
     Answer(&'static Quantity),
     GridError(&'static Quantity),
+}
+
+/// What stands in a cell before its column has a unit.
+enum Cell {
+    Nothing,
+    Word(String),
+    /// With half of its interval.
+    Number(f64, Option<f64>),
+}
+
+impl From<Option<f64>> for Cell {
+    fn from(value: Option<f64>) -> Self {
+        value.map_or(Self::Nothing, |value| Self::Number(value, None))
+    }
 }
 
 /// Every answer that a scene asks for, each with the error of its grid.
@@ -78,14 +205,23 @@ pub(crate) fn names(scene: &SceneFile) -> impl Iterator<Item = &'static str> {
 }
 
 impl Shown {
-    fn head(self, scene: &SceneFile) -> String {
+    fn name(self) -> &'static str {
         match self {
-            Self::Answer(quantity) => with_unit(quantity.name, columns::column(scene, quantity).unit),
-            Self::GridError(quantity) => quantity.columns[2].to_owned(),
+            Self::Answer(quantity) => quantity.name,
+            Self::GridError(quantity) => quantity.columns[2],
         }
     }
 
-    fn of_state(self, record: &StateRecord) -> String {
+    /// Of its column in files; shares are read in per cent.
+    fn unit(self, scene: &SceneFile) -> &'static str {
+        match self {
+            Self::Answer(Quantity { name: "contact_fraction", .. }) | Self::GridError(_) => "%",
+            Self::Answer(Quantity { unit: Unit::Word | Unit::One, .. }) => "",
+            Self::Answer(quantity) => columns::column(scene, quantity).unit,
+        }
+    }
+
+    fn of_state(self, record: &StateRecord) -> Cell {
         let value = match self {
             Self::Answer(quantity) => columns::value(record, quantity),
             Self::GridError(quantity) => {
@@ -94,114 +230,204 @@ impl Shown {
             }
         };
         match value {
-            Value::Number(v) => short(v),
-            Value::Count(n) => n.to_string(),
-            Value::Text(word) => word,
-            _ => NOTHING.to_owned(),
+            Value::Number(v) => Cell::Number(v, None),
+            Value::Count(n) => Cell::Word(n.to_string()),
+            Value::Text(word) => Cell::Word(word),
+            _ => Cell::Nothing,
         }
     }
 
-    fn of_mean(self, mean: &Mean) -> String {
+    fn of_mean(self, mean: &Mean) -> Cell {
         let found = match self {
-            Self::Answer(quantity) => mean.of(quantity),
-            Self::GridError(quantity) => mean.grid_error(quantity),
+            Self::Answer(quantity) => mean.interval(quantity),
+            Self::GridError(quantity) => mean.grid_error(quantity).map(|(error, _)| (error, None)),
         };
         match found {
             // The force is what is prescribed, or its error is rounding.
-            Some((mean, Some(error))) if error < 1e-9 * mean.abs() => short(mean),
-            Some((mean, Some(error))) => format!("{} ({})", short(mean), error_of(error, mean)),
-            Some((mean, None)) => short(mean),
-            None => NOTHING.to_owned(),
+            Some((mean, half)) => Cell::Number(mean, half.filter(|half| *half >= 1e-9 * mean.abs())),
+            None => Cell::Nothing,
         }
     }
 }
 
-fn with_unit(name: &str, unit: &str) -> String {
-    match unit {
-        "1" | "-" => name.to_owned(),
-        unit => format!("{name} [{unit}]"),
-    }
+/// A column with the unit of its files as it is read: one multiple of the unit for all of its cells, that of the
+/// largest number, or that of the smallest where it spares powers of ten.
+fn read_column(unit: &str, cells: &[Cell]) -> (String, Vec<String>) {
+    /// Numbers in these limits have no power of ten.
+    const PLAIN: [f64; 2] = [1e-2, 1e5];
+    let sizes = || {
+        let number = |cell: &Cell| match cell {
+            Cell::Number(value, _) => Some(value.abs()).filter(|size| size.is_finite() && *size > 0.0),
+            _ => None,
+        };
+        cells.iter().filter_map(number)
+    };
+    let (smallest, largest) = (sizes().fold(f64::INFINITY, f64::min), sizes().fold(0.0, f64::max));
+    let (shown, factor) = match unit {
+        "%" => ("%".to_owned(), 100.0),
+        unit => {
+            let (coarse, fine) = (multiple(unit, largest), multiple(unit, smallest));
+            let finer = smallest * coarse.1 < PLAIN[0] && largest * fine.1 < PLAIN[1];
+            if finer { fine } else { coarse }
+        }
+    };
+    let text = |cell: &Cell| match cell {
+        Cell::Nothing => NOTHING.to_owned(),
+        Cell::Word(word) => word.clone(),
+        Cell::Number(value, Some(half)) => {
+            format!("{} ± {}", short(factor * value), percent(half / value.abs()))
+        }
+        Cell::Number(value, None) => short(factor * value),
+    };
+    (shown, cells.iter().map(text).collect())
 }
 
-/// The answers of each model; of several surfaces their means with the standard errors in brackets.
+/// A share in per cent, two digits.
+fn percent(share: f64) -> String {
+    format!("{} %", number(rounded(100.0 * share, 2)))
+}
+
+/// The answers of each model; of several surfaces their means with half of their intervals.
 pub(crate) fn of_models(scene: &SceneFile, units: &[SolvedUnit<'_>], means: &[Mean]) -> Vec<ModelStates> {
-    let shown = shown(scene);
-    let prescribed = columns::prescribed(scene);
-    let load = |value: Option<f64>| value.map_or_else(|| NOTHING.to_owned(), short);
-    let mut of_models = Vec::new();
-    for name in scene.models.iter().map(crate::scenes::Numerics::name) {
-        let mut lines: Vec<Vec<String>> = Vec::new();
-        if means.is_empty() {
-            for record in units.iter().filter(|unit| unit.model == name).flat_map(|unit| unit.states) {
-                let mut line = vec![load(scene.request.prescribed(record.index))];
-                line.extend(shown.iter().map(|of| of.of_state(record)));
-                lines.push(line);
-            }
+    let prescribed = match &scene.request {
+        LoadRequest::Loads(LoadList { kind, .. }) => Some((kind.key(), kind.unit())),
+        LoadRequest::Path(_) => None,
+    };
+    // What is prescribed stands there once.
+    let shown: Vec<Shown> =
+        shown(scene).into_iter().filter(|of| Some(of.name()) != prescribed.map(|(key, _)| key)).collect();
+    let of_model = |name: &'static str| {
+        let states = || units.iter().filter(move |unit| unit.model == name).flat_map(|unit| unit.states);
+        let means = || means.iter().filter(move |mean| mean.model == name);
+        let column = |of_state: &dyn Fn(&StateRecord) -> Cell,
+                      of_mean: &dyn Fn(&Mean) -> Cell|
+         -> Vec<Cell> {
+            states().filter(|_| means().next().is_none()).map(of_state).chain(means().map(of_mean)).collect()
+        };
+        let first = if let Some((key, unit)) = prescribed {
+            let of_state = |record: &StateRecord| scene.request.prescribed(record.index).into();
+            (key, scene.system.unit(unit), column(&of_state, &|mean| mean.prescribed.into()))
         } else {
-            for mean in means.iter().filter(|mean| mean.model == name) {
-                let mut line = vec![load(mean.prescribed)];
-                line.extend(shown.iter().map(|of| of.of_mean(mean)));
-                lines.push(line);
+            let step = |index: usize| Cell::Word(index.to_string());
+            ("state", "", column(&|record| step(record.index), &|mean| step(mean.state)))
+        };
+        let rest = shown.iter().map(|of| {
+            (of.name(), of.unit(scene), column(&|record| of.of_state(record), &|mean| of.of_mean(mean)))
+        });
+        let (mut heads, mut kept, mut same) = (Vec::new(), Vec::new(), Vec::new());
+        for (i, (name, unit, cells)) in std::iter::once(first).chain(rest).enumerate() {
+            let (unit, cells) = read_column(unit, &cells);
+            let head = Head {
+                name: name.to_owned(),
+                unit: if ["scene", "1"].contains(&&*unit) { String::new() } else { unit },
+            };
+            // A column without anything says nothing, and neither do the zeros of a time that does not pass.
+            let empty = cells.iter().all(|cell| cell == NOTHING)
+                || name == "time" && cells.iter().all(|cell| cell == "0");
+            if i > 0 && empty {
+                continue;
             }
+            if i > 0 && cells.len() >= SEVERAL && cells.iter().all(|cell| *cell == cells[0]) {
+                same.push(format!("{} {} {}", head.name, cells[0], head.unit).trim_end().to_owned());
+                continue;
+            }
+            heads.push(head);
+            kept.push(cells);
         }
-        // A column without anything says nothing.
-        let kept: Vec<usize> =
-            (0..=shown.len()).filter(|&i| lines.iter().any(|line| line[i] != NOTHING)).collect();
-        let mut head = vec![prescribed.as_ref().map_or_else(String::new, |c| with_unit(c.name, c.unit))];
-        head.extend(shown.iter().map(|of| of.head(scene)));
-        let left_out = lines.len().saturating_sub(MOST);
-        let lines = std::iter::once(head).chain(lines.into_iter().take(MOST));
-        let lines = lines.map(|line| kept.iter().map(|&i| line[i].clone()).collect()).collect();
-        of_models.push(ModelStates { name, lines, left_out, of_paths: of_paths(scene, name, units, means) });
-    }
-    of_models
+        let count = kept.first().map_or(0, Vec::len);
+        ModelStates {
+            name,
+            of_surfaces: ensemble::words(means()),
+            heads,
+            rows: (0..count.min(MOST))
+                .map(|row| kept.iter().map(|column| column[row].clone()).collect())
+                .collect(),
+            left_out: count.saturating_sub(MOST),
+            same,
+            of_paths: of_paths(scene, name, units, means().next_back()),
+        }
+    };
+    scene.models.iter().map(crate::scenes::Numerics::name).map(of_model).collect()
 }
 
 /// What a model's paths are as a whole: the quantities of paths at their ends, in words.
-fn of_paths(scene: &SceneFile, model: &str, units: &[SolvedUnit<'_>], means: &[Mean]) -> Vec<String> {
+fn of_paths(scene: &SceneFile, model: &str, units: &[SolvedUnit<'_>], mean: Option<&Mean>) -> Vec<String> {
     let quantities: Vec<&'static Quantity> =
         columns::asked(scene).filter(|quantity| quantity.role == Role::OfPath).collect();
-    let line = |of: &dyn Fn(Shown) -> String| {
+    let line = |of: &dyn Fn(Shown) -> Cell| {
         let known = quantities.iter().filter_map(|&quantity| {
             let shown = Shown::Answer(quantity);
-            let value = of(shown);
-            (value != NOTHING).then(|| format!("{} {value}", shown.head(scene)))
+            let value = match of(shown) {
+                Cell::Nothing => return None,
+                Cell::Word(word) => word,
+                Cell::Number(value, half) => {
+                    let half = half.map(|half| format!(" ± {}", percent(half / value.abs())));
+                    amount(value, shown.unit(scene)) + &half.unwrap_or_default()
+                }
+            };
+            Some(format!("{} {value}", quantity.name))
         });
         known.collect::<Vec<_>>().join(", ")
     };
-    let mut lines: Vec<String> = Vec::new();
-    if means.is_empty() {
+    let mut lines: Vec<String> = if let Some(mean) = mean {
+        vec![line(&|shown| shown.of_mean(mean))]
+    } else {
         let of_model = units.iter().filter(|unit| unit.model == model);
         let ends = of_model.filter_map(|unit| unit.states.iter().rfind(|record| record.solved().is_some()));
-        lines.extend(ends.map(|end| line(&|shown| shown.of_state(end))));
-    } else if let Some(end) = means.iter().rfind(|mean| mean.model == model) {
-        lines.push(line(&|shown| shown.of_mean(end)));
-    }
+        ends.map(|end| line(&|shown| shown.of_state(end))).collect()
+    };
     lines.retain(|line| !line.is_empty());
     lines.into_iter().map(|line| format!("path as a whole: {line}")).collect()
-}
-
-/// A standard error as a share of its mean.
-fn error_of(error: f64, mean: f64) -> String {
-    format!("{:.1} %", 100.0 * error / mean.abs())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    fn head(name: &str, unit: &str) -> Head {
+        Head { name: name.into(), unit: unit.into() }
+    }
+
     #[test]
-    fn four_digits() {
-        for (value, text) in [
-            (0.0, "0"),
-            (1.0, "1.000"),
-            (0.012_345, "0.01235"),
-            (98_765.4, "98765"),
-            (1e5, "1.000e5"),
-            (-1.5e-9, "-1.500e-9"),
-        ] {
-            assert_eq!(short(value), text);
+    fn a_column_has_one_unit() {
+        let numbers = |values: &[f64]| values.iter().map(|v| Cell::Number(*v, None)).collect::<Vec<_>>();
+        assert_eq!(
+            read_column("m^2", &numbers(&[2.5e-12, 1.9e-11, 1.7e-10])),
+            ("µm^2".to_owned(), ["2.500", "19.00", "170.0"].map(str::to_owned).to_vec())
+        );
+        assert_eq!(read_column("m^2", &numbers(&[3.857e-10, 0.0, 3.856e-8])).1, ["385.7", "0", "38560"]);
+        assert_eq!(read_column("N", &numbers(&[1e-20, 3.0])).1, ["1.000e-20", "3.000"]);
+        assert_eq!(read_column("%", &numbers(&[0.295_2, 1.5])).1, ["29.52", "150.0"]);
+        let cells = [Cell::Nothing, Cell::Number(-2e-3, Some(1.38e-4)), Cell::Word("a".into())];
+        assert_eq!(
+            read_column("N", &cells),
+            ("mN".to_owned(), ["-", "-2.000 ± 6.9 %", "a"].map(str::to_owned).to_vec())
+        );
+        assert_eq!(read_column("scene", &numbers(&[2e-7])).1, ["2.000e-7"]);
+    }
+
+    #[test]
+    fn a_table_fits_a_terminal() {
+        let heads: Vec<Head> = (0..9).map(|i| head(&format!("tangential_displacement_{i}"), "nm")).collect();
+        for states in [1, 3, 5, 6, 20] {
+            let rows: Vec<Vec<String>> =
+                (0..states).map(|row| (0..9).map(|i| format!("{row}.{i}00")).collect()).collect();
+            let text = table_text(&heads, &rows);
+            assert!(text.lines().all(|line| line.chars().count() <= WIDTH), "{text}");
+            for cell in rows.iter().flatten() {
+                assert!(text.contains(cell.as_str()), "{cell} in\n{text}");
+            }
         }
-        assert_eq!(error_of(0.5, -10.0), "5.0 %");
+        // Heads stand above their columns, units in one line; the first column in every block.
+        let rows = vec![vec!["1".to_owned(); 9]; 20];
+        let text = table_text(&heads, &rows);
+        assert_eq!(
+            text.lines().next().map(str::trim_start),
+            Some("tangential_    tangential_    tangential_    tangential_    tangential_")
+        );
+        // Two blocks: three lines of words and one of units above twenty rows in each.
+        assert_eq!((text.lines().count(), text.matches("[nm]").count()), (2 * 24, 10));
+        let few = table_text(&heads[..2], &rows[..1].iter().map(|row| row[..2].to_vec()).collect::<Vec<_>>());
+        assert_eq!(few.lines().count(), 4 + 1, "{few}");
     }
 }

@@ -1,6 +1,6 @@
 //! `report.html` of a surface: what its file says, what was done to it, the map, and its statistics.
 
-use crate::scenes::read::{HEIGHTS, Result};
+use crate::scenes::read::{HEIGHTS, Result, description};
 use crate::scenes::run::{FieldView, field_pictures};
 use crate::scenes::tell::{MapStatisticsTables, page};
 use contact_model::HeightMap;
@@ -34,7 +34,7 @@ impl SurfaceReport<'_> {
             pre { (self.metadata) }
             @if self.steps.is_empty() { p { "Nothing was done to the heights." } }
             @else { h3 { "What was done to it" } ol { @for step in self.steps { li { (step) } } } }
-            h3 { "The map that is described below" } pre { (surface_io::describe(self.map).without_fit()) }
+            h3 { "The map that is described below" } pre { (description(self.map, self.statistics.system).without_fit()) }
         };
         let charts = self.statistics.charts(self.name);
         let distribution = self.distribution();
@@ -72,6 +72,7 @@ impl SurfaceReport<'_> {
             size: map.size(),
             values: &[],
             shown: HEIGHTS.shown,
+            signed: false,
             range: None,
             contact: &[],
             arrows: None,
@@ -114,6 +115,7 @@ impl SurfaceReport<'_> {
                 curve("normal law", normal),
             ],
             logarithmic: false,
+            directed: false,
         }
     }
 }

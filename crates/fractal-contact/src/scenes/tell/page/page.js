@@ -7,6 +7,7 @@ document.querySelectorAll("figure.field").forEach((figure) => {
   const f = JSON.parse(figure.dataset.field);
   const values = new Float32Array(bytes(figure.querySelector(".values").textContent));
   const places = new Uint16Array(bytes(figure.querySelector(".places").textContent));
+  const digits = (v, n) => Number(v.toPrecision(n)).toString();
   const output = figure.querySelector("output");
   const picture = figure.querySelector("img");
 
@@ -17,7 +18,7 @@ document.querySelectorAll("figure.field").forEach((figure) => {
   const image = source.getContext("2d").createImageData(f.across, f.down);
   values.forEach((v, i) => {
     const at = 4 * ((f.down - 1 - Math.floor(i / f.across)) * f.across + (i % f.across));
-    const shade = f.high > f.low ? Math.min(255, Math.floor((256 * (v - f.low)) / (f.high - f.low))) : 128;
+    const shade = 256 * f.palette + (f.high > f.low ? Math.max(0, Math.min(255, Math.floor((256 * (v - f.low)) / (f.high - f.low)))) : 128);
     const colour = !Number.isFinite(v) ? [205, 205, 205] : f.zero && v === 0 ? [255, 255, 255] : palette.subarray(3 * shade, 3 * shade + 3);
     image.data.set(colour, at);
     image.data[at + 3] = 255;
@@ -34,6 +35,38 @@ document.querySelectorAll("figure.field").forEach((figure) => {
   picture.replaceWith(canvas);
   figure.classList.add("live");
 
+  // Ticks at multiples of 1, 2 or 5 times a power of ten, and the largest such length below a given one.
+  const round = (least) => {
+    const power = 10 ** Math.floor(Math.log10(least));
+    return [1, 2, 5, 10].map((step) => step * power).find((step) => step >= least * (1 - 1e-9));
+  };
+  const axis = (selector, edge, from, to, most) => {
+    const step = round((to - from) / Math.max(2, 6 * most));
+    const spans = [];
+    for (let i = Math.ceil(from / step - 1e-9); i * step <= to * (1 + 1e-9) && spans.length < 12; i++) {
+      const span = document.createElement("span");
+      span.style[edge] = `${(100 * (i * step - from)) / (to - from)}%`;
+      span.textContent = digits(i * step, 12);
+      spans.push(span);
+    }
+    figure.querySelector(selector).replaceChildren(...spans);
+  };
+  const scaleBar = (to, width) => {
+    const least = width / 8;
+    const length = round(least);
+    const [long, high, edge] = [(length / width) * canvas.width, 12, 24];
+    const text = `${digits(length, 12)} ${f.length}`.trim();
+    to.font = "600 36px system-ui, sans-serif";
+    const wide = Math.max(long, to.measureText(text).width);
+    const y = canvas.height - edge - 12;
+    if (canvas.height < 160) return;
+    to.fillStyle = "rgba(255,255,255,.85)";
+    to.fillRect(edge - 12, y - 60, wide + 24, 72);
+    to.fillStyle = "#1a1a1a";
+    to.fillRect(edge, y - high, long, high);
+    to.fillText(text, edge, y - high - 10);
+  };
+
   // What is seen, in values from the upper left corner.
   let zoom = 1, left = 0, top = 0, chosen = null;
   const draw = () => {
@@ -45,6 +78,10 @@ document.querySelectorAll("figure.field").forEach((figure) => {
     to.fillStyle = "#fff";
     to.fillRect(0, 0, canvas.width, canvas.height);
     to.drawImage(source, left, top, w, h, 0, 0, canvas.width, canvas.height);
+    const [perColumn, perRow] = [f.block * f.dx * f.scale, f.block * f.dy * f.scale];
+    axis(".x", "left", left * perColumn, (left + w) * perColumn, Math.min(1, 1 / ratio));
+    axis(".y", "bottom", (f.down - top - h) * perRow, (f.down - top) * perRow, Math.min(1, ratio));
+    scaleBar(to, w * perColumn);
     if (!chosen) return;
     const [x, y] = [((chosen[0] + 0.5 - left) / w) * canvas.width, ((f.down - chosen[1] - 0.5 - top) / h) * canvas.height];
     for (const [colour, width] of [["#fff", 7], ["#d01c1c", 3]]) {
@@ -55,13 +92,13 @@ document.querySelectorAll("figure.field").forEach((figure) => {
       to.stroke();
     }
   };
-  const digits = (v, n) => Number(v.toPrecision(n)).toString();
   const choose = (i, j) => {
     chosen = [Math.min(Math.max(0, i), f.across - 1), Math.min(Math.max(0, j), f.down - 1)];
     const at = chosen[1] * f.across + chosen[0];
     const column = chosen[0] * f.block + (places[at] % f.block);
     const row = chosen[1] * f.block + Math.floor(places[at] / f.block);
-    const value = Number.isFinite(values[at]) ? `${values[at].toPrecision(7)} ${f.unit}` : "undefined";
+    const measure = () => `${(values[at] * f.per).toPrecision(7)} ${f.unit}`;
+    const value = !Number.isFinite(values[at]) ? "undefined" : f.classes.length ? f.classes[values[at]] : measure();
     const of = f.block > 1 ? ` (${f.picked} of ${f.block} x ${f.block} cells)` : "";
     output.textContent = `${f.quantity} ${value}${of} at column ${column}, row ${row}: x = ${digits((column + 0.5) * f.dx * f.scale, 4)}, ` +
       `y = ${digits((row + 0.5) * f.dy * f.scale, 4)} ${f.length}`;
