@@ -205,7 +205,7 @@ mod tests {
     fn ticks_are_few_and_round() {
         assert_eq!(ticks(12.0, 2.0), [0.0, 10.0]);
         assert_eq!(ticks(48.0, 6.0), [0.0, 10.0, 20.0, 30.0, 40.0]);
-        assert_eq!(ticks(1.0, 6.0), [0.0, 0.2, 0.4, 0.6000000000000001, 0.8, 1.0]);
+        assert_eq!(ticks(1.0, 6.0), [0.0, 0.2, 0.4, 3.0 * 0.2, 0.8, 1.0]);
         for i in 1..400 {
             let length = 1.037_f64.powi(i - 200);
             let found = ticks(length, 6.0);
