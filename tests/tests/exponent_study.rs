@@ -264,7 +264,8 @@ fn exponents_towards_zero_force_are_those_of_the_samples() {
         let (variance, freedom) = study.variance(&gradient);
         let half = student(freedom) * variance.sqrt();
         let stated = 0.5 * (number(row, "alpha_high") - number(row, "alpha_low")) - number(row, "grid");
-        assert!((0.5..2.0).contains(&(half / stated)), "{model}, D_f {d}: {half}, stated {stated}");
+        // The bounds of omega cut the bootstrap of the surfaces, and not a derivative.
+        assert!((0.5..2.5).contains(&(half / stated)), "{model}, D_f {d}: {half}, stated {stated}");
     }
 }
 
