@@ -118,6 +118,10 @@ fn solve(command: Command, typed: &[String]) -> Result<ExitCode> {
             coverage_fails = !coverage.holds();
             vec![outcome.into()]
         }
+        Command::Exponent(options) if !options.samples.is_empty() => {
+            let tested = if options.tested.is_empty() { &options.samples } else { &options.tested };
+            vec![paper::exponent_of_samples(&options.samples, tested, options.error, &run.out)?]
+        }
         Command::Exponent(options) => {
             let study = options.study(&run)?;
             for line in paper::exponent_plan(&study, options.budget, &reporter)? {

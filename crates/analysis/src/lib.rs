@@ -69,7 +69,7 @@ pub use grid_error::{
 pub use grid_search::{AccuracyTarget, ChosenGrid, GridTrial, NoGrid, first_grid};
 pub use kappa::kappa;
 pub use multilevel::{Multilevel, Uncertain, slope_weights};
-pub use numerics::quantile::student;
+pub use numerics::quantile::{student, student_at, student_beyond};
 pub use numerics::regression::{least_squares, observed_power};
 pub use numerics::sum::sum;
 pub use table::{Column, Table};

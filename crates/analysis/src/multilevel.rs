@@ -3,8 +3,10 @@
 use crate::ensemble::mean_and_deviation;
 use crate::grid_error;
 use contact_model::{Error, Result};
-use numerics::quantile::student;
+use numerics::quantile::{student, student_at, student_beyond};
 use numerics::sum::sum;
+use rand_core::{Rng as _, SeedableRng as _};
+use rand_xoshiro::Xoshiro256PlusPlus;
 
 /// Multilevel Monte Carlo: curves on the coarsest grid, and differences between each finer grid and the next
 /// coarser one on the same surfaces.
@@ -36,6 +38,28 @@ impl Uncertain {
     /// Half-width of the 95 % interval by Student's distribution.
     pub fn half_width(&self) -> f64 {
         self.standard_error * student(self.degrees_of_freedom)
+    }
+
+    /// Half-width of the interval that is wrong with probability `level`, either way.
+    pub fn half_width_at(&self, level: f64) -> f64 {
+        self.standard_error * student_at(1.0 - 0.5 * level, self.degrees_of_freedom)
+    }
+
+    /// The difference from an independent number: variances add up, degrees of freedom by Welch and
+    /// Satterthwaite.
+    #[must_use]
+    pub fn minus(&self, other: &Self) -> Self {
+        let [a, b] = [self, other].map(|u| u.standard_error * u.standard_error);
+        let spread = a * a / self.degrees_of_freedom + b * b / other.degrees_of_freedom;
+        let degrees_of_freedom = if spread > 0.0 { (a + b) * (a + b) / spread } else { f64::MAX };
+        Self { value: self.value - other.value, standard_error: (a + b).sqrt(), degrees_of_freedom }
+    }
+
+    /// Probability that chance moves the number as far from `expected` as it is, beyond an error of another
+    /// kind.
+    pub fn chance_of(&self, expected: f64, beside: f64) -> f64 {
+        let away = ((self.value - expected).abs() - beside).max(0.0);
+        student_beyond(away / self.standard_error, self.degrees_of_freedom)
     }
 }
 
@@ -140,6 +164,73 @@ impl Multilevel {
             .collect()
     }
 
+    /// Factor on the pointwise 95 % half-widths of several numbers, given by their derivatives, so that all of
+    /// them together are covered with 95 %: at least 1.
+    ///
+    /// The 95 % quantile of the largest of the numbers' deviations in standard errors, over the normal
+    /// quantile. The deviations are drawn by changing the sign of each surface's deviation at random (wild
+    /// bootstrap, Rademacher's weights), so that numbers that share surfaces keep their covariance; `draws` of
+    /// them, by xoshiro256++ of this seed. Numbers that do not scatter are left out.
+    ///
+    /// # Panics
+    /// Where there are fewer derivatives than points.
+    pub fn simultaneous(&self, gradients: &[Vec<f64>], draws: usize, seed: u64) -> f64 {
+        let errors: Vec<f64> = gradients.iter().map(|g| sum(self.variances(g)).sqrt()).collect();
+        // Surface by surface, its part of each number in standard errors.
+        let mut parts: Vec<Vec<f64>> = Vec::new();
+        for level in &self.levels {
+            let n = level.len() as f64;
+            let each: Vec<Vec<f64>> = (gradients.iter())
+                .map(|g| level.iter().map(|s| sum(s.iter().zip(g).map(|(v, g)| v * g))).collect())
+                .collect();
+            let means: Vec<f64> = each.iter().map(|values| sum(values.iter().copied()) / n).collect();
+            let scale = 1.0 / (n * (n - 1.0)).sqrt();
+            parts.extend((0..level.len()).map(|i| {
+                let part = |j: usize| (each[j][i] - means[j]) * scale / errors[j];
+                (0..gradients.len()).map(|j| if errors[j] > 0.0 { part(j) } else { 0.0 }).collect()
+            }));
+        }
+        let mut random = Xoshiro256PlusPlus::seed_from_u64(seed);
+        let mut largest: Vec<f64> = (0..draws)
+            .map(|_| {
+                let mut moved = vec![0.0; gradients.len()];
+                for (chunk, bits) in parts.chunks(64).map(|chunk| (chunk, random.next_u64())) {
+                    for (b, part) in chunk.iter().enumerate() {
+                        let sign = if bits >> b & 1 == 1 { 1.0 } else { -1.0 };
+                        moved.iter_mut().zip(part).for_each(|(m, p)| *m += sign * p);
+                    }
+                }
+                moved.into_iter().fold(0.0, |most: f64, m| most.max(m.abs()))
+            })
+            .collect();
+        largest.sort_by(f64::total_cmp);
+        let at = (0.95 * draws as f64).ceil() as usize;
+        let quantile = at.checked_sub(1).and_then(|at| largest.get(at)).copied().unwrap_or(0.0);
+        (quantile / student(f64::MAX)).max(1.0)
+    }
+
+    /// Mean curves of the finest grid from surfaces drawn again (bootstrap), each level by itself, with the
+    /// deviation of each level widened by `sqrt(n/(n - 1))`, so that they scatter as the mean does; by
+    /// xoshiro256++ of this seed.
+    pub fn resampled(&self, draws: usize, seed: u64) -> Vec<Vec<f64>> {
+        let mut random = Xoshiro256PlusPlus::seed_from_u64(seed);
+        let mut curves = vec![self.means(self.levels()); draws];
+        for (l, level) in self.levels.iter().enumerate() {
+            let n = level.len();
+            let widened = (n as f64 / (n as f64 - 1.0)).sqrt() / n as f64;
+            let means: Vec<f64> = (0..level[0].len()).filter_map(|j| self.at(l, j)).map(|at| at.0).collect();
+            for curve in &mut curves {
+                for _ in 0..n {
+                    // Multiply-and-shift: the bias is below n / 2^64.
+                    let i = ((u128::from(random.next_u64()) * n as u128) >> 64) as usize;
+                    let deviations = level[i].iter().zip(&means).map(|(v, mean)| v - mean);
+                    curve.iter_mut().zip(deviations).for_each(|(k, deviation)| *k += widened * deviation);
+                }
+            }
+        }
+        curves
+    }
+
     /// What the cells of the finest grid leave of a number that depends on the mean curve: [`grid_error`] of
     /// its values on the three finest grids, absolute. `None` for fewer than three grids, or where the number
     /// does not exist on one of them.
@@ -212,6 +303,45 @@ mod tests {
         assert_relative_eq!(u.degrees_of_freedom, 7.0, max_relative = 1e-12);
         // t(0.975, 7) = 2.364624.
         assert_relative_eq!(u.half_width(), 2.364_624 * u.standard_error, max_relative = 1e-6);
+    }
+
+    #[test]
+    fn a_band_over_one_number_is_its_interval_and_over_independent_ones_is_sidaks() {
+        // Sixteen numbers of independent surfaces: 1 - 0.95^(1/16) two-sided is 2.948 standard errors.
+        let surfaces: Vec<Vec<f64>> = (0..1024_usize)
+            .map(|i| {
+                (0..16).map(|j| even(1024, 0.1 * f64::from(j))[(i * (2 * j as usize + 1)) % 1024]).collect()
+            })
+            .collect();
+        let m = Multilevel::new(vec![surfaces]).unwrap();
+        let unit = |j: usize| (0..16).map(|i| if i == j { 1.0 } else { 0.0 }).collect::<Vec<f64>>();
+        let one = m.simultaneous(&[unit(0)], 2000, 1);
+        assert!((1.0..1.06).contains(&one), "{one}");
+        let all = m.simultaneous(&(0..16).map(unit).collect::<Vec<_>>(), 2000, 1);
+        assert!((all - 2.948 / 1.960).abs() < 0.08, "{all}");
+        // The same number sixteen times is one number.
+        let same = m.simultaneous(&vec![unit(3); 16], 2000, 1);
+        assert!((1.0..1.06).contains(&same), "{same}");
+    }
+
+    #[test]
+    fn resampled_means_scatter_as_their_errors_say() {
+        let level = |n: usize, size: f64| even(n, 0.3).into_iter().map(|v| vec![size * v]).collect();
+        let m = Multilevel::new(vec![level(40, 1.0), level(4, 0.5)]).unwrap();
+        let drawn: Vec<f64> = m.resampled(4000, 5).into_iter().map(|curve| curve[0]).collect();
+        let (mean, deviation) = mean_and_deviation(&drawn).unwrap();
+        let exact = m.propagated(m.means(2)[0], &[1.0]);
+        assert!((mean - exact.value).abs() < 0.1 * exact.standard_error, "{mean}");
+        assert_relative_eq!(deviation.unwrap(), exact.standard_error, max_relative = 0.05);
+    }
+
+    #[test]
+    fn an_interval_and_its_chance_agree() {
+        let u = Uncertain { value: 1.0, standard_error: 0.1, degrees_of_freedom: 7.0 };
+        assert_relative_eq!(u.half_width_at(0.05), u.half_width(), max_relative = 1e-9);
+        let edge = 1.0 - u.half_width_at(0.01) - 0.02;
+        assert_relative_eq!(u.chance_of(edge, 0.02), 0.01, max_relative = 1e-6);
+        assert_relative_eq!(u.chance_of(0.99, 0.02), 1.0, max_relative = 1e-12);
     }
 
     #[test]

@@ -32,6 +32,31 @@ pub fn student(degrees_of_freedom: f64) -> f64 {
     f64::midpoint(low, high)
 }
 
+/// Quantile of Student's distribution, for probabilities in [0.5, 1): half-width in standard errors of the
+/// two-sided interval that leaves out twice `1 - probability`; that of one degree of freedom below 1.
+///
+/// ```
+/// assert!((numerics::quantile::student_at(0.995, 4.0) - 4.604_095).abs() < 1e-5);
+/// ```
+pub fn student_at(probability: f64, degrees_of_freedom: f64) -> f64 {
+    let Ok(distribution) = StudentsT::new(0.0, 1.0, degrees_of_freedom.clamp(1.0, 1e6)) else {
+        return f64::INFINITY;
+    };
+    // That of one degree of freedom is the largest.
+    let most = (std::f64::consts::PI * (probability - 0.5)).tan() + 1.0;
+    let [low, high] = bisect(0.0, most, 60, |x| distribution.cdf(x) < probability);
+    f64::midpoint(low, high)
+}
+
+/// Probability that Student's variable is farther from 0 than `t`, either way.
+///
+/// ```
+/// assert!((numerics::quantile::student_beyond(2.776_445, 4.0) - 0.05).abs() < 1e-6);
+/// ```
+pub fn student_beyond(t: f64, degrees_of_freedom: f64) -> f64 {
+    StudentsT::new(0.0, 1.0, degrees_of_freedom.clamp(1.0, 1e6)).map_or(1.0, |law| 2.0 * law.sf(t.abs()))
+}
+
 /// Quantile of the chi-square distribution to a relative error of 1e-6; `None` for degrees of freedom that
 /// are no positive number.
 ///

@@ -18,6 +18,7 @@ use runs::Silent;
 use std::path::PathBuf;
 
 const SCALING: Statement = Statement {
+    name: "Eq. 24",
     quotation: "alpha = 1/(1 + H)",
     place: "Eq. 24",
     reading: "to 0.03, on lines of 2^16 elements",

@@ -2,7 +2,7 @@
 //!
 //! An entry names its data ([`Data`]); what they give are [`Row`]s, one for each D_f or a single one. The
 //! verdict follows from the interval of the row and from what the entry allows ([`Claim::judge`],
-//! [`Claim::beside`] for rival laws, [`Claim::in_convention`]). Identities that only test code (Eqs. 7, 19 to
+//! [`Claim::in_convention`]); the rows of one statement are judged together ([`crate::together`]). Identities that only test code (Eqs. 7, 19 to
 //! 23, full contact of a line) are tests, not claims. Area over force is judged where waves are resolved:
 //! [`crate::two_cases`].
 

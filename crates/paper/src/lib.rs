@@ -47,8 +47,13 @@ mod verify;
 mod words;
 
 pub use all::reproduce_all;
-pub use claim::{Claim, Estimate, Statement, Verdict, counts, plain, short, short_table, sort};
-pub use exponent::{Exponent, ExponentSizes, Ladder, draw_exponent, exponent, exponent_plan};
+pub use claim::{
+    Claim, Estimate, JudgedStatement, Statement, Verdict, counts, plain, short, short_table, sort,
+    statements, together,
+};
+pub use exponent::{
+    Exponent, ExponentSizes, Ladder, draw_exponent, exponent, exponent_of_samples, exponent_plan,
+};
 pub use fig1::fig1;
 pub use fig2::fig2;
 pub use fig3::fig3;

@@ -1,6 +1,6 @@
 //! Every claim of the paper beside what was found.
 
-use crate::claim::{Claim, claims_table, markdown, short_table, sort};
+use crate::claim::{Claim, claims_table, markdown, short_table, sort, together};
 use crate::claims;
 use crate::fitted::both;
 use crate::judged::Judged;
@@ -28,6 +28,7 @@ pub(crate) fn write(run: &Run, solid: &Measured, line: &Measured) -> Result<(Out
     for command in claims::VERIFIED {
         claims.extend(claims::judged(command, &ensembles)?);
     }
+    together(&mut claims);
     sort(&mut claims);
     let command = run.command("verify", &Flag::ALL);
     let title = "Statements of the paper beside what was found, contradictions first";

@@ -159,7 +159,7 @@ fn every_figure_leaves_its_files() {
     assert!(columns("fig7.csv").starts_with("model,fractal_dimension,zeta,zeta_se"));
     assert_eq!(
         columns("verify.csv"),
-        "quantity,quotation,place,reading,paper_min,paper_max,here,half_width,verdict,remark"
+        "statement,quantity,quotation,place,reading,paper_min,paper_max,here,half_width,half_width_together,verdict,remark"
     );
 }
 

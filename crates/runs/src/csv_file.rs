@@ -3,6 +3,8 @@
 use crate::error::{Error, Result};
 use analysis::{Table, Value};
 use contact_model::Source;
+use flate2::read::GzDecoder;
+use std::io::Read as _;
 use std::path::Path;
 
 /// What the `#` lines say besides the table's own title and columns. No times, no machine: the same run gives
@@ -108,12 +110,19 @@ pub struct CsvFile {
 }
 
 impl CsvFile {
-    /// Reads a file written by [`write_csv`].
+    /// Reads a file written by [`write_csv`], packed by gzip where its name ends in `.gz`.
     ///
     /// # Errors
     /// [`Error::File`] when it cannot be read or is no table.
     pub fn read(path: &Path) -> Result<Self> {
-        let bytes = files::read(path, LARGEST)?;
+        let mut bytes = files::read(path, LARGEST)?;
+        if path.extension().is_some_and(|e| e == "gz") {
+            let mut unpacked = Vec::new();
+            let failed = |e: std::io::Error| Error::content(path, e.to_string());
+            // A file may unpack to a thousand times its size.
+            GzDecoder::new(bytes.as_slice()).take(LARGEST).read_to_end(&mut unpacked).map_err(failed)?;
+            bytes = unpacked;
+        }
         let text = String::from_utf8(bytes).map_err(|e| Error::content(path, format!("no text: {e}")))?;
         let comments =
             text.lines().filter_map(|l| l.strip_prefix('#')).map(|l| l.trim().to_owned()).collect();

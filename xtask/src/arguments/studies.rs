@@ -175,7 +175,14 @@ pub struct ExponentArguments {
     fractal_dimensions: Option<Vec<f64>>,
     /// Share of k_bar that the finest grid may leave: each curve ends where it leaves more.
     #[arg(long, value_name = "SHARE", value_parser = share, default_value = "3%", allow_hyphen_values = true)]
-    error: f64,
+    pub error: f64,
+    /// Solve nothing: make the tables again from these tables of samples (exponent-samples.csv, as it is or
+    /// packed by gzip), of runs with seeds of their own, separated by commas.
+    #[arg(long, value_name = "CSV", value_delimiter = ',')]
+    pub samples: Vec<PathBuf>,
+    /// Of --samples, those on which the hypotheses are tested (default: all).
+    #[arg(long, value_name = "CSV", value_delimiter = ',', requires = "samples")]
+    pub tested: Vec<PathBuf>,
     /// Master seed.
     #[arg(long, default_value_t = evaluation::SEED)]
     seed: u64,

@@ -20,7 +20,8 @@ pub(crate) struct Entry {
     quantity: String,
     pub data: Data,
     allowed: Limits,
-    rival: Option<(Equation, f64)>,
+    /// The entry whose statement it belongs to; its own otherwise.
+    part_of: Option<String>,
     only: Option<Only>,
     pub cases: Option<Cases>,
     convention: Option<String>,
@@ -141,11 +142,11 @@ enum Equation {
 }
 
 impl Equation {
-    fn name_and_value(self, d: f64) -> (&'static str, f64) {
+    fn at(self, d: f64) -> f64 {
         match self {
-            Self::Eq6 => ("Eq. 6", analytic::exponent_fit(d)),
-            Self::Eq11 => ("Eq. 11", analytic::zeta_fit(d)),
-            Self::Eq24 => ("Eq. 24", analytic::exponent_scaling(3.0 - d)),
+            Self::Eq6 => analytic::exponent_fit(d),
+            Self::Eq11 => analytic::zeta_fit(d),
+            Self::Eq24 => analytic::exponent_scaling(3.0 - d),
         }
     }
 }
@@ -162,7 +163,7 @@ impl Printed {
     fn at(self, d: f64) -> f64 {
         match self {
             Self::Number(value) => value,
-            Self::Equation(equation) => equation.name_and_value(d).1,
+            Self::Equation(equation) => equation.at(d),
         }
     }
 }
@@ -254,17 +255,14 @@ impl Entry {
     pub fn judge(&'static self, row: Row) -> Claim {
         let d = row.fractal_dimension;
         let Self { quotation, place, reading, .. } = self;
-        let statement = Statement { quotation, place, reading };
+        let name = self.part_of.as_ref().unwrap_or(&self.id);
+        let statement = Statement { name, quotation, place, reading };
         let quantity = self.quantity.replace("{}", &row.label);
         let limits = |value: f64| self.allowed.at(d, value);
         let mut claim = match row.found {
             Ok((found, remark)) => Claim::judge(quantity, statement, limits(found.value), found, remark),
             Err(reason) => Claim::unresolved(quantity, statement, limits(0.0), reason),
         };
-        if let Some((equation, by)) = self.rival {
-            let (name, value) = equation.name_and_value(d);
-            claim = claim.beside(name, [value - by, value + by]);
-        }
         if let Some((convention, value)) = self.convention.as_ref().zip(row.in_convention) {
             claim = claim.in_convention(convention, value);
         }
@@ -283,9 +281,13 @@ fn read(text: &str) -> std::result::Result<ClaimTable, toml::de::Error> {
     let all: Vec<toml::Table> = commands.values().flatten().cloned().collect();
     for entry in commands.values_mut().flatten() {
         let Some(like) = entry.remove("like") else { continue };
+        let same_words = !entry.contains_key("quotation");
         let model = all.iter().find(|other| other.get("id") == Some(&like));
         for (field, value) in model.into_iter().flatten() {
             entry.entry(field).or_insert_with(|| value.clone());
+        }
+        if same_words {
+            entry.entry("part_of").or_insert(like);
         }
     }
     let whole = |entries: Vec<toml::Table>| -> std::result::Result<Vec<Entry>, _> {

@@ -1,15 +1,20 @@
 //! Mean curves, local slopes and fits, each with its band.
 
-use super::ladder::{Ladder, Pair, Rungs};
+use super::ladder::{Pair, Rungs, Solved};
 use analysis::{Multilevel, Uncertain, slope_weights};
 use contact_model::{Amplitude, SelfAffine};
-use evaluation::{Discretisation, RealisationResult};
+use evaluation::Discretisation;
 use runs::{Error, Result};
 use std::ops::Range;
 use surface_gen::{LineGenerator, MapGenerator};
 
 /// Points on each side of a local slope: at six loads a decade the line goes through two thirds of one.
 pub const SLOPE_REACH: usize = 2;
+
+/// Draws of a simultaneous band: its factor is known to 2 %.
+const BAND_DRAWS: usize = 2000;
+/// Their seed.
+const BAND_SEED: u64 = 48;
 
 /// The grid whose rms height counts the forces of a fixed spectrum: the paper's.
 pub const REFERENCE_CELLS: usize = 2049;
@@ -27,14 +32,6 @@ pub enum Convention {
 impl Convention {
     /// Both, in the order of tables.
     pub const BOTH: [Self; 2] = [Self::Measured, Self::FixedSpectrum];
-
-    /// The convention in a sentence.
-    pub fn words(self) -> &'static str {
-        match self {
-            Self::Measured => "F_bar by the measured rms height of each grid",
-            Self::FixedSpectrum => "F_bar by the rms height of the spectrum on 2049 x 2049 cells",
-        }
-    }
 
     /// The word in tables.
     pub fn as_str(self) -> &'static str {
@@ -64,6 +61,23 @@ impl Banded {
     pub fn half_width(&self) -> f64 {
         self.scatter.half_width() + self.grid
     }
+
+    /// The interval that is wrong with probability `level`, either way; what the grid leaves does not grow
+    /// with it.
+    pub fn interval(&self, level: f64) -> [f64; 2] {
+        let half = self.scatter.half_width_at(level) + self.grid;
+        [self.value() - half, self.value() + half]
+    }
+
+    /// Probability that chance moves the number as far from `expected`, beyond what the grid leaves.
+    pub fn chance_of(&self, expected: f64) -> f64 {
+        self.scatter.chance_of(expected, self.grid)
+    }
+
+    /// The difference from a number of other surfaces: variances and what grids leave add up.
+    pub fn minus(&self, other: &Self) -> Self {
+        Self { scatter: self.scatter.minus(&other.scatter), grid: self.grid + other.grid }
+    }
 }
 
 /// The mean curve of one model and fractal dimension in one convention.
@@ -85,6 +99,8 @@ pub struct MeanCurve {
     pub left_out: usize,
     /// Points, from the top of the loads down to where the grid leaves more than the stated error.
     pub resolved: Range<usize>,
+    /// Factor on the scatter of each local slope with which all of them together are covered with 95 %.
+    pub band: f64,
 }
 
 impl MeanCurve {
@@ -93,15 +109,15 @@ impl MeanCurve {
     ///
     /// # Errors
     /// [`Error::Model`] for fewer than two whole pairs on a level.
-    pub fn new(ladder: &Ladder, rungs: &Rungs, convention: Convention, error: f64) -> Result<Self> {
+    pub fn new(rungs: &Rungs, convention: Convention, error: f64) -> Result<Self> {
         let d = rungs.fractal_dimension;
-        let what = |e| Error::model(format!("the mean curve of {} at D_f = {d:?}", ladder.model.name()))(e);
+        let what = |e| Error::model(format!("the mean curve of {} at D_f = {d:?}", rungs.model.name()))(e);
         let heights = match convention {
-            Convention::Measured => vec![1.0; ladder.sizes.len()],
-            Convention::FixedSpectrum => spectrum_heights(ladder, d).map_err(what)?,
+            Convention::Measured => vec![1.0; rungs.sizes.len()],
+            Convention::FixedSpectrum => spectrum_heights(rungs).map_err(what)?,
         };
         // The lowest load that every grid has solved.
-        let all = ladder.forces.values();
+        let all = &rungs.forces;
         let highest = heights.iter().copied().fold(1.0, f64::max);
         let first = all.iter().position(|f| f / highest >= all[0]).unwrap_or(0);
         let asked = &all[first..];
@@ -125,18 +141,26 @@ impl MeanCurve {
         let levels = Multilevel::new(levels).map_err(what)?;
         let forces = &asked[..levels.points()];
         let mut curve = Self {
-            model: ladder.model.name(),
+            model: rungs.model.name(),
             convention,
             fractal_dimension: d,
             forces: forces.to_vec(),
-            sizes: ladder.sizes.clone(),
+            sizes: rungs.sizes.clone(),
             levels,
             left_out,
             resolved: 0..forces.len(),
+            band: 1.0,
         };
         let fine = |j: &usize| curve.stiffness(*j).is_some_and(|k| k.grid <= error * k.value());
         let resolved = (0..forces.len()).rev().take_while(fine).count();
         curve.resolved = forces.len() - resolved..forces.len();
+        let slopes: Vec<Vec<f64>> = (curve.resolved.clone())
+            .filter_map(|j| curve.local_points(j))
+            .filter_map(|points| {
+                Some(curve.gradient(points.clone(), &slope_weights(&curve.ln_forces(points))?))
+            })
+            .collect();
+        curve.band = curve.levels.simultaneous(&slopes, BAND_DRAWS, BAND_SEED);
         Ok(curve)
     }
 
@@ -154,23 +178,29 @@ impl MeanCurve {
 
     /// Slope of ln k_bar over ln F_bar by least squares through the points.
     pub fn slope(&self, points: Range<usize>) -> Option<Banded> {
-        let ln_f: Vec<f64> = self.forces[points.clone()].iter().map(|f| f.ln()).collect();
-        self.logarithmic(points, &slope_weights(&ln_f)?)
+        self.logarithmic(points.clone(), &slope_weights(&self.ln_forces(points))?)
+    }
+
+    /// ln F_bar of points.
+    pub fn ln_forces(&self, points: Range<usize>) -> Vec<f64> {
+        self.forces[points].iter().map(|f| f.ln()).collect()
     }
 
     /// Local slope: through [`SLOPE_REACH`] points on each side, where all of them are resolved.
     pub fn local_slope(&self, point: usize) -> Option<Banded> {
+        self.local_points(point).and_then(|points| self.slope(points))
+    }
+
+    /// The points of a local slope, where all of them are resolved.
+    fn local_points(&self, point: usize) -> Option<Range<usize>> {
         let points = point.checked_sub(SLOPE_REACH)?..point + SLOPE_REACH + 1;
-        (points.start >= self.resolved.start && points.end <= self.resolved.end)
-            .then(|| self.slope(points))
-            .flatten()
+        (points.start >= self.resolved.start && points.end <= self.resolved.end).then_some(points)
     }
 
     /// The largest share of the variance of the slope through the points that comes from one level, and the
     /// size of its finer grid.
     pub fn widest_level(&self, points: Range<usize>) -> Option<(usize, f64)> {
-        let ln_f: Vec<f64> = self.forces[points.clone()].iter().map(|f| f.ln()).collect();
-        let gradient = self.gradient(points, &slope_weights(&ln_f)?);
+        let gradient = self.gradient(points.clone(), &slope_weights(&self.ln_forces(points))?);
         let variances = self.levels.variances(&gradient);
         let whole = analysis::sum(variances.iter().copied());
         let (level, most) = variances.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1))?;
@@ -204,6 +234,12 @@ impl MeanCurve {
         quantity: impl Fn(&[f64]) -> Option<f64>,
     ) -> Option<Banded> {
         let value = quantity(&self.levels.means(self.levels.levels()))?;
+        let grid = self.grid_part(points, &quantity)?;
+        Some(Banded { scatter: self.levels.propagated(value, gradient), grid })
+    }
+
+    /// What the finest grid leaves of a number of the mean curve at these points.
+    pub fn grid_part(&self, points: Range<usize>, quantity: impl Fn(&[f64]) -> Option<f64>) -> Option<f64> {
         // Points on unlike grids: the larger of what they leave.
         let mut grids: Vec<usize> = points.map(|j| self.levels.levels_at(j)).collect();
         grids.dedup();
@@ -211,28 +247,43 @@ impl MeanCurve {
         for levels in grids {
             grid = grid.max(self.levels.bias(levels, &quantity)?);
         }
-        Some(Banded { scatter: self.levels.propagated(value, gradient), grid })
+        Some(grid)
     }
 
-    /// Resolved points with loads in a range, as far as there are at least `2 SLOPE_REACH + 1`.
-    pub fn points_within(&self, forces: &Range<f64>) -> Option<Range<usize>> {
-        let inside = |j: &usize| (forces.start..=forces.end).contains(&self.forces[*j]);
-        let points: Vec<usize> = self.resolved.clone().filter(inside).collect();
-        (points.len() > 2 * SLOPE_REACH).then(|| points[0]..points[points.len() - 1] + 1)
+    /// The points with loads in a range, its ends rounded to the loads; `None` where a load nearest to an end
+    /// is farther from it than half a step of the loads, or there are fewer than `2 SLOPE_REACH + 1`.
+    pub fn window(&self, forces: &Range<f64>) -> Option<Range<usize>> {
+        let nearest = |end: f64| {
+            let away = |j: &usize| (self.forces[*j] / end).ln().abs();
+            let at = (0..self.forces.len()).min_by(|a, b| away(a).total_cmp(&away(b)))?;
+            let step =
+                (self.forces.last()? / self.forces[0]).ln() / (self.forces.len() as f64 - 1.0).max(1.0);
+            (away(&at) <= 0.5 * step).then_some(at)
+        };
+        let points = nearest(forces.start)?..nearest(forces.end)? + 1;
+        (points.len() > 2 * SLOPE_REACH).then_some(points)
+    }
+
+    /// Whether all of these points are resolved.
+    pub fn resolves(&self, points: &Range<usize>) -> bool {
+        self.resolved.start <= points.start && points.end <= self.resolved.end
     }
 }
 
-/// Rms heights of one spectrum on the grids of a ladder, in that of the reference grid.
-fn spectrum_heights(ladder: &Ladder, d: f64) -> contact_model::Result<Vec<f64>> {
-    let surface = SelfAffine { amplitude: Amplitude::Spectrum(1.0), ..SelfAffine::new(d, 1.0, 1.0)? };
+/// Rms heights of one spectrum on the grids of the levels, in that of the reference grid.
+fn spectrum_heights(rungs: &Rungs) -> contact_model::Result<Vec<f64>> {
+    let surface = SelfAffine {
+        amplitude: Amplitude::Spectrum(1.0),
+        ..SelfAffine::new(rungs.fractal_dimension, 1.0, 1.0)?
+    };
     let reference = MapGenerator::new(&surface, REFERENCE_CELLS)?.rms_height();
     let height = |&size: &usize| {
-        Ok(match ladder.model {
+        Ok(match rungs.model {
             Discretisation::Bem3d { .. } => MapGenerator::new(&surface, size)?.rms_height(),
             Discretisation::Mdr1d { .. } => LineGenerator::new(&surface, size)?.rms_height(),
         } / reference)
     };
-    ladder.sizes.iter().map(height).collect()
+    rungs.sizes.iter().map(height).collect()
 }
 
 /// k_bar of a pair at the forces, or its difference; as far as the loads go. `None` where a solve did not
@@ -246,10 +297,9 @@ fn difference(pair: &Pair, level: usize, forces: &[f64], heights: &[f64]) -> Opt
 
 /// k_bar at forces that are counted in another height than the surface's own, `height` of its own; up to the
 /// last load that was solved.
-fn stiffnesses(result: &RealisationResult, forces: &[f64], height: f64) -> Option<Vec<f64>> {
-    let points: Option<Vec<(f64, f64)>> = (result.samples.iter())
-        .map(|s| Some((s.force_bar.ln(), s.stiffness_bar.filter(|_| s.converged())?.ln())))
-        .collect();
+fn stiffnesses(solved: &Solved, forces: &[f64], height: f64) -> Option<Vec<f64>> {
+    let points: Option<Vec<(f64, f64)>> =
+        solved.forces.iter().zip(&solved.stiffnesses).map(|(f, k)| Some((f.ln(), (*k)?.ln()))).collect();
     let points = points?;
     // ln 1 is 0: with its own height a load is found bit for bit.
     let asked = forces.iter().map(|f| f.ln() - height.ln());

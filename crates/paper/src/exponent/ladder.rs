@@ -1,7 +1,9 @@
 //! Grids from coarse to fine, and pairs of the same surface on neighbouring ones.
 
 use evaluation::limits::{self, require, within};
-use evaluation::{Discretisation, Forces, RealisationJob, RealisationResult, is_solved, solve_realisations};
+use evaluation::{
+    Discretisation, Forces, RealisationJob, RealisationResult, Sample, is_solved, solve_realisations,
+};
 use runs::{Progress, Result, Store};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -22,22 +24,40 @@ pub struct Ladder {
     pub heavy: Option<(f64, usize)>,
 }
 
+/// What one surface has on one grid.
+#[derive(Debug, Clone)]
+pub struct Solved {
+    /// F_bar, increasing.
+    pub forces: Vec<f64>,
+    /// k_bar at each; absent where a solve did not meet its tolerance. Five digits: those of the table of
+    /// samples, so that all tables follow from it bit for bit.
+    pub stiffnesses: Vec<Option<f64>>,
+    /// Processor seconds; absent for what was read from a table.
+    pub seconds: Option<f64>,
+}
+
 /// One surface on the grid of its level, and on the next coarser one.
 #[derive(Debug, Clone)]
 pub struct Pair {
     /// Number of the surface on its level.
     pub index: usize,
     /// On the grid of the level.
-    pub fine: RealisationResult,
+    pub fine: Solved,
     /// On the next coarser grid; absent on the coarsest.
-    pub coarse: Option<RealisationResult>,
+    pub coarse: Option<Solved>,
 }
 
-/// All pairs of one fractal dimension, level by level.
+/// All pairs of one model and fractal dimension, level by level.
 #[derive(Debug, Clone)]
 pub struct Rungs {
+    /// The model; its cells or elements are those of each level.
+    pub model: Discretisation,
     /// D_f.
     pub fractal_dimension: f64,
+    /// Cells a side, or elements, of each level.
+    pub sizes: Vec<usize>,
+    /// Loads F_bar; finer levels may end before the last.
+    pub forces: Vec<f64>,
     /// Level, surface.
     pub levels: Vec<Vec<Pair>>,
 }
@@ -158,12 +178,16 @@ impl Ladder {
         }
         let mut rungs: Vec<Rungs> = (dimensions.iter())
             .map(|&fractal_dimension| Rungs {
+                model: self.model,
                 fractal_dimension,
+                sizes: self.sizes.clone(),
+                forces: self.forces.values().to_vec(),
                 levels: surfaces.iter().map(|&count| Vec::with_capacity(count)).collect(),
             })
             .collect();
         for (place, result) in places.into_iter().zip(results.into_iter().flatten()) {
             let level = &mut rungs[place.dimension].levels[place.level];
+            let result = Solved::from(&result);
             match level.last_mut() {
                 // The coarse grid follows the fine one.
                 Some(pair) if !place.fine => pair.coarse = Some(result),
@@ -180,6 +204,23 @@ fn shared<'a>(places: impl Iterator<Item = &'a Place>) -> Vec<RealisationJob> {
     places.map(|place| RealisationJob { models: Arc::clone(&models), ..place.job.clone() }).collect()
 }
 
+impl From<&RealisationResult> for Solved {
+    fn from(result: &RealisationResult) -> Self {
+        let samples = &result.samples;
+        let stiffness = |s: &Sample| s.stiffness_bar.filter(|_| s.converged()).and_then(five_digits);
+        Self {
+            forces: samples.iter().map(|s| s.force_bar).collect(),
+            stiffnesses: samples.iter().map(stiffness).collect(),
+            seconds: Some(result.seconds),
+        }
+    }
+}
+
+/// What the table of samples keeps of a stiffness.
+fn five_digits(stiffness: f64) -> Option<f64> {
+    format!("{stiffness:.4e}").parse().ok()
+}
+
 impl Rungs {
     /// Pairs of all levels.
     pub fn pairs(&self) -> impl Iterator<Item = &Pair> {
@@ -188,14 +229,15 @@ impl Rungs {
 }
 
 impl Pair {
-    /// Seconds of both solves.
+    /// Seconds of both solves, as far as they are known.
     pub fn seconds(&self) -> f64 {
-        self.fine.seconds + self.coarse.as_ref().map_or(0.0, |coarse| coarse.seconds)
+        let seconds = |solved: &Solved| solved.seconds.unwrap_or(0.0);
+        seconds(&self.fine) + self.coarse.as_ref().map_or(0.0, seconds)
     }
 
     /// Loads at which one of the solves did not meet its tolerance.
     pub fn not_converged(&self) -> usize {
         let results = std::iter::once(&self.fine).chain(&self.coarse);
-        results.flat_map(|r| &r.samples).filter(|s| !s.converged()).count()
+        results.flat_map(|r| &r.stiffnesses).filter(|k| k.is_none()).count()
     }
 }

@@ -2,20 +2,28 @@
 //!
 //! Pairs of the same surface on two neighbouring grids give the mean difference between them with few
 //! surfaces; the mean on the finest grid is the sum of the mean on the coarsest and of all differences
-//! ([`analysis::Multilevel`]). From it come local slopes with bands, fits over stated windows, and the factor
-//! between line and surface, each with the part that the finest grid leaves. Nothing is extrapolated: a curve
-//! ends where that part exceeds the stated error.
+//! ([`analysis::Multilevel`]). From it come local slopes with a band over all forces together, exponents over
+//! fixed windows and towards zero force (a fit with a correction to scaling), and the factor between line and
+//! surface, each with the part that the finest grid leaves. The grid is not extrapolated: a curve is resolved
+//! down to where that part exceeds the stated error. Hypotheses that were fixed before a run are tested on it
+//! alone.
+//!
+//! All tables follow from `exponent-samples.csv` ([`exponent_of_samples`]).
 
+mod correction;
 mod curve;
+mod families;
 mod ladder;
 mod laws;
 mod picture;
 mod plan;
 mod report;
+mod samples;
 mod tables;
 
 pub use ladder::Ladder;
 pub use picture::draw as draw_exponent;
+pub use samples::SAMPLES;
 
 use crate::judged::Judged;
 use analysis::Table;
@@ -26,8 +34,8 @@ use evaluation::{
     Discretisation, FRACTAL_DIMENSIONS, Forces, Outcome, RealisationJob, SEED, Session, header, list,
 };
 use ladder::{Pair, Rungs};
-use runs::{Progress, Result, Store, files, write_csv};
-use std::path::PathBuf;
+use runs::{Header, Progress, Result, Store, files, write_csv};
+use std::path::{Path, PathBuf};
 
 /// What the study solves.
 #[derive(Debug, Clone, PartialEq)]
@@ -188,80 +196,130 @@ pub fn exponent_plan(study: &Exponent, seconds: f64, progress: &dyn Progress) ->
     Ok(lines)
 }
 
-/// Solves what is not stored, and writes `exponent.csv` (curves and local slopes), `exponent-levels.csv`,
-/// `exponent-laws.csv`, `exponent-ratio.csv`, `exponent-factor.csv` and `exponent-samples.csv`, the pictures
-/// of slopes and ratios, and `exponent.md`, tables for a page (with processor hours: the only file that
-/// depends on the machine).
+/// Solves what is not stored, and writes [`SAMPLES`] and what [`exponent_of_samples`] makes of it.
 ///
 /// # Errors
 /// [`runs::Error::Parameter`] for sizes that make no sense; what a model or the file system refuses.
 pub fn exponent(study: &Exponent, progress: &dyn Progress) -> Result<Judged> {
     study.validate()?;
     let session = Session::open(&study.out, study.fresh)?;
-    let mut curves = Vec::new();
-    let mut solved: Vec<(&Ladder, Vec<Rungs>)> = Vec::new();
+    let mut rungs: Vec<Rungs> = Vec::new();
     // Lines first: they are cheap.
     for (_, ladder) in study.ladders().into_iter().rev() {
-        let rungs = ladder.solve(
+        rungs.extend(ladder.solve(
             &study.fractal_dimensions,
             study.seed,
             &ladder.surfaces,
             (&session.store, study.threads),
             progress,
-        )?;
-        for convention in Convention::BOTH {
-            for rung in &rungs {
-                curves.push(MeanCurve::new(ladder, rung, convention, study.error)?);
-            }
-        }
-        solved.push((ladder, rungs));
+        )?);
     }
-    let laws = laws::law_rows(&curves);
-    let (ratios, factors) = laws::ratios(&curves);
-    let ladders: Vec<(&Ladder, &[Rungs])> =
-        solved.iter().map(|(ladder, rungs)| (*ladder, rungs.as_slice())).collect();
     let mut outcome = Outcome::new("exponent");
-    let pairs = solved.iter().flat_map(|(_, rungs)| rungs).flat_map(Rungs::pairs);
-    outcome.not_converged = pairs.map(Pair::not_converged).sum();
-    let tables: [(&str, Result<Table>); 6] = [
-        (picture::CURVES, tables::curves(&curves)),
-        ("exponent-levels.csv", tables::levels(&curves)),
-        ("exponent-laws.csv", tables::laws(&laws)),
-        (picture::RATIOS, tables::ratios(&ratios)),
-        ("exponent-factor.csv", tables::factors(&factors)),
-        ("exponent-samples.csv", tables::samples(&ladders)),
-    ];
-    let left_out: usize =
-        curves.iter().filter(|c| c.convention == Convention::Measured).map(|c| c.left_out).sum();
-    let header = header(study.command())
-        .with_sources(bem3d::Bem3d::default().sources())
-        .with_sources(mdr1d::Mdr1d::default().sources())
-        .with_note("multilevel Monte Carlo: M. B. Giles, Oper. Res. 56, 607 (2008); the surfaces of each level are independent, those of different D_f share phases")
-        .with_note(format!(
-            "loads above {:?} on grids up to {:?} cells only; a curve is resolved where the finest grid leaves at most {:?} of k_bar",
-            laws::LARGEST,
-            study.solid.heavy.map_or(0, |heavy| heavy.1),
-            study.error
-        ))
-        .with_note(format!("{} solves not converged; {left_out} pairs left out for them", outcome.not_converged));
-    for (name, table) in tables {
-        let path = study.out.join(name);
-        write_csv(&path, &table?, &header)?;
-        outcome.files.push(path);
-    }
-    outcome.files.extend(picture::draw(&study.out)?);
-    let text = study.out.join("exponent.md");
-    files::write_whole(
-        &text,
-        report::report(&study.command(), &ladders, &curves, &laws, &factors).as_bytes(),
-    )?;
-    outcome.files.push(text);
+    outcome.not_converged = rungs.iter().flat_map(Rungs::pairs).map(Pair::not_converged).sum();
+    let heavy = study.solid.heavy.map_or(0, |heavy| heavy.1);
+    let largest = laws::LARGEST;
+    let header = described(study.command())
+        .with_note(format!("loads above {largest:?} on grids up to {heavy:?} cells only"))
+        .with_note(format!("{} solves not converged", outcome.not_converged));
+    let path = study.out.join(SAMPLES);
+    write_csv(&path, &tables::samples(&rungs)?, &header)?;
+    outcome.files.push(path);
+    outcome.files.extend(evaluate(&rungs, None, (&study.out, study.error), &header)?);
     let seconds = |model: &str| {
-        let of = solved.iter().filter(|(ladder, _)| ladder.model.name() == model);
-        analysis::sum(of.flat_map(|(_, rungs)| rungs).flat_map(Rungs::pairs).map(Pair::seconds))
+        let of = rungs.iter().filter(|r| r.model.name() == model);
+        analysis::sum(of.flat_map(Rungs::pairs).map(Pair::seconds))
     };
     (outcome.bem3d_seconds, outcome.mdr1d_seconds) = (Some(seconds("bem3d")), Some(seconds("mdr1d")));
     session.close(outcome).map(Judged::from)
+}
+
+/// Writes, from tables of samples of runs with seeds of their own, all together, `exponent.csv` (curves and
+/// local slopes), `exponent-levels.csv`, `exponent-laws.csv` (decades), `exponent-limit.csv` (towards zero
+/// force), `exponent-ratio.csv`, `exponent-factor.csv`, the pictures of slopes and ratios, and `exponent.md`,
+/// tables for a page; from the samples of `tested` alone `exponent-tests.csv`. Nothing is solved.
+///
+/// # Errors
+/// [`runs::Error::File`] for a file that is no table of samples or cannot be read or written,
+/// [`runs::Error::Parameter`] for runs that do not go together.
+pub fn exponent_of_samples(paths: &[PathBuf], tested: &[PathBuf], error: f64, out: &Path) -> Result<Judged> {
+    require(error > 0.0 && error < 1.0, "error", error, "a share above 0 and below 1")?;
+    let read = |paths: &[PathBuf]| -> Result<Vec<Rungs>> {
+        samples::together(paths.iter().map(|path| samples::read(path)).collect::<Result<_>>()?)
+    };
+    files::create_directory(out)?;
+    let list =
+        |paths: &[PathBuf]| paths.iter().map(|path| path.display().to_string()).collect::<Vec<_>>().join(",");
+    let command =
+        format!("cargo xtask exponent --samples {} --tested {} --error {error:?}", list(paths), list(tested));
+    let mut outcome = Outcome::new("exponent");
+    let other = if tested == paths { None } else { Some(read(tested)?) };
+    outcome.files = evaluate(&read(paths)?, other.as_deref(), (out, error), &described(command))?;
+    Ok(Judged::from(outcome))
+}
+
+fn described(command: String) -> Header {
+    header(command)
+        .with_sources(bem3d::Bem3d::default().sources())
+        .with_sources(mdr1d::Mdr1d::default().sources())
+        .with_note("multilevel Monte Carlo: M. B. Giles, Oper. Res. 56, 607 (2008); the surfaces of each level are independent, those of different D_f share phases")
+}
+
+/// The mean curves of pairs in both conventions.
+fn curves(rungs: &[Rungs], error: f64) -> Result<Vec<MeanCurve>> {
+    let both = rungs.iter().flat_map(|r| Convention::BOTH.map(|convention| (r, convention)));
+    let mut curves: Vec<MeanCurve> =
+        both.map(|(r, convention)| MeanCurve::new(r, convention, error)).collect::<Result<_>>()?;
+    let order = |c: &MeanCurve| (c.model == "bem3d", c.convention != Convention::Measured);
+    curves.sort_by(|a, b| order(a).cmp(&order(b)).then(a.fractal_dimension.total_cmp(&b.fractal_dimension)));
+    Ok(curves)
+}
+
+/// All tables, pictures and texts of pairs; hypotheses are tested on `tested`, or on all.
+fn evaluate(
+    rungs: &[Rungs],
+    tested: Option<&[Rungs]>,
+    (out, error): (&Path, f64),
+    header: &Header,
+) -> Result<Vec<PathBuf>> {
+    let curves = curves(rungs, error)?;
+    let laws = laws::law_rows(&curves);
+    let limits = laws::limits(&curves, families::LIMITS_TESTED);
+    let tests = match tested {
+        None => families::tests(&curves, &limits),
+        Some(tested) => {
+            let curves = self::curves(tested, error)?;
+            let measured = curves.iter().filter(|c| c.convention == Convention::Measured);
+            let judged = |curve| laws::judged_limit(curve, families::LIMITS_TESTED);
+            families::tests(&curves, &measured.filter_map(judged).collect::<Vec<_>>())
+        }
+    };
+    let (ratios, factors) = laws::ratios(&curves);
+    let left_out: usize =
+        curves.iter().filter(|c| c.convention == Convention::Measured).map(|c| c.left_out).sum();
+    let header = header.clone().with_note(format!(
+        "a curve is resolved where the finest grid leaves at most {error:?} of k_bar; {left_out} pairs left out for a solve that did not converge"
+    ));
+    let tables: [(&str, Result<Table>); 7] = [
+        (picture::CURVES, tables::curves(&curves)),
+        ("exponent-levels.csv", tables::levels(&curves)),
+        ("exponent-laws.csv", tables::laws(&laws)),
+        ("exponent-limit.csv", tables::limits(&limits)),
+        (picture::RATIOS, tables::ratios(&ratios)),
+        ("exponent-factor.csv", tables::factors(&factors)),
+        ("exponent-tests.csv", tables::tests(&tests)),
+    ];
+    let mut files = Vec::new();
+    for (name, table) in tables {
+        let path = out.join(name);
+        write_csv(&path, &table?, &header)?;
+        files.push(path);
+    }
+    files.extend(picture::draw(out)?);
+    let text = out.join("exponent.md");
+    let report = report::report(&header.command, rungs, (&limits, &laws, &factors, &tests));
+    files::write_whole(&text, report.as_bytes())?;
+    files.push(text);
+    Ok(files)
 }
 
 #[cfg(test)]
@@ -286,11 +344,25 @@ mod tests {
         assert!(plan.iter().any(|line| line.contains("processor hours")), "{plan:?}");
         let read = || -> Vec<Vec<u8>> {
             let outcome = exponent(&study, &Silent).unwrap();
-            let tables = outcome.files.iter().filter(|file| file.extension().is_some_and(|e| e != "md"));
-            tables.map(|file| std::fs::read(file).unwrap()).collect()
+            outcome.files.iter().map(|file| std::fs::read(file).unwrap()).collect()
         };
         let first = read();
         assert_eq!(first, read());
+        // Everything follows from the samples, but for the commands.
+        let own = [dir.path().join(SAMPLES)];
+        let other = tempfile::tempdir().unwrap();
+        let again = exponent_of_samples(&own, &own, study.error, other.path()).unwrap();
+        assert_eq!(again.files.len() + 1, first.len());
+        for (file, before) in again.files.iter().zip(&first[1..]) {
+            let rows = |text: &str| {
+                let row = |line: &&str| !line.starts_with(['#', '`']);
+                text.lines().filter(row).map(str::to_owned).collect::<Vec<_>>()
+            };
+            match (String::from_utf8(std::fs::read(file).unwrap()), String::from_utf8(before.clone())) {
+                (Ok(now), Ok(before)) => assert_eq!(rows(&now), rows(&before), "{}", file.display()),
+                (now, before) => assert_eq!(now.is_err(), before.is_err(), "{}", file.display()),
+            }
+        }
         let file = CsvFile::read(&dir.path().join("exponent.csv")).unwrap();
         let resolved = file.numbers("slope").unwrap().into_iter().flatten().count();
         assert!(resolved > 4, "{resolved} slopes");

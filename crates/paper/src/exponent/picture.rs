@@ -23,7 +23,7 @@ struct CurveRow {
     fractal_dimension: f64,
     force_bar: f64,
     slope: Option<f64>,
-    slope_scatter: Option<f64>,
+    slope_band: Option<f64>,
     slope_grid: Option<f64>,
 }
 
@@ -69,7 +69,7 @@ fn slopes(directory: &Path) -> Result<Vec<PathBuf>> {
                 .collect();
             let band: Vec<(f64, f64, f64)> = (own.iter())
                 .filter_map(|r| {
-                    let half = r.slope_scatter? + r.slope_grid?;
+                    let half = r.slope_band? + r.slope_grid?;
                     Some((r.force_bar, r.slope? - half, r.slope? + half))
                 })
                 .collect();
@@ -85,7 +85,7 @@ fn slopes(directory: &Path) -> Result<Vec<PathBuf>> {
     legend.push("$0.266 D_{\\rm{f}}$ (Eq. 6)", "#000000", Key::Line(LineStyle::Dashed));
     legend.push("$1/(1 + H)$ (Eq. 24)", "#000000", Key::Line(LineStyle::Dotted));
     legend.push(
-        "bands: 95 %, scatter and what the grid leaves; curves end where the grid leaves too much",
+        "bands: 95 % for all of a curve together, and what the grid leaves; curves end where it leaves too much",
         "#000000",
         Key::Words,
     );

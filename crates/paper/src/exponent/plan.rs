@@ -65,10 +65,10 @@ fn variance(rungs: &[Rungs], level: usize) -> Option<f64> {
     let mut all = Vec::new();
     for rung in rungs {
         let pairs = &rung.levels[level];
-        for j in 0..pairs.first()?.fine.samples.len() {
+        for j in 0..pairs.first()?.fine.stiffnesses.len() {
             let stiffness = |pair: &Pair| {
-                let fine = pair.fine.samples[j].stiffness_bar?;
-                let coarse = pair.coarse.as_ref().map_or(Some(0.0), |c| c.samples[j].stiffness_bar)?;
+                let fine = pair.fine.stiffnesses[j]?;
+                let coarse = pair.coarse.as_ref().map_or(Some(0.0), |c| c.stiffnesses[j])?;
                 Some((fine, fine - coarse))
             };
             let values: Option<Vec<(f64, f64)>> = pairs.iter().map(stiffness).collect();

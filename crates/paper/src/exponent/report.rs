@@ -1,11 +1,10 @@
 //! The tables of the study in words, for a page that includes them.
 
-use super::curve::{Convention, MeanCurve};
-use super::ladder::{Ladder, Pair, Rungs};
-use super::laws::{Factor, LawRow};
-use crate::claim::short;
+use super::curve::Convention;
+use super::families::Test;
+use super::ladder::Rungs;
+use super::laws::{Factor, LawRow, Limit, eq6, eq24, raised};
 use evaluation::markdown_table;
-use std::ops::Range;
 
 /// `0.5123 +- 0.0045`: as many digits as the error allows.
 fn with_error(value: f64, half_width: f64) -> String {
@@ -14,68 +13,135 @@ fn with_error(value: f64, half_width: f64) -> String {
     format!("{value:.digits$} +- {half_width:.digits$}")
 }
 
-fn loads(forces: &Range<f64>) -> String {
-    format!("{:.1e} to {:.1e}", forces.start, forces.end)
+fn surfaces_or_lines(model: &str) -> &'static str {
+    if model == "bem3d" { "surfaces" } else { "lines" }
 }
 
-/// What was solved, how far each curve goes, the exponents beside the laws, and the factor between line and
-/// surface.
-pub fn report(
-    command: &str,
-    solved: &[(&Ladder, &[Rungs])],
-    curves: &[MeanCurve],
-    laws: &[LawRow],
-    factors: &[Factor],
-) -> String {
-    let levels = solved.iter().flat_map(|&(ladder, rungs)| {
-        ladder.sizes.iter().zip(&ladder.surfaces).enumerate().map(move |(level, (size, surfaces))| {
-            let pairs = rungs.iter().flat_map(|r| &r.levels[level]);
-            let hours = pairs.map(Pair::seconds).sum::<f64>() / 3600.0;
-            [ladder.model.name().to_owned(), size.to_string(), surfaces.to_string(), short(hours)]
-        })
+/// A probability: small ones as a power of ten.
+fn chance(of: f64) -> String {
+    if of < 1e-3 { format!("{of:.0e}") } else { format!("{of:.3}") }
+}
+
+/// What was solved: surfaces of each grid and fractal dimension.
+fn solved(rungs: &[Rungs]) -> String {
+    let rows = rungs.iter().map(|r| {
+        let levels = r.sizes.iter().zip(&r.levels).map(|(size, pairs)| format!("{size}: {}", pairs.len()));
+        let (model, d) = (surfaces_or_lines(r.model.name()), format!("{:?}", r.fractal_dimension));
+        [model.to_owned(), d, levels.collect::<Vec<_>>().join(", ")]
     });
-    let head = "| | size | surfaces for each D_f | processor hours, all D_f |\n|---|---:|---:|---:|";
-    let mut text = format!("`{command}`\n\n{}", markdown_table(head, levels));
-    for (model, words) in [("bem3d", "Surfaces"), ("mdr1d", "Lines")] {
-        for convention in Convention::BOTH {
-            let curves = curves.iter().filter(|c| c.model == model && c.convention == convention);
-            text += &format!("\n{words}, {}:\n\n{}", convention.words(), exponents(curves, laws));
-        }
-    }
-    let head =
-        "| D_f | F_bar | k_1D/k_3D | slope of its logarithm over ln F | constant |\n|---|---|---|---|---|";
-    let row = |f: &Factor| {
-        let d = format!("{:?}", f.fractal_dimension);
-        let [factor, slope] = [f.value, f.slope].map(|e| with_error(e.value, e.half_width));
-        [d, loads(&f.forces), factor, slope, f.verdict().to_owned()]
-    };
-    for convention in Convention::BOTH {
-        let rows = factors.iter().filter(|f| f.convention == convention).map(row);
-        text += &format!("\nLine over surface, {}:\n\n{}", convention.words(), markdown_table(head, rows));
-    }
-    text
+    markdown_table("| | D_f | cells a side or elements: how many |\n|---|---|---|", rows)
 }
 
-/// The exponents of curves beside the laws.
-fn exponents<'a>(curves: impl Iterator<Item = &'a MeanCurve>, laws: &[LawRow]) -> String {
-    let head = "| D_f | resolved from F_bar | window | alpha | of it the grid | most of the scatter | 0.266 D_f | 1/(1 + H) | inside |\n|---|---|---|---|---|---|---|---|---|";
-    let rows = curves.flat_map(|curve| {
-        let first = curve.forces.get(curve.resolved.start);
-        let from = first.map_or_else(|| "nowhere".to_owned(), |f| format!("{f:.1e}"));
-        laws.iter().filter(|law| law.is_of(curve)).map(move |r| {
-            let share = |(size, share): (usize, f64)| format!("{size} ({:.0} %)", 100.0 * share);
-            [
-                format!("{:?}", curve.fractal_dimension),
-                from.clone(),
-                format!("{} ({})", r.window, loads(&r.forces)),
-                with_error(r.alpha.value(), r.alpha.half_width()),
-                format!("{:.4}", r.alpha.grid),
-                r.widest.map_or_else(String::new, share),
-                format!("{:.3}", r.eq6()),
-                format!("{:.3}", r.power_law()),
-                r.verdict().to_owned(),
-            ]
-        })
+/// The exponents towards zero force that are judged.
+fn towards_zero(limits: &[Limit]) -> String {
+    let head = "| | D_f | F_bar from | alpha towards 0, 95 % | omega | alpha, omega = 0.5 | alpha, to 0.06 | 0.266 D_f | 1/(1 + H) | inside | resolved |\n|---|---|---|---|---|---|---|---|---|---|---|";
+    let measured: Vec<&Limit> = limits.iter().filter(|l| l.convention == Convention::Measured).collect();
+    let range = |l: &Limit| format!("{:.4} [{:.4}, {:.4}]", l.law.alpha, l.interval[0], l.interval[1]);
+    let rows = measured.iter().filter(|l| l.variant == super::laws::FREE).map(|l| {
+        let other = |variant: &str| {
+            let same = |other: &&&Limit| {
+                other.model == l.model
+                    && other.variant == variant
+                    && other.fractal_dimension.total_cmp(&l.fractal_dimension).is_eq()
+            };
+            measured.iter().find(same).map_or_else(String::new, |l| range(l))
+        };
+        let d = l.fractal_dimension;
+        [
+            surfaces_or_lines(l.model).to_owned(),
+            format!("{d:?}"),
+            format!("{:.1e}", l.forces.start),
+            range(l),
+            format!("{:.2} [{:.2}, {:.2}]", l.law.omega, l.omega[0], l.omega[1]),
+            other(super::laws::HELD),
+            other(super::laws::SHORT),
+            format!("{:.3}", eq6(d)),
+            format!("{:.3}", eq24(d)),
+            l.inside().to_owned(),
+            if l.resolved { "yes" } else { "no" }.to_owned(),
+        ]
     });
     markdown_table(head, rows)
+}
+
+/// Exponents decade by decade, resolved ones.
+fn decades(laws: &[LawRow]) -> String {
+    let head = "| | D_f | F_bar | alpha, 95 % | of it the grid | 0.266 D_f | 1/(1 + H) | inside |\n|---|---|---|---|---|---|---|---|";
+    let rows = laws.iter().filter(|r| r.resolved && r.convention == Convention::Measured).map(|r| {
+        let d = r.fractal_dimension;
+        [
+            surfaces_or_lines(r.model).to_owned(),
+            format!("{d:?}"),
+            r.window.to_owned(),
+            with_error(r.alpha.value(), r.alpha.half_width()),
+            format!("{:.4}", r.alpha.grid),
+            format!("{:.3}", eq6(d)),
+            format!("{:.3}", eq24(d)),
+            r.inside().to_owned(),
+        ]
+    });
+    markdown_table(head, rows)
+}
+
+/// Line over surface.
+fn over(factors: &[Factor]) -> String {
+    let head = "| D_f | F_bar | k_1D/k_3D, measured rms | one spectrum | slope of its logarithm over ln F, measured rms | by chance |\n|---|---|---|---|---|---|";
+    let text = |f: &Factor| {
+        let (value, half) = raised(&f.logarithm);
+        with_error(value, half)
+    };
+    let measured = factors.iter().filter(|f| f.resolved && f.convention == Convention::Measured);
+    let rows = measured.map(|f| {
+        let same = |other: &&Factor| {
+            other.convention == Convention::FixedSpectrum
+                && other.resolved
+                && other.window == f.window
+                && other.fractal_dimension.total_cmp(&f.fractal_dimension).is_eq()
+        };
+        [
+            format!("{:?}", f.fractal_dimension),
+            f.window.to_owned(),
+            text(f),
+            factors.iter().find(same).map_or_else(String::new, text),
+            with_error(f.slope.value(), f.slope.half_width()),
+            chance(f.slope.chance_of(0.0)),
+        ]
+    });
+    markdown_table(head, rows)
+}
+
+/// The tests of the hypotheses.
+fn hypotheses(tests: &[Test]) -> String {
+    let head = "| | | D_f | F_bar | hypothesis | found | together with its family | this test alone, by chance | |\n|---|---|---|---|---|---|---|---|---|";
+    let rows = tests.iter().map(|t| {
+        [
+            t.family.to_owned(),
+            if t.family == "A" { "line over surface" } else { surfaces_or_lines(t.model) }.to_owned(),
+            format!("{:?}", t.fractal_dimension),
+            t.window.to_owned(),
+            format!("{:.4}", t.expected),
+            t.value.map_or_else(String::new, |v| format!("{v:.4}")),
+            t.interval.map_or_else(String::new, |[low, high]| format!("[{low:.4}, {high:.4}]")),
+            t.chance.map_or_else(String::new, chance),
+            t.verdict().to_owned(),
+        ]
+    });
+    markdown_table(head, rows)
+}
+
+/// Everything that a page shows: what was solved, exponents towards zero force and decade by decade, the
+/// factor between line and surface, and the tests of the hypotheses.
+pub fn report(
+    command: &str,
+    rungs: &[Rungs],
+    (limits, laws, factors, tests): (&[Limit], &[LawRow], &[Factor], &[Test]),
+) -> String {
+    format!(
+        "`{command}`\n\n{}\nAlpha towards zero force, F_bar by the measured rms height of each grid:\n\n{}\nDecade by decade, where all of it is resolved:\n\n{}\nLine over surface, where both are resolved:\n\n{}\nHypotheses, A to D:\n\n{}",
+        solved(rungs),
+        towards_zero(limits),
+        decades(laws),
+        over(factors),
+        hypotheses(tests)
+    )
 }

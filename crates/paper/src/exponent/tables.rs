@@ -1,10 +1,11 @@
 //! The tables of the study of the exponent.
 
 use super::curve::{Banded, MeanCurve};
-use super::ladder::{Ladder, Pair, Rungs};
-use super::laws::{Factor, LawRow, Ratio};
+use super::families::Test;
+use super::ladder::{Pair, Rungs, Solved};
+use super::laws::{Factor, LawRow, Limit, Ratio, eq6, eq24, raised};
 use analysis::Table;
-use evaluation::{FRACTAL_DIMENSION, RealisationResult, Sample, TableOf};
+use evaluation::{FRACTAL_DIMENSION, TableOf};
 use runs::Result;
 
 const MODEL: &str = "bem3d: 3D boundary elements; mdr1d: 1D reduction";
@@ -15,11 +16,19 @@ const GRID: &str = "what the grid leaves, from the three finest";
 const FINEST: &str = "cells a side (bem3d) or elements (mdr1d) of the finest grid at this load";
 const LOCAL_SLOPE: &str = "d ln k/d ln F through five loads; empty where one is not resolved";
 const RESOLVED: &str = "whether here and at all larger loads the grid leaves less than the stated error";
-const WINDOW: &str = "common: resolved for every D_f of the model; own: all that is resolved; else a decade";
+const BAND: &str = "95 % half-width from the scatter, of all local slopes of the curve together";
+const WINDOW: &str = "one decade of F_bar, the same for every curve";
+const ALL_RESOLVED: &str = "whether the grid leaves less than the stated error at all loads of it";
 const EXPONENT: &str = "slope of ln k over ln F by least squares, loads with equal weight";
 const WIDEST: &str = "size of the level that adds most to the scatter";
+const INSIDE: &str = "which of them lies within the 95 % interval of this row";
 const RATIO_SLOPE: &str = "of ln(k_1D/k_3D) over ln F: 0 where the factor depends on D_f alone";
 const BOTH_HALF: &str = "95 %, scatter and grid of both";
+const CHANCE: &str = "probability of a slope so far from 0, beyond what the grids leave, if it is 0";
+const VARIANT: &str = "free: the fit that is judged; omega 0.5: omega held; to 0.06: a lower upper end";
+const FAMILY: &str =
+    "A: line over surface; B: a decade against Eq. 24; C: against Eq. 6; D: towards zero force";
+const TOGETHER: &str = "interval, 95 % for all tests of the family together (Bonferroni)";
 
 const LEVEL_MEAN: &str = "mean k_bar on the coarsest grid, else mean difference from the next coarser grid";
 
@@ -52,6 +61,7 @@ pub fn curves(curves: &[MeanCurve]) -> Result<Table> {
         .column("slope", "1", LOCAL_SLOPE, |r| r.slope.map(|b| b.value()))
         .column("slope_scatter", "1", SCATTER, |r| r.slope.map(|b| b.scatter.half_width()))
         .column("slope_grid", "1", GRID, |r| r.slope.map(|b| b.grid))
+        .column("slope_band", "1", BAND, |r| r.slope.map(|b| r.curve.band * b.scatter.half_width()))
         .column("resolved", "-", RESOLVED, |r| r.curve.resolved.contains(&r.point))
         .table()
 }
@@ -78,23 +88,50 @@ pub fn levels(curves: &[MeanCurve]) -> Result<Table> {
         .table()
 }
 
-/// Exponents over stated windows beside the laws.
+/// Exponents over decades beside the laws.
 pub fn laws(rows: &[LawRow]) -> Result<Table> {
-    TableOf::new("Exponents over stated windows, and the laws that lie in their intervals", rows)
+    TableOf::new("Exponents decade by decade, and the laws that lie in their intervals", rows)
         .column("model", "-", MODEL, |r| r.model)
         .column("convention", "-", CONVENTION, |r| r.convention.as_str())
         .column("fractal_dimension", "1", FRACTAL_DIMENSION, |r| r.fractal_dimension)
         .column("window", "-", WINDOW, |r| r.window)
-        .column("force_bar_min", "1", "smallest load", |r| r.forces.start)
-        .column("force_bar_max", "1", "largest load", |r| r.forces.end)
+        .column("resolved", "-", ALL_RESOLVED, |r| r.resolved)
         .column("alpha", "1", EXPONENT, |r| r.alpha.value())
         .column("scatter", "1", SCATTER, |r| r.alpha.scatter.half_width())
         .column("grid", "1", "what the grid leaves", |r| r.alpha.grid)
         .column("widest_level", "1", WIDEST, |r| r.widest.map(|w| w.0))
         .column("widest_share", "1", "its share of the variance", |r| r.widest.map(|w| w.1))
-        .column("eq6", "1", "0.266 D_f", LawRow::eq6)
-        .column("one_over_one_plus_hurst", "1", "1/(1 + H) = 1/(4 - D_f)", LawRow::power_law)
-        .column("inside", "-", "which of them lies within scatter and grid together", LawRow::verdict)
+        .column("eq6", "1", "0.266 D_f", |r| eq6(r.fractal_dimension))
+        .column("eq24", "1", "1/(1 + H) = 1/(4 - D_f)", |r| eq24(r.fractal_dimension))
+        .column("inside", "-", INSIDE, LawRow::inside)
+        .table()
+}
+
+/// Exponents towards zero force.
+pub fn limits(rows: &[Limit]) -> Result<Table> {
+    const TITLE: &str = "k_bar = zeta F_bar^alpha (1 + c F_bar^omega), weighted least squares of ln k_bar; intervals by bootstrap samples of whole surfaces, 2000 of the fits that are judged, 500 of others";
+    TableOf::new(TITLE, rows)
+        .column("model", "-", MODEL, |r| r.model)
+        .column("convention", "-", CONVENTION, |r| r.convention.as_str())
+        .column("fractal_dimension", "1", FRACTAL_DIMENSION, |r| r.fractal_dimension)
+        .column("variant", "-", VARIANT, |r| r.variant)
+        .column("force_bar_min", "1", "smallest load", |r| r.forces.start)
+        .column("force_bar_max", "1", "largest load", |r| r.forces.end)
+        .column("loads", "1", "how many", |r| r.points)
+        .column("resolved", "-", ALL_RESOLVED, |r| r.resolved)
+        .column("alpha", "1", "exponent towards zero force", |r| r.law.alpha)
+        .column("alpha_low", "1", "lower end of its 95 % interval, grid included", |r| r.interval[0])
+        .column("alpha_high", "1", "upper end", |r| r.interval[1])
+        .column("grid", "1", "what the grid leaves of alpha, omega held", |r| r.grid)
+        .column("zeta", "1", "factor", |r| r.law.zeta)
+        .column("c", "1", "factor of the correction", |r| r.law.c)
+        .column("omega", "1", "power of the correction, 0.25 to 2", |r| r.law.omega)
+        .column("omega_low", "1", "lower end of its 95 % interval from the scatter", |r| r.omega[0])
+        .column("omega_high", "1", "upper end", |r| r.omega[1])
+        .column("misfit", "1", "weighted sum of squares", |r| r.law.misfit)
+        .column("eq6", "1", "0.266 D_f", |r| eq6(r.fractal_dimension))
+        .column("eq24", "1", "1/(1 + H) = 1/(4 - D_f)", |r| eq24(r.fractal_dimension))
+        .column("inside", "-", INSIDE, Limit::inside)
         .table()
 }
 
@@ -104,63 +141,70 @@ pub fn ratios(rows: &[Ratio]) -> Result<Table> {
         .column("convention", "-", CONVENTION, |r| r.convention.as_str())
         .column("fractal_dimension", "1", FRACTAL_DIMENSION, |r| r.fractal_dimension)
         .column("force_bar", "1", "F/(E* h L)", |r| r.force_bar)
-        .column("ratio", "1", "k_1D/k_3D", |r| r.value.value)
-        .column("half_width", "1", BOTH_HALF, |r| r.value.half_width)
+        .column("ratio", "1", "k_1D/k_3D", |r| raised(&r.logarithm).0)
+        .column("half_width", "1", BOTH_HALF, |r| raised(&r.logarithm).1)
         .table()
 }
 
 /// Whether the factor between them depends on the force.
 pub fn factors(rows: &[Factor]) -> Result<Table> {
-    TableOf::new("The factor between line and surface at small loads", rows)
+    TableOf::new("The factor between line and surface, decade by decade", rows)
         .column("convention", "-", CONVENTION, |r| r.convention.as_str())
         .column("fractal_dimension", "1", FRACTAL_DIMENSION, |r| r.fractal_dimension)
-        .column("force_bar_min", "1", "smallest load at which both are resolved", |r| r.forces.start)
-        .column("force_bar_max", "1", "largest load", |r| r.forces.end)
-        .column("factor", "1", "exp of the mean of ln(k_1D/k_3D) over the loads", |r| r.value.value)
-        .column("factor_half_width", "1", BOTH_HALF, |r| r.value.half_width)
-        .column("slope", "1", RATIO_SLOPE, |r| r.slope.value)
-        .column("slope_half_width", "1", BOTH_HALF, |r| r.slope.half_width)
-        .column("constant", "-", "yes: 0 lies inside the slope's interval; no: it does not", Factor::verdict)
+        .column("window", "-", WINDOW, |r| r.window)
+        .column("resolved", "-", ALL_RESOLVED, |r| r.resolved)
+        .column("factor", "1", "exp of the mean of ln(k_1D/k_3D) over the loads", |r| raised(&r.logarithm).0)
+        .column("factor_half_width", "1", BOTH_HALF, |r| raised(&r.logarithm).1)
+        .column("slope", "1", RATIO_SLOPE, |r| r.slope.value())
+        .column("slope_scatter", "1", SCATTER, |r| r.slope.scatter.half_width())
+        .column("slope_grid", "1", "what the grids leave", |r| r.slope.grid)
+        .column("chance", "1", CHANCE, |r| r.slope.chance_of(0.0))
+        .table()
+}
+
+/// The tests of the hypotheses.
+pub fn tests(rows: &[Test]) -> Result<Table> {
+    TableOf::new("Hypotheses of data/exponent/hypotheses.md and what was found of them", rows)
+        .column("family", "-", FAMILY, |r| r.family)
+        .column("tests", "1", "tests of the family", |r| r.of)
+        .column("quantity", "-", "what is tested", |r| r.quantity)
+        .column("model", "-", MODEL, |r| r.model)
+        .column("fractal_dimension", "1", FRACTAL_DIMENSION, |r| r.fractal_dimension)
+        .column("window", "-", "loads F_bar, or those of the fit", |r| r.window)
+        .column("hypothesis", "-", "what it says", |r| r.hypothesis)
+        .column("expected", "1", "the number that it says", |r| r.expected)
+        .column("found", "1", "the number found", |r| r.value)
+        .column("low", "1", TOGETHER, |r| r.interval.map(|i| i[0]))
+        .column("high", "1", "its upper end", |r| r.interval.map(|i| i[1]))
+        .column("chance", "1", "of such a distance, this test alone; empty for the bootstrap", |r| r.chance)
+        .column("resolved", "-", ALL_RESOLVED, |r| r.resolved)
+        .column("verdict", "-", "rejected, not rejected, not resolved", Test::verdict)
         .table()
 }
 
 /// Every stiffness, one row for a surface on a grid.
-pub fn samples(ladders: &[(&Ladder, &[Rungs])]) -> Result<Table> {
-    struct Row<'a> {
-        model: &'static str,
-        d: f64,
-        level: usize,
-        pair: &'a Pair,
-        sizes: (usize, Option<usize>),
-    }
+pub fn samples(rungs: &[Rungs]) -> Result<Table> {
     let mut rows = Vec::new();
-    for (ladder, rungs) in ladders {
-        for rung in *rungs {
-            for (level, pairs) in rung.levels.iter().enumerate() {
-                let sizes = (ladder.sizes[level], level.checked_sub(1).map(|below| ladder.sizes[below]));
-                let row =
-                    |pair| Row { model: ladder.model.name(), d: rung.fractal_dimension, level, pair, sizes };
-                rows.extend(pairs.iter().map(row));
-            }
+    for rung in rungs {
+        for (level, pairs) in rung.levels.iter().enumerate() {
+            rows.extend(pairs.iter().map(move |pair| (rung, level, pair)));
         }
     }
-    let text = |result: &RealisationResult| {
-        let stiffness = |sample: &Sample| match sample.stiffness_bar.filter(|_| sample.converged()) {
-            Some(k) => format!("{k:.4e}"),
-            None => "-".to_owned(),
-        };
-        result.samples.iter().map(stiffness).collect::<Vec<_>>().join(" ")
+    let text = |solved: &Solved| {
+        let stiffness = |k: &Option<f64>| k.map_or_else(|| "-".to_owned(), |k| format!("{k:.4e}"));
+        solved.stiffnesses.iter().map(stiffness).collect::<Vec<_>>().join(" ")
     };
+    let coarser = |&(rung, level, _): &(&Rungs, usize, &Pair)| level.checked_sub(1).map(|l| rung.sizes[l]);
     let title =
         "Stiffness k/(1.1419 E* L) of every surface on its two grids, F_bar by the measured rms height";
     TableOf::new(title, &rows)
-        .column("model", "-", MODEL, |r| r.model)
-        .column("fractal_dimension", "1", FRACTAL_DIMENSION, |r| r.d)
-        .column("level", "1", "0: the coarsest grid", |r| r.level)
-        .column("surface", "1", "number on its level", |r| r.pair.index)
-        .column("size", "1", "cells a side or elements", |r| r.sizes.0)
-        .column("stiffness_bar", "1", VALUES, |r| text(&r.pair.fine))
-        .column("coarse_size", "1", "cells a side or elements of the coarser grid", |r| r.sizes.1)
-        .column("coarse_stiffness_bar", "1", VALUES, |r| r.pair.coarse.as_ref().map(text))
+        .column("model", "-", MODEL, |r| r.0.model.name())
+        .column("fractal_dimension", "1", FRACTAL_DIMENSION, |r| r.0.fractal_dimension)
+        .column("level", "1", "0: the coarsest grid", |r| r.1)
+        .column("surface", "1", "number on its level", |r| r.2.index)
+        .column("size", "1", "cells a side or elements", |r| r.0.sizes[r.1])
+        .column("stiffness_bar", "1", VALUES, |r| text(&r.2.fine))
+        .column("coarse_size", "1", "cells a side or elements of the coarser grid", coarser)
+        .column("coarse_stiffness_bar", "1", VALUES, |r| r.2.coarse.as_ref().map(text))
         .table()
 }

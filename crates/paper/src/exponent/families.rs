@@ -1,0 +1,189 @@
+//! The hypotheses of `data/exponent/hypotheses.md`, fixed before the run that tests them.
+
+use super::curve::{Banded, Convention, MeanCurve};
+use super::laws::{DECADES, FREE, Factor, Limit, eq6, eq24, ratios};
+use std::ops::Range;
+
+/// One test of a family.
+#[derive(Debug, Clone)]
+pub struct Test {
+    /// A to D.
+    pub family: &'static str,
+    /// How many tests it has.
+    pub of: usize,
+    /// What is tested.
+    pub quantity: &'static str,
+    /// `bem3d`, `mdr1d` or both.
+    pub model: &'static str,
+    /// D_f.
+    pub fractal_dimension: f64,
+    /// Name of the window.
+    pub window: &'static str,
+    /// The hypothesis in words.
+    pub hypothesis: &'static str,
+    /// What the hypothesis says of the number.
+    pub expected: f64,
+    /// The number; absent where the run has none.
+    pub value: Option<f64>,
+    /// Its interval, simultaneous with all of the family.
+    pub interval: Option<[f64; 2]>,
+    /// Probability of such a distance by chance, for this one test; absent for intervals of the bootstrap.
+    pub chance: Option<f64>,
+    /// Whether the window is resolved.
+    pub resolved: bool,
+}
+
+impl Test {
+    /// Whether the hypothesis is rejected.
+    pub fn verdict(&self) -> &'static str {
+        match self.interval {
+            Some([low, high]) if self.resolved => {
+                if (low..=high).contains(&self.expected) {
+                    "not rejected"
+                } else {
+                    "rejected"
+                }
+            }
+            Some(_) => "not resolved",
+            None => "no number",
+        }
+    }
+}
+
+const LIGHTER: &str = DECADES[2].0;
+const HEAVIER: &str = DECADES[1].0;
+const CONSTANT: &str = "0: the ratio depends on D_f alone";
+const EQ24: &str = "1/(1 + H) (Eq. 24)";
+const EQ6: &str = "0.266 D_f (Eq. 6)";
+
+/// Family A: windows and fractal dimensions.
+const RATIOS: [(&str, f64); 7] = [
+    (HEAVIER, 2.0),
+    (HEAVIER, 2.2),
+    (HEAVIER, 2.4),
+    (HEAVIER, 2.6),
+    (HEAVIER, 2.8),
+    (LIGHTER, 2.0),
+    (LIGHTER, 2.2),
+];
+/// Families B and C.
+const WINDOWS: [(&str, f64); 6] =
+    [(HEAVIER, 2.4), (HEAVIER, 2.6), (HEAVIER, 2.8), (HEAVIER, 3.0), (LIGHTER, 2.4), (LIGHTER, 2.6)];
+/// Family D, surfaces and lines each.
+const LIMITS: [f64; 4] = [2.4, 2.6, 2.8, 3.0];
+
+/// Number of tests of family D.
+pub const LIMITS_TESTED: usize = 2 * LIMITS.len();
+
+fn close(a: f64, b: f64) -> bool {
+    (a - b).abs() < 1e-9
+}
+
+/// All tests, made with these curves and the fits of them.
+pub fn tests(curves: &[MeanCurve], limits: &[Limit]) -> Vec<Test> {
+    let measured: Vec<MeanCurve> =
+        curves.iter().filter(|c| c.convention == Convention::Measured).cloned().collect();
+    let (_, factors) = ratios(&measured);
+    let mut tests: Vec<Test> = RATIOS.iter().map(|&at| of_ratio(&factors, at)).collect();
+    for (family, hypothesis, law) in [("B", EQ24, eq24 as fn(f64) -> f64), ("C", EQ6, eq6 as fn(f64) -> f64)]
+    {
+        tests.extend(WINDOWS.iter().map(|&at| of_window(&measured, (family, hypothesis, law), at)));
+    }
+    for model in ["bem3d", "mdr1d"] {
+        tests.extend(LIMITS.iter().map(|&d| of_limit(limits, model, d)));
+    }
+    tests
+}
+
+/// A test without its number.
+fn asked(
+    (family, of): (&'static str, usize),
+    (model, quantity): (&'static str, &'static str),
+    (window, fractal_dimension): (&'static str, f64),
+    (hypothesis, expected): (&'static str, f64),
+) -> Test {
+    let (value, interval, chance, resolved) = (None, None, None, false);
+    Test {
+        family,
+        of,
+        quantity,
+        model,
+        fractal_dimension,
+        window,
+        hypothesis,
+        expected,
+        value,
+        interval,
+        chance,
+        resolved,
+    }
+}
+
+impl Test {
+    fn with(self, number: &Banded, resolved: bool) -> Self {
+        let interval = Some(number.interval(0.05 / self.of as f64));
+        let chance = Some(number.chance_of(self.expected));
+        Self { value: Some(number.value()), interval, chance, resolved, ..self }
+    }
+}
+
+fn of_ratio(factors: &[Factor], at: (&'static str, f64)) -> Test {
+    let quantity = "slope of ln(k_1D/k_3D) over ln F";
+    let test = asked(("A", RATIOS.len()), ("mdr1d over bem3d", quantity), at, (CONSTANT, 0.0));
+    let own = factors.iter().find(|f| f.window == at.0 && close(f.fractal_dimension, at.1));
+    match own {
+        Some(factor) => test.with(&factor.slope, factor.resolved),
+        None => test,
+    }
+}
+
+fn of_window(
+    curves: &[MeanCurve],
+    (family, hypothesis, law): (&'static str, &'static str, fn(f64) -> f64),
+    at: (&'static str, f64),
+) -> Test {
+    let test =
+        asked((family, WINDOWS.len()), ("bem3d", "exponent of the window"), at, (hypothesis, law(at.1)));
+    let forces: Option<Range<f64>> =
+        DECADES.into_iter().find(|decade| decade.0 == at.0).map(|decade| decade.1);
+    let own = curves.iter().find(|c| c.model == "bem3d" && close(c.fractal_dimension, at.1));
+    let found = own.zip(forces).and_then(|(curve, forces)| {
+        let points = curve.window(&forces)?;
+        Some((curve.slope(points.clone())?, curve.resolves(&points)))
+    });
+    match found {
+        Some((alpha, resolved)) => test.with(&alpha, resolved),
+        None => test,
+    }
+}
+
+fn of_limit(limits: &[Limit], model: &'static str, d: f64) -> Test {
+    let test = asked(("D", LIMITS_TESTED), (model, "alpha towards zero force"), ("fit", d), (EQ24, eq24(d)));
+    let judged = |l: &&Limit| l.variant == FREE && l.convention == Convention::Measured;
+    let own = |l: &&Limit| l.model == model && close(l.fractal_dimension, d);
+    match limits.iter().filter(judged).find(own) {
+        Some(limit) => Test {
+            value: Some(limit.law.alpha),
+            interval: Some(limit.family),
+            resolved: limit.resolved,
+            ..test
+        },
+        None => test,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_verdict_needs_a_resolved_number() {
+        let test = asked(("A", 7), ("", ""), (HEAVIER, 2.0), (CONSTANT, 0.0));
+        assert_eq!(test.verdict(), "no number");
+        let with = |interval, resolved| Test { interval: Some(interval), resolved, ..test.clone() }.verdict();
+        assert_eq!(with([-0.03, -0.01], true), "rejected");
+        assert_eq!(with([-0.03, 0.01], true), "not rejected");
+        assert_eq!(with([-0.03, -0.01], false), "not resolved");
+        assert_eq!(tests(&[], &[]).len(), 7 + 6 + 6 + 8);
+    }
+}
