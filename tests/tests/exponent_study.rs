@@ -307,7 +307,7 @@ fn budgets_of_mean_curves_are_checked_on_finer_grids() {
         let [coarse, fine] = [4, study.levels.len()].map(|levels| study.mean(levels));
         for row in of_dimension(budgets.clone(), d) {
             let judged = row["quantity"] == "stiffness_bar" && row["below_floor"] == "false";
-            if !judged || number(&row, "force_bar") > 0.0200001 {
+            if !judged || number(&row, "force_bar") > 0.020_000_1 {
                 continue;
             }
             let at = number(&row, "force_bar").ln();
