@@ -90,7 +90,7 @@ fn has(model: &str, surface: &Surface, effect: &str) -> bool {
     let round = !matches!(surface, Surface::SelfAffine(_) | Surface::Heights(_) | Surface::Line { .. });
     match effect {
         // A range that the cells resolve.
-        "boundary" | "hardness" | "exponential" => model == "bem3d",
+        "boundaries" | "hardness" | "exponential" => model == "bem3d",
         "adhesion" => model == "bem3d" || model == "jkr" || (model == "mdr1d" && round),
         _ => false,
     }
@@ -100,7 +100,7 @@ fn has(model: &str, surface: &Surface, effect: &str) -> bool {
 fn each_effect() -> [(&'static str, Effects); 6] {
     let range = Adhesion::FiniteRange { work: 1e-3, range: 0.5, law: AdhesionLaw::Exponential };
     [
-        ("boundary", Effects { boundary: Boundary::Periodic, ..Effects::default() }),
+        ("boundaries", Effects { boundary: Boundary::Periodic, ..Effects::default() }),
         ("adhesion", Effects { adhesion: Adhesion::ShortRange { work: 0.1 }, ..Effects::default() }),
         ("hardness", Effects { hardness: Hardness::Limit { pressure: 0.1 }, ..Effects::default() }),
         ("exponential", Effects { adhesion: range, ..Effects::default() }),
@@ -140,7 +140,7 @@ fn periodic_theories() {
     for (model, surface) in models {
         let [periodic, rest @ ..] = each_effect();
         let mut scene = Scene::new(surface.clone(), 1.0);
-        assert!(unsupported(model, &scene).contains("boundary"));
+        assert!(unsupported(model, &scene).contains("boundaries"));
         scene.effects = periodic.1;
         scene.outputs.mean_gap = true;
         for (name, mut effects) in rest {

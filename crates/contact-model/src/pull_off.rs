@@ -61,7 +61,10 @@ impl LargestPull {
         if state.report.status == Status::PulledOff {
             beyond = Some(load);
         } else {
-            let ContactState { force, approach, mean_gap, .. } = state;
+            let ContactState { approach, mean_gap, .. } = state;
+            // A force that presses, or none, pulls nothing, whatever the rounding of its sum.
+            let pressed = matches!(load, Load::Force(asked) if asked >= 0.0);
+            let force = if pressed { state.force.max(0.0) } else { state.force };
             if self.held.get(self.largest).is_some_and(|largest| force < largest.force) {
                 self.largest = self.held.len();
             }

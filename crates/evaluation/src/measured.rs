@@ -69,7 +69,8 @@ pub fn measure_showing(
         of_surface.sort_by_key(|&job| std::cmp::Reverse(all[job].cost()));
     }
     let what = words(model, run, &ensembles, store);
-    let so_far = SoFar::new(&ensembles, run, show);
+    let measured_so_far = |jobs, results| show(&Measured::new(jobs, results, run)?);
+    let so_far = SoFar::new(&ensembles, run, &measured_so_far);
     let solved = |job: usize, result: &RealisationResult| so_far.add(job, result);
     let ordered = Ordered { jobs: &all, order: &order, solved: &solved };
     let mut results = solve_in_order(&what, &ordered, store, run.threads, progress)?.into_iter();
@@ -145,7 +146,7 @@ fn jobs(discretisation: Discretisation, surfaces: usize, run: &Run) -> Vec<Reali
 
 impl Measured {
     /// An ensemble on its own grid alone, from its jobs and their results.
-    pub(crate) fn new(jobs: Vec<RealisationJob>, results: Vec<RealisationResult>, run: &Run) -> Result<Self> {
+    fn new(jobs: Vec<RealisationJob>, results: Vec<RealisationResult>, run: &Run) -> Result<Self> {
         let dimensions = run.dimensions();
         let first = jobs.first().ok_or_else(|| Error::parameter("surfaces", 0, "at least 1"))?;
         let (discretisation, forces) = (first.discretisation, Arc::clone(&first.forces));

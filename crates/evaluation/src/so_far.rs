@@ -1,6 +1,5 @@
 //! What of an ensemble is solved while the rest is under way.
 
-use crate::measured::Measured;
 use crate::realisation::{RealisationJob, RealisationResult};
 use crate::run::Run;
 use runs::Result;
@@ -13,12 +12,15 @@ const EVERY: Duration = Duration::from_secs(5);
 /// Surfaces on the finest grid that say more than the coarse ones.
 const FEWEST: usize = 3;
 
+/// Gets the jobs of a whole ensemble and their results.
+type Show<'a> = dyn Fn(Vec<RealisationJob>, Vec<RealisationResult>) -> Result<()> + Sync + 'a;
+
 /// Collects results and shows whole ensembles of them now and then.
 pub(crate) struct SoFar<'a> {
     /// Jobs of each grid, the finest first.
     ensembles: &'a [Vec<RealisationJob>],
     run: &'a Run,
-    show: &'a (dyn Fn(&Measured) -> Result<()> + Sync),
+    show: &'a Show<'a>,
     found: Mutex<Found>,
 }
 
@@ -31,11 +33,7 @@ struct Found {
 }
 
 impl<'a> SoFar<'a> {
-    pub fn new(
-        ensembles: &'a [Vec<RealisationJob>],
-        run: &'a Run,
-        show: &'a (dyn Fn(&Measured) -> Result<()> + Sync),
-    ) -> Self {
+    pub fn new(ensembles: &'a [Vec<RealisationJob>], run: &'a Run, show: &'a Show<'a>) -> Self {
         let results = ensembles.iter().map(|jobs| vec![None; jobs.len()]).collect();
         Self { ensembles, run, show, found: Mutex::new(Found { results, last: Instant::now(), shown: None }) }
     }
@@ -46,7 +44,7 @@ impl<'a> SoFar<'a> {
     /// Those of what shows it.
     pub fn add(&self, job: usize, result: &RealisationResult) -> Result<()> {
         let Some((jobs, results)) = self.next(job, result) else { return Ok(()) };
-        (self.show)(&Measured::new(jobs, results, self.run)?)
+        (self.show)(jobs, results)
     }
 
     /// Takes the result; jobs and results that are to be shown now.
@@ -109,7 +107,7 @@ mod tests {
         let request =
             Request { preset: Preset::Quick, fractal_dimensions: Some(vec![2.0, 2.6]), ..Request::default() };
         let run = Run::new(&request).unwrap().with_sizes(Model::Bem3d, 129, 5);
-        let so_far = SoFar::new(&[], &run, &|_| Ok(()));
+        let so_far = SoFar::new(&[], &run, &|_, _| Ok(()));
         let result =
             RealisationResult { rms_height: 1.0, seconds: 0.0, samples: vec![sample(0.1), sample(1.0)] };
         let of = |counts: [usize; 3]| {
@@ -133,7 +131,7 @@ mod tests {
         let ensembles: Vec<Vec<RealisationJob>> = [2, 3]
             .map(|surfaces| crate::ensemble_jobs(&run.with_sizes(Model::Bem3d, 9, surfaces), &[Model::Bem3d]))
             .into();
-        let so_far = SoFar::new(&ensembles, &run, &|_| Ok(()));
+        let so_far = SoFar::new(&ensembles, &run, &|_, _| Ok(()));
         let result = RealisationResult { rms_height: 1.0, seconds: 0.0, samples: Vec::new() };
         let (coarse, fine) = (ensembles[1].len(), ensembles[0].len());
         for job in [1, coarse + 2, coarse + fine] {

@@ -198,7 +198,7 @@ fn an_accuracy_chooses_the_grid() {
     for (text, words) in [
         (map("1 %").replace("map.csv", "one.csv"), "the map's own cells are too few to compare"),
         (map("0.1 %"), "accuracy of 0.1000 %: the map's own cells leave "),
-        (map("0.1 %"), "(`area_corrected` under force 5.000 N)"),
+        (map("0.1 %"), "(`area_corrected` under force 5 N)"),
         (asked("accuracy = 0.002\nbudget = \"1 us\"\nmodulus"), "and the budget is under 1 ms"),
         (asked("accuracy = 0.0001\nbudget = \"2 s\"\nmodulus"), " cells along the longer side leave "),
         (asked("budget = \"1 s\"\nmodulus"), "`budget` is given, but no `accuracy`"),

@@ -162,7 +162,7 @@ fn scan_lines_are_repaired_where_it_is_named() {
     assert!(code == Some(0) && text.contains("then       16 points of scars made undefined"), "{text}");
     assert!(text.contains("all have the same median") && text.contains("cut-off 0.005 m"), "{text}");
     let (code, text) = info(&["--align-lines", "up"]);
-    assert!(code != Some(0) && text.contains("expected median_difference or median"), "{text}");
+    assert!(code != Some(0) && text.contains("[possible values: median_difference, median]"), "{text}");
     let (_, text) = info(&["--filter-across", "30 mm"]);
     assert!(text.contains("filter_across = 0.03: expected"), "{text}");
 }

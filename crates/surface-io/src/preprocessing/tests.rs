@@ -518,7 +518,7 @@ fn errors_of_scanning_are_repaired_in_order_and_told() {
         ),
         (
             Preprocessing { filter_across: "0 nm".parse().ok(), ..Preprocessing::default() },
-            "filter_across = 0e0: ",
+            "filter_across = 0: ",
         ),
         (
             Preprocessing { filter_across: "-9 nm".parse().ok(), ..Preprocessing::default() },

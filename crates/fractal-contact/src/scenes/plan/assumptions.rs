@@ -75,7 +75,8 @@ impl Assumptions {
         let periodic = scene.effects.boundary == Boundary::Periodic;
         let concerned = |m: &Numerics| m.is_statistical() || (periodic && m.boundary_elements().is_some());
         // One cause is said once; a point that stands out is said of the map itself.
-        let tilted = map.tilt > TILTED;
+        // The waves of a periodic map tilt it too.
+        let tilted = map.windowed && map.tilt > TILTED;
         let message = format!(
             "the map is tilted: {:.0} % of the variance of heights is a plane, which makes opposite edges differ by {:.1} times the largest step inside",
             100.0 * map.tilt,
