@@ -94,7 +94,7 @@ struct Linearised<'a> {
     /// The constant that is taken from the kernel: all of it where the mean plane is held.
     constant: f64,
     /// What takes their displacement of the contact back.
-    near: Near,
+    near: Option<Near>,
     steps: usize,
     stop: Stop<'a>,
 }
@@ -142,14 +142,18 @@ impl Linearised<'_> {
         let (open, both) = (self.open.clone(), self.both.clone());
         // Pressure on the contact beside the open cells takes most of its displacement back.
         let mut sources = both.carry(&open, &w);
-        let mut taken = vec![0.0f32; both.len()];
-        let mut pressed: Vec<f32> = sources.iter().map(|&w| w as f32).collect();
-        self.near.subtract_transposed(&mut pressed, &mut taken);
-        update(&mut sources, &taken, |source, &taken| *source += f64::from(taken));
+        let (mut reduction, mut energy) = (INNER, None);
+        if let Some(near) = &self.near {
+            let mut taken = vec![0.0f32; both.len()];
+            let mut pressed: Vec<f32> = sources.iter().map(|&w| w as f32).collect();
+            near.subtract_transposed(&mut pressed, &mut taken);
+            update(&mut sources, &taken, |source, &taken| *source += f64::from(taken));
+            (reduction, energy) = (0.0, Some(Energy { share: ENERGY, base: dot(v, v) }));
+        }
         let u = self.rough(&both, &sources, &both);
         let mut x = self.contact.carry(&self.both, &u);
         let mut direct = self.open.carry(&self.both, &u);
-        self.contact_solve(&mut x, 0.0, Some(Energy { share: ENERGY, base: dot(v, v) }));
+        self.contact_solve(&mut x, reduction, energy);
         let through = self.rough(&self.contact.clone(), &x, &open);
         for ((u, t), d) in direct.iter_mut().zip(&through).zip(&self.root) {
             *u = d * (*u - t);
@@ -251,7 +255,8 @@ pub fn respond(
     let coupling = attraction.coupling(&open, &open.carry(&state.cells, &state.gap), &root);
     let both = contact.union(&open);
     let is_open = both.carry(&open, &vec![1.0; open.len()]);
-    let near = Near::new((problem.grid(), problem.operators.table().boundary()), &both, &is_open);
+    let on = (problem.grid(), problem.operators.table().boundary());
+    let near = Near::of(attraction, on, &both, &is_open);
     let mut linearised =
         Linearised { problem, contact, open, both, root, coupling, constant, near, steps: 0, stop };
     let mut response = linearised.response(control, tolerance);
@@ -286,7 +291,7 @@ pub fn fixed_area(
         return (None, 0);
     }
     let (both, open, root) = (contact.clone(), CellSet::default(), Vec::new());
-    let (coupling, near) = (None, Near::default());
+    let (coupling, near) = (None, None);
     let mut linearised =
         Linearised { problem, contact, open, both, root, coupling, constant, near, steps: 0, stop };
     let response = linearised.response(AdhesiveControl::Plane(state.d), Some(tolerance));

@@ -12,6 +12,8 @@
 //! a rough `G_ZC G_CC^-1`. Its transpose is the pressure that takes back most of what a pressure on open
 //! cells displaces the contact by.
 
+use super::attraction::Attraction;
+use super::law::Shape;
 use super::neighbours::Neighbours;
 use super::pairs::Pairs;
 use crate::geometry::{CellSet, Grid};
@@ -33,6 +35,17 @@ pub struct Near {
 }
 
 impl Near {
+    /// [`Near::new`] where the attraction is of short range: the open cells of others are too many for what they
+    /// gain.
+    pub fn of(
+        attraction: &Attraction,
+        grid: (Grid, Boundary),
+        cells: &CellSet,
+        is_open: &[f32],
+    ) -> Option<Self> {
+        (attraction.law.shape == Shape::Smooth).then(|| Self::new(grid, cells, is_open))
+    }
+
     /// On the cells of a set, of which some are open, 1, and the others closed, 0.
     pub fn new((grid, boundary): (Grid, Boundary), cells: &CellSet, is_open: &[f32]) -> Self {
         let around = Neighbours::around(grid, boundary == Boundary::Periodic, NEIGHBOURHOOD);

@@ -280,15 +280,14 @@ impl Linear {
         stop: Stop<'_>,
     ) -> Option<Solution> {
         let Self { contact, both, root, is_open } = self;
-        let grid = problem.grid();
+        let on = (problem.grid(), problem.operators.table().boundary());
         let (n, unit, operators) = (both.len(), largest(left), &mut problem.operators);
         let recipe = operators.planner().system(both, contact.len(), false)?;
         if unit.is_nan() || unit <= 0.0 {
             return None;
         }
-        let gap = both.carry(&state.cells, &state.gap);
         let zone_root: Vec<f64> = root.iter().zip(is_open).map(|(r, open)| f64::from(r * open)).collect();
-        let coupling = attraction.coupling(both, &gap, &zone_root);
+        let coupling = attraction.coupling(both, &both.carry(&state.cells, &state.gap), &zone_root);
         // N y, which changes nothing on contact.
         let neighbours = |y: &[f32], out: &mut [f32]| {
             out.copy_from_slice(y);
@@ -297,7 +296,6 @@ impl Linear {
             }
         };
         let times_root = |values: &mut [f32]| update(values, root, |value, root| *value *= root);
-        let boundary = operators.table().boundary();
         let own = operators.table().own() as f32;
         let diagonal: Vec<f32> = (root.iter().zip(is_open))
             .map(|(r, &open)| if open > 0.0 { (1.0 - r * r * own).max(LEAST as f32) } else { own }.recip())
@@ -308,7 +306,7 @@ impl Linear {
         if let (Conditioning::Torus { extended, .. }, Some(torus)) = (recipe.conditioning, &torus) {
             extension.set(contact, torus.window(), if extended { decay } else { 0.0 });
         }
-        let near = torus.is_some().then(|| Near::new((grid, boundary), both, is_open));
+        let near = torus.as_ref().and_then(|_| Near::of(attraction, on, both, is_open));
         let mut beside = vec![0.0f32; n];
         let mut inverse = |r: &[f32], z: &mut [f32]| {
             z.copy_from_slice(r);
@@ -318,11 +316,13 @@ impl Linear {
                 update(z, &beside, |z, beside| *z -= beside);
             }
             update(z, &diagonal, |z, d| *z *= d);
-            let (Some(transform), Some(near)) = (torus.as_deref_mut(), &near) else { return };
+            let Some(transform) = torus.as_deref_mut() else { return };
             update(z, is_open, |z, open| *z *= open);
-            beside.copy_from_slice(z);
-            times_root(&mut beside);
-            near.subtract_transposed(&mut beside, z);
+            if let Some(near) = &near {
+                beside.copy_from_slice(z);
+                times_root(&mut beside);
+                near.subtract_transposed(&mut beside, z);
+            }
             let mut on_contact = contact.carry(both, r);
             let mut found = vec![0.0; contact.len()];
             let (extension, recorder) = (&mut extension, recorder.clone());
