@@ -196,7 +196,7 @@ pub fn exponent_plan(study: &Exponent, seconds: f64, progress: &dyn Progress) ->
     Ok(lines)
 }
 
-/// Solves what is not stored, and writes [`SAMPLES`] and what [`exponent_of_samples`] makes of it.
+/// Solves what is not stored, and writes `exponent-samples.csv` and what [`exponent_of_samples`] makes of it.
 ///
 /// # Errors
 /// [`runs::Error::Parameter`] for sizes that make no sense; what a model or the file system refuses.
