@@ -154,9 +154,14 @@ fn split(text: &str) -> Result<(&str, i64, &str), QuantityError> {
 }
 
 impl fmt::Display for Quantity {
-    /// The value in SI units without the digits that rounding leaves, such as `0.001 m`.
+    /// The value in SI units with every digit that it has, such as `0.001 m`: read again it is the same number.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&number(self.value))?;
+        let short = number(self.value);
+        if short.parse() == Ok(self.value) {
+            f.write_str(&short)?;
+        } else {
+            write!(f, "{:e}", self.value)?;
+        }
         if self.dimension == Dimension::NONE { Ok(()) } else { write!(f, " {}", self.dimension.symbol()) }
     }
 }
