@@ -1,18 +1,24 @@
 //! The response of a state to a small change of the load: how stable it is and how stiff.
 //!
-//! With the contact set C and the slopes D of the law on the open cells Z within reach, a unit of approach
-//! changes the net pressure by x with `A x = 1`, where A is G with `-1/D` added on the diagonal of Z: then
-//! `k = 1'x`. Eliminating C leaves `(G^ - 1/D) x_Z = ...` with the Schur complement G^; with
-//! `S = D^(1/2) G^ D^(1/2)` and `x_Z = -D^(1/2) v` it is `(1 - S) v = b`, positive definite where the energy
-//! has a minimum. Conjugate gradients on it find v and, with the coefficients of Lanczos, the largest
-//! eigenvalue r of S.
+//! With the contact set C and the negative derivatives K of the attractions of the open cells Z in their gaps,
+//! a unit of approach changes the net pressure by x and the openings of Z by `-o`, with
+//!
+//! ```text
+//! (G x)_C = 1,    (G x)_Z + o = 1,    x_Z = -K o,
+//! ```
+//!
+//! and `k = 1'x`. Eliminating C leaves `(1 - K G^) y = K b` for `y = -x_Z` with the Schur complement G^ and
+//! `b = 1 - G_ZC G_CC^-1 1`; then `o = b + G^ y`. In the scalar product `y' G^ y` the matrix is symmetric, and
+//! positive definite where the energy has a minimum, also where K is not: the law of a short range is level in
+//! contact, where the neighbours alone are left. Conjugate gradients in that product find y and, with the
+//! coefficients of Lanczos, the largest eigenvalue r of K G^.
+//!
+//! At a fixed force the approach follows, `G^ + b b'/h` stands for G^ with the stiffness h of the contact alone.
+//! On the vectors of Lanczos that is a matrix of rank one beside the tridiagonal one, and its largest eigenvalue
+//! the root of a function of one variable.
 //!
 //! With the mean plane of a periodic surface held, G stands for the kernel of zero mean. Where every cell
 //! touches, that is singular: the force is free, and there is no stiffness.
-//!
-//! Where the attraction of a cell depends on its neighbours, `D + C` stands for D,
-//! `N = 1 + D^(-1/2) C D^(-1/2)`: then `(1 - S N) v = b` with `x_Z = -D^(1/2) N v`, which is positive
-//! definite in the scalar product `u'N v`.
 
 use super::attraction::Attraction;
 use super::equilibrium::{AdhesiveControl, Equilibrium};
@@ -22,7 +28,7 @@ use super::pairs::Pairs;
 use crate::active_set::Problem;
 use crate::geometry::CellSet;
 use crate::linear::{Energy, Fixed, StoppingCriteria};
-use crate::real::{dot, each, sum, update};
+use crate::real::{dot, each, largest, sum, update};
 use contact_model::Stop;
 use numerics::root::bisect;
 
@@ -31,13 +37,11 @@ use numerics::root::bisect;
 const FLAT: f64 = 1e-12;
 /// Solves on the contact reduce their residual by this factor; the response is corrected by rounds.
 const INNER: f64 = 1e-2;
-/// In the reduced iteration the energy of their error is estimated at this share of `v'v` or less, the
-/// measure of the eigenvalue. The error of that is of the first order in the error of the solve, as the
-/// solve begins from pressure that takes displacement back: at a share of 3e-3 waves close to their snap-in
-/// were called unstable.
-const ENERGY: f64 = 1e-6;
-/// The reduced iteration ends where its residual has fallen by this factor.
-const REDUCED: f64 = 1e-6;
+/// With pressure that takes displacement back, until the energy of their error is this share of that of the
+/// displacement: so much of r is lost.
+const ENERGY: f64 = 1e-4;
+/// The reduced iteration ends where its residual has fallen by this factor, settled or not.
+const REDUCED: f64 = 1e-9;
 /// Steps of inner solves at most.
 const INNER_STEPS: usize = 60;
 /// Steps of the reduced iteration at most.
@@ -87,10 +91,12 @@ struct Linearised<'a> {
     contact: CellSet,
     open: CellSet,
     both: CellSet,
-    /// Roots of the slopes on the open cells.
-    root: Vec<f64>,
-    /// How their attractions follow the gaps of others.
+    /// Magnitudes of the slopes of the law on the open cells.
+    slopes: Vec<f64>,
+    /// How their attractions follow the gaps of others, in units of `unit`.
     coupling: Option<Pairs>,
+    /// Peak over range of the law.
+    unit: f64,
     /// The constant that is taken from the kernel: all of it where the mean plane is held.
     constant: f64,
     /// What takes their displacement of the contact back.
@@ -101,8 +107,9 @@ struct Linearised<'a> {
 
 /// What conjugate gradients on the open cells found.
 struct Reduced {
-    v: Vec<f64>,
-    /// Smallest Ritz value of `1 - S`, and of the same at a fixed force.
+    /// `G^ y`.
+    displacement: Vec<f64>,
+    /// Smallest Ritz value of `1 - K G^`, and of the same at a fixed force.
     smallest: f64,
     smallest_at_force: f64,
 }
@@ -136,79 +143,91 @@ impl Linearised<'_> {
         each(u, |u| *u -= offset);
     }
 
-    /// `S v`.
-    fn apply(&mut self, v: &[f64]) -> Vec<f64> {
-        let w: Vec<f64> = v.iter().zip(&self.root).map(|(v, d)| v * d).collect();
+    /// `G^ y`.
+    fn apply(&mut self, y: &[f64]) -> Vec<f64> {
         let (open, both) = (self.open.clone(), self.both.clone());
         // Pressure on the contact beside the open cells takes most of its displacement back.
-        let mut sources = both.carry(&open, &w);
-        let (mut reduction, mut energy) = (INNER, None);
+        let mut sources = both.carry(&open, y);
         if let Some(near) = &self.near {
             let mut taken = vec![0.0f32; both.len()];
-            let mut pressed: Vec<f32> = sources.iter().map(|&w| w as f32).collect();
+            let mut pressed: Vec<f32> = sources.iter().map(|&y| y as f32).collect();
             near.subtract_transposed(&mut pressed, &mut taken);
             update(&mut sources, &taken, |source, &taken| *source += f64::from(taken));
-            (reduction, energy) = (0.0, Some(Energy { share: ENERGY, base: dot(v, v) }));
         }
         let u = self.rough(&both, &sources, &both);
         let mut x = self.contact.carry(&self.both, &u);
-        let mut direct = self.open.carry(&self.both, &u);
+        let mut displacement = self.open.carry(&self.both, &u);
+        let (reduction, energy) = match self.near {
+            Some(_) => (0.0, Some(Energy { share: ENERGY, base: dot(&sources, &u).max(0.0) })),
+            None => (INNER, None),
+        };
         self.contact_solve(&mut x, reduction, energy);
         let through = self.rough(&self.contact.clone(), &x, &open);
-        for ((u, t), d) in direct.iter_mut().zip(&through).zip(&self.root) {
-            *u = d * (*u - t);
+        update(&mut displacement, &through, |u, through| *u -= through);
+        if let Some(near) = self.near.as_ref().filter(|_| !self.contact.is_empty()) {
+            // The pressure that takes displacement back does work on what the solve leaves. With it the product
+            // is symmetric and its error of the second order; without it waves close to their snap-in were
+            // called unstable.
+            let residual = self.problem.workspace.residual();
+            let residual = self.both.carry(&self.contact, &residual);
+            let residual: Vec<f32> = residual.iter().map(|&r| r as f32).collect();
+            let mut beside = vec![0.0f32; residual.len()];
+            near.extend(&residual, &mut beside);
+            let beside = open.carry(&self.both, &beside);
+            update(&mut displacement, &beside, |u, &beside| *u -= f64::from(beside));
         }
-        direct
+        displacement
     }
 
-    /// `N v`.
-    fn with_neighbours(&self, v: &[f64]) -> Vec<f64> {
-        let mut sum = v.to_vec();
+    /// `K g`.
+    fn answer(&self, gap: &[f64]) -> Vec<f64> {
+        let mut answer: Vec<f64> = self.slopes.iter().zip(gap).map(|(d, g)| d * g).collect();
         if let Some(coupling) = &self.coupling {
-            coupling.add_product(1.0, v, &mut sum);
+            coupling.add_product(self.unit, gap, &mut answer);
         }
-        sum
+        answer
     }
 
-    /// Solves `(1 - S N) v = b` in the scalar product of N until the energy of the residual is below `wanted`
-    /// or, without it, until the smallest eigenvalue has settled. `held` is the stiffness of the contact
-    /// alone where the force is fixed.
+    /// Solves `(1 - K G^) y = K b` until the energy of the residual is below `wanted` or, without it, until the
+    /// smallest eigenvalue has settled. `held` is the stiffness of the contact alone where the force is fixed.
     fn reduce(&mut self, b: &[f64], wanted: Option<f64>, held: f64) -> Reduced {
-        let mut v = vec![0.0; b.len()];
-        let mut r = b.to_vec();
-        let mut nr = self.with_neighbours(&r);
-        let (mut t, mut nt) = (r.clone(), nr.clone());
-        let start = dot(&r, &nr);
-        let mut rr = start;
-        let (mut diagonal, mut beside) = (Vec::new(), Vec::new());
-        let mut last = (0.0, 0.0);
-        let mut found = Reduced { v: Vec::new(), smallest: 1.0, smallest_at_force: 1.0 };
+        let mut r = self.answer(b);
+        let mut t = r.clone();
+        let mut displacement = vec![0.0; b.len()];
+        let mut found = Reduced { displacement: Vec::new(), smallest: 1.0, smallest_at_force: 1.0 };
+        // G^ r, G^ t.
+        let mut ur = if largest(&r) > 0.0 { self.apply(&r) } else { r.clone() };
+        let mut ut = ur.clone();
+        let mut rr = dot(&r, &ur);
+        let start = rr;
+        let (mut diagonal, mut beside, mut along) = (Vec::new(), Vec::new(), Vec::new());
+        let mut last: (f64, f64) = (0.0, 0.0);
         let (mut before, mut settled) = (f64::INFINITY, 0);
         for _ in 0..STEPS {
-            if rr <= 0.0 || self.stop.stops() {
+            if rr.is_nan() || rr <= 0.0 || self.stop.stops() {
                 break;
             }
-            let snt = self.apply(&nt);
-            let at: Vec<f64> = t.iter().zip(&snt).map(|(t, snt)| t - snt).collect();
-            let curvature = dot(&nt, &at);
+            let mut mt = self.answer(&ut);
+            update(&mut mt, &t, |mt, t| *mt = t - *mt);
+            let curvature = dot(&ut, &mt);
             let alpha = rr / curvature;
-            let (alpha0, beta0): (f64, f64) = last;
+            let (alpha0, beta0) = last;
             diagonal.push(alpha.recip() + if alpha0 == 0.0 { 0.0 } else { beta0 / alpha0 });
+            along.push(dot(b, &r) / rr.sqrt());
             found.smallest = lowest_eigenvalue(&diagonal, &beside);
-            let mut at_force = diagonal.clone();
-            if held > 0.0 {
-                at_force[0] -= start / held;
-            }
-            found.smallest_at_force = lowest_eigenvalue(&at_force, &beside);
+            found.smallest_at_force = if held > 0.0 {
+                let along: Vec<f64> = along.iter().map(|along| along * start.sqrt() / held).collect();
+                lowest_beside(&diagonal, &beside, &along, found.smallest)
+            } else {
+                found.smallest
+            };
             if curvature.is_nan() || curvature <= 0.0 || found.smallest <= 0.0 {
                 break;
             }
-            for ((v, r), (t, at)) in v.iter_mut().zip(&mut r).zip(t.iter().zip(&at)) {
-                *v += alpha * t;
-                *r -= alpha * at;
-            }
-            nr = self.with_neighbours(&r);
-            let next = dot(&r, &nr);
+            update(&mut displacement, &ut, |u, ut| *u += alpha * ut);
+            update(&mut r, &mt, |r, mt| *r -= alpha * mt);
+            ur = self.apply(&r);
+            let next = dot(&r, &ur);
             let beta = next / rr;
             let least = found.smallest.min(found.smallest_at_force);
             settled = if (before - least).abs() <= SETTLED * least.abs() { settled + 1 } else { 0 };
@@ -217,14 +236,14 @@ impl Linearised<'_> {
             if done || next <= REDUCED * REDUCED * start {
                 break;
             }
-            beside.push(beta.sqrt() / alpha);
-            for (t, r) in [(&mut t, &r), (&mut nt, &nr)] {
-                t.iter_mut().zip(r).for_each(|(t, r)| *t = r + beta * *t);
+            beside.push(-beta.sqrt() / alpha);
+            for (t, r) in [(&mut t, &r), (&mut ut, &ur)] {
+                update(t, r, |t, r| *t = r + beta * *t);
             }
             last = (alpha, beta);
             rr = next;
         }
-        found.v = v;
+        found.displacement = displacement;
         found
     }
 }
@@ -251,14 +270,16 @@ pub fn respond(
     let mut slopes = attraction.slopes(&state.cells, &state.gap);
     slopes.iter_mut().zip(&state.pressure).filter(|(_, p)| **p > 0.0).for_each(|(s, _)| *s = 0.0);
     let open = state.cells.filter(&slopes, |s| s > least);
-    let root: Vec<f64> = open.carry(&state.cells, &slopes).iter().map(|s| s.sqrt()).collect();
-    let coupling = attraction.coupling(&open, &open.carry(&state.cells, &state.gap), &root);
+    let slopes = open.carry(&state.cells, &slopes);
+    let unit = law.peak / law.range;
+    let coupling =
+        attraction.coupling(&open, &open.carry(&state.cells, &state.gap), &vec![unit.sqrt(); open.len()]);
     let both = contact.union(&open);
     let is_open = both.carry(&open, &vec![1.0; open.len()]);
     let on = (problem.grid(), problem.operators.table().boundary());
     let near = Near::of(attraction, on, &both, &is_open);
     let mut linearised =
-        Linearised { problem, contact, open, both, root, coupling, constant, near, steps: 0, stop };
+        Linearised { problem, contact, open, both, slopes, coupling, unit, constant, near, steps: 0, stop };
     let mut response = linearised.response(control, tolerance);
     response.steps = linearised.steps;
     if let AdhesiveControl::Force(_) = control {
@@ -290,10 +311,10 @@ pub fn fixed_area(
     if constant > 0.0 && contact.len() == problem.grid().count() {
         return (None, 0);
     }
-    let (both, open, root) = (contact.clone(), CellSet::default(), Vec::new());
-    let (coupling, near) = (None, None);
+    let (both, open, slopes) = (contact.clone(), CellSet::default(), Vec::new());
+    let (coupling, near, unit) = (None, None, 1.0);
     let mut linearised =
-        Linearised { problem, contact, open, both, root, coupling, constant, near, steps: 0, stop };
+        Linearised { problem, contact, open, both, slopes, coupling, unit, constant, near, steps: 0, stop };
     let response = linearised.response(AdhesiveControl::Plane(state.d), Some(tolerance));
     (response.stiffness, linearised.steps)
 }
@@ -315,13 +336,14 @@ impl Linearised<'_> {
             let mut on_contact = self.contact.carry(&self.both, &r);
             let energy = self.contact_solve(&mut on_contact, INNER, None);
             let through = self.rough(&contact, &on_contact, &open);
-            let left = self.open.carry(&self.both, &r);
-            let b: Vec<f64> =
-                left.iter().zip(&through).zip(&self.root).map(|((l, t), d)| d * (l - t)).collect();
+            let mut b = self.open.carry(&self.both, &r);
+            update(&mut b, &through, |b, through| *b -= through);
+            // Of the quadratic form of what is left of the open cells, from above.
+            let magnitudes: Vec<f64> = b.iter().map(|b| b.abs()).collect();
+            let left = dot(&magnitudes, &self.answer(&magnitudes));
             if round > 0 {
                 let value = sum(&x) + dot(&r, &x);
-                let error = energy.abs()
-                    + dot(&b, &self.with_neighbours(&b)) / response.stability.max(f64::MIN_POSITIVE);
+                let error = energy.abs() + left / response.stability.max(f64::MIN_POSITIVE);
                 if error < best.error {
                     best = Slope { value, error };
                 }
@@ -333,7 +355,7 @@ impl Linearised<'_> {
                 AdhesiveControl::Force(_) if round == 0 => sum(&on_contact),
                 _ => 0.0,
             };
-            let scale = sum(&on_contact).abs().max(dot(&b, &b));
+            let scale = sum(&on_contact).abs().max(left);
             let wanted = tolerance.map(|t| 1e-2 * t * scale);
             let found = self.reduce(&b, wanted, held);
             if round == 0 {
@@ -347,9 +369,11 @@ impl Linearised<'_> {
             }
             // Ritz values lie above the eigenvalue.
             response.stability = response.stability.min(found.smallest);
-            let on_open: Vec<f64> =
-                self.with_neighbours(&found.v).iter().zip(&self.root).map(|(v, d)| -v * d).collect();
-            opening.iter_mut().zip(found.v.iter().zip(&self.root)).for_each(|(g, (v, d))| *g += v / d);
+            let mut more = b;
+            update(&mut more, &found.displacement, |more, u| *more += u);
+            let mut on_open = self.answer(&more);
+            each(&mut on_open, |x| *x = -*x);
+            update(&mut opening, &more, |opening, more| *opening += more);
             let u = self.rough(&open, &on_open, &contact);
             let mut more = self.contact.carry(&self.both, &r);
             more.iter_mut().zip(&u).for_each(|(m, u)| *m -= u);
@@ -387,6 +411,32 @@ fn lowest_eigenvalue(diagonal: &[f64], beside: &[f64]) -> f64 {
     high
 }
 
+/// The same with the product of the first unit vector and a row taken from the matrix, where all that this adds
+/// to it lies below the smallest eigenvalue: by bisection of the secular equation.
+fn lowest_beside(diagonal: &[f64], beside: &[f64], row: &[f64], lowest: f64) -> f64 {
+    let n = diagonal.len();
+    // 1 - row' (T - x)^-1 e_1, which falls from 1 to minus infinity at the smallest eigenvalue.
+    let secular = |x: f64| {
+        // From the last row upward: the ratio of each unknown to the one above it.
+        let mut pivot = diagonal[n - 1] - x;
+        let mut ratios = vec![0.0; n];
+        for i in (0..n - 1).rev() {
+            ratios[i + 1] = -beside[i] / pivot;
+            pivot = diagonal[i] - x + beside[i] * ratios[i + 1];
+        }
+        let mut unknown = pivot.recip();
+        let mut sum = row[0] * unknown;
+        for (ratio, row) in ratios.iter().zip(row).skip(1) {
+            unknown *= ratio;
+            sum += row * unknown;
+        }
+        1.0 - sum
+    };
+    let total: f64 = row.iter().map(|row| row.abs()).sum();
+    let [low, _] = bisect(lowest - total, lowest, 100, |x| secular(x) > 0.0);
+    low
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -398,5 +448,14 @@ mod tests {
         let expected = 2.0 - 2.0 * (std::f64::consts::PI / (n as f64 + 1.0)).cos();
         approx::assert_relative_eq!(found, expected, max_relative = 1e-12);
         approx::assert_relative_eq!(lowest_eigenvalue(&[3.0], &[]), 3.0);
+    }
+
+    #[test]
+    fn the_lowest_eigenvalue_beside_a_row_by_hand() {
+        approx::assert_relative_eq!(lowest_beside(&[3.0], &[], &[1.0], 3.0), 2.0, max_relative = 1e-12);
+        // [[1.5, -1.25], [-1, 2]].
+        let found = lowest_beside(&[2.0, 2.0], &[-1.0], &[0.5, 0.25], 1.0);
+        let expected = 1.75 - (1.75f64.powi(2) - 1.75).sqrt();
+        approx::assert_relative_eq!(found, expected, max_relative = 1e-12);
     }
 }

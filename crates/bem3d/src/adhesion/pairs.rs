@@ -63,3 +63,34 @@ impl Pairs {
         });
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_product_and_the_transposed_one_are_those_of_the_dense_matrix() {
+        // Rows of 0 to 10 values.
+        let dense: Vec<Vec<f32>> = (0..11)
+            .map(|i| {
+                (0..11).map(|j| if (i * 5 + j * 3) % 11 < i { (i + 2 * j) as f32 } else { 0.0 }).collect()
+            })
+            .collect();
+        let row = |row: &Vec<f32>| {
+            let pairs: Vec<(u32, f32)> = (0..).zip(row.iter().copied()).filter(|(_, v)| *v != 0.0).collect();
+            pairs.into_iter()
+        };
+        let pairs = Pairs::new(dense.iter().map(row));
+        let transposed = pairs.transposed();
+        let v: Vec<f64> = (0..11).map(|i| f64::from(i * i) - 20.0).collect();
+        let (mut product, mut other) = (vec![1.0; 11], vec![1.0; 11]);
+        pairs.add_product(-2.0, &v, &mut product);
+        transposed.add_product(-2.0, &v, &mut other);
+        for i in 0..11 {
+            let sum =
+                |value: &dyn Fn(usize) -> f32| -> f64 { (0..11).map(|j| f64::from(value(j)) * v[j]).sum() };
+            assert!((product[i] - (1.0 - 2.0 * sum(&|j| dense[i][j]))).abs() < 1e-9);
+            assert!((other[i] - (1.0 - 2.0 * sum(&|j| dense[j][i]))).abs() < 1e-9);
+        }
+    }
+}

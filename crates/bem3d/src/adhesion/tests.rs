@@ -200,15 +200,15 @@ fn is_minimum(g: &[Vec<f64>], contact: &[bool], slopes: &[Vec<f64>]) -> bool {
     true
 }
 
-/// One less the spectral radius of the attraction's answer to itself with the contact kept closed, by power
-/// iteration on the dense matrix.
-fn dense_stability(g: &[Vec<f64>], contact: &[bool], slopes: &[f64]) -> f64 {
+/// One less the largest eigenvalue of the attraction's answer to itself with the contact kept closed, by power
+/// iteration on the dense matrix with 1 added: neighbours can make others negative.
+fn dense_stability(g: &[Vec<f64>], contact: &[bool], slopes: &[Vec<f64>]) -> f64 {
     let n = contact.len();
-    let open: Vec<usize> = (0..n).filter(|&i| !contact[i] && slopes[i] > 0.0).collect();
+    let open: Vec<usize> = (0..n).filter(|&i| !contact[i]).collect();
     let mut v: Vec<f64> = open.iter().map(|&i| 1.0 + 0.1 * (i as f64).sin()).collect();
     let mut largest = 0.0;
     for _ in 0..3000 {
-        // Displacement under D^(1/2) v, where pressure keeps the contact closed.
+        // Displacement under the attraction that follows v, where pressure keeps the contact closed.
         let mut matrix = vec![vec![0.0; n]; n];
         let mut right = vec![0.0; n];
         for i in 0..n {
@@ -216,14 +216,12 @@ fn dense_stability(g: &[Vec<f64>], contact: &[bool], slopes: &[f64]) -> f64 {
                 matrix[i].clone_from(&g[i]);
             } else {
                 matrix[i][i] = 1.0;
+                right[i] = open.iter().zip(&v).map(|(&k, v)| slopes[i][k] * v).sum();
             }
         }
-        open.iter().zip(&v).for_each(|(&i, v)| right[i] = slopes[i].sqrt() * v);
         let p = eliminated(matrix, right);
-        let next: Vec<f64> = open
-            .iter()
-            .map(|&i| slopes[i].sqrt() * g[i].iter().zip(&p).map(|(g, p)| g * p).sum::<f64>())
-            .collect();
+        let answer = |i: usize| g[i].iter().zip(&p).map(|(g, p)| g * p).sum::<f64>();
+        let next: Vec<f64> = open.iter().zip(&v).map(|(&i, v)| v + answer(i)).collect();
         let norm = next.iter().map(|v| v * v).sum::<f64>().sqrt();
         let settled = (norm - largest).abs() < 1e-13 * norm;
         (largest, v) = (norm, next.iter().map(|v| v / norm).collect());
@@ -231,7 +229,7 @@ fn dense_stability(g: &[Vec<f64>], contact: &[bool], slopes: &[f64]) -> f64 {
             break;
         }
     }
-    1.0 - largest
+    2.0 - largest
 }
 
 fn search<'a>(
@@ -284,16 +282,20 @@ fn stability_is_that_of_the_dense_matrix_at_an_approach_and_at_a_force() {
         let z = heights(grid, seed);
         let g = at_a_plane(grid, boundary);
         let stiff: Vec<Vec<f64>> = g.iter().map(|row| row.iter().map(|g| g + NO_FORCE).collect()).collect();
-        let law = law(0.3, 0.2);
         let mut problem = problem(grid, &z, boundary);
-        for d in [0.4, 0.8] {
+        let short = Attraction::short((0.35 * 0.4f64).powi(2) / PI, grid, boundary);
+        for (d, law) in [0.4, 0.8].into_iter().flat_map(|d| [(d, law(0.3, 0.2)), (d, short.clone())]) {
             let mut search = search(&mut problem, &law, AdhesiveControl::Plane(d), false);
             let start = search.first(&never);
             let state = search.from(start, &never).unwrap();
             let all = CellSet::all(grid);
-            let (gap, pressure) = (gaps(grid, &state), all.carry(&state.cells, &state.pressure));
+            // The slope of a short range has a jump at its reach.
+            let reach = law.law.reach();
+            let mut gap = known(grid, &state, reach);
+            gap.iter_mut().filter(|gap| **gap >= reach).for_each(|gap| *gap = 2.0 * reach);
+            let pressure = all.carry(&state.cells, &state.pressure);
             let contact: Vec<bool> = pressure.iter().map(|p| *p > 0.0).collect();
-            let slopes = law.slopes(&all, &gap);
+            let slopes = slopes(&law, &all, &gap);
             let at = |problem: &mut Problem, control| {
                 respond(problem, &law, control, &state, Some(1e-10), &never).stability
             };

@@ -65,6 +65,8 @@ pub struct Workspace {
     double: Vectors<f64>,
     single: Vectors<f32>,
     extension: Extension,
+    /// What the numbers of the last system were divided by.
+    unit: f64,
 }
 
 impl Workspace {
@@ -114,6 +116,7 @@ impl Workspace {
         operators.solves += 1;
         // In units of its own size: its square neither overflows nor underflows.
         let unit = largest(right);
+        self.unit = unit;
         let Some(recipe) = self.recipe.filter(|_| unit > 0.0) else { return PcgOutcome::default() };
         let square = unit * unit;
         let criteria = StoppingCriteria {
@@ -151,6 +154,16 @@ impl Workspace {
         operators.applications += outcome.applications;
         PcgOutcome { energy: outcome.energy * square, ..outcome }
     }
+
+    /// What the last solution leaves of its equation, on its set, in the precision of its recipe.
+    pub fn residual(&self) -> Vec<f64> {
+        let scaled = |r: f64| self.unit * r;
+        if self.recipe.is_some_and(|recipe| recipe.is_single()) {
+            self.single.r.iter().map(|&r| scaled(f64::from(r))).collect()
+        } else {
+            self.double.r.iter().map(|&r| scaled(r)).collect()
+        }
+    }
 }
 
 /// Vectors on a set, kept from system to system.
@@ -158,7 +171,7 @@ impl Workspace {
 pub struct Vectors<T> {
     /// The set.
     pub set: CellSet,
-    /// Residual; in: right-hand side of magnitude about 1.
+    /// In: right-hand side of magnitude about 1; out: residual.
     pub r: Vec<T>,
     /// Out: correction.
     pub x: Vec<T>,
@@ -293,6 +306,7 @@ pub fn pcg<T: Real>(
         pending = true;
         // Where the next step is expected to gain as much as the last one, the rest need not be known.
         if rz * rate <= wanted || small(rz * rate, gain) {
+            add(&mut v.r, T::default() - step, &v.kt);
             break;
         }
     }

@@ -66,6 +66,8 @@ fn endless(steps: usize) -> StoppingCriteria {
 
 struct Solution {
     x: Vec<f64>,
+    /// What the workspace says is left.
+    residual: Vec<f64>,
     outcome: PcgOutcome,
 }
 
@@ -86,7 +88,7 @@ fn solve_on(
     workspace.take(operators, set.clone(), recipe);
     assert_eq!(workspace.set(), set);
     let outcome = workspace.solve(operators, &mut x, fixed, criteria, &never);
-    Solution { x, outcome }
+    Solution { x, residual: workspace.residual(), outcome }
 }
 
 /// Estimated energy `r' G^-1 r`, which no step is needed for.
@@ -100,12 +102,15 @@ fn energy(operators: &mut Operators, set: &CellSet, recipe: Recipe, r: &[f64]) -
 fn path(grid: Grid, set: &CellSet, recipe: Recipe, right: &[f64]) -> Vec<(Vec<f64>, Vec<f64>)> {
     let mut operators = operators(grid);
     let after = |steps: usize| {
-        let Solution { x, outcome } =
+        let Solution { x, residual, outcome } =
             solve_on(&mut operators, set, recipe, right, Fixed::Approach, endless(steps));
         assert_eq!((outcome.steps, outcome.applications), (steps, steps));
         let mut u = Vec::new();
         operators.exact(set, &x, set, &mut u);
-        let left = right.iter().zip(&u).map(|(r, u)| r - u).collect();
+        let left: Vec<f64> = right.iter().zip(&u).map(|(r, u)| r - u).collect();
+        for (residual, left) in residual.iter().zip(&left) {
+            assert_relative_eq!(*residual, *left, epsilon = SINGLE * largest(right));
+        }
         (x, left)
     };
     (0..9).map(after).collect()
