@@ -282,7 +282,7 @@ fn coverage_of_readme_is_counted_in_the_tables() {
 
 #[test]
 fn exponents_of_the_two_problems_are_those_of_their_table() {
-    let page = text("book/src/two-problems.md");
+    let page = text("book/src/results.md");
     let solved: Vec<Row> = rows("data/figures/two-cases/2048/two-cases.csv")
         .into_iter()
         .filter(|r| r["model"] == "bem3d")
