@@ -91,24 +91,18 @@ fn quantities_page() -> String {
     for quantity in QUANTITIES.iter().filter(|quantity| !quantity.source.is_empty()) {
         sources.push_str(&["- `", quantity.name, "`: ", quantity.source, "\n"].concat());
     }
-    let proves = QUANTITIES.iter().filter_map(|quantity| match quantity.role {
-        Role::Residual(proves) => Some(vec![format!("`{}`", quantity.name), proves.to_owned()]),
-        _ => None,
-    });
     format!(
         "# What is told of a state\n\n\
-         This page lists every quantity that a scene or a model can tell of a state. One table in\n\
-         `contact_model::quantities` has them; CSV, console, report, means over surfaces, curves, Python and this page\n\
-         follow from it, and a test compares the page with the table. `models` are those that tell it of some state, each\n\
-         tried. Units are SI; with `units = \"none\"` a dimensional number is in the scene's own.\n\n\
+         This page lists every quantity that a scene or a model can tell of a state, from one table\n\
+         (`contact_model::quantities`). `models` are those that tell it of some state, each tried. Units are SI; with\n\
+         `units = \"none\"` a dimensional number is in the scene's own.\n\n\
          Each row of `results.csv` begins with `model`, `surface`, `state` and, under loads, `prescribed`, and ends with\n\
          `note`. `ensemble.csv` has the means, `_se` their standard errors, `_sd` the standard deviation of one surface. With\n\
          `grid_error = true` a quantity whose grid error is estimated has `_grid_error` and `_grid_order` too.\n\n\
-         ## Answers\n\n{}\n## Residuals\n\nSmall numbers prove that the equations were solved:\n\n{}\n{}\n\
+         ## Answers\n\n{}\n## Residuals\n\nSmall numbers prove that the equations were solved ([certificates](certificates.md)):\n\n{}\n\
          ## How it was found, and what it cost\n\n{}\n## Sources\n\n{sources}",
         rows(&|role| matches!(role, Role::Answer | Role::Normalised | Role::OfPath)),
         rows(&|role| matches!(role, Role::Residual(_))),
-        table(&["residual", "what it proves"], proves),
         rows(&|role| matches!(role, Role::Work)),
     )
 }

@@ -2,7 +2,12 @@
 
 use contact_model::{Conductance, Result};
 
-/// Constriction conductance `Lambda = 2 k/(E* (rho1 + rho2))`, exact for any contact of half-spaces.
+/// Constriction conductance `Lambda = 2 k/(E* (rho1 + rho2))` of half-spaces, exact for the stiffness k of the
+/// whole contact area, held ([`contact_model::ContactState::stiffness_fixed_area`]).
+///
+/// The slope dF/dd equals that stiffness without hardness and adhesion only. With a hardness the slope leaves
+/// out the saturated cells, which conduct; with adhesion it includes fronts that move and attraction across
+/// gaps, which do not.
 ///
 /// The formula of [`Conductance`] for a fitted or averaged stiffness; a state has its own when it is asked
 /// for. `stiffness` k in force per length, `modulus` E* in force per length squared, resistivities in
