@@ -4,7 +4,7 @@ use crate::judged::Judged;
 use crate::{curves, words};
 use contact_model::{HeightMap, SelfAffine};
 use evaluation::{FRACTAL_DIMENSION, Flag, Outcome, Run, Session, TableOf, header, list, read_rows};
-use plots::{GreyMap, encode_grey, grey, save_maps};
+use plots::{GreyMap, GreyScale, encode_grey, grey, grey_between, most, save_maps};
 use runs::{CsvFile, Error, Progress, Result, files, threads_for_memory};
 use std::path::{Path, PathBuf};
 use surface_io::write_npy;
@@ -19,7 +19,8 @@ const CSV_SIDE: usize = 257;
 const BYTES: f64 = 24.0;
 
 /// Draws surface number 0 of each fractal dimension: `fig1.csv` (at most 257 x 257 a map), `fig1.svg`,
-/// `fig1.png`, and at full size `fig1-df2.0.npy`, `fig1-df2.0.png`, ... (grey-scale, darker = higher).
+/// `fig1.png` (one grey scale for all maps), and at full size `fig1-df2.0.npy`, `fig1-df2.0.png`, ...
+/// (darker = higher, the contrast of each map its own).
 ///
 /// Source: Fig. 1 of the paper (2049 x 2049 cells, six fractal dimensions).
 ///
@@ -95,16 +96,19 @@ fn full_size(out: &Path, d: f64, map: &HeightMap) -> Result<[PathBuf; 2]> {
 pub(crate) fn draw(csv: &Path, out: &Path) -> Result<Vec<PathBuf>> {
     let file = CsvFile::read(csv)?;
     let rows: Vec<[f64; 4]> = read_rows(csv, &file)?;
+    // One scale for all maps: each has the rms height 1.
+    let ends = most(&rows.iter().map(|row| row[3]).collect::<Vec<_>>());
     let map = |cells: &[[f64; 4]]| {
         let side = cells.len().isqrt();
-        let shades = grey(&cells.iter().map(|cell| cell[3]).collect::<Vec<_>>());
+        let shades = grey_between(&cells.iter().map(|cell| cell[3]).collect::<Vec<_>>(), ends);
         GreyMap { label: words::dimension(cells[0][0]), shades: flipped(&shades, side), side }
     };
     let maps = rows.chunk_by(|a, b| a[0].total_cmp(&b[0]).is_eq()).map(map).collect();
     let cells = words::flag(&file, "--cells").map(|n| format!("{n} × {n} cells, "));
     let below =
-        format!("{}the same phases for every $D_{{\\rm{{f}}}}$; darker is higher", cells.unwrap_or_default());
-    Ok(save_maps(maps, &words::title(&file), &below, out, "fig1")?)
+        format!("{}sides $L$, the same phases for every $D_{{\\rm{{f}}}}$", cells.unwrap_or_default());
+    let scale = GreyScale { ends, label: "height, in units of the rms height $h$".into() };
+    Ok(save_maps(maps, &scale, (&words::title(&file), &below), out, "fig1")?)
 }
 
 #[cfg(test)]

@@ -27,7 +27,7 @@ fn main() -> Result<()> {
     let curve = |(label, law): &(&str, Law)| Curve {
         label: (*label).to_owned(),
         points: approaches.clone().map(|d| (d, law(d))).collect(),
-        band: Vec::new(),
+        ..Curve::default()
     };
     let curves: Vec<Curve> = force.iter().map(curve).collect();
     for (curve, expected) in curves.iter().zip([1.0, 1.5, 2.0]) {

@@ -86,7 +86,7 @@ impl Axis {
                     if step > DENSE && !labelled {
                         continue;
                     }
-                    let label = |digit: i32| named(digit, e, decades < FEW, scientific);
+                    let label = |digit: i32| named(digit, e, scientific);
                     ticks.extend(tick(decade, labelled, labelled.then(|| label(1))));
                     for digit in 2..10 {
                         let major = decades < FEW && (digit == 2 || digit == 5);
@@ -129,12 +129,11 @@ pub(crate) fn power_of_ten(exponent: i32) -> f64 {
     format!("1e{exponent}").parse().unwrap_or(f64::NAN)
 }
 
-/// A digit times a power of ten; where labels are few and no number is long, as a plain number.
-fn named(digit: i32, exponent: i32, few: bool, scientific: bool) -> String {
-    match (digit, exponent) {
-        (_, 0) => digit.to_string(),
-        _ if few && !scientific => number(f64::from(digit) * power_of_ten(exponent)),
-        (1, _) => format!("$10^{{{exponent}}}$"),
+/// A digit times a power of ten, or where no number of the axis is long, as a plain number.
+fn named(digit: i32, exponent: i32, scientific: bool) -> String {
+    match digit {
+        _ if !scientific => number(f64::from(digit) * power_of_ten(exponent)),
+        1 => format!("$10^{{{exponent}}}$"),
         _ => format!("${digit}×10^{{{exponent}}}$"),
     }
 }
@@ -194,7 +193,8 @@ mod tests {
     #[test]
     fn decades_are_powers_of_ten_with_short_ticks_between() {
         let axis = Axis::Log(0.5e-3, 20.0);
-        assert_eq!(labels(axis), ["$10^{-3}$", "$10^{-2}$", "$10^{-1}$", "1", "$10^{1}$"]);
+        assert_eq!(labels(axis), ["$10^{-3}$", "$10^{-2}$", "$10^{-1}$", "$10^{0}$", "$10^{1}$"]);
+        assert_eq!(labels(Axis::Log(0.5e-2, 2e3)), ["0.01", "0.1", "1", "10", "100", "1000"]);
         let (ticks, _) = axis.ticks(None);
         // 5 to 9 below 1e-3, four whole decades, 2 in the last.
         assert_eq!(ticks.iter().filter(|t| !t.major).count(), 5 + 4 * 8 + 1);

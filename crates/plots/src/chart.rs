@@ -17,6 +17,9 @@ pub struct Curve {
     pub points: Vec<(f64, f64)>,
     /// A shaded band through (x, lower end, upper end), such as an error; may be empty.
     pub band: Vec<(f64, f64, f64)>,
+    /// Those of its points that are to be read with care, such as contacts of few cells: each stands in a
+    /// square.
+    pub careful: Vec<(f64, f64)>,
 }
 
 /// Curves on one pair of axes. An axis is logarithmic where asked for and every value is positive.
@@ -34,9 +37,11 @@ pub struct Chart {
     pub curves: Vec<Curve>,
     /// Whether logarithmic axes serve.
     pub logarithmic: bool,
-    /// Whether points follow each other in time: arrows along the lines, rings at the first points, and lines
+    /// Whether points follow each other in time: arrows along the lines, rings at their starts, and lines
     /// through the origin.
     pub directed: bool,
+    /// What the squares around points mean, in the legend.
+    pub careful: String,
 }
 
 impl Chart {
@@ -52,7 +57,8 @@ impl Chart {
         let (x, per_x) = multiple(x, largest(&mut points().map(|point| point.0)));
         let (y, per_y) = multiple(y, largest(&mut points().map(|point| point.1)));
         for curve in &mut self.curves {
-            curve.points.iter_mut().for_each(|p| *p = (per_x * p.0, per_y * p.1));
+            let points = curve.points.iter_mut().chain(&mut curve.careful);
+            points.for_each(|p| *p = (per_x * p.0, per_y * p.1));
             curve.band.iter_mut().for_each(|p| *p = (per_x * p.0, per_y * p.1, per_y * p.2));
         }
         for (label, unit) in [(&mut self.x_label, x), (&mut self.y_label, y)] {
@@ -124,11 +130,15 @@ impl Chart {
                     Mark::Ring(MarkShape::Circle),
                 );
             }
+            picture.points(&curve.careful, NEUTRAL, CAREFUL, Mark::Ring(MarkShape::Square));
             let key = if marked { Key::Curve(mark) } else { Key::Line(LineStyle::Solid) };
             picture.legend(&curve.label, color, key);
         }
         if self.directed && self.curves.iter().any(|curve| !curve.points.is_empty()) {
-            picture.legend("first state", NEUTRAL, Key::Sized(Mark::Ring(MarkShape::Circle), 7.0));
+            picture.legend("start", NEUTRAL, Key::Sized(Mark::Ring(MarkShape::Circle), 7.0));
+        }
+        if self.curves.iter().any(|curve| !curve.careful.is_empty()) {
+            picture.legend(&self.careful, NEUTRAL, Key::Sized(Mark::Ring(MarkShape::Square), 7.0));
         }
         picture
     }
@@ -136,6 +146,8 @@ impl Chart {
 
 /// More points than this on one line are drawn without marks.
 const MOST_MARKS: usize = 60;
+/// Half the side of the square around a point that is to be read with care.
+const CAREFUL: f64 = 10.0;
 
 #[cfg(test)]
 mod tests {
@@ -149,6 +161,7 @@ mod tests {
             label: "a".into(),
             points: points.to_vec(),
             band: vec![(1.0, -1.0, 2.0)],
+            careful: points.to_vec(),
         };
         for (i, points) in [&[][..], &[(1.0, 2.0)], &[(1.0, 1.0), (10.0, 5.0)], &[(-1.0, 0.0), (2.0, 0.0)]]
             .iter()
@@ -188,7 +201,7 @@ mod tests {
             directed in any::<bool>(),
         ) {
             let errors: Vec<(f64, f64, Option<f64>)> = band.iter().map(|&(x, y, e)| (x, y, Some(e))).collect();
-            let curve = Curve { label: "a".into(), points, band };
+            let curve = Curve { label: "a".into(), careful: points.clone(), points, band };
             let chart = Chart { curves: vec![curve], logarithmic, directed, ..Chart::default() };
             let mut picture = chart.picture();
             picture.errors(&errors, "#000000");
@@ -206,6 +219,7 @@ mod tests {
         let curve = Curve {
             points: vec![(1e6, 2e-12), (1e8, 1.7e-10)],
             band: vec![(1e8, 1e-10, 2e-10)],
+            careful: vec![(1e6, 2e-12)],
             ..Curve::default()
         };
         let chart =
@@ -217,6 +231,7 @@ mod tests {
         near(shown.curves[0].points[1].0, 100.0);
         near(shown.curves[0].points[1].1, 170.0);
         near(shown.curves[0].band[0].2, 200.0);
+        assert_eq!(shown.curves[0].careful, shown.curves[0].points[..1]);
         assert_eq!(chart.clone().in_units(["1", ""]), chart);
         assert_eq!(chart.in_units(["scene", "-"]).x_label, "p (units of the scene)");
     }
@@ -224,7 +239,7 @@ mod tests {
     #[test]
     fn numbers_below_the_normal_ones_are_drawn() {
         let points = vec![(1e-320, 1e-310), (1e-315, 3e-309), (5e-324, 2e-308)];
-        let curve = Curve { label: "a".into(), points, band: Vec::new() };
+        let curve = Curve { label: "a".into(), points, ..Curve::default() };
         let chart = Chart { curves: vec![curve], logarithmic: true, ..Chart::default() };
         let svg = chart.svg().unwrap();
         assert!(svg.contains("aria-label=\"10^\u{2212}310\""), "{svg}");

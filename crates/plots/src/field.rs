@@ -66,8 +66,13 @@ const TICKS: TickStyle = TickStyle {
     below: [5.0 + 1.1 * TICK, 3.2 * TICK],
     beside: [8.0, 0.5 * TICK],
 };
-/// Outline of the contact: far from all of viridis.
-const OUTLINE: [u8; 3] = [228, 26, 28];
+/// Outline of the contact, a white line with a black edge: on any colour one of both is seen, by colour-blind
+/// readers too.
+const OUTLINE: [[u8; 3]; OUTLINE_WIDTH] = [[255; 3], [0; 3]];
+/// In pixels.
+const OUTLINE_WIDTH: usize = 2;
+/// Outside of the contact and of its outline.
+const FAR: usize = usize::MAX;
 /// Arrows along the longer side of the map, at most.
 const ARROWS: f64 = 26.0;
 /// Length of an arrow and of its head, in distances between arrows.
@@ -93,9 +98,9 @@ impl FieldPicture<'_> {
     }
 
     /// Writes a PNG, y upwards. The colours are those of [`FieldPicture::scale`]; undefined points are grey,
-    /// the contact has a red outline. Under [`Shown::Largest`] a field of which less than 2 % of the pixels are
-    /// above zero has each of these drawn three pixels wide. Arrows have one length; each stands in the middle
-    /// of what it is the sum of, weighted by magnitude.
+    /// the contact has a white outline with a black edge. Under [`Shown::Largest`] a field of which less than
+    /// 2 % of the pixels are above zero has each of these drawn three pixels wide. Arrows have one length; each
+    /// stands in the middle of what it is the sum of, weighted by magnitude.
     ///
     /// Cost: linear in the number of cells.
     ///
@@ -255,11 +260,21 @@ impl FieldPicture<'_> {
             down.into_iter()
                 .any(|row| self.contact[row * self.cells.columns..][across.clone()].contains(&true))
         };
-        let contact: Vec<bool> =
-            if self.contact.is_empty() { Vec::new() } else { all.map(touches).collect() };
-        let outlined = |i: usize| !contact.is_empty() && !contact[i] && around(i).any(|j| contact[j]);
-        let pixels = (0..rows).rev().flat_map(|y| (0..columns).map(move |x| y * columns + x));
-        pixels.map(|i| if outlined(i) { OUTLINE } else { color(values[i]) }).collect()
+        // Pixels from the contact: 0 in it, then 1 and 2 of the outline.
+        let mut distance: Vec<usize> =
+            all.clone().map(|i| if !self.contact.is_empty() && touches(i) { 0 } else { FAR }).collect();
+        for ring in 1..=OUTLINE_WIDTH {
+            let reached = |i: &usize| distance[*i] == FAR && around(*i).any(|j| distance[j] == ring - 1);
+            let reached: Vec<usize> = all.clone().filter(reached).collect();
+            for i in reached {
+                distance[i] = ring;
+            }
+        }
+        let pixel = |i: usize| match distance[i] {
+            ring @ 1..=OUTLINE_WIDTH => OUTLINE[ring - 1],
+            _ => color(values[i]),
+        };
+        (0..rows).rev().flat_map(|y| (0..columns).map(move |x| y * columns + x)).map(pixel).collect()
     }
 
     /// Columns and rows of the cells that fall on a pixel, counted from the lower left corner.
@@ -364,8 +379,11 @@ mod tests {
         let viridis = |t| colorous::VIRIDIS.eval_continuous(t / 2.0).into_array();
         let image = picture.image(50, 50, viridis);
         let count = |color| image.iter().filter(|pixel| **pixel == color).count();
-        assert_eq!((count(viridis(0.0)), count(OUTLINE), count(viridis(1.0))), (100, 44, 2500 - 144));
-        assert_eq!((image[20 * 50 + 20], image[19 * 50 + 19]), (viridis(0.0), OUTLINE));
+        // The contact has 10 x 10 pixels, with its outline 14 x 14.
+        let [line, edge] = OUTLINE;
+        assert_eq!([count(viridis(0.0)), count(line), count(edge)], [100, 44, 52]);
+        assert_eq!(count(viridis(1.0)), 2500 - 14 * 14);
+        assert_eq!([20, 19, 18].map(|i| image[i * 50 + i]), [viridis(0.0), line, edge]);
         // More cells than pixels: one cell of 10^4 is seen.
         let mut values = vec![1.0; 10_000];
         values[5050] = 0.0;
@@ -373,7 +391,34 @@ mod tests {
         let touching: Vec<bool> = values.iter().map(|v| *v == 0.0).collect();
         let picture = FieldPicture { contact: &touching, ..self::picture(&field, Shown::Smallest) };
         let image = picture.image(10, 10, viridis);
-        assert_eq!(image.iter().filter(|pixel| **pixel == OUTLINE).count(), 8);
+        let count = |color| image.iter().filter(|pixel| **pixel == color).count();
+        assert_eq!(OUTLINE.map(count), [8, 16]);
+    }
+
+    /// Contrast of WCAG 2.1 between linear colours, as a protanope sees them: the projection of Vienot, Brettel and
+    /// Mollon (Color Res. Appl. 24, 243, 1999), with the luminance of what is left.
+    fn contrast(a: [u8; 3], b: [u8; 3]) -> f64 {
+        let luminance = |color: [u8; 3]| {
+            let [r, g, b] = color.map(|c| {
+                let c = f64::from(c) / 255.0;
+                if c <= 0.04045 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }
+            });
+            let yellow = 0.11238 * r + 0.88762 * g;
+            let blue = 0.00401 * r - 0.00401 * g + b;
+            0.2126 * yellow + 0.7152 * yellow + 0.0722 * blue
+        };
+        let (a, b) = (luminance(a) + 0.05, luminance(b) + 0.05);
+        a.max(b) / a.min(b)
+    }
+
+    #[test]
+    fn outlines_are_seen_by_protanopes_on_every_colour() {
+        for color in crate::Palette::ALL.into_iter().flat_map(crate::Palette::colours) {
+            let seen = OUTLINE.map(|line| contrast(line, color)).into_iter().fold(0.0, f64::max);
+            assert!(seen >= 3.0, "{color:?}: {seen}");
+        }
+        // What was there before: red on the dark end of viridis.
+        assert!(contrast([228, 26, 28], crate::viridis()[0]) < 2.5);
     }
 
     #[test]

@@ -67,11 +67,25 @@ const SQUARE: f64 = 1.0 / MOST_PIXELS;
 ///
 /// A map of equal heights is white. Cost O(n log n).
 pub fn grey(heights: &[f64]) -> Vec<u8> {
+    grey_between(heights, most(heights))
+}
+
+/// Grey values of heights: white at the low end and below, black at the high one and above.
+pub fn grey_between(heights: &[f64], (low, high): (f64, f64)) -> Vec<u8> {
+    heights.iter().map(|&h| shade(h, low, high)).collect()
+}
+
+/// The range of heights without the lowest and the highest 0.5 %; (0, 0) of none. Cost O(n log n).
+///
+/// ```
+/// let heights: Vec<f64> = (0..=1000).map(f64::from).collect();
+/// assert_eq!(plots::most(&heights), (5.0, 995.0));
+/// ```
+pub fn most(heights: &[f64]) -> (f64, f64) {
     let mut sorted = heights.to_vec();
     sorted.sort_by(f64::total_cmp);
     let at = |share: f64| sorted.get((share * (sorted.len().saturating_sub(1)) as f64) as usize).copied();
-    let (low, high) = (at(0.005).unwrap_or(0.0), at(0.995).unwrap_or(0.0));
-    heights.iter().map(|&h| shade(h, low, high)).collect()
+    (at(0.005).unwrap_or(0.0), at(0.995).unwrap_or(0.0))
 }
 
 /// White at the low end, black at the high one; white where all heights are equal.

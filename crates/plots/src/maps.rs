@@ -1,6 +1,8 @@
 //! Several grey maps side by side.
 
+use crate::axis::Axis;
 use crate::drawing::{Anchor, Drawing, Paint, rectangle};
+use crate::frame::{Frame, Side, TickStyle};
 use crate::style::INK;
 use crate::text::Fonts;
 use files::{Error, Result};
@@ -17,21 +19,43 @@ pub struct GreyMap {
     pub side: usize,
 }
 
+/// What the grey values of all maps mean.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GreyScale {
+    /// The values that are white and black.
+    pub ends: (f64, f64),
+    /// What they are, with the unit; symbols stand between dollar signs.
+    pub label: String,
+}
+
 /// Side of one map (two pixels for each of the 257 values that a table of Fig. 1 keeps), the space around it
 /// and for its label.
 const MAP: f64 = 257.0;
 const GAP: f64 = 10.0;
 const LABEL: f64 = 28.0;
 const TITLE: f64 = 54.0;
+/// The bar of grey values, with its ticks and label.
+const BAR: f64 = 14.0;
+const BELOW: f64 = 58.0;
+const TICK: f64 = 14.0;
+const TICKS: TickStyle = TickStyle {
+    size: TICK,
+    long: 5.0,
+    short: None,
+    inwards: false,
+    below: [5.0 + 1.1 * TICK, 3.2 * TICK],
+    beside: [8.0, 0.5 * TICK],
+};
 
-/// Writes `NAME.svg` and `NAME.png` with at most three maps in a row, a title and a line below it.
+/// Writes `NAME.svg` and `NAME.png` with at most three maps in a row, a title, a line below it, and the scale of all
+/// maps below them.
 ///
 /// # Errors
 /// [`crate::Error::Content`] for a map that is no square of at least one value, [`crate::Error::System`] when they cannot be written.
 pub fn save_maps(
     maps: Vec<GreyMap>,
-    title: &str,
-    subtitle: &str,
+    scale: &GreyScale,
+    (title, subtitle): (&str, &str),
     directory: &Path,
     name: &str,
 ) -> Result<Vec<PathBuf>> {
@@ -44,7 +68,8 @@ pub fn save_maps(
     let columns = maps.len().clamp(1, 3);
     let rows = maps.len().div_ceil(columns);
     let width = GAP + columns as f64 * (MAP + GAP);
-    let mut drawing = Drawing::new(width, TITLE + rows as f64 * (MAP + LABEL) + GAP);
+    let bottom = TITLE + rows as f64 * (MAP + LABEL) + GAP;
+    let mut drawing = Drawing::new(width, bottom + GAP + BAR + BELOW);
     drawing.heading(&fonts, title, (subtitle, 16.0), GAP);
     for (i, map) in maps.into_iter().enumerate() {
         let x = GAP + (i % columns) as f64 * (MAP + GAP);
@@ -55,6 +80,13 @@ pub fn save_maps(
         drawing.image([x, y, MAP, MAP], rgb, map.side);
         drawing.path(rectangle([x, y, MAP, MAP]), Paint::stroked(INK, 1.0), None);
     }
+    let bar = [GAP + 0.15 * (width - 2.0 * GAP), bottom + GAP, 0.7 * (width - 2.0 * GAP), BAR];
+    let (low, high) = scale.ends;
+    drawing.image(bar, (0..=u8::MAX).rev().flat_map(|shade| [shade; 3]).collect(), 1 + usize::from(u8::MAX));
+    let frame = Frame { fonts: &fonts, place: bar, style: TICKS };
+    frame.axis(&mut drawing, Side::Below, Axis::Linear(low, high), None);
+    frame.outline(&mut drawing, 1.0);
+    frame.name_below(&mut drawing, &scale.label, 1.2 * TICK, bottom + GAP + BAR + 3.2 * TICK);
     drawing.save(&fonts, directory, name)
 }
 
@@ -66,14 +98,19 @@ mod tests {
     fn maps_are_inside_both_files() {
         let dir = tempfile::tempdir().unwrap();
         let map = |label: &str| GreyMap { label: label.into(), shades: vec![0, 80, 160, 255], side: 2 };
-        let files = save_maps(vec![map("$D_f$ = 2"), map("$D_f$ = 3")], "t", "s", dir.path(), "m").unwrap();
+        let scale = GreyScale { ends: (-2.0, 3.0), label: "height".into() };
+        let maps = vec![map("$D_f$ = 2"), map("$D_f$ = 3")];
+        let files = save_maps(maps, &scale, ("t", "s"), dir.path(), "m").unwrap();
         let svg = std::fs::read_to_string(&files[0]).unwrap();
-        assert_eq!(svg.matches("<image").count(), 2);
+        assert_eq!(svg.matches("<image").count(), 3);
+        assert!(
+            ["height", "3", "\u{2212}2"].iter().all(|label| svg.contains(&format!("aria-label=\"{label}\"")))
+        );
         assert!(svg.contains("aria-label=\"D_f = 3\"") && svg.contains("data:image/png;base64,"));
         assert!(std::fs::metadata(&files[1]).unwrap().len() > 1000);
         for side in [0, 1, usize::MAX] {
             let wrong = GreyMap { side, ..map("m") };
-            assert!(save_maps(vec![wrong], "t", "s", dir.path(), "n").is_err(), "{side}");
+            assert!(save_maps(vec![wrong], &scale, ("t", "s"), dir.path(), "n").is_err(), "{side}");
         }
     }
 }

@@ -203,9 +203,9 @@ pub(crate) fn row_chart(picture: &FieldPicture<'_>, points: Vec<(f64, f64)>) -> 
         subtitle: picture.subtitle.clone(),
         x_label: "$x$".into(),
         y_label: picture.quantity.clone(),
-        curves: vec![Curve { label: "profile".into(), points, band: Vec::new() }],
+        curves: vec![Curve { label: "profile".into(), points, ..Curve::default() }],
         logarithmic: false,
-        directed: false,
+        ..Chart::default()
     }
     .in_units([picture.length_unit, picture.unit])
 }

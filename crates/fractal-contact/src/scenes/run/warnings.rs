@@ -14,6 +14,11 @@ const UNRESOLVED: f64 = 0.1;
 /// Pressure over E* from which metals, of hardness unknown, are beyond elasticity.
 const YIELD: f64 = 0.1;
 
+/// Whether the numbers of a state are those of the grid.
+pub(crate) fn rests_on_few_cells(state: &ContactState) -> bool {
+    state.report.contact_cells.is_some_and(|cells| (1..FEW_CELLS).contains(&cells))
+}
+
 /// Something to beware of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) enum Warning {
@@ -117,10 +122,9 @@ struct Circumstances {
 impl Circumstances {
     /// All warnings that concern a state, whose accuracy target was `missed` or not.
     fn warnings(&self, state: &ContactState, missed: bool) -> Vec<Warning> {
-        let few = state.report.contact_cells.is_some_and(|cells| (1..FEW_CELLS).contains(&cells));
         let wanted = self.stiffness && state.report.contact_cells.is_some();
         let holds = |warning: Warning| match (warning, state.resolution) {
-            (Warning::FewCells, _) => few,
+            (Warning::FewCells, _) => rests_on_few_cells(state),
             (Warning::Stiffness, _) => wanted && state.stiffness.is_none(),
             (Warning::Coupling, _) => self.neglects_coupling,
             (_, None) => false,

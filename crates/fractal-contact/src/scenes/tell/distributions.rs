@@ -65,7 +65,7 @@ pub(crate) fn chart(scene: &SceneFile, of: Distributed, units: &[SolvedUnit<'_>]
             let load = state.words(scene);
             let label =
                 if scene.models.len() > 1 { format!("{}, {load}", words::model_name(model)) } else { load };
-            curves.push(Curve { label, points: bins.iter().map(middle).collect(), band: Vec::new() });
+            curves.push(Curve { label, points: bins.iter().map(middle).collect(), ..Curve::default() });
         }
     }
     let (words, unit, _) = of.words();
@@ -90,6 +90,6 @@ pub(crate) fn chart(scene: &SceneFile, of: Distributed, units: &[SolvedUnit<'_>]
         y_label: format!("{density}{}", with(&format!("1/{unit}"))),
         curves,
         logarithmic: of == Distributed::Patches,
-        directed: false,
+        ..Chart::default()
     })
 }

@@ -1,10 +1,10 @@
 //! Curves drawn from the states.
 
 use crate::scenes::read::{LoadKind, LoadRequest, Result, SceneFile, depends_on_path, words};
-use crate::scenes::run::{SolvedUnit, StateRecord};
+use crate::scenes::run::{SolvedUnit, StateRecord, Warning, rests_on_few_cells};
 use crate::scenes::tell::{Mean, columns, ensemble, smooth_ball};
-use contact_model::Boundary;
 use contact_model::quantities::Quantity;
+use contact_model::{Adhesion, Boundary, Hardness};
 use plots::{Chart, Curve};
 use std::path::{Path, PathBuf};
 
@@ -16,7 +16,8 @@ enum Axis {
     Load,
 }
 
-/// `curve-Y.svg` and `.png` for every quantity that the scene asked for.
+/// `curve-Y.svg` and `.png` for every quantity that the scene asked for, and `curve-Y-deviation` where the curves
+/// of several models lie on each other.
 pub(crate) fn curves(
     scene: &SceneFile,
     units: &[SolvedUnit<'_>],
@@ -30,23 +31,63 @@ pub(crate) fn curves(
     Ok(files)
 }
 
-/// A chart for every quantity that the scene asked for and that varies, by its name.
-pub(crate) fn charts(
-    scene: &SceneFile,
-    units: &[SolvedUnit<'_>],
-    means: &[Mean],
-) -> Vec<(&'static str, Chart)> {
-    pairs(scene)
-        .into_iter()
-        .map(|(x, y)| (y.name, chart(scene, units, means, x, y)))
-        .filter(|(_, chart)| chart.curves.iter().any(|c| varies(&c.points)))
-        .collect()
+/// A chart for every quantity that the scene asked for and that varies, by its name, followed by that of the
+/// deviations.
+pub(crate) fn charts(scene: &SceneFile, units: &[SolvedUnit<'_>], means: &[Mean]) -> Vec<(String, Chart)> {
+    let mut charts = Vec::new();
+    for (x, y) in pairs(scene) {
+        let chart = chart(scene, units, means, x, y);
+        if chart.curves.iter().any(|c| varies(&c.points)) {
+            let deviation = deviation(scene, &chart, y);
+            charts.push((y.name.to_owned(), chart));
+            charts.extend(deviation.map(|chart| (format!("{}{DEVIATION}", y.name), chart)));
+        }
+    }
+    charts
+}
+
+/// What the name of a picture of deviations ends with.
+const DEVIATION: &str = "-deviation";
+/// Curves that differ by less than this share everywhere cannot be told apart in one chart.
+const TOGETHER: f64 = 0.1;
+
+/// How far all curves are from the first one, in per cent, where they cannot be told apart.
+fn deviation(scene: &SceneFile, chart: &Chart, y: &'static Quantity) -> Option<Chart> {
+    let [first, others @ ..] = &chart.curves[..] else { return None };
+    if scene.is_history() || others.is_empty() {
+        return None;
+    }
+    let of = |curve: &Curve| -> Option<Curve> {
+        let pairs = || curve.points.iter().zip(&first.points);
+        let same =
+            curve.points.len() == first.points.len() && pairs().all(|(a, b)| (a.0 / b.0 - 1.0).abs() < HELD);
+        let points: Vec<(f64, f64)> = pairs().map(|(a, b)| (a.0, 100.0 * (a.1 / b.1 - 1.0))).collect();
+        let together = points.iter().all(|point| point.1.abs() < 100.0 * TOGETHER);
+        let careful = points.iter().zip(&curve.points).filter(|(_, point)| curve.careful.contains(point));
+        let careful = careful.map(|(shown, _)| *shown).collect();
+        (same && together).then(|| Curve { label: curve.label.clone(), points, careful, ..Curve::default() })
+    };
+    let curves = chart.curves.iter().map(of).collect::<Option<Vec<Curve>>>()?;
+    // What is left of equal formulas is rounding.
+    let differ = curves.iter().flat_map(|curve| &curve.points).any(|point| point.1.abs() > 100.0 * HELD);
+    if !differ {
+        return None;
+    }
+    let shown = if y.symbol.is_empty() { y.words.to_owned() } else { format!("${}$", y.symbol) };
+    Some(Chart {
+        title: format!("{}, difference from {}", chart.title, first.label),
+        y_label: format!("{shown} above that of {} (%)", first.label),
+        subtitle: words::scene_name(scene),
+        curves,
+        ..chart.clone()
+    })
 }
 
 /// The names of all files that [`curves`] may write.
 pub(crate) fn curve_files(scene: &SceneFile) -> Vec<String> {
     let names = pairs(scene).into_iter().map(|(_, y)| y.name);
-    names.flat_map(|y| ["svg", "png"].map(|end| format!("curve-{y}.{end}"))).collect()
+    let names = names.flat_map(|y| ["", DEVIATION].map(|kind| format!("curve-{y}{kind}")));
+    names.flat_map(|name| ["svg", "png"].map(|end| format!("{name}.{end}"))).collect()
 }
 
 /// What is drawn over what: every quantity that is drawn, over the load, the time, or what a loop is drawn
@@ -163,15 +204,21 @@ fn curve(
                 Axis::Load => scene.request.prescribed(record.index)?,
             };
             let error = solved.grid.as_ref().and_then(|grid| grid.of(y.name)).map(|error| error.error);
-            Some(((x, number(y)?), error))
+            Some(((x, number(y)?), (error, rests_on_few_cells(&solved.state))))
         };
         let states: Vec<_> = records.filter_map(state).filter(|(point, _)| shown(point)).collect();
         // By a factor, because an error of more than the number itself has no lower end on these axes.
-        let end = |((x, y), error): &((f64, f64), Option<f64>)| {
+        let end = |((x, y), (error, _)): &((f64, f64), (Option<f64>, bool))| {
             error.map(|error| (*x, y / (1.0 + error), y * (1.0 + error)))
         };
         let band = states.iter().filter_map(end).collect();
-        return Curve { label, points: states.iter().map(|(point, _)| *point).collect(), band };
+        let careful = states.iter().filter(|(_, (_, few))| *few && !scene.is_history());
+        let careful = careful.map(|(point, _)| *point).collect();
+        let mut points: Vec<(f64, f64)> = states.iter().map(|(point, _)| *point).collect();
+        if begins_at_zero(scene, x) && points.first().is_some_and(|first| *first != (0.0, 0.0)) {
+            points.insert(0, (0.0, 0.0));
+        }
+        return Curve { label, points, band, careful };
     }
     let of = || means.iter().filter(move |mean| mean.model == model && mean.surfaces > 0);
     let points = of().filter_map(|mean| Some((x.of_mean(mean)?, mean.of(y)?.0)));
@@ -179,7 +226,18 @@ fn curve(
         let (x, (y, half)) = (x.of_mean(mean)?, mean.interval(y)?);
         Some((x, y - half?, y + half?))
     });
-    Curve { label, points: points.filter(shown).collect(), band: band.collect() }
+    Curve { label, points: points.filter(shown).collect(), band: band.collect(), ..Curve::default() }
+}
+
+/// Whether a chart of a history begins with the bodies apart, all its numbers 0: over time, so that what a step
+/// of the load does at once is seen, and over a load that leaves an indentation.
+fn begins_at_zero(scene: &SceneFile, x: Axis) -> bool {
+    let over = |name: &str| matches!(x, Axis::Quantity(quantity) if quantity.name == name);
+    let effects = &scene.effects;
+    scene.is_history()
+        && effects.boundary == Boundary::Free
+        && effects.adhesion == Adhesion::Off
+        && (over("time") || effects.hardness != Hardness::Off)
 }
 
 fn chart(
@@ -212,7 +270,7 @@ fn chart(
     });
     let points: Vec<(f64, f64)> = points.collect();
     if !points.is_empty() {
-        curves.push(Curve { label: smooth_ball::LABEL.into(), points, band: Vec::new() });
+        curves.push(Curve { label: smooth_ball::LABEL.into(), points, ..Curve::default() });
     }
     let mut title = format!("{} over {}", y.words, x.words().0);
     title[..1].make_ascii_uppercase();
@@ -246,6 +304,7 @@ fn chart(
         curves,
         logarithmic: !scene.is_history(),
         directed: scene.is_history(),
+        careful: Warning::FewCells.words()[0].to_owned(),
     }
     .in_units([x, Axis::Quantity(y)].map(|axis| axis.unit(scene)))
 }

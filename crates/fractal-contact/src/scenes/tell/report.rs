@@ -132,9 +132,13 @@ impl Report<'_> {
             subtitle: "averaged over rings of the wavenumber, two-sided".into(),
             x_label: "wavenumber $q$".into(),
             y_label: "$C$".into(),
-            curves: vec![Curve { label: "as solved".into(), points: map.spectrum.clone(), band: Vec::new() }],
+            curves: vec![Curve {
+                label: "as solved".into(),
+                points: map.spectrum.clone(),
+                ..Curve::default()
+            }],
             logarithmic: true,
-            directed: false,
+            ..Chart::default()
         };
         let spectrum = spectrum.in_units(["1/m", "m^4"].map(|unit| self.scene.system.shown(unit)));
         Ok(html! { div.charts { (page::chart(&spectrum)?) } })

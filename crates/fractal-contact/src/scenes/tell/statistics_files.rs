@@ -169,12 +169,12 @@ impl MapStatisticsTables {
             points(&s.wavenumber, &s.density).into_iter().partition(|&(q, _)| trusted(q));
         let unsure_label = "waves not to be trusted";
         let label = if self.profile { "profile" } else { "map" };
-        let mut curves = vec![Curve { label: label.into(), points: sure, band }];
+        let mut curves = vec![Curve { label: label.into(), points: sure, band, ..Curve::default() }];
         if curves[0].points.is_empty() {
             curves[0].label = unsure_label.into();
             curves[0].points = unsure;
         } else if !unsure.is_empty() {
-            curves.push(Curve { label: unsure_label.into(), points: unsure, band: Vec::new() });
+            curves.push(Curve { label: unsure_label.into(), points: unsure, ..Curve::default() });
         }
         Some(
             Chart {
@@ -184,7 +184,7 @@ impl MapStatisticsTables {
                 y_label: symbol.into(),
                 curves,
                 logarithmic: true,
-                directed: false,
+                ..Chart::default()
             }
             .in_units(["1/m", unit].map(|unit| self.system.shown(unit))),
         )
@@ -196,6 +196,7 @@ impl MapStatisticsTables {
             label: if self.profile { "profile".into() } else { "map".into() },
             points: points(&d.distance, &d.half_square),
             band: shaded(&d.distance, bands),
+            ..Curve::default()
         }];
         Some(
             Chart {
@@ -209,7 +210,7 @@ impl MapStatisticsTables {
                 y_label: "$A$".into(),
                 curves,
                 logarithmic: true,
-                directed: false,
+                ..Chart::default()
             }
             .in_units(["m", "m^2"].map(|unit| self.system.shown(unit))),
         )
@@ -220,6 +221,7 @@ impl MapStatisticsTables {
             label: format!("along {axis}"),
             points: points(&slope.distance, &slope.rms),
             band: shaded(&slope.distance, bands),
+            ..Curve::default()
         };
         let curves: Vec<Curve> = self.scales.iter().map(|of| curve(of.axis, &of.slope)).collect();
         (!curves.is_empty()).then(|| {
@@ -230,7 +232,7 @@ impl MapStatisticsTables {
                 y_label: "rms slope".into(),
                 curves,
                 logarithmic: true,
-                directed: false,
+                ..Chart::default()
             }
             .in_units(["m", ""].map(|unit| self.system.shown(unit)))
         })

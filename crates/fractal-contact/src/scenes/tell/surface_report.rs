@@ -104,7 +104,7 @@ impl SurfaceReport<'_> {
         let found = bins().map(|i| (z(i), counts[i] as f64 / count * (rms / width))).collect();
         let normal =
             bins().map(|i| (z(i), (-0.5 * z(i) * z(i)).exp() / std::f64::consts::TAU.sqrt())).collect();
-        let curve = |label: &str, points| Curve { label: label.into(), points, band: Vec::new() };
+        let curve = |label: &str, points| Curve { label: label.into(), points, ..Curve::default() };
         Chart {
             title: "Distribution of heights".into(),
             subtitle: format!("{}: about the mean", self.name),
@@ -115,7 +115,7 @@ impl SurfaceReport<'_> {
                 curve("normal law", normal),
             ],
             logarithmic: false,
-            directed: false,
+            ..Chart::default()
         }
     }
 }
