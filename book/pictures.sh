@@ -1,6 +1,6 @@
 #!/bin/sh
-# Every picture in book/src/pictures. `cargo xtask book --pictures` runs it in a folder with data/ in it, with both programs on the path
-# and `pictures` set to the folder of the pictures.
+# Every picture in book/src/pictures that is not drawn by hand. `cargo xtask book --pictures` runs it in a folder with data/ in it, with
+# both programs on the path and `pictures` set to the folder of the pictures; `cargo xtask book` runs it too and compares what it draws.
 set -eu
 
 # scene SCENE PICTURE...: runs a scene and keeps these of its pictures, as SCENE-PICTURE.
@@ -13,7 +13,7 @@ scene() {
     done
 }
 
-scene ball-on-plate curve-approach.svg
+scene ball-on-plate curve-approach-deviation.svg
 scene rough-sphere curve-stiffness.svg pressure-bem3d-0-004.png pressure-bem3d-0-005.png
 scene measured-map pressure-bem3d-0-002.png gap-bem3d-0-002.png distribution-pressure.svg
 scene anisotropic pressure-bem3d-0-001.png
@@ -25,9 +25,10 @@ scene periodic-theories curve-stiffness.svg curve-area.svg
 scene rough-friction curve-tangential_force.svg
 scene fretting-loop curve-tangential_force.svg traction-bem3d-0-006.png slip-bem3d-0-003.png stick_slip-bem3d-0-003.png
 scene rough-creep curve-approach.svg
-scene rough-plastic plastic_depth-bem3d-0-003.png
+scene rough-plastic plastic_depth-bem3d-0-002.png
 scene plastic-path curve-force.svg
 scene sticky-ball curve-force.svg
+scene rough-sticky-ball curve-force.svg pressure-bem3d-0-042.png
 
 fractal-contact info data/measured/uncd-afm.001 --channel 0 --detrend plane --tip-radius "26 nm" --out out/uncd
 for picture in spectrum.svg slope.svg; do

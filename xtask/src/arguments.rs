@@ -134,7 +134,8 @@ pub enum Command {
         /// The shell.
         shell: clap_complete::Shell,
     },
-    /// Links of every Markdown file, commands of the book, and its pages where mdbook is installed.
+    /// Links and formulas of every Markdown file, commands and pictures of the book, and its pages where mdbook is
+    /// installed.
     Book(BookArguments),
 }
 

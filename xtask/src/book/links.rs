@@ -21,10 +21,7 @@ pub struct Found {
 
 /// Checks all files below a root.
 pub fn check(root: &Path) -> Result<Found> {
-    let mut files = Vec::new();
-    collect(root, root, &mut files)?;
-    files.sort();
-    let texts = files.into_iter().map(|path| {
+    let texts = markdown(root)?.into_iter().map(|path| {
         let text = fs::read_to_string(&path).map_err(Error::file("read", &path))?;
         Ok((path, text))
     });
@@ -42,6 +39,14 @@ pub fn check(root: &Path) -> Result<Found> {
     found.broken.extend(outside_the_book(root)?);
     found.broken.sort();
     Ok(found)
+}
+
+/// All Markdown files below a root that are written by hand, sorted.
+pub fn markdown(root: &Path) -> Result<Vec<PathBuf>> {
+    let mut files = Vec::new();
+    collect(root, root, &mut files)?;
+    files.sort();
+    Ok(files)
 }
 
 fn collect(root: &Path, folder: &Path, files: &mut Vec<PathBuf>) -> Result<()> {

@@ -1,10 +1,14 @@
-//! `cargo xtask book`: the links of every Markdown file, the commands of the book, its pictures, its pages.
+//! `cargo xtask book`: the links and formulas of every Markdown file, the commands of the book, its pictures, its
+//! pages and their links.
 //!
 //! Blocks fenced as `sh` in `book/src` are run, in a temporary directory with `data/` in it; those fenced as
 //! `sh,long` take minutes or hours and are only counted. Rust blocks are doctests of the package `tests`.
 
+mod built;
 mod commands;
+mod formulas;
 mod links;
+mod pictures;
 
 use commands::{Scratch, programs};
 use runs::{Error, Result};
@@ -12,15 +16,26 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 use std::time::Instant;
 
-/// Checks the book, or makes its pictures again.
-pub fn book(pictures: bool) -> Result<ExitCode> {
+/// Checks the book, or draws its pictures again.
+pub fn book(draw: bool) -> Result<ExitCode> {
     let root = root()?;
-    if pictures {
-        return make_pictures(&root);
+    if draw {
+        let failed = pictures::store(&root, &Scratch::new(&root, &programs(&root)?)?)?;
+        failed.iter().for_each(|output| runs::out!("{output}"));
+        return Ok(if failed.is_none() { ExitCode::SUCCESS } else { ExitCode::FAILURE });
     }
     let found = links::check(&root)?;
     found.broken.iter().for_each(|line| runs::out!("{line}"));
     runs::out!("{} links in {} files, {} broken", found.links, found.files, found.broken.len());
+
+    let formulas = formulas::check(&root)?;
+    formulas.wrong.iter().for_each(|line| runs::out!("{line}"));
+    let (count, wrong) = (formulas.formulas, formulas.wrong.len());
+    if formulas.set {
+        runs::out!("{count} formulas set by KaTeX, {wrong} wrong");
+    } else {
+        runs::out!("NOT CHECKED: {count} formulas, because node is not installed");
+    }
 
     let blocks = commands::blocks(&root.join("book/src"))?;
     let long = blocks.iter().filter(|block| block.long).count();
@@ -42,8 +57,14 @@ pub fn book(pictures: bool) -> Result<ExitCode> {
         start.elapsed().as_secs_f64()
     );
 
+    let start = Instant::now();
+    let stale = pictures::check(&root, &scratch)?;
+    stale.iter().for_each(|line| runs::out!("{line}"));
+    let seconds = start.elapsed().as_secs_f64();
+    runs::out!("pictures drawn anew in {seconds:.0} s, {} differ (cargo xtask book --pictures)", stale.len());
+
     let pages = build(&root)?;
-    let whole = found.broken.is_empty() && failed == 0 && pages;
+    let whole = found.broken.is_empty() && wrong == 0 && failed == 0 && stale.is_empty() && pages;
     Ok(if whole { ExitCode::SUCCESS } else { ExitCode::from(3) })
 }
 
@@ -52,20 +73,8 @@ fn root() -> Result<PathBuf> {
     root.canonicalize().map_err(Error::file("find", &root))
 }
 
-/// Runs `book/pictures.sh`, which writes into `book/src/pictures`.
-fn make_pictures(root: &Path) -> Result<ExitCode> {
-    let script = root.join("book/pictures.sh");
-    let text = std::fs::read_to_string(&script).map_err(Error::file("read", &script))?;
-    let scratch = Scratch::new(root, &programs(root)?)?;
-    let folder = root.join("book/src/pictures");
-    let failed = scratch.run(&format!("pictures='{}'\n{text}", folder.display()))?;
-    if let Some(output) = &failed {
-        runs::out!("{output}");
-    }
-    Ok(if failed.is_none() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
-}
-
-/// Builds the pages where mdbook is installed; `false` where it warns or fails.
+/// Builds the pages where mdbook is installed and checks their links; `false` where it warns or fails, or a link
+/// is dead.
 fn build(root: &Path) -> Result<bool> {
     let program = Path::new("mdbook");
     let output = match Command::new(program).arg("build").arg(root.join("book")).output() {
@@ -78,6 +87,13 @@ fn build(root: &Path) -> Result<bool> {
     };
     let said = commands::text(&output);
     let clean = output.status.success() && !said.contains("WARN") && !said.contains("ERROR");
-    runs::out!("{}", if clean { "mdbook built the pages into book/book".to_owned() } else { said });
-    Ok(clean)
+    if !clean {
+        runs::out!("{said}");
+        return Ok(false);
+    }
+    let found = built::check(&root.join("book/book"))?;
+    found.broken.iter().for_each(|line| runs::out!("{line}"));
+    let (pages, links, broken) = (found.pages, found.links, found.broken.len());
+    runs::out!("mdbook built {pages} pages into book/book, with {links} links, {broken} broken");
+    Ok(found.broken.is_empty())
 }
