@@ -12,7 +12,7 @@ use crate::abilities::told;
 use contact_model::Output;
 use contact_model::quantities::{Average, Compared, QUANTITIES, Quantity, Role};
 use fractal_contact::models::{MODELS, ModelRecord, abilities};
-use fractal_contact::scenes::{EFFECT_KEYS, EffectKey};
+use fractal_contact::scenes::{EFFECT_KEYS, EffectKey, SCENE_KEYS, SceneKeys};
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 
@@ -149,6 +149,30 @@ fn effects() -> String {
     table(&["key", "takes", "what it is", "where it is not named"], EFFECT_KEYS.iter().map(cells))
 }
 
+/// The keys of all tables but `[effects]` and `[outputs]`.
+fn scene_keys() -> String {
+    let mut last = ("", "");
+    let cells = |keys: &SceneKeys| {
+        let place = (keys.table, keys.kind);
+        let title = match (std::mem::replace(&mut last, place) == place, keys.table, keys.kind) {
+            (true, ..) => String::new(),
+            (false, "scene.path", _) => "`[[scene.path]]`".into(),
+            (false, table, "") => format!("`[{table}]`"),
+            (false, table, kind) => format!("`[{table}]`, `{kind}`"),
+        };
+        vec![title, keys.words(), keys.about.to_owned(), keys.default.to_owned()]
+    };
+    let shown = SCENE_KEYS.iter().filter(|keys| keys.table != "outputs");
+    table(&["table", "key", "what it is", "where it is not given"], shown.map(cells))
+}
+
+/// The keys of `[outputs]` that the program answers by itself.
+fn own_outputs() -> String {
+    let cells = |keys: &SceneKeys| vec![keys.words(), keys.about.to_owned(), keys.default.to_owned()];
+    let shown = SCENE_KEYS.iter().filter(|keys| keys.table == "outputs");
+    table(&["key", "what it is", "where it is not given"], shown.map(cells))
+}
+
 /// The keys of `[outputs]` that models answer.
 fn outputs() -> String {
     let cells = |output: &Output| {
@@ -164,6 +188,19 @@ fn outputs() -> String {
     table(&["key", "takes", "what it is"], Output::ALL.iter().map(cells))
 }
 
+/// A line without its formulas: code between two dollar signs.
+fn without_formulas(line: &str) -> String {
+    let parts: Vec<&str> = line.split('`').collect();
+    let formula = |i: usize| {
+        i % 2 == 1
+            && parts[i - 1].ends_with('$')
+            && parts.get(i + 1).is_some_and(|after| after.starts_with('$'))
+    };
+    // The part after a formula goes on where the one before it ends.
+    let shown = parts.iter().enumerate().filter(|(i, _)| !formula(*i));
+    shown.flat_map(|(i, part)| [if i == 0 || formula(i - 1) { "" } else { "`" }, *part]).collect()
+}
+
 fn root() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("..")
 }
@@ -174,6 +211,12 @@ fn with_part(text: &str, name: &str, part: &str) -> String {
     let (before, rest) = text.split_once(&begin).unwrap_or_else(|| panic!("no mark {begin:?}"));
     let (_, after) = rest.split_once(END).unwrap_or_else(|| panic!("no end after {begin:?}"));
     format!("{before}{begin}{part}{END}{after}")
+}
+
+#[test]
+fn formulas_are_no_words() {
+    assert_eq!(without_formulas("a $`x_1 y`$ b `c` d $`z`$"), "a $$ b `c` d $$");
+    assert_eq!(without_formulas("`$` `a` $ `b"), "`$` `a` $ `b");
 }
 
 #[test]
@@ -191,7 +234,15 @@ fn documents_follow_from_the_tables() {
     let documents = [
         parts("GLOSSARY.md", &[("quantities", glossary())]),
         parts("README.md", &[("models", readme())]),
-        parts("book/src/scene-file.md", &[("effects", effects()), ("outputs", outputs())]),
+        parts(
+            "book/src/scene-file.md",
+            &[
+                ("scene keys", scene_keys()),
+                ("effects", effects()),
+                ("outputs", outputs()),
+                ("own outputs", own_outputs()),
+            ],
+        ),
         page("book/src/quantities.md", quantities_page()),
         page("book/src/models.md", models_page()),
         page("book/src/modules.md", crates::modules_page()),

@@ -32,7 +32,7 @@ fn quoted(text: &str) -> Vec<(usize, String)> {
             continue;
         }
         // Words between backticks may go over the end of a line, not over that of a paragraph.
-        for (i, part) in line.split('`').enumerate() {
+        for (i, part) in super::without_formulas(line).split('`').enumerate() {
             match (i, open.take()) {
                 (0, Some(begun)) if !line.trim().is_empty() => open = Some(begun + " " + part.trim_start()),
                 (0, _) => {}

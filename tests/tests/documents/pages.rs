@@ -1,6 +1,6 @@
 //! Pages of the book: how long they are.
 
-use super::{BEGIN, END, root};
+use super::{BEGIN, END, root, without_formulas};
 
 /// Words of a page at most: what is read in one sitting.
 const WORDS: usize = 1500;
@@ -8,7 +8,7 @@ const WORDS: usize = 1500;
 /// Pages that are tables made by a program.
 const GENERATED: [&str; 3] = ["models.md", "modules.md", "quantities.md"];
 
-/// Words outside of blocks of code and of generated parts.
+/// Words outside of blocks of code, of formulas and of generated parts.
 fn words(text: &str) -> usize {
     let (mut code, mut generated, mut count) = (false, false, 0);
     for line in text.lines() {
@@ -19,6 +19,7 @@ fn words(text: &str) -> usize {
         } else if line.starts_with(END) {
             generated = false;
         } else if !code && !generated {
+            let line = without_formulas(line);
             count += line.split_whitespace().filter(|word| word.contains(char::is_alphanumeric)).count();
         }
     }

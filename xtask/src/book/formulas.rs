@@ -37,7 +37,7 @@ pub fn check(root: &Path) -> Result<Found> {
         for Formula { line, source, display } in formulas(&text) {
             found.formulas += 1;
             let display = if display { "display" } else { "" };
-            input += &format!("{name}:{line}\0{source}\0{display}\0");
+            input.push_str(&[&format!("{name}:{line}"), source.as_str(), display, ""].join("\0"));
         }
     }
     let node = Path::new("node");

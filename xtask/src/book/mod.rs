@@ -21,7 +21,9 @@ pub fn book(draw: bool) -> Result<ExitCode> {
     let root = root()?;
     if draw {
         let failed = pictures::store(&root, &Scratch::new(&root, &programs(&root)?)?)?;
-        failed.iter().for_each(|output| runs::out!("{output}"));
+        if let Some(output) = &failed {
+            runs::out!("{output}");
+        }
         return Ok(if failed.is_none() { ExitCode::SUCCESS } else { ExitCode::FAILURE });
     }
     let found = links::check(&root)?;
@@ -59,7 +61,9 @@ pub fn book(draw: bool) -> Result<ExitCode> {
 
     let start = Instant::now();
     let stale = pictures::check(&root, &scratch)?;
-    stale.iter().for_each(|line| runs::out!("{line}"));
+    for line in &stale {
+        runs::out!("{line}");
+    }
     let seconds = start.elapsed().as_secs_f64();
     runs::out!("pictures drawn anew in {seconds:.0} s, {} differ (cargo xtask book --pictures)", stale.len());
 

@@ -51,7 +51,8 @@ pub fn check(root: &Path, scratch: &Scratch) -> Result<Vec<String>> {
         }
     }
     for name in &new {
-        let differs = match (old.contains(name), name.ends_with(".svg")) {
+        let differs = match (old.contains(name), Path::new(name).extension().is_some_and(|end| end == "svg"))
+        {
             (false, _) => Some("not stored".to_owned()),
             _ if OF_BROWSER.contains(&name.as_str()) => None,
             (true, true) => svg_differs(&text(&stored.join(name))?, &text(&drawn.path().join(name))?),

@@ -86,6 +86,7 @@ pub use read::effects::{EFFECT_KEYS, EffectKey, EffectLine, effect_lines, parse_
 pub use read::entries::System;
 pub use read::error::{Error, Result};
 pub use read::generated_surface::{GeneratedSurface, write_twin};
+pub use read::keys::{SCENE_KEYS, SceneKeys};
 pub use read::loads::{LoadKind, LoadList, LoadRequest};
 pub use read::numerics::Numerics;
 pub use read::outputs::{FieldFormat, RequestedOutputs};

@@ -95,6 +95,8 @@ impl<'a> Entries<'a> {
 
     /// The value of a key, if it is there.
     pub fn find(&self, key: &'static str) -> Option<Entry<'a>> {
+        #[cfg(test)]
+        crate::scenes::read::keys::tests::record(&self.name, key);
         self.known.borrow_mut().push(key);
         self.entry(key)
     }

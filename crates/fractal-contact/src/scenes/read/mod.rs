@@ -7,6 +7,7 @@ pub(crate) mod effects;
 pub(crate) mod entries;
 pub(crate) mod error;
 pub(crate) mod generated_surface;
+pub(crate) mod keys;
 pub(crate) mod loads;
 pub(crate) mod numerics;
 pub(crate) mod outputs;
