@@ -149,21 +149,20 @@ fn effects() -> String {
     table(&["key", "takes", "what it is", "where it is not named"], EFFECT_KEYS.iter().map(cells))
 }
 
-/// The keys of all tables but `[effects]` and `[outputs]`.
+/// The keys of all tables but `[effects]` and `[outputs]`, a table of the page for each table of a scene.
 fn scene_keys() -> String {
-    let mut last = ("", "");
-    let cells = |keys: &SceneKeys| {
-        let place = (keys.table, keys.kind);
-        let title = match (std::mem::replace(&mut last, place) == place, keys.table, keys.kind) {
-            (true, ..) => String::new(),
-            (false, "scene.path", _) => "`[[scene.path]]`".into(),
-            (false, table, "") => format!("`[{table}]`"),
-            (false, table, kind) => format!("`[{table}]`, `{kind}`"),
+    let cells = |keys: &&SceneKeys| vec![keys.words(), keys.about.to_owned(), keys.default.to_owned()];
+    let part = |part: &[&SceneKeys]| {
+        let title = match (part[0].table, part[0].kind) {
+            ("scene.path", _) => "`[[scene.path]]`".to_owned(),
+            (table, "") => format!("`[{table}]`"),
+            (table, kind) => format!("`[{table}]`, `{kind}`"),
         };
-        vec![title, keys.words(), keys.about.to_owned(), keys.default.to_owned()]
+        let keys = table(&["key", "what it is", "where it is not given"], part.iter().map(cells));
+        format!("### {title}\n\n{keys}\n")
     };
-    let shown = SCENE_KEYS.iter().filter(|keys| keys.table != "outputs");
-    table(&["table", "key", "what it is", "where it is not given"], shown.map(cells))
+    let shown: Vec<&SceneKeys> = SCENE_KEYS.iter().filter(|keys| keys.table != "outputs").collect();
+    shown.chunk_by(|a, b| (a.table, a.kind) == (b.table, b.kind)).map(part).collect()
 }
 
 /// The keys of `[outputs]` that the program answers by itself.
