@@ -93,8 +93,7 @@ impl WavyContact {
         // Balanced products, so that no part of them leaves the range of f64: E* D^2/w = E* D (D/w).
         let share = Nondimensionalisation::new(modulus, amplitude, slope)?.force_in(work);
         if !(share.is_normal() || work <= 0.0) {
-            let expected = "a number within the range of f64";
-            return Err(Error::domain("work of adhesion over E* D^2/w", share, expected));
+            return Err(Error::not_representable("work of adhesion over E* D^2/w", share));
         }
         let alpha = (2.0 * share).sqrt() / PI;
         Ok(Self { nondimensional, per_height, alpha, limits: limits(alpha) })
@@ -148,7 +147,7 @@ impl WavyContact {
     fn stiffness_in(&self, value: f64) -> Result<f64> {
         self.per_height.pressure(value).map_err(|_| {
             let name = "stiffness per area in units of E* over the wavelength";
-            Error::domain(name, value, "a stiffness within the range of f64")
+            Error::not_representable(name, value)
         })
     }
 
@@ -238,9 +237,7 @@ fn strips_at(psi: f64) -> Result<Strips> {
 
 /// Mean gap in the units of heights.
 fn gap_in(nondimensional: Nondimensionalisation, gap: f64) -> Result<f64> {
-    nondimensional
-        .approach(gap)
-        .map_err(|_| Error::domain("mean gap over the amplitude", gap, "a gap within the range of f64"))
+    nondimensional.approach(gap).map_err(|_| Error::not_representable("mean gap over the amplitude", gap))
 }
 
 /// The wave of [`WavyContact`] behind the common trait: forces, of either sign down to the pull-off.
@@ -281,7 +278,7 @@ impl ContactModel for AdhesiveWave {
         let full = PI * waves * (size.length() / size.x);
         if !full.is_normal() {
             let name = "number of waves times the root of side along y over side along x";
-            return Err(Error::domain(name, full / PI, "a number within the range of f64"));
+            return Err(Error::not_representable(name, full / PI));
         }
         let scaling = Scaling::new(scene, amplitude, Some(amplitude / SQRT_2))?;
         Ok(closed::prepared(scaling, WaveLaw { wave, full }))
@@ -314,7 +311,7 @@ impl Law for WaveLaw {
         // Mean pressure over p*; infinite where no `f64` holds it.
         let ratio = nondimensional.force_in(force) / self.full;
         if self.wave.alpha <= 0.0 && ratio <= 0.0 && force > 0.0 {
-            return Err(Error::domain("force over E* D L", ratio, "a number within the range of f64"));
+            return Err(Error::not_representable("force over E* D L", ratio));
         }
         let strips = match self.wave.branch(ratio) {
             Branch::PulledOff => return Err(self.pulled_off(force, nondimensional)),

@@ -182,5 +182,5 @@ pub(crate) const ROUNDED_UP: f64 = 1.0 + 8.0 * f64::EPSILON;
 pub(crate) const AT_FOLD: f64 = 1e-7;
 
 fn out_of_f64(value: f64) -> Error {
-    Error::domain("state in units of side and modulus", value, "numbers within the range of f64")
+    Error::not_representable("state in units of side and modulus", value)
 }

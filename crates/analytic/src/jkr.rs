@@ -109,11 +109,7 @@ impl AdhesiveSphere {
         if scaled.is_finite() && (scaled > 0.0 || (scaled >= 0.0 && work <= 0.0)) {
             Ok(Self { nondimensional, work: scaled })
         } else {
-            Err(Error::domain(
-                "work of adhesion",
-                work,
-                "a finite number >= 0, within the range of f64 over E* R",
-            ))
+            Err(Error::of_non_negative("work of adhesion", work))
         }
     }
 
@@ -297,7 +293,7 @@ impl Law for JkrLaw {
             _ => return Err(Error::unsupported_load(NAME, load)),
         };
         if !a.is_finite() || (a <= 0.0 && (asked.abs() > 0.0 || sphere.work > 0.0)) {
-            return Err(Error::domain("contact radius over R", a, "a number within the range of f64"));
+            return Err(Error::not_representable("contact radius over R", a));
         }
         self.size.admit_radius("contact radius", scaling.nondimensional.approach(a)?)?;
         let scaled = ScaledState {

@@ -125,12 +125,10 @@ impl MaugisSphere {
         // A balanced product: work over E* alone may be out of the range of f64.
         let scaled = Nondimensionalisation::new(modulus, radius, 1.0)?.force_in(work.max(0.0));
         if !(work.is_finite() && scaled.is_normal()) {
-            let expected = "a finite number > 0, within the range of f64 over E* R";
-            return Err(Error::domain("work of adhesion", work, expected));
+            return Err(Error::of_positive("work of adhesion", work));
         }
         if !(range > 0.0 && (range / radius).is_normal()) {
-            let expected = "a finite number > 0, within the range of f64 over R";
-            return Err(Error::domain("range of adhesion", range, expected));
+            return Err(Error::of_positive("range of adhesion", range));
         }
         let lambda = 2.0 * (9.0 / (16.0 * PI) * scaled).cbrt() * (scaled.cbrt() / (range / radius));
         if !Self::LAMBDA.contains(&lambda) {
@@ -278,8 +276,7 @@ impl MaugisSphere {
         if contact_radius.is_finite() && contact_radius >= 0.0 && a <= self.curve.at(Curve::LEAST).a {
             Ok(self.curve.at_radius(a))
         } else {
-            let expected = "a finite number >= 0, within the range of f64";
-            Err(Error::domain("contact radius", contact_radius, expected))
+            Err(Error::of_non_negative("contact radius", contact_radius))
         }
     }
 
@@ -298,9 +295,9 @@ impl MaugisSphere {
         if wanted <= least {
             return Ok(fold);
         }
-        self.curve.above(self.force_fold, |point| point.force(lambda) - wanted).ok_or_else(|| {
-            Error::domain("force", force, "a force whose contact radius is within the range of f64")
-        })
+        self.curve
+            .above(self.force_fold, |point| point.force(lambda) - wanted)
+            .ok_or_else(|| Error::not_representable("force", force))
     }
 
     fn at_approach(&self, approach: f64) -> Result<Point> {
@@ -325,9 +322,9 @@ impl MaugisSphere {
             return Ok(end);
         }
         let from = self.approach_fold.unwrap_or(Curve::MOST);
-        self.curve.above(from, |point| point.approach(lambda) - wanted).ok_or_else(|| {
-            Error::domain("approach", approach, "an approach whose contact radius is within the range of f64")
-        })
+        self.curve
+            .above(from, |point| point.approach(lambda) - wanted)
+            .ok_or_else(|| Error::not_representable("approach", approach))
     }
 }
 

@@ -47,8 +47,7 @@ impl<L: PeriodicLaw> Periodic<L> {
             _ => return Err(Error::unsupported_load(self.model, load)),
         };
         if !pressure.is_finite() || (asked && pressure <= 0.0) {
-            let expected = "a number within the range of f64";
-            return Err(Error::domain("mean pressure over E* h/L", pressure, expected));
+            return Err(Error::not_representable("mean pressure over E* h/L", pressure));
         }
         if pressure > 0.0 {
             self.law.admit(pressure)?;

@@ -97,11 +97,7 @@ pub fn conductance_fit(force_bar: f64, fractal_dimension: f64, side: f64, resist
     if conductance.is_finite() {
         Ok(conductance)
     } else {
-        Err(Error::domain(
-            "conductance",
-            conductance,
-            "a number within the range of f64 (choose other units)",
-        ))
+        Err(Error::not_representable("conductance", conductance))
     }
 }
 

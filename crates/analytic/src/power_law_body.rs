@@ -68,11 +68,7 @@ impl ContactModel for PowerLawBody {
         };
         let depth = kappa(exponent)? * depth;
         if !(depth.is_finite() && depth > 0.0) {
-            return Err(Error::domain(
-                "depth of the body at r = L, over L",
-                depth,
-                "a number within the range of f64",
-            ));
+            return Err(Error::not_representable("depth of the body at r = L, over L", depth));
         }
         let law = PowerLawShape { exponent, depth, size: scene.surface.size() };
         closed::of_body(scene, NAME, ("closed form (Galin)", 0.0), law)

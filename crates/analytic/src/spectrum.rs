@@ -71,7 +71,7 @@ impl Spectrum {
         if spectrum.height.is_normal() && spectrum.plateau.is_normal() {
             Ok(spectrum)
         } else {
-            Err(Error::domain("rms_height", spectrum.height, "a number within the range of f64"))
+            Err(Error::not_representable("rms_height", spectrum.height))
         }
     }
 
@@ -91,11 +91,7 @@ impl Spectrum {
     /// [`Error::Domain`] for a result that no `f64` holds.
     pub fn rms_slope(&self) -> Result<f64> {
         let slope = self.moment(2).sqrt() * (self.height / self.side);
-        if slope.is_normal() {
-            Ok(slope)
-        } else {
-            Err(Error::domain("rms_slope", slope, "a number within the range of f64"))
-        }
+        if slope.is_normal() { Ok(slope) } else { Err(Error::not_representable("rms_slope", slope)) }
     }
 
     /// Nayak's bandwidth parameter `alpha = m0 m4/m2^2` (J. Lubr. Technol. 93, 398 (1971)), dimensionless, at

@@ -177,7 +177,7 @@ pub fn product_full_pressure(modulus: f64, amplitude: f64, wavelength: f64) -> R
     if pressure.is_finite() && pressure > 0.0 {
         Ok(pressure)
     } else {
-        Err(Error::domain("mean pressure", pressure, "a number within the range of f64"))
+        Err(Error::not_representable("mean pressure", pressure))
     }
 }
 

@@ -80,7 +80,7 @@ impl Conductance {
         if conductance.is_finite() && (conductance > 0.0 || stiffness <= 0.0) {
             Ok(Some(conductance))
         } else {
-            Err(Error::domain("conductance", conductance, "a number within the range of f64"))
+            Err(Error::not_representable("conductance", conductance))
         }
     }
 }

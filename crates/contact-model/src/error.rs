@@ -1,11 +1,16 @@
 //! The one error type of the model crates: numbers, not prose.
 
 use crate::state::{ContactState, Status};
+use crate::units::{number, rounded};
 use std::borrow::Cow;
 use std::fmt;
 
 /// Result of everything in the model crates.
 pub type Result<T, E = Error> = std::result::Result<T, E>;
+
+/// What is expected of most numbers.
+const POSITIVE: &str = "a finite number > 0";
+const NON_NEGATIVE: &str = "a finite number >= 0";
 
 /// What can go wrong between a scene and a state.
 #[derive(Debug, Clone, PartialEq)]
@@ -78,6 +83,33 @@ impl Error {
         Self::Domain { name: name.into(), value, expected: expected.into() }
     }
 
+    /// [`Error::Domain`] for a number that overflows or underflows in double precision, or with which a result
+    /// does.
+    pub fn not_representable(name: impl Into<Cow<'static, str>>, value: f64) -> Self {
+        let expected = "numbers between 1e-308 and 1e308 in size, results among them (choose other units)";
+        Self::domain(name, value, expected)
+    }
+
+    /// [`Error::Domain`] for a number that is not finite and positive; of one that is,
+    /// [`Error::not_representable`].
+    pub fn of_positive(name: impl Into<Cow<'static, str>>, value: f64) -> Self {
+        if value.is_finite() && value > 0.0 {
+            Self::not_representable(name, value)
+        } else {
+            Self::domain(name, value, POSITIVE)
+        }
+    }
+
+    /// [`Error::Domain`] for a number that is not finite or negative; of another one,
+    /// [`Error::not_representable`].
+    pub fn of_non_negative(name: impl Into<Cow<'static, str>>, value: f64) -> Self {
+        if value.is_finite() && value >= 0.0 {
+            Self::not_representable(name, value)
+        } else {
+            Self::domain(name, value, NON_NEGATIVE)
+        }
+    }
+
     /// Shorthand for [`Error::Unsupported`].
     pub fn unsupported(model: &'static str, what: impl Into<Cow<'static, str>>) -> Self {
         Self::Unsupported { model, what: what.into() }
@@ -124,14 +156,15 @@ impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Domain { name, value, expected } => {
-                write!(f, "{name} = {}: expected {expected}", Short(*value))
+                write!(f, "{name} = {}: expected {expected}", shown(*value, &[expected]))
             }
             Self::Shape { name, found, expected } => {
                 write!(f, "{name} has {found} values: expected {expected}")
             }
             Self::Unsupported { model, what } => write!(f, "the model {model} does not support {what}"),
             Self::OutOfRange { name, value, min, max } => {
-                let [value, min, max] = [value, min, max].map(|v| Short(*v));
+                let [min, max] = [min, max].map(|end| shown(*end, &[]));
+                let value = shown(*value, &[&min, &max]);
                 write!(f, "{name} = {value} is outside [{min}, {max}], the range in which the model holds")
             }
             Self::OutOfMemory { what, bytes, available } => {
@@ -159,16 +192,23 @@ impl fmt::Display for Error {
 
 impl std::error::Error for Error {}
 
-/// A number without a row of zeros.
-struct Short(f64);
-
-impl fmt::Display for Short {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self(value) = *self;
+/// A number without a row of zeros: one that may have been typed with every digit, one that was computed, which
+/// has more digits than anyone types, to six. All digits where the short form stands in a text beside it, such as
+/// the limit that it misses by rounding.
+fn shown(value: f64, beside: &[&str]) -> String {
+    /// The most digits that are taken as typed.
+    const TYPED: usize = 12;
+    let plain = |value: f64| {
         // Zero, infinities and NaN are short as they are.
         let long = value.is_finite() && value.abs() > 0.0 && !(1e-4..1e15).contains(&value.abs());
-        if long { write!(f, "{value:e}") } else { write!(f, "{value}") }
+        if long { format!("{value:e}") } else { value.to_string() }
+    };
+    let computed = value.is_finite() && rounded(value, TYPED).to_bits() != value.to_bits();
+    if !computed {
+        return plain(value);
     }
+    let short = number(rounded(value, 6));
+    if beside.iter().any(|text| text.contains(&short)) { plain(value) } else { short }
 }
 
 /// A number of bytes.
@@ -190,11 +230,7 @@ impl fmt::Display for Gigabytes {
 /// # Errors
 /// [`Error::Domain`] otherwise.
 pub(crate) fn positive(name: &'static str, value: f64) -> Result<f64> {
-    if value.is_finite() && value > 0.0 {
-        Ok(value)
-    } else {
-        Err(Error::domain(name, value, "a finite number > 0"))
-    }
+    if value.is_finite() && value > 0.0 { Ok(value) } else { Err(Error::domain(name, value, POSITIVE)) }
 }
 
 /// Checks that `value` is finite and not negative.
@@ -202,9 +238,46 @@ pub(crate) fn positive(name: &'static str, value: f64) -> Result<f64> {
 /// # Errors
 /// [`Error::Domain`] otherwise.
 pub(crate) fn non_negative(name: &'static str, value: f64) -> Result<f64> {
-    if value.is_finite() && value >= 0.0 {
-        Ok(value)
-    } else {
-        Err(Error::domain(name, value, "a finite number >= 0"))
+    if value.is_finite() && value >= 0.0 { Ok(value) } else { Err(Error::domain(name, value, NON_NEGATIVE)) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_have_the_digits_that_matter() {
+        // Typed, and computed.
+        for (value, text) in [
+            (0.1, "0.1"),
+            (-1.0, "-1"),
+            (2_000_000.0, "2000000"),
+            (123_456_789_012.0, "123456789012"),
+            (1.0 / 3.0, "0.333333"),
+            (0.869_565_217_391_304_3, "0.869565"),
+            (0.1 + 0.2, "0.3"),
+            (9.999_999_999_999_999e-10, "1e-9"),
+            (2.0 / 3.0 * 1e10, "6.66667e9"),
+            (5e-324, "5e-324"),
+            (f64::INFINITY, "inf"),
+            (0.0, "0"),
+        ] {
+            assert_eq!(Error::domain("x", value, "y").to_string(), format!("x = {text}: expected y"));
+        }
+        let beyond = 1.0 + f64::EPSILON;
+        let error = Error::OutOfRange { name: "x".into(), value: beyond, min: 0.0, max: 1.0 };
+        assert!(error.to_string().starts_with("x = 1.0000000000000002 is outside [0, 1]"), "{error}");
+        let error = Error::domain("x", beyond, "a number in [0, 1]");
+        assert!(error.to_string().starts_with("x = 1.0000000000000002: expected"), "{error}");
+    }
+
+    #[test]
+    fn what_double_precision_does_not_hold_is_told_without_its_name() {
+        let of = |error: Error| error.to_string();
+        let size = "numbers between 1e-308 and 1e308 in size, results among them (choose other units)";
+        assert_eq!(of(Error::of_positive("x", 1e300)), format!("x = 1e300: expected {size}"));
+        assert_eq!(of(Error::of_positive("x", 0.0)), "x = 0: expected a finite number > 0");
+        assert_eq!(of(Error::of_non_negative("x", 0.0)), format!("x = 0: expected {size}"));
+        assert_eq!(of(Error::of_non_negative("x", f64::NAN)), "x = NaN: expected a finite number >= 0");
     }
 }

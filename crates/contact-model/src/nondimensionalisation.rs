@@ -114,7 +114,7 @@ fn held(name: &'static str, value: f64, result: f64) -> Result<f64> {
     if result.is_finite() && (result.abs() > 0.0 || value.abs() <= 0.0) {
         Ok(result)
     } else {
-        Err(Error::domain(name, result, "a number within the range of f64 (choose other units)"))
+        Err(Error::not_representable(name, result))
     }
 }
 

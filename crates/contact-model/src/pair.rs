@@ -111,7 +111,7 @@ fn held(name: &'static str, value: f64) -> Result<f64> {
         Err(Error::domain(
             name,
             value,
-            "a finite number > 0: at least one elastic body, moduli within the range of f64",
+            "a finite number > 0: at least one elastic body, moduli between 1e-308 and 1e308",
         ))
     }
 }

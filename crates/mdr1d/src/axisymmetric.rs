@@ -75,11 +75,7 @@ impl Profile {
             if slope.is_finite() && slope > 0.0 {
                 Ok(Some(Self::Power { exponent, slope }))
             } else {
-                Err(Error::domain(
-                    "depth of the body at r = L, over L",
-                    slope,
-                    "a number within the range of f64",
-                ))
+                Err(Error::not_representable("depth of the body at r = L, over L", slope))
             }
         };
         match *surface {

@@ -153,7 +153,7 @@ impl Bearing {
             Load::Force(force) => {
                 let sum = nondimensional.force_in(force);
                 if force > 0.0 && sum <= 0.0 {
-                    return Err(Error::domain("approach", 0.0, "a number within the range of f64"));
+                    return Err(Error::not_representable("approach", 0.0));
                 }
                 let (approach, elements) = self.at_sum(sum);
                 (force, nondimensional.approach(approach)?, elements)

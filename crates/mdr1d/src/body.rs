@@ -63,5 +63,5 @@ impl RoundContact {
 
 /// A loaded contact of which nothing is left.
 pub(crate) fn out_of_f64(radius: f64) -> Error {
-    Error::domain("contact radius over side", radius, "a number within the range of f64")
+    Error::not_representable("contact radius over side", radius)
 }

@@ -71,7 +71,7 @@ impl Material {
             if time.is_normal() && time.recip().is_normal() {
                 Ok(time)
             } else {
-                Err(Error::domain("4 viscosity/modulus", time, "a time within the range of f64"))
+                Err(Error::not_representable("4 viscosity/modulus", time))
             }
         };
         let material = match rheology {
@@ -87,7 +87,7 @@ impl Material {
         if material.arms.iter().all(|arm| arm.rate.is_normal() && arm.weight.is_finite()) {
             Ok(Some(material))
         } else {
-            Err(Error::domain("1/relaxation time", f64::INFINITY, "a number within the range of f64"))
+            Err(Error::not_representable("1/relaxation time", f64::INFINITY))
         }
     }
 

@@ -275,8 +275,7 @@ fn adhesive(profile: Profile, scene: &Scene) -> Result<Option<Adhesive>> {
             if scaled.is_finite() && (scaled > 0.0 || work <= 0.0) {
                 Adhesive::new(profile, scaled).map(Some)
             } else {
-                let expected = "a number within the range of f64 over E* L";
-                Err(Error::domain("work of adhesion", work, expected))
+                Err(Error::not_representable("work of adhesion", work))
             }
         }
         other => Err(Error::unsupported(NAME, format!("adhesion ({other:?})"))),

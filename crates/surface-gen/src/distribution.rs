@@ -154,8 +154,7 @@ impl HeightDistribution {
         let found = rms_height(&heights);
         let scale = rms / found;
         if !(scale.is_normal() && mean.is_finite()) {
-            let expected = "heights that differ, within the range of f64";
-            return Err(Error::domain("rms height of the distribution", found, expected));
+            return Err(Error::of_positive("rms height of the distribution", found));
         }
         for h in &mut heights {
             *h = (*h - mean) * scale;

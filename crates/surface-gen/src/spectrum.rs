@@ -31,11 +31,7 @@ fn checked_scale(scale: f64, surface: &SelfAffine) -> Result<f64> {
         Amplitude::RmsHeight(h) => ("rms_height", h),
         Amplitude::Spectrum(c) => ("spectrum constant", c),
     };
-    if scale.is_normal() {
-        Ok(scale)
-    } else {
-        Err(Error::domain(name, value, "amplitudes within the range of f64 (choose other units)"))
-    }
+    if scale.is_normal() { Ok(scale) } else { Err(Error::not_representable(name, value)) }
 }
 
 /// The waves of a map inside a circle, and their amplitudes. Wavenumbers are counted in `q_0 = 2 pi / L`.

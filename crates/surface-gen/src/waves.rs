@@ -184,8 +184,7 @@ impl WaveGenerator {
         let rms = rms.unwrap_or(found);
         let scale = rms / found;
         if !(scale.is_normal() && rms.is_normal()) {
-            let expected = "amplitudes within the range of f64 (choose other units)";
-            return Err(Error::domain("rms height of the spectrum", rms, expected));
+            return Err(Error::not_representable("rms height of the spectrum", rms));
         }
         for amplitude in &mut amplitudes {
             *amplitude *= scale;

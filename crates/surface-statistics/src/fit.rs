@@ -179,8 +179,7 @@ impl SpectrumFit {
             return Err(Error::domain("rms height of the map", 0.0, "a rough surface: a finite number > 0"));
         }
         if !rings.density.is_normal() {
-            let expected = "a number within the range of f64 (choose other units)";
-            return Err(Error::domain("power spectral density", rings.density, expected));
+            return Err(Error::not_representable("power spectral density", rings.density));
         }
         let mut likelihood = Likelihood::new(rings);
         let mut best = likelihood.best();

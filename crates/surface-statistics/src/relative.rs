@@ -27,9 +27,5 @@ impl Relative {
 /// # Errors
 /// [`Error::Domain`] otherwise.
 pub(crate) fn finite(name: &'static str, value: f64) -> Result<f64> {
-    if value.is_finite() {
-        Ok(value)
-    } else {
-        Err(Error::domain(name, value, "a number within the range of f64 (choose other units)"))
-    }
+    if value.is_finite() { Ok(value) } else { Err(Error::not_representable(name, value)) }
 }

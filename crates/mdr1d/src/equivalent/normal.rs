@@ -106,7 +106,7 @@ impl Normal {
             0.5 * (stiffness / unit),
         );
         if force > 0.0 && !(approach > 0.0 && radius > 0.0 && radius.is_finite() && approach.is_finite()) {
-            return Err(Error::domain("approach over side", approach, "a number within the range of f64"));
+            return Err(Error::not_representable("approach over side", approach));
         }
         // The certificate counts gaps in rms heights.
         let lever = if force > 0.0 { 1.0 + 2.0 * radius * self.height / force } else { 1.0 };

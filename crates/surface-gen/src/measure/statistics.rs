@@ -122,8 +122,7 @@ impl MapStatistics {
         };
         let gradient = found.rms_slope();
         if !gradient.is_normal() {
-            let expected = "a number within the range of f64 (choose other units)";
-            return Err(Error::domain("rms slope of the map", gradient, expected));
+            return Err(Error::not_representable("rms slope of the map", gradient));
         }
         Ok(found)
     }
