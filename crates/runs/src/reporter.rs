@@ -72,6 +72,8 @@ struct Done {
     whole: f64,
     /// Of jobs under way, by their names.
     parts: BTreeMap<String, Part>,
+    /// Costs of jobs whose states are all solved, and which write their files.
+    writing: Vec<u64>,
     /// Of that, what was found on disk: it says nothing about the time that the rest takes.
     found: f64,
 }
@@ -89,6 +91,9 @@ struct Part {
 impl Done {
     /// A job is done.
     fn add(&mut self, cost: u64, reused: bool) {
+        if let Some(place) = self.writing.iter().position(|writing| *writing == cost) {
+            self.writing.swap_remove(place);
+        }
         self.whole += cost as f64;
         if reused {
             self.found += cost as f64;
@@ -104,8 +109,10 @@ impl Done {
             self.found += of_state * job.done.saturating_sub(solved_now) as f64;
         }
         if job.done >= job.all {
-            // The whole job counts in a moment.
-            self.parts.remove(job.name);
+            // The whole job counts when its files are written.
+            if self.parts.remove(job.name).is_some() {
+                self.writing.push(job.cost);
+            }
             return;
         }
         let new = Part { cost: 0.0, states: job.done, first: 0.0 };
@@ -122,7 +129,9 @@ impl Done {
 
     /// What is done.
     fn cost(&self) -> f64 {
-        (self.whole + self.parts.values().map(|part| part.cost).sum::<f64>()).min(self.total)
+        let under_way: f64 = self.parts.values().map(|part| part.cost).sum();
+        let written: f64 = self.writing.iter().map(|cost| *cost as f64).sum();
+        (self.whole + written + under_way).min(self.total)
     }
 
     /// Seconds that the rest takes, after so many: as long as what this run has done did. `None` where that
@@ -240,7 +249,7 @@ impl Progress for Reporter {
 fn words(job: &JobInHand<'_>) -> String {
     let JobInHand { name, done, all, residual, .. } = job;
     match residual {
-        _ if done >= all => String::new(),
+        _ if done >= all => format!("files of {name}"),
         None => format!("{done} of {all} states of {name}"),
         Some((residual, tolerance)) => {
             let state = done + 1;
@@ -276,8 +285,10 @@ mod tests {
         approx::assert_relative_eq!(done.cost(), 75.0, max_relative = 1e-12);
         // The whole job is counted when it is done.
         done.set(&JobInHand { done: 4, residual: None, ..job });
-        done.add(40, false);
+        // It is no less while its files are written.
         assert_eq!((done.cost(), done.parts.len()), (90.0, 0));
+        done.add(40, false);
+        assert_eq!((done.cost(), done.writing.len()), (90.0, 0));
     }
 
     #[test]
@@ -287,7 +298,7 @@ mod tests {
         job.residual = Some((3.2e-5, 1e-8));
         assert_eq!(words(&job), "state 4 of 10, residual 3e-5 of 1e-8, bem3d");
         job.done = 10;
-        assert_eq!(words(&job), "");
+        assert_eq!(words(&job), "files of bem3d");
     }
 
     #[test]

@@ -41,6 +41,47 @@ pub fn print_error(text: Arguments<'_>) {
     let _ = write(&mut std::io::stderr().lock(), text);
 }
 
+/// Text with lines of at most 80 characters where its words allow it, for a terminal: what is folded goes on below the
+/// text of its line, which begins behind a label and two spaces.
+///
+/// ```
+/// let text = format!("  effects  {}\n", "hardness ".repeat(8).trim_end());
+/// let folded = runs::folded(&text);
+/// assert!(folded.starts_with("  effects  hardness ") && folded.ends_with("hardness\n           hardness\n"));
+/// ```
+pub fn folded(text: &str) -> String {
+    text.split_inclusive('\n').map(folded_line).collect()
+}
+
+fn folded_line(line: &str) -> String {
+    const WIDTH: usize = 80;
+    /// The longest label.
+    const LABEL: usize = 32;
+    let count = |text: &str| text.chars().count();
+    if count(line.trim_end()) <= WIDTH {
+        return line.to_owned();
+    }
+    let indent = line.len() - line.trim_start().len();
+    let label = line[indent..].find("  ").map(|end| indent + end).filter(|end| *end < LABEL);
+    let begin = label.map_or(0, |end| line.len() - line[end..].trim_start().len());
+    let hang = if begin > 0 { count(&line[..begin]) } else { indent + 2 };
+    let (mut text, rest) = (line[..begin].to_owned(), &line[begin..]);
+    let mut used = count(&text);
+    for (i, word) in rest.split(' ').enumerate() {
+        if i > 0 && used + 1 + count(word.trim_end()) > WIDTH {
+            text.push('\n');
+            text.extend(std::iter::repeat_n(' ', hang));
+            used = hang;
+        } else if i > 0 {
+            text.push(' ');
+            used += 1;
+        }
+        text.push_str(word);
+        used += count(word);
+    }
+    text
+}
+
 /// Writes text whose control characters, but for ends of lines and tabs, are written out: names in files,
 /// tokens that an error quotes and paths may hold commands of a terminal.
 fn write(into: &mut dyn Write, text: Arguments<'_>) -> std::io::Result<()> {
@@ -79,5 +120,22 @@ mod tests {
         assert_eq!(shown, "channel\tHeight\\u{1b}]0;title\\u{7}\n\"Height\\u{1b}]0;title\\u{7}\"\\r\n");
         let full = write(&mut [0_u8; 2].as_mut_slice(), format_args!("abc")).unwrap_err();
         assert_eq!(full.kind(), ErrorKind::WriteZero);
+    }
+
+    #[test]
+    fn long_lines_are_folded_at_spaces() {
+        let short = "a\n\n  b  c\n";
+        assert_eq!(folded(short), short);
+        let words = "word ".repeat(40);
+        let long = format!("note: {words}\n    label      {words}\nend");
+        let text = folded(&long);
+        assert!(text.lines().all(|line| line.trim_end().chars().count() <= 80), "{text}");
+        assert!(
+            text.contains("\n  word") && text.contains("\n               word") && text.ends_with("\nend")
+        );
+        assert_eq!(text.split_whitespace().count(), long.split_whitespace().count());
+        // What has no spaces stays whole.
+        let path = "x".repeat(200);
+        assert_eq!(folded(&format!("at {path}\n")), format!("at\n  {path}\n"));
     }
 }
