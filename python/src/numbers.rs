@@ -38,11 +38,12 @@ impl<'py> FromPyObject<'_, 'py> for Real {
         if is_no_number(&of) {
             return Err(refused(&of, "a real number"));
         }
-        of.extract::<f64>().map(Self).map_err(|error| {
+        of.extract::<f64>().map(Self).or_else(|error| {
+            // Whole numbers beyond the largest float: refused by name where a finite number is needed.
             if error.is_instance_of::<PyOverflowError>(of.py()) {
-                error
+                Ok(Self(if of.lt(0)? { f64::NEG_INFINITY } else { f64::INFINITY }))
             } else {
-                refused(&of, "a real number")
+                Err(refused(&of, "a real number"))
             }
         })
     }
@@ -155,8 +156,11 @@ impl<'py> FromPyObject<'_, 'py> for Pair {
     type Error = PyErr;
 
     fn extract(of: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
-        pair(&of)
-            .map(Self)
-            .ok_or_else(|| refused(&of, "two whole numbers >= 0, the first and the one after the last"))
+        pair(&of).map(Self).ok_or_else(|| {
+            let shown = of.repr().map_or_else(|_| "?".into(), |text| text.to_string());
+            PyTypeError::new_err(format!(
+                "expected two whole numbers >= 0, the first and the one after the last, not {shown}"
+            ))
+        })
     }
 }

@@ -1,6 +1,6 @@
 //! Scene files.
 
-use crate::errors::{of_scene, plain, stopped};
+use crate::errors::{of_scene, of_values, plain, stopped};
 use crate::pool::{self, StopToken};
 use crate::quantities::is_count;
 use crate::state;
@@ -107,19 +107,24 @@ fn columns<'py>(py: Python<'py>, table: &CsvFile) -> PyResult<Bound<'py, PyDict>
 
 /// Runs a scene as the program does; the files, the summary and the counts by their names.
 #[pyfunction]
-#[pyo3(signature = (scene, out, threads, fresh, progress, stop=None))]
+#[pyo3(signature = (scene, out, threads, fresh, drawn_states, progress, stop=None))]
+#[allow(clippy::too_many_arguments)] // One for each keyword.
 pub fn run_scene<'py>(
     py: Python<'py>,
     scene: &SceneFile,
     out: PathBuf,
     threads: Option<usize>,
     fresh: bool,
+    drawn_states: Option<Vec<usize>>,
     progress: Option<Py<PyAny>>,
     stop: Option<Py<PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let token = StopToken::new(py, stop.as_ref())?;
     let threads = threads.map_or_else(pool::threads, Ok)?.max(1);
-    let (counter, file, table) = (Counter::default(), scene.0.clone(), out.join("results.csv"));
+    let (counter, mut file, table) = (Counter::default(), scene.0.clone(), out.join("results.csv"));
+    if let Some(states) = drawn_states {
+        file = file.drawing(states).map_err(|error| of_values(py, &error))?;
+    }
     let mut told = 0;
     let mut listen = |py: Python<'_>| {
         let (done, total) = (counter.done.load(Ordering::Relaxed), counter.total.load(Ordering::Relaxed));

@@ -162,6 +162,32 @@ def test_seeds(seed, error):
             take()
 
 
+@pytest.mark.parametrize(
+    ("count", "error"),
+    [(-1, fc.DomainError), (2**64, fc.DomainError), (1.5, TypeError), (True, TypeError), ("3", TypeError)],
+)
+def test_counts_are_told_by_name(count, error, tmp_path):
+    scene = fc.Scene(ROUGH, modulus=1.0)
+    for name, take in (
+        ("surfaces", lambda: fc.ensemble(fc.PowerLaw(), scene, seed=1, surfaces=count, force_bar=[1.0])),
+        ("cells", lambda: ROUGH.height_map(count)),
+        ("cells", lambda: fc.surface_gen.self_affine_map(ROUGH, count, 1)),
+        ("threads", lambda: fc.run_scene("absent.toml", tmp_path, threads=count)),
+    ):
+        with pytest.raises(error, match=f"^{name} (=|is) .*: expected a whole number >= ") as caught:
+            take()
+        if error is fc.DomainError:
+            assert caught.value.quantity == name and caught.value.value == pytest.approx(count)
+
+
+def test_whole_numbers_beyond_floats_are_refused_by_name():
+    contact = fc.Hertz().prepare(fc.Scene(SPHERE, modulus=1.0))
+    with pytest.raises(fc.DomainError, match="force = inf: expected a finite number"):
+        contact.solve(force=10**400)
+    with pytest.raises(fc.DomainError, match="force = -inf: expected a finite number"):
+        contact.solve(force=-(10**400))
+
+
 def test_scenes_say_what_they_take():
     for surface in ("map.npy", GRID, None):
         with pytest.raises(TypeError, match=r"expected a Surface or a HeightMap; fc\.HeightMap"):

@@ -200,6 +200,18 @@ def test_mistakes_in_scenes_show_their_place(tmp_path):
     assert not (tmp_path / "out").exists()
 
 
+def test_pictures_of_chosen_states(tmp_path):
+    file = fc.Scene.from_toml(SCENE.replace('["npy"]', '["png"]'))
+    outcome = fc.run_scene(file, tmp_path, drawn_states=np.array([2]))
+    assert [path.name for path in outcome.files if path.suffix == ".png"] == ["pressure-bem3d-0-002.png"]
+    assert outcome.states == 3
+    with pytest.raises(ValueError, match=r"state 3 is to be drawn, but there are 3 states; .* from 0 to 2"):
+        fc.run_scene(file, tmp_path, drawn_states=[0, 3])
+    for wrong, error in ((2, TypeError), ("2", TypeError), ([1.5], TypeError), ([-1], fc.DomainError)):
+        with pytest.raises(error, match="drawn_states"):
+            fc.run_scene(file, tmp_path, drawn_states=wrong)
+
+
 def test_a_sweep_has_the_bits_of_rust():
     program = os.environ.get("FRACTAL_CONTACT_SWEEP")
     if program is None:

@@ -915,6 +915,7 @@ def run_scene(
     out: Path,
     threads: int | None,
     fresh: bool,
+    drawn_states: list[int] | None,
     progress: Callable[[int, int], object] | None,
     stop: StopToken | None = None,
 ) -> dict[str, Any]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from os import PathLike
 from pathlib import Path
@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from . import _core
 from ._core import HeightMap, SceneFile
 from ._models import StopToken
+from ._numbers import count, is_iterable
 from ._plain import named
 from .typing import ReadOptions
 
@@ -126,6 +127,7 @@ def run_scene(
     *,
     threads: int | None = None,
     fresh: bool = False,
+    drawn_states: Iterable[int] | None = None,
     progress: Callable[[int, int], object] | None = None,
     stop: StopToken | None = None,
 ) -> SceneOutcome:
@@ -141,14 +143,24 @@ def run_scene(
         All of `threads` by default.
     fresh : bool
         Whether stored results are computed again.
+    drawn_states : iterable of int, optional
+        Numbers of the loads or steps, from 0, whose fields become pictures, in files and in the report; by default
+        those that the scene names in ``[outputs]``, or all.
     progress : callable, optional
         Called with the relative cost that is done and that of all.
     stop : threading.Event, optional
         Set by another thread, it ends the run with `Stopped`; the next run goes on from what was finished.
     """
+    if threads is not None:
+        threads = count(threads, "threads", 1)
+    drawn = drawn_states
+    if drawn is not None:
+        if not is_iterable(drawn) or isinstance(drawn, str | bytes):
+            raise TypeError(f"drawn_states is {drawn!r}: expected numbers of loads or steps, such as [3, 9]")
+        drawn = [count(state, f"drawn_states[{i}]") for i, state in enumerate(drawn)]
     if not isinstance(scene, SceneFile):
         scene = SceneFile.read(Path(scene))
-    found = _core.run_scene(scene, Path(out), threads, fresh, progress, stop)
+    found = _core.run_scene(scene, Path(out), threads, fresh, drawn, progress, stop)
     files = [Path(file) for file in found.pop("files")]
     results = {name: np.asarray(values) for name, values in found.pop("results").items()}
     return SceneOutcome(files=files, results=results, **found)

@@ -11,7 +11,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import _core
+from . import _core, _numbers
 from ._core import HeightMap, SceneFile
 from ._effects import Effects
 from ._numbers import number
@@ -161,7 +161,7 @@ class Surface:
         OutOfMemory
             For a map that does not fit in memory, before it is drawn.
         """
-        return _core.height_map(self._core(), cells, seed)
+        return _core.height_map(self._core(), _numbers.cells(cells), _numbers.seed(seed))
 
 
 @dataclass(frozen=True)

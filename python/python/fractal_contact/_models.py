@@ -8,7 +8,7 @@ from typing import Any, ClassVar, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from . import _core
+from . import _core, _numbers
 from ._core import Contact, ContactState
 from ._errors import Error
 from ._inputs import Scene
@@ -89,7 +89,7 @@ class Model:
         OutOfMemory
             For a grid that does not fit in memory, before anything is drawn or planned.
         """
-        return self._core().prepare(scene._core(), seed)
+        return self._core().prepare(scene._core(), _numbers.seed(seed))
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}({', '.join(f'{k}={v!r}' for k, v in self._options.items())})"
@@ -401,6 +401,7 @@ def ensemble(
     }
     name, values = _one_of(given)
     loads = [(name, value) for value in values]
+    seed, surfaces = _numbers.seed(seed), _numbers.count(surfaces, "surfaces")
     return _core.ensemble(model._core(), scene._core(), loads, seed, surfaces, progress, stop)
 
 

@@ -2,10 +2,16 @@
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Iterable, Mapping
 from typing import Any
 
 import numpy as np
+
+from ._errors import DomainError
+from ._plain import pair
+
+MOST = 2**64 - 1
 
 
 def number(value: Any, name: str) -> float:
@@ -21,6 +27,41 @@ def number(value: Any, name: str) -> float:
         return float(value)
     except OverflowError:
         raise ValueError(f"{name} is beyond the range of a float") from None
+
+
+def seed(value: Any, name: str = "seed") -> int:
+    """The seed of a surface, or the number of one."""
+    return _whole(value, name, 0, "a whole number from 0 to 2^64 - 1")
+
+
+def count(value: Any, name: str, least: int = 0) -> int:
+    """A whole number of at least `least`."""
+    return _whole(value, name, least, f"a whole number >= {least}")
+
+
+def _whole(value: Any, name: str, least: int, expected: str) -> int:
+    known = not isinstance(value, bool | np.bool_) and value is not np.ma.masked
+    try:
+        found = operator.index(value) if known else None
+    except TypeError:
+        found = None
+    if found is None:
+        raise TypeError(f"{name} is {value!r}: expected {expected}")
+    if not least <= found <= MOST:
+        error = DomainError(f"{name} = {found}: expected {expected}")
+        error.quantity, error.value, error.expected = name, float(max(-MOST, min(found, MOST))), expected
+        raise error
+    return found
+
+
+def cells(value: Any) -> int | tuple[int, int]:
+    """Columns, or columns and rows."""
+    given = pair(value)
+    if isinstance(given, tuple):
+        if len(given) != 2:
+            raise TypeError(f"cells is {value!r}: expected a whole number or two, along x and along y")
+        return count(given[0], "cells[0]"), count(given[1], "cells[1]")
+    return count(given, "cells")
 
 
 def is_iterable(values: Any) -> bool:

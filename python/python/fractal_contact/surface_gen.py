@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
-from . import _core
-from ._core import HeightMap, surface_seed
+from . import _core, _numbers
+from ._core import HeightMap
 from ._inputs import Cells, Surface
 from .typing import Waves
 
 __all__ = ["self_affine_map", "surface_seed", "twin"]
+
+
+def surface_seed(seed: int, index: int) -> int:
+    """Seed of surface number `index` of the ensemble of a master seed."""
+    return _core.surface_seed(_numbers.seed(seed), _numbers.seed(index, "index"))
 
 
 def self_affine_map(
@@ -44,7 +49,8 @@ def self_affine_map(
     (64, 64)
     """
     given = None if anisotropy is None else (anisotropy, lay)
-    return _core.self_affine_map(surface._core(), cells, seed, given, weibull)
+    columns = _numbers.cells(cells)
+    return _core.self_affine_map(surface._core(), columns, _numbers.seed(seed), given, weibull)
 
 
 def twin(heights: HeightMap, seed: int, *, twin: Waves = "waves", keep_heights: bool = False) -> HeightMap:
@@ -63,4 +69,4 @@ def twin(heights: HeightMap, seed: int, *, twin: Waves = "waves", keep_heights: 
     """
     if twin not in ("waves", "rings"):
         raise ValueError(f'twin is {twin!r}: expected "waves" or "rings"')
-    return _core.twin(heights, seed, twin == "rings", keep_heights)
+    return _core.twin(heights, _numbers.seed(seed), twin == "rings", keep_heights)

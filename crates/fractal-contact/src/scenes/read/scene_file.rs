@@ -125,6 +125,17 @@ impl SceneFile {
         }
     }
 
+    /// The scene with pictures of the fields of these states alone, loads or steps counted from 0, in place of
+    /// `drawn_states` in its `[outputs]`.
+    ///
+    /// # Errors
+    /// A [`Diagnostic`] that names the first of them that the scene does not have.
+    pub fn drawing(mut self, states: Vec<usize>) -> Result<Self, Diagnostic> {
+        self.requested.drawn_states = Some(states);
+        check_drawn_states(&self.requested, &self.request)?;
+        Ok(self)
+    }
+
     /// Reads a file.
     ///
     /// # Errors
@@ -297,7 +308,8 @@ fn read_scene(root: &Entries<'_>, directory: &Path, registry: &Registry) -> Read
     };
     check_request(&request, &request_entry, &surface, &effects)?;
     check_half_plane(&request, &request_entry, &surface, (&effects, &requested), &places)?;
-    check_drawn_states(&requested, &request, &places)?;
+    check_drawn_states(&requested, &request)
+        .map_err(|error| error.at(places.of_output(outputs::DRAWN_STATES)))?;
     check_histories(&models, &request, &request_entry, &effects)?;
     check_tangential(&models, &request, &effects)?;
     check_coupling(&models, pair.as_ref(), effects.friction, places.of_effect("friction"))?;
@@ -548,13 +560,12 @@ fn check_half_plane(
 }
 
 /// States that are drawn are states of the scene.
-fn check_drawn_states(requested: &RequestedOutputs, request: &LoadRequest, places: &Places) -> Read<()> {
+fn check_drawn_states(requested: &RequestedOutputs, request: &LoadRequest) -> Read<()> {
     let count = request.count();
     let Some(state) = requested.drawn_states.iter().flatten().find(|state| **state >= count) else {
         return Ok(());
     };
     Err(Diagnostic::new(format!("state {state} is to be drawn, but there are {count} states"))
-        .at(places.of_output(outputs::DRAWN_STATES))
         .with_help(format!("numbers of loads or steps from 0 to {}", count.saturating_sub(1))))
 }
 
