@@ -346,6 +346,12 @@ impl Tuning {
             ..tuning
         }
     }
+
+    /// Factor of the residuals to which the contact set is solved further, from the tolerance over the error of the
+    /// stiffness.
+    pub(crate) fn tightened(&self, share: f64) -> f64 {
+        (self.tight_aim * share).clamp(self.tighter.0, self.tighter.1)
+    }
 }
 
 trait Multiply {

@@ -1,7 +1,7 @@
 //! Does the estimated error of the stiffness cover the true one? Loose solves beside tight ones.
 
 use bem3d::{Bem3d, Method};
-use contact_model::{ContactModel, Load, Scene, SelfAffine, Surface};
+use contact_model::{Body, ContactModel, Coupling, Friction, Load, Pair, Scene, SelfAffine, Step, Surface};
 
 /// Coverage: share of the true errors that lie inside their estimate.
 const COVERAGE: f64 = 0.9;
@@ -38,4 +38,19 @@ fn the_estimated_error_of_k_covers_the_true_one() {
     println!("{} solves: {inside:.3} inside, median true / estimated {median:.3}", ratios.len());
     assert!(inside >= COVERAGE, "only {inside} of the true errors lie inside their estimate");
     assert!(median >= 1.0 / OVERESTIMATE, "the estimates are {} times too large", 1.0 / median);
+}
+
+/// Of the steps of this path one has a cell at the edge of contact that decides the stiffness.
+#[test]
+fn the_stiffness_under_full_coupling_is_as_accurate_as_was_asked_for() {
+    let pair = Pair { first: Body::Rigid, second: Body::Elastic { young: 1.0, poisson: 0.2 } };
+    let mut scene = Scene::of_pair(Surface::Sphere { radius: 1.0, size: 1.0.into() }, pair).unwrap();
+    scene.effects.friction = Friction::Coulomb { coefficient: 0.5, coupling: Some(Coupling::Full) };
+    let model = Bem3d { cells: 73, ..Bem3d::default() };
+    let mut contact = model.prepare(&scene, 0).unwrap();
+    for step in 1..=40 {
+        let load = Load::Force(0.05 / 40.0 * f64::from(step));
+        let state = contact.advance(Step::normal(f64::from(step), load)).unwrap();
+        assert!(state.report.certificate.meets(model.tolerance), "{}", state.report.certificate);
+    }
 }

@@ -44,7 +44,7 @@ pub struct CoupledLoad {
     pub tangential_limits: FrictionLimits,
 }
 
-/// The state at the end of an increment, from the tractions before and a guess of the pressure.
+/// The state at the end of an increment, from the tractions before or from a pair that is near it.
 ///
 /// Alternates: the pressure on the surface that the last tractions deform, the tractions with the tangential
 /// displacement of that pressure. It ends when the gap of the pressure with the normal displacement of the last
@@ -61,13 +61,14 @@ pub fn advance(
     friction: &mut Friction,
     before: &SlipMemory,
     load: CoupledLoad,
-    guess: Option<Guess>,
+    near: Option<(Guess, SlipMemory)>,
     stop: Stop<'_>,
 ) -> Result<CoupledState, ForceTooLarge> {
     let CoupledLoad { normal: control, tangential, normal_limits, tangential_limits } = load;
     let grid = problem.grid();
-    let mut raised = friction.normal_displacement(before).unwrap_or_else(|| vec![0.0; z.len()]);
-    let (mut guess, mut tractions): (_, Option<SlipMemory>) = (guess, None);
+    let (mut guess, mut tractions) = near.unzip();
+    let from = tractions.as_ref().unwrap_or(before);
+    let mut raised = friction.normal_displacement(from).unwrap_or_else(|| vec![0.0; z.len()]);
     let (mut last, mut contraction, mut idle, mut rounds) = (f64::INFINITY, None, 0, 0);
     loop {
         rounds += 1;

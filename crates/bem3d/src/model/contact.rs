@@ -257,13 +257,35 @@ impl PreparedSurface {
         recorder.timed(Part::Results, || self.state(solved, tangent, error, slid, stop))
     }
 
-    /// The state of a load whose tractions displace normally.
+    /// The state of a load whose tractions displace normally. As in [`Self::settle`] both are solved further as
+    /// long as undecided cells could change the stiffness by more than the tolerance.
     fn at_coupled(&mut self, target: Control, stop: Stop<'_>) -> Result<ContactState> {
-        let Some((solved, slid)) = self.slide_coupled(target, stop)? else {
+        let (tuning, mut limits) = (*self.problem.operators.tuning(), self.limits());
+        let Some((mut solved, mut slid)) = self.slide_coupled((target, limits), None, stop)? else {
             return Err(Error::unsupported(NAME, "coupling without friction"));
         };
         let wanted = self.outputs.needs_stiffness() && !self.is_complete(&solved);
-        let tangent = wanted.then(|| self.tangent(&solved, (None, None), None, stop));
+        let mut tangent = wanted.then(|| self.tangent(&solved, (None, None), None, stop));
+        for _ in 0..tuning.tightenings {
+            let Some(found) = tangent.as_ref() else { break };
+            let (error, before) = (self.tangent_error(found), solved.residuals.worst());
+            if solved.status != Status::Converged || error <= self.options.tolerance || stop.stops() {
+                break;
+            }
+            limits.tolerance =
+                tuning.tightened(self.options.tolerance / error) * limits.tolerance.min(before);
+            let near = Some((&solved, &slid));
+            let Ok(Some((next, slipped))) = self.slide_coupled((target, limits), near, stop) else { break };
+            if next.residuals.worst() >= before || slipped.state.status != Status::Converged {
+                break;
+            }
+            // As in `settle`.
+            let converged = next.residuals.worst() <= self.options.tolerance;
+            let status = if converged { Status::Converged } else { next.status };
+            let steps = solved.steps + found.steps() + slid.steps() + next.steps;
+            (solved, slid) = (Solved { steps, status, ..next }, slipped);
+            tangent = Some(self.tangent(&solved, (None, None), None, stop));
+        }
         let error = self.load_error(target, &solved, tangent.as_ref());
         self.state(solved, tangent, error, Some(slid), stop)
     }
@@ -327,8 +349,8 @@ impl PreparedSurface {
                 break;
             }
             // The state may be better than it was asked to be: begin there.
-            let share = tuning.tight_aim * self.options.tolerance / error;
-            limits.tolerance = share.clamp(tuning.tighter.0, tuning.tighter.1) * limits.tolerance.min(before);
+            limits.tolerance =
+                tuning.tightened(self.options.tolerance / error) * limits.tolerance.min(before);
             let continuation = std::mem::take(&mut solved.continuation);
             let again = Solved { continuation, ..solved.clone() };
             let next = active_set::resume(&mut self.problem, target, again, limits, stop);

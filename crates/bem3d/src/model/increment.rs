@@ -5,7 +5,7 @@ use super::load::held;
 use super::options::NAME;
 use super::prepared::PreparedSurface;
 use super::sliding::{Slid, Sliding};
-use crate::active_set::{Candidates, Control, Solved};
+use crate::active_set::{Candidates, Control, Guess, Limits, Solved};
 use crate::friction::{
     CoupledLoad, ForceTooLarge, Friction, FrictionLimits, FrictionLoad, FrictionState, PressedCells,
     SlipMemory, StiffnessOf, TangentialControl, TangentialStiffness, advance_coupled,
@@ -89,14 +89,15 @@ impl PreparedSurface {
         Ok(Slid { state, stiffness, rounds: None })
     }
 
-    /// The state of a load where tractions displace normally.
+    /// The state of a load where tractions displace normally, from one that is near where there is one.
     pub(super) fn slide_coupled(
         &mut self,
-        target: Control,
+        (target, limits): (Control, Limits),
+        near: Option<(&Solved, &Slid)>,
         stop: Stop<'_>,
     ) -> Result<Option<(Solved, Slid)>> {
         let Some(mut sliding) = self.sliding.take() else { return Ok(None) };
-        let found = self.slide_coupled_by(&mut sliding, target, stop);
+        let found = self.slide_coupled_by(&mut sliding, (target, limits), near, stop);
         self.sliding = Some(sliding);
         found.map(Some)
     }
@@ -104,7 +105,8 @@ impl PreparedSurface {
     fn slide_coupled_by(
         &mut self,
         sliding: &mut Sliding,
-        target: Control,
+        (target, limits): (Control, Limits),
+        near: Option<(&Solved, &Slid)>,
         stop: Stop<'_>,
     ) -> Result<(Solved, Slid)> {
         let Sliding { friction, coefficient, before, load, undeformed, .. } = sliding;
@@ -112,17 +114,20 @@ impl PreparedSurface {
         let load = CoupledLoad {
             normal: target,
             tangential: FrictionLoad { coefficient: *coefficient, control },
-            normal_limits: self.limits(),
+            normal_limits: limits,
             tangential_limits: FrictionLimits {
                 // That of the branch's stiffness falls as its square root.
-                tolerance: self.options.tolerance
-                    * if self.outputs.tangential_stiffness { 1e-2 } else { 1.0 },
+                tolerance: limits.tolerance * if self.outputs.tangential_stiffness { 1e-2 } else { 1.0 },
                 ..self.friction_limits()
             },
         };
         let work = friction.work();
         let surface = (&mut self.problem, &undeformed[..]);
-        let found = advance_coupled(surface, friction, before, load, None, stop);
+        let near = near.map(|(normal, slid)| {
+            let guess = Guess { set: normal.contact.clone(), p: normal.p.clone(), d: normal.d };
+            (guess, slid.state.memory.clone())
+        });
+        let found = advance_coupled(surface, friction, before, load, near, stop);
         let found = found.map_err(|beyond| self.gross_slip(control, beyond))?;
         let stiffness = self.tangential_stiffness(friction, &found.tangential, stop);
         self.count(work, friction.work());

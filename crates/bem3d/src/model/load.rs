@@ -68,7 +68,7 @@ impl PreparedSurface {
             return Ok(());
         }
         let max = self.nondimensional.force(PI * capacity)?;
-        let name = "force (at the end every cell is at the hardness)".into();
+        let name = "force (at the end of the range every cell is at the hardness)".into();
         Err(Error::OutOfRange { name, value: asked, min: 0.0, max })
     }
 }
