@@ -2,6 +2,7 @@
 
 use clap::builder::{PossibleValue, PossibleValuesParser, StringValueParser, TypedValueParser};
 use clap::{Parser, Subcommand};
+use fractal_contact::{Body, Coupling, Friction, Pair};
 use runs::ShardChoice;
 use runs::cluster::{Division, Submission};
 use std::error::Error;
@@ -242,32 +243,32 @@ pub struct PressArguments {
     /// The map: files of instruments and programs, NPY, text.
     pub map: PathBuf,
     /// E* of the pair, such as "115 GPa".
-    #[arg(long, value_name = "MODULUS", conflicts_with = "bodies")]
+    #[arg(long, value_name = "MODULUS", conflicts_with = "bodies", allow_hyphen_values = true)]
     pub modulus: Option<String>,
     /// Young's modulus and Poisson's ratio of both bodies, such as "210 GPa 0.3, 70 GPa 0.33"; of one, and the other
     /// is rigid.
     #[arg(long)]
     pub bodies: Option<Bodies>,
     /// Mean pressures over the map, such as "1 MPa,10 MPa".
-    #[arg(long, value_name = "LIST", conflicts_with_all = ["force", "approach"])]
+    #[arg(long, value_name = "LIST", conflicts_with_all = ["force", "approach"], allow_hyphen_values = true)]
     pressure: Option<String>,
     /// Normal forces, such as "1 N,10 N".
-    #[arg(long, value_name = "LIST", conflicts_with = "approach")]
+    #[arg(long, value_name = "LIST", conflicts_with = "approach", allow_hyphen_values = true)]
     force: Option<String>,
     /// Approaches from first touch, such as "10 nm,100 nm".
-    #[arg(long, value_name = "LIST")]
+    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     approach: Option<String>,
     /// What lies outside of the map: free (nothing that carries load) or periodic (the map again).
     #[arg(long, value_parser = ["free", "periodic"])]
     pub boundary: Option<String>,
     /// Hardness of the softer body, such as "2 GPa": the contact flows there.
-    #[arg(long, value_name = "PRESSURE")]
+    #[arg(long, value_name = "PRESSURE", allow_hyphen_values = true)]
     pub hardness: Option<String>,
     /// Coefficient of friction; with --bodies and --tangential-force.
     #[arg(long, value_name = "MU")]
     pub friction: Option<f64>,
     /// Tangential force along x, such as "0.1 N".
-    #[arg(long, value_name = "FORCE", requires = "friction")]
+    #[arg(long, value_name = "FORCE", requires = "friction", allow_hyphen_values = true)]
     pub tangential_force: Option<String>,
     /// Of normal and tangential tractions where the bodies differ: none or full.
     #[arg(long, value_parser = ["none", "full"], requires = "friction")]
@@ -304,6 +305,22 @@ impl PressArguments {
 pub struct Bodies([Option<(String, f64)>; 2]);
 
 impl Bodies {
+    /// Whether normal and tangential tractions of these bodies act on each other. What is no pressure is told by
+    /// the scene.
+    pub fn couple(&self) -> bool {
+        let body = |body: &Option<(String, f64)>| match body {
+            None => Some(Body::Rigid),
+            Some((young, poisson)) => {
+                let young = surface_io::Quantity::parse_as(young, surface_io::Dimension::PRESSURE).ok()?;
+                Some(Body::Elastic { young, poisson: *poisson })
+            }
+        };
+        let solved = Friction::Coulomb { coefficient: 0.0, coupling: Some(Coupling::Full) };
+        let coupling =
+            || solved.coupling_of(&Pair { first: body(&self.0[0])?, second: body(&self.0[1])? }).ok()?;
+        coupling().is_some()
+    }
+
     /// As `bodies` in a scene.
     pub fn toml(&self) -> String {
         let one = |body: &Option<(String, f64)>| match body {

@@ -15,6 +15,7 @@ use fractal_contact::scenes::{
 use fractal_contact::surface_gen::{Anisotropy, HeightDistribution, TwinSpectrum};
 use press::SurfaceKeys;
 use start::{read_scene, stopped_by_signals};
+use std::io::IsTerminal as _;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::atomic::Ordering;
@@ -43,7 +44,7 @@ fn execute(arguments: Arguments, matches: &ArgMatches) -> Result<ExitCode> {
         Command::Plan { scene, nodes, node_cores, division } => {
             let scene = read_scene(&scene)?;
             let plan = Plan::calibrated(&scene)?;
-            runs::print(format_args!("{plan}"));
+            runs::print(format_args!("{}", shown(plan.to_string(), std::io::stdout().is_terminal())));
             if let Some(nodes) = nodes {
                 let here = all_threads();
                 cluster::tell(
@@ -179,28 +180,52 @@ fn default_directory(scene: &Path) -> PathBuf {
     Path::new("out").join(scene.file_stem().unwrap_or_default())
 }
 
+/// Text as a terminal has room for it; in files and pipes lines stay whole.
+fn shown(text: String, terminal: bool) -> String {
+    if terminal { runs::folded(&text) } else { text }
+}
+
+/// The report, to be opened, and in one line what else is in the folder: pictures and fields are counted, there may be
+/// thousands.
+fn written(folder: &Path, files: &[PathBuf]) -> String {
+    const REPORT: &str = "report.html";
+    let (mut named, mut pictures, mut fields, mut report) = (Vec::new(), 0, 0, String::new());
+    for file in files {
+        let name = file.file_name().unwrap_or_default().to_string_lossy();
+        match file.extension().and_then(|ending| ending.to_str()) {
+            Some("png" | "svg") => pictures += 1,
+            Some("npy" | "vti") => fields += 1,
+            _ if name == REPORT => report = format!("{}\n", file.display()),
+            _ => named.push(name.into_owned()),
+        }
+    }
+    let counts = [(pictures, "pictures"), (fields, "fields")];
+    named.extend(counts.iter().filter(|(count, _)| *count > 0).map(|(count, of)| format!("{count} {of}")));
+    format!("{report}{}: {}\n", folder.display(), named.join(", "))
+}
+
 fn run_scene(path: &Path, options: &Options) -> Result<ExitCode> {
     let scene = read_scene(path)?;
     let plan = Plan::calibrated(&scene)?;
-    runs::print_error(format_args!("{plan}"));
+    let terminal = std::io::stderr().is_terminal();
+    runs::print_error(format_args!("{}", shown(plan.to_string(), terminal)));
     let stopped = stopped_by_signals()?;
     let outcome = run(&scene, &plan, options, &runs::Reporter::new(), &|| stopped.load(Ordering::Relaxed))?;
     for (planned, (name, actual, bytes)) in plan.models.iter().zip(&outcome.actual) {
         if let Some(predicted) = &planned.predicted {
-            runs::err!("{name}\n  predicted  {predicted}");
+            runs::err!("{name}\n{}", shown(format!("  predicted  {predicted}"), terminal));
         }
-        runs::err!("  actual     {actual} (earlier runs included), {bytes} bytes of field files");
+        let actual = format!("  actual     {actual} (earlier runs included), {bytes} bytes of field files");
+        runs::err!("{}", shown(actual, terminal));
     }
     if let Some(peak) = outcome.peak_memory {
         runs::err!("memory       {} MB at the peak, the program itself included", peak / 1_000_000);
     }
     for note in &outcome.notes {
-        runs::err!("note: {note}");
+        runs::err!("{}", shown(format!("note: {note}"), terminal));
     }
     runs::print(format_args!("{}\n", outcome.summary));
-    for file in &outcome.files {
-        runs::out!("{}", file.display());
-    }
+    runs::print(format_args!("{}", written(&options.out, &outcome.files)));
     let SceneOutcome { requested, states, failed, kept, .. } = outcome;
     let not_attempted = outcome.not_attempted();
     runs::err!(

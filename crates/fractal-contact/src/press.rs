@@ -1,7 +1,7 @@
 //! `press` and `new`: the scene of the commonest question, how large the contact of a measured map is, from
 //! flags.
 
-use crate::arguments::{MapArguments, PressArguments};
+use crate::arguments::{Bodies, MapArguments, PressArguments};
 use clap::parser::ValueSource;
 use clap::{ArgMatches, Args as _};
 use fractal_contact::scenes::{Error, Result, SceneFile};
@@ -112,6 +112,14 @@ fn lacking(asked: &PressArguments, keys: &SurfaceKeys, map: &Metadata) -> Vec<La
         "--bodies",
         "rigid, 210 GPa 0.3",
         "Young's modulus and Poisson's ratio of both bodies: friction needs them".to_owned(),
+    );
+    let couple = asked.bodies.as_ref().is_none_or(Bodies::couple);
+    add(
+        asked.friction.is_some() && couple && asked.coupling.is_none(),
+        "--coupling",
+        "full",
+        "of normal and tangential tractions where the bodies differ: full solves both, none neglects it"
+            .to_owned(),
     );
     add(
         asked.friction.is_none() && asked.modulus.is_none() && asked.bodies.is_none(),

@@ -99,6 +99,14 @@ fn friction_is_a_path_under_a_force() {
     let asked = ["press", "map.txt", "--friction", "0.3", "--pressure", "1 MPa"];
     let (code, _, said) = program(dir.path(), &[&asked[..], &FLAGS].concat());
     assert!(code == Some(2) && said.contains("--bodies") && said.contains("--tangential-force"), "{said}");
+    // Bodies that differ: the command told takes their coupling along.
+    assert!(said.contains("\n  --coupling ") && said.contains("--coupling full"), "{said}");
+    let different = ["--bodies", "rigid, 210 GPa 0.3", "--tangential-force", "2 uN"];
+    let (code, _, said) = program(dir.path(), &[&asked[..], &FLAGS, &different].concat());
+    assert!(code == Some(2) && said.contains("--coupling") && !said.contains("\n  --bodies"), "{said}");
+    let (code, told, said) =
+        program(dir.path(), &[&asked[..], &FLAGS, &different, &["--coupling", "full"]].concat());
+    assert!(code == Some(0) && told.contains("stick"), "{told}{said}");
     let more = ["--bodies", "210 GPa 0.3, 210 GPa 0.3", "--tangential-force", "2 uN"];
     let (code, told, said) = program(dir.path(), &[&asked[..], &FLAGS, &more].concat());
     assert_eq!(code, Some(0), "{said}");
@@ -112,6 +120,10 @@ fn mistakes_leave_nothing_behind() {
     let (code, _, said) = program(dir.path(), &[&asked[..], &FLAGS].concat());
     assert!(code == Some(2) && said.contains("unknown unit \"GPx\""), "{said}");
     assert!(!dir.path().join("out/map").exists());
+    // A value with a sign is a value.
+    let pulled = ["press", "map.txt", "--modulus", "1 GPa", "--pressure", "-1 MPa"];
+    let (code, _, said) = program(dir.path(), &[&pulled[..], &FLAGS].concat());
+    assert!(code == Some(2) && said.contains("the load `mean_pressure` = -1 MPa is negative"), "{said}");
     let (code, _, said) = program(dir.path(), &["press", "nowhere.txt"]);
     assert!(code == Some(1) && said.contains("cannot open nowhere.txt"), "{said}");
     let (code, _, said) = program(dir.path(), &["press", "map.txt", "--bodies", "a, b, c"]);
@@ -132,4 +144,46 @@ fn a_tilt_is_told_before_a_map_is_pressed() {
     assert!(code == Some(0) && told.contains("note       the map is tilted"), "{told}");
     let level = program(dir.path(), &[&asked[..], &["--detrend", "plane"]].concat()).1;
     assert!(!level.contains("tilted: "), "{level}");
+}
+
+#[test]
+fn sides_that_are_exchanged_and_slopes_without_sense_are_told_by_info() {
+    let dir = folder();
+    let rows = (0..4).map(|y| (0..8).map(|x| ((x * y) % 3).to_string()).collect::<Vec<_>>().join(" "));
+    std::fs::write(dir.path().join("wide.txt"), rows.collect::<Vec<_>>().join("\n")).unwrap();
+    let info = |more: &[&str]| program(dir.path(), &[&["info", "wide.txt"], more].concat()).1;
+    let exchanged = info(&["--unit", "nm", "--size", "4 um x 8 um"]);
+    assert!(
+        exchanged.contains("note       cells of 500 nm x 2 um: with both sides of `size` exchanged"),
+        "{exchanged}"
+    );
+    let steep = info(&["--unit", "um", "--size", "8 um x 4 um"]);
+    assert!(
+        steep.contains("every model here assumes small slopes") && !steep.contains("exchanged"),
+        "{steep}"
+    );
+}
+
+#[test]
+fn a_force_beyond_the_hardness_is_told_with_units() {
+    let dir = folder();
+    let asked = ["press", "map.txt", "--modulus", "1 GPa", "--hardness", "2 MPa", "--force", "1 N"];
+    let (code, _, said) = program(dir.path(), &[&asked[..], &FLAGS].concat());
+    let told = "every cell is at the hardness) = 1 N is outside 0 N to 32 uN, the range in which the model holds; the hardness is 2 MPa";
+    assert!(code == Some(3) && said.contains(told), "{said}");
+}
+
+#[test]
+fn files_are_told_in_two_lines() {
+    let dir = folder();
+    let asked =
+        ["press", "map.txt", "--modulus", "1 GPa", "--pressure", "1 kPa,2 kPa,3 kPa", "--out", "found"];
+    let (code, told, said) = program(dir.path(), &[&asked[..], &FLAGS].concat());
+    assert_eq!(code, Some(0), "{said}");
+    let lines: Vec<&str> = told.trim_end().lines().rev().take(2).collect();
+    assert_eq!(lines[1], "found/report.html");
+    assert!(
+        lines[0].starts_with("found: results.csv, ") && lines[0].ends_with(" pictures, 3 fields"),
+        "{told}"
+    );
 }

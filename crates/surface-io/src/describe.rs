@@ -155,7 +155,7 @@ impl fmt::Display for Description {
             (None, Ok(h)) => write!(
                 f,
                 "\nfractal dimension  none: C_2D of waves of length {longest} to {shortest} goes as q^{:.1}, that of a \
-                 self-affine surface as q^-4 to q^-2",
+                 self-affine surface as q^-4 to q^-2 where it has neither roll-off nor cut-off",
                 -2.0 * (h + 1.0)
             )?,
             (None, Err(Absent::NotFitted)) => {}

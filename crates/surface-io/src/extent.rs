@@ -85,7 +85,7 @@ pub(crate) fn given(declared: &ReadOptions, count: [usize; 2]) -> Result<Option<
     let [columns, rows] = count;
     if let (Some(Sides::One(side)), true) = (declared.size, columns != rows) {
         let first = format!("one value, {side}, is that of a square map");
-        let second = format!("there are {rows} rows of {columns}: say both sides, size = [Lx, Ly]");
+        let second = format!("there are {rows} rows of {columns}: say both sides, such as 2 mm x 1 mm");
         return Err(ContentError::contradiction("size", first, second));
     }
     let mut statements: Vec<(&str, [Extent; 2])> = Vec::new();

@@ -266,7 +266,7 @@ fn lone_extremes(heights: &[f64]) -> Vec<String> {
         let alone = to > from && (value - next).abs() > ALONE * (to - from);
         let count = heights.iter().filter(|h| (**h - value).abs() <= 0.0).count();
         alone.then(|| {
-            let (value, from, to) = (number(value), number(from), number(to));
+            let (value, from, to) = (number(value), five(from), five(to));
             let points = if count == 1 { "1 point".to_owned() } else { format!("{count} points") };
             format!(
                 "{points} of {value}, all others are from {from} to {to}: a mark of undefined points? missing = {value} makes them so"

@@ -3,6 +3,7 @@
 use crate::fit::Interval;
 use crate::spectrum::PowerSpectrum;
 use crate::taper::Taper;
+use contact_model::units::five;
 use contact_model::{Boundary, Error, HeightMap, Result};
 use std::f64::consts::{PI, TAU};
 use surface_gen::hurst_from_line_spectrum;
@@ -63,7 +64,7 @@ impl ProfileFit {
         let waves: Vec<(f64, f64)> =
             pairs.filter(|(q, c)| inside(**q) && c.is_normal()).map(|(q, c)| (*q, *c)).collect();
         if waves.len() < FEWEST {
-            let expected = format!("at least {FEWEST} from {shortest:e} to {longest:e} long");
+            let expected = format!("at least {FEWEST} from {} to {} long", five(shortest), five(longest));
             return Err(Error::domain("waves of a fit", waves.len() as f64, expected));
         }
         let value = hurst_from_line_spectrum(&waves, 0.0, f64::INFINITY)?;

@@ -1,6 +1,7 @@
 //! Which wavelengths of a map say something about the surface.
 
 use crate::fit::FitOptions;
+use contact_model::units::five;
 use contact_model::{Boundary, Error, HeightMap, Result};
 
 /// Cells of the shortest wave of a grid.
@@ -53,7 +54,7 @@ impl ReliableWavelengths {
         let cells = CELLS * map.dx().max(map.dy());
         let shortest = instrument.unwrap_or(0.0).max(cells);
         if shortest > longest {
-            let expected = format!("at most {longest:e}, the longest that the map has");
+            let expected = format!("at most {}, the longest that the map has", five(longest));
             return Err(Error::domain("shortest reliable wavelength", shortest, expected));
         }
         Ok(Self { shortest, longest, limited_by_instrument: shortest > cells })

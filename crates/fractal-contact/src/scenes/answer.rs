@@ -163,6 +163,7 @@ fn count(
     let mut warned = [0; Warning::ALL.len()];
     // A formula has no cells that a warning could be about.
     let mut counted = 0;
+    let mut missed: Vec<String> = Vec::new();
     for (unit, result) in units.iter().zip(results) {
         let Some(result) = result else {
             outcome.stopped = true;
@@ -186,6 +187,11 @@ fn count(
                     {
                         outcome.notes.push(ended);
                     }
+                    if record.converged().is_none() && !record.is_pulled_off() {
+                        let best = Box::new(solved.state.clone());
+                        let error = contact_model::Error::NotConverged { best };
+                        missed.push(format!("{}: {error}", record.words(scene)));
+                    }
                     for &warning in &solved.warnings {
                         warned[warning as usize] += 1;
                     }
@@ -194,6 +200,15 @@ fn count(
             let shown = record.files.iter().filter(|file| !file.is_hidden());
             outcome.files.extend(shown.map(|file| options.out.join(&file.name)));
         }
+    }
+    if let Some(first) = missed.first() {
+        let others = match missed.len() - 1 {
+            0 => String::new(),
+            1 => " (and one more state)".to_owned(),
+            count => format!(" (and {count} more states)"),
+        };
+        let note = format!("{first}{others}: `tolerance` in [models] says how small these have to be");
+        outcome.notes.push(note);
     }
     for (warning, count) in Warning::ALL.into_iter().zip(warned).filter(|(_, count)| *count > 0) {
         let [words, remedy] = warning.words();

@@ -18,6 +18,8 @@ pub type SharedStop<'a> = &'a (dyn Fn() -> bool + Sync);
 const COARSEST: usize = 33;
 /// The two coarser grids of a state, over the work of the state itself, and that.
 const WITH_COARSER: f64 = 1.25;
+/// The largest tolerance with areas among what an accuracy is about.
+const OF_AREAS: f64 = 1e-5;
 
 /// Whether errors of a state are within a share, in all of what an accuracy is about.
 pub(crate) fn within(scene: &SceneFile, errors: &GridErrors, share: f64) -> bool {
@@ -193,7 +195,10 @@ impl Worst {
 fn with_tolerance(scene: &SceneFile, model: &Numerics, target: AccuracyTarget) -> Numerics {
     match model {
         Numerics::Bem3d(numerics) => {
-            let (cells, tolerance) = (largest_cells(scene), target.tolerance());
+            // Cells at the boundary of a contact settle late, and differences of areas hold what is left of them.
+            let areas = controlled(scene).iter().any(|name| name.contains("area"));
+            let tolerance = if areas { target.tolerance().min(OF_AREAS) } else { target.tolerance() };
+            let cells = largest_cells(scene);
             Numerics::Bem3d(Bem3d { cells, rows: None, tolerance, ..*numerics })
         }
         other => other.clone(),

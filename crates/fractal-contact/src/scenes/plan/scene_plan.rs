@@ -124,7 +124,7 @@ impl Plan {
             })
             .collect();
         let prepared = prepared(scene);
-        let of_slopes = of_slopes(scene, prepared.as_ref());
+        let of_slopes = of_slopes(scene.system, prepared.as_ref());
         Ok(Self {
             shows: scene.comment(),
             surface: scene.surface.describe(scene.system),
@@ -201,7 +201,7 @@ const SMALL_SLOPE: f64 = 0.3;
 const FLAT_SLOPE: f64 = 3e-4;
 
 /// Without units, heights may have a scale of their own.
-fn of_slopes(scene: &SceneFile, map: Option<&surface_io::Description>) -> Option<Diagnostic> {
+pub(crate) fn of_slopes(system: System, map: Option<&surface_io::Description>) -> Option<Diagnostic> {
     let slope = map?.rms_slope;
     let (what, help) = if slope > SMALL_SLOPE {
         ("every model here assumes small slopes", "beyond 0.3 take the results as those of a linear theory")
@@ -215,7 +215,7 @@ fn of_slopes(scene: &SceneFile, map: Option<&surface_io::Description>) -> Option
     };
     let message = format!("the rms slope of the map is {}, and {what}", short(slope));
     let help = format!("are the unit of the heights and the size of the map right? {help}");
-    (scene.system == System::Si).then(|| Diagnostic::note(message).with_help(help))
+    (system == System::Si).then(|| Diagnostic::note(message).with_help(help))
 }
 
 fn prepared(scene: &SceneFile) -> Option<surface_io::Description> {
@@ -283,7 +283,10 @@ impl fmt::Display for Plan {
         }
         writeln!(f, "modulus   {} (E*)", ascii(&amount(self.modulus, self.system.shown("Pa"))))?;
         writeln!(f, "units     {}", self.units())?;
-        writeln!(f, "states    {} on each of {} surface(s)", self.states, self.surfaces)?;
+        match self.surfaces {
+            1 => writeln!(f, "states    {} on one surface", self.states)?,
+            surfaces => writeln!(f, "states    {} on each of {surfaces} surfaces", self.states)?,
+        }
         writeln!(f, "\neffects")?;
         for line in &self.effects {
             writeln!(

@@ -36,6 +36,6 @@ pub(crate) use random_surface::{
 pub(crate) use registered_model::RegisteredModel;
 pub(crate) use registry::Registry;
 pub(crate) use sampled::{sampled, sampled_cells};
-pub(crate) use scan::{Remark, description, remarks, spike};
+pub(crate) use scan::{Remark, description, exchanged_sides, remarks, spike};
 pub(crate) use scene_file::{SceneFile, cells, depends_on_path};
 pub(crate) use scene_surface::{SceneSurface, SurfaceEntry, read_surface};

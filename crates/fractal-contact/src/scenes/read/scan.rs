@@ -69,12 +69,8 @@ pub(crate) fn read_map(table: &Entries<'_>, system: System, directory: &Path) ->
     for Remark { message, help } in remarks(&scan, &preprocessing, &map, table.find("detrend").is_some()) {
         notes.push(Diagnostic::note(message).at(file.span()).with_help(help));
     }
-    if let (Some(entry), Some([dx, dy])) = (table.find("size"), swapped(&declared, metadata)) {
-        let [dx, dy] = [dx, dy].map(|side| number(rounded(side, 4)));
-        let message =
-            format!("cells of {dx} x {dy}: with the sides of `size` exchanged they would be squares");
-        let help = "`size` is [Lx, Ly], x along the columns; where the cells are oblong, all is well";
-        notes.push(Diagnostic::note(message).at(entry.span()).with_help(help));
+    if let (Some(entry), Some(remark)) = (table.find("size"), exchanged_sides(&declared, metadata, system)) {
+        notes.push(Diagnostic::note(remark.message).at(entry.span()).with_help(remark.help));
     }
     let profile = metadata.profile;
     notes.extend(profile.then(|| uniform(&file, &map)));
@@ -209,6 +205,19 @@ pub(crate) fn remarks(
         });
     }
     remarks
+}
+
+/// A remark on declared sides of a map that would make its cells squares if they were exchanged.
+pub(crate) fn exchanged_sides(
+    declared: &ReadOptions,
+    map: &surface_io::Metadata,
+    system: System,
+) -> Option<Remark> {
+    let [dx, dy] = swapped(declared, map)?.map(|side| ascii(&amount(side, system.shown("m"))));
+    Some(Remark {
+        message: format!("cells of {dx} x {dy}: with both sides of `size` exchanged they would be squares"),
+        help: "the first side of `size` is along x, along the columns; where the cells are oblong, all is well",
+    })
 }
 
 /// The highest point in rms heights above the mean, where it stands alone: a Gaussian map of 1e8 points

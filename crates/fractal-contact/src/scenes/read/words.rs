@@ -2,6 +2,8 @@
 
 use crate::models::ModelRecord;
 use crate::scenes::read::{LoadKind, LoadRequest, SceneFile, amount};
+use contact_model::units::{ascii, to_digits};
+use contact_model::{Error, Hardness};
 use std::path::Path;
 
 /// The scene's name in a title: that of its file, of `NAME/scene.toml` that of its folder.
@@ -21,6 +23,44 @@ pub(crate) fn load(scene: &SceneFile, state: usize) -> String {
         }
         LoadRequest::Path(_) => format!("step {state}"),
     }
+}
+
+/// Why a model refuses a load, with the units of the scene.
+pub(crate) fn refusal(scene: &SceneFile, error: &Error) -> String {
+    /// What is counted in a unit of SI; names go on with what they mean.
+    const UNITS: [(&str, &str); 6] = [
+        ("force", "N"),
+        ("tangential force", "N"),
+        ("approach", "m"),
+        ("mean gap", "m"),
+        ("contact radius", "m"),
+        ("mean pressure", "Pa"),
+    ];
+    let Error::OutOfRange { name, value, min, max } = error else { return error.to_string() };
+    let of = |(quantity, _): &&(&str, &str)| {
+        name.strip_prefix(quantity).is_some_and(|rest| rest.is_empty() || rest.starts_with(" ("))
+    };
+    let Some((_, unit)) = UNITS.iter().find(of) else { return error.to_string() };
+    let unit = scene.system.shown(unit);
+    // As many digits as tell the value from the ends.
+    let told = |digits| [value, min, max].map(|v| ascii(&to_digits(*v, unit, digits)));
+    let apart = |digits: &usize| {
+        let [value, min, max] = told(*digits);
+        value != min && value != max
+    };
+    let [value, low, high] = told((4..17).find(apart).unwrap_or(17));
+    let range = match (min.is_finite(), max.is_finite()) {
+        (true, true) => format!("outside {low} to {high}"),
+        (true, false) => format!("below {low}"),
+        _ => format!("above {high}"),
+    };
+    let hardness = match scene.effects.hardness {
+        Hardness::Limit { pressure } if name.contains("hardness") => {
+            format!("; the hardness is {}", ascii(&amount(pressure, scene.system.shown("Pa"))))
+        }
+        _ => String::new(),
+    };
+    format!("{name} = {value} is {range}, the range in which the model holds{hardness}")
 }
 
 /// A unit with its powers raised: `m^2` and `W/K`.

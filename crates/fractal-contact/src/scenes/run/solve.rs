@@ -2,7 +2,7 @@
 
 use crate::scenes::plan::{GridComparison, ModelOnSurface, solved_map};
 use crate::scenes::read::{
-    Error, FieldFormat, HEIGHTS, LoadRequest, Numerics, Result, SceneFile, cells, distributed,
+    Error, FieldFormat, HEIGHTS, LoadRequest, Numerics, Result, SceneFile, cells, distributed, words,
 };
 use crate::scenes::run::{
     Answer, FieldFile, FieldView, Keeper, ModelResult, Solved, StateRecord, StoredFile, Warning,
@@ -106,7 +106,7 @@ impl ModelOnSurface {
                     let solved = Solved { state, normalisation, warnings: Vec::new(), grid: None };
                     Ok(StateRecord::new(index, Answer::State(Box::new(solved))))
                 }
-                Err(other) => Ok(StateRecord::new(index, Answer::Refused(other.to_string()))),
+                Err(other) => Ok(StateRecord::new(index, Answer::Refused(words::refusal(scene, &other)))),
             };
             written = record.and_then(|record| {
                 let place = result.states.partition_point(|s| s.index < index);
@@ -161,7 +161,7 @@ impl ModelOnSurface {
                         let solved = Solved { state, normalisation, warnings: Vec::new(), grid: None };
                         StateRecord::new(index, Answer::State(Box::new(solved)))
                     }
-                    Err(error) => StateRecord::new(index, Answer::Refused(error.to_string())),
+                    Err(error) => StateRecord::new(index, Answer::Refused(words::refusal(scene, &error))),
                 },
             };
             let failed = record.converged().is_none();

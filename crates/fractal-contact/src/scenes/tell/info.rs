@@ -1,7 +1,9 @@
 //! What a file holds: a scene, a surface or a table of results.
 
-use crate::scenes::plan::Plan;
-use crate::scenes::read::{Error, Remark, Result, SceneFile, System, description, number, remarks};
+use crate::scenes::plan::{Plan, of_slopes};
+use crate::scenes::read::{
+    Error, Remark, Result, SceneFile, System, description, exchanged_sides, number, remarks,
+};
 use crate::scenes::tell::{MapStatisticsTables, SurfaceReport};
 use contact_model::Boundary;
 use runs::Header;
@@ -72,7 +74,8 @@ fn surface(path: &Path, declared: &ReadOptions, preprocessing: &Preprocessing) -
     let scan = file.scan()?;
     Ok(match scan.preprocessed(preprocessing) {
         Ok(found) => {
-            let mut description = description(&found.map, system(scan.metadata()));
+            let system = system(scan.metadata());
+            let mut description = description(&found.map, system);
             let mut fit = "";
             if description.hurst.is_ok() {
                 // One exponent is told: that with an interval, of the statistics.
@@ -80,13 +83,14 @@ fn surface(path: &Path, declared: &ReadOptions, preprocessing: &Preprocessing) -
                 fit = "fractal dimension  with --out DIR, which fits the spectrum, with its interval\n";
             }
             let text = described(&scan, &found, &description);
-            let remarks =
-                remarks(&scan, preprocessing, &found.map, preprocessing.detrend != Detrend::default());
-            let remarks: String = remarks
-                .iter()
-                .map(|Remark { message, help }| format!("note       {message}\n           {help}\n"))
-                .collect();
-            format!("{text}{fit}{remarks}")
+            let line = |message: &str, help: &str| format!("note       {message}\n           {help}\n");
+            let slopes = of_slopes(system, Some(&description));
+            let slopes = slopes.map(|note| line(note.message(), note.help().unwrap_or_default()));
+            let untilted = preprocessing.detrend != Detrend::default();
+            let remarks = remarks(&scan, preprocessing, &found.map, untilted).into_iter();
+            let remarks = exchanged_sides(declared, scan.metadata(), system).into_iter().chain(remarks);
+            let remarks: String = remarks.map(|Remark { message, help }| line(&message, help)).collect();
+            format!("{text}{fit}{}{remarks}", slopes.unwrap_or_default())
         }
         // What stands in the way of a map is part of the answer.
         Err(error) => format!("{}\n\nno map as it is: {error}\n", scan.metadata()),

@@ -133,15 +133,15 @@ fn pairs(scene: &SceneFile) -> Vec<(Axis, &'static Quantity)> {
 /// solver.
 const HELD: f64 = 1e-5;
 
-/// A constant, such as a force that is held, is no picture, and neither is anything over a time that does not
-/// pass.
+/// A constant, such as a force that is held, is no picture, and neither is a single state or anything over a time
+/// that does not pass.
 fn varies(points: &[(f64, f64)]) -> bool {
     let changes = |of: fn(&(f64, f64)) -> f64| {
         let ends = |(low, high): (f64, f64), value: f64| (low.min(value), high.max(value));
         let (low, high) = points.iter().map(of).fold((f64::INFINITY, f64::NEG_INFINITY), ends);
         high - low > HELD * low.abs().max(high.abs())
     };
-    points.len() == 1 || changes(|p| p.0) && changes(|p| p.1)
+    changes(|p| p.0) && changes(|p| p.1)
 }
 
 impl Axis {

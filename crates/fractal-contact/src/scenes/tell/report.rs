@@ -62,7 +62,8 @@ impl Report<'_> {
         let warnings = self.outcome.notes.len() + self.plan.notes.len();
         html! {
             p.verdict.warned[!fine] {
-                @if fine { "All " (states) " states asked for were answered and are certified." }
+                @if fine && states == 1 { "The state asked for was answered and is certified." }
+                @else if fine { "All " (states) " states asked for were answered and are certified." }
                 @else { (states) " of " (requested) " states were attempted; " (failed) " of them were refused or missed their tolerance." }
                 @if stopped { " The run was stopped before its end." }
                 @if warnings > 0 { " " a href="#beware" { (warnings) @if warnings == 1 { " thing" } @else { " things" } " to beware of" } "." }
@@ -91,11 +92,11 @@ impl Report<'_> {
                 div.scroll tabindex="0" role="region" aria-label={ "States of " (words::model_name(model.name)) } {
                     @let short = summary::is_short(model.heads.len(), model.rows.len());
                     table.short[short] {
-                        caption {
+                        caption { span {
                             (words::model_name(model.name))
                             @if !model.of_surfaces.is_empty() { ": " (model.of_surfaces) }
                             @if model.left_out > 0 { "; " (model.left_out) " more states are in results.csv" }
-                        }
+                        } }
                         @if short { (below_each_other(&model)) } @else { (in_rows(&model)) }
                     }
                 }

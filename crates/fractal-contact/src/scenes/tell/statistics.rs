@@ -3,7 +3,7 @@
 
 use crate::scenes::plan::solved_map;
 use crate::scenes::read::{Result, SceneFile, System, multiple, short};
-use contact_model::units::ascii;
+use contact_model::units::{ascii, number, rounded};
 use contact_model::{Boundary, HeightMap};
 use std::sync::Arc;
 use surface_statistics::{
@@ -16,6 +16,8 @@ use surface_statistics::{
 const PER_DECADE: f64 = 10.0;
 /// Of the bands.
 pub(crate) const LEVEL: f64 = 0.95;
+/// Probability of a worse fit below which intervals say nothing.
+const DOUBTFUL: f64 = 0.01;
 /// The files.
 pub(crate) const FILES: [&str; 10] = [
     "statistics.csv",
@@ -228,6 +230,14 @@ impl MapStatisticsTables {
         else {
             return;
         };
+        if fit.goodness < DOUBTFUL && (fit.hurst.low > 1.0 || fit.hurst.high < 0.0) {
+            self.notes.push(format!(
+                "fit of a self-affine spectrum: the spectrum falls as q^-{}, that of a self-affine surface as q^-4 to \
+                 q^-2; filled points change short waves: `crop` = \"defined\" has none",
+                number(rounded(2.0 * (fit.hurst.value + 1.0), 2))
+            ));
+            return;
+        }
         let of = |interval: &Interval| (Some(interval.value), [Some(interval.low), Some(interval.high)]);
         let wavelength = |found: &Wavelength| match found {
             Wavelength::Interval(interval) => of(interval),
