@@ -761,7 +761,7 @@ fn impossible_rectangles_are_named() {
         ),
         (
             error("a.xyz", b"0 0 1\n1 0 2\n0 1e-9 3\n1 1e-9 4\n", &|d| d.lateral_unit = "m".parse().ok()),
-            "a.xyz: dx / dy (ratio of the sides of a cell) = 999999999",
+            "a.xyz: dx / dy (ratio of the sides of a cell) = 1e9: expected between 1/10000 and 10000",
         ),
         (
             error("a.xyz", b"0 0 1\n1 0 2\n2 0 2\n", &|d| d.lateral_unit = "m".parse().ok()),
