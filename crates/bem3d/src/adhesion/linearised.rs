@@ -46,7 +46,7 @@ const INNER_STEPS: usize = 60;
 /// Steps of the reduced iteration at most.
 const STEPS: usize = 200;
 /// The stability may still change by so much of itself in each of two steps: in one it may pause.
-const SETTLED: f64 = 1e-3;
+const SETTLED: f64 = 3e-3;
 /// Rounds of correction of the response with the exact operator.
 const ROUNDS: usize = 4;
 

@@ -12,7 +12,7 @@ use contact_model::Stop;
 
 /// An update lowers the gaps left on the contact by this factor: less than the attraction changes by would be
 /// lost, more is gone after the next change of the attraction.
-const REDUCTION: f64 = 0.1;
+const REDUCTION: f64 = 0.05;
 /// The same for the plain iteration, whose contact is solved before the attraction is changed.
 const PLAIN_REDUCTION: f64 = 1e-2;
 /// Steps of conjugate gradients in an update at most.
