@@ -22,9 +22,9 @@ pub(crate) const TIME_EXPONENT: f64 = 2.3;
 /// Applications of the operator over cells a side, as measured by the same.
 const APPLICATIONS_EXPONENT: f64 = 0.3;
 /// The same two with adhesion of short range, whose fronts move about a cell in a sweep: N^2.3 to N^3.0 and
-/// N^0.4 to N^1.0 as measured by the example `effects` of `bem3d`.
-const FRONTS_TIME_EXPONENT: f64 = 2.7;
-const FRONTS_APPLICATIONS_EXPONENT: f64 = 0.7;
+/// N^0.4 to N^1.0 as measured by the example `effects` of `bem3d`, N^1.1 along the path of a rough ball.
+const FRONTS_TIME_EXPONENT: f64 = 2.9;
+const FRONTS_APPLICATIONS_EXPONENT: f64 = 1.0;
 /// What adhesion takes beside, where all cells are within reach: states of the last sweeps. Measured from
 /// outside on that example.
 const ADHESION_BYTES: f64 = 300.0;
