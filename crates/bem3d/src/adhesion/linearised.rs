@@ -37,7 +37,7 @@ const FLAT: f64 = 1e-12;
 /// Solves on the contact reduce their residual by this factor; the response is corrected by rounds.
 const INNER: f64 = 1e-2;
 /// With pressure that takes displacement back, until the energy of their error is this share of that of the
-/// displacement: so much of r is lost.
+/// displacement: r comes out too large by as much at most, the stability too small.
 const ENERGY: f64 = 3e-4;
 /// The reduced iteration ends where its residual has fallen by this factor, settled or not.
 const REDUCED: f64 = 1e-9;
