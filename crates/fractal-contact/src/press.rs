@@ -69,7 +69,11 @@ pub fn scene(asked: &PressArguments, keys: &SurfaceKeys, at: &Path) -> Result<Sc
     if let Some(folder) = folder {
         runs::files::create_directory(folder)?;
     }
-    let scene = SceneFile::parse(at, text(asked, keys, at));
+    let scene = SceneFile::parse(at, text(asked, keys, at)).map_err(|error| match error {
+        // There is no such file yet.
+        Error::Scene(mistake) => Error::from(mistake.told_of("the scene of these flags")),
+        other => other,
+    });
     if let (Err(_), Some(folder)) = (&scene, folder) {
         std::fs::remove_dir(folder).ok();
     }

@@ -2,12 +2,12 @@
 
 use crate::scenes::plan::{Assumptions, Cost, ModelOnSurface, calibration, probe};
 use crate::scenes::read::{
-    Diagnostic, EffectLine, Numerics, Result, SceneFile, System, amount, cells, description, effect_lines,
-    short,
+    Diagnostic, EffectLine, LoadKind, LoadRequest, Numerics, Result, SceneFile, System, amount, cells,
+    description, effect_lines, short,
 };
 use bem3d::UNRESOLVED_RANGE;
-use contact_model::Cells;
 use contact_model::units::ascii;
+use contact_model::{Cells, Hardness};
 use runs::amounts::{memory, time};
 use std::fmt;
 
@@ -136,6 +136,7 @@ impl Plan {
                 .cloned()
                 .chain(assumptions.iter().flat_map(|a| a.notes(scene)))
                 .chain(of_slopes)
+                .chain(beyond_hardness(scene))
                 .collect(),
             modulus: scene.modulus,
             system: scene.system,
@@ -216,6 +217,28 @@ pub(crate) fn of_slopes(system: System, map: Option<&surface_io::Description>) -
     let message = format!("the rms slope of the map is {}, and {what}", short(slope));
     let help = format!("are the unit of the heights and the size of the map right? {help}");
     (system == System::Si).then(|| Diagnostic::note(message).with_help(help))
+}
+
+/// A mean pressure at which every cell is at the hardness: models refuse such a state and solve the others.
+fn beyond_hardness(scene: &SceneFile) -> Option<Diagnostic> {
+    let (Hardness::Limit { pressure }, LoadRequest::Loads(loads)) = (scene.effects.hardness, &scene.request)
+    else {
+        return None;
+    };
+    let area = match loads.kind {
+        LoadKind::MeanPressure => 1.0,
+        LoadKind::Force => scene.surface.size().area(),
+        LoadKind::ForceBar | LoadKind::Approach | LoadKind::MeanGap => return None,
+    };
+    let beyond = loads.values.iter().map(|value| value / area).filter(|&mean| mean >= pressure);
+    let largest = beyond.max_by(f64::total_cmp)?;
+    let [largest, hardness] =
+        [largest, pressure].map(|value| ascii(&amount(value, scene.system.shown("Pa"))));
+    let message =
+        format!("a mean pressure of {largest} is no state: at the hardness of {hardness} every cell flows");
+    Some(
+        Diagnostic::note(message).with_help("a smaller load, or a larger `hardness`; other loads are solved"),
+    )
 }
 
 fn prepared(scene: &SceneFile) -> Option<surface_io::Description> {

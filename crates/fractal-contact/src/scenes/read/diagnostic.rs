@@ -103,6 +103,15 @@ impl Diagnostic {
         self
     }
 
+    /// In a text that is no file yet: these words are told in place of its path.
+    #[must_use]
+    pub fn told_of(mut self, words: &str) -> Self {
+        if let Some(place) = &mut self.place {
+            place.path = words.into();
+        }
+        self
+    }
+
     /// What is wrong, without the place.
     pub fn message(&self) -> &str {
         &self.message

@@ -65,7 +65,7 @@ impl Warning {
             ],
             Self::Area => [
                 "area not resolved",
-                "the boundary of the contact is more than a tenth of its area: `area_corrected` is nearer the limit of small cells",
+                "the boundary of the contact is more than a tenth of its area: more cells, neither area is that of small cells",
             ],
             Self::Accuracy => [
                 "accuracy not reached",
