@@ -26,7 +26,7 @@ fn symbol(quantity: &Quantity) -> String {
         let end = symbol[at..].find('}').map_or(symbol.len(), |end| at + end);
         symbol = format!("{}{}_bar{}", &symbol[..at], &symbol[at + 5..end], &symbol[end + 1..]);
     }
-    symbol.replace(['{', '}'], "")
+    symbol.replace(['{', '}', '\\'], "")
 }
 
 /// The models that tell a quantity of some state, each tried.
@@ -92,13 +92,14 @@ fn quantities_page() -> String {
         sources.push_str(&["- `", quantity.name, "`: ", quantity.source, "\n"].concat());
     }
     format!(
-        "# What is told of a state\n\n\
+        "# Quantities of a state\n\n\
          This page lists every quantity that a scene or a model can tell of a state, from one table\n\
          (`contact_model::quantities`). `models` are those that tell it of some state, each tried. Units are SI; with\n\
          `units = \"none\"` a dimensional number is in the scene's own.\n\n\
-         Each row of `results.csv` begins with `model`, `surface`, `state` and, under loads, `prescribed`, and ends with\n\
-         `note`. `ensemble.csv` has the means, `_se` their standard errors, `_sd` the standard deviation of one surface. With\n\
-         `grid_error = true` a quantity whose grid error is estimated has `_grid_error` and `_grid_order` too.\n\n\
+         Each row of `results.csv` begins with `model`, `surface`, `state` and, under loads, `prescribed`, and ends\n\
+         with `note`. `ensemble.csv` has the means, `_se` their standard errors, `_sd` the standard deviation of one\n\
+         surface. With `grid_error = true` a quantity whose grid error is estimated has `_grid_error` and `_grid_order`\n\
+         too.\n\n\
          ## Answers\n\n{}\n## Residuals\n\nSmall numbers prove that the equations were solved ([certificates](certificates.md)):\n\n{}\n\
          ## How it was found, and what it cost\n\n{}\n## Sources\n\n{sources}",
         rows(&|role| matches!(role, Role::Answer | Role::Normalised | Role::OfPath)),

@@ -435,14 +435,14 @@ pub static QUANTITIES: &[Quantity] = &quantities! {
     "contact_radius" "contact radius" "a" Si("m"); Path;
         "of a round contact; of an equivalent profile that of the round contact of the same stiffness, k/(2 E*)"
         => |s, _| s.contact_radius.into();
-    "tangential_force" "tangential force" "T" Si("N"); Effect("friction"); "tangential force along x"
+    "tangential_force" "tangential force" "Q_x" Si("N"); Effect("friction"); "tangential force along x"
         => |s, _| s.tangential.map(|t| t.force[0]).into();
-    "tangential_force_y" "tangential force along y" "T_y" Si("N"); FrictionInPlane; "tangential force along y"
+    "tangential_force_y" "tangential force along y" "Q_y" Si("N"); FrictionInPlane; "tangential force along y"
         => |s, _| s.tangential.map(|t| t.force[1]).into();
-    "tangential_displacement" "tangential displacement" "u_x" Si("m"); Effect("friction");
+    "tangential_displacement" "tangential displacement" "\\delta_x" Si("m"); Effect("friction");
         "of the bodies relative to each other along x, far from the contact"
         => |s, _| s.tangential.map(|t| t.displacement[0]).into();
-    "tangential_displacement_y" "tangential displacement along y" "u_y" Si("m"); FrictionInPlane;
+    "tangential_displacement_y" "tangential displacement along y" "\\delta_y" Si("m"); FrictionInPlane;
         "of the bodies relative to each other along y, far from the contact"
         => |s, _| s.tangential.map(|t| t.displacement[1]).into();
     "sliding_force" "sliding force" "" Si("N"); Effect("friction");

@@ -4,7 +4,7 @@
 //! `cargo run -p mdr1d --example friction_loop`
 //!
 //! ```text
-//! T/mu F          u_x      c/a   dissipated
+//! Q/mu F      delta_x      c/a   dissipated
 //!    0.8    1.4374e-2   0.5848    4.8415e-6
 //!      0    1.7643e-3   0.8434    5.5527e-6
 //!   -0.8   -1.4374e-2   0.5848    1.4524e-5
@@ -30,7 +30,7 @@ fn main() -> Result<()> {
 
     let mut state = contact.advance(Step::normal(0.0, normal))?;
     let mut dissipated = Vec::new();
-    println!("{:>6} {:>12} {:>8} {:>12}", "T/mu F", "u_x", "c/a", "dissipated");
+    println!("{:>6} {:>12} {:>8} {:>12}", "Q/mu F", "delta_x", "c/a", "dissipated");
     for (i, part) in [share, 0.0, -share, 0.0, share, -share, share].into_iter().enumerate() {
         let tangential = Tangential::force_along_x(part * limit);
         state = contact.advance(Step { time: (i + 1) as f64, normal, tangential })?;

@@ -5,11 +5,11 @@
 //!
 //! `Equivalent` asks of a model an approach, a force and a stiffness that never falls, nothing about a
 //! half-space, so it takes a Winkler foundation. On independent springs its superposition is exact:
-//! `T = mu (F(d) - F(d - u_x G*/(mu E*)))`. Two things it takes from the half-space: the tangential stiffness
+//! `Q = mu (F(d) - F(d - delta_x G*/(mu E*)))`. Two things it takes from the half-space: the tangential stiffness
 //! is G*/E* times the normal one, and `stick_radius` is that of the round contact of the same stiffness.
 //!
 //! ```text
-//! u/u_max     T/mu F  closed form   dissipated
+//! d/d_max     Q/mu F  closed form   dissipated
 //!     0.1   0.190000     0.190000    2.3936e-8
 //!     0.3   0.510000     0.510000    6.4627e-7
 //!     0.6   0.840000     0.840000    5.1702e-6
@@ -77,7 +77,7 @@ fn main() -> Result<()> {
     let force = contact.advance(Step::normal(0.0, normal))?.force;
     // Full slip from this displacement on.
     let largest = 0.3 * 0.02 * scene.modulus / pair.shear_modulus()?;
-    println!("{:>7} {:>10} {:>12} {:>12}", "u/u_max", "T/mu F", "closed form", "dissipated");
+    println!("{:>7} {:>10} {:>12} {:>12}", "u/u_max", "Q/mu F", "closed form", "dissipated");
     for share in [0.1, 0.3, 0.6, 0.9] {
         let tangential = Tangential::displacement_along_x(share * largest);
         let state = contact.advance(Step { time: 0.0, normal, tangential })?;

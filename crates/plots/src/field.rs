@@ -3,7 +3,7 @@
 use crate::axis::Axis;
 use crate::colours::ColourScale;
 use crate::drawing::{Anchor, Drawing, Paint, Rectangle, polygon, polyline};
-use crate::frame::{Frame, Side, TickStyle};
+use crate::frame::{Frame, Side, TICK, TickStyle};
 use crate::style::INK;
 use crate::text::Fonts;
 use contact_model::units::multiple;
@@ -55,17 +55,8 @@ const TOP: f64 = 62.0;
 const RIGHT: f64 = 124.0;
 const BELOW: f64 = 60.0;
 const BAR: f64 = 18.0;
-const TICK: f64 = 14.0;
 /// Size of the words at an axis.
 const NAME: f64 = 1.2 * TICK;
-const TICKS: TickStyle = TickStyle {
-    size: TICK,
-    long: 5.0,
-    short: None,
-    inwards: false,
-    below: [5.0 + 1.1 * TICK, 3.2 * TICK],
-    beside: [8.0, 0.5 * TICK],
-};
 /// Outline of the contact, a white line with a black edge: on any colour one of both is seen, by colour-blind
 /// readers too.
 const OUTLINE: [[u8; 3]; OUTLINE_WIDTH] = [[255; 3], [0; 3]];
@@ -136,7 +127,7 @@ impl FieldPicture<'_> {
         drawing.image(frame, image, columns);
         self.draw_arrows(&mut drawing, frame);
         let (length_unit, per_length) = multiple(self.length_unit, longer);
-        let map = Frame { fonts: &fonts, place: frame, style: TICKS };
+        let map = Frame { fonts: &fonts, place: frame, style: TickStyle::OF_MAPS };
         map.axis(&mut drawing, Side::Below, Axis::Linear(0.0, per_length * size.x), None);
         map.axis(&mut drawing, Side::Left, Axis::Linear(0.0, per_length * size.y), None);
         map.outline(&mut drawing, 1.2);
@@ -160,7 +151,7 @@ impl FieldPicture<'_> {
         };
         drawing.image(bar, (0..steps).flat_map(ramp).collect(), 1);
         let (unit, per_unit) = multiple(self.unit, low.abs().max(high.abs()));
-        let style = TickStyle { beside: [9.0, 0.5 * TICK], ..TICKS };
+        let style = TickStyle { beside: [9.0, 0.5 * TICK], ..TickStyle::OF_MAPS };
         let beside = Frame { fonts: &fonts, place: bar, style };
         beside.axis(&mut drawing, Side::Right, Axis::Linear(per_unit * low, per_unit * high), None);
         beside.outline(&mut drawing, 1.2);

@@ -30,7 +30,20 @@ pub(crate) struct TickStyle {
     pub beside: [f64; 2],
 }
 
+/// Size of the labels of [`TickStyle::OF_MAPS`].
+pub(crate) const TICK: f64 = 14.0;
+
 impl TickStyle {
+    /// Around maps and bars of colours.
+    pub const OF_MAPS: Self = Self {
+        size: TICK,
+        long: 5.0,
+        short: None,
+        inwards: false,
+        below: [5.0 + 1.1 * TICK, 3.2 * TICK],
+        beside: [8.0, 0.5 * TICK],
+    };
+
     /// Larger or smaller.
     pub fn scaled(self, scale: f64) -> Self {
         Self {

@@ -2,7 +2,7 @@
 
 use crate::axis::Axis;
 use crate::drawing::{Anchor, Drawing, Paint, rectangle};
-use crate::frame::{Frame, Side, TickStyle};
+use crate::frame::{Frame, Side, TICK, TickStyle};
 use crate::style::INK;
 use crate::text::Fonts;
 use files::{Error, Result};
@@ -37,15 +37,6 @@ const TITLE: f64 = 54.0;
 /// The bar of grey values, with its ticks and label.
 const BAR: f64 = 14.0;
 const BELOW: f64 = 58.0;
-const TICK: f64 = 14.0;
-const TICKS: TickStyle = TickStyle {
-    size: TICK,
-    long: 5.0,
-    short: None,
-    inwards: false,
-    below: [5.0 + 1.1 * TICK, 3.2 * TICK],
-    beside: [8.0, 0.5 * TICK],
-};
 
 /// Writes `NAME.svg` and `NAME.png` with at most three maps in a row, a title, a line below it, and the scale of all
 /// maps below them.
@@ -83,7 +74,7 @@ pub fn save_maps(
     let bar = [GAP + 0.15 * (width - 2.0 * GAP), bottom + GAP, 0.7 * (width - 2.0 * GAP), BAR];
     let (low, high) = scale.ends;
     drawing.image(bar, (0..=u8::MAX).rev().flat_map(|shade| [shade; 3]).collect(), 1 + usize::from(u8::MAX));
-    let frame = Frame { fonts: &fonts, place: bar, style: TICKS };
+    let frame = Frame { fonts: &fonts, place: bar, style: TickStyle::OF_MAPS };
     frame.axis(&mut drawing, Side::Below, Axis::Linear(low, high), None);
     frame.outline(&mut drawing, 1.0);
     frame.name_below(&mut drawing, &scale.label, 1.2 * TICK, bottom + GAP + BAR + 3.2 * TICK);

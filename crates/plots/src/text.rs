@@ -104,7 +104,7 @@ impl Fonts {
         let mut line = LineOfText { fonts: self, set: Typeset::default(), lean: 0.0 };
         for (i, part) in label.split('$').enumerate() {
             if i % 2 == 0 {
-                part.chars().for_each(|c| line.push(c, false, size, 0.0));
+                line.words(part, size);
             } else {
                 line.symbols(&part.chars().collect::<Vec<_>>(), size, 0.0, false);
             }
@@ -164,6 +164,18 @@ impl LineOfText<'_> {
         self.set.plain.push(c);
     }
 
+    /// Words with numbers: what stands before a digit and behind no letter or digit is a minus, not a hyphen.
+    fn words(&mut self, words: &str, size: f64) {
+        let mut before = ' ';
+        let mut chars = words.chars().peekable();
+        while let Some(c) = chars.next() {
+            let sign =
+                c == '-' && !before.is_alphanumeric() && chars.peek().is_some_and(char::is_ascii_digit);
+            self.push(if sign { '\u{2212}' } else { c }, false, size, 0.0);
+            before = c;
+        }
+    }
+
     fn symbols(&mut self, chars: &[char], size: f64, y: f64, upright: bool) {
         let mut i = 0;
         while i < chars.len() {
@@ -187,6 +199,11 @@ impl LineOfText<'_> {
                 }
                 '\\' => {
                     let name: String = chars[i..].iter().take_while(|c| c.is_ascii_alphabetic()).collect();
+                    if name == "delta" {
+                        i += name.len();
+                        self.symbols(&['δ'], size, y, upright);
+                        continue;
+                    }
                     let (inner, end) = group(chars, i + name.len());
                     i = end;
                     match name.as_str() {
@@ -305,6 +322,17 @@ mod tests {
         assert!(set.glyphs[2].y < 0.0 && set.glyphs[2].size < 20.0);
         assert!(set.glyphs[5].y > 0.0 && set.glyphs[4].size >= 20.0);
         assert!(set.width > 20.0 && set.plain == "10^\u{2212}3D_f");
+    }
+
+    #[test]
+    fn a_minus_is_not_a_hyphen() {
+        let fonts = Fonts::load().unwrap();
+        let plain = |label| fonts.typeset(label, 20.0).plain;
+        assert_eq!(
+            plain("half-space, force = -1.5 µN, 2-3 -x"),
+            "half-space, force = \u{2212}1.5 µN, 2-3 -x"
+        );
+        assert_eq!(plain("$\\delta_x$"), "δ_x");
     }
 
     #[test]
