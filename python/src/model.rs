@@ -10,7 +10,7 @@ use crate::toml_text::toml_text;
 use fractal_contact::models::{MODELS, ModelRecord, abilities};
 use fractal_contact::scenes::Numerics;
 use fractal_contact::{
-    Abilities, ContactModel, Equivalent, Error, Outputs, Paths, PreparedContact, RequiredMemory,
+    Abilities, ContactModel, Effects, Equivalent, Error, Outputs, Paths, PreparedContact, RequiredMemory,
     Scene as RustScene, Source,
 };
 use pyo3::exceptions::{PyTypeError, PyValueError};
@@ -29,6 +29,10 @@ impl ContactModel for Shared {
 
     fn sources(&self) -> &'static [Source] {
         self.0.sources()
+    }
+
+    fn sources_of(&self, effects: &Effects) -> Vec<Source> {
+        self.0.sources_of(effects)
     }
 
     fn abilities(&self) -> Abilities {

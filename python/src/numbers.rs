@@ -13,6 +13,20 @@ fn refused(of: &Bound<'_, PyAny>, expected: &str) -> PyErr {
     PyTypeError::new_err(format!("expected {expected}, not {name}{remedy}"))
 }
 
+/// A value as an error shows it.
+pub fn shown(of: &Bound<'_, PyAny>) -> String {
+    of.repr().map_or_else(|_| "?".into(), |text| text.to_string())
+}
+
+/// The error of a value that is no number of something: a whole number, such as a negative one, is of the right type.
+pub fn of_value_or_type(of: &Bound<'_, PyAny>, message: String) -> PyErr {
+    if of.is_instance_of::<PyInt>() && !of.is_instance_of::<PyBool>() {
+        PyValueError::new_err(message)
+    } else {
+        PyTypeError::new_err(message)
+    }
+}
+
 /// Whether a value is none of the numbers though it may convert to one.
 fn is_no_number(of: &Bound<'_, PyAny>) -> bool {
     if of.is_instance_of::<PyBool>() {
@@ -115,14 +129,8 @@ impl<'py, T: Single> FromPyObject<'_, 'py> for OneOrTwo<T> {
     fn extract(of: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
         Self::of(&of).ok_or_else(|| {
             let [one, two] = T::WORDS;
-            let shown = of.repr().map_or_else(|_| "?".into(), |text| text.to_string());
-            let message = format!("expected {one} or {two}, not {shown}");
-            // A negative number of cells.
-            if of.is_instance_of::<PyInt>() && !of.is_instance_of::<PyBool>() {
-                PyValueError::new_err(message)
-            } else {
-                PyTypeError::new_err(message)
-            }
+            let shown = shown(&of);
+            of_value_or_type(&of, format!("expected {one} or {two}, not {shown}"))
         })
     }
 }
@@ -157,7 +165,7 @@ impl<'py> FromPyObject<'_, 'py> for Pair {
 
     fn extract(of: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
         pair(&of).map(Self).ok_or_else(|| {
-            let shown = of.repr().map_or_else(|_| "?".into(), |text| text.to_string());
+            let shown = shown(&of);
             PyTypeError::new_err(format!(
                 "expected two whole numbers >= 0, the first and the one after the last, not {shown}"
             ))

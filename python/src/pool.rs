@@ -1,10 +1,9 @@
 //! Solves on the threads of one pool, without the interpreter's lock, and with Ctrl-C heard meanwhile.
 
-use crate::numbers::Single;
+use crate::numbers::{Single, of_value_or_type, shown};
 use fractal_contact::runs::MOST_THREADS;
-use pyo3::exceptions::{PyRuntimeError, PyTypeError, PyValueError};
+use pyo3::exceptions::{PyRuntimeError, PyTypeError};
 use pyo3::prelude::*;
-use pyo3::types::{PyBool, PyInt};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -58,13 +57,8 @@ pub fn threads() -> PyResult<usize> {
 pub fn set_threads(py: Python<'_>, count: &Bound<'_, PyAny>) -> PyResult<()> {
     let whole = usize::single(count).filter(|count| (1..=MOST_THREADS).contains(count));
     let count = whole.ok_or_else(|| {
-        let shown = count.repr().map_or_else(|_| "?".into(), |text| text.to_string());
-        let message = format!("count = {shown}: expected a number of threads from 1 to {MOST_THREADS}");
-        if count.is_instance_of::<PyInt>() && !count.is_instance_of::<PyBool>() {
-            PyValueError::new_err(message)
-        } else {
-            PyTypeError::new_err(message)
-        }
+        let shown = shown(count);
+        of_value_or_type(count, format!("count = {shown}: expected a number of threads from 1 to {MOST_THREADS}"))
     })?;
     let pool = new_pool(count)?;
     let before = POOL.lock().unwrap_or_else(PoisonError::into_inner).replace((std::process::id(), pool));

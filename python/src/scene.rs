@@ -20,7 +20,7 @@ use std::sync::Arc;
 fn extracted<'py, T: FromPyObjectOwned<'py>>(value: &Bound<'py, PyAny>, name: &str) -> PyResult<T> {
     value.extract::<T>().map_err(|error| {
         let error: PyErr = error.into();
-        let shown = value.repr().map_or_else(|_| "?".into(), |text| text.to_string());
+        let shown = crate::numbers::shown(value);
         let message = format!("{name} = {shown}: {}", error.value(value.py()));
         if error.is_instance_of::<PyOverflowError>(value.py()) {
             PyValueError::new_err(message)

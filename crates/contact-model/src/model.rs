@@ -1,6 +1,7 @@
 //! The trait of models and that of planned contacts: plan once, solve often, follow paths.
 
 use crate::abilities::Abilities;
+use crate::effects::Effects;
 use crate::error::{Error, Result};
 use crate::load::Load;
 use crate::memory::PathMemory;
@@ -94,6 +95,11 @@ pub trait ContactModel: Send + Sync {
     /// What it is built on.
     fn sources(&self) -> &'static [Source];
 
+    /// What it takes from others for these effects, beside [`Self::sources`].
+    fn sources_of(&self, _effects: &Effects) -> Vec<Source> {
+        Vec::new()
+    }
+
     /// What it can do. [`Abilities::refuse`] checks a scene against it, and help, tables and refusals follow
     /// from it.
     fn abilities(&self) -> Abilities;
@@ -123,6 +129,10 @@ impl<M: ContactModel + ?Sized> ContactModel for &M {
 
     fn sources(&self) -> &'static [Source] {
         (**self).sources()
+    }
+
+    fn sources_of(&self, effects: &Effects) -> Vec<Source> {
+        (**self).sources_of(effects)
     }
 
     fn abilities(&self) -> Abilities {

@@ -81,6 +81,10 @@ fn every_scene_is_run_and_named_in_the_readme() {
             assert_eq!(outcome.failed, allowed, "{name}: {:?}", outcome.notes);
             let manifest = std::fs::read_to_string(dir.path().join("manifest.json")).unwrap();
             assert!(manifest.contains("\"complete\": true") && manifest.contains("citation"));
+            // Works that an effect or an output rests on are cited where a scene names it, and nowhere else.
+            let text = std::fs::read_to_string(&path).unwrap();
+            let slips = text.contains("bem3d") && text.contains("\nfriction");
+            assert_eq!(manifest.contains("Kalker"), slips, "{name}");
             for file in &outcome.files {
                 assert!(file.is_file(), "{}", file.display());
             }

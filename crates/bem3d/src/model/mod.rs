@@ -22,8 +22,8 @@ use crate::parts::Recorder;
 use crate::tuning::Tuning;
 use contact::PreparedBem3d;
 use contact_model::{
-    Abilities, Adhesion, Boundary, ContactModel, Directions, Effect, Effects, Error, Friction, Hardness,
-    LoadKind, Output, Paths, PreparedContact, RequiredMemory, Result, Scene, Source, SurfaceKind,
+    Abilities, Adhesion, AdhesionLaw, Boundary, ContactModel, Directions, Effect, Effects, Error, Friction,
+    Hardness, LoadKind, Output, Paths, PreparedContact, RequiredMemory, Result, Scene, Source, SurfaceKind,
 };
 use options::NAME;
 
@@ -43,6 +43,34 @@ impl ContactModel for Bem3d {
                 what: "problem, surfaces, normalisation (Eqs. 2-10)",
             },
         ]
+    }
+
+    fn sources_of(&self, effects: &Effects) -> Vec<Source> {
+        const CERRUTI: Source = Source {
+            citation: "K. L. Johnson, Contact Mechanics (1985)",
+            what: "displacement under a tangential force (Cerruti; Eq. 3.75)",
+        };
+        const KALKER: Source = Source {
+            citation: "J. J. Kalker, Three-Dimensional Elastic Bodies in Rolling Contact (1990)",
+            what: "conditions of stick and slip",
+        };
+        const JKR: Source = Source {
+            citation: "K. L. Johnson, K. Kendall, A. D. Roberts, Proc. R. Soc. A 324, 301 (1971)",
+            what: "adhesion of short range",
+        };
+        const MAUGIS: Source = Source {
+            citation: "D. Maugis, J. Colloid Interface Sci. 150, 243 (1992)",
+            what: "adhesion of finite range by Dugdale's law",
+        };
+        let mut sources = match effects.adhesion {
+            Adhesion::ShortRange { .. } => vec![JKR],
+            Adhesion::FiniteRange { law: AdhesionLaw::Dugdale, .. } => vec![MAUGIS],
+            _ => Vec::new(),
+        };
+        if effects.friction != Friction::Off {
+            sources.extend([CERRUTI, KALKER]);
+        }
+        sources
     }
 
     fn abilities(&self) -> Abilities {

@@ -248,8 +248,8 @@ fn header(scene: &SceneFile, plan: &Plan) -> Header {
     let file =
         scene.path.file_name().map_or_else(|| "scene.toml".into(), |n| n.to_string_lossy().into_owned());
     let mut header = Header { command: format!("fractal-contact run {file}"), ..Header::default() };
-    for numerics in &scene.models {
-        header = header.with_sources(numerics.model().sources());
+    for (_, _, source) in columns::sources(scene) {
+        header = header.with_sources(&[source]);
     }
     if !scene.comment().is_empty() {
         header = header.with_note(scene.comment());

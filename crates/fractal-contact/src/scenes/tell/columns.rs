@@ -4,8 +4,8 @@ use crate::scenes::plan::RMS_SLOPE;
 use crate::scenes::read::{LoadList, LoadRequest, Numerics, SceneFile};
 use crate::scenes::run::{SolvedUnit, StateRecord};
 use analysis::{Column, Table, Value};
-use contact_model::Directions;
 use contact_model::quantities::{Compared, QUANTITIES, Quantity, Question};
+use contact_model::{Directions, Source};
 
 /// The error of a quantity that the cells leave, and the order of convergence.
 const GRID_ERROR: &str = "estimated relative error of the grid, from cells twice and four times as large";
@@ -42,6 +42,20 @@ pub(crate) fn table<const N: usize>(
         table.push(row.into()).map_err(runs::Error::model(what))?;
     }
     Ok(table)
+}
+
+/// The works that a scene's numbers rest on, each with `model` or `quantity` and the name of the one that takes it.
+pub(crate) fn sources(scene: &SceneFile) -> Vec<(&'static str, &'static str, Source)> {
+    let of_models = scene.models.iter().flat_map(|numerics| {
+        let model = numerics.model();
+        let all = model.sources().iter().copied().chain(model.sources_of(&scene.effects));
+        all.map(|source| ("model", numerics.name(), source)).collect::<Vec<_>>()
+    });
+    let of_quantities = asked(scene).filter(|quantity| !quantity.source.is_empty()).map(|quantity| {
+        let source = Source { citation: quantity.source, what: quantity.words };
+        ("quantity", quantity.name, source)
+    });
+    of_models.chain(of_quantities).collect()
 }
 
 /// The quantities that a scene asks for, in the order of the table of all.

@@ -3,6 +3,7 @@
 use crate::scenes::plan::{Cost, FORMAT, Plan};
 use crate::scenes::read::{Result, SceneFile};
 use crate::scenes::run::{Options, SceneOutcome};
+use crate::scenes::tell::columns;
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
 use std::path::PathBuf;
@@ -26,15 +27,9 @@ pub(crate) fn write(
     options: &Options,
     outcome: &SceneOutcome,
 ) -> Result<PathBuf> {
-    let cite: Vec<Value> = scene
-        .models
-        .iter()
-        .flat_map(|m| {
-            m.model()
-                .sources()
-                .iter()
-                .map(move |s| json!({ "model": m.name(), "citation": s.citation, "what": s.what }))
-        })
+    let cite: Vec<Value> = columns::sources(scene)
+        .into_iter()
+        .map(|(kind, by, s)| json!({ kind: by, "citation": s.citation, "what": s.what }))
         .collect();
     let models: Vec<Value> = plan
         .models

@@ -228,9 +228,9 @@ impl Report<'_> {
 
     fn sources(&self) -> Markup {
         html! { ul {
-            @for model in &self.scene.models { @for source in model.model().sources() {
-                li { (source.citation) ": " (source.what) " (" (words::model_name(model.name())) ")" }
-            } }
+            @for (_, by, source) in columns::sources(self.scene) {
+                li { (source.citation) ": " (source.what) " (" (words::model_name(by)) ")" }
+            }
         } }
     }
 
