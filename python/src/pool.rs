@@ -58,7 +58,10 @@ pub fn set_threads(py: Python<'_>, count: &Bound<'_, PyAny>) -> PyResult<()> {
     let whole = usize::single(count).filter(|count| (1..=MOST_THREADS).contains(count));
     let count = whole.ok_or_else(|| {
         let shown = shown(count);
-        of_value_or_type(count, format!("count = {shown}: expected a number of threads from 1 to {MOST_THREADS}"))
+        of_value_or_type(
+            count,
+            format!("count = {shown}: expected a number of threads from 1 to {MOST_THREADS}"),
+        )
     })?;
     let pool = new_pool(count)?;
     let before = POOL.lock().unwrap_or_else(PoisonError::into_inner).replace((std::process::id(), pool));
