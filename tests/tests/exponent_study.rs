@@ -4,9 +4,9 @@ use crate::committed::{Row, list, mean_and_error, number, of_dimension, rows, sl
 use std::collections::BTreeMap;
 
 /// Loads and, for each level, its surfaces: k_bar on the coarsest grid, then differences.
-struct Study {
-    forces: Vec<f64>,
-    levels: Vec<Vec<Vec<f64>>>,
+pub(crate) struct Study {
+    pub(crate) forces: Vec<f64>,
+    pub(crate) levels: Vec<Vec<Vec<f64>>>,
 }
 
 /// Tables of samples of a command: those of its flag.
@@ -18,7 +18,7 @@ fn sources(flag: &str) -> Vec<String> {
 }
 
 /// The surfaces or lines of a fractal dimension, of all runs together, at the loads that all of them have.
-fn study(flag: &str, model: &str, d: f64) -> Study {
+pub(crate) fn study(flag: &str, model: &str, d: f64) -> Study {
     let mut found = Study { forces: Vec::new(), levels: Vec::new() };
     for path in sources(flag) {
         let own: Vec<Row> =
@@ -73,7 +73,7 @@ fn loads(path: &str, model: &str) -> Vec<f64> {
 
 impl Study {
     /// Mean curve of the first levels.
-    fn mean(&self, levels: usize) -> Vec<f64> {
+    pub(crate) fn mean(&self, levels: usize) -> Vec<f64> {
         let of = |level: &Vec<Vec<f64>>, j: usize| {
             let all: Vec<f64> = level.iter().filter_map(|s| s.get(j).copied()).collect();
             if all.is_empty() { 0.0 } else { all.iter().sum::<f64>() / all.len() as f64 }
@@ -82,20 +82,20 @@ impl Study {
     }
 
     /// The loads of a window.
-    fn window(&self, from: f64, to: f64) -> Vec<usize> {
+    pub(crate) fn window(&self, from: f64, to: f64) -> Vec<usize> {
         let inside = |j: &usize| (from * 0.9..=to * 1.1).contains(&self.forces[*j]);
         (0..self.forces.len()).filter(inside).collect()
     }
 
     /// Exponent of a window.
-    fn exponent(&self, window: &[usize]) -> f64 {
+    pub(crate) fn exponent(&self, window: &[usize]) -> f64 {
         let mean = self.mean(self.levels.len());
         slope(&window.iter().map(|&j| (self.forces[j].ln(), mean[j].ln())).collect::<Vec<_>>())
     }
 
     /// Variance and degrees of freedom (Welch and Satterthwaite) of a number that depends on the mean curve
     /// by these derivatives, surface by surface.
-    fn variance(&self, gradient: &BTreeMap<usize, f64>) -> (f64, f64) {
+    pub(crate) fn variance(&self, gradient: &BTreeMap<usize, f64>) -> (f64, f64) {
         let (mut all, mut spread) = (0.0, 0.0);
         for level in &self.levels {
             let each: Vec<f64> = level
@@ -110,7 +110,7 @@ impl Study {
     }
 
     /// Variance of the exponent of a window, by delta's method.
-    fn exponent_variance(&self, window: &[usize]) -> (f64, f64) {
+    pub(crate) fn exponent_variance(&self, window: &[usize]) -> (f64, f64) {
         let mean = self.mean(self.levels.len());
         let x: Vec<f64> = window.iter().map(|&j| self.forces[j].ln()).collect();
         let middle = x.iter().sum::<f64>() / x.len() as f64;
@@ -186,7 +186,7 @@ fn the_slope_of_line_over_surface_and_its_chance_are_those_of_the_samples() {
 
 /// alpha of the law zeta F^alpha (1 + c F^omega) that fits best, by a search of omega and c that is refined six
 /// times.
-fn towards_zero(x: &[f64], y: &[f64], weights: &[f64], held: Option<f64>) -> (f64, f64) {
+pub(crate) fn towards_zero(x: &[f64], y: &[f64], weights: &[f64], held: Option<f64>) -> (f64, f64) {
     let top = x[x.len() - 1];
     let all: f64 = weights.iter().sum();
     let line = |omega: f64, c: f64| {

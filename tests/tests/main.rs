@@ -9,6 +9,7 @@ mod documents;
 mod ensembles;
 mod equivalent;
 mod exact_bodies;
+mod exponent_hypotheses;
 mod exponent_study;
 mod exponents;
 mod friction;
