@@ -1,11 +1,12 @@
 //! `press` and `new`: the scene of the commonest question, how large the contact of a measured map is, from
 //! flags.
 
-use crate::arguments::{Bodies, MapArguments, PressArguments};
+use crate::arguments::{Arguments, Bodies, Command, MapArguments, PressArguments};
 use clap::parser::ValueSource;
-use clap::{ArgMatches, Args as _};
+use clap::{ArgMatches, Args as _, CommandFactory as _, FromArgMatches as _};
 use fractal_contact::scenes::{Error, Result, SceneFile};
 use runs::cluster::{quoted, toml};
+use std::ffi::OsString;
 use std::fmt::Write as _;
 use std::path::{Component, Path, PathBuf};
 use surface_io::{Metadata, SurfaceFile};
@@ -51,8 +52,8 @@ struct Lacking {
 /// The scene of a map, at the place where it will stand.
 ///
 /// # Errors
-/// [`Error::Argument`] with everything that neither the flags nor the file say, and the whole command; what is
-/// wrong with the file or with the scene.
+/// [`Error::Argument`] with everything that neither the flags nor the file say, and the whole command or, where
+/// flags that are given are wrong, what is wrong with them; what is wrong with the file or with the scene.
 pub fn scene(asked: &PressArguments, keys: &SurfaceKeys, at: &Path) -> Result<SceneFile> {
     if asked.map.extension().is_some_and(|ending| ending == "toml") {
         let reason = format!("{} is a scene: `fractal-contact run` takes it", asked.map.display());
@@ -146,11 +147,41 @@ fn lacking(asked: &PressArguments, keys: &SurfaceKeys, map: &Metadata) -> Vec<La
     lacking
 }
 
-/// One message with everything that is missing and the command with an example of each.
+/// What is wrong with the flags that are given: with them and the examples the scene is read.
+fn mistake(lacking: &[Lacking]) -> Option<String> {
+    let examples = lacking.iter().flat_map(|lacking| [lacking.flag, &lacking.example]).map(OsString::from);
+    let parsed = Arguments::command()
+        .try_get_matches_from(std::env::args_os().chain(examples))
+        .and_then(|matches| Ok((Arguments::from_arg_matches(&matches)?.command, matches)));
+    let told = match parsed {
+        Ok((Command::Press { asked, .. } | Command::New { asked, .. }, matches)) => {
+            // Nothing is written, and this folder exists.
+            let at = Path::new("scene.toml");
+            match SceneFile::parse(at, text(&asked, &SurfaceKeys::given(&matches), at)) {
+                Err(Error::Scene(mistake)) => {
+                    mistake.told_of("the scene of these flags, with examples of what is missing").to_string()
+                }
+                _ => return None,
+            }
+        }
+        Ok(_) => return None,
+        // Flags that exclude each other; its usage is left out.
+        Err(error) => error.to_string().split("\n\n").next()?.to_owned(),
+    };
+    Some(told.trim_start_matches("error: ").to_owned())
+}
+
+/// One message with everything that is missing and the command with an example of each. A command with a mistake
+/// is not repeated: the mistake is told first.
 fn question(map: &Path, lacking: &[Lacking]) -> String {
-    let mut text = format!("{} and the flags do not say", map.display());
+    let mistake = mistake(lacking);
+    let mut text = mistake.as_ref().map_or_else(String::new, |mistake| format!("{mistake}\n"));
+    let _ = write!(text, "{} and the flags do not say", map.display());
     for Lacking { flag, why, .. } in lacking {
         let _ = write!(text, "\n  {flag:<19} {why}");
+    }
+    if mistake.is_some() {
+        return text;
     }
     let mut command = vec!["fractal-contact".to_owned()];
     command.extend(std::env::args().skip(1).map(|word| quoted(&word)));

@@ -66,6 +66,26 @@ fn what_is_missing_is_asked_for_at_once_and_the_command_told_does_it() {
 }
 
 #[test]
+fn a_wrong_flag_is_told_before_what_is_missing_and_not_repeated() {
+    let dir = folder();
+    let cases: [(&[&str], &str); 5] = [
+        (&["--modulus", "115 Gpaa"], "unknown unit \"Gpaa\""),
+        (&["--modulus", "115"], "modulus = \"115\""),
+        (&["--pressure", "1 MPa,2 N"], "\"2 N\""),
+        (&["--bodies", "rigid, 70 GPa 0.9"], "0.9"),
+        (&["--modulus", "1 GPa", "--friction", "0.3"], "'--modulus <MODULUS>' cannot be used with '--bodies"),
+    ];
+    for (wrong, told) in cases {
+        let (code, _, said) = program(dir.path(), &[&["press", "map.txt"], wrong].concat());
+        let (first, then) = said.split_once("map.txt and the flags do not say").unwrap();
+        assert!(code == Some(2) && first.contains(told), "{said}");
+        assert!(then.contains("\n  --unit") && then.contains("\n  --cell"), "{said}");
+        assert!(!then.contains("fractal-contact press"), "{said}");
+        assert!(!dir.path().join("out").exists() && !dir.path().join("scene.toml").exists());
+    }
+}
+
+#[test]
 fn flags_are_keys_of_the_scene() {
     let dir = folder();
     let flags = ["new", "map.txt", "--bodies", "rigid, 70 GPa 0.33", "--force", "1 mN,2 mN"];
