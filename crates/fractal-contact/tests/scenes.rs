@@ -133,6 +133,25 @@ fn a_plastic_path_keeps_its_indentation() {
 }
 
 #[test]
+fn a_path_beyond_the_hardness_is_told_by_the_plan() {
+    let text = std::fs::read_to_string(folder().join("plastic-path.toml")).unwrap();
+    let notes = |text: String| {
+        let scene = SceneFile::parse(&folder().join("plastic-path.toml"), text).unwrap();
+        Plan::new(&scene).unwrap().notes.iter().map(ToString::to_string).collect::<Vec<_>>()
+    };
+    assert_eq!(notes(text.clone()), Vec::<String>::new());
+    // 1 GPa on 1 mm^2 are 1000 N.
+    for load in ["force = \"2000 N\"", "mean_pressure = \"2 GPa\""] {
+        let told = notes(text.replace("force = \"300 N\"", load));
+        let [note] = &told[..] else { panic!("{told:?}") };
+        assert!(note.contains("a mean pressure of 2 GPa is no state: at the hardness of 1 GPa"), "{note}");
+        assert!(note.contains("the path ends before such a step"), "{note}");
+    }
+    // The force that belongs to an approach is not known beforehand.
+    assert_eq!(notes(text.replace("force = \"300 N\"", "approach = \"1 mm\"")), Vec::<String>::new());
+}
+
+#[test]
 fn a_ball_is_the_same_for_four_models() {
     let (_, file, _dir) = solved("ball-on-plate.toml");
     for name in ["approach", "stiffness", "area"] {

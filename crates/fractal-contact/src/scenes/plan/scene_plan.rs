@@ -7,7 +7,7 @@ use crate::scenes::read::{
 };
 use bem3d::UNRESOLVED_RANGE;
 use contact_model::units::ascii;
-use contact_model::{Cells, Hardness};
+use contact_model::{Cells, Hardness, Load, Step};
 use runs::amounts::{memory, time};
 use std::fmt;
 
@@ -219,26 +219,33 @@ pub(crate) fn of_slopes(system: System, map: Option<&surface_io::Description>) -
     (system == System::Si).then(|| Diagnostic::note(message).with_help(help))
 }
 
-/// A mean pressure at which every cell is at the hardness: models refuse such a state and solve the others.
+/// A mean pressure at which every cell is at the hardness: models refuse such a state.
 fn beyond_hardness(scene: &SceneFile) -> Option<Diagnostic> {
-    let (Hardness::Limit { pressure }, LoadRequest::Loads(loads)) = (scene.effects.hardness, &scene.request)
-    else {
-        return None;
+    let Hardness::Limit { pressure } = scene.effects.hardness else { return None };
+    let area = scene.surface.size().area();
+    let (means, rest): (Vec<f64>, _) = match &scene.request {
+        LoadRequest::Loads(loads) => {
+            let area = match loads.kind {
+                LoadKind::MeanPressure => 1.0,
+                LoadKind::Force => area,
+                LoadKind::ForceBar | LoadKind::Approach | LoadKind::MeanGap => return None,
+            };
+            (loads.values.iter().map(|value| value / area).collect(), "other loads are solved")
+        }
+        LoadRequest::Path(steps) => {
+            let mean = |step: &Step| match step.normal {
+                Load::Force(force) => Some(force / area),
+                _ => None,
+            };
+            (steps.iter().filter_map(mean).collect(), "the path ends before such a step")
+        }
     };
-    let area = match loads.kind {
-        LoadKind::MeanPressure => 1.0,
-        LoadKind::Force => scene.surface.size().area(),
-        LoadKind::ForceBar | LoadKind::Approach | LoadKind::MeanGap => return None,
-    };
-    let beyond = loads.values.iter().map(|value| value / area).filter(|&mean| mean >= pressure);
-    let largest = beyond.max_by(f64::total_cmp)?;
+    let largest = means.into_iter().filter(|&mean| mean >= pressure).max_by(f64::total_cmp)?;
     let [largest, hardness] =
         [largest, pressure].map(|value| ascii(&amount(value, scene.system.shown("Pa"))));
     let message =
         format!("a mean pressure of {largest} is no state: at the hardness of {hardness} every cell flows");
-    Some(
-        Diagnostic::note(message).with_help("a smaller load, or a larger `hardness`; other loads are solved"),
-    )
+    Some(Diagnostic::note(message).with_help(format!("a smaller load, or a larger `hardness`; {rest}")))
 }
 
 fn prepared(scene: &SceneFile) -> Option<surface_io::Description> {
