@@ -49,6 +49,7 @@ use super::law::{Law, Shape};
 use super::neighbours::Neighbours;
 use super::pairs::Pairs;
 use crate::geometry::{CellSet, Grid};
+use crate::kernel::Inverse;
 use crate::real::each;
 use contact_model::Boundary;
 
@@ -56,6 +57,8 @@ use contact_model::Boundary;
 const FRONT_WIDTH: f64 = 0.415;
 /// Radius of the ring of neighbours, and how far from it they lie at most, in longer sides of a cell.
 const RING: (f64, f64) = (4.0, 1.5);
+/// How far cells follow a moved one of a front, in sides of a square cell.
+const FOLLOWING: f64 = 5.0;
 
 /// The attraction between the cells of a grid.
 #[derive(Debug, Clone)]
@@ -66,12 +69,14 @@ pub struct Attraction {
     neighbours: Option<Neighbours>,
     /// How much stronger than a cell on a straight front one is that has all neighbours, relative.
     strength: f64,
+    /// Of a short range: what a moved cell of a front takes of the others.
+    inverse: Option<Inverse>,
 }
 
 impl Attraction {
     /// Of a finite range: no cell asks for its neighbours.
     pub fn of(law: Law) -> Self {
-        Self { law, neighbours: None, strength: 0.0 }
+        Self { law, neighbours: None, strength: 0.0, inverse: None }
     }
 
     /// Of a short range, of this work of adhesion over `pi E*` times the height, on a grid.
@@ -84,12 +89,24 @@ impl Attraction {
             law: Law::short(work, side),
             strength: 2.0 * FRONT_WIDTH * side / neighbours.distance,
             neighbours: Some(neighbours),
+            inverse: Some(Inverse::within(grid, FOLLOWING)),
         }
     }
 
     /// The largest traction of all gaps.
     pub fn strongest(&self) -> f64 {
         self.law.peak * (1.0 + self.strength)
+    }
+
+    /// How much stronger than on a straight front a cell is that has all neighbours, relative.
+    pub fn strength(&self) -> f64 {
+        self.strength
+    }
+
+    /// The inverse of the kernel near a cell, by which the cells of a front follow one another; `None`: fronts
+    /// are not followed.
+    pub fn inverse(&self) -> Option<&Inverse> {
+        self.inverse.as_ref()
     }
 
     /// Area of a contact, in cells: with a short range the attached shares of all cells, which is where
@@ -193,11 +210,6 @@ impl Attraction {
 
 #[cfg(test)]
 impl Attraction {
-    /// How much stronger than on a straight front a cell is that has all neighbours.
-    pub fn strength(&self) -> f64 {
-        self.strength
-    }
-
     /// Columns, rows and weights of the neighbours.
     pub fn weights(&self) -> impl Iterator<Item = (isize, isize, f64)> + '_ {
         self.neighbours.iter().flat_map(Neighbours::weights)

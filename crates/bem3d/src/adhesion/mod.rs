@@ -10,6 +10,7 @@ mod near;
 mod neighbours;
 mod newton;
 mod pairs;
+mod relaxation;
 mod search;
 mod update;
 

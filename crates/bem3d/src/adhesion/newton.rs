@@ -78,7 +78,7 @@ const FLAT: f64 = 1e-3;
 /// hardly change their attraction, and a system with them is far worse conditioned than the state.
 const LEVEL: f64 = 0.05;
 /// Steps begin when no attraction changes by more than this in an update, over the peak: before, fronts move
-/// by whole cells and the plain iteration is as fast.
+/// by whole cells.
 pub const BEGIN: f64 = 0.02;
 /// Signs of changes hold up to this share of the largest one.
 const SLACK: f64 = 0.1;

@@ -4,9 +4,10 @@
 //! `z - G s`; then `s <- s(g)`. Where G on every set is an inverse M-matrix this map of s is monotone: more
 //! attraction here closes gaps everywhere, and never opens one. From a state whose load has risen it rises to
 //! the nearest equilibrium above, from one whose load has fallen it falls to the nearest one below: the
-//! branches of approach and withdrawal. Its derivative is `D^(1/2) G^ D^(1/2)` up to similarity, D the slopes
-//! of the law on open cells and G^ the compliance of the open cells with the contact kept closed, so that it
-//! contracts exactly where the energy has a minimum.
+//! branches of approach and withdrawal. Fronts of a short range would move by a cell or so in an update; they
+//! are followed further at once ([`super::relaxation`]). The derivative of the map is `D^(1/2) G^ D^(1/2)` up
+//! to similarity, D the slopes of the law on open cells and G^ the compliance of the open cells with the
+//! contact kept closed, so that it contracts exactly where the energy has a minimum.
 
 use super::attraction::Attraction;
 use super::equilibrium::{AdhesiveControl, Equilibrium};
@@ -18,8 +19,7 @@ use crate::real::{each, largest_difference, smallest, sum};
 use contact_model::{Status, Stop};
 use std::sync::Arc;
 
-/// Updates for each outer iteration allowed: the plain iteration contracts by the spectral radius only, and
-/// fronts of a short range move by a cell or so in an update.
+/// Updates for each outer iteration allowed: the plain iteration contracts by the spectral radius only.
 const UPDATES: usize = 20;
 /// Room above the cells within reach, in ranges, so that small changes of the load keep the set.
 const AHEAD: f64 = 0.5;

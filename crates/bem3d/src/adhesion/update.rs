@@ -1,11 +1,14 @@
-//! One update of contact pressure and attraction: a plain one, one far along a slow change, or a Newton step.
+//! One update of contact pressure and attraction: a plain one, one that follows fronts, one far along a slow
+//! change, or a Newton step.
 
 use super::attraction::Attraction;
 use super::bottleneck::Bottleneck;
 use super::equilibrium::{AdhesiveControl, Equilibrium};
 use super::law::Shape;
 use super::newton::{BEGIN, Predicted, step};
+use super::relaxation::{Tractions, follow};
 use crate::active_set::Problem;
+use crate::kernel::Inverse;
 use crate::linear::{Fixed, StoppingCriteria};
 use crate::real::{each, largest, largest_difference, sum, update};
 use contact_model::Stop;
@@ -120,7 +123,8 @@ impl Updates<'_> {
         let plain = self.plain || law.shape == Shape::Uniform;
         let fixed = self.control.fixed(self.problem.operators.table().shift());
         let mut next = state.lawful.clone();
-        if matches!(fixed, Fixed::MeanPlane(_)) && state.updates > PATIENT {
+        let damped = matches!(fixed, Fixed::MeanPlane(_)) && state.updates > PATIENT;
+        if damped {
             update(&mut next, &state.attraction, |next, now| *next = now + DAMPED * (*next - now));
         }
         let change = largest_difference(&next, &state.attraction) / law.peak;
@@ -131,21 +135,18 @@ impl Updates<'_> {
         if waits {
             next.clone_from(&state.attraction);
         }
-        let Some(mut pressure) = self.held(state, &next) else { return false };
-        let gap = self.gap_after(state, (&pressure, &next), fixed);
-        let contact = Contact::new(&pressure, &gap, self.problem.operators.tuning().noise);
-        if !plain
-            && !waits
-            && change <= BEGIN
-            && let Some(reduction) = progress.newton(change, tolerance)
-        {
-            let Contact { marked, noise, .. } = &contact;
+        let newton = if plain || waits || change > BEGIN { None } else { progress.newton(change, tolerance) };
+        let inverse = self.attraction.inverse().filter(|_| !plain && !waits && !damped);
+        let mut found = None;
+        if let Some(reduction) = newton {
+            let Some(pressure) = self.held(state, &mut next, None) else { return false };
+            let (gap, contact) = self.gap_after(state, (&pressure, &next), fixed);
             let predicted = Predicted {
                 pressure: &pressure,
                 attraction: &next,
                 gap: &gap,
-                contact: marked,
-                noise: *noise,
+                contact: &contact.marked,
+                noise: contact.noise,
             };
             let (trial, steps) =
                 step(self.problem, self.attraction, (state, &predicted), fixed, reduction, stop);
@@ -155,7 +156,17 @@ impl Updates<'_> {
                 return self.bring_to_force(state);
             }
             progress.refuse();
+            if inverse.is_none() {
+                found = Some((pressure, gap, contact));
+            }
         }
+        let (mut pressure, gap, contact) = if let Some(found) = found {
+            found
+        } else {
+            let Some(pressure) = self.held(state, &mut next, inverse) else { return false };
+            let (gap, contact) = self.gap_after(state, (&pressure, &next), fixed);
+            (pressure, gap, contact)
+        };
         let reduction = if plain { PLAIN_REDUCTION } else { REDUCTION };
         state.steps += self.close(state, (&gap, &contact), &mut pressure, (fixed, reduction), stop);
         if plain || change > SLOW {
@@ -172,13 +183,24 @@ impl Updates<'_> {
     }
 
     /// The pressure of a state brought to the force that an attraction leaves to it; `None` where that is
-    /// none.
-    fn held(&self, state: &Equilibrium, attraction: &[f64]) -> Option<Vec<f64>> {
+    /// none. With an inverse of the kernel its fronts are followed, and the attraction becomes that at their end.
+    fn held(
+        &self,
+        state: &Equilibrium,
+        attraction: &mut [f64],
+        inverse: Option<&Inverse>,
+    ) -> Option<Vec<f64>> {
         let mut pressure = state.pressure.clone();
-        // A contact cell that is attracted more bears as much more: its net pressure stays.
-        for ((p, now), before) in pressure.iter_mut().zip(attraction).zip(&state.attraction) {
-            if *p > 0.0 && *p + now - before > 0.0 {
-                *p += now - before;
+        if let Some(inverse) = inverse {
+            let on = (self.problem.grid(), self.problem.operators.table().boundary());
+            let mut to = Tractions { pressure: &mut pressure, attraction: &mut *attraction };
+            follow(self.attraction, inverse, on, state, &mut to);
+        } else {
+            // A contact cell that is attracted more bears as much more: its net pressure stays.
+            for ((p, now), before) in pressure.iter_mut().zip(&*attraction).zip(&state.attraction) {
+                if *p > 0.0 && *p + now - before > 0.0 {
+                    *p += now - before;
+                }
             }
         }
         let AdhesiveControl::Force(force) = self.control else { return Some(pressure) };
@@ -205,14 +227,14 @@ impl Updates<'_> {
         wanted > 0.0
     }
 
-    /// The gap of a state after pressure and attraction have changed, in single precision: the error is
-    /// relative to the change.
+    /// The gap of a state after pressure and attraction have changed, in single precision (the error is
+    /// relative to the change), and the contact that follows.
     fn gap_after(
         &mut self,
         state: &Equilibrium,
         (pressure, next): (&[f64], &[f64]),
         fixed: Fixed,
-    ) -> Vec<f64> {
+    ) -> (Vec<f64>, Contact) {
         let mut changed: Vec<f64> = pressure.iter().zip(next).map(|(p, s)| p - s).collect();
         let before = state.pressure.iter().zip(&state.attraction);
         changed.iter_mut().zip(before).for_each(|(changed, (p, s))| *changed -= p - s);
@@ -231,7 +253,8 @@ impl Updates<'_> {
             Fixed::Approach => 0.0,
         };
         each(&mut gap, |g| *g -= offset);
-        gap
+        let contact = Contact::new(pressure, &gap, self.problem.operators.tuning().noise);
+        (gap, contact)
     }
 
     /// Corrects the pressure of the contact so that its gap vanishes. Returns the steps.

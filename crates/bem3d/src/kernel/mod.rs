@@ -4,6 +4,7 @@
 mod alternating;
 mod coupling_table;
 mod half_plane;
+mod inverse;
 pub mod love;
 mod periodic;
 mod symbol;
@@ -12,6 +13,7 @@ mod tangential;
 mod tangential_table;
 
 pub use coupling_table::CouplingTable;
+pub use inverse::Inverse;
 pub use symbol::Symbol;
 pub use table::{KernelTable, Medium};
 pub use tangential_table::TangentialTable;

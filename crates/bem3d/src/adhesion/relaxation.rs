@@ -1,0 +1,212 @@
+//! Fronts of a short range followed over several cells in one update.
+//!
+//! Where the attraction is that of the gaps of the update before, a front moves by a cell or so, and then the
+//! contact is solved anew. Before that, the cells beside a front follow one another here, by the inverse W of
+//! the kernel: with Q the net pressure that holds the gaps, a change e of one gap changes Q by `W e`. A cell is
+//! in balance where it is open and `Q + f s(g) = 0`, or closed and `Q + f s(0) >= 0`; f, what its neighbours
+//! multiply its attraction by, stays as it is.
+//!
+//! No gap passes an equilibrium. A cell that is out of balance by e moves by `e/W_0` at a time, W_0 the
+//! cell's own entry: less than what balances it with the others held, because its attraction moves it further
+//! in the same direction. All other entries of W are negative, so that a cell that closes makes others close,
+//! and one that opens makes them open; gaps that all close from above an equilibrium end above it. Cells that
+//! are out of reach are held, which makes changes smaller. That contact and gaps are within the error of the
+//! update before makes this a statement about exact ones; what is found is in
+//! `of_thousands_of_states_how_many_leave_the_branch`.
+
+use super::attraction::Attraction;
+use super::equilibrium::Equilibrium;
+use crate::geometry::{Grid, Window};
+use crate::kernel::Inverse;
+use crate::real::largest_difference;
+use contact_model::Boundary;
+
+/// Cells are moved that are out of balance by more than this, over the peak, ...
+const BALANCED: f64 = 0.02;
+/// ... or by more than this share of the largest change of an attraction, where that is less.
+const SHARE: f64 = 0.1;
+/// Moves of a cell before the next one moves.
+const MOVES: usize = 3;
+/// Rounds over all cells that are out of balance, at most.
+const ROUNDS: u32 = 50;
+/// No cell of the set.
+const NONE: u32 = u32::MAX;
+
+/// Pressures and attractions on the cells of a state.
+#[derive(Debug)]
+pub struct Tractions<'a> {
+    /// Contact pressure.
+    pub pressure: &'a mut [f64],
+    /// Attraction.
+    pub attraction: &'a mut [f64],
+}
+
+/// Follows the fronts of a state from the attraction of its gaps, `to.attraction`, to where they come to rest in
+/// W, or part of the way; `to` becomes what the cells then bear.
+///
+/// Cost: for each cell and round a product with the part of W within its reach.
+pub fn follow(
+    attraction: &Attraction,
+    inverse: &Inverse,
+    (grid, boundary): (Grid, Boundary),
+    state: &Equilibrium,
+    to: &mut Tractions<'_>,
+) {
+    let (law, cells) = (attraction.law, &state.cells);
+    let change = largest_difference(to.attraction, &state.attraction);
+    let least = (BALANCED * law.peak).min(SHARE * change);
+    let Some(window) = cells.window() else { return };
+    let around = Around::new(window, inverse.reach);
+    let mut number = vec![NONE; around.count()];
+    let mut net = vec![0.0; around.count()];
+    let mut places = Vec::with_capacity(cells.len());
+    for (i, (x, y)) in cells.places().enumerate() {
+        let place = around.place(x, y);
+        number[place] = i as u32;
+        net[place] = state.pressure[i] - state.attraction[i];
+        places.push(place);
+    }
+    let closed = |i: usize| state.pressure[i] > 0.0;
+    let mut gap: Vec<f64> =
+        state.gap.iter().enumerate().map(|(i, &g)| if closed(i) { 0.0 } else { g.max(0.0) }).collect();
+    // Beyond the range it is the least that neighbours can leave.
+    let factor = |i: usize| {
+        let alone = law.traction(state.gap[i]);
+        if alone > 0.0 { state.lawful[i] / alone } else { 1.0 - attraction.strength() }
+    };
+    let mut out_of_balance: Vec<usize> =
+        (0..cells.len()).filter(|&i| (to.attraction[i] - state.attraction[i]).abs() > least).collect();
+    let (mut moved, mut listed) = (vec![false; cells.len()], vec![0; cells.len()]);
+    for round in 1..=ROUNDS {
+        let mut beside = Vec::new();
+        for &i in &out_of_balance {
+            let (place, factor, before) = (places[i], factor(i), gap[i]);
+            let (mut g, mut held) = (before, net[place]);
+            for _ in 0..MOVES {
+                let next = (g - (held + factor * law.traction(g)) / inverse.own).max(0.0);
+                held += inverse.own * (next - g);
+                g = next;
+            }
+            (gap[i], moved[i]) = (g, true);
+            for (start, weights) in around.rows(place).zip(&inverse.rows) {
+                let start = start - weights.len() / 2;
+                let net = &mut net[start..start + weights.len()];
+                net.iter_mut().zip(weights).for_each(|(net, weight)| *net += weight * (g - before));
+            }
+            for k in around.nearest(place).filter_map(|place| number.get(place)).filter(|k| **k != NONE) {
+                let k = *k as usize;
+                if listed[k] < round {
+                    listed[k] = round;
+                    beside.push(k);
+                }
+            }
+        }
+        if boundary == Boundary::Periodic {
+            around.fold(&mut net, grid);
+        }
+        beside.retain(|&i| {
+            let off = net[places[i]] + factor(i) * law.traction(gap[i]);
+            off < -least || (off > least && gap[i] > 0.0)
+        });
+        out_of_balance = beside;
+        if out_of_balance.is_empty() {
+            break;
+        }
+    }
+    for i in 0..cells.len() {
+        if moved[i] {
+            to.attraction[i] = factor(i) * law.traction(gap[i]);
+        }
+        let bears = gap[i] <= 0.0 && (closed(i) || moved[i]);
+        to.pressure[i] = if bears { (net[places[i]] + to.attraction[i]).max(0.0) } else { 0.0 };
+    }
+}
+
+/// Places in a window and beside it, in rows.
+struct Around {
+    window: Window,
+    /// Columns and rows beside it.
+    reach: (usize, usize),
+    /// Places of a row.
+    width: usize,
+}
+
+impl Around {
+    fn new(window: Window, reach: (usize, usize)) -> Self {
+        // One more than W reaches, for the nearest of a cell where it reaches none.
+        let reach = (reach.0 + 1, reach.1 + 1);
+        Self { window, reach, width: window.width + 2 * reach.0 }
+    }
+
+    fn count(&self) -> usize {
+        self.width * (self.window.height + 2 * self.reach.1)
+    }
+
+    fn place(&self, x: usize, y: usize) -> usize {
+        (y - self.window.y + self.reach.1) * self.width + x - self.window.x + self.reach.0
+    }
+
+    /// The places in the column of a place, from the first row within the reach of W to the last.
+    fn rows(&self, place: usize) -> impl Iterator<Item = usize> + use<> {
+        let (width, rows) = (self.width, self.reach.1 - 1);
+        (0..=2 * rows).map(move |row| place + row * width - rows * width)
+    }
+
+    /// A place and the eight beside it.
+    fn nearest(&self, place: usize) -> impl Iterator<Item = usize> + use<> {
+        let width = self.width;
+        (0..9).map(move |k| place + k / 3 * width + k % 3 - width - 1)
+    }
+
+    /// Adds what lies beside the window to the places in it that are whole periods away.
+    fn fold(&self, net: &mut [f64], grid: Grid) {
+        let Self { window, reach, width } = *self;
+        let lines = net.len() / width;
+        // Beside the columns of each row, then beside the rows of each column.
+        for (reach, length, period, step, across, lines) in [
+            (reach.0, window.width, grid.columns, 1, width, lines),
+            (reach.1, window.height, grid.rows, width, 1, width),
+        ] {
+            let beside = (0..reach).chain(reach + length..length + 2 * reach);
+            for (from, line) in beside.flat_map(|from| (0..lines).map(move |line| (from, line))) {
+                let to = reach + (from + reach * period - reach) % period;
+                let value = std::mem::take(&mut net[line * across + from * step]);
+                if to < reach + length {
+                    net[line * across + to * step] += value;
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_lies_beside_a_window_is_folded_by_periods() {
+        for (columns, rows, window) in [
+            (7, 5, Window { x: 0, y: 0, width: 7, height: 5 }),
+            (3, 2, Window { x: 0, y: 0, width: 3, height: 2 }),
+            (9, 8, Window { x: 2, y: 1, width: 6, height: 7 }),
+        ] {
+            let grid = Grid::square(columns, rows);
+            let around = Around::new(window, (4, 3));
+            let value = |x: usize, y: usize| 1.0 + x as f64 + 20.0 * y as f64;
+            let lines = around.count() / around.width;
+            let mut net: Vec<f64> =
+                (0..around.count()).map(|i| value(i % around.width, i / around.width)).collect();
+            around.fold(&mut net, grid);
+            let mut expected = vec![0.0; around.count()];
+            for (x, y) in (0..lines).flat_map(|y| (0..around.width).map(move |x| (x, y))) {
+                // Column and row of the grid, moved by whole periods.
+                let (a, b) = (x + 10 * columns - around.reach.0, y + 10 * rows - around.reach.1);
+                let (a, b) = (a % columns, b % rows);
+                if a < window.width && b < window.height {
+                    expected[around.place(a + window.x, b + window.y)] += value(x, y);
+                }
+            }
+            assert_eq!(net, expected);
+        }
+    }
+}
