@@ -19,7 +19,7 @@ use super::equilibrium::Equilibrium;
 use crate::geometry::{Grid, Window};
 use crate::kernel::Inverse;
 use crate::real::largest_difference;
-use contact_model::Boundary;
+use contact_model::{Boundary, Stop};
 
 /// Cells are moved that are out of balance by more than this, over the peak, ...
 const BALANCED: f64 = 0.02;
@@ -51,6 +51,7 @@ pub fn follow(
     (grid, boundary): (Grid, Boundary),
     state: &Equilibrium,
     to: &mut Tractions<'_>,
+    stop: Stop<'_>,
 ) {
     let (law, cells) = (attraction.law, &state.cells);
     let change = largest_difference(to.attraction, &state.attraction);
@@ -109,7 +110,7 @@ pub fn follow(
             off < -least || (off > least && gap[i] > 0.0)
         });
         out_of_balance = beside;
-        if out_of_balance.is_empty() {
+        if out_of_balance.is_empty() || stop.stops() {
             break;
         }
     }

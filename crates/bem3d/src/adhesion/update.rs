@@ -144,7 +144,7 @@ impl Updates<'_> {
         let newton = if plain || waits || change > begin { None } else { progress.newton(change, tolerance) };
         let mut found = None;
         if let Some(reduction) = newton {
-            let Some(pressure) = self.held(state, &mut next, None) else { return false };
+            let Some(pressure) = self.held(state, &mut next, None, stop) else { return false };
             let (gap, contact) = self.gap_after(state, (&pressure, &next), fixed);
             let predicted = Predicted {
                 pressure: &pressure,
@@ -168,7 +168,7 @@ impl Updates<'_> {
         let (mut pressure, gap, contact) = if let Some(found) = found {
             found
         } else {
-            let Some(pressure) = self.held(state, &mut next, inverse) else { return false };
+            let Some(pressure) = self.held(state, &mut next, inverse, stop) else { return false };
             let (gap, contact) = self.gap_after(state, (&pressure, &next), fixed);
             (pressure, gap, contact)
         };
@@ -194,12 +194,13 @@ impl Updates<'_> {
         state: &Equilibrium,
         attraction: &mut [f64],
         inverse: Option<&Inverse>,
+        stop: Stop<'_>,
     ) -> Option<Vec<f64>> {
         let mut pressure = state.pressure.clone();
         if let Some(inverse) = inverse {
             let on = (self.problem.grid(), self.problem.operators.table().boundary());
             let mut to = Tractions { pressure: &mut pressure, attraction: &mut *attraction };
-            follow(self.attraction, inverse, on, state, &mut to);
+            follow(self.attraction, inverse, on, state, &mut to, stop);
         } else {
             // A contact cell that is attracted more bears as much more: its net pressure stays.
             for ((p, now), before) in pressure.iter_mut().zip(&*attraction).zip(&state.attraction) {
