@@ -21,10 +21,10 @@ const CALIBRATION_TIME: Duration = Duration::from_secs(3);
 pub(crate) const TIME_EXPONENT: f64 = 2.3;
 /// Applications of the operator over cells a side, as measured by the same.
 const APPLICATIONS_EXPONENT: f64 = 0.3;
-/// The same two with adhesion of short range, whose fronts move about a cell in a sweep: N^2.3 to N^3.0 and
-/// N^0.4 to N^1.0 as measured by the example `effects` of `bem3d`, N^1.1 along the path of a rough ball.
+/// The same two with adhesion of short range: N^2.7 to N^2.9 and N^0.4 to N^0.8 as measured by the examples
+/// `effects` and `adhesion map` of `bem3d`.
 const FRONTS_TIME_EXPONENT: f64 = 2.9;
-const FRONTS_APPLICATIONS_EXPONENT: f64 = 1.0;
+const FRONTS_APPLICATIONS_EXPONENT: f64 = 0.8;
 /// What adhesion takes beside, where all cells are within reach: states of the last sweeps. Measured from
 /// outside on that example.
 const ADHESION_BYTES: f64 = 300.0;
