@@ -10,8 +10,9 @@
 //! cell's own entry: less than what balances it with the others held, because its attraction moves it further
 //! in the same direction. All other entries of W are negative, so that a cell that closes makes others close,
 //! and one that opens makes them open; gaps that all close from above an equilibrium end above it. Cells that
-//! are out of reach are held, which makes changes smaller. That contact and gaps are within the error of the
-//! update before makes this a statement about exact ones; what is found is in
+//! are out of reach are held, which makes changes smaller. This holds for exact contact, an approach or a force;
+//! contact is solved to a share of the last change only, and with a prescribed mean gap the map is not monotone.
+//! What is found then is in `followed_fronts_go_on_and_pass_no_equilibrium` and
 //! `of_thousands_of_states_how_many_leave_the_branch`.
 
 use super::attraction::Attraction;

@@ -123,10 +123,13 @@ impl Search<'_> {
     }
 
     /// Where a load begins that follows a smaller one on the branch of approach: with the attraction of that
-    /// state, which lies below the one to come, and the contact that the new load makes under it.
+    /// state, which lies below the one to come. Under a prescribed force its contact is brought to the force by
+    /// the updates; under an approach it is solved anew, as the step of the plane is no pressure.
     pub fn continued(&mut self, last: &Equilibrium, stop: Stop<'_>) -> Equilibrium {
         let mut state = last.again();
-        self.contact_afresh(&mut state, stop);
+        if let AdhesiveControl::Plane(_) = self.control {
+            self.contact_afresh(&mut state, stop);
+        }
         state
     }
 

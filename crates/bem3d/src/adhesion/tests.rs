@@ -4,6 +4,7 @@
 #![allow(clippy::needless_range_loop)] // Indices as in the formulas.
 
 use super::law::Shape;
+use super::relaxation::{Tractions, follow};
 use super::*;
 use crate::active_set::{Limits, Problem};
 use crate::geometry::{CellSet, Grid};
@@ -389,6 +390,45 @@ fn newton_steps_find_the_states_of_the_plain_iteration() {
             }
         }
     }
+}
+
+#[test]
+fn followed_fronts_go_on_and_pass_no_equilibrium() {
+    // The contact that a first load begins with is solved to a hundredth.
+    const SETTLED: f64 = 0.01;
+    // Fronts of the other tests hardly move.
+    const FLATTER: f64 = 0.35;
+    let mut further = 0;
+    for seed in 1..9 {
+        let grid = Grid { columns: 16, rows: 12, stretch: 1.1 };
+        let boundary = if seed % 2 == 0 { Boundary::Free } else { Boundary::Periodic };
+        let z: Vec<f64> = heights(grid, seed).iter().map(|z| FLATTER * z).collect();
+        let attraction = Attraction::short((0.35 * 0.4f64).powi(2) / PI, grid, boundary);
+        let mut problem = problem(grid, &z, boundary);
+        // A prescribed mean gap is no monotone map.
+        let control = if boundary == Boundary::Free {
+            AdhesiveControl::Plane(0.1)
+        } else {
+            AdhesiveControl::Force(5.0 * attraction.law.peak)
+        };
+        let mut search = search(&mut problem, &attraction, control, true);
+        let first = search.first(&never);
+        let end = search.from(first.clone(), &never).unwrap();
+        search.limits.outer_iterations = 0;
+        let (_, state) = *search.from(first, &never).unwrap_err();
+        let (mut pressure, mut next) = (state.pressure.clone(), state.lawful.clone());
+        let mut to = Tractions { pressure: &mut pressure, attraction: &mut next };
+        follow(&attraction, attraction.inverse().unwrap(), (grid, boundary), &state, &mut to, &never);
+        let peak = attraction.law.peak;
+        let end = state.cells.carry(&end.cells, &end.attraction);
+        for ((next, lawful), end) in next.iter().zip(&state.lawful).zip(&end) {
+            assert!(*next >= lawful - SETTLED * peak && *next <= end + SETTLED * peak, "{seed}");
+        }
+        further +=
+            next.iter().zip(&state.lawful).filter(|(next, lawful)| **next > *lawful + 0.1 * peak).count();
+        assert!(pressure.iter().zip(&next).all(|(p, s)| *p >= 0.0 && *s >= 0.0));
+    }
+    assert!(further > 100, "{further}");
 }
 
 /// Gaps of all cells; beyond the reach of the attraction, where cells need not be known, the reach.
