@@ -62,38 +62,52 @@ pub fn widest<R>(work: impl FnOnce() -> R) -> R {
     work()
 }
 
+/// Does `work` on this thread and on so many others of its pool. Not generic: what shares work among threads is
+/// compiled once, and not for each of the hundreds of loops.
+#[cfg(feature = "rayon")]
+fn on_threads(helpers: usize, work: &(dyn Fn() + Sync)) {
+    rayon::in_place_scope(|scope| {
+        for _ in 0..helpers {
+            scope.spawn(|_| work());
+        }
+        work();
+    });
+}
+
 /// Does `work` on each task, on as many threads as there are buffers; each thread has its own.
 pub fn for_each<T: Send, B: Send>(
     buffers: &mut [B],
-    tasks: impl ExactSizeIterator<Item = T> + Send,
+    mut tasks: impl ExactSizeIterator<Item = T> + Send,
     work: impl Fn(&mut B, T) + Sync,
 ) {
-    let helpers = tasks.len().saturating_sub(1);
-    let Some((own, others)) = buffers.split_first_mut() else { return };
+    // One loop, which is compiled once.
+    let all = |buffer: &mut B, next: &mut dyn FnMut() -> Option<T>| {
+        while let Some(task) = next() {
+            work(buffer, task);
+        }
+    };
     #[cfg(feature = "rayon")]
-    if helpers > 0
-        && !others.is_empty()
+    if let helpers @ 1.. = buffers.len().min(tasks.len()).saturating_sub(1)
         && let Some(_sharing) = Sharing::begin()
     {
-        let queue = Mutex::new(tasks);
-        let next = || queue.lock().unwrap_or_else(PoisonError::into_inner).next();
-        let go_on = &|buffer: &mut B| {
-            while let Some(task) = next() {
-                work(buffer, task);
+        let tasks = Mutex::new(tasks);
+        let buffers = Mutex::new(buffers.iter_mut());
+        on_threads(helpers, &|| {
+            if let Some(buffer) = next(&buffers) {
+                all(buffer, &mut || next(&tasks));
             }
-        };
-        rayon::in_place_scope(|scope| {
-            for buffer in others.iter_mut().take(helpers) {
-                scope.spawn(move |_| go_on(buffer));
-            }
-            go_on(own);
         });
         return;
     }
-    let _ = (helpers, others);
-    for task in tasks {
-        work(own, task);
+    if let Some(buffer) = buffers.first_mut() {
+        all(buffer, &mut || tasks.next());
     }
+}
+
+/// The next of what threads share.
+#[cfg(feature = "rayon")]
+fn next<I: Iterator>(shared: &Mutex<I>) -> Option<I::Item> {
+    shared.lock().unwrap_or_else(PoisonError::into_inner).next()
 }
 
 /// Does `work` on each task, where there is so much work in all, and gives the results in the order of the
