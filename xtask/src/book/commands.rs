@@ -69,16 +69,24 @@ pub fn programs(root: &Path) -> Result<[PathBuf; 2]> {
 }
 
 /// A temporary directory that looks like the repository to the commands: `data/`, and both programs on the
-/// path.
+/// path. It goes with its value. (tempfile would give `bitflags` a feature that the scene program does without,
+/// and the solvers would be compiled once for each program.)
 pub struct Scratch {
-    folder: tempfile::TempDir,
+    folder: PathBuf,
+}
+
+impl Drop for Scratch {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.folder);
+    }
 }
 
 impl Scratch {
     /// With copies of the files of `data/` and a `cargo` that knows `cargo xtask` alone.
     pub fn new(root: &Path, [xtask, scenes]: &[PathBuf; 2]) -> Result<Self> {
-        let folder = tempfile::tempdir().map_err(Error::file("create", &std::env::temp_dir()))?;
-        let programs = folder.path().join("programs");
+        let folder = std::env::temp_dir().join(format!("fractal-contact-book-{}", std::process::id()));
+        fs::create_dir(&folder).map_err(Error::file("create", &folder))?;
+        let programs = folder.join("programs");
         let set_up = format!(
             "mkdir '{programs}'
             cp -R '{root}/data' data
@@ -93,13 +101,20 @@ impl Scratch {
         let scratch = Self { folder };
         match scratch.run(&set_up)? {
             None => Ok(scratch),
-            Some(output) => Err(Error::content(scratch.folder.path(), output)),
+            Some(output) => Err(Error::content(&scratch.folder, output)),
         }
+    }
+
+    /// An empty folder in it.
+    pub fn empty(&self, name: &str) -> Result<PathBuf> {
+        let folder = self.folder.join(name);
+        fs::create_dir(&folder).map_err(Error::file("create", &folder))?;
+        Ok(folder)
     }
 
     /// Runs commands, the first failure ends them; `None`, or what they printed where one failed.
     pub fn run(&self, commands: &str) -> Result<Option<String>> {
-        let here = self.folder.path();
+        let here = &self.folder;
         let path = std::env::var_os("PATH").unwrap_or_default();
         let paths = std::iter::once(here.join("programs")).chain(std::env::split_paths(&path));
         let joined = std::env::join_paths(paths).map_err(|error| Error::content(here, error.to_string()))?;

@@ -37,12 +37,12 @@ pub fn store(root: &Path, scratch: &Scratch) -> Result<Option<String>> {
 /// Draws all pictures anew and tells which of the stored ones show something else, are drawn by nothing, or are
 /// missing.
 pub fn check(root: &Path, scratch: &Scratch) -> Result<Vec<String>> {
-    let drawn = tempfile::tempdir().map_err(Error::file("create", &std::env::temp_dir()))?;
-    if let Some(output) = draw(root, scratch, drawn.path())? {
+    let drawn = scratch.empty("drawn")?;
+    if let Some(output) = draw(root, scratch, &drawn)? {
         return Ok(vec![format!("{SCRIPT} failed:\n{output}")]);
     }
     let stored = root.join(FOLDER);
-    let (new, old) = (names(drawn.path())?, names(&stored)?);
+    let (new, old) = (names(&drawn)?, names(&stored)?);
     let mut wrong = Vec::new();
     for name in old.difference(&new).filter(|name| !BY_HAND.contains(&name.as_str())) {
         // Without a browser it is not drawn.
@@ -55,8 +55,8 @@ pub fn check(root: &Path, scratch: &Scratch) -> Result<Vec<String>> {
         {
             (false, _) => Some("not stored".to_owned()),
             _ if OF_BROWSER.contains(&name.as_str()) => None,
-            (true, true) => svg_differs(&text(&stored.join(name))?, &text(&drawn.path().join(name))?),
-            (true, false) => png_differs(&stored.join(name), &drawn.path().join(name))?,
+            (true, true) => svg_differs(&text(&stored.join(name))?, &text(&drawn.join(name))?),
+            (true, false) => png_differs(&stored.join(name), &drawn.join(name))?,
         };
         wrong.extend(differs.map(|why| format!("{FOLDER}/{name}: {why}")));
     }
