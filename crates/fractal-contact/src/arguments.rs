@@ -1,10 +1,11 @@
 //! The command line.
 
 use clap::builder::{PossibleValue, PossibleValuesParser, StringValueParser, TypedValueParser};
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory as _, Parser, Subcommand};
 use fractal_contact::{Body, Coupling, Friction, Pair};
 use runs::ShardChoice;
 use runs::cluster::{Division, Submission};
+use std::any::TypeId;
 use std::error::Error;
 use std::ffi::OsStr;
 use std::marker::PhantomData;
@@ -19,6 +20,19 @@ use surface_io::{Preprocessing, ReadOptions};
 pub struct Arguments {
     #[command(subcommand)]
     pub command: Command,
+}
+
+/// The command line. A value may begin with a minus, so that a negative one is told by its name and not as an
+/// unknown flag; words and paths may not.
+pub fn command() -> clap::Command {
+    Arguments::command().mut_subcommands(|command| {
+        command.mut_args(|argument| {
+            let flag = argument.get_long().is_some() && argument.get_action().takes_values();
+            let words = !argument.get_possible_values().is_empty() && !argument.is_hide_possible_values_set();
+            let path = argument.get_value_parser().type_id() == TypeId::of::<PathBuf>();
+            argument.allow_hyphen_values(flag && !words && !path)
+        })
+    })
 }
 
 const AFTER: &str = "\
@@ -243,32 +257,32 @@ pub struct PressArguments {
     /// The map: files of instruments and programs, NPY, text.
     pub map: PathBuf,
     /// E* of the pair, such as "115 GPa".
-    #[arg(long, value_name = "MODULUS", conflicts_with = "bodies", allow_hyphen_values = true)]
+    #[arg(long, value_name = "MODULUS", conflicts_with = "bodies")]
     pub modulus: Option<String>,
     /// Young's modulus and Poisson's ratio of both bodies, such as "210 GPa 0.3, 70 GPa 0.33"; of one, and the other
     /// is rigid.
     #[arg(long)]
     pub bodies: Option<Bodies>,
     /// Mean pressures over the map, such as "1 MPa,10 MPa".
-    #[arg(long, value_name = "LIST", conflicts_with_all = ["force", "approach"], allow_hyphen_values = true)]
+    #[arg(long, value_name = "LIST", conflicts_with_all = ["force", "approach"])]
     pressure: Option<String>,
     /// Normal forces, such as "1 N,10 N".
-    #[arg(long, value_name = "LIST", conflicts_with = "approach", allow_hyphen_values = true)]
+    #[arg(long, value_name = "LIST", conflicts_with = "approach")]
     force: Option<String>,
     /// Approaches from first touch, such as "10 nm,100 nm".
-    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
+    #[arg(long, value_name = "LIST")]
     approach: Option<String>,
     /// What lies outside of the map: free (nothing that carries load) or periodic (the map again).
     #[arg(long, value_parser = ["free", "periodic"])]
     pub boundary: Option<String>,
     /// Hardness of the softer body, such as "2 GPa": the contact flows there.
-    #[arg(long, value_name = "PRESSURE", allow_hyphen_values = true)]
+    #[arg(long, value_name = "PRESSURE")]
     pub hardness: Option<String>,
     /// Coefficient of friction; with --bodies and --tangential-force.
     #[arg(long, value_name = "MU")]
     pub friction: Option<f64>,
     /// Tangential force along x, such as "0.1 N".
-    #[arg(long, value_name = "FORCE", requires = "friction", allow_hyphen_values = true)]
+    #[arg(long, value_name = "FORCE", requires = "friction")]
     pub tangential_force: Option<String>,
     /// Of normal and tangential tractions where the bodies differ: none or full.
     #[arg(long, value_parser = ["none", "full"], requires = "friction")]
@@ -386,13 +400,7 @@ pub struct SurfaceArguments {
     #[arg(long, value_name = "RATIO")]
     pub anisotropy: Option<f64>,
     /// Direction of the lay in degrees, from x towards y.
-    #[arg(
-        long,
-        value_name = "DEGREES",
-        default_value_t = 0.0,
-        requires = "anisotropy",
-        allow_negative_numbers = true
-    )]
+    #[arg(long, value_name = "DEGREES", default_value_t = 0.0, requires = "anisotropy")]
     pub lay: f64,
     /// Shape of Weibull's law of the heights [default: nearly Gaussian].
     #[arg(long, value_name = "SHAPE")]
@@ -449,7 +457,7 @@ pub struct MapArguments {
     #[arg(long, value_parser = words!(surface_io::Border))]
     border: Option<surface_io::Border>,
     /// A number that stands for an undefined point, such as -9999.
-    #[arg(long, allow_negative_numbers = true)]
+    #[arg(long)]
     missing: Option<f64>,
     /// Lines of text to leave out at the beginning.
     #[arg(long, default_value_t = 0)]

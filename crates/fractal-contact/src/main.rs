@@ -6,7 +6,7 @@ mod press;
 mod start;
 
 use arguments::{Arguments, Command, PressArguments};
-use clap::{ArgMatches, CommandFactory as _, FromArgMatches as _};
+use clap::{ArgMatches, FromArgMatches as _};
 use fractal_contact::models::{MODELS, ModelRecord};
 use fractal_contact::scenes::{
     Error, GeneratedSurface, Options, Plan, Result, SceneOutcome, info, info_json, info_statistics, run,
@@ -21,7 +21,7 @@ use std::process::ExitCode;
 use std::sync::atomic::Ordering;
 
 fn main() -> ExitCode {
-    let matches = Arguments::command().get_matches();
+    let matches = arguments::command().get_matches();
     let arguments = Arguments::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
     let asked = std::env::var_os(runs::THREADS_VARIABLE);
     let done = runs::with_threads(asked.as_deref(), || execute(arguments, &matches));
@@ -116,14 +116,14 @@ fn execute(arguments: Arguments, matches: &ArgMatches) -> Result<ExitCode> {
         }
         Command::Completions { shell } => {
             let mut script = Vec::new();
-            clap_complete::generate(shell, &mut Arguments::command(), "fractal-contact", &mut script);
+            clap_complete::generate(shell, &mut arguments::command(), "fractal-contact", &mut script);
             runs::print(format_args!("{}", String::from_utf8_lossy(&script)));
             Ok(ExitCode::SUCCESS)
         }
         Command::Man { directory } => {
             runs::files::create_directory(&directory)?;
             let unwritten = runs::Error::file("write the pages of", &directory);
-            clap_mangen::generate_to(Arguments::command(), &directory).map_err(unwritten)?;
+            clap_mangen::generate_to(arguments::command(), &directory).map_err(unwritten)?;
             runs::out!("{}", directory.join("fractal-contact.1").display());
             Ok(ExitCode::SUCCESS)
         }

@@ -1,9 +1,9 @@
 //! `press` and `new`: the scene of the commonest question, how large the contact of a measured map is, from
 //! flags.
 
-use crate::arguments::{Arguments, Bodies, Command, MapArguments, PressArguments};
+use crate::arguments::{Arguments, Bodies, Command, MapArguments, PressArguments, command};
 use clap::parser::ValueSource;
-use clap::{ArgMatches, Args as _, CommandFactory as _, FromArgMatches as _};
+use clap::{ArgMatches, Args as _, FromArgMatches as _};
 use fractal_contact::scenes::{Error, Result, SceneFile};
 use runs::cluster::{quoted, toml};
 use std::ffi::OsString;
@@ -150,7 +150,7 @@ fn lacking(asked: &PressArguments, keys: &SurfaceKeys, map: &Metadata) -> Vec<La
 /// What is wrong with the flags that are given: with them and the examples the scene is read.
 fn mistake(lacking: &[Lacking]) -> Option<String> {
     let examples = lacking.iter().flat_map(|lacking| [lacking.flag, &lacking.example]).map(OsString::from);
-    let parsed = Arguments::command()
+    let parsed = command()
         .try_get_matches_from(std::env::args_os().chain(examples))
         .and_then(|matches| Ok((Arguments::from_arg_matches(&matches)?.command, matches)));
     let told = match parsed {
