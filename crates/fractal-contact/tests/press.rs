@@ -144,9 +144,7 @@ fn mistakes_leave_nothing_behind() {
     let pulled = ["press", "map.txt", "--modulus", "1 GPa", "--pressure", "-1 MPa"];
     let (code, _, said) = program(dir.path(), &[&pulled[..], &FLAGS].concat());
     assert!(code == Some(2) && said.contains("the load `mean_pressure` = -1 MPa is negative"), "{said}");
-    for (flag, value) in
-        [("--friction", "-0.3"), ("--cells", "-3"), ("--size", "-1 mm"), ("--crop", "-1,0,2,2")]
-    {
+    for (flag, value) in [("--friction", "-0.3"), ("--cells", "-3"), ("--crop", "-1,0,2,2")] {
         let (code, _, said) = program(dir.path(), &["press", "map.txt", flag, value]);
         assert!(
             code == Some(2) && said.contains(&flag[2..]) && !said.contains("unexpected"),
