@@ -62,8 +62,8 @@ pub fn widest<R>(work: impl FnOnce() -> R) -> R {
     work()
 }
 
-/// Does `work` on this thread and on so many others of its pool. Not generic: what shares work among threads is
-/// compiled once, and not for each of the hundreds of loops.
+/// Does `work` on this thread and on `helpers` others of its pool, once on each. Not generic, so that the sharing
+/// is compiled once and not for each of hundreds of loops.
 #[cfg(feature = "rayon")]
 fn on_threads(helpers: usize, work: &(dyn Fn() + Sync)) {
     rayon::in_place_scope(|scope| {
