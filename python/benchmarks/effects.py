@@ -56,7 +56,7 @@ def symbol(n, fourier):
 def ours(h, tolerance, effects):
     scene = fc.Scene(
         fc.HeightMap(h, size=1.0),
-        modulus=1.0,
+        contact_modulus=1.0,
         outputs=["pressure", "gap"],
         effects={"boundary": "periodic", **effects},
     )

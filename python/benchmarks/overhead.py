@@ -15,7 +15,7 @@ def main() -> None:
     pairs = int(sys.argv[2]) if len(sys.argv) > 2 else 10
     rough = fc.Surface.self_affine(fractal_dimension=2.2, size=1.0, rms_height=0.01)
     heights = fc.surface_gen.self_affine_map(rough, 512, fc.surface_gen.surface_seed(1, 0))
-    scene = fc.Scene(heights, modulus=1.0)
+    scene = fc.Scene(heights, contact_modulus=1.0)
     with subprocess.Popen([sys.argv[1]], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as rust:
         assert rust.stdin is not None and rust.stdout is not None
         ratios = []
@@ -35,7 +35,7 @@ def main() -> None:
     print(
         f"median ratio {statistics.median(ratios):.4f}, quartiles {quarters[0]:.4f} to {quarters[2]:.4f}, {pairs} pairs"
     )
-    ball = fc.Hertz().prepare(fc.Scene(fc.Surface.sphere(radius=1.0, size=2.0), modulus=1.0))
+    ball = fc.Hertz().prepare(fc.Scene(fc.Surface.sphere(radius=1.0, size=2.0), contact_modulus=1.0))
     start = time.perf_counter()
     for _ in range(10_000):
         ball.solve(force=0.1)

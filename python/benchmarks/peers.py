@@ -22,7 +22,7 @@ TOLERANCE = 1e-8
 
 
 def fractal_contact(h):
-    scene = fc.Scene(fc.HeightMap(h, size=1.0), modulus=1.0, outputs=["stiffness", "pressure"])
+    scene = fc.Scene(fc.HeightMap(h, size=1.0), contact_modulus=1.0, outputs=["stiffness", "pressure"])
     contact = fc.Bem3d(tolerance=TOLERANCE).prepare(scene)
     for state in contact.sweep(force=FORCES):
         yield state.pressure, state.stiffness

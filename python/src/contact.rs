@@ -26,10 +26,10 @@ pub struct Normalisation(pub RustNormalisation);
 
 #[pymethods]
 impl Normalisation {
-    /// float: effective modulus E*.
+    /// float: contact modulus E*.
     #[getter]
-    fn modulus(&self) -> f64 {
-        self.0.modulus
+    fn contact_modulus(&self) -> f64 {
+        self.0.contact_modulus
     }
 
     /// float: L = sqrt(Lx Ly).
@@ -70,9 +70,9 @@ impl Normalisation {
     }
 
     fn __repr__(&self) -> String {
-        let RustNormalisation { modulus, length, height, .. } = self.0;
+        let RustNormalisation { contact_modulus, length, height, .. } = self.0;
         format!(
-            "<Normalisation: modulus={modulus:e}, length={length:e}, rms_height={}>",
+            "<Normalisation: contact_modulus={contact_modulus:e}, length={length:e}, rms_height={}>",
             height.map_or("None".into(), |h| format!("{h:e}"))
         )
     }
@@ -479,8 +479,8 @@ impl Contact {
     }
 
     fn __repr__(&self) -> String {
-        let RustNormalisation { modulus, length, height, .. } = self.origin.normalisation;
+        let RustNormalisation { contact_modulus, length, height, .. } = self.origin.normalisation;
         let height = height.map_or("none".into(), |h| format!("{h:.4e}"));
-        format!("<Contact: modulus={modulus:e}, length={length:e}, rms height {height}>")
+        format!("<Contact: contact_modulus={contact_modulus:e}, length={length:e}, rms height {height}>")
     }
 }

@@ -34,7 +34,7 @@ pub fn is_named_where_known(quantity: &Quantity) -> bool {
 
 /// Its type in Python, and whether a state may lack it.
 fn kind(quantity: &Quantity) -> (&'static str, bool) {
-    let normalisation = Normalisation { modulus: 1.0, length: 1.0, height: None };
+    let normalisation = Normalisation { contact_modulus: 1.0, length: 1.0, height: None };
     let value = |state: &RustState| (quantity.value)(state, &normalisation);
     let bare = RustState::new(1.0, SolveReport::exact(""));
     let mut counted = bare.clone().with_patches(Patches::default());

@@ -159,11 +159,11 @@ fn output(name: &str) -> PyResult<Output> {
 
 /// A scene of the values of the Python class.
 #[pyfunction]
-#[pyo3(signature = (surface, modulus, bodies, effects, outputs, conductance))]
+#[pyo3(signature = (surface, contact_modulus, bodies, effects, outputs, conductance))]
 pub fn scene(
     py: Python<'_>,
     surface: AnySurface,
-    modulus: Option<Real>,
+    contact_modulus: Option<Real>,
     bodies: Option<[Option<(Real, Real)>; 2]>,
     effects: &Bound<'_, PyDict>,
     outputs: Option<Vec<String>>,
@@ -174,11 +174,11 @@ pub fn scene(
         AnySurface::Described(surface) => surface.get().0.clone(),
     };
     let pair = bodies.map(|[first, second]| Pair { first: body(first), second: body(second) });
-    let made = match (modulus, pair) {
-        (Some(Real(modulus)), None) => Ok(RustScene::new(surface, modulus)),
+    let made = match (contact_modulus, pair) {
+        (Some(Real(contact_modulus)), None) => Ok(RustScene::new(surface, contact_modulus)),
         (None, Some(pair)) => RustScene::of_pair(surface, pair),
-        (None, None) => return Err(PyTypeError::new_err("give modulus or bodies")),
-        (Some(_), Some(_)) => return Err(PyTypeError::new_err("give modulus or bodies, not both")),
+        (None, None) => return Err(PyTypeError::new_err("give contact_modulus or bodies")),
+        (Some(_), Some(_)) => return Err(PyTypeError::new_err("give contact_modulus or bodies, not both")),
     };
     let mut scene = made.map_err(|error| of_model(py, error))?;
     scene.effects = self::effects(py, effects)?;

@@ -186,7 +186,7 @@ impl Certificate {
         // The residuals of the table, of a state that has nothing but this certificate.
         let mut state = RustState::new(0.0, SolveReport::exact(""));
         state.report.certificate = self.0;
-        let normalisation = RustNormalisation { modulus: 1.0, length: 1.0, height: None };
+        let normalisation = RustNormalisation { contact_modulus: 1.0, length: 1.0, height: None };
         let dict = PyDict::new(py);
         for quantity in QUANTITIES.iter().filter(|quantity| matches!(quantity.role, Role::Residual(_))) {
             dict.set_item(quantity.name, object(py, (quantity.value)(&state, &normalisation))?)?;

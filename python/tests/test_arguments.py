@@ -12,7 +12,7 @@ import fractal_contact as fc
 SPHERE = fc.Surface.sphere(radius=1.0, size=2.0)
 ROUGH = fc.Surface.self_affine(hurst=0.6, size=1.0, rms_height=0.01)
 GRID = np.arange(12.0).reshape(3, 4)
-CONTACT = fc.Hertz().prepare(fc.Scene(SPHERE, modulus=1.0))
+CONTACT = fc.Hertz().prepare(fc.Scene(SPHERE, contact_modulus=1.0))
 
 NUMBERS = [
     [0.5, 1],
@@ -52,14 +52,14 @@ def test_any_iterable_of_numbers_is_taken(values):
     for of in (lambda it: it, iter, lambda it: (value for value in it)):
         assert [state.force for state in CONTACT.sweep(force=of(values))] == pytest.approx([0.5, 1.0])
         assert [state.force for state in CONTACT.follow(force=of(values))] == pytest.approx([0.5, 1.0])
-        states = fc.ensemble(fc.PowerLaw(), fc.Scene(ROUGH, modulus=1.0), seed=1, surfaces=1, force_bar=of(values))
+        states = fc.ensemble(fc.PowerLaw(), fc.Scene(ROUGH, contact_modulus=1.0), seed=1, surfaces=1, force_bar=of(values))
         assert len(states[0]) == 2
     assert list(CONTACT.sweep(force=[])) == []
 
 
 @pytest.mark.parametrize("values", [*NO_NUMBERS, 0.5, True, None, np.array(0.5)], ids=repr)
 def test_sweeps_and_ensembles_take_nothing_else(values):
-    scene = fc.Scene(ROUGH, modulus=1.0)
+    scene = fc.Scene(ROUGH, contact_modulus=1.0)
     for take in (
         lambda: CONTACT.sweep(force=values),
         lambda: fc.ensemble(fc.PowerLaw(), scene, seed=1, surfaces=1, force_bar=values),
@@ -101,7 +101,7 @@ def test_a_load_is_a_number(value):
         lambda: CONTACT.advance(force=value),
         lambda: CONTACT.advance(value, force=1.0),
         lambda: CONTACT.advance(force=1.0, tangential_force=value or 0.5j),
-        lambda: fc.Scene(SPHERE, modulus=value),
+        lambda: fc.Scene(SPHERE, contact_modulus=value),
         lambda: fc.Surface.sphere(radius=value, size=1.0),
         lambda: map_.scaled(1.0, value),
         lambda: fc.statistics.power_spectrum(map_, level=value),
@@ -150,7 +150,7 @@ def test_cells_of_other_types(cells):
     ("seed", "error"), [(-1, ValueError), (2**64, ValueError), (1.5, TypeError), (True, TypeError)]
 )
 def test_seeds(seed, error):
-    scene = fc.Scene(ROUGH, modulus=1.0)
+    scene = fc.Scene(ROUGH, contact_modulus=1.0)
     for take in (
         lambda: fc.Bem3d(cells=17).prepare(scene, seed=seed),
         lambda: ROUGH.height_map(8, seed=seed),
@@ -167,7 +167,7 @@ def test_seeds(seed, error):
     [(-1, fc.DomainError), (2**64, fc.DomainError), (1.5, TypeError), (True, TypeError), ("3", TypeError)],
 )
 def test_counts_are_told_by_name(count, error, tmp_path):
-    scene = fc.Scene(ROUGH, modulus=1.0)
+    scene = fc.Scene(ROUGH, contact_modulus=1.0)
     for name, take in (
         ("surfaces", lambda: fc.ensemble(fc.PowerLaw(), scene, seed=1, surfaces=count, force_bar=[1.0])),
         ("cells", lambda: ROUGH.height_map(count)),
@@ -181,7 +181,7 @@ def test_counts_are_told_by_name(count, error, tmp_path):
 
 
 def test_whole_numbers_beyond_floats_are_refused_by_name():
-    contact = fc.Hertz().prepare(fc.Scene(SPHERE, modulus=1.0))
+    contact = fc.Hertz().prepare(fc.Scene(SPHERE, contact_modulus=1.0))
     with pytest.raises(fc.DomainError, match="force = inf: expected a finite number"):
         contact.solve(force=10**400)
     with pytest.raises(fc.DomainError, match="force = -inf: expected a finite number"):
@@ -191,10 +191,10 @@ def test_whole_numbers_beyond_floats_are_refused_by_name():
 def test_scenes_say_what_they_take():
     for surface in ("map.npy", GRID, None):
         with pytest.raises(TypeError, match=r"expected a Surface or a HeightMap; fc\.HeightMap"):
-            fc.Scene(surface, modulus=1.0)
+            fc.Scene(surface, contact_modulus=1.0)
     with pytest.raises(TypeError, match=r"fc\.si makes one"):
-        fc.Scene(SPHERE, modulus="1 GPa")
-    with pytest.raises(TypeError, match=r"give modulus or bodies$"):
+        fc.Scene(SPHERE, contact_modulus="1 GPa")
+    with pytest.raises(TypeError, match=r"give contact_modulus or bodies$"):
         fc.Scene(SPHERE)
     body = fc.Body(2.0, 0.3)
     with pytest.raises(TypeError, match="not both"):
@@ -248,20 +248,20 @@ def test_unknown_keys_are_refused():
 
 def test_outputs_default_to_what_the_model_can():
     solid = {"kind": "maxwell", "viscosity": 1.0}
-    creeping = fc.Scene(SPHERE, modulus=1.0, effects={"rheology": solid})
+    creeping = fc.Scene(SPHERE, contact_modulus=1.0, effects={"rheology": solid})
     assert creeping.outputs is None
     for model in (fc.Viscoelastic(), fc.Equivalent(fc.Mdr1d())):
         assert model.prepare(creeping).advance(force=0.01).stiffness is None
-    assert fc.Bem3d(cells=16).prepare(fc.Scene(SPHERE, modulus=1.0)).solve(force=0.01).stiffness > 0
+    assert fc.Bem3d(cells=16).prepare(fc.Scene(SPHERE, contact_modulus=1.0)).solve(force=0.01).stiffness > 0
     # What is asked for is not left out.
     with pytest.raises(fc.Unsupported, match="stiffness"):
-        fc.Viscoelastic().prepare(fc.Scene(SPHERE, modulus=1.0, effects={"rheology": solid}, outputs=["stiffness"]))
+        fc.Viscoelastic().prepare(fc.Scene(SPHERE, contact_modulus=1.0, effects={"rheology": solid}, outputs=["stiffness"]))
     # Another lack is told as it is.
     with pytest.raises(fc.Unsupported, match="rheology of Maxwell"):
         fc.Hertz().prepare(creeping)
     states = fc.ensemble(
         fc.Equivalent(fc.Bem3d(cells=17)),
-        fc.Scene(ROUGH, modulus=1.0, effects={"rheology": solid}),
+        fc.Scene(ROUGH, contact_modulus=1.0, effects={"rheology": solid}),
         seed=1,
         surfaces=2,
         force_bar=[0.1],
@@ -271,24 +271,24 @@ def test_outputs_default_to_what_the_model_can():
 
 def test_states_have_notes():
     periodic = {"boundary": "periodic"}
-    few = fc.Bem3d(cells=17).prepare(fc.Scene(SPHERE, modulus=1.0)).solve(force=1e-5)
+    few = fc.Bem3d(cells=17).prepare(fc.Scene(SPHERE, contact_modulus=1.0)).solve(force=1e-5)
     assert [note.split(":")[0] for note in few.notes][:2] == [
         "fewer than 10 contact cells",
         "one cell carries most of the load",
     ]
     assert "notes: fewer than 10 contact cells; one cell" in repr(few)
-    edge = fc.Bem3d(cells=17).prepare(fc.Scene(SPHERE, modulus=1.0)).solve(force=3.0)
+    edge = fc.Bem3d(cells=17).prepare(fc.Scene(SPHERE, contact_modulus=1.0)).solve(force=3.0)
     assert any(note.startswith("contact at the edge of the rectangle: ") for note in edge.notes)
     smooth = fc.Surface.sine(amplitude=0.001, wavelength=1.0, size=1.0)
-    good = fc.Bem3d(cells=64).prepare(fc.Scene(smooth, modulus=1.0, effects=periodic)).solve(mean_pressure=1e-3)
+    good = fc.Bem3d(cells=64).prepare(fc.Scene(smooth, contact_modulus=1.0, effects=periodic)).solve(mean_pressure=1e-3)
     assert good.notes == () and "notes" not in repr(good)
-    flat = fc.Bem3d(cells=17).prepare(fc.Scene(fc.Surface.flat(size=1.0), modulus=1.0)).solve(force=1e-3)
+    flat = fc.Bem3d(cells=17).prepare(fc.Scene(fc.Surface.flat(size=1.0), contact_modulus=1.0)).solve(force=1e-3)
     assert not any("edge" in note for note in flat.notes)
-    assert fc.Hertz().prepare(fc.Scene(SPHERE, modulus=1.0)).solve(force=1e-5).notes == ()
+    assert fc.Hertz().prepare(fc.Scene(SPHERE, contact_modulus=1.0)).solve(force=1e-5).notes == ()
 
 
 def test_counts_in_tables_are_whole_numbers():
-    contact = fc.Bem3d(cells=17).prepare(fc.Scene(SPHERE, modulus=1.0, outputs=["area", "contact_patches"]))
+    contact = fc.Bem3d(cells=17).prepare(fc.Scene(SPHERE, contact_modulus=1.0, outputs=["area", "contact_patches"]))
     rows = fc.table(contact.sweep(force=[1e-3, 1e-2]))
     for name in ("contact_cells", "iterations", "patches", "fields"):
         assert rows[name].dtype == np.int64, name
@@ -304,10 +304,10 @@ def test_messages_are_not_those_of_rust():
     body = fc.Body(1.0, 0.3)
     told = []
     for take in (
-        lambda: fc.CattaneoMindlin().prepare(fc.Scene(SPHERE, modulus=1.0, effects={"friction": 0.5})),
-        lambda: fc.Bem3d(cells=17).prepare(fc.Scene(SPHERE, modulus=1.0, effects={"friction": 0.5})),
-        lambda: fc.Bem3d(cells=17).prepare(fc.Scene(SPHERE, modulus=1.0)).solve(mean_gap=0.1),
-        lambda: fc.Hertz().prepare(fc.Scene(SPHERE, modulus=1.0, effects={"boundary": "periodic"})),
+        lambda: fc.CattaneoMindlin().prepare(fc.Scene(SPHERE, contact_modulus=1.0, effects={"friction": 0.5})),
+        lambda: fc.Bem3d(cells=17).prepare(fc.Scene(SPHERE, contact_modulus=1.0, effects={"friction": 0.5})),
+        lambda: fc.Bem3d(cells=17).prepare(fc.Scene(SPHERE, contact_modulus=1.0)).solve(mean_gap=0.1),
+        lambda: fc.Hertz().prepare(fc.Scene(SPHERE, contact_modulus=1.0, effects={"boundary": "periodic"})),
         lambda: CONTACT.solve(mean_gap=0.1),
         lambda: fc.Equivalent(fc.Mdr1d()).prepare(
             fc.Scene(
@@ -317,7 +317,7 @@ def test_messages_are_not_those_of_rust():
             )
         ),
         lambda: fc.Mdr1d().prepare(
-            fc.Scene(fc.Surface.flat_circle(radius=0.1, size=1.0), modulus=1.0, effects={"adhesion": 0.1})
+            fc.Scene(fc.Surface.flat_circle(radius=0.1, size=1.0), contact_modulus=1.0, effects={"adhesion": 0.1})
         ),
     ):
         try:

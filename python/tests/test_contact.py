@@ -16,7 +16,7 @@ def rough(cells=65, seed=1):
 
 def test_first_contact_in_ten_lines():
     h = rough().heights
-    scene = fc.Scene(fc.HeightMap(h, size=(1.0, 1.0)), modulus=1.0, outputs=["stiffness", "pressure"])
+    scene = fc.Scene(fc.HeightMap(h, size=(1.0, 1.0)), contact_modulus=1.0, outputs=["stiffness", "pressure"])
     c = fc.Bem3d(tolerance=1e-8).prepare(scene)
     s = c.solve(force=0.1)
     assert s.force == pytest.approx(0.1, rel=1e-12)
@@ -31,7 +31,7 @@ def test_rows_and_columns():
     # One summit in row 2, column 5, at x = 5.5 of 8 and y = 2.5 of 4.
     h = np.zeros((4, 8))
     h[2, 5] = 1.0
-    scene = fc.Scene(fc.HeightMap(h, size=(8.0, 4.0)), modulus=1.0, outputs=["pressure", "gap", "displacement"])
+    scene = fc.Scene(fc.HeightMap(h, size=(8.0, 4.0)), contact_modulus=1.0, outputs=["pressure", "gap", "displacement"])
     s = fc.Bem3d().prepare(scene).solve(force=1e-3)
     assert s.pressure.shape == (4, 8)
     assert np.argwhere(s.pressure > 0).tolist() == [[2, 5]]
@@ -40,12 +40,12 @@ def test_rows_and_columns():
 
 def test_loads_are_one_of_four():
     periodic = {"boundary": "periodic"}
-    scene = fc.Scene(rough(64), modulus=2.0, effects=periodic, outputs=["mean_gap", "stiffness"])
+    scene = fc.Scene(rough(64), contact_modulus=2.0, effects=periodic, outputs=["mean_gap", "stiffness"])
     contact = fc.Bem3d().prepare(scene)
     state = contact.solve(mean_pressure=0.01)
     assert state.force == pytest.approx(0.01) and state.approach is None
     assert contact.solve(mean_gap=state.mean_gap).force == pytest.approx(0.01, rel=1e-4)
-    free = fc.Bem3d().prepare(fc.Scene(rough(), modulus=2.0))
+    free = fc.Bem3d().prepare(fc.Scene(rough(), contact_modulus=2.0))
     one = free.solve(force=0.01)
     assert free.solve(approach=one.approach).force == pytest.approx(0.01, rel=1e-4)
     for wrong in ({}, {"force": 1.0, "approach": 1.0}):
@@ -54,7 +54,7 @@ def test_loads_are_one_of_four():
 
 
 def test_sweep_yields_states_as_they_come():
-    contact = fc.Bem3d().prepare(fc.Scene(rough(), modulus=1.0, outputs=["stiffness", "area"]))
+    contact = fc.Bem3d().prepare(fc.Scene(rough(), contact_modulus=1.0, outputs=["stiffness", "area"]))
     states = contact.sweep(force=np.geomspace(1e-4, 1e-2, 5))
     first = next(states)
     rest = list(states)
@@ -72,7 +72,7 @@ def test_sweep_yields_states_as_they_come():
 
 
 def test_arrays_stay_after_later_solves():
-    contact = fc.Bem3d().prepare(fc.Scene(rough(), modulus=1.0, outputs=["pressure"]))
+    contact = fc.Bem3d().prepare(fc.Scene(rough(), contact_modulus=1.0, outputs=["pressure"]))
     first = contact.solve(force=1e-3)
     kept, copy = first.pressure, first.pressure.copy()
     for force in (1e-2, 1e-1):
@@ -90,13 +90,13 @@ def test_undefined_points_cannot_touch():
     h[mask] = np.nan
     marked = fc.HeightMap(h, size=1.0, undefined="no_contact")
     assert masked == marked and masked.undefined == 1 and np.isnan(masked.heights[mask]).all()
-    scene = fc.Scene(masked, modulus=1.0, outputs=["pressure", "gap"])
+    scene = fc.Scene(masked, contact_modulus=1.0, outputs=["pressure", "gap"])
     state = fc.Bem3d().prepare(scene).solve(force=0.01)
     assert (state.pressure[mask] == 0).all() and np.isinf(state.gap[mask]).all()
 
 
 def test_not_converged_has_its_best_state():
-    contact = fc.Bem3d(max_outer_iterations=1).prepare(fc.Scene(rough(), modulus=1.0))
+    contact = fc.Bem3d(max_outer_iterations=1).prepare(fc.Scene(rough(), contact_modulus=1.0))
     with pytest.raises(fc.NotConverged) as caught:
         contact.solve(force=0.01)
     assert caught.value.best.status == "iteration_limit"
@@ -105,12 +105,12 @@ def test_not_converged_has_its_best_state():
 
 def test_models_refuse_what_they_lack():
     with pytest.raises(fc.Unsupported) as caught:
-        fc.Hertz().prepare(fc.Scene(rough(), modulus=1.0))
+        fc.Hertz().prepare(fc.Scene(rough(), contact_modulus=1.0))
     assert caught.value.model == "hertz" and "height map" in caught.value.what
     assert "bem3d" in caught.value.able and "hertz" not in caught.value.able
     assert re.search(r"does not support a height map; models that may: fc\.Bem3d\b", str(caught.value))
     assert pickle.loads(pickle.dumps(caught.value)).able == caught.value.able
-    both = fc.Scene(rough(), modulus=1.0, effects=fc.Effects(hardness=1.0, adhesion=0.1))
+    both = fc.Scene(rough(), contact_modulus=1.0, effects=fc.Effects(hardness=1.0, adhesion=0.1))
     with pytest.raises(fc.Unsupported, match="together"):
         fc.Bem3d().prepare(both)
 
@@ -139,7 +139,7 @@ def test_maps_are_added_and_turned():
     ],
 )
 def test_closed_forms(model, surface, effects):
-    scene = fc.Scene(surface, modulus=1.0, effects=effects)
+    scene = fc.Scene(surface, contact_modulus=1.0, effects=effects)
     state = model.prepare(scene).solve(force=0.001)
     assert state.force == pytest.approx(0.001, rel=1e-9) and state.stiffness > 0
     assert model.sources and eval(repr(model), vars(fc)) == model
@@ -149,7 +149,7 @@ def test_theories_of_rough_contact():
     rough_surface = fc.Surface.self_affine(
         hurst=0.8, size=1.0, rms_height=0.01, roll_off_wavelength=0.25, shortest_wavelength=0.05
     )
-    scene = fc.Scene(rough_surface, modulus=1.0, outputs=["area"], effects={"boundary": "periodic"})
+    scene = fc.Scene(rough_surface, contact_modulus=1.0, outputs=["area"], effects={"boundary": "periodic"})
     areas = [
         model.prepare(scene, seed=1).solve(mean_pressure=1e-3).area
         for model in (fc.Persson(), fc.Persson(gamma=0.5), fc.GreenwoodWilliamson(), fc.Bem3d(cells=128))
@@ -175,7 +175,7 @@ def test_paths():
     # Cattaneo and Mindlin: (1 - 1/2)^(1/3).
     assert ratios == pytest.approx([0.5 ** (1 / 3)] * 3, rel=1e-3)
     solid = {"kind": "standard_solid", "weight": 1.0, "time": 1.0}
-    creeping = fc.Viscoelastic().prepare(fc.Scene(sphere, modulus=1.0, effects={"rheology": solid}, outputs=[]))
+    creeping = fc.Viscoelastic().prepare(fc.Scene(sphere, contact_modulus=1.0, effects={"rheology": solid}, outputs=[]))
     depths = [creeping.advance(time, force=0.01).approach for time in (0.0, 1.0, 10.0)]
     assert depths[0] < depths[1] < depths[2]
     # A single load is reached from no contact, and the path goes on from there.
@@ -185,7 +185,7 @@ def test_paths():
 
 def test_ensembles_are_the_surfaces_of_rust():
     surface = fc.Surface.self_affine(hurst=0.6, size=1.0, rms_height=0.01)
-    scene = fc.Scene(surface, modulus=1.0)
+    scene = fc.Scene(surface, contact_modulus=1.0)
     told = []
     found = fc.ensemble(
         fc.Bem3d(cells=33), scene, seed=5, surfaces=4, force_bar=[0.1, 1.0], progress=lambda *n: told.append(n)
@@ -198,7 +198,7 @@ def test_ensembles_are_the_surfaces_of_rust():
 
 
 def test_conductance_and_patches():
-    scene = fc.Scene(rough(), modulus=1.0, outputs=["area", "contact_patches"], conductance=("electrical", 1.0, 1.0))
+    scene = fc.Scene(rough(), contact_modulus=1.0, outputs=["area", "contact_patches"], conductance=("electrical", 1.0, 1.0))
     state = fc.Bem3d().prepare(scene).solve(force=0.01)
     assert state.patches.sum() == pytest.approx(state.area) and np.all(np.diff(state.patches) <= 0)
     assert state.conductance > 0 and state.stiffness is None
@@ -208,7 +208,7 @@ def test_an_adhesive_contact_has_two_stiffnesses():
     sphere = fc.Surface.sphere(radius=1.0, size=4.0)
     outputs = ["stiffness", "stiffness_fixed_area", "area"]
     scene = fc.Scene(
-        sphere, modulus=2.0, effects={"adhesion": 0.02}, outputs=outputs, conductance=("electrical", 1.0, 3.0)
+        sphere, contact_modulus=2.0, effects={"adhesion": 0.02}, outputs=outputs, conductance=("electrical", 1.0, 3.0)
     )
     contact = fc.Jkr().prepare(scene)
     state = contact.solve(force=0.0)
@@ -229,7 +229,7 @@ def test_an_adhesive_contact_has_two_stiffnesses():
 def test_lines_stand_for_rectangles():
     heights = 0.01 * np.cos(2 * np.pi * np.arange(256) / 64)
     line = fc.Surface.line(heights, length=2 / np.sqrt(np.pi), size=1.0)
-    state = fc.Mdr1d().prepare(fc.Scene(line, modulus=1.0)).solve(force=1e-3)
+    state = fc.Mdr1d().prepare(fc.Scene(line, contact_modulus=1.0)).solve(force=1e-3)
     assert state.stiffness > 0 and line == fc.Surface.line(heights.tolist(), length=2 / np.sqrt(np.pi), size=1.0)
     with pytest.raises(ValueError, match="2 dimensions"):
         fc.Surface.line(np.zeros((2, 2)), length=1.0, size=1.0)

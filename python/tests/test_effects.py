@@ -35,11 +35,11 @@ def smooth(cells=64):
 
 
 def plastic_path(**scene):
-    return fc.Bem3d().prepare(fc.Scene(rough(), modulus=1.0, effects={"hardness": 0.02}, **scene))
+    return fc.Bem3d().prepare(fc.Scene(rough(), contact_modulus=1.0, effects={"hardness": 0.02}, **scene))
 
 
 def adhesive_path(law=EXPONENTIAL, **scene):
-    return COARSE.prepare(fc.Scene(SPHERE, modulus=1.0, effects={"adhesion": law}, **scene))
+    return COARSE.prepare(fc.Scene(SPHERE, contact_modulus=1.0, effects={"adhesion": law}, **scene))
 
 
 # States
@@ -47,7 +47,7 @@ def adhesive_path(law=EXPONENTIAL, **scene):
 
 def test_a_hardness_limits_the_pressure():
     outputs = ["pressure", "plastic_depth", "area", "gap"]
-    scene = fc.Scene(rough(), modulus=1.0, effects={"hardness": 0.02}, outputs=outputs)
+    scene = fc.Scene(rough(), contact_modulus=1.0, effects={"hardness": 0.02}, outputs=outputs)
     state = fc.Bem3d().prepare(scene).solve(force=1e-3)
     assert state.pressure.max() == pytest.approx(0.02) and 0 < state.plastic_area <= state.area
     assert state.plastic_volume == pytest.approx(state.plastic_depth.sum() / state.plastic_depth.size)
@@ -59,8 +59,8 @@ def test_a_hardness_limits_the_pressure():
 
 
 def test_a_hardness_that_nothing_reaches_changes_no_bit():
-    elastic = fc.Bem3d().prepare(fc.Scene(rough(), modulus=1.0, outputs=["pressure"])).solve(force=1e-3)
-    high = fc.Scene(rough(), modulus=1.0, effects={"hardness": 1e6}, outputs=["pressure"])
+    elastic = fc.Bem3d().prepare(fc.Scene(rough(), contact_modulus=1.0, outputs=["pressure"])).solve(force=1e-3)
+    high = fc.Scene(rough(), contact_modulus=1.0, effects={"hardness": 1e6}, outputs=["pressure"])
     hard = fc.Bem3d().prepare(high).solve(force=1e-3)
     assert np.array_equal(hard.pressure, elastic.pressure)
     assert elastic.plastic_area is None and elastic.plastic_depth is None
@@ -83,7 +83,7 @@ def test_numbers_of_effects_are_properties():
 
 
 def test_what_attracts_is_a_tension():
-    scene = fc.Scene(SPHERE, modulus=1.0, effects={"adhesion": EXPONENTIAL}, outputs=["pressure", "gap", "area"])
+    scene = fc.Scene(SPHERE, contact_modulus=1.0, effects={"adhesion": EXPONENTIAL}, outputs=["pressure", "gap", "area"])
     state = fc.Bem3d(cells=64, tolerance=1e-7).prepare(scene).solve(approach=0.01)
     open_, cell = state.gap > 1e-6, 1.0 / 64**2
     assert state.pressure.sum() * cell == pytest.approx(state.force)
@@ -94,15 +94,15 @@ def test_what_attracts_is_a_tension():
 
 
 def test_without_work_states_are_elastic():
-    scene = fc.Scene(SPHERE, modulus=1.0, effects={"adhesion": {"work": 0.0, "range": 0.01}})
+    scene = fc.Scene(SPHERE, contact_modulus=1.0, effects={"adhesion": {"work": 0.0, "range": 0.01}})
     state = COARSE.prepare(scene).advance(force=1e-3)
-    elastic = COARSE.prepare(fc.Scene(SPHERE, modulus=1.0)).solve(force=1e-3)
+    elastic = COARSE.prepare(fc.Scene(SPHERE, contact_modulus=1.0)).solve(force=1e-3)
     assert state.branch is None and (state.approach, state.stiffness) == (elastic.approach, elastic.stiffness)
 
 
 def test_surfaces_of_an_ensemble_yield():
     surface = fc.Surface.self_affine(hurst=0.6, size=1.0, rms_height=0.01)
-    scene = fc.Scene(surface, modulus=1.0, effects=fc.Effects(hardness=0.02))
+    scene = fc.Scene(surface, contact_modulus=1.0, effects=fc.Effects(hardness=0.02))
     found = fc.ensemble(fc.Bem3d(cells=33), scene, seed=5, surfaces=3, mean_pressure=[1e-3, 0.5])
     for index, (state, refused) in enumerate(found):
         contact = fc.Bem3d(cells=33).prepare(scene, seed=fc.surface_gen.surface_seed(5, index))
@@ -134,7 +134,7 @@ def test_an_indentation_stays():
 
 @pytest.mark.parametrize("effects", [{"hardness": 0.05}, {"adhesion": {"work": 1e-5, "range": 0.005}}])
 def test_steps_by_mean_pressure_and_mean_gap(effects):
-    scene = fc.Scene(smooth(), modulus=1.0, effects={"boundary": "periodic", **effects}, outputs=["mean_gap"])
+    scene = fc.Scene(smooth(), contact_modulus=1.0, effects={"boundary": "periodic", **effects}, outputs=["mean_gap"])
     path = fc.Bem3d().prepare(scene)
     pressed = path.advance(mean_pressure=2e-3)
     assert pressed.force == pytest.approx(2e-3) and pressed.approach is None
@@ -169,7 +169,7 @@ def test_steps_by_approach_and_mean_pressure_may_pull():
 def test_a_sphere_jumps_into_contact_and_off():
     # Tabor's parameter is 1.7: between a jump in and a jump off both branches are stable.
     law = {"work": WORK, "range": 0.006}
-    scene = fc.Scene(fc.Surface.sphere(radius=1.0, size=0.8), modulus=1.0, effects={"adhesion": law}, outputs=["area"])
+    scene = fc.Scene(fc.Surface.sphere(radius=1.0, size=0.8), contact_modulus=1.0, effects={"adhesion": law}, outputs=["area"])
     path = fc.Bem3d(cells=128, tolerance=1e-5).prepare(scene)
     approach = np.linspace(-0.04, 0.02, 25)
     nearer, apart = (fc.table(path.follow(approach=steps)) for steps in (approach, approach[::-1]))
@@ -182,13 +182,13 @@ def test_a_sphere_jumps_into_contact_and_off():
 
 
 def test_pull_off_is_that_of_maugis():
-    contact = fc.MaugisDugdale().prepare(fc.Scene(SPHERE, modulus=1.0, effects={"adhesion": DUGDALE}))
+    contact = fc.MaugisDugdale().prepare(fc.Scene(SPHERE, contact_modulus=1.0, effects={"adhesion": DUGDALE}))
     with pytest.raises(fc.OutOfRange) as caught:
         contact.solve(force=-10 * WORK)
     errors = []
     for cells in (64, 128):
         model = fc.Bem3d(cells=cells, tolerance=1e-5)
-        path = model.prepare(fc.Scene(SPHERE, modulus=1.0, effects={"adhesion": DUGDALE}))
+        path = model.prepare(fc.Scene(SPHERE, contact_modulus=1.0, effects={"adhesion": DUGDALE}))
         found = [state.force for state in path.follow(approach=np.linspace(0.01, -0.02, 31))]
         errors.append(min(found) / caught.value.low - 1.0)
     # Of first order in the cell: whole cells enter the zone.
@@ -197,7 +197,7 @@ def test_pull_off_is_that_of_maugis():
 
 def test_a_path_goes_on_from_its_memory_to_the_same_bits():
     rough = fc.Surface.self_affine(hurst=0.7, size=1.0, rms_height=0.01)
-    scene = fc.Scene(rough, modulus=1.0, effects={"adhesion": 4e-5}, outputs=["area"])
+    scene = fc.Scene(rough, contact_modulus=1.0, effects={"adhesion": 4e-5}, outputs=["area"])
     steps = [0.004, 0.012, 0.02, 0.012, 0.002, -0.002, -0.006]
     model = fc.Bem3d(cells=48)
     whole = list(model.prepare(scene, seed=3).follow(approach=steps))
@@ -247,7 +247,7 @@ def test_a_path_ends_at_pull_off_with_its_last_stable_state():
 
 
 def test_a_single_load_is_the_path_from_no_contact():
-    scene = fc.Scene(SPHERE, modulus=1.0, effects={"adhesion": EXPONENTIAL})
+    scene = fc.Scene(SPHERE, contact_modulus=1.0, effects={"adhesion": EXPONENTIAL})
     contact, path = COARSE.prepare(scene), COARSE.prepare(scene)
     for force in (1e-3, -3e-3):
         path.restart()
@@ -322,7 +322,7 @@ def test_follow_is_one_step_for_each_number():
 def test_ctrl_c_in_a_path_keeps_what_was_done():
     # Waves on all scales: many outer iterations a step.
     surface = fc.Surface.self_affine(hurst=0.3, size=1.0, rms_height=0.01).height_map(513, seed=1)
-    path = fc.Bem3d().prepare(fc.Scene(surface, modulus=1.0, effects={"hardness": 0.1}))
+    path = fc.Bem3d().prepare(fc.Scene(surface, contact_modulus=1.0, effects={"hardness": 0.1}))
     assert path.last is None
     loads, done = np.geomspace(1e-4, 1e-2, 4000), []
     threading.Timer(0.7, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
@@ -343,7 +343,7 @@ def test_ctrl_c_in_a_path_keeps_what_was_done():
 @pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
 def test_ctrl_c_inside_of_a_step_leaves_the_contact_as_it_was():
     surface = fc.Surface.self_affine(hurst=0.3, size=1.0, rms_height=0.01).height_map(1025, seed=1)
-    scene = fc.Scene(surface, modulus=1.0, effects={"hardness": 0.1})
+    scene = fc.Scene(surface, contact_modulus=1.0, effects={"hardness": 0.1})
     path = fc.Bem3d(tolerance=1e-10).prepare(scene)
     loaded = path.advance(force=1e-4)
     threading.Timer(0.2, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
@@ -359,7 +359,7 @@ def test_ctrl_c_inside_of_a_step_leaves_the_contact_as_it_was():
 
 SCENE = """[scene]
 models = ["bem3d"]
-modulus = {modulus}
+contact_modulus = {contact_modulus}
 
 {surface}
 {path}
@@ -383,7 +383,7 @@ seed = 3
 def test_a_plastic_path_has_the_bits_of_the_scene_runner(tmp_path):
     forces = [100.0, 200.0, 0.0, 300.0]
     text = SCENE.format(
-        modulus='"115 GPa"',
+        contact_modulus='"115 GPa"',
         surface='[scene.surface]\nkind = "self_affine"\nside = "1 mm"\nhurst = 0.8\nrms_height = "1 um"\n',
         path="".join(f'[[scene.path]]\nforce = "{force} N"\n' for force in forces),
         effects='hardness = { pressure = "1 GPa" }',
@@ -393,7 +393,7 @@ def test_a_plastic_path_has_the_bits_of_the_scene_runner(tmp_path):
     surface = fc.Surface.self_affine(hurst=0.8, size=1e-3, rms_height=1e-6)
     effects = fc.Effects(hardness=fc.si("1 GPa"))
     outputs = ["stiffness", "area", "plastic_depth"]
-    scene = fc.Scene(surface, modulus=fc.si("115 GPa"), effects=effects, outputs=outputs)
+    scene = fc.Scene(surface, contact_modulus=fc.si("115 GPa"), effects=effects, outputs=outputs)
     path = fc.Bem3d(cells=48, tolerance=1e-5).prepare(scene, fc.surface_gen.surface_seed(3, 0))
     states = list(path.follow(force=forces))
     rows = fc.table(states)
@@ -407,7 +407,7 @@ def test_a_plastic_path_has_the_bits_of_the_scene_runner(tmp_path):
 def test_an_adhesive_path_has_the_bits_of_the_scene_runner(tmp_path):
     approach = ["-0.9", "-0.5", "0.4", "-0.5", "-0.8", "-1.2"]
     text = SCENE.format(
-        modulus='"1 MPa"',
+        contact_modulus='"1 MPa"',
         surface='[scene.body]\nkind = "sphere"\nradius = "50 um"\nside = "36 um"\n',
         path="".join(f'[[scene.path]]\napproach = "{step} um"\n' for step in approach),
         effects='adhesion = { work = "50 mJ/m^2", range = "0.5 um", law = "exponential" }',
@@ -416,7 +416,7 @@ def test_an_adhesive_path_has_the_bits_of_the_scene_runner(tmp_path):
     outcome = fc.run_scene(fc.Scene.from_toml(text), tmp_path)
     law = {"work": fc.si("50 mJ/m^2"), "range": fc.si("0.5 um"), "law": "exponential"}
     sphere = fc.Surface.sphere(radius=fc.si("50 um"), size=fc.si("36 um"))
-    scene = fc.Scene(sphere, modulus=fc.si("1 MPa"), effects={"adhesion": law}, outputs=["stiffness", "area"])
+    scene = fc.Scene(sphere, contact_modulus=fc.si("1 MPa"), effects={"adhesion": law}, outputs=["stiffness", "area"])
     path = fc.Bem3d(cells=48, tolerance=1e-5).prepare(scene)
     rows = fc.table(path.follow(approach=[fc.si(f"{step} um") for step in approach]))
     for name in ("force", "approach", "stiffness", "area", "energy", "stability"):
@@ -444,7 +444,7 @@ def test_dictionaries_have_the_columns_of_scenes():
 
 
 def test_tables_have_the_columns_that_states_have():
-    elastic = fc.Hertz().prepare(fc.Scene(SPHERE, modulus=1.0)).solve(force=1e-3)
+    elastic = fc.Hertz().prepare(fc.Scene(SPHERE, contact_modulus=1.0)).solve(force=1e-3)
     plain = fc.table([elastic])
     assert not {"plastic_area", "branch", "energy", "tangential_force"} & set(plain.dtype.names)
     hard, soft = plastic_path().advance(force=1e-3), adhesive_path().advance(force=1e-3)
@@ -463,7 +463,7 @@ def test_tables_have_the_columns_that_states_have():
 
 
 def test_a_path_of_an_elastic_contact_is_its_loads():
-    contact, alone = (fc.Bem3d().prepare(fc.Scene(rough(33), modulus=1.0)) for _ in range(2))
+    contact, alone = (fc.Bem3d().prepare(fc.Scene(rough(33), contact_modulus=1.0)) for _ in range(2))
     states = list(contact.follow([1.0, 2.0], force=[1e-3, 5e-4]))
     assert [state.approach for state in states] == [alone.solve(force=force).approach for force in (1e-3, 5e-4)]
     assert [state.time for state in states] == [1.0, 2.0] and alone.last.time is None
@@ -475,11 +475,11 @@ def test_a_path_of_an_elastic_contact_is_its_loads():
 @pytest.mark.parametrize("number", [np.float64, np.float32, np.int64, int, np.array])
 def test_numbers_of_numpy_are_numbers(number):
     one = number(1)
-    hard = fc.Scene(rough(17), modulus=1.0, effects={"hardness": one})
+    hard = fc.Scene(rough(17), contact_modulus=1.0, effects={"hardness": one})
     assert fc.Bem3d().prepare(hard).solve(force=0.01).plastic_area == 0.0
-    sticky = fc.Scene(SPHERE, modulus=1e3, effects={"adhesion": {"work": one, "range": one}})
+    sticky = fc.Scene(SPHERE, contact_modulus=1e3, effects={"adhesion": {"work": one, "range": one}})
     assert fc.Bem3d(cells=8).prepare(sticky).solve(force=one).branch == "approach"
-    short = fc.Scene(SPHERE, modulus=1e3, effects={"adhesion": one})
+    short = fc.Scene(SPHERE, contact_modulus=1e3, effects={"adhesion": one})
     assert fc.Jkr().prepare(short).solve(force=one).force == 1.0
 
 
@@ -489,9 +489,9 @@ def test_effects_are_values():
     assert pickle.loads(pickle.dumps(effects)) == effects == fc.Effects(adhesion=EXPONENTIAL)
     law["work"] = 2.0
     assert effects.adhesion == EXPONENTIAL and fc.Effects(hardness=1.0) != fc.Effects(hardness=2.0)
-    scene = fc.Scene(SPHERE, modulus=1.0, effects=effects)
+    scene = fc.Scene(SPHERE, contact_modulus=1.0, effects=effects)
     assert (
-        pickle.loads(pickle.dumps(scene)) == scene == fc.Scene(SPHERE, modulus=1.0, effects={"adhesion": EXPONENTIAL})
+        pickle.loads(pickle.dumps(scene)) == scene == fc.Scene(SPHERE, contact_modulus=1.0, effects={"adhesion": EXPONENTIAL})
     )
 
 
@@ -511,7 +511,7 @@ WRONG = [(name, value) for name in ("hardness", "work", "range") for value in (-
 def test_numbers_that_make_no_sense(name, value):
     given = {"hardness": value} if name == "hardness" else {"adhesion": {"work": 1.0, "range": 1.0, name: value}}
     # Where the mistake is made, and in a scene.
-    for make in (lambda: fc.Effects(**given), lambda: fc.Scene(SPHERE, modulus=1.0, effects=given)):
+    for make in (lambda: fc.Effects(**given), lambda: fc.Scene(SPHERE, contact_modulus=1.0, effects=given)):
         with pytest.raises(fc.DomainError, match=name) as caught:
             make()
         assert name in caught.value.quantity and np.array_equal(caught.value.value, value, equal_nan=True)
@@ -567,13 +567,13 @@ def test_effects_that_make_no_sense(effects, error, words):
 )
 def test_models_refuse_effects_that_they_lack(model, surface, effects):
     with pytest.raises(fc.Unsupported, match=r"hardness|adhesion") as caught:
-        model.prepare(fc.Scene(surface, modulus=1.0, effects=effects))
+        model.prepare(fc.Scene(surface, contact_modulus=1.0, effects=effects))
     assert caught.value.model == model.name
 
 
 @pytest.mark.parametrize("adhesion", [EXPONENTIAL, DUGDALE])
 def test_hardness_and_adhesion_together_are_refused(adhesion):
-    scene = fc.Scene(SPHERE, modulus=1.0, effects={"hardness": 1.0, "adhesion": adhesion})
+    scene = fc.Scene(SPHERE, contact_modulus=1.0, effects={"hardness": 1.0, "adhesion": adhesion})
     with pytest.raises(fc.Unsupported, match="hardness and adhesion together") as caught:
         COARSE.prepare(scene)
     # No model has both.
@@ -583,7 +583,7 @@ def test_hardness_and_adhesion_together_are_refused(adhesion):
 def test_a_number_alone_is_adhesion_of_short_range():
     forces = []
     for adhesion in (WORK, {"work": WORK}):
-        scene = fc.Scene(SPHERE, modulus=1.0, effects={"adhesion": adhesion})
+        scene = fc.Scene(SPHERE, contact_modulus=1.0, effects={"adhesion": adhesion})
         for model in (fc.Jkr(), fc.Mdr1d()):
             contact = model.prepare(scene)
             assert contact.solve(force=-1.49 * np.pi * WORK).force < 0
@@ -596,15 +596,15 @@ def test_a_number_alone_is_adhesion_of_short_range():
 def test_closed_forms_of_adhesion():
     wave = fc.Surface.sine(amplitude=0.01, wavelength=1.0, size=1.0)
     effects = {"boundary": "periodic", "adhesion": 1e-4}
-    state = fc.AdhesiveWave().prepare(fc.Scene(wave, modulus=1.0, effects=effects)).solve(mean_pressure=-1e-4)
+    state = fc.AdhesiveWave().prepare(fc.Scene(wave, contact_modulus=1.0, effects=effects)).solve(mean_pressure=-1e-4)
     assert state.force == pytest.approx(-1e-4) and state.branch is None
-    dry = fc.Westergaard().prepare(fc.Scene(wave, modulus=1.0, effects={"boundary": "periodic"}, outputs=["area"]))
-    sticky = fc.AdhesiveWave().prepare(fc.Scene(wave, modulus=1.0, effects=effects, outputs=["area"]))
+    dry = fc.Westergaard().prepare(fc.Scene(wave, contact_modulus=1.0, effects={"boundary": "periodic"}, outputs=["area"]))
+    sticky = fc.AdhesiveWave().prepare(fc.Scene(wave, contact_modulus=1.0, effects=effects, outputs=["area"]))
     assert sticky.solve(mean_pressure=1e-3).area > dry.solve(mean_pressure=1e-3).area
 
 
 def test_a_range_that_cells_do_not_resolve_is_refused_with_the_cell_that_would():
-    scene = fc.Scene(SPHERE, modulus=1.0, effects={"adhesion": {"work": WORK, "range": 1e-4}})
+    scene = fc.Scene(SPHERE, contact_modulus=1.0, effects={"adhesion": {"work": WORK, "range": 1e-4}})
     with pytest.raises(fc.DomainError, match="at most") as caught:
         COARSE.prepare(scene)
     assert caught.value.quantity == "side of a cell" and caught.value.value == 1 / 64
@@ -612,7 +612,7 @@ def test_a_range_that_cells_do_not_resolve_is_refused_with_the_cell_that_would()
 
 def test_a_plastic_depth_needs_a_hardness():
     with pytest.raises(fc.Unsupported, match="hardness"):
-        fc.Scene(rough(17), modulus=1.0, outputs=["plastic_depth"])
+        fc.Scene(rough(17), contact_modulus=1.0, outputs=["plastic_depth"])
 
 
 def test_the_page_of_the_book_runs():
@@ -628,7 +628,7 @@ def test_the_page_of_the_book_runs():
 def test_a_ball_of_short_range_is_pulled_off_near_jkr():
     work, radius = 1e-4, (4.5 * np.pi * 1e-4) ** (1 / 3)
     ball = fc.Surface.sphere(radius=1.0, size=2.6 * radius)
-    scene = fc.Scene(ball, modulus=1.0, effects={"adhesion": work}, outputs=["area", "stiffness_fixed_area"])
+    scene = fc.Scene(ball, contact_modulus=1.0, effects={"adhesion": work}, outputs=["area", "stiffness_fixed_area"])
     path = fc.Bem3d(cells=42, tolerance=1e-6).prepare(scene)
     unit = 1.5 * np.pi * work
     for force in (0.0, -0.5 * unit, -0.9 * unit):
@@ -646,7 +646,7 @@ FOLLOWS = r"virgin surface.*advance\(\) and follow\(\) keep it"
 
 
 def yielding(**scene):
-    return fc.Bem3d(cells=33).prepare(fc.Scene(rough(33), modulus=1.0, effects={"hardness": 0.02, **scene}))
+    return fc.Bem3d(cells=33).prepare(fc.Scene(rough(33), contact_modulus=1.0, effects={"hardness": 0.02, **scene}))
 
 
 @pytest.mark.parametrize(
@@ -728,14 +728,14 @@ def test_a_load_that_is_no_number_is_not_remembered():
 
 
 def test_without_a_hardness_loads_come_in_any_order():
-    contact = fc.Bem3d(cells=33).prepare(fc.Scene(rough(33), modulus=1.0))
+    contact = fc.Bem3d(cells=33).prepare(fc.Scene(rough(33), contact_modulus=1.0))
     assert [round(state.force, 12) for state in contact.sweep(force=[0.01, 0.005, 0.02])] == [0.01, 0.005, 0.02]
     contact.restart()
 
 
 def test_an_ensemble_refuses_decreasing_loads_with_a_hardness():
     surface = fc.Surface.self_affine(hurst=0.6, size=1.0, rms_height=0.01)
-    hard = fc.Scene(surface, modulus=1.0, effects={"hardness": 0.02})
+    hard = fc.Scene(surface, contact_modulus=1.0, effects={"hardness": 0.02})
     with pytest.raises(fc.DomainError, match=FOLLOWS):
         fc.ensemble(fc.Bem3d(cells=17), hard, seed=1, surfaces=2, force_bar=[0.2, 0.1])
     assert len(fc.ensemble(fc.Bem3d(cells=17), hard, seed=1, surfaces=2, force_bar=[0.1, 0.2])) == 2

@@ -69,7 +69,7 @@ def test_all_points_undefined():
 @pytest.mark.parametrize("size", [0.0, -1.0, np.nan, np.inf, (1.0, 0.0)])
 def test_sizes_that_make_no_sense(size):
     with pytest.raises((fc.Error, TypeError)):
-        fc.Bem3d().prepare(fc.Scene(fc.HeightMap(GOOD, size=size), modulus=1.0)).solve(force=1e300)
+        fc.Bem3d().prepare(fc.Scene(fc.HeightMap(GOOD, size=size), contact_modulus=1.0)).solve(force=1e300)
 
 
 @pytest.mark.parametrize("size", ["1 furlong", "1 mm x", "", ("1 mm", "2 parsnips"), "1 kPa"])
@@ -102,7 +102,7 @@ NUMBERS = [0.0, -1.0, 1e-320, 1e308, np.nan, np.inf, -np.inf, None, "1", 1j, [1.
     ("kind", "value"), list(itertools.product(["force", "approach", "mean_pressure", "mean_gap"], NUMBERS))
 )
 def test_loads(kind, value):
-    contact = fc.Bem3d().prepare(fc.Scene(fc.HeightMap(GOOD, size=1.0), modulus=1.0))
+    contact = fc.Bem3d().prepare(fc.Scene(fc.HeightMap(GOOD, size=1.0), contact_modulus=1.0))
     try:
         state = contact.solve(**{kind: value})
     except (fc.Error, TypeError, OverflowError):
@@ -113,7 +113,7 @@ def test_loads(kind, value):
 @pytest.mark.parametrize("value", NUMBERS)
 def test_moduli_and_options(value):
     for make in (
-        lambda: fc.Scene(fc.HeightMap(GOOD, size=1.0), modulus=value),
+        lambda: fc.Scene(fc.HeightMap(GOOD, size=1.0), contact_modulus=value),
         lambda: fc.Scene(fc.HeightMap(GOOD, size=1.0), bodies=(fc.Body(value, 0.3), None)),
         lambda: fc.Scene(fc.HeightMap(GOOD, size=1.0), bodies=(fc.Body(1.0, value), None)),
         lambda: fc.Bem3d(tolerance=value),
@@ -135,7 +135,7 @@ def test_huge_maps_are_refused_before_they_are_drawn():
         with pytest.raises((fc.Error, OverflowError)):
             flat.height_map(cells)
     with pytest.raises(fc.Error):
-        fc.Bem3d(cells=10**7).prepare(fc.Scene(flat, modulus=1.0))
+        fc.Bem3d(cells=10**7).prepare(fc.Scene(flat, contact_modulus=1.0))
 
 
 def test_mappings_that_hold_themselves():
@@ -153,18 +153,18 @@ def test_mappings_that_hold_themselves():
 def test_words_that_nothing_is_called():
     map_ = fc.HeightMap(GOOD, size=1.0)
     with pytest.raises(ValueError, match='no output is called "stifness"'):
-        fc.Scene(map_, modulus=1.0, outputs=["stifness"])
+        fc.Scene(map_, contact_modulus=1.0, outputs=["stifness"])
     with pytest.raises(TypeError, match="expected a list of names"):
-        fc.Scene(map_, modulus=1.0, outputs="stiffness")
+        fc.Scene(map_, contact_modulus=1.0, outputs="stiffness")
     with pytest.raises(ValueError, match="boundary"):
-        fc.Scene(map_, modulus=1.0, effects={"boundary": "round"})
+        fc.Scene(map_, contact_modulus=1.0, effects={"boundary": "round"})
     with pytest.raises(TypeError, match="adhesiom"):
-        fc.Scene(map_, modulus=1.0, effects={"adhesiom": 1.0})
+        fc.Scene(map_, contact_modulus=1.0, effects={"adhesiom": 1.0})
     with pytest.raises(ValueError, match="rheology"):
-        fc.Scene(map_, modulus=1.0, effects={"rheology": {"kind": "jelly"}})
+        fc.Scene(map_, contact_modulus=1.0, effects={"rheology": {"kind": "jelly"}})
     with pytest.raises(TypeError, match="`viscosity` is missing"):
-        fc.Scene(map_, modulus=1.0, effects={"rheology": {"kind": "maxwell"}})
-    with pytest.raises(TypeError, match="give modulus or bodies"):
+        fc.Scene(map_, contact_modulus=1.0, effects={"rheology": {"kind": "maxwell"}})
+    with pytest.raises(TypeError, match="give contact_modulus or bodies"):
         fc.Scene(map_)
     with pytest.raises(ValueError, match="method"):
         fc.Bem3d(method="magic")

@@ -116,12 +116,12 @@ def test_pictures_have_the_shape_of_the_rectangle_and_a_scale():
 
 
 def test_states_show_what_they_have():
-    scene = fc.Scene(rough(), modulus=1.0, outputs=["stiffness", "pressure", "gap"])
+    scene = fc.Scene(rough(), contact_modulus=1.0, outputs=["stiffness", "pressure", "gap"])
     state = fc.Bem3d().prepare(scene).solve(force=1e-4)
     html = state._repr_html_()
     assert len(pictures(html)) == 4 and "pressure" in html and "duality_gap" in html
     assert all(note.split(":")[0] in html for note in state.notes)
-    plain = fc.Hertz().prepare(fc.Scene(fc.Surface.sphere(radius=1.0, size=1.0), modulus=1.0)).solve(force=1e-4)
+    plain = fc.Hertz().prepare(fc.Scene(fc.Surface.sphere(radius=1.0, size=1.0), contact_modulus=1.0)).solve(force=1e-4)
     assert pictures(plain._repr_html_()) == [] and "approach" in plain._repr_html_()
     body = fc.Body(1.0, 0.3)
     friction = fc.Scene(rough((32, 16)), bodies=(body, body), effects={"friction": 0.3}, outputs=["traction"])
@@ -131,7 +131,7 @@ def test_states_show_what_they_have():
 
 
 def test_fields_are_read_only():
-    scene = fc.Scene(rough(), modulus=1.0, outputs=["pressure", "contact_patches"])
+    scene = fc.Scene(rough(), contact_modulus=1.0, outputs=["pressure", "contact_patches"])
     state = fc.Bem3d().prepare(scene).solve(force=0.01)
     for array in (state.pressure, state.pressure.base, state.patches, state.to_dict(fields=True)["pressure"]):
         assert not array.flags.writeable

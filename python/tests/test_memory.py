@@ -79,7 +79,7 @@ def test_what_fits_under_six_gigabytes():
     told = limited("""
 map = rough.height_map(4001, 1)
 assert map.transposed().cropped((0, 100), (0, 200)).shape == (100, 200)
-print(fc.Bem3d(tolerance=1e-3).prepare(fc.Scene(map, modulus=1.0)).solve(force=1e-5).status)
+print(fc.Bem3d(tolerance=1e-3).prepare(fc.Scene(map, contact_modulus=1.0)).solve(force=1e-5).status)
 """)
     assert told == "converged"
 
@@ -92,14 +92,14 @@ def test_absurd_numbers_of_cells(cells):
             surface.height_map(cells)
     columns, rows = cells if isinstance(cells, tuple) else (cells, None)
     with pytest.raises((MemoryError, fc.DomainError)):
-        fc.Bem3d(cells=columns, rows=rows).prepare(fc.Scene(flat, modulus=1.0))
+        fc.Bem3d(cells=columns, rows=rows).prepare(fc.Scene(flat, contact_modulus=1.0))
 
 
 @pytest.mark.parametrize("surfaces", [-1, 2**63, 2**64, 10**30, 1.5, "many", None])
 def test_absurd_numbers_of_surfaces(surfaces):
     rough = fc.Surface.self_affine(hurst=0.6, size=1.0, rms_height=0.01)
     with pytest.raises((MemoryError, ValueError, TypeError)):
-        fc.ensemble(fc.Bem3d(cells=17), fc.Scene(rough, modulus=1.0), seed=1, surfaces=surfaces, force=[0.1])
+        fc.ensemble(fc.Bem3d(cells=17), fc.Scene(rough, contact_modulus=1.0), seed=1, surfaces=surfaces, force=[0.1])
 
 
 def test_the_error_is_pickled():
@@ -118,5 +118,5 @@ def test_no_cells_and_no_surfaces():
         with pytest.raises(fc.DomainError):
             rough.height_map(cells)
     with pytest.raises(fc.DomainError):
-        fc.Bem3d(cells=0).prepare(fc.Scene(rough, modulus=1.0))
-    assert fc.ensemble(fc.Bem3d(cells=17), fc.Scene(rough, modulus=1.0), seed=1, surfaces=0, force=[0.1]) == []
+        fc.Bem3d(cells=0).prepare(fc.Scene(rough, contact_modulus=1.0))
+    assert fc.ensemble(fc.Bem3d(cells=17), fc.Scene(rough, contact_modulus=1.0), seed=1, surfaces=0, force=[0.1]) == []

@@ -23,7 +23,7 @@ def rough(cells=129, seed=1, hurst=0.6):
 
 
 def stiffness(force, cells=129):
-    return fc.Bem3d().prepare(fc.Scene(rough(cells), modulus=1.0)).solve(force=force).stiffness
+    return fc.Bem3d().prepare(fc.Scene(rough(cells), contact_modulus=1.0)).solve(force=force).stiffness
 
 
 @pytest.mark.parametrize(
@@ -32,7 +32,7 @@ def stiffness(force, cells=129):
         rough(17),
         fc.HeightMap(np.array([[1.0, np.nan]]), size=(2.0, 1.0), undefined="no_contact"),
         fc.Surface.sphere(radius=1.0, size=(2.0, 1.0)),
-        fc.Scene(rough(17), modulus=1.0, outputs=["pressure"], effects={"boundary": "periodic"}),
+        fc.Scene(rough(17), contact_modulus=1.0, outputs=["pressure"], effects={"boundary": "periodic"}),
         fc.Scene(rough(17), bodies=(fc.Body(1.0, 0.3), None), conductance=("thermal", 1.0, 2.0)),
         fc.Bem3d(cells=33, tolerance=1e-8),
         fc.Equivalent(fc.Mdr1d(elements=1024), decades=2),
@@ -45,7 +45,7 @@ def test_inputs_are_pickled(value):
 
 def solved(force=0.01, **options):
     outputs = ["stiffness", "area", "pressure", "gap", "contact_patches"]
-    return fc.Bem3d(**options).prepare(fc.Scene(rough(33), modulus=1.0, outputs=outputs)).solve(force=force)
+    return fc.Bem3d(**options).prepare(fc.Scene(rough(33), contact_modulus=1.0, outputs=outputs)).solve(force=force)
 
 
 def same(one, other):
@@ -63,7 +63,7 @@ def test_states_and_what_belongs_to_them_are_pickled():
     for again in (pickle.loads(pickle.dumps(state)), copy.deepcopy(state)):
         same(state, again)
         assert not again.pressure.flags.writeable
-    contact = fc.Hertz().prepare(fc.Scene(fc.Surface.sphere(radius=1.0, size=1.0), modulus=2.0))
+    contact = fc.Hertz().prepare(fc.Scene(fc.Surface.sphere(radius=1.0, size=1.0), contact_modulus=2.0))
     for value in (state.certificate, contact.normalisation):
         assert pickle.loads(pickle.dumps(value)) == value
     with pytest.raises(fc.ShapeError, match="pickled by this version"):
@@ -104,7 +104,7 @@ def test_errors_are_pickled():
 def measured(cells):
     surface = rough(cells)
     told = fc.statistics.power_spectrum(surface)["density"].sum(), fc.surface_gen.twin(surface, 3).rms_height
-    theory = fc.Persson().prepare(fc.Scene(surface, modulus=1.0, outputs=["area"], effects={"boundary": "periodic"}))
+    theory = fc.Persson().prepare(fc.Scene(surface, contact_modulus=1.0, outputs=["area"], effects={"boundary": "periodic"}))
     return (*told, theory.solve(force=0.01).area, fc.statistics.parameters(surface)["Sal"])
 
 
@@ -125,14 +125,14 @@ def test_threads_solve_at_the_same_time():
     with concurrent.futures.ThreadPoolExecutor(4) as pool:
         assert list(pool.map(stiffness, (0.01, 0.03, 0.1, 0.3))) == expected
     # One contact in two threads: one after the other.
-    contact = fc.Bem3d(tolerance=1e-8).prepare(fc.Scene(rough(), modulus=1.0))
+    contact = fc.Bem3d(tolerance=1e-8).prepare(fc.Scene(rough(), contact_modulus=1.0))
     with concurrent.futures.ThreadPoolExecutor(4) as pool:
         found = list(pool.map(lambda force: contact.solve(force=force).approach, [0.01, 0.1] * 4))
     assert np.ptp(found[::2]) < 1e-7 and np.ptp(found[1::2]) < 1e-7
 
 
 def test_other_threads_run_meanwhile():
-    contact = fc.Bem3d(tolerance=1e-10).prepare(fc.Scene(rough(513), modulus=1.0))
+    contact = fc.Bem3d(tolerance=1e-10).prepare(fc.Scene(rough(513), contact_modulus=1.0))
     done, ticks = threading.Event(), []
 
     def tick():
@@ -167,7 +167,7 @@ def test_no_bit_depends_on_the_number_of_threads():
 
 @pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
 def test_ctrl_c_stops_a_solve_and_nothing_is_lost():
-    contact = fc.Bem3d(tolerance=1e-10).prepare(fc.Scene(rough(1025, hurst=0.3), modulus=1.0))
+    contact = fc.Bem3d(tolerance=1e-10).prepare(fc.Scene(rough(1025, hurst=0.3), contact_modulus=1.0))
     threading.Timer(0.3, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
     with pytest.raises(KeyboardInterrupt):
         for force in np.geomspace(1e-2, 10.0, 2000):
@@ -197,7 +197,7 @@ def test_ctrl_c_stops_an_ensemble_and_a_handler_may_raise():
 
     try:
         surface = fc.Surface.self_affine(hurst=0.5, size=1.0, rms_height=0.01)
-        scene = fc.Scene(surface, modulus=1.0)
+        scene = fc.Scene(surface, contact_modulus=1.0)
         with pytest.raises(Alarm) as caught:
             fc.ensemble(fc.Bem3d(cells=129), scene, seed=1, surfaces=5000, force_bar=[0.1, 1.0], progress=soon)
     finally:
@@ -214,7 +214,7 @@ def test_an_exception_of_a_callback_ends_an_ensemble():
 
     with pytest.raises(RuntimeError, match="enough") as caught:
         fc.ensemble(
-            fc.Bem3d(cells=129), fc.Scene(surface, modulus=1.0), seed=1, surfaces=2000, force_bar=[1.0], progress=fail
+            fc.Bem3d(cells=129), fc.Scene(surface, contact_modulus=1.0), seed=1, surfaces=2000, force_bar=[1.0], progress=fail
         )
     # What was done is not lost.
     finished = caught.value.finished
@@ -255,7 +255,7 @@ os._exit(0)
 
 def test_another_thread_stops_a_solve():
     stop = threading.Event()
-    contact = fc.Bem3d(tolerance=1e-12).prepare(fc.Scene(rough(1025, hurst=0.3), modulus=1.0))
+    contact = fc.Bem3d(tolerance=1e-12).prepare(fc.Scene(rough(1025, hurst=0.3), contact_modulus=1.0))
     timer = threading.Timer(0.3, stop.set)
     timer.start()
     with pytest.raises(fc.Stopped) as caught:
@@ -285,7 +285,7 @@ def test_another_thread_stops_an_ensemble_and_a_scene(tmp_path):
             stop.set()
 
     surface = fc.Surface.self_affine(hurst=0.5, size=1.0, rms_height=0.01)
-    scene = fc.Scene(surface, modulus=1.0)
+    scene = fc.Scene(surface, contact_modulus=1.0)
     with pytest.raises(fc.Stopped) as caught:
         fc.ensemble(fc.Bem3d(cells=129), scene, seed=1, surfaces=5000, force_bar=[1.0], progress=soon, stop=stop)
     assert 0 < len(caught.value.finished) < 5000
@@ -293,7 +293,7 @@ def test_another_thread_stops_an_ensemble_and_a_scene(tmp_path):
     text = """[scene]
 units = "none"
 models = ["bem3d"]
-modulus = 1
+contact_modulus = 1
 force_bar = [0.1, 1.0]
 [scene.surface]
 kind = "self_affine"
@@ -333,7 +333,7 @@ def resident():
 
 @pytest.mark.skipif(not os.path.exists("/proc/self/statm"), reason="no /proc")
 def test_memory_stays_flat_over_ten_thousand_solves():
-    contact = fc.Bem3d().prepare(fc.Scene(rough(17), modulus=1.0, outputs=["pressure", "gap", "contact_patches"]))
+    contact = fc.Bem3d().prepare(fc.Scene(rough(17), contact_modulus=1.0, outputs=["pressure", "gap", "contact_patches"]))
 
     def solve(count):
         for i in range(count):
@@ -352,11 +352,11 @@ import numpy as np, fractal_contact as fc, os
 def resident():
     return int(open("/proc/self/statm").read().split()[1]) * os.sysconf("SC_PAGE_SIZE")
 n = 2049
-scene = fc.Scene(fc.Surface.flat(size=1.0), modulus=1.0, outputs=["pressure"])
+scene = fc.Scene(fc.Surface.flat(size=1.0), contact_modulus=1.0, outputs=["pressure"])
 h = fc.HeightMap(np.zeros((n, n)), size=1.0)
 x = (np.arange(n) / n - 0.5) ** 2
 h = fc.HeightMap(-(x[:, None] + x[None, :]), size=1.0)
-contact = fc.Bem3d(tolerance=1e-3).prepare(fc.Scene(h, modulus=1.0, outputs=["pressure"]))
+contact = fc.Bem3d(tolerance=1e-3).prepare(fc.Scene(h, contact_modulus=1.0, outputs=["pressure"]))
 state = contact.solve(force=1e-4)
 before = resident()
 kept = [state.pressure for _ in range(10)]

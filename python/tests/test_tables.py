@@ -27,7 +27,7 @@ def generate():
 
 def state(**outputs):
     surface = fc.Surface.self_affine(hurst=0.6, size=1.0, rms_height=0.01)
-    scene = fc.Scene(surface, modulus=2.0, outputs=["stiffness", "area", "contact_patches"], **outputs)
+    scene = fc.Scene(surface, contact_modulus=2.0, outputs=["stiffness", "area", "contact_patches"], **outputs)
     contact = fc.Bem3d(cells=33).prepare(scene, seed=1)
     return contact, contact.solve(force=1e-3)
 
@@ -83,7 +83,7 @@ def test_quantities_have_values_of_their_types():
     assert found.certificate.to_dict() == {name: getattr(found, name) for name in residuals}
     # The best state of an error has its contact's normalisation, too.
     failing = fc.Bem3d(cells=33, max_outer_iterations=1).prepare(
-        fc.Scene(fc.Surface.self_affine(hurst=0.6, size=1.0, rms_height=0.01), modulus=2.0), seed=1
+        fc.Scene(fc.Surface.self_affine(hurst=0.6, size=1.0, rms_height=0.01), contact_modulus=2.0), seed=1
     )
     with pytest.raises(fc.NotConverged) as caught:
         failing.solve(force=1e-2)
@@ -98,7 +98,7 @@ def test_tables_have_the_order_of_the_quantities():
     rows = fc.table([found])
     assert rows["patches"][0] == len(found.patches) and rows["strategy"][0] == found.strategy
     # What no effect and no path asks for is there for every state.
-    hertz = fc.Hertz().prepare(fc.Scene(SPHERE, modulus=1.0)).solve(force=1e-3)
+    hertz = fc.Hertz().prepare(fc.Scene(SPHERE, contact_modulus=1.0)).solve(force=1e-3)
     assert hertz.to_dict().keys() == found.to_dict().keys() and np.isnan(fc.table([hertz])["force_bar"][0])
 
 
@@ -131,7 +131,7 @@ def test_models_say_what_they_support():
 
 def test_outputs_are_those_of_the_table():
     with pytest.raises(ValueError, match=r"there are stiffness, .* and stick_slip$"):
-        fc.Scene(SPHERE, modulus=1.0, outputs=["conductance"])
+        fc.Scene(SPHERE, contact_modulus=1.0, outputs=["conductance"])
     of_friction = (
         "stick_area",
         "tangential_stiffness",
@@ -143,9 +143,9 @@ def test_outputs_are_those_of_the_table():
     for name in fc.Bem3d().supports["outputs"]:
         if name in of_friction:
             with pytest.raises(fc.Unsupported, match="needs friction"):
-                fc.Scene(SPHERE, modulus=1.0, outputs=[name])
+                fc.Scene(SPHERE, contact_modulus=1.0, outputs=[name])
         elif name not in ("conductance", "mean_gap", "plastic_depth"):
-            assert fc.Scene(SPHERE, modulus=1.0, outputs=[name]).outputs == (name,)
+            assert fc.Scene(SPHERE, contact_modulus=1.0, outputs=[name]).outputs == (name,)
 
 
 def test_compiled_and_public_tables_are_the_same():

@@ -51,7 +51,7 @@ def test_two_thousand_solves_of_one_contact():
     run("""
 for cells, solves in ((17, 1700), (257, 300)):
     forces = [0.005, 0.02, 0.05, 0.1]
-    scene = fc.Scene(rough(cells), modulus=1.0)
+    scene = fc.Scene(rough(cells), contact_modulus=1.0)
     expected = [fc.Bem3d(tolerance=1e-8).prepare(scene).solve(force=force) for force in forces]
     contact = fc.Bem3d(tolerance=1e-8).prepare(scene)
 
@@ -70,7 +70,7 @@ for cells, solves in ((17, 1700), (257, 300)):
 def test_steps_of_one_path():
     run("""
 for cells, steps in ((17, 600), (257, 400)):
-    scene = fc.Scene(rough(cells), modulus=1.0, effects={"hardness": 0.1}, outputs=["area"])
+    scene = fc.Scene(rough(cells), contact_modulus=1.0, effects={"hardness": 0.1}, outputs=["area"])
     path = fc.Bem3d(tolerance=1e-8).prepare(scene)
     # Below the first load all is elastic, so that the order of the steps does not matter.
     first = path.advance(force=0.02)
@@ -91,7 +91,7 @@ for cells, steps in ((17, 600), (257, 400)):
 
 def test_contacts_and_ensembles_in_threads():
     run("""
-contacts = [fc.Bem3d().prepare(fc.Scene(rough(257), modulus=1.0)) for _ in range(2)]
+contacts = [fc.Bem3d().prepare(fc.Scene(rough(257), contact_modulus=1.0)) for _ in range(2)]
 surface = fc.Surface.self_affine(hurst=0.6, size=1.0, rms_height=0.01)
 
 def work(number):
@@ -99,7 +99,7 @@ def work(number):
         for i in range(20):
             contacts[i % 2].solve(force=0.01 * (1 + i % 3))
     else:
-        states = fc.ensemble(fc.Bem3d(cells=129), fc.Scene(surface, modulus=1.0), seed=1, surfaces=8, force=[0.1])
+        states = fc.ensemble(fc.Bem3d(cells=129), fc.Scene(surface, contact_modulus=1.0), seed=1, surfaces=8, force=[0.1])
         assert len(states) == 8
 
 in_threads(6, work)
@@ -109,7 +109,7 @@ in_threads(6, work)
 @pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
 def test_ctrl_c_while_another_thread_solves():
     run("""
-contact = fc.Bem3d(tolerance=1e-12).prepare(fc.Scene(rough(1025, 0.3), modulus=1.0))
+contact = fc.Bem3d(tolerance=1e-12).prepare(fc.Scene(rough(1025, 0.3), contact_modulus=1.0))
 begun = threading.Event()
 
 def other():
@@ -138,7 +138,7 @@ assert contact.solve(force=0.5).certificate.meets(1e-12)
 @pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
 def test_a_handler_cannot_use_the_contact_that_its_thread_solves():
     run("""
-contact = fc.Bem3d(tolerance=1e-12).prepare(fc.Scene(rough(1025, 0.3), modulus=1.0))
+contact = fc.Bem3d(tolerance=1e-12).prepare(fc.Scene(rough(1025, 0.3), contact_modulus=1.0))
 signal.signal(signal.SIGALRM, lambda *_: contact.solve(force=0.01))
 signal.setitimer(signal.ITIMER_REAL, 0.1)
 try:
@@ -156,7 +156,7 @@ else:
 def test_many_ctrl_c_at_the_first_field(pause):
     # The first finds a solve; others come while what it had reached becomes arrays.
     code = """
-contact = fc.Bem3d(tolerance=1e-10).prepare(fc.Scene(rough(513, 0.3), modulus=1.0, outputs=["pressure", "gap"]))
+contact = fc.Bem3d(tolerance=1e-10).prepare(fc.Scene(rough(513, 0.3), contact_modulus=1.0, outputs=["pressure", "gap"]))
 print("ready", flush=True)
 while True:
     contact.solve(force=5.0)

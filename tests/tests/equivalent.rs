@@ -106,7 +106,7 @@ fn beside_a_difference_of_normal_contacts(model: &dyn ContactModel, depth: f64, 
     let scene = &sliding(fractal());
     let mut direct = model.prepare(&elastic(scene), 2).unwrap();
     let height = direct.normalisation().height.unwrap();
-    let shear = pair().shear_modulus().unwrap() / pair().modulus().unwrap();
+    let shear = pair().shear_modulus().unwrap() / pair().contact_modulus().unwrap();
     let d = depth * height;
     let mut history = Equivalent { per_decade, ..Equivalent::new(model) }.prepare(scene, 2).unwrap();
     let top = direct.solve(Load::Approach(d)).unwrap();
@@ -123,7 +123,7 @@ fn beside_a_difference_of_normal_contacts(model: &dyn ContactModel, depth: f64, 
         let tangential = state.tangential.unwrap();
         let below = direct.solve(Load::Approach((1.0 - share) * d)).unwrap();
         let force = (tangential.force[0] - MU * (top.force - below.force)) / (MU * top.force);
-        let held = 2.0 * scene.modulus * tangential.stick_radius.unwrap();
+        let held = 2.0 * scene.contact_modulus * tangential.stick_radius.unwrap();
         let stiffness = (held - below.stiffness.unwrap()) / top.stiffness.unwrap();
         worst = [worst[0].max(force.abs()), worst[1].max(stiffness.abs())];
     }
@@ -219,8 +219,8 @@ fn a_step_of_a_rough_viscoelastic_body_relaxes_to_the_models_own_force() {
     for time in [0.0, 0.1, 2.0, 1e6] {
         let state = history.advance(Step::normal(time, Load::Approach(d))).unwrap();
         // F(t) = E*(t)/E* F.
-        let modulus = 1.0 + 3.0 * (-time / 2.0_f64).exp();
-        assert_relative_eq!(state.force, modulus * own.force, max_relative = 1e-9);
+        let contact_modulus = 1.0 + 3.0 * (-time / 2.0_f64).exp();
+        assert_relative_eq!(state.force, contact_modulus * own.force, max_relative = 1e-9);
     }
     // Under a force: glassy at once, relaxed in the end; both are elastic states of the model.
     history.restart();
@@ -260,7 +260,7 @@ fn a_flat_square_slips_as_a_whole_and_sticks_as_mindlin_says() {
     let scene = sliding(Surface::Flat { size: 1.0.into() });
     let mut history = Equivalent::new(model).prepare(&scene, 0).unwrap();
     let state = history.advance(Step::normal(0.0, Load::Force(1e-3))).unwrap();
-    let shear = pair().shear_modulus().unwrap() / pair().modulus().unwrap();
+    let shear = pair().shear_modulus().unwrap() / pair().contact_modulus().unwrap();
     // k_x/k_z = (2 - 2 nu)/(2 - nu) = 2/3, until mu F.
     assert_relative_eq!(shear, 2.0 / 3.0, max_relative = 1e-14);
     let reach = MU * 1e-3 / (shear * state.stiffness.unwrap());

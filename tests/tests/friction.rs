@@ -37,7 +37,7 @@ fn springs_are_cattaneo_and_mindlin_and_deresiewicz() {
                 max_relative = 1e-13
             );
             let (one, other) = (one.tangential.unwrap(), other.tangential.unwrap());
-            let reach = 0.75 * limit / (scene.modulus * 0.1);
+            let reach = 0.75 * limit / (scene.contact_modulus * 0.1);
             assert_relative_eq!(
                 one.displacement[0],
                 other.displacement[0],

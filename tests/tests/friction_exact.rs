@@ -38,7 +38,7 @@ fn ellipse(cells: usize, [a, b]: [f64; 2]) -> Surface {
 /// `R = a b/(b^2 cos^2 + a^2 sin^2)^(1/2)`,
 /// `Q/(2 pi a b) 1/(pi E*) int h (int_0^R (1 - r^2/R^2)^(-1/2) dr) dtheta = Q/(4 pi E*) int h R/(a b) dtheta`
 /// with `h = 1 + c cos^2`, `1 + c sin^2` and 1.
-fn of_an_ellipse([a, b]: [f64; 2], c: f64, modulus: f64) -> [f64; 3] {
+fn of_an_ellipse([a, b]: [f64; 2], c: f64, contact_modulus: f64) -> [f64; 3] {
     let rays = 4000;
     let mean = |h: &dyn Fn(f64, f64) -> f64| {
         // The rule of trapezia is exact to rounding for a periodic function.
@@ -48,7 +48,7 @@ fn of_an_ellipse([a, b]: [f64; 2], c: f64, modulus: f64) -> [f64; 3] {
         };
         (0..rays).map(at).sum::<f64>() / f64::from(rays)
     };
-    let k = |h: &dyn Fn(f64, f64) -> f64| 2.0 * modulus / mean(h);
+    let k = |h: &dyn Fn(f64, f64) -> f64| 2.0 * contact_modulus / mean(h);
     [k(&|cos, _| 1.0 + c * cos * cos), k(&|_, sin| 1.0 + c * sin * sin), k(&|_, _| 1.0)]
 }
 
@@ -62,7 +62,7 @@ fn errors(cells: usize, axes: [f64; 2], pair: Pair) -> [f64; 4] {
     let normal = state.stiffness.unwrap();
     let k = state.tangential.unwrap().stiffness_stuck.unwrap();
     assert!(k[0][1].abs() < 1e-7 * k[0][0], "{k:?}");
-    let [x, y, z] = of_an_ellipse(axes, compliance(&pair), scene.modulus);
+    let [x, y, z] = of_an_ellipse(axes, compliance(&pair), scene.contact_modulus);
     [k[0][0] / normal * z / x - 1.0, k[1][1] / normal * z / y - 1.0, k[0][0] / x - 1.0, k[1][1] / y - 1.0]
 }
 
@@ -81,7 +81,7 @@ fn order(points: &[(usize, f64)]) -> f64 {
 fn a_disc_that_sticks_is_approached_with_first_order() {
     for pair in [alike(0.3), on_rigid(0.5)] {
         let [x, _, z] = of_an_ellipse([0.4, 0.4], compliance(&pair), 1.0);
-        let ratio = pair.shear_modulus().unwrap() / pair.modulus().unwrap();
+        let ratio = pair.shear_modulus().unwrap() / pair.contact_modulus().unwrap();
         assert!((x / z / ratio - 1.0).abs() < 1e-12, "{x} {z}");
         let grids = [16, 23, 32, 45, 64, 91, 128, 181];
         let found = grids.map(|cells| (cells, errors(cells, [0.4, 0.4], pair)));
@@ -118,7 +118,7 @@ fn the_radius_that_sticks_is_cattaneos() {
         let mut scene = Scene::of_pair(sphere, alike(0.0)).unwrap();
         scene.effects.friction = Friction::coulomb(0.3);
         scene.outputs = Outputs { area: true, stick_area: true, ..Outputs::default() };
-        let a = (0.75 * force / scene.modulus).cbrt();
+        let a = (0.75 * force / scene.contact_modulus).cbrt();
         let mut contact = Bem3d { cells, tolerance: 1e-8, ..Bem3d::default() }.prepare(&scene, 0).unwrap();
         for share in [0.25, 0.5, 0.75, 0.9] {
             let tangential = Tangential::force_along_x(share * 0.3 * force);
@@ -232,10 +232,11 @@ fn the_radius_that_sticks_depends_on_neither_profile_nor_load() {
     let model = Bem3d { cells: 64, tolerance: 1e-6, ..Bem3d::default() };
     let mut contact = model.prepare(&coupled(punch(), pair, mu), 0).unwrap();
     let flat = stick_share(&contact.advance(pressed(Load::Force(1e-3))).unwrap());
-    let modulus = pair.modulus().unwrap();
+    let contact_modulus = pair.contact_modulus().unwrap();
     // The force at a radius of 0.4, and its power of the radius.
-    let cone = (Surface::Cone { slope: 0.1, size: 1.0.into() }, 0.05 * PI * modulus * 0.16, 2.0);
-    let sphere = (Surface::Sphere { radius: 1.0, size: 1.0.into() }, 4.0 / 3.0 * modulus * 0.064, 3.0);
+    let cone = (Surface::Cone { slope: 0.1, size: 1.0.into() }, 0.05 * PI * contact_modulus * 0.16, 2.0);
+    let sphere =
+        (Surface::Sphere { radius: 1.0, size: 1.0.into() }, 4.0 / 3.0 * contact_modulus * 0.064, 3.0);
     for (surface, most, power) in [cone, sphere] {
         let scene = coupled(surface, pair, mu);
         let off = [8_u32, 32].map(|steps| {

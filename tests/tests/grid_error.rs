@@ -10,7 +10,7 @@ use std::f64::consts::TAU;
 fn states(surface: &Surface, boundary: Boundary, cells: usize, seed: u64, forces: &[f64]) -> Vec<[f64; 3]> {
     let scene = Scene {
         surface: surface.clone(),
-        modulus: 1.0,
+        contact_modulus: 1.0,
         pair: None,
         effects: Effects { boundary, ..Effects::default() },
         outputs: Outputs { stiffness: true, area: true, ..Outputs::default() },

@@ -147,17 +147,17 @@ fn from_1e_minus_200_to_1e4_in_one_sweep() {
 fn heights_and_moduli_at_the_ends_of_f64() {
     let original = rough_map(2.4, 17, 5).unwrap();
     for vertical in [1e-150, 1e150] {
-        for modulus in [1e-12, 1.0, 1e12] {
+        for contact_modulus in [1e-12, 1.0, 1e12] {
             for force in [1e-6, 0.1, 20.0] {
                 let there = press(&original, Load::Force(force));
                 let mut scaled = scene(original.scaled(1.0, vertical).unwrap());
-                scaled.modulus = modulus;
+                scaled.contact_modulus = contact_modulus;
                 let model = Bem3d { tolerance: TOLERANCE, ..Bem3d::default() };
-                let load = Load::Force(force * vertical * modulus);
+                let load = Load::Force(force * vertical * contact_modulus);
                 let here = model.prepare(&scaled, 0).unwrap().solve(load).unwrap();
                 let approach = here.approach.unwrap() / vertical;
                 assert_relative_eq!(approach, there.approach.unwrap(), max_relative = SAME);
-                let stiffness = here.stiffness.unwrap() / modulus;
+                let stiffness = here.stiffness.unwrap() / contact_modulus;
                 assert_relative_eq!(stiffness, there.stiffness.unwrap(), max_relative = SAME);
             }
         }
@@ -173,7 +173,7 @@ fn no_load_is_no_contact() {
     ];
     for (model, scene) in models {
         let mut contact = model.prepare(&scene, 0).unwrap();
-        let small = contact.normalisation().modulus * 1e-3;
+        let small = contact.normalisation().contact_modulus * 1e-3;
         for load in [Load::Force(0.0), Load::Approach(0.0), Load::Force(-0.0)] {
             let state = contact.solve(load).unwrap();
             let numbers = [state.force, state.approach.unwrap(), state.stiffness.unwrap()];
@@ -280,9 +280,9 @@ fn heights_that_are_no_numbers_are_refused_with_their_place() {
         assert!(text.starts_with("heights[1, 3] = "), "{text}");
     }
     assert!(matches!(HeightMap::new(2, 1.0, vec![0.0; 6]), Err(Error::Shape { .. })));
-    for modulus in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+    for contact_modulus in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         let mut scene = scene(map(3, 1.0, |_, _| 0.0).unwrap());
-        scene.modulus = modulus;
+        scene.contact_modulus = contact_modulus;
         assert!(matches!(Bem3d::default().prepare(&scene, 0), Err(Error::Domain { .. })));
     }
     let none = Bem3d { cells: 0, ..Bem3d::default() };

@@ -171,7 +171,13 @@ fn fields(scene: &Scene, state: &ContactState, depth: Option<&[f64]>, faults: &m
         check(faults, "largest pressure", found, largest, ROUNDING * largest);
     }
     if let (Some(k), Some(found)) = (state.stiffness_fixed_area, state.conductance) {
-        check(faults, "conductance", found, 2.0 * k / scene.modulus, ROUNDING * k / scene.modulus);
+        check(
+            faults,
+            "conductance",
+            found,
+            2.0 * k / scene.contact_modulus,
+            ROUNDING * k / scene.contact_modulus,
+        );
     }
     if let Adhesion::FiniteRange { work, range, law } = scene.effects.adhesion {
         let contact = state.report.contact_cells.unwrap() as f64;
@@ -198,7 +204,7 @@ fn punch(scene: &Scene, state: &ContactState) -> Option<f64> {
     let p = state.pressure()?.values();
     let heights = p.iter().map(|p| if *p > 0.0 { 0.0 } else { f64::NAN }).collect();
     let punch = HeightMap::with_undefined(map.cells(), map.size(), heights).ok()?;
-    let mut flat = Scene::new(Surface::Heights(Arc::new(punch)), scene.modulus);
+    let mut flat = Scene::new(Surface::Heights(Arc::new(punch)), scene.contact_modulus);
     flat.effects.boundary = scene.effects.boundary;
     model(1e-9).prepare(&flat, 0).ok()?.solve(Load::Force(1.0)).ok()?.stiffness
 }
@@ -230,7 +236,7 @@ fn elastic(seed: u64) -> Result<Faults, Error> {
     let scene = scene(&mut draw, map);
     let mut faults = Vec::new();
     let area = map_of(&scene).size();
-    let force = scene.modulus * area.x * area.y * 10f64.powf(draw.between(-3.5, -1.0));
+    let force = scene.contact_modulus * area.x * area.y * 10f64.powf(draw.between(-3.5, -1.0));
     let mut contact = model(TOLERANCE).prepare(&scene, 0)?;
     let state = contact.solve(Load::Force(force))?;
     fields(&scene, &state, None, &mut faults);
@@ -294,7 +300,7 @@ fn plastic(seed: u64) -> Result<Faults, Error> {
     let mut scene = scene(&mut draw, map);
     let mut faults = Vec::new();
     let area = map_of(&scene).size();
-    let most = scene.modulus * area.x * area.y * 10f64.powf(draw.between(-3.0, -1.5));
+    let most = scene.contact_modulus * area.x * area.y * 10f64.powf(draw.between(-3.0, -1.5));
     let elastic = model(1e-6).prepare(&scene, 0)?.solve(Load::Force(most))?;
     let pressure = draw.between(0.2, 0.9) * elastic.resolution.unwrap().largest_pressure;
     scene.effects.hardness = Hardness::Limit { pressure };
@@ -374,7 +380,7 @@ fn plastic_loop(seed: u64) -> Result<Faults, Error> {
     let mut scene = scene(&mut draw, map);
     scene.outputs = contact_model::Outputs { mean_gap: is_periodic(&scene), ..Default::default() };
     let area = map_of(&scene).size();
-    let most = scene.modulus * area.x * area.y * 10f64.powf(draw.between(-2.5, -1.5));
+    let most = scene.contact_modulus * area.x * area.y * 10f64.powf(draw.between(-2.5, -1.5));
     let elastic = model(1e-6).prepare(&scene, 0)?.solve(Load::Force(most))?;
     let pressure = 0.5 * elastic.resolution.unwrap().largest_pressure;
     scene.effects.hardness = Hardness::Limit { pressure };
@@ -409,7 +415,7 @@ fn adhesive_scene(draw: &mut Draw, law: Option<AdhesionLaw>, cells: (usize, usiz
     let range = 0.1 * draw.between(0.3, 1.5);
     // A cell closes by itself at five times the slope, or a twentieth of it for a short range of the same
     // width.
-    let steepest = 0.05 * PI * scene.modulus / (cell * 1.2);
+    let steepest = 0.05 * PI * scene.contact_modulus / (cell * 1.2);
     let work = draw.between(0.2, 0.9) * steepest * range * range;
     scene.effects.adhesion = match law {
         Some(law) => Adhesion::FiniteRange { work, range, law },
@@ -499,7 +505,7 @@ fn moving_front(seed: u64, law: Option<AdhesionLaw>) -> Result<(Faults, Option<b
     check(&mut faults, "prescribed plane", plane(&state), last, ROUNDING);
     if let Adhesion::ShortRange { work } = scene.effects.adhesion {
         let map = map_of(&scene);
-        let peak = 0.59 * (scene.modulus * work / map.dx().max(map.dy())).sqrt();
+        let peak = 0.59 * (scene.contact_modulus * work / map.dx().max(map.dy())).sqrt();
         let range = 15.0 / 8.0 * work / peak;
         // The integral of `y (0.4 + 2.2 y - 1.6 y^2)`.
         let attached = |g: f64| {
@@ -641,12 +647,12 @@ fn rheology(seed: u64) -> Result<Faults, Error> {
     let arms: Vec<Relaxing> = (0..draw.count(1, 3))
         .map(|_| Relaxing { weight: draw.between(0.1, 3.0), time: 10f64.powf(draw.between(-1.0, 1.0)) })
         .collect();
-    let (modulus, radius) = (draw.between(0.5, 4.0), draw.between(0.5, 3.0));
-    let mut scene = Scene::new(Surface::Sphere { radius, size: 2.0.into() }, modulus);
+    let (contact_modulus, radius) = (draw.between(0.5, 4.0), draw.between(0.5, 3.0));
+    let mut scene = Scene::new(Surface::Sphere { radius, size: 2.0.into() }, contact_modulus);
     scene.outputs = contact_model::Outputs { area: true, ..Default::default() };
     scene.effects.rheology = Rheology::Prony(PronySeries::new(&arms)?);
     let mut history = ContactModel::prepare(&mdr1d::Viscoelastic, &scene, 0)?;
-    let elastic = |d: f64| 4.0 / 3.0 * modulus * radius.sqrt() * d.powf(1.5);
+    let elastic = |d: f64| 4.0 / 3.0 * contact_modulus * radius.sqrt() * d.powf(1.5);
     let mut faults = Vec::new();
     let (mut time, mut d) = (0.0, 0.0);
     let mut held = vec![0.0; arms.len()];

@@ -69,18 +69,18 @@ proptest! {
     #[test]
     fn units(
         seed in 0_u64..1000, force_bar in -3.0_f64..1.5,
-        modulus in -12.0_f64..12.0, lateral in -6.0_f64..6.0, vertical in -9.0_f64..6.0,
+        contact_modulus in -12.0_f64..12.0, lateral in -6.0_f64..6.0, vertical in -9.0_f64..6.0,
     ) {
-        let [f, e, l, h] = [force_bar, modulus, lateral, vertical].map(|x| 10_f64.powf(x));
+        let [f, e, l, h] = [force_bar, contact_modulus, lateral, vertical].map(|x| 10_f64.powf(x));
         let original = rough_map(2.4, CELLS, seed).unwrap();
         let mut scaled = scene(original.scaled(l, h).unwrap());
-        scaled.modulus = e;
+        scaled.contact_modulus = e;
         let there = solve(&scene(original.clone()), Load::Force(f));
         let here = solve(&scaled, Load::Force(f * e * l * h));
         assert_same(&there, &divided(&here, e * l * h, h, e * l));
 
-        let press = |surface: Surface, modulus: f64, force: f64| {
-            Mdr1d::default().prepare(&Scene::new(surface, modulus), 0).unwrap().solve(Load::Force(force)).unwrap()
+        let press = |surface: Surface, contact_modulus: f64, force: f64| {
+            Mdr1d::default().prepare(&Scene::new(surface, contact_modulus), 0).unwrap().solve(Load::Force(force)).unwrap()
         };
         let there = press(line(&original, 1.0, 1.0), 1.0, f);
         let here = press(line(&original, l, h), e, f * e * l * h);

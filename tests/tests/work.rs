@@ -161,7 +161,7 @@ fn a_history_pays_for_its_table_once() {
     assert_eq!(with.2.bytes, FIELD);
     // Effects that are off cost nothing: the same scene without friction is the bare solver.
     let elastic = Scene { effects: Effects::default(), ..scene.clone() };
-    let bare = press(&model.model, &Scene { pair: None, modulus: 1.0, ..elastic.clone() });
+    let bare = press(&model.model, &Scene { pair: None, contact_modulus: 1.0, ..elastic.clone() });
     let paired = press(&model.model, &elastic);
     assert_eq!(counts(&bare).2, counts(&paired).2);
 }

@@ -10,7 +10,7 @@ use contact_model::{Conductance, Result};
 /// gaps, which do not.
 ///
 /// The formula of [`Conductance`] for a fitted or averaged stiffness; a state has its own when it is asked
-/// for. `stiffness` k in force per length, `modulus` E* in force per length squared, resistivities in
+/// for. `stiffness` k in force per length, `contact_modulus` E* in force per length squared, resistivities in
 /// resistance times length; the result is 1/resistance. Source: Barber, Proc. R. Soc. A 459, 53 (2003); Sec.
 /// I and Eq. 13 of the paper.
 ///
@@ -23,10 +23,15 @@ use contact_model::{Conductance, Result};
 /// assert_eq!(analysis::conductance(2.0, 1.0, 1.0, 1.0)?, 2.0);
 /// # Ok::<(), contact_model::Error>(())
 /// ```
-pub fn conductance(stiffness: f64, modulus: f64, resistivity1: f64, resistivity2: f64) -> Result<f64> {
+pub fn conductance(
+    stiffness: f64,
+    contact_modulus: f64,
+    resistivity1: f64,
+    resistivity2: f64,
+) -> Result<f64> {
     let asked = Conductance::Electrical { first: resistivity1, second: resistivity2 };
     // It is on, so it is there.
-    Ok(asked.of(stiffness, modulus)?.unwrap_or_default())
+    Ok(asked.of(stiffness, contact_modulus)?.unwrap_or_default())
 }
 
 #[cfg(test)]

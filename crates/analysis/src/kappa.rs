@@ -15,8 +15,8 @@ use contact_model::{Error, Result};
 /// assert_eq!(analysis::kappa(0.02, 0.01, 1.0, 1.0)?, 2.0);
 /// # Ok::<(), contact_model::Error>(())
 /// ```
-pub fn kappa(area: f64, force: f64, modulus: f64, slope: f64) -> Result<f64> {
-    for (name, value) in [("force", force), ("modulus", modulus), ("slope", slope)] {
+pub fn kappa(area: f64, force: f64, contact_modulus: f64, slope: f64) -> Result<f64> {
+    for (name, value) in [("force", force), ("contact_modulus", contact_modulus), ("slope", slope)] {
         if !(value.is_finite() && value > 0.0) {
             return Err(Error::domain(name, value, "a finite number > 0"));
         }
@@ -24,7 +24,7 @@ pub fn kappa(area: f64, force: f64, modulus: f64, slope: f64) -> Result<f64> {
     if !(area.is_finite() && area >= 0.0) {
         return Err(Error::domain("area", area, "a finite number >= 0"));
     }
-    Ok(area * modulus * slope / force)
+    Ok(area * contact_modulus * slope / force)
 }
 
 #[cfg(test)]

@@ -21,8 +21,8 @@ use std::f64::consts::PI;
 
 fn main() -> Result<()> {
     // Rubber against glass: R = 10 mm, E* = 1 MPa, w = 50 mJ/m^2, in newtons and metres.
-    let (radius, modulus, work) = (0.01, 1e6, 0.05);
-    let mut scene = Scene::new(Surface::Sphere { radius, size: 0.01.into() }, modulus);
+    let (radius, contact_modulus, work) = (0.01, 1e6, 0.05);
+    let mut scene = Scene::new(Surface::Sphere { radius, size: 0.01.into() }, contact_modulus);
     scene.effects.adhesion = Adhesion::ShortRange { work };
     scene.outputs.area = true;
     let mut contact = Jkr.prepare(&scene, 0)?;
@@ -34,8 +34,8 @@ fn main() -> Result<()> {
         let (d, k) = (state.approach.unwrap_or(0.0), state.stiffness.unwrap_or(0.0));
         println!("{:>8.4} {:>9.4} {:>8.4} {:>9.4}", force * 1e3, d * 1e6, a * 1e3, k * 1e-3);
         // F = 4 E* a^3/(3 R) - sqrt(8 pi w E* a^3)
-        let exact =
-            4.0 * modulus * a.powi(3) / (3.0 * radius) - (8.0 * PI * work * modulus * a.powi(3)).sqrt();
+        let exact = 4.0 * contact_modulus * a.powi(3) / (3.0 * radius)
+            - (8.0 * PI * work * contact_modulus * a.powi(3)).sqrt();
         assert!((force - exact).abs() < 1e-9 * pull_off.abs());
     }
     if let Err(Error::OutOfRange { min, .. }) = contact.solve(Load::Force(1.0001 * pull_off)) {
@@ -44,7 +44,7 @@ fn main() -> Result<()> {
     }
 
     // Under a prescribed approach the contact lives longer: down to -5/6 pi w R.
-    let sphere = AdhesiveSphere::new(radius, modulus, work)?;
+    let sphere = AdhesiveSphere::new(radius, contact_modulus, work)?;
     let [soft, hard] = [sphere.pull_off_at_force()?, sphere.pull_off_at_approach()?];
     println!("breaks at {:.4} mN by force, at {:.4} um by approach", soft.force * 1e3, hard.approach * 1e6);
     assert!((soft.force / pull_off - 1.0).abs() < 1e-12 && (hard.force / pull_off - 5.0 / 9.0).abs() < 1e-12);

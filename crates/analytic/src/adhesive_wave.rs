@@ -72,12 +72,12 @@ impl WavyContact {
     /// # Errors
     /// [`Error::Domain`] for a value that makes no sense, and for a D/w, a p* or a work over `E* D^2/w` that
     /// no `f64` holds.
-    pub fn new(amplitude: f64, wavelength: f64, modulus: f64, work: f64) -> Result<Self> {
+    pub fn new(amplitude: f64, wavelength: f64, contact_modulus: f64, work: f64) -> Result<Self> {
         let slope = amplitude / wavelength;
         for (name, value) in [
             ("amplitude", amplitude),
             ("wavelength", wavelength),
-            ("modulus", modulus),
+            ("contact_modulus", contact_modulus),
             ("amplitude over wavelength", slope),
         ] {
             if !(value.is_finite() && value > 0.0 && value.recip().is_finite()) {
@@ -87,11 +87,11 @@ impl WavyContact {
         if !(work.is_finite() && work >= 0.0) {
             return Err(Error::domain("work of adhesion", work, "a finite number >= 0"));
         }
-        let nondimensional = Nondimensionalisation::new(modulus, wavelength, amplitude)?;
+        let nondimensional = Nondimensionalisation::new(contact_modulus, wavelength, amplitude)?;
         nondimensional.pressure(PI)?;
-        let per_height = Nondimensionalisation::new(modulus, wavelength, 1.0)?;
+        let per_height = Nondimensionalisation::new(contact_modulus, wavelength, 1.0)?;
         // Balanced products, so that no part of them leaves the range of f64: E* D^2/w = E* D (D/w).
-        let share = Nondimensionalisation::new(modulus, amplitude, slope)?.force_in(work);
+        let share = Nondimensionalisation::new(contact_modulus, amplitude, slope)?.force_in(work);
         if !(share.is_normal() || work <= 0.0) {
             return Err(Error::not_representable("work of adhesion over E* D^2/w", share));
         }
@@ -274,7 +274,7 @@ impl ContactModel for AdhesiveWave {
         self.abilities().refuse(NAME, scene)?;
         let work = closed::short_range_work(scene, NAME)?;
         let (amplitude, waves, size) = whole_waves(scene, NAME)?;
-        let wave = WavyContact::new(amplitude, size.x / waves, scene.modulus, work)?;
+        let wave = WavyContact::new(amplitude, size.x / waves, scene.contact_modulus, work)?;
         let full = PI * waves * (size.length() / size.x);
         if !full.is_normal() {
             let name = "number of waves times the root of side along y over side along x";
@@ -358,8 +358,8 @@ mod tests {
         wave_scene(0.01, 0.5, [1.0, 2.0].into(), (3.0, work))
     }
 
-    fn wave_scene(amplitude: f64, wavelength: f64, size: Size, (modulus, work): (f64, f64)) -> Scene {
-        let mut scene = Scene::new(Surface::Sine { amplitude, wavelength, size }, modulus);
+    fn wave_scene(amplitude: f64, wavelength: f64, size: Size, (contact_modulus, work): (f64, f64)) -> Scene {
+        let mut scene = Scene::new(Surface::Sine { amplitude, wavelength, size }, contact_modulus);
         scene.effects.boundary = Boundary::Periodic;
         scene.effects.adhesion = Adhesion::ShortRange { work };
         (scene.outputs.area, scene.outputs.mean_gap, scene.outputs.stiffness_fixed_area) = (true, true, true);
@@ -450,11 +450,12 @@ mod tests {
         assert!(with_alpha(WavyContact::CRITICAL * (1.0 + AT_EXTREMUM)).pull_off().unwrap().is_none());
         assert_eq!(with_alpha(2.0).stable(0.0), Ok(None));
         // Narrow strips are cylinders of radius w^2/(4 pi^2 D): p w = pi E* a^2/(4 R) - sqrt(2 pi a E* work).
-        let (amplitude, wavelength, modulus, work) = (1e-3, 1.0, 2.0, 1e-12);
-        let narrow = WavyContact::new(amplitude, wavelength, modulus, work).unwrap();
+        let (amplitude, wavelength, contact_modulus, work) = (1e-3, 1.0, 2.0, 1e-12);
+        let narrow = WavyContact::new(amplitude, wavelength, contact_modulus, work).unwrap();
         let a = 1e-3;
         let radius = wavelength * wavelength / (4.0 * PI * PI * amplitude);
-        let line = PI * modulus * a * a / (4.0 * radius) - (2.0 * PI * a * modulus * work).sqrt();
+        let line =
+            PI * contact_modulus * a * a / (4.0 * radius) - (2.0 * PI * a * contact_modulus * work).sqrt();
         assert_relative_eq!(
             narrow.pressure(PI * a / wavelength).unwrap() * wavelength,
             line,
@@ -519,11 +520,12 @@ mod tests {
     fn waves() -> impl Iterator<Item = (WavyContact, Size, Scene)> {
         (0..200).map(|i| {
             let i = f64::from(i);
-            let (amplitude, wavelength, modulus) = (0.011 + 1e-4 * i, 0.31 + 0.0013 * i, 1.7 + 0.03 * i);
+            let (amplitude, wavelength, contact_modulus) =
+                (0.011 + 1e-4 * i, 0.31 + 0.0013 * i, 1.7 + 0.03 * i);
             let size = Size { x: 3.0 * wavelength, y: 0.73 + 0.01 * i };
             let work = 1e-6 * (1.0 + 0.2 * i * i);
-            let wave = WavyContact::new(amplitude, wavelength, modulus, work).unwrap();
-            (wave, size, wave_scene(amplitude, wavelength, size, (modulus, work)))
+            let wave = WavyContact::new(amplitude, wavelength, contact_modulus, work).unwrap();
+            (wave, size, wave_scene(amplitude, wavelength, size, (contact_modulus, work)))
         })
     }
 
@@ -557,7 +559,7 @@ mod tests {
             scene.effects.adhesion = Adhesion::ShortRange { work: 0.0 };
             let Surface::Sine { amplitude, wavelength, .. } = scene.surface else { panic!("no wave") };
             let mut contact = AdhesiveWave.prepare(&scene, 0).unwrap();
-            for force in around(PI * scene.modulus * amplitude / wavelength * (size.x * size.y)) {
+            for force in around(PI * scene.contact_modulus * amplitude / wavelength * (size.x * size.y)) {
                 let state = contact.solve(Load::Force(force)).unwrap();
                 assert_eq!((state.mean_gap, state.stiffness), (Some(0.0), None));
             }
@@ -669,18 +671,18 @@ mod tests {
     /// In units of any length the same contact, where an `f64` holds what is asked.
     #[test]
     fn one_contact_in_any_units() {
-        let solved = |length: f64, (modulus, area): (f64, bool), force: f64| {
+        let solved = |length: f64, (contact_modulus, area): (f64, bool), force: f64| {
             let size = Size { x: length, y: 2.0 * length };
-            let work = 1e-4 * (modulus * length);
-            let mut scene = wave_scene(0.01 * length, 0.5 * length, size, (modulus, work));
+            let work = 1e-4 * (contact_modulus * length);
+            let mut scene = wave_scene(0.01 * length, 0.5 * length, size, (contact_modulus, work));
             scene.outputs.area = area;
             AdhesiveWave.prepare(&scene, 0).unwrap().solve(Load::Force(force))
         };
         let one = solved(1.0, (1.0, true), 0.0).unwrap();
         let pulled = solved(1.0, (1.0, true), -0.01).unwrap();
         for length in [1e-200_f64, 1e160, 1e200] {
-            let modulus = length.recip();
-            let state = solved(length, (modulus, false), 0.0).unwrap();
+            let contact_modulus = length.recip();
+            let state = solved(length, (contact_modulus, false), 0.0).unwrap();
             assert_relative_eq!(
                 state.mean_gap.unwrap() / length,
                 one.mean_gap.unwrap(),
@@ -688,10 +690,10 @@ mod tests {
             );
             assert_relative_eq!(state.stiffness.unwrap(), one.stiffness.unwrap(), max_relative = ROUNDING);
             // E* L^2 is L.
-            let state = solved(length, (modulus, false), -0.01 * length).unwrap();
+            let state = solved(length, (contact_modulus, false), -0.01 * length).unwrap();
             assert_relative_eq!(state.stiffness.unwrap(), pulled.stiffness.unwrap(), max_relative = ROUNDING);
             // An area of 1e-400 or 1e320 is no number.
-            let error = solved(length, (modulus, true), 0.0).unwrap_err();
+            let error = solved(length, (contact_modulus, true), 0.0).unwrap_err();
             assert!(error.to_string().starts_with("area ="), "{error}");
         }
         // Sides whose product is a number, though not their ratio's square.
@@ -713,11 +715,11 @@ mod tests {
         let mut solved = 0;
         for (i, length) in MAGNITUDES.into_iter().enumerate() {
             for y in MAGNITUDES {
-                for modulus in MAGNITUDES {
+                for contact_modulus in MAGNITUDES {
                     for work in MAGNITUDES.into_iter().chain([0.0]) {
                         let amplitude = if i % 2 == 0 { 0.01 * length } else { 1e-9 * length };
                         let size = Size { x: length, y };
-                        let mut scene = wave_scene(amplitude, 0.5 * length, size, (modulus, work));
+                        let mut scene = wave_scene(amplitude, 0.5 * length, size, (contact_modulus, work));
                         for (area, stiffness) in [(true, true), (false, true), (true, false)] {
                             (scene.outputs.area, scene.outputs.stiffness) = (area, stiffness);
                             let Ok(mut contact) = AdhesiveWave.prepare(&scene, 0) else { continue };
@@ -769,8 +771,8 @@ mod tests {
             [1e200, 1.0, 1e200, 0.0],
             [1e100, 1.0, 1e100, 1e-200],
         ] {
-            let [amplitude, wavelength, modulus, work] = values;
-            let outcome = WavyContact::new(amplitude, wavelength, modulus, work);
+            let [amplitude, wavelength, contact_modulus, work] = values;
+            let outcome = WavyContact::new(amplitude, wavelength, contact_modulus, work);
             assert!(matches!(outcome, Err(Error::Domain { .. })), "{values:?}");
         }
     }

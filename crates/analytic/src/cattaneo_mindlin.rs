@@ -219,7 +219,8 @@ impl PreparedCattaneoMindlin {
     fn press(&mut self, step: &Step) -> Result<(ContactState, Option<SlidingSphere>)> {
         let mut state = self.normal.solve(step.normal)?;
         // k = 2 E* a of the round area.
-        let radius = 0.5 * state.stiffness_fixed_area.unwrap_or(0.0) / self.normal.normalisation().modulus;
+        let radius =
+            0.5 * state.stiffness_fixed_area.unwrap_or(0.0) / self.normal.normalisation().contact_modulus;
         state.stiffness_fixed_area = state.stiffness_fixed_area.filter(|_| self.outputs.stiffness_fixed_area);
         if !self.outputs.needs_stiffness() {
             state.report.certificate.stiffness_error = None;

@@ -135,9 +135,9 @@ mod tests {
         #![proptest_config(ProptestConfig { rng_seed: RngSeed::Fixed(1), ..ProptestConfig::with_cases(32) })]
 
         #[test]
-        fn curve(radius in 0.1_f64..10.0, d in 1e-8_f64..1e-2, modulus in 0.1_f64..10.0) {
+        fn curve(radius in 0.1_f64..10.0, d in 1e-8_f64..1e-2, contact_modulus in 0.1_f64..10.0) {
             let surface = |length: f64| Surface::Sphere { radius: radius * length, size: length.into() };
-            check_curve(&Hertz, &Scene::new(surface(1.0), modulus), d);
+            check_curve(&Hertz, &Scene::new(surface(1.0), contact_modulus), d);
             scale_invariant(&Hertz, surface, d, ROUNDING);
         }
     }

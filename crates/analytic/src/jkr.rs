@@ -63,7 +63,7 @@ impl ContactModel for Jkr {
         let (radius, size) = closed::sphere(self, scene)?;
         let work = closed::short_range_work(scene, NAME)?;
         let scaling = Scaling::of_body(scene)?;
-        let sphere = AdhesiveSphere::new(radius, scene.modulus, work)?;
+        let sphere = AdhesiveSphere::new(radius, scene.contact_modulus, work)?;
         Ok(closed::prepared(scaling.in_units(sphere.nondimensional), JkrLaw { sphere, size }))
     }
 }
@@ -103,9 +103,9 @@ impl AdhesiveSphere {
     ///
     /// # Errors
     /// [`Error::Domain`] for a number that makes no sense, or a `w / (E* R)` that no `f64` holds.
-    pub fn new(radius: f64, modulus: f64, work: f64) -> Result<Self> {
-        let nondimensional = Nondimensionalisation::new(modulus, radius, radius)?;
-        let scaled = work / modulus / radius;
+    pub fn new(radius: f64, contact_modulus: f64, work: f64) -> Result<Self> {
+        let nondimensional = Nondimensionalisation::new(contact_modulus, radius, radius)?;
+        let scaled = work / contact_modulus / radius;
         if scaled.is_finite() && (scaled > 0.0 || (scaled >= 0.0 && work <= 0.0)) {
             Ok(Self { nondimensional, work: scaled })
         } else {
@@ -315,8 +315,8 @@ mod tests {
     use proptest::prelude::*;
     use proptest::test_runner::RngSeed;
 
-    fn scene(side: f64, modulus: f64, radius: f64, work: f64) -> Scene {
-        let mut scene = Scene::new(Surface::Sphere { radius, size: side.into() }, modulus);
+    fn scene(side: f64, contact_modulus: f64, radius: f64, work: f64) -> Scene {
+        let mut scene = Scene::new(Surface::Sphere { radius, size: side.into() }, contact_modulus);
         scene.effects.adhesion = Adhesion::ShortRange { work };
         scene
     }
@@ -430,9 +430,9 @@ mod tests {
     #[test]
     fn one_contact_in_any_units() {
         let one = pressed(&Jkr, &scene(4.0, 1.0, 1.0, 0.01), Load::Force(-0.04)).unwrap();
-        for (modulus, length) in [(1e150, 1e-150), (1e-150, 1e150), (1e11, 1e-3)] {
-            let nondimensional = Nondimensionalisation::new(modulus, length, length).unwrap();
-            let scene = scene(4.0 * length, modulus, length, 0.01 * (modulus * length));
+        for (contact_modulus, length) in [(1e150, 1e-150), (1e-150, 1e150), (1e11, 1e-3)] {
+            let nondimensional = Nondimensionalisation::new(contact_modulus, length, length).unwrap();
+            let scene = scene(4.0 * length, contact_modulus, length, 0.01 * (contact_modulus * length));
             let here = pressed(&Jkr, &scene, Load::Force(-nondimensional.force(0.04).unwrap())).unwrap();
             assert_relative_eq!(
                 here.approach.unwrap() / length,

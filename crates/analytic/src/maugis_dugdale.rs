@@ -66,7 +66,7 @@ impl ContactModel for MaugisDugdale {
         let (radius, size) = closed::sphere(self, scene)?;
         let sphere = match scene.effects.adhesion {
             Adhesion::FiniteRange { work, range, law: AdhesionLaw::Dugdale } if work > 0.0 => {
-                MaugisSphere::new(radius, scene.modulus, work, range)?
+                MaugisSphere::new(radius, scene.contact_modulus, work, range)?
             }
             Adhesion::Off | Adhesion::FiniteRange { law: AdhesionLaw::Dugdale, .. } => {
                 return Hertz.prepare(
@@ -120,10 +120,10 @@ impl MaugisSphere {
     /// # Errors
     /// [`Error::Domain`] for a number that makes no sense, numbers that no `f64` holds, or a lambda outside
     /// [`MaugisSphere::LAMBDA`].
-    pub fn new(radius: f64, modulus: f64, work: f64, range: f64) -> Result<Self> {
-        let nondimensional = Nondimensionalisation::new(modulus, radius, radius)?;
+    pub fn new(radius: f64, contact_modulus: f64, work: f64, range: f64) -> Result<Self> {
+        let nondimensional = Nondimensionalisation::new(contact_modulus, radius, radius)?;
         // A balanced product: work over E* alone may be out of the range of f64.
-        let scaled = Nondimensionalisation::new(modulus, radius, 1.0)?.force_in(work.max(0.0));
+        let scaled = Nondimensionalisation::new(contact_modulus, radius, 1.0)?.force_in(work.max(0.0));
         if !(work.is_finite() && scaled.is_normal()) {
             return Err(Error::of_positive("work of adhesion", work));
         }
@@ -366,8 +366,8 @@ mod tests {
     const ROOTS: f64 = 1e-12;
     const DUGDALE: AdhesionLaw = AdhesionLaw::Dugdale;
 
-    fn scene(side: f64, (modulus, radius): (f64, f64), work: f64, range: f64) -> Scene {
-        let mut scene = Scene::new(Surface::Sphere { radius, size: side.into() }, modulus);
+    fn scene(side: f64, (contact_modulus, radius): (f64, f64), work: f64, range: f64) -> Scene {
+        let mut scene = Scene::new(Surface::Sphere { radius, size: side.into() }, contact_modulus);
         scene.effects.adhesion = Adhesion::FiniteRange { work, range, law: DUGDALE };
         scene
     }
@@ -420,12 +420,12 @@ mod tests {
     /// 2015), where the cohesive zone pulls with `2 s0 sqrt(c^2 - x^2)`.
     #[test]
     fn the_gap_at_the_end_of_the_cohesive_zone_is_the_range() {
-        let (modulus, radius, work) = (2.0, 3.0, 1e-3);
+        let (contact_modulus, radius, work) = (2.0, 3.0, 1e-3);
         for range in [3e-4, 3e-3, 0.03] {
-            let sphere = MaugisSphere::new(radius, modulus, work, range).unwrap();
+            let sphere = MaugisSphere::new(radius, contact_modulus, work, range).unwrap();
             for a in [0.03, 0.1, 0.3, 0.5] {
                 let (c, d) = (sphere.cohesive_radius(a).unwrap(), sphere.approach(a).unwrap());
-                let (q, pull) = ((c * c - a * a).sqrt(), 2.0 * work / range / modulus);
+                let (q, pull) = ((c * c - a * a).sqrt(), 2.0 * work / range / contact_modulus);
                 assert_relative_eq!(d, a * a / radius - pull * q, epsilon = 1e-13);
                 let asin = (a / c).asin();
                 let inside = d * asin - (c * c * asin - a * q) / (2.0 * radius);
@@ -433,7 +433,11 @@ mod tests {
                 assert_relative_eq!(c * c / (2.0 * radius) - d + displacement, range, epsilon = 1e-12);
                 let springs = 2.0 * (d * a - a.powi(3) / (3.0 * radius));
                 let zone = pull * (c * c * (a / c).acos() - a * q);
-                assert_relative_eq!(sphere.force(a).unwrap(), modulus * (springs - zone), epsilon = 1e-12);
+                assert_relative_eq!(
+                    sphere.force(a).unwrap(),
+                    contact_modulus * (springs - zone),
+                    epsilon = 1e-12
+                );
             }
         }
     }
@@ -706,17 +710,23 @@ mod tests {
 
     #[test]
     fn one_contact_in_any_units() {
-        let at = |modulus: f64, length: f64| {
-            let scene = scene(4.0 * length, (modulus, length), 1e-3 * (modulus * length), 0.01 * length);
-            let force = Nondimensionalisation::new(modulus, length, length).unwrap().force(0.004).unwrap();
+        let at = |contact_modulus: f64, length: f64| {
+            let scene = scene(
+                4.0 * length,
+                (contact_modulus, length),
+                1e-3 * (contact_modulus * length),
+                0.01 * length,
+            );
+            let force =
+                Nondimensionalisation::new(contact_modulus, length, length).unwrap().force(0.004).unwrap();
             pressed(&MaugisDugdale, &scene, Load::Force(-force)).unwrap()
         };
         let one = at(1.0, 1.0);
-        for (modulus, length) in [(1e150, 1e-150), (1e-150, 1e150), (1e11, 1e-3)] {
-            let here = at(modulus, length);
+        for (contact_modulus, length) in [(1e150, 1e-150), (1e-150, 1e150), (1e11, 1e-3)] {
+            let here = at(contact_modulus, length);
             let approach = here.approach.unwrap() / length;
             assert_relative_eq!(approach, one.approach.unwrap(), max_relative = ROOTS);
-            let stiffness = here.stiffness.unwrap() / (modulus * length);
+            let stiffness = here.stiffness.unwrap() / (contact_modulus * length);
             assert_relative_eq!(stiffness, one.stiffness.unwrap(), max_relative = ROOTS);
         }
     }
@@ -734,10 +744,10 @@ mod tests {
         const BEYOND: f64 = 1e-9;
         for i in 0..200 {
             let i = f64::from(i);
-            let (radius, modulus) = (0.31 + 0.0013 * i, 1.7 + 0.01 * i);
+            let (radius, contact_modulus) = (0.31 + 0.0013 * i, 1.7 + 0.01 * i);
             let (work, range) = (1e-3 * (1.0 + 0.1 * i), 0.003 + 0.0026 * i);
-            let sphere = MaugisSphere::new(radius, modulus, work, range).unwrap();
-            let scene = scene(40.0, (modulus, radius), work, range);
+            let sphere = MaugisSphere::new(radius, contact_modulus, work, range).unwrap();
+            let scene = scene(40.0, (contact_modulus, radius), work, range);
             let [by_force, by_approach] =
                 [sphere.pull_off_at_force(), sphere.pull_off_at_approach()].map(Result::unwrap);
             // Hard spheres come down to a radius of 0: what is left of it is a share of the cohesive zone.
@@ -804,10 +814,10 @@ mod tests {
     /// The product counts, not its parts: work over E* is 1e-400 or 1e310 here.
     #[test]
     fn work_over_modulus_may_leave_the_range_of_f64() {
-        for (radius, modulus, work, range, share) in
+        for (radius, contact_modulus, work, range, share) in
             [(1e-100, 1e200, 1e-200, 1e-299, 0.1), (1e304, 1e-155, 1e155, 1e307, 10.0)]
         {
-            let sphere = MaugisSphere::new(radius, modulus, work, range).unwrap();
+            let sphere = MaugisSphere::new(radius, contact_modulus, work, range).unwrap();
             let lambda = 2.0 * (9.0 / (16.0 * PI)).cbrt() * share;
             assert_relative_eq!(sphere.lambda(), lambda, max_relative = ROOTS);
         }
@@ -828,13 +838,15 @@ mod tests {
             Err(other) => panic!("{other}"),
         };
         for radius in MAGNITUDES {
-            for modulus in MAGNITUDES {
+            for contact_modulus in MAGNITUDES {
                 for work in MAGNITUDES {
                     // Ranges of lambda = 1e-4, 1 and 1e4, where a number holds them.
-                    let scaled = work.log10() - modulus.log10() - radius.log10();
+                    let scaled = work.log10() - contact_modulus.log10() - radius.log10();
                     for lambda in [-4.0, 0.0, 4.0] {
                         let range = 10.0_f64.powf(scaled / 1.5 - lambda + radius.log10());
-                        let Ok(sphere) = MaugisSphere::new(radius, modulus, work, range) else { continue };
+                        let Ok(sphere) = MaugisSphere::new(radius, contact_modulus, work, range) else {
+                            continue;
+                        };
                         for value in MAGNITUDES.into_iter().flat_map(|value| [value, -value]).chain([0.0]) {
                             check(sphere.force(value));
                             check(sphere.approach(value));
@@ -842,7 +854,7 @@ mod tests {
                             check(sphere.slope(value));
                             check(sphere.radius_at_force(value));
                             check(sphere.radius_at_approach(value));
-                            let mut scene = scene(20.0 * radius, (modulus, radius), work, range);
+                            let mut scene = scene(20.0 * radius, (contact_modulus, radius), work, range);
                             for area in [true, false] {
                                 (scene.outputs.area, scene.outputs.stiffness_fixed_area) = (area, area);
                                 let Ok(mut contact) = MaugisDugdale.prepare(&scene, 0) else { continue };

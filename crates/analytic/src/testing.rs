@@ -38,7 +38,7 @@ pub(crate) fn check_curve(model: &dyn ContactModel, scene: &Scene, d: f64) {
     assert!(2.0 * here.force <= (low.force + high.force) * (1.0 + ROUNDING));
     assert!(low.stiffness.unwrap() <= high.stiffness.unwrap());
     assert_eq!(here.stiffness, here.stiffness_fixed_area);
-    let stiffer = Scene { modulus: 2.0 * scene.modulus, ..scene.clone() };
+    let stiffer = Scene { contact_modulus: 2.0 * scene.contact_modulus, ..scene.clone() };
     let doubled = pressed(model, &stiffer, Load::Approach(d)).unwrap();
     assert_relative_eq!(doubled.force, 2.0 * here.force, max_relative = ROUNDING);
     assert_relative_eq!(doubled.stiffness.unwrap(), 2.0 * here.stiffness.unwrap(), max_relative = ROUNDING);
@@ -67,10 +67,10 @@ pub(crate) fn check_slope(model: &dyn ContactModel, scene: &Scene, load: Load) {
         pressed(model, &scene, load).unwrap()
     });
     let slope = (high.force - low.force) / (high.approach.unwrap() - low.approach.unwrap());
-    let held = 2.0 * scene.modulus * (here.area.unwrap() / std::f64::consts::PI).sqrt();
+    let held = 2.0 * scene.contact_modulus * (here.area.unwrap() / std::f64::consts::PI).sqrt();
     assert_abs_diff_eq!(here.stiffness.unwrap(), slope, epsilon = DIFFERENCES * slope.abs().max(held));
     assert_relative_eq!(here.stiffness_fixed_area.unwrap(), held, max_relative = ROUNDING);
-    let conductance = scene.outputs.conductance.of(held, scene.modulus).unwrap().unwrap();
+    let conductance = scene.outputs.conductance.of(held, scene.contact_modulus).unwrap().unwrap();
     assert_relative_eq!(here.conductance.unwrap(), conductance, max_relative = ROUNDING);
 }
 
@@ -82,10 +82,10 @@ pub(crate) fn scale_invariant(
     tolerance: f64,
 ) {
     let one = pressed(model, &Scene::new(surface(1.0), 1.0), Load::Approach(d)).unwrap();
-    for (modulus, length) in [(1e150, 1e-150), (1e-150, 1e150), (1e11, 1e-3)] {
-        let scene = Scene::new(surface(length), modulus);
+    for (contact_modulus, length) in [(1e150, 1e-150), (1e-150, 1e150), (1e11, 1e-3)] {
+        let scene = Scene::new(surface(length), contact_modulus);
         let s = pressed(model, &scene, Load::Approach(d * length)).unwrap();
-        let nondimensional = Nondimensionalisation::new(modulus, length, length).unwrap();
+        let nondimensional = Nondimensionalisation::new(contact_modulus, length, length).unwrap();
         assert_relative_eq!(s.force, nondimensional.force(one.force).unwrap(), max_relative = tolerance);
         let k = nondimensional.stiffness(one.stiffness.unwrap()).unwrap();
         assert_relative_eq!(s.stiffness.unwrap(), k, max_relative = tolerance);
@@ -117,7 +117,7 @@ pub(crate) fn check_periodic(model: &dyn ContactModel, scene: &Scene, pressure: 
     }
     let more = contact.solve(Load::Force(1.001 * pressure));
     assert!(more.is_err() || more.unwrap().area.unwrap() >= here.area.unwrap());
-    let stiffer = Scene { modulus: 2.0 * scene.modulus, ..scene.clone() };
+    let stiffer = Scene { contact_modulus: 2.0 * scene.contact_modulus, ..scene.clone() };
     let doubled = model.prepare(&stiffer, 0).unwrap().solve(Load::Force(2.0 * pressure)).unwrap();
     assert_relative_eq!(doubled.area.unwrap(), here.area.unwrap(), max_relative = ROUNDING);
     assert_relative_eq!(doubled.stiffness.unwrap(), 2.0 * here.stiffness.unwrap(), max_relative = ROUNDING);

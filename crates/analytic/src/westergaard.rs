@@ -167,13 +167,15 @@ impl PeriodicLaw for Wave {
 /// assert!((analytic::westergaard::product_full_pressure(2.0, 0.1, 0.5)? - 0.4 * SQRT_2 * PI).abs() < 1e-15);
 /// # Ok::<(), contact_model::Error>(())
 /// ```
-pub fn product_full_pressure(modulus: f64, amplitude: f64, wavelength: f64) -> Result<f64> {
-    for (name, value) in [("modulus", modulus), ("amplitude", amplitude), ("wavelength", wavelength)] {
+pub fn product_full_pressure(contact_modulus: f64, amplitude: f64, wavelength: f64) -> Result<f64> {
+    for (name, value) in
+        [("contact_modulus", contact_modulus), ("amplitude", amplitude), ("wavelength", wavelength)]
+    {
         if !(value.is_finite() && value > 0.0) {
             return Err(Error::domain(name, value, "a finite number > 0"));
         }
     }
-    let pressure = SQRT_2 * PI * modulus * (amplitude / wavelength);
+    let pressure = SQRT_2 * PI * contact_modulus * (amplitude / wavelength);
     if pressure.is_finite() && pressure > 0.0 {
         Ok(pressure)
     } else {
@@ -252,8 +254,9 @@ mod tests {
     use proptest::prelude::*;
     use proptest::test_runner::RngSeed;
 
-    fn scene(amplitude: f64, wavelength: f64, side: f64, modulus: f64) -> Scene {
-        let mut scene = Scene::new(Surface::Sine { amplitude, wavelength, size: side.into() }, modulus);
+    fn scene(amplitude: f64, wavelength: f64, side: f64, contact_modulus: f64) -> Scene {
+        let mut scene =
+            Scene::new(Surface::Sine { amplitude, wavelength, size: side.into() }, contact_modulus);
         scene.effects.boundary = Boundary::Periodic;
         (scene.outputs.area, scene.outputs.mean_gap) = (true, true);
         scene
@@ -331,13 +334,13 @@ mod tests {
         #![proptest_config(ProptestConfig { rng_seed: RngSeed::Fixed(1), ..ProptestConfig::with_cases(32) })]
 
         #[test]
-        fn curve(d in 1e-4_f64..1e-2, waves in 1..9_i32, modulus in 0.1_f64..10.0, r in 1e-6_f64..0.99) {
-            let scene = scene(d, 1.0 / f64::from(waves), 1.0, modulus);
-            let p = r * PI * modulus * d * f64::from(waves);
+        fn curve(d in 1e-4_f64..1e-2, waves in 1..9_i32, contact_modulus in 0.1_f64..10.0, r in 1e-6_f64..0.99) {
+            let scene = scene(d, 1.0 / f64::from(waves), 1.0, contact_modulus);
+            let p = r * PI * contact_modulus * d * f64::from(waves);
             check_periodic(&Westergaard, &scene, p, 1e-13);
             // In other units the same contact.
             for length in [1e-150, 1e150] {
-                let scene = self::scene(d * length, length / f64::from(waves), length, modulus / length);
+                let scene = self::scene(d * length, length / f64::from(waves), length, contact_modulus / length);
                 let one = Westergaard.prepare(&scene, 0).unwrap().solve(Load::Force(p * length)).unwrap();
                 assert_relative_eq!(one.area.unwrap() / length / length, (2.0 / PI) * r.sqrt().asin(), max_relative = 1e-12);
             }

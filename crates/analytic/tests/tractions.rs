@@ -50,7 +50,7 @@ fn the_rule_integrates_roots_and_logarithms() {
 
 /// Tractions of Maugis's sphere: `s0` between a and c, and compressive ones inside a that meet them there.
 struct Zone {
-    modulus: f64,
+    contact_modulus: f64,
     radius: f64,
     attraction: f64,
     contact: f64,
@@ -65,7 +65,7 @@ impl Zone {
             return -self.attraction;
         }
         let (inside, outside) = (((a - r) * (a + r)).sqrt(), ((c - a) * (c + a)).sqrt());
-        2.0 * self.modulus / (PI * self.radius) * inside
+        2.0 * self.contact_modulus / (PI * self.radius) * inside
             - 2.0 / PI * self.attraction * (outside / inside).atan()
     }
 
@@ -85,7 +85,7 @@ impl Zone {
     fn displacement(&self, r: f64) -> f64 {
         self.rings(r, |s| {
             let near = (r - s).abs().max(f64::MIN_POSITIVE);
-            2.0 / self.modulus * self.pressure(s) * s / mean_of_arithmetic_and_geometric(r + s, near)
+            2.0 / self.contact_modulus * self.pressure(s) * s / mean_of_arithmetic_and_geometric(r + s, near)
         })
     }
 }
@@ -99,11 +99,11 @@ fn mean_of_arithmetic_and_geometric(mut a: f64, mut b: f64) -> f64 {
 
 #[test]
 fn a_state_is_what_its_tractions_do() {
-    let (modulus, radius, work) = (2.0, 3.0, 1e-3);
+    let (contact_modulus, radius, work) = (2.0, 3.0, 1e-3);
     // lambda of 0.05, 0.5, 5 and 50.
     for range in [0.2, 0.02, 2e-3, 2e-4] {
-        let sphere = MaugisSphere::new(radius, modulus, work, range).unwrap();
-        let mut scene = Scene::new(Surface::Sphere { radius, size: 20.0.into() }, modulus);
+        let sphere = MaugisSphere::new(radius, contact_modulus, work, range).unwrap();
+        let mut scene = Scene::new(Surface::Sphere { radius, size: 20.0.into() }, contact_modulus);
         scene.effects.adhesion = Adhesion::FiniteRange { work, range, law: AdhesionLaw::Dugdale };
         scene.outputs.area = true;
         let mut model = MaugisDugdale.prepare(&scene, 0).unwrap();
@@ -112,7 +112,7 @@ fn a_state_is_what_its_tractions_do() {
             let state = model.solve(load).unwrap();
             let contact = (state.area.unwrap() / PI).sqrt();
             let cohesive = sphere.cohesive_radius(contact).unwrap();
-            let zone = Zone { modulus, radius, attraction: work / range, contact, cohesive };
+            let zone = Zone { contact_modulus, radius, attraction: work / range, contact, cohesive };
             // Forces cancel to 0; heights of the state are of this size.
             let unit = PI * work * radius + state.force;
             assert_abs_diff_eq!(zone.force(), state.force, epsilon = QUADRATURE * unit.abs().max(work));
@@ -139,7 +139,7 @@ fn a_state_is_what_its_tractions_do() {
 struct Wave {
     amplitude: f64,
     wavelength: f64,
-    modulus: f64,
+    contact_modulus: f64,
     /// `pi a/w`.
     psi: f64,
     tension: f64,
@@ -147,7 +147,7 @@ struct Wave {
 
 impl Wave {
     fn full(&self) -> f64 {
-        PI * self.modulus * self.amplitude / self.wavelength
+        PI * self.contact_modulus * self.amplitude / self.wavelength
     }
 
     /// Pressure at `x < a`.
@@ -186,7 +186,7 @@ impl Wave {
         let part = |low, high| integral(low, high, |t| self.pressure_by_angle(t) * (4.0 * kernel(t)).ln());
         let cut = inside.unwrap_or(FRAC_PI_2);
         let parts = part(0.0, cut) + if cut < FRAC_PI_2 { part(cut, FRAC_PI_2) } else { 0.0 };
-        -2.0 / (PI * self.modulus) * parts
+        -2.0 / (PI * self.contact_modulus) * parts
     }
 
     fn gap(&self, mean: f64, x: f64) -> f64 {
@@ -196,26 +196,31 @@ impl Wave {
 
 #[test]
 fn a_state_is_what_its_pressure_does() {
-    let (amplitude, wavelength, modulus, size) = (0.02, 0.7, 3.0, Size { x: 1.4, y: 2.0 });
+    let (amplitude, wavelength, contact_modulus, size) = (0.02, 0.7, 3.0, Size { x: 1.4, y: 2.0 });
     // alpha of 0.01, 0.1, 0.3 and 0.9.
     for alpha in [0.01_f64, 0.1, 0.3, 0.9] {
-        let full = PI * modulus * amplitude / wavelength;
-        let work = alpha * alpha * wavelength * full * full / (2.0 * modulus);
-        let mut scene = Scene::new(Surface::Sine { amplitude, wavelength, size }, modulus);
+        let full = PI * contact_modulus * amplitude / wavelength;
+        let work = alpha * alpha * wavelength * full * full / (2.0 * contact_modulus);
+        let mut scene = Scene::new(Surface::Sine { amplitude, wavelength, size }, contact_modulus);
         scene.effects.boundary = Boundary::Periodic;
         scene.effects.adhesion = Adhesion::ShortRange { work };
         (scene.outputs.area, scene.outputs.mean_gap) = (true, true);
         let mut model = AdhesiveWave.prepare(&scene, 0).unwrap();
         let contact =
-            analytic::adhesive_wave::WavyContact::new(amplitude, wavelength, modulus, work).unwrap();
+            analytic::adhesive_wave::WavyContact::new(amplitude, wavelength, contact_modulus, work).unwrap();
         let [first, last] = [contact.pull_off(), contact.snap_in()].map(|limit| limit.unwrap().unwrap().1);
         for share in [0.0, 0.1, 0.5, 0.9, 1.0] {
             let force = (first + share * (last - first)) * size.x * size.y;
             let state = model.solve(Load::Force(force)).unwrap();
             let psi = FRAC_PI_2 * state.area.unwrap() / (size.x * size.y);
             let pressure = force / (size.x * size.y);
-            let wave =
-                Wave { amplitude, wavelength, modulus, psi, tension: full * psi.sin().powi(2) - pressure };
+            let wave = Wave {
+                amplitude,
+                wavelength,
+                contact_modulus,
+                psi,
+                tension: full * psi.sin().powi(2) - pressure,
+            };
             assert_abs_diff_eq!(wave.mean_pressure(), pressure, epsilon = QUADRATURE * full);
             let (edge, mean) = (wavelength * psi / PI, state.mean_gap.unwrap());
             for share in [1e-3, 0.3, 0.8, 0.99] {
@@ -235,10 +240,10 @@ fn a_state_is_what_its_pressure_does() {
                 (8.0 * at(step) - 6.0 * at(2.0 * step) + at(4.0 * step)) / 3.0
             };
             let by_traction = extrapolated(&|r| -wave.pressure(edge - r) * (2.0 * PI * r).sqrt());
-            assert_relative_eq!(by_traction.powi(2), 2.0 * modulus * work, max_relative = EDGE);
+            assert_relative_eq!(by_traction.powi(2), 2.0 * contact_modulus * work, max_relative = EDGE);
             let by_opening =
-                extrapolated(&|r| 0.25 * modulus * wave.gap(mean, edge + r) * (2.0 * PI / r).sqrt());
-            assert_relative_eq!(by_opening.powi(2), 2.0 * modulus * work, max_relative = EDGE);
+                extrapolated(&|r| 0.25 * contact_modulus * wave.gap(mean, edge + r) * (2.0 * PI / r).sqrt());
+            assert_relative_eq!(by_opening.powi(2), 2.0 * contact_modulus * work, max_relative = EDGE);
         }
     }
 }

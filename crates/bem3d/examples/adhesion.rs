@@ -230,7 +230,7 @@ fn challenge(
     seed: u64,
     pressures: &[f64],
 ) -> Result<(), Box<dyn StdError>> {
-    let (modulus, work, shortest) = CHALLENGE;
+    let (contact_modulus, work, shortest) = CHALLENGE;
     let mut surface = SelfAffine { hurst: 0.8, ..SelfAffine::new(2.2, side, side)? };
     (surface.roll_off, surface.short_cutoff) = (Some(TAU / roll_off), Some(TAU / shortest));
     let map = surface_gen::self_affine_map(&surface, cells, seed)?;
@@ -241,7 +241,7 @@ fn challenge(
         surface_gen::rms_height(map.heights()),
         side / cells as f64
     );
-    let mut scene = Scene::new(Surface::Heights(Arc::new(map)), modulus);
+    let mut scene = Scene::new(Surface::Heights(Arc::new(map)), contact_modulus);
     scene.effects.boundary = Boundary::Periodic;
     (scene.outputs.stiffness, scene.outputs.area, scene.outputs.pressure) = (false, true, true);
     scene.outputs.mean_gap = true;
@@ -249,7 +249,7 @@ fn challenge(
     let mut elastic = ContactModel::prepare(&model, &scene, seed)?;
     for &pressure in pressures {
         let start = Instant::now();
-        let state = elastic.solve(Load::Force(pressure * modulus * side * side))?;
+        let state = elastic.solve(Load::Force(pressure * contact_modulus * side * side))?;
         row("elastic", pressure, &state, &scene, start);
     }
     drop(elastic);
@@ -258,7 +258,7 @@ fn challenge(
     let mut adhesive = ContactModel::prepare(&model, &scene, seed)?;
     for &pressure in pressures {
         let start = Instant::now();
-        match adhesive.solve(Load::Force(pressure * modulus * side * side)) {
+        match adhesive.solve(Load::Force(pressure * contact_modulus * side * side)) {
             Ok(state) => row("adhesive", pressure, &state, &scene, start),
             Err(Error::NotConverged { best }) => row("NOT CONVERGED", pressure, &best, &scene, start),
             Err(error) => return Err(error.into()),
@@ -272,8 +272,8 @@ fn row(what: &str, pressure: f64, state: &ContactState, scene: &Scene, start: In
     let (width, count, first) = BINS;
     let cells = state.pressure().map_or(&[][..], |p| p.values());
     let mut bins = vec![0u64; count];
-    for p in cells.iter().filter(|p| p.abs() > 1e-9 * scene.modulus) {
-        bins[(((p / scene.modulus - first) / width).max(0.0) as usize).min(count - 1)] += 1;
+    for p in cells.iter().filter(|p| p.abs() > 1e-9 * scene.contact_modulus) {
+        bins[(((p / scene.contact_modulus - first) / width).max(0.0) as usize).min(count - 1)] += 1;
     }
     println!(
         "{what} p {pressure} area {:.5} mean-gap {:.5e} m, {} applications, {:.1} s [{}] {}",

@@ -15,7 +15,7 @@ use bem3d::{Bem3d, ContactModel, Result, Scene, SelfAffine, Surface, never};
 
 fn main() -> Result<()> {
     let surface = SelfAffine::new(2.4, 1.0, 0.01)?; // D_f, side L, rms height h
-    let mut scene = Scene::new(Surface::SelfAffine(surface), 1.0); // modulus E*
+    let mut scene = Scene::new(Surface::SelfAffine(surface), 1.0); // contact modulus E*
     scene.outputs.area = true;
     scene.outputs.contact_patches = true;
     let model = Bem3d { cells: 129, tolerance: 1e-5, ..Bem3d::default() };

@@ -2,7 +2,7 @@
 //!
 //! # What it computes
 //!
-//! A rigid flat presses on an elastic half-space of effective modulus E* whose surface carries heights on a
+//! A rigid flat presses on an elastic half-space of contact modulus E* whose surface carries heights on a
 //! rectangle of columns x rows cells of sides dx and dy (any number of cells, square or oblong). Pressure
 //! acts inside the rectangle only; the half-space outside is unloaded. Undefined points of a map cannot
 //! touch. With `z = h_max - h` and the approach d from first touch, the model finds the pressure p and the

@@ -342,7 +342,7 @@ fn what_makes_no_sense_is_refused() {
     for work in [f64::NAN, -1.0, f64::INFINITY, 1e300] {
         let mut scene = with(flat(), 0.1, 0.1, DUGDALE);
         scene.effects.adhesion = Adhesion::ShortRange { work };
-        scene.modulus = if work > 1.0 { 1e-300 } else { 1.0 };
+        scene.contact_modulus = if work > 1.0 { 1e-300 } else { 1.0 };
         assert!(matches!(prepared(&scene), Err(Error::Domain { .. })), "{work}");
     }
     // Cells of 1/8 under a range of 1e-3: told with the side that would do.

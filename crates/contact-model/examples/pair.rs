@@ -18,13 +18,13 @@ fn main() -> Result<()> {
     let steel = Body::Elastic { young: 210e9, poisson: 0.30 };
     let copper = Body::Elastic { young: 120e9, poisson: 0.34 };
     let pair = Pair { first: steel, second: copper };
-    let modulus = pair.modulus()?;
+    let contact_modulus = pair.contact_modulus()?;
     let by_hand = 1.0 / ((1.0 - 0.09) / 210e9 + (1.0 - 0.1156) / 120e9);
-    assert!((modulus / by_hand - 1.0).abs() < 1e-14);
-    println!("E* = {:.2} GPa, G* = {:.2} GPa", modulus * 1e-9, pair.shear_modulus()? * 1e-9);
+    assert!((contact_modulus / by_hand - 1.0).abs() < 1e-14);
+    println!("E* = {:.2} GPa, G* = {:.2} GPa", contact_modulus * 1e-9, pair.shear_modulus()? * 1e-9);
 
     // A square of 1 mm with an rms height of 0.5 um: F_bar = F/(E* h L), k_bar = k/(1.1419 E* L).
-    let normalisation = Normalisation { modulus, length: 1e-3, height: Some(0.5e-6) };
+    let normalisation = Normalisation { contact_modulus, length: 1e-3, height: Some(0.5e-6) };
     for force_bar in [0.01, 0.1, 1.0] {
         let force = normalisation.force(force_bar)?;
         println!("F_bar = {force_bar}: F = {force:.3} N, mean pressure {:.2} MPa", force * 1e6 * 1e-6);
@@ -33,9 +33,9 @@ fn main() -> Result<()> {
 
     // A single round contact, a = 10 um: k = 2 E* a, and Holm's constriction Lambda = 4 a/(rho_1 + rho_2).
     let (a, steel, copper) = (10e-6, 1.4e-7, 1.7e-8);
-    let stiffness = 2.0 * modulus * a;
+    let stiffness = 2.0 * contact_modulus * a;
     let electrical = Conductance::Electrical { first: steel, second: copper };
-    let conductance = electrical.of(stiffness, modulus)?.unwrap_or(0.0);
+    let conductance = electrical.of(stiffness, contact_modulus)?.unwrap_or(0.0);
     println!("a = 10 um: k = {:.3} N/um, resistance {:.3} mOhm", stiffness * 1e-6, 1e3 / conductance);
     assert!((conductance / (4.0 * a / (steel + copper)) - 1.0).abs() < 1e-14);
     Ok(())

@@ -48,9 +48,9 @@ impl ContactModel for Winkler {
         let highest = map.highest(); // a pass over the map: once, not for each cell
         let mut depths: Vec<f64> = map.defined().map(|h| highest - h).collect();
         depths.sort_by(f64::total_cmp);
-        let (cell, modulus) = (map.dx() * map.dy(), scene.modulus);
-        let normalisation = Normalisation { modulus, length: map.length(), height: None };
-        let spring = cell * modulus / self.thickness;
+        let (cell, contact_modulus) = (map.dx() * map.dy(), scene.contact_modulus);
+        let normalisation = Normalisation { contact_modulus, length: map.length(), height: None };
+        let spring = cell * contact_modulus / self.thickness;
         Ok(Box::new(Layer { depths, cell, spring, normalisation, outputs: scene.outputs }))
     }
 }
@@ -81,23 +81,23 @@ impl PreparedContact for Layer {
             .with_approach(approach)
             .with_elastic_stiffness(self.outputs.needs_stiffness().then_some(self.spring * count))
             .with_area(self.outputs.area.then_some(self.cell * count))
-            .completed(&self.outputs, self.normalisation.modulus)
+            .completed(&self.outputs, self.normalisation.contact_modulus)
     }
 }
 
 fn main() -> Result<()> {
-    let (side, radius, thickness, modulus) = (1.0, 1.0, 0.05, 2.0);
+    let (side, radius, thickness, contact_modulus) = (1.0, 1.0, 0.05, 2.0);
     let middle = |i: usize| ((i as f64 + 0.5) / 400.0 - 0.5) * side;
     let sphere = |ix, iy| -(middle(ix).powi(2) + middle(iy).powi(2)) / (2.0 * radius);
     let map = HeightMap::from_fn(400, Size::from(side), sphere)?;
-    let mut scene = Scene::new(Surface::Heights(map.into()), modulus);
+    let mut scene = Scene::new(Surface::Heights(map.into()), contact_modulus);
     scene.outputs.area = true;
     let model: &dyn ContactModel = &Winkler { thickness };
     let mut contact = model.prepare(&scene, 0)?;
     println!("{:>9} {:>12} {:>12} {:>10} {:>10}", "approach", "force", "closed form", "k", "area");
     for approach in [0.005, 0.01, 0.02, 0.04] {
         let state = contact.solve(Load::Approach(approach))?;
-        let exact = PI * modulus / thickness * radius * approach * approach;
+        let exact = PI * contact_modulus / thickness * radius * approach * approach;
         let (stiffness, area) = (state.stiffness.unwrap_or(0.0), state.area.unwrap_or(0.0));
         println!("{approach:>9} {:>12.6} {exact:>12.6} {stiffness:>10.4} {area:>10.6}", state.force);
         // The sum over cells differs from the integral by their share of the contact.

@@ -72,11 +72,11 @@ impl Conductance {
     /// # Errors
     /// As [`Conductance::resistivity`]; [`Error::Domain`] for a stiffness that is negative, a modulus that is
     /// not positive, or a result that no f64 holds.
-    pub fn of(self, stiffness: f64, modulus: f64) -> Result<Option<f64>> {
+    pub fn of(self, stiffness: f64, contact_modulus: f64) -> Result<Option<f64>> {
         let Some(resistivity) = self.resistivity()? else { return Ok(None) };
         non_negative("stiffness", stiffness)?;
-        positive("modulus", modulus)?;
-        let conductance = 2.0 * (stiffness / modulus) / resistivity;
+        positive("contact_modulus", contact_modulus)?;
+        let conductance = 2.0 * (stiffness / contact_modulus) / resistivity;
         if conductance.is_finite() && (conductance > 0.0 || stiffness <= 0.0) {
             Ok(Some(conductance))
         } else {

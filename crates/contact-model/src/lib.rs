@@ -8,7 +8,7 @@
 //!
 //! # Conventions
 //!
-//! * The body is an elastic half-space of effective modulus E* whose surface carries heights `h`; a rigid
+//! * The body is an elastic half-space of contact modulus E* whose surface carries heights `h`; a rigid
 //!   flat presses on it. With `z = h_max - h >= 0` the contact conditions are `g = u + z - d >= 0`, `p >= 0`,
 //!   `p g = 0`.
 //! * The approach `d` is counted **from first touch of the highest point**, not from the mean plane. At
@@ -31,7 +31,7 @@
 //! ```
 //! use contact_model::{Load, Normalisation};
 //! // A force of 0.01 on a square of side 1, modulus 1, rms height 0.5 is F_bar = 0.02 (Eq. 10).
-//! let normalisation = Normalisation { modulus: 1.0, length: 1.0, height: Some(0.5) };
+//! let normalisation = Normalisation { contact_modulus: 1.0, length: 1.0, height: Some(0.5) };
 //! assert_eq!(normalisation.force_bar(0.01)?, 0.02);
 //! assert!(Load::Force(-1.0).validated().is_err());
 //! # Ok::<(), contact_model::Error>(())

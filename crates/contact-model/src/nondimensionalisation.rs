@@ -3,7 +3,7 @@
 use crate::error::{Error, Result, positive};
 
 /// Units in which a model solves: horizontal lengths in `length`, vertical ones in `height`, moduli in
-/// `modulus`.
+/// `contact_modulus`.
 ///
 /// A force is counted in `E* length height`, a stiffness in `E* length`, an area in `length^2`. The products
 /// are taken in an order that neither overflows nor underflows on the way, so a scene in units of 1e-150 or
@@ -24,7 +24,7 @@ use crate::error::{Error, Result, positive};
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Nondimensionalisation {
-    pub(crate) modulus: f64,
+    pub(crate) contact_modulus: f64,
     length: f64,
     height: f64,
 }
@@ -34,8 +34,8 @@ impl Nondimensionalisation {
     ///
     /// # Errors
     /// [`Error::Domain`] for one that is not finite and positive or whose reciprocal overflows (below 6e-309).
-    pub fn new(modulus: f64, length: f64, height: f64) -> Result<Self> {
-        for (name, unit) in [("modulus", modulus), ("length", length), ("height", height)] {
+    pub fn new(contact_modulus: f64, length: f64, height: f64) -> Result<Self> {
+        for (name, unit) in [("contact_modulus", contact_modulus), ("length", length), ("height", height)] {
             positive(name, unit)?;
             if unit.recip().is_infinite() {
                 return Err(Error::domain(
@@ -45,12 +45,12 @@ impl Nondimensionalisation {
                 ));
             }
         }
-        Ok(Self { modulus, length, height })
+        Ok(Self { contact_modulus, length, height })
     }
 
     /// `force / (E* length height)`, dimensionless; infinite or 0 where no `f64` holds it.
     pub fn force_in(self, force: f64) -> f64 {
-        product([force, self.modulus.recip(), self.length.recip(), self.height.recip()])
+        product([force, self.contact_modulus.recip(), self.length.recip(), self.height.recip()])
     }
 
     /// `length / unit`, dimensionless.
@@ -65,7 +65,7 @@ impl Nondimensionalisation {
 
     /// `pressure length / (E* height)`, dimensionless; infinite or 0 where no `f64` holds it.
     pub fn pressure_in(self, pressure: f64) -> f64 {
-        product([pressure, self.length, self.modulus.recip(), self.height.recip()])
+        product([pressure, self.length, self.contact_modulus.recip(), self.height.recip()])
     }
 
     /// `value E* length height`, a force.
@@ -73,7 +73,7 @@ impl Nondimensionalisation {
     /// # Errors
     /// [`Error::Domain`] where no `f64` holds it: it overflows, or a value other than 0 vanishes.
     pub fn force(self, value: f64) -> Result<f64> {
-        held("force", value, product([value, self.modulus, self.length, self.height]))
+        held("force", value, product([value, self.contact_modulus, self.length, self.height]))
     }
 
     /// `value height`, an approach.
@@ -89,7 +89,7 @@ impl Nondimensionalisation {
     /// # Errors
     /// As [`Nondimensionalisation::force`].
     pub fn stiffness(self, value: f64) -> Result<f64> {
-        held("stiffness", value, product([value, self.modulus, self.length]))
+        held("stiffness", value, product([value, self.contact_modulus, self.length]))
     }
 
     /// `value E* height / length`, a pressure.
@@ -97,7 +97,7 @@ impl Nondimensionalisation {
     /// # Errors
     /// As [`Nondimensionalisation::force`].
     pub fn pressure(self, value: f64) -> Result<f64> {
-        held("pressure", value, product([value, self.modulus, self.height, self.length.recip()]))
+        held("pressure", value, product([value, self.contact_modulus, self.height, self.length.recip()]))
     }
 
     /// `value length^2`, an area.
@@ -148,10 +148,10 @@ mod tests {
 
     #[test]
     fn there_and_back_at_extreme_scales() {
-        for (modulus, length) in
+        for (contact_modulus, length) in
             [(1.0, 1.0), (1e-150, 1e150), (1e150, 1e-150), (1e10, 1e-150), (1e-10, 1e150)]
         {
-            let nondimensional = Nondimensionalisation::new(modulus, length, length).unwrap();
+            let nondimensional = Nondimensionalisation::new(contact_modulus, length, length).unwrap();
             for value in [1e-12, 0.37, 1e6, -0.37] {
                 let force = nondimensional.force(value).unwrap();
                 assert_relative_eq!(nondimensional.force_in(force), value, max_relative = ROUNDING);

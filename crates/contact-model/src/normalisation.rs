@@ -13,8 +13,8 @@ pub const PAPER_STIFFNESS_FACTOR: f64 = 1.1419;
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Normalisation {
-    /// Effective modulus E* (force per length squared).
-    pub modulus: f64,
+    /// Contact modulus E* (force per length squared).
+    pub contact_modulus: f64,
     /// `L = sqrt(Lx Ly)` of the nominal contact area: the side of a square (also for the 1D line that stands
     /// for it).
     pub length: f64,
@@ -49,12 +49,12 @@ impl Normalisation {
 
     /// `k_bar = k / (1.1419 E* L)` (Eq. 8), dimensionless.
     pub fn stiffness_bar(&self, stiffness: f64) -> f64 {
-        stiffness / (PAPER_STIFFNESS_FACTOR * self.modulus * self.length)
+        stiffness / (PAPER_STIFFNESS_FACTOR * self.contact_modulus * self.length)
     }
 
     /// Contact length `k / E*` (Eq. 1), a length.
     pub fn contact_length(&self, stiffness: f64) -> f64 {
-        stiffness / self.modulus
+        stiffness / self.contact_modulus
     }
 
     /// `d / h`, dimensionless.
@@ -84,7 +84,7 @@ impl Normalisation {
     }
 
     fn force_unit(&self) -> Result<f64> {
-        Ok(self.modulus * self.rms_height()? * self.length)
+        Ok(self.contact_modulus * self.rms_height()? * self.length)
     }
 }
 
@@ -94,7 +94,7 @@ mod tests {
 
     #[test]
     fn a_flat_map_has_no_force_bar() {
-        let s = Normalisation { modulus: 1.0, length: 1.0, height: Some(0.0) };
+        let s = Normalisation { contact_modulus: 1.0, length: 1.0, height: Some(0.0) };
         assert!(s.force_bar(1.0).is_err());
         assert!(Normalisation { height: None, ..s }.force_bar(1.0).is_err());
     }
@@ -102,7 +102,7 @@ mod tests {
     #[test]
     fn one_cell_alone_in_k_bar() {
         // data/paper/VALUES.md: one cell of an N x N grid is k_bar = 0.780372 / N.
-        let s = Normalisation { modulus: 2.0, length: 3.0, height: Some(1.0) };
+        let s = Normalisation { contact_modulus: 2.0, length: 3.0, height: Some(1.0) };
         let k = 0.891_106_989 * 2.0 * 3.0 / 2049.0;
         approx::assert_relative_eq!(s.stiffness_bar(k), 0.780_372 / 2049.0, max_relative = 1e-6);
     }

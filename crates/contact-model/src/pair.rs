@@ -44,7 +44,7 @@ impl Body {
 /// use contact_model::{Body, Pair};
 /// // A rigid body on one with E = 3, nu = 1/2 (G = 1): E* = 3/(1 - 1/4) = 4, G* = 4 G/(2 - nu) = 8/3.
 /// let pair = Pair { first: Body::Rigid, second: Body::Elastic { young: 3.0, poisson: 0.5 } };
-/// assert!((pair.modulus()? - 4.0).abs() < 1e-15);
+/// assert!((pair.contact_modulus()? - 4.0).abs() < 1e-15);
 /// assert!((pair.shear_modulus()? - 8.0 / 3.0).abs() < 1e-15);
 /// # Ok::<(), contact_model::Error>(())
 /// ```
@@ -57,15 +57,15 @@ pub struct Pair {
 }
 
 impl Pair {
-    /// Effective modulus: `1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2` (force per length squared).
+    /// Contact modulus E*: `1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2` (force per length squared).
     ///
     /// # Errors
     /// [`Error::Domain`] for a Young's modulus that is not positive, a Poisson's ratio outside [0, 1/2], two rigid bodies, or a result
     /// that no `f64` holds.
-    pub fn modulus(&self) -> Result<f64> {
+    pub fn contact_modulus(&self) -> Result<f64> {
         // (1 - nu^2)/E = (1 - nu)/(2 G).
         let [first, second] = self.compliances(0)?;
-        held("modulus", (0.5 * (first + second)).recip())
+        held("contact_modulus", (0.5 * (first + second)).recip())
     }
 
     /// Effective shear modulus: `1/G* = (2 - nu1)/(4 G1) + (2 - nu2)/(4 G2)`; a round contact without slip
@@ -75,7 +75,7 @@ impl Pair {
     /// 1949).
     ///
     /// # Errors
-    /// As [`Pair::modulus`].
+    /// As [`Pair::contact_modulus`].
     pub fn shear_modulus(&self) -> Result<f64> {
         let [first, second] = self.compliances(1)?;
         held("shear_modulus", (first + second).recip())
@@ -89,12 +89,12 @@ impl Pair {
     /// neglect terms of this order.
     ///
     /// # Errors
-    /// As [`Pair::modulus`].
+    /// As [`Pair::contact_modulus`].
     pub fn coupling(&self) -> Result<f64> {
         let [normal_first, normal_second] = self.compliances(0)?;
         let [first, second] = self.compliances(2)?;
         let normal = normal_first + normal_second;
-        held("modulus", normal.recip())?;
+        held("contact_modulus", normal.recip())?;
         Ok(0.5 * (first / normal - second / normal))
     }
 
@@ -132,15 +132,15 @@ mod tests {
     fn moduli_of_steel_on_steel() {
         let steel = elastic(210e9, 0.3);
         let pair = Pair { first: steel, second: steel };
-        assert_relative_eq!(pair.modulus().unwrap(), 210e9 / (2.0 * 0.91), max_relative = ROUNDING);
+        assert_relative_eq!(pair.contact_modulus().unwrap(), 210e9 / (2.0 * 0.91), max_relative = ROUNDING);
         // k_x / k_z = (2 - 2 nu)/(2 - nu) = 1.4/1.7.
-        let ratio = pair.shear_modulus().unwrap() / pair.modulus().unwrap();
+        let ratio = pair.shear_modulus().unwrap() / pair.contact_modulus().unwrap();
         assert_relative_eq!(ratio, 1.4 / 1.7, max_relative = ROUNDING);
         assert_abs_diff_eq!(pair.coupling().unwrap(), 0.0);
         let on_rigid = Pair { second: Body::Rigid, ..pair };
         assert_relative_eq!(
-            on_rigid.modulus().unwrap(),
-            2.0 * pair.modulus().unwrap(),
+            on_rigid.contact_modulus().unwrap(),
+            2.0 * pair.contact_modulus().unwrap(),
             max_relative = ROUNDING
         );
         // beta = (1 - 2 nu)/(2 (1 - nu)) = 0.4/1.4.
@@ -150,11 +150,11 @@ mod tests {
     #[test]
     fn bodies_that_make_no_sense() {
         let pair = |first, second| Pair { first, second };
-        assert!(pair(Body::Rigid, Body::Rigid).modulus().is_err());
+        assert!(pair(Body::Rigid, Body::Rigid).contact_modulus().is_err());
         assert!(pair(Body::Rigid, Body::Rigid).coupling().is_err());
         for (young, poisson) in [(0.0, 0.3), (-1.0, 0.3), (f64::NAN, 0.3), (1.0, 0.51), (1.0, f64::NAN)] {
             assert!(pair(Body::Rigid, elastic(young, poisson)).shear_modulus().is_err());
         }
-        assert!(pair(Body::Rigid, elastic(1e-310, 0.3)).modulus().is_err());
+        assert!(pair(Body::Rigid, elastic(1e-310, 0.3)).contact_modulus().is_err());
     }
 }

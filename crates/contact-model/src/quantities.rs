@@ -151,9 +151,9 @@ impl ContactState {
     ///
     /// # Errors
     /// As [`Conductance::of`].
-    pub fn completed(mut self, outputs: &Outputs, modulus: f64) -> Result<Self> {
+    pub fn completed(mut self, outputs: &Outputs, contact_modulus: f64) -> Result<Self> {
         if let Some(stiffness) = self.stiffness_fixed_area {
-            self.conductance = outputs.conductance.of(stiffness, modulus)?;
+            self.conductance = outputs.conductance.of(stiffness, contact_modulus)?;
         }
         self.stiffness = self.stiffness.filter(|_| outputs.stiffness);
         self.stiffness_fixed_area = self.stiffness_fixed_area.filter(|_| outputs.stiffness_fixed_area);

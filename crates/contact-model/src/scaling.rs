@@ -66,10 +66,10 @@ impl Scaling {
     /// # Errors
     /// [`crate::Error::Domain`] for a modulus or length that no unit can be.
     pub fn new(scene: &Scene, height: f64, rms: Option<f64>) -> Result<Self> {
-        let (modulus, length) = (scene.modulus, scene.surface.size().length());
+        let (contact_modulus, length) = (scene.contact_modulus, scene.surface.size().length());
         Ok(Self {
-            nondimensional: Nondimensionalisation::new(modulus, length, height)?,
-            normalisation: Normalisation { modulus, length, height: rms },
+            nondimensional: Nondimensionalisation::new(contact_modulus, length, height)?,
+            normalisation: Normalisation { contact_modulus, length, height: rms },
             outputs: scene.outputs,
         })
     }
@@ -123,7 +123,7 @@ impl Scaling {
             .with_stiffness(slope)
             .with_stiffness_fixed_area(held)
             .with_area(area)
-            .completed(outputs, normalisation.modulus)
+            .completed(outputs, normalisation.contact_modulus)
     }
 }
 

@@ -17,9 +17,9 @@ const SAME_MODULUS: f64 = 1e-9;
 pub struct Scene {
     /// What carries the heights.
     pub surface: Surface,
-    /// Effective modulus E* of the pair, `1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2`.
-    pub modulus: f64,
-    /// Both bodies, where E* does not say enough (friction); their E* is `modulus`.
+    /// Contact modulus E* of the pair, `1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2`.
+    pub contact_modulus: f64,
+    /// Both bodies, where E* does not say enough (friction); their E* is `contact_modulus`.
     pub pair: Option<Pair>,
     /// Effects beyond linear elastic normal contact with free boundaries; all off by default.
     pub effects: Effects,
@@ -29,24 +29,24 @@ pub struct Scene {
 
 impl Scene {
     /// A scene with no effects that asks for the stiffness.
-    pub fn new(surface: Surface, modulus: f64) -> Self {
+    pub fn new(surface: Surface, contact_modulus: f64) -> Self {
         let outputs = Outputs { stiffness: true, ..Outputs::default() };
-        Self { surface, modulus, pair: None, effects: Effects::default(), outputs }
+        Self { surface, contact_modulus, pair: None, effects: Effects::default(), outputs }
     }
 
     /// A scene with both bodies named: its modulus is their E*.
     ///
     /// # Errors
-    /// As [`Pair::modulus`].
+    /// As [`Pair::contact_modulus`].
     ///
     /// ```
     /// use contact_model::{Body, Pair, Scene, Surface};
     /// let pair = Pair { first: Body::Rigid, second: Body::Elastic { young: 3.0, poisson: 0.5 } };
-    /// assert_eq!(Scene::of_pair(Surface::Sphere { radius: 1.0, size: 1.0.into() }, pair)?.modulus, 4.0);
+    /// assert_eq!(Scene::of_pair(Surface::Sphere { radius: 1.0, size: 1.0.into() }, pair)?.contact_modulus, 4.0);
     /// # Ok::<(), contact_model::Error>(())
     /// ```
     pub fn of_pair(surface: Surface, pair: Pair) -> Result<Self> {
-        Ok(Self { pair: Some(pair), ..Self::new(surface, pair.modulus()?) })
+        Ok(Self { pair: Some(pair), ..Self::new(surface, pair.contact_modulus()?) })
     }
 
     /// How normal and tangential tractions act on each other; `None` where they do not (the second Dundurs
@@ -84,11 +84,15 @@ impl Scene {
     /// # Errors
     /// [`Error::Domain`] with the first value that makes no sense, or a modulus that is not E* of the pair.
     pub fn validate(&self) -> Result<()> {
-        positive("modulus", self.modulus)?;
+        positive("contact_modulus", self.contact_modulus)?;
         if let Some(pair) = &self.pair {
-            let expected = pair.modulus()?;
-            if (self.modulus / expected - 1.0).abs() > SAME_MODULUS {
-                return Err(Error::domain("modulus", self.modulus, format!("{expected}, E* of the pair")));
+            let expected = pair.contact_modulus()?;
+            if (self.contact_modulus / expected - 1.0).abs() > SAME_MODULUS {
+                return Err(Error::domain(
+                    "contact_modulus",
+                    self.contact_modulus,
+                    format!("{expected}, E* of the pair"),
+                ));
             }
         }
         self.effects.validate()?;
@@ -348,7 +352,7 @@ mod tests {
         scene.effects.adhesion = Adhesion::ShortRange { work: 0.1 };
         let named: Vec<&str> = scene.effects.named().map(Effect::words).collect();
         assert_eq!(named, ["adhesion of short range"]);
-        scene.modulus = f64::NAN;
+        scene.contact_modulus = f64::NAN;
         assert!(scene.validate().is_err());
     }
 
@@ -380,9 +384,9 @@ mod tests {
         let mut scene =
             Scene::of_pair(Surface::Flat { size: 1.0.into() }, Pair { first: Body::Rigid, second }).unwrap();
         assert!(scene.validate().is_ok());
-        scene.modulus = 2.1;
+        scene.contact_modulus = 2.1;
         let text = scene.validate().unwrap_err().to_string();
-        assert_eq!(text, "modulus = 2.1: expected 2, E* of the pair");
+        assert_eq!(text, "contact_modulus = 2.1: expected 2, E* of the pair");
     }
 
     #[test]

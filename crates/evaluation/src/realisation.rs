@@ -378,7 +378,7 @@ mod tests {
 
     impl PreparedContact for FailingContact {
         fn normalisation(&self) -> Normalisation {
-            Normalisation { modulus: 1.0, length: 1.0, height: Some(2.0) }
+            Normalisation { contact_modulus: 1.0, length: 1.0, height: Some(2.0) }
         }
         fn solve_until(&mut self, load: Load, _: Stop<'_>) -> ModelResult<ContactState> {
             let Load::Force(force) = load else { panic!("jobs prescribe forces") };

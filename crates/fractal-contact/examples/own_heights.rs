@@ -38,9 +38,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("{:>6} {:>11} {:>10} {:>10} {:>10}", "F in N", "A in mm^2", "of Hertz", "k in N/um", "of Hertz");
     for force in [20.0, 50.0, 100.0] {
         let state = contact.solve(Load::Force(force))?;
-        let a = (0.75 * radius * force / scene.modulus).cbrt();
+        let a = (0.75 * radius * force / scene.contact_modulus).cbrt();
         let (area, k) = (state.area.unwrap_or(0.0), state.stiffness.unwrap_or(0.0));
-        let (area_ratio, k_ratio) = (area / (PI * a * a), k / (2.0 * scene.modulus * a));
+        let (area_ratio, k_ratio) = (area / (PI * a * a), k / (2.0 * scene.contact_modulus * a));
         println!("{force:>6} {:>11.5} {area_ratio:>10.4} {:>10.3} {k_ratio:>10.4}", area * 1e6, k * 1e-6);
         // Cells are counted whole: first order in the cell over the contact radius.
         assert!((area_ratio - 1.0).abs() < 0.05 && (k_ratio - 1.0).abs() < 0.02);

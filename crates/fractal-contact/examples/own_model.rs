@@ -46,8 +46,9 @@ impl ContactModel for Winkler {
         let highest = map.highest();
         let mut depths: Vec<f64> = map.defined().map(|h| highest - h).collect();
         depths.sort_by(f64::total_cmp);
-        let normalisation = Normalisation { modulus: scene.modulus, length: map.length(), height: None };
-        let (foundation, cell) = (scene.modulus / self.thickness, map.dx() * map.dy());
+        let normalisation =
+            Normalisation { contact_modulus: scene.contact_modulus, length: map.length(), height: None };
+        let (foundation, cell) = (scene.contact_modulus / self.thickness, map.dx() * map.dy());
         Ok(Box::new(Springs { depths, foundation, cell, normalisation, outputs: scene.outputs }))
     }
 }
@@ -77,7 +78,7 @@ impl PreparedContact for Springs {
             .with_approach(approach)
             .with_elastic_stiffness(outputs.needs_stiffness().then_some(self.foundation * area))
             .with_area(outputs.area.then_some(area))
-            .completed(outputs, self.normalisation.modulus)
+            .completed(outputs, self.normalisation.contact_modulus)
     }
 }
 
@@ -85,7 +86,7 @@ impl PreparedContact for Springs {
 pub(crate) const SCENE: &str = r#"
 [scene]
 models = ["bem3d", "winkler"]
-modulus = "100 MPa"
+contact_modulus = "100 MPa"
 approach = ["2 um", "8 um"]
 
 [scene.body]

@@ -20,7 +20,7 @@ use std::path::PathBuf;
 const SCENE: &str = r#"
 [scene]
 models = ["bem3d", "mdr1d"]
-modulus = "100 GPa"
+contact_modulus = "100 GPa"
 force_bar = [0.01, 0.1, 1.0]
 
 [scene.surface]

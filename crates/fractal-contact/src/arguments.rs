@@ -52,7 +52,7 @@ A scene:
   cells = 129
 
 Examples:
-  fractal-contact press map.sur --modulus '115 GPa' --pressure '1 MPa,10 MPa'    the contact of a measured map
+  fractal-contact press map.sur --contact-modulus '115 GPa' --pressure '1 MPa,10 MPa'    the contact of a measured map
   fractal-contact plan scene.toml              what will be computed, what not and why, what it will cost
   fractal-contact run scene.toml               results.csv, manifest.json and what the scene asks for, in out/scene/
   fractal-contact run scene.toml --out DIR --threads 2
@@ -78,8 +78,8 @@ An NPY file holds heights only: a scene that reads it says `unit`, and `size` or
 
 const PRESS: &str = "\
 Examples:
-  fractal-contact press map.sur --modulus '115 GPa' --pressure '1 MPa,10 MPa'
-  fractal-contact press map.npy --unit nm --cell '0.5 um' --modulus '115 GPa' --pressure '1 MPa,10 MPa'
+  fractal-contact press map.sur --contact-modulus '115 GPa' --pressure '1 MPa,10 MPa'
+  fractal-contact press map.npy --unit nm --cell '0.5 um' --contact-modulus '115 GPa' --pressure '1 MPa,10 MPa'
   fractal-contact press map.sur --bodies 'rigid, 70 GPa 0.33' --force '1 N' --hardness '1 GPa' --fill neighbours
   fractal-contact press map.sur --bodies '210 GPa 0.3, 210 GPa 0.3' --force '1 N' --friction 0.3 --tangential-force '0.1 N'
 
@@ -258,7 +258,10 @@ pub struct PressArguments {
     pub map: PathBuf,
     /// E* of the pair, such as "115 GPa".
     #[arg(long, value_name = "MODULUS", conflicts_with = "bodies")]
-    pub modulus: Option<String>,
+    contact_modulus: Option<String>,
+    /// The name of --contact-modulus before the first release.
+    #[arg(long = "modulus", value_name = "MODULUS", hide = true, conflicts_with_all = ["bodies", "contact_modulus"])]
+    former_modulus: Option<String>,
     /// Young's modulus and Poisson's ratio of both bodies, such as "210 GPa 0.3, 70 GPa 0.33"; of one, and the other
     /// is rigid.
     #[arg(long)]
@@ -304,6 +307,18 @@ impl PressArguments {
     /// How the file is read, and what is done to its map.
     pub fn map_options(&self) -> (ReadOptions, Preprocessing) {
         self.more.clone().options()
+    }
+
+    /// E* as it was written, under the flag's name or its former one.
+    pub fn contact_modulus(&self) -> Option<&str> {
+        self.contact_modulus.as_deref().or(self.former_modulus.as_deref())
+    }
+
+    /// Said once where a flag was given under a former name.
+    pub fn note(&self) -> Option<&'static str> {
+        self.former_modulus.is_some().then_some(
+            "note: `--modulus` is read as `--contact-modulus`, which is E* of the pair\n  = help: for Young's modulus and Poisson's ratio give `--bodies`",
+        )
     }
 
     /// Key and values of the loads.

@@ -140,6 +140,9 @@ fn press_map(
     let path = out.join("scene.toml");
     let scene = press::scene(asked, keys, &path)?;
     runs::files::write_whole(&path, scene.text.as_bytes())?;
+    if let Some(note) = asked.note() {
+        runs::err!("{note}");
+    }
     runs::err!("{}", path.display());
     run_scene(&path, &Options { out, threads: threads.unwrap_or_else(all_threads), fresh: false })
 }
@@ -154,6 +157,9 @@ fn write_scene((asked, keys): (&PressArguments, &SurfaceKeys), scene: Option<Pat
     }
     let scene = press::scene(asked, keys, &path)?;
     runs::files::write_whole(&path, scene.text.as_bytes())?;
+    if let Some(note) = asked.note() {
+        runs::err!("{note}");
+    }
     runs::out!("{}", path.display());
     runs::err!("fractal-contact run {}", runs::cluster::quoted(&path.to_string_lossy()));
     Ok(ExitCode::SUCCESS)

@@ -127,8 +127,8 @@ fn lacking(asked: &PressArguments, keys: &SurfaceKeys, map: &Metadata) -> Vec<La
             .to_owned(),
     );
     add(
-        asked.friction.is_none() && asked.modulus.is_none() && asked.bodies.is_none(),
-        "--modulus",
+        asked.friction.is_none() && asked.contact_modulus().is_none() && asked.bodies.is_none(),
+        "--contact-modulus",
         "115 GPa",
         "E* of the pair: 115 GPa is steel on steel; or --bodies".to_owned(),
     );
@@ -204,10 +204,14 @@ fn text(asked: &PressArguments, keys: &SurfaceKeys, at: &Path) -> String {
     );
     scene.table("scene");
     scene.line("models", "[\"bem3d\"]", "boundary elements: every cell of the map");
-    match (&asked.bodies, &asked.modulus) {
+    match (&asked.bodies, asked.contact_modulus()) {
         (Some(bodies), _) => scene.line("bodies", &bodies.toml(), "Young's modulus, Poisson's ratio"),
-        (None, Some(modulus)) => {
-            scene.line("modulus", &toml(modulus), "E*: 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2");
+        (None, Some(contact_modulus)) => {
+            scene.line(
+                "contact_modulus",
+                &toml(contact_modulus),
+                "E*: 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2",
+            );
         }
         (None, None) => {}
     }

@@ -156,12 +156,15 @@ fn an_accuracy_chooses_the_grid() {
         std::fs::write(&path, text).unwrap();
         SceneFile::read(&path).and_then(|scene| scene.with_grid_for_accuracy(&|| false))
     };
-    let asked =
-        |accuracy: &str| WAVES.replace("\n[models.bem3d]\ncells = 64", "").replace("modulus", accuracy);
-    let scene = read(&asked("accuracy = \"4 %\"\nmodulus")).unwrap();
+    let asked = |accuracy: &str| {
+        WAVES.replace("\n[models.bem3d]\ncells = 64", "").replace("contact_modulus", accuracy)
+    };
+    let scene = read(&asked("accuracy = \"4 %\"\ncontact_modulus")).unwrap();
     let cells = |scene: &SceneFile| scene.models[0].size();
     assert_eq!(cells(&scene), 256);
-    assert!(cells(&scene) < cells(&read(&asked("accuracy = 0.02\nbudget = \"1 h\"\nmodulus")).unwrap()));
+    assert!(
+        cells(&scene) < cells(&read(&asked("accuracy = 0.02\nbudget = \"1 h\"\ncontact_modulus")).unwrap())
+    );
     let notes: String = scene.notes.iter().map(ToString::to_string).collect();
     assert!(notes.contains("accuracy of 4.000 %: bem3d on "), "{notes}");
     // The run says what it came to; one that misses it says so.
@@ -199,17 +202,23 @@ fn an_accuracy_chooses_the_grid() {
         (map("1 %").replace("map.csv", "one.csv"), "the map's own cells are too few to compare"),
         (map("0.1 %"), "accuracy of 0.1000 %: the map's own cells leave "),
         (map("0.1 %"), "(`area_corrected` under force 5 N)"),
-        (asked("accuracy = 0.002\nbudget = \"1 us\"\nmodulus"), "and the budget is under 1 ms"),
-        (asked("accuracy = 0.0001\nbudget = \"2 s\"\nmodulus"), " cells along the longer side leave "),
-        (asked("budget = \"1 s\"\nmodulus"), "`budget` is given, but no `accuracy`"),
-        (asked("accuracy = \"100 %\"\nmodulus"), "expected a share above 0 and below 100 %"),
-        (asked("accuracy = \"few\"\nmodulus"), "expected a pure number"),
-        (WAVES.replace("modulus", "accuracy = 0.01\nmodulus"), "`cells` is given beside `accuracy`"),
+        (asked("accuracy = 0.002\nbudget = \"1 us\"\ncontact_modulus"), "and the budget is under 1 ms"),
         (
-            asked("accuracy = 0.1\nmodulus").replace("stiffness = true\narea = true", ""),
+            asked("accuracy = 0.0001\nbudget = \"2 s\"\ncontact_modulus"),
+            " cells along the longer side leave ",
+        ),
+        (asked("budget = \"1 s\"\ncontact_modulus"), "`budget` is given, but no `accuracy`"),
+        (asked("accuracy = \"100 %\"\ncontact_modulus"), "expected a share above 0 and below 100 %"),
+        (asked("accuracy = \"few\"\ncontact_modulus"), "expected a pure number"),
+        (
+            WAVES.replace("contact_modulus", "accuracy = 0.01\ncontact_modulus"),
+            "`cells` is given beside `accuracy`",
+        ),
+        (
+            asked("accuracy = 0.1\ncontact_modulus").replace("stiffness = true\narea = true", ""),
             "`accuracy` of what?",
         ),
-        (asked("accuracy = 0.1\nmodulus").replace("bem3d", "persson"), "there is none here"),
+        (asked("accuracy = 0.1\ncontact_modulus").replace("bem3d", "persson"), "there is none here"),
     ] {
         let error = read(&text).unwrap_err().to_string();
         assert!(error.contains(words), "{error}");

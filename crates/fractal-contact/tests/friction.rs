@@ -91,7 +91,7 @@ impl PreparedBlock {
 impl PreparedContact for PreparedBlock {
     fn normalisation(&self) -> Normalisation {
         Normalisation {
-            modulus: self.scene.modulus,
+            contact_modulus: self.scene.contact_modulus,
             length: self.scene.surface.size().length(),
             height: None,
         }

@@ -40,7 +40,7 @@ fn what_is_missing_is_asked_for_at_once_and_the_command_told_does_it() {
     let dir = folder();
     let (code, _, said) = program(dir.path(), &["press", "holes.txt"]);
     assert_eq!(code, Some(2), "{said}");
-    for flag in ["--unit", "--cell", "--undefined", "--modulus", "--pressure"] {
+    for flag in ["--unit", "--cell", "--undefined", "--contact-modulus", "--pressure"] {
         assert!(said.contains(&format!("\n  {flag}")), "{flag}: {said}");
     }
     assert!(!dir.path().join("out").exists());
@@ -69,11 +69,14 @@ fn what_is_missing_is_asked_for_at_once_and_the_command_told_does_it() {
 fn a_wrong_flag_is_told_before_what_is_missing_and_not_repeated() {
     let dir = folder();
     let cases: [(&[&str], &str); 5] = [
-        (&["--modulus", "115 Gpaa"], "unknown unit \"Gpaa\""),
-        (&["--modulus", "115"], "modulus = \"115\""),
+        (&["--contact-modulus", "115 Gpaa"], "unknown unit \"Gpaa\""),
+        (&["--contact-modulus", "115"], "contact_modulus = \"115\""),
         (&["--pressure", "1 MPa,2 N"], "\"2 N\""),
         (&["--bodies", "rigid, 70 GPa 0.9"], "0.9"),
-        (&["--modulus", "1 GPa", "--friction", "0.3"], "'--modulus <MODULUS>' cannot be used with '--bodies"),
+        (
+            &["--contact-modulus", "1 GPa", "--friction", "0.3"],
+            "'--contact-modulus <MODULUS>' cannot be used with '--bodies",
+        ),
     ];
     for (wrong, told) in cases {
         let (code, _, said) = program(dir.path(), &[&["press", "map.txt"], wrong].concat());
@@ -136,12 +139,12 @@ fn friction_is_a_path_under_a_force() {
 #[test]
 fn mistakes_leave_nothing_behind() {
     let dir = folder();
-    let asked = ["press", "map.txt", "--modulus", "1 GPx", "--pressure", "1 MPa"];
+    let asked = ["press", "map.txt", "--contact-modulus", "1 GPx", "--pressure", "1 MPa"];
     let (code, _, said) = program(dir.path(), &[&asked[..], &FLAGS].concat());
     assert!(code == Some(2) && said.contains("unknown unit \"GPx\""), "{said}");
     assert!(!dir.path().join("out/map").exists());
     // A value with a sign is a value.
-    let pulled = ["press", "map.txt", "--modulus", "1 GPa", "--pressure", "-1 MPa"];
+    let pulled = ["press", "map.txt", "--contact-modulus", "1 GPa", "--pressure", "-1 MPa"];
     let (code, _, said) = program(dir.path(), &[&pulled[..], &FLAGS].concat());
     assert!(code == Some(2) && said.contains("the load `mean_pressure` = -1 MPa is negative"), "{said}");
     for (flag, value) in [("--friction", "-0.3"), ("--cells", "-3"), ("--crop", "-1,0,2,2")] {
@@ -194,7 +197,7 @@ fn sides_that_are_exchanged_and_slopes_without_sense_are_told_by_info() {
 #[test]
 fn a_force_beyond_the_hardness_is_told_with_units() {
     let dir = folder();
-    let asked = ["press", "map.txt", "--modulus", "1 GPa", "--hardness", "2 MPa", "--force", "1 N"];
+    let asked = ["press", "map.txt", "--contact-modulus", "1 GPa", "--hardness", "2 MPa", "--force", "1 N"];
     let (code, _, said) = program(dir.path(), &[&asked[..], &FLAGS].concat());
     let told = "every cell is at the hardness) = 1 N is outside 0 N to 32 uN, the range in which the model holds; the hardness is 2 MPa";
     assert!(code == Some(3) && said.contains(told), "{said}");
@@ -205,8 +208,16 @@ fn a_force_beyond_the_hardness_is_told_with_units() {
 #[test]
 fn files_are_told_in_two_lines() {
     let dir = folder();
-    let asked =
-        ["press", "map.txt", "--modulus", "1 GPa", "--pressure", "1 kPa,2 kPa,3 kPa", "--out", "found"];
+    let asked = [
+        "press",
+        "map.txt",
+        "--contact-modulus",
+        "1 GPa",
+        "--pressure",
+        "1 kPa,2 kPa,3 kPa",
+        "--out",
+        "found",
+    ];
     let (code, told, said) = program(dir.path(), &[&asked[..], &FLAGS].concat());
     assert_eq!(code, Some(0), "{said}");
     let lines: Vec<&str> = told.trim_end().lines().rev().take(2).collect();

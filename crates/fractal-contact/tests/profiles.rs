@@ -90,9 +90,9 @@ fn a_roller_is_a_line_contact() {
     let output = program(dir.path(), &["run", "a.toml", "--out", "out"]);
     assert!(output.status.success(), "{}", texts(&output));
     let results = dir.path().join("out/results.csv");
-    let (width, modulus, radius) = (0.5e-6, 1e10, 1e-3);
+    let (width, contact_modulus, radius) = (0.5e-6, 1e10, 1e-3);
     let per_length = 1e-3 / width;
-    let a = (4.0 * per_length * radius / (PI * modulus)).sqrt();
+    let a = (4.0 * per_length * radius / (PI * contact_modulus)).sqrt();
     let (found, area) =
         (column(&results, "largest_pressure")[0].unwrap(), column(&results, "area")[0].unwrap());
     assert!((found / (2.0 * per_length / (PI * a)) - 1.0).abs() < 2e-3, "{found}");

@@ -49,7 +49,7 @@ const SCENE: &str = r#"# </script><script>scripted = 1</script> How stiff? "Quot
 [scene]
 models = ["bem3d"]
 force_bar = [0.01, 0.1]
-modulus = "100 GPa"
+contact_modulus = "100 GPa"
 
 [scene.surface]
 kind = "self_affine"

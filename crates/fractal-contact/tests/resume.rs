@@ -165,18 +165,22 @@ fn paths() -> Vec<(&'static str, String)> {
     let pulled = [0.004, 0.012, 0.02, 0.008, 0.0, -0.002, -0.004];
     let forces = |tangential| steps(pressed, "force", tangential);
     let approaches = || steps(pulled, "approach", false);
-    let modulus = "modulus = 1";
+    let contact_modulus = "contact_modulus = 1";
     let scene = |pair: &str, effect: &str, steps: String| {
         PATH.replace("PAIR", pair).replace("EFFECT", effect).replace("STEPS", &steps)
     };
     let bodies = "bodies = [\"rigid\", { young = 0.75, poisson = 0.5 }]";
     vec![
-        ("hardness", scene(modulus, "hardness = 0.05", forces(false))),
+        ("hardness", scene(contact_modulus, "hardness = 0.05", forces(false))),
         ("friction", scene(bodies, "friction = 0.4", forces(true))),
-        ("short range", scene(modulus, "adhesion = { work = 4e-5 }", approaches())),
+        ("short range", scene(contact_modulus, "adhesion = { work = 4e-5 }", approaches())),
         (
             "exponential",
-            scene(modulus, "adhesion = { work = 4e-5, range = 3e-3, law = \"exponential\" }", approaches()),
+            scene(
+                contact_modulus,
+                "adhesion = { work = 4e-5, range = 3e-3, law = \"exponential\" }",
+                approaches(),
+            ),
         ),
     ]
 }

@@ -179,7 +179,8 @@ fn adhesion_and_friction_agree_between_closed_forms_and_springs() {
 fn creep_ends_at_the_relaxed_indentation() {
     let (_, file, _dir) = solved("viscoelastic-indentation.toml");
     let d = column(&file, "mdr1d_viscoelastic", "approach");
-    let hertz = |modulus: f64| (3.0 * 2.0 / (4.0 * modulus * 0.01_f64.sqrt())).powf(2.0 / 3.0);
+    let hertz =
+        |contact_modulus: f64| (3.0 * 2.0 / (4.0 * contact_modulus * 0.01_f64.sqrt())).powf(2.0 / 3.0);
     // Glassy: E* (1 + 1.5 + 0.8). After 30 s some per cent are left to creep.
     approx::assert_relative_eq!(d[0], hertz(4e6 * 3.3), max_relative = EXACT);
     let last = d[d.len() - 1];
@@ -273,7 +274,7 @@ fn conductance_is_the_stiffness_by_barber() {
         assert_eq!(k.len(), alone.len());
         for (k, conductance) in k.iter().zip(alone) {
             approx::assert_relative_eq!(
-                2.0 * k / (scene.modulus * 2.0 * 17e-9),
+                2.0 * k / (scene.contact_modulus * 2.0 * 17e-9),
                 conductance,
                 max_relative = EXACT
             );

@@ -81,8 +81,9 @@ fn the_conductance_has_the_error_of_the_stiffness_that_it_follows_from() {
     assert!(file.column("stiffness_grid_error").is_err());
     // So it may have an accuracy, which finds the grid that it finds for the stiffness.
     let cells = |text: &str| {
-        let text =
-            text.replace("[models.bem3d]\ncells = 64\n", "").replace("modulus", "accuracy = 0.2\nmodulus");
+        let text = text
+            .replace("[models.bem3d]\ncells = 64\n", "")
+            .replace("contact_modulus", "accuracy = 0.2\ncontact_modulus");
         let scene = SceneFile::parse("scene.toml".as_ref(), text).unwrap();
         scene.with_grid_for_accuracy(&|| false).unwrap().models[0].size()
     };

@@ -178,7 +178,9 @@ fn what_a_map_lacks_is_said() {
     ));
     assert!(spiked.len() == 1 && spiked[0].contains("the highest point, in row 31, column 9"), "{spiked:#?}");
     // In units the slope counts.
-    let steep = PERIODIC.replace("units = \"none\"\n", "").replace("modulus = 1", "modulus = \"1 GPa\"");
+    let steep = PERIODIC
+        .replace("units = \"none\"\n", "")
+        .replace("contact_modulus = 1", "contact_modulus = \"1 GPa\"");
     let steep = steep.replace("[0.002, 0.01]", "\"1 MPa\"").replace("unit = \"none\"", "unit = \"um\"");
     let notes = notes(&drawn(64), &steep.replace("size = 1", "size = \"0.1 um\""));
     assert!(notes.iter().any(|n| n.contains("assumes small slopes")), "{notes:#?}");

@@ -128,7 +128,7 @@ fn every_effect_has_its_work_and_without_it_none_is_done() {
     assert_eq!(free, counts(&text("bem3d", "", "")));
     let friction = |effects: &str| {
         text("equivalent", effects, "")
-            .replace("modulus = 1", "bodies = [\"rigid\", { young = 1, poisson = 0.3 }]")
+            .replace("contact_modulus = 1", "bodies = [\"rigid\", { young = 1, poisson = 0.3 }]")
             .replace(&format!("force_bar = [{}, {}]", LOADS[0], LOADS[1]), "path = [{ force = 0.001 }]")
     };
     let with = counts(&friction("friction = { coefficient = 0.3 }"));

@@ -18,8 +18,8 @@ use mdr1d::{ContactModel, Error, Load, Relaxing, Result, Rheology, Scene, Step, 
 
 fn main() -> Result<()> {
     // E*(t) = E* (1 + w exp(-t/tau)): ten times as stiff at first as in the end.
-    let (modulus, arm, radius, force) = (1.0, Relaxing { weight: 9.0, time: 1.0 }, 1.0_f64, 1e-3);
-    let mut scene = Scene::new(Surface::Sphere { radius, size: 1.0.into() }, modulus);
+    let (contact_modulus, arm, radius, force) = (1.0, Relaxing { weight: 9.0, time: 1.0 }, 1.0_f64, 1e-3);
+    let mut scene = Scene::new(Surface::Sphere { radius, size: 1.0.into() }, contact_modulus);
     scene.effects.rheology = Rheology::StandardSolid { arm };
     scene.outputs.stiffness = false; // it depends on how fast one pushes
     scene.outputs.area = true;
@@ -29,7 +29,7 @@ fn main() -> Result<()> {
         let state = contact.advance(Step::normal(time, Load::Force(force)))?;
         // Lee and Radok (1960): a^3 = (3/4) R F J(t), J the creep function of E*.
         let w = arm.weight;
-        let creep = (1.0 - w / (1.0 + w) * (-time / (arm.time * (1.0 + w))).exp()) / modulus;
+        let creep = (1.0 - w / (1.0 + w) * (-time / (arm.time * (1.0 + w))).exp()) / contact_modulus;
         let exact = (0.75 * radius * force * creep).cbrt();
         let (a, d) = (state.contact_radius.unwrap_or(0.0), state.approach.unwrap_or(0.0));
         println!("{time:>6} {d:>10.6} {a:>10.6} {:>10.6} {exact:>12.6}", state.area.unwrap_or(0.0));

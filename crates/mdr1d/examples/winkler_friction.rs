@@ -47,8 +47,9 @@ impl ContactModel for Winkler {
         let Surface::Sphere { radius, size } = scene.surface else {
             return Err(Error::unsupported(self.name(), scene.surface.kind()));
         };
-        let normalisation = Normalisation { modulus: scene.modulus, length: size.length(), height: None };
-        Ok(Box::new(Layer(PI * scene.modulus * radius / self.thickness, normalisation)))
+        let normalisation =
+            Normalisation { contact_modulus: scene.contact_modulus, length: size.length(), height: None };
+        Ok(Box::new(Layer(PI * scene.contact_modulus * radius / self.thickness, normalisation)))
     }
 }
 
@@ -76,7 +77,7 @@ fn main() -> Result<()> {
     let normal = Load::Approach(0.02);
     let force = contact.advance(Step::normal(0.0, normal))?.force;
     // Full slip from this displacement on.
-    let largest = 0.3 * 0.02 * scene.modulus / pair.shear_modulus()?;
+    let largest = 0.3 * 0.02 * scene.contact_modulus / pair.shear_modulus()?;
     println!("{:>7} {:>10} {:>12} {:>12}", "u/u_max", "Q/mu F", "closed form", "dissipated");
     for share in [0.1, 0.3, 0.6, 0.9] {
         let tangential = Tangential::displacement_along_x(share * largest);

@@ -124,7 +124,7 @@ impl Bearing {
         self.depths.len()
     }
 
-    /// The state under a load, on a foundation of stiffness `modulus` per length.
+    /// The state under a load, on a foundation of stiffness `contact_modulus` per length.
     ///
     /// At a kink (`d` equal to some `z`) those elements touch without force and are not in the contact set.
     /// No load gives `d = 0` and `k = 0`.
@@ -143,8 +143,8 @@ impl Bearing {
     /// assert_eq!(bearing.press(Load::Force(4.0), 2.0)?.approach, 1.5);
     /// # Ok::<(), contact_model::Error>(())
     /// ```
-    pub fn press(&mut self, load: Load, modulus: f64) -> Result<Support> {
-        let nondimensional = Nondimensionalisation::new(modulus, self.element, 1.0)?;
+    pub fn press(&mut self, load: Load, contact_modulus: f64) -> Result<Support> {
+        let nondimensional = Nondimensionalisation::new(contact_modulus, self.element, 1.0)?;
         let (force, approach, elements) = match load.validated()? {
             Load::Approach(d) => {
                 let (sum, elements) = self.at_approach(d);

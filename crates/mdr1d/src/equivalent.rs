@@ -205,13 +205,13 @@ impl<M: ContactModel> ContactModel for Equivalent<M> {
             return Err(Error::unsupported(NAME, what));
         }
         self.abilities().refuse(NAME, scene)?;
-        let memory = match (friction, Material::new(&rheology, scene.modulus, NAME)?) {
+        let memory = match (friction, Material::new(&rheology, scene.contact_modulus, NAME)?) {
             (Friction::Coulomb { coefficient, .. }, None) => {
                 let Some(pair) = scene.pair else {
                     let what = "a scene without both bodies: friction needs their shear moduli";
                     return Err(Error::unsupported(NAME, what));
                 };
-                let shear = pair.shear_modulus()? / scene.modulus;
+                let shear = pair.shear_modulus()? / scene.contact_modulus;
                 let table = Arc::new(Tabulated::new(&[])?);
                 Memory::Slip { springs: Springs::new(table, coefficient, shear), coefficient, time: 0.0 }
             }

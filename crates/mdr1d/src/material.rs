@@ -64,10 +64,10 @@ impl Material {
     ///
     /// # Errors
     /// [`Error::Domain`] for a time `4 eta/E*` that no `f64` holds, or a rheology that is not known here (as [`Error::Unsupported`]).
-    pub fn new(rheology: &Rheology, modulus: f64, model: &'static str) -> Result<Option<Self>> {
+    pub fn new(rheology: &Rheology, contact_modulus: f64, model: &'static str) -> Result<Option<Self>> {
         rheology.validate()?;
         let time = |viscosity: f64| {
-            let time = 4.0 * (viscosity / modulus);
+            let time = 4.0 * (viscosity / contact_modulus);
             if time.is_normal() && time.recip().is_normal() {
                 Ok(time)
             } else {

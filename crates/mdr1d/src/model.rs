@@ -103,7 +103,7 @@ impl ContactModel for Mdr1d {
         }
         self.abilities().refuse(NAME, scene)?;
         let outputs = scene.outputs;
-        let (length, modulus) = (scene.surface.size().length(), scene.modulus);
+        let (length, contact_modulus) = (scene.surface.size().length(), scene.contact_modulus);
         if let Some(body) = RoundBody::new(scene)? {
             return Ok(Box::new(RoundIndenter { body, adhesive: adhesive(body.profile, scene)? }));
         }
@@ -123,14 +123,14 @@ impl ContactModel for Mdr1d {
         match &scene.surface {
             Surface::SelfAffine(surface) => {
                 let line = surface_gen::self_affine_line(surface, self.elements, seed)?;
-                Ok(Box::new(RoughLine::new(Bearing::new(&line), &line, length, modulus, outputs)))
+                Ok(Box::new(RoughLine::new(Bearing::new(&line), &line, length, contact_modulus, outputs)))
             }
             Surface::Line { line, .. } => {
-                Ok(Box::new(RoughLine::new(Bearing::new(line), line, length, modulus, outputs)))
+                Ok(Box::new(RoughLine::new(Bearing::new(line), line, length, contact_modulus, outputs)))
             }
             Surface::Heights(map) => {
                 let line = LineGenerator::of_map(map, self.elements)?.line(seed)?;
-                Ok(Box::new(RoughLine::new(Bearing::new(&line), &line, length, modulus, outputs)))
+                Ok(Box::new(RoughLine::new(Bearing::new(&line), &line, length, contact_modulus, outputs)))
             }
             other => Err(Error::unsupported(NAME, other.kind())),
         }
@@ -212,7 +212,8 @@ impl ContactModel for Ensemble {
         let spare = self.spare.lock().ok().and_then(|mut spare| spare.pop());
         let mut bearing = spare.unwrap_or_else(Bearing::empty);
         bearing.rebuild(&line);
-        let mut rough = RoughLine::new(bearing, &line, self.surface.size.length(), scene.modulus, outputs);
+        let mut rough =
+            RoughLine::new(bearing, &line, self.surface.size.length(), scene.contact_modulus, outputs);
         rough.home = Some(Arc::clone(&self.spare));
         Ok(Box::new(rough))
     }
@@ -232,9 +233,9 @@ struct RoughLine {
 }
 
 impl RoughLine {
-    fn new(bearing: Bearing, line: &Line, length: f64, modulus: f64, outputs: Outputs) -> Self {
+    fn new(bearing: Bearing, line: &Line, length: f64, contact_modulus: f64, outputs: Outputs) -> Self {
         let height = surface_gen::rms_height(line.heights());
-        let normalisation = Normalisation { modulus, length, height: Some(height) };
+        let normalisation = Normalisation { contact_modulus, length, height: Some(height) };
         Self { bearing, normalisation, outputs, home: None }
     }
 }
@@ -254,7 +255,7 @@ impl PreparedContact for RoughLine {
 
     fn solve_until(&mut self, load: Load, stop: Stop<'_>) -> Result<ContactState> {
         check_stop(stop)?;
-        let support = self.bearing.press(load, self.normalisation.modulus)?;
+        let support = self.bearing.press(load, self.normalisation.contact_modulus)?;
         let strategy = format!("order statistics of {} elements", self.bearing.elements());
         let mut report = SolveReport::formula(strategy, load);
         report.contact_cells = Some(support.elements);
@@ -262,7 +263,7 @@ impl PreparedContact for RoughLine {
         ContactState::new(support.force, report)
             .with_approach(support.approach)
             .with_elastic_stiffness(self.outputs.needs_stiffness().then_some(support.stiffness))
-            .completed(&self.outputs, self.normalisation.modulus)
+            .completed(&self.outputs, self.normalisation.contact_modulus)
     }
 }
 
@@ -271,7 +272,7 @@ fn adhesive(profile: Profile, scene: &Scene) -> Result<Option<Adhesive>> {
     match scene.effects.adhesion {
         Adhesion::Off => Ok(None),
         Adhesion::ShortRange { work } => {
-            let scaled = work / scene.modulus / scene.surface.size().length();
+            let scaled = work / scene.contact_modulus / scene.surface.size().length();
             if scaled.is_finite() && (scaled > 0.0 || work <= 0.0) {
                 Adhesive::new(profile, scaled).map(Some)
             } else {

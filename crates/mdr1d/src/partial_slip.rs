@@ -83,7 +83,7 @@ impl ContactModel for PartialSlip {
                 "a scene without both bodies: friction needs their shear moduli",
             ));
         };
-        let springs = Springs::new(body.profile, coefficient, pair.shear_modulus()? / scene.modulus);
+        let springs = Springs::new(body.profile, coefficient, pair.shear_modulus()? / scene.contact_modulus);
         Ok(Box::new(PreparedPartialSlip { body, coefficient, time: 0.0, springs }))
     }
 }

@@ -40,8 +40,8 @@ pub fn mode_amplitude(line_spectrum: f64, length: f64) -> f64 {
 /// ```
 /// assert_eq!(mdr1d::rule::foundation_stiffness(70e9), 70e9);
 /// ```
-pub fn foundation_stiffness(modulus: f64) -> f64 {
-    modulus
+pub fn foundation_stiffness(contact_modulus: f64) -> f64 {
+    contact_modulus
 }
 
 /// `E* L_1D = (2 / sqrt(pi)) E* L`: the stiffness of the line in full contact, its plateau (Eqs. 16 and 18).
@@ -52,8 +52,8 @@ pub fn foundation_stiffness(modulus: f64) -> f64 {
 /// ```
 /// assert!((mdr1d::rule::full_contact_stiffness(1.0, 1.0) - 1.128379167).abs() < 1e-9);
 /// ```
-pub fn full_contact_stiffness(modulus: f64, side: f64) -> f64 {
-    foundation_stiffness(modulus) * contact_model::line_length(side)
+pub fn full_contact_stiffness(contact_modulus: f64, side: f64) -> f64 {
+    foundation_stiffness(contact_modulus) * contact_model::line_length(side)
 }
 
 #[cfg(test)]

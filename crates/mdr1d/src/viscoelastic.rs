@@ -87,7 +87,7 @@ impl ContactModel for Viscoelastic {
         }
         self.abilities().refuse(NAME, scene)?;
         let rheology = scene.effects.rheology;
-        let Some(material) = Material::new(&rheology, scene.modulus, NAME)? else {
+        let Some(material) = Material::new(&rheology, scene.contact_modulus, NAME)? else {
             return Err(Error::unsupported(NAME, "an elastic material (there is nothing to remember)"));
         };
         if let Some(pair) = &scene.pair {

@@ -30,14 +30,14 @@ const SWEEPS: usize = 50_000;
 /// The constant `E* sum nu/(2 G)` of two bodies: `nu/(1 - nu)` of bodies that are alike.
 ///
 /// # Errors
-/// As [`Pair::modulus`].
+/// As [`Pair::contact_modulus`].
 pub fn compliance(pair: &Pair) -> Result<f64> {
     let of = |body: Body| match body {
         // G = E/(2 (1 + nu)).
         Body::Elastic { young, poisson } => poisson * (1.0 + poisson) / young,
         _ => 0.0,
     };
-    Ok(pair.modulus()? * (of(pair.first) + of(pair.second)))
+    Ok(pair.contact_modulus()? * (of(pair.first) + of(pair.second)))
 }
 
 /// Tangential displacements of the cells of a grid under tangential forces on them, by the plain sum, for

@@ -3,7 +3,7 @@
 >>> import numpy as np
 >>> import fractal_contact as fc
 >>> rough = fc.Surface.self_affine(hurst=0.6, size=1.0, rms_height=0.01).height_map(65, seed=1)
->>> scene = fc.Scene(rough, modulus=1.0, outputs=["stiffness", "pressure"])
+>>> scene = fc.Scene(rough, contact_modulus=1.0, outputs=["stiffness", "pressure"])
 >>> contact = fc.Bem3d(tolerance=1e-8).prepare(scene)
 >>> state = contact.solve(force=0.001)
 >>> state.pressure.shape

@@ -528,8 +528,8 @@ class ContactState:
 class Normalisation:
     """What turns forces and stiffnesses into the dimensionless ones of the paper."""
     @property
-    def modulus(self) -> float:
-        """float: effective modulus E*."""
+    def contact_modulus(self) -> float:
+        """float: contact modulus E*."""
     @property
     def length(self) -> float:
         """float: L = sqrt(Lx Ly)."""
@@ -779,7 +779,7 @@ def effect_keys() -> list[dict[str, str]]:
 
 def scene(
     surface: HeightMap | Surface,
-    modulus: float | None,
+    contact_modulus: float | None,
     bodies: Any,
     effects: Mapping[str, Any],
     outputs: Sequence[str] | None,

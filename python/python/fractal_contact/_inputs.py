@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from os import PathLike
@@ -227,10 +228,10 @@ class Scene:
     ----------
     surface : HeightMap or Surface
         What carries the relief.
-    modulus : float, optional
-        Effective modulus E*, 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2.
+    contact_modulus : float, optional
+        Contact modulus E*, 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2.
     bodies : pair of Body, mapping, "rigid" or None, optional
-        Both bodies in place of ``modulus``, None or "rigid" for a rigid one: where E* does not say enough (friction).
+        Both bodies in place of ``contact_modulus``, None or "rigid" for a rigid one: where E* does not say enough (friction).
     effects : Effects or mapping
         Off unless named.
     outputs : iterable of str, optional
@@ -241,18 +242,20 @@ class Scene:
     conductance : mapping or (str, float, float), optional
         {"kind": "electrical", "resistivities": (of the first, of the second)} or {"kind": "thermal",
         "conductivities": (...)}, or kind and both values as a tuple.
+    modulus : float, optional
+        The former name of ``contact_modulus``, which is read with a warning.
 
     Examples
     --------
     >>> import fractal_contact as fc
-    >>> scene = fc.Scene(fc.Surface.sphere(radius=1.0, size=2.0), modulus=1.0)
+    >>> scene = fc.Scene(fc.Surface.sphere(radius=1.0, size=2.0), contact_modulus=1.0)
     >>> state = fc.Hertz().prepare(scene).solve(force=4 / 3)
     >>> round(state.approach, 12)
     1.0
     """
 
     surface: HeightMap | Surface
-    modulus: float | None = None
+    contact_modulus: float | None = None
     bodies: tuple[Body | None, Body | None] | None = None
     effects: Effects = field(default_factory=Effects)
     outputs: tuple[Output, ...] | None = None
@@ -261,13 +264,24 @@ class Scene:
     def __init__(
         self,
         surface: HeightMap | Surface,
-        modulus: float | None = None,
+        contact_modulus: float | None = None,
         *,
         bodies: Sequence[AnyBody] | None = None,
         effects: Effects | EffectsDict | None = None,
         outputs: Iterable[Output] | None = None,
         conductance: ConductanceDict | Conductance | None = None,
+        modulus: float | None = None,
     ) -> None:
+        if modulus is not None:
+            if contact_modulus is not None:
+                raise TypeError("give contact_modulus, or modulus under its former name, not both")
+            warnings.warn(
+                "`modulus` is read as `contact_modulus`, which is E* of the pair: for Young's modulus and Poisson's ratio "
+                "give `bodies`",
+                FutureWarning,
+                stacklevel=2,
+            )
+            contact_modulus = modulus
         if not isinstance(surface, HeightMap | Surface):
             raise TypeError(
                 f"the surface is of the type {type(surface).__name__}: expected a Surface or a HeightMap; "
@@ -277,7 +291,7 @@ class Scene:
             raise TypeError(f"outputs is {outputs!r}: expected a list of names")
         put = object.__setattr__
         put(self, "surface", surface)
-        put(self, "modulus", None if modulus is None else number(modulus, "modulus"))
+        put(self, "contact_modulus", None if contact_modulus is None else number(contact_modulus, "contact_modulus"))
         put(self, "bodies", None if bodies is None else _both(bodies))
         put(self, "effects", Effects() if effects is None else Effects.of(effects))
         put(self, "outputs", None if outputs is None else tuple(outputs))
@@ -289,7 +303,7 @@ class Scene:
         surface = self.surface._core() if isinstance(self.surface, Surface) else self.surface
         bodies = self.bodies and [body and (body.young, body.poisson) for body in self.bodies]
         outputs = None if self.outputs is None else list(self.outputs)
-        return _core.scene(surface, self.modulus, bodies, self.effects._values(), outputs, self.conductance)
+        return _core.scene(surface, self.contact_modulus, bodies, self.effects._values(), outputs, self.conductance)
 
     @staticmethod
     def from_toml(text: str, *, directory: str | PathLike[str] = ".") -> SceneFile:

@@ -134,12 +134,12 @@ class Bem3d(Model):
     >>> import numpy as np, fractal_contact as fc
     >>> x = np.linspace(0, 1, 64, endpoint=False)
     >>> h = 0.01 * np.cos(2 * np.pi * x)[None, :] * np.ones((64, 1))
-    >>> scene = fc.Scene(fc.HeightMap(h, size=1.0), modulus=1.0, outputs=["stiffness", "pressure"])
+    >>> scene = fc.Scene(fc.HeightMap(h, size=1.0), contact_modulus=1.0, outputs=["stiffness", "pressure"])
     >>> state = fc.Bem3d(tolerance=1e-8).prepare(scene).solve(force=0.01)
     >>> state.pressure.shape, state.certificate.meets(1e-8)
     ((64, 64), True)
     >>> sphere = fc.Surface.sphere(radius=1.0, size=1.0)
-    >>> contact = fc.Bem3d(cells=32).prepare(fc.Scene(sphere, modulus=1.0, effects={"hardness": 0.1}))
+    >>> contact = fc.Bem3d(cells=32).prepare(fc.Scene(sphere, contact_modulus=1.0, effects={"hardness": 0.1}))
     >>> loaded, unloaded = contact.follow(force=[0.02, 0.0])
     >>> loaded.plastic_area > 0.0, unloaded.plastic_area, unloaded.plastic_volume == loaded.plastic_volume
     (True, 0.0, True)
@@ -271,7 +271,7 @@ def sweep(
     Examples
     --------
     >>> import fractal_contact as fc
-    >>> contact = fc.Hertz().prepare(fc.Scene(fc.Surface.sphere(radius=1.0, size=2.0), modulus=1.0))
+    >>> contact = fc.Hertz().prepare(fc.Scene(fc.Surface.sphere(radius=1.0, size=2.0), contact_modulus=1.0))
     >>> [round(state.approach, 3) for state in fc.sweep(contact, force=[0.0, 4 / 3])]
     [0.0, 1.0]
     """
@@ -319,7 +319,7 @@ def follow(
     >>> import fractal_contact as fc
     >>> solid = {"kind": "standard_solid", "weight": 1.0, "time": 1.0}
     >>> sphere = fc.Surface.sphere(radius=1.0, size=2.0)
-    >>> scene = fc.Scene(sphere, modulus=1.0, effects={"rheology": solid}, outputs=[])
+    >>> scene = fc.Scene(sphere, contact_modulus=1.0, effects={"rheology": solid}, outputs=[])
     >>> creep = fc.Viscoelastic().prepare(scene)
     >>> [round(state.approach, 4) for state in fc.follow(creep, time=[0.0, 1.0, 10.0], force=0.01)]
     [0.0241, 0.0301, 0.0382]
@@ -463,7 +463,7 @@ def table(states: Iterable[ContactState]) -> NDArray[np.void]:
     Examples
     --------
     >>> import fractal_contact as fc
-    >>> contact = fc.Hertz().prepare(fc.Scene(fc.Surface.sphere(radius=1.0, size=2.0), modulus=1.0))
+    >>> contact = fc.Hertz().prepare(fc.Scene(fc.Surface.sphere(radius=1.0, size=2.0), contact_modulus=1.0))
     >>> rows = fc.table(contact.sweep(force=[0.5, 1.0]))
     >>> rows["force"].tolist()
     [0.5, 1.0]

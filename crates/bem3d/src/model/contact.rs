@@ -315,7 +315,7 @@ impl PreparedSurface {
                 let (sum, count) =
                     squares.fold((0.0, 0.0), |(sum, count), square| (sum + square, count + 1.0));
                 let gradient = self.height / self.cell().0 * (2.0 * sum / f64::max(count, 1.0)).sqrt();
-                let share = 2.0 * force / (self.normalisation.modulus * self.size.area() * gradient);
+                let share = 2.0 * force / (self.normalisation.contact_modulus * self.size.area() * gradient);
                 // Of a flat surface all.
                 if share.is_finite() { share.clamp(0.0, 1.0) } else { 1.0 }
             }

@@ -190,10 +190,11 @@ mod tests {
     #[test]
     fn loads_that_no_number_holds_are_refused() {
         // In the units of the surface one is infinite, the other zero.
-        for (modulus, force) in [(1e-200, 1e200), (1e200, 1e-200)] {
+        for (contact_modulus, force) in [(1e-200, 1e200), (1e200, 1e-200)] {
             let surface = SelfAffine::new(2.4, 1.0, 1.0).map(Surface::SelfAffine).unwrap();
             let model = Bem3d { cells: 8, ..Bem3d::default() };
-            let solved = model.prepare(&Scene::new(surface, modulus), 1).unwrap().solve(Load::Force(force));
+            let solved =
+                model.prepare(&Scene::new(surface, contact_modulus), 1).unwrap().solve(Load::Force(force));
             assert!(matches!(solved, Err(Error::Domain { .. })), "{solved:?}");
         }
     }

@@ -110,7 +110,7 @@ impl PreparedSurface {
         each(&mut z, |z| *z /= height);
         let (grid, (dx, dy)) = (Grid::of(map), (map.dx(), map.dy()));
         let length = if grid.has_square_cells() { dx } else { dx.sqrt() * dy.sqrt() };
-        let nondimensional = Nondimensionalisation::new(scene.modulus, length, height)?;
+        let nondimensional = Nondimensionalisation::new(scene.contact_modulus, length, height)?;
         let defined = z.len() - map.undefined();
         let mean = sum_of_pairs(&z, &z, |z, _| if z.is_finite() { z } else { 0.0 }) / defined as f64;
         let mut problem = Problem::recorded(grid, Arc::new(z), profile::medium(scene), tuning, recorder);
@@ -125,8 +125,11 @@ impl PreparedSurface {
             problem.bounds = Bounds::UpTo(upper);
         }
         let sliding = Sliding::new(scene, &problem, (tuning, recorder))?;
-        let normalisation =
-            Normalisation { modulus: scene.modulus, length: map.length(), height: has_rms.then_some(rms) };
+        let normalisation = Normalisation {
+            contact_modulus: scene.contact_modulus,
+            length: map.length(),
+            height: has_rms.then_some(rms),
+        };
         Ok(Self {
             options,
             outputs: profile::outputs(scene.outputs, problem.operators.table().medium()),

@@ -76,7 +76,7 @@ impl Sliding {
             return Ok(None);
         };
         // E* sum nu/(2 G), from 1/G* = 1/E* + sum nu/(4 G).
-        let compliance = (2.0 * (pair.modulus()? / pair.shear_modulus()? - 1.0)).max(0.0);
+        let compliance = (2.0 * (pair.contact_modulus()? / pair.shear_modulus()? - 1.0)).max(0.0);
         let beta = if coupling == Some(Coupling::Full) { pair.coupling()? } else { 0.0 };
         let medium = problem.operators.table().medium();
         Ok(Some(Self {

@@ -91,7 +91,7 @@ impl PreparedSurface {
             .with_patches(self.patches(found.contact)?)
             .with_resolution(found.resolution)
             .with_fields(fields)
-            .completed(&self.outputs, self.normalisation.modulus)
+            .completed(&self.outputs, self.normalisation.contact_modulus)
     }
 
     /// Mean gap of a state with this approach and force: the distance between the mean plane of the defined

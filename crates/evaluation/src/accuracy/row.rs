@@ -202,7 +202,7 @@ fn measure_here(model: &dyn ContactModel, scene: &Scene, load: Load, seed: u64) 
     };
     let ContactState { approach, stiffness, area, fields, report, .. } = state;
     Ok(Some(Answer {
-        stiffness: stiffness.map(|k| k / (normalisation.modulus * normalisation.length)),
+        stiffness: stiffness.map(|k| k / (normalisation.contact_modulus * normalisation.length)),
         approach,
         area: area.map(|a| normalisation.contact_fraction(a)),
         pressure: fields.and_then(|f| f.pressure).map(Field::into_values),

@@ -266,8 +266,8 @@ fn header(scene: &SceneFile, plan: &Plan) -> Header {
     }
     let size = scene.surface.size();
     header = header.with_note(format!(
-        "modulus: {} (E*); size: {} x {}",
-        number(scene.modulus),
+        "E*: {}; size: {} x {}",
+        number(scene.contact_modulus),
         number(size.x),
         number(size.y)
     ));

@@ -24,16 +24,16 @@ impl Reference {
         sum.value()
     }
 
-    fn force(&self, d: f64, modulus: f64) -> f64 {
-        modulus * self.element * self.sum(d)
+    fn force(&self, d: f64, contact_modulus: f64) -> f64 {
+        contact_modulus * self.element * self.sum(d)
     }
 
     fn elements(&self, d: f64) -> usize {
         self.depths.iter().filter(|&&z| z < d).count()
     }
 
-    fn approach(&self, force: f64, modulus: f64) -> f64 {
-        let sum = force / (modulus * self.element);
+    fn approach(&self, force: f64, contact_modulus: f64) -> f64 {
+        let sum = force / (contact_modulus * self.element);
         let (mut low, mut high) = (0.0, sum.max(f64::MIN_POSITIVE));
         for _ in 0..2000 {
             let middle = low + (high - low) / 2.0;
@@ -194,21 +194,21 @@ fn a_rebuilt_bearing_is_a_new_one() {
 fn extreme_units() {
     let base = long_line(3000);
     let reference = Bearing::new(&base).press(Load::Approach(0.3), 1.0).unwrap();
-    for (modulus, horizontal, vertical) in
+    for (contact_modulus, horizontal, vertical) in
         [(1e150, 1e-150, 1e-150), (1e-150, 1e150, 1e150), (1e-150, 1e150, 1e-150), (1e150, 1e150, 1e-170)]
     {
         let heights = base.heights().iter().map(|h| h * vertical).collect();
         let line = Line::new(base.length() * horizontal, heights).unwrap();
         let mut bearing = Bearing::new(&line);
-        let s = bearing.press(Load::Approach(0.3 * vertical), modulus).unwrap();
+        let s = bearing.press(Load::Approach(0.3 * vertical), contact_modulus).unwrap();
         // Scaling by a power of ten rounds every height: a few units in the last place of the height, over d.
-        let expected = Nondimensionalisation::new(modulus, horizontal, vertical)
+        let expected = Nondimensionalisation::new(contact_modulus, horizontal, vertical)
             .unwrap()
             .force(reference.force)
             .unwrap();
         assert_relative_eq!(s.force, expected, max_relative = 1e-13);
         assert_eq!(s.elements, reference.elements);
-        let back = bearing.press(Load::Force(s.force), modulus).unwrap();
+        let back = bearing.press(Load::Force(s.force), contact_modulus).unwrap();
         assert_relative_eq!(back.approach, s.approach, max_relative = ROUNDING);
     }
     let mut bearing = Bearing::new(&line(vec![1e200, 0.0]));

@@ -62,8 +62,11 @@ impl Normal {
         span: i32,
     ) -> Result<Self> {
         let normalisation = contact.normalisation();
-        let nondimensional =
-            Nondimensionalisation::new(normalisation.modulus, normalisation.length, normalisation.length)?;
+        let nondimensional = Nondimensionalisation::new(
+            normalisation.contact_modulus,
+            normalisation.length,
+            normalisation.length,
+        )?;
         Ok(Self {
             contact,
             full,

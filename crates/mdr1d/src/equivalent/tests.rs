@@ -109,8 +109,8 @@ fn a_step_of_a_viscoelastic_sphere_is_the_models_own_force_times_the_modulus() {
     let elastic = 4.0 / 3.0 * 0.01_f64.powf(1.5);
     for time in [0.0, 0.3, 4.0, 1e5] {
         let state = contact.advance(Step::normal(time, Load::Approach(0.01))).unwrap();
-        let modulus = 1.0 + 3.0 * (-time / 2.0_f64).exp();
-        assert_relative_eq!(state.force, modulus * elastic, max_relative = 1e-12);
+        let contact_modulus = 1.0 + 3.0 * (-time / 2.0_f64).exp();
+        assert_relative_eq!(state.force, contact_modulus * elastic, max_relative = 1e-12);
     }
     // A ramp needs the profile: the difference from exact springs falls with the nodes.
     let arms = [Relaxing { weight: 2.0, time: 0.1 }, Relaxing { weight: 1.0, time: 3.0 }];
@@ -166,7 +166,7 @@ fn limits_of_friction_on_a_rough_surface() {
         let then = contact.advance(Step { time: 0.0, normal: Load::Force(normal), tangential });
         (first, then)
     };
-    let shear = rubber().shear_modulus().unwrap() / rubber().modulus().unwrap();
+    let shear = rubber().shear_modulus().unwrap() / rubber().contact_modulus().unwrap();
     // mu -> infinity: a spring with k_x = (G*/E*) k, and no loss. The difference falls as 1/mu.
     let deviation = |mu: f64| {
         let (normal, state) = run(mu, Tangential::displacement_along_x(1e-4));
@@ -220,7 +220,7 @@ impl ContactModel for Scripted {
 
 impl PreparedContact for ScriptedContact {
     fn normalisation(&self) -> Normalisation {
-        Normalisation { modulus: 1.0, length: 2.0, height: None }
+        Normalisation { contact_modulus: 1.0, length: 2.0, height: None }
     }
     fn solve_until(&mut self, load: Load, stop: Stop<'_>) -> Result<ContactState> {
         if stop.stops() {
@@ -272,7 +272,7 @@ fn any_units_do() {
         let mut scene = Scene::of_pair(surface, pair).unwrap();
         scene.effects.friction = Friction::coulomb(MU);
         let mut contact = equivalent(8).prepare(&scene, 0).unwrap();
-        let force = 0.01 * (scene.modulus * length) * length;
+        let force = 0.01 * (scene.contact_modulus * length) * length;
         contact.advance(step(force, Tangential::force_along_x(0.0))).unwrap();
         let state = contact.advance(step(force, Tangential::force_along_x(0.5 * MU * force))).unwrap();
         [state.contact_radius.unwrap() / length, state.tangential.unwrap().displacement[0] / length]

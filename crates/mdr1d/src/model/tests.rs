@@ -70,7 +70,7 @@ fn what_is_not_asked_is_not_there() {
 
 #[test]
 fn bodies_in_three_dimensions() {
-    let (modulus, side) = (2.0, 1.0);
+    let (contact_modulus, side) = (2.0, 1.0);
     for surface in [
         Surface::Sphere { radius: 3.0, size: side.into() },
         Surface::Cone { slope: 0.2, size: side.into() },
@@ -80,7 +80,7 @@ fn bodies_in_three_dimensions() {
         let mut contact = prepare(&asking_for_area(surface), 0);
         assert!(contact.normalisation().height.is_none());
         let s = contact.solve(Load::Force(1e-3)).unwrap();
-        let radius = s.stiffness.unwrap() / (2.0 * modulus);
+        let radius = s.stiffness.unwrap() / (2.0 * contact_modulus);
         assert_relative_eq!(s.area.unwrap(), std::f64::consts::PI * radius * radius, max_relative = ROUNDING);
         let back = contact.solve(Load::Approach(s.approach.unwrap())).unwrap();
         assert_relative_eq!(back.force, 1e-3, max_relative = ROUNDING);
@@ -92,12 +92,12 @@ fn bodies_in_three_dimensions() {
 #[test]
 fn hertz_in_any_units() {
     // F = 1e-3 E* R^2 is a = 0.090856 R, whatever E* and R are.
-    for (modulus, radius) in [(1.0, 1.0), (1e150, 1e-150), (1e-150, 1e150), (1e11, 1e-3)] {
-        let scene = Scene::new(Surface::Sphere { radius, size: radius.into() }, modulus);
-        let force = Nondimensionalisation::new(modulus, radius, radius).unwrap().force(1e-3).unwrap();
+    for (contact_modulus, radius) in [(1.0, 1.0), (1e150, 1e-150), (1e-150, 1e150), (1e11, 1e-3)] {
+        let scene = Scene::new(Surface::Sphere { radius, size: radius.into() }, contact_modulus);
+        let force = Nondimensionalisation::new(contact_modulus, radius, radius).unwrap().force(1e-3).unwrap();
         let s = prepare(&scene, 0).solve(Load::Force(force)).unwrap();
         assert_relative_eq!(
-            s.stiffness.unwrap() / modulus / radius,
+            s.stiffness.unwrap() / contact_modulus / radius,
             2.0 * 0.090_856_029_642,
             max_relative = 1e-10
         );
@@ -170,17 +170,19 @@ fn an_ensemble_gives_the_same_bits_with_memory_used_before() {
 #[test]
 fn adhesion_of_a_sphere_behind_the_trait() {
     // data/paper/VALUES.md: E* = R = 1, w = 0.01. In other units too.
-    for (modulus, length) in [(1.0, 1.0), (1e150, 1e-150), (1e-150, 1e150), (1e11, 1e-3)] {
-        let mut scene = Scene::new(Surface::Sphere { radius: length, size: (2.0 * length).into() }, modulus);
-        scene.effects.adhesion = Adhesion::ShortRange { work: 0.01 * (modulus * length) };
+    for (contact_modulus, length) in [(1.0, 1.0), (1e150, 1e-150), (1e-150, 1e150), (1e11, 1e-3)] {
+        let mut scene =
+            Scene::new(Surface::Sphere { radius: length, size: (2.0 * length).into() }, contact_modulus);
+        scene.effects.adhesion = Adhesion::ShortRange { work: 0.01 * (contact_modulus * length) };
         scene.outputs.stiffness_fixed_area = true;
         let mut contact = prepare(&scene, 0);
         let s = contact.solve(Load::Force(0.0)).unwrap();
         // Of the held area 2 E* a, along the branch 3/5 of it.
-        let [held, along] = [s.stiffness_fixed_area, s.stiffness].map(|k| k.unwrap() / modulus / length);
+        let [held, along] =
+            [s.stiffness_fixed_area, s.stiffness].map(|k| k.unwrap() / contact_modulus / length);
         assert_relative_eq!(held, 2.0 * 0.520_939_707_9, max_relative = 1e-9);
         assert_relative_eq!(along, 1.2 * 0.520_939_707_9, max_relative = 1e-9);
-        let nondimensional = Nondimensionalisation::new(modulus, length, length).unwrap();
+        let nondimensional = Nondimensionalisation::new(contact_modulus, length, length).unwrap();
         let pull_off = -nondimensional.force(0.015 * std::f64::consts::PI).unwrap();
         assert!(contact.solve(Load::Force(0.999 * pull_off)).is_ok());
         let e = contact.solve(Load::Force(1.001 * pull_off)).unwrap_err();
@@ -229,11 +231,11 @@ fn the_stiffness_of_an_adhesive_body_is_the_slope_of_its_branch() {
             };
             let (low, high) = (at(1.0 - STEP), at(1.0 + STEP));
             let slope = (high.force - low.force) / (high.approach.unwrap() - low.approach.unwrap());
-            let held = 2.0 * scene.modulus * (here.area.unwrap() / std::f64::consts::PI).sqrt();
+            let held = 2.0 * scene.contact_modulus * (here.area.unwrap() / std::f64::consts::PI).sqrt();
             let unit = slope.abs().max(held);
             assert!((here.stiffness.unwrap() - slope).abs() < DIFFERENCES * unit, "{surface:?} {load:?}");
             assert_relative_eq!(here.stiffness_fixed_area.unwrap(), held, max_relative = ROUNDING);
-            let conductance = scene.outputs.conductance.of(held, scene.modulus).unwrap().unwrap();
+            let conductance = scene.outputs.conductance.of(held, scene.contact_modulus).unwrap().unwrap();
             assert_relative_eq!(here.conductance.unwrap(), conductance, max_relative = ROUNDING);
         }
         let fold = contact.solve(Load::Force(by_force)).unwrap();
@@ -291,6 +293,6 @@ fn a_map_is_pressed_through_its_line() {
         contacts.each_mut().map(|c| c.solve(Load::Force(force)).unwrap().stiffness.unwrap());
     assert!(one.to_bits() == same.to_bits() && one.to_bits() != other.to_bits());
     let full = contacts[0].solve(Load::Force(normalisation.force(1e3).unwrap())).unwrap();
-    let plateau = crate::rule::full_contact_stiffness(on_map.modulus, normalisation.length);
+    let plateau = crate::rule::full_contact_stiffness(on_map.contact_modulus, normalisation.length);
     assert_relative_eq!(full.stiffness.unwrap(), plateau, max_relative = 1e-12);
 }

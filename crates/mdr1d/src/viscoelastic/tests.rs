@@ -47,10 +47,10 @@ fn steps_of_the_approach_relax_as_the_modulus() {
         (Rheology::Maxwell { viscosity: 2.0 }, &|t| (-t / 2.0).exp()),
         (SOLID, &|t| 1.0 + 3.0 * (-t / 2.0).exp()),
     ];
-    for (rheology, modulus) in moduli {
+    for (rheology, contact_modulus) in moduli {
         let mut contact = prepare(sphere(), rheology);
         for time in [0.0, 0.1, 1.0, 30.0] {
-            let expected = elastic * modulus(time);
+            let expected = elastic * contact_modulus(time);
             assert_relative_eq!(force(&mut *contact, time, 0.01), expected, max_relative = ROUNDING);
         }
     }
@@ -116,18 +116,18 @@ fn ramps_in_closed_form() {
 
 #[test]
 fn in_any_units() {
-    let run = |length: f64, modulus: f64| {
+    let run = |length: f64, contact_modulus: f64| {
         let surface = Surface::Sphere { radius: length, size: (2.0 * length).into() };
-        let mut scene = Scene::new(surface, modulus);
+        let mut scene = Scene::new(surface, contact_modulus);
         scene.effects.rheology = SOLID;
         scene.outputs.stiffness = false;
         let mut contact = Viscoelastic.prepare(&scene, 0).unwrap();
-        let nondimensional = Nondimensionalisation::new(modulus, length, length).unwrap();
+        let nondimensional = Nondimensionalisation::new(contact_modulus, length, length).unwrap();
         let force = nondimensional.force(1e-3).unwrap();
         contact.advance(Step::normal(1.0, Load::Force(force))).unwrap().approach.unwrap() / length
     };
-    for (length, modulus) in [(1e-150, 1e150), (1e150, 1e-150), (1e-3, 1e6)] {
-        assert_relative_eq!(run(length, modulus), run(1.0, 1.0), max_relative = ROUNDING);
+    for (length, contact_modulus) in [(1e-150, 1e150), (1e150, 1e-150), (1e-3, 1e6)] {
+        assert_relative_eq!(run(length, contact_modulus), run(1.0, 1.0), max_relative = ROUNDING);
     }
 }
 

@@ -360,19 +360,19 @@ fn numbers(state: &ContactState) -> Result<[f64; 8]> {
 fn units(ledger: &mut Ledger, effort: Effort) -> Result<()> {
     let map = rough_map(2.4, effort.pick(16, 32), 5)?;
     // (E*, lateral, vertical): forces are their product, energies the vertical once more.
-    let run = |modulus: f64, lateral: f64, vertical: f64| -> Result<Vec<[f64; 8]>> {
+    let run = |contact_modulus: f64, lateral: f64, vertical: f64| -> Result<Vec<[f64; 8]>> {
         let there = map.scaled(lateral, vertical)?;
         let Pair { first, second } = alike(0.3);
         let pair = |body| match body {
-            Body::Elastic { young, poisson } => Body::Elastic { young: young * modulus, poisson },
+            Body::Elastic { young, poisson } => Body::Elastic { young: young * contact_modulus, poisson },
             other => other,
         };
         let pair = Pair { first: pair(first), second: pair(second) };
         let mut scene = rubbed(&there, pair, MU);
-        scene.modulus = pair.modulus()?;
+        scene.contact_modulus = pair.contact_modulus()?;
         scene.outputs.tangential_stiffness = true;
         let mut slide = Slide::of(&there, &scene, MU)?;
-        let unit = modulus * lateral * vertical;
+        let unit = contact_modulus * lateral * vertical;
         let (force, most) = (0.3 * unit, 0.3 * MU * unit);
         [
             (force, Tangential::Force(along(0.7 * most))),
@@ -382,7 +382,7 @@ fn units(ledger: &mut Ledger, effort: Effort) -> Result<()> {
         .into_iter()
         .map(|(force, load)| {
             let [f, q_x, q_y, x, y, lost, kxx, kxy] = numbers(&slide.attempt(Load::Force(force), load)?)?;
-            let (energy, k) = (unit * vertical, modulus * lateral);
+            let (energy, k) = (unit * vertical, contact_modulus * lateral);
             Ok([
                 f / unit,
                 q_x / unit,
@@ -397,7 +397,7 @@ fn units(ledger: &mut Ledger, effort: Effort) -> Result<()> {
         .collect()
     };
     let here = run(1.0, 1.0, 1.0)?;
-    for (modulus, lateral, vertical) in [
+    for (contact_modulus, lateral, vertical) in [
         (1e100, 1e100, 1e-150),
         (1e-100, 1e-100, 1e150),
         (1e-12, 1e12, 1.0),
@@ -406,7 +406,7 @@ fn units(ledger: &mut Ledger, effort: Effort) -> Result<()> {
         (1.0, 1.0, 1e140),
         (1.0, 1.0, 1e-140),
     ] {
-        let there = run(modulus, lateral, vertical)?;
+        let there = run(contact_modulus, lateral, vertical)?;
         for (here, there) in here.iter().zip(&there) {
             for (i, (a, b)) in here.iter().zip(there).enumerate() {
                 // The entry across is small beside the diagonal one.

@@ -50,9 +50,9 @@ pub(super) const CASES: [Case; 5] = [
     },
 ];
 
-fn solve(map: &HeightMap, modulus: f64, load: Load) -> Result<ContactState> {
+fn solve(map: &HeightMap, contact_modulus: f64, load: Load) -> Result<ContactState> {
     let mut scene = watched(map);
-    scene.modulus = modulus;
+    scene.contact_modulus = contact_modulus;
     tight().prepare(&scene, 0)?.solve(load)
 }
 
@@ -95,20 +95,26 @@ fn powers_of_two(ledger: &mut Ledger, effort: Effort) -> Result<()> {
 
 fn neutral(ledger: &mut Ledger, effort: Effort, normalisation: &[(f64, f64, f64)]) -> Result<()> {
     let here = rough_map(2.4, effort.pick(33, 129), 5)?;
-    for &(modulus, lateral, vertical) in normalisation {
+    for &(contact_modulus, lateral, vertical) in normalisation {
         let there = here.scaled(lateral, vertical)?;
         for size in [1e-6, 0.1, 20.0] {
-            let force = modulus * lateral * vertical;
+            let force = contact_modulus * lateral * vertical;
             for (here_load, there_load) in [
                 (Load::Force(size), Load::Force(size * force)),
                 (Load::Approach(size), Load::Approach(size * vertical)),
             ] {
                 let a = solve(&here, 1.0, here_load)?;
-                let b = solve(&there, modulus, there_load)?;
+                let b = solve(&there, contact_modulus, there_load)?;
                 ledger.meets(&b, tight().tolerance);
-                let b = divided(b, force, vertical, modulus * lateral, modulus * vertical / lateral);
+                let b = divided(
+                    b,
+                    force,
+                    vertical,
+                    contact_modulus * lateral,
+                    contact_modulus * vertical / lateral,
+                );
                 ledger.same(
-                    &format!("{here_load:?} in units of {modulus:e}, {lateral:e}, {vertical:e}"),
+                    &format!("{here_load:?} in units of {contact_modulus:e}, {lateral:e}, {vertical:e}"),
                     &b,
                     &a,
                 )?;
@@ -133,16 +139,16 @@ fn divided(mut state: ContactState, force: f64, height: f64, stiffness: f64, pre
 fn beyond(ledger: &mut Ledger, _: Effort) -> Result<()> {
     let map = rough_map(2.4, 17, 5)?;
     // (E*, lateral, vertical): a force of 1e450, of 1e-450; a stiffness of 1e320.
-    for (modulus, lateral, vertical) in
+    for (contact_modulus, lateral, vertical) in
         [(1e150, 1e150, 1e150), (1e-150, 1e-150, 1e-150), (1e160, 1e160, 1e-160), (1e300, 1e20, 1.0)]
     {
         let there = map.scaled(lateral, vertical)?;
-        let found = solve(&there, modulus, Load::Approach(vertical));
+        let found = solve(&there, contact_modulus, Load::Approach(vertical));
         let honest = match &found {
             Err(Error::Domain { value, .. }) => !value.is_finite() || value.abs() <= 0.0,
             _ => false,
         };
-        ledger.must(honest, || format!("{modulus:e} {lateral:e} {vertical:e}: {found:?}"));
+        ledger.must(honest, || format!("{contact_modulus:e} {lateral:e} {vertical:e}: {found:?}"));
         ledger.count(usize::from(!honest));
     }
     // The force alone is beyond f64 where the stiffness is not asked for; d and k of a light one are fine.

@@ -23,9 +23,11 @@ impl ModelOnSurface {
     /// Everything that decides its numbers.
     pub fn key(&self, scene: &SceneFile) -> String {
         let surface = scene.surface.key();
-        let SceneFile { modulus, hardness, accuracy, pair, effects, request, requested, system, .. } = scene;
+        let SceneFile {
+            contact_modulus, hardness, accuracy, pair, effects, request, requested, system, ..
+        } = scene;
         format!(
-            "format {FORMAT} {}\nversion {}\nmodel {:?}\nsurface {surface}\nmodulus {modulus:?}\nhardness {hardness:?}\naccuracy {accuracy:?}\npair {pair:?}\neffects {effects:?}\n\
+            "format {FORMAT} {}\nversion {}\nmodel {:?}\nsurface {surface}\nmodulus {contact_modulus:?}\nhardness {hardness:?}\naccuracy {accuracy:?}\npair {pair:?}\neffects {effects:?}\n\
              request {request:?}\noutputs {requested:?} {system:?}\nnumber {}\nseed {}\n",
             bem3d::FORMAT,
             env!("CARGO_PKG_VERSION"),

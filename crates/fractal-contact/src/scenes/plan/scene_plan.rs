@@ -3,7 +3,7 @@
 use crate::scenes::plan::{Assumptions, Cost, ModelOnSurface, calibration, probe};
 use crate::scenes::read::{
     Diagnostic, EffectLine, LoadKind, LoadRequest, Numerics, Result, SceneFile, System, amount, cells,
-    description, effect_lines, short,
+    description, effect_lines, short, words,
 };
 use bem3d::UNRESOLVED_RANGE;
 use contact_model::units::ascii;
@@ -38,8 +38,8 @@ pub struct Plan {
     pub prepared: Option<surface_io::Description>,
     /// Remarks on the scene.
     pub notes: Vec<Diagnostic>,
-    /// E*.
-    pub modulus: f64,
+    /// E*, and which bodies have it.
+    pub contact_modulus: String,
     /// Whether numbers carry units.
     pub system: System,
     /// Number of states for each surface, and of surfaces.
@@ -138,7 +138,7 @@ impl Plan {
                 .chain(of_slopes)
                 .chain(beyond_hardness(scene))
                 .collect(),
-            modulus: scene.modulus,
+            contact_modulus: words::contact_modulus(scene),
             system: scene.system,
             states: scene.request.count(),
             surfaces: scene.sampling.surfaces,
@@ -311,7 +311,7 @@ impl fmt::Display for Plan {
                 writeln!(f, "          {line}")?;
             }
         }
-        writeln!(f, "modulus   {} (E*)", ascii(&amount(self.modulus, self.system.shown("Pa"))))?;
+        writeln!(f, "material  {}", self.contact_modulus)?;
         writeln!(f, "units     {}", self.units())?;
         match self.surfaces {
             1 => writeln!(f, "states    {} on one surface", self.states)?,

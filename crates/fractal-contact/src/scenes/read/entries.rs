@@ -210,7 +210,7 @@ impl<'a> Entries<'a> {
                 };
                 // Names of older versions are read, not recommended.
                 let current: Vec<&str> =
-                    known.iter().copied().filter(|k| !["chance", "width"].contains(k)).collect();
+                    known.iter().copied().filter(|k| !["chance", "width", "modulus"].contains(k)).collect();
                 return Err(Diagnostic::new(format!("`{name}` is no {what}"))
                     .at(span)
                     .with_help(suggestion(name, &current)));

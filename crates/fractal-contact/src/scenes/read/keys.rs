@@ -57,7 +57,7 @@ pub static SCENE_KEYS: &[SceneKeys] = &[
     keys("scene", &[&["models"]], "names, in the order of the results", ""),
     keys(
         "scene",
-        &[&["modulus", "bodies"]],
+        &[&["contact_modulus", "bodies"]],
         "E* of the pair; or two of `\"rigid\"`, `{ young, poisson }` (friction needs them)",
         "",
     ),

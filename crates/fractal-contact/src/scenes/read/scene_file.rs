@@ -34,8 +34,8 @@ pub struct SceneFile {
     pub models: Vec<Numerics>,
     /// What is pressed.
     pub surface: SceneSurface,
-    /// Effective modulus E*.
-    pub modulus: f64,
+    /// Contact modulus E* of the pair.
+    pub contact_modulus: f64,
     /// Pressure above which a state is marked; E*/10 where none is given.
     pub hardness: Option<f64>,
     /// Which accuracy the grid is chosen for ([`SceneFile::with_grid_for_accuracy`]).
@@ -103,14 +103,19 @@ impl SceneFile {
     /// scene.requested.outputs.pressure = true;
     /// assert!(Plan::new(&scene).is_err());
     /// ```
-    pub fn new(models: Vec<Numerics>, surface: SceneSurface, modulus: f64, request: LoadRequest) -> Self {
+    pub fn new(
+        models: Vec<Numerics>,
+        surface: SceneSurface,
+        contact_modulus: f64,
+        request: LoadRequest,
+    ) -> Self {
         Self {
             path: PathBuf::new(),
             text: String::new(),
             system: System::None,
             models,
             surface,
-            modulus,
+            contact_modulus,
             hardness: None,
             accuracy: None,
             pair: None,
@@ -208,7 +213,7 @@ impl SceneFile {
     pub fn scene(&self, numerics: &Numerics, seed: u64) -> contact_model::Result<Scene> {
         Ok(Scene {
             surface: self.surface.for_model(numerics, seed)?,
-            modulus: self.modulus,
+            contact_modulus: self.contact_modulus,
             pair: self.pair,
             effects: self.effects,
             outputs: self.requested.outputs,
@@ -266,11 +271,11 @@ impl SceneFile {
 fn read_scene(root: &Entries<'_>, directory: &Path, registry: &Registry) -> Read<SceneFile> {
     let Some(scene) = root.table("scene")? else {
         return Err(Diagnostic::new("there is no [scene]")
-            .with_help("a scene begins with [scene]: `models`, `modulus` and a load"));
+            .with_help("a scene begins with [scene]: `models`, `contact_modulus` and a load"));
     };
     let mut system = System::Si;
     scene.set(&mut system, "units", |e| e.choice(&[("none", System::None), ("si", System::Si)]))?;
-    let (modulus, pair) = read_material(&scene, system)?;
+    let (contact_modulus, pair, renamed) = read_material(&scene, system)?;
     let options = root.table("models")?;
     let models = read_models(&scene, options.as_ref(), registry.models())?;
     let effects_table = root.table("effects")?;
@@ -291,6 +296,7 @@ fn read_scene(root: &Entries<'_>, directory: &Path, registry: &Registry) -> Read
     let accuracy = read_accuracy(&scene)?;
     let SurfaceEntry { surface, metadata, reliable_from, mut notes } =
         read_surface(&scene, system, directory)?;
+    notes.splice(0..0, renamed);
     check_cells(options.as_ref(), &models, &surface)?;
     if accuracy.is_some() {
         check_no_grid(options.as_ref())?;
@@ -326,7 +332,7 @@ fn read_scene(root: &Entries<'_>, directory: &Path, registry: &Registry) -> Read
         reliable_from,
         notes,
         places,
-        ..SceneFile::new(models, surface, modulus, request)
+        ..SceneFile::new(models, surface, contact_modulus, request)
     })
 }
 
@@ -338,10 +344,16 @@ fn places(
     names.filter_map(|name| Some((name, table.entry(name)?.key_span()))).collect()
 }
 
-/// E*, from itself or from both bodies.
-fn read_material(scene: &Entries<'_>, system: System) -> Read<(f64, Option<Pair>)> {
-    match scene.one_of(&["modulus", "bodies"])? {
-        Some(("modulus", entry)) => Ok((entry.positive(Dimension::PRESSURE, system)?, None)),
+/// E*, from itself or from both bodies, and a note where it stands under the name that it had before.
+fn read_material(scene: &Entries<'_>, system: System) -> Read<(f64, Option<Pair>, Option<Diagnostic>)> {
+    match scene.one_of(&["contact_modulus", "modulus", "bodies"])? {
+        Some(("contact_modulus", entry)) => Ok((entry.positive(Dimension::PRESSURE, system)?, None, None)),
+        Some(("modulus", entry)) => {
+            let note = Diagnostic::note("`modulus` is read as `contact_modulus`, which is E* of the pair")
+                .at(entry.key_span())
+                .with_help("for Young's modulus and Poisson's ratio write `bodies`");
+            Ok((entry.positive(Dimension::PRESSURE, system)?, None, Some(note)))
+        }
         Some((_, entry)) => {
             let values = entry.list();
             let [first, second] = &values[..] else {
@@ -350,11 +362,11 @@ fn read_material(scene: &Entries<'_>, system: System) -> Read<(f64, Option<Pair>
                     .with_help("two: `bodies = [\"rigid\", { young = \"70 GPa\", poisson = 0.33 }]`"));
             };
             let pair = Pair { first: read_body(first, system)?, second: read_body(second, system)? };
-            let modulus = pair.modulus().map_err(|e| entry.diagnostic(e.to_string()))?;
-            Ok((modulus, Some(pair)))
+            let contact_modulus = pair.contact_modulus().map_err(|e| entry.diagnostic(e.to_string()))?;
+            Ok((contact_modulus, Some(pair), None))
         }
-        None => Err(scene.misspelt_or(&["modulus", "bodies"], scene.diagnostic("[scene] has no material").with_help(
-            "add `modulus = \"70 GPa\"` (E* of the pair), or `bodies = [\"rigid\", { young = \"70 GPa\", poisson = 0.33 }]`",
+        None => Err(scene.misspelt_or(&["contact_modulus", "bodies"], scene.diagnostic("[scene] has no material").with_help(
+            "add `contact_modulus = \"70 GPa\"` (E* of the pair), or `bodies = [\"rigid\", { young = \"70 GPa\", poisson = 0.33 }]`",
         ))),
     }
 }

@@ -1,9 +1,9 @@
 //! What scenes, loads, units and models are called in titles and labels.
 
 use crate::models::ModelRecord;
-use crate::scenes::read::{LoadKind, LoadRequest, SceneFile, amount};
+use crate::scenes::read::{LoadKind, LoadRequest, SceneFile, System, amount, short};
 use contact_model::units::{ascii, to_digits};
-use contact_model::{Error, Hardness};
+use contact_model::{Body, Error, Hardness};
 use std::path::Path;
 
 /// The scene's name in a title: that of its file, of `NAME/scene.toml` that of its folder.
@@ -22,6 +22,34 @@ pub(crate) fn load(scene: &SceneFile, state: usize) -> String {
             format!("{} {}", loads.kind.key().replace('_', " "), amount(loads.values[state], unit))
         }
         LoadRequest::Path(_) => format!("step {state}"),
+    }
+}
+
+/// Poisson's ratio of the examples that say what a contact modulus means.
+const EXAMPLE_POISSON: f64 = 0.3;
+
+/// E* of a scene and which bodies have it: the two that are given, else examples, because E* is easily taken for a
+/// Young's modulus.
+pub(crate) fn contact_modulus(scene: &SceneFile) -> String {
+    let unit = scene.system.shown("Pa");
+    let modulus = ascii(&amount(scene.contact_modulus, unit));
+    let body = |body: Body| match body {
+        Body::Rigid => "a rigid body".to_owned(),
+        Body::Elastic { young, poisson } => {
+            format!("a body with E = {}, nu = {}", ascii(&amount(young, unit)), short(poisson))
+        }
+    };
+    match (&scene.pair, scene.system) {
+        (Some(pair), _) => format!("E* = {modulus}: {} on {}", body(pair.first), body(pair.second)),
+        (None, System::None) => format!("E* = {modulus}"),
+        (None, System::Si) => {
+            let plane_strain = 1.0 - EXAMPLE_POISSON * EXAMPLE_POISSON;
+            let [alike, on_rigid] = [2.0, 1.0]
+                .map(|bodies| ascii(&to_digits(bodies * plane_strain * scene.contact_modulus, unit, 3)));
+            format!(
+                "E* = {modulus}: two like bodies with E = {alike}, or one with E = {on_rigid} on a rigid one (nu = {EXAMPLE_POISSON})"
+            )
+        }
     }
 }
 

@@ -116,7 +116,7 @@ mod tests {
             .with_time(5e-324)
             .with_patches(Patches::new(vec![1e-300, 0.1]))
             .with_adhesive(adhesive);
-        let normalisation = Normalisation { modulus: 1.0, length: 2.0, height: None };
+        let normalisation = Normalisation { contact_modulus: 1.0, length: 2.0, height: None };
         let grid = GridErrors {
             rms_slope: 0.1,
             errors: [("area".to_owned(), analysis::grid_error(1.0, 1.1, 1.3).unwrap())].into(),

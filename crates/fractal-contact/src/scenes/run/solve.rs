@@ -312,7 +312,7 @@ mod tests {
         let dir = tempfile::tempdir().unwrap();
         let unit = ModelOnSurface { model: 0, surface: 0 };
         std::fs::create_dir(dir.path().join(".units")).unwrap();
-        let normalisation = contact_model::Normalisation { modulus: 1.0, length: 1.0, height: None };
+        let normalisation = contact_model::Normalisation { contact_modulus: 1.0, length: 1.0, height: None };
         let solved = Solved { state, normalisation, warnings: Vec::new(), grid: None };
         let kept = unit.recorded(&scene, solved, dir.path(), 0).unwrap();
         // Three files of each field, its values for the picture, and what the report shows of it.
@@ -361,7 +361,7 @@ mod tests {
         let state = ContactState::new(1.0, SolveReport::exact("test")).with_fields(fields);
         let dir = tempfile::tempdir().unwrap();
         std::fs::create_dir(dir.path().join(".units")).unwrap();
-        let normalisation = contact_model::Normalisation { modulus: 1.0, length: 1.0, height: None };
+        let normalisation = contact_model::Normalisation { contact_modulus: 1.0, length: 1.0, height: None };
         let solved = Solved { state, normalisation, warnings: Vec::new(), grid: None };
         let unit = ModelOnSurface { model: 0, surface: 0 };
         let kept = unit.recorded(&scene, solved, dir.path(), 0).unwrap();

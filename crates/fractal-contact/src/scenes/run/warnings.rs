@@ -88,7 +88,7 @@ impl Warning {
             flat: matches!(scene.surface, SceneSurface::Plain(Surface::Flat { .. })),
             // Below a hardness that limits the pressure nothing is marked.
             hardness: match scene.effects.hardness {
-                Hardness::Off => scene.hardness.unwrap_or(YIELD * scene.modulus),
+                Hardness::Off => scene.hardness.unwrap_or(YIELD * scene.contact_modulus),
                 _ => f64::INFINITY,
             },
             stiffness: scene.requested.outputs.stiffness,
@@ -159,7 +159,7 @@ impl StateNotes {
         Self(Circumstances {
             flat: matches!(scene.surface, Surface::Flat { .. }),
             hardness: match scene.effects.hardness {
-                Hardness::Off => YIELD * scene.modulus,
+                Hardness::Off => YIELD * scene.contact_modulus,
                 _ => f64::INFINITY,
             },
             stiffness: scene.outputs.stiffness,

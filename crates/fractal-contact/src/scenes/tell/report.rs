@@ -150,7 +150,7 @@ impl Report<'_> {
             p { (self.plan.surface) }
             @if let Some(told) = &self.plan.metadata { h3 { "What the file says, and what was done to it" } pre { (told) } }
             @if let Some(map) = self.plan.as_solved() { h3 { "As solved" } pre { (map) } }
-            p { "Modulus E*: " (amount(self.plan.modulus, self.scene.system.shown("Pa"))) "; units: " (self.plan.units()) "." }
+            p { (self.plan.contact_modulus) ". Units: " (self.plan.units()) "." }
         }
     }
 

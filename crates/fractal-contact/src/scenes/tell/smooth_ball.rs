@@ -18,7 +18,7 @@ pub(crate) fn states(scene: &SceneFile) -> Vec<(usize, ContactState, Normalisati
     }
     let asked = &scene.requested.outputs;
     let outputs = Outputs { stiffness: asked.stiffness, area: asked.area, ..Outputs::default() };
-    let smooth = Scene { outputs, ..Scene::new(body.clone(), scene.modulus) };
+    let smooth = Scene { outputs, ..Scene::new(body.clone(), scene.contact_modulus) };
     let Ok(mut contact) = analytic::Hertz.prepare(&smooth, 0) else { return Vec::new() };
     let normalisation = contact.normalisation();
     // A contact beyond the rectangle has no answer.
