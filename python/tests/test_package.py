@@ -53,21 +53,6 @@ def test_licences_are_in_the_wheel():
     assert {"LICENSE-MIT", "LICENSE-APACHE", "py.typed", "_core.pyi"} <= names
 
 
-def test_dependencies_are_those_of_the_workspace():
-    """The same versions of what both are built from: the same bits."""
-    if not (PYTHON.parent / "Cargo.lock").exists():
-        pytest.skip("outside of the repository")
-
-    def versions(path):
-        packages = tomllib.loads(path.read_text())["package"]
-        return {(package["name"], package["version"]) for package in packages if "source" in package}
-
-    workspace = versions(PYTHON.parent / "Cargo.lock")
-    known = {name for name, _ in workspace}
-    differing = {one for one in versions(PYTHON / "Cargo.lock") if one[0] in known} - workspace
-    assert not differing
-
-
 def test_numpy_is_the_only_dependency():
     required = [r for r in importlib.metadata.requires("fractal-contact") or [] if "extra" not in r]
     assert [re.split(r"[<>=]", r)[0] for r in required] == ["numpy"]

@@ -55,38 +55,29 @@ fn blocks_of(text: &str, name: &str) -> Vec<Block> {
 /// Paths of this program and of `fractal-contact`, which is built in the same profile.
 pub fn programs(root: &Path) -> Result<[PathBuf; 2]> {
     let own = std::env::current_exe().map_err(Error::file("find", Path::new("xtask")))?;
-    let profile = if cfg!(debug_assertions) { "test" } else { "release" };
+    let profile = if cfg!(debug_assertions) { "dev" } else { "release" };
     let mut cargo = Command::new("cargo");
-    // Both at once: alone, each resolves features of its own and would compile the solvers again.
-    cargo.args(["build", "--quiet", "--locked", "--profile", profile]);
-    cargo.args(["--package", "fractal-contact", "--package", "xtask"]);
+    // Not by their packages, whose features alone are others than those of the workspace.
+    cargo.args(["build", "--quiet", "--locked", "--profile", profile, "--bins"]);
     let status = cargo.current_dir(root).status().map_err(Error::file("run", Path::new("cargo")))?;
     if !status.success() {
-        return Err(Error::content(root, "cargo build --package fractal-contact --package xtask failed"));
+        return Err(Error::content(root, "cargo build --bins failed"));
     }
     let scenes = own.with_file_name(format!("fractal-contact{}", std::env::consts::EXE_SUFFIX));
     Ok([own, scenes])
 }
 
 /// A temporary directory that looks like the repository to the commands: `data/`, and both programs on the
-/// path. It goes with its value. (tempfile would give `bitflags` a feature that the scene program does without,
-/// and the solvers would be compiled once for each program.)
+/// path. It goes with its value.
 pub struct Scratch {
-    folder: PathBuf,
-}
-
-impl Drop for Scratch {
-    fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.folder);
-    }
+    folder: tempfile::TempDir,
 }
 
 impl Scratch {
     /// With copies of the files of `data/` and a `cargo` that knows `cargo xtask` alone.
     pub fn new(root: &Path, [xtask, scenes]: &[PathBuf; 2]) -> Result<Self> {
-        let folder = std::env::temp_dir().join(format!("fractal-contact-book-{}", std::process::id()));
-        fs::create_dir(&folder).map_err(Error::file("create", &folder))?;
-        let programs = folder.join("programs");
+        let folder = tempfile::tempdir().map_err(Error::file("create a folder in", &std::env::temp_dir()))?;
+        let programs = folder.path().join("programs");
         let set_up = format!(
             "mkdir '{programs}'
             cp -R '{root}/data' data
@@ -101,20 +92,20 @@ impl Scratch {
         let scratch = Self { folder };
         match scratch.run(&set_up)? {
             None => Ok(scratch),
-            Some(output) => Err(Error::content(&scratch.folder, output)),
+            Some(output) => Err(Error::content(scratch.folder.path(), output)),
         }
     }
 
     /// An empty folder in it.
     pub fn empty(&self, name: &str) -> Result<PathBuf> {
-        let folder = self.folder.join(name);
+        let folder = self.folder.path().join(name);
         fs::create_dir(&folder).map_err(Error::file("create", &folder))?;
         Ok(folder)
     }
 
     /// Runs commands, the first failure ends them; `None`, or what they printed where one failed.
     pub fn run(&self, commands: &str) -> Result<Option<String>> {
-        let here = &self.folder;
+        let here = self.folder.path();
         let path = std::env::var_os("PATH").unwrap_or_default();
         let paths = std::iter::once(here.join("programs")).chain(std::env::split_paths(&path));
         let joined = std::env::join_paths(paths).map_err(|error| Error::content(here, error.to_string()))?;

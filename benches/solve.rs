@@ -1,7 +1,7 @@
 //! The hot paths: the kernel, one application of each operator, one load from nothing in sparse and in dense
 //! contact with each strategy, a sweep of loads, a step of a path with adhesion.
 //!
-//! `cargo bench -p bem3d --bench solve -- --save-baseline before` on one commit and `-- --baseline before` on
+//! `cargo bench -p benches -- --save-baseline before` on one commit and `-- --baseline before` on
 //! another compare both; run them one after the other on an idle machine. `-- --quick` only shows that they
 //! run.
 

@@ -1,0 +1,1 @@
+//! Benchmarks of the solver, in `solve.rs`; this library is empty.
