@@ -4,7 +4,6 @@
 mod constants;
 mod crates;
 mod names;
-mod pages;
 mod readmes;
 mod sources;
 

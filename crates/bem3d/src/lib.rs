@@ -61,40 +61,103 @@
 //! state. Cells too large for the range are refused with the side that would do; results with Dugdale's law
 //! are of first order in the cell.
 //!
-//! # How
+//! # How it solves a load
 //!
-//! One load is an outer iteration over contact sets (`active_set`): from an initial guess (the tangent of the
-//! last state, or nested iteration from coarser grids), solve on a superset of the contact set, remove cells
-//! in tension, evaluate the exact gap, add penetrating cells. Each linear system is solved as its `Recipe`
-//! says (`operator`), which is a pure function of sizes:
+//! On a known contact set the problem is linear. The unknown is the set, and an outer iteration over contact sets
+//! finds it (`active_set`):
+//!
+//! 1. An initial guess gives a superset of the contact set. After another load it is the tangent `p + Dd q` of
+//!    the last state. Without one, the same surface is solved on coarser grids first (nested iteration).
+//! 2. The linear system is solved on this set, and the cells in tension are removed.
+//! 3. The exact gap is evaluated on all candidates, which are the cells with `z < d`; elsewhere the gap is
+//!    positive. The cells that penetrate are added.
+//! 4. Steps 2 and 3 repeat until the residuals meet the tolerance.
+//!
+//! Removing the cells in tension never removes a true contact cell where G, restricted to the set, is an inverse
+//! M-matrix. It was one on every set tried, with kernels whose entries are all positive. The periodic kernel of
+//! zero mean and the kernel of a half-plane get a constant for this reason. Rounding, an early stop of the linear
+//! solve or a hardness can break the property; step 3 then returns the cell. Where the residuals have not fallen
+//! for many iterations, a fall-back takes over that lowers the energy with every step (`active_set::descent`).
+//! Coarse grids give initial guesses and never restrict the candidates, because the summits of a fractal vanish
+//! on them.
+//!
+//! A cell at its hardness is at the other bound of the pressure and leaves the linear system as a cell without
+//! contact does, so that the same iteration serves both. With adhesion the iteration is another one
+//! (`adhesion::equilibrium`), and it solves its linear systems in the same way.
+//!
+//! **The linear system** is solved as its `Recipe` says (`operator`). A recipe is a pure function of sizes and of
+//! the constants in `tuning`, and the report of a state prints it.
 //!
 //! | part | choices |
 //! |---|---|
-//! | small sets | a Cholesky factor: pressure and stiffness from one factorisation |
-//! | larger sets | preconditioned conjugate gradients (`linear`), the same code in single and in double precision |
-//! | influence matrix | direct sum; two levels (smooth far field on a lattice, close pairs exactly); two transforms (the same split, what is near by a single-precision FFT of little more than the bounding box); single-precision FFT of the bounding box, for corrections of the pressure a shorter one that is inexact at long lags |
-//! | preconditioner | none; the inverse of G on a torus around the contact, with the residual extended by zeros or through the gaps between contacts: `E' B E >= (G_CC)^-1` for every extension E |
-//! | certificate | exact sums or double-precision transforms, always |
+//! | small sets | a Cholesky factor, from which both pressure and stiffness follow |
+//! | larger sets | preconditioned conjugate gradients (`linear`); the same code runs in single and in double precision |
+//! | influence matrix, for scattered contact | a direct sum over pairs, or two levels: a smooth far field on a lattice and the close pairs exactly |
+//! | influence matrix, for contact that fills its window | a single-precision FFT of the bounding box, or two transforms: the same split with a near field by an FFT of little more than the bounding box; corrections of the pressure take a shorter FFT that is inexact at long lags |
+//! | preconditioner | none, or the inverse of G on a torus around the contact; the residual is extended by zeros or through the gaps between contacts, and `E' B E >= (G_CC)^-1` holds for every extension E |
+//! | certificate | always the exact sums, or transforms in double precision |
 //!
-//! The energy `r' G^-1 r` that the preconditioner bounds also bounds the error of k (`stiffness`). The tuned
-//! constants of a solve are in `tuning`, with meaning and unit; those of adhesion stand beside their
+//! The energy `r' G^-1 r` that the preconditioner bounds also bounds the error of k (`stiffness`). The two-level
+//! operator is for square cells with free boundaries; oblong cells and periodic maps take transforms instead. The
+//! tuned constants of a solve are in `tuning`, with meaning and unit. Those of adhesion stand beside their
 //! iterations.
 //!
-//! # The way of one load
-//!
-//! From [`PreparedContact::solve`] to the transform a load crosses five files:
+//! **From the load to the transform** a solve crosses five files:
 //!
 //! | file | functions | what they do |
 //! |---|---|---|
-//! | `model/contact.rs` | `solve_until`, `at`, `at_target`, `settle` | with adhesion or without; the pressure, then the stiffness; the state |
-//! | `active_set/solver.rs` | `solve`, `iterate`, `evaluate`, `improve` | the outer iteration over contact sets |
-//! | `linear/pcg.rs` | `Workspace::solve`, `pcg` | the linear system on one set |
-//! | `operator/operators.rs` | `Operators::exact`, `Planned::apply` | the operator that is planned for the set |
-//! | `operator/fft.rs` | `FftConvolution::apply` | the convolution |
+//! | `model/contact.rs` | `solve_until`, `at`, `at_target`, `settle` | tell adhesion from its absence, find the pressure and then the stiffness, return the state |
+//! | `active_set/solver.rs` | `solve`, `iterate`, `evaluate`, `improve` | iterate over contact sets |
+//! | `linear/pcg.rs` | `Workspace::solve`, `pcg` | solve the linear system on one set |
+//! | `operator/operators.rs` | `Operators::exact`, `Planned::apply` | apply the operator that is planned for the set |
+//! | `operator/fft.rs` | `FftConvolution::apply` | convolve |
 //!
-//! Beside it `model/load.rs` brings a load into the units of the surface, `model/state.rs` assembles every
-//! state, and `active_set/bounds.rs` says what an upper bound of the pressure changes. With adhesion, `at`
-//! leads to `model/adhesive.rs` and `adhesion/equilibrium.rs`, and from there to the same systems.
+//! Corrections of the pressure go through `linear/pcg.rs`. Residuals go from the solver straight to
+//! `Operators::exact`, in double precision. Beside these files `model/load.rs` brings a load into the units of
+//! the surface, `model/state.rs` assembles every state, and `active_set/bounds.rs` says what an upper bound of
+//! the pressure changes. With adhesion, `at` leads to `model/adhesive.rs` and `adhesion/equilibrium.rs`.
+//!
+//! **Between loads** the prepared contact keeps its plans, its buffers and the coarser grids. The next load gets
+//! the tangent of the last state (`LastState`). A load that is solved again to a tighter tolerance goes on with
+//! the gap of its state (`Continuation`).
+//!
+//! **Three kinds of state depend on the path.** `model/memory.rs` adds the indentation of a hardness to the
+//! heights, `model/adhesive.rs` goes from equilibrium to equilibrium, and `model/increment.rs` takes one
+//! increment of friction a step. `model/path_memory.rs` holds all that the next step follows from, and an effect
+//! that remembers more must add it there. Everything else that a contact keeps between loads is forgotten before
+//! each step of a path. A path that was interrupted therefore goes on to the same bits.
+//!
+//! # Parts
+//!
+//! Modules use each other in one direction: each uses those behind it in `model`, `adhesion`, `friction`,
+//! `stiffness`, `active_set`, `linear`, `operator`, `kernel`, `geometry`. Each part that is fast or intricate
+//! stands beside a reference implementation that is slow and right, and tests compare the two.
+//!
+//! | part | what it does | reference implementation in the tests |
+//! |---|---|---|
+//! | `geometry::CellSet` | the one type of sets: rows of columns, with runs where they are long | plain lists of indices |
+//! | `kernel::love` | influence coefficients of rectangular cells; the far field by multipoles | values of 40 digits; a rectangle as three squares |
+//! | `kernel::half_plane` | strips on a half-plane, for profiles with free boundaries; displacements are counted from twice the side, so that every entry is positive | differences of long rows of Love's squares; quadrature |
+//! | `kernel::periodic` | the kernel of a rectangle that repeats itself, from its symbol; a constant on top of the zero mean makes every entry positive | sums of Love's kernel over images |
+//! | `kernel::tangential`, `tangential_table` | Cerruti's solution on rectangular cells for two bodies, free and periodic | quadrature of point forces; sums over images |
+//! | `kernel::coupling_table` | the coupling of normal and tangential displacements | quadrature of point forces; sums over images |
+//! | `operator::direct` | the sum over pairs | it is the reference |
+//! | `operator::fft` | a circular convolution on the bounding box, exact at the length 2(n - 1) for an even kernel, or at the period itself; in double precision, or in single precision inside an iteration | `direct` |
+//! | `operator::transform` | the transforms of one, two or three fields in the same rows and columns | sums over pairs |
+//! | `operator::vector`, `coupling` | convolutions with a tensor, of length 2n - 1 because its entry across is odd | sums over pairs |
+//! | `operator::two_level` | a smooth far field on a lattice of 4 to 32 cells' spacing and a near field by close pairs, inside an iteration only | `direct`, with an error that falls with order and reach |
+//! | `operator::two_transforms` | the same split for sets that fill their window; the near field is an FFT of n + R - 1 cells in single precision | the whole kernel, with an error that falls with order and reach |
+//! | `operator::recipe` | the choice of how a system is solved | its own tests, without a clock |
+//! | `linear::pcg` | conjugate gradients; with a fixed sum the force stays and the approach adapts | `cholesky`; a run that is restarted after every step |
+//! | `linear::minres` | minimal residuals for symmetric indefinite systems, which Newton steps of adhesion have | small dense systems |
+//! | `linear::preconditioner`, `extension` | the inverse of G on a torus, and the extension of residuals; any extension bounds the energy | the transpose by products |
+//! | `linear::cholesky` | a factor of a small set, from which p and k follow | `pcg` |
+//! | `active_set::progress` | the end of the outer iteration, and the tolerance of the next linear solve | decisions one by one |
+//! | `active_set::descent` | the fall-back: projected gradients and conjugate gradients between the bounds, each step downhill | projections by hand; random states by a dense reference |
+//! | `active_set::residuals` | the one routine of the certificate | values by hand |
+//! | `active_set::undecided` | how far an open gap may still change: the largest gap left near by, and an eighth of the largest anywhere; cells below that are undecided and count in the error of k | true changes of all open gaps by elimination |
+//! | `stiffness` | `G q = 1`, the Ritz value and an upper estimate; the error of k has a part from the solve and one from undecided cells | full contact of small squares; tighter solves |
+//! | `friction` | an increment of Coulomb's friction with its certificate and tangential stiffness; coupled, normal and tangential contact are solved in turn | a dense convex programme; tractions of Ciavarella and Jaeger |
 //!
 //! # How accurate
 //!
@@ -111,8 +174,7 @@
 //! of cells and of the load; one application cost about 2 ms at N = 512 and 45 ms at N = 2049 (single
 //! precision, one thread of an AMD EPYC of 2024, first engine; sweeps with this one are 3 to 10 % faster on
 //! the machine on which both were run). `cargo xtask bench` prints the work of each load on any surface; the
-//! book has tables. The two-level operator is for square cells with free boundaries; oblong cells and
-//! periodic maps take transforms instead.
+//! book has tables.
 //!
 //! # Threads and bits
 //!

@@ -18,7 +18,7 @@ const NON_NEGATIVE: &str = "a finite number >= 0";
 pub enum Error {
     /// A number lies outside what is meaningful.
     Domain {
-        /// The quantity, in the words of ARCHITECTURE.md (and where it came from, such as `heights[3, 7]`).
+        /// The quantity, in the words of GLOSSARY.md (and where it came from, such as `heights[3, 7]`).
         name: Cow<'static, str>,
         /// The value found.
         value: f64,

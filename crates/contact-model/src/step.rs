@@ -96,6 +96,10 @@ impl Default for Tangential {
 
 /// The end of a straight segment of a path; it begins where the last one ended. Before the first step: time
 /// 0, no contact, no load.
+///
+/// The state at the end is exact for the model, however long the segment is. Friction that is solved cell by
+/// cell is the exception: there a step is one increment. Where a model holds for a part of the segment only,
+/// the error names how far.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Step {
     /// Time at the end of the segment; it never decreases. Equal times are a jump. Friction alone does not
