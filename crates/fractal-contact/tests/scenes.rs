@@ -228,7 +228,7 @@ const CARRIED: f64 = 1e-5;
 
 #[test]
 fn stored_fields_are_those_of_the_states() {
-    let (_, file, dir) = solved("measured-map.toml");
+    let (_, file, dir) = solved("rough-map.toml");
     let forces = column(&file, "bem3d", "force");
     let patches = CsvFile::read(&dir.path().join("patches.csv")).unwrap();
     let states = patches.numbers("state").unwrap();
@@ -287,7 +287,7 @@ fn conductance_is_the_stiffness_by_barber() {
 fn shown_scenes_are_scenes() {
     let readme = std::fs::read_to_string(folder().join("../../README.md")).unwrap();
     let shown = readme.split("```toml\n").nth(1).unwrap().split("```").next().unwrap();
-    let path = folder().join("measured-map.toml");
+    let path = folder().join("rough-map.toml");
     let shown = SceneFile::parse(&path, shown.to_owned()).unwrap_or_else(|e| panic!("{e}"));
     let file = SceneFile::read(&path).unwrap();
     assert_eq!((&shown.models, &shown.surface, &shown.request), (&file.models, &file.surface, &file.request));
@@ -469,7 +469,7 @@ fn parsed(text: &str) -> Result<SceneFile, String> {
     let dir = tempfile::tempdir().unwrap();
     let path = dir.path().join("scene.toml");
     std::fs::write(&path, text).unwrap();
-    std::fs::copy(folder().join("measured-map.npy"), dir.path().join("measured-map.npy")).unwrap();
+    std::fs::copy(folder().join("rough-map.npy"), dir.path().join("rough-map.npy")).unwrap();
     let scene = SceneFile::read(&path).map_err(|e| e.to_string())?;
     Plan::new(&scene).map_err(|e| e.to_string())?;
     Ok(scene)
