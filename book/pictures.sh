@@ -16,6 +16,7 @@ scene() {
 scene ball-on-plate curve-approach-deviation.svg
 scene rough-sphere curve-stiffness.svg pressure-bem3d-0-004.png pressure-bem3d-0-005.png
 scene rough-map pressure-bem3d-0-002.png gap-bem3d-0-002.png distribution-pressure.svg
+scene diamond-hardness gap-bem3d-0-000.png
 scene anisotropic pressure-bem3d-0-001.png
 scene cattaneo-mindlin-loop curve-tangential_force.svg
 scene viscoelastic-indentation curve-approach.svg
