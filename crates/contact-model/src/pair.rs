@@ -6,7 +6,7 @@ use crate::error::{Error, Result, positive};
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[non_exhaustive]
 pub enum Body {
-    /// It does not deform.
+    /// The body does not deform.
     #[default]
     Rigid,
     /// Isotropic and linearly elastic.
@@ -35,7 +35,7 @@ impl Body {
     }
 }
 
-/// The two bodies of a contact: they give E* for normal and G* for tangential loads.
+/// The two bodies of a contact, which determine E* for normal and G* for tangential loads.
 ///
 /// Tangential loads move the second over the first ([`crate::Tangential`]); nothing else depends on which is
 /// which.
