@@ -5,9 +5,9 @@ use std::fmt;
 /// Which byte of a number comes first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum ByteOrder {
-    /// The lowest.
+    /// The lowest byte.
     Little,
-    /// The highest.
+    /// The highest byte.
     Big,
 }
 

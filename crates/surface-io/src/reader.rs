@@ -1,4 +1,4 @@
-//! What each format of an instrument or a program provides.
+//! The reader that each format of an instrument or a program provides.
 
 use crate::channel::StoredChannel;
 use crate::error::Result;

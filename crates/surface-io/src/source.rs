@@ -1,4 +1,4 @@
-//! The bytes of a file, read where a format's header says, never beyond its end.
+//! The bytes of a file, read at the places that its header names and never beyond its end.
 
 use crate::error::{ContentError, Error, Result};
 use crate::fields::{Fields, Stored};

@@ -1,6 +1,5 @@
-//! What headers say: `# Width: 10 um` of Gwyddion and this crate, `x-length = 5000` of SPIP,
-//! `\Scan Size: 10 um` of Nanoscope, `Pixel size = 0.1 um` of profilers, in comments or in lines before the
-//! numbers.
+//! Statements in headers: `# Width: 10 um` of Gwyddion and this crate, `x-length = 5000` of SPIP, `\Scan
+//! Size: 10 um` of Nanoscope, `Pixel size = 0.1 um` of profilers, in comments or in lines before the numbers.
 //!
 //! The words are those of the readers in <https://github.com/ContactEngineering/SurfaceTopography>
 //! (`IO/Text.py`) and Gwyddion (`spip-asc.c`), and their usual variants. A length counts where it has a unit;
