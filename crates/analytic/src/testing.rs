@@ -10,7 +10,7 @@ pub(crate) const PRINTED: f64 = 1e-10;
 /// A root and a handful of products.
 pub(crate) const ROUNDING: f64 = 1e-14;
 
-/// One state, with the stiffness of the held area, and the area where the model has one.
+/// One state, with the stiffness at fixed contact area, and the area where the model has one.
 pub(crate) fn pressed(model: &dyn ContactModel, scene: &Scene, load: Load) -> Result<ContactState> {
     let mut scene = scene.clone();
     scene.outputs.stiffness_fixed_area = true;
