@@ -1,4 +1,4 @@
-//! What a run tells on standard error: a bar with the time left on a terminal, plain lines otherwise.
+//! Progress of a run on standard error: a bar with the remaining time on a terminal, plain lines otherwise.
 
 use crate::amounts::duration;
 use crate::progress::{JobInHand, Progress};
@@ -21,7 +21,7 @@ const FRAME: Duration = Duration::from_millis(100);
 /// Of less work, in seconds, no time left follows.
 const FIRST: f64 = 1.0;
 
-/// Tells on standard error how far a run is: for programs.
+/// Reports the progress of a run on standard error, for programs.
 #[derive(Debug)]
 pub struct Reporter {
     terminal: bool,
@@ -50,7 +50,7 @@ impl Default for Reporter {
 }
 
 impl Reporter {
-    /// Looks once whether standard error is a terminal.
+    /// A reporter; it checks once whether standard error is a terminal.
     pub fn new() -> Self {
         let stage = Stage::new(ProgressBar::hidden(), 0, Instant::now());
         Self { terminal: std::io::stderr().is_terminal(), stage: Mutex::new(stage) }
