@@ -11,20 +11,20 @@ use std::path::{Path, PathBuf};
 /// A square map of grey values.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct GreyMap {
-    /// Above the map; symbols stand between dollar signs.
+    /// Label above the map; symbols stand between dollar signs.
     pub label: String,
-    /// Row by row from the top.
+    /// Grey values, row by row from the top.
     pub shades: Vec<u8>,
-    /// Rows and columns.
+    /// Number of rows and of columns.
     pub side: usize,
 }
 
-/// What the grey values of all maps mean.
+/// Scale of the grey values of all maps.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GreyScale {
     /// The values that are white and black.
     pub ends: (f64, f64),
-    /// What they are, with the unit; symbols stand between dollar signs.
+    /// Label of the scale, with the unit; symbols stand between dollar signs.
     pub label: String,
 }
 
