@@ -15,8 +15,8 @@ use contact_model::{Conductance, Result};
 /// 53 (2003); Sec. I and Eq. 13 of the paper.
 ///
 /// # Errors
-/// [`contact_model::Error::Domain`] for a stiffness or resistivity that is negative or not finite, a modulus that is not positive or two
-/// bodies without any resistance.
+/// [`contact_model::Error::Domain`] for a stiffness or resistivity that is negative or not finite, a modulus
+/// that is not positive or two bodies without any resistance.
 ///
 /// ```
 /// // A circle of radius 1: k = 2 E* a = 2, rho = 1 each: Lambda = 2 (Holm).

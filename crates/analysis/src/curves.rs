@@ -24,8 +24,9 @@ impl Curves {
     /// Curves from increasing forces `F_bar > 0` and, for each surface, one entry per force.
     ///
     /// # Errors
-    /// [`Error::Domain`] for a force that is not finite, positive and larger than the one before, or a stiffness that is not
-    /// finite and positive; [`Error::Shape`] for no surface or a surface with another number of entries.
+    /// [`Error::Domain`] for a force that is not finite, positive and larger than the one before, or a
+    /// stiffness that is not finite and positive; [`Error::Shape`] for no surface or a surface with another
+    /// number of entries.
     pub fn new(force_bar: Vec<f64>, surfaces: Vec<Vec<Option<StiffnessSample>>>) -> Result<Self> {
         let mut before = 0.0;
         for &f in &force_bar {

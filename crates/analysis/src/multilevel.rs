@@ -68,8 +68,9 @@ impl Multilevel {
     /// others.
     ///
     /// # Errors
-    /// [`Error::Shape`] for no level, a level of fewer than two surfaces, surfaces of one level with unlike numbers of points, or a level that
-    /// has more points than the one before; [`Error::Domain`] for a number that is not finite.
+    /// [`Error::Shape`] for no level, a level of fewer than two surfaces, surfaces of one level with unlike
+    /// numbers of points, or a level that has more points than the one before; [`Error::Domain`] for a number
+    /// that is not finite.
     pub fn new(levels: Vec<Vec<Vec<f64>>>) -> Result<Self> {
         let shape = |name: String, found: usize, expected: String| Error::Shape {
             name: name.into(),

@@ -40,7 +40,8 @@ impl Table {
     /// Adds a row.
     ///
     /// # Errors
-    /// [`Error::Shape`] for a row of another length, [`Error::Domain`] for a number that is NaN or infinite; the table is unchanged.
+    /// [`Error::Shape`] for a row of another length, [`Error::Domain`] for a number that is NaN or infinite;
+    /// the table is unchanged.
     pub fn push(&mut self, row: Vec<Value>) -> Result<()> {
         if row.len() != self.columns.len() {
             return Err(Error::Shape {

@@ -125,7 +125,8 @@ impl SlidingSphere {
     /// ([`contact_model::Pair::shear_modulus`]).
     ///
     /// # Errors
-    /// [`Error::Domain`] for a number that is not finite and positive, or a `mu F` or `mu F/(G* a)` that no `f64` holds.
+    /// [`Error::Domain`] for a number that is not finite and positive, or a `mu F` or `mu F/(G* a)` that no
+    /// `f64` holds.
     pub fn new(force: f64, coefficient: f64, contact_radius: f64, shear_modulus: f64) -> Result<Self> {
         let limit = coefficient * force;
         let reach = 0.75 * limit / contact_radius / shear_modulus;

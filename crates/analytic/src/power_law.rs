@@ -75,8 +75,8 @@ pub fn force_tilde(stiffness_bar: f64, fractal_dimension: f64) -> Result<f64> {
 /// introduction prints it as `k = E* (rho1 + rho2) Lambda / 2`, which is the same.)
 ///
 /// # Errors
-/// [`Error::Domain`] for a negative force, a side or resistivity that is not positive, or a fractal dimension outside [2, 3];
-/// [`Error::OutOfRange`] for `F_bar` beyond 0.086, the end of the power law.
+/// [`Error::Domain`] for a negative force, a side or resistivity that is not positive, or a fractal dimension
+/// outside [2, 3]; [`Error::OutOfRange`] for `F_bar` beyond 0.086, the end of the power law.
 ///
 /// ```
 /// assert!((analytic::conductance_fit(0.086, 2.0, 1.0, 2.0)? - 0.2055).abs() < 1e-15);

@@ -71,7 +71,8 @@ impl ContactModel for Westergaard {
 /// Amplitude, number of waves and sides of a periodic sine.
 ///
 /// # Errors
-/// [`Error::Unsupported`] for another surface, [`Error::Domain`] where the side along x is no whole number of waves.
+/// [`Error::Unsupported`] for another surface, [`Error::Domain`] where the side along x is no whole number of
+/// waves.
 pub(crate) fn whole_waves(scene: &Scene, model: &'static str) -> Result<(f64, f64, Size)> {
     let Surface::Sine { amplitude, wavelength, size } = scene.surface else {
         return Err(Error::unsupported(model, scene.surface.kind()));

@@ -47,8 +47,8 @@ impl Conductance {
     /// `rho_1 + rho_2`; `None` where it is off.
     ///
     /// # Errors
-    /// [`Error::Domain`] for a resistivity that is negative, a conductivity that is not positive, a number that is not finite, or a sum
-    /// that is 0 or that no f64 holds.
+    /// [`Error::Domain`] for a resistivity that is negative, a conductivity that is not positive, a number
+    /// that is not finite, or a sum that is 0 or that no f64 holds.
     pub fn resistivity(self) -> Result<Option<f64>> {
         let (first, second) = match self {
             Self::Off => return Ok(None),

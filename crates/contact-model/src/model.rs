@@ -108,8 +108,8 @@ pub trait ContactModel: Send + Sync {
     /// scene calls for one, builds tables.
     ///
     /// # Errors
-    /// [`crate::Error::Unsupported`] for a surface, effect or output that the model lacks (never a silent elastic answer),
-    /// [`crate::Error::Domain`] or [`crate::Error::Shape`] for numbers that make no sense.
+    /// [`crate::Error::Unsupported`] for a surface, effect or output that the model lacks (never a silent
+    /// elastic answer), [`crate::Error::Domain`] or [`crate::Error::Shape`] for numbers that make no sense.
     fn prepare(&self, scene: &Scene, seed: u64) -> Result<Box<dyn PreparedContact>>;
 
     /// The least memory that [`ContactModel::prepare`] and a light load need, the surface that is drawn
@@ -161,8 +161,8 @@ pub trait PreparedContact: Send {
     /// ([`PreparedContact::advance_until`]) goes on from the load that was solved.
     ///
     /// # Errors
-    /// [`crate::Error::Domain`] for a negative or non-finite load, [`crate::Error::OutOfRange`] where the model does not hold,
-    /// [`crate::Error::NotConverged`] and [`crate::Error::Stopped`] with the best state.
+    /// [`crate::Error::Domain`] for a negative or non-finite load, [`crate::Error::OutOfRange`] where the
+    /// model does not hold, [`crate::Error::NotConverged`] and [`crate::Error::Stopped`] with the best state.
     fn solve_until(&mut self, load: Load, stop: Stop<'_>) -> Result<ContactState>;
 
     /// Solves for one load as a step from no contact: [`PreparedContact::solve_until`] for models whose

@@ -60,8 +60,8 @@ impl Pair {
     /// Contact modulus E*: `1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2` (force per length squared).
     ///
     /// # Errors
-    /// [`Error::Domain`] for a Young's modulus that is not positive, a Poisson's ratio outside [0, 1/2], two rigid bodies, or a result
-    /// that no `f64` holds.
+    /// [`Error::Domain`] for a Young's modulus that is not positive, a Poisson's ratio outside [0, 1/2], two
+    /// rigid bodies, or a result that no `f64` holds.
     pub fn contact_modulus(&self) -> Result<f64> {
         // (1 - nu^2)/E = (1 - nu)/(2 G).
         let [first, second] = self.compliances(0)?;

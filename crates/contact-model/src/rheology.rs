@@ -102,7 +102,8 @@ impl PronySeries {
     /// A series of these arms.
     ///
     /// # Errors
-    /// [`Error::Shape`] for more than [`PronySeries::MOST`]; [`Error::Domain`] for a weight or time that makes no sense.
+    /// [`Error::Shape`] for more than [`PronySeries::MOST`]; [`Error::Domain`] for a weight or time that
+    /// makes no sense.
     pub fn new(arms: &[Relaxing]) -> Result<Self> {
         let mut series = Self::default();
         let Some(places) = series.arms.get_mut(..arms.len()) else {

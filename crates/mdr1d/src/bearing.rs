@@ -131,8 +131,8 @@ impl Bearing {
     /// contact set. Without load `d = 0` and `k = 0`.
     ///
     /// # Errors
-    /// [`Error::Domain`] for a load that is negative or not finite, a modulus that is not positive, or a result that no `f64`
-    /// holds.
+    /// [`Error::Domain`] for a load that is negative or not finite, a modulus that is not positive, or a
+    /// result that no `f64` holds.
     ///
     /// ```
     /// use contact_model::{Line, Load};

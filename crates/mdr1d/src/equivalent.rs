@@ -1,4 +1,5 @@
-//! [`Equivalent`]: friction and rheology of any contact that another model can press, through its equivalent profile.
+//! [`Equivalent`]: friction and rheology of any contact that another model can press, through its equivalent
+//! profile.
 
 mod normal;
 

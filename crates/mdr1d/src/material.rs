@@ -63,7 +63,8 @@ impl Material {
     /// The material of a rheology with the scene's modulus; `None` for an elastic one.
     ///
     /// # Errors
-    /// [`Error::Domain`] for a time `4 eta/E*` that no `f64` holds, or a rheology that is not known here (as [`Error::Unsupported`]).
+    /// [`Error::Domain`] for a time `4 eta/E*` that no `f64` holds, or a rheology that is not known here (as
+    /// [`Error::Unsupported`]).
     pub fn new(rheology: &Rheology, contact_modulus: f64, model: &'static str) -> Result<Option<Self>> {
         rheology.validate()?;
         let time = |viscosity: f64| {

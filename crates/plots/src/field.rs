@@ -96,8 +96,8 @@ impl FieldPicture<'_> {
     /// Cost: linear in the number of cells.
     ///
     /// # Errors
-    /// [`crate::Error::Content`] for another number of values, components or cells in contact than cells, no cells or a size that is not positive,
-    /// [`crate::Error::System`] when it cannot be written.
+    /// [`crate::Error::Content`] for another number of values, components or cells in contact than cells, no
+    /// cells or a size that is not positive, [`crate::Error::System`] when it cannot be written.
     pub fn save(&self, path: &Path) -> Result<()> {
         let count = self.cells.checked_count().filter(|count| *count > 0);
         if count != Some(self.values.len()) || !self.contact.is_empty() && count != Some(self.contact.len()) {
@@ -386,8 +386,8 @@ mod tests {
         assert_eq!(OUTLINE.map(count), [8, 16]);
     }
 
-    /// Contrast of WCAG 2.1 between linear colours, as a protanope sees them: the projection of Vienot, Brettel and
-    /// Mollon (Color Res. Appl. 24, 243, 1999), with the luminance of what is left.
+    /// Contrast of WCAG 2.1 between linear colours, as a protanope sees them: the projection of Vienot,
+    /// Brettel and Mollon (Color Res. Appl. 24, 243, 1999), with the luminance of what is left.
     fn contrast(a: [u8; 3], b: [u8; 3]) -> f64 {
         let luminance = |color: [u8; 3]| {
             let [r, g, b] = color.map(|c| {

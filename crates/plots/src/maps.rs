@@ -38,11 +38,12 @@ const TITLE: f64 = 54.0;
 const BAR: f64 = 14.0;
 const BELOW: f64 = 58.0;
 
-/// Writes `NAME.svg` and `NAME.png` with at most three maps in a row, a title, a line below it, and the scale of all
-/// maps below them.
+/// Writes `NAME.svg` and `NAME.png` with at most three maps in a row, a title, a line below it, and the scale
+/// of all maps below them.
 ///
 /// # Errors
-/// [`crate::Error::Content`] for a map that is no square of at least one value, [`crate::Error::System`] when they cannot be written.
+/// [`crate::Error::Content`] for a map that is no square of at least one value, [`crate::Error::System`] when
+/// they cannot be written.
 pub fn save_maps(
     maps: Vec<GreyMap>,
     scale: &GreyScale,

@@ -171,7 +171,8 @@ impl Store {
     /// result is read.
     ///
     /// # Errors
-    /// [`crate::Error::File`] when the directory cannot be made or read; [`crate::Error::Parameter`] when another process uses it.
+    /// [`crate::Error::File`] when the directory cannot be made or read; [`crate::Error::Parameter`] when
+    /// another process uses it.
     pub fn open(out: &Path, fresh: bool) -> Result<Self> {
         let directory = directory(out);
         files::create_directory(&directory)?;

@@ -42,8 +42,8 @@ pub fn print_error(text: Arguments<'_>) {
     let _ = write(&mut std::io::stderr().lock(), text);
 }
 
-/// Text with lines of at most 80 characters where its words allow it, for a terminal: what is folded goes on below the
-/// text of its line, which begins behind a label and two spaces.
+/// Text with lines of at most 80 characters where its words allow it, for a terminal: what is folded goes on
+/// below the text of its line, which begins behind a label and two spaces.
 ///
 /// ```
 /// let text = format!("  effects  {}\n", "hardness ".repeat(8).trim_end());

@@ -76,7 +76,8 @@ impl MapGenerator {
     /// map.
     ///
     /// # Errors
-    /// [`contact_model::Error::OutOfMemory`] when the map does not fit in memory, [`contact_model::Error::Domain`] when its heights overflow.
+    /// [`contact_model::Error::OutOfMemory`] when the map does not fit in memory,
+    /// [`contact_model::Error::Domain`] when its heights overflow.
     pub fn map(&self, seed: u64) -> Result<HeightMap> {
         // Half of the waves, as complex numbers, beside the map.
         let waves = 16.0 * self.cells.rows as f64 * self.spectrum.columns() as f64;

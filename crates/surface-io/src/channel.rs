@@ -481,7 +481,8 @@ impl StoredChannel {
     /// Puts the axes in the requested order.
     ///
     /// # Errors
-    /// [`ContentError::Useless`] where the format has one order, [`ContentError::Contradiction`] where the file names another.
+    /// [`ContentError::Useless`] where the format has one order, [`ContentError::Contradiction`] where the
+    /// file names another.
     pub(crate) fn orient(&mut self, declared: Axes) -> Result<(), ContentError> {
         // Who says it need not be told.
         self.notes.retain(|note| !note.starts_with(TAKEN));

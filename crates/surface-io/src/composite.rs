@@ -23,7 +23,8 @@ const HALF: f64 = 0.5 - 1e-9;
 /// undefined. Cost O(N).
 ///
 /// # Errors
-/// [`ContentError::Apart`] where both have less than one cell in common, [`ContentError::Map`] where no point is defined.
+/// [`ContentError::Apart`] where both have less than one cell in common, [`ContentError::Map`] where no point
+/// is defined.
 ///
 /// ```
 /// use contact_model::HeightMap;

@@ -45,7 +45,8 @@ impl<'a> SurfaceFile<'a> {
     /// Opens a file and reads its headers; text is read as a whole.
     ///
     /// # Errors
-    /// [`Error::System`] where the system refuses; [`Error::Content`] for everything that is wrong in the headers.
+    /// [`Error::System`] where the system refuses; [`Error::Content`] for everything that is wrong in the
+    /// headers.
     pub fn open(path: impl AsRef<Path>, declared: &ReadOptions) -> Result<Self> {
         let path = path.as_ref();
         let (input, length) = opened(path)?;

@@ -100,7 +100,8 @@ fn encoded(ending: &str, map: &HeightMap, metric: Metric) -> Result<Vec<u8>, Con
 /// Writes numbers as an NPY array of the given shape (float64, row-major), whole or not at all.
 ///
 /// # Errors
-/// [`files::Error::Content`] where the shape holds another number of values, [`files::Error::System`] when it cannot be written.
+/// [`files::Error::Content`] where the shape holds another number of values, [`files::Error::System`] when it
+/// cannot be written.
 pub fn write_npy(path: &Path, shape: &[usize], values: &[f64]) -> files::Result<()> {
     let bytes = npy(shape, values).map_err(|e| files::Error::content(path, e.to_string()))?;
     files::write_whole(path, &bytes)

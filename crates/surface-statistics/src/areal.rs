@@ -294,7 +294,8 @@ impl FeatureParameters {
     /// Measures a map. Cost O(N log N).
     ///
     /// # Errors
-    /// [`Error::Domain`] where holes make more than a tenth of the hills incomplete, and for curvatures beyond the range of f64.
+    /// [`Error::Domain`] where holes make more than a tenth of the hills incomplete, and for curvatures
+    /// beyond the range of f64.
     ///
     /// ```
     /// use contact_model::HeightMap;

@@ -39,7 +39,8 @@ impl ProfileFit {
     /// profile, which is taken under Hann's window, only waves shorter than a quarter of it.
     ///
     /// # Errors
-    /// [`Error::Domain`] for more than one row, fewer than 8 waves in the range, and what [`PowerSpectrum::along_x`] refuses.
+    /// [`Error::Domain`] for more than one row, fewer than 8 waves in the range, and what
+    /// [`PowerSpectrum::along_x`] refuses.
     ///
     /// ```
     /// use contact_model::{Boundary, HeightMap};

@@ -39,7 +39,8 @@ pub struct Completeness {
 /// Reads every result of a plan and checks that it is whole.
 ///
 /// # Errors
-/// [`Error::Parameter`] where the jobs are not those of the plan; [`Error::File`] for a directory that cannot be read.
+/// [`Error::Parameter`] where the jobs are not those of the plan; [`Error::File`] for a directory that cannot
+/// be read.
 pub fn check(plan: &ShardPlan, jobs: &dyn JobList, out: &Path) -> Result<Completeness> {
     let now = ShardPlan::new(&plan.program, plan.arguments.clone(), jobs);
     if now.digest != plan.digest {
@@ -123,7 +124,8 @@ impl Completeness {
     /// `chosen` explicitly.
     ///
     /// # Errors
-    /// [`Error::Parameter`] with the list of jobs (a long one is in a file, which it names) and the command that computes them.
+    /// [`Error::Parameter`] with the list of jobs (a long one is in a file, which it names) and the command
+    /// that computes them.
     pub fn require(&self, out: &Path, chosen: bool, again: &str) -> Result<()> {
         if !self.missing.is_empty() {
             let (damaged, missing) = (self.count(JobState::Damaged), self.count(JobState::Missing));

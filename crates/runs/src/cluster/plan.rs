@@ -81,7 +81,8 @@ impl ShardPlan {
     /// The one plan of a directory, or the one that was chosen by the beginning of its digest.
     ///
     /// # Errors
-    /// [`Error::Parameter`] where there is none, where there are several, with their commands, and for one of another program.
+    /// [`Error::Parameter`] where there is none, where there are several, with their commands, and for one of
+    /// another program.
     pub fn only(out: &Path, program: &str, chosen: Option<&str>) -> Result<Self> {
         let mut plans = Self::all(out);
         let list = |plans: &[Self]| {

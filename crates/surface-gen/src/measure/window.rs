@@ -39,7 +39,8 @@ fn mean_square(count: usize) -> f64 {
 /// spectrum over its neighbours. Cost O(N).
 ///
 /// # Errors
-/// [`contact_model::Error::Domain`] for undefined points, and those of [`HeightMap::new`] where a height leaves the range of f64.
+/// [`contact_model::Error::Domain`] for undefined points, and those of [`HeightMap::new`] where a height
+/// leaves the range of f64.
 pub fn windowed(map: &HeightMap) -> Result<HeightMap> {
     defined_everywhere(map, "a window")?;
     let Cells { columns, rows } = map.cells();

@@ -251,7 +251,8 @@ impl Heading {
     /// says those.
     ///
     /// # Errors
-    /// [`ContentError::Contradiction`] where the header says another number of columns or rows, or where two of its lengths differ.
+    /// [`ContentError::Contradiction`] where the header says another number of columns or rows, or where two
+    /// of its lengths differ.
     pub(super) fn of_matrix(&self, count: [usize; 2]) -> Result<SidesAndCells, ContentError> {
         let mut sides = self.sides();
         let mut cells = [None; 2];
