@@ -34,7 +34,7 @@ const NAME: &str = "jkr";
 /// // At no load a^3 = 9 pi w R^2 / (2 E*): a = 0.5209397, d = a^2/(3 R).
 /// let state = contact.solve(Load::Force(0.0))?;
 /// assert!((state.approach.unwrap_or(0.0) - 0.5209397_f64.powi(2) / 3.0).abs() < 1e-7);
-/// // The stiffness is 3/5 of the 2 E* a of the held area.
+/// // The stiffness is 3/5 of 2 E* a, that at fixed contact area.
 /// assert!((state.stiffness.unwrap_or(0.0) - 1.2 * 0.5209397).abs() < 1e-7);
 /// // 3/2 pi w R = 0.0471239.
 /// assert!(contact.solve(Load::Force(-0.0471)).is_ok() && contact.solve(Load::Force(-0.0472)).is_err());

@@ -49,7 +49,7 @@ pub(crate) fn check_curve(model: &dyn ContactModel, scene: &Scene, d: f64) {
 }
 
 /// Of an adhesive sphere: dF/dd of a state is that of its neighbours under loads of the same kind, by central
-/// differences; the held area has 2 E* a, and the conductance follows from it.
+/// differences; at fixed contact area it is 2 E* a, from which the conductance follows.
 pub(crate) fn check_slope(model: &dyn ContactModel, scene: &Scene, load: Load) {
     /// Relative step of the load; its square times third derivatives that grow towards a fold is the error of
     /// a difference.

@@ -1,4 +1,4 @@
-//! What a model can do, as data: refusals, help and tables of models follow from it.
+//! Abilities of models, as data: refusals, help and tables of models follow from them.
 
 use crate::effects::{Boundary, Effect};
 use crate::error::{Error, Result};
@@ -127,7 +127,7 @@ pub enum Paths {
     Needed,
 }
 
-/// What a model can do. A scene that asks for more is refused by [`Abilities::refuse`] before anything is
+/// The abilities of a model. [`Abilities::refuse`] refuses a scene that requests more, before anything is
 /// planned.
 ///
 /// These conditions are necessary, not sufficient: a model itself refuses, in `prepare`, what depends on

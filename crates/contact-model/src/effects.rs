@@ -11,7 +11,7 @@ const SAME_BODIES: f64 = 1e-12;
 /// model that cannot treat an effect refuses the scene.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Effects {
-    /// What lies outside the square.
+    /// Boundary condition outside of the rectangle.
     pub boundary: Boundary,
     /// Largest pressure that the bodies carry. A single load is solved from the virgin surface; along a path
     /// the indentation stays from step to step ([`crate::PreparedContact::advance_until`]).
@@ -157,14 +157,14 @@ effects! {
         { rheology: Rheology::Prony(PronySeries::new(&[Relaxing { weight: 1.0, time: 1.0 }]).unwrap_or_default()) },
 }
 
-/// What lies outside the square.
+/// Boundary condition outside of the rectangle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub enum Boundary {
     /// An unloaded half-space: the edges are the physical edges of the indenter (the paper's case).
     #[default]
     Free,
-    /// Periodic copies of the square.
+    /// Periodic copies of the rectangle.
     Periodic,
 }
 
@@ -207,7 +207,7 @@ pub enum Adhesion {
     },
 }
 
-/// How the attractive traction of [`Adhesion::FiniteRange`] falls with the gap g.
+/// Law by which the attractive traction of [`Adhesion::FiniteRange`] falls with the gap g.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum AdhesionLaw {

@@ -100,8 +100,8 @@ pub trait ContactModel: Send + Sync {
         Vec::new()
     }
 
-    /// What it can do. [`Abilities::refuse`] checks a scene against it, and help, tables and refusals follow
-    /// from it.
+    /// Its abilities. [`Abilities::refuse`] checks a scene against them, and help, tables and refusals follow
+    /// from them.
     fn abilities(&self) -> Abilities;
 
     /// Checks the scene against what this model can do, and plans: draws the surface from `seed` where the

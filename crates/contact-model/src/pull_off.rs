@@ -90,7 +90,8 @@ impl LargestPull {
         Some(PullOff { force: -force, error, approach, mean_gap })
     }
 
-    /// How far the force may fall below its minimum between the loads of a withdrawal.
+    /// Largest fall of the force below its minimum between the loads of a withdrawal; `None` where nothing
+    /// bounds it.
     fn left_by_steps(&self) -> Option<f64> {
         let at = |i: Option<usize>| {
             let point = self.held.get(i?)?;

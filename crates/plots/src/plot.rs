@@ -181,7 +181,7 @@ impl Picture {
         }
     }
 
-    /// The legend if it stands below the axes: asked for, or no place is free among them.
+    /// The legend if it stands below the axes, on request or because no place in the axes is free.
     pub(crate) fn legend_below(&self, fonts: &Fonts) -> Option<&Legend> {
         if self.legend.is_empty() || self.legend_below {
             return (!self.legend.is_empty()).then_some(&self.legend);

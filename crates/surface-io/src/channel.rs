@@ -102,7 +102,7 @@ const TAKEN: &str = "the first index is taken for";
 pub(crate) enum StoredHeights {
     /// In memory: text is read as a whole.
     Read(Vec<f64>),
-    /// Numbers in the file or in memory, decoded when they are asked for.
+    /// Numbers in the file or in memory, decoded on request.
     Raw(RawHeights),
     /// Heights that another reader makes from the file.
     Deferred(Box<Deferred>),

@@ -90,7 +90,7 @@ impl NumberType {
         usize::from(self.size)
     }
 
-    /// Bytes of a map of so many numbers; `None` beyond 2^64.
+    /// Bytes of a map of this shape; `None` beyond 2^64.
     pub(crate) fn bytes_of<N: TryInto<u64>>(self, shape: [N; 2]) -> Option<u64> {
         let [rows, columns] = shape.map(|count| count.try_into().ok());
         rows?.checked_mul(columns?)?.checked_mul(self.bytes() as u64)

@@ -126,7 +126,7 @@ impl TextTable {
     /// Reads all lines, map by map; with decimal commas where they are found to be nothing else.
     ///
     /// A heading between numbers ends a map, and so does an empty line: not where there is one behind every
-    /// line, nor between three columns, which are points of one map unless they are asked for as a matrix.
+    /// line, nor between three columns, which are points of one map unless a matrix is requested.
     ///
     /// Memory: at most 8 bytes for each byte of the text (nothing between two commas), and 4 for each line.
     pub(crate) fn read(bytes: &[u8], declared: &ReadOptions) -> Result<Vec<Self>, ContentError> {

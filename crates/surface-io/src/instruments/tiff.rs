@@ -365,7 +365,7 @@ impl Image {
         Ok(())
     }
 
-    /// Puts the numbers of a strip or tile of so many rows and columns in their places.
+    /// Puts the numbers of a strip or tile, with its numbers of rows and columns, in their places.
     fn put(
         &self,
         decoded: &DecodingResult,

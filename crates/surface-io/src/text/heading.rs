@@ -247,8 +247,8 @@ impl Heading {
         self.sides.map(|side| side.filter(counts))
     }
 
-    /// Width and height of a matrix of so many columns and rows, and the sides of its cells where the header
-    /// says those.
+    /// Width and height of a matrix with `count` columns and rows, and the sides of its cells where the
+    /// header states them.
     ///
     /// # Errors
     /// [`ContentError::Contradiction`] where the header says another number of columns or rows, or where two
