@@ -19,7 +19,7 @@ use std::sync::{Mutex, PoisonError};
 /// The loads that a call may name one of.
 const LOADS: [&str; 4] = ["force", "approach", "mean_pressure", "mean_gap"];
 
-/// What turns forces and stiffnesses into the dimensionless ones of the paper.
+/// Conversion of forces and stiffnesses to the dimensionless ones of the paper.
 #[pyclass(frozen, eq, module = "fractal_contact")]
 #[derive(Clone, PartialEq)]
 pub struct Normalisation(pub RustNormalisation);
@@ -38,7 +38,7 @@ impl Normalisation {
         self.0.length
     }
 
-    /// float or None: measured rms height of this very surface.
+    /// float or None: measured rms height of this surface.
     #[getter]
     fn rms_height(&self) -> Option<f64> {
         self.0.height
@@ -81,8 +81,8 @@ impl Normalisation {
 /// A planned contact: solve often, follow paths. It keeps tables, plans and the last state, from which the
 /// next solve starts.
 ///
-/// `solve` and `sweep` answer each load from no contact; `advance` and `follow` go along a path of loads,
-/// from where the contact is. Threads that use one contact do so one after the other, in the order of asking.
+/// `solve` and `sweep` start each load from no contact; `advance` and `follow` continue a path of loads from
+/// the current state. Threads that share one contact use it one after the other, in the order of their calls.
 ///
 /// With a hardness `solve` begins with the virgin surface: a load smaller than one before is refused, because
 /// the indentation of that one would be forgotten. `advance` and `follow` keep it, along any path.
@@ -268,7 +268,7 @@ impl Contact {
         self.answer(py, &Asked::Load(load), mean_pressure.map(|_| self.area()), token)
     }
 
-    /// Solves for loads in their order: an iterator that yields each state as soon as it is there.
+    /// Solves for loads in their order: an iterator that yields each state as soon as it is known.
     ///
     /// Parameters
     /// ----------
@@ -294,12 +294,12 @@ impl Contact {
         slf.py().import("fractal_contact._models")?.call_method("sweep", (slf,), Some(&loads))
     }
 
-    /// Goes to the end of the next step of a path. A step that fails leaves the contact as it was.
+    /// Advances to the end of the next step of a path. A step that fails leaves the contact as it was.
     ///
     /// Parameters
     /// ----------
     /// time : float
-    ///     At the end of the step; it never decreases. Friction alone does not look at it.
+    ///     Time at the end of the step; it never decreases. With friction alone it has no influence.
     /// force, approach, mean_pressure, mean_gap : float
     ///     Exactly one of them. ``mean_pressure`` is over Lx Ly, ``mean_gap`` for periodic boundaries. The first
     ///     three may be negative with adhesion.
@@ -341,15 +341,14 @@ impl Contact {
         self.answer(py, &Asked::Step(Step { time: time.0, normal, tangential }), None, token)
     }
 
-    /// Goes along a path: an iterator that yields the state at the end of each step as soon as it is there.
+    /// Follows a path: an iterator that yields the state at the end of each step as soon as it is known.
     ///
-    /// What was yielded stays where a later step raises; the contact then stands at the end of the step
-    /// before that one.
+    /// Where a step raises, the states yielded before remain, and the contact is at the end of the step before.
     ///
     /// Parameters
     /// ----------
     /// time : float or iterable of float
-    ///     At the end of each step.
+    ///     Time at the end of each step.
     /// force, approach, mean_pressure, mean_gap : float or iterable of float
     ///     Exactly one of them, as in `advance`.
     /// tangential_force, tangential_displacement : float, iterable of float or of (float, float), optional
@@ -393,14 +392,14 @@ impl Contact {
         Ok(())
     }
 
-    /// What decides the next step of the path besides its load, as bytes to keep: `recall` of a contact of the
-    /// same model, scene and seed goes on from there to the same bits, also in another process of the same
-    /// version on the same kind of processor.
+    /// The memory of the path, as bytes: together with the next load it determines the next state. `recall` of a
+    /// contact of the same model, scene and seed continues from it with identical bits, also in another process
+    /// of the same version on the same kind of processor.
     ///
     /// Returns
     /// -------
     /// bytes or None
-    ///     None where no path has begun, and of models that cannot go on: their paths begin anew.
+    ///     None where no path has begun, and for models without such a memory, whose paths must be followed anew.
     fn memory<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyBytes>>> {
         let mut inner = self.inner.take(py)?;
         // Exclusive, for another thread.
@@ -413,8 +412,8 @@ impl Contact {
         Ok(kept.map(|kept| PyBytes::new(py, kept.bytes())))
     }
 
-    /// Goes where a contact of the same model, scene and seed stood on its path when `memory` was asked of it.
-    /// The states before that are not in the memory: `last` is None.
+    /// Restores the place on its path of a contact of the same model, scene and seed, from its `memory`. The
+    /// states before that are not in the memory: `last` is None.
     ///
     /// Parameters
     /// ----------
@@ -456,13 +455,13 @@ impl Contact {
         check_rising(py, &loads, area)
     }
 
-    /// Normalisation: of this very surface.
+    /// Normalisation: that of this surface.
     #[getter(normalisation)]
     fn shown_normalisation(&self) -> Normalisation {
         Normalisation(self.origin.normalisation)
     }
 
-    /// ContactState or None: what the last solve had reached that a signal such as Ctrl-C interrupted.
+    /// ContactState or None: the best state of the last solve that a signal such as Ctrl-C interrupted.
     #[getter]
     fn best(&self, py: Python<'_>) -> Option<Py<ContactState>> {
         shown(py, &self.best)

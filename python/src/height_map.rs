@@ -13,7 +13,7 @@ use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict as _, PyDict, PyString, PyTuple};
 use std::sync::Arc;
 
-/// Heights on a rectangle of equal cells, seen from outside its body: large values touch first.
+/// Heights on a rectangle of equal cells, measured outwards from the body, so that large values touch first.
 ///
 /// ``np.asarray(map)`` is an array of them. Maps of the same size are added and subtracted; numbers, and arrays of
 /// the map's shape, are added, subtracted, multiplied and divided by. Undefined points stay undefined.
@@ -211,13 +211,13 @@ impl HeightMap {
         (0.0, self.0.size().x, 0.0, self.0.size().y)
     }
 
-    /// numpy.ndarray: where the centres of the columns are along x, shape (columns,).
+    /// numpy.ndarray: places of the centres of the columns along x, shape (columns,).
     #[getter]
     fn x<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         centres(py, self.0.columns(), self.0.dx())
     }
 
-    /// numpy.ndarray: where the centres of the rows are along y, shape (rows,).
+    /// numpy.ndarray: places of the centres of the rows along y, shape (rows,).
     #[getter]
     fn y<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         centres(py, self.0.rows(), self.0.dy())
@@ -285,9 +285,9 @@ impl HeightMap {
     /// Parameters
     /// ----------
     /// ax : matplotlib.axes.Axes, optional
-    ///     Where; the current axes by default.
+    ///     Axes of the picture; the current ones by default.
     /// **options
-    ///     Of ``imshow``.
+    ///     Options of ``imshow``.
     ///
     /// Returns
     /// -------

@@ -120,7 +120,7 @@ pub fn read_surface<'py>(
     Ok((found.map.into(), metadata(py, &described)?, found.steps, found.reliable_from))
 }
 
-/// What a file says of each of its channels; of one that is not read beside others, `error`.
+/// Metadata of each channel of a file; of a channel that cannot be read beside others, `error`.
 #[pyfunction]
 #[pyo3(signature = (path, options))]
 pub fn channels<'py>(

@@ -48,7 +48,7 @@ impl ContactModel for Shared {
     }
 }
 
-/// A way to answer what force, approach and stiffness belong together.
+/// A model of contact, which relates force, approach and stiffness.
 #[pyclass(frozen, module = "fractal_contact._core")]
 #[derive(Clone)]
 pub struct Model {
@@ -141,13 +141,13 @@ impl Model {
         self.model.name()
     }
 
-    /// What it is built on: (citation, what is taken from it).
+    /// Publications that it is built on: (citation, what is taken from it).
     #[getter]
     fn sources(&self) -> Vec<(&'static str, &'static str)> {
         self.model.sources().iter().map(|source| (source.citation, source.what)).collect()
     }
 
-    /// What it can do, in words.
+    /// Its abilities, in words.
     #[getter]
     fn supports<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let dict = PyDict::new(py);

@@ -44,7 +44,7 @@ pub fn optional<'py, T: FromPyObjectOwned<'py>>(of: &Bound<'py, PyDict>, name: &
     }
 }
 
-/// What carries the relief.
+/// The surface in contact.
 #[pyclass(frozen, module = "fractal_contact._core")]
 #[derive(Clone)]
 pub struct Surface(pub RustSurface);
@@ -125,7 +125,7 @@ pub fn height_map(py: Python<'_>, of: &Surface, cells: OneOrTwo<usize>, seed: Se
     map.map(HeightMap).map_err(|error| of_model(py, error))
 }
 
-/// Everything physical about one question.
+/// Everything physical about one contact problem.
 #[pyclass(frozen, module = "fractal_contact._core")]
 #[derive(Clone)]
 pub struct Scene {

@@ -12,7 +12,7 @@ use pyo3::types::{PyDict, PyTuple};
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// A scene file: what is pressed, what is asked and which effects count.
+/// A scene file: the surface, the material, the effects, the loads and the requested outputs.
 #[pyclass(frozen, module = "fractal_contact")]
 pub struct SceneFile(RustSceneFile);
 
@@ -46,7 +46,7 @@ impl SceneFile {
         self.0.models.iter().map(fractal_contact::scenes::Numerics::name).collect()
     }
 
-    /// What will be computed, what not and why, what it will cost.
+    /// The plan in words: what will be computed, what will not and why, and the cost.
     fn plan(&self, py: Python<'_>) -> PyResult<String> {
         let file = self.0.clone();
         let planned = pool::call(py, move || Plan::new(&file).map(|plan| plan.to_string()))?;

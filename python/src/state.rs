@@ -109,8 +109,8 @@ impl Certificate {
         self.0.complementarity
     }
 
-    /// float: relative difference of the force from the one asked for; of a mean gap its miss over the rms
-    /// height.
+    /// float: relative difference of the force from the prescribed one; of a prescribed mean gap its error over
+    /// the rms height.
     #[getter]
     fn load_error(&self) -> f64 {
         self.0.load_error
@@ -124,7 +124,7 @@ impl Certificate {
     }
 
     /// float or None: estimated relative error of a stiffness that is a difference quotient, with adhesion of
-    /// short range and Dugdale's law. The cells decide it, not the tolerance: no part of `worst`.
+    /// short range and Dugdale's law. It depends on the cells, not on the tolerance, so it is no part of `worst`.
     #[getter]
     fn quotient_error(&self) -> Option<f64> {
         self.0.quotient_error
@@ -137,8 +137,8 @@ impl Certificate {
         self.0.force_error
     }
 
-    /// float or None: estimated relative error of the stiffness, however it was found; ``stiffness_error`` in
-    /// tables.
+    /// float or None: estimated relative error of the stiffness, whether it is a difference quotient or not;
+    /// ``stiffness_error`` in tables.
     #[getter]
     fn error_of_stiffness(&self) -> Option<f64> {
         self.0.error_of_stiffness()
@@ -158,7 +158,7 @@ impl Certificate {
         self.0.tangential_duality_gap
     }
 
-    /// float or None: difference of the tangential force from the one asked for, over the sliding force.
+    /// float or None: difference of the tangential force from the prescribed one, over the sliding force.
     #[getter]
     fn tangential_load_error(&self) -> Option<f64> {
         self.0.tangential_load_error

@@ -135,7 +135,7 @@ fn the_command_that_is_named_closes_the_gap() {
     );
     assert_eq!(xtask("status", &out).status.code(), Some(3));
     let named =
-        text.split("what computes them: cargo xtask ").nth(1).unwrap().split(", or on").next().unwrap();
+        text.split("compute them with: cargo xtask ").nth(1).unwrap().split(", or on").next().unwrap();
     let closed =
         Command::new("bash").arg("-c").arg(format!("{} {named}", env!("CARGO_BIN_EXE_xtask"))).output();
     assert!(closed.unwrap().status.success());

@@ -1,4 +1,4 @@
-//! Laws of several fractal dimensions that meet in one point: where they cross, and how well all of them
+//! Laws of several fractal dimensions that meet in one point: their crossing, and the residual of their
 //! collapse on one line.
 //!
 //! `cargo run -p fractal-contact-analysis --example crossing`

@@ -2,13 +2,13 @@
 
 use statrs::distribution::{Binomial, DiscreteCDF as _};
 
-/// Probability of a number of successes as far from `share * trials` as this one or farther on its side,
-/// twice (at most 1): the two-sided p-value of "each trial succeeds with the probability `share`"; 0 for a
-/// share outside 0 to 1.
+/// Two-sided p-value of the hypothesis that each trial succeeds with the probability `share`: twice the
+/// probability (at most 1) of a number of successes at least as far from `share * trials`, on the same side.
+/// It is 0 for a share outside 0 to 1.
 ///
 /// ```
 /// use analysis::binomial_test;
-/// // All of 20 inside a 95 % interval is nothing strange, all of 200 is.
+/// // That all of 20 lie inside a 95 % interval is not significant; that all of 200 do is.
 /// assert!((binomial_test(20, 20, 0.95) - 2.0 * 0.95_f64.powi(20)).abs() < 1e-12);
 /// assert!(binomial_test(200, 200, 0.95) < 0.01 && binomial_test(190, 200, 0.95) > 0.9);
 /// ```

@@ -5,7 +5,7 @@ use numerics::sum::sum;
 use rand_core::{Rng, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
-/// Bootstrap over surfaces: how often, and from which seed (xoshiro256++).
+/// Bootstrap over surfaces: number of resamples, and seed of the generator (xoshiro256++).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Bootstrap {
     /// Number of resamples.

@@ -7,19 +7,19 @@ use numerics::sum::sum;
 pub struct CollapsePoint {
     /// `F_bar`.
     pub force_bar: f64,
-    /// `F_tilde`: what the law makes of k_bar.
+    /// `F_tilde`, the force that the law gives for the k_bar of the point.
     pub force_tilde: f64,
 }
 
-/// What is left around the line `F_tilde = F_bar`.
+/// Residuals about the line `F_tilde = F_bar`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Residual {
     /// Root mean square of `ln(F_tilde/F_bar)`.
     pub rms: f64,
     /// Largest `|ln(F_tilde/F_bar)|`.
     pub max: f64,
-    /// Scatter of the curves around their own common mean, whatever that is: root mean square of `ln F_tilde`
-    /// minus its mean over the curves at the same force. `None` where no force is shared by two curves.
+    /// Scatter of the curves about their own mean: root mean square of `ln F_tilde` minus its mean over the
+    /// curves at the same force. `None` where no two curves have a force in common.
     pub scatter: Option<f64>,
     /// Number of points.
     pub points: usize,

@@ -2,21 +2,21 @@
 
 use contact_model::{Conductance, Result};
 
-/// Constriction conductance `Lambda = 2 k/(E* (rho1 + rho2))` of half-spaces, exact for the stiffness k of the
-/// whole contact area, held ([`contact_model::ContactState::stiffness_fixed_area`]).
+/// Constriction conductance `Lambda = 2 k/(E* (rho1 + rho2))` of half-spaces, exact for the stiffness k at
+/// fixed contact area ([`contact_model::ContactState::stiffness_fixed_area`]).
 ///
-/// The slope dF/dd equals that stiffness without hardness and adhesion only. With a hardness the slope leaves
-/// out the saturated cells, which conduct; with adhesion it includes fronts that move and attraction across
-/// gaps, which do not.
+/// The slope dF/dd equals that stiffness only without hardness and adhesion. With a hardness the slope leaves
+/// out the saturated cells, although they conduct. With adhesion it includes moving fronts and attraction
+/// across gaps, which do not conduct.
 ///
-/// The formula of [`Conductance`] for a fitted or averaged stiffness; a state has its own when it is asked
-/// for. `stiffness` k in force per length, `contact_modulus` E* in force per length squared, resistivities in
-/// resistance times length; the result is 1/resistance. Source: Barber, Proc. R. Soc. A 459, 53 (2003); Sec.
-/// I and Eq. 13 of the paper.
+/// This is the formula of [`Conductance`] for a fitted or averaged stiffness; a state has its own conductance
+/// on request. `stiffness` k in force per length, `contact_modulus` E* in force per length squared,
+/// resistivities in resistance times length; the result is 1/resistance. Source: Barber, Proc. R. Soc. A 459,
+/// 53 (2003); Sec. I and Eq. 13 of the paper.
 ///
 /// # Errors
-/// [`contact_model::Error::Domain`] for a stiffness or resistivity that is negative or not finite, a modulus that is not positive or two
-/// bodies without any resistance.
+/// [`contact_model::Error::Domain`] for a stiffness or resistivity that is negative or not finite, a modulus
+/// that is not positive or two bodies without any resistance.
 ///
 /// ```
 /// // A circle of radius 1: k = 2 E* a = 2, rho = 1 each: Lambda = 2 (Holm).

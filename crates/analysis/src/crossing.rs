@@ -1,9 +1,9 @@
-//! Where the curves of different fractal dimension come together.
+//! The point where curves of different fractal dimension come closest.
 
 use numerics::regression::least_squares;
 use numerics::sum::sum;
 
-/// A point of the (F_bar, k_bar) plane and how far the curves are apart there.
+/// A point of the (F_bar, k_bar) plane, with the spread of the curves there.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Crossing {
     /// `F_bar` of least spread.

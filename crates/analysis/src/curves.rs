@@ -3,7 +3,7 @@
 use contact_model::{Error, Result};
 use serde::{Deserialize, Serialize};
 
-/// What one surface gives at one force.
+/// The stiffness of one surface at one force.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct StiffnessSample {
     /// `k_bar` (Eq. 8), dimensionless.
@@ -21,11 +21,12 @@ pub struct Curves {
 }
 
 impl Curves {
-    /// Takes increasing forces `F_bar > 0` and, for each surface, one entry per force.
+    /// Curves from increasing forces `F_bar > 0` and, for each surface, one entry per force.
     ///
     /// # Errors
-    /// [`Error::Domain`] for a force that is not finite, positive and larger than the one before, or a stiffness that is not
-    /// finite and positive; [`Error::Shape`] for no surface or a surface with another number of entries.
+    /// [`Error::Domain`] for a force that is not finite, positive and larger than the one before, or a
+    /// stiffness that is not finite and positive; [`Error::Shape`] for no surface or a surface with another
+    /// number of entries.
     pub fn new(force_bar: Vec<f64>, surfaces: Vec<Vec<Option<StiffnessSample>>>) -> Result<Self> {
         let mut before = 0.0;
         for &f in &force_bar {

@@ -4,7 +4,7 @@ use crate::curves::Curves;
 use numerics::sum::sum;
 use serde::{Deserialize, Serialize};
 
-/// Mean, standard error and log mean of a handful of positive numbers.
+/// Mean, standard error and log mean of positive numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Statistics {
     /// Arithmetic mean.
@@ -13,7 +13,7 @@ pub struct Statistics {
     pub standard_error: Option<f64>,
     /// `exp(mean ln x)`.
     pub log_mean: f64,
-    /// How many numbers.
+    /// Number of numbers.
     pub count: usize,
 }
 
@@ -36,7 +36,7 @@ pub fn mean_and_deviation(values: &[f64]) -> Option<(f64, Option<f64>)> {
     Some((mean, (values.len() > 1).then(|| (squares() / (n - 1.0)).sqrt())))
 }
 
-/// Statistics of finite positive numbers; `None` for none at all or one that is not.
+/// Statistics of finite positive numbers; `None` for no numbers, or where one is not finite and positive.
 ///
 /// ```
 /// let s = analysis::statistics(&[1.0, 4.0]).unwrap();

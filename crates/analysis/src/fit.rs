@@ -6,21 +6,21 @@ use numerics::regression::least_squares;
 use numerics::sum::sum;
 use std::fmt;
 
-/// Which forces a power law is fitted to.
+/// The range of forces to which a power law is fitted.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FitWindow {
     /// Smallest F_bar.
     pub min_force_bar: f64,
     /// Largest F_bar.
     pub max_force_bar: f64,
-    /// Every surface must have at least this many cells in contact (where the model has cells): fewer is the
-    /// one-cell floor.
+    /// Smallest number of cells in contact that every surface must have (where the model has cells): with
+    /// fewer cells the stiffness is that of single cells.
     pub min_contact_cells: usize,
 }
 
 impl FitWindow {
-    /// The paper's upper limit of its power law, `F_bar <= 0.086`; that every surface has at least 10 contact
-    /// cells is a choice made here.
+    /// The paper's upper limit of its power law, `F_bar <= 0.086`. The limit of at least 10 contact cells is
+    /// our own choice.
     pub const PAPER: Self = Self { min_force_bar: 0.0, max_force_bar: 0.086, min_contact_cells: 10 };
 }
 

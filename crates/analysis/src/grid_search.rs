@@ -1,24 +1,24 @@
-//! The grid that an accuracy asks for: from coarse to fine, until the error is small enough or the time is
-//! up.
+//! Search of the grid for a requested accuracy: from coarse to fine, until the error is small enough or the
+//! time is up.
 
-/// A relative error, and the time that it may cost.
+/// A requested relative error, and the time that it may cost.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AccuracyTarget {
-    /// Largest relative error (half-width of an interval), of what the caller says; 0: as small as the time
-    /// allows.
+    /// Largest relative error (half-width of an interval) of the quantity that the caller chooses; 0 means as
+    /// small as the time allows.
     pub share: f64,
-    /// Seconds.
+    /// Time budget in seconds.
     pub seconds: f64,
 }
 
 impl AccuracyTarget {
-    /// Whether it is the smallest error that the time allows.
+    /// Whether the target is the smallest error that the time allows.
     pub fn is_best(&self) -> bool {
         self.share <= 0.0
     }
 
-    /// Tolerance of a solver that this accuracy does not notice: a thirtieth of it, from 1e-6 to 1e-3, one
-    /// digit.
+    /// Tolerance of a solver that does not affect this accuracy: a thirtieth of it, between 1e-6 and 1e-3,
+    /// rounded to one digit.
     ///
     /// ```
     /// let target = analysis::AccuracyTarget { share: 0.01, seconds: 60.0 };
@@ -31,23 +31,23 @@ impl AccuracyTarget {
     }
 }
 
-/// What the solves on one grid say.
+/// Results of the trial solves on one grid.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GridTrial<T> {
-    /// Largest relative error that the grid leaves; `None` where it is not known.
+    /// Largest relative discretisation error of the grid; `None` where it is not known.
     pub error: Option<f64>,
     /// Seconds of the trial.
     pub seconds: f64,
     /// Seconds that the run takes beyond the trial; infinite where no run on this grid reaches the target.
     pub rest: f64,
-    /// The same of a grid as expensive as this one that leaves no error: what finer grids take at least is
-    /// estimated from it.
+    /// Seconds of the run on a grid that is as expensive as this one but has no error: the least time of
+    /// finer grids is estimated from it.
     pub least_rest: f64,
-    /// What else the caller keeps of it.
+    /// Further data of the caller.
     pub kept: T,
 }
 
-/// Why no grid was chosen; each with the last trial.
+/// The reason why no grid was chosen, with the last trial.
 #[derive(Debug, Clone, PartialEq)]
 pub enum NoGrid<T> {
     /// The run on the last grid, or the trial of the next one and the run on it, would take longer than the
@@ -62,7 +62,7 @@ pub enum NoGrid<T> {
         /// Seconds of the whole search and of the run.
         seconds: f64,
     },
-    /// There is no finer grid, or no grid at all.
+    /// There is no finer grid, or no grid at all (`None`).
     Finest(Option<(usize, GridTrial<T>)>),
 }
 
@@ -70,8 +70,8 @@ pub enum NoGrid<T> {
 pub type ChosenGrid<T> = Result<(usize, GridTrial<T>), NoGrid<T>>;
 
 impl<T> NoGrid<T> {
-    /// The reason in words, with what the last grid leaves: `grid` names a grid, `place` says where the error
-    /// is largest, `time` words a time.
+    /// The reason in words, with the error of the last grid: `grid` names a grid, `place` says where the
+    /// error is largest, `time` words a time.
     pub fn words(
         &self,
         budget: f64,
@@ -80,7 +80,9 @@ impl<T> NoGrid<T> {
         time: &dyn Fn(f64) -> String,
     ) -> String {
         let leaves = |n: usize, trial: &GridTrial<T>| match trial.error {
-            Some(error) => format!("{} leave {} ({})", grid(n), percent(error), place(&trial.kept)),
+            Some(error) => {
+                format!("{} have an error of {} ({})", grid(n), percent(error), place(&trial.kept))
+            }
             None => format!(
                 "{} are too few to compare with coarser ones, or every load is zero or complete contact",
                 grid(n)
@@ -105,13 +107,13 @@ fn percent(share: f64) -> String {
     format!("{value:.*} %", if decimals.is_finite() { decimals as usize } else { 0 })
 }
 
-/// The first of several grids, from coarse to fine, whose error is within a target and whose run is within
-/// its time.
+/// The first of several grids, from coarse to fine, that meets a target in error and time.
 ///
-/// A grid is accepted if the coarser one left at most twice the target (one small difference may be chance),
-/// and the finest without that: nothing is extrapolated. Of the best error it is the finest grid whose run is
-/// within the time. The time of a grid is taken to grow with a power of its size; how fast errors fall is not
-/// predicted, so that a search without success takes up to the time in which one more grid would be too many.
+/// A grid is accepted if its error is within the target and that of the next coarser grid is at most twice
+/// the target, because one small difference may be chance. The finest grid is accepted without this second
+/// condition. For a target of 0 the result is the finest grid whose run fits into the time. The time is
+/// assumed to grow with a power of the size of the grid. No rate of convergence is assumed, so an
+/// unsuccessful search continues until one more grid would exceed the time.
 ///
 /// # Errors
 /// What a trial returns.
@@ -193,16 +195,16 @@ mod tests {
         // 8 + 16 + 32 + 64, and the run on 64.
         assert_eq!(search(1, 0.02, 184.0), Ok(64));
         let refused = |share, seconds| search(1, share, seconds).unwrap_err();
-        assert_eq!(refused(1e-3, 1e3), "64 cells leave 1.56 % (at 64)");
+        assert_eq!(refused(1e-3, 1e3), "64 cells have an error of 1.56 % (at 64)");
         assert_eq!(
             refused(0.02, 100.0),
-            "32 cells leave 3.12 % (at 32), 64 cells would take about 184 s, and the budget is 100 s"
+            "32 cells have an error of 3.12 % (at 32), 64 cells would take about 184 s, and the budget is 100 s"
         );
         assert_eq!(
             refused(0.04, 40.0),
-            "16 cells leave 6.25 % (at 16), 32 cells would take about 88 s, and the budget is 40 s"
+            "16 cells have an error of 6.25 % (at 16), 32 cells would take about 88 s, and the budget is 40 s"
         );
-        assert_eq!(refused(0.01, 1e3), "64 cells leave 1.56 % (at 64)");
+        assert_eq!(refused(0.01, 1e3), "64 cells have an error of 1.56 % (at 64)");
         // Errors that hardly fall at first and then do are followed as far as the time goes.
         let late = |n: usize| {
             let error = Some(if n < 64 { 0.5 } else { 0.001 });
@@ -215,7 +217,7 @@ mod tests {
         // The best that the time allows: the finest grid with its run.
         let best = |seconds| search(1, 0.0, seconds);
         assert_eq!([best(184.0), best(183.0), best(40.0)], [Ok(64), Ok(32), Ok(16)]);
-        assert!(best(10.0).unwrap_err().starts_with("8 cells leave 12.5 % (at 8), 16 cells would take"));
+        assert!(best(10.0).unwrap_err().starts_with("8 cells have an error of 12.5 % (at 8), 16 cells"));
     }
 
     #[test]

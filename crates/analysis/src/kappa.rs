@@ -9,7 +9,8 @@ use contact_model::{Error, Result};
 /// ("near 2").
 ///
 /// # Errors
-/// [`Error::Domain`] for a force, modulus or slope that is not finite and positive, or an area that is negative or not finite.
+/// [`Error::Domain`] for a force, modulus or slope that is not finite and positive, or an area that is
+/// negative or not finite.
 ///
 /// ```
 /// assert_eq!(analysis::kappa(0.02, 0.01, 1.0, 1.0)?, 2.0);

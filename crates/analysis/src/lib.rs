@@ -1,20 +1,20 @@
 //! Ensembles, power-law fits, collapse and conductance: from contact states to the numbers of the paper.
 //!
-//! Everything here is a pure function of numbers that somebody else computed: no files, no clocks, no random
-//! state that is not a seed. All of it works on the dimensionless pair of Pohrt, Popov and Filippov (Phys.
-//! Rev. E 86, 026710 (2012)): `F_bar = F/(E* h L)` (Eq. 10) and `k_bar = k/(1.1419 E* L)` (Eq. 8).
+//! Everything here is a pure function of computed numbers, without files, clocks, or random state other than
+//! a seed. All functions use the dimensionless pair of Pohrt, Popov and Filippov (Phys. Rev. E 86, 026710
+//! (2012)): `F_bar = F/(E* h L)` (Eq. 10) and `k_bar = k/(1.1419 E* L)` (Eq. 8).
 //!
 //! * [`Curves`]: k_bar of many surfaces at common forces; [`ensemble`]: their means and errors.
 //! * [`fit_power_law`]: `k_bar = zeta F_bar^alpha` over a stated [`FitWindow`], errors by [`Bootstrap`] over
 //!   surfaces.
-//! * [`crossing`], [`least_spread`]: where the laws, or the curves, of several fractal dimensions come
-//!   together.
-//! * [`collapse`]: the master curve of Fig. 4 and what is left around it.
+//! * [`crossing`], [`least_spread`]: the point where the laws, or the curves, of several fractal dimensions
+//!   come closest.
+//! * [`collapse`]: the master curve of Fig. 4 and the residuals about it.
 //! * [`conductance`] (Eq. 13) and [`kappa`] (`A = kappa F/(E* |grad h|)`).
-//! * [`grid_error`], [`mean_grid_error`]: what a grid leaves, from coarser ones; [`first_grid`]: the grid
-//!   that an accuracy asks for.
+//! * [`grid_error`], [`mean_grid_error`]: discretisation errors, estimated from coarser grids;
+//!   [`first_grid`]: the grid for a requested accuracy.
 //! * [`Multilevel`]: means on the finest of several grids from differences between grids, with bands.
-//! * [`binomial_test`]: whether as many intervals hold the truth as should.
+//! * [`binomial_test`]: whether intervals contain the true value as often as they should.
 //! * [`Table`]: named columns with units that hold no NaN; `paper` writes them.
 //!
 //! # Conventions and accuracy
@@ -26,8 +26,8 @@
 //!
 //! # What it does not do
 //!
-//! It does not solve contacts, and it does not repair them: samples that did not converge must be left out by
-//! the caller (a `None` in [`Curves`]), and forces at which one is missing are left out of fits.
+//! It does not solve contacts. The caller must leave out samples that did not converge (a `None` in
+//! [`Curves`]); fits leave out forces at which a sample is missing.
 //!
 //! ```
 //! use analysis::{Bootstrap, Curves, FitWindow, StiffnessSample, fit_power_law};

@@ -13,8 +13,8 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 ///
 /// The mean on the finest grid is the sum of the mean on the coarsest one and of the mean differences. The
 /// differences scatter less than the curves, so that few surfaces on the expensive grids are enough. Surfaces
-/// of different levels are independent. A level may end before the last point of the others: beyond its end
-/// the next coarser grid is the finest.
+/// of different levels are independent. A level may have fewer points than the coarser ones: beyond its last
+/// point the next coarser grid is the finest.
 ///
 /// Source: M. B. Giles, Oper. Res. 56, 607 (2008).
 #[derive(Debug, Clone, PartialEq)]
@@ -40,7 +40,7 @@ impl Uncertain {
         self.standard_error * student(self.degrees_of_freedom)
     }
 
-    /// Half-width of the interval that is wrong with probability `level`, either way.
+    /// Half-width of the two-sided interval that misses the true value with probability `level`.
     pub fn half_width_at(&self, level: f64) -> f64 {
         self.standard_error * student_at(1.0 - 0.5 * level, self.degrees_of_freedom)
     }
@@ -55,8 +55,8 @@ impl Uncertain {
         Self { value: self.value - other.value, standard_error: (a + b).sqrt(), degrees_of_freedom }
     }
 
-    /// Probability that chance moves the number as far from `expected` as it is, beyond an error of another
-    /// kind.
+    /// p-value of the difference from `expected`, after the difference is reduced by `beside`, an error of
+    /// another kind.
     pub fn chance_of(&self, expected: f64, beside: f64) -> f64 {
         let away = ((self.value - expected).abs() - beside).max(0.0);
         student_beyond(away / self.standard_error, self.degrees_of_freedom)
@@ -64,11 +64,13 @@ impl Uncertain {
 }
 
 impl Multilevel {
-    /// Takes, for each level, the curves of its surfaces: values on the coarsest grid, then differences.
+    /// Takes the curves of the surfaces of each level: values on the coarsest level, differences on the
+    /// others.
     ///
     /// # Errors
-    /// [`Error::Shape`] for no level, a level of fewer than two surfaces, surfaces of one level with unlike numbers of points, or a level that
-    /// has more points than the one before; [`Error::Domain`] for a number that is not finite.
+    /// [`Error::Shape`] for no level, a level of fewer than two surfaces, surfaces of one level with unlike
+    /// numbers of points, or a level that has more points than the one before; [`Error::Domain`] for a number
+    /// that is not finite.
     pub fn new(levels: Vec<Vec<Vec<f64>>>) -> Result<Self> {
         let shape = |name: String, found: usize, expected: String| Error::Shape {
             name: name.into(),
@@ -148,8 +150,8 @@ impl Multilevel {
         Uncertain { value, standard_error: variance.sqrt(), degrees_of_freedom }
     }
 
-    /// What each level adds to the variance of a number that depends on the mean curve of the finest grid by
-    /// these derivatives.
+    /// Contribution of each level to the variance of a number that depends on the mean curve of the finest
+    /// grid with the derivatives `gradient`.
     ///
     /// # Panics
     /// Where there are fewer derivatives than points.
@@ -231,9 +233,9 @@ impl Multilevel {
         curves
     }
 
-    /// What the cells of the finest grid leave of a number that depends on the mean curve: [`grid_error`] of
-    /// its values on the three finest grids, absolute. `None` for fewer than three grids, or where the number
-    /// does not exist on one of them.
+    /// Discretisation error, absolute, of a number that depends on the mean curve: [`grid_error`] of its
+    /// values on the three finest grids. `None` for fewer than three grids, or where the number does not
+    /// exist on one of them.
     pub fn bias(&self, levels: usize, quantity: impl Fn(&[f64]) -> Option<f64>) -> Option<f64> {
         let on = |levels: usize| quantity(&self.means(levels));
         let (fine, half, quarter) =

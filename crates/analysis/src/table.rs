@@ -2,14 +2,14 @@
 
 use contact_model::{Error, Result, Value};
 
-/// A column: its name, its unit and what it holds.
+/// A column: its name, its unit and its meaning.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Column {
     /// Name, as in the header of a CSV.
     pub name: &'static str,
     /// Unit (`1` for a pure number, `-` for text).
     pub unit: &'static str,
-    /// One phrase on what it holds.
+    /// Its meaning, in one phrase.
     pub meaning: &'static str,
 }
 
@@ -40,7 +40,8 @@ impl Table {
     /// Adds a row.
     ///
     /// # Errors
-    /// [`Error::Shape`] for a row of another length, [`Error::Domain`] for a number that is NaN or infinite; the table is unchanged.
+    /// [`Error::Shape`] for a row of another length, [`Error::Domain`] for a number that is NaN or infinite;
+    /// the table is unchanged.
     pub fn push(&mut self, row: Vec<Value>) -> Result<()> {
         if row.len() != self.columns.len() {
             return Err(Error::Shape {
@@ -60,7 +61,7 @@ impl Table {
         Ok(())
     }
 
-    /// What the table is about.
+    /// The title of the table.
     pub fn title(&self) -> &str {
         &self.title
     }

@@ -43,7 +43,7 @@ fn main() -> Result<()> {
         assert!((min / pull_off - 1.0).abs() < 1e-12);
     }
 
-    // Under a prescribed approach the contact lives longer: down to -5/6 pi w R.
+    // Under a prescribed approach the contact is stable further: down to -5/6 pi w R.
     let sphere = AdhesiveSphere::new(radius, contact_modulus, work)?;
     let [soft, hard] = [sphere.pull_off_at_force()?, sphere.pull_off_at_approach()?];
     println!("breaks at {:.4} mN by force, at {:.4} um by approach", soft.force * 1e3, hard.approach * 1e6);

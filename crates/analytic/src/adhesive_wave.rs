@@ -25,10 +25,10 @@ const NAME: &str = "adhesive_wave";
 ///
 /// and a mean gap of `D (1 - r + r ln r) - D alpha sqrt(tan psi) ln r`, `r = sin^2 psi`.
 ///
-/// Stable where p rises with a: from the minimum, where the strips are pulled off, to the maximum, where they
-/// snap into full contact; both limits belong to the stable branch. From the alpha of
-/// [`WavyContact::CRITICAL`] on there is neither, and surfaces that touch close at once. Full contact stays
-/// under any tension in this limit, because nothing begins to open it.
+/// The contact is stable where p rises with a: from the minimum, where the strips pull off, to the maximum,
+/// where they snap into full contact; both limits belong to the stable branch. From the alpha of
+/// [`WavyContact::CRITICAL`] on there is neither, and surfaces that touch close at once. Full contact remains
+/// under any tension in this limit, because there is no edge from which it could open.
 ///
 /// `psi` is a number in [0, pi/2]. An `f64` near pi/2 has few digits of `pi/2 - psi`: values at a given psi
 /// are exact to rounding, but a psi that is returned there is rounded. [`AdhesiveWave`] works with tan psi
@@ -53,10 +53,10 @@ pub struct WavyContact {
     limits: Option<[Strips; 2]>,
 }
 
-/// What a mean pressure makes of surfaces that are in contact.
+/// State under a mean pressure of surfaces that are in contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Branch {
-    /// It is below the pull-off.
+    /// The mean pressure is below the pull-off.
     PulledOff,
     Partial(Strips),
     Full,
@@ -99,7 +99,7 @@ impl WavyContact {
         Ok(Self { nondimensional, per_height, alpha, limits: limits(alpha) })
     }
 
-    /// `alpha`, the share of adhesion, dimensionless.
+    /// Johnson's parameter `alpha`, a dimensionless measure of adhesion.
     pub fn alpha(&self) -> f64 {
         self.alpha
     }
@@ -120,8 +120,8 @@ impl WavyContact {
         gap_in(self.nondimensional, strips_at(psi)?.gap(self.alpha))
     }
 
-    /// `-dp/d(mean gap)` of the bonded strips, whose width is held (a pressure over a length), at `psi` in
-    /// [0, pi/2]: 0 without contact.
+    /// `-dp/d(mean gap)` of the bonded strips at fixed width (a pressure over a length), at `psi` in [0,
+    /// pi/2]: 0 without contact.
     ///
     /// # Errors
     /// [`Error::Domain`] for another psi, or a stiffness that no `f64` holds.
@@ -131,8 +131,8 @@ impl WavyContact {
     }
 
     /// `-dp/d(mean gap)` along the equilibrium curve, on which the strips grow with the pressure (a pressure
-    /// over a length), at `psi` in [0, pi/2]: 0 at the pull-off and at the snap-in, without adhesion that of
-    /// [`WavyContact::stiffness_fixed_area`].
+    /// over a length), at `psi` in [0, pi/2]: 0 at the pull-off and at the snap-in. Without adhesion it
+    /// equals [`WavyContact::stiffness_fixed_area`].
     ///
     /// With `L = -ln r` and `q = d(p/p*)/d tan psi` it is `p*/D` times
     /// `q/(q L + 2 alpha cos^2 psi/sqrt(tan psi))`.
@@ -245,12 +245,12 @@ fn gap_in(nondimensional: Nondimensionalisation, gap: f64) -> Result<f64> {
 /// It takes [`contact_model::Surface::Sine`] with [`contact_model::Boundary::Periodic`] and a whole number of
 /// waves along x. Without adhesion it is [`crate::Westergaard`]. A force at the pull-off or at the snap-in,
 /// each within rounding, gives the contact at that limit. A force beyond the pull-off is
-/// [`Error::OutOfRange`]. A mean gap is not taken: above D it is that of a pulled contact as well as of surfaces
-/// apart.
+/// [`Error::OutOfRange`]. A mean gap cannot be prescribed: above D it belongs to a pulled contact and to
+/// separated surfaces alike.
 ///
-/// The stiffness is the slope of the equilibrium curve ([`WavyContact::slope`]), 0 at both limits. That of
-/// the held contact area, which the conductance follows from, is that of the bonded strips
-/// ([`WavyContact::stiffness_fixed_area`]). A full contact has neither: its mean gap stays 0.
+/// The stiffness is the slope of the equilibrium curve ([`WavyContact::slope`]), 0 at both limits. The
+/// stiffness at fixed contact area, from which the conductance follows, is that of the bonded strips
+/// ([`WavyContact::stiffness_fixed_area`]). A full contact has neither, because its mean gap stays 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct AdhesiveWave;
 
@@ -293,7 +293,7 @@ struct WaveLaw {
 }
 
 impl WaveLaw {
-    /// What is wrong with a force below the pull-off.
+    /// The error for a force below the pull-off.
     fn pulled_off(&self, force: f64, nondimensional: Nondimensionalisation) -> Error {
         let least = self.wave.limits.map_or(0.0, |[first, _]| first.pressure(self.wave.alpha));
         let smallest = nondimensional.force(least * self.full);

@@ -1,5 +1,5 @@
-//! Cattaneo and Mindlin: a sphere under a constant normal and a changing tangential load; Mindlin and
-//! Deresiewicz: its memory.
+//! Cattaneo and Mindlin: a sphere under a constant normal and a changing tangential load, with the memory of
+//! Mindlin and Deresiewicz.
 
 use crate::closed::{self, ROUNDED_UP};
 use crate::hertz::Hertz;
@@ -11,18 +11,19 @@ use contact_model::{
 
 const NAME: &str = "cattaneo_mindlin";
 
-/// A sphere with Coulomb's friction, pressed first and then loaded tangentially, to and fro.
+/// A sphere with Coulomb's friction that is pressed first and then loaded tangentially, to and fro.
 ///
-/// First loading: stick radius `c = a (1 - T/(mu F))^(1/3)`, displacement
-/// `u = 3 mu F/(4 G* a) (1 - (1 - T/(mu F))^(2/3))`. After a turn at `(T_r, u_r)` the curve is the first one,
-/// doubled: `u_r - u = 2 u_1((T_r - T)/2)`, until it closes the loop with an earlier turn and goes on where
-/// that one left off (Mindlin and Deresiewicz 1953). The memory is the list of turns that are not closed.
+/// First loading: stick radius `c = a (1 - T/(mu F))^(1/3)`, displacement `u = 3 mu F/(4 G* a) (1 - (1 -
+/// T/(mu F))^(2/3))`. After a reversal at `(T_r, u_r)` the curve is the first one, doubled: `u_r - u = 2
+/// u_1((T_r - T)/2)`. When it closes the loop with an earlier reversal, it continues along the branch that
+/// was left there (Mindlin and Deresiewicz 1953). The memory is the list of reversals whose loops are not
+/// closed.
 ///
 /// Takes [`contact_model::Surface::Sphere`] with [`Friction::Coulomb`] and both bodies ([`Scene::of_pair`]).
 /// The normal load may change only before the first tangential one; a tangential force beyond mu F is
-/// [`Error::OutOfRange`], a displacement beyond is gross slip. Tangential tractions are taken not to disturb
-/// the normal ones: exact where [`contact_model::Pair::coupling`] is 0, otherwise an approximation of that
-/// order.
+/// [`Error::OutOfRange`], a displacement beyond is gross slip. The theory neglects the influence of
+/// tangential tractions on the normal ones. This is exact where [`contact_model::Pair::coupling`] is 0, and
+/// otherwise an approximation with an error of that order.
 ///
 /// ```
 /// use analytic::CattaneoMindlin;
@@ -124,7 +125,8 @@ impl SlidingSphere {
     /// ([`contact_model::Pair::shear_modulus`]).
     ///
     /// # Errors
-    /// [`Error::Domain`] for a number that is not finite and positive, or a `mu F` or `mu F/(G* a)` that no `f64` holds.
+    /// [`Error::Domain`] for a number that is not finite and positive, or a `mu F` or `mu F/(G* a)` that no
+    /// `f64` holds.
     pub fn new(force: f64, coefficient: f64, contact_radius: f64, shear_modulus: f64) -> Result<Self> {
         let limit = coefficient * force;
         let reach = 0.75 * limit / contact_radius / shear_modulus;
@@ -197,7 +199,7 @@ impl SlidingSphere {
     }
 }
 
-/// Where the history stands.
+/// Current state of the history.
 #[derive(Debug, Clone, Default)]
 struct SlipPathEnd {
     time: f64,

@@ -1,4 +1,4 @@
-//! What all closed forms share: a law in units of its own becomes a [`PreparedContact`].
+//! Common code of all closed forms: a law in units of its own becomes a [`PreparedContact`].
 
 use contact_model::{
     Abilities, Adhesion, ContactModel, ContactState, Error, Load, Normalisation, Output, PreparedContact,
@@ -6,9 +6,9 @@ use contact_model::{
 };
 use std::f64::consts::PI;
 
-/// What a theory says of one load.
+/// A theory that relates a load to a state.
 pub(crate) trait Law: Send {
-    /// The state under a load, with what is asked for.
+    /// The state under a load, with the requested outputs.
     fn state(&self, load: Load, scaling: &Scaling) -> Result<ContactState>;
 }
 
@@ -48,7 +48,7 @@ pub(crate) struct ClosedState {
     pub force: f64,
     pub approach: f64,
     pub stiffness: f64,
-    /// `None` where the theory has no area; its model then refuses to be asked.
+    /// `None` where the theory has no area; its model then refuses the output.
     pub area: Option<f64>,
 }
 
@@ -62,7 +62,7 @@ pub(crate) struct Closed<L> {
     pub stiffness_error: f64,
 }
 
-/// What is known of a round contact of this radius whatever its force.
+/// The quantities of a round contact that follow from its radius alone.
 pub(crate) fn round(radius: f64) -> ScaledState {
     let area = PI * radius * radius;
     ScaledState { stiffness_fixed_area: Some(2.0 * radius), area: Some(area), ..ScaledState::default() }

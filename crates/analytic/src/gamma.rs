@@ -1,4 +1,4 @@
-//! The one special function that these theories need so far.
+//! A ratio of gamma functions.
 
 /// `Gamma(x + 1/2) / Gamma(x)` for `x > 0`, relative error below 1e-14.
 ///

@@ -13,11 +13,11 @@ use surface_gen::MapStatistics;
 
 const NAME: &str = "greenwood_williamson";
 
-/// `1 - s^2/m0 = 0.8968/alpha`: how much less summits scatter than heights (Bush, Gibson, Thomas 1975, as
-/// used by McCool).
+/// `1 - s^2/m0 = 0.8968/alpha`: the reduced scatter of summits compared with heights (Bush, Gibson, Thomas
+/// 1975, as used by McCool).
 const SUMMIT_SCATTER: f64 = 0.8968;
 
-/// Greenwood and Williamson's contact of spherical summits that do not feel each other, in McCool's variant.
+/// Greenwood and Williamson's contact of spherical summits without mutual influence, in McCool's variant.
 ///
 /// From the profile moments m0, m2, m4 of the spectrum, `alpha = m0 m4/m2^2`: all summits have the radius
 /// `R = (3/8) sqrt(pi/m4)`, there are `n = m4/(6 sqrt(3) pi m2)` per area, and their heights scatter by
@@ -26,13 +26,13 @@ const SUMMIT_SCATTER: f64 = 0.8968;
 /// `A/A0 = pi n R s F_1(t)`, `K = 2 n E* sqrt(R s) F_(1/2)(t)`, with
 /// `F_j(t) = int_t^inf (x - t)^j phi(x) dx`.
 ///
-/// The mean gap is the distance of the flat from the mean of the undeformed surface: between summits the
-/// theory's surface does not move. Loads beyond t = 0, where half of the summits would be in contact, are
-/// [`Error::OutOfRange`].
+/// The mean gap is the distance of the flat from the mean plane of the undeformed surface, because the
+/// surface of the theory does not move between summits. Loads beyond t = 0, where half of the summits would
+/// be in contact, are [`Error::OutOfRange`].
 ///
 /// Takes a [`Surface::SelfAffine`] with a short cut-off or [`Surface::Heights`], and
-/// [`contact_model::Boundary::Periodic`] (it knows no edges); the seed changes nothing. The moments of a map
-/// are measured ([`surface_gen::MapStatistics`]); m4 is that of its shortest waves.
+/// [`contact_model::Boundary::Periodic`] (the theory has no edges); the seed has no influence. The moments of
+/// a map are measured ([`surface_gen::MapStatistics`]); its m4 depends on its shortest waves.
 ///
 /// ```
 /// use analytic::GreenwoodWilliamson;
@@ -51,11 +51,11 @@ const SUMMIT_SCATTER: f64 = 0.8968;
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct GreenwoodWilliamson {
-    /// How the heights of the summits are distributed.
+    /// Distribution of the heights of the summits.
     pub heights: SummitHeights,
 }
 
-/// How the heights of summits are distributed around their mean plane.
+/// Distribution of the heights of summits around their mean plane.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub enum SummitHeights {
@@ -66,7 +66,7 @@ pub enum SummitHeights {
     Exponential,
 }
 
-/// What the theory knows of a surface, in the surface's own units.
+/// The statistics of summits that the theory uses, in the surface's own units.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Summits {
     /// Number of summits per area.
@@ -86,7 +86,7 @@ impl Summits {
         Self::unscaled(spectrum.profile_moments(), spectrum.side(), spectrum.rms_height())
     }
 
-    /// The same of a map, from its measured moments.
+    /// The summits of a map, from its measured moments.
     pub fn of_map(map: &MapStatistics) -> Self {
         Self::unscaled(map.profile_moments(), map.length, map.rms_height)
     }

@@ -67,8 +67,8 @@ impl ClosedLaw for HertzSphere {
 /// Johnson Eq. 4.24).
 ///
 /// # Errors
-/// [`contact_model::Error::Domain`] for a force that is negative or a contact radius that is not positive, or not finite
-/// numbers.
+/// [`contact_model::Error::Domain`] for a force that is negative or a contact radius that is not positive, or
+/// not finite numbers.
 ///
 /// ```
 /// // F = 2 pi, a = 1: p_0 = 3, and at r = 0.6 it is 3 x 0.8.

@@ -13,17 +13,17 @@ const NAME: &str = "jkr";
 /// The JKR contact of a sphere with [`contact_model::Adhesion::ShortRange`]:
 /// `F = 4 E* a^3/(3 R) - sqrt(8 pi w E* a^3)`, `d = a^2/R - sqrt(2 pi w a/E*)`.
 ///
-/// The state is that of bodies that are in contact and are pressed further or pulled apart: loads may be
-/// negative, and no load means the adhered contact, not an empty one. (Bodies that approach each other jump
-/// into this contact at d = 0.) A force below `-3/2 pi w R` or an approach below that of `F = -5/6 pi w R` is
-/// [`Error::OutOfRange`], named a pull-off: the smallest admissible load is in the error. So is a contact
-/// radius beyond half the shorter side.
+/// The bodies are in contact and are pressed further or pulled apart. Loads may therefore be negative, and
+/// the state without load is the adhered contact, not separation. (Bodies that approach each other jump into
+/// this contact at d = 0.) A force below `-3/2 pi w R` or an approach below that of `F = -5/6 pi w R` is
+/// [`Error::OutOfRange`], which names the pull-off and the smallest admissible load. So is a contact radius
+/// beyond half the shorter side.
 ///
 /// The stiffness is the slope of the equilibrium curve, on which the edge moves ([`AdhesiveSphere::slope`]):
-/// 0 at the pull-off under prescribed force, negative beyond it, absent at the pull-off under prescribed
-/// approach, where it has no bound. That of the held contact area, which the conductance follows from, is
-/// `2 E* a`. Takes
-/// [`contact_model::Surface::Sphere`]; adhesion that is off is w = 0, which is Hertz's contact.
+/// 0 at the pull-off under prescribed force, negative beyond it, and absent at the pull-off under prescribed
+/// approach, where it has no bound. The stiffness at fixed contact area, from which the conductance follows,
+/// is `2 E* a`. The model takes [`contact_model::Surface::Sphere`]; adhesion that is off is w = 0, which is
+/// Hertz's contact.
 ///
 /// ```
 /// use analytic::Jkr;
@@ -34,7 +34,7 @@ const NAME: &str = "jkr";
 /// // At no load a^3 = 9 pi w R^2 / (2 E*): a = 0.5209397, d = a^2/(3 R).
 /// let state = contact.solve(Load::Force(0.0))?;
 /// assert!((state.approach.unwrap_or(0.0) - 0.5209397_f64.powi(2) / 3.0).abs() < 1e-7);
-/// // The stiffness is 3/5 of the 2 E* a of the held area.
+/// // The stiffness is 3/5 of 2 E* a, that at fixed contact area.
 /// assert!((state.stiffness.unwrap_or(0.0) - 1.2 * 0.5209397).abs() < 1e-7);
 /// // 3/2 pi w R = 0.0471239.
 /// assert!(contact.solve(Load::Force(-0.0471)).is_ok() && contact.solve(Load::Force(-0.0472)).is_err());
@@ -68,8 +68,8 @@ impl ContactModel for Jkr {
     }
 }
 
-/// A sphere with adhesion, outside the common trait: the equilibrium curve through its contact radius, and
-/// where it ends.
+/// The equilibrium curve of a sphere with adhesion as functions of its contact radius, and the ends of the
+/// curve.
 ///
 /// ```
 /// use analytic::jkr::AdhesiveSphere;
@@ -131,8 +131,8 @@ impl AdhesiveSphere {
         self.nondimensional.approach(self.approach_of(a))
     }
 
-    /// `dF/dd` along the equilibrium curve: positive where a prescribed force holds the contact, negative
-    /// where only a prescribed approach does.
+    /// `dF/dd` along the equilibrium curve: positive where the contact is stable under a prescribed force,
+    /// negative where it is stable only under a prescribed approach.
     ///
     /// `2 E* a (1 - b) / (1 - b/3)` with `b = (3/4) sqrt(2 pi w R^2/(E* a^3))`; without adhesion 2 E* a.
     ///

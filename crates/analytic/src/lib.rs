@@ -17,31 +17,33 @@
 //! The paper's other fits are plain functions: [`exponent_fit`] (Eq. 6), [`zeta_fit`] (Eq. 11),
 //! [`conductance_fit`] (Eq. 13), [`exponent_scaling`] (Eq. 24) and [`force_tilde`] (Fig. 4). The product of
 //! two waves has no closed form; its limits for small and nearly full contact are functions of
-//! [`westergaard`]. What theories know of a random surface is in [`spectrum`], of a given map in
-//! [`surface_gen::MapStatistics`] and [`surface_gen::SelfAffineFit`].
+//! [`westergaard`]. The statistics that theories use are in [`spectrum`] for a random surface, and in
+//! [`surface_gen::MapStatistics`] and [`surface_gen::SelfAffineFit`] for a given map.
 //!
 //! # Conventions
 //!
-//! As in [`contact_model`]: `d` counts from first touch, pressure is compressive, units are the caller's own.
-//! Round contacts sit in the middle of the rectangle; once their radius exceeds half its shorter side they
-//! are out of range, because the half-space outside carries no pressure. `L = sqrt(Lx Ly)`, the side of a
-//! square; theories of rough surfaces know the nominal area `L^2` alone.
+//! The conventions are those of [`contact_model`]: `d` is measured from first touch, pressure is compressive,
+//! and units are the caller's own. Round contacts are at the centre of the rectangle; once their radius
+//! exceeds half its shorter side they are out of range, because the half-space outside carries no pressure.
+//! `L = sqrt(Lx Ly)` is the side of a square; theories of rough surfaces depend on the nominal area `L^2`
+//! alone.
 //!
 //! Periodic contacts have a mean gap and no approach: [`contact_model::ContactState::mean_gap`],
 //! [`contact_model::Load::MeanGap`].
 //!
 //! # Accuracy and speed
 //!
-//! Exact formulas hold to about 1e-14 (1e-13 for small exponents), in any units from 1e-150 to 1e150; the
-//! constant of the flat square is known to 1e-6 and says so in the report. A state costs well under a
-//! microsecond; of [`MaugisDugdale`] (a root) one or two, of [`GreenwoodWilliamson`] and [`Persson`] tens of
-//! microseconds (quadratures to 1e-11), with the mean gap a few hundred. How good theories of rough surfaces
-//! are is another matter. [`PowerLaw`] is as good as the fit it is.
+//! Exact formulas are evaluated to about 1e-14 (1e-13 for small exponents), in any units from 1e-150 to
+//! 1e150. The constant of the flat square is known to 1e-6, and its report states this. A state costs well
+//! under a microsecond; one of [`MaugisDugdale`] (a root) costs one or two. Those of [`GreenwoodWilliamson`]
+//! and [`Persson`] cost tens of microseconds (quadratures to 1e-11), and a few hundred with the mean gap.
+//! These numbers concern the evaluation: theories of rough surfaces are approximations, and [`PowerLaw`] is a
+//! fit.
 //!
 //! # What it does not do
 //!
-//! No fields: a closed form has no cells. Where the pressure is a formula it is a function of r
-//! ([`hertz::pressure`], [`flat_punch::pressure`]). Effects that the table does not name are refused.
+//! It has no fields, because a closed form has no cells. Pressures that are known as formulas are functions
+//! of r ([`hertz::pressure`], [`flat_punch::pressure`]). Effects that the table does not name are refused.
 
 pub mod adhesive_wave;
 pub mod cattaneo_mindlin;

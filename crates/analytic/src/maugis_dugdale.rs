@@ -19,18 +19,18 @@ const NAME: &str = "maugis_dugdale";
 /// `s0 = work/range` wherever the gap is below the range, that is between the contact radius a and the radius
 /// c of the cohesive zone.
 ///
-/// The state is that of bodies that are in contact and are pressed further or pulled apart: loads may be
-/// negative, and no load means the adhered contact. A force below that of the pull-off (between `-2 pi w R`
-/// of a hard sphere and `-3/2 pi w R` of a soft one) is [`Error::OutOfRange`], and so is an approach below
-/// the smallest of a stable contact. Hard spheres (lambda below 0.938) come down to a contact of radius 0
-/// there; what attracts them beyond it, without contact, is not part of this model. A cohesive zone beyond
+/// The bodies are in contact and are pressed further or pulled apart. Loads may therefore be negative, and
+/// the state without load is the adhered contact. A force below that of the pull-off (between `-2 pi w R` of
+/// a hard sphere and `-3/2 pi w R` of a soft one) is [`Error::OutOfRange`], and so is an approach below the
+/// smallest of a stable contact. For hard spheres (lambda below 0.938) the contact radius decreases to 0
+/// there; the attraction without contact beyond this point is not part of the model. A cohesive zone beyond
 /// half the shorter side is out of range too.
 ///
 /// The stiffness is the slope of the equilibrium curve, on which a and c both move ([`MaugisSphere::slope`]),
-/// absent at the pull-off under prescribed approach, where it has no bound. That of the held contact area,
-/// which the conductance follows from, is `2 E* a` as in [`crate::Jkr`]: the attraction is constant and
-/// bridges no current. Takes [`contact_model::Surface::Sphere`]; adhesion that is off, or without work, is
-/// Hertz's contact. A load costs one to two microseconds.
+/// and it is absent at the pull-off under prescribed approach, where it has no bound. The stiffness at fixed
+/// contact area, from which the conductance follows, is `2 E* a` as in [`crate::Jkr`], because the attraction
+/// is constant and carries no current. The model takes [`contact_model::Surface::Sphere`]; adhesion that is
+/// off, or without work, is Hertz's contact. A load costs one to two microseconds.
 ///
 /// ```
 /// use analytic::MaugisDugdale;
@@ -81,8 +81,8 @@ impl ContactModel for MaugisDugdale {
     }
 }
 
-/// A sphere with Dugdale's law of adhesion, outside the common trait: the equilibrium curve through its
-/// contact radius, and where it ends.
+/// The equilibrium curve of a sphere with Dugdale's law of adhesion as functions of its contact radius, and
+/// the ends of the curve.
 ///
 /// ```
 /// use analytic::maugis_dugdale::MaugisSphere;
@@ -109,9 +109,9 @@ pub struct MaugisSphere {
 }
 
 impl MaugisSphere {
-    /// lambda for which the curve is tested. Far beyond 1 it is that of JKR but for `0.3/lambda^2` of forces,
-    /// radii and approaches; far below 1 the pull-off force is `2 - 1.72 lambda^(3/2)` times `pi w R`, and at
-    /// 0 that of DMT.
+    /// Range of lambda in which the curve is tested. Far above 1 the curve approaches that of JKR, with
+    /// relative differences of `0.3/lambda^2` in forces, radii and approaches. Far below 1 the pull-off force
+    /// is `2 - 1.72 lambda^(3/2)` times `pi w R`, which tends to that of DMT at 0.
     pub const LAMBDA: std::ops::RangeInclusive<f64> = 1e-6..=1e6;
 
     /// Radius of curvature R > 0, modulus E* > 0, work of adhesion w > 0 (energy per area), range > 0 (a
@@ -177,9 +177,9 @@ impl MaugisSphere {
         self.nondimensional.approach(self.unit * self.point(contact_radius)?.c)
     }
 
-    /// `dF/dd` along the equilibrium curve, on which a and c both move: positive where a prescribed force
-    /// holds the contact, negative where only a prescribed approach does. Without adhesion it would be 2 E*
-    /// a.
+    /// `dF/dd` along the equilibrium curve, on which a and c both move: positive where the contact is stable
+    /// under a prescribed force, negative where it is stable only under a prescribed approach. Without
+    /// adhesion it would be `2 E* a`.
     ///
     /// It is `(dF/da)/(dd/da)`, each with the derivative of c that the implicit equation between a and c
     /// gives.

@@ -1,5 +1,5 @@
-//! The curve of a tangential load with its turns: first loading, doubled branches, loops that close (Mindlin
-//! and Deresiewicz).
+//! The curve of a tangential load with its reversals: first loading, doubled branches and closed loops
+//! (Mindlin and Deresiewicz).
 
 /// `u = 1 - (1 - t)^(2/3)`: displacement of first loading over its reach, t in [0, 1].
 pub(crate) fn reached(t: f64) -> f64 {

@@ -1,4 +1,4 @@
-//! What all theories of periodic contact share: a law in the mean pressure becomes a state.
+//! Common code of all theories of periodic contact: a law in the mean pressure becomes a state.
 
 use crate::closed::Law;
 use contact_model::{

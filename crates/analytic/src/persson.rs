@@ -25,15 +25,15 @@ const NAME: &str = "persson";
 /// * At small p this is `p = beta E* exp(-u/u_0)`, so the stiffness is p/u_0 ([`Persson::decay_length`]).
 ///
 /// Takes a [`Surface::SelfAffine`] with a short cut-off or [`Surface::Heights`], and
-/// [`contact_model::Boundary::Periodic`]; the seed changes nothing. Moments of the spectrum are those of
-/// [`crate::spectrum`], those of a map are measured ([`surface_gen::MapStatistics`]): g is its rms slope,
-/// exactly, and `C q^3` is constant within each band. The mean gap has no bound as p -> 0 (a Gaussian surface
-/// has no highest point): it is an error at no load, and real, finite surfaces leave the exponential where
-/// few summits touch.
+/// [`contact_model::Boundary::Periodic`]; the seed has no influence. Moments of the spectrum are those of
+/// [`crate::spectrum`]; those of a map are measured ([`surface_gen::MapStatistics`]): g is exactly its rms
+/// slope, and `C q^3` is constant within each band. The mean gap has no bound as p -> 0, because a Gaussian
+/// surface has no highest point. Without load it is therefore an error, and real, finite surfaces deviate
+/// from the exponential law where few summits touch.
 ///
-/// The integrals over q are taken in the running slope `y(q) = 1/w`, where they have no singularity: relative
-/// error below 1e-11. A state costs some thousand nodes: tens of microseconds, a few hundred for its gap, a
-/// few milliseconds for the state at a given gap.
+/// The integrals over q use the running slope `y(q) = 1/w` as their variable, in which they have no
+/// singularity; their relative error is below 1e-11. A state needs about a thousand nodes, which takes tens
+/// of microseconds; its mean gap takes a few hundred, and the state at a given gap a few milliseconds.
 ///
 /// ```
 /// use analytic::Persson;
@@ -52,8 +52,8 @@ const NAME: &str = "persson";
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Persson {
-    /// The elastic energy of partial contact over that of full contact of the same waves, in (0, 1]: 0.42 to
-    /// 0.48 in simulations.
+    /// Ratio of the elastic energy of partial contact to that of full contact of the same waves, in (0, 1];
+    /// 0.42 to 0.48 in simulations.
     pub gamma: f64,
 }
 

@@ -1,4 +1,4 @@
-//! The paper's own fits for self-affine surfaces: Eqs. 6, 11, 12, 13 and 24, and the ordinate of Fig. 4.
+//! The paper's formulas for self-affine surfaces: Eqs. 6, 11, 12, 13 and 24, and the ordinate of Fig. 4.
 
 use crate::closed::{self, Closed, ClosedLaw, ClosedState, ROUNDED_UP};
 use contact_model::{
@@ -32,8 +32,8 @@ pub fn exponent_fit(fractal_dimension: f64) -> f64 {
     EXPONENT_PER_DIMENSION * fractal_dimension
 }
 
-/// `alpha = 1 / (1 + H)`: the exponent by the zoom argument of Eqs. 19 to 24, for a Hurst exponent H in [0,
-/// 1] (not checked).
+/// `alpha = 1 / (1 + H)`: the exponent by the scaling argument of Eqs. 19 to 24, for a Hurst exponent H in
+/// [0, 1] (not checked).
 ///
 /// ```
 /// assert_eq!(analytic::exponent_scaling(1.0), 0.5); // D_f = 2
@@ -75,8 +75,8 @@ pub fn force_tilde(stiffness_bar: f64, fractal_dimension: f64) -> Result<f64> {
 /// introduction prints it as `k = E* (rho1 + rho2) Lambda / 2`, which is the same.)
 ///
 /// # Errors
-/// [`Error::Domain`] for a negative force, a side or resistivity that is not positive, or a fractal dimension outside [2, 3];
-/// [`Error::OutOfRange`] for `F_bar` beyond 0.086, the end of the power law.
+/// [`Error::Domain`] for a negative force, a side or resistivity that is not positive, or a fractal dimension
+/// outside [2, 3]; [`Error::OutOfRange`] for `F_bar` beyond 0.086, the end of the power law.
 ///
 /// ```
 /// assert!((analytic::conductance_fit(0.086, 2.0, 1.0, 2.0)? - 0.2055).abs() < 1e-15);
@@ -104,16 +104,17 @@ pub fn conductance_fit(force_bar: f64, fractal_dimension: f64, side: f64, resist
 /// The paper's Eq. 12: `k / (1.1419 E* L) = 0.18 (F / (0.086 E* h L))^(0.266 D_f)`, up to `k_bar = 0.18`.
 ///
 /// Takes a [`Surface::SelfAffine`] of given rms height without roll-off or cut-off, as the paper's surfaces
-/// are; the seed changes nothing: Eq. 12 is a fit to averages over 60 surfaces, single ones scatter around it
-/// (28 % at D_f = 2, 8 % at D_f = 3). Of a
-/// [`Surface::Heights`] it takes the rms height, `L = sqrt(Lx Ly)` and the Hurst exponent fitted to its spectrum
-/// ([`surface_gen::SelfAffineFit`]); an error of 0.05 in H is one of 3 % in k at F_bar = 0.0086. Maps that
-/// are not self-affine down to their longest wave are refused, as are tilted ones.
+/// are. The seed has no influence: Eq. 12 is a fit to averages over 60 surfaces, around which single surfaces
+/// scatter by 28 % at D_f = 2 and 8 % at D_f = 3. Of a [`Surface::Heights`] it takes the rms height, `L =
+/// sqrt(Lx Ly)` and the Hurst exponent fitted to its spectrum ([`surface_gen::SelfAffineFit`]); an error of
+/// 0.05 in H causes an error of 3 % in k at F_bar = 0.0086. Maps that are not self-affine down to their
+/// longest wave are refused, as are tilted ones.
 ///
 /// The approach is what the formula itself implies, `d = int_0^F dF/k = F / ((1 - alpha) k)`, finite as alpha
-/// < 1. It takes the power law down to first touch. A sampled surface leaves it where few cells touch and is
-/// stiffer there than the formula, and a mean of k over surfaces is not a mean of d: read it as the approach
-/// of a surface that follows Eq. 12, not as a second fit. No area is claimed.
+/// < 1. It extends the power law down to first touch. A sampled surface deviates from the law where few cells
+/// are in contact, and is stiffer there than the formula; besides, a mean of k over surfaces is not a mean of
+/// d. The approach is therefore that of a surface that follows Eq. 12 exactly, not a second fit. The model
+/// claims no area.
 ///
 /// ```
 /// use analytic::PowerLaw;

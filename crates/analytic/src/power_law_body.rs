@@ -1,4 +1,4 @@
-//! Galin: a power-law body `z = c r^n`, the cone among them.
+//! Galin: power-law bodies `z = c r^n`, among them the cone.
 
 use crate::closed::{self, ClosedLaw, ClosedState};
 use crate::gamma::half_step_ratio;

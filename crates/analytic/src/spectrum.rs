@@ -1,4 +1,5 @@
-//! Moments of a self-affine spectrum between its cut-offs, in closed form: what theories know of a surface.
+//! Moments of a self-affine spectrum between its cut-offs, in closed form: the statistics of a surface that
+//! theories use.
 //!
 //! The spectrum of [`SelfAffine`]: constant from `q_0 = 2 pi/L` to the roll-off, then `q^(-2 (H + 1))` to the
 //! short cut-off. Integrals run over the whole plane of wavenumbers; a surface drawn on a grid has the sum

@@ -10,7 +10,7 @@ pub(crate) const PRINTED: f64 = 1e-10;
 /// A root and a handful of products.
 pub(crate) const ROUNDING: f64 = 1e-14;
 
-/// One state, with the stiffness of the held area, and the area where the model has one.
+/// One state, with the stiffness at fixed contact area, and the area where the model has one.
 pub(crate) fn pressed(model: &dyn ContactModel, scene: &Scene, load: Load) -> Result<ContactState> {
     let mut scene = scene.clone();
     scene.outputs.stiffness_fixed_area = true;
@@ -49,7 +49,7 @@ pub(crate) fn check_curve(model: &dyn ContactModel, scene: &Scene, d: f64) {
 }
 
 /// Of an adhesive sphere: dF/dd of a state is that of its neighbours under loads of the same kind, by central
-/// differences; the held area has 2 E* a, and the conductance follows from it.
+/// differences; at fixed contact area it is 2 E* a, from which the conductance follows.
 pub(crate) fn check_slope(model: &dyn ContactModel, scene: &Scene, load: Load) {
     /// Relative step of the load; its square times third derivatives that grow towards a fold is the error of
     /// a difference.

@@ -11,16 +11,17 @@ use std::f64::consts::{PI, SQRT_2};
 
 const NAME: &str = "westergaard";
 
-/// How far the side along x may be from a whole number of waves: both may have been rounded on their way
-/// through a file.
+/// Largest deviation of the side along x from a whole number of waves: both may have been rounded on their
+/// way through a file.
 const WHOLE_WAVES: f64 = 1e-9;
 
 /// The periodic contact of a wave `h = D cos(2 pi x/w)` with a flat: closes at the mean pressure `p* = pi E*
 /// D/w`.
 ///
 /// With `r = p/p*`: contact width over wavelength `(2/pi) asin sqrt(r)`, mean gap `D (1 - r + r ln r)`,
-/// stiffness per area `pi E*/(w ln(1/r))`. From `p*` on the contact is full: the area is that of the square,
-/// the mean gap 0, and the stiffness, which has no bound there, is absent. A mean gap beyond D is no contact.
+/// stiffness per area `pi E*/(w ln(1/r))`. From `p*` on the contact is full: the area is that of the
+/// rectangle, the mean gap is 0, and the stiffness, which has no bound there, is absent. For a mean gap above
+/// D there is no contact.
 ///
 /// Takes [`Surface::Sine`] with [`contact_model::Boundary::Periodic`] and a whole number of waves along x.
 /// The rms height of its normalisation is D/sqrt(2).
@@ -70,7 +71,8 @@ impl ContactModel for Westergaard {
 /// Amplitude, number of waves and sides of a periodic sine.
 ///
 /// # Errors
-/// [`Error::Unsupported`] for another surface, [`Error::Domain`] where the side along x is no whole number of waves.
+/// [`Error::Unsupported`] for another surface, [`Error::Domain`] where the side along x is no whole number of
+/// waves.
 pub(crate) fn whole_waves(scene: &Scene, model: &'static str) -> Result<(f64, f64, Size)> {
     let Surface::Sine { amplitude, wavelength, size } = scene.surface else {
         return Err(Error::unsupported(model, scene.surface.kind()));

@@ -1,5 +1,5 @@
-//! From two materials to what a contact of theirs needs: E*, G*, normalised loads and the conductance of a
-//! stiffness.
+//! From two materials to the numbers of their contact: E*, G*, normalised loads, and the conductance that
+//! follows from a stiffness.
 //!
 //! `cargo run -p contact-model --example pair`
 //!

@@ -1,4 +1,4 @@
-//! What a model can do, as data: refusals, help and tables of models follow from it.
+//! Abilities of models, as data: refusals, help and tables of models follow from them.
 
 use crate::effects::{Boundary, Effect};
 use crate::error::{Error, Result};
@@ -116,22 +116,22 @@ impl LoadKind {
     }
 }
 
-/// What a path of loads is to a model.
+/// How a model treats a path of loads.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Paths {
-    /// Nothing depends on it: each step is solved for its load.
+    /// The path has no influence: each step is solved for its own load.
     Forgotten,
-    /// It is remembered where an effect asks for it; single loads are reached from no contact.
+    /// The path is remembered where an effect depends on it; a single load is reached from no contact.
     Remembered,
-    /// Time or the tangential load is all that the model is about: loads one by one have no answer.
+    /// The model needs a path: its subject is time or the tangential load, and single loads have no answer.
     Needed,
 }
 
-/// What a model can do. A scene that asks for more is refused by [`Abilities::refuse`] before anything is
+/// The abilities of a model. [`Abilities::refuse`] refuses a scene that requests more, before anything is
 /// planned.
 ///
-/// These are necessary: what depends on several of them together, or on numbers, a model refuses itself, in
-/// `prepare`.
+/// These conditions are necessary, not sufficient: a model itself refuses, in `prepare`, what depends on
+/// several of them together or on numbers.
 ///
 /// ```
 /// use contact_model::{Abilities, Boundary, Effect, LoadKind, Output, Paths, Scene, Surface, SurfaceKind};
@@ -149,27 +149,27 @@ pub enum Paths {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[allow(clippy::exhaustive_structs)] // A model writes all of it, or begins with `ELASTIC`.
 pub struct Abilities {
-    /// Surfaces that it takes.
+    /// Kinds of surface that the model accepts.
     pub surfaces: &'static [SurfaceKind],
-    /// Boundaries.
+    /// Boundaries that it can treat.
     pub boundaries: &'static [Boundary],
-    /// Effects.
+    /// Effects that it can treat.
     pub effects: &'static [Effect],
-    /// Whether it means nothing without one of them.
+    /// Whether a scene must have at least one of these effects.
     pub needs_effect: bool,
     /// Loads that may be prescribed.
     pub loads: &'static [LoadKind],
-    /// What a path of loads is to it.
+    /// How it treats a path of loads.
     pub paths: Paths,
     /// Directions of tangential loads, where friction is among the effects.
     pub directions: Directions,
-    /// Outputs.
+    /// Outputs that it can compute.
     pub outputs: &'static [Output],
 }
 
 impl Abilities {
     /// Linear elastic normal contact with free boundaries, under a force or an approach, with the stiffness
-    /// and what follows from it: no surface yet.
+    /// and what follows from it. The list of surfaces is empty: a model fills it in.
     pub const ELASTIC: Self = Self {
         surfaces: &[],
         boundaries: &[Boundary::Free],
@@ -181,7 +181,7 @@ impl Abilities {
         outputs: &[Output::Stiffness, Output::StiffnessFixedArea, Output::Conductance],
     };
 
-    /// Errors where a scene asks for what is not among them, and for numbers of the scene that make no sense.
+    /// Checks that the model can do what a scene requests, and that the numbers of the scene make sense.
     ///
     /// # Errors
     /// [`Error::Unsupported`] naming the model and what it lacks; those of [`Scene::validate`].
@@ -193,7 +193,7 @@ impl Abilities {
         }
     }
 
-    /// Everything that a scene asks for and that is not among them, in words.
+    /// Everything that a scene requests and that the model cannot do, in words.
     pub fn lacks(&self, scene: &Scene) -> impl Iterator<Item = String> + use<> {
         let mut lacks = Vec::new();
         let boundary = scene.effects.boundary;
@@ -218,7 +218,7 @@ impl Abilities {
         lacks.into_iter()
     }
 
-    /// Errors where a load is of a kind that is not among them.
+    /// Checks that the model accepts a load of this kind.
     ///
     /// # Errors
     /// [`Error::Unsupported`] naming the model and the load.

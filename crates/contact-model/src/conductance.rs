@@ -3,12 +3,13 @@
 use crate::error::{Error, Result, non_negative, positive};
 
 /// Conductance through the contact of two half-spaces: `Lambda = 2 k/(E* (rho_1 + rho_2))` (Barber 2003; Eq.
-/// 13 of the paper), with the stiffness k of the whole contact area, held
+/// 13 of the paper), with the stiffness k at fixed contact area
 /// ([`crate::ContactState::stiffness_fixed_area`]).
 ///
-/// Exact for any contact area, periodic or not: potential and normal displacement are the same harmonic
-/// function. The bodies conduct through the real contact only, films and radiation apart; cells at the
-/// hardness conduct, and an attraction across a gap does not. It costs nothing beyond that stiffness.
+/// The formula is exact for any contact area, periodic or not, because potential and normal displacement are
+/// the same harmonic function. The bodies conduct through the real contact only: films and radiation are
+/// neglected, cells at the hardness conduct, and an attraction across a gap does not. The conductance costs
+/// nothing beyond that stiffness.
 ///
 /// ```
 /// use contact_model::Conductance;
@@ -23,17 +24,17 @@ use crate::error::{Error, Result, non_negative, positive};
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[non_exhaustive]
 pub enum Conductance {
-    /// Not asked for.
+    /// No conductance is computed.
     #[default]
     Off,
-    /// Electrical: resistivities of both bodies >= 0 (resistance times length), not both 0.
+    /// Electrical conductance: resistivities of both bodies >= 0 (resistance times length), not both 0.
     Electrical {
         /// Resistivity rho_1 of one body.
         first: f64,
         /// Resistivity rho_2 of the other.
         second: f64,
     },
-    /// Thermal: conductivities of both bodies > 0 (power per length and temperature).
+    /// Thermal conductance: conductivities of both bodies > 0 (power per length and temperature).
     Thermal {
         /// Conductivity of one body, `1/rho_1`.
         first: f64,
@@ -46,8 +47,8 @@ impl Conductance {
     /// `rho_1 + rho_2`; `None` where it is off.
     ///
     /// # Errors
-    /// [`Error::Domain`] for a resistivity that is negative, a conductivity that is not positive, a number that is not finite, or a sum
-    /// that is 0 or that no f64 holds.
+    /// [`Error::Domain`] for a resistivity that is negative, a conductivity that is not positive, a number
+    /// that is not finite, or a sum that is 0 or that no f64 holds.
     pub fn resistivity(self) -> Result<Option<f64>> {
         let (first, second) = match self {
             Self::Off => return Ok(None),

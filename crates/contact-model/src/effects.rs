@@ -4,17 +4,17 @@ use crate::error::{Error, Result, non_negative, positive};
 use crate::pair::Pair;
 use crate::rheology::{PronySeries, Relaxing, Rheology};
 
-/// A second Dundurs constant below this is that of bodies that are alike, whose moduli were rounded.
+/// Bodies whose second Dundurs constant is smaller than this are taken as alike: their moduli were rounded.
 const SAME_BODIES: f64 = 1e-12;
 
-/// Effects beyond linear elastic normal contact with free boundaries. Off unless named; a model that lacks
-/// one refuses it.
+/// Effects beyond linear elastic normal contact with free boundaries. Each is off unless a scene names it; a
+/// model that cannot treat an effect refuses the scene.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Effects {
-    /// What lies outside the square.
+    /// Boundary condition outside of the rectangle.
     pub boundary: Boundary,
-    /// Largest pressure that the bodies carry. A load is solved from the virgin surface; the indentation of a
-    /// path stays from step to step ([`crate::PreparedContact::advance_until`]).
+    /// Largest pressure that the bodies carry. A single load is solved from the virgin surface; along a path
+    /// the indentation stays from step to step ([`crate::PreparedContact::advance_until`]).
     pub hardness: Hardness,
     /// Attraction between the surfaces.
     pub adhesion: Adhesion,
@@ -49,7 +49,7 @@ impl Effects {
         self.rheology.validate()
     }
 
-    /// The effects that are on; the boundary is none of them ([`Effects::boundary`]).
+    /// The effects that are on. The boundary ([`Effects::boundary`]) does not count as one.
     ///
     /// ```
     /// use contact_model::{Adhesion, Effect, Effects};
@@ -87,7 +87,7 @@ impl Effects {
 
 macro_rules! effects {
     ($($(#[doc = $doc:literal])+ $variant:ident $key:literal $words:literal { $field:ident: $example:expr },)+) => {
-        /// An effect that is on, without its numbers: what a model can or cannot do.
+        /// A kind of effect, without its numbers: models list the kinds that they can treat.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
         #[non_exhaustive]
         pub enum Effect {
@@ -105,15 +105,15 @@ macro_rules! effects {
                 }
             }
 
-            /// It alone, with numbers for bodies of a side and an E* of about 1 whose heights are hundredths:
-            /// for trials of models.
+            /// This effect alone, with numbers that suit a side and an E* of about 1 and heights of about
+            /// 0.01: for trials of models.
             pub fn example(self) -> Effects {
                 match self {
                     $(Self::$variant => Effects { $field: $example, ..Effects::default() },)+
                 }
             }
 
-            /// What it is, for refusals and tables.
+            /// The effect in words, for refusals and tables.
             pub fn words(self) -> &'static str {
                 match self {
                     $(Self::$variant => $words,)+
@@ -157,14 +157,14 @@ effects! {
         { rheology: Rheology::Prony(PronySeries::new(&[Relaxing { weight: 1.0, time: 1.0 }]).unwrap_or_default()) },
 }
 
-/// What lies outside the square.
+/// Boundary condition outside of the rectangle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub enum Boundary {
     /// An unloaded half-space: the edges are the physical edges of the indenter (the paper's case).
     #[default]
     Free,
-    /// Periodic copies of the square.
+    /// Periodic copies of the rectangle.
     Periodic,
 }
 
@@ -190,8 +190,8 @@ pub enum Adhesion {
     /// None.
     #[default]
     Off,
-    /// Short-range adhesion (JKR) with this work of adhesion (energy per area): the limit in which nothing
-    /// attracts across a gap and the edges of a contact bear any tension.
+    /// Short-range adhesion (JKR) with this work of adhesion (energy per area): the limit of a vanishing
+    /// range, in which nothing attracts across a gap and the tension at the edge of a contact has no bound.
     ShortRange {
         /// Work of adhesion Delta gamma.
         work: f64,
@@ -207,7 +207,7 @@ pub enum Adhesion {
     },
 }
 
-/// How the attractive traction of [`Adhesion::FiniteRange`] falls with the gap g.
+/// Law by which the attractive traction of [`Adhesion::FiniteRange`] falls with the gap g.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum AdhesionLaw {
@@ -229,15 +229,16 @@ pub enum Friction {
     Coulomb {
         /// Coefficient of friction mu.
         coefficient: f64,
-        /// How normal and tangential tractions act on each other; `None` says nothing of it. It matters for
+        /// How normal and tangential tractions act on each other; `None` leaves it open. It matters for
         /// bodies whose second Dundurs constant ([`crate::Pair::coupling`]) is not 0: a model that can do
-        /// either then asks ([`crate::Scene::coupling`]), one that neglects it always takes `None`.
+        /// either then refuses `None` ([`crate::Scene::coupling`]), and one that always neglects the coupling
+        /// accepts it.
         coupling: Option<Coupling>,
     },
 }
 
 impl Friction {
-    /// Coulomb's law with this coefficient; nothing is said of the coupling.
+    /// Coulomb's law with this coefficient; the coupling is left open.
     pub fn coulomb(coefficient: f64) -> Self {
         Self::Coulomb { coefficient, coupling: None }
     }
@@ -246,7 +247,7 @@ impl Friction {
     /// second Dundurs constant is 0) and without friction.
     ///
     /// # Errors
-    /// [`Error::Domain`] with that constant where it is not 0 and the friction does not say; as
+    /// [`Error::Domain`] with that constant where it is not 0 and the friction leaves the coupling open; as
     /// [`Pair::coupling`].
     pub fn coupling_of(self, pair: &Pair) -> Result<Option<Coupling>> {
         let Self::Coulomb { coupling, .. } = self else { return Ok(None) };
@@ -256,7 +257,7 @@ impl Friction {
             None => Err(Error::domain(
                 "second Dundurs constant of the bodies",
                 beta,
-                "0, or friction that says whether the coupling is neglected or full",
+                "0, or friction whose coupling is given as neglected or full",
             )),
             stated => Ok(stated),
         }
@@ -268,9 +269,9 @@ impl Friction {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Coupling {
-    /// Not at all: the normal displacements of tangential tractions and the tangential ones of pressures are
-    /// left out.
+    /// The coupling is neglected: the normal displacements due to tangential tractions and the tangential
+    /// displacements due to pressures are left out.
     Neglected,
-    /// Both are solved together.
+    /// Both problems are solved together.
     Full,
 }

@@ -1,11 +1,11 @@
-//! The one error type of the model crates: numbers, not prose.
+//! The one error type of the model crates; its variants hold numbers.
 
 use crate::state::{ContactState, Status};
 use crate::units::{number, rounded};
 use std::borrow::Cow;
 use std::fmt;
 
-/// Result of everything in the model crates.
+/// Result type of the model crates.
 pub type Result<T, E = Error> = std::result::Result<T, E>;
 
 /// What is expected of most numbers.
@@ -16,9 +16,9 @@ const NON_NEGATIVE: &str = "a finite number >= 0";
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Error {
-    /// A number lies outside what is meaningful.
+    /// A number lies outside the range of meaningful values.
     Domain {
-        /// The quantity, in the words of GLOSSARY.md (and where it came from, such as `heights[3, 7]`).
+        /// The quantity, by its name in GLOSSARY.md (and its place, such as `heights[3, 7]`).
         name: Cow<'static, str>,
         /// The value found.
         value: f64,
@@ -34,31 +34,31 @@ pub enum Error {
         /// What was expected instead.
         expected: Cow<'static, str>,
     },
-    /// The model does not know this surface, effect, load or output.
+    /// The model does not support this surface, effect, load or output.
     Unsupported {
         /// Name of the model ([`crate::ContactModel::name`]).
         model: &'static str,
-        /// What it was asked for.
+        /// What was requested of it.
         what: Cow<'static, str>,
     },
-    /// A load outside the range in which the model holds.
+    /// A load lies outside the range in which the model holds.
     OutOfRange {
         /// The quantity that left its range.
         name: Cow<'static, str>,
-        /// The value that was asked for or reached.
+        /// The value that was prescribed or reached.
         value: f64,
         /// Smallest admissible value.
         min: f64,
         /// Largest admissible value.
         max: f64,
     },
-    /// Something does not fit in memory; it was not begun.
+    /// Something does not fit in memory; the work was not begun.
     OutOfMemory {
         /// What it is for, with its size, such as `a map of 20000 columns x 20000 rows`.
         what: Cow<'static, str>,
-        /// Bytes that it needs, about.
+        /// Bytes that it needs, approximately.
         bytes: f64,
-        /// Bytes that there are; `None` where the system only refused.
+        /// Bytes that are available; `None` where the system refused without a number.
         available: Option<f64>,
     },
     /// The solver stopped before its tolerance was met; the best state is evidence, not an answer.
@@ -66,7 +66,7 @@ pub enum Error {
         /// Best state reached, with its full report.
         best: Box<ContactState>,
     },
-    /// The caller's stop closure said so (a deadline, Ctrl-C).
+    /// The caller stopped the solve (a deadline, Ctrl-C).
     Stopped {
         /// Best state so far where there is one.
         best: Option<Box<ContactState>>,
@@ -83,15 +83,15 @@ impl Error {
         Self::Domain { name: name.into(), value, expected: expected.into() }
     }
 
-    /// [`Error::Domain`] for a number that overflows or underflows in double precision, or with which a result
-    /// does.
+    /// [`Error::Domain`] for a number that overflows or underflows in double precision, or that makes a
+    /// result overflow or underflow.
     pub fn not_representable(name: impl Into<Cow<'static, str>>, value: f64) -> Self {
         let expected = "numbers between 1e-308 and 1e308 in size, results among them (choose other units)";
         Self::domain(name, value, expected)
     }
 
-    /// [`Error::Domain`] for a number that is not finite and positive; of one that is,
-    /// [`Error::not_representable`].
+    /// [`Error::Domain`] for a number that is not finite and positive; [`Error::not_representable`] for one
+    /// that is.
     pub fn of_positive(name: impl Into<Cow<'static, str>>, value: f64) -> Self {
         if value.is_finite() && value > 0.0 {
             Self::not_representable(name, value)
@@ -100,8 +100,8 @@ impl Error {
         }
     }
 
-    /// [`Error::Domain`] for a number that is not finite or negative; of another one,
-    /// [`Error::not_representable`].
+    /// [`Error::Domain`] for a number that is negative or not finite; [`Error::not_representable`] for any
+    /// other.
     pub fn of_non_negative(name: impl Into<Cow<'static, str>>, value: f64) -> Self {
         if value.is_finite() && value >= 0.0 {
             Self::not_representable(name, value)
@@ -115,7 +115,7 @@ impl Error {
         Self::Unsupported { model, what: what.into() }
     }
 
-    /// [`Error::Unsupported`] for a load that a model has no answer to.
+    /// [`Error::Unsupported`] for a load that a model does not support.
     pub fn unsupported_load(model: &'static str, load: impl fmt::Display) -> Self {
         Self::unsupported(model, load.to_string())
     }
@@ -131,8 +131,8 @@ impl Error {
         Self::OutOfRange { name, value: force, min: -limit, max: limit }
     }
 
-    /// The state reached where a solve did not converge, which has its status and certificate; any other
-    /// error stays one.
+    /// The best state of a solve that did not converge, with its status and certificate; any other error
+    /// stays an error.
     ///
     /// # Errors
     /// The error itself.
@@ -171,7 +171,7 @@ impl fmt::Display for Error {
                 write!(f, "{what}: needs about {} of memory, ", Gigabytes(*bytes))?;
                 match available {
                     Some(there) => write!(f, "{} are available", Gigabytes(*there)),
-                    None => write!(f, "more than there is"),
+                    None => write!(f, "more than the system grants"),
                 }
             }
             Self::NotConverged { best } => {
@@ -192,9 +192,9 @@ impl fmt::Display for Error {
 
 impl std::error::Error for Error {}
 
-/// A number without a row of zeros: one that may have been typed with every digit, one that was computed, which
-/// has more digits than anyone types, to six. All digits where the short form stands in a text beside it, such as
-/// the limit that it misses by rounding.
+/// A number for a message. A number of few digits, which may have been typed, keeps them all; a computed one
+/// is rounded to six digits. All digits are kept where the short form would equal a text beside it, such as a
+/// limit that the number misses by rounding.
 fn shown(value: f64, beside: &[&str]) -> String {
     /// The most digits that are taken as typed.
     const TYPED: usize = 12;

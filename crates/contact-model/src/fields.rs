@@ -82,10 +82,10 @@ impl Field {
     }
 }
 
-/// What a cell does under a tangential load: the values of the map of stick and slip.
+/// State of a cell under a tangential load: the values of the map of stick and slip.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum StickSlip {
-    /// It is not in contact.
+    /// The cell is not in contact.
     Open,
     /// It sticks: its traction is below what friction can hold.
     Stick,
@@ -109,7 +109,7 @@ impl StickSlip {
 
 /// Fields of a state on the cells of its map.
 ///
-/// Fields of two components have that along x (columns) first and that along y (rows) second.
+/// A field of two components has the component along x (columns) first and that along y (rows) second.
 #[derive(Debug, Clone, PartialEq, Default)]
 #[non_exhaustive]
 pub struct Fields {
@@ -117,8 +117,8 @@ pub struct Fields {
     pub pressure: Option<Field>,
     /// Displacement u of the elastic surface under each cell centre.
     pub displacement: Option<Field>,
-    /// Gap g = u + z - d; infinite at undefined points. Over a plastic indentation its depth is added: the
-    /// gap to the indented surface.
+    /// Gap g = u + z - d; infinite at undefined points. The depth of a plastic indentation is added, so that
+    /// it is the gap to the indented surface.
     pub gap: Option<Field>,
     /// Depth of the plastic indentation >= 0.
     pub plastic_depth: Option<Field>,
@@ -127,13 +127,13 @@ pub struct Fields {
     /// Slip s of the second body relative to the first since the cell came into contact; 0 where there is no
     /// contact.
     pub slip: Option<[Field; 2]>,
-    /// What each cell does, by [`StickSlip::value`].
+    /// State of each cell, as [`StickSlip::value`].
     pub stick_slip: Option<Field>,
 }
 
 impl Fields {
-    /// The field of an output, component by component; none for an output that is no field, and where it was
-    /// not asked for.
+    /// The field of an output, component by component; empty where the output is no field or was not
+    /// requested.
     pub fn get(&self, output: Output) -> &[Field] {
         output.field().map_or(&[], |quantity| (quantity.get)(self))
     }
@@ -142,41 +142,40 @@ impl Fields {
 /// Which cell of a block stands for it, where a field is shown on fewer points than it has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Shown {
-    /// That of the largest value, so that a single cell under pressure is seen; zero is no value worth a
-    /// colour.
+    /// The cell of the largest value, so that a single cell under pressure is seen; zeros get no colour.
     Largest,
-    /// That of the smallest value, so that a single cell without a gap is seen.
+    /// The cell of the smallest value, so that a single cell without a gap is seen.
     Smallest,
-    /// The one in the middle.
+    /// The cell in the middle.
     Middle,
 }
 
-/// A field: all that is said of it anywhere.
+/// A field of a state, with everything that tables, files and pictures need to know about it.
 #[derive(Debug, Clone, Copy)]
 pub struct FieldQuantity {
-    /// Its name in code, scenes, files and Python: that of its output.
+    /// Its name in code, scenes, files and Python, which is that of its output.
     pub name: &'static str,
-    /// What it is called beside a colour bar.
+    /// Its name beside a colour bar.
     pub words: &'static str,
     /// Its symbol, in the commands of TeX; may be empty.
     pub symbol: &'static str,
     /// Its unit of SI.
     pub unit: &'static str,
-    /// What it is, in one sentence.
+    /// Its meaning, in one sentence.
     pub meaning: &'static str,
     /// Number of components: 1, or 2 along x and y.
     pub components: usize,
     /// Which cell is shown; of two components their magnitude decides.
     pub shown: Shown,
-    /// Whether zero parts two signs: pressures from tensions, one direction from the other.
+    /// Whether the sign matters: zero then separates pressures from tensions, or two directions.
     pub signed: bool,
-    /// What its values 0, 1, ... stand for, where they are no measure; empty for a measure.
+    /// The classes that the values 0, 1, ... stand for; empty for a field of measured values.
     pub classes: &'static [&'static str],
     /// Whether pictures outline the contact in it.
     pub outlined: bool,
-    /// Its components among the fields of a state; none where it was not asked for.
+    /// Its components among the fields of a state; empty where it was not requested.
     pub get: fn(&Fields) -> &[Field],
-    /// Takes its components away from the fields of a state.
+    /// Moves its components out of the fields of a state.
     pub take: fn(&mut Fields) -> Vec<Field>,
 }
 

@@ -19,8 +19,8 @@ pub struct HeightMap {
 }
 
 impl HeightMap {
-    /// Takes `columns * rows` finite heights on a rectangle of the given size (same length unit). A single
-    /// number for the cells or the size makes it a square.
+    /// A map of `columns * rows` finite heights on a rectangle of the given size (same length unit). A single
+    /// number as the cells or the size makes a square.
     ///
     /// # Errors
     /// Those of [`Cells::validate`]; [`Error::Domain`] for a height that is NaN or infinite or a range
@@ -52,8 +52,8 @@ impl HeightMap {
     /// `((ix + 1/2) dx, (iy + 1/2) dy)`.
     ///
     /// # Errors
-    /// As [`HeightMap::new`]; [`Error::OutOfMemory`] when the map does not fit in memory. Heights that are NaN
-    /// at undefined points are those of [`HeightMap::with_undefined`], which the error names.
+    /// As [`HeightMap::new`]; [`Error::OutOfMemory`] when the map does not fit in memory. Heights that are
+    /// NaN at undefined points belong to [`HeightMap::with_undefined`], which the error names.
     ///
     /// ```
     /// use contact_model::HeightMap;
@@ -85,7 +85,7 @@ impl HeightMap {
         Self::new(cells, size, heights)
     }
 
-    /// The same from heights that are NaN at undefined points, which cannot touch.
+    /// A map whose heights are NaN at undefined points, which cannot touch.
     ///
     /// # Errors
     /// As [`HeightMap::new`], but for NaN; [`Error::Domain`] when no point is defined.

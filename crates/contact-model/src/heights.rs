@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Result};
 
-/// Values side by side in a loop over heights, so that the compiler takes several at once.
+/// Number of values side by side in a loop over heights, so that the compiler vectorises it.
 const LANES: usize = 16;
 
 pub(crate) fn highest(heights: &[f64]) -> f64 {
@@ -35,6 +35,6 @@ pub(crate) fn check_relief(low: f64, high: f64) -> Result<()> {
     if (high - low).is_finite() {
         Ok(())
     } else {
-        Err(Error::domain("relief (highest minus lowest height)", high - low, "a finite number"))
+        Err(Error::domain("range of heights (highest minus lowest)", high - low, "a finite number"))
     }
 }

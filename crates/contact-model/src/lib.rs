@@ -1,10 +1,10 @@
-//! The shared words of fractal-contact.
+//! The types that the crates of fractal-contact share.
 //!
-//! Three words organise everything: **physics** ([`Scene`]), **numerics** (each model's own options) and
-//! **chance** (the `seed` of [`ContactModel::prepare`]). This crate defines the first, the trait that joins
-//! them, and what comes back: a
-//! [`ContactState`] that always carries its evidence in a [`SolveReport`]. It has no numerics, no input or output, and no
-//! dependency besides `std` (with the feature `serde`, states and memories of paths can be stored).
+//! Three ideas organise everything: **physics** ([`Scene`]), **numerics** (each model's own options) and
+//! **chance** (the `seed` of [`ContactModel::prepare`]). This crate defines the physics, the trait that joins
+//! the three, and the result of a solve: a [`ContactState`] that always carries its evidence in a
+//! [`SolveReport`]. It has no numerics, no input or output, and no dependency besides `std` (with the feature
+//! `serde`, states and memories of paths can be stored).
 //!
 //! # Conventions
 //!
@@ -21,12 +21,13 @@
 //!   derivative of the force in it.
 //! * What depends on the path of the loads (friction, rheology, indentation, adhesion) is followed [`Step`]
 //!   by step.
-//! * What is tangential has two components: along x, the columns of a map, and along y, its rows.
-//! * What is reported of a state stands in one table ([`quantities::QUANTITIES`]), what a model can do in
-//!   another ([`Abilities`]).
-//! * Fields, patches and what follows from the stiffness (conductance) are [`Outputs`]: not asked for, not
-//!   computed, and the [`Work`] in the report shows it.
-//! * `None` means "this model does not claim it" or "not asked for". It is never NaN and never a silent 0.
+//! * Tangential quantities have two components: along x, the columns of a map, and along y, its rows.
+//! * The quantities that are reported of a state stand in one table ([`quantities::QUANTITIES`]), the
+//!   abilities of a model in another ([`Abilities`]).
+//! * Fields, patches and what follows from the stiffness (conductance) are [`Outputs`]: they are computed
+//!   only on request, and the [`Work`] in the report shows it.
+//! * `None` means that the model does not claim the quantity or that it was not requested. An absent quantity
+//!   is never NaN and never a silent 0.
 //!
 //! ```
 //! use contact_model::{Load, Normalisation};

@@ -11,7 +11,7 @@ pub struct Line {
 }
 
 impl Line {
-    /// Takes the heights of the elements of a line of the given length (same length unit).
+    /// A line of the given length with these heights of its elements (same length unit).
     ///
     /// # Errors
     /// [`Error::Domain`] for a length that is not positive, a height that is NaN or infinite or a range that

@@ -10,9 +10,10 @@ use std::fmt;
 pub enum Load {
     /// Normal force F >= 0; with adhesion it may be negative (a pull).
     Force(f64),
-    /// Approach d >= 0, from first touch of the highest point; with adhesion it may be negative (a neck).
+    /// Approach d >= 0, from first touch of the highest point; with adhesion it may be negative (the bodies
+    /// are drawn apart and a neck joins them).
     Approach(f64),
-    /// Mean gap >= 0 over the square, for periodic boundaries: there no approach is defined.
+    /// Mean gap >= 0 over the rectangle, for periodic boundaries, where no approach is defined.
     MeanGap(f64),
 }
 
@@ -49,7 +50,8 @@ impl Load {
         if value.is_finite() { Ok(self) } else { Err(Error::domain(name, value, "a finite number")) }
     }
 
-    /// The error of this load where it is below the smallest of its kind under which an adhesive contact holds.
+    /// The error for this load where it is below `smallest`, the smallest load of its kind that an adhesive
+    /// contact can bear.
     pub fn pull_off(self, smallest: f64) -> Error {
         let (name, value) = match self {
             Self::Force(force) => ("force (the contact pulls off under a prescribed force)", force),

@@ -1,15 +1,15 @@
-//! What a contact remembers of its path, as bytes that are kept outside of it.
+//! The memory of a path, as bytes that can be kept outside of the contact.
 
-/// What a contact remembers of its path ([`crate::PreparedContact::memory`]): another contact of the same
-/// model, scene and seed goes on from it ([`crate::PreparedContact::recall`]).
+/// The memory of a path ([`crate::PreparedContact::memory`]): another contact of the same model, scene and
+/// seed can continue from it ([`crate::PreparedContact::recall`]).
 ///
-/// The bytes are those of [postcard](https://postcard.jamesmunns.com), without a name or a number of their
-/// format: who keeps them also keeps what they belong to, and whether they are whole.
+/// The bytes are those of [postcard](https://postcard.jamesmunns.com), without a name or a version of their
+/// format: whoever keeps them must also keep what they belong to, and a check that they are complete.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PathMemory(Vec<u8>);
 
 impl PathMemory {
-    /// From bytes that were kept.
+    /// The memory from its bytes, as [`Self::bytes`] gave them.
     pub fn from_bytes(bytes: Vec<u8>) -> Self {
         Self(bytes)
     }
@@ -19,11 +19,11 @@ impl PathMemory {
         &self.0
     }
 
-    /// Of what a model remembers.
+    /// The memory from the value that a model remembers.
     ///
     /// # Errors
-    /// [`crate::Error::OutOfMemory`] where there is no room for it, [`crate::Error::Shape`] for a value without
-    /// bytes.
+    /// [`crate::Error::OutOfMemory`] where there is no room for it, [`crate::Error::Shape`] for a value that
+    /// cannot be stored as bytes.
     #[cfg(feature = "serde")]
     pub fn of(remembered: &impl serde::Serialize) -> crate::Result<Self> {
         // The length first, so that memory is asked for once.
@@ -36,7 +36,7 @@ impl PathMemory {
         postcard::to_extend(remembered, bytes).map(Self).map_err(|_| Self::unreadable(length))
     }
 
-    /// What a model remembered.
+    /// The value that a model remembered.
     ///
     /// # Errors
     /// [`crate::Error::Shape`] for bytes that are not of this type, or more than it has.
@@ -48,7 +48,7 @@ impl PathMemory {
         }
     }
 
-    /// The error for bytes that this model did not write on this surface.
+    /// The error for bytes that this model did not write on this surface; `found` is their number.
     pub fn unreadable(found: usize) -> crate::Error {
         let expected = "the bytes that this model wrote on this surface".into();
         crate::Error::Shape { name: "memory of a path".into(), found, expected }

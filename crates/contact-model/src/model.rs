@@ -12,7 +12,7 @@ use crate::state::ContactState;
 use crate::step::{Step, Tangential};
 use std::borrow::Cow;
 
-/// A work that a model is built on. Goes into the header of every CSV.
+/// A publication that a model is built on. It goes into the header of every CSV file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Source {
     /// Authors, journal, year, pages.
@@ -21,18 +21,18 @@ pub struct Source {
     pub what: &'static str,
 }
 
-/// Memory that something needs.
+/// Memory that a piece of work needs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RequiredMemory {
     /// What needs it, with its size, such as `a contact of 257 columns x 257 rows`.
     pub what: Cow<'static, str>,
-    /// Bytes, about.
+    /// Number of bytes, approximately.
     pub bytes: f64,
 }
 
-/// Whoever waits for a solve: may end it between iterations, and is told how far it is.
+/// An observer of a solve: it may end the solve between iterations, and it receives the residuals.
 ///
-/// Every `Fn() -> bool` is one that is told nothing. A solver never reads a clock itself.
+/// Every `Fn() -> bool` is an observer that ignores the residuals. A solver never reads a clock itself.
 ///
 /// ```
 /// use contact_model::{Stop, Watch};
@@ -79,42 +79,42 @@ pub fn never() -> bool {
     false
 }
 
-/// Ends a solve that is told to stop before it has a state.
+/// Ends a solve that was stopped before it has a state.
 ///
 /// # Errors
-/// [`Error::Stopped`] without one.
+/// [`Error::Stopped`] without a state, where `stop` says so.
 pub fn check_stop(stop: Stop<'_>) -> Result<()> {
     if stop.stops() { Err(Error::Stopped { best: None }) } else { Ok(()) }
 }
 
-/// A way to answer "what force, approach and stiffness": plan once.
+/// A model of contact, which relates force, approach and stiffness: it plans a contact once for many solves.
 pub trait ContactModel: Send + Sync {
     /// Short name, the same in code, CSV and README (`bem3d`, `mdr1d`, ...).
     fn name(&self) -> &'static str;
 
-    /// What it is built on.
+    /// The publications that it is built on.
     fn sources(&self) -> &'static [Source];
 
-    /// What it takes from others for these effects, beside [`Self::sources`].
+    /// Publications for these effects, in addition to [`Self::sources`].
     fn sources_of(&self, _effects: &Effects) -> Vec<Source> {
         Vec::new()
     }
 
-    /// What it can do. [`Abilities::refuse`] checks a scene against it, and help, tables and refusals follow
-    /// from it.
+    /// Its abilities. [`Abilities::refuse`] checks a scene against them, and help, tables and refusals follow
+    /// from them.
     fn abilities(&self) -> Abilities;
 
     /// Checks the scene against what this model can do, and plans: draws the surface from `seed` where the
     /// scene calls for one, builds tables.
     ///
     /// # Errors
-    /// [`crate::Error::Unsupported`] for a surface, effect or output that the model lacks (never a silent elastic answer),
-    /// [`crate::Error::Domain`] or [`crate::Error::Shape`] for numbers that make no sense.
+    /// [`crate::Error::Unsupported`] for a surface, effect or output that the model lacks (never a silent
+    /// elastic answer), [`crate::Error::Domain`] or [`crate::Error::Shape`] for numbers that make no sense.
     fn prepare(&self, scene: &Scene, seed: u64) -> Result<Box<dyn PreparedContact>>;
 
-    /// What [`ContactModel::prepare`] and a light load need at least, the surface that is drawn included;
-    /// `None` where that does not grow with a grid. For callers that compare it with what there is: a model
-    /// does not ask the system.
+    /// The least memory that [`ContactModel::prepare`] and a light load need, the surface that is drawn
+    /// included; `None` where that does not grow with a grid. Callers compare it with the memory that is
+    /// available; a model does not ask the system.
     fn least_memory(&self, scene: &Scene) -> Option<RequiredMemory> {
         let _ = scene;
         None
@@ -148,25 +148,25 @@ impl<M: ContactModel + ?Sized> ContactModel for &M {
     }
 }
 
-/// A planned contact: solve often. Owns tables, plans and the warm start.
+/// A planned contact, which can be solved many times. It owns tables, plans and the warm start.
 pub trait PreparedContact: Send {
-    /// The normalisation of this very surface (its own measured rms height).
+    /// The normalisation of this surface, with its own measured rms height.
     fn normalisation(&self) -> Normalisation;
 
     /// Solves for one load from no contact; `stop` is polled between iterations.
     ///
-    /// The result does not depend on the loads solved before beyond the stated tolerance; increasing loads
-    /// are the fastest order. That holds with effects that remember too: each load is reached from the virgin
-    /// surface in one step, and a path that was followed is forgotten. The next step
+    /// Loads solved before change the result by no more than the stated tolerance; increasing loads are the
+    /// fastest order. This also holds for effects with a memory: each load is reached from the virgin surface
+    /// in one step, and a path that was followed is forgotten. The next step
     /// ([`PreparedContact::advance_until`]) goes on from the load that was solved.
     ///
     /// # Errors
-    /// [`crate::Error::Domain`] for a negative or non-finite load, [`crate::Error::OutOfRange`] where the model does not hold,
-    /// [`crate::Error::NotConverged`] and [`crate::Error::Stopped`] with the best state.
+    /// [`crate::Error::Domain`] for a negative or non-finite load, [`crate::Error::OutOfRange`] where the
+    /// model does not hold, [`crate::Error::NotConverged`] and [`crate::Error::Stopped`] with the best state.
     fn solve_until(&mut self, load: Load, stop: Stop<'_>) -> Result<ContactState>;
 
-    /// Solves for one load as a step from no contact: [`PreparedContact::solve_until`] of a contact whose
-    /// states are those of paths.
+    /// Solves for one load as a step from no contact: [`PreparedContact::solve_until`] for models whose
+    /// states depend on the path.
     ///
     /// # Errors
     /// As [`PreparedContact::advance_until`].
@@ -186,10 +186,10 @@ pub trait PreparedContact: Send {
         self.solve_until(load, &never)
     }
 
-    /// Goes to the end of the next step of a path; `stop` is polled between iterations. **A step that fails
-    /// leaves the contact as it was before.**
+    /// Advances to the end of the next step of a path; `stop` is polled between iterations. **A step that
+    /// fails leaves the contact as it was before.**
     ///
-    /// A contact that remembers nothing solves for the normal load of the step, whatever came before.
+    /// A contact without a memory solves for the normal load of the step, whatever came before.
     ///
     /// # Errors
     /// As [`PreparedContact::solve_until`], and [`Step::validated`]; [`Error::OutOfRange`] for steps beyond
@@ -203,7 +203,7 @@ pub trait PreparedContact: Send {
         Ok(self.solve_until(normal, stop)?.with_time(time))
     }
 
-    /// Goes to the end of the next step of a path.
+    /// Advances to the end of the next step of a path.
     ///
     /// # Errors
     /// As [`PreparedContact::advance_until`].
@@ -211,7 +211,7 @@ pub trait PreparedContact: Send {
         self.advance_until(step, &never)
     }
 
-    /// Goes along a whole path from where it is, one state per step, each with the largest pull so far.
+    /// Follows a whole path from the current state: one state per step, each with the largest pull so far.
     ///
     /// # Errors
     /// As [`PreparedContact::advance_until`], at the first step that fails; the contact then stands at the
@@ -221,9 +221,9 @@ pub trait PreparedContact: Send {
         path.iter().map(|step| Ok(largest.enter(step.normal, self.advance(*step)?))).collect()
     }
 
-    /// What decides the next step of the path besides its load: with it another contact of the same model,
-    /// scene and seed goes on to the same bits ([`PreparedContact::recall`]). `None` where a model cannot tell:
-    /// its paths begin anew.
+    /// The memory of the path, which together with the next load determines the next state: another contact
+    /// of the same model, scene and seed continues from it with identical bits ([`PreparedContact::recall`]).
+    /// `None` where a model has no such memory: its paths must be followed anew.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`] where there is no room for it.
@@ -231,7 +231,7 @@ pub trait PreparedContact: Send {
         Ok(None)
     }
 
-    /// Goes where a contact of the same model, scene and seed stood on its path. The next step is to be
+    /// Restores the place on its path of a contact of the same model, scene and seed. The next call must be
     /// [`PreparedContact::advance_until`].
     ///
     /// # Errors
@@ -242,19 +242,19 @@ pub trait PreparedContact: Send {
         Err(PathMemory::unreadable(memory.bytes().len()))
     }
 
-    /// Forgets the path: back to no contact at time 0.
+    /// Forgets the path: the next step starts from no contact at time 0.
     fn restart(&mut self) {}
 
-    /// What a solve for this load needs beyond what the contact holds, about; `None` where that does not grow
-    /// with a grid. As
-    /// [`ContactModel::least_memory`], for callers that compare it with what there is.
+    /// Memory that a solve for this load needs beyond what the contact holds, approximately; `None` where
+    /// that does not grow with a grid. As with [`ContactModel::least_memory`], callers compare it with the
+    /// memory that is available.
     fn required_memory(&self, load: Load) -> Option<RequiredMemory> {
         let _ = load;
         None
     }
 
-    /// Solves for loads in their order and gives each result to the observer with its number, as soon as it
-    /// is there.
+    /// Solves for loads in their order and passes each result with its number to the observer, as soon as it
+    /// is known.
     ///
     /// A load that does not converge or that the model refuses is an error that the observer gets; the sweep
     /// goes on unless the observer returns an error, which ends it. [`Error::into_best`] takes the state of a

@@ -5,10 +5,10 @@ use crate::error::{Error, Result, positive};
 /// Units in which a model solves: horizontal lengths in `length`, vertical ones in `height`, moduli in
 /// `contact_modulus`.
 ///
-/// A force is counted in `E* length height`, a stiffness in `E* length`, an area in `length^2`. The products
-/// are taken in an order that neither overflows nor underflows on the way, so a scene in units of 1e-150 or
-/// 1e150 loses nothing; only a result that no `f64` can hold is an error. Numbers are of either sign:
-/// adhesion pulls.
+/// The unit of force is `E* length height`, that of stiffness `E* length`, that of area `length^2`. The
+/// products are taken in an order that neither overflows nor underflows on the way, so a scene in units of
+/// 1e-150 or 1e150 loses nothing; only a result that no `f64` can hold is an error. Numbers may have either
+/// sign, because adhesion pulls.
 ///
 /// This is arithmetic for solvers. The normalised quantities that are reported (`F_bar`, `k_bar`) belong to
 /// [`crate::Normalisation`].

@@ -3,7 +3,7 @@
 use crate::error::{Error, Result};
 use crate::load::Load;
 
-/// The paper's saturation stiffness, `k_s = 1.1419 E* L` (Sec. II), in which `k_bar` is counted.
+/// The paper's saturation stiffness, `k_s = 1.1419 E* L` (Sec. II), which is the unit of `k_bar`.
 ///
 /// It is `1.012 x 2/sqrt(pi)`, an old value for the rigid square punch; the converged one is 1.152298, so the
 /// continuum plateau of `k_bar` is 1.0091. It stays the unit because Eq. 8 defines `k_bar` with it.
@@ -70,7 +70,7 @@ impl Normalisation {
         area / (self.length * self.length)
     }
 
-    /// The rms height where the surface has one that can be divided by.
+    /// The rms height, where the surface has one that is positive.
     ///
     /// # Errors
     /// [`Error::Domain`] otherwise.
@@ -79,7 +79,7 @@ impl Normalisation {
         if h > 0.0 {
             Ok(h)
         } else {
-            Err(Error::domain("rms_height", h, "a relief (rms height > 0) to normalise by"))
+            Err(Error::domain("rms_height", h, "a rough surface (rms height > 0) for normalised quantities"))
         }
     }
 

@@ -6,7 +6,7 @@ use crate::error::{Error, Result, positive};
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[non_exhaustive]
 pub enum Body {
-    /// It does not deform.
+    /// The body does not deform.
     #[default]
     Rigid,
     /// Isotropic and linearly elastic.
@@ -35,7 +35,7 @@ impl Body {
     }
 }
 
-/// The two bodies of a contact: they give E* for normal and G* for tangential loads.
+/// The two bodies of a contact, which determine E* for normal and G* for tangential loads.
 ///
 /// Tangential loads move the second over the first ([`crate::Tangential`]); nothing else depends on which is
 /// which.
@@ -60,8 +60,8 @@ impl Pair {
     /// Contact modulus E*: `1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2` (force per length squared).
     ///
     /// # Errors
-    /// [`Error::Domain`] for a Young's modulus that is not positive, a Poisson's ratio outside [0, 1/2], two rigid bodies, or a result
-    /// that no `f64` holds.
+    /// [`Error::Domain`] for a Young's modulus that is not positive, a Poisson's ratio outside [0, 1/2], two
+    /// rigid bodies, or a result that no `f64` holds.
     pub fn contact_modulus(&self) -> Result<f64> {
         // (1 - nu^2)/E = (1 - nu)/(2 G).
         let [first, second] = self.compliances(0)?;

@@ -22,7 +22,7 @@ impl Patches {
         Self { areas }
     }
 
-    /// How many there are.
+    /// Number of patches.
     pub fn count(&self) -> usize {
         self.areas.len()
     }

@@ -1,22 +1,24 @@
-//! The largest pull along a path with adhesion, and how far its steps leave the pull-off force open.
+//! The largest pull along a path with adhesion, and a bound for the pull-off force between its steps.
 //!
-//! A path visits single loads. The pull-off force, the largest pull of all states of the branch between them,
-//! is at least the largest pull P of those visited. How much larger it may be:
+//! A path visits single loads. The pull-off force is the largest pull of all states of the branch, also
+//! between these loads, so it is at least the largest pull P of the loads visited. How much larger it may be
+//! depends on what is prescribed:
 //!
-//! * Where a prescribed force was not held, the pull-off force lies between the pull of the last stable state
-//!   and that force.
+//! * Where a prescribed force is larger than the contact can bear, the pull-off force lies between the pull
+//!   of the last stable state and that force.
 //! * Where an approach or a mean gap is prescribed, the force F over the distance x falls to its minimum at
 //!   the load i and the next loads of the withdrawal, x_(i+1) < x_i < x_(i-1), are beyond it. The branch is
 //!   taken to be convex there (that of a sphere is): it lies above the line through (i-1, i) as far as
 //!   x_(i+1), and between i and i-1 above the lines through (i+1, i) and (i-2, i-1). Patches of a rough
 //!   contact that jump between the loads make it an estimate.
 //!
-//! Elsewhere (the loads turn, or end, at the largest pull) no load is beyond pull-off, and nothing bounds it.
+//! Elsewhere (the loads turn, or end, at the largest pull) no load is beyond pull-off, and the path gives no
+//! upper bound.
 
 use crate::load::Load;
 use crate::state::{ContactState, PullOff, Status};
 
-/// Follows a path and tells the largest pull so far.
+/// Follows a path and reports the largest pull so far.
 ///
 /// ```
 /// use contact_model::{ContactState, LargestPull, Load, SolveReport, Status};
@@ -32,9 +34,9 @@ use crate::state::{ContactState, PullOff, Status};
 #[derive(Debug, Clone, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct LargestPull {
-    /// The states that were held, in their order.
+    /// The stable states, in their order.
     held: Vec<Point>,
-    /// Number of that of the largest pull.
+    /// Index of the state of the largest pull.
     largest: usize,
 }
 
@@ -50,9 +52,9 @@ struct Point {
 }
 
 impl LargestPull {
-    /// Goes on to the state of the next load, and gives it with the largest pull of the path so far; `None` as
-    /// long as nothing pulled. A state of [`Status::PulledOff`] is the last stable one, and its load was not
-    /// held.
+    /// Enters the state of the next load, and returns it with the largest pull of the path so far, which is
+    /// `None` as long as no load pulled. A state of [`Status::PulledOff`] is the last stable one before a
+    /// load that the contact could not bear.
     ///
     /// Cost: O(1).
     #[must_use]
@@ -88,7 +90,8 @@ impl LargestPull {
         Some(PullOff { force: -force, error, approach, mean_gap })
     }
 
-    /// How far the force may fall below its minimum between the loads of a withdrawal.
+    /// Largest fall of the force below its minimum between the loads of a withdrawal; `None` where nothing
+    /// bounds it.
     fn left_by_steps(&self) -> Option<f64> {
         let at = |i: Option<usize>| {
             let point = self.held.get(i?)?;

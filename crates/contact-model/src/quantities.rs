@@ -1,9 +1,10 @@
-//! THE table of quantities: what can be asked of a model, and each number and word that is reported of a
-//! state.
+//! The one table of quantities: the outputs that can be requested of a model, and each number and word that
+//! is reported of a state.
 //!
 //! Every table, file, picture and page that shows numbers of states iterates over [`QUANTITIES`], so a
-//! quantity that stands here is told everywhere: CSV, console, report, means over surfaces, curves, Python,
-//! glossary. Units are those of SI; without units a dimensional number is in the scene's own.
+//! quantity that stands here is reported everywhere: CSV, console, report, means over surfaces, curves,
+//! Python, glossary. Units are those of SI; where a scene has no units, a dimensional number is in the
+//! scene's own.
 
 use crate::conductance::Conductance;
 use crate::effects::{Boundary, Effects, Friction};
@@ -15,7 +16,7 @@ use crate::value::Value;
 
 macro_rules! outputs {
     ($($(#[doc = $doc:literal])+ $variant:ident $field:ident,)+) => {
-        /// Something that is computed where it is asked for.
+        /// An output: something that is computed on request.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
         #[non_exhaustive]
         pub enum Output {
@@ -24,7 +25,8 @@ macro_rules! outputs {
             Conductance,
         }
 
-        /// What is computed besides force and approach. What is not asked for is not computed and not stored.
+        /// The outputs that are computed besides force and approach. An output that is not requested is
+        /// neither computed nor stored.
         #[derive(Debug, Clone, Copy, PartialEq, Default)]
         #[allow(clippy::struct_excessive_bools)] // A set of names, each either asked for or not.
         pub struct Outputs {
@@ -45,7 +47,7 @@ macro_rules! outputs {
                 }
             }
 
-            /// What it is, in a sentence.
+            /// Its meaning, in a sentence.
             pub fn sentence(self) -> &'static str {
                 match self {
                     $(Self::$variant => concat!($($doc),+).trim_ascii(),)+
@@ -55,7 +57,7 @@ macro_rules! outputs {
         }
 
         impl Outputs {
-            /// Whether it is asked for.
+            /// Whether an output is requested.
             pub fn asks(&self, output: Output) -> bool {
                 match output {
                     $(Output::$variant => self.$field,)+
@@ -63,7 +65,7 @@ macro_rules! outputs {
                 }
             }
 
-            /// Asks for it, or no longer; the conductance is asked for with its bodies instead
+            /// Requests an output, or no longer; the conductance is requested with its bodies instead
             /// ([`Outputs::conductance`]).
             pub fn ask(&mut self, output: Output, asked: bool) {
                 match output {
@@ -111,17 +113,18 @@ outputs! {
 }
 
 impl Outputs {
-    /// All that are asked for.
+    /// All outputs that are requested.
     pub fn asked(&self) -> impl Iterator<Item = Output> + '_ {
         Output::ALL.iter().copied().filter(|output| self.asks(*output))
     }
 
-    /// Whether any field is asked for.
+    /// Whether any field is requested.
     pub fn any_field(&self) -> bool {
         self.asked().any(Output::is_field)
     }
 
-    /// Whether a stiffness has to be computed, of either kind: all that an elastic model has to know.
+    /// Whether a stiffness of either kind has to be computed; an elastic model, where both are equal, needs
+    /// no other question.
     pub fn needs_stiffness(&self) -> bool {
         self.stiffness || self.needs_fixed_area()
     }
@@ -136,18 +139,18 @@ impl Outputs {
         Output::StickSlip,
     ];
 
-    /// Whether the stiffness of the held contact area has to be computed: for itself or for the conductance.
+    /// Whether the stiffness at fixed contact area has to be computed, for itself or for the conductance.
     pub fn needs_fixed_area(&self) -> bool {
         self.stiffness_fixed_area || self.conductance != Conductance::Off
     }
 }
 
 impl ContactState {
-    /// The state with what follows from the stiffness of its contact area, and without a stiffness that was
-    /// not asked for itself.
+    /// The state with the quantities that follow from its stiffness at fixed contact area, and without a
+    /// stiffness that was not itself requested.
     ///
-    /// The last thing that a model does: it computes the stiffnesses where [`Outputs::needs_stiffness`] and
-    /// [`Outputs::needs_fixed_area`] say so.
+    /// A model calls it last. It must have computed the stiffnesses that [`Outputs::needs_stiffness`] and
+    /// [`Outputs::needs_fixed_area`] require.
     ///
     /// # Errors
     /// As [`Conductance::of`].
@@ -161,24 +164,24 @@ impl ContactState {
     }
 }
 
-/// What decides whether a quantity is told of the states of a scene.
+/// The properties of a scene that decide whether a quantity is reported of its states.
 #[derive(Debug, Clone, Copy)]
 pub struct Question<'a> {
     /// Effects that are on.
     pub effects: &'a Effects,
-    /// Outputs that are asked for.
+    /// Outputs that are requested.
     pub outputs: &'a Outputs,
-    /// Whether the surface has an rms height, in which forces are counted.
+    /// Whether the surface has an rms height, so that normalised forces exist.
     pub rough: bool,
     /// Whether the states lie along a path.
     pub path: bool,
     /// Whether an approach or a mean gap is prescribed.
     pub prescribes_distance: bool,
-    /// Directions of tangential loads and displacements: those that are prescribed, or that a model answers.
+    /// Directions of tangential loads and displacements that are prescribed or that a model computes.
     pub directions: Directions,
 }
 
-/// What brings a quantity into the tables.
+/// The condition under which a quantity is in the tables.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum AskedBy {
     /// Every scene.
@@ -193,11 +196,11 @@ pub enum AskedBy {
     PrescribedDistance,
     /// An output.
     Output(Output),
-    /// A stiffness of either kind, or what follows from one.
+    /// A stiffness of either kind, or a quantity that follows from one.
     AnyStiffness,
     /// A tangential stiffness of either kind.
     AnyTangentialStiffness,
-    /// Friction in two directions: a component along y is prescribed, or a model answers one.
+    /// Friction in two directions: a component along y is prescribed, or a model computes one.
     FrictionInPlane,
     /// An effect, by its key in `[effects]`.
     Effect(&'static str),
@@ -206,7 +209,7 @@ pub enum AskedBy {
 }
 
 impl AskedBy {
-    /// Whether this question asks for it.
+    /// Whether the condition holds for this scene.
     pub fn holds(self, question: &Question<'_>) -> bool {
         match self {
             Self::Always => true,
@@ -227,7 +230,7 @@ impl AskedBy {
         }
     }
 
-    /// In words, for documents.
+    /// The condition in words, for documents.
     pub fn words(self) -> String {
         match self {
             Self::Always => "every scene".into(),
@@ -254,14 +257,14 @@ pub enum Unit {
     Word,
     /// A pure number or a count.
     One,
-    /// Of SI.
+    /// A unit of SI.
     Si(&'static str),
-    /// Of the conductance that is asked for: electrical or thermal.
+    /// The unit of the requested conductance, electrical or thermal.
     Conductance,
 }
 
 impl Unit {
-    /// In SI (`1` for a pure number, `-` for text).
+    /// The unit in SI (`1` for a pure number, `-` for text).
     pub fn si(self, outputs: &Outputs) -> &'static str {
         match self {
             Self::Word => "-",
@@ -272,7 +275,7 @@ impl Unit {
         }
     }
 
-    /// For documents.
+    /// The unit as documents show it.
     pub fn words(self) -> &'static str {
         match self {
             Self::Word => "-",
@@ -283,18 +286,18 @@ impl Unit {
     }
 }
 
-/// What a quantity is for, which decides where it is shown.
+/// The role of a quantity, which decides where it is shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Role {
-    /// An answer to what was asked: shown wherever states are.
+    /// A result: shown wherever states are.
     Answer,
-    /// An answer in other units or over something else: in files, not in short tables.
+    /// A result in other units or divided by another quantity: in files, not in short tables.
     Normalised,
-    /// An answer about the path up to a state: that of its end is shown once, below the states.
+    /// A result about the path up to a state: that of its end is shown once, below the states.
     OfPath,
-    /// How exactly the equations hold; with what it proves when it is small.
+    /// A residual: how exactly the equations hold, with a text that says what it proves when it is small.
     Residual(&'static str),
-    /// How the answer was found, and what that cost.
+    /// How the result was found, and its cost.
     Work,
 }
 
@@ -305,11 +308,11 @@ pub enum Average {
     Mean,
     /// The same on every surface.
     Same,
-    /// Not at all.
+    /// It is not averaged.
     No,
 }
 
-/// Whether the error that the cells leave in a quantity can be estimated from coarser grids.
+/// Whether the discretisation error of a quantity can be estimated from coarser grids.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Compared {
     /// With any boundary.
@@ -320,36 +323,37 @@ pub enum Compared {
     No,
 }
 
-/// One quantity: all that is said of it anywhere.
+/// One quantity, with everything that tables, files and pictures need to know about it.
 #[derive(Debug, Clone, Copy)]
 #[non_exhaustive]
 pub struct Quantity {
     /// Its name in code, CSV, JSON and Python.
     pub name: &'static str,
-    /// What it is called in titles.
+    /// Its name in titles.
     pub words: &'static str,
     /// Its symbol, in the commands of TeX; may be empty.
     pub symbol: &'static str,
     /// Its unit.
     pub unit: Unit,
-    /// What it is, in one sentence.
+    /// Its meaning, in one sentence.
     pub meaning: &'static str,
-    /// The work that defines it, where it is not common knowledge; may be empty.
+    /// The publication that defines it, where it is not common knowledge; may be empty.
     pub source: &'static str,
-    /// What brings it into the tables.
+    /// The condition under which it is in the tables.
     pub asked_by: AskedBy,
-    /// What it is for.
+    /// Its role.
     pub role: Role,
     /// How it is averaged.
     pub average: Average,
-    /// Whether the error of the grid is estimated.
+    /// Whether its discretisation error is estimated.
     pub compared: Compared,
-    /// Whether it is drawn over the load.
+    /// Whether charts show it over the load.
     pub drawn: bool,
-    /// Takes it from a state; empty where the model does not claim it.
+    /// Its value of a state; empty where the model does not claim it.
     pub value: fn(&ContactState, &Normalisation) -> Value,
     /// Names of the columns that belong to it: standard error of the mean, standard deviation of one surface;
-    /// error of the grid, order of convergence; standard error and deviation of the mean error of the grid.
+    /// discretisation error, order of convergence; standard error and deviation of the mean discretisation
+    /// error.
     pub columns: [&'static str; 6],
 }
 
@@ -359,7 +363,7 @@ impl Quantity {
         QUANTITIES.iter().find(|quantity| quantity.name == name)
     }
 
-    /// Its number of a state, where it has one.
+    /// Its value of a state, where that is a number.
     pub fn number(&self, state: &ContactState, normalisation: &Normalisation) -> Option<f64> {
         match (self.value)(state, normalisation) {
             Value::Number(number) => Some(number),
@@ -368,7 +372,7 @@ impl Quantity {
         }
     }
 
-    /// Names of all columns of tables that may hold something of it.
+    /// Names of all columns of tables that belong to it.
     pub fn column_names(&self) -> impl Iterator<Item = &'static str> {
         std::iter::once(self.name).chain(self.columns)
     }

@@ -27,14 +27,14 @@ pub enum Rheology {
         /// Viscosity eta.
         viscosity: f64,
     },
-    /// Standard solid (Zener): the scene's E* is what remains for ever,
-    /// `E*(t) = E* (1 + weight exp(-t / time))`.
+    /// Standard solid (Zener): the scene's E* is the modulus after infinite time, `E*(t) = E* (1 + weight
+    /// exp(-t / time))`.
     StandardSolid {
         /// The arm that relaxes.
         arm: Relaxing,
     },
-    /// Prony series: the scene's E* is what remains for ever,
-    /// `E*(t) = E* (1 + sum weight_i exp(-t / time_i))`.
+    /// Prony series: the scene's E* is the modulus after infinite time, `E*(t) = E* (1 + sum weight_i exp(-t
+    /// / time_i))`.
     Prony(PronySeries),
 }
 
@@ -77,10 +77,10 @@ impl Relaxing {
     }
 }
 
-/// Some relaxing arms with different times, at most [`PronySeries::MOST`].
+/// Relaxing arms with different times, at most [`PronySeries::MOST`] of them.
 ///
-/// A fixed number of places keeps [`crate::Effects`] a plain value; measured series of four decades have four
-/// to twelve terms.
+/// The number of places is fixed so that [`crate::Effects`] can be copied like a number; measured series over
+/// four decades of time have four to twelve terms.
 ///
 /// ```
 /// use contact_model::{PronySeries, Relaxing};
@@ -102,7 +102,8 @@ impl PronySeries {
     /// A series of these arms.
     ///
     /// # Errors
-    /// [`Error::Shape`] for more than [`PronySeries::MOST`]; [`Error::Domain`] for a weight or time that makes no sense.
+    /// [`Error::Shape`] for more than [`PronySeries::MOST`]; [`Error::Domain`] for a weight or time that
+    /// makes no sense.
     pub fn new(arms: &[Relaxing]) -> Result<Self> {
         let mut series = Self::default();
         let Some(places) = series.arms.get_mut(..arms.len()) else {

@@ -1,4 +1,4 @@
-//! From the numbers of a formula to a state: units, and what is asked for.
+//! From the dimensionless numbers of a formula to a state: its units and its requested outputs.
 
 use crate::error::Result;
 use crate::load::Load;
@@ -8,19 +8,19 @@ use crate::quantities::Outputs;
 use crate::scene::Scene;
 use crate::state::{ContactState, SolveReport};
 
-/// The units in which a model counts, the normalisation of what it reports, and what is asked of it.
+/// The units in which a model computes, the normalisation of what it reports, and the requested outputs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Scaling {
-    /// What turns the model's numbers into those of the caller.
+    /// Units that turn the model's numbers into those of the caller.
     pub nondimensional: Nondimensionalisation,
-    /// What turns those into `F_bar` and `k_bar`.
+    /// Normalisation that turns those into `F_bar` and `k_bar`.
     pub normalisation: Normalisation,
-    /// What is asked for.
+    /// Requested outputs.
     pub outputs: Outputs,
 }
 
-/// A state in the units of a [`Scaling`]. What a theory does not claim is `None`.
+/// A state in the units of a [`Scaling`]. A quantity that a theory does not claim is `None`.
 ///
 /// ```
 /// use contact_model::{Load, ScaledState, Scaling, Scene, SolveReport, Surface};
@@ -43,7 +43,7 @@ pub struct ScaledState {
     pub approach: Option<f64>,
     /// Stiffness along the branch.
     pub stiffness: Option<f64>,
-    /// Stiffness of the contact area, held.
+    /// Stiffness at fixed contact area.
     pub stiffness_fixed_area: Option<f64>,
     /// Relative uncertainty of the stiffnesses.
     pub stiffness_error: f64,
@@ -52,7 +52,8 @@ pub struct ScaledState {
 }
 
 impl ScaledState {
-    /// With the stiffness of an elastic contact, the same along the branch and with its area held.
+    /// With the stiffness of an elastic contact, which is the same along the branch and at fixed contact
+    /// area.
     #[must_use]
     pub fn with_elastic_stiffness(self, stiffness: impl Into<Option<f64>>) -> Self {
         let stiffness = stiffness.into();
@@ -61,7 +62,8 @@ impl ScaledState {
 }
 
 impl Scaling {
-    /// A scene whose solver counts heights in `height`, and whose surface has the measured rms height `rms`.
+    /// A scene whose solver uses `height` as its unit of heights, and whose surface has the measured rms
+    /// height `rms`.
     ///
     /// # Errors
     /// [`crate::Error::Domain`] for a modulus or length that no unit can be.
@@ -74,7 +76,7 @@ impl Scaling {
         })
     }
 
-    /// A body without rms height, with everything counted in `L = sqrt(Lx Ly)`.
+    /// A body without rms height, with `L = sqrt(Lx Ly)` as the unit of all lengths.
     ///
     /// # Errors
     /// As [`Scaling::new`].
@@ -82,7 +84,7 @@ impl Scaling {
         Self::new(scene, scene.surface.size().length(), None)
     }
 
-    /// A rough surface of this rms height, in which heights are counted too.
+    /// A rough surface of this rms height, which is also the unit of heights.
     ///
     /// # Errors
     /// As [`Scaling::new`].
@@ -96,7 +98,8 @@ impl Scaling {
         Self { nondimensional, ..self }
     }
 
-    /// The state under a load: what was prescribed as it was prescribed, and of the rest what is asked for.
+    /// The state under a load: it holds the prescribed number exactly, and of the other quantities those that
+    /// are requested.
     ///
     /// # Errors
     /// [`crate::Error::Domain`] for a number that no `f64` holds.
@@ -128,7 +131,8 @@ impl Scaling {
 }
 
 impl SolveReport {
-    /// [`SolveReport::exact`] of a formula that takes the approach too: a force that follows from one is exact.
+    /// [`SolveReport::exact`] of a formula that also accepts an approach: the force that follows from it is
+    /// exact.
     pub fn formula(strategy: impl Into<String>, load: Load) -> Self {
         let mut report = Self::exact(strategy);
         report.certificate.force_error = matches!(load, Load::Approach(_)).then_some(0.0);

@@ -1,4 +1,4 @@
-//! Physics: what is pressed, which effects count, what is asked.
+//! The physics of a scene: the surface, the material, the effects and the requested outputs.
 
 use crate::cells::Size;
 use crate::effects::{Boundary, Coupling, Effects, Friction, Hardness};
@@ -9,17 +9,18 @@ use crate::pair::Pair;
 use crate::quantities::Outputs;
 use std::sync::Arc;
 
-/// How far the modulus may be from E* of the pair: it may have been rounded on its way through a file.
+/// Largest relative difference of the modulus from E* of the pair: it may have been rounded on its way
+/// through a file.
 const SAME_MODULUS: f64 = 1e-9;
 
-/// Everything physical about one question. Numerics are a model's own options, chance is the seed.
+/// Everything physical about one contact problem. Numerics are a model's own options; chance is the seed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scene {
-    /// What carries the heights.
+    /// The surface in contact.
     pub surface: Surface,
     /// Contact modulus E* of the pair, `1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2`.
     pub contact_modulus: f64,
-    /// Both bodies, where E* does not say enough (friction); their E* is `contact_modulus`.
+    /// Both bodies, where E* alone is not sufficient (friction); their E* is `contact_modulus`.
     pub pair: Option<Pair>,
     /// Effects beyond linear elastic normal contact with free boundaries; all off by default.
     pub effects: Effects,
@@ -115,7 +116,7 @@ impl Scene {
     }
 }
 
-/// What carries the heights. Axisymmetric bodies sit in the middle of the rectangle, apex up.
+/// The surface in contact. Axisymmetric bodies are at the centre of the rectangle, apex up.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Surface {
@@ -123,8 +124,8 @@ pub enum Surface {
     SelfAffine(SelfAffine),
     /// A given map.
     Heights(Arc<HeightMap>),
-    /// A given profile: a map of one row that stands for a body uniform along y (plane strain). A force on it
-    /// is that on the side of its row along y.
+    /// A given profile: a map of one row that stands for a body uniform along y (plane strain). A force is
+    /// the force on the width of that row along y.
     Profile(Arc<HeightMap>),
     /// A given line (for one-dimensional models), standing for a rectangle.
     Line {
@@ -263,11 +264,11 @@ pub struct SelfAffine {
 /// What fixes the vertical scale of a self-affine surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Amplitude {
-    /// The rms height of the sampled surface, exactly, at any resolution (the paper's choice: F_bar is
-    /// counted in it).
+    /// The rms height of the sampled surface, exactly, at any resolution (the paper's choice, since F_bar
+    /// contains it).
     RmsHeight(f64),
     /// The constant `C_2D(q_0)` at `q_0 = 2 pi / L`, `L = sqrt(Lx Ly)` (length^4): finer grids add waves and
-    /// leave the long ones alone. In one dimension `C_1D = pi q C_2D` (Eq. 17).
+    /// do not change the long ones. In one dimension `C_1D = pi q C_2D` (Eq. 17).
     Spectrum(f64),
 }
 

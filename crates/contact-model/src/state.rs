@@ -1,13 +1,13 @@
-//! What comes back from a solve, and its evidence.
+//! The result of a solve, and its evidence.
 
 use crate::fields::{Field, Fields};
 use crate::patches::Patches;
 use crate::work::Work;
 use std::fmt;
 
-/// One contact state. `None`: the model does not claim it, or it was not asked for.
+/// One contact state. A quantity is `None` where the model does not claim it or where it was not requested.
 ///
-/// A model makes it with [`ContactState::new`] and what else it knows:
+/// A model makes it with [`ContactState::new`] and adds the quantities that it computes:
 ///
 /// ```
 /// use contact_model::{ContactState, SolveReport};
@@ -18,24 +18,24 @@ use std::fmt;
 #[non_exhaustive]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ContactState {
-    /// Time at the end of the step that led to it, of states along a path.
+    /// Time at the end of the step that led to this state, for states along a path.
     pub time: Option<f64>,
     /// Normal force F; negative where adhesion holds against a pull.
     pub force: f64,
     /// Approach d from first touch; `None` with periodic boundaries.
     pub approach: Option<f64>,
-    /// Mean gap, where asked for: the distance between the mean plane of the defined heights and that of the
+    /// Mean gap, on request: the distance between the mean plane of the defined heights and that of the
     /// deformed half-space. Without undefined points it is the mean of the gap field; with them it may be
     /// negative. `None` also where a theory has none (without load).
     pub mean_gap: Option<f64>,
     /// Stiffness k = dF/dd along the branch of the states, with periodic boundaries -dF/d(mean gap): the
-    /// slope of the force as the load goes on in the direction of its last change, a first load growing. What
-    /// moves with the load moves: cells at the hardness flow, the fronts of an adhesive contact advance or
-    /// recede. At a kink, such as an old load that a plastic path reaches again, the slope in the other
-    /// direction differs.
+    /// slope of the force as the load continues in the direction of its last change (a first load counts as
+    /// growing). Cells at the hardness flow, and the fronts of an adhesive contact advance or recede. At a
+    /// kink, such as an old load that a plastic path reaches again, the slope in the other direction differs.
     pub stiffness: Option<f64>,
-    /// Stiffness of the whole contact area of this state, held: bonded cells at the hardness or at a front
-    /// included. The conductance follows from it. Equal to the stiffness without hardness and adhesion.
+    /// Stiffness at fixed contact area: all cells in contact stay bonded, those at the hardness and at a
+    /// front included. The conductance follows from it. Without hardness and adhesion it equals the
+    /// stiffness.
     pub stiffness_fixed_area: Option<f64>,
     /// Real contact area.
     pub area: Option<f64>,
@@ -43,20 +43,21 @@ pub struct ContactState {
     pub conductance: Option<f64>,
     /// Connected contact areas.
     pub patches: Option<Patches>,
-    /// What has yielded, of contacts with a hardness.
+    /// The plastic part, for contacts with a hardness.
     pub plastic: Option<PlasticState>,
-    /// The adhesive part, of contacts with adhesion that are solved cell by cell.
+    /// The adhesive part, for contacts with adhesion that are solved cell by cell.
     pub adhesive: Option<AdhesiveState>,
-    /// The largest pull of the path so far, where one is followed ([`crate::LargestPull`]) and pulled.
+    /// The largest pull of the path so far, where a path is followed ([`crate::LargestPull`]) and a load of
+    /// it pulled.
     pub pull_off: Option<PullOff>,
-    /// What the cells of the contact say about how well they resolve it, where the model has cells.
+    /// How well the cells resolve the contact, where the model has cells.
     pub resolution: Option<ContactResolution>,
-    /// Contact radius, of round contacts; of an equivalent profile that of the round contact of the same
-    /// stiffness, `k/(2 E*)`.
+    /// Contact radius of a round contact; for an equivalent profile the radius of the round contact of the
+    /// same stiffness, `k/(2 E*)`.
     pub contact_radius: Option<f64>,
-    /// The tangential part, of contacts with friction.
+    /// The tangential part, for contacts with friction.
     pub tangential: Option<TangentialState>,
-    /// Fields, where asked for; they are not stored with the state.
+    /// The requested fields; they are not stored with the state.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub fields: Option<Fields>,
     /// How it was reached and how far it can be trusted.
@@ -64,7 +65,7 @@ pub struct ContactState {
 }
 
 impl ContactState {
-    /// A state of which only the force is known yet.
+    /// A state with a force and no other quantity.
     pub fn new(force: f64, report: SolveReport) -> Self {
         Self {
             time: None,
@@ -87,13 +88,13 @@ impl ContactState {
         }
     }
 
-    /// At the end of a step of a path.
+    /// With the time at the end of a step of a path.
     #[must_use]
     pub fn with_time(self, time: f64) -> Self {
         Self { time: Some(time), ..self }
     }
 
-    /// With an approach; `None` takes it away.
+    /// With an approach; `None` removes it.
     #[must_use]
     pub fn with_approach(self, approach: impl Into<Option<f64>>) -> Self {
         Self { approach: approach.into(), ..self }
@@ -111,14 +112,14 @@ impl ContactState {
         Self { stiffness: stiffness.into(), ..self }
     }
 
-    /// With a stiffness of the held contact area.
+    /// With a stiffness at fixed contact area.
     #[must_use]
     pub fn with_stiffness_fixed_area(self, stiffness: impl Into<Option<f64>>) -> Self {
         Self { stiffness_fixed_area: stiffness.into(), ..self }
     }
 
-    /// With the stiffness of an elastic contact, which is the same along the branch and with its area held:
-    /// to first order a small change of the load does not change the contact area's force.
+    /// With the stiffness of an elastic contact, which is the same along the branch and at fixed contact
+    /// area: a small change of the contact area changes the force only in second order.
     #[must_use]
     pub fn with_elastic_stiffness(self, stiffness: impl Into<Option<f64>>) -> Self {
         let stiffness = stiffness.into();
@@ -137,7 +138,7 @@ impl ContactState {
         Self { patches: patches.into(), ..self }
     }
 
-    /// With what has yielded.
+    /// With a plastic part.
     #[must_use]
     pub fn with_plastic(self, plastic: impl Into<Option<PlasticState>>) -> Self {
         Self { plastic: plastic.into(), ..self }
@@ -149,7 +150,7 @@ impl ContactState {
         Self { adhesive: adhesive.into(), ..self }
     }
 
-    /// With what its cells say about their resolution.
+    /// With the resolution of the contact by its cells.
     #[must_use]
     pub fn with_resolution(self, resolution: impl Into<Option<ContactResolution>>) -> Self {
         Self { resolution: resolution.into(), ..self }
@@ -167,17 +168,17 @@ impl ContactState {
         Self { tangential: tangential.into(), ..self }
     }
 
-    /// Pressure, where asked for.
+    /// Pressure, if requested.
     pub fn pressure(&self) -> Option<&Field> {
         self.fields.as_ref()?.pressure.as_ref()
     }
 
-    /// Displacement of the elastic surface, where asked for.
+    /// Displacement of the elastic surface, if requested.
     pub fn displacement(&self) -> Option<&Field> {
         self.fields.as_ref()?.displacement.as_ref()
     }
 
-    /// Gap, where asked for; infinite at undefined points.
+    /// Gap, if requested; infinite at undefined points.
     pub fn gap(&self) -> Option<&Field> {
         self.fields.as_ref()?.gap.as_ref()
     }
@@ -197,29 +198,33 @@ pub struct TangentialState {
     /// Tangential force Q, the integral of the tangential traction q on the first body ([`crate::Tangential`]).
     pub force: [f64; 2],
     /// Tangential displacement delta of the second body relative to the first, far from the contact (with
-    /// periodic boundaries of their mean planes).
+    /// periodic boundaries that of their mean planes).
     pub displacement: [f64; 2],
     /// Largest tangential force `mu F` under this normal force: at it the whole contact slips.
     pub sliding_force: Option<f64>,
-    /// Area of the contact that sticks: its traction is below what friction can hold, where asked for.
+    /// Area of the contact that sticks, where its traction is below the limit of friction; `None` if not
+    /// requested.
     pub stick_area: Option<f64>,
-    /// Area of the contact that slips: its traction is what friction can hold, where asked for.
+    /// Area of the contact that slips, where its traction is at the limit of friction; `None` if not
+    /// requested.
     pub slip_area: Option<f64>,
-    /// Tangential stiffness `stiffness[i][j] = dQ_i/ddelta_j` along the branch of the states, where asked for:
-    /// the pressures are held, what sticks goes on sticking and what slips goes on slipping. Symmetric. `None` of a
-    /// periodic surface that sticks as a whole, which moves under no force.
+    /// Tangential stiffness `stiffness[i][j] = dQ_i/ddelta_j` along the branch of the states: the pressures
+    /// are fixed, cells that stick continue to stick and cells that slip continue to slip. The matrix is
+    /// symmetric. `None` if not requested, and for a periodic surface that sticks as a whole, which no force
+    /// can displace.
     pub stiffness: Option<[[f64; 2]; 2]>,
-    /// The same with the whole contact sticking, where asked for: the first answer after a reversal.
+    /// The tangential stiffness with the whole contact sticking, which is the slope just after a reversal of
+    /// the load; `None` if not requested.
     pub stiffness_stuck: Option<[[f64; 2]; 2]>,
-    /// Radius inside which the traction is below what friction can hold, of round contacts (of an equivalent
-    /// profile as the contact radius): the contact radius without any slip, 0 in full slip.
+    /// Radius inside which the traction is below the limit of friction, for round contacts (for an equivalent
+    /// profile in the sense of its contact radius): the contact radius without any slip, 0 in full slip.
     pub stick_radius: Option<f64>,
     /// Energy that friction has dissipated since the first step, >= 0.
     pub dissipated: f64,
 }
 
 impl TangentialState {
-    /// A state in which nothing slipped yet and of which nothing else is known.
+    /// A state without slip so far, with no other quantity.
     pub fn new(force: [f64; 2], displacement: [f64; 2]) -> Self {
         Self {
             force,
@@ -271,7 +276,7 @@ impl TangentialState {
     }
 }
 
-/// What has yielded in a contact with a hardness p_s ([`crate::Hardness`]).
+/// The plastic part of a state, in a contact with a hardness p_s ([`crate::Hardness`]).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[non_exhaustive]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -285,7 +290,7 @@ pub struct PlasticState {
 }
 
 impl PlasticState {
-    /// This area under the hardness p_s, and an indentation of this volume.
+    /// The plastic part with this area under the hardness p_s and this volume of the indentation.
     pub fn new(area: f64, volume: f64, hardness: f64) -> Self {
         Self { area, volume, dissipated: hardness * volume }
     }
@@ -296,15 +301,15 @@ impl PlasticState {
 #[non_exhaustive]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct AdhesiveState {
-    /// On which branch the state lies.
+    /// Branch on which the state lies.
     pub branch: Branch,
-    /// Elastic energy less the work of adhesion that the attraction has done: 0 for bodies far apart.
+    /// Elastic energy less the work done by the attraction: 0 for bodies far apart.
     pub energy: f64,
-    /// How stable the state is, > 0 for a minimum of the energy.
+    /// Stability of the state, dimensionless; > 0 at a minimum of the energy.
     ///
-    /// The smallest curvature of the energy, over that without adhesion. With Dugdale's law, whose states are
-    /// stable between the jumps of single cells, the smallest distance of the gap of a cell from the range,
-    /// in ranges.
+    /// It is the smallest curvature of the energy, divided by the curvature without adhesion. With Dugdale's
+    /// law, states are stable between the jumps of single cells; there it is the smallest difference between
+    /// the gap of a cell and the range, divided by the range.
     #[cfg_attr(feature = "serde", serde(with = "known_or_infinite"))]
     pub stability: f64,
 }
@@ -328,17 +333,17 @@ pub struct PullOff {
     pub error: Option<f64>,
     /// Approach at the largest pull; `None` with periodic boundaries.
     pub approach: Option<f64>,
-    /// Mean gap at the largest pull, where asked for.
+    /// Mean gap at the largest pull, if requested.
     pub mean_gap: Option<f64>,
 }
 
-/// On which branch of a path with adhesion a state lies: between snap-in and pull-off both are stable.
+/// Branch of a path with adhesion: between snap-in and pull-off states of both branches are stable.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Branch {
-    /// The bodies came nearer since the contact area last shrank.
+    /// The bodies have approached each other since the contact area last shrank.
     Approach,
-    /// They were drawn apart.
+    /// The bodies were drawn apart.
     Withdrawal,
 }
 
@@ -352,7 +357,7 @@ impl Branch {
     }
 }
 
-/// What the cells of a contact say about how well they resolve it.
+/// How well the cells resolve a contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -360,30 +365,32 @@ pub struct ContactResolution {
     /// Largest pressure of a cell: the mean over that cell, which grows as cells get smaller until they
     /// resolve the shortest wave.
     pub largest_pressure: f64,
-    /// Largest share of the force that one cell carries.
+    /// Largest share of the force that a single cell carries, in [0, 1].
     pub largest_share: f64,
     /// Cells in contact at an edge of a free rectangle; 0 with periodic boundaries.
     pub edge_cells: usize,
-    /// Contact area with a correction for its boundary, where the area was asked for.
+    /// Contact area with a correction for its boundary, if the area was requested.
     ///
-    /// The counted area of a contact of smooth boundary is too large by about `(pi - 1 + ln 2)/24` cells for
-    /// each edge between a cell in contact and one that is not (Yastrebov, Anciaux, Molinari, Tribol. Int.
-    /// 114, 161 (2017), for square cells). It helps where patches are several cells wide, and says how much
-    /// the cells matter where they are not.
+    /// The area of the cells in contact exceeds that of a contact of smooth boundary by about `(pi - 1 + ln
+    /// 2)/24` cells for each edge between a cell in contact and an open one (Yastrebov, Anciaux, Molinari,
+    /// Tribol. Int. 114, 161 (2017), for square cells). The correction improves the area where patches are
+    /// several cells wide. Where they are not, it shows how much the area depends on the cells.
     pub corrected_area: Option<f64>,
 }
 
 impl ContactResolution {
-    /// `(pi - 1 + ln 2)/24`: what an edge of the boundary adds to the counted area, in cells.
+    /// `(pi - 1 + ln 2)/24`: the area, in cells, that each edge of the boundary adds to the area of the cells
+    /// in contact.
     pub const AREA_PER_EDGE: f64 = (std::f64::consts::PI - 1.0 + std::f64::consts::LN_2) / 24.0;
 
-    /// Of a contact whose cells carry at most this pressure and this share of the force.
+    /// The resolution of a contact whose cells carry at most this pressure and this share of the force, of
+    /// which `edge_cells` are at an edge of the rectangle.
     pub fn new(largest_pressure: f64, largest_share: f64, edge_cells: usize) -> Self {
         Self { largest_pressure, largest_share, edge_cells, corrected_area: None }
     }
 
-    /// With the area of so many cells of which so many edges are its boundary, each cell of this area; not
-    /// below zero.
+    /// With the corrected area, >= 0, of a contact of `cells` cells whose boundary consists of `edges` edges
+    /// of cells; each cell has the area `cell_area`.
     #[must_use]
     pub fn with_boundary(self, cells: usize, edges: usize, cell_area: f64) -> Self {
         let corrected = (cells as f64 - Self::AREA_PER_EDGE * edges as f64).max(0.0) * cell_area;
@@ -398,7 +405,8 @@ impl ContactResolution {
 pub struct SolveReport {
     /// How the solve ended.
     pub status: Status,
-    /// Which way was taken and why, in one short phrase (`closed form`, `fft 4096x4096, f64`, `dense 312`).
+    /// The method that was used and why, in one short phrase (`closed form`, `fft 4096x4096, f64`, `dense
+    /// 312`).
     pub strategy: String,
     /// Iterations of the linear solvers, all stages together (0 for direct and closed forms).
     pub iterations: usize,
@@ -406,19 +414,19 @@ pub struct SolveReport {
     pub applications: usize,
     /// Number of cells (elements) in contact, where the model has any.
     pub contact_cells: Option<usize>,
-    /// What else was done for it.
+    /// Further counts of work.
     pub work: Work,
     /// How exactly the equations of the model itself are satisfied.
     pub certificate: Certificate,
 }
 
 impl SolveReport {
-    /// Report of a solve that ended like this; the rest is what a formula would have.
+    /// Report of a solve that ended with this status; the other numbers are those of a formula.
     pub fn new(status: Status, strategy: impl Into<String>) -> Self {
         Self { status, ..Self::exact(strategy) }
     }
 
-    /// Report of a model that evaluates a formula: nothing iterated, nothing approximated beyond rounding.
+    /// Report of a model that evaluates a formula: there are no iterations and no errors but rounding.
     pub fn exact(strategy: impl Into<String>) -> Self {
         Self {
             status: Status::Converged,
@@ -437,15 +445,15 @@ impl SolveReport {
 #[non_exhaustive]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Status {
-    /// All numbers of the certificate are within the tolerance asked for.
+    /// All numbers of the certificate are within the requested tolerance.
     Converged,
     /// The limit on iterations was reached first.
     IterationLimit,
     /// No further progress at this precision: the tolerance is below what the arithmetic can reach.
     Stagnated,
-    /// The caller's closure said stop.
+    /// The caller stopped the solve.
     Stopped,
-    /// A prescribed pull was not held: the last stable state before it.
+    /// The contact could not bear the prescribed pull: this is the last stable state before it.
     PulledOff,
 }
 
@@ -474,45 +482,47 @@ pub struct Certificate {
     /// `F min g`.
     #[cfg_attr(feature = "serde", serde(with = "known_or_infinite"))]
     pub duality_gap: f64,
-    /// `max(0, -min g) / s`. With a hardness of cells below p_s, and beside it the largest gap left under a
-    /// cell at p_s.
+    /// `max(0, -min g) / s`. With a hardness, the minimum is over the cells below p_s, and the largest gap
+    /// that remains under a cell at p_s counts too.
     #[cfg_attr(feature = "serde", serde(with = "known_or_infinite"))]
     pub penetration: f64,
-    /// `sum p |g| / (F s)`; of cells at the hardness p_s only a positive gap counts.
+    /// `sum p |g| / (F s)`; for cells at the hardness p_s only a positive gap counts.
     #[cfg_attr(feature = "serde", serde(with = "known_or_infinite"))]
     pub complementarity: f64,
-    /// `|F - F_asked| / F_asked`; of a mean gap its miss over s; 0 when the approach was prescribed.
+    /// `|F - F_prescribed| / F_prescribed`; for a prescribed mean gap its error over s; 0 for a prescribed
+    /// approach.
     #[cfg_attr(feature = "serde", serde(with = "known_or_infinite"))]
     pub load_error: f64,
-    /// Estimated relative error of the stiffness, and of that of the held contact area where both are
-    /// computed; `None` where none is, or where the stiffness is a difference quotient
+    /// Estimated relative error of the stiffness, and of that at fixed contact area where both are computed;
+    /// `None` where none is, or where the stiffness is a difference quotient
     /// ([`Certificate::quotient_error`]).
     pub stiffness_error: Option<f64>,
-    /// Estimated relative error of a stiffness that is a difference quotient along the branch. The cells
-    /// decide it, not the tolerance: it is no part of [`Certificate::worst`]. `None` where the stiffness is
-    /// not such a quotient.
+    /// Estimated relative error of a stiffness that is a difference quotient along the branch. It depends on
+    /// the cells and not on the tolerance, so it is no part of [`Certificate::worst`]. `None` where the
+    /// stiffness is not such a quotient.
     pub quotient_error: Option<f64>,
     /// Relative error of the force where an approach or a mean gap was prescribed, estimated from above by
-    /// the gaps left on the contact and the largest stiffness that it can have. `None` where the force itself
-    /// was prescribed. The tolerance bounds the gaps, not this: no part of [`Certificate::worst`].
+    /// the gaps that remain in the contact and the largest stiffness that it can have. `None` where the force
+    /// itself was prescribed. The tolerance bounds the gaps and not this number, so it is no part of
+    /// [`Certificate::worst`].
     pub force_error: Option<f64>,
-    /// Largest difference between the traction of a cell and what the law of adhesion says of its gap, over
-    /// `work/range`; `None` without adhesion of finite range.
+    /// Largest difference between the attractive traction of a cell and that of the law of adhesion at its
+    /// gap, over `work/range`; `None` without adhesion of finite range.
     pub equilibrium: Option<f64>,
     /// `sum (mu p |w| - w . q) / (mu F |delta|)`, with the slip w of the last step and the tangential
     /// displacement delta (the largest displacement that slip is counted from, where that is larger): the
     /// duality gap of the convex programme of one step of friction. Half the square of the error of the
-    /// tractions, in the norm of their elastic energy, is at most the gap. 0 where nothing is displaced; `None`
-    /// without friction, and where a model does not solve it cell by cell.
+    /// tractions, in the norm of their elastic energy, is at most the gap. 0 without displacement; `None`
+    /// without friction, and for models that do not solve it cell by cell.
     pub tangential_duality_gap: Option<f64>,
-    /// `|Q - Q_asked| / (mu F)`; 0 where the tangential displacement was prescribed, `None` as above.
+    /// `|Q - Q_prescribed| / (mu F)`; 0 where the tangential displacement was prescribed, `None` as above.
     pub tangential_load_error: Option<f64>,
     /// Estimated relative error of the tangential stiffness, the larger one where both are computed; `None`
     /// where none is.
     pub tangential_stiffness_error: Option<f64>,
 }
 
-/// A residual that is not finite is stored as nothing, and nothing is known of it.
+/// A residual that is not finite is stored as absent and read as infinite.
 #[cfg(feature = "serde")]
 mod known_or_infinite {
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -533,7 +543,7 @@ impl Certificate {
         self.worst() <= tolerance
     }
 
-    /// Estimated relative error of the stiffness, however it was found.
+    /// Estimated relative error of the stiffness, whether it is a difference quotient or not.
     pub fn error_of_stiffness(&self) -> Option<f64> {
         self.stiffness_error.or(self.quotient_error)
     }

@@ -1,4 +1,4 @@
-//! Paths of loads: what happens is a sequence of straight steps.
+//! Paths of loads, as sequences of straight steps.
 
 use crate::error::{Error, Result};
 use crate::load::Load;
@@ -39,7 +39,7 @@ impl Tangential {
         self.components().iter().all(|component| component.abs() <= 0.0)
     }
 
-    /// Errors where a model that works along x alone is given a component along y.
+    /// Refuses a component along y, for models that work along x alone.
     ///
     /// # Errors
     /// [`Error::Unsupported`] naming the model and the component, unless that is 0.
@@ -94,16 +94,16 @@ impl Default for Tangential {
     }
 }
 
-/// The end of a straight segment of a path; it begins where the last one ended. Before the first step: time
-/// 0, no contact, no load.
+/// The end of a straight segment of a path; the segment begins where the last one ended. Before the first
+/// step the time is 0 and there is no contact and no load.
 ///
 /// The state at the end is exact for the model, however long the segment is. Friction that is solved cell by
 /// cell is the exception: there a step is one increment. Where a model holds for a part of the segment only,
 /// the error names how far.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Step {
-    /// Time at the end of the segment; it never decreases. Equal times are a jump. Friction alone does not
-    /// look at it.
+    /// Time at the end of the segment; it never decreases. Equal times are a jump. With friction alone the
+    /// time has no influence.
     pub time: f64,
     /// Normal load at the end.
     pub normal: Load,
@@ -127,7 +127,7 @@ impl Step {
         self.validated_with_adhesion(last)
     }
 
-    /// The same for models with adhesion, which can pull.
+    /// As [`Step::validated`], for models with adhesion, which can pull.
     ///
     /// # Errors
     /// As [`Step::validated`], with [`Load::validated_with_adhesion`].

@@ -1,5 +1,5 @@
-//! Numbers as people read them: with the multiple of their unit that suits their size, and without digits that
-//! are rounding.
+//! Numbers as people read them: in the multiple of their unit that suits their size, and without digits that
+//! are only rounding errors.
 //!
 //! Files hold plain SI; these are for tables, captions and axes.
 
@@ -7,8 +7,8 @@
 const PREFIXES: [(&str, i32); 9] =
     [("p", -12), ("n", -9), ("µ", -6), ("m", -3), ("", 0), ("k", 3), ("M", 6), ("G", 9), ("T", 12)];
 
-/// A unit of SI whose multiples are read: what stands before and behind the prefix, the power in which the
-/// prefix counts, and the smallest and the largest power of ten of the prefix.
+/// An SI unit with its multiples: the text before and behind the prefix, the power to which the prefix is
+/// raised, and the smallest and the largest power of ten of the prefix.
 struct Scale {
     unit: &'static str,
     head: &'static str,
@@ -65,12 +65,11 @@ fn multiples(unit: &str) -> Vec<(String, i32)> {
     all
 }
 
-/// The multiple of a unit of SI in which a number of it is read, and the factor from the unit to that
-/// multiple.
+/// The multiple of an SI unit that suits a number, and the factor from the unit to that multiple.
 ///
 /// The largest multiple in which the number is at least 1, of areas at least 0.01, of volumes at least 0.001;
 /// zero, infinities and every other unit are left as they are. Lengths have no larger unit than the metre;
-/// stiffnesses are told per mm and µm.
+/// stiffnesses are per mm or per µm.
 ///
 /// ```
 /// use contact_model::units::multiple;
@@ -98,8 +97,8 @@ pub fn multiple(unit: &str, value: f64) -> (String, f64) {
     (chosen.0.clone(), 10f64.powi(-chosen.1))
 }
 
-/// A number of a unit of SI in the multiple that suits it, four digits without the zeros at their end; a pure
-/// number (the units `1`, `-` and none) and one without a scale alone.
+/// A number with its SI unit, in the multiple that suits it, with four digits and no zeros at their end. A
+/// pure number (the units `1`, `-` and none) stands without a unit.
 ///
 /// ```
 /// use contact_model::units::amount;
@@ -111,7 +110,7 @@ pub fn amount(value: f64, unit: &str) -> String {
     to_digits(value, unit, 4)
 }
 
-/// As [`amount`], to so many significant digits.
+/// As [`amount`], with `digits` significant digits.
 pub fn to_digits(value: f64, unit: &str, digits: usize) -> String {
     let (unit, factor) = multiple(unit, value);
     let digits = number(rounded(factor * value, digits));
@@ -121,12 +120,12 @@ pub fn to_digits(value: f64, unit: &str, digits: usize) -> String {
     }
 }
 
-/// A text of these units as terminals and files have it: `um` for `µm`, as in a scene.
+/// The text of a unit in ASCII for terminals and files: `um` for `µm`, as in a scene.
 pub fn ascii(text: &str) -> String {
     text.replace('µ', "u")
 }
 
-/// Five significant digits, none of them a zero at the end: a height or a length whose unit is not known here.
+/// A number with five significant digits and no zeros at the end: for a height or a length of unknown unit.
 ///
 /// ```
 /// use contact_model::units::five;
@@ -136,13 +135,13 @@ pub fn five(value: f64) -> String {
     number(rounded(value, 5))
 }
 
-/// The number with so many significant digits, 1 to 17.
+/// The number rounded to `digits` significant digits, 1 to 17.
 pub fn rounded(value: f64, digits: usize) -> f64 {
     format!("{value:.*e}", digits.clamp(1, 17) - 1).parse().unwrap_or(value)
 }
 
-/// All digits of a number but what units leave behind the 14th, which is rounding; with a power of ten below
-/// 0.001 and from a million on.
+/// A number with up to 14 digits, since later ones are rounding errors of a change of units; below 0.001 and
+/// from a million on with a power of ten.
 ///
 /// ```
 /// use contact_model::units::number;
@@ -155,7 +154,7 @@ pub fn number(value: f64) -> String {
     if size > 0.0 && !(1e-3..1e6).contains(&size) { format!("{value:e}") } else { (value + 0.0).to_string() }
 }
 
-/// Four significant digits, zeros at their end among them, for the cells of a table; zero is `0`.
+/// A number with four significant digits, including zeros at the end, for the cells of a table; zero is `0`.
 ///
 /// ```
 /// use contact_model::units::short;

@@ -1,5 +1,5 @@
-//! What sides, cells and fields must be; apart from these types, because errors hold states and states hold
-//! fields.
+//! Checks of sides, cells and fields. They are apart from these types, because errors hold states and states
+//! hold fields.
 
 use crate::cells::{Cells, Size};
 use crate::error::{Error, Result, positive};
@@ -23,8 +23,8 @@ impl Size {
         positive("side along y", self.y).map(|_| ())
     }
 
-    /// Checks that a round contact of this radius is inside of the rectangle, beyond which the half-space is
-    /// free; the name is for the error.
+    /// Checks that a round contact of this radius fits into the rectangle, outside of which the half-space is
+    /// free; `name` names the radius in the error.
     ///
     /// # Errors
     /// [`Error::OutOfRange`] for a radius beyond half the shorter side.
@@ -69,7 +69,7 @@ impl Cells {
 }
 
 impl Field {
-    /// Takes `columns * rows` values on a rectangle of the given size.
+    /// A field of `columns * rows` values on a rectangle of the given size.
     ///
     /// # Errors
     /// Those of [`Cells::validate`]; [`Error::Shape`] for another number of values.

@@ -1,25 +1,25 @@
-//! What was done for a state, in counts that no clock changes.
+//! The work done for a state, as counts that do not depend on a clock.
 
 use crate::fields::{FIELDS, Fields};
 use std::ops::AddAssign;
 
 /// Work beyond iterations and applications of the operator. Closed forms do none.
 ///
-/// What is not asked for adds nothing: without fields `fields` and `bytes` are 0, without the stiffness its
-/// `linear_solves` are missing.
+/// Outputs that are not requested add nothing: without fields, `fields` and `bytes` are 0, and without the
+/// stiffness its `linear_solves` are missing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Work {
     /// Linear systems solved on the grid itself: factors made and runs of an iteration.
     pub linear_solves: usize,
-    /// Fields over the whole grid that the state holds, each component of one counted.
+    /// Number of fields over the whole grid that the state holds; each component counts.
     pub fields: usize,
-    /// Their bytes.
+    /// Bytes of these fields.
     pub bytes: usize,
 }
 
 impl Work {
-    /// So many linear solves and the fields of a state.
+    /// The work of this number of linear solves and of the fields of a state.
     ///
     /// ```
     /// use contact_model::{Field, Fields, Work};

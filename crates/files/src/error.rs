@@ -1,9 +1,9 @@
-//! What is wrong with a file, and where it is.
+//! Errors of files, with the path of the file.
 
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// Result of everything that reads or writes.
+/// Result type of everything that reads or writes.
 pub type Result<T, E = Error> = std::result::Result<T, E>;
 
 /// What can go wrong with a file.

@@ -1,9 +1,9 @@
-//! Text of files for people: nothing in it commands a terminal.
+//! Text out of files, made safe to show: no part of it can act as a command of a terminal.
 
 use std::fmt::{self, Write};
 
-/// Passes text on, with control characters and marks that reorder a line written out: `\u{1b}` for the byte
-/// that begins a command of a terminal.
+/// Writes text with its control characters and marks of direction escaped, such as `\u{1b}` for the byte that
+/// begins a command of a terminal.
 ///
 /// ```
 /// use std::fmt::Write as _;
@@ -14,17 +14,17 @@ use std::fmt::{self, Write};
 #[derive(Debug)]
 pub struct Escaping<W> {
     into: W,
-    /// Whether ends of lines and tabs are written out too.
+    /// Whether ends of lines and tabs are escaped too.
     line: bool,
 }
 
 impl<W: Write> Escaping<W> {
-    /// What belongs on one line: a name, a path, a message.
+    /// For text that belongs on one line: a name, a path, a message.
     pub fn of_line(into: W) -> Self {
         Self { into, line: true }
     }
 
-    /// What has lines and tabs of its own.
+    /// For text that has lines and tabs of its own.
     pub fn of_lines(into: W) -> Self {
         Self { into, line: false }
     }
@@ -54,7 +54,7 @@ impl<W: Write> Write for Escaping<W> {
     }
 }
 
-/// A name as it is shown: what [`Escaping::of_line`] makes of it.
+/// A name as it is shown, escaped as by [`Escaping::of_line`].
 pub fn escaped(text: &str) -> String {
     let mut shown = String::with_capacity(text.len());
     // A String takes everything.

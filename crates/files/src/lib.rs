@@ -1,13 +1,13 @@
-//! Files that are written whole or not at all, and text of files that commands no terminal.
+//! Files that are written whole or not at all, and text out of files that is safe to show in a terminal.
 //!
-//! What is written goes into a temporary file beside its place, to the disk, and then gets its name
-//! ([`write_whole`]); [`clean`] removes what a killed process left. What is read has a length that is known
-//! before memory is asked for ([`read`]). Names and texts that come out of files are shown through
-//! [`Escaping`].
+//! A file is first written to a temporary file in the same directory, flushed to the disk, and then renamed
+//! ([`write_whole`]); [`clean`] removes the temporary files of killed processes. A file is read only if its
+//! length is known before memory is allocated ([`read`]). Names and texts that come out of files are shown
+//! through [`Escaping`].
 //!
 //! # What it does not do
 //!
-//! No format of any file.
+//! It knows no format of any file.
 
 mod error;
 mod escape;

@@ -11,7 +11,7 @@ use std::time::Duration;
 /// follow.
 const PREFIX: &str = ".partial-";
 
-/// A left-over whose writer cannot be asked for (no /proc) is cleaned after this age.
+/// Temporary files whose writing process cannot be looked up (no /proc) are removed after this age.
 const ABANDONED: Duration = Duration::from_secs(24 * 3600);
 
 /// Creates a directory and those above it.
@@ -22,11 +22,12 @@ pub fn create_directory(path: &Path) -> Result<()> {
     fs::create_dir_all(path).map_err(Error::system("create the directory", path))
 }
 
-/// Reads a file of at most `largest` bytes. A pipe or a device, which may never end, is refused unread, and
-/// so is a longer file.
+/// Reads a file of at most `largest` bytes. A longer file is refused unread, and so is a pipe or a device,
+/// which may never end.
 ///
 /// # Errors
-/// [`Error::System`] where the system refuses, [`Error::Content`] for what is refused here.
+/// [`Error::System`] where the system refuses, [`Error::Content`] for a file that is too long or not a
+/// regular file.
 pub fn read(path: &Path, largest: u64) -> Result<Vec<u8>> {
     // Looked at before it is opened: opening a pipe waits for a writer.
     let about = fs::metadata(path).map_err(Error::system("read", path))?;
@@ -42,11 +43,11 @@ pub fn read(path: &Path, largest: u64) -> Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// Writes a file whole: into a temporary name beside it, then renamed over it. A failure leaves no file, and
-/// an old one as it was.
+/// Writes a file whole: under a temporary name in the same directory, which is then renamed. A failure leaves
+/// no new file, and an old file unchanged.
 ///
-/// A symbolic link stays one: the file that it leads to is written. What is no file but can be written into
-/// (a device, a pipe) is not replaced either.
+/// A symbolic link stays a link: the file that it points to is written. A device or a pipe is written into
+/// and not replaced.
 ///
 /// # Errors
 /// [`Error::System`] where the system refuses (permission, full disk).
@@ -83,7 +84,7 @@ fn replace(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
     written
 }
 
-/// Removes what interrupted runs left half-written in a directory; files of a running process stay.
+/// Removes temporary files of interrupted runs from a directory; those of running processes stay.
 ///
 /// # Errors
 /// [`Error::System`] when the directory cannot be read.
@@ -104,7 +105,7 @@ fn partial_name(process: u32, machine: &str, number: u64, name: &str) -> String 
     format!("{PREFIX}{process}-{machine}-{number}-{name}")
 }
 
-/// Hash of the name of this machine, as far as the system tells.
+/// Hash of the name of this machine, if the system knows one.
 fn machine() -> String {
     let name = fs::read("/proc/sys/kernel/hostname").unwrap_or_default();
     // FNV-1a of 64 bits.

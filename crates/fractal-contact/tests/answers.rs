@@ -200,7 +200,7 @@ fn an_accuracy_chooses_the_grid() {
     std::fs::write(dir.path().join("one.csv"), "1.0\n").unwrap();
     for (text, words) in [
         (map("1 %").replace("map.csv", "one.csv"), "the map's own cells are too few to compare"),
-        (map("0.1 %"), "accuracy of 0.1000 %: the map's own cells leave "),
+        (map("0.1 %"), "accuracy of 0.1000 %: the map's own cells have an error of "),
         (map("0.1 %"), "(`area_corrected` under force 5 N)"),
         (asked("accuracy = 0.002\nbudget = \"1 us\"\ncontact_modulus"), "and the budget is under 1 ms"),
         (

@@ -178,7 +178,7 @@ fn shards_of_a_scene_are_merged_into_its_tables() {
     let gap = program(&["merge", "--out", &out]);
     let (_, said) = texts(&gap);
     assert!(
-        gap.status.code() == Some(1) && said.contains("what computes them: fractal-contact run '"),
+        gap.status.code() == Some(1) && said.contains("compute them with: fractal-contact run '"),
         "{said}"
     );
     assert_eq!(program(&["status", "--out", &out]).status.code(), Some(3));

@@ -1,4 +1,4 @@
-//! A sphere under a constant normal force whose tangential force goes to and fro: the friction loop and its
+//! A sphere under a constant normal force and a tangential force to and fro: the friction loop and its
 //! dissipated energy.
 //!
 //! `cargo run -p mdr1d --example friction_loop`

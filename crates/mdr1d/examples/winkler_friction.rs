@@ -3,10 +3,11 @@
 //!
 //! `cargo run -p mdr1d --example winkler_friction`
 //!
-//! `Equivalent` asks of a model an approach, a force and a stiffness that never falls, nothing about a
-//! half-space, so it takes a Winkler foundation. On independent springs its superposition is exact:
-//! `Q = mu (F(d) - F(d - delta_x G*/(mu E*)))`. Two things it takes from the half-space: the tangential stiffness
-//! is G*/E* times the normal one, and `stick_radius` is that of the round contact of the same stiffness.
+//! `Equivalent` needs from a model an approach, a force and a stiffness that never falls. It does not need a
+//! half-space, so the model may be a Winkler foundation. On independent springs the superposition is exact:
+//! `Q = mu (F(d) - F(d - delta_x G*/(mu E*)))`. Two assumptions are those of the half-space: the tangential
+//! stiffness is G*/E* times the normal one, and `stick_radius` is that of the round contact of the same
+//! stiffness.
 //!
 //! ```text
 //! d/d_max     Q/mu F  closed form   dissipated

@@ -1,12 +1,12 @@
-//! Short-range adhesion of axisymmetric bodies: the outermost spring tears at a critical length.
+//! Short-range adhesion of axisymmetric bodies: the outermost spring detaches at a critical length.
 //!
 //! In a contact of radius a the springs at the edge are stretched by `Delta l = sqrt(2 pi a w / E*)` and no
 //! further (Hess 2011; Popov and Hess 2015, Sec. 3.2). So `d = g(a) - Delta l` and
 //! `F = 2 E* int_0^a (d - g) dx`: the JKR theory for any axisymmetric body.
 //!
 //! For `g = s x^n` both equations have the form `B t^m - c t = y` with `m > 1` exactly when `n > 1/2`: convex
-//! in t, with its smallest y at a fold, where the contact pulls off. Blunter edges hold: a body with
-//! `n <= 1/2` would be drawn in without end.
+//! in t, with its smallest y at a fold, where the contact pulls off. For sharper bodies, with `n <= 1/2`, the
+//! attraction would pull the bodies together without limit.
 
 use crate::axisymmetric::{Profile, RoundContact};
 use contact_model::{Error, Result};
@@ -23,7 +23,7 @@ const AT_FOLD: f64 = 1e-7;
 /// A load exactly at the fold may come out a few roundings beyond it.
 const ROUNDED_UP: f64 = 1.0 + 8.0 * f64::EPSILON;
 
-/// A profile whose edge springs tear at `tear sqrt(a)`, in units of the side and E*.
+/// A profile whose edge springs detach at the length `tear sqrt(a)`, in units of the side and E*.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Adhesive {
     profile: Profile,
@@ -31,7 +31,7 @@ pub(crate) struct Adhesive {
     tear: f64,
 }
 
-/// The smallest load of a kind that the contact holds, or what no f64 holds.
+/// The smallest load of its kind that the contact can bear, or a number that no f64 holds.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Failure {
     PullsOff { smallest: f64 },
@@ -100,7 +100,7 @@ impl Adhesive {
         }
     }
 
-    /// Whether there is any attraction.
+    /// Whether there is adhesion.
     pub fn attracts(self) -> bool {
         self.tear > 0.0
     }
@@ -111,7 +111,8 @@ impl Adhesive {
         2.0 * radius * (pressed - self.tear * radius.sqrt())
     }
 
-    /// A flat punch (Kendall 1971): `load` is the approach times `stiffness`; its whole edge tears at once.
+    /// A flat punch (Kendall 1971): `load` is the approach times `stiffness`; its whole edge detaches at
+    /// once.
     fn flat(self, radius: f64, load: f64, stiffness: f64) -> Result<RoundContact, Failure> {
         let least = -self.tear * radius.sqrt() * stiffness;
         if load < least * ROUNDED_UP {

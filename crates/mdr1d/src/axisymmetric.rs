@@ -1,5 +1,5 @@
-//! Axisymmetric bodies through their MDR profile g(x): exact for force, approach, stiffness and contact
-//! radius.
+//! Axisymmetric bodies through their MDR profile g(x), which is exact for force, approach, stiffness and
+//! contact radius.
 //!
 //! A body `f(r)` is replaced by the line `g(x) = |x| int_0^|x| f'(r) / sqrt(x^2 - r^2) dr` (Hess 2011; Popov
 //! and Hess 2015), pressed into independent springs of stiffness E* per length. The half width of the line in
@@ -37,7 +37,8 @@ pub(crate) struct RoundContact {
 impl RoundContact {
     pub const NONE: Self = Self { force: 0.0, approach: 0.0, radius: 0.0 };
 
-    /// k = 2 E* a of the contact area, held: the length in contact. Without adhesion it is dF/dd too.
+    /// k = 2 E* a, the stiffness at fixed contact area, which is the length in contact. Without adhesion it
+    /// equals dF/dd.
     pub fn stiffness(self) -> f64 {
         2.0 * self.radius
     }
@@ -49,7 +50,7 @@ impl RoundContact {
 }
 
 impl Profile {
-    /// The surfaces that have one.
+    /// The kinds of surfaces that have a profile.
     pub(crate) const SURFACES: &'static [SurfaceKind] =
         &[SurfaceKind::Sphere, SurfaceKind::Cone, SurfaceKind::PowerLaw, SurfaceKind::FlatCircle];
 
@@ -106,9 +107,9 @@ impl Profile {
     /// The profile sampled at the centres of an odd number of elements over `|x| <= half_width`, in units of
     /// L.
     ///
-    /// For checks of the numerics: [`crate::Bearing`] of this line converges to the exact state, the force
-    /// with order `min(2, 1 + n)` in the element, the stiffness with order 1. Odd, so that the apex is a
-    /// centre and `d = 0` is first touch.
+    /// It serves checks of the numerics: [`crate::Bearing`] of this line converges to the exact state, the
+    /// force with order `min(2, 1 + n)` in the element, the stiffness with order 1. The number of elements is
+    /// odd, so that the apex is the centre of an element and `d = 0` is first touch.
     ///
     /// # Errors
     /// [`Error::Shape`] for an even number of elements; [`Error::OutOfRange`] for a half width beyond a flat

@@ -1,4 +1,4 @@
-//! A line on independent springs: force, approach and stiffness at any load, exactly.
+//! A line on independent springs, with exact force, approach and stiffness at any load.
 
 use contact_model::{Error, Line, Load, Nondimensionalisation, Result};
 use numerics::range::range;
@@ -12,8 +12,8 @@ const MOST_BINS: usize = 4096;
 /// Independent partial sums and maxima: what a core computes side by side.
 const LANES: usize = 8;
 
-/// How a line bears a rigid flat at every load: `F(d)` and `k(d)` of independent springs of stiffness E* per
-/// length (Eq. 16).
+/// A line pressed by a rigid flat: `F(d)` and `k(d)` of independent springs of stiffness E* per length (Eq.
+/// 16).
 ///
 /// With `z = h_max - h` and elements of length `dx` the contact set is `{z < d}`, and
 ///
@@ -26,10 +26,10 @@ const LANES: usize = 8;
 /// relative error of `S`, and of `d` from `F`, is a few units in the last place. An offset of the heights
 /// cancels in `z`.
 ///
-/// Cost: O(n) to build (one pass that finds the highest element, one that counts the elements per depth bin
-/// and one that groups them); then O(log n) a load, plus the sort of one bin, about n/2048 elements, the
-/// first time a load falls inside it. A line whose heights crowd into one bin (a flat with one deep pit) pays
-/// a full sort, O(n log n), once.
+/// Building it costs O(n): one pass finds the highest element, one counts the elements per depth bin and one
+/// groups them. A load then costs O(log n), and the first load that falls inside a bin also the sort of that
+/// bin, about n/2048 elements. A line most of whose heights fall into one bin (a flat with one deep pit)
+/// costs one full sort, O(n log n).
 #[derive(Debug, Clone)]
 pub struct Bearing {
     element: f64,
@@ -64,7 +64,7 @@ pub struct Support {
     pub approach: f64,
     /// Stiffness k = dF/dd on the contact set `{z < d}`.
     pub stiffness: f64,
-    /// Number of elements in that set.
+    /// Number of elements in the contact set.
     pub elements: usize,
 }
 
@@ -78,14 +78,15 @@ impl Bearing {
         bearing
     }
 
-    /// What [`Bearing::rebuild`] can start from; not to be pressed.
+    /// An empty start for [`Bearing::rebuild`]; it must not be pressed.
     pub(crate) fn empty() -> Self {
         Self { element: 0.0, depths: Vec::new(), bins: Vec::new() }
     }
 
-    /// Takes another line into the memory of this one; the same as [`Bearing::new`].
+    /// As [`Bearing::new`] for another line, in the memory of this one.
     ///
-    /// Worth it in a loop over long lines: fresh memory for 2^20 elements costs as much as grouping them.
+    /// This saves time in a loop over long lines: fresh memory for 2^20 elements costs as much as grouping
+    /// them.
     pub fn rebuild(&mut self, line: &Line) {
         let heights = line.heights();
         let (lowest, highest) = range(heights);
@@ -126,12 +127,12 @@ impl Bearing {
 
     /// The state under a load, on a foundation of stiffness `contact_modulus` per length.
     ///
-    /// At a kink (`d` equal to some `z`) those elements touch without force and are not in the contact set.
-    /// No load gives `d = 0` and `k = 0`.
+    /// At a kink (`d` equal to some `z`) the elements at this depth touch without force and are not in the
+    /// contact set. Without load `d = 0` and `k = 0`.
     ///
     /// # Errors
-    /// [`Error::Domain`] for a load that is negative or not finite, a modulus that is not positive, or a result that no `f64`
-    /// holds.
+    /// [`Error::Domain`] for a load that is negative or not finite, a modulus that is not positive, or a
+    /// result that no `f64` holds.
     ///
     /// ```
     /// use contact_model::{Line, Load};

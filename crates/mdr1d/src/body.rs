@@ -1,4 +1,4 @@
-//! What all contacts of axisymmetric bodies share: the profile in its scene, and its state under a normal
+//! Common code of all contacts of axisymmetric bodies: the profile in its scene, and its state under a normal
 //! load without adhesion.
 
 use crate::axisymmetric::{Profile, RoundContact, check_radius};
@@ -19,7 +19,7 @@ impl RoundBody {
         Ok(Some(Self { profile, size: scene.surface.size(), scaling: Scaling::of_body(scene)? }))
     }
 
-    /// The same for a model that is about round contacts alone; the reason is for the error.
+    /// The body of a scene, for a model of round contacts alone; `why` is the reason in the error.
     pub fn required(scene: &Scene, model: &'static str, why: &str) -> Result<Self> {
         let none = || Error::unsupported(model, format!("{}: {why}", scene.surface.kind()));
         Self::new(scene)?.ok_or_else(none)

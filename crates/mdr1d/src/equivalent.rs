@@ -1,4 +1,5 @@
-//! [`Equivalent`]: friction and rheology of any contact that another model can press, through its equivalent profile.
+//! [`Equivalent`]: friction and rheology of any contact that another model can press, through its equivalent
+//! profile.
 
 mod normal;
 
@@ -18,30 +19,31 @@ use std::sync::Arc;
 /// Friction or rheology of any surface that a model M can press, rough ones too, through the equivalent
 /// profile of M's own k(d).
 ///
-/// M solves the normal problem under the scene's surface with every effect off, once per node of a table, and
-/// under each step's load; its states give a [`Tabulated`] profile, and this carries the springs of
-/// [`crate::PartialSlip`] (Coulomb's friction, any path of both loads, with
-/// [`contact_model::Pair`]) or the relaxing ones of [`crate::Viscoelastic`] (any [`contact_model::Rheology`] while the contact grows). One effect at a time.
-/// M itself never sees it. Outputs of M pass through: area, fields, patches, conductance, each of the step's
-/// own contact.
+/// M solves the normal problem of the scene's surface with every effect off, once per node of a table and
+/// once under the load of each step. Its states give a [`Tabulated`] profile, on which act the springs of
+/// [`crate::PartialSlip`] (Coulomb's friction, any path of both loads, with [`contact_model::Pair`]) or the
+/// relaxing ones of [`crate::Viscoelastic`] (any [`contact_model::Rheology`] while the contact grows). Only
+/// one effect is possible at a time, and M itself is solved without it. The area, fields, patches and
+/// conductance of M are passed on, each for the contact of the step.
 ///
-/// **The normal part is a state that M has solved for this very load**, for an elastic material. Tangential
-/// results are those of the Cattaneo-Mindlin and Ciavarella-Jaeger approximation: exact for round contacts, a
-/// few per cent for others. They need a contact that grows with the load, so that k(d) never falls: checked
-/// at every state, [`Error::OutOfRange`] otherwise. Viscoelastic ones are exact for any shape while the
-/// contact grows in time; that is checked as in [`crate::Viscoelastic`]. `contact_radius` and `stick_radius`
-/// are those of the round contact of the same stiffness, `k/(2 E*)`.
+/// **The normal part is a state that M has solved for exactly this load**, for an elastic material.
+/// Tangential results are those of the Cattaneo-Mindlin and Ciavarella-Jaeger approximation: exact for round
+/// contacts, with errors of a few per cent for others. They need a contact that grows with the load, so that
+/// k(d) never falls; this is checked at every state, and [`Error::OutOfRange`] otherwise. Viscoelastic
+/// results are exact for any shape while the contact grows in time, which is checked as in
+/// [`crate::Viscoelastic`]. `contact_radius` and `stick_radius` are those of the round contact of the same
+/// stiffness, `k/(2 E*)`.
 ///
-/// The nodes lie on one logarithmic lattice of approaches (in rms heights, in sides for bodies without), so
-/// histories share them; the table begins so many decades below the first load after a
-/// [`PreparedContact::restart`] and follows the loads upwards. Its error falls with the third (x) and fourth
-/// (F) order of the spacing where k(d) is smooth; [`Tabulated::uncertainty`] at the step's approach is in the
-/// report's strategy. A pressure field is refused with rheology (M's is that of an elastic body), and so is a
-/// stiffness.
+/// The nodes lie on one logarithmic lattice of approaches (in units of the rms height, or of the side for
+/// bodies without one), so that histories share them. The table begins [`Equivalent::decades`] below the
+/// first load after a [`PreparedContact::restart`] and is extended upwards with the loads. Where k(d) is
+/// smooth, its error is of third order in the spacing for x and of fourth order for F;
+/// [`Tabulated::uncertainty`] at the step's approach is in the report's strategy. A pressure field is refused
+/// with rheology (M's is that of an elastic body), and so is a stiffness.
 ///
 /// Cost: one solve of M per node (about 49 at the defaults) at the first step, in ascending order, one per
-/// further step and per node that it adds. Fields and patches are asked of a second contact of M, so that the
-/// nodes do not pay for them. With `bem3d` on 257 x 257 cells at F_bar = 1 the first step takes 0.3 s, each
+/// further step and per node that it adds. Fields and patches are computed by a second contact of M, so that
+/// the nodes do not cost more. With `bem3d` on 257 x 257 cells at F_bar = 1 the first step takes 0.3 s, each
 /// further one 10 ms (tolerance 1e-4).
 ///
 /// ```
@@ -61,7 +63,7 @@ use std::sync::Arc;
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Equivalent<M> {
-    /// The model that presses.
+    /// The model of the normal contact.
     pub model: M,
     /// Nodes per decade of the approach, 1 to 1000.
     pub per_decade: u32,
@@ -76,7 +78,7 @@ impl<M: ContactModel> Equivalent<M> {
     }
 
     /// The equivalent profile of a scene's elastic contact up to an approach > 0 (a length); effects of the
-    /// scene are left aside.
+    /// scene are ignored.
     ///
     /// # Errors
     /// Those of M, for the surface, the loads and the solves; [`Error::Domain`] for an approach that is not
@@ -132,7 +134,7 @@ impl<M: ContactModel> ContactModel for Equivalent<M> {
         NAME
     }
 
-    /// Those of the profile; the model that presses has its own.
+    /// Those of the profile; the model of the normal contact has its own.
     fn sources(&self) -> &'static [Source] {
         &[
             Source {
@@ -150,7 +152,7 @@ impl<M: ContactModel> ContactModel for Equivalent<M> {
         ]
     }
 
-    /// That of the model that presses.
+    /// That of the model of the normal contact.
     fn least_memory(&self, scene: &Scene) -> Option<RequiredMemory> {
         self.model.least_memory(scene)
     }

@@ -5,8 +5,8 @@
 //!
 //! * [`Bearing`]: force, approach and stiffness of any line at any load, exactly, by order statistics: no
 //!   time step, no iteration, no tolerance.
-//! * [`rule`]: which line stands for a self-affine square or rectangle (Pohrt, Popov, Filippov 2012, Eqs. 14
-//!   to 18).
+//! * [`rule`]: the line that is equivalent to a self-affine square or rectangle (Pohrt, Popov, Filippov 2012,
+//!   Eqs. 14 to 18).
 //! * [`axisymmetric`]: spheres, cones, power-law bodies and flat circular punches through their profile
 //!   `g(x)`, where the method is exact in three dimensions.
 //! * Adhesion, friction and rheology of such bodies, each spring obeying a rule of its own.
@@ -16,36 +16,36 @@
 //! | model | surfaces | effects | claims |
 //! |---|---|---|---|
 //! | [`Mdr1d`] | self-affine, line | none | F, d, k |
-//! | [`Mdr1d`] | [`axisymmetric`] bodies | none, or short-range adhesion: edge springs tear at `sqrt(2 pi a w / E*)` (Hess) | F, d (of either sign with adhesion), k, area, pull-off |
+//! | [`Mdr1d`] | [`axisymmetric`] bodies | none, or short-range adhesion: edge springs detach at `sqrt(2 pi a w / E*)` (Hess) | F, d (of either sign with adhesion), k, area, pull-off |
 //! | [`PartialSlip`] (a history) | [`axisymmetric`] bodies | Coulomb's friction, any path of both loads | tangential force and displacement, stick radius, dissipated energy |
 //! | [`Viscoelastic`] (a history) | [`axisymmetric`] bodies | Kelvin-Voigt, Maxwell, standard solid, Prony series, while the contact grows | F, d, area of time |
-//! | [`Equivalent`] (a history) | whatever a model M presses, rough surfaces too | Coulomb's friction or rheology, by the [`Tabulated`] profile of M's k(d) | tangential force and displacement, dissipated energy; F and d of time; M's own outputs |
+//! | [`Equivalent`] (a history) | all surfaces of a model M, rough ones too | Coulomb's friction or rheology, by the [`Tabulated`] profile of M's k(d) | tangential force and displacement, dissipated energy; F and d of time; M's own outputs |
 //!
 //! # Conventions
 //!
 //! The springs have the stiffness E* per length. `z = h_max - h`, the approach `d` counts from first touch,
-//! the contact set is `{z < d}`: an element that touches without force is outside, and `F = 0` means `d = 0`
-//! and `k = 0` (with adhesion it means the adhered contact). A line stands for a rectangle
-//! with `L = sqrt(Lx Ly)`, the side of a square, and has the length `L_1D = 2 L / sqrt(pi)`; `F_bar` and
-//! `k_bar` are counted with that L and with the line's own measured rms height
-//! ([`contact_model::Normalisation`]).
+//! and the contact set is `{z < d}`: an element that touches without force is outside of it, and `F = 0`
+//! means `d = 0` and `k = 0` (with adhesion it means the adhered contact). A line stands for a rectangle with
+//! `L = sqrt(Lx Ly)`, the side of a square, and has the length `L_1D = 2 L / sqrt(pi)`; `F_bar` and `k_bar`
+//! use that L and the line's own measured rms height ([`contact_model::Normalisation`]).
 //!
 //! # Accuracy and speed
 //!
-//! The equations of the line are met to a few units in the last place, at any load and in any units from
-//! 1e-150 to 1e150. How well a *rough* line stands for a rough surface is a matter of physics: 1D exceeds 3D
-//! by 7 to 18 % at `F_bar` = 1, and its plateau is 2 % below that of a rigid square.
-//! One line of 2^20 elements takes milliseconds, and each further load microseconds ([`Bearing`]). A step
-//! of [`PartialSlip`] costs a microsecond by displacement and some twenty by force, of [`Viscoelastic`] a
-//! hundred with 16 arms; one of [`Equivalent`] a solve of its model and up to a millisecond.
+//! The equations of the line are solved to a few units in the last place, at any load and in any units from
+//! 1e-150 to 1e150. How well a *rough* line represents a rough surface is another question: at `F_bar` = 1
+//! the stiffness of the line exceeds that of the surface by 7 to 18 %, and its plateau is 2 % below that of a
+//! rigid square. One line of 2^20 elements takes milliseconds, and each further load microseconds
+//! ([`Bearing`]). A step of [`PartialSlip`] costs a microsecond by displacement and about twenty by force.
+//! One of [`Viscoelastic`] costs a hundred microseconds with 16 arms, and one of [`Equivalent`] a solve of
+//! its model and up to a millisecond.
 //!
 //! # What it does not do
 //!
 //! It offers no contact area, pressure or mean gap for rough surfaces: a line's length in contact is not an
 //! area, and both fail even qualitatively (Lyashenko, Pastewka, Persson 2013). Such outputs are refused, as
 //! are periodic boundaries, and adhesion of rough lines: that rule needs the radius of a round contact.
-//! Friction and rheology of rough surfaces are [`Equivalent`]'s, which asks a model of the normal contact and
-//! not a line.
+//! Friction and rheology of rough surfaces are the task of [`Equivalent`], which uses a model of the normal
+//! contact and not a line.
 //!
 //! ```
 //! use mdr1d::{ContactModel, Load, Scene, Surface};

@@ -1,4 +1,4 @@
-//! A linear viscoelastic material under segments of straight load: relaxation and creep, both in closed form.
+//! A linear viscoelastic material under piecewise linear loads: relaxation and creep in closed form.
 //!
 //! With `E*(t) = E* (e + sum w_i exp(-r_i t)) + E* v delta(t)` a load `Phi(t)` (what an elastic contact with
 //! modulus 1 would carry) gives the force `F/E* = e Phi + sum w_i q_i + v Phi'` with `q_i' = Phi' - r_i q_i`:
@@ -27,7 +27,7 @@ struct Arm {
     rate: f64,
 }
 
-/// What the material remembers.
+/// The memory of the material.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Memory {
     /// Phi.
@@ -63,7 +63,8 @@ impl Material {
     /// The material of a rheology with the scene's modulus; `None` for an elastic one.
     ///
     /// # Errors
-    /// [`Error::Domain`] for a time `4 eta/E*` that no `f64` holds, or a rheology that is not known here (as [`Error::Unsupported`]).
+    /// [`Error::Domain`] for a time `4 eta/E*` that no `f64` holds, or a rheology that is not known here (as
+    /// [`Error::Unsupported`]).
     pub fn new(rheology: &Rheology, contact_modulus: f64, model: &'static str) -> Result<Option<Self>> {
         rheology.validate()?;
         let time = |viscosity: f64| {
@@ -216,7 +217,7 @@ impl Material {
         end
     }
 
-    /// How far the force of a memory, from its arms, is from the force that it was given, relative.
+    /// Relative difference between the force of a memory, from its arms, and the prescribed force.
     pub fn residual(&self, memory: &Memory, speed: f64) -> f64 {
         let force = self.force(memory.load, &memory.arms, speed);
         if memory.force > 0.0 { (force / memory.force - 1.0).abs() } else { 0.0 }

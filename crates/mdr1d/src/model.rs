@@ -14,7 +14,7 @@ use surface_gen::LineGenerator;
 
 const NAME: &str = "mdr1d";
 
-/// Memory of drawing a line, bytes for each element.
+/// Memory for drawing a line, in bytes per element.
 pub const BYTES_PER_ELEMENT: f64 = 40.0;
 
 /// Why a measured profile is refused.
@@ -30,16 +30,16 @@ const PROFILE: &str = "a measured profile: the method replaces a surface by a li
 /// which is exact there.
 ///
 /// The bodies of [`Profile`] may adhere ([`Adhesion::ShortRange`]): their loads may then be negative, down to
-/// the pull-off, which is
-/// [`Error::OutOfRange`] with the smallest admissible load; no load means the adhered contact. The stiffness is then the slope along
-/// the branch, on which the edge moves: 0 at the pull-off under prescribed force, negative beyond it, absent
-/// at the pull-off under prescribed approach, where it has no bound. That of the held contact area, which the
-/// conductance follows from, is `2 E* a`. Power-law bodies with exponents up to 1/2 have no such contact and
-/// are refused. So is adhesion of rough lines: the rule that tears a spring needs the radius of a round
-/// contact.
+/// the pull-off, which is [`Error::OutOfRange`] with the smallest admissible load; the state without load is
+/// the adhered contact. The stiffness is then the slope along the branch, on which the edge moves: 0 at the
+/// pull-off under prescribed force, negative beyond it, and absent at the pull-off under prescribed approach,
+/// where it has no bound. The stiffness at fixed contact area, from which the conductance follows, is `2 E*
+/// a`. Power-law bodies with exponents up to 1/2 have no such contact and are refused. So is adhesion of
+/// rough lines: the rule by which a spring detaches needs the radius of a round contact.
 ///
-/// An ensemble over one spectrum is faster with one [`surface_gen::LineGenerator`] and its lines as
-/// [`Surface::Line`]: the plan and the amplitudes are then made once. The states are the same.
+/// An ensemble over one spectrum is faster with [`Ensemble`], or with the lines of one
+/// [`surface_gen::LineGenerator`] as [`Surface::Line`], because the plan and the amplitudes are then computed
+/// once. The states are the same.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Mdr1d {
     /// Number of elements of a line that is drawn from a seed; a given line brings its own.
@@ -136,7 +136,7 @@ impl ContactModel for Mdr1d {
         }
     }
 
-    /// That of a line that is drawn; a given line and a round body need less than they are.
+    /// The memory for a line that is drawn; a given line and a round body need less than this.
     fn least_memory(&self, scene: &Scene) -> Option<RequiredMemory> {
         let elements = self.elements;
         matches!(scene.surface, Surface::SelfAffine(_) | Surface::Heights(_)).then(|| RequiredMemory {
@@ -194,7 +194,7 @@ impl ContactModel for Ensemble {
         self.model.abilities()
     }
 
-    /// As [`Mdr1d`]; scenes of other surfaces are solved too, without anything kept.
+    /// As [`Mdr1d`]; scenes of other surfaces are solved too, without saved plans.
     fn prepare(&self, scene: &Scene, seed: u64) -> Result<Box<dyn PreparedContact>> {
         let outputs = scene.outputs;
         if scene.surface != Surface::SelfAffine(self.surface)

@@ -13,17 +13,18 @@ const NAME: &str = "mdr1d_partial_slip";
 /// Coulomb's friction of axisymmetric bodies through their profile, each spring sticking or slipping by
 /// itself.
 ///
-/// Takes the bodies of [`Profile`] with [`Friction::Coulomb`] and both bodies' materials
-/// ([`Scene::of_pair`]), and any path of normal and tangential loads: a step goes straight from one pair of
-/// approach and tangential displacement to the next (a step by force ends where the force is reached). The
-/// state at its end is exact for the springs, whatever the length of the step, energy included: nothing is
-/// discretised in x or in the path. Cost: O(m) for m corners that the path has left in the state of the
-/// springs, at most two more per step; a tangential force some thirty times that. Energies are results too:
-/// units in which they leave f64 (lengths below 1e-100) are errors.
+/// The model takes the bodies of [`Profile`] with [`Friction::Coulomb`] and both bodies' materials
+/// ([`Scene::of_pair`]), and any path of normal and tangential loads. A step goes straight from one pair of
+/// approach and tangential displacement to the next; a step by force ends where the force is reached. The
+/// state at its end, including the energy, is exact for the springs whatever the length of the step, because
+/// nothing is discretised in x or along the path. The cost of a step is O(m) for m corners in the deflection
+/// of the springs, at most two more per step; a step by tangential force costs about thirty times that.
+/// Energies are results too, so units in which they leave f64 (lengths below 1e-100) are errors.
 ///
-/// The springs are exact for the half-space in the approximation of Cattaneo, Mindlin, Jaeger and Ciavarella:
-/// tangential tractions do not disturb the normal ones ([`contact_model::Pair::coupling`] is 0, or
-/// neglected), slip is taken to have the direction of the load everywhere, which it has not quite for nu > 0.
+/// For the half-space the springs are exact in the approximation of Cattaneo, Mindlin, Jaeger and Ciavarella.
+/// It neglects the influence of tangential tractions on the normal ones ([`contact_model::Pair::coupling`] is
+/// 0, or neglected), and it assumes that slip has the direction of the load everywhere, which is not quite
+/// true for nu > 0.
 ///
 /// ```
 /// use contact_model::{Body, Friction, ContactModel, Load, Pair, Scene, Step, Surface, Tangential};

@@ -7,19 +7,19 @@ use crate::shape::Shape;
 use contact_model::{Body, Error, Pair, Result, Rheology, Step, Tangential};
 use numerics::gauss::Gauss;
 
-/// Where a history stands; lengths in L, forces in E* L^2.
+/// Current state of a history; lengths in L, forces in E* L^2.
 #[derive(Debug, Clone)]
 pub(crate) struct RelaxedState {
     pub time: f64,
     /// The elastic contact with this approach.
     pub contact: RoundContact,
     pub memory: Memory,
-    /// How far the force from the arms is from the one that was prescribed, relative.
+    /// Relative difference between the force from the arms and the prescribed force.
     pub residual: f64,
 }
 
 impl RelaxedState {
-    /// Errors where no f64 holds it.
+    /// Checks that its numbers are finite.
     pub fn check(&self) -> Result<()> {
         for value in [self.memory.force, self.memory.load, self.contact.approach] {
             if !value.is_finite() {

@@ -1,4 +1,5 @@
-//! The rule: which rough line on which foundation stands for a rough square or rectangle (Eqs. 14 to 18).
+//! The rule for the rough line and the foundation that are equivalent to a rough square or rectangle (Eqs. 14
+//! to 18).
 //!
 //! The line has the length `L_1D = 2 L / sqrt(pi)`, its springs the stiffness E* per length, and its spectrum
 //! is `C_1D(q) = pi q C_2D(q)`. A line of full length in contact then has the stiffness of a circle of the
@@ -35,7 +36,7 @@ pub fn mode_amplitude(line_spectrum: f64, length: f64) -> f64 {
     (2.0 * PI / length * line_spectrum).sqrt()
 }
 
-/// Stiffness of the foundation per length, E* itself (Eq. 16); the springs are independent of each other.
+/// Stiffness of the foundation per length, which is E* (Eq. 16); the springs are independent of each other.
 ///
 /// ```
 /// assert_eq!(mdr1d::rule::foundation_stiffness(70e9), 70e9);

@@ -1,4 +1,4 @@
-//! What springs need to know of a profile: where each of them stands, and integrals over them.
+//! Properties of a profile that springs need: the place of each spring, and integrals over springs.
 
 use crate::axisymmetric::Profile;
 use numerics::gauss::Gauss;

@@ -1,12 +1,12 @@
-//! The tangential springs of an axisymmetric contact, exactly: what sticks, what slips, what is lost.
+//! The tangential springs of an axisymmetric contact, solved exactly: which of them stick and slip, and the
+//! energy that they lose.
 //!
-//! A spring at x has the tangential deflection U(x); its force is G* U, and Coulomb's law holds it within
+//! A spring at x has the tangential deflection U(x). Its force is G* U, which Coulomb's law limits to
 //! `mu E* (d - g(x))`. Along a straight segment of a path (d and u linear) a spring moves with the body until
-//! it reaches that bound and then along it, so at the end `U = clamp(U_0 + Du, -c, c)` with
-//! `c = mu E*/G* (d - g)`; a spring that comes into contact on the way begins there with U =
-//! 0. All of this is linear in `g`: with `gamma = g(x)` as the coordinate, U stays a polygon for any path and
-//!    any profile, and
-//! forces and losses are integrals of polynomials of gamma. Nothing is discretised.
+//! it reaches that bound and then along the bound, so that at the end `U = clamp(U_0 + Du, -c, c)` with
+//! `c = mu E*/G* (d - g)`. A spring that comes into contact on the way begins there with `U = 0`. All of this
+//! is linear in `g`: with `gamma = g(x)` as the coordinate, U stays a polygon for any path and any profile,
+//! and forces and losses are integrals of polynomials of gamma. Nothing is discretised.
 //!
 //! The polygon's slope never exceeds that of the bound, so slip begins at the edge and reaches inward to one
 //! gamma.

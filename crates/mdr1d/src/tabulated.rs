@@ -1,17 +1,17 @@
-//! [`Tabulated`]: the profile g(x) of any contact that grows, from states that another model has solved.
+//! [`Tabulated`]: the profile g(x) of any growing contact, from states that another model has solved.
 
 use crate::shape::{Shape, of_power};
 use contact_model::{Error, Result};
 
 /// A monotone profile g(x) through given states of a contact, in units of `L = sqrt(Lx Ly)` of its rectangle.
 ///
-/// A spring foundation of stiffness E* whose line has the half width `x(d) = k(d)/(2 E*)` in contact answers
-/// with the same F, d and k as the contact whose stiffness that is: `F = 2 E* int_0^d x`, `k = 2 E* x`
-/// (Popov, Pohrt, Hess; M. Hess 2011). So any contact whose k never falls with d has an equivalent profile,
-/// `g(x(d)) = d`. Between two states x is the parabola in d that meets both stiffnesses and the difference of
-/// forces where that parabola never falls (x is then good to third order of the spacing, F to fourth), else
-/// two straight segments that do the same. From first touch to the first state x is a power of d, or a flat
-/// face with a straight flank, as F d/k says.
+/// A spring foundation of stiffness E* whose line has the half width `x(d) = k(d)/(2 E*)` in contact has the
+/// same F, d and k as the contact with the stiffness k(d): `F = 2 E* int_0^d x`, `k = 2 E* x` (Popov, Pohrt,
+/// Hess; M. Hess 2011). So any contact whose k never falls with d has an equivalent profile, `g(x(d)) = d`.
+/// Between two states x is the parabola in d that meets both stiffnesses and the difference of forces; its
+/// error is of third order in the spacing for x, of fourth order for F. Where that parabola would fall, two
+/// straight segments take its place. From first touch to the first state x is a power of d, or a flat face
+/// with a straight flank, according to F d/k.
 ///
 /// ```
 /// use contact_model::{Scene, Surface};
@@ -40,7 +40,7 @@ pub(crate) struct Node {
     pub force: f64,
     /// `k/(2 E*)`.
     pub radius: f64,
-    /// How far force and radius may be off, relative.
+    /// Relative tolerance of force and radius.
     pub slack: f64,
 }
 
@@ -72,7 +72,7 @@ const STEEPEST: f64 = 1e-9;
 const POWERS: (f64, f64) = (0.0625, 64.0);
 /// Shares of the rise between which a parabola that meets them never falls.
 const PARABOLA: (f64, f64) = (1.0 / 3.0, 2.0 / 3.0);
-/// A share may be so much beyond them by rounding.
+/// A share may lie beyond them by this much because of rounding.
 const ROUNDING: f64 = 1e-9;
 
 impl Tabulated {
@@ -139,11 +139,11 @@ impl Tabulated {
         self.nodes
     }
 
-    /// Evidence of the tabulation at a depth: the largest change of the force at any state up to it when that
-    /// state is left out, over the force at the depth.
+    /// Estimated error of the table at a depth: the largest change of the force at any state up to it when
+    /// that state is left out, over the force at the depth.
     ///
-    /// A bound of the error that the table makes in F, and in a tangential force over mu F: some ten times
-    /// the error itself for smooth bodies (fourth order, twice the spacing).
+    /// It bounds the error of the table in F, and in a tangential force over mu F. For smooth bodies it is
+    /// about ten times the error itself (fourth order, twice the spacing).
     pub fn uncertainty(&self, depth: f64) -> f64 {
         let below = self.doubts.partition_point(|(approach, _)| *approach <= depth);
         let change = below.checked_sub(1).map_or(0.0, |last| self.doubts[last].1);

@@ -12,24 +12,24 @@ use contact_model::{
 const NAME: &str = "mdr1d_viscoelastic";
 
 /// A linear viscoelastic half-space under a rigid axisymmetric body, through its profile: every spring
-/// relaxes by itself.
+/// relaxes independently.
 ///
 /// While the contact grows, a spring that has come into contact stays there, and the sum over springs is
 /// Boltzmann's integral of the elastic law: `F(t) = int E*(t - t') dPhi(d(t'))` with `Phi = F_elastic/E*`
 /// (Lee and Radok 1960; Popov and Hess 2015, Ch. 7).
 ///
-/// Takes the bodies of [`Profile`] with a [`contact_model::Rheology`], and histories that are straight
-/// between the steps' times: of the approach, of the force, or one after the other. Equal times are a jump; a
-/// dashpot alone in parallel (Kelvin-Voigt) does not allow one of the approach. The force of a step is that
-/// at its end, with its own speed.
+/// The model takes the bodies of [`Profile`] with a [`contact_model::Rheology`], and histories of the
+/// approach, of the force, or of both in turn, that are linear between the times of the steps. Equal times
+/// are a jump; a dashpot in parallel (Kelvin-Voigt) does not allow a jump of the approach. The force of a
+/// step is that at its end, just before a change of speed.
 ///
 /// **Growth is checked, not assumed**: a step in which the contact radius would shrink is
 /// [`Error::OutOfRange`] in the time, whose largest admissible value is the instant from which it would.
-/// Under a falling force that may lie well after the force began to fall.
+/// Under a falling force this instant may be well after the force began to fall.
 ///
 /// Under a prescribed force the state is in closed form (exponentials of the material's own creep rates);
-/// under a prescribed approach it is a quadrature to 1e-12 per arm. Force and approach at a time of up to 16
-/// arms cost well below a millisecond. No stiffness is claimed: it depends on how fast one pushes.
+/// under a prescribed approach it is a quadrature to 1e-12 per arm. Force and approach at one time cost well
+/// below a millisecond with up to 16 arms. The model claims no stiffness, because it depends on the speed.
 ///
 /// ```
 /// use contact_model::{ContactModel, Load, Rheology, Scene, Step, Surface};
@@ -48,7 +48,7 @@ const NAME: &str = "mdr1d_viscoelastic";
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Viscoelastic;
 
-/// What relaxes.
+/// The rheologies that the model accepts.
 pub(crate) const RHEOLOGIES: &[Effect] =
     &[Effect::KelvinVoigt, Effect::Maxwell, Effect::StandardSolid, Effect::PronySeries];
 

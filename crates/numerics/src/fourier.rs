@@ -1,9 +1,9 @@
 //! Discrete Fourier transforms of real fields on a rectangle, planned once.
 //!
-//! Of a field of `columns` x `rows` values, row-major, the waves (mx, my) with `0 <= mx <= columns/2` are
-//! kept: the others are their conjugates. Wave (mx, my) has the index `mx rows + my`, negative my from the
-//! end: a column of waves of one mx is contiguous. The operator of a solver with its fused products has a
-//! transform of its own.
+//! The field has `columns` x `rows` values, row-major. Of its waves (mx, my), those with `0 <= mx <=
+//! columns/2` are stored; the others are their conjugates. Wave (mx, my) has the index `mx rows + my`, where
+//! negative my count from the end, so that the waves of one mx are contiguous. The operator of a solver, with
+//! its fused products, has a transform of its own.
 
 use crate::parallel::{for_each, threads_for};
 use crate::plan::Precision;
@@ -60,8 +60,8 @@ impl ForwardTransform {
         Self { columns, rows, along_x: f64::real_forward(columns), along_y: f64::forward(rows) }
     }
 
-    /// `H = sum h exp(-2 pi i (mx ix / columns + my iy / rows))`, no factor before it; `fill` writes the
-    /// values h of row iy over zeros.
+    /// The transform `H = sum h exp(-2 pi i (mx ix / columns + my iy / rows))`, without a factor; `fill(iy,
+    /// row)` writes the values h of row iy into `row`, which holds zeros.
     ///
     /// Cost O(N log N) for N values, on one thread; memory 8 bytes for each value.
     ///
@@ -102,13 +102,13 @@ impl InverseTransform {
         Self { columns, rows, along_x: f64::real_inverse(columns), along_y: f64::inverse(rows) }
     }
 
-    /// `h = sum H exp(2 pi i (mx ix / columns + my iy / rows))` over the whole plane of waves, no factor
-    /// before it.
+    /// The values `h = sum H exp(2 pi i (mx ix / columns + my iy / rows))`, summed over the whole plane of
+    /// waves, without a factor.
     ///
-    /// `fill` writes the waves H of column mx over zeros, for mx below `filled`, at most columns/2 + 1; all
-    /// others are 0. Waves that are their own conjugates count with their real parts. Shared by threads, with
-    /// the same bits for any number of them. Cost O(N log N) for N values, memory 8 bytes for each beside the
-    /// values.
+    /// `fill(mx, column)` writes the waves H of column mx into `column`, which holds zeros, for mx below
+    /// `filled <= columns/2 + 1`; all other waves are 0. Of waves that are their own conjugates the real part
+    /// counts. Threads share the work, and the bits are the same for any number of them. Cost O(N log N) for
+    /// N values, memory 8 bytes for each beside the values.
     ///
     /// ```
     /// use numerics::fourier::{Complex64, InverseTransform};

@@ -1,6 +1,6 @@
 //! Integrals of smooth functions: the rule of Gauss and Legendre.
 
-/// The rule of so many points: exact for polynomials up to degree `2 POINTS - 1`.
+/// The rule with `POINTS` points, which is exact for polynomials up to degree `2 POINTS - 1`.
 #[derive(Debug, Clone, Copy)]
 pub struct Gauss<const POINTS: usize> {
     nodes: [(f64, f64); POINTS],
@@ -13,7 +13,7 @@ impl<const POINTS: usize> Default for Gauss<POINTS> {
 }
 
 impl<const POINTS: usize> Gauss<POINTS> {
-    /// Nodes are roots of the Legendre polynomial, by Newton's method on its recurrence.
+    /// Computes the nodes as roots of the Legendre polynomial, by Newton's method on its recurrence.
     pub fn new() -> Self {
         let mut nodes = [(0.0, 0.0); POINTS];
         let n = POINTS as f64;

@@ -1,15 +1,15 @@
 //! Numerical tools that several crates share, and that know nothing of contact.
 //!
-//! | module | what it has |
+//! | module | contents |
 //! |---|---|
-//! | [`parallel`] | work in tasks on the threads of the caller's pool, with the same bits for any number of them |
-//! | [`root`] | the root of a function between two points, of a convex one from above, by halves |
+//! | [`parallel`] | tasks shared by the threads of the caller's pool, with the same bits for any number of them |
+//! | [`root`] | roots of functions: between two points, of a convex function from above, and by bisection |
 //! | [`gauss`] | integrals of smooth functions by the rule of Gauss and Legendre |
 //! | [`plan`] | plans of transforms in one dimension, compiled once |
 //! | [`fourier`] | transforms of real fields on a rectangle |
 //! | [`sum`](mod@sum) | compensated and pairwise sums |
 //! | [`range`](mod@range) | smallest and largest of many values |
-//! | [`quantile`] | of the normal law, of Student's and of the chi-square distribution |
+//! | [`quantile`] | quantiles of the normal law, of Student's and of the chi-square distribution |
 //! | [`regression`] | the straight line of least squares |
 //!
 //! ```

@@ -1,10 +1,10 @@
-//! Work in tasks on the threads of the caller's pool.
+//! Tasks that are shared by the threads of the caller's pool.
 //!
-//! What a task is depends on sizes alone, each is done by one thread, and their results are put together in
-//! their order: no bit of a result depends on the number of threads. The pool is that of `rayon` in which a
-//! solve runs; its threads that have nothing else to do help. Parallel iterators of `rayon` would make
-//! buffers for each split instead of each thread, and need a second code without the feature `rayon`, where
-//! there is one thread.
+//! No bit of a result depends on the number of threads: the division into tasks depends on sizes alone, one
+//! thread does each task, and the results are combined in the order of the tasks. The pool is that of `rayon`
+//! in which a solve runs; its idle threads help. Parallel iterators of `rayon` would allocate buffers for
+//! each split instead of for each thread, and they would need a second code for builds without the feature
+//! `rayon`, which have one thread.
 //!
 //! A thread that waits for its helpers may be given any other work of its pool, such as another solve of a
 //! parallel iterator over surfaces. Two rules keep that harmless: nothing is locked while tasks are shared,
@@ -15,7 +15,7 @@ use std::cell::Cell;
 #[cfg(feature = "rayon")]
 use std::sync::{Mutex, PoisonError};
 
-/// Elements of a vector loop that are worth a thread; chosen without a measurement of other values.
+/// Number of elements of a vector loop for which a further thread pays; other values were not measured.
 const WORK_PER_THREAD: usize = 1 << 15;
 
 #[cfg(feature = "rayon")]
@@ -24,7 +24,7 @@ thread_local! {
     static SHARING: Cell<bool> = const { Cell::new(false) };
 }
 
-/// Says that this thread shares tasks for as long as it lives.
+/// Marks this thread as one that shares tasks, for as long as the mark lives.
 #[cfg(feature = "rayon")]
 struct Sharing;
 
@@ -43,7 +43,7 @@ impl Drop for Sharing {
     }
 }
 
-/// Threads that so much work is worth, in elements of a vector loop.
+/// Number of threads that pay for `work`, a number of elements of a vector loop.
 pub fn threads_for(work: usize) -> usize {
     #[cfg(feature = "rayon")]
     let threads = if SHARING.get() { 1 } else { rayon::current_num_threads() };
@@ -110,8 +110,8 @@ fn next<I: Iterator>(shared: &Mutex<I>) -> Option<I::Item> {
     shared.lock().unwrap_or_else(PoisonError::into_inner).next()
 }
 
-/// Does `work` on each task, where there is so much work in all, and gives the results in the order of the
-/// tasks.
+/// Does `work` on each task and returns the results in the order of the tasks; the total amount of work, in
+/// elements of a vector loop, decides the number of threads.
 pub fn map<T: Send, R: Send + Default>(
     total: usize,
     tasks: impl ExactSizeIterator<Item = T> + Send,

@@ -1,8 +1,8 @@
 //! Quantiles of the normal law, of Student's and of the chi-square distribution.
 //!
-//! The inverse distribution functions of `statrs` 0.18 end in NaN (chi-square below two degrees of freedom)
-//! or do not end (Student's for some degrees of freedom): those two are found by bisection of the
-//! distribution function, which is right.
+//! The inverse distribution functions of `statrs` 0.18 return NaN (chi-square below two degrees of freedom)
+//! or do not terminate (Student's for some degrees of freedom). These two are therefore found by bisection of
+//! its distribution functions, which are correct.
 
 use crate::root::bisect;
 use statrs::distribution::{ChiSquared, ContinuousCDF as _, Normal, StudentsT};
@@ -16,8 +16,8 @@ pub fn normal(probability: f64) -> f64 {
     Normal::standard().inverse_cdf(probability)
 }
 
-/// 97.5 % quantile of Student's distribution: half-width of a 95 % interval in standard errors; that of one
-/// degree of freedom below 1.
+/// 97.5 % quantile of Student's distribution: half-width of a 95 % interval in standard errors. Below one
+/// degree of freedom it is the quantile of one.
 ///
 /// ```
 /// assert!((numerics::quantile::student(4.0) - 2.776_445).abs() < 1e-6);
@@ -33,7 +33,8 @@ pub fn student(degrees_of_freedom: f64) -> f64 {
 }
 
 /// Quantile of Student's distribution, for probabilities in [0.5, 1): half-width in standard errors of the
-/// two-sided interval that leaves out twice `1 - probability`; that of one degree of freedom below 1.
+/// two-sided interval of confidence `2 probability - 1`. Below one degree of freedom it is the quantile of
+/// one.
 ///
 /// ```
 /// assert!((numerics::quantile::student_at(0.995, 4.0) - 4.604_095).abs() < 1e-5);
@@ -48,7 +49,7 @@ pub fn student_at(probability: f64, degrees_of_freedom: f64) -> f64 {
     f64::midpoint(low, high)
 }
 
-/// Probability that Student's variable is farther from 0 than `t`, either way.
+/// Two-sided tail probability of Student's distribution: that a variable is farther from 0 than `t`.
 ///
 /// ```
 /// assert!((numerics::quantile::student_beyond(2.776_445, 4.0) - 0.05).abs() < 1e-6);
@@ -66,9 +67,9 @@ pub fn student_beyond(t: f64, degrees_of_freedom: f64) -> f64 {
 /// assert!((numerics::quantile::chi_square(freedom, probability).unwrap() + 2.0 * (-probability).ln_1p()).abs() < 1e-6);
 /// ```
 pub fn chi_square(degrees_of_freedom: f64, probability: f64) -> Option<f64> {
-    /// Beyond so many degrees of freedom the normal law stands for the chi-square law.
+    /// Above this number of degrees of freedom the quantile is approximated through that of the normal law.
     const MANY: f64 = 1e4;
-    /// Least quantile that is looked for, and halvings of the logarithm of a range of 1e30 down to rounding.
+    /// Smallest quantile that is searched for.
     const LEAST: f64 = 1e-25;
     const HALVINGS: usize = 56;
     if degrees_of_freedom > MANY {

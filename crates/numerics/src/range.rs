@@ -5,7 +5,7 @@ use crate::parallel::map;
 /// Values compared side by side, so that the compiler compares several at once.
 const LANES: usize = 8;
 
-/// Values of which a thread takes the range at a time.
+/// Number of values in one task of a thread.
 const CHUNK: usize = 1 << 15;
 
 /// Smallest and largest value, NaN ignored; (inf, -inf) for none. Shared by threads where there are many
@@ -37,9 +37,9 @@ fn range_alone(values: &[f64]) -> (f64, f64) {
     (low, high.iter().chain(rest).fold(f64::NEG_INFINITY, |a, &b| a.max(b)))
 }
 
-/// Middle of the range and half its width, 1 where there is no width: values less the middle over it are
-/// between -1 and 1, so that no square of them leaves the range of f64 and an offset costs its own rounding
-/// only. Undefined values (not finite) are to be left out before.
+/// Middle of the range and half its width, or 1 where the width is 0. `(value - middle)/half width` lies
+/// between -1 and 1, so that no square of it leaves the range of f64 and an offset costs only its own
+/// rounding. The caller must leave out undefined values (not finite ones) first.
 ///
 /// ```
 /// assert_eq!(numerics::range::middle_and_half_width((1.0, 5.0)), (3.0, 2.0));

@@ -19,8 +19,8 @@ pub fn least_squares(points: &[(f64, f64)]) -> Option<(f64, f64)> {
     (xx > 0.0 && slope.is_finite() && intercept.is_finite()).then_some((slope, intercept))
 }
 
-/// Exponent p of `y ~ x^p`: the slope of ln y over ln x by least squares, points that are not positive left
-/// out; as [`least_squares`].
+/// Exponent p of `y ~ x^p`: the slope of ln y over ln x by least squares, without points that are not
+/// positive. `None` as in [`least_squares`].
 ///
 /// ```
 /// let squares = [1.0, 2.0, 3.0, -1.0].map(|x: f64| (x, 5.0 * x * x));

@@ -3,10 +3,10 @@
 /// The root between two points where `function` has opposite signs, to the last place that the function's own
 /// rounding allows.
 ///
-/// Bisection that takes inverse quadratic interpolation where that is safe (Chandrupatla, Adv. Eng. Softw.
-/// 28, 145 (1997)): some ten evaluations for smooth functions, never more than bisection needs. A point where
-/// the function is 0 is returned as it is; without a change of sign the end with the smaller value is. Values
-/// at the ends may be infinite.
+/// The method is bisection, with inverse quadratic interpolation where that is safe (Chandrupatla, Adv. Eng.
+/// Softw. 28, 145 (1997)). It needs about ten evaluations for smooth functions and never more than bisection.
+/// A point where the function is exactly 0 is returned; without a change of sign the result is the end with
+/// the smaller absolute value. Values at the ends may be infinite.
 pub fn between(low: f64, high: f64, mut function: impl FnMut(f64) -> f64) -> f64 {
     /// More than the bits of any two numbers of one sign; never reached by functions with numbers for values.
     const MOST_STEPS: usize = 2_200;
@@ -50,10 +50,10 @@ pub fn between(low: f64, high: f64, mut function: impl FnMut(f64) -> f64) -> f64
     if fa.abs() < fb.abs() { a } else { b }
 }
 
-/// The largest root of a convex function by Newton's method from a point above it: the steps only descend,
-/// until rounding stops them.
+/// The largest root of a convex function by Newton's method from a point above it. The steps only descend,
+/// and rounding ends them.
 ///
-/// `function` gives value and slope. A start without a positive slope is returned as it is.
+/// `function` returns value and slope. A start where the slope is not positive is returned unchanged.
 ///
 /// ```
 /// let root = numerics::root::newton_from_above(3.0, |x| (x * x - 2.0, 2.0 * x));
@@ -75,7 +75,7 @@ pub fn newton_from_above(start: f64, mut function: impl FnMut(f64) -> (f64, f64)
     x
 }
 
-/// The bracket `[low, high]` after so many halvings, each of which keeps the half in which `below` changes
+/// The bracket `[low, high]` after `halvings` halvings, each of which keeps the half in which `below` changes
 /// from true to false.
 ///
 /// For functions of which the sign alone is known, or whose values an interpolation cannot use; [`between`]

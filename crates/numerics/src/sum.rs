@@ -25,7 +25,7 @@ impl From<f64> for Sum {
 }
 
 impl Sum {
-    /// Adds a term.
+    /// Adds a term to the sum.
     pub fn add(&mut self, term: f64) {
         let total = self.high + term;
         // The smaller of the two lost its low digits: they are kept.
@@ -56,8 +56,8 @@ pub fn sum(values: impl IntoIterator<Item = f64>) -> f64 {
     total.value()
 }
 
-/// Sum of `term` over the values, pairwise: the rounding error grows with log n only. Shared by threads, with
-/// the same bits for any number.
+/// Pairwise sum of `term` over the values: the rounding error grows with log n only. Threads share the work,
+/// with the same bits for any number of them.
 ///
 /// ```
 /// assert_eq!(numerics::sum::pairwise(&[1.0, 2.0, 3.0], |v| v * v), 14.0);

@@ -1,8 +1,8 @@
-//! Axes: how far they go, where their ticks are and what stands at them.
+//! Axes: their ends, their ticks and their labels.
 
 use crate::text::number;
 
-/// How far an axis goes, and whether it is logarithmic.
+/// Ends of an axis, and whether it is logarithmic.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Axis {
     /// From, to.
@@ -14,11 +14,11 @@ pub enum Axis {
 /// A tick.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Tick {
-    /// Where, from 0 to 1 along the axis.
+    /// Position along the axis, from 0 to 1.
     pub at: f64,
     /// Long, with or without a label; others are short.
     pub major: bool,
-    /// What stands at it.
+    /// Its label.
     pub label: Option<String>,
 }
 
@@ -38,7 +38,7 @@ impl Axis {
         }
     }
 
-    /// Where a value is: 0 at the start, 1 at the end; `None` where the axis has no place for it.
+    /// Position of a value: 0 at the start, 1 at the end; `None` where the axis cannot show it.
     pub fn place(self, value: f64) -> Option<f64> {
         let t = match self {
             Self::Linear(a, b) => {

@@ -1,4 +1,4 @@
-//! One picture of a few curves, for whoever has them.
+//! A chart of a few curves.
 
 use crate::axis::{Axis, linear, logarithmic};
 use crate::panels::Panels;
@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 pub struct Curve {
     /// Its name in the legend.
     pub label: String,
-    /// Its points in their order; those that the axes cannot show are left out.
+    /// Its points in their order; points that the axes cannot show are left out.
     pub points: Vec<(f64, f64)>,
     /// A shaded band through (x, lower end, upper end), such as an error; may be empty.
     pub band: Vec<(f64, f64, f64)>,
@@ -22,20 +22,20 @@ pub struct Curve {
     pub careful: Vec<(f64, f64)>,
 }
 
-/// Curves on one pair of axes. An axis is logarithmic where asked for and every value is positive.
+/// Curves on one pair of axes. An axis is logarithmic on request, if every value is positive.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Chart {
-    /// Above the axes.
+    /// Title above the axes.
     pub title: String,
-    /// Below the title.
+    /// Line below the title.
     pub subtitle: String,
-    /// Below, with its unit; symbols stand between dollar signs.
+    /// Label of the horizontal axis, with its unit; symbols stand between dollar signs.
     pub x_label: String,
-    /// At the left, with its unit.
+    /// Label of the vertical axis, with its unit.
     pub y_label: String,
-    /// What is drawn.
+    /// The curves.
     pub curves: Vec<Curve>,
-    /// Whether logarithmic axes serve.
+    /// Whether logarithmic axes are requested.
     pub logarithmic: bool,
     /// Whether points follow each other in time: arrows along the lines, rings at their starts, and lines
     /// through the origin.

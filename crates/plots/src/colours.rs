@@ -5,15 +5,15 @@ use contact_model::Shown;
 use files::Result;
 use std::path::Path;
 
-/// Undefined points.
+/// Colour of undefined points.
 pub(crate) const UNDEFINED: [u8; 3] = [205, 205, 205];
 /// A field has two signs where the lesser one reaches this share of the other; below, it is rounding.
 const TWO_SIGNS: f64 = 1e-3;
 
-/// Colours from the lowest to the highest value, even to the eye.
+/// A palette, from the lowest to the highest value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Palette {
-    /// Viridis, which is even to the eye of the colour-blind too.
+    /// Viridis, which is perceptually uniform, for colour-blind readers too.
     Viridis,
     /// Blue below zero, white at it, red above.
     BlueRed,
@@ -37,7 +37,7 @@ impl Palette {
     }
 }
 
-/// Which colour a value has.
+/// Maps values to colours.
 ///
 /// ```
 /// use contact_model::Shown;
@@ -55,8 +55,9 @@ pub struct ColourScale {
 }
 
 impl ColourScale {
-    /// Of values in this range. Viridis from end to end, from 0 under [`Shown::Largest`], where zero is white;
-    /// of a `signed` field with values of both signs blue to red, as far on either side of a white zero.
+    /// The scale of values in this range. It is viridis from end to end; under [`Shown::Largest`] it begins
+    /// at 0, and zero is white. A `signed` field with values of both signs has blue to red, symmetric about a
+    /// white zero.
     pub fn new((low, high): (f64, f64), shown: Shown, signed: bool) -> Self {
         let zero_is_white = shown == Shown::Largest;
         let (least, most) = (low.abs().min(high.abs()), low.abs().max(high.abs()));
@@ -78,7 +79,7 @@ impl ColourScale {
         (self.low, self.high)
     }
 
-    /// From the lowest to the highest value.
+    /// The palette of the scale.
     pub fn palette(self) -> Palette {
         self.palette
     }

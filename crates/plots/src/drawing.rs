@@ -16,7 +16,7 @@ const SCALE: f64 = 2.0;
 /// A rectangle: left, top, width, height.
 pub(crate) type Rectangle = [f64; 4];
 
-/// What is drawn, in order, on white.
+/// A picture: paths, labels and images in their order, on white.
 pub(crate) struct Drawing {
     width: f64,
     height: f64,
@@ -29,7 +29,7 @@ enum Item {
     Image { place: Rectangle, rgb: Vec<u8>, columns: usize },
 }
 
-/// How a path looks.
+/// Style of a path.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Paint {
     /// Colour of the inside and its opacity.
@@ -90,7 +90,8 @@ impl Drawing {
         self.label(fonts.fitted(subtitle, size, room), (across, 49.0), Anchor::Start, false, NEUTRAL);
     }
 
-    /// Colours of three bytes in rows of so many, first row on top, stretched over a rectangle.
+    /// An image of three bytes per colour in rows of `columns` colours, first row on top, stretched over a
+    /// rectangle.
     pub fn image(&mut self, place: Rectangle, rgb: Vec<u8>, columns: usize) {
         self.items.push(Item::Image { place, rgb, columns });
     }

@@ -12,14 +12,14 @@ use files::{Error, Result};
 use std::ops::Range;
 use std::path::Path;
 
-/// A field and what is said of it.
+/// A field with its title and labels.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FieldPicture<'a> {
-    /// Above the map.
+    /// Title above the map.
     pub title: String,
-    /// Below the title.
+    /// Line below the title.
     pub subtitle: String,
-    /// Beside the colour bar.
+    /// Label of the colour bar.
     pub quantity: String,
     /// Unit of the values, as they are given; the picture chooses a prefix. Empty for none.
     pub unit: &'a str,
@@ -31,18 +31,18 @@ pub struct FieldPicture<'a> {
     pub size: Size,
     /// Values on the cells, row-major; NaN where a point is undefined.
     pub values: &'a [f64],
-    /// Which value a pixel shows.
+    /// The value that a pixel shows, where it covers several cells.
     pub shown: Shown,
-    /// Whether zero parts two signs, such as pressures from tensions: a field that has both is blue to red.
+    /// Whether the sign matters, as for pressures and tensions: a field with both signs is blue to red.
     pub signed: bool,
     /// Ends of the colour scale, so that several pictures share one; `None`: those of the values.
     pub range: Option<(f64, f64)>,
     /// Cells in contact, which are outlined; empty for none.
     pub contact: &'a [bool],
-    /// Components along x and y of what the values are the magnitude of: arrows show its direction.
+    /// Components along x and y of the vector whose magnitude the values are; arrows show its direction.
     pub arrows: Option<[&'a [f64]; 2]>,
-    /// What the values 0, 1, ... stand for, where they are no measure: a legend with a colour for each takes
-    /// the place of the scale; empty for a measure.
+    /// Names of the classes that the values 0, 1, ... stand for: a legend with a colour for each class takes
+    /// the place of the scale. Empty for measured values.
     pub classes: &'a [&'a str],
 }
 
@@ -90,14 +90,14 @@ impl FieldPicture<'_> {
 
     /// Writes a PNG, y upwards. The colours are those of [`FieldPicture::scale`]; undefined points are grey,
     /// the contact has a white outline with a black edge. Under [`Shown::Largest`] a field of which less than
-    /// 2 % of the pixels are above zero has each of these drawn three pixels wide. Arrows have one length; each
-    /// stands in the middle of what it is the sum of, weighted by magnitude.
+    /// 2 % of the pixels are above zero has each of these drawn three pixels wide. Arrows have one length;
+    /// each shows the sum of the vectors of a block of cells, at their centre weighted by magnitude.
     ///
     /// Cost: linear in the number of cells.
     ///
     /// # Errors
-    /// [`crate::Error::Content`] for another number of values, components or cells in contact than cells, no cells or a size that is not positive,
-    /// [`crate::Error::System`] when it cannot be written.
+    /// [`crate::Error::Content`] for another number of values, components or cells in contact than cells, no
+    /// cells or a size that is not positive, [`crate::Error::System`] when it cannot be written.
     pub fn save(&self, path: &Path) -> Result<()> {
         let count = self.cells.checked_count().filter(|count| *count > 0);
         if count != Some(self.values.len()) || !self.contact.is_empty() && count != Some(self.contact.len()) {
@@ -386,8 +386,8 @@ mod tests {
         assert_eq!(OUTLINE.map(count), [8, 16]);
     }
 
-    /// Contrast of WCAG 2.1 between linear colours, as a protanope sees them: the projection of Vienot, Brettel and
-    /// Mollon (Color Res. Appl. 24, 243, 1999), with the luminance of what is left.
+    /// Contrast of WCAG 2.1 between linear colours, as a protanope sees them: the projection of Vienot,
+    /// Brettel and Mollon (Color Res. Appl. 24, 243, 1999), with the luminance of what is left.
     fn contrast(a: [u8; 3], b: [u8; 3]) -> f64 {
         let luminance = |color: [u8; 3]| {
             let [r, g, b] = color.map(|c| {

@@ -13,7 +13,7 @@ pub(crate) enum Side {
     Right,
 }
 
-/// How ticks and their labels look; in units of the drawing.
+/// Style of ticks and their labels, in units of the drawing.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct TickStyle {
     /// Size of the labels.

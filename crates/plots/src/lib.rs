@@ -1,7 +1,8 @@
 //! Charts and map pictures of one style, as SVG and PNG.
 //!
-//! [`Chart`] draws a few named curves; [`Picture`] is what the paper's figures and the benchmarks are drawn with, [`Panels`] several
-//! of them; [`save_maps`] puts maps side by side; [`write_grey`] is a map of one value per cell.
+//! [`Chart`] draws a few named curves. [`Picture`] serves the paper's figures and the benchmarks, and
+//! [`Panels`] puts several pictures into one file. [`save_maps`] puts maps side by side, and [`write_grey`]
+//! writes a map of one value per cell.
 //!
 //! # Conventions
 //!
@@ -10,8 +11,8 @@
 //! Letters are outlines of the fonts in `fonts/`, so that an SVG needs nothing from the machine that shows
 //! it; its labels are in `aria-label` as well. Both files come from one drawing of paths.
 //!
-//! Colours are told apart in grey as well; the same fractal dimension has the same colour in every picture
-//! ([`color`]). Maps have row 0 at the bottom. Files are written whole or not at all.
+//! Colours can be distinguished in grey as well; the same fractal dimension has the same colour in every
+//! picture ([`color`]). Maps have row 0 at the bottom. Files are written whole or not at all.
 
 #![allow(clippy::format_push_string)] // Text is built once per file: clear beats one allocation less.
 

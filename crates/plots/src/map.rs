@@ -75,7 +75,7 @@ pub fn grey_between(heights: &[f64], (low, high): (f64, f64)) -> Vec<u8> {
     heights.iter().map(|&h| shade(h, low, high)).collect()
 }
 
-/// The range of heights without the lowest and the highest 0.5 %; (0, 0) of none. Cost O(n log n).
+/// The range of heights without the lowest and the highest 0.5 %; (0, 0) for no heights. Cost O(n log n).
 ///
 /// ```
 /// let heights: Vec<f64> = (0..=1000).map(f64::from).collect();

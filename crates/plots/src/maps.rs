@@ -11,20 +11,20 @@ use std::path::{Path, PathBuf};
 /// A square map of grey values.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct GreyMap {
-    /// Above the map; symbols stand between dollar signs.
+    /// Label above the map; symbols stand between dollar signs.
     pub label: String,
-    /// Row by row from the top.
+    /// Grey values, row by row from the top.
     pub shades: Vec<u8>,
-    /// Rows and columns.
+    /// Number of rows and of columns.
     pub side: usize,
 }
 
-/// What the grey values of all maps mean.
+/// Scale of the grey values of all maps.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GreyScale {
     /// The values that are white and black.
     pub ends: (f64, f64),
-    /// What they are, with the unit; symbols stand between dollar signs.
+    /// Label of the scale, with the unit; symbols stand between dollar signs.
     pub label: String,
 }
 
@@ -38,11 +38,12 @@ const TITLE: f64 = 54.0;
 const BAR: f64 = 14.0;
 const BELOW: f64 = 58.0;
 
-/// Writes `NAME.svg` and `NAME.png` with at most three maps in a row, a title, a line below it, and the scale of all
-/// maps below them.
+/// Writes `NAME.svg` and `NAME.png` with at most three maps in a row, a title, a line below it, and the scale
+/// of all maps below them.
 ///
 /// # Errors
-/// [`crate::Error::Content`] for a map that is no square of at least one value, [`crate::Error::System`] when they cannot be written.
+/// [`crate::Error::Content`] for a map that is no square of at least one value, [`crate::Error::System`] when
+/// they cannot be written.
 pub fn save_maps(
     maps: Vec<GreyMap>,
     scale: &GreyScale,

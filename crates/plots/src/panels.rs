@@ -11,13 +11,13 @@ use std::path::{Path, PathBuf};
 /// Pictures of one size beside and below each other, with a title above and a legend below all of them.
 #[derive(Debug, Clone, Default)]
 pub struct Panels {
-    /// Row by row.
+    /// The pictures, row by row.
     pub pictures: Vec<Picture>,
-    /// Pictures in a row.
+    /// Number of pictures in a row.
     pub columns: usize,
-    /// Above all.
+    /// Title above all pictures.
     pub title: String,
-    /// Below all; a single picture brings its own.
+    /// Legend below all pictures; a single picture has its own.
     pub legend: Legend,
 }
 

@@ -1,4 +1,4 @@
-//! Axes and what is drawn on them.
+//! Axes and the curves on them.
 
 use crate::axis::Axis;
 use crate::drawing::{Anchor, Drawing, Paint, Rectangle, polygon, polyline};
@@ -28,7 +28,8 @@ const FAR: f64 = 1e4;
 /// From the frame to the legend in it.
 const MARGIN: f64 = 14.0;
 
-/// A pair of axes and what is drawn on them. Labels may hold symbols between dollar signs: `$\bar{k}$`.
+/// A pair of axes with curves, points and bands. Labels may contain symbols between dollar signs:
+/// `$\bar{k}$`.
 #[derive(Debug, Clone)]
 pub struct Picture {
     axes: [Axis; 2],
@@ -76,70 +77,71 @@ impl Picture {
         self
     }
 
-    /// Below the title: what the points rest on.
+    /// A line below the title, such as the origin of the points.
     #[must_use]
     pub fn with_subtitle(mut self, subtitle: &str) -> Self {
         subtitle.clone_into(&mut self.subtitle);
         self
     }
 
-    /// The legend below the axes, for long lines; otherwise it goes where it covers nothing.
+    /// Puts the legend below the axes, for long lines; otherwise it stands in the axes where it covers
+    /// nothing.
     #[must_use]
     pub fn with_legend_below(mut self) -> Self {
         self.legend_below = true;
         self
     }
 
-    /// Width and height without a legend below.
+    /// Sets width and height, without a legend below.
     #[must_use]
     pub fn with_size(mut self, width: f64, height: f64) -> Self {
         self.size = (width, height);
         self
     }
 
-    /// Labels at these values of the horizontal axis and nowhere else.
+    /// Puts labels at these values of the horizontal axis and nowhere else.
     #[must_use]
     pub fn with_x_ticks(mut self, values: &[f64]) -> Self {
         self.ticks[0] = Some(values.to_vec());
         self
     }
 
-    /// A line through the points; it breaks where the axes have no place for a point.
+    /// Draws a line through the points; it is interrupted where the axes cannot show a point.
     pub fn line(&mut self, points: &[(f64, f64)], color: &str, width: f64, style: LineStyle) {
         let (points, color) = (points.to_vec(), color.to_owned());
         self.drawn.push(Drawn::Line { points, color, width, style });
     }
 
-    /// Marks at the points within the axes.
+    /// Draws marks at the points within the axes.
     pub fn points(&mut self, points: &[(f64, f64)], color: &str, radius: f64, mark: Mark) {
         let [x, y] = self.axes;
         let points = points.iter().copied().filter(|p| x.holds(p.0) && y.holds(p.1)).collect();
         self.drawn.push(Drawn::Points { points, color: color.to_owned(), radius, mark });
     }
 
-    /// A shaded band through (x, lower end, upper end).
+    /// Draws a shaded band through (x, lower end, upper end).
     pub fn band(&mut self, points: &[(f64, f64, f64)], color: &str) {
         self.drawn.push(Drawn::Band { points: points.to_vec(), color: color.to_owned() });
     }
 
-    /// Heads of arrows along a line through the points, in their order.
+    /// Draws heads of arrows along a line through the points, in their order.
     pub fn arrows(&mut self, points: &[(f64, f64)], color: &str) {
         self.drawn.push(Drawn::Arrows { points: points.to_vec(), color: color.to_owned() });
     }
 
-    /// Thin lines through the origin, where the axes have a place for them inside.
+    /// Draws thin lines through the origin, where it lies within the axes.
     pub fn zeros(&mut self) {
         self.drawn.push(Drawn::Zeros);
     }
 
-    /// Vertical bars of (x, value, half width), with short ends.
+    /// Draws vertical bars of (x, value, half width), with short ends.
     pub fn errors(&mut self, points: &[(f64, f64, Option<f64>)], color: &str) {
         let bar = |&(x, y, e): &(f64, f64, Option<f64>)| e.map(|e| (x, y - e, y + e));
         let points = points.iter().filter_map(bar).collect();
         self.drawn.push(Drawn::Bars { points, color: color.to_owned() });
     }
 
-    /// A legend line; points and lines do not make one by themselves.
+    /// Adds a line to the legend; points and lines do not do so themselves.
     pub fn legend(&mut self, label: &str, color: &str, key: Key) {
         self.legend.push(label, color, key);
     }
@@ -179,7 +181,7 @@ impl Picture {
         }
     }
 
-    /// The legend if it stands below the axes: asked for, or no place is free among them.
+    /// The legend if it stands below the axes, on request or because no place in the axes is free.
     pub(crate) fn legend_below(&self, fonts: &Fonts) -> Option<&Legend> {
         if self.legend.is_empty() || self.legend_below {
             return (!self.legend.is_empty()).then_some(&self.legend);

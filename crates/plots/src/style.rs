@@ -4,9 +4,9 @@
 pub(crate) const INK: &str = "#1a1a1a";
 /// Formulas and lines of the paper.
 pub const REFERENCE: &str = "#333333";
-/// What belongs to every curve of a picture, in its legend.
+/// Colour in a legend of an entry that concerns every curve of the picture.
 pub const NEUTRAL: &str = "#6b6b6b";
-/// Colours of curves without a fractal dimension: from Okabe and Ito, told apart by colour-blind readers and
+/// Colours of curves without a fractal dimension: from Okabe and Ito, distinct for colour-blind readers and
 /// in grey.
 pub const COLORS: [&str; 6] = ["#0b559f", "#d55e00", "#009e73", "#8c2d7a", "#a6761d", "#3b3b3b"];
 /// Shapes in the same order.
@@ -35,7 +35,7 @@ pub fn color(fractal_dimension: f64) -> String {
     format!("#{:02x}{:02x}{:02x}", mix(0), mix(1), mix(2))
 }
 
-/// The mark of a fractal dimension, so that curves are told apart without colour as well.
+/// The mark of a fractal dimension, so that curves can be distinguished without colour.
 pub fn shape(fractal_dimension: f64) -> MarkShape {
     let i = ((fractal_dimension - 2.0) * 5.0).round().clamp(0.0, 5.0) as usize;
     [
@@ -67,7 +67,7 @@ pub enum MarkShape {
     Cross,
 }
 
-/// How a point looks.
+/// Style of a point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Mark {
     /// Filled.
@@ -86,7 +86,7 @@ impl Mark {
     }
 }
 
-/// How a line looks.
+/// Style of a line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum LineStyle {
     /// Unbroken.
@@ -111,7 +111,7 @@ impl LineStyle {
     }
 }
 
-/// How a legend line looks.
+/// Style of an entry of a legend.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Key {
     /// A line.

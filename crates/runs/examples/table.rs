@@ -1,5 +1,5 @@
-//! A table as CSV that explains itself: columns with units, sources, the command; absent entries are empty,
-//! numbers keep their bits.
+//! A CSV table that explains itself, with units of columns, sources and the command. Absent entries are
+//! empty, and numbers keep their bits.
 //!
 //! `cargo run -p fractal-contact-runs --example table -- DIRECTORY`
 //!

@@ -19,7 +19,7 @@ pub fn time(seconds: f64) -> String {
     }
 }
 
-/// From this many seconds on they are minutes, and from this many minutes on hours.
+/// Number of seconds from which on a time is in minutes, and number of minutes from which on it is in hours.
 const LONG: f64 = 120.0;
 
 /// `12 bytes`, `45 kB`, `12 MB`, `3.5 GB`.
@@ -32,7 +32,8 @@ pub fn memory(bytes: f64) -> String {
     }
 }
 
-/// Seconds from `90s`, `10min` or `2h`; a bare number is seconds. The form of a parser of arguments.
+/// Reads a time such as `90s`, `10min` or `2h` in seconds; a number without a unit is seconds. It has the
+/// form of a parser of arguments.
 ///
 /// # Errors
 /// What was expected, for anything else and for a time that is not positive or beyond ten years.

@@ -1,4 +1,4 @@
-//! Memory that control groups leave to this process (Linux): containers and batch systems limit it so.
+//! Memory that control groups allow this process (Linux), by which containers and batch systems limit it.
 
 use std::fs;
 use std::path::Path;
@@ -7,7 +7,7 @@ use std::path::Path;
 const FIRST: [&str; 3] = ["memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file"];
 const SECOND: [&str; 3] = ["memory.max", "memory.current", "inactive_file"];
 
-/// Bytes that are left below the limits; `None` without a limit.
+/// Bytes that remain below the limits; `None` without a limit.
 pub(crate) fn memory_left() -> Option<u64> {
     memory_left_of(&fs::read_to_string("/proc/self/cgroup").ok()?, Path::new("/sys/fs/cgroup"))
 }
@@ -34,7 +34,7 @@ fn memory_left_of(groups: &str, root: &Path) -> Option<u64> {
     left
 }
 
-/// What one group leaves.
+/// Bytes that remain in one group.
 fn left_in(group: &Path, [limit, used, reclaimed]: [&str; 3]) -> Option<u64> {
     let number = |file: &str| fs::read_to_string(group.join(file)).ok()?.trim().parse::<u64>().ok();
     // Without a limit version 2 has `max`, version 1 the largest whole page.

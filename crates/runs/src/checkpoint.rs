@@ -1,9 +1,9 @@
-//! Checkpoints: what a job that is interrupted needs, besides the part of its results in the store, to go on
-//! to the same bits.
+//! Checkpoints: the data that an interrupted job needs, besides its partial results in the store, to continue
+//! with identical bits.
 //!
-//! A checkpoint is one file of a job, beside the packs, and replaced whole. Its head says for which job, by
-//! which build of the program and on which kind of processor it was made, how much was done, and what the
-//! bytes after it are; where any of that differs it is not used.
+//! A checkpoint is one file of a job, beside the packs, and is always replaced as a whole. Its head names the
+//! job, the build of the program and the kind of processor, and states how much was done and the digest of
+//! the bytes that follow. Where any of these differs, the checkpoint is not used.
 
 use crate::error::{Error, Result};
 use crate::store::fnv1a_128;
@@ -17,7 +17,7 @@ const ENDING: &str = "checkpoint";
 const CHECKPOINT: &str = "# fractal-contact checkpoint ";
 /// Number of the format of checkpoints.
 const FORMAT: u32 = 1;
-/// A head is at most so long.
+/// Longest head, in bytes.
 const LONGEST_HEAD: usize = 4096;
 const DAMAGED: &str = "it is damaged or cut off";
 
@@ -49,10 +49,10 @@ impl Checkpoint {
         Self { path, key: format!("# key {:032x}", fnv1a_128(key.as_bytes())) }
     }
 
-    /// How much was done, and the bytes that were kept; `None` where there is no checkpoint.
+    /// The amount of finished work and the stored bytes; `None` where there is no checkpoint.
     ///
     /// # Errors
-    /// Why it is not used.
+    /// The reason why it is not used.
     pub fn read(&self) -> Result<Option<(u64, Vec<u8>)>, Unused> {
         if std::fs::symlink_metadata(&self.path).is_err_and(|e| e.kind() == std::io::ErrorKind::NotFound) {
             return Ok(None);
@@ -88,15 +88,15 @@ impl Checkpoint {
         if digest == digest_line(&all[start..]) { Ok(start) } else { Err(DAMAGED) }
     }
 
-    /// Why what it holds is not used.
+    /// The error that says why its content is not used.
     pub fn unused(&self, reason: &str) -> Unused {
         Unused { path: self.path.clone(), reason: reason.to_owned() }
     }
 
-    /// Keeps bytes in the place of those before.
+    /// Replaces the stored bytes.
     ///
     /// # Errors
-    /// [`crate::Error::File`] where it cannot be written: those before are still there.
+    /// [`crate::Error::File`] where it cannot be written; the bytes stored before then remain.
     pub fn write(&self, done: u64, bytes: &[u8]) -> Result<()> {
         let (build, instructions, key) = (build_line(), instructions_line(), &self.key);
         let bytes = [&done.to_le_bytes(), bytes].concat();

@@ -7,11 +7,11 @@ use flate2::read::GzDecoder;
 use std::io::Read as _;
 use std::path::Path;
 
-/// What the `#` lines say besides the table's own title and columns. No times, no machine: the same run gives
-/// the same bytes.
+/// Content of the `#` lines besides the title and the columns of the table. They contain no times and no
+/// machine, so that the same run gives the same bytes.
 #[derive(Debug, Clone, Default)]
 pub struct Header {
-    /// Works that the numbers rest on.
+    /// Publications on which the numbers are based.
     pub sources: Vec<String>,
     /// Parameters and choices, one line each.
     pub notes: Vec<String>,
@@ -136,7 +136,7 @@ impl CsvFile {
         Ok(Self { comments, columns, rows })
     }
 
-    /// Where a column is.
+    /// Index of a column.
     ///
     /// # Errors
     /// [`Error::File`] when there is no such column.

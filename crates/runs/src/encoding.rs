@@ -4,7 +4,7 @@ use crate::finite::all_finite;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
-/// What the results of jobs of one kind are called in a store, and the number of their format.
+/// Name of the results of one kind of jobs in a store, with the number of their format.
 ///
 /// ```
 /// use runs::ResultKind;

@@ -1,4 +1,4 @@
-//! The one error type of this crate: where, and what was expected.
+//! The one error type of this crate; it names the place and the expected value.
 
 use std::fmt;
 use std::io;

@@ -1,4 +1,4 @@
-//! Jobs in parallel, results in their places; finished ones kept in a result store.
+//! Jobs in parallel, with ordered results; finished jobs are kept in a result store.
 
 use crate::encoding::ResultKind;
 use crate::error::Error;
@@ -12,27 +12,27 @@ use serde::de::DeserializeOwned;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
-/// Who works at the same time.
+/// Number of threads and of jobs in progress.
 ///
-/// Each job in flight has a thread; those without a job help inside the others, where their work is large
-/// enough to share. Which jobs are in flight at the same time follows from their number, their memory and the
-/// threads; the results do not.
+/// Each job in progress has a thread; threads without a job help in the jobs of others whose work is large
+/// enough to share. The number of jobs, their memory and the number of threads decide which jobs run at the
+/// same time; the results do not depend on it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Threads {
-    /// All threads.
+    /// Number of all threads.
     pub total: usize,
-    /// Jobs in flight at most, by the memory that they need.
+    /// Largest number of jobs in progress, limited by the memory that they need.
     pub jobs: usize,
 }
 
 impl Threads {
-    /// As many jobs in flight as there are threads.
+    /// As many jobs in progress as there are threads.
     pub fn all(total: usize) -> Self {
         Self { total, jobs: total }
     }
 }
 
-/// Does some work on one thread, whatever the pool around: for what is timed and compared.
+/// Does some work on one thread, whatever the pool around it, for measurements of time.
 pub fn on_one_thread<T: Send>(work: impl FnOnce() -> T + Send) -> T {
     match granted_pool(1, 0) {
         Some(pool) => pool.install(work),
@@ -41,11 +41,11 @@ pub fn on_one_thread<T: Send>(work: impl FnOnce() -> T + Send) -> T {
     }
 }
 
-/// Runs the jobs of `order`, those that stand first in it first, and gives their results by number; `None`
-/// where none was begun.
+/// Runs the jobs in the order of `order` and returns their results by number; `None` for a job that was not
+/// begun.
 ///
-/// After a failure, or when `stop` says so, no further job begins, and those in flight are told by their own
-/// closure.
+/// After a failure, or when `stop` says so, no further job begins, and the closure of each job in progress
+/// stops it.
 ///
 /// One loop per thread rather than a parallel iterator: a thread that waits inside a job then never begins
 /// another one (whose time would contain the first), and those without a job help the others. Where the
@@ -113,31 +113,31 @@ pub fn collect<T>(done: Vec<Option<Result<T, Error>>>) -> Result<Vec<T>, Error> 
 
 /// One independent piece of work, kept in a result store.
 pub trait Job: Sync {
-    /// What it gives; stored as [`ResultKind::encode`] writes it.
+    /// Its result, which is stored as [`ResultKind::encode`] writes it.
     type Output: Serialize + DeserializeOwned + Send + Sync;
-    /// Why it fails.
+    /// Its error.
     type Error: From<Error> + Send + Sync;
 
-    /// What its results are called in a store, and the number of their format.
+    /// Name of its results in a store, with the number of their format.
     const KIND: ResultKind;
 
     /// Everything that decides the numbers, as text. Two jobs of a kind with the same key have the same
     /// output.
     fn key(&self) -> String;
 
-    /// What a person calls it.
+    /// Its name for people.
     fn name(&self) -> String;
 
-    /// Predicted processor milliseconds, at least 1: they order the work, divide it into shards and move the
-    /// progress bar.
+    /// Predicted processor time in milliseconds, at least 1. It decides the order of the jobs, their division
+    /// into shards and the progress bar.
     fn cost(&self) -> u64;
 
-    /// Memory that it needs, bytes; 0 where nothing to speak of.
+    /// Memory that it needs, in bytes; 0 where it is negligible.
     fn memory(&self) -> f64 {
         0.0
     }
 
-    /// Bytes that its results take on the disk, about.
+    /// Approximate number of bytes of its result on the disk.
     fn stored_bytes(&self) -> u64 {
         4096
     }
@@ -150,7 +150,7 @@ pub trait Job: Sync {
 
     /// Does the rest of the work: `stored` is what the store holds of this job and [`Job::is_whole`] refused,
     /// such as the part that was done before an interruption; `store` replaces it at any moment. A job
-    /// without parts begins anew. `progress` is told what the user should know at once.
+    /// without parts begins anew. `progress` receives notes for the user.
     ///
     /// # Errors
     /// Whatever ends the whole command.
@@ -165,14 +165,13 @@ pub trait Job: Sync {
         self.solve(stop)
     }
 
-    /// Whether its output is worth storing; what is not is computed again each time, by every shard's merge
-    /// too.
+    /// Whether its output is stored. Otherwise it is computed again each time, also in the merge of shards.
     fn is_stored(&self) -> bool {
         true
     }
 
-    /// Whether an output that was read back is all that this job gives: of its own loads, and not a part of
-    /// one. Its numbers are finite.
+    /// Whether an output that was read back is complete for this job, with its own loads and not a part of
+    /// them. Its numbers are finite.
     fn is_whole(&self, output: &Self::Output) -> bool {
         let _ = output;
         true
@@ -197,8 +196,9 @@ pub trait Job: Sync {
 /// Does all jobs that the store does not hold, the most expensive first, and gives the results in the order
 /// of `jobs`; `None` where a failure or `stop` came first. The results do not depend on `threads`.
 ///
-/// Each finished job is stored at once: an interruption loses those in flight. Results that another version
-/// of the program stored in another format are not used, and `progress` is told of them once.
+/// Each finished job is stored at once, so that an interruption loses only the jobs in progress. Results that
+/// another version of the program stored in another format are not used, and `progress` receives one note
+/// about them.
 ///
 /// Errors of single jobs are in their places.
 #[allow(clippy::type_complexity)] // A list of what became of each job.
@@ -219,10 +219,10 @@ pub fn run_stored<J: Job>(
 pub struct Ordered<'a, J: Job> {
     /// The jobs.
     pub jobs: &'a [J],
-    /// The number of each job once: those that stand first begin first.
+    /// The numbers of the jobs, each once, in the order in which they begin.
     pub order: &'a [usize],
-    /// Gets the number and the output of each job as soon as it is there, on the thread that did it; its
-    /// error is that of the job.
+    /// Receives the number and the output of each job as soon as it is done, on the thread that did it; an
+    /// error that it returns is that of the job.
     #[allow(clippy::type_complexity)] // A function of a job and its output.
     pub solved: &'a (dyn Fn(usize, &J::Output) -> Result<(), J::Error> + Sync),
 }
@@ -283,7 +283,7 @@ fn solve_stored<J: Job>(
 /// Whatever ends a job.
 pub type Failure = Box<dyn std::error::Error + Send + Sync>;
 
-/// Jobs of one kind, whatever they give: what a plan, its shards and their merge need of them.
+/// Jobs of one kind with any output, as plans, shards and merges use them.
 pub trait JobList: Sync {
     /// Their number.
     fn count(&self) -> usize;
@@ -371,7 +371,7 @@ where
     }
 }
 
-/// Whether a failure is that of a solve that was told to stop.
+/// Whether a failure is that of a solve that was stopped.
 fn is_stop(failure: &(dyn std::error::Error + 'static)) -> bool {
     let mut chain = std::iter::successors(Some(failure), |error| error.source());
     chain.any(|error| {

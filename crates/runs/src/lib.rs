@@ -1,4 +1,4 @@
-//! Jobs, result store, CSV, manifest and progress: what every long command shares.
+//! Jobs, result store, CSV, manifest and progress, which all long commands share.
 //!
 //! # Jobs
 //!
@@ -18,13 +18,14 @@
 //!
 //! # Terminal
 //!
-//! [`Reporter`] tells how far a run is; [`out!`] and [`err!`] write lines, and neither a closed pipe nor a full device is a panic.
+//! [`Reporter`] reports the progress of a run. [`out!`] and [`err!`] write lines, and a closed pipe or a full
+//! device does not cause a panic.
 //!
-//! [`amounts`] are times and memory in words.
+//! [`amounts`] writes times and memory in words.
 //!
 //! # What it does not do
 //!
-//! No mechanics, no pictures, no argument parsing.
+//! It has no mechanics, no pictures and no parsing of arguments.
 
 #![allow(clippy::format_push_string)] // Text is built once per file: clear beats one allocation less.
 

@@ -4,7 +4,7 @@ use crate::error::{Error, Result};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
-/// Writes `manifest.json` into a directory, whole; gives its path.
+/// Writes `manifest.json` into a directory as a whole and returns its path.
 ///
 /// # Errors
 /// [`Error::File`] when it cannot be written.
@@ -20,7 +20,7 @@ pub fn file_names(files: &[PathBuf]) -> Vec<String> {
     files.iter().filter_map(|f| Some(f.file_name()?.to_string_lossy().into_owned())).collect()
 }
 
-/// What the computer is, as far as the system tells.
+/// Description of the computer, as far as the system provides it.
 pub fn machine() -> Value {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let cpu = std::fs::read_to_string("/proc/cpuinfo").ok().and_then(|text| {

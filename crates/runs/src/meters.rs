@@ -1,4 +1,4 @@
-//! What the operating system tells about this process; absent where it does not.
+//! Measurements of this process by the operating system; absent where there are none.
 
 use crate::cgroup;
 use crate::error::{Error, Result};
@@ -28,8 +28,7 @@ pub fn process_cpu_seconds() -> Option<f64> {
     Some(tasks.filter_map(of).sum::<u64>() as f64 * 1e-9)
 }
 
-/// Lets [`peak_memory`] count from here where the system allows it; else it goes on counting from the start
-/// of the process.
+/// Resets [`peak_memory`] where the system allows it; else it still counts from the start of the process.
 pub fn reset_peak_memory() {
     // 5: the peak becomes what is resident now (proc(5), clear_refs).
     let _ = fs::write("/proc/self/clear_refs", "5");
@@ -47,7 +46,8 @@ pub fn available_memory() -> Option<u64> {
     Some([address_space(), cgroup::memory_left()].into_iter().flatten().fold(there, u64::min))
 }
 
-/// Refuses what needs more memory than there is. Where the system tells nothing, all is taken.
+/// Refuses work that needs more memory than is available. Where the system gives no number, everything is
+/// accepted.
 ///
 /// # Errors
 /// [`contact_model::Error::OutOfMemory`] with both numbers; `what` names the size.
@@ -76,12 +76,12 @@ fn reserved_by_thread() -> u64 {
     2 * 1024 * kilobytes + (1 << 27)
 }
 
-/// Jobs of a size that there is memory for at the same time: at most `threads`. Under a limit of the address
-/// space what each thread reserves counts too.
+/// Number of jobs of a given size that fit into memory at the same time, at most `threads`. Under a limit of
+/// the address space, the reservation of each thread counts too.
 ///
 /// # Errors
-/// [`Error::Parameter`] where a single job needs more memory than there is; `name` and `value` are what its size comes from. Where the
-/// system tells nothing, every number of threads is taken.
+/// [`Error::Parameter`] where a single job needs more memory than is available; `name` and `value` are the
+/// parameter that decides its size. Where the system gives no number, every number of threads is accepted.
 pub fn threads_for_memory(
     threads: usize,
     bytes: f64,

@@ -1,9 +1,9 @@
-//! What a run tells while it works.
+//! Progress of a run.
 
 use contact_model::{Stop, Watch};
 use std::cell::Cell;
 
-/// Listens to a run. All methods may be called from any thread.
+/// Receives the progress of a run. All methods may be called from any thread.
 pub trait Progress: Sync {
     /// A stage begins; `total` is its relative cost.
     fn begin(&self, what: &str, total: u64);
@@ -15,13 +15,13 @@ pub trait Progress: Sync {
     }
     /// The stage is over.
     fn end(&self);
-    /// Something that the user should know, in whole sentences.
+    /// A note to the user, in whole sentences.
     fn note(&self, text: &str) {
         let _ = text;
     }
 }
 
-/// Listens to nothing.
+/// Ignores the progress.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Silent;
 
@@ -31,22 +31,22 @@ impl Progress for Silent {
     fn end(&self) {}
 }
 
-/// How far a job is.
+/// Progress of a job.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct JobInHand<'a> {
     /// Its name.
     pub name: &'a str,
     /// Relative cost of all of it.
     pub cost: u64,
-    /// States that are solved.
+    /// Number of states that are solved.
     pub done: usize,
-    /// All of its states.
+    /// Number of all of its states.
     pub all: usize,
-    /// Of the state in hand: the largest residual, and the tolerance that ends its solve.
+    /// Largest residual of the state that is being solved, and the tolerance that ends its solve.
     pub residual: Option<(f64, f64)>,
 }
 
-/// Tells the residuals of the states of a job, and passes on who ends it.
+/// Reports the residuals of the states of a job, and passes on a request to stop.
 pub struct StatesInHand<'a> {
     name: String,
     cost: u64,
@@ -67,7 +67,7 @@ impl<'a> StatesInHand<'a> {
         Self { name, cost, all, done: Cell::new(done), progress, stop }
     }
 
-    /// So many states are solved.
+    /// Reports that `done` states are solved.
     pub fn solved(&self, done: usize) {
         self.done.set(done);
         self.tell(None);

@@ -1,4 +1,4 @@
-//! What a run tells on standard error: a bar with the time left on a terminal, plain lines otherwise.
+//! Progress of a run on standard error: a bar with the remaining time on a terminal, plain lines otherwise.
 
 use crate::amounts::duration;
 use crate::progress::{JobInHand, Progress};
@@ -18,10 +18,10 @@ const EVERY: Duration = Duration::from_secs(10);
 /// Time between two changes of the bar that iterations make.
 const FRAME: Duration = Duration::from_millis(100);
 
-/// Of less work, in seconds, no time left follows.
+/// Least work, in seconds, from which a remaining time is predicted.
 const FIRST: f64 = 1.0;
 
-/// Tells on standard error how far a run is: for programs.
+/// Reports the progress of a run on standard error, for programs.
 #[derive(Debug)]
 pub struct Reporter {
     terminal: bool,
@@ -34,7 +34,7 @@ struct Stage {
     /// Bits of the seconds left, for the bar, which is drawn by a thread of its own.
     left: Arc<AtomicU64>,
     done: Done,
-    /// What was told last of a job under way.
+    /// Last message about a job in progress.
     words: String,
     jobs: usize,
     reused: usize,
@@ -50,7 +50,7 @@ impl Default for Reporter {
 }
 
 impl Reporter {
-    /// Looks once whether standard error is a terminal.
+    /// A reporter; it checks once whether standard error is a terminal.
     pub fn new() -> Self {
         let stage = Stage::new(ProgressBar::hidden(), 0, Instant::now());
         Self { terminal: std::io::stderr().is_terminal(), stage: Mutex::new(stage) }
@@ -74,7 +74,7 @@ struct Done {
     parts: BTreeMap<String, Part>,
     /// Costs of jobs whose states are all solved, and which write their files.
     writing: Vec<u64>,
-    /// Of that, what was found on disk: it says nothing about the time that the rest takes.
+    /// The part of it that was found on disk, which does not predict the time of the rest.
     found: f64,
 }
 
@@ -134,8 +134,8 @@ impl Done {
         (self.whole + written + under_way).min(self.total)
     }
 
-    /// Seconds that the rest takes, after so many: as long as what this run has done did. `None` where that
-    /// says nothing yet.
+    /// Predicted seconds for the rest after `seconds`, at the rate of this run so far. `None` where the run
+    /// has done too little for a prediction.
     fn left(&self, seconds: f64) -> Option<f64> {
         let (cost, solved) = (self.cost(), self.cost() - self.found);
         (solved > 0.0 && seconds >= FIRST).then(|| seconds * (self.total - cost) / solved)

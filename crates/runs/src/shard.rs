@@ -1,4 +1,4 @@
-//! Which part of the jobs a process does.
+//! The part of the jobs that a process does.
 
 use crate::error::{Error, Result};
 use std::cmp::Reverse;
@@ -9,9 +9,9 @@ use std::str::FromStr;
 /// One of `count` parts of a list of jobs, counted from 0; written `index/count`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Shard {
-    /// Which, from 0.
+    /// Index of the shard, from 0.
     pub index: usize,
-    /// Of how many.
+    /// Number of shards.
     pub count: usize,
 }
 
@@ -45,7 +45,7 @@ impl FromStr for Shard {
     }
 }
 
-/// What `--shard` says.
+/// Value of `--shard`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ShardChoice {
     /// This one.
@@ -62,20 +62,20 @@ impl FromStr for ShardChoice {
     }
 }
 
-/// The variable that says how many tasks an array of HyperQueue has, which HyperQueue itself does not tell
-/// them.
+/// The environment variable with the number of tasks of an array of HyperQueue, because HyperQueue itself
+/// does not provide it.
 pub const TASKS: &str = "FRACTAL_CONTACT_TASKS";
 
 impl ShardChoice {
-    /// The shard; `variable` looks a variable of the environment up.
+    /// The shard; `variable` returns an environment variable.
     ///
-    /// SLURM tells each task of an array its number, the smallest and largest ones, the step and their count:
-    /// `--array=3-11:4` is three shards. A list with gaps (`--array=3,7`) does not say which number a task
-    /// has among them and is refused. HyperQueue tells the number only:
-    /// [`TASKS`] has to say how many there are, numbered from 0.
+    /// SLURM provides each task of an array with its number, the smallest and the largest number, the step
+    /// and the count: `--array=3-11:4` is three shards. In a list with gaps (`--array=3,7`) the position of a
+    /// task is unknown, so it is refused. HyperQueue provides the number only; [`TASKS`] must have the number
+    /// of tasks, which are counted from 0.
     ///
     /// # Errors
-    /// [`Error::Parameter`] where no engine's variables are there, or do not make sense together.
+    /// [`Error::Parameter`] where the variables of no engine are set, or contradict each other.
     pub fn resolve(self, variable: &dyn Fn(&str) -> Option<String>) -> Result<Shard> {
         if let Self::Given(shard) = self {
             return Ok(shard);
@@ -129,8 +129,8 @@ pub fn largest_first<C: Ord>(count: usize, cost: impl Fn(usize) -> C) -> Vec<usi
     order
 }
 
-/// The shard of each job: the most expensive first, each to the shard that has the least to do (Graham's
-/// rule: no shard is longer than 4/3 of the best division). Depends on the costs and the count alone.
+/// The shard of each job: the most expensive job first, each to the shard with the least work (Graham's rule:
+/// no shard is longer than 4/3 of the best division). It depends on the costs and the count alone.
 pub fn assign(costs: &[u64], count: usize) -> Vec<usize> {
     let mut shards: BinaryHeap<Reverse<(u64, usize)>> =
         (0..count.max(1)).map(|shard| Reverse((0, shard))).collect();

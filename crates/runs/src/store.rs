@@ -1,10 +1,10 @@
 //! The result store: packs of results in `DIR/.units`, each written by one process and read by all.
 //!
-//! A pack is a text file. Its head says which process of which plan wrote it; then one result after the
-//! other, each with the hash of its key, its length and a digest. Results are appended whole and never
-//! changed: what a kill or a full disk cuts off, and what a disk damages, fails its digest and is as good as
-//! absent, and the results after it are still read. No two processes write one pack, so there is nothing to
-//! lock, and a million results are as many files as there were processes.
+//! A pack is a text file. Its head names the process and the plan that wrote it. Then follow the results,
+//! each with the hash of its key, its length and a digest. Results are appended whole and never changed. A
+//! result that was cut off or damaged fails its digest and counts as absent, and the results after it are
+//! still read. No two processes write to one pack, so that no lock is needed, and there are only as many
+//! files as there were processes.
 
 use crate::error::{Error, Result};
 use crate::progress::Progress;
@@ -18,7 +18,7 @@ use std::time::{Duration, Instant};
 /// First words of a pack; the number of its format follows.
 const PACK: &str = "# fractal-contact results ";
 /// Number of the format of packs. Raise it when results of all kinds are written in another way: packs of
-/// another format are not read, and a run is told of them.
+/// another format are not read, and a run reports them.
 const FORMAT: u32 = 2;
 /// First words of each result in it; the hash of its key and the bytes after this line follow.
 const RESULT: &str = "# fractal-contact result ";
@@ -28,14 +28,14 @@ const DIGEST: &str = "# whole ";
 const LISTED: usize = 5;
 /// Ending of a pack's name.
 const ENDING: &str = "pack";
-/// Results are brought to the disk at most so often: a crash of the machine, not of the process, loses what
-/// is younger.
+/// Shortest time between two flushes to the disk: a crash of the machine, not of the process, loses later
+/// results.
 const SYNC_EVERY: Duration = Duration::from_secs(1);
-/// A pack is written anew when more than so many bytes, and more than half of it, are parts of results that
+/// A pack is rewritten when more than this number of bytes, and more than half of it, belong to results that
 /// were replaced.
 const LEAST_WASTE: u64 = 1 << 20;
 
-/// Who writes a pack.
+/// The writer of a pack.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct PackHead {
     /// Digest of the plan whose shard it was; `None` for a run that was not sharded.
@@ -97,18 +97,17 @@ struct Place {
 /// A pack that was found.
 #[derive(Debug, Clone)]
 pub struct Pack {
-    /// Where.
+    /// Its path.
     pub path: PathBuf,
-    /// Who wrote it.
+    /// Its writer.
     pub head: PackHead,
     /// Hashes of the keys of its results, in their order.
     pub results: Vec<u128>,
-    /// Bytes that belong to no result: what a kill, a full disk or a damaged header left.
+    /// Bytes that belong to no result, after a kill, a full disk or damage.
     pub damaged_bytes: u64,
 }
 
-/// Where the results of finished jobs are kept, each under a key that names everything that decides its
-/// numbers.
+/// The store of results of finished jobs, each under a key that names everything that decides its numbers.
 #[derive(Debug, Clone)]
 pub struct Store(Arc<Shared>);
 
@@ -168,11 +167,12 @@ impl Drop for Shared {
 
 impl Store {
     /// Opens (and creates) `out/.units` for a run that has the directory for itself: as long as it is open,
-    /// no other such run can open it. Removes what interrupted runs left half-written. With `fresh` nothing
-    /// stored is read.
+    /// no other such run can open it. Removes incomplete files of interrupted runs. With `fresh` no stored
+    /// result is read.
     ///
     /// # Errors
-    /// [`crate::Error::File`] when the directory cannot be made or read; [`crate::Error::Parameter`] when another process uses it.
+    /// [`crate::Error::File`] when the directory cannot be made or read; [`crate::Error::Parameter`] when
+    /// another process uses it.
     pub fn open(out: &Path, fresh: bool) -> Result<Self> {
         let directory = directory(out);
         files::create_directory(&directory)?;
@@ -184,8 +184,8 @@ impl Store {
         Ok(Self(Arc::new(Shared { directory, head, packs: Mutex::new(packs), _lock: lock })))
     }
 
-    /// Opens it beside others, for a shard of a plan. Packs of other shards of the same division hold none of
-    /// its jobs and are not read.
+    /// Opens a store that other shards use at the same time, for a shard of a plan. Packs of other shards of
+    /// the same division have none of its jobs and are not read.
     ///
     /// # Errors
     /// [`crate::Error::File`] when the directory cannot be made or read.
@@ -203,7 +203,7 @@ impl Store {
         Ok(Self(Arc::new(Shared { directory, head, packs: Mutex::new(packs), _lock: None })))
     }
 
-    /// Tells of packs that are not used because they are of another format; once in a process, which may open
+    /// Reports packs that are not used because they are of another format, once in a process, which may open
     /// a directory for each of its tables.
     pub(crate) fn tell_unused(&self, progress: &dyn Progress) {
         static TOLD: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
@@ -231,7 +231,7 @@ impl Store {
         ));
     }
 
-    /// What a directory holds, to read; nothing is made or removed.
+    /// Opens the store of a directory for reading only; nothing is created or removed.
     ///
     /// # Errors
     /// [`crate::Error::File`] when it cannot be read.
@@ -279,7 +279,7 @@ impl Store {
         found.into_iter().filter_map(move |(path, place)| whole(&read_at(&path, place).ok()?, &body))
     }
 
-    /// The newest text stored under this key, if one is whole: anything else is as good as absent.
+    /// The newest whole text stored under this key; anything else counts as absent.
     pub fn load(&self, key: &str) -> Option<String> {
         self.texts(key).next()
     }

@@ -1,4 +1,5 @@
-//! Text for standard output and standard error that never ends in a panic, and commands no terminal.
+//! Text for standard output and standard error. Writing it never panics, and its control characters are
+//! escaped.
 
 use files::Escaping;
 use std::fmt::{self, Arguments, Write as _};
@@ -9,16 +10,16 @@ const BROKEN_PIPE: i32 = 141;
 
 /// Writes a line to standard output, for programs.
 ///
-/// Where nobody reads it any more (`... | head -1`), the process ends quietly with the exit code 141, as if
-/// by SIGPIPE; where it cannot be written (a full device), with a message and 1. Files are written whole, so
-/// that nothing half-written stays.
+/// If nobody reads it any more (`... | head -1`), the process ends quietly with the exit code 141, as if by
+/// SIGPIPE. If it cannot be written (a full device), the process ends with a message and the exit code 1.
+/// Files are written whole, so that no incomplete file remains.
 #[macro_export]
 macro_rules! out {
     ($($text:tt)*) => { $crate::print(format_args!("{}\n", format_args!($($text)*))) };
 }
 
-/// Writes a line to standard error, for programs; where that is closed or full the line is lost, and what is
-/// computed goes on.
+/// Writes a line to standard error, for programs; where that is closed or full the line is lost, and the
+/// computation continues.
 #[macro_export]
 macro_rules! err {
     ($($text:tt)*) => { $crate::print_error(format_args!("{}\n", format_args!($($text)*))) };
@@ -41,8 +42,8 @@ pub fn print_error(text: Arguments<'_>) {
     let _ = write(&mut std::io::stderr().lock(), text);
 }
 
-/// Text with lines of at most 80 characters where its words allow it, for a terminal: what is folded goes on below the
-/// text of its line, which begins behind a label and two spaces.
+/// Text with lines of at most 80 characters where its words allow it, for a terminal: what is folded goes on
+/// below the text of its line, which begins behind a label and two spaces.
 ///
 /// ```
 /// let text = format!("  effects  {}\n", "hardness ".repeat(8).trim_end());

@@ -1,4 +1,5 @@
-//! Threads that the system grants: fewer than asked for where it does not, at worst the calling one.
+//! Threads that the system grants; where it grants fewer than requested, the work has fewer, at worst the
+//! calling one.
 //!
 //! `rayon` makes its global pool when it is first used and panics where the system refuses a thread, as under
 //! `ulimit -u 1` or in a container with a limit of processes. Programs therefore run in [`with_threads`], and
@@ -13,8 +14,7 @@ use std::time::Duration;
 /// More threads than this are a mistake.
 pub const MOST_THREADS: usize = 4096;
 
-/// Name of the variable of the environment that says how many threads a program has for what is not divided
-/// into jobs.
+/// Name of the environment variable for the number of threads of work that is not divided into jobs.
 pub const THREADS_VARIABLE: &str = "RAYON_NUM_THREADS";
 
 /// Stack of a program's thread: what the first thread of a process has.
@@ -48,9 +48,9 @@ pub fn with_threads<T: Send>(asked: Option<&OsStr>, work: impl FnOnce() -> T + S
     })
 }
 
-/// A pool of so many threads, or of half as many, a quarter and so on as the system grants; `None` where it
-/// grants none. Their stacks of `stack` bytes (0: the default) take a quarter of a limited address space at
-/// most.
+/// A pool of `threads` threads, or of half as many, a quarter and so on, as the system grants; `None` where
+/// it grants none. Their stacks of `stack` bytes (0: the default) take a quarter of a limited address space
+/// at most.
 pub fn granted_pool(threads: usize, stack: usize) -> Option<ThreadPool> {
     /// Threads of a pool that could not be filled need a moment to end: until then their stacks are taken.
     const PAUSE: Duration = Duration::from_millis(50);

@@ -1,5 +1,5 @@
-//! Self-affine surfaces of one seed and three fractal dimensions: prescribed rms height, slope, and the
-//! exponent measured back.
+//! Self-affine surfaces of one seed and three fractal dimensions, with their prescribed rms height, their
+//! slope and the fractal dimension that is measured on them.
 //!
 //! `cargo run -p surface-gen --example self_affine`
 //!

@@ -9,10 +9,10 @@ use std::sync::Arc;
 
 /// Iterations after which the scheme ends in any case.
 const MOST: usize = 500;
-/// The scheme ends where ten iterations lower the residual by less than this share of it.
+/// The scheme ends where ten iterations reduce the residual by less than this share.
 const SLOW: f64 = 0.01;
 
-/// A law of heights, but for its mean (0) and its variance (that of the spectrum).
+/// A distribution of heights. Its mean is 0 and its variance that of the spectrum.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum HeightDistribution {
@@ -27,7 +27,7 @@ pub enum HeightDistribution {
     Of(Arc<HeightMap>),
 }
 
-/// Which of both is met exactly.
+/// Which of spectrum and distribution is met exactly.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Exact {
     /// The distribution of the heights.
@@ -37,7 +37,7 @@ pub enum Exact {
     Spectrum,
 }
 
-/// A map, and how far it is from both of what was prescribed.
+/// A map with a prescribed spectrum and a prescribed distribution of heights, and its residuals in both.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PrescribedMap {
     /// The map; its mean is 0 and its rms height that of the spectrum.
@@ -46,20 +46,21 @@ pub struct PrescribedMap {
     pub spectrum_residual: f64,
     /// Rms difference of the sorted heights from those of the distribution, over the rms height.
     pub distribution_residual: f64,
-    /// Iterations that were made.
+    /// Number of iterations.
     pub iterations: usize,
 }
 
 impl PrescribedMap {
     /// Draws a map with the spectrum of a generator and the given distribution of heights.
     ///
-    /// Starts from the generator's map with this seed. In turns the heights are replaced by those of the
-    /// distribution with the same ranks, `F^-1((k + 1/2)/N)` scaled to the variance of the spectrum, and the
-    /// amplitudes of the waves by those of the spectrum, with their phases kept; what is replaced last is
-    /// exact. Ends where the residual of the other falls by less than 1 % in ten iterations, or after 500.
-    /// Both cannot be met where the heights differ much from Gaussian ones and the spectrum has few long
-    /// waves: the residuals say how far it is. Seeds are as reproducible as those of [`WaveGenerator::map`],
-    /// ties of ranks within rounding aside. Cost O(N log N) for each iteration.
+    /// The iteration starts from the generator's map with this seed and alternates two steps. One replaces
+    /// the heights by those of the distribution with the same ranks, `F^-1((k + 1/2)/N)` scaled to the
+    /// variance of the spectrum. The other replaces the amplitudes of the waves by those of the spectrum and
+    /// keeps their phases. The property of the last step is exact. The iteration ends where the residual of
+    /// the other property falls by less than 1 % in ten iterations, or after 500 iterations. Where the
+    /// heights are far from Gaussian and the spectrum has few long waves, no map has both properties; the
+    /// residuals then show the remaining difference. Results are as reproducible as those of
+    /// [`WaveGenerator::map`], except for ties of ranks within rounding. Cost O(N log N) for each iteration.
     ///
     /// Source: Schreiber, Schmitz, Phys. Rev. Lett. 77, 635 (1996); for surfaces Perez-Rafols, Almqvist,
     /// Tribol. Int. 131, 591 (2019), whose first step (a translation of the Gaussian field) is the first
@@ -67,7 +68,7 @@ impl PrescribedMap {
     ///
     /// # Errors
     /// [`Error::Domain`] for a shape that is no positive number or whose heights leave the range of f64, a
-    /// map whose heights are all one, and heights that overflow.
+    /// map whose heights are all equal, and heights that overflow.
     ///
     /// ```
     /// use contact_model::SelfAffine;
@@ -126,7 +127,7 @@ impl PrescribedMap {
 }
 
 impl HeightDistribution {
-    /// So many heights of the law, rising, of the mean 0 and the given rms.
+    /// `count` heights of the law in rising order, with the mean 0 and the given rms.
     fn sorted(&self, count: usize, rms: f64) -> Result<Vec<f64>> {
         let share = |k: usize| (k as f64 + 0.5) / count as f64;
         let mut heights: Vec<f64> = match self {

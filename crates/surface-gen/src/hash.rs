@@ -22,9 +22,9 @@ pub(crate) fn expand(key: u64) -> [u64; 4] {
 /// Seed of surface number `index` of an ensemble with the given master seed.
 ///
 /// `seed = mix(mix(master xor "surfaces") + index)`, where `mix` is the SplitMix64 finaliser. For one master
-/// seed different indices never give the same seed. The fractal dimension does not enter: surfaces of
-/// different D_f and the same number share their phases, so that curves of different D_f differ by the
-/// spectrum alone (and their errors are correlated).
+/// seed different indices never give the same seed. The fractal dimension has no influence on the seed:
+/// surfaces of different D_f and the same number have the same phases, so that curves of different D_f differ
+/// by the spectrum alone (and their errors are correlated).
 ///
 /// ```
 /// use surface_gen::surface_seed;

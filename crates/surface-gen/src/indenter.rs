@@ -1,13 +1,13 @@
-//! Deterministic bodies, sampled at the cells' centres; the apex sits in the middle of the rectangle at
-//! height 0.
+//! Deterministic bodies, sampled at the cells' centres; the apex is at the centre of the rectangle, at height 0.
 
 use contact_model::{Cells, Error, HeightMap, Result, Size};
 use std::f64::consts::TAU;
 
-/// How far outside its face a flat circular punch lies back, in longer sides of the rectangle.
+/// Depth of the surface outside of the face of a flat circular punch, in units of the longer side of the
+/// rectangle.
 ///
-/// The linear theory ends at approaches of a fraction of the side; a thousand sides is beyond any load that
-/// it can be asked for, and still small enough that heights of neighbouring cells can be subtracted without
+/// The linear theory holds up to approaches of a fraction of the side. A thousand sides is deeper than any
+/// sensible load, and still small enough that heights of neighbouring cells can be subtracted without
 /// overflow.
 pub(crate) const RECESS: f64 = 1e3;
 

@@ -5,7 +5,7 @@ use contact_model::{Cells, Size};
 /// Fewest cells along an axis that carries waves: with 2 there is only the Nyquist wave.
 pub(crate) const FEWEST: usize = 3;
 
-/// Wave vectors `q = 2 pi (mx/Lx, my/Ly)` of a grid, counted in `q_0 = 2 pi / L`, `L = sqrt(Lx Ly)`.
+/// Wave vectors `q = 2 pi (mx/Lx, my/Ly)` of a grid, in units of `q_0 = 2 pi / L`, `L = sqrt(Lx Ly)`.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Lattice {
     /// `(L/Lx)^2 = Ly/Lx` and `(L/Ly)^2 = Lx/Ly`: exactly 1 for a square, so that its `|q|^2` are integers.

@@ -12,7 +12,7 @@ use std::f64::consts::{FRAC_1_SQRT_2, TAU};
 use std::fmt;
 use std::sync::{Arc, Mutex};
 
-/// Plans self-affine lines of one size: amplitudes tabulated, transform planned.
+/// A generator of self-affine lines of one size, with its amplitudes and the plan of its transform.
 ///
 /// Cheap to clone and shared between threads; [`LineGenerator::line`] draws as many lines as are wanted.
 #[derive(Clone)]
@@ -22,7 +22,8 @@ pub struct LineGenerator {
     /// `B_1D` of the waves m = 1, 2, ...
     amplitudes: Arc<[f64]>,
     transform: Arc<dyn ComplexToReal<f64>>,
-    /// Work space of lines drawn before: fresh memory costs twice the transform itself.
+    /// Work space of lines drawn before, because fresh memory costs twice as much time as the transform
+    /// itself.
     spare: Arc<Mutex<Vec<LineWorkspace>>>,
 }
 
@@ -47,7 +48,8 @@ impl LineGenerator {
     ///
     /// # Errors
     /// [`contact_model::Error::Domain`] for parameters that make no sense, for `elements` of 0 or above 2^31,
-    /// and where no wave is left: lines of 1 and 2 elements and short cut-offs below the longest wave.
+    /// and where no wave remains: lines of 1 and 2 elements, and a `short_cutoff` below the wavenumber of the
+    /// longest wave.
     pub fn new(surface: &SelfAffine, elements: usize) -> Result<Self> {
         Ok(Self {
             elements,
@@ -59,11 +61,11 @@ impl LineGenerator {
     }
 
     /// Plans lines of `elements` elements that stand for a given map: the wave m of the line has the height
-    /// variance `2 B_1D^2` of all waves of the map with |q| nearest to `m 2 pi / L_1D`, the rule
-    /// `C_1D = pi q C_2D` (Eq. 17) of the map's own spectrum, whatever its shape. Waves longer than the line
-    /// go to m = 1, shorter ones than the line carries are left out: with as many elements as the map has
-    /// cells along its diagonal the rms height is that of the map, where that is periodic. Elsewhere the
-    /// spectrum is that under Hann's window ([`crate::windowed`]).
+    /// variance `2 B_1D^2` of all waves of the map with |q| nearest to `m 2 pi / L_1D`, the rule `C_1D = pi q
+    /// C_2D` (Eq. 17) of the map's own spectrum, whatever its shape. Waves longer than the line go to m = 1,
+    /// and waves too short for the line are left out. With as many elements as the map has cells along its
+    /// diagonal, the line has the rms height of a periodic map. For a map that is not periodic the spectrum
+    /// is that under Hann's window ([`crate::windowed`]).
     ///
     /// # Errors
     /// Those of [`crate::MapStatistics::new`], and as [`LineGenerator::new`]. Cost O(N log N) for N cells.

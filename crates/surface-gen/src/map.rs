@@ -9,7 +9,8 @@ use numerics::fourier::{Complex64, InverseTransform};
 use std::fmt;
 use std::sync::Arc;
 
-/// Plans self-affine maps of one size: amplitudes normalised, transforms planned.
+/// A generator of self-affine maps of one size, with its normalised amplitudes and the plans of its
+/// transforms.
 ///
 /// Cheap to clone and shared between threads; [`MapGenerator::map`] draws as many surfaces as are wanted.
 #[derive(Clone)]
@@ -34,12 +35,12 @@ impl fmt::Debug for MapGenerator {
 }
 
 impl MapGenerator {
-    /// Plans maps of so many cells: a number for as many rows as columns, or `[columns, rows]`.
+    /// Plans maps of these cells: one number for equal columns and rows, or `[columns, rows]`.
     ///
     /// # Errors
-    /// [`contact_model::Error::Domain`] for parameters that make no sense, for 0 or more than 2^17 columns or rows, for
-    /// cells whose sides differ by more than 1e4, and where no wave is left: fewer than 3 columns and 3 rows,
-    /// and short cut-offs below the longest wave.
+    /// [`contact_model::Error::Domain`] for parameters that make no sense, for 0 or more than 2^17 columns or
+    /// rows, for cells whose sides differ by more than 1e4, and where no wave remains: fewer than 3 columns
+    /// and 3 rows, and a `short_cutoff` below the wavenumber of the longest wave.
     pub fn new(surface: &SelfAffine, cells: impl Into<Cells>) -> Result<Self> {
         let cells = cells.into();
         let spectrum = MapSpectrum::new(surface, cells)?;
@@ -71,10 +72,12 @@ impl MapGenerator {
 
     /// Draws the surface with this seed.
     ///
-    /// The same bytes for any number of threads. Cost O(N log N) for N cells, memory twice that of the map.
+    /// The bits are the same for any number of threads. Cost O(N log N) for N cells, memory twice that of the
+    /// map.
     ///
     /// # Errors
-    /// [`contact_model::Error::OutOfMemory`] when the map does not fit in memory, [`contact_model::Error::Domain`] when its heights overflow.
+    /// [`contact_model::Error::OutOfMemory`] when the map does not fit in memory,
+    /// [`contact_model::Error::Domain`] when its heights overflow.
     pub fn map(&self, seed: u64) -> Result<HeightMap> {
         // Half of the waves, as complex numbers, beside the map.
         let waves = 16.0 * self.cells.rows as f64 * self.spectrum.columns() as f64;

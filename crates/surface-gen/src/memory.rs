@@ -1,4 +1,4 @@
-//! Memory that maps take, asked for before it is used.
+//! Memory that maps need, checked before it is used.
 
 use contact_model::{Cells, Error, Result, Surface};
 
@@ -11,8 +11,8 @@ const WITH_AMPLITUDES: f64 = 3.0;
 /// their waves.
 const PRESCRIBED: f64 = 7.0;
 
-/// Bytes that [`crate::height_map`] takes at its peak: those of the map, twice as many where it is drawn,
-/// none where it is given.
+/// Bytes that [`crate::height_map`] needs at its peak: those of the map, twice as many for a random map, and
+/// none for a given map.
 ///
 /// ```
 /// use contact_model::{SelfAffine, Surface};

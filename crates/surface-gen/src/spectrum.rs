@@ -180,9 +180,9 @@ pub(crate) fn line_amplitudes(surface: &SelfAffine, elements: usize) -> Result<V
 
 fn no_wave(name: &'static str, n: usize, surface: &SelfAffine) -> Error {
     if n < FEWEST {
-        let expected = format!("at least {FEWEST}: a relief cannot be made, the grid carries no wave");
+        let expected = format!("at least {FEWEST}: the grid carries no wave");
         return Error::domain(name, n as f64, expected);
     }
     let q = surface.short_cutoff.unwrap_or(0.0);
-    Error::domain("short_cutoff", q, "at least the longest wave: a relief cannot be made, no wave is left")
+    Error::domain("short_cutoff", q, "at least the wavenumber of the longest wave, or no wave remains")
 }

@@ -11,17 +11,17 @@ const NAME: &str = "surface-gen";
 /// Heights of any surface, sampled at the cells' centres; `seed` matters for random surfaces only.
 ///
 /// `cells` is a number for as many rows as columns, or `[columns, rows]`; cells need not be squares.
-/// Axisymmetric bodies have their apex (height 0) in the middle of the rectangle, between cells where columns
-/// or rows are even: the highest *sample* then lies lower. A flat circular punch has height 0 where a cell's
-/// centre is on the face and -1000 longer sides elsewhere, deeper than any approach of the linear theory. A
-/// given map is passed on, not copied.
+/// Axisymmetric bodies have their apex (height 0) at the centre of the rectangle. Where the numbers of
+/// columns or rows are even, it lies between cells, and the highest *sample* is lower than 0. A flat circular
+/// punch has height 0 where a cell's centre is on the face and -1000 longer sides elsewhere, deeper than any
+/// approach of the linear theory. A given map is shared, not copied.
 ///
 /// # Errors
 /// [`Error::Unsupported`] for a line; [`Error::Shape`] for a given map of other cells; [`Error::Domain`] for
 /// parameters that make no sense, no columns or rows, cells whose sides differ by more than 1e4, a sine with
 /// waves shorter than two cells, a punch that misses every cell centre or is wider than the shorter side;
-/// [`Error::OutOfMemory`] for a map that does not fit in memory; and as [`self_affine_map`]. Cost O(N) for N cells, for self-affine
-/// surfaces O(N log N).
+/// [`Error::OutOfMemory`] for a map that does not fit in memory; and as [`self_affine_map`]. Cost O(N) for N
+/// cells, for self-affine surfaces O(N log N).
 ///
 /// ```
 /// use contact_model::Surface;
@@ -45,7 +45,7 @@ pub fn height_map(surface: &Surface, cells: impl Into<Cells>, seed: u64) -> Resu
                 name: "heights".into(),
                 found: map.heights().len(),
                 expected: format!(
-                    "{rows} rows x {columns} columns, the cells asked for (maps are not resampled)"
+                    "{rows} rows x {columns} columns, the requested cells (maps are not resampled)"
                 )
                 .into(),
             });
@@ -66,8 +66,8 @@ pub fn height_map(surface: &Surface, cells: impl Into<Cells>, seed: u64) -> Resu
 /// Heights of a self-affine or given line of `elements` elements.
 ///
 /// # Errors
-/// [`Error::Unsupported`] for every other surface (an axisymmetric body has an equivalent profile, but that
-/// is a model's business, not sampling); [`Error::Shape`] for a given line of another size; otherwise as
+/// [`Error::Unsupported`] for every other surface (an axisymmetric body has an equivalent profile, but
+/// computing it is the task of a model); [`Error::Shape`] for a given line of another size; otherwise as
 /// [`self_affine_line`]. Cost O(n log n).
 ///
 /// ```
@@ -85,7 +85,7 @@ pub fn line(surface: &Surface, elements: usize, seed: u64) -> Result<Arc<Line>> 
         Surface::Line { line, .. } => Err(Error::Shape {
             name: "line".into(),
             found: line.elements(),
-            expected: format!("{elements}, the elements asked for (lines are not resampled)").into(),
+            expected: format!("{elements}, the requested elements (lines are not resampled)").into(),
         }),
         _ => Err(Error::unsupported(NAME, format!("{} as a line", surface.kind()))),
     }

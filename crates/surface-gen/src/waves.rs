@@ -12,11 +12,11 @@ use std::f64::consts::TAU;
 use std::fmt;
 use std::sync::Arc;
 
-/// What an artificial twin has in common with its map.
+/// Property of the spectrum that an artificial twin shares with its map.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub enum TwinSpectrum {
-    /// The amplitude of each wave: also its lay.
+    /// The amplitude of each wave, and with it the lay.
     #[default]
     EachWave,
     /// The mean variance of the waves of each ring of [`crate::radial_spectrum`]: an isotropic twin.
@@ -26,8 +26,8 @@ pub enum TwinSpectrum {
 /// How much longer the waves of a surface are along its lay than across.
 ///
 /// The spectrum is that of an isotropic surface at the wavenumber `sqrt(r q_along^2 + q_across^2/r)` with the
-/// ratio r: waves of equal density form an ellipse of the same area as the isotropic circle, r times as long
-/// across the lay as along it.
+/// ratio r: wave vectors of equal density form an ellipse of the same area as the isotropic circle, r times
+/// as long across the lay as along it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Anisotropy {
     /// Ratio r > 0 of wavelengths along the lay to those across; 1 is isotropic.
@@ -36,11 +36,11 @@ pub struct Anisotropy {
     pub lay: f64,
 }
 
-/// Plans maps whose waves have given amplitudes and random phases.
+/// A generator of maps whose waves have given amplitudes and random phases.
 ///
-/// The phases are those of [`crate::map_phase`]: drawn with the seed of a [`crate::self_affine_map`], a twin
-/// of it is that map again. Waves that are their own conjugates (Nyquist waves of even grids) have a random
-/// sign. Cheap to clone and shared between threads.
+/// The phases are those of [`crate::map_phase`]: a twin of a [`crate::self_affine_map`] that is drawn with
+/// the seed of that map is that map again. Waves that are their own conjugates (Nyquist waves of even grids)
+/// have a random sign. Cheap to clone and shared between threads.
 #[derive(Clone)]
 pub struct WaveGenerator {
     cells: Cells,
@@ -173,7 +173,7 @@ impl WaveGenerator {
         };
         if variances.iter().all(|v| *v <= 0.0) {
             let q = surface.short_cutoff.unwrap_or(0.0);
-            return Err(Error::domain("short_cutoff", q, "at least the longest wave: no wave is left"));
+            return Err(Error::domain("short_cutoff", q, "at least that of the longest wave, or none remain"));
         }
         Self::of_variances(cells, size, variances, rms)
     }
@@ -213,8 +213,8 @@ impl WaveGenerator {
         (ForwardTransform::new(self.cells.columns, self.cells.rows), &self.inverse)
     }
 
-    /// Draws the map with this seed: the same on any number of threads, on every machine up to the rounding
-    /// of its transforms.
+    /// Draws the map with this seed. It is the same on any number of threads, and on every machine up to the
+    /// rounding of its transforms.
     ///
     /// Cost O(N log N) for N cells, memory three times that of the map.
     ///

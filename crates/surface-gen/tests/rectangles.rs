@@ -275,6 +275,6 @@ fn what_cannot_be_made_is_named() {
     let e = height_map(&surface, [3, 2], 0).unwrap_err().to_string();
     assert_eq!(
         e,
-        "heights has 6 values: expected 2 rows x 3 columns, the cells asked for (maps are not resampled)"
+        "heights has 6 values: expected 2 rows x 3 columns, the requested cells (maps are not resampled)"
     );
 }

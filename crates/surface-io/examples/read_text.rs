@@ -1,5 +1,5 @@
-//! A measured map as text with a tilt and a missing point: what the file states, what is done about it, and
-//! what becomes of it.
+//! A measured map as text with a tilt and a missing point: the metadata of the file, its preprocessing, and
+//! the resulting map.
 //!
 //! `cargo run -p surface-io --example read_text -- DIRECTORY`
 //!

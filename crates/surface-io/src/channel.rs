@@ -1,4 +1,4 @@
-//! Channels: the maps in one file, and the heights of each where the file holds them.
+//! Channels: the maps in one file, and where the file has the heights of each.
 
 use crate::choice::ChannelChoice;
 use crate::error::{ContentError, Error, Place, Result};
@@ -10,7 +10,7 @@ use crate::source::Source;
 use contact_model::units::number;
 use files::escaped;
 
-/// Unit of a channel's values as the file says it.
+/// Unit of a channel's values as stated in the file.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum StoredUnit {
     /// Nothing.
@@ -22,7 +22,7 @@ pub(crate) enum StoredUnit {
 }
 
 impl StoredUnit {
-    /// What a text says of its heights.
+    /// The unit of the heights of a text.
     pub(crate) fn heights(unit: Option<Unit>) -> Self {
         unit.map_or(Self::Unknown, Self::Heights)
     }
@@ -40,11 +40,11 @@ impl StoredUnit {
     }
 }
 
-/// Words in names of signals of probe microscopes that are no heights, in metres neither.
+/// Words in the names of signals of probe microscopes that are no heights, even if their unit is the metre.
 const SIGNALS: [&str; 3] = ["amplitude", "deflection", "error"];
 
 impl StoredUnit {
-    /// The unit of a signal of a probe microscope: what the cantilever does is no height, though it may be a
+    /// The unit of a signal of a probe microscope. A signal of the cantilever is no height, even if it is a
     /// length.
     pub(crate) fn of_signal(name: &str, unit: &str) -> Self {
         let name = name.to_lowercase();
@@ -69,19 +69,19 @@ pub(crate) struct StoredChannel {
     /// Along x and y, where the file says it.
     pub(crate) extent: [Option<Extent>; 2],
     pub(crate) axes: FileAxes,
-    /// What the file says and what is not used of it, or what may be meant otherwise: sentences for people.
+    /// Notes for people: statements of the file that are not used or that are ambiguous.
     pub(crate) notes: Vec<String>,
     pub(crate) heights: StoredHeights,
 }
 
-/// What a file says of the axis that the first index of an array counts along.
+/// How a file states which axis the first index of an array counts along.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum FileAxes {
-    /// Nothing: the format has one order.
+    /// The file states nothing, because the format has only one order.
     Fixed,
-    /// This, by names of the axes.
+    /// The file names the axes.
     Said(Axes),
-    /// Nothing, and this is a custom.
+    /// The file states nothing; this order is the custom of the format.
     Assumed(Axes),
 }
 
@@ -102,11 +102,11 @@ const TAKEN: &str = "the first index is taken for";
 pub(crate) enum StoredHeights {
     /// In memory: text is read as a whole.
     Read(Vec<f64>),
-    /// Numbers in the file or in memory, decoded when they are asked for.
+    /// Numbers in the file or in memory, decoded on request.
     Raw(RawHeights),
-    /// Whatever another reader makes of the file.
+    /// Heights that another reader makes from the file.
     Deferred(Box<Deferred>),
-    /// What is wrong with this channel, where others of its file can be read.
+    /// The error of this channel, where others of its file can be read.
     Unread(ContentError),
 }
 
@@ -133,7 +133,7 @@ pub(crate) struct RawHeights {
 pub(crate) enum Bytes {
     /// In the file, from an offset on.
     File(u64),
-    /// Here, unpacked.
+    /// In memory, unpacked.
     Held(Vec<u8>),
 }
 
@@ -154,7 +154,7 @@ impl AxisOrder {
         }
     }
 
-    /// Rows and columns of so many lines of so many numbers, and the reverse.
+    /// Converts `[lines, numbers along a line]` to `[rows, columns]`, and the reverse.
     pub(crate) fn shape<N>(self, [lines, along]: [N; 2]) -> [N; 2] {
         match self {
             Self::Rows => [lines, along],
@@ -224,7 +224,7 @@ impl RawHeights {
         format!("{}, {}", self.number, self.order.words())
     }
 
-    /// Bytes that so many rows and columns take; `None` beyond 2^64.
+    /// Number of bytes of this number of rows and columns; `None` beyond 2^64.
     fn length(&self, rows: usize, columns: usize) -> Option<u64> {
         let [lines, along] = self.order.shape([rows, columns]);
         let own = (along as u64).checked_mul(self.number.bytes() as u64)?;
@@ -232,7 +232,8 @@ impl RawHeights {
         line.checked_mul(lines as u64 - 1)?.checked_add(own)
     }
 
-    /// An error where every height would be the same or none; called before the channel is listed.
+    /// An error where the scale would make all heights equal or not finite; called before the channel is
+    /// listed.
     pub(crate) fn check_scale(&self, source: &Source<'_>) -> Result<()> {
         if self.scale.is_finite() && self.scale.abs() > 0.0 && self.shift.is_finite() {
             return Ok(());
@@ -325,7 +326,7 @@ impl RawHeights {
         ]
     }
 
-    /// Where the number at a place of a line belongs, row by row, and its height.
+    /// The index, row by row, of the number at a place of a line, and its height.
     pub(crate) fn placed(
         &self,
         source: &Source<'_>,
@@ -358,7 +359,7 @@ pub(crate) fn undefined_heights(source: &Source<'_>, rows: usize, columns: usize
 }
 
 impl StoredChannel {
-    /// A channel without a name of numbers that are all there; of so many rows and columns.
+    /// A channel without a name, with this number of rows and columns, whose numbers are all in the file.
     pub(crate) fn new(
         source: &Source<'_>,
         raw: RawHeights,
@@ -416,7 +417,7 @@ impl StoredChannel {
         }))
     }
 
-    /// Tells of sides in a unit that is no length, which are not used.
+    /// Notes sides in a unit that is no length, which are not used.
     pub(crate) fn note_sides(&mut self, sides: [Option<f64>; 2], unit: &str) {
         if let ([None, None], [Some(x), Some(y)]) = (self.extent, sides) {
             let unit = if unit.is_empty() { "without a unit" } else { unit };
@@ -465,7 +466,7 @@ impl StoredChannel {
         }
     }
 
-    /// Takes this for the order of the axes; where the file says nothing of it, a note tells why.
+    /// Sets the order of the axes; where the file does not state it, a note gives the reason.
     pub(crate) fn take_axes(&mut self, axes: FileAxes, why: &str) {
         self.axes = axes;
         if let FileAxes::Assumed(axes) = axes {
@@ -477,10 +478,11 @@ impl StoredChannel {
         }
     }
 
-    /// Puts the axes in the order that is asked for.
+    /// Puts the axes in the requested order.
     ///
     /// # Errors
-    /// [`ContentError::Useless`] where the format has one order, [`ContentError::Contradiction`] where the file names another.
+    /// [`ContentError::Useless`] where the format has one order, [`ContentError::Contradiction`] where the
+    /// file names another.
     pub(crate) fn orient(&mut self, declared: Axes) -> Result<(), ContentError> {
         // Who says it need not be told.
         self.notes.retain(|note| !note.starts_with(TAKEN));
@@ -567,7 +569,7 @@ impl StoredChannel {
     }
 }
 
-/// The channel that is meant: the one asked for, or the only one that can be heights.
+/// The requested channel, or else the only one that can be heights.
 ///
 /// # Errors
 /// [`ContentError::Channel`] with all channels.
@@ -596,7 +598,7 @@ pub(crate) fn chosen(
     })
 }
 
-/// Channels of one file that are listed: those of probe microscopes have dozens at most.
+/// Largest number of channels in one file; files of probe microscopes have dozens at most.
 const MOST: usize = 256;
 
 /// An error where a header lists more channels than files have: each takes more memory than its line in the

@@ -1,9 +1,9 @@
-//! How a caller names one of several channels.
+//! The choice of one of several channels.
 
 use std::fmt;
 use std::str::FromStr;
 
-/// Which channel of a file is meant.
+/// The choice of a channel of a file.
 ///
 /// ```
 /// use surface_io::ChannelChoice;

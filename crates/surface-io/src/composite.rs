@@ -1,4 +1,4 @@
-//! Two rough bodies as one: the composite of their maps.
+//! The composite surface of two rough bodies.
 
 use crate::error::{ContentError, Error, Result};
 use contact_model::{Cells, HeightMap, Size};
@@ -10,18 +10,21 @@ const ROUNDED: f64 = 1e-9;
 /// Least share of a cell of the result that must be defined, but for roundings.
 const HALF: f64 = 0.5 - 1e-9;
 
-/// The sum of the heights of two bodies that touch face to face, which is pressed against a flat half-space:
-/// with heights counted from each body outwards, the gap between both is what the sum leaves to its highest
-/// point (K. L. Johnson, Contact Mechanics, 1985, Sec. 4.1).
+/// The sum of the heights of two bodies that touch face to face. Pressing the two bodies together is
+/// equivalent to pressing this sum against a flat: with heights counted outwards from each body, the
+/// undeformed gap is the difference between the highest point of the sum and the sum (K. L. Johnson, Contact
+/// Mechanics, 1985, Sec. 4.1).
 ///
-/// Both maps are seen in the directions of the first: a map that was measured from its own side must be
-/// mirrored before ([`crate::Preprocessing::mirror`]). The middle of the second lies at `offset` from that of
-/// the first, lengths along x and y. The result is the part that both cover, in the larger of both cells
-/// along each axis: each height is a mean over the area of its cell, exact where the grids coincide. A cell
-/// of which less than half is defined on one of the bodies is undefined. Cost O(N).
+/// Both maps use the directions x and y of the first. A second map that was measured from its own side must
+/// be mirrored first ([`crate::Preprocessing::mirror`]). `offset` is the position of the centre of the second
+/// map relative to that of the first, as lengths along x and y. The result covers the common part of both,
+/// with the larger of the two cell sides along each axis; each height is a mean over the area of its cell,
+/// which is exact where the grids coincide. A cell of which less than half is defined on one of the bodies is
+/// undefined. Cost O(N).
 ///
 /// # Errors
-/// [`ContentError::Apart`] where both have less than one cell in common, [`ContentError::Map`] where no point is defined.
+/// [`ContentError::Apart`] where both have less than one cell in common, [`ContentError::Map`] where no point
+/// is defined.
 ///
 /// ```
 /// use contact_model::HeightMap;
@@ -50,7 +53,7 @@ fn summed(first: &HeightMap, second: &HeightMap, offset: [f64; 2]) -> Result<Hei
     HeightMap::with_undefined(cells, size, heights).map_err(ContentError::Map)
 }
 
-/// What both maps have in common along one axis.
+/// The common part of both maps along one axis.
 struct Axis {
     cell: f64,
     count: usize,

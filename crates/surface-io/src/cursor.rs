@@ -27,7 +27,7 @@ impl<'s, 'a> Cursor<'s, 'a> {
         self.source.wrong(self.at, expected)
     }
 
-    /// The bytes from here on that are held, at least so many.
+    /// The bytes from here on that are in memory, at least `least`.
     fn held(&mut self, least: u64) -> Result<&[u8]> {
         let (from, held) = (self.window.0, self.window.1.len() as u64);
         if self.at < from || self.at + least > from + held {

@@ -1,4 +1,4 @@
-//! What a map holds.
+//! The description of a map in numbers.
 
 use contact_model::units::{ascii, short, to_digits};
 use contact_model::{Cells, HeightMap, Size};
@@ -8,8 +8,8 @@ use surface_gen::{
     fit_range, hurst_from_spectrum, radial_spectrum, rms_height, rms_slope_differences, windowed,
 };
 
-/// Numbers that describe a map, in its own unit of length; as text in that which suits them where the unit is
-/// metres ([`Description::in_metres`]).
+/// Numbers that describe a map, in its own unit of length. If that is the metre ([`Description::in_metres`]),
+/// the text has units that suit the numbers.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Description {
     /// Columns and rows.
@@ -39,16 +39,16 @@ pub struct Description {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Absent {
-    /// The spectrum of a map with undefined points is that of their pattern too.
+    /// The map has undefined points, and their pattern would change the spectrum.
     Undefined,
-    /// A profile has no rings: its own spectrum is that of `surface_statistics::ProfileFit`.
+    /// The map is a profile, whose spectrum has no rings; see `surface_statistics::ProfileFit`.
     Profile,
-    /// All heights are one.
+    /// All heights are equal.
     NoHeight,
     /// Too few rings lie in the range of the fit: fewer than about 40 cells along the shorter side, or cells
     /// far from squares.
     FewWaves,
-    /// Not asked for ([`Description::without_fit`]).
+    /// The fit was left out ([`Description::without_fit`]).
     NotFitted,
 }
 
@@ -57,9 +57,9 @@ impl fmt::Display for Absent {
         f.write_str(match self {
             Self::Undefined => "points are undefined; fill them first",
             Self::Profile => "one row of points has the spectrum of a profile, not of a surface",
-            Self::NoHeight => "no relief",
+            Self::NoHeight => "all heights are equal",
             Self::FewWaves => "too few waves along one side",
-            Self::NotFitted => "not asked for",
+            Self::NotFitted => "not requested",
         })
     }
 }
@@ -77,8 +77,8 @@ impl Description {
         Self { unit: "m", ..self }
     }
 
-    /// The description without the straight-line fit of the exponent: where a fit with an interval is told
-    /// beside it, the two would contradict each other wherever the spectrum rolls off.
+    /// The description without the straight-line fit of the exponent. Use it where another fit with an
+    /// interval is reported too: the two differ wherever the spectrum rolls off.
     #[must_use]
     pub fn without_fit(self) -> Self {
         Self { hurst: Err(Absent::NotFitted), ..self }
@@ -87,12 +87,12 @@ impl Description {
 
 /// Describes a map: sides, range, rms height and slope, spectrum, Hurst exponent.
 ///
-/// The map is not taken as periodic: its mean is subtracted and Hann's window laid over it before the
-/// spectrum, which keeps the jump between opposite edges out of the short waves, smears each ring over its
-/// neighbours, and is scaled so that a homogeneous surface keeps its spectrum. Subtract a tilt first
-/// ([`crate::Detrend::Plane`]). The exponent is fitted by least squares in logarithms from an eighth of the
-/// shorter side to waves of four of the longer cell sides. Cost O(N log N) for N points, memory about three
-/// times that of the map.
+/// The map is not taken as periodic. Before the spectrum is computed, the mean is subtracted and the heights
+/// are multiplied by Hann's window. The window keeps the jump between opposite edges out of the short waves,
+/// spreads each ring over its neighbours, and is scaled so that a homogeneous surface keeps its spectrum.
+/// Subtract a tilt first ([`crate::Detrend::Plane`]). The exponent is fitted by least squares in logarithms
+/// from an eighth of the shorter side to waves of four of the longer cell sides. Cost O(N log N) for N
+/// points, memory about three times that of the map.
 ///
 /// ```
 /// use contact_model::SelfAffine;

@@ -1,4 +1,4 @@
-//! How the format of a file is told from its content and its name.
+//! Detection of the format of a file from its content and its name.
 
 use crate::error::ContentError;
 use crate::format::{EXPORT, Format};

@@ -6,7 +6,7 @@ use crate::fields::decoded;
 use crate::source::Source;
 use crate::subject::Subject;
 
-/// What a line of such a header is.
+/// A line of such a header.
 pub(crate) enum HeaderLine<'l> {
     /// The name of the section that begins.
     Section(&'l str),
@@ -55,7 +55,7 @@ pub(crate) struct Section {
 }
 
 impl Entries {
-    /// Reads lines up to one that ends the header, and whether one does.
+    /// Reads lines up to the one that ends the header, and returns whether there is one.
     pub(crate) fn read(
         subject: &Subject,
         text: &[u8],

@@ -8,7 +8,7 @@ use std::fmt::{self, Write as _};
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// Result of everything that reads or writes.
+/// Result type of everything that reads or writes.
 pub type Result<T, E = Error> = std::result::Result<T, E>;
 
 /// What can go wrong with a file.
@@ -17,7 +17,7 @@ pub type Result<T, E = Error> = std::result::Result<T, E>;
 pub enum Error {
     /// The operating system refused to read or write.
     System(files::Error),
-    /// A file, or what is asked of it, does not make a surface.
+    /// The file, or a request for it, does not give a surface.
     Content {
         /// Where.
         path: PathBuf,
@@ -45,7 +45,7 @@ impl Error {
         }
     }
 
-    /// The error with the problem in words, for who has no use for its kind.
+    /// The error with its problem in words, for callers that do not need the kind of the problem.
     pub fn into_words(self) -> files::Error {
         match self {
             Self::System(error) => error,
@@ -54,7 +54,7 @@ impl Error {
     }
 }
 
-/// Where in a file: lines, rows, columns and values count from 1 in what is shown, offsets from 0.
+/// A place in a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Place {
     /// A value of a line of text, both counted from 1.
@@ -82,17 +82,17 @@ impl fmt::Display for Place {
     }
 }
 
-/// What is wrong with the content of a file, or with what is asked of it.
+/// A problem with the content of a file, or with a request for it.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ContentError {
-    /// No data at all.
+    /// The file has no data.
     #[error("no data in it")]
     Empty,
     /// Not a regular file.
     #[error("not a regular file: its length is needed before it is read")]
     NotAFile,
-    /// Longer than allowed.
+    /// The file is longer than allowed.
     #[error("{bytes} bytes: at most {largest} are read; raise largest_bytes for more")]
     TooLarge {
         /// Length in bytes.
@@ -100,7 +100,7 @@ pub enum ContentError {
         /// Largest length allowed.
         largest: u64,
     },
-    /// The file ended before the length that the system gave for it: somebody else writes it.
+    /// The file ended before the length that the system gave for it: another program is writing it.
     #[error("ended after {found} of {expected} bytes: is it being written? read it again later")]
     Changed {
         /// Length at the beginning, in bytes.
@@ -108,13 +108,13 @@ pub enum ContentError {
         /// Bytes that could be read.
         found: u64,
     },
-    /// The memory for its numbers cannot be had.
+    /// There is not enough memory for its numbers.
     #[error("no memory for its numbers, {bytes} bytes: crop or average it on a larger machine")]
     Memory {
-        /// Bytes asked for.
+        /// Bytes requested.
         bytes: u128,
     },
-    /// Another kind of file.
+    /// The file is of another kind.
     #[error("looks like {what}: {remedy}")]
     Foreign {
         /// What it looks like.
@@ -128,7 +128,7 @@ pub enum ContentError {
         /// Names of its members; of many the first.
         members: String,
     },
-    /// Not the format expected.
+    /// The file does not have the expected format.
     #[error("expected {expected}, but the content is {found}: correct the name or the format")]
     NotOfFormat {
         /// The format expected from the request or by the name's ending.
@@ -136,7 +136,7 @@ pub enum ContentError {
         /// The format that it looks like.
         found: Format,
     },
-    /// Three columns: a matrix of three columns, or points.
+    /// The text has three columns, which may be a matrix or points.
     #[error(
         "{lines} lines of three numbers are points or a matrix of three columns: say format = \"xyz\" or format = \"text\""
     )]
@@ -163,13 +163,13 @@ pub enum ContentError {
         /// The format; its word is the name of the feature.
         format: Format,
     },
-    /// Not the binary format that was asked for.
+    /// The file does not have the requested binary format.
     #[error("expected {expected}, but the file does not begin like one")]
     Other {
-        /// The format asked for.
+        /// The requested format.
         expected: Format,
     },
-    /// What a binary file holds at some place is not what its format has there.
+    /// The content of a binary file at some place contradicts its format.
     #[error("{format}, offset {offset}: expected {expected}")]
     Binary {
         /// The format.
@@ -179,7 +179,7 @@ pub enum ContentError {
         /// What was expected there.
         expected: String,
     },
-    /// No channel, or more than one, is what was asked for.
+    /// The request fits no channel, or more than one.
     #[error(
         "{}: the channels are {list}",
         match (.choice, .matching) {
@@ -190,11 +190,11 @@ pub enum ContentError {
         }
     )]
     Channel {
-        /// What was asked for.
+        /// The requested channel.
         choice: Option<String>,
-        /// Channels that it may mean.
+        /// Number of channels that fit the request.
         matching: usize,
-        /// All of them.
+        /// All channels.
         list: String,
     },
     /// A channel that cannot be read, of a file with others.
@@ -254,7 +254,7 @@ pub enum ContentError {
         /// Bytes after the header.
         found: u64,
     },
-    /// What stands where a number should.
+    /// A text stands in the place of a number.
     #[error("{place}: {text:?}: {kind}")]
     Number {
         /// Where.
@@ -264,7 +264,7 @@ pub enum ContentError {
         /// Why it is no number.
         kind: NumberKind,
     },
-    /// An infinite height.
+    /// A height is infinite.
     #[error("{place}: {value}: expected a finite height; write nan where nothing was measured")]
     Infinite {
         /// Where.
@@ -272,7 +272,7 @@ pub enum ContentError {
         /// The value.
         value: f64,
     },
-    /// An integer that a double does not hold.
+    /// An integer cannot be represented as a double.
     #[error("{place}: {value} is not a double: convert to float64 and decide what is rounded")]
     Inexact {
         /// Where.
@@ -280,7 +280,7 @@ pub enum ContentError {
         /// The integer.
         value: i128,
     },
-    /// A text of more maps than are read.
+    /// A text has more maps than are read.
     #[error("line {line} begins another map: at most {most} are read from one text")]
     TooManyMaps {
         /// Most maps.
@@ -396,7 +396,7 @@ pub enum ContentError {
         /// All points.
         points: usize,
     },
-    /// Neither the file nor the caller states it.
+    /// Neither the file nor the caller states a value that is needed.
     #[error(
         "{what} is {}: {remedy}{}",
         if .seen.is_empty() { "neither in the file nor given" } else { "not known" },
@@ -405,9 +405,9 @@ pub enum ContentError {
     Unspecified {
         /// What.
         what: &'static str,
-        /// What the file says about it that is not used, and why.
+        /// Statements of the file about it that are not used, with the reasons.
         seen: Vec<String>,
-        /// How to say it.
+        /// How the caller can state it.
         remedy: &'static str,
     },
     /// The file and the caller, or two statements of one of them, say different things.
@@ -420,12 +420,12 @@ pub enum ContentError {
         /// The other.
         second: String,
     },
-    /// An option that the format has no use for.
+    /// An option does not apply to the format.
     #[error("{what} was given: {reason}")]
     Useless {
         /// The option.
         what: &'static str,
-        /// Why it is of no use.
+        /// Why it does not apply.
         reason: &'static str,
     },
     /// A number out of its range.
@@ -497,7 +497,7 @@ pub enum ContentError {
     Resample {
         /// `columns` or `rows`.
         what: &'static str,
-        /// The number asked for.
+        /// The requested number.
         cells: usize,
         /// That of the map.
         found: usize,
@@ -516,7 +516,7 @@ pub enum ContentError {
         /// The largest height by amount.
         value: f64,
     },
-    /// A name whose ending is none of the formats that are written.
+    /// The ending of the name belongs to none of the formats that are written.
     #[error("the name ends in {found:?}: expected npy, h5, txt, xyz, vti, x3p, gwy or nc")]
     Ending {
         /// The ending, shortened.
@@ -560,7 +560,8 @@ impl ContentError {
         Self::OutOfRange { what, value, expected }
     }
 
-    /// What neither the file nor the caller states, and what the file says about it.
+    /// The error for a value that neither the file nor the caller states, with the notes of the file about
+    /// it.
     pub(crate) fn unspecified(what: &'static str, seen: Vec<String>, remedy: &'static str) -> Self {
         Self::Unspecified { what, seen, remedy }
     }

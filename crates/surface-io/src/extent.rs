@@ -1,4 +1,4 @@
-//! How far a map reaches along each axis: what a file and its reader state about sides and cells.
+//! The extent of a map along each axis, from the statements of a file and its reader about sides and cells.
 
 use crate::error::ContentError;
 use crate::options::ReadOptions;
@@ -6,7 +6,7 @@ use crate::provenance::{PRINTED, contradiction};
 use crate::quantity::{Dimension, Quantity, Unit};
 use crate::sides::Sides;
 
-/// How far one axis reaches, as it was stated: by one cell or by the whole side.
+/// The extent along one axis as it was stated: by the side of a cell or by the whole side.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Extent {
     Cell(Quantity),

@@ -185,7 +185,7 @@ impl<'a> Fields<'a> {
         self.take(T::BYTES).map(|bytes| T::decode(bytes, order))
     }
 
-    /// Text in a field of so many bytes, up to its first zero, without spaces around it.
+    /// Text in a field of `count` bytes, up to its first zero, without spaces around it.
     pub(crate) fn text(&mut self, count: usize) -> Result<String> {
         self.take(count).map(terminated)
     }

@@ -5,8 +5,8 @@ use crate::source::Source;
 use flate2::read::{DeflateDecoder, ZlibDecoder};
 use std::io::Read;
 
-/// Deflate packs at most so many bytes into one, and so do the other compressions that are read, in maps that
-/// are measured; a few more end its stream.
+/// Largest compression ratio: deflate packs at most this number of bytes into one. The other compressions
+/// that are read stay below it for measured maps.
 pub(crate) const RATIO: u64 = 1032;
 const END: u64 = 64;
 

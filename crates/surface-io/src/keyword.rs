@@ -6,13 +6,13 @@ use std::fmt;
 /// A word that is not one of those expected.
 #[derive(Debug, Clone, PartialEq)]
 pub struct KeywordError {
-    /// What it should say.
+    /// The option that expects a word.
     pub what: &'static str,
     /// The word, shortened.
     pub found: String,
     /// The words that are known.
     pub expected: String,
-    /// Why it is no quantity either, where one is allowed.
+    /// Why it is no quantity either, for options that also accept one.
     pub quantity: Option<QuantityError>,
 }
 

@@ -1,8 +1,9 @@
-//! Surfaces from and to files, and quantities with units.
+//! Reading and writing of surfaces, and quantities with units.
 //!
-//! Two steps, so that a person can look between them: a [`Scan`] is what a file holds, with undefined points
-//! and in its own unit, and [`Metadata`] says what was taken from it; [`Scan::map`] makes a
-//! [`contact_model::HeightMap`] of it, doing only what a [`Preprocessing`] names.
+//! Reading has two steps, so that a person can check the data between them. A [`Scan`] has the content of a
+//! file, with its undefined points and in its own unit, and its [`Metadata`] report what was read.
+//! [`Scan::map`] then makes a [`contact_model::HeightMap`] of it, with only the steps that a
+//! [`Preprocessing`] names.
 //!
 //! ```
 //! use surface_io::{ReadOptions, Fill, Scan, Preprocessing, Undefined, describe};
@@ -23,63 +24,66 @@
 //!
 //! # Nothing is guessed silently
 //!
-//! * **Format.** Binary ones by their first bytes, XYZ by the name's ending or [`ReadOptions::format`],
-//!   everything else as a text matrix; three columns without either are points or a matrix by their comments,
-//!   points where the first two are all places of a grid, or else an error; two columns of more than eight
-//!   lines, the first of ascending or descending numbers, are a profile. Other files that people try
-//!   (archives, pictures) are named.
+//! * **Format.** Binary formats are recognised by their first bytes, XYZ by the name's ending or
+//!   [`ReadOptions::format`]; everything else is a text matrix. Three columns without either are points or a
+//!   matrix according to their comments; without such comments they are points if the first two columns are
+//!   all places of a grid, and otherwise an error. Two columns of more than eight lines are a profile if the
+//!   numbers in the first ascend or descend. Errors name other files that people try (archives, pictures).
 //! * **Text.** The first line of data sets the delimiter: semicolon, else tab, else comma, else whitespace.
 //!   Comments begin with `#` or `%` at the beginning of a line or behind white space; lines before the
-//!   numbers that begin with a word are a header like them. Of both count `Width`, `Height`, `Value units`
-//!   and `Lateral units`, as Gwyddion's exports and this crate write them, and the keys of SPIP, Nanoscope
-//!   and profilers (`x-length`, `Scan Size`, `Pixel size`, `Z unit`, ...); two that differ are an error, and
-//!   so are other numbers of columns or rows than there are. Decimal commas are read on request
-//!   ([`Decimal::Comma`]), or where every comma can be nothing else. An empty place between two delimiters,
-//!   `nan`, words such as `---` or `BAD` and the C library's `1.#QNAN` are undefined points. A heading or an
-//!   empty line between numbers ends a map, and several maps are channels. A first line and a first column
-//!   that may be coordinates are asked about ([`ReadOptions::border`]).
-//! * **Notes.** What a file says and what is not used of it, and a value far from all others, stand in
-//!   [`Metadata::notes`] and in the error that asks for what is missing.
-//! * **Size.** Two sides, or two sides of a cell. One value is that of a square map, or of square cells; so
-//!   is a header's width or height without the other, and two that are square cells within the decimals that
-//!   are printed. Cells whose sides differ by more than 1e4 are an error.
+//!   numbers that begin with a word are a header like them. The keys `Width`, `Height`, `Value units` and
+//!   `Lateral units` are used in both, as Gwyddion's exports and this crate write them, and so are the keys
+//!   of SPIP, Nanoscope and profilers (`x-length`, `Scan Size`, `Pixel size`, `Z unit`, ...). Two statements
+//!   that differ are an error, and so is a stated number of columns or rows that is not the actual one.
+//!   Decimal commas are read on request ([`Decimal::Comma`]), or where every comma can be nothing else. An
+//!   empty place between two delimiters, `nan`, words such as `---` or `BAD` and the C library's `1.#QNAN`
+//!   are undefined points. A heading or an empty line between numbers ends a map, and several maps are
+//!   channels. Where the first line or the first column may be coordinates, the caller must decide
+//!   ([`ReadOptions::border`]).
+//! * **Notes.** Statements of a file that are not used, and a value far from all others, stand in
+//!   [`Metadata::notes`] and in the error about missing information.
+//! * **Size.** The size is given by two sides of the map or of a cell. One value means a square map or square
+//!   cells. Cells are also square where a header has only a width or only a height, and where both make
+//!   square cells within their printed decimals. Cells whose sides differ by a factor of more than 1e4 are an
+//!   error.
 //! * **Profiles.** Points x, z with equal steps become a map of one row, as does a row of an instrument whose
 //!   file says its length along x alone ([`Metadata::profile`]): a body that is uniform along y, on square
 //!   cells.
-//! * **Points.** In any order; the spacing along each axis is the smallest step, refined over the whole
-//!   range, and one for both where they differ by no more than the points are off their places. A point may
-//!   be off its place by a tenth of a found spacing or a quarter of a given one, how far one is is told, two
-//!   points at one place and a grid more than half empty are errors.
+//! * **Points.** Points may have any order. The spacing along each axis is the smallest step, refined over
+//!   the whole range; both axes get the same spacing where the two differ by no more than the scatter of the
+//!   points. A point may deviate from its place by a tenth of a spacing that was found or a quarter of a
+//!   given one, and the largest deviation is reported. Two points at one place are an error, and so is a grid
+//!   that is more than half empty.
 //! * **NPY.** Two axes of float64, float32, float16 or integers, either byte order, row by row or column by
 //!   column. An integer that no double holds is an error.
 //! * **Units.** Heights with a unit come out in metres, and the sides must then have one too; without any
-//!   unit both stay as they are. What is given beside what the file says must agree with it within the digits
-//!   of a header (0.5 %).
+//!   unit both stay as they are. A value that is given in addition to that of the file must agree with it
+//!   within the digits of a header (0.5 %).
 //! * **Channels** that cannot be read are listed with the reason beside those that can.
 //! * **Counts.** Grey levels and other numbers without a unit become heights by [`ReadOptions::height_scale`]
 //!   only. Integers of an HDF5 file that have a unit of length and no scale are counts too.
 //! * **Axes.** Arrays without names of their axes (HDF5, MATLAB, NetCDF) are read by the custom of the
-//!   format, which is noted;
-//!   [`ReadOptions::axes`] says which index is x. It is an error where the file or the format says it.
-//! * **Undefined points** are refused without a [`Fill`] or [`Undefined::NoContact`] (and with both),
-//!   infinite heights always.
+//!   format, which is noted; [`ReadOptions::axes`] says which index is x, and is an error where the file or
+//!   the format defines it.
+//! * **Undefined points** are refused without a [`Fill`] or [`Undefined::NoContact`] (and with both).
+//!   Infinite heights are always refused.
 //! * Row j is y, column i is x, the first row is y = 0: `heights[j * columns + i]`, NPY arrays are `[row,
 //!   column]`.
 //!
 //! # Accuracy
 //!
-//! Numbers are the doubles nearest to what is written, also with a unit of a power of ten behind them
-//! ([`Quantity`]); heights of a scan are converted with one rounding. What is written is read again to the
-//! bit ([`text()`], [`xyz`], [`npy`], [`hdf5`], [`x3p`], [`gwy`], [`netcdf`]); so are the sides in all but
-//! NPY, in X3P but for their last bit. Trends are exact to 1e-13 of the range of the heights, filled points
-//! to 1e-10.
+//! Numbers are the doubles nearest to the written ones, also with a unit of a power of ten behind them
+//! ([`Quantity`]); heights of a scan are converted with one rounding. Heights that this crate writes are read
+//! again with identical bits ([`text()`], [`xyz`], [`npy`], [`hdf5`], [`x3p`], [`gwy`], [`netcdf`]). So are
+//! the sides, except in NPY, which has none, and in X3P, where the last bit may differ. Trends are exact to
+//! 1e-13 of the range of the heights, filled points to 1e-10.
 //!
 //! # Hostile files
 //!
-//! Readers never panic, and hold at most 24 bytes for each byte of the file (a map without digits: single
-//! zeros on a half-empty grid; 1 for NPY, about 2 for text) besides 100 kB. Sizes that a header claims are
-//! compared with the length of the file before anything is allocated, and files beyond
-//! [`ReadOptions::largest_bytes`] are not read. `tests/hostile.rs` counts.
+//! Readers never panic. They need at most 24 bytes of memory for each byte of the file, and 100 kB; the worst
+//! case is a half-empty grid of points whose numbers have one digit. NPY needs 1 byte and text about 2. Sizes
+//! that a header claims are compared with the length of the file before anything is allocated, and files
+//! beyond [`ReadOptions::largest_bytes`] are not read. `tests/hostile.rs` measures the memory.
 //!
 //! # Speed
 //!
@@ -90,18 +94,19 @@
 //!
 //! # Writing
 //!
-//! [`write_map`] by the name's ending; [`npy`], [`hdf5`], [`text()`], [`xyz`], [`x3p`], [`gwy`], [`netcdf`] and
-//! [`vti`] (for ParaView) give bytes, and [`files::write_whole`] puts them into a file whole or not at all;
-//! [`write_npy`] does both for an array.
+//! [`write_map`] writes a map in the format of the name's ending. [`npy`], [`hdf5`], [`text()`], [`xyz`],
+//! [`x3p`], [`gwy`], [`netcdf`] and [`vti`] (for ParaView) return bytes, and [`files::write_whole`] puts them
+//! into a file whole or not at all; [`write_npy`] does both for an array.
 //!
 //! # Features
 //!
-//! `hdf5`, `tiff` and `x3p`, all on by default, bring the crates that these formats need (12 packages). A
-//! file of a format that is left out is an error that names its feature ([`ContentError::LeftOut`]).
+//! `hdf5`, `tiff` and `x3p`, all on by default, bring the crates that these formats need (12 packages).
+//! Reading a file of a format that the build leaves out is an error that names the feature
+//! ([`ContentError::LeftOut`]).
 //!
 //! # What it does not do
 //!
-//! Surfaces in finer cells than measured, formats that are not in [`Format`].
+//! It makes no surfaces with finer cells than measured, and reads no formats that are not in [`Format`].
 
 // What only the formats that are left out need.
 #![cfg_attr(not(all(feature = "hdf5", feature = "tiff", feature = "x3p")), allow(dead_code))]

@@ -5,9 +5,9 @@ use std::fmt;
 /// Which byte of a number comes first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum ByteOrder {
-    /// The lowest.
+    /// The lowest byte.
     Little,
-    /// The highest.
+    /// The highest byte.
     Big,
 }
 
@@ -90,7 +90,7 @@ impl NumberType {
         usize::from(self.size)
     }
 
-    /// Bytes of a map of so many numbers; `None` beyond 2^64.
+    /// Bytes of a map of this shape; `None` beyond 2^64.
     pub(crate) fn bytes_of<N: TryInto<u64>>(self, shape: [N; 2]) -> Option<u64> {
         let [rows, columns] = shape.map(|count| count.try_into().ok());
         rows?.checked_mul(columns?)?.checked_mul(self.bytes() as u64)

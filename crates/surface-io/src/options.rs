@@ -9,7 +9,7 @@ use crate::sides::Sides;
 /// How to read a file, and what the file itself does not state; a contradiction with the file is an error.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ReadOptions {
-    /// The format, where it is not to be told from the content and the name's ending.
+    /// The format, where it shall not be detected from the content and the name's ending.
     pub format: Option<Format>,
     /// The channel, where the file has several that can be heights.
     pub channel: Option<ChannelChoice>,
@@ -19,7 +19,7 @@ pub struct ReadOptions {
     pub height_scale: Option<Quantity>,
     /// Unit of x and y of points.
     pub lateral_unit: Option<Unit>,
-    /// Which axis the first index of an array is, where the file does not say it (HDF5, MATLAB, NetCDF).
+    /// Axis of the first index of an array, where the file does not state it (HDF5, MATLAB, NetCDF).
     pub axes: Option<Axes>,
     /// Sides of the map, Lx along the rows and Ly along the columns: lengths, or numbers where the heights
     /// have no unit. One value is that of a square map.
@@ -41,7 +41,8 @@ pub struct ReadOptions {
 }
 
 impl Default for ReadOptions {
-    /// Nothing stated, points as decimals, files of up to 8 GiB (a square of 32768 doubles a side).
+    /// Nothing is stated, decimals have points, and files have up to 8 GiB (a square of 32768 doubles a
+    /// side).
     fn default() -> Self {
         Self {
             format: None,

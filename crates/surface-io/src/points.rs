@@ -19,7 +19,7 @@ use axis::GridAxis;
 /// Share of the places of a grid that must have a height: a wrong spacing leaves most of them empty.
 const FULL: f64 = 0.5;
 
-/// Deviations from the grid are told from this on, in percent of a cell; below they are roundings.
+/// Smallest deviation from the grid that is reported, in per cent of a cell; smaller ones are roundings.
 const SHOWN: f64 = 0.01;
 
 /// Roundings of coordinates in double precision, relative to a spacing.

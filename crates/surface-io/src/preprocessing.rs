@@ -21,49 +21,51 @@ use contact_model::{Cells, HeightMap, Size};
 use std::str::FromStr;
 use surface_gen::{hann_window, rms_height};
 
-/// What is done to a scan, in this order; nothing unless named.
+/// Steps that turn a scan into a map, in this order. A step is done only if it is named.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Preprocessing {
-    /// Which part is taken.
+    /// The part of the scan that is used.
     pub crop: Option<Crop>,
     /// How scan lines, the rows, are shifted to a common height.
     pub align_lines: Option<AlignLines>,
     /// Scars become undefined: runs of at least 16 points along x, at most four rows tall, that are higher or
-    /// lower than the row before and the row after them by more than so many robust standard deviations of
-    /// the differences between neighbouring rows. A ridge or a groove of the surface that is as narrow and
-    /// lies along x goes too.
+    /// lower than the row before and the row after them by more than this number of robust standard
+    /// deviations of the differences between neighbouring rows. A ridge or a groove of the surface that is as
+    /// narrow and lies along x is removed too.
     pub scars: Option<f64>,
-    /// Heights farther from the median of their neighbours than so many robust standard deviations of all
-    /// such distances become undefined.
+    /// Heights farther from the median of their neighbours than this number of robust standard deviations of
+    /// all such distances become undefined.
     pub outliers: Option<f64>,
-    /// Radius of the tip that measured the heights: says from which distance on they are reliable, and
-    /// changes nothing.
+    /// Radius of the tip that measured the heights. The distance from which on they are reliable is reported;
+    /// the map does not change.
     pub tip_radius: Option<Quantity>,
-    /// What becomes of undefined points. Without it and without [`Preprocessing::fill`] they are an error.
+    /// Treatment of undefined points. Without it and without [`Preprocessing::fill`] they are an error.
     pub undefined: Option<Undefined>,
-    /// Which heights undefined points get; it contradicts [`Preprocessing::undefined`].
+    /// Heights for undefined points; it contradicts [`Preprocessing::undefined`].
     pub fill: Option<Fill>,
-    /// What is subtracted: fitted to the points that are defined in the file, after the crop.
+    /// Trend that is subtracted; it is fitted to the points that are defined in the file, after the crop.
     pub detrend: Detrend,
     /// Cut-off wavelength of a Gaussian low-pass filter across the scan lines, along y (ISO 16610-21: half of
     /// a wave of this wavelength is transmitted), from four cells to the side of the map. At edges and
     /// undefined points the weights are those of the defined points, their sum one; undefined points that are
-    /// kept stay undefined. It takes noise from line to line, and waves of the surface with it.
+    /// kept stay undefined. It removes noise from line to line, and waves of the surface of the same length
+    /// with it.
     pub filter_across: Option<Quantity>,
-    /// Columns after averaging over larger cells; as many as the map has where only `rows` is given.
+    /// Number of columns after averaging over larger cells; that of the map where only `rows` is given.
     pub cells: Option<usize>,
-    /// Rows after averaging over larger cells; as much fewer as the columns where only `cells` is given.
+    /// Number of rows after averaging over larger cells; reduced in proportion to the columns where only
+    /// `cells` is given.
     pub rows: Option<usize>,
     /// Whether x or y is reversed.
     pub mirror: Option<Mirror>,
-    /// Quarter turns: x to y, y to -x.
+    /// Number of quarter turns; each turns x to y and y to -x.
     pub quarter_turns: u8,
-    /// What the deviations from the mean height are multiplied by.
+    /// Window by which the deviations from the mean height are multiplied.
     pub window: Option<Window>,
 }
 
 keywords! {
-    /// Which axis is reversed.
+    /// The axis that is reversed.
     Mirror: "mirror";
     /// x: the last column becomes the first, as a body is seen that is laid on its face.
     X = "x",
@@ -87,12 +89,12 @@ keywords! {
     Window: "window";
     /// `sin^2(pi x/Lx) sin^2(pi y/Ly)` at the middles of the cells, divided by its rms, 3/8: a map without a
     /// step at its edges, for periodic boundaries. A homogeneous surface keeps its spectrum, and with it rms
-    /// height and slope; in the middle of the map it is 8/3 as rough as it was, at the edges smooth: it
-    /// serves theories and twins, and a solver finds another contact than without it.
+    /// height and slope; in the middle of the map it is 8/3 as rough as before, at the edges smooth. It is
+    /// meant for theories and artificial twins; a solver finds another contact than without it.
     Hann = "hann",
 }
 
-/// A map, and what was done to make it.
+/// A map, with a record of its preprocessing.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Preprocessed {
@@ -100,8 +102,8 @@ pub struct Preprocessed {
     pub map: HeightMap,
     /// One line for each step, with what it found; empty where nothing was done.
     pub steps: Vec<String>,
-    /// From which distance on the tip lets heights be seen, in the unit of the map's sides; infinite where
-    /// from none, `None` without a tip and where from all.
+    /// Lateral distance from which on the heights are reliable, given the tip, in the unit of the map's
+    /// sides. It is infinite where no distance is reliable, and `None` where all are or no tip is given.
     pub reliable_from: Option<f64>,
     /// Rms height before and after a window; `None` without one.
     pub tapered: Option<[f64; 2]>,
@@ -110,8 +112,8 @@ pub struct Preprocessed {
 /// A part of a scan.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Crop {
-    /// The largest square in the middle, as nearly as oblong cells make one; where the margins are odd, the
-    /// upper and the left one are the smaller.
+    /// The largest square in the middle, as nearly square as oblong cells allow; an odd cell goes to the
+    /// lower and the right margin.
     Centre,
     /// The largest rectangle without undefined points, by its number of cells.
     Defined,
@@ -176,7 +178,7 @@ impl FromStr for Crop {
 }
 
 keywords! {
-    /// What becomes of undefined points that are not filled.
+    /// Treatment of undefined points that are not filled.
     #[non_exhaustive]
     Undefined: "undefined", " (fill gives undefined points a height)";
     /// They stay undefined and cannot touch ([`HeightMap::with_undefined`]).
@@ -186,10 +188,10 @@ keywords! {
 /// Heights for undefined points.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Fill {
-    /// The discrete harmonic function with the measured rim: each filled height is the mean of those of its
-    /// neighbours (four inside, fewer at an edge), filled ones included, with the weights dy/dx along x and
-    /// dx/dy along y. Unique, between the lowest and the highest height of the rim, and a plane stays a plane
-    /// inside.
+    /// The discrete harmonic function with the measured heights around the patch as its boundary values: each
+    /// filled height is the mean of its neighbours (four inside, fewer at an edge), filled ones included,
+    /// with the weights dy/dx along x and dx/dy along y. It is unique, stays between the lowest and the
+    /// highest of the heights around the patch, and continues a plane as a plane.
     Neighbours,
     /// The least-squares plane through all measured heights.
     Plane,
@@ -198,9 +200,9 @@ pub enum Fill {
 }
 
 impl Scan {
-    /// A map: crop, align scan lines, take out scars and outliers, fill, subtract the trend, filter across
-    /// the lines, average over larger cells, mirror, turn, taper; in metres where the scan has units, else in
-    /// its own numbers.
+    /// The map of the scan after these steps: crop, align scan lines, remove scars and outliers, fill,
+    /// subtract the trend, filter across the lines, average over larger cells, mirror, turn, taper. It is in
+    /// metres where the scan has units, else in its own numbers.
     ///
     /// The trend is fitted to measured heights only and subtracted from all. Where undefined points are kept,
     /// the mean over a larger cell is that of its defined part, and the cell is undefined where this is less
@@ -234,7 +236,8 @@ impl Scan {
         self.by_steps(self.heights().to_vec(), preprocessing).map_err(Error::content(self.path()))
     }
 
-    /// [`Scan::preprocessed`] of a scan that is not needed any more: its heights become those of the map, so that memory holds them once.
+    /// [`Scan::preprocessed`] for a scan that is no longer needed: its heights become those of the map, so
+    /// that memory holds them once.
     ///
     /// # Errors
     /// As [`Scan::map`].

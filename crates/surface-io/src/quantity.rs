@@ -96,8 +96,8 @@ impl FromStr for Quantity {
 
     /// Reads a number and a unit, with or without a space between; a number alone has no dimension.
     ///
-    /// For units that are powers of ten of SI units (all but those of time and of feet and pounds) the result is the double
-    /// nearest to what is written.
+    /// For units that are powers of ten of SI units (all but those of time and of feet and pounds) the result
+    /// is the double nearest to what is written.
     ///
     /// # Errors
     /// [`QuantityError`] for what is no number, a decimal comma, an unknown unit (with what may have been

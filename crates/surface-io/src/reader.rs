@@ -1,11 +1,11 @@
-//! What each format of an instrument or a program provides.
+//! The reader that each format of an instrument or a program provides.
 
 use crate::channel::StoredChannel;
 use crate::error::Result;
 use crate::format::Format;
 use crate::source::Source;
 
-/// Bytes at the beginning of a file by which its format is told.
+/// Number of bytes at the beginning of a file by which its format is recognised.
 pub(crate) const SNIFF: u64 = 1024;
 
 /// A reader of one binary format.

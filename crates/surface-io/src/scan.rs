@@ -1,4 +1,4 @@
-//! What a file holds before anything is done to it.
+//! The content of a file before preprocessing.
 
 use crate::channel::{StoredChannel, StoredUnit, check_unit};
 use crate::error::{ContentError, Place};
@@ -26,9 +26,9 @@ pub struct Metadata {
     pub rows: usize,
     /// Columns.
     pub columns: usize,
-    /// Whether it is a profile: one row whose file, no points x, y, z, says how far it reaches along x alone.
-    /// It stands for a body that is uniform along y; its cells are squares unless the caller says otherwise,
-    /// and a force on it is one on the side of a cell along y.
+    /// Whether it is a profile: one row in a file that states only the length along x (and does not have
+    /// points x, y, z). It represents a body that is uniform along y. Its cells are squares unless the caller
+    /// states otherwise, and forces on it are counted on the side of one cell along y.
     pub profile: bool,
     /// Sides of the map along x and y; `None` where neither they nor the cells are known.
     pub size: Option<[Quantity; 2]>,
@@ -45,8 +45,8 @@ pub struct Metadata {
     pub range: Option<[f64; 2]>,
     /// Root mean square of the heights about their mean in the file's unit; `None` where no point is defined.
     pub rms_height: Option<f64>,
-    /// What the file says and what is not used of it, what may be meant otherwise, and values that stand
-    /// alone: sentences for people.
+    /// Notes for people: statements of the file that are not used or are ambiguous, and values far from all
+    /// others.
     pub notes: Vec<String>,
 }
 
@@ -109,7 +109,7 @@ cell       {dx} x {dy}"
     }
 }
 
-/// A rectangle of heights as a file holds them: with undefined points, in the file's unit.
+/// A rectangle of heights as in the file, with undefined points and in the file's unit.
 ///
 /// [`Scan::map`] makes a [`contact_model::HeightMap`] of it.
 #[derive(Debug, Clone, PartialEq)]
@@ -255,8 +255,8 @@ fn scaled(
     Ok(Sourced { value, origin: Origin::Caller })
 }
 
-/// What is said of the lowest and the highest value where it stands alone: farther from the next one than
-/// twice the range of all others, as a mark of undefined points does that the file does not declare.
+/// Notes on the lowest and the highest value where it is farther from the next one than twice the range of
+/// all others, as is an undeclared mark of undefined points.
 fn lone_extremes(heights: &[f64]) -> Vec<String> {
     const ALONE: f64 = 2.0;
     // The lowest value and the next one, the highest and the one before.

@@ -1,4 +1,4 @@
-//! Lengths along x and y: as they are given, and what follows for one axis.
+//! Lengths along x and y, as they are given and for each axis.
 
 use crate::quantity::{Quantity, QuantityError};
 use std::fmt;

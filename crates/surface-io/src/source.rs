@@ -1,4 +1,4 @@
-//! The bytes of a file, read where a format's header says, never beyond its end.
+//! The bytes of a file, read at the places that its header names and never beyond its end.
 
 use crate::error::{ContentError, Error, Result};
 use crate::fields::{Fields, Stored};
@@ -36,14 +36,14 @@ pub(crate) trait OwnInput: Read + Seek + Send + Sync {}
 
 impl<T: Read + Seek + Send + Sync> OwnInput for T {}
 
-/// An input of its own that gives so many bytes in all: a file may name the same bytes a thousand times, and
-/// what is read is held.
+/// An input of its own with a limit of the bytes that it gives in all: a file may name the same bytes a
+/// thousand times, and all of them would be kept in memory.
 pub(crate) struct Detached {
     input: Box<dyn OwnInput>,
     budget: Budget,
 }
 
-/// Bytes that may still be read; none is left once more was asked for.
+/// Bytes that may still be read; 0 after a request for more.
 #[derive(Debug, Clone)]
 pub(crate) struct Budget(Arc<AtomicU64>);
 
@@ -52,7 +52,7 @@ impl Budget {
         Self(Arc::new(AtomicU64::new(bytes)))
     }
 
-    /// Whether more was asked for.
+    /// Whether more was requested than is left.
     pub(crate) fn is_spent(&self) -> bool {
         self.0.load(Ordering::Relaxed) == 0
     }
@@ -107,12 +107,12 @@ impl<'a> Source<'a> {
         self.length
     }
 
-    /// The first bytes, at most so many: fewer in a shorter file.
+    /// The first bytes, at most `most`: fewer in a shorter file.
     pub(crate) fn start(&mut self, most: u64) -> Result<Vec<u8>> {
         self.read(0, self.length.min(most))
     }
 
-    /// So many bytes from an offset on; an error where the file is shorter, before anything is allocated.
+    /// `count` bytes from an offset on; an error where the file is shorter, before anything is allocated.
     pub(crate) fn bytes(&mut self, offset: u64, count: u64) -> Result<Vec<u8>> {
         if offset.checked_add(count).is_none_or(|end| end > self.length) {
             let expected = format!("{count} bytes here, the file ends at {} (cut short?)", self.length);
@@ -121,7 +121,7 @@ impl<'a> Source<'a> {
         self.read(offset, count)
     }
 
-    /// An error where so many bytes from an offset on are not the rest of the file.
+    /// An error where `count` bytes from an offset on are not the rest of the file.
     pub(crate) fn ends(&self, offset: u64, count: u64) -> Result<()> {
         let rest = self.length.saturating_sub(offset);
         if rest == count {
@@ -135,7 +135,7 @@ impl<'a> Source<'a> {
         Ok(Fields::new(self.subject.clone(), order, offset, self.bytes(offset, count)?))
     }
 
-    /// So many numbers or texts of one type from an offset on.
+    /// A number or text, or several of one type, from an offset on.
     pub(crate) fn get<T: Stored>(&mut self, order: ByteOrder, offset: u64) -> Result<T> {
         self.fields(order, offset, T::BYTES as u64)?.get()
     }
@@ -147,7 +147,7 @@ impl<'a> Source<'a> {
         Ok(bytes)
     }
 
-    /// An empty list with room for so many numbers.
+    /// An empty list with room for `count` numbers.
     pub(crate) fn room<T>(&self, count: usize) -> Result<Vec<T>> {
         let mut list = Vec::new();
         let bytes = size_of::<T>() as u128 * count as u128;

@@ -1,11 +1,11 @@
-//! What errors about a file are about.
+//! The file that an error is about.
 
 use crate::error::{ContentError, Error};
 use crate::format::Format;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// What errors are about: a file, and the format that it is read as.
+/// The subject of errors: a file, and the format as which it is read.
 #[derive(Debug, Clone)]
 pub(crate) struct Subject(Arc<(PathBuf, Option<Format>)>);
 

@@ -42,18 +42,18 @@ impl std::fmt::Debug for SurfaceFile<'_> {
 }
 
 impl<'a> SurfaceFile<'a> {
-    /// Opens a file and reads its headers; of text the whole.
+    /// Opens a file and reads its headers; text is read as a whole.
     ///
     /// # Errors
-    /// [`Error::System`] where the system refuses; [`Error::Content`] for everything that is wrong in the headers.
+    /// [`Error::System`] where the system refuses; [`Error::Content`] for everything that is wrong in the
+    /// headers.
     pub fn open(path: impl AsRef<Path>, declared: &ReadOptions) -> Result<Self> {
         let path = path.as_ref();
         let (input, length) = opened(path)?;
         Self::new(path, input, length, declared)
     }
 
-    /// Opens the bytes of a file; `name` stands in the messages, and its ending counts as that of a file's
-    /// name.
+    /// Opens the bytes of a file. Messages show `name`, and its ending is used as that of a file's name.
     ///
     /// # Errors
     /// As [`SurfaceFile::open`].
@@ -155,8 +155,8 @@ pub(crate) fn told<'a>(
 impl Scan {
     /// Reads a file of one channel, or the channel that [`ReadOptions::channel`] names.
     ///
-    /// Memory: the heights for binary files that are not compressed; for text the file and at most four times
-    /// its length on top.
+    /// Memory: that of the heights for binary files that are not compressed; for text that of the file and up
+    /// to four times its length in addition.
     ///
     /// # Errors
     /// As [`SurfaceFile::open`] and [`SurfaceFile::scan`].
@@ -170,8 +170,7 @@ impl Scan {
         SurfaceFile::open(path, declared)?.scan()
     }
 
-    /// Reads the bytes of a file; `name` stands in the messages, and its ending counts as that of a file's
-    /// name.
+    /// Reads the bytes of a file. Messages show `name`, and its ending is used as that of a file's name.
     ///
     /// # Errors
     /// As [`Scan::read`].

@@ -1,4 +1,4 @@
-//! Numbers as text: lines, delimiters, comments, what a header says.
+//! Numbers as text: lines, delimiters, comments and headers.
 
 mod heading;
 mod matrix;
@@ -17,7 +17,7 @@ use number::unquoted;
 use std::borrow::Cow;
 use std::fmt;
 
-/// What stands between two numbers.
+/// Delimiter between two numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Delimiter {
     Whitespace,
@@ -80,7 +80,7 @@ pub(crate) struct TextTable {
     pub(crate) lines: Vec<u32>,
     /// Height of one unit of a number, where the header says it.
     pub(crate) scale: Option<f64>,
-    /// Whether decimal commas were found, not asked for.
+    /// Whether decimal commas were found without a request for them.
     found_commas: bool,
     /// What ends a line: a line feed, or a carriage return alone.
     end: u8,
@@ -96,7 +96,7 @@ const MOST_MAPS: usize = 1000;
 /// A line and its number, from 1.
 type NumberedLine<'t> = (usize, &'t [u8]);
 
-/// Two columns of at most so many rows are a map.
+/// Two columns with at most this number of rows are a map.
 const PROFILE: usize = 8;
 
 /// A mark that some editors put before UTF-8.
@@ -126,7 +126,7 @@ impl TextTable {
     /// Reads all lines, map by map; with decimal commas where they are found to be nothing else.
     ///
     /// A heading between numbers ends a map, and so does an empty line: not where there is one behind every
-    /// line, nor between three columns, which are points of one map unless they are asked for as a matrix.
+    /// line, nor between three columns, which are points of one map unless a matrix is requested.
     ///
     /// Memory: at most 8 bytes for each byte of the text (nothing between two commas), and 4 for each line.
     pub(crate) fn read(bytes: &[u8], declared: &ReadOptions) -> Result<Vec<Self>, ContentError> {

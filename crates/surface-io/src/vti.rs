@@ -43,9 +43,9 @@ const HIDDEN: u8 = 32;
 /// such a point there is no such array.
 ///
 /// # Errors
-/// [`ContentError::OutOfRange`] for a field of another size or a side that is not positive, [`ContentError::NoCells`] for no
-/// rows or columns; [`ContentError::NotFinite`] for a field with an infinity, and in [`Encoding::Ascii`] for
-/// one with a NaN: VTK's reader of decimals stops there.
+/// [`ContentError::OutOfRange`] for a field of another size or a side that is not positive,
+/// [`ContentError::NoCells`] for no rows or columns; [`ContentError::NotFinite`] for a field with an
+/// infinity, and in [`Encoding::Ascii`] for one with a NaN: VTK's reader of decimals stops there.
 ///
 /// ```
 /// use surface_io::{Encoding, DataArray, vti};

@@ -1,4 +1,4 @@
-//! Maps as files: text, and whatever the name's ending asks for.
+//! Writing of maps: as text, and in the format of the name's ending.
 
 use crate::channel::check_unit;
 use crate::error::{ContentError, Error, Result};
@@ -10,7 +10,7 @@ use crate::vti::{DataArray, Encoding, vti};
 use contact_model::HeightMap;
 use std::path::Path;
 
-/// What the numbers of a map are: metres, as [`crate::Scan::map`] gives them, or without a unit.
+/// Unit of the numbers of a map: metres, as [`crate::Scan::map`] gives them, or no unit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Metric {
     /// Heights and side in metres.
@@ -36,7 +36,7 @@ impl Metric {
         }
     }
 
-    /// The symbol of the unit; nothing for none.
+    /// The symbol of the unit; empty without a unit.
     pub(crate) fn unit(self) -> &'static str {
         self.suffix().trim_start()
     }
@@ -52,10 +52,11 @@ impl Metric {
 /// Writes a map whole or not at all, in the format of the name's ending: `npy`, `h5`, `txt`, `xyz`, `vti`,
 /// `x3p`, `gwy` or `nc` (NetCDF-3).
 ///
-/// All but NPY (an array `[row, column]`) say the size and the unit; X3P is in metres only. Every number is
-/// written so that the same double is read again; X3P says cells, whose multiple may be off a side by its
-/// last bit. Undefined points are `nan` in text and XYZ, NaN in NPY, HDF5, X3P, NetCDF and VTI, masked in
-/// GWY; VTI also hides their cells ([`vti`]), NetCDF masks them too.
+/// All formats but NPY (an array `[row, column]`) contain the size and the unit; X3P is in metres only. Every
+/// number is written so that the same double is read again. X3P contains the sides of a cell, whose multiple
+/// may differ from the side of the map in the last bit. Undefined points are `nan` in text and XYZ, and NaN
+/// in NPY, HDF5, X3P, NetCDF and VTI; they are masked in GWY. VTI also hides their cells ([`vti`]), and
+/// NetCDF masks them too.
 ///
 /// # Errors
 /// [`Error::System`] where the system refuses, [`Error::Content`] for another ending, for a format that the
@@ -99,7 +100,8 @@ fn encoded(ending: &str, map: &HeightMap, metric: Metric) -> Result<Vec<u8>, Con
 /// Writes numbers as an NPY array of the given shape (float64, row-major), whole or not at all.
 ///
 /// # Errors
-/// [`files::Error::Content`] where the shape holds another number of values, [`files::Error::System`] when it cannot be written.
+/// [`files::Error::Content`] where the shape holds another number of values, [`files::Error::System`] when it
+/// cannot be written.
 pub fn write_npy(path: &Path, shape: &[usize], values: &[f64]) -> files::Result<()> {
     let bytes = npy(shape, values).map_err(|e| files::Error::content(path, e.to_string()))?;
     files::write_whole(path, &bytes)

@@ -1,8 +1,8 @@
 //! Areal parameters of ISO 25178-2:2021.
 //!
-//! Of the map as it is: levelling and the filters of ISO 25178-3 (S, L, F) are the caller's. Heights z count
-//! from the mean of the defined points, each cell weighs the same. Symbols are those of the standard, in
-//! lower case; ratios are not in per cent.
+//! The parameters are those of the map as it is: the caller does the levelling and the filtering of ISO
+//! 25178-3 (S, L, F). Heights z are relative to the mean of the defined points, and each cell has the same
+//! weight. Symbols are those of the standard, in lower case; ratios are not in per cent.
 
 mod hills;
 mod holes;
@@ -17,14 +17,14 @@ use surface_gen::{HeightMoments, defined_everywhere, periodogram, rms_slope_diff
 
 /// Autocorrelation at which a surface counts as decorrelated (ISO 25178-3:2012, 4.4).
 const DECAYED: f64 = 0.2;
-/// Pruning of hills in shares of Sz (ISO 25178-3).
+/// Limit of the pruning of hills, as a share of Sz (ISO 25178-3).
 const PRUNING: f64 = 0.05;
-/// Largest share of hills that holes may make incomplete.
+/// Largest share of hills that may be incomplete because of holes.
 const CUT: f64 = 0.1;
 /// Sectors of directions over half a turn.
 const SECTORS: usize = 90;
 
-/// Height parameters (ISO 25178-2, 4.1), of maps with undefined points too.
+/// Height parameters (ISO 25178-2, 4.1). Maps may have undefined points.
 ///
 /// ```
 /// use contact_model::HeightMap;
@@ -57,8 +57,8 @@ impl HeightParameters {
     /// Measures a map. Cost O(N).
     ///
     /// # Errors
-    /// [`Error::Domain`] for heights that are all one (which have no skewness), and numbers beyond the range
-    /// of f64.
+    /// [`Error::Domain`] for heights that are all equal (which have no skewness), and numbers beyond the
+    /// range of f64.
     pub fn new(map: &HeightMap) -> Result<Self> {
         let Relative { heights, unit } = Relative::new(map);
         let defined: Vec<f64> = heights.into_iter().filter(|h| !h.is_nan()).collect();
@@ -78,11 +78,11 @@ impl HeightParameters {
     }
 }
 
-/// Hybrid parameters (ISO 25178-2, 4.3), of maps with undefined points too.
+/// Hybrid parameters (ISO 25178-2, 4.3). Maps may have undefined points.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HybridParameters {
-    /// Root mean square gradient, dimensionless, from differences of neighbours, each direction over all of
-    /// its own pairs: [`surface_gen::rms_slope_differences`].
+    /// Root mean square gradient, dimensionless, from differences of neighbours; each direction is averaged
+    /// over all of its own pairs: [`surface_gen::rms_slope_differences`].
     pub sdq: f64,
     /// Developed interfacial area ratio, dimensionless: area of the surface over its projection, less 1.
     /// Between the centres of four cells the area is the mean of those of both pairs of triangles (ISO
@@ -137,26 +137,26 @@ impl HybridParameters {
     }
 }
 
-/// Spatial parameters (ISO 25178-2, 4.2), of maps with undefined points too.
+/// Spatial parameters (ISO 25178-2, 4.2). Maps may have undefined points.
 ///
-/// Of the unbiased autocorrelation of the map as a free one ([`DifferenceMap::autocorrelation`]): its part
-/// above s = 0.2 that contains the vector 0, whose outline is interpolated linearly between neighbouring
-/// vectors.
+/// They are found from the unbiased autocorrelation of the map, taken as not periodic
+/// ([`DifferenceMap::autocorrelation`]): from the outline of its central part above s = 0.2, which is
+/// interpolated linearly between neighbouring vectors.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SpatialParameters {
-    /// Autocorrelation length, a length: distance of the fastest decay to s. `None` where it decays nowhere
-    /// inside the map.
+    /// Autocorrelation length, a length: distance of the fastest decay to s. `None` where the autocorrelation
+    /// reaches s in no direction inside the map.
     pub sal: Option<f64>,
-    /// Distance of the slowest decay to s, a length. `None` where it does not decay in all directions inside
-    /// the map.
+    /// Distance of the slowest decay to s, a length. `None` where the autocorrelation does not reach s in all
+    /// directions inside the map.
     pub slowest: Option<f64>,
-    /// Texture aspect ratio, fastest over slowest decay; 1 for an isotropic surface. `None` with `slowest`:
-    /// it then is at most about Sal over the shorter side.
+    /// Texture aspect ratio, fastest over slowest decay; 1 for an isotropic surface. `None` where `slowest`
+    /// is: the ratio is then at most about Sal over the shorter side.
     pub str: Option<f64>,
 }
 
 impl SpatialParameters {
-    /// Measures a map. Cost and memory those of [`DifferenceMap::new`].
+    /// Measures a map. Cost and memory are those of [`DifferenceMap::new`].
     ///
     /// # Errors
     /// [`Error::Domain`] for heights that are all one.
@@ -222,12 +222,12 @@ impl SpatialParameters {
 const NEIGHBOURS: [[isize; 2]; 8] = [[1, 0], [-1, 0], [0, 1], [0, -1], [1, 1], [1, -1], [-1, 1], [-1, -1]];
 
 /// Texture direction Std (ISO 25178-2, 4.4): angle in degrees from x towards y, 0 to 180, of the wave vectors
-/// in which most of the variance is. The lay, along which heights change least, is across it.
+/// with most of the variance. The lay, along which heights change least, is perpendicular to it.
 ///
-/// Middle of the largest of 90 sectors of 2 degrees of the angular power spectrum `int C q dq` under Hann's
-/// window. Waves shorter than twice the longer cell side, which not all directions have, and longer than half
-/// of the shorter side, which the window spreads over all directions, are left out. Rows count upwards with
-/// y: where the picture of a map has its first row on top, the angle is clockwise in it. Cost O(N log N).
+/// It is the middle of the largest of 90 sectors of 2 degrees of the angular power spectrum `int C q dq`
+/// under Hann's window. Waves shorter than twice the longer cell side, which not all directions have, and
+/// longer than half of the shorter side, which the window spreads over all directions, are left out. The row
+/// number rises with y: in a picture with the first row on top, the angle is clockwise. Cost O(N log N).
 ///
 /// # Errors
 /// [`Error::Domain`] for undefined points, heights that are all one and maps of fewer than about 8 cells
@@ -266,21 +266,22 @@ pub fn texture_direction(map: &HeightMap) -> Result<f64> {
     Ok((sector as f64 + 0.5) * 180.0 / SECTORS as f64)
 }
 
-/// Feature parameters of hills (ISO 25178-2, 4.8), of maps with scattered undefined points too.
+/// Feature parameters of hills (ISO 25178-2, 4.8). Maps may have scattered undefined points.
 ///
-/// Hills are the parts of the map that lead upwards to one peak, by the steepest of eight neighbours. The
-/// hill whose peak rises least above the highest saddle to a neighbour is united with that, as long as that
-/// is less than 5 % of Sz (pruning after Wolf). Hills that touch the edge of the map or an undefined point
-/// are incomplete: they do not count.
+/// A hill is the part of the map from which steepest ascent, among eight neighbours, leads to the same peak.
+/// The hill whose peak rises least above its highest saddle is merged with its neighbour there, and so on as
+/// long as this height is less than 5 % of Sz (pruning after Wolf). Hills that touch the edge of the map or
+/// an undefined point are incomplete and do not count.
 ///
-/// Patches of up to 16 undefined points have the mean height of their neighbours first, because each of them
-/// would take a hill away. Larger ones stay: one that touches the edge of the map is outside of it, and those
-/// inside may make a tenth of the hills incomplete.
+/// Patches of up to 16 undefined points are first filled with the mean height of their neighbours, because
+/// each of them would remove a hill. Larger patches stay undefined. One that touches the edge of the map
+/// counts as outside of the map; those inside may make at most a tenth of the hills incomplete.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FeatureParameters {
     /// Number of hills that count.
     pub hills: usize,
-    /// Density of peaks, hills that count over the area that is not outside, in 1/length^2.
+    /// Density of peaks: the number of complete hills over the area of the map without the parts outside, in
+    /// 1/length^2.
     pub spd: f64,
     /// Arithmetic mean peak curvature, mean of half the Laplacian of -z at the peaks by second differences,
     /// in 1/length, over the peaks whose four neighbours were measured; `None` without one.
@@ -293,7 +294,8 @@ impl FeatureParameters {
     /// Measures a map. Cost O(N log N).
     ///
     /// # Errors
-    /// [`Error::Domain`] where holes make more than a tenth of the hills incomplete, and for curvatures beyond the range of f64.
+    /// [`Error::Domain`] where holes make more than a tenth of the hills incomplete, and for curvatures
+    /// beyond the range of f64.
     ///
     /// ```
     /// use contact_model::HeightMap;

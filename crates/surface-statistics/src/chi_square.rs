@@ -3,8 +3,8 @@
 use contact_model::{Error, Result};
 use numerics::quantile::chi_square;
 
-/// What a mean of squares with so many degrees of freedom is multiplied by for the limits between which the
-/// expected value lies with the probability `level`.
+/// Factors by which a mean of squares with `freedom` degrees of freedom is multiplied to obtain the limits of
+/// a confidence interval of its expected value, with the confidence `level`.
 ///
 /// # Errors
 /// [`Error::Domain`] for a level outside (0, 1) and degrees of freedom that are no positive number.

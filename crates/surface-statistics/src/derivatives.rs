@@ -6,9 +6,9 @@ use surface_gen::MapStatistics;
 
 /// Root mean squares of derivatives by differences of neighbouring points.
 ///
-/// Only points with all of the heights in question count; with [`Boundary::Periodic`] neighbours lie across
-/// the edges too. Differences damp the shortest waves: a wave q along x by `sin(q dx/2)/(q dx/2)`, its
-/// curvature by the square of that.
+/// Only points with all of the needed heights count; with [`Boundary::Periodic`] neighbours lie across the
+/// edges too. Differences damp the shortest waves: the slope of a wave q along x by the factor `sin(q
+/// dx/2)/(q dx/2)`, its curvature by the square of that.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Derivatives {
     /// `sqrt(mean (dh/dx)^2 + (dh/dy)^2)` from forward differences, over the points that have a neighbour
@@ -119,7 +119,7 @@ pub struct ScaleDependence {
     pub distance: Vec<f64>,
     /// Root mean square of the difference quotient.
     pub rms: Vec<f64>,
-    /// Points that were averaged over.
+    /// Number of points in each average.
     pub points: Vec<usize>,
 }
 
@@ -127,9 +127,9 @@ impl ScaleDependence {
     /// Slope along x over the distance r, `rms [h(x + r) - h(x)]/r`, dimensionless, for r of 1, 2, 3, 4, 6,
     /// 8, ... cells.
     ///
-    /// Points with undefined neighbours are left out; a free map ends the list where no two points are so far
-    /// apart, a periodic one at half of its side. Cost O(N) for each distance. Source: Sanner, Noehring,
-    /// Thimons, Jacobs, Pastewka, Appl. Surf. Sci. Adv. 7, 100190 (2022), Eqs. 7 and 14.
+    /// Points with undefined neighbours are left out. The list ends at the longest distance between two
+    /// points of a free map, or at half of the side of a periodic one. Cost O(N) for each distance. Source:
+    /// Sanner, Noehring, Thimons, Jacobs, Pastewka, Appl. Surf. Sci. Adv. 7, 100190 (2022), Eqs. 7 and 14.
     ///
     /// # Errors
     /// [`Error::Domain`] for fewer than 2 columns and numbers beyond the range of f64.

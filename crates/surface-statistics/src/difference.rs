@@ -9,14 +9,14 @@ use numerics::fourier::{ForwardTransform, InverseTransform, fast_length};
 /// together.
 ///
 /// `A(r) = <[h(x + r) - h(x)]^2>/2`; the structure function is `2 A`, the autocorrelation of a homogeneous
-/// surface `R(r) = h_rms^2 - A(r)`, its rms slope over the distance r `sqrt(2 A)/r`.
+/// surface `R(r) = h_rms^2 - A(r)`, and its rms slope over the distance r is `sqrt(2 A)/r`.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct HeightDifference {
     /// Mean distance of the pairs, a length.
     pub distance: Vec<f64>,
     /// A, in the square of a length.
     pub half_square: Vec<f64>,
-    /// Pairs of defined points that were averaged over; each counts once.
+    /// Number of pairs of defined points in each average; each pair counts once.
     pub pairs: Vec<f64>,
 }
 
@@ -45,12 +45,12 @@ pub struct DifferenceMap {
 }
 
 impl DifferenceMap {
-    /// Takes all pairs of defined points: with [`Boundary::Free`] those inside the map, with
+    /// Averages over all pairs of defined points: with [`Boundary::Free`] those inside the map, with
     /// [`Boundary::Periodic`] also those across its edges.
     ///
-    /// By transforms of heights, their squares and the pattern of defined points, with zeros behind free
-    /// maps. Cost O(N log N), memory 60 bytes for each point, 200 for free maps. Values below about 1e-14 of
-    /// the mean square height are rounding.
+    /// The averages follow from Fourier transforms of the heights, their squares and the pattern of defined
+    /// points; free maps are padded with zeros. Cost O(N log N), memory 60 bytes for each point, 200 for free
+    /// maps. Values below about 1e-14 of the mean square height are rounding errors.
     pub fn new(map: &HeightMap, boundary: Boundary) -> Self {
         let periodic = boundary == Boundary::Periodic;
         let Relative { heights, unit } = Relative::new(map);
@@ -99,8 +99,8 @@ impl DifferenceMap {
         Self { periodic, cells, sides: [map.dx(), map.dy()], unit, lengths, values }
     }
 
-    /// A and the number of pairs for the vector of so many cells along x and y; `None` for one that leaves
-    /// the map or has no pair of defined points.
+    /// A and the number of pairs for the vector `lag`, in cells along x and y; `None` for a vector that is
+    /// longer than the map or has no pair of defined points.
     pub fn at(&self, lag: [isize; 2]) -> Option<[f64; 2]> {
         let [value, _, pairs] = self.found(lag)?;
         let root = value.sqrt() * self.unit;
@@ -108,11 +108,11 @@ impl DifferenceMap {
     }
 
     /// The autocorrelation `<h(x) h(x + r)>/<h^2>` of the heights about the mean of the map, over the pairs
-    /// of defined points at this vector of so many cells; `None` as in [`DifferenceMap::at`], and where all
-    /// heights are one. 1 for the vector 0.
+    /// of defined points at the vector `lag`, in cells; `None` as in [`DifferenceMap::at`], and where all
+    /// heights are equal. It is 1 for the vector 0.
     ///
-    /// Each vector has the mean over its own pairs (the unbiased estimate), that of far ones from few. Cost
-    /// O(1).
+    /// The value of each vector is the mean over its own pairs (the unbiased estimate); long vectors have few
+    /// pairs. Cost O(1).
     pub fn autocorrelation(&self, lag: [isize; 2]) -> Option<f64> {
         let [_, product, _] = self.found(lag)?;
         let [_, square, _] = self.found([0, 0])?;
@@ -164,8 +164,8 @@ impl DifferenceMap {
         Ok(found)
     }
 
-    /// A over all vectors with lengths in the bins, each with the weight of its pairs; bins without pairs are
-    /// left out. Of periodic maps the shortest of the vectors between two points counts.
+    /// A averaged over all vectors with lengths in a bin, with their numbers of pairs as weights; bins
+    /// without pairs are left out. In a periodic map the shortest of the vectors between two points counts.
     ///
     /// Cost: one pass over the vectors.
     ///

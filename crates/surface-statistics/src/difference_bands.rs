@@ -12,7 +12,7 @@ use surface_gen::periodogram;
 /// by less than 1/2.
 const RINGS: f64 = 8.0;
 
-/// How well mean squares over distances are known, from the spectrum of the map itself.
+/// Confidence bands of mean squares over distances, from the spectrum of the map itself.
 ///
 /// A mean square over the distance r is a sum `sum_q w(q r) |H(q)|^2` over independent waves with
 /// exponentially distributed squares, where heights are Gaussian. With
@@ -22,8 +22,8 @@ const RINGS: f64 = 8.0;
 /// `(1 - cos(q_x r/2))^2` for curvatures. Free maps are taken under Hann's window for the spectrum, and n is
 /// multiplied by the share of pairs of points at r that lie inside of the map.
 ///
-/// Assumes Gaussian heights. A free map says nothing of waves much longer than itself: bands end at half of
-/// its shorter side.
+/// The bands assume Gaussian heights. They end at half of the shorter side of a free map, because such a map
+/// has no information about waves much longer than itself.
 ///
 /// ```
 /// use contact_model::{Boundary, SelfAffine};
@@ -53,7 +53,7 @@ struct Waves {
 }
 
 impl DifferenceBands {
-    /// Takes the spectrum of a map. Cost O(N log N), memory about three times that of the map.
+    /// Computes the spectrum of a map. Cost O(N log N), memory about three times that of the map.
     ///
     /// # Errors
     /// [`contact_model::Error::Domain`] for undefined points.

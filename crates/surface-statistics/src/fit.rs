@@ -22,12 +22,13 @@ const FEWEST: usize = 8;
 const INTERVAL: f64 = 0.5 * 3.841_458_820_694_124;
 /// Half the 90 % quantile: rise at a bound, which leaves 5 % on its one side.
 const BOUND: f64 = 0.5 * 2.705_543_454_095_404;
-/// Gain of the logarithm of the likelihood from which on a cut-off is one: it may be anywhere among the
-/// rings, and with a noise it is any step in a spectrum. That of a true one inside the fit is hundreds.
+/// Gain of the logarithm of the likelihood above which a cut-off is accepted. The limit is high because a
+/// cut-off may be anywhere among the rings, and with a noise it fits any step in a spectrum. A true cut-off
+/// inside the fit gains hundreds.
 const EDGE: f64 = 6.0;
 /// A cut-off is known to half of a wave of the map at best, in rings.
 const RESOLUTION: f64 = 0.5;
-/// Better minima that are met on the way along a profile.
+/// Largest number of restarts, each from a better minimum that was found along a profile.
 const RESTARTS: usize = 8;
 /// What a plane leaves of heights within 1 is rounding up to this.
 const ROUNDING: f64 = 1e-13;
@@ -37,7 +38,7 @@ const TEST_BIN: f64 = 1.25;
 /// A number and its 95 % interval.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Interval {
-    /// Of the largest likelihood.
+    /// The value of the largest likelihood.
     pub value: f64,
     /// Lower end.
     pub low: f64,
@@ -52,11 +53,11 @@ impl Interval {
     }
 }
 
-/// A wavelength where the map has it, else what the map says about it.
+/// A wavelength with its interval where the map contains it, else a bound.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Wavelength {
-    /// With a 95 % interval.
+    /// The wavelength with a 95 % interval.
     Interval(Interval),
     /// At least this, with 95 % confidence: the map ends before it (or there is none).
     AtLeast(f64),
@@ -75,7 +76,7 @@ impl Wavelength {
     }
 }
 
-/// Which part of a map is fitted, and how.
+/// The range of wavelengths of a fit, and the boundary of the map.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct FitOptions {
     /// [`Boundary::Periodic`] takes the map as it is; [`Boundary::Free`] removes its plane and lays Hann's
@@ -91,33 +92,34 @@ pub struct FitOptions {
 /// A self-affine spectrum fitted to a map: `C_2D(q)` is constant below the roll-off, falls as `q^(-2 (H +
 /// 1))` from there to the cut-off and is 0 beyond it, besides a white noise of the instrument everywhere.
 ///
-/// Largest likelihood of the periodogram averaged over rings one wave wide (Whittle): the squares of the
-/// waves of Gaussian heights are independent and exponentially distributed about the spectrum, so that the
-/// mean of n of them has a gamma law. Under Hann's window the expectation of each ring is that of the
-/// spectrum smeared by the window's transform (the leakage of long waves into short ones is part of it;
-/// Sykulski et al., Biometrika 106, 251 (2019)), and its neighbours are correlated: the logarithm of the
-/// likelihood is divided by (35/18)^2, the number of waves that count as one. The rings then begin at four
-/// waves along the shorter side, because the plane is taken from longer ones, and end two waves before the
-/// limit of the grid. Intervals are those of the profile likelihood (twice its logarithm has fallen by 3.84);
-/// a bound is one-sided (2.71). The interval of a cut-off is no narrower than one wave of the map.
+/// The fit maximises the likelihood of the periodogram averaged over rings one wave wide (Whittle): for
+/// Gaussian heights the squared amplitudes of the waves are independent and exponentially distributed, with
+/// the spectrum as their mean, so that the mean of n of them has a gamma law. Under Hann's window the
+/// expectation of each ring is that of the spectrum smeared by the window's transform (the leakage of long
+/// waves into short ones is part of it; Sykulski et al., Biometrika 106, 251 (2019)), and its neighbours are
+/// correlated: the logarithm of the likelihood is divided by (35/18)^2, the number of waves that count as
+/// one. The rings then begin at four waves along the shorter side, because removing the plane affects longer
+/// waves, and end two waves before the limit of the grid. Intervals are those of the profile likelihood
+/// (twice its logarithm has fallen by 3.84); a bound is one-sided (2.71). The interval of a cut-off is no
+/// narrower than one wave of the map.
 ///
-/// * A cut-off is one where it raises the logarithm of the likelihood by more than 6: anywhere among the
-///   rings, and with a noise behind it, it may be any step. Its edge fills several rings through the window;
-///   they then count a fifth each in what follows. Rings farther behind that hold less than ten times the
-///   leakage of long waves are left out.
-/// * Where the likelihood does not tell a roll-off, a cut-off or a noise from none, the exponent is that
-///   without it, and its interval holds both with and without: each of them can only make the exponent
-///   larger.
+/// * A cut-off is accepted where it raises the logarithm of the likelihood by more than 6, because it may be
+///   anywhere among the rings and, with a noise beyond it, fits any step. The window spreads its edge over
+///   several rings; each of them then has a weight of one fifth. Rings farther beyond it are left out where
+///   their power is less than ten times the leakage of long waves.
+/// * Where the likelihood does not favour a roll-off, a cut-off or a noise over none, the exponent is that of
+///   the fit without it, and its interval covers both fits: each of these parameters can only make the
+///   exponent larger.
 ///
-/// Assumes an isotropic Gaussian surface; waves beyond the limit of the grid are taken as absent (not folded
-/// back by the sampling). Surfaces with prescribed amplitudes, as those of [`surface_gen::self_affine_map`],
-/// scatter less on their own period than the law says, and their intervals are too wide; a part cut out of
-/// one is as good as Gaussian.
+/// The fit assumes an isotropic Gaussian surface without waves beyond the limit of the grid (no aliasing).
+/// Surfaces with prescribed amplitudes, such as those of [`surface_gen::self_affine_map`], scatter less on
+/// their own period than the law predicts, so their intervals are too wide; a part cut out of such a surface
+/// is practically Gaussian.
 ///
-/// This is the fit that is told where statistics of a map are asked for. [`surface_gen::SelfAffineFit`] is a
-/// straight line through the logarithms of the rings over fixed wavelengths, for a theory that takes H alone:
-/// it has no interval, no roll-off and no correction for the window, refuses maps whose spectrum is no power
-/// law down to the longest wave, and differs from this one by its scatter there.
+/// Statistics of a map report this fit. [`surface_gen::SelfAffineFit`] is another one, a straight line
+/// through the logarithms of the rings over fixed wavelengths, for theories that need H alone. It has no
+/// interval, no roll-off and no correction for the window, and it refuses maps whose spectrum is no power law
+/// down to the longest wave. On the maps that it accepts, the two differ by its larger scatter.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SpectrumFit {
     /// Hurst exponent H; outside of 0 to 1 the surface is not self-affine.
@@ -126,30 +128,30 @@ pub struct SpectrumFit {
     pub roll_off: Wavelength,
     /// Cut-off, a length.
     pub cut_off: Wavelength,
-    /// Density `C_2D` of the power law at the wavenumber `sqrt(q_1 q_2)` of `fitted`, continued to there
-    /// where it has rolled off, noise left out, in length^4.
+    /// Density `C_2D` of the power law at the wavenumber `sqrt(q_1 q_2)` of `fitted`, without noise, in
+    /// length^4. Where the spectrum has rolled off, the power law is extrapolated to there.
     pub density: f64,
-    /// Density of the white noise where the likelihood tells it from none (95 %), in length^4. Behind a
-    /// cut-off it is what there is, rounding and leakage of the window too.
+    /// Density of the white noise, in length^4, where the likelihood favours it over none (95 %). Beyond a
+    /// cut-off it is the whole remaining density, including rounding and leakage of the window.
     pub noise: Option<f64>,
-    /// Wavenumbers from and to which there are rings, in 1/length.
+    /// Smallest and largest wavenumber of the fitted rings, in 1/length.
     pub fitted: [f64; 2],
-    /// Probability that a Gaussian surface of the fitted spectrum deviates at least as much from it: below
-    /// 0.01 or so, the surface is none, and the intervals say nothing. From the deviance in bins of a quarter
-    /// of an octave up to the cut-off.
+    /// Probability that a Gaussian surface of the fitted spectrum deviates at least as much from it. Below
+    /// about 0.01 the surface is not of this kind and the intervals are meaningless. It follows from the
+    /// deviance in bins of a quarter of an octave up to the cut-off.
     pub goodness: f64,
 }
 
 impl SpectrumFit {
     /// Fits a map.
     ///
-    /// Cost: O(N log N), under a window 600 N more, and some 1e4 evaluations of the rings: about 0.2 s for
-    /// 128 cells a side.
+    /// The cost is O(N log N), under a window 600 N more, and about 1e4 evaluations of the rings: about 0.2 s
+    /// for 128 cells a side.
     ///
     /// # Errors
-    /// [`Error::Domain`] for undefined points, heights that are all one (or one plane), limits that are no
-    /// positive numbers, fewer than 8 rings between the limits, and a spectrum without a power law: no
-    /// exponent between -0.95 and 4 that the likelihood tells from others.
+    /// [`Error::Domain`] for undefined points, heights that are all equal or lie in a plane, limits that are
+    /// no positive numbers, fewer than 8 rings between the limits, and a spectrum without a power law, where
+    /// the likelihood favours no exponent between -0.95 and 4.
     ///
     /// ```
     /// use contact_model::{Boundary, SelfAffine};
@@ -326,7 +328,7 @@ impl Ends {
     ) -> Result<SpectrumFit> {
         let [hurst, roll_off, ..] = best.0.values;
         let [End::At(low), End::At(high)] = self.hurst else {
-            let expected = "an exponent that the likelihood tells from others: a power law over more waves";
+            let expected = "an exponent that the spectrum determines: a power law over more waves";
             return Err(Error::domain("Hurst exponent of the spectrum", hurst, expected));
         };
         let (hurst, low, high) = match &simple {

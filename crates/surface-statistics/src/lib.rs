@@ -2,8 +2,8 @@
 //! correlations with confidence bands, slopes and curvatures by scale, and the fit of a self-affine spectrum
 //! with intervals.
 //!
-//! All of it takes a [`contact_model::HeightMap`]: a rectangle of equal cells, oblong ones too, in one length
-//! unit.
+//! Every function takes a [`contact_model::HeightMap`]: a rectangle of equal cells, which need not be
+//! squares, in one length unit.
 //!
 //! ```
 //! use contact_model::{Boundary, SelfAffine};
@@ -45,16 +45,17 @@
 //!
 //! # Conventions
 //!
-//! * **Fourier.** Those of [`surface_gen`]: wavenumbers q = 2 pi/wavelength, `H(q) = 1/N sum h exp(-i q x)`,
-//!   densities two-sided, `C_2D = Lx Ly/(2 pi)^2 |H|^2` and `C_1D = L/(2 pi) |H|^2`, so that their integrals
-//!   over all q are the variance. SurfaceTopography and Jacobs, Junge, Pastewka (2017) leave `1/(2 pi)^2` and
-//!   `1/(2 pi)` out: their densities are 39.5 and 6.28 times these.
-//! * **Boundary.** [`contact_model::Boundary::Periodic`] takes neighbours across the edges, `Free` those
-//!   inside alone. Spectra of a free map need a window ([`Taper`]), whose factors have the mean square 1,
-//!   over the heights about their mean; subtract a tilt before. The fit does both by itself.
+//! * **Fourier.** The conventions are those of [`surface_gen`]: wavenumbers q = 2 pi/wavelength, `H(q) = 1/N
+//!   sum h exp(-i q x)`, densities two-sided, `C_2D = Lx Ly/(2 pi)^2 |H|^2` and `C_1D = L/(2 pi) |H|^2`, so
+//!   that their integrals over all q are the variance. SurfaceTopography and Jacobs, Junge, Pastewka (2017)
+//!   leave `1/(2 pi)^2` and `1/(2 pi)` out: their densities are 39.5 and 6.28 times these.
+//! * **Boundary.** [`contact_model::Boundary::Periodic`] takes neighbours across the edges, and
+//!   [`contact_model::Boundary::Free`] only those inside. Spectra of a free map need a window ([`Taper`]),
+//!   whose factors have the mean square 1 and multiply the heights about their mean; subtract a tilt first.
+//!   The fit does both by itself.
 //! * **Height differences.** `A(r) = <[h(x + r) - h(x)]^2>/2` over all pairs of points and all directions,
-//!   each pair with the same weight. SurfaceTopography averages vectors with the same weight, for free maps
-//!   those with both components positive alone.
+//!   each pair with the same weight. SurfaceTopography gives each vector the same weight; for free maps it
+//!   uses only vectors whose components are both positive.
 //! * **Curvature** is half the Laplacian; along an axis it is the second derivative.
 //! * **Standard.** ISO 25178-2 defines its parameters for a scale-limited surface: levelling and filters are
 //!   the caller's. Ratios are not in per cent, angles run from x towards y.
@@ -62,12 +63,13 @@
 //! # Accuracy
 //!
 //! Rms gradient, rms curvature, spectrum and autocorrelation agree with SurfaceTopography 1.27.1 on the real
-//! maps of `tests/measured.rs` to 1e-10, the factors above applied; parameters of the standard with surfalize
-//! 0.19.2 as `data/iso25178/README.md` says. 95 % bands of spectra, height differences, slopes and
-//! curvatures hold the truth for 93 to 96 % of values (`tests/bands.rs`).
+//! maps of `tests/measured.rs` to 1e-10, apart from the factors above. Parameters of the standard agree with
+//! surfalize 0.19.2 as stated in `data/iso25178/README.md`. The 95 % bands of spectra, height differences,
+//! slopes and curvatures contain 93 to 96 % of the true values (`tests/bands.rs`).
 //!
-//! Of 100 surfaces each, with seeds that had no part in setting up the fit, intervals and bounds hold the
-//! true exponent, roll-off and cut-off (`tests/coverage.rs`, about 40 s):
+//! The table gives the number of surfaces, of 100 each, whose intervals and bounds contain the true exponent,
+//! roll-off and cut-off. Their seeds were not used in the development of the fit (`tests/coverage.rs`, about
+//! 40 s):
 //!
 //! ```text
 //! cargo test -p surface-statistics --test coverage -- --ignored --nocapture
@@ -84,12 +86,13 @@
 //! | free, H = 0.2, cut-off far inside, 128 x 128 | 95 | 95 | 100 | 0.42 |
 //! | free, H = 1, no roll-off, 128 x 128 | 98 | 99 | 100 | 0.23 |
 //!
-//! Cut-offs are covered more often than in 95 of 100 cases: their edge is sharp, and its interval is kept at
-//! one wave of the map at least.
+//! Cut-offs are covered more often than in 95 of 100 cases: their edge is sharp, and the interval is never
+//! narrower than one wave of the map.
 //!
-//! A free map of 128 cells a side without limits inside has an exponent to +-0.08, one of 512 to +-0.02. What
-//! no fit can tell: whether a surface with prescribed amplitudes is Gaussian (its intervals are too wide),
-//! and intervals of a surface that is not self-affine, which a small [`SpectrumFit::goodness`] tells.
+//! A free map of 128 cells a side without roll-off and cut-off determines the exponent to +-0.08, one of 512
+//! cells to +-0.02. Two limitations remain. The intervals of a surface with prescribed amplitudes are too
+//! wide, because the fit cannot see that it is not Gaussian. The intervals of a surface that is not
+//! self-affine are meaningless; a small [`SpectrumFit::goodness`] shows it.
 //!
 //! # Speed
 //!
@@ -98,9 +101,9 @@
 //!
 //! # What it does not do
 //!
-//! Filters (Gaussian, spline) and levelling, functional and volume parameters (Sk, Vmp, ...), roll-off and
-//! cut-off of profiles, fits of anisotropic spectra, dales. A profile is a map of one row: height parameters
-//! of such a map are those of its primary profile (Pa, Pq, ... of ISO 21920-2).
+//! It has no filters (Gaussian, spline) and no levelling, no functional and volume parameters (Sk, Vmp, ...),
+//! no roll-off and cut-off of profiles, no fits of anisotropic spectra, and no dales. A profile is a map of
+//! one row: height parameters of such a map are those of its primary profile (Pa, Pq, ... of ISO 21920-2).
 
 mod areal;
 mod bins;

@@ -21,9 +21,9 @@ const QUANTILE: f64 = 1.96;
 /// squares of that.
 const HANN: f64 = 1.95;
 
-/// `C_1D ~ q^-(1 + 2 H)`, fitted to the waves of one row.
+/// A power law `C_1D ~ q^-(1 + 2 H)` fitted to the waves of one row.
 ///
-/// A profile is one line through a surface: H is that of an isotropic surface whose lines it stands for.
+/// A profile is one line through a surface: H is the Hurst exponent of an isotropic surface with such lines.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ProfileFit {
     /// Hurst exponent with its 95 % interval.
@@ -33,13 +33,14 @@ pub struct ProfileFit {
 }
 
 impl ProfileFit {
-    /// Least squares of `ln C_1D` over `ln q`, each wave with the same weight: `ln` of a periodogram of a
-    /// Gaussian profile has the variance `pi^2/6` at every wave, so that the interval follows. The waves are
-    /// those longer than four steps (and than twice the `instrument`'s distance where it is known) and, of a
-    /// free profile, shorter than a quarter of it; free profiles are taken under Hann's window.
+    /// Fits `ln C_1D` over `ln q` by least squares, each wave with the same weight. The interval follows from
+    /// the variance `pi^2/6` that `ln` of a periodogram of a Gaussian profile has at every wave. The fit uses
+    /// waves longer than four steps (and than twice the distance `instrument` where it is known); of a free
+    /// profile, which is taken under Hann's window, only waves shorter than a quarter of it.
     ///
     /// # Errors
-    /// [`Error::Domain`] for more than one row, fewer than 8 waves in the range, and what [`PowerSpectrum::along_x`] refuses.
+    /// [`Error::Domain`] for more than one row, fewer than 8 waves in the range, and what
+    /// [`PowerSpectrum::along_x`] refuses.
     ///
     /// ```
     /// use contact_model::{Boundary, HeightMap};

@@ -1,4 +1,4 @@
-//! Which wavelengths of a map say something about the surface.
+//! Wavelengths at which a map is reliable.
 
 use crate::fit::FitOptions;
 use contact_model::units::five;
@@ -9,29 +9,31 @@ const CELLS: f64 = 2.0;
 /// Waves along the shorter side of the longest wave of a free map.
 const WAVES: f64 = 2.0;
 
-/// Wavelengths between which a measured map can be trusted.
+/// Limits between which the wavelengths of a measured map are reliable.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ReliableWavelengths {
     /// Two of the longer cell sides, or the instrument's limit where that is longer.
     pub shortest: f64,
-    /// The longer side of a periodic map; half of the shorter side of a free one, because longer waves and
-    /// the trend that was removed are one, and Hann's window spreads each wave over its two neighbours.
+    /// The longer side of a periodic map; half of the shorter side of a free one, because longer waves cannot
+    /// be separated from the trend that was removed, and Hann's window spreads each wave over its two
+    /// neighbours.
     pub longest: f64,
     /// Whether `shortest` is the instrument's.
     pub limited_by_instrument: bool,
 }
 
 impl ReliableWavelengths {
-    /// Limits of a map, with the shortest wavelength that the instrument resolves where it is known.
+    /// Limits of a map; `instrument` is the shortest wavelength that the instrument resolves, where it is
+    /// known.
     ///
-    /// Of a tip of radius R that is twice the distance from which on no summit has more than half of the
-    /// curvature 1/R, the length of the stencil `[h(x - d) - 2 h(x) + h(x + d)]/d^2`: `surface-io` tells d,
-    /// "heights are reliable from ... on". Source: Sanner, Noehring, Thimons, Jacobs, Pastewka, Appl. Surf.
-    /// Sci. Adv. 7, 100190 (2022), section 4. Cost O(1).
+    /// For a tip of radius R it is 2 d, the length of the stencil `[h(x - d) - 2 h(x) + h(x + d)]/d^2`, with
+    /// the shortest distance d at which no summit has more than half of the curvature 1/R. `surface-io`
+    /// reports d as "heights are reliable from ... on". Source: Sanner, Noehring, Thimons, Jacobs, Pastewka,
+    /// Appl. Surf. Sci. Adv. 7, 100190 (2022), section 4. Cost O(1).
     ///
     /// # Errors
-    /// [`Error::Domain`] for an instrument's limit that is no positive number, and where no wavelength is
-    /// left.
+    /// [`Error::Domain`] for an instrument's limit that is no positive number, and where no wavelength
+    /// remains.
     ///
     /// ```
     /// use contact_model::{Boundary, HeightMap};

@@ -7,7 +7,7 @@ use contact_model::{Cells, Error, HeightMap, Result};
 use std::f64::consts::TAU;
 use surface_gen::{defined_everywhere, hann_window, periodogram};
 
-/// A spectrum and how well it is known: the values of each index belong together, wavenumbers rise.
+/// A spectrum with its degrees of freedom. The values of each index belong together; wavenumbers rise.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct PowerSpectrum {
     /// Mean wavenumber of the waves of a bin, in 1/length.
@@ -22,11 +22,11 @@ impl PowerSpectrum {
     /// Limits between which the density of the surface lies with the probability `level`, bin by bin.
     ///
     /// `[n C/chi^2_high, n C/chi^2_low]` with the quantiles of the chi-square law for n degrees of freedom.
-    /// Assumes Gaussian heights, whose waves are independent with exponentially distributed squares (two
-    /// degrees of freedom for a wave and its conjugate), and a density that is the same in all of a bin; a
-    /// window makes neighbouring waves correlated, and the degrees of freedom those of a sum of correlated
-    /// squares, fewer by up to (35/18)^2 = 3.8 for [`Taper::Hann`]. Surfaces with prescribed amplitudes, as
-    /// those of [`surface_gen::self_affine_map`], scatter less.
+    /// The band assumes a constant density in each bin and Gaussian heights, whose waves are independent with
+    /// exponentially distributed squares (two degrees of freedom for a wave and its conjugate). A window
+    /// correlates neighbouring waves; the degrees of freedom are then those of a sum of correlated squares,
+    /// fewer by a factor of up to (35/18)^2 = 3.8 for [`Taper::Hann`]. Surfaces with prescribed amplitudes,
+    /// such as those of [`surface_gen::self_affine_map`], scatter less.
     ///
     /// # Errors
     /// [`Error::Domain`] for a level outside (0, 1).
@@ -44,7 +44,7 @@ impl PowerSpectrum {
         pairs.map(|(c, &freedom)| Ok(factors(freedom, level)?.map(|factor| c * factor))).collect()
     }
 
-    /// The spectrum along x of the mean over all rows; of a periodic map, or under Hann's window along x.
+    /// The spectrum along x, averaged over all rows, of a periodic map or under Hann's window along x.
     ///
     /// `C_1D(q) = Lx/(2 pi) mean |H(q)|^2`, `H = 1/columns sum h exp(-i q x)`, two-sided: the integral over q
     /// of both signs is the mean variance of the rows about their means, `C_1D = pi q C_2D` for a power law

@@ -6,15 +6,15 @@ use surface_gen::{hann_window, windowed};
 
 /// Differences of indices between which waves are correlated: those of Hann's window reach 2.
 const NEAR: isize = 3;
-/// Squared correlations below this are none.
+/// Squared correlations below this are neglected.
 const NEGLIGIBLE: f64 = 1e-4;
 
-/// What is laid over a map before its spectrum is taken, scaled so that the mean of the squares is 1 and a
-/// homogeneous surface keeps its spectrum.
+/// A window that multiplies the heights of a map before its spectrum is computed, scaled so that its mean
+/// square is 1 and a homogeneous surface keeps its spectrum.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub enum Taper {
-    /// Nothing: for periodic maps.
+    /// No window, for periodic maps.
     None,
     /// Hann's window along x times that along y, `sin^2(pi x/Lx) sin^2(pi y/Ly)` at the cells' centres: that
     /// of [`surface_gen::windowed`].

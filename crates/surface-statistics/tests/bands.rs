@@ -7,8 +7,7 @@ use std::f64::consts::TAU;
 use surface_gen::{self_affine_map, surface_seed};
 use surface_statistics::{Bins, DifferenceBands, DifferenceMap, PowerSpectrum, ScaleDependence, Taper};
 
-/// Bins of a spectrum are as good as independent; of all of them, so much may be more or less than 95 %
-/// outside.
+/// Largest difference of the covered share from 95 %; bins of a spectrum are practically independent.
 const TOLERANCE: f64 = 0.02;
 /// Surfaces.
 const COUNT: u64 = 200;

@@ -11,8 +11,8 @@
 >>> bool(np.isclose(state.pressure.sum() / 65**2, 0.001))
 True
 
-Arrays are ``[row, column]``: columns along x, rows along y. Lengths, forces and moduli are in units of your choice that
-fit together; files have metres and pascals. The same words mean the same as in Rust and in scene files.
+Arrays are ``[row, column]``: columns along x, rows along y. Lengths, forces and moduli are in consistent units of your
+choice; files have metres and pascals. Names have the same meaning as in Rust and in scene files.
 """
 
 from . import _formulas, statistics, surface_gen, typing

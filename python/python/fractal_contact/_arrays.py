@@ -45,7 +45,7 @@ def heights(values: ArrayLike, undefined: str) -> tuple[NDArray[np.float64], boo
 def _undefined(found: NDArray[np.float64], among: NDArray[np.bool_]) -> DomainError:
     row, column = np.argwhere(np.isnan(found) & among)[0]
     error = DomainError(
-        f"heights[{row}, {column}] is NaN: expected a finite number; undefined points that cannot touch are said by "
+        f"heights[{row}, {column}] is NaN: expected a finite number; mark undefined points that cannot touch by "
         'undefined="no_contact" or a masked array'
     )
     error.quantity, error.value = f"heights[{row}, {column}]", float("nan")

@@ -55,7 +55,7 @@ __all__ = [
 
 @final
 class HeightMap:
-    """Heights on a rectangle of equal cells, seen from outside its body: large values touch first.
+    """Heights on a rectangle of equal cells, measured outwards from the body, so that large values touch first.
 
     ``np.asarray(map)`` is an array of them. Maps of the same size are added and subtracted; numbers, and arrays of
     the map's shape, are added, subtracted, multiplied and divided by. Undefined points stay undefined.
@@ -107,10 +107,10 @@ class HeightMap:
         """
     @property
     def x(self) -> NDArray[np.float64]:
-        """numpy.ndarray: where the centres of the columns are along x, shape (columns,)."""
+        """numpy.ndarray: places of the centres of the columns along x, shape (columns,)."""
     @property
     def y(self) -> NDArray[np.float64]:
-        """numpy.ndarray: where the centres of the rows are along y, shape (rows,)."""
+        """numpy.ndarray: places of the centres of the rows along y, shape (rows,)."""
     @property
     def undefined(self) -> int:
         """int: number of undefined points."""
@@ -139,9 +139,9 @@ class HeightMap:
         Parameters
         ----------
         ax : matplotlib.axes.Axes, optional
-                Where; the current axes by default.
+                Axes of the picture; the current ones by default.
         **options
-                Of ``imshow``.
+                Options of ``imshow``.
 
         Returns
         -------
@@ -187,8 +187,8 @@ class Certificate:
         """float: sum of pressure times gap over force times rms height."""
     @property
     def load_error(self) -> float:
-        """float: relative difference of the force from the one asked for; of a mean gap its miss over the rms
-        height.
+        """float: relative difference of the force from the prescribed one; of a prescribed mean gap its error over
+        the rms height.
         """
     @property
     def stiffness_error(self) -> float | None:
@@ -198,7 +198,7 @@ class Certificate:
     @property
     def quotient_error(self) -> float | None:
         """float or None: estimated relative error of a stiffness that is a difference quotient, with adhesion of
-        short range and Dugdale's law. The cells decide it, not the tolerance: no part of `worst`.
+        short range and Dugdale's law. It depends on the cells, not on the tolerance, so it is no part of `worst`.
         """
     @property
     def force_error(self) -> float | None:
@@ -207,8 +207,8 @@ class Certificate:
         """
     @property
     def error_of_stiffness(self) -> float | None:
-        """float or None: estimated relative error of the stiffness, however it was found; ``stiffness_error`` in
-        tables.
+        """float or None: estimated relative error of the stiffness, whether it is a difference quotient or not;
+        ``stiffness_error`` in tables.
         """
     @property
     def equilibrium(self) -> float | None:
@@ -222,7 +222,7 @@ class Certificate:
         """
     @property
     def tangential_load_error(self) -> float | None:
-        """float or None: difference of the tangential force from the one asked for, over the sliding force."""
+        """float or None: difference of the tangential force from the prescribed one, over the sliding force."""
     @property
     def tangential_stiffness_error(self) -> float | None:
         """float or None: estimated relative error of the tangential stiffness."""
@@ -526,7 +526,7 @@ class ContactState:
 
 @final
 class Normalisation:
-    """What turns forces and stiffnesses into the dimensionless ones of the paper."""
+    """Conversion of forces and stiffnesses to the dimensionless ones of the paper."""
     @property
     def contact_modulus(self) -> float:
         """float: contact modulus E*."""
@@ -535,7 +535,7 @@ class Normalisation:
         """float: L = sqrt(Lx Ly)."""
     @property
     def rms_height(self) -> float | None:
-        """float or None: measured rms height of this very surface."""
+        """float or None: measured rms height of this surface."""
     def force(self, force_bar: float) -> float:
         """F for F_bar = F/(E* h L)."""
     def force_bar(self, force: float) -> float:
@@ -553,8 +553,8 @@ class Contact:
     """A planned contact: solve often, follow paths. It keeps tables, plans and the last state, from which the
     next solve starts.
 
-    `solve` and `sweep` answer each load from no contact; `advance` and `follow` go along a path of loads,
-    from where the contact is. Threads that use one contact do so one after the other, in the order of asking.
+    `solve` and `sweep` start each load from no contact; `advance` and `follow` continue a path of loads from
+    the current state. Threads that share one contact use it one after the other, in the order of their calls.
 
     With a hardness `solve` begins with the virgin surface: a load smaller than one before is refused, because
     the indentation of that one would be forgotten. `advance` and `follow` keep it, along any path.
@@ -600,7 +600,7 @@ class Contact:
         mean_gap: Iterable[float] | None = None,
         stop: StopToken | None = None,
     ) -> Iterator[ContactState]:
-        """Solves for loads in their order: an iterator that yields each state as soon as it is there.
+        """Solves for loads in their order: an iterator that yields each state as soon as it is known.
 
         Parameters
         ----------
@@ -625,12 +625,12 @@ class Contact:
         tangential_displacement: float | Sequence[float] | NDArray[np.float64] | None = None,
         stop: StopToken | None = None,
     ) -> ContactState:
-        """Goes to the end of the next step of a path. A step that fails leaves the contact as it was.
+        """Advances to the end of the next step of a path. A step that fails leaves the contact as it was.
 
         Parameters
         ----------
         time : float
-                At the end of the step; it never decreases. Friction alone does not look at it.
+                Time at the end of the step; it never decreases. With friction alone it has no influence.
         force, approach, mean_pressure, mean_gap : float
                 Exactly one of them. ``mean_pressure`` is over Lx Ly, ``mean_gap`` for periodic boundaries. The first
                 three may be negative with adhesion.
@@ -662,15 +662,14 @@ class Contact:
         tangential_displacement: float | Iterable[float] | Iterable[tuple[float, float]] | None = None,
         stop: StopToken | None = None,
     ) -> Iterator[ContactState]:
-        """Goes along a path: an iterator that yields the state at the end of each step as soon as it is there.
+        """Follows a path: an iterator that yields the state at the end of each step as soon as it is known.
 
-        What was yielded stays where a later step raises; the contact then stands at the end of the step
-        before that one.
+        Where a step raises, the states yielded before remain, and the contact is at the end of the step before.
 
         Parameters
         ----------
         time : float or iterable of float
-                At the end of each step.
+                Time at the end of each step.
         force, approach, mean_pressure, mean_gap : float or iterable of float
                 Exactly one of them, as in `advance`.
         tangential_force, tangential_displacement : float, iterable of float or of (float, float), optional
@@ -686,18 +685,19 @@ class Contact:
     def restart(self) -> None:
         """Forgets the loads and the path before: back to no contact at time 0."""
     def memory(self) -> bytes | None:
-        """What decides the next step of the path besides its load, as bytes to keep: `recall` of a contact of the
-        same model, scene and seed goes on from there to the same bits, also in another process of the same
-        version on the same kind of processor.
+        """The memory of the path, as bytes: together with the next load it determines the next state. `recall` of a
+        contact of the same model, scene and seed continues from it with identical bits, also in another process
+        of the same version on the same kind of processor.
 
         Returns
         -------
         bytes or None
-                None where no path has begun, and of models that cannot go on: their paths begin anew.
+                None where no path has begun, and for models without such a memory, whose paths must be followed
+            anew.
         """
     def recall(self, memory: bytes) -> None:
-        """Goes where a contact of the same model, scene and seed stood on its path when `memory` was asked of it.
-        The states before that are not in the memory: `last` is None.
+        """Restores the place on its path of a contact of the same model, scene and seed, from its `memory`. The
+        states before that are not in the memory: `last` is None.
 
         Parameters
         ----------
@@ -711,10 +711,10 @@ class Contact:
     def _check_order(self, kind: str, values: list[float]) -> None: ...
     @property
     def normalisation(self) -> Normalisation:
-        """Normalisation: of this very surface."""
+        """Normalisation: that of this surface."""
     @property
     def best(self) -> ContactState | None:
-        """ContactState or None: what the last solve had reached that a signal such as Ctrl-C interrupted."""
+        """ContactState or None: the best state of the last solve that a signal such as Ctrl-C interrupted."""
     @property
     def last(self) -> ContactState | None:
         """ContactState or None: the state at the end of the last solve or step that was complete, where the next
@@ -726,29 +726,29 @@ class Contact:
 
 @final
 class Surface:
-    """What carries the relief."""
+    """The surface in contact."""
 
 @final
 class Scene:
-    """Everything physical about one question."""
+    """Everything physical about one contact problem."""
 
 @final
 class Model:
-    """A way to answer what force, approach and stiffness belong together."""
+    """A model of contact, which relates force, approach and stiffness."""
     @property
     def name(self) -> str:
         """Name of the model, as in scenes."""
     @property
     def sources(self) -> list[tuple[str, str]]:
-        """What it is built on: (citation, what is taken from it)."""
+        """Publications that it is built on: (citation, what is taken from it)."""
     @property
     def supports(self) -> dict[str, tuple[str, ...]]:
-        """What it can do, in words."""
+        """Its abilities, in words."""
     def prepare(self, scene: Scene, seed: int) -> Contact: ...
 
 @final
 class SceneFile:
-    """A scene file: what is pressed, what is asked and which effects count."""
+    """A scene file: the surface, the material, the effects, the loads and the requested outputs."""
     @staticmethod
     def read(path: str | PathLike[str]) -> SceneFile:
         """Reads a file."""
@@ -763,7 +763,7 @@ class SceneFile:
     def models(self) -> list[str]:
         """list of str: its models."""
     def plan(self) -> str:
-        """What will be computed, what not and why, what it will cost."""
+        """The plan in words: what will be computed, what will not and why, and the cost."""
 
 def surface(kind: str, parameters: Mapping[str, Any]) -> Surface:
     """A surface of a kind."""
@@ -902,7 +902,7 @@ def read_surface(path: Path, options: Mapping[str, Any]) -> tuple[HeightMap, dic
     """
 
 def channels(path: Path, options: Mapping[str, Any]) -> list[dict[str, Any]]:
-    """What a file says of each of its channels; of one that is not read beside others, `error`."""
+    """Metadata of each channel of a file; of a channel that cannot be read beside others, `error`."""
 
 def si(text: str) -> float:
     """A text with a unit in SI units."""

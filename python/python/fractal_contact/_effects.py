@@ -14,8 +14,8 @@ from .typing import Adhesion, Boundary, EffectsDict, Friction, Hardness, Rheolog
 class Effects:
     """Effects beyond linear elastic normal contact with free boundaries.
 
-    Off unless named; a model that lacks one refuses it. Each takes what it takes in a scene: a mapping with these
-    keys, of plain numbers in consistent units.
+    Each is off unless it is named; a model that cannot treat an effect refuses the scene. The value of an effect is the
+    same as in a scene: a mapping with these keys, of plain numbers in consistent units.
 
     Parameters
     ----------

@@ -13,7 +13,7 @@ class Error(Exception):
 
 
 class DomainError(Error, ValueError):
-    """A number lies outside of what makes sense.
+    """A number lies outside the range of meaningful values.
 
     Attributes
     ----------
@@ -39,17 +39,17 @@ class ShapeError(Error, ValueError):
 
 
 class Unsupported(Error):
-    """The model does not know this surface, effect, load or output.
+    """The model does not support this surface, effect, load or output.
 
     Attributes
     ----------
     model : str
         Name of the model.
     what : str
-        What it was asked for.
+        What was requested of it.
     able : tuple of str
-        Names of the models that have all that the scene asks for, where a scene was refused; they may still refuse
-        what depends on several things together, or on numbers.
+        Names of the models that can do everything that a refused scene requests; they may still refuse what depends on
+        several things together, or on numbers.
     """
 
     model: str
@@ -58,14 +58,14 @@ class Unsupported(Error):
 
 
 class OutOfRange(Error, ValueError):
-    """A load outside of the range in which the model holds.
+    """A load lies outside the range in which the model holds.
 
     Attributes
     ----------
     quantity : str
         The quantity that left its range.
     value, low, high : float
-        The value that was asked for or reached, and the ends of the range.
+        The value that was prescribed or reached, and the ends of the range.
     """
 
     quantity: str
@@ -75,16 +75,16 @@ class OutOfRange(Error, ValueError):
 
 
 class OutOfMemory(Error, MemoryError):
-    """Something does not fit in memory; it was not begun.
+    """Something does not fit in memory; the work was not begun.
 
     Attributes
     ----------
     what : str
         What it is for, with its size in cells, elements or surfaces.
     needed : float
-        Bytes that it needs, about.
+        Bytes that it needs, approximately.
     available : float or None
-        Bytes that there are below the limits of the process and its control group.
+        Bytes that are available below the limits of the process and its control group.
     """
 
     what: str
@@ -113,7 +113,7 @@ class Stopped(Error):
     best : ContactState or None
         The best state so far.
     finished : dict
-        Of an ensemble: the states of the surfaces that were finished, by their number.
+        For an ensemble: the states of the surfaces that were finished, by their number.
     """
 
     best: ContactState | None
@@ -125,4 +125,4 @@ class SceneError(Error, ValueError):
 
 
 class ReadError(Error, ValueError):
-    """A file holds no surface that can be read, or cannot hold one; what the system refuses is an `OSError`."""
+    """A file has no surface that can be read, or cannot contain one; a refusal by the system is an `OSError`."""

@@ -21,16 +21,16 @@ from .typing import ReadOptions
 
 @dataclass(frozen=True)
 class ReadSurface:
-    """A surface of a file."""
+    """A surface that was read from a file."""
 
     heights: HeightMap
     """The map, in metres where the file has a unit of length."""
     metadata: dict[str, Any]
-    """What the file says: format, channel, name, shape, size, unit, undefined, notes, text."""
+    """Statements of the file: format, channel, name, shape, size, unit, undefined, notes, text."""
     steps: list[str]
-    """What was done to the heights, in order."""
+    """Steps of the preprocessing of the heights, in order."""
     reliable_from: float | None
-    """From which distance on the tip lets heights be seen, where it is known."""
+    """Lateral resolution that the tip allows: heights are reliable from this distance on; None where it is unknown."""
 
 
 def read_surface(path: str | PathLike[str], **options: Unpack[ReadOptions]) -> ReadSurface:
@@ -39,7 +39,7 @@ def read_surface(path: str | PathLike[str], **options: Unpack[ReadOptions]) -> R
     Parameters
     ----------
     path : str or path-like
-        The format is told by the content.
+        The file; its format is recognised by its content.
     **options
         As in ``[scene.surface]`` of a scene (`fractal_contact.typing.ReadOptions`): ``channel``, ``format``, ``unit``,
         ``lateral_unit``, ``size``, ``cell``, ``height_scale``, ``decimal``, ``axes``, ``border``, ``missing``,
@@ -52,7 +52,7 @@ def read_surface(path: str | PathLike[str], **options: Unpack[ReadOptions]) -> R
     OSError
         Where the system refuses, such as FileNotFoundError.
     ReadError
-        With what is wrong with the file or stands in the way of a map.
+        With the problem in the file, or the reason why it gives no map.
     """
     return ReadSurface(*_core.read_surface(Path(path), _words(options)))
 
@@ -88,35 +88,35 @@ def si(text: str) -> float:
 
 
 def channels(path: str | PathLike[str], **options: Unpack[ReadOptions]) -> list[dict[str, Any]]:
-    """What a file says of each of its channels; ``{"error": ...}`` of one that is not read beside others."""
+    """Metadata of each channel of a file; ``{"error": ...}`` for a channel that cannot be read beside others."""
     return _core.channels(Path(path), _words(options))
 
 
 def write_surface(path: str | PathLike[str], heights: HeightMap, *, metres: bool = True) -> None:
-    """Writes a map by the ending of the name: .npy, .txt, .xyz, .vti, .h5, .x3p, .gwy or .nc."""
+    """Writes a map in the format of the ending of its name: .npy, .txt, .xyz, .vti, .h5, .x3p, .gwy or .nc."""
     _core.write_surface(Path(path), heights, metres)
 
 
 @dataclass(frozen=True)
 class SceneOutcome:
-    """What a run of a scene gave."""
+    """Results of a run of a scene."""
 
     files: list[Path]
-    """In the order written, ``report.html`` among them."""
+    """Paths of the files in the order in which they were written, ``report.html`` among them."""
     summary: str
     """The states as a short table."""
     notes: list[str]
-    """What an answer may hide."""
+    """Notes on possible errors that the numbers alone do not show."""
     requested: int
-    """States asked for."""
+    """Number of states that were requested."""
     states: int
-    """States in ``results.csv``."""
+    """Number of states in ``results.csv``."""
     failed: int
-    """How many of these were refused or did not reach their tolerance."""
+    """Number of these that were refused or did not reach their tolerance."""
     kept: int
-    """How many an earlier run had kept."""
+    """Number of these that were taken from an earlier run."""
     seconds: float
-    """Wall-clock time."""
+    """Wall-clock time in seconds."""
     results: dict[str, NDArray[Any]] = field(repr=False)
     """Columns of ``results.csv``: whole numbers, numbers with NaN where a state has none, or texts."""
 
@@ -131,7 +131,7 @@ def run_scene(
     progress: Callable[[int, int], object] | None = None,
     stop: StopToken | None = None,
 ) -> SceneOutcome:
-    """Runs a scene as the program does: the same files with the same numbers; an interrupted run goes on.
+    """Runs a scene as the program does, with the same files and the same numbers. An interrupted run can be continued.
 
     Parameters
     ----------
@@ -140,16 +140,16 @@ def run_scene(
     out : str or Path
         Folder of the results.
     threads : int, optional
-        All of `threads` by default.
+        Number of threads; that of `threads` by default.
     fresh : bool
-        Whether stored results are computed again.
+        True to compute stored results again.
     drawn_states : iterable of int, optional
         Numbers of the loads or steps, from 0, whose fields become pictures, in files and in the report; by default
         those that the scene names in ``[outputs]``, or all.
     progress : callable, optional
         Called with the relative cost that is done and that of all.
     stop : threading.Event, optional
-        Set by another thread, it ends the run with `Stopped`; the next run goes on from what was finished.
+        Set by another thread, it ends the run with `Stopped`; the next run continues from the finished parts.
     """
     if threads is not None:
         threads = count(threads, "threads", 1)

@@ -1,4 +1,4 @@
-"""What a question consists of: surfaces, effects, bodies, scenes; plain values to compare, copy and pickle."""
+"""The parts of a contact problem (surfaces, effects, bodies, scenes), as plain values to compare, copy and pickle."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ Conductance = tuple[str, float, float]
 
 @dataclass(frozen=True)
 class Surface:
-    """What carries the relief, where it is no height map. Made by one of the methods below.
+    """A surface that is no height map; one of the methods below makes it.
 
-    Axisymmetric bodies sit in the middle of the rectangle, apex up. Lengths are in one unit of your choice.
+    Axisymmetric bodies are at the centre of the rectangle, apex up. Lengths are in one unit of your choice.
 
     Examples
     --------
@@ -74,11 +74,12 @@ class Surface:
         size : float or (float, float)
             Side of a square or sides (Lx, Ly).
         rms_height : float
-            Of the samples, exactly.
+            Rms height of the samples, exactly (length > 0).
         hurst, fractal_dimension : float
-            One of them: H in [0, 1] or D_f = 3 - H.
+            One of them: Hurst exponent H in [0, 1], or fractal dimension D_f = 3 - H in [2, 3].
         roll_off_wavelength, shortest_wavelength : float, optional
-            Constant spectrum for longer waves; no shorter waves than the grid's, or these.
+            The spectrum is constant for waves longer than the first and has no waves shorter than the second. By
+            default there is no roll-off, and the shortest waves are those of the grid.
         """
         if (hurst is None) == (fractal_dimension is None):
             raise TypeError("give one of hurst and fractal_dimension")
@@ -116,7 +117,7 @@ class Surface:
         depth: float | None = None,
         radius: float | None = None,
     ) -> Surface:
-        """Body of depth coefficient * r^exponent, or of this depth at a radius."""
+        """Body of depth coefficient * r^exponent, with `coefficient` given, or with `depth` at `radius`."""
         if (coefficient is None) == (depth is None) or (depth is None) != (radius is None):
             raise TypeError("give coefficient, or depth and radius")
         if coefficient is None:
@@ -141,7 +142,7 @@ class Surface:
 
     @classmethod
     def line(cls, heights: ArrayLike, *, length: float, size: Size) -> Surface:
-        """Heights of a line, for `Mdr1d`, which stand for a rectangle."""
+        """Line with these heights of its elements, for `Mdr1d`; it represents a rectangle."""
         values = np.asarray(heights, dtype=np.float64)
         if values.ndim != 1:
             raise ValueError(f"heights of a line have {values.ndim} dimensions: expected 1")
@@ -155,7 +156,7 @@ class Surface:
         cells : int or (int, int)
             Columns, with as many rows as make the cells nearly square, or columns and rows.
         seed : int
-            Of a random surface.
+            Seed of a random surface.
 
         Raises
         ------
@@ -222,23 +223,24 @@ def _conductance(given: Any) -> Conductance:
 
 @dataclass(frozen=True)
 class Scene:
-    """Everything physical about one question. Numerics are options of a model, chance is the seed.
+    """Everything physical about one contact problem. Numerics are options of a model; chance is the seed.
 
     Parameters
     ----------
     surface : HeightMap or Surface
-        What carries the relief.
+        The surface in contact.
     contact_modulus : float, optional
         Contact modulus E*, 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2.
     bodies : pair of Body, mapping, "rigid" or None, optional
-        Both bodies in place of ``contact_modulus``, None or "rigid" for a rigid one: where E* does not say enough (friction).
+        Both bodies in place of ``contact_modulus``, None or "rigid" for a rigid one: needed where E* alone is not
+        sufficient (friction).
     effects : Effects or mapping
-        Off unless named.
+        Effects beyond elastic contact; each is off unless it is named.
     outputs : iterable of str, optional
         What is computed besides force and approach, such as "stiffness", "area" and "pressure": names of
         ``Bem3d().supports["outputs"]``, and of those of the model. "mean_gap" is for periodic boundaries,
         "plastic_depth" for a hardness, "traction", "slip", "stick_slip", "stick_area" and tangential stiffnesses for
-        friction. By default the stiffness, of models that have it.
+        friction. The default is the stiffness, for models that have it.
     conductance : mapping or (str, float, float), optional
         {"kind": "electrical", "resistivities": (of the first, of the second)} or {"kind": "thermal",
         "conductivities": (...)}, or kind and both values as a tuple.
@@ -307,5 +309,5 @@ class Scene:
 
     @staticmethod
     def from_toml(text: str, *, directory: str | PathLike[str] = ".") -> SceneFile:
-        """A scene file from its text: the same keys as the program takes; relative paths count from `directory`."""
+        """A scene file from its text, with the same keys as for the program; relative paths start at `directory`."""
         return SceneFile.from_toml(text, directory=Path(directory))

@@ -19,7 +19,7 @@ LOADS = ("force", "approach", "mean_pressure", "mean_gap")
 
 
 class StopToken(Protocol):
-    """What another thread sets to stop a solve: a `threading.Event`."""
+    """A signal by which another thread stops a solve: a `threading.Event`."""
 
     def is_set(self) -> bool:
         """Whether it was set."""
@@ -27,7 +27,7 @@ class StopToken(Protocol):
 
 
 class Model:
-    """A way to answer what force, approach and stiffness belong together: plan once, solve often.
+    """A model of contact, which relates force, approach and stiffness. It plans a contact once for many solves.
 
     Each model of the library is a class; `models` lists them.
     """
@@ -49,15 +49,15 @@ class Model:
 
     @property
     def sources(self) -> list[tuple[str, str]]:
-        """What it is built on: (citation, what is taken from it)."""
+        """Publications that it is built on: (citation, what is taken from it)."""
         return self._core().sources
 
     @property
     def supports(self) -> dict[str, tuple[str, ...]]:
         """Words for its ``surfaces``, ``boundaries``, ``effects``, ``needs``, ``loads``, ``paths`` and ``outputs``.
 
-        A scene that asks for more is `Unsupported`. What depends on several of them together, or on numbers, a model
-        may refuse as well.
+        A scene that requests more is `Unsupported`. A model may also refuse what depends on several of them together,
+        or on numbers.
 
         Examples
         --------
@@ -73,14 +73,14 @@ class Model:
         Parameters
         ----------
         scene : Scene
-            The question.
+            The contact problem.
         seed : int
-            Draws the surface, where it is random.
+            Seed of the surface, where it is random.
 
         Returns
         -------
         Contact
-            ``solve`` and ``sweep`` answer loads from no contact, ``advance`` and ``follow`` go along a path.
+            ``solve`` and ``sweep`` start each load from no contact; ``advance`` and ``follow`` continue a path.
 
         Raises
         ------
@@ -119,15 +119,16 @@ class Bem3d(Model):
     Parameters
     ----------
     cells : int
-        Columns, 257 by default; a height map brings its own.
+        Number of columns, 257 by default; a height map has its own.
     rows : int, optional
-        Rows; by default as many as make the cells nearly square.
+        Number of rows; by default the number that makes the cells nearly square.
     tolerance : float
-        Bound of the certificate and of the estimated relative error of the stiffness, 1e-6 by default.
+        Bound of the residuals of the certificate and of the estimated relative error of the stiffness, dimensionless,
+        1e-6 by default.
     max_outer_iterations : int
-        Outer iterations at most.
+        Largest number of outer iterations.
     method : {"auto", "iterative", "single_level"}
-        How small systems are solved.
+        Method by which small linear systems are solved.
 
     Examples
     --------
@@ -171,7 +172,7 @@ class Mdr1d(Model):
     Parameters
     ----------
     elements : int
-        Of a rough line.
+        Number of elements of a rough line.
     """
 
     _name = "mdr1d"
@@ -186,7 +187,7 @@ class Persson(Model):
     Parameters
     ----------
     gamma : float
-        Elastic energy over that of full contact.
+        Ratio of the elastic energy to that of full contact of the same waves, in (0, 1]; 0.45 by default.
     """
 
     _name = "persson"
@@ -216,9 +217,9 @@ class Equivalent(Model):
     Parameters
     ----------
     model : Model
-        The model that presses.
+        The model of the normal contact.
     per_decade, decades : int
-        Nodes per decade of the approach, and decades below the first load.
+        Nodes per decade of the approach (1 to 1000), and decades below the first load (1 to 12).
     """
 
     _name = "equivalent"
@@ -252,7 +253,7 @@ def sweep(
     mean_gap: Iterable[float] | None = None,
     stop: StopToken | None = None,
 ) -> Iterator[ContactState]:
-    """Solves for loads in their order; each state as soon as it is there.
+    """Solves for loads in their order, and yields each state as soon as it is known.
 
     Parameters
     ----------
@@ -294,14 +295,14 @@ def follow(
     tangential_displacement: float | Iterable[float] | Iterable[tuple[float, float]] | None = None,
     stop: StopToken | None = None,
 ) -> Iterator[ContactState]:
-    """Goes along a path; the state at the end of each step as soon as it is there.
+    """Follows a path, and yields the state at the end of each step as soon as it is known.
 
     Parameters
     ----------
     contact : Contact
-        A planned contact; it goes on from where it is.
+        A planned contact; the path continues from its current state.
     time : float or iterable of float
-        At the end of each step, 0 by default.
+        Time at the end of each step, 0 by default.
     force, approach, mean_pressure, mean_gap : float or iterable of float
         Exactly one of them, as in `Contact.advance`.
     tangential_force, tangential_displacement : float, iterable of float or of (float, float), optional
@@ -365,16 +366,16 @@ def ensemble(
     Parameters
     ----------
     model : Model
-        Solves each of them.
+        The model that solves each surface.
     scene : Scene
-        With a random surface.
+        A scene with a random surface.
     seed : int
         Surface number i has the seed ``surface_gen.surface_seed(seed, i)``, as in scenes and figures.
     surfaces : int
-        How many.
+        Number of surfaces, >= 0.
     force, approach, mean_pressure, mean_gap, force_bar : iterable of float
-        Exactly one of them; ``force_bar`` counts in E* h L of each surface. With a hardness in increasing order, as in
-        `sweep`.
+        Exactly one of them; the unit of ``force_bar`` is E* h L of each surface. With a hardness the order must be
+        increasing, as in `sweep`.
     progress : callable, optional
         Called with the number of surfaces that are done and that of all.
     stop : threading.Event, optional
@@ -406,7 +407,7 @@ def ensemble(
 
 
 def quantities() -> list[dict[str, str]]:
-    """The table of all that is reported of a state: properties of `ContactState`, columns of `table` and of scenes.
+    """The quantities that are reported of a state: properties of `ContactState`, columns of `table` and of scenes.
 
     Returns
     -------
@@ -443,12 +444,12 @@ def models() -> list[dict[str, Any]]:
 
 
 def table(states: Iterable[ContactState]) -> NDArray[np.void]:
-    """States as a structured array, a row each: what pandas and xarray read.
+    """States as a structured array with a row for each, which pandas and xarray can read.
 
     Columns are the names of ``to_dict()`` in the order of `quantities`, which are those of the tables of scenes.
-    Columns of an effect or of a path (such as ``plastic_area``, ``branch``, ``tangential_force``, ``time``) are there
-    where a state has them. Columns of counts that all states have are whole numbers; other numbers that a state has not
-    are NaN, texts empty.
+    Columns of an effect or of a path (such as ``plastic_area``, ``branch``, ``tangential_force``, ``time``) are present
+    where a state has them. Columns of counts that all states have are whole numbers; other missing numbers are NaN, and
+    missing texts are empty.
 
     Parameters
     ----------

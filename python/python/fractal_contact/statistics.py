@@ -39,29 +39,29 @@ def power_spectrum(
 ) -> Curves:
     """Two-sided power spectral density over q = 2 pi/wavelength.
 
-    Of a periodic map with N cells on Lx x Ly, ``H(q) = 1/N sum h(x) exp(-i q x)`` has the squares ``|H(q)|^2`` whose
-    sum over all waves of both signs, without the mean, is the variance of the heights. The densities are
+    For a periodic map with N cells on Lx x Ly, let ``H(q) = 1/N sum h(x) exp(-i q x)``: the sum of ``|H(q)|^2`` over
+    all waves of both signs, without the mean, is the variance of the heights. The densities are
 
     - of a map ``C(q) = Lx Ly/(2 pi)^2 |H(q)|^2`` (length^4): the integral of C over the plane of wavenumbers is the
       variance;
     - of profiles along x ``C(q) = Lx/(2 pi) mean |H(q)|^2`` (length^3), the mean over rows: the integral over q of both
       signs is the mean variance of the rows. For an isotropic power law it is ``pi q`` times the density of the map.
 
-    Without ``periodic`` the deviations from the mean are first multiplied by Hann's window over its rms. The program
-    SurfaceTopography and Jacobs, Junge and Pastewka (2017) have ``(2 pi)^2`` times the density of a map.
+    Without ``periodic`` the deviations from the mean are first multiplied by Hann's window and divided by its rms. The
+    program SurfaceTopography and Jacobs, Junge and Pastewka (2017) have ``(2 pi)^2`` times the density of a map.
 
     Parameters
     ----------
     heights : HeightMap
-        Without undefined points.
+        A map without undefined points.
     direction : {"radial", "x", "y"}
-        Averaged over rings (length^4), or of profiles (length^3).
+        Average over rings (length^4), or over profiles along x or y (length^3).
     periodic : bool
-        Whether the map is: otherwise it is taken under Hann's window.
+        Whether the map is periodic; otherwise it is taken under Hann's window.
     per_decade : float
-        Rings in a decade of wavenumbers.
+        Number of rings in a decade of wavenumbers, > 0.
     level : float
-        Of the band.
+        Confidence level of the band, between 0 and 1.
 
     Returns
     -------
@@ -100,17 +100,18 @@ def fit_spectrum(heights: HeightMap, *, periodic: bool = False, instrument: floa
     Parameters
     ----------
     heights : HeightMap
-        Without undefined points.
+        A map without undefined points.
     periodic : bool
-        Whether the map is.
+        Whether the map is periodic.
     instrument : float, optional
-        Shortest wavelength that the instrument resolves.
+        Shortest wavelength that the instrument resolves, in the unit of the map.
 
     Returns
     -------
     dict
-        hurst, roll_off and cut_off (wavelengths) as (value, low, high) of 95 %, with None where there is only a bound;
-        goodness, below 0.01 of a surface that is none of the kind; fitted, the wavelengths that were used.
+        hurst, roll_off and cut_off (wavelengths) as (value, low, high) with 95 % limits, None where there is only a
+        bound; goodness, which is below 0.01 for a surface that is not self-affine; fitted, the range of wavelengths of
+        the fit.
     """
     return _core.fit_spectrum(heights, periodic, instrument)
 

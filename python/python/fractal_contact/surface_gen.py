@@ -1,4 +1,4 @@
-"""Generated maps: the same seed is the same surface as in Rust, to the last bit."""
+"""Generated maps. The same seed gives the same surface as in Rust, to the last bit."""
 
 from __future__ import annotations
 
@@ -29,17 +29,17 @@ def self_affine_map(
     Parameters
     ----------
     surface : Surface
-        Of `Surface.self_affine`.
+        A surface made by `Surface.self_affine`.
     cells : int or (int, int)
-        Columns, with nearly square cells, or columns and rows.
+        Number of columns, for nearly square cells, or columns and rows.
     seed : int
-        See `surface_seed` for that of a surface of an ensemble.
+        Seed of the surface; `surface_seed` gives that of a surface of an ensemble.
     anisotropy : float, optional
-        Ratio of wavelengths along the lay to those across.
+        Ratio > 0 of wavelengths along the lay to those across; 1 is isotropic.
     lay : float
         Direction of the lay in degrees, from x towards y.
     weibull : float, optional
-        Shape of Weibull's law of the heights; nearly Gaussian otherwise.
+        Shape > 0 of Weibull's distribution of the heights; without it the heights are nearly Gaussian.
 
     Examples
     --------
@@ -54,18 +54,18 @@ def self_affine_map(
 
 
 def twin(heights: HeightMap, seed: int, *, twin: Waves = "waves", keep_heights: bool = False) -> HeightMap:
-    """Draws an artificial twin of a map: its spectrum, the phases of a seed.
+    """Draws an artificial twin of a map, with its spectrum and the phases of a seed.
 
     Parameters
     ----------
     heights : HeightMap
-        Without undefined points.
+        A map without undefined points.
     seed : int
-        Of the phases.
+        Seed of the phases.
     twin : {"waves", "rings"}
-        With the amplitude of each wave, or isotropic: with their means over rings of the spectrum.
+        "waves" keeps the amplitude of each wave; "rings" takes the means over rings of the spectrum and is isotropic.
     keep_heights : bool
-        With the distribution of the heights of the map.
+        True to keep the distribution of the heights of the map.
     """
     if twin not in ("waves", "rings"):
         raise ValueError(f'twin is {twin!r}: expected "waves" or "rings"')

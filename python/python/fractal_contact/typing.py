@@ -1,6 +1,6 @@
-"""Words and mappings that functions take, for type checkers.
+"""Types of words and mappings that functions accept, for type checkers.
 
-A mapping in a variable of its own is checked where the variable has one of these types:
+A mapping in a variable is checked if the variable is declared with one of these types:
 
 >>> from fractal_contact.typing import EffectsDict
 >>> effects: EffectsDict = {"hardness": 0.1}

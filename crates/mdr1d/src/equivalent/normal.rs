@@ -94,7 +94,7 @@ impl Normal {
     }
 
     fn node(&self, state: &ContactState) -> Result<Node> {
-        /// A certificate bounds the mean error; single numbers may be off by so many times.
+        /// A certificate bounds the mean error; single numbers may have an error larger by this factor.
         const GENEROUS: f64 = 10.0;
         /// Of closed forms.
         const ROUNDING: f64 = 1e-10;

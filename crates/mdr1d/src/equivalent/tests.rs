@@ -190,7 +190,7 @@ fn limits_of_friction_on_a_rough_surface() {
     );
 }
 
-/// Hertz's sphere with a stiffness that is told wrong, and a count of solves.
+/// Hertz's sphere with a wrong stiffness, and a count of solves.
 struct Scripted {
     factor: fn(f64) -> f64,
     solves: &'static AtomicUsize,

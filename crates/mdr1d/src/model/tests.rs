@@ -193,8 +193,8 @@ fn adhesion_of_a_sphere_behind_the_trait() {
     }
 }
 
-/// dF/dd of a state is that of its neighbours, 2 E* a that of its held area; the conductance follows from the
-/// latter.
+/// dF/dd of a state is that of its neighbours, and its stiffness at fixed contact area is 2 E* a; the
+/// conductance follows from the latter.
 #[test]
 fn the_stiffness_of_an_adhesive_body_is_the_slope_of_its_branch() {
     /// Relative step of loads; the error of a central difference is its square times third derivatives, which

@@ -1,4 +1,4 @@
-//! What of a plan is done, missing or damaged.
+//! Completeness of a plan: which of its jobs are done, missing or damaged.
 
 use super::plan::ShardPlan;
 use crate::error::{Error, Result};
@@ -8,38 +8,39 @@ use rayon::prelude::*;
 use std::collections::{BTreeMap, HashSet};
 use std::path::Path;
 
-/// What the store holds of a job.
+/// State of a job in the store.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum JobState {
-    /// A whole result.
+    /// The store has a whole result.
     Done,
-    /// Something that is not a whole result of it.
+    /// The store has data of it that are no whole result.
     Damaged,
-    /// Nothing.
+    /// The store has nothing of it.
     Missing,
 }
 
-/// What the store holds of a plan.
+/// State of a plan in the store.
 #[derive(Debug, Clone)]
 pub struct Completeness {
     /// The plan.
     pub plan: ShardPlan,
-    /// Of each job. Jobs that are not worth storing count as done.
+    /// State of each job. Jobs that are never stored count as done.
     pub states: Vec<JobState>,
     /// Names of the jobs that are not done, in their order.
     pub missing: Vec<String>,
-    /// Results of the plan by the vector instructions of the processors that found them.
+    /// Numbers of results of the plan, by the vector instructions of the processors that computed them.
     pub instructions: BTreeMap<String, usize>,
     /// Packs with bytes that belong to no result, and their number.
     pub damaged_packs: Vec<(String, u64)>,
-    /// Packs of other plans, with results that are none of this one's.
+    /// Packs of other plans, with results that do not belong to this one.
     pub foreign: Vec<String>,
 }
 
 /// Reads every result of a plan and checks that it is whole.
 ///
 /// # Errors
-/// [`Error::Parameter`] where the jobs are not those of the plan; [`Error::File`] for a directory that cannot be read.
+/// [`Error::Parameter`] where the jobs are not those of the plan; [`Error::File`] for a directory that cannot
+/// be read.
 pub fn check(plan: &ShardPlan, jobs: &dyn JobList, out: &Path) -> Result<Completeness> {
     let now = ShardPlan::new(&plan.program, plan.arguments.clone(), jobs);
     if now.digest != plan.digest {
@@ -100,7 +101,8 @@ impl Completeness {
         self.states.iter().filter(|found| **found == state).count()
     }
 
-    /// Remarks on results that are whole but not all alike, one a line.
+    /// Remarks, one a line, on results that are whole but were computed under different conditions, and on
+    /// damaged packs.
     pub fn remarks(&self) -> Vec<String> {
         let mut lines = Vec::new();
         if self.instructions.len() > 1 {
@@ -112,17 +114,18 @@ impl Completeness {
         }
         for (pack, bytes) in &self.damaged_packs {
             lines.push(format!(
-                "{pack}: {bytes} bytes are of no whole result (a task was killed, or the file is damaged)"
+                "{pack}: {bytes} bytes belong to no whole result (a task was killed, or the file is damaged)"
             ));
         }
         lines
     }
 
-    /// Refuses a plan with jobs that are not done, or beside which results of other plans lie, unless it was
-    /// `chosen` among them.
+    /// Refuses a plan with jobs that are not done, and one beside results of other plans unless it was
+    /// `chosen` explicitly.
     ///
     /// # Errors
-    /// [`Error::Parameter`] with the list of jobs (a long one is in a file, which it names) and the command that computes them.
+    /// [`Error::Parameter`] with the list of jobs (a long one is in a file, which it names) and the command
+    /// that computes them.
     pub fn require(&self, out: &Path, chosen: bool, again: &str) -> Result<()> {
         if !self.missing.is_empty() {
             let (damaged, missing) = (self.count(JobState::Damaged), self.count(JobState::Missing));
@@ -136,7 +139,7 @@ impl Completeness {
                 list += &format!("\n  and {} more: {}", self.missing.len() - LISTED, path.display());
             }
             let mut expected = format!(
-                "whole results of all {} jobs of `{}`; {missing} are missing and {damaged} damaged:{list}\nwhat computes them: {again}",
+                "whole results of all {} jobs of `{}`; {missing} are missing and {damaged} damaged:{list}\ncompute them with: {again}",
                 self.states.len(),
                 self.plan.command()
             );
@@ -147,7 +150,7 @@ impl Completeness {
         }
         if !chosen && !self.foreign.is_empty() {
             let expected = format!(
-                "results of the plan of `{}` alone; of another plan are {}: move them away, or choose this plan with --plan {}",
+                "results of the plan of `{}` alone; {} are of another plan: move them away, or choose this plan with --plan {}",
                 self.plan.command(),
                 self.foreign.join(", "),
                 self.plan.short_digest()
@@ -180,7 +183,7 @@ mod tests {
         assert_eq!((found().count(JobState::Done), found().missing.len()), (3, 3));
         let gaps = refused();
         assert!(gaps.contains("3 are missing and 0 damaged") && gaps.contains("the square of "), "{gaps}");
-        assert!(gaps.contains("what computes them: p squares --shard 1/2"), "{gaps}");
+        assert!(gaps.contains("compute them with: p squares --shard 1/2"), "{gaps}");
         work(1);
         found().require(dir.path(), false, "").unwrap();
         assert!(found().remarks().is_empty());
@@ -193,7 +196,7 @@ mod tests {
         found().require(dir.path(), false, "").unwrap();
         // A pack cut short is told, though another holds its result.
         std::fs::write(&path, &text[..text.len() - 5]).unwrap();
-        assert!(refused().contains("bytes are of no whole result"), "{}", refused());
+        assert!(refused().contains("bytes belong to no whole result"), "{}", refused());
         work(0);
         found().require(dir.path(), false, "").unwrap();
         assert_eq!(found().remarks().len(), 1);
@@ -204,7 +207,7 @@ mod tests {
         let other = Squares::to(9);
         let theirs = ShardPlan::new("p", vec!["squares".into(), "9".into()], &other);
         run_shard(&theirs, &other, Shard { index: 0, count: 1 }, (dir.path(), 1), &Silent, &never).unwrap();
-        assert!(refused().contains("of another plan are"), "{}", refused());
+        assert!(refused().contains("are of another plan"), "{}", refused());
         found().require(dir.path(), true, "").unwrap();
         // The jobs changed since.
         let changed = check(&plan, &other, dir.path()).unwrap_err().to_string();

@@ -1,4 +1,4 @@
-//! What a plan will take: cores, memory, time, disk.
+//! Forecast of the cores, the memory, the time and the disk space that a plan needs.
 
 use super::shard_run::shards;
 use crate::amounts::{duration, memory};
@@ -12,23 +12,23 @@ use std::fmt;
 /// Memory that a core of a cluster has as a rule, bytes: a task that needs more takes the cores that belong
 /// to it.
 const MEMORY_OF_CORE: f64 = 4e9;
-/// Most cores of one task that are worth it: two threads in one solve were measured to be 1.45 to 1.8 times
-/// as fast as one on 2049 cells a side (data/bench/threads.csv), and the memory of a core stays idle
+/// Largest number of cores of one task: two threads in one solve were measured to be 1.45 to 1.8 times as
+/// fast as one on 2049 cells a side (data/bench/threads.csv), and the memory of a core would be idle
 /// otherwise.
 const MOST_CORES: usize = 4;
-/// A task is to take about so many seconds: the start is nothing beside it, and little is lost with it.
+/// Intended duration of a task in seconds: its start is then negligible, and little is lost if it fails.
 const TASK: f64 = 3600.0;
-/// Tasks at most, where nobody says: as many as SLURM allows in an array by itself.
+/// Default limit of the number of tasks, which is SLURM's own limit of an array.
 const MOST_TASKS: usize = 1000;
 /// Memory of the program itself, bytes.
 const PROGRAM: f64 = 200e6;
-/// What is asked for is so many times what is predicted: machines differ by a factor of three, and a task
-/// that is cut off loses the job in hand.
+/// Ratio of the requested to the predicted time: machines differ by a factor of three, and a task that is cut
+/// off loses the jobs in progress.
 const MARGIN: f64 = 3.0;
-/// What is asked for at least, seconds.
+/// Smallest requested time in seconds.
 const LEAST_TIME: f64 = 600.0;
 
-/// How a plan is divided; what is not said follows from its jobs.
+/// Division of a plan into tasks; defaults follow from its jobs.
 #[derive(Debug, Clone, Default)]
 #[cfg_attr(feature = "clap", derive(clap::Args))]
 pub struct Division {
@@ -50,7 +50,7 @@ fn at_least_one(text: &str) -> std::result::Result<usize, String> {
     }
 }
 
-/// What a plan will take.
+/// Resources that a plan needs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Forecast {
     /// Jobs that are stored.
@@ -67,12 +67,12 @@ pub struct Forecast {
     pub disk: u64,
     /// Predicted seconds of each job.
     costs: Vec<f64>,
-    /// What the times are worth.
+    /// How the times were found, and their accuracy.
     basis: &'static str,
 }
 
 impl Forecast {
-    /// What a list of jobs takes.
+    /// The forecast for a list of jobs.
     pub fn new(jobs: &dyn JobList, division: &Division) -> Self {
         let stored: Vec<usize> = (0..jobs.count()).filter(|&job| jobs.is_stored(job)).collect();
         let costs: Vec<u64> = stored.iter().map(|&job| jobs.cost(job)).collect();
@@ -103,7 +103,7 @@ impl Forecast {
         }
     }
 
-    /// The same where all jobs are known to take so many seconds together.
+    /// The same forecast with a known time of all jobs together, in seconds.
     #[must_use]
     pub fn measured(mut self, total: f64, basis: &'static str) -> Self {
         let factor = total / self.seconds[0];
@@ -115,24 +115,25 @@ impl Forecast {
         self
     }
 
-    /// Whole minutes to ask an engine for.
+    /// Time limit of a task to request from an engine, in whole minutes.
     pub fn minutes(&self) -> u64 {
         ((MARGIN * self.seconds[1]).max(LEAST_TIME) / 60.0).ceil() as u64
     }
 
-    /// Whole megabytes to ask an engine for.
+    /// Memory of a task to request from an engine, in whole megabytes.
     pub fn megabytes(&self) -> u64 {
         (self.memory / 1e6).ceil() as u64
     }
 
-    /// Tasks that run at the same time on nodes of so many cores and, where it is told, so much memory.
+    /// Number of tasks that run at the same time on `nodes` nodes, each with `cores` cores and, where given,
+    /// `memory` bytes.
     fn at_once(&self, nodes: usize, cores: usize, memory: Option<f64>) -> usize {
         let by_memory = memory.map_or(usize::MAX, |memory| (memory / self.memory) as usize);
         nodes * (cores / self.cores).min(by_memory)
     }
 
-    /// The forecast in words, with the makespan on nodes of so many cores and, where it is told, so much
-    /// memory (bytes).
+    /// The forecast in words, with the makespan on `nodes` nodes, each with `cores` cores and, where given,
+    /// `memory` bytes.
     ///
     /// # Errors
     /// [`Error::Parameter`] for nodes that hold no task.
@@ -149,7 +150,7 @@ impl Forecast {
         ))
     }
 
-    /// Predicted seconds until the last of the tasks has ended, with so many at the same time.
+    /// Predicted seconds until the last of the tasks has ended, with `at_once` tasks at the same time.
     fn makespan(&self, at_once: usize) -> f64 {
         // Microseconds, because floats have no order.
         let costs: Vec<u64> = self.costs.iter().map(|seconds| (1e6 * seconds) as u64).collect();

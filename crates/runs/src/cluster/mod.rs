@@ -3,10 +3,10 @@
 //!
 //! A command is a list of independent jobs ([`crate::JobList`]). Every task of an engine runs the same
 //! command with another `--shard i/N`: it makes the list, takes its part of it by predicted cost
-//! ([`crate::assign`]) and adds what it finds to the store of the common directory ([`crate::Store`]).
-//! Nothing is passed between tasks. The plan, written by the first of them, says which command it was;
-//! [`check`] tells what is done, missing or damaged; a merge is the command itself, which finds all of its
-//! jobs in the store.
+//! ([`crate::assign`]) and adds its results to the store of the common directory ([`crate::Store`]). Tasks do
+//! not communicate. The first of them writes the plan, which records the command. [`check`] reports which
+//! jobs are done, missing or damaged. A merge is the command itself, which finds all of its jobs in the
+//! store.
 
 mod check;
 mod forecast;

@@ -1,4 +1,4 @@
-//! Which command the shards of a directory belong to.
+//! The command to which the shards of a directory belong.
 
 use super::words::quoted;
 use crate::error::{Error, Result};
@@ -17,7 +17,7 @@ pub struct ShardPlan {
     pub digest: String,
     /// Number of jobs.
     pub jobs: usize,
-    /// The program, as it calls itself.
+    /// Name of the program.
     pub program: String,
 }
 
@@ -41,12 +41,13 @@ impl ShardPlan {
         self.digest.chars().take(12).collect()
     }
 
-    /// Where the plans of a directory are.
+    /// Folder of the plans of a directory.
     pub(super) fn directory(out: &Path) -> PathBuf {
         out.join(".units/plans")
     }
 
-    /// Writes it where no other shard has. Of several commands with the same jobs the last one is the plan's.
+    /// Writes the plan unless another shard has written it. Where several commands have the same jobs, the
+    /// plan records the last one.
     ///
     /// # Errors
     /// [`Error::File`] when it cannot be written.
@@ -80,7 +81,8 @@ impl ShardPlan {
     /// The one plan of a directory, or the one that was chosen by the beginning of its digest.
     ///
     /// # Errors
-    /// [`Error::Parameter`] where there is none, where there are several, with their commands, and for one of another program.
+    /// [`Error::Parameter`] where there is none, where there are several, with their commands, and for one of
+    /// another program.
     pub fn only(out: &Path, program: &str, chosen: Option<&str>) -> Result<Self> {
         let mut plans = Self::all(out);
         let list = |plans: &[Self]| {

@@ -11,14 +11,14 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::path::Path;
 
-/// What a shard did.
+/// Summary of the work of a shard.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ShardReport {
-    /// Which.
+    /// The shard.
     pub shard: Shard,
-    /// Its jobs.
+    /// Number of its jobs.
     pub jobs: usize,
-    /// Those of the plan.
+    /// Number of all jobs of the plan.
     pub of: usize,
 }
 
@@ -28,13 +28,13 @@ impl fmt::Display for ShardReport {
     }
 }
 
-/// Jobs of a shard that are worth storing.
+/// Jobs of a shard that are stored.
 pub(super) fn members(jobs: &dyn JobList, shard: Shard) -> Vec<usize> {
     let of = shards(jobs, shard.count);
     (0..jobs.count()).filter(|&job| of[job] == Some(shard.index)).collect()
 }
 
-/// The shard of each job; none for what is not stored.
+/// The shard of each job; `None` for jobs that are not stored.
 pub(super) fn shards(jobs: &dyn JobList, count: usize) -> Vec<Option<usize>> {
     let stored: Vec<usize> = (0..jobs.count()).filter(|&job| jobs.is_stored(job)).collect();
     let costs: Vec<u64> = stored.iter().map(|&job| jobs.cost(job)).collect();

@@ -1,4 +1,4 @@
-//! What becomes of the shards of a directory.
+//! State of the shards of a directory.
 
 use super::check::{Completeness, JobState};
 use super::plan::ShardPlan;
@@ -11,7 +11,7 @@ use std::fmt;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-/// What an engine says of a task.
+/// State of a task, according to its engine.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 enum TaskState {
     Ended(String),
@@ -19,7 +19,7 @@ enum TaskState {
     Running,
 }
 
-/// What is done of a plan, and what becomes of the rest.
+/// The finished part of a plan, and the state of the rest.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Status {
     command: String,
@@ -71,8 +71,9 @@ pub fn submitted_tasks(out: &Path, plan: &ShardPlan) -> Option<usize> {
     noted(out, plan).last().map(|noted| noted.count)
 }
 
-/// What the engines say of each shard of a division into `count`; of several submissions, what is running or
-/// waiting counts. A remark for each submission that could not be asked about.
+/// The state of each shard of a division into `count`, according to the engines; of several submissions, the
+/// one that runs or waits counts. There is a remark for each submission about which the engine gave no
+/// answer.
 fn tasks(out: &Path, plan: &ShardPlan, count: usize) -> (BTreeMap<usize, TaskState>, Vec<String>) {
     let mut all: BTreeMap<usize, TaskState> = BTreeMap::new();
     let mut silent = Vec::new();
@@ -95,7 +96,8 @@ fn tasks(out: &Path, plan: &ShardPlan, count: usize) -> (BTreeMap<usize, TaskSta
 /// Shards that an engine is working on, or has in its queue.
 ///
 /// # Errors
-/// [`Error::Parameter`] where SLURM cannot be asked, and where shards of another division are still queued: their jobs would be done twice.
+/// [`Error::Parameter`] where SLURM does not answer, and where shards of another division are still queued:
+/// their jobs would be done twice.
 pub(super) fn busy(out: &Path, plan: &ShardPlan, count: usize) -> Result<BTreeSet<usize>> {
     let live = |states: BTreeMap<usize, TaskState>| -> BTreeSet<usize> {
         let live =
@@ -129,7 +131,7 @@ pub(super) fn busy(out: &Path, plan: &ShardPlan, count: usize) -> Result<BTreeSe
     Ok(busy)
 }
 
-/// What a program prints, or why it does not answer.
+/// The output of a program, or the reason why it gave none.
 fn asked(program: &str, arguments: &[&str]) -> Result<String, String> {
     let done = Command::new(program).args(arguments).stdin(Stdio::null()).output();
     let done = done.map_err(|reason| format!("{program}: {reason}"))?;
@@ -201,7 +203,7 @@ fn parse_hyperqueue(text: &str) -> Vec<(usize, TaskState)> {
     all
 }
 
-/// What is done of a plan; where shards were submitted, the engine is asked what becomes of the others.
+/// The status of a plan. Where shards were submitted, the engine is queried about those that are not done.
 pub fn status(found: &Completeness, jobs: &dyn JobList, out: &Path) -> Status {
     let plan = &found.plan;
     let count = submitted_tasks(out, plan);

@@ -21,7 +21,7 @@ const MOST_MINUTES: u64 = 527_040;
 #[cfg(feature = "clap")]
 const MOST_MEGABYTES: u64 = 1_000_000_000;
 
-/// What runs tasks on many machines.
+/// A system that runs tasks on many machines.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Engine {
     /// SLURM: a job array.
@@ -51,7 +51,7 @@ impl FromStr for Engine {
     }
 }
 
-/// What an engine is asked for.
+/// Request to an engine.
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "clap", derive(clap::Args))]
 pub struct Submission {
@@ -84,11 +84,11 @@ pub struct Submission {
 pub struct Submitted {
     /// The scripts; the last one submits the others.
     pub files: Vec<PathBuf>,
-    /// Shards with something left to do.
+    /// Shards with jobs that are not done.
     pub shards: Vec<usize>,
     /// Jobs that are left to do.
     pub jobs: usize,
-    /// What the engine answered, where it was submitted.
+    /// The answer of the engine, where it was submitted.
     pub answer: Option<String>,
 }
 
@@ -121,9 +121,9 @@ pub(crate) struct Target<'a> {
 
 impl Submission {
     /// Writes the scripts of this program into `OUT/slurm` or `OUT/hyperqueue`, for the shards with jobs that
-    /// are neither done nor, as far as the engine knows, at work or waiting; submits them where that is asked
-    /// for. Returns the forecast and what was written, in words. Without a number of tasks, that of an earlier
-    /// submission is kept.
+    /// are neither done nor, according to the engine, running or waiting; submits them on request. Returns
+    /// the forecast and the list of files, in words. Without a number of tasks, that of an earlier submission
+    /// is kept.
     ///
     /// # Errors
     /// [`Error::Parameter`] where nothing is left to do, for paths that a script cannot hold, and with what the
@@ -203,7 +203,7 @@ fn run(script: &Path) -> Result<String> {
     Err(Error::parameter("engine", "submission", expected))
 }
 
-/// What all scripts need, as text.
+/// Parts of all scripts, as text.
 struct Script<'a> {
     submission: &'a Submission,
     plan: &'a ShardPlan,

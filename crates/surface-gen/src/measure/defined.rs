@@ -2,7 +2,7 @@
 
 use contact_model::{Error, HeightMap, Result};
 
-/// Refuses a map with undefined points, for what needs every height.
+/// Refuses a map with undefined points, for a measure `what` that needs every height.
 ///
 /// # Errors
 /// [`Error::Domain`] with their number.

@@ -9,8 +9,8 @@ const FEWEST: usize = 3;
 /// Hurst exponent from a radial spectrum: least squares of `ln C_2D = const - 2 (H + 1) ln q` over `q_min <=
 /// q <= q_max`.
 ///
-/// All points weigh the same; points with C = 0 are left out. The first rings bend the fit (see
-/// [`crate::radial_spectrum`]): start at ring 8 or so.
+/// All points have the same weight; points with C = 0 are left out. The first rings bias the fit (see
+/// [`crate::radial_spectrum`]), so start at about ring 8.
 ///
 /// # Errors
 /// [`Error::Domain`] where fewer than 3 points with C > 0 lie in the window.

@@ -1,4 +1,4 @@
-//! What is measured on samples.
+//! Measures of samples.
 
 mod defined;
 mod hurst;

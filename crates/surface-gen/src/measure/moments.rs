@@ -18,8 +18,8 @@ pub struct HeightMoments {
 }
 
 impl HeightMoments {
-    /// Of finite heights; `None` where all are one, or there are none. Sums as those of [`rms_height`]. Cost
-    /// O(n).
+    /// The moments of finite heights; `None` where all are equal or there are none. The sums are as accurate
+    /// as those of [`rms_height`]. Cost O(n).
     ///
     /// ```
     /// use surface_gen::HeightMoments;
@@ -49,10 +49,10 @@ impl HeightMoments {
 /// Root mean square of the heights about their mean, `sqrt(mean (h - mean h)^2)`, in the unit of the heights.
 ///
 /// Undefined points (minus infinity, as in [`HeightMap::heights`]) are left out. Two passes with pairwise
-/// sums, on heights divided by their largest deviation from the middle of their range: nothing overflows or
-/// underflows for heights of 1e-150 or 1e150, and an offset costs its own rounding only. 0 for no heights or
-/// equal ones; not finite if a height is NaN or plus infinity. Cost O(n); undefined points cost a copy of the
-/// others.
+/// sums run over heights divided by their largest deviation from the middle of their range: nothing overflows
+/// or underflows for heights of 1e-150 or 1e150, and an offset costs only its own rounding. The result is 0
+/// for no heights or equal ones, and not finite if a height is NaN or plus infinity. Cost O(n); with
+/// undefined points the others are copied.
 ///
 /// ```
 /// // Deviations from the mean 3 are -2, 0, 2: mean square 8/3.

@@ -5,10 +5,10 @@ use contact_model::{Boundary, Cells};
 /// Number of cells in each connected patch of a set, in the order of the patches' first cells; cells are
 /// connected when they share an edge.
 ///
-/// `index` holds strictly increasing linear indices `iy * columns + ix` on a grid of so many cells (a number
-/// for as many rows as columns, or `[columns, rows]`). With periodic boundaries opposite
-/// edges of the grid are one. Cost: O(n log n) at worst, O(n) in practice, for n cells of the set; the grid
-/// itself is never touched.
+/// `index` holds strictly increasing linear indices `iy * columns + ix` on a grid of `cells` (one number for
+/// equal columns and rows, or `[columns, rows]`). With periodic boundaries opposite edges of the grid are
+/// joined. Cost: O(n log n) at worst, O(n) in practice, for n cells of the set; it does not depend on the
+/// size of the grid.
 ///
 /// ```
 /// use contact_model::Boundary;

@@ -23,7 +23,7 @@ fn square(count: usize) -> f64 {
 }
 
 impl MapPlane {
-    /// Fits heights of all cells, row-major. Without slope along an axis of one cell. Cost O(N).
+    /// Fits the heights of all cells, row-major. Along an axis of one cell the slope is 0. Cost O(N).
     ///
     /// ```
     /// use surface_gen::MapPlane;
@@ -48,13 +48,13 @@ impl MapPlane {
         Self { cells, mean: mean / (columns * rows) as f64, slopes }
     }
 
-    /// Its height at cell number i.
+    /// Height of the plane at cell number i.
     pub fn height(&self, i: usize) -> f64 {
         let Cells { columns, rows } = self.cells;
         self.mean + self.slopes[0] * about(i % columns, columns) + self.slopes[1] * about(i / columns, rows)
     }
 
-    /// Variance of its heights.
+    /// Variance of the heights of the plane.
     pub fn variance(&self) -> f64 {
         let along = |slope: f64, count: usize| slope * slope * (square(count) / count as f64);
         along(self.slopes[0], self.cells.columns) + along(self.slopes[1], self.cells.rows)

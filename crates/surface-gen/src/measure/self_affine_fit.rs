@@ -21,14 +21,14 @@ const ROLLED_OFF: f64 = 0.2;
 const REMEDY: &str = "of a self-affine surface without roll-off; `crop` or `cells` may select its range, models that solve \
                       the map or take any spectrum need none";
 
-/// A power law `C_2D ~ q^(-2 (H + 1))` fitted to the spectrum of a map: H for theories that take nothing else
-/// of it.
+/// A power law `C_2D ~ q^(-2 (H + 1))` fitted to the spectrum of a map: H for theories that need nothing else
+/// of the map.
 ///
-/// A straight line through the logarithms of the rings between fixed wavelengths, without an interval.
-/// Statistics of a map tell the fit of the crate `surface-statistics`, `SpectrumFit`: by largest likelihood,
-/// with roll-off, cut-off, noise and intervals, between the wavelengths that can be trusted. Theories take
-/// this one: it costs one transform, refuses what is not self-affine, and the crates of models know no
-/// statistics.
+/// The fit is a straight line through the logarithms of the rings between fixed wavelengths, without an
+/// interval. The statistics of a map report another fit, `SpectrumFit` of the crate `surface-statistics`:
+/// that has the largest likelihood, with roll-off, cut-off, noise and intervals, between the reliable
+/// wavelengths. Theories use the simpler fit here, because it costs one transform and refuses maps that are
+/// not self-affine, and because the crates of models do not depend on the crate of statistics.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SelfAffineFit {
     /// Hurst exponent H in [0, 1].
@@ -44,10 +44,10 @@ pub struct SelfAffineFit {
 
 impl SelfAffineFit {
     /// Fits the map's spectrum under Hann's window ([`windowed`]), and checks that it is a power law down to
-    /// the longest wave. On surfaces of this crate of 256 cells a side H comes back within 0.05.
+    /// the longest wave. On generated surfaces of 256 cells a side the fit recovers H within 0.05.
     ///
     /// # Errors
-    /// [`Error::Domain`] with the number that speaks against self-affinity: undefined points, too few waves
+    /// [`Error::Domain`] with the number that contradicts self-affinity: undefined points, too few waves
     /// (about 128 cells along the shorter side are needed), an exponent outside [0, 1] by more than 0.1,
     /// halves whose exponents differ too much (by 0.7 for 128 cells, 0.5 for 256), long waves with less than
     /// a fifth of the power law's variance (a roll-off). Cost O(N log N) for N cells.

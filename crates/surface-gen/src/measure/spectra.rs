@@ -16,15 +16,15 @@ pub struct Wave {
     pub index: [isize; 2],
     /// Variance `|H|^2` of the heights in this wave, in the square of the unit that [`periodogram`] returns.
     pub variance: f64,
-    /// Of how many waves this is one: 2 where the conjugate wave is not visited by itself (`0 < mx <
-    /// columns/2`), else 1.
+    /// Number of waves that this one represents: 2 where the conjugate wave is not visited separately (`0 <
+    /// mx < columns/2`), else 1.
     pub copies: f64,
 }
 
 /// Visits every wave of the map but the mean, in a fixed order, and returns the unit of their amplitudes
 /// (half the range of the heights, so that no square leaves the range of f64).
 ///
-/// The map is taken as periodic: lay a window over it where it is not. Summed with their copies, the
+/// The map is taken as periodic; apply a window first where it is not. Summed with their copies, the
 /// variances are the square of [`crate::rms_height`]; `C_2D = Lx Ly / (2 pi)^2 |H|^2`. Cost O(N log N),
 /// memory about that of the map.
 ///

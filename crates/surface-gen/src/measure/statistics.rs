@@ -1,4 +1,5 @@
-//! What theories of rough contact take from a given map, and how far it is what they assume.
+//! Statistics of a given map that theories of rough contact need, and measures of how well it meets their
+//! assumptions.
 
 use super::moments::{HeightMoments, rms_height};
 use super::plane::MapPlane;
@@ -75,9 +76,9 @@ impl MapStatistics {
     /// Measures a map.
     ///
     /// # Errors
-    /// [`Error::Domain`] for undefined points, heights that are all one, a tilt (a plane with more than 3/4 of the
-    /// variance of a map that is not periodic), and numbers beyond the range of f64. Cost O(N log N) for N
-    /// cells, memory about that of the map.
+    /// [`Error::Domain`] for undefined points, heights that are all equal, a tilt (a plane with more than 3/4
+    /// of the variance of a map that is not periodic), and numbers beyond the range of f64. Cost O(N log N)
+    /// for N cells, memory about that of the map.
     pub fn new(map: &HeightMap) -> Result<Self> {
         let Homogeneous { map: homogeneous, edge_step, tilt } = homogeneous(map)?;
         let (lattice, length) = (Lattice::new(map.cells(), map.size()), map.length());
@@ -135,7 +136,8 @@ impl MapStatistics {
     /// Moments m0, m2, m4 of a profile of the isotropic surface with this spectrum: variances of height,
     /// slope and curvature along a line, in `h^2`, `(h/L)^2` and `(h/L^2)^2`.
     ///
-    /// Of the variances over the plane 1, 1/2 and 3/8, the angular means of cos^2 and cos^4 (Nayak 1971).
+    /// They are the variances over the plane times 1, 1/2 and 3/8; the last two are the angular means of
+    /// cos^2 and cos^4 (Nayak 1971).
     pub fn profile_moments(&self) -> [f64; 3] {
         [self.moment(0), 0.5 * self.moment(1), 0.375 * self.moment(2)]
     }

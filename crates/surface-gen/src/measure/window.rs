@@ -32,14 +32,15 @@ fn mean_square(count: usize) -> f64 {
     }
 }
 
-/// The map about its mean under Hann's window along x times that along y, over the rms of the window: a
-/// homogeneous surface keeps its spectrum.
+/// The heights about their mean, multiplied by Hann's window along x and along y and divided by the rms of
+/// the window, so that a homogeneous surface keeps its spectrum.
 ///
-/// The window keeps the jump between opposite edges out of the short waves and smears each ring of the
+/// The window keeps the jump between opposite edges out of the short waves, but it spreads each ring of the
 /// spectrum over its neighbours. Cost O(N).
 ///
 /// # Errors
-/// [`contact_model::Error::Domain`] for undefined points, and those of [`HeightMap::new`] where a height leaves the range of f64.
+/// [`contact_model::Error::Domain`] for undefined points, and those of [`HeightMap::new`] where a height
+/// leaves the range of f64.
 pub fn windowed(map: &HeightMap) -> Result<HeightMap> {
     defined_everywhere(map, "a window")?;
     let Cells { columns, rows } = map.cells();
@@ -57,8 +58,8 @@ pub fn windowed(map: &HeightMap) -> Result<HeightMap> {
     HeightMap::new(map.cells(), map.size(), heights)
 }
 
-/// Wavenumbers from and to which a Hurst exponent is fitted: from waves of an eighth of the shorter side to
-/// waves of four of the longer cell sides.
+/// Range of wavenumbers in which a Hurst exponent is fitted: from the wavelength of an eighth of the shorter
+/// side to that of four times the longer cell side.
 pub fn fit_range(map: &HeightMap) -> [f64; 2] {
     [TAU / map.size().shorter() * FIRST_RING, LAST_SHARE * PI / map.dx().max(map.dy())]
 }

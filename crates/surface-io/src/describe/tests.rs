@@ -45,7 +45,7 @@ fn small_and_flat_maps_have_no_dimension() {
         let found = describe(&map.unwrap());
         assert_eq!(found.hurst, Err(Absent::NoHeight));
         assert!(found.rms_height <= 0.0 && found.rms_slope <= 0.0);
-        assert!(found.to_string().contains("fractal dimension  not determined: no relief"));
+        assert!(found.to_string().contains("fractal dimension  not determined: all heights are equal"));
     }
 }
 

@@ -2,8 +2,8 @@
 //! heights in metres, float32 row by row, rows padded to eight bytes (Alicona's description of the format;
 //! the readers of Gwyddion and `SurfaceTopography` agree).
 //!
-//! The first row of the file is y = 0. Undefined are NaN and what `InvalidPixelValue` says. The picture and
-//! the quality map are not read.
+//! The first row of the file is y = 0. NaN and the value of `InvalidPixelValue` are undefined points. The
+//! picture and the quality map are not read.
 
 use super::prelude::*;
 

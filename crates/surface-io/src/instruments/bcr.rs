@@ -4,8 +4,8 @@
 //!
 //! After Image Metrology's description of the format, Gwyddion's `bcrfile.c` and the reader of
 //! `SurfaceTopography` (`IO/BCR.py`). Height = `bit2nm` x number in `zunit` (nm without it, as the sides are
-//! in `xunit` and `yunit`); the first row of the file is y = 0. `intelmode` 0 is big-endian. Undefined are,
-//! where `voidpixels` is there and not 0, the integer 32767, and floats from 1.7e38 on.
+//! in `xunit` and `yunit`); the first row of the file is y = 0. `intelmode` 0 is big-endian. Where
+//! `voidpixels` is given and not 0, the integer 32767 and floats from 1.7e38 on are undefined points.
 //!
 //! `zmin` is not used: Gwyddion moves all heights so that the lowest is `zmin`, `SurfaceTopography` does not.
 //! Not read: force curves.

@@ -2,9 +2,9 @@
 //! float32 row by row.
 //!
 //! After the specification (<http://gwyddion.net/documentation/user-guide-en/gsf.html>) and Gwyddion's
-//! `gsffile.c`. Height = number in `ZUnits`; rows go from the top to the bottom of the picture; undefined are
-//! NaN. `XReal` and `YReal` are the sides in `XYUnits`; sides without a unit of length are noted and not
-//! used. The numbers fill the file to its end: another length is an error. The offsets are not used.
+//! `gsffile.c`. Height = number in `ZUnits`; rows go from the top to the bottom of the picture; NaN are
+//! undefined points. `XReal` and `YReal` are the sides in `XYUnits`; sides without a unit of length are noted
+//! and not used. The numbers fill the file to its end: another length is an error. The offsets are not used.
 
 use super::prelude::*;
 use crate::entries::{Entries, HeaderLine};

@@ -60,8 +60,8 @@ use std::io::Read as _;
 /// Groups inside groups, and objects, that are looked at: links may form loops.
 const DEEPEST: usize = 8;
 const MOST: usize = 1000;
-/// The metadata of a file are read from at most so many bytes for each of its own, and so many besides:
-/// strings of attributes may all be one string of a heap.
+/// Limits of the bytes that are read for the metadata of a file, per byte of the file and in addition: the
+/// strings of many attributes may be the same string of a heap.
 const REREAD: u64 = 4;
 const LEAST: u64 = 16 << 20;
 const DEFLATE: u16 = 1;

@@ -2,10 +2,10 @@
 //! bytes, the numbers, and behind them a formula, a note, units and labels.
 //!
 //! After WaveMetrics' Technical Note 3 (Igor binary format), Gwyddion's `igorfile.c` and
-//! `SurfaceTopography`'s `IO/IBW.py` (which reads by igor2). A file is told by its version and the checksum
-//! of its headers, either byte order. x runs fastest, then y, then the layers: each layer is a channel, named
-//! by its label. The first line is the bottom of the image, so the last row. Values are as they are, in the
-//! unit of the wave; a cell is `sfA` wide in the unit of its axis. Undefined are NaN.
+//! `SurfaceTopography`'s `IO/IBW.py` (which reads by igor2). A file is recognised by its version and the
+//! checksum of its headers, in either byte order. x runs fastest, then y, then the layers: each layer is a
+//! channel, named by its label. The first line is the bottom of the image, so the last row. Values are as
+//! they are, in the unit of the wave; a cell is `sfA` wide in the unit of its axis. NaN are undefined points.
 //!
 //! - **Asylum** (the file ends with `MFP3D` or `Force`, or labels end with `Trace` or `Retrace`). The unit of
 //!   the wave is that of the heights only: layers whose label does not begin with `Height` or `ZSensor` hold

@@ -1,4 +1,4 @@
-//! Formats whose feature is off: recognised all the same, and refused by the name of the feature.
+//! Formats whose feature is off. They are still recognised, and the refusal names the feature.
 
 use super::magic;
 use super::prelude::*;

@@ -1,4 +1,4 @@
-//! How files of the formats that are features are recognised, with their readers and without.
+//! Recognition of the formats that are features, with and without their readers.
 
 use crate::zip::{self, Member};
 

@@ -6,8 +6,8 @@
 //! list of elements: its class and flags, its shape, its name, and its numbers column by column, of a type
 //! that may be smaller than that of the class.
 //!
-//! Height = number, without a unit; undefined are NaN. MATLAB's `surf`, `mesh` and `imagesc` draw the matrix
-//! Z(row, column) over y and x: the first index is taken for y, row 1 for y = 0, which is noted;
+//! Height = number, without a unit; NaN are undefined points. MATLAB's `surf`, `mesh` and `imagesc` draw the
+//! matrix Z(row, column) over y and x: the first index is taken for y, row 1 for y = 0, which is noted;
 //! [`crate::Axes`] `xy` takes it for x, as `SurfaceTopography` does. No variable is taken for a size or for
 //! coordinates.
 //!
@@ -137,7 +137,7 @@ fn matrix(fields: &mut Fields<'_>) -> Result<Option<Matrix>> {
     Ok(Some(Matrix { name, shape, complex, number, at, bytes: bytes.into() }))
 }
 
-/// Bytes and place of an element's data, at least so many; the next element is behind it.
+/// Number and place of the bytes of an element's data, at least `least` bytes; the next element is behind it.
 fn element(fields: &mut Fields<'_>, least: u32) -> Result<(u32, usize)> {
     let kind: u32 = fields.get()?;
     let small = kind > 0xffff;

@@ -5,12 +5,11 @@
 //! (<https://docs.unidata.ucar.edu/nug/current/file_format_specifications.html>) and `IO/NC.py` of
 //! SurfaceTopography. The last index runs fastest: of `heights(x, y)` that is y, so the file goes column by
 //! column; row j is y = j * cell; `heights(y, x)` is read too. Dimensions of other names are taken for y and
-//! x, as the CF conventions order them;
-//! [`crate::Axes`] `xy` takes the first for x. The attribute `length` of the variables `x` and `y` is the side, their attribute `unit` (or
-//! `units`) its unit, that of `heights` the unit of the heights. Undefined are NaN, the attributes
-//! `_FillValue` and `missing_value`, in floats without the former also the library's own fill value, and
-//! points where a variable `mask` is not 0. `scale_factor` and `add_offset` are applied after that, as the
-//! conventions say.
+//! x, as the CF conventions order them; [`crate::Axes`] `xy` takes the first for x. The attribute `length` of
+//! the variables `x` and `y` is the side, their attribute `unit` (or `units`) its unit, that of `heights` the
+//! unit of the heights. Undefined points are NaN, the values of the attributes `_FillValue` and
+//! `missing_value`, the library's own fill value in floats without the former, and points where a variable
+//! `mask` is not 0. `scale_factor` and `add_offset` are applied after that, as the conventions say.
 //!
 //! Own code: `netcdf3` 0.6 reserves memory for as many dimensions as a file claims, reads whole variables and
 //! no CDF-5. Not read: line scans, a dimension without a limit, NetCDF-4 (an HDF5 file).

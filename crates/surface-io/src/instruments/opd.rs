@@ -3,8 +3,8 @@
 //!
 //! Height of a number in nanometres: `Wavelength` over `Mult`; a point is `Pixel_size` millimetres wide, and
 //! that times `Aspect` high (the readers of Gwyddion and `SurfaceTopography` agree). Heights stand column by
-//! column, the last row first. Undefined are float32 from 1e38 on and int16 from 32766 on. Intensities are
-//! not read.
+//! column, the last row first. Numbers from 1e38 on (float32) and from 32766 on (int16) are undefined points.
+//! Intensities are not read.
 
 use super::prelude::*;
 

@@ -1,9 +1,9 @@
 //! PLu, of Sensofar's confocal microscopes: a header of 500 bytes, then layers of heights in micrometres,
 //! float32 row by row.
 //!
-//! The file has no first bytes of its own: it is told by its type (3, a topography), two shapes that agree,
-//! cells of positive sides and its length (Gwyddion's and `SurfaceTopography`'s descriptions agree). 1000001
-//! is undefined; the first row of the file is y = 0.
+//! The file has no first bytes of its own: it is recognised by its type (3, a topography), two shapes that
+//! agree, cells of positive sides and its length (Gwyddion's and `SurfaceTopography`'s descriptions agree).
+//! 1000001 is undefined; the first row of the file is y = 0.
 //!
 //! Further layers are read where no pictures are (`SurfaceTopography` has them one behind another); where
 //! they stand beside pictures no description says, and only the first layer is read. Profiles and the

@@ -149,7 +149,7 @@ fn object(source: &mut Source<'_>, at: u64, header: &Header, image: bool) -> Res
     Ok((channel.named(name), end))
 }
 
-/// The streams of a compressed object that unpack to so many bytes, and the offset of their end.
+/// The streams of a compressed object that unpack to `length` bytes, and the offset of their end.
 fn streams(source: &mut Source<'_>, data: u64, length: u64) -> Result<(Vec<Packed>, u64)> {
     let count: u32 = source.get(ByteOrder::Little, data)?;
     if !(1..=STREAMS).contains(&count) {

@@ -4,9 +4,9 @@
 //! `ij/io/FileOpener.java` and `FileSaver.java` of
 //! <https://github.com/imagej/ImageJ>.
 //!
-//! - **Unit and scale.** TIFF says neither; [`crate::ReadOptions::height_scale`] or a unit is asked for. Only
-//!   ImageJ's description counts: `cf=0` with `c0` and `c1` makes values `c0 + c1 * number`, `vunit` is their
-//!   unit; another `cf` makes them no heights.
+//! - **Unit and scale.** TIFF states neither, so [`crate::ReadOptions::height_scale`] or a unit is required.
+//!   Only ImageJ's description is used: `cf=0` with `c0` and `c1` makes values `c0 + c1 * number`, `vunit` is
+//!   their unit; another `cf` makes them no heights.
 //! - **Size.** By ImageJ's `unit` (and `yunit`), pixels per unit in the tags of the resolution. Resolutions
 //!   per inch, and those without that description, are those of print or screens.
 //! - **Order.** The first row is the top one and y = 0; the orientations 2, 3 and 4 are turned, 5 to 8 are
@@ -365,7 +365,7 @@ impl Image {
         Ok(())
     }
 
-    /// Puts the numbers of a strip or tile of so many rows and columns in their places.
+    /// Puts the numbers of a strip or tile, with its numbers of rows and columns, in their places.
     fn put(
         &self,
         decoded: &DecodingResult,

@@ -4,8 +4,8 @@
 //! After Gwyddion's `rmitmd.c`, the reader of `SurfaceTopography` (`IO/TMD.py`; its version 1.27.1 has the
 //! lengths in mm) and GelSight's own `readtmd`/`writetmd`. The first text has 32 bytes; the second, a
 //! comment, ends at its zero and may be empty. Height = number, in mm, upwards; the first row of the file is
-//! y = 0; undefined are NaN. The offsets of the map in x and y are not used. The numbers fill the file to its
-//! end: another length is an error.
+//! y = 0; NaN are undefined points. The offsets of the map in x and y are not used. The numbers fill the file
+//! to its end: another length is an error.
 //!
 //! Not read: the first version of the format (`v1.0`), the AMB files of Ambios that begin with the same
 //! words.

@@ -15,10 +15,11 @@ use std::path::Path;
 /// Reads a measured profile as a line: text of two columns, x and z, in any order of the points.
 /// [`crate::Scan::read`] makes a map of one row of it, the body that is uniform along y.
 ///
-/// The rules are those of points of a map along one axis: x has equal steps within a tenth of one
-/// ([`ReadOptions::cell`] for noisier ones), the line is one step longer than from its first to its last
-/// point. Every place needs a height. Both units are in the file or are given ([`ReadOptions::unit`] or
-/// [`ReadOptions::height_scale`], and [`ReadOptions::lateral_unit`]); `none` for both are plain numbers.
+/// The rules are those of points of a map along one axis. The steps of x are equal within a tenth of one
+/// ([`ReadOptions::cell`] for noisier ones), and the line is one step longer than the distance between its
+/// first and last points. Every place needs a height. Both units are in the file or are given
+/// ([`ReadOptions::unit`] or [`ReadOptions::height_scale`], and [`ReadOptions::lateral_unit`]); `none` for
+/// both means plain numbers.
 ///
 /// # Errors
 /// [`crate::Error::System`] where the system refuses; [`crate::Error::Content`] for everything else.

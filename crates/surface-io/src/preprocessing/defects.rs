@@ -1,4 +1,4 @@
-//! Points that are no surface: outliers, and the largest part without undefined points.
+//! Outliers, and the largest part of a map without undefined points.
 
 use contact_model::Cells;
 use std::ops::Range;

@@ -7,8 +7,8 @@ use contact_model::Cells;
 ///
 /// The map is taken as constant over each fine cell; a fine cell that two coarse ones share counts for each
 /// by its area there. Along x, then along y. A coarse cell is the mean over its defined part, and NaN where
-/// less than half of its area is defined. Summits become lower, the rms height and slope smaller: what a
-/// coarser instrument sees. Cost O(N) for N points.
+/// less than half of its area is defined. Summits become lower, and the rms height and slope become smaller,
+/// as with a coarser instrument. Cost O(N) for N points.
 pub(super) fn coarsen(heights: Vec<f64>, cells: Cells, coarse: Cells) -> Vec<f64> {
     if coarse == cells {
         return heights;

@@ -10,10 +10,10 @@ keywords! {
     /// How scan lines (rows, the fast axis along x) are shifted to a common height. The mean height of the map is
     /// kept.
     ///
-    /// An instrument that scans line by line measures heights along a line within a second, and heights across
-    /// the lines over minutes: drift and jumps of its sensor shift whole lines. Aligned, the map has no
-    /// information any more on the mean slope and on long waves across the lines, whether of the drift or of the
-    /// surface.
+    /// An instrument that scans line by line measures heights along a line within a second, and heights
+    /// across the lines over minutes: drift and jumps of its sensor shift whole lines. After the alignment
+    /// the map has no information on the mean slope and on long waves across the lines, whether they are due
+    /// to the drift or to the surface.
     #[non_exhaustive]
     AlignLines: "align_lines";
     /// Each line is shifted so that the median of its height differences to the line before, over the columns
@@ -125,8 +125,8 @@ const SHORTEST: usize = 16;
 /// standard deviation of the height differences between neighbouring rows (1.4826 times the median of their
 /// distances from their median, which no tilt changes); a dark streak is as much lower. A scar is a run of
 /// [`SHORTEST`] points or more of one kind in a row. Rows beyond the edges and undefined points are no
-/// neighbours. Of a ridge of the surface that is as narrow, as long and along x it cannot be told. Cost O(N)
-/// for N points.
+/// neighbours. A ridge of the surface that is as narrow and as long and lies along x cannot be distinguished
+/// from a scar. Cost O(N) for N points.
 pub(super) fn remove_scars(cells: Cells, times: f64, heights: &mut [f64]) -> String {
     let Cells { columns, rows } = cells;
     let differences = heights.iter().zip(heights.iter().skip(columns)).map(|(a, b)| b - a);

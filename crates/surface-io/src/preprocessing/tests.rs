@@ -285,7 +285,7 @@ fn extreme_heights_stay_finite_or_are_named() {
         &ReadOptions { cell: "1".parse().ok(), ..ReadOptions::default() },
     )
     .unwrap();
-    assert!(preprocessed(&wide, |_| ()).unwrap_err().to_string().contains("relief"));
+    assert!(preprocessed(&wide, |_| ()).unwrap_err().to_string().contains("range of heights"));
 }
 
 proptest! {

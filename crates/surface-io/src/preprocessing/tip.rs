@@ -1,4 +1,4 @@
-//! What the tip of an instrument lets be seen.
+//! The lateral resolution that the tip of an instrument allows.
 
 use contact_model::Cells;
 

@@ -6,10 +6,10 @@ use crate::keyword::keywords;
 use contact_model::Cells;
 
 keywords! {
-    /// What is subtracted from the heights.
+    /// Trend that is subtracted from the heights.
     #[derive(Default)]
     Detrend: "detrend";
-    /// Nothing.
+    /// No trend.
     #[default]
     Nothing = "none",
     /// The mean height.

@@ -1,4 +1,4 @@
-//! What a quantity measures.
+//! Dimensions of quantities.
 
 use std::fmt;
 

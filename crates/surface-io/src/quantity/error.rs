@@ -1,4 +1,4 @@
-//! What is wrong with a quantity as written.
+//! Errors in quantities as written.
 
 use super::dimension::Dimension;
 

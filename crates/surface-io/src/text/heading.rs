@@ -1,6 +1,5 @@
-//! What headers say: `# Width: 10 um` of Gwyddion and this crate, `x-length = 5000` of SPIP,
-//! `\Scan Size: 10 um` of Nanoscope, `Pixel size = 0.1 um` of profilers, in comments or in lines before the
-//! numbers.
+//! Statements in headers: `# Width: 10 um` of Gwyddion and this crate, `x-length = 5000` of SPIP, `\Scan
+//! Size: 10 um` of Nanoscope, `Pixel size = 0.1 um` of profilers, in comments or in lines before the numbers.
 //!
 //! The words are those of the readers in <https://github.com/ContactEngineering/SurfaceTopography>
 //! (`IO/Text.py`) and Gwyddion (`spip-asc.c`), and their usual variants. A length counts where it has a unit;
@@ -248,11 +247,12 @@ impl Heading {
         self.sides.map(|side| side.filter(counts))
     }
 
-    /// Width and height of a matrix of so many columns and rows, and the sides of its cells where the header
-    /// says those.
+    /// Width and height of a matrix with `count` columns and rows, and the sides of its cells where the
+    /// header states them.
     ///
     /// # Errors
-    /// [`ContentError::Contradiction`] where the header says another number of columns or rows, or where two of its lengths differ.
+    /// [`ContentError::Contradiction`] where the header says another number of columns or rows, or where two
+    /// of its lengths differ.
     pub(super) fn of_matrix(&self, count: [usize; 2]) -> Result<SidesAndCells, ContentError> {
         let mut sides = self.sides();
         let mut cells = [None; 2];

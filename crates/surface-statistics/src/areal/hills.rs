@@ -12,11 +12,13 @@ const HOLE: u8 = 2;
 pub(super) struct Hills {
     /// Peaks of those that are complete, by index, lowest index first.
     pub(super) peaks: Vec<usize>,
-    /// Number of those that are incomplete for a hole alone, not for the edge of what was seen.
+    /// Number of hills that are incomplete only because of a hole, not because of the edge of the measured
+    /// region.
     pub(super) cut: usize,
 }
 
-/// The hills that remain of heights, NaN where there is none; `points` tells holes from what is outside.
+/// The hills after pruning; heights are NaN where undefined, and `points` distinguishes holes from points
+/// outside.
 ///
 /// Points are added from the highest down; where two parts meet, the one with the lower peak ends in a
 /// saddle. Its hill is united with the one on the other side if its peak is less than `pruning` above the

@@ -1,29 +1,30 @@
-//! Undefined points of a map where hills are looked for: small patches are filled, others are told apart by
-//! whether the edge reaches them.
+//! Undefined points of a map whose hills are counted: small patches are filled, and larger ones are holes or
+//! outside of the map.
 
 use contact_model::Cells;
 
-/// Cells of the largest patch that is filled: scattered failures of an instrument, not a region that it did
-/// not see.
+/// Number of cells of the largest patch that is filled: a scattered failure of an instrument, not a region
+/// that it did not see.
 const LARGEST: usize = 16;
 /// Sweeps over a patch: more than such a patch needs for the digits that decide which point is higher.
 const SWEEPS: usize = 60;
 
-/// What a point of a map is.
+/// Kind of a point of a map.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Point {
-    /// Has a measured height.
+    /// A point with a measured height.
     Measured,
-    /// Has the mean height of its neighbours.
+    /// A point with the mean height of its neighbours.
     Filled,
-    /// Has no height, in a patch that does not touch the edge of the map.
+    /// A point without a height, in a patch that does not touch the edge of the map.
     Hole,
-    /// Has no height, in a patch that touches the edge: outside of what the instrument saw.
+    /// A point without a height, in a patch that touches the edge: outside of the region that the instrument
+    /// measured.
     Outside,
 }
 
 /// Fills patches of at most 16 undefined points, joined along the axes, so that each filled height is the
-/// mean of its neighbours': no filled point is a peak. Says what each point is.
+/// mean of its neighbours': no filled point is a peak. Returns the kind of each point.
 pub(super) fn fill_small(heights: &mut [f64], cells: Cells) -> Vec<Point> {
     let mut points = vec![Point::Measured; heights.len()];
     let mut seen: Vec<bool> = heights.iter().map(|h| !h.is_nan()).collect();

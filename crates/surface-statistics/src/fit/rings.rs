@@ -10,11 +10,11 @@ pub(super) const REACH: usize = 6;
 const FINE: usize = 2;
 /// Nodes of the spectrum for each ring.
 const NODES: f64 = 4.0;
-/// Under a window the rings begin with so many waves along the shorter side: longer ones are trends, of which
-/// some are removed.
+/// Number of waves along the shorter side at which the rings begin under a window: longer waves are trends,
+/// some of which are removed.
 const FIRST: f64 = 4.0;
-/// Under a window the rings end so many waves before the limit of the grid: half of the width of the window's
-/// transform.
+/// Number of waves before the limit of the grid at which the rings end under a window: half of the width of
+/// the window's transform.
 const BEFORE_LIMIT: f64 = 2.0;
 /// What a plane of least squares leaves of the variance of a wave of nu << 1 periods over the map: `2.16
 /// nu^4`.

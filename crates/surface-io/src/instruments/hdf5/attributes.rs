@@ -1,4 +1,4 @@
-//! Attributes of HDF5, and what the numbers of a data set stand for by them.
+//! Attributes of HDF5, which define the meaning of the numbers in a data set.
 
 use crate::channel::{StoredUnit, Undefined};
 use crate::options::Axes;

@@ -1,4 +1,4 @@
-//! Attributes of single programs: what the numbers of their data sets stand for.
+//! Attributes of single programs, which define the meaning of the numbers in their data sets.
 
 use super::attributes::{Attributes, Values, number, packed, text, unit};
 use crate::channel::{StoredUnit, Undefined};
