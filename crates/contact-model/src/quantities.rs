@@ -21,7 +21,7 @@ macro_rules! outputs {
         #[non_exhaustive]
         pub enum Output {
             $($(#[doc = $doc])+ $variant,)+
-            /// Conductance through the contact; it follows from the stiffness of the held area.
+            /// Conductance through the contact; it follows from the stiffness at fixed contact area.
             Conductance,
         }
 
@@ -51,7 +51,7 @@ macro_rules! outputs {
             pub fn sentence(self) -> &'static str {
                 match self {
                     $(Self::$variant => concat!($($doc),+).trim_ascii(),)+
-                    Self::Conductance => "Conductance through the contact; it follows from the stiffness of the held area.",
+                    Self::Conductance => "Conductance through the contact; it follows from the stiffness at fixed contact area.",
                 }
             }
         }
@@ -82,7 +82,7 @@ macro_rules! outputs {
 outputs! {
     /// Stiffness k = dF/dd along the branch of states.
     Stiffness stiffness,
-    /// Stiffness of the whole contact area, held.
+    /// Stiffness at fixed contact area: all cells in contact stay bonded.
     StiffnessFixedArea stiffness_fixed_area,
     /// Real contact area.
     Area area,
@@ -108,7 +108,7 @@ outputs! {
     Traction traction,
     /// Field of the slip, two components; with friction only.
     Slip slip,
-    /// Map of what sticks and what slips; with friction only.
+    /// Map of the cells that stick and of those that slip; with friction only.
     StickSlip stick_slip,
 }
 
@@ -454,13 +454,13 @@ pub static QUANTITIES: &[Quantity] = &quantities! {
         { drawn: false }
         => |s, _| s.tangential.and_then(|t| t.sliding_force).into();
     "stick_area" "stick area" "" Si("m^2"); AskedBy::Output(Output::StickArea);
-        "area of the contact whose traction is below what friction can hold"
+        "area of the contact whose traction is below the limit of friction"
         => |s, _| s.tangential.and_then(|t| t.stick_area).into();
     "slip_area" "slip area" "" Si("m^2"); AskedBy::Output(Output::StickArea);
-        "area of the contact whose traction is what friction can hold"
+        "area of the contact whose traction is at the limit of friction"
         => |s, _| s.tangential.and_then(|t| t.slip_area).into();
     "tangential_stiffness" "tangential stiffness" "k_{xx}" Si("N/m"); AskedBy::Output(Output::TangentialStiffness);
-        "dQ_x/ddelta_x along the branch of states, the pressures held: what sticks goes on sticking, what slips goes on slipping"
+        "dQ_x/ddelta_x along the branch of states at fixed pressures: cells that stick continue to stick, cells that slip continue to slip"
         => |s, _| s.tangential.and_then(|t| t.stiffness).map(|k| k[0][0]).into();
     "tangential_stiffness_xy" "tangential stiffness, x of y" "k_{xy}" Si("N/m"); AskedBy::Output(Output::TangentialStiffness);
         "dQ_x/ddelta_y of the same; it is dQ_y/ddelta_x too"
@@ -481,7 +481,7 @@ pub static QUANTITIES: &[Quantity] = &quantities! {
         AskedBy::Output(Output::TangentialStiffnessStuck);
         "dQ_y/ddelta_y of the same"
         => |s, _| s.tangential.and_then(|t| t.stiffness_stuck).map(|k| k[1][1]).into();
-    "stick_radius" "stick radius" "c" Si("m"); Effect("friction"); "inside it nothing slips"
+    "stick_radius" "stick radius" "c" Si("m"); Effect("friction"); "radius inside which nothing slips"
         => |s, _| s.tangential.and_then(|t| t.stick_radius).into();
     "dissipated" "energy dissipated by friction" "" Si("J"); Effect("friction"); "energy lost to friction since the first step"
         => |s, _| s.tangential.map(|t| t.dissipated).into();
@@ -506,7 +506,7 @@ pub static QUANTITIES: &[Quantity] = &quantities! {
         { role: Role::OfPath, drawn: false }
         => |s, _| s.pull_off.map(|p| p.force).into();
     "pull_off_error" "error of the largest pull" "" Si("N"); All(PULLED);
-        "what the steps of the path leave open: the pull-off force is at most pull_off + pull_off_error; empty where no load is beyond it"
+        "upper bound of the remaining error: the pull-off force is at most pull_off + pull_off_error; empty where no load is beyond it"
         { role: Role::OfPath, drawn: false }
         => |s, _| s.pull_off.and_then(|p| p.error).into();
     "pull_off_approach" "approach at the largest pull" "" Si("m"); All(&[Path, Effect("adhesion"), FreeBoundary]);
@@ -526,27 +526,27 @@ pub static QUANTITIES: &[Quantity] = &quantities! {
         "k/(1.1419 E* L) of this stiffness, L = sqrt(Lx Ly)"
         { role: Role::Normalised, source: "Pohrt, Popov, Filippov, Phys. Rev. E 86, 026710 (2012), Eq. 8", drawn: false }
         => |s, n| s.stiffness.map(|k| n.stiffness_bar(k)).into();
-    "stiffness_fixed_area" "stiffness of the held area" "k" Si("N/m"); AskedBy::Output(Output::StiffnessFixedArea);
-        "stiffness of the whole contact area, held (periodic: -dF/d(mean gap))"
+    "stiffness_fixed_area" "stiffness at fixed contact area" "k" Si("N/m"); AskedBy::Output(Output::StiffnessFixedArea);
+        "stiffness at fixed contact area: all cells in contact stay bonded (periodic: -dF/d(mean gap))"
         { compared: Compared::Yes }
         => |s, _| s.stiffness_fixed_area.into();
     "area" "contact area" "A" Si("m^2"); AskedBy::Output(Output::Area); "real contact area"
         { compared: Compared::Yes }
         => |s, _| s.area.into();
     "area_corrected" "corrected area" "A" Si("m^2"); AskedBy::Output(Output::Area);
-        "area less what cells add at its boundary (Yastrebov et al. 2017)"
+        "area corrected for the cells at its boundary (Yastrebov et al. 2017)"
         { compared: Compared::Yes, source: "Yastrebov, Anciaux, Molinari, Tribol. Int. 114, 161 (2017)", drawn: false }
         => |s, _| s.resolution.and_then(|r| r.corrected_area).into();
     "contact_fraction" "contact fraction" "A/A_0" One; AskedBy::Output(Output::Area); "A/(Lx Ly), undefined points included"
         { drawn: false }
         => |s, n| s.area.map(|a| n.contact_fraction(a)).into();
     "conductance" "conductance" "Λ" Unit::Conductance; AskedBy::Output(Output::Conductance);
-        "2 k/(E* (rho_1 + rho_2)) with the stiffness of the whole contact area, held (Barber)"
+        "2 k/(E* (rho_1 + rho_2)) with the stiffness at fixed contact area (Barber)"
         { compared: Compared::Yes, source: "Barber, Proc. R. Soc. A 459, 53 (2003)" }
         => |s, _| s.conductance.into();
     "patches" "number of contacts" "" One; AskedBy::Output(Output::ContactPatches); "connected contact areas, cells joined by an edge"
         => |s, _| s.patches.as_ref().map(crate::Patches::count).into();
-    "largest_patch" "area of the largest contact" "" Si("m^2"); AskedBy::Output(Output::ContactPatches); "area of the largest"
+    "largest_patch" "area of the largest contact" "" Si("m^2"); AskedBy::Output(Output::ContactPatches); "area of the largest patch"
         => |s, _| s.patches.as_ref().and_then(|p| p.areas().first().copied()).into();
     "largest_pressure" "largest pressure" "p_{\\rm{max}}" Si("Pa"); Always;
         "of a cell; grows with smaller cells until they resolve the shortest wave, at an edge of the rectangle or a spike without limit"
@@ -555,10 +555,10 @@ pub static QUANTITIES: &[Quantity] = &quantities! {
     "status" "status" "" Word; Always; "how the solve ended"
         { role: Role::Work, average: Average::No, drawn: false }
         => |s, _| s.report.status.as_str().into();
-    "strategy" "strategy" "" Word; Always; "which way the solver took"
+    "strategy" "strategy" "" Word; Always; "method that the solver used"
         { role: Role::Work, average: Average::No, drawn: false }
         => |s, _| s.report.strategy.as_str().into();
-    "contact_cells" "contact cells" "" One; Always; "cells or elements in contact; fewer than 10 are the grid's own"
+    "contact_cells" "contact cells" "" One; Always; "cells or elements in contact; with fewer than 10 the result depends on the grid"
         { average: Average::No, drawn: false }
         => |s, _| s.report.contact_cells.into();
     "iterations" "iterations" "" One; Always; "of the linear solvers"
@@ -573,7 +573,7 @@ pub static QUANTITIES: &[Quantity] = &quantities! {
     "fields" "fields" "" One; Always; "fields over the grid that the state holds"
         { role: Role::Work, average: Average::No, drawn: false }
         => |s, _| s.report.work.fields.into();
-    "field_bytes" "bytes of fields" "" One; Always; "their bytes"
+    "field_bytes" "bytes of fields" "" One; Always; "bytes of these fields"
         { role: Role::Work, average: Average::No, drawn: false }
         => |s, _| s.report.work.bytes.into();
     "duality_gap" "duality gap" "" One; Always; "sum p (g - min g)/(F s)"
@@ -586,8 +586,8 @@ pub static QUANTITIES: &[Quantity] = &quantities! {
     "complementarity" "complementarity" "" One; Always; "sum p |g|/(F s)"
         { role: Role::Residual("where there is pressure there is no gap"), average: Average::No, drawn: false }
         => |s, _| s.report.certificate.complementarity.into();
-    "load_error" "load error" "" One; Always; "|F - F_asked|/F_asked; of a mean gap its miss over s"
-        { role: Role::Residual("the force, or the mean gap, is the one that was asked for"), average: Average::No, drawn: false }
+    "load_error" "load error" "" One; Always; "|F - F_prescribed|/F_prescribed; of a mean gap its error over s"
+        { role: Role::Residual("the force, or the mean gap, is the prescribed one"), average: Average::No, drawn: false }
         => |s, _| s.report.certificate.load_error.into();
     "force_error" "error of the force" "" One; PrescribedDistance;
         "bound of the relative error of the force under a prescribed approach or mean gap; an estimate with adhesion"
@@ -605,8 +605,8 @@ pub static QUANTITIES: &[Quantity] = &quantities! {
                                 times tangential displacement"),
           average: Average::No, drawn: false }
         => |s, _| s.report.certificate.tangential_duality_gap.into();
-    "tangential_load_error" "tangential load error" "" One; FrictionInPlane; "|Q - Q_asked|/(mu F), solved cell by cell"
-        { role: Role::Residual("the tangential force is the one that was asked for, over the sliding force"),
+    "tangential_load_error" "tangential load error" "" One; FrictionInPlane; "|Q - Q_prescribed|/(mu F), solved cell by cell"
+        { role: Role::Residual("the tangential force is the prescribed one, relative to the sliding force"),
           average: Average::No, drawn: false }
         => |s, _| s.report.certificate.tangential_load_error.into();
     "tangential_stiffness_error" "error of the tangential stiffness" "" One; AnyTangentialStiffness;

@@ -44,7 +44,7 @@ fn an_adhesive_contact_has_two_stiffnesses_and_conducts_through_its_area() {
         assert!(dir.path().join(format!("out/curve-{name}.svg")).is_file(), "{name}");
     }
     let meanings = file.comments.join("\n");
-    assert!(meanings.contains("along the branch") && meanings.contains("whole contact area, held"));
+    assert!(meanings.contains("along the branch") && meanings.contains("stiffness at fixed contact area"));
     // Under forces the force has no error of its own; under approaches and along paths it may.
     assert!(file.column("force_error").is_err());
     let (_, file) = solved(dir.path(), &SPHERE.replace("force = [-0.03, 0, 0.1]", "approach = [-0.1, 0.1]"));
