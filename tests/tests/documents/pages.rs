@@ -1,8 +1,8 @@
-//! Pages of the book: how long they are.
+//! The length of the pages of the book.
 
 use super::{BEGIN, END, root, without_formulas};
 
-/// Words of a page at most: what is read in one sitting.
+/// Largest number of words of a page, so that it can be read in one sitting.
 const WORDS: usize = 1500;
 
 /// Pages that are tables made by a program.
