@@ -1,5 +1,6 @@
-//! The hot paths: the kernel, one application of each operator, one load from nothing in sparse and in dense
-//! contact with each strategy, a sweep of loads, a step of a path with adhesion.
+//! Benchmarks of the parts that take most of the time: the kernel, one application of each operator, one load
+//! solved from a cold start in sparse and in dense contact with each strategy, a sweep of loads, and a step
+//! of a path with adhesion.
 //!
 //! `cargo bench -p benches -- --save-baseline before` on one commit and `-- --baseline before` on
 //! another compare both; run them one after the other on an idle machine. `-- --quick` only shows that they
@@ -34,8 +35,8 @@ fn applications(c: &mut Criterion) {
     group.finish();
 }
 
-/// Forces that end in a factored set, in scattered and in dense contact at N = 257, D_f = 2.4, and the same
-/// on a single level.
+/// Cold solves at N = 257, D_f = 2.4 whose contact is small enough to be factored, scattered or dense, and
+/// the same without coarser grids.
 fn solves(c: &mut Criterion) {
     let Ok(surface) = SelfAffine::new(2.4, 1.0, 1.0) else { return };
     let scene = Scene::new(Surface::SelfAffine(surface), 1.0);
@@ -54,7 +55,7 @@ fn solves(c: &mut Criterion) {
     group.finish();
 }
 
-/// Twelve loads from first touch to nearly full contact on one surface, planned anew.
+/// Twelve loads from first touch to nearly full contact on one surface, prepared anew for each measurement.
 fn sweep(c: &mut Criterion) {
     let Ok(surface) = SelfAffine::new(2.4, 1.0, 1.0) else { return };
     let scene = Scene::new(Surface::SelfAffine(surface), 1.0);

@@ -6,20 +6,20 @@ use contact_model::{ContactModel, ContactState, Error, Load, Result};
 /// Which of force and approach is prescribed; the other is the response.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Prescribed {
-    /// The exact force; the approach answers.
+    /// The exact force is prescribed; the approach is the response.
     Force,
-    /// The exact approach; the force answers.
+    /// The exact approach is prescribed; the force is the response.
     Approach,
 }
 
 /// Relative errors, root mean square over the cases of a [`Problem`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Deviation {
-    /// Of the approach at given force, or of the force at given approach.
+    /// Error of the approach at given force, or of the force at given approach.
     pub response: f64,
-    /// Of the stiffness.
+    /// Error of the stiffness.
     pub stiffness: f64,
-    /// Of the area.
+    /// Error of the area.
     pub area: f64,
 }
 
@@ -28,7 +28,7 @@ pub struct Deviation {
 ///
 /// # Errors
 /// Every error of the model but [`Error::Unsupported`]; [`Error::Shape`] when a state lacks a number that was
-/// asked for.
+/// requested.
 pub fn deviation(
     model: &dyn ContactModel,
     problem: &Problem,

@@ -1,16 +1,15 @@
-//! What the physical tests share: problems that travel with their exact solutions, one checker for every
-//! model, orders of convergence; from `stability` maps made by hand and an oracle that tries every contact
-//! set.
+//! Common parts of the physical tests: problems with their exact solutions, one checker for every model, and
+//! orders of convergence; from `stability` maps made by hand and an oracle that tries every contact set.
 //!
 //! The tests themselves are in the `tests/` folder beside this file, one topic a file. They follow four
 //! rules.
 //!
 //! * A [`Problem`] knows its exact solution; [`deviation`] compares any model that accepts the scene, and
-//!   says `None` where it refuses.
+//!   returns `None` where the model refuses it.
 //! * Errors of a discretisation are stated as an [`order`] over several grids and as a bound on the finest,
 //!   not as one loose tolerance.
-//! * A number that nobody can derive by hand is compared with one found another way ([`every_contact_set`],
-//!   published values, the stored results of other programs in `data/peers`).
+//! * A number that cannot be derived by hand is compared with one from an independent source
+//!   ([`every_contact_set`], published values, the stored results of other programs in `data/peers`).
 //! * Every tolerance is a named constant with its reason.
 //!
 //! ```

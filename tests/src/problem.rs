@@ -3,10 +3,10 @@
 use analytic::{FlatPunch, Hertz, PowerLawBody};
 use contact_model::{ContactModel, ContactState, Load, Outputs, Result, Scene, Surface};
 
-/// One scene and an approach at which it is exact.
+/// One scene and an approach at which its exact solution is known.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Case {
-    /// The scene; it asks for stiffness and area.
+    /// The scene; it requests stiffness and area.
     pub scene: Scene,
     /// The approach.
     pub approach: f64,
@@ -14,8 +14,8 @@ pub struct Case {
 
 /// A body, the theory that solves it exactly, and a few states.
 ///
-/// Several states, because the error of one depends on how the edge of the contact happens to lie on the
-/// cells; their mean does not.
+/// There are several states, because the error of a single one depends on the position of the edge of the
+/// contact relative to the cells; their mean does not.
 pub struct Problem {
     /// Short name.
     pub name: &'static str,
@@ -44,7 +44,7 @@ impl std::fmt::Debug for Problem {
     }
 }
 
-/// Side of the square and modulus: neither is 1, so that a forgotten factor shows.
+/// Side of the square and modulus: neither is 1, so that a missing factor is detected.
 const SIDE: f64 = 2.0;
 const MODULUS: f64 = 3.0;
 

@@ -1,5 +1,4 @@
-//! What models declare is what they do: each ability is tried, and each thing that is not among them is
-//! refused.
+//! The declared abilities of the models are correct: each ability is tried, and everything else is refused.
 
 use contact_model::quantities::{AskedBy, QUANTITIES, Quantity, Role};
 use contact_model::{
@@ -49,7 +48,7 @@ fn with_effect(mut scene: Scene, effect: Option<Effect>) -> Scene {
     scene
 }
 
-/// A scene of one surface, boundary and effect, with nothing asked for.
+/// A scene of one surface, boundary and effect, without outputs.
 fn scene(kind: SurfaceKind, boundary: Boundary, effect: Option<Effect>) -> Scene {
     let body = Body::Elastic { young: 1.5, poisson: 0.5 };
     let rigid = effect.is_some_and(|effect| effect.key() == "rheology");
@@ -120,7 +119,7 @@ fn declared(model: &dyn ContactModel) -> impl Iterator<Item = Scene> {
     })
 }
 
-/// Names of the quantities that a model tells of some state of the scenes that it declares.
+/// Names of the quantities that a model reports for some state of the scenes that it declares.
 pub fn told(model: &dyn ContactModel) -> BTreeSet<&'static str> {
     let mut told = BTreeSet::new();
     for mut scene in declared(model) {
@@ -171,10 +170,10 @@ pub fn told(model: &dyn ContactModel) -> BTreeSet<&'static str> {
     told
 }
 
-/// Each surface, boundary, effect and output that a model declares is part of a scene that it answers, and
-/// the answer has what was asked for.
+/// Each surface, boundary, effect and output that a model declares is part of a scene that it solves, and the
+/// state has the requested outputs.
 #[test]
-fn what_is_declared_is_done() {
+fn declared_abilities_are_provided() {
     for record in MODELS {
         let (model, name) = (record.model, record.name());
         let abilities = model.abilities();
@@ -217,9 +216,9 @@ fn what_is_declared_is_done() {
     }
 }
 
-/// An effect that a model declares changes some state: beside the same contact without it the numbers differ.
+/// An effect that a model declares changes some state in comparison with the same contact without it.
 #[test]
-fn an_effect_that_is_declared_matters() {
+fn declared_effects_change_the_state() {
     for record in MODELS {
         let (model, abilities) = (record.model, record.model.abilities());
         for &effect in abilities.effects {
@@ -262,9 +261,10 @@ fn no_model_is_left_out() {
     assert_eq!(found.len(), MODELS.len());
 }
 
-/// One thing that is not among the abilities is enough to be refused, and the refusal names it.
+/// A scene with a single feature that is not among the abilities is refused, and the error names that
+/// feature.
 #[test]
-fn what_is_not_declared_is_refused_by_name() {
+fn undeclared_abilities_are_refused_by_name() {
     for record in MODELS {
         let (model, name) = (record.model, record.name());
         let abilities = model.abilities();
@@ -295,9 +295,9 @@ fn what_is_not_declared_is_refused_by_name() {
     }
 }
 
-/// Loads of a kind that is declared are answered, others are refused.
+/// Loads of a declared kind are solved, others are refused.
 #[test]
-fn loads_are_those_that_are_declared() {
+fn only_declared_kinds_of_loads_are_taken() {
     for record in MODELS {
         let (model, abilities) = (record.model, record.model.abilities());
         let Some((mut contact, scene)) = declared(model).find_map(|scene| {

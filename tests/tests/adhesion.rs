@@ -1,5 +1,5 @@
-//! Adhesion: two independent codes for the sphere with short range, boundary elements against Maugis's sphere
-//! with a finite one.
+//! Adhesion: two independent codes for the sphere with short-range adhesion, and boundary elements compared
+//! with Maugis's sphere for a finite range.
 
 use analytic::Jkr;
 use analytic::maugis_dugdale::MaugisSphere;
@@ -114,7 +114,7 @@ fn without_work_of_adhesion_it_is_hertz() {
 }
 
 #[test]
-fn adhesion_draws_in_and_holds_more_the_stronger_it_is() {
+fn a_stronger_adhesion_has_a_larger_contact_and_a_larger_pull_off_force() {
     for (model, name) in models() {
         let states = [0.0, 1e-6, 1e-4, 1e-2].map(|work| press(model, work, Load::Force(0.01)));
         for pair in states.windows(2) {
@@ -138,7 +138,7 @@ struct OnCells {
 }
 
 impl OnCells {
-    /// Maugis's lambda; `half`: half of the side in units.
+    /// Maugis's lambda; `half` is half of the side in these units.
     fn new(lambda: f64, cells: usize, half: f64) -> Self {
         let range = 1e-4;
         let work = (lambda * range / 2.0 * (16.0 * PI / 9.0).cbrt()).powf(1.5);
@@ -168,20 +168,20 @@ impl OnCells {
     }
 }
 
-/// lambda, half of the side in units, cells a side, and by how much a force over pi w R and a radius may
-/// differ, in cells.
+/// lambda, half of the side in units, cells a side, and the largest differences of a force over pi w R and of
+/// a radius, in cells.
 ///
-/// Whole cells enter the cohesive zone, so that both branches lie apart and each beside the closed form by a
-/// share of a cell. A force is wrong by the traction on that share along the edge: measured 0.2, 1.2 and 4
-/// cells, the radius by 0.3, 0.4 and 1.3; rounded up.
+/// The cohesive zone grows by whole cells, so that each branch deviates from the closed form by a share of a
+/// cell, and the force by the traction on that share along the edge. Measured were 0.2, 1.2 and 4 cells for
+/// the force and 0.3, 0.4 and 1.3 for the radius; the bounds are rounded up.
 type Case = (f64, f64, [usize; 2], (f64, f64));
 const SPHERES: [Case; 3] = [
     (0.3, 3.2, [64, 128], (0.3, 0.5)),
     (1.0, 2.4, [96, 192], (1.5, 0.6)),
     (2.0, 2.2, [160, 320], (5.0, 1.7)),
 ];
-/// Of the pull-off force extrapolated to cells of size zero; what is left is how the cells lie under the
-/// edge.
+/// Error of the pull-off force extrapolated to cells of size zero, which depends on the position of the cells
+/// relative to the edge.
 const PULL_OFF: f64 = 0.01;
 
 #[test]
@@ -211,7 +211,7 @@ fn cells_follow_maugis_on_both_branches() {
 }
 
 #[test]
-fn a_hard_sphere_is_drawn_off_beyond_its_contact() {
+fn a_hard_sphere_with_adhesion_is_withdrawn_beyond_its_contact() {
     // Under lambda = 0.938 the contact shrinks to nothing while the surfaces still attract each other.
     let mut sphere = OnCells::new(0.1, 128, 4.0);
     let exact = sphere.exact.pull_off_at_force().unwrap().force / sphere.force;

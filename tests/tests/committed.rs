@@ -1,4 +1,4 @@
-//! The numbers in README and the book, computed again from the committed tables with code of their own.
+//! The numbers in README and the book, computed again from the committed tables by independent code.
 
 use std::collections::BTreeMap;
 use std::io::Read as _;
@@ -142,7 +142,7 @@ fn means_and_errors_follow_from_the_samples() {
 }
 
 #[test]
-fn exponents_of_readme_are_those_of_the_samples() {
+fn exponents_in_the_readme_follow_from_the_samples() {
     let readme = table(&text("README.md"), "| D_f | alpha 3D | alpha 1D | Eq. 6 | Eq. 24 |");
     assert!(readme.len() >= 4);
     let fitted = rows("data/figures/paper/fig3.csv");
@@ -175,7 +175,7 @@ fn exponents_of_readme_are_those_of_the_samples() {
 }
 
 #[test]
-fn verdicts_of_readme_are_counted_in_the_table() {
+fn verdicts_in_the_readme_are_counted_in_the_table() {
     let rows = rows("data/figures/paper/verify.csv");
     let mut statements: BTreeMap<&str, Vec<&Row>> = BTreeMap::new();
     for row in &rows {
@@ -246,7 +246,7 @@ fn normal_beyond(probability: f64) -> f64 {
 }
 
 #[test]
-fn coverage_of_readme_is_counted_in_the_tables() {
+fn coverage_in_the_readme_is_counted_in_the_tables() {
     let readme = text("README.md");
     let row =
         readme.lines().find(|line| line.contains("error budgets of 720 random cases against references"));

@@ -1,5 +1,6 @@
-//! Pages and tables that follow from the tables of quantities and of models and from the sources, and what
-//! holds of the others. With `UPDATE_DOCUMENTS=1` what follows is written anew.
+//! Checks of the documents: pages and tables that are generated from the tables of quantities and of models
+//! and from the sources, and rules for the others. With `UPDATE_DOCUMENTS=1` the generated parts are written
+//! anew.
 
 mod constants;
 mod crates;
@@ -28,7 +29,7 @@ fn symbol(quantity: &Quantity) -> String {
     symbol.replace(['{', '}', '\\'], "")
 }
 
-/// The models that tell a quantity of some state, each tried.
+/// The models that report a quantity for some state; each model is tried.
 fn claimed_by(quantity: &Quantity, told: &[BTreeSet<&'static str>]) -> String {
     let claims = MODELS.iter().zip(told).filter(|(_, told)| told.contains(quantity.name));
     let names: Vec<&str> = claims.map(|(record, _)| record.name()).collect();
@@ -149,7 +150,8 @@ fn effects() -> String {
     table(&["key", "takes", "what it is", "where it is not named"], EFFECT_KEYS.iter().map(cells))
 }
 
-/// The keys of all tables but `[effects]` and `[outputs]`, a table of the page for each table of a scene.
+/// The keys of all tables except `[effects]` and `[outputs]`, with one table of the page for each table of a
+/// scene.
 fn scene_keys() -> String {
     let cells = |keys: &&SceneKeys| vec![keys.words(), keys.about.to_owned(), keys.default.to_owned()];
     let part = |part: &[&SceneKeys]| {
@@ -165,14 +167,14 @@ fn scene_keys() -> String {
     shown.chunk_by(|a, b| (a.table, a.kind) == (b.table, b.kind)).map(part).collect()
 }
 
-/// The keys of `[outputs]` that the program answers by itself.
+/// The keys of `[outputs]` that the program itself computes.
 fn own_outputs() -> String {
     let cells = |keys: &SceneKeys| vec![keys.words(), keys.about.to_owned(), keys.default.to_owned()];
     let shown = SCENE_KEYS.iter().filter(|keys| keys.table == "outputs");
     table(&["key", "what it is", "where it is not given"], shown.map(cells))
 }
 
-/// The keys of `[outputs]` that models answer.
+/// The keys of `[outputs]` that models compute.
 fn outputs() -> String {
     let cells = |output: &Output| {
         let takes = match output {
@@ -204,7 +206,7 @@ fn root() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 
-/// The text with this part between its marks.
+/// The text with this part inserted between its marks.
 fn with_part(text: &str, name: &str, part: &str) -> String {
     let begin = format!("{BEGIN}{name} -->\n");
     let (before, rest) = text.split_once(&begin).unwrap_or_else(|| panic!("no mark {begin:?}"));
@@ -213,7 +215,7 @@ fn with_part(text: &str, name: &str, part: &str) -> String {
 }
 
 #[test]
-fn formulas_are_no_words() {
+fn formulas_are_left_out_of_lines() {
     assert_eq!(without_formulas("a $`x_1 y`$ b `c` d $`z`$"), "a $$ b `c` d $$");
     assert_eq!(without_formulas("`$` `a` $ `b"), "`$` `a` $ `b");
 }

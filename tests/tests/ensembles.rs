@@ -1,4 +1,4 @@
-//! One and three dimensions on rough surfaces: the same trend, not the same numbers.
+//! One and three dimensions on rough surfaces: the trends agree, the values do not.
 
 use analysis::{Curves, StiffnessSample};
 use bem3d::Bem3d;
@@ -41,7 +41,7 @@ fn means(model: &dyn ContactModel, fractal_dimension: f64) -> Vec<f64> {
 }
 
 #[test]
-fn the_line_follows_the_surface() {
+fn lines_have_the_trend_of_surfaces() {
     let mut smallest = [f64::INFINITY; 2];
     for fractal_dimension in [2.0, 2.4, 2.8] {
         let three = means(&Bem3d { cells: 129, tolerance: 1e-5, ..Bem3d::default() }, fractal_dimension);

@@ -1,4 +1,4 @@
-//! Friction and rheology of contacts of any shape, through the profile of a model's own states.
+//! Friction and rheology of contacts of any shape, by the equivalent profile from a model's states.
 
 use analytic::{CattaneoMindlin, Hertz, PowerLaw};
 use approx::assert_relative_eq;
@@ -98,8 +98,8 @@ fn a_sphere_on_cells_becomes_cattaneo_and_mindlin() {
 }
 
 /// Ciavarella and Jaeger: the tangential force of a stroke u is `mu (F(d) - F(d'))` with
-/// `d - d' = u G*/(mu E*)`, the tangential stiffness G*/E* times that at d'. For any shape: both sides by one
-/// model, once through the profile, once directly.
+/// `d - d' = u G*/(mu E*)`, the tangential stiffness G*/E* times that at d'. This holds for any shape: both
+/// sides are computed by one model, once through the profile and once directly.
 ///
 /// Returns the largest error of the force over mu F, and of the stiffness over k.
 fn beside_a_difference_of_normal_contacts(model: &dyn ContactModel, depth: f64, per_decade: u32) -> [f64; 2] {
@@ -150,7 +150,7 @@ fn rough_surfaces_slip_as_a_difference_of_normal_contacts() {
     assert!(smooth[0] < 1e-6 && smooth[1] < 1e-4, "{smooth:?}");
 }
 
-/// A cycle of the tangential displacement.
+/// Energy and closure of a cycle of the tangential displacement.
 fn cycle(
     history: &mut dyn PreparedContact,
     normal: Load,
@@ -188,7 +188,7 @@ fn cycle(
 }
 
 #[test]
-fn what_a_cycle_takes_is_lost_and_the_loop_closes() {
+fn the_work_of_a_cycle_is_dissipated_and_the_loop_closes() {
     let model = Bem3d { cells: 33, ..Bem3d::default() };
     let mut history = Equivalent::new(model).prepare(&sliding(fractal()), 2).unwrap();
     let height = history.normalisation().height.unwrap();
@@ -305,8 +305,8 @@ fn history_in_time_and_in_load_give_the_same_rough_contact() {
     assert!(fine < 0.1 * coarse && fine < 1e-3, "{coarse:e} {fine:e}");
 }
 
-/// Surfaces with ties, faces, steps, needles and pits: k(d) jumps or stands still, and a profile is still
-/// there.
+/// Surfaces with ties, faces, steps, needles and pits, on which k(d) jumps or is constant, still have a
+/// profile.
 #[test]
 fn hard_surfaces_have_profiles() {
     let cells = 12;

@@ -1,4 +1,4 @@
-//! Bodies with exact solutions: every model against every problem that it accepts.
+//! Bodies with exact solutions: every model is compared with every problem that it accepts.
 
 use analytic::{FlatPunch, Hertz, PowerLaw, PowerLawBody};
 use bem3d::Bem3d;
@@ -15,14 +15,14 @@ const ONE_DIMENSION: f64 = 1e-10;
 /// Grids of the orders of convergence, odd so that the apex is a cell centre.
 const GRIDS: [usize; 3] = [65, 129, 257];
 
-/// What a discretisation is expected to do.
+/// The expected convergence of a discretisation.
 struct Expected {
     names: &'static [&'static str],
     /// Order of the response (force or approach), of the stiffness and of the area.
     response: std::ops::Range<f64>,
     stiffness: std::ops::Range<f64>,
     area: std::ops::Range<f64>,
-    /// Errors on the finest grid at most, same order.
+    /// Largest errors on the finest grid, in the same order.
     finest: [f64; 3],
 }
 
@@ -116,9 +116,9 @@ fn exact_models_are_exact_where_they_accept() {
     }
 }
 
-/// Hertz's numbers themselves: E* = R = 1, F = 1e-3.
+/// Hertz's results as printed numbers: E* = R = 1, F = 1e-3.
 #[test]
-fn hertz_by_its_printed_numbers() {
+fn hertz_has_its_printed_numbers() {
     use contact_model::{Load, Scene, Surface};
     let scene = Scene::new(Surface::Sphere { radius: 1.0, size: 0.25.into() }, 1.0);
     // Second and first order at 92 cells across the contact (see TABLE).

@@ -1,19 +1,19 @@
-//! The tests of `data/exponent/hypotheses.md`, computed again from the samples of the tested run with code of
-//! their own: numbers, intervals, chances, what is resolved, verdicts.
+//! The tests of `data/exponent/hypotheses.md`, computed again from the samples of the tested run by
+//! independent code: numbers, intervals, p-values, resolved windows, verdicts.
 
 use crate::committed::{Row, number, rows};
 use crate::exponent_study::{Study, study, towards_zero};
 use std::collections::BTreeMap;
 
-/// Sums in another order, of numbers that have five digits in the samples.
+/// Rounding of sums in another order, of numbers with five digits in the samples.
 const ROUNDING: f64 = 1e-9;
-/// Student's distribution by 4000 steps of Simpson's rule here, by a continued fraction in the table.
+/// Student's distribution is computed by 4000 steps of Simpson's rule here, and by a continued fraction in
+/// the table.
 const OF_STUDENT: f64 = 1e-6;
-/// What the finest grid may leave of k_bar where a window counts as resolved.
+/// Largest relative discretisation error of k_bar with which a window counts as resolved.
 const RESOLVED: f64 = 0.03;
 
-/// Probability that Student's variable is farther from 0 than t, either way: with x = sqrt(freedom) tan(angle)
-/// its density is a power of the cosine.
+/// Two-sided p-value of Student's t: with x = sqrt(freedom) tan(angle) its density is a power of the cosine.
 fn student_beyond(t: f64, freedom: f64) -> f64 {
     // Beyond 40 standard deviations of the angle nothing counts.
     let end = std::f64::consts::FRAC_PI_2.min(40.0 / freedom.sqrt());
@@ -32,7 +32,7 @@ fn student_beyond(t: f64, freedom: f64) -> f64 {
     integral((t / freedom.sqrt()).atan().min(end)) / integral(0.0)
 }
 
-/// The t that chance exceeds with this probability, either way, by halving.
+/// The two-sided quantile t of this probability, by bisection.
 fn student_at(probability: f64, freedom: f64) -> f64 {
     let (mut low, mut high) = (0.0, 1e3);
     for _ in 0..60 {
@@ -46,8 +46,9 @@ fn student_at(probability: f64, freedom: f64) -> f64 {
     low
 }
 
-/// What the finest of three grids leaves of a number: one and a half times the geometric series of the last
-/// difference, which falls by a factor of 1/2 to 3/4 from grid to grid, or by 1/2 where the sign changes.
+/// The discretisation error of a number on the finest of three grids: one and a half times the geometric
+/// series of the last difference, which falls by a factor of 1/2 to 3/4 from grid to grid, or by 1/2 where
+/// the sign changes.
 fn left_by_grids([fine, half, quarter]: [f64; 3]) -> f64 {
     let (last, before) = (half - fine, quarter - half);
     let fall = if last * before > 0.0 { (last / before).clamp(0.5, 0.75) } else { 0.5 };
@@ -60,7 +61,7 @@ impl Study {
         self.levels.iter().filter(|level| level.iter().any(|surface| surface.len() > j)).count()
     }
 
-    /// What the grid leaves of a number of the mean curve at some loads, the largest of their grids.
+    /// The discretisation error of a number of the mean curve at some loads, the largest of their grids.
     fn grid_part(&self, window: &[usize], of: impl Fn(&[f64]) -> f64) -> f64 {
         let mut grids: Vec<usize> = window.iter().map(|&j| self.levels_at(j)).collect();
         grids.dedup();
@@ -68,7 +69,8 @@ impl Study {
         grids.iter().map(left).fold(0.0, f64::max)
     }
 
-    /// Whether the grid leaves little of the mean at the smallest load of a window and at all larger ones.
+    /// Whether the discretisation error of the mean is small at the smallest load of a window and at all
+    /// larger ones.
     fn resolves(&self, window: &[usize]) -> bool {
         let mean = self.mean(self.levels.len());
         (window[0]..mean.len()).all(|j| self.grid_part(&[j], |mean| mean[j]) <= RESOLVED * mean[j])
@@ -83,7 +85,7 @@ impl Study {
         })
     }
 
-    /// Mean curves of surfaces drawn again, level by level, by Knuth's linear congruential generator.
+    /// Mean curves of resampled surfaces, level by level, by Knuth's linear congruential generator.
     fn drawn_again(&self, draws: usize) -> Vec<Vec<f64>> {
         let mut state = 1_u64;
         let mut below = |n: usize| {
@@ -156,7 +158,7 @@ fn family(name: &str) -> Vec<Row> {
     rows("data/exponent/exponent-tests.csv").into_iter().filter(|row| row["family"] == name).collect()
 }
 
-/// Surfaces or lines of the tested run; `None` where it has none, and then the row has no number either.
+/// Surfaces or lines of the tested run; `None` where it has none, in which case the row has no number either.
 fn tested(row: &Row, model: &str) -> Option<Study> {
     let study = study("--tested", model, number(row, "fractal_dimension"));
     let absent = study.levels.is_empty();
@@ -199,8 +201,8 @@ fn exponents_of_windows_and_their_verdicts_are_those_of_the_samples() {
     }
 }
 
-/// alpha of the law zeta F^alpha (1 + c F^omega) that fits best: the best of 33 values of omega, each with the c
-/// of golden sections. Coarser than [`towards_zero`], fast enough for every draw.
+/// alpha of the law zeta F^alpha (1 + c F^omega) that fits best: the best of 33 values of omega, each with
+/// the c of golden sections. It is coarser than [`towards_zero`], but fast enough for every draw.
 fn alpha_of_scan(x: &[f64], y: &[f64], weights: &[f64]) -> f64 {
     let all: f64 = weights.iter().sum();
     let mean = |v: &[f64]| v.iter().zip(weights).map(|(v, w)| v * w).sum::<f64>() / all;

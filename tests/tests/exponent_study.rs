@@ -1,4 +1,4 @@
-//! The study of the exponent, computed again from its samples with code of its own.
+//! The study of the exponent, computed again from its samples by independent code.
 
 use crate::committed::{Row, list, mean_and_error, number, of_dimension, rows, slope, student, text};
 use std::collections::BTreeMap;
@@ -9,7 +9,7 @@ pub(crate) struct Study {
     pub(crate) levels: Vec<Vec<Vec<f64>>>,
 }
 
-/// Tables of samples of a command: those of its flag.
+/// Tables of samples that a command names in its flag.
 fn sources(flag: &str) -> Vec<String> {
     let tables = text("data/exponent/exponent.md");
     let words: Vec<&str> = tables.lines().next().unwrap().trim_matches('`').split(' ').collect();
@@ -109,7 +109,7 @@ impl Study {
         (all, all * all / spread)
     }
 
-    /// Variance of the exponent of a window, by delta's method.
+    /// Variance of the exponent of a window, by the delta method.
     pub(crate) fn exponent_variance(&self, window: &[usize]) -> (f64, f64) {
         let mean = self.mean(self.levels.len());
         let x: Vec<f64> = window.iter().map(|&j| self.forces[j].ln()).collect();
@@ -158,7 +158,7 @@ fn exponents_and_their_scatter_are_those_of_the_samples() {
 }
 
 #[test]
-fn the_slope_of_line_over_surface_and_its_chance_are_those_of_the_samples() {
+fn the_slope_of_line_over_surface_and_its_p_value_are_those_of_the_samples() {
     let page = text("book/src/exponent.md");
     let table = rows("data/exponent/exponent-factor.csv");
     for (d, rejected) in [(2.0, true), (2.2, true), (2.4, true), (2.6, false)] {
@@ -296,7 +296,8 @@ fn hypotheses_are_judged_by_their_intervals() {
     }
 }
 
-/// Mean curves of Fig. 2 on 2049 cells against the mean change to 16385 cells, from pairs of the study.
+/// Budgets of the mean curves of Fig. 2 on 2049 cells, compared with the mean change to 16385 cells from
+/// pairs of the study.
 #[test]
 fn budgets_of_mean_curves_are_checked_on_finer_grids() {
     let budgets = rows("data/figures/paper/fig2-budget.csv");

@@ -5,7 +5,7 @@ use bem3d::Bem3d;
 use contact_model::{ContactModel, Load, Scene, Surface};
 use mdr1d::Mdr1d;
 
-/// Fits one model's answers at forces over a decade and a half.
+/// Fits the stiffness of one model at forces over a decade and a half.
 fn exponent(model: &dyn ContactModel, n: f64, least: f64) -> f64 {
     let scene = Scene::new(Surface::PowerLaw { coefficient: 0.05, exponent: n, size: 1.0.into() }, 1.0);
     let mut contact = model.prepare(&scene, 0).unwrap();
@@ -33,8 +33,8 @@ fn exact_force(n: f64, radius: f64) -> f64 {
     2.0 * kappa * 0.05 * radius.powf(n + 1.0) * n / (n + 1.0)
 }
 
-/// The smallest contact is 10 cells wide and its edge a staircase: k is noisy by 1 % there, the slope over a
-/// decade of radii by 1e-3.
+/// The smallest contact is 10 cells wide, and its edge is a staircase: k scatters by 1 % there, the slope
+/// over a decade of radii by 1e-3.
 const STAIRCASE: f64 = 2.5e-3;
 /// Formulas: rounding of ln over twelve points.
 const CLOSED_FORM: f64 = 1e-10;

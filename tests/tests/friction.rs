@@ -1,4 +1,4 @@
-//! Friction: springs against the closed form of the sphere.
+//! Friction: the reduction to one dimension (springs) compared with the closed form of the sphere.
 
 use analytic::CattaneoMindlin;
 use approx::assert_relative_eq;
@@ -7,7 +7,7 @@ use contact_model::{
 };
 use mdr1d::PartialSlip;
 
-/// A root of each, and energies that are small differences near the first turn.
+/// Rounding of a root in each, and of energies that are small differences near the first reversal.
 const EXACT: f64 = 1e-9;
 
 #[test]
@@ -113,7 +113,7 @@ fn without_slip_it_is_mindlins_stiffness() {
 }
 
 #[test]
-fn little_friction_is_gross_slip_and_none_is_none() {
+fn small_friction_leads_to_gross_slip_and_zero_friction_to_no_force() {
     // mu -> 0: T = mu F for any stroke, and mu F (u - ...) is lost.
     let u = 1e-3;
     for coefficient in [1e-3, 1e-6] {

@@ -1,5 +1,5 @@
-//! Friction cell by cell against closed forms: areas that stick, the radius of Cattaneo and Mindlin, Spence's
-//! contacts with full coupling.
+//! Friction cell by cell compared with closed forms: punches in full stick, the stick radius of Cattaneo and
+//! Mindlin, Spence's contacts with full coupling.
 
 use bem3d::Bem3d;
 use contact_model::{
@@ -31,7 +31,7 @@ fn ellipse(cells: usize, [a, b]: [f64; 2]) -> Surface {
     Surface::Heights(Arc::new(map.unwrap()))
 }
 
-/// `k_x, k_y, k_z` of an elliptic face of the semi-axes a, b that sticks.
+/// `k_x, k_y, k_z` of an elliptic punch with the semi-axes a, b in full stick.
 ///
 /// The traction `Q/(2 pi a b) (1 - x^2/a^2 - y^2/b^2)^(-1/2)` moves the whole face by one displacement, as the
 /// pressure of the same form does (Mindlin, J. Appl. Mech. 16, 259 (1949)). In the middle it is, along a ray of the length
@@ -75,10 +75,11 @@ fn order(points: &[(usize, f64)]) -> f64 {
     -mean(&|p| (p.0 - x) * (p.1 - y)) / mean(&|p| (p.0 - x).powi(2))
 }
 
-/// A disc of the stiffness `8 G a/(2 - nu)`. How many cells lie in the disc is not monotonic, and decides k; beside the
-/// normal stiffness of the same cells the error is smooth, of first order.
+/// A disc of the stiffness `8 G a/(2 - nu)`. k depends on the number of cells in the disc, which is not
+/// monotonic in the grid; relative to the normal stiffness of the same cells the error is smooth and of first
+/// order.
 #[test]
-fn a_disc_that_sticks_is_approached_with_first_order() {
+fn the_stiffness_of_a_sticking_disc_converges_with_first_order() {
     for pair in [alike(0.3), on_rigid(0.5)] {
         let [x, _, z] = of_an_ellipse([0.4, 0.4], compliance(&pair), 1.0);
         let ratio = pair.shear_modulus().unwrap() / pair.contact_modulus().unwrap();
@@ -143,7 +144,7 @@ fn punch() -> Surface {
     Surface::FlatCircle { radius: 0.4, size: 1.0.into() }
 }
 
-/// Pressed by the normal load alone; the bodies are not moved over each other.
+/// The contact is loaded by a normal load alone, without a tangential displacement.
 fn pressed(normal: Load) -> Step {
     Step { time: 0.0, normal, tangential: Tangential::Displacement([0.0; 2]) }
 }
@@ -153,8 +154,9 @@ fn stick_share(state: &ContactState) -> f64 {
     (state.tangential.unwrap().stick_area.unwrap() / state.area.unwrap()).sqrt()
 }
 
-/// A flat punch that does not slip carries `(1 - nu) ln(3 - 4 nu)/(1 - 2 nu)` times what it does without friction
-/// (Mossakovskii; D. A. Spence, Proc. R. Soc. A 305, 55 (1968)): first order, as the traction at its edge.
+/// A flat punch that does not slip carries `(1 - nu) ln(3 - 4 nu)/(1 - 2 nu)` times the force of one without
+/// friction (Mossakovskii; D. A. Spence, Proc. R. Soc. A 305, 55 (1968)): first order, as the traction at its
+/// edge.
 #[test]
 fn a_punch_without_slip_is_spences() {
     for nu in [0.0_f64, 0.2, 0.3, 0.4] {
@@ -186,7 +188,8 @@ fn elliptic(k: f64) -> f64 {
     0.5 * PI / a
 }
 
-/// c/a where the tractions displace nothing normally, by bisection of `a/(2 c) ln((a + c)/(a - c)) = mu/beta K'(c/a)`.
+/// c/a without normal displacements under tractions, by bisection of
+/// `a/(2 c) ln((a + c)/(a - c)) = mu/beta K'(c/a)`.
 ///
 /// Radial tractions q of a punch make `u_r = (2/(pi r)) int_0^r t^2 S/(r^2 - t^2)^(1/2) dt` with
 /// `S = int_t^a q/(s^2 - t^2)^(1/2) ds` (units of E*/2), the pressure `P/(a^2 - r^2)^(1/2)` makes
@@ -202,8 +205,8 @@ fn goodman(mu_over_beta: f64) -> f64 {
     low
 }
 
-/// In partial slip c/a depends on mu and Poisson's ratio alone. What tractions displace normally is left out above: the
-/// difference is of second order in beta, and there at beta = 1/2.
+/// In partial slip c/a depends on mu and Poisson's ratio alone. The normal displacements under tractions are
+/// neglected above: the difference is of second order in beta, and does not vanish at beta = 1/2.
 #[test]
 fn a_punch_that_slips_at_its_edge_tends_to_goodmans_radius() {
     let (share, cells) = (0.6, 96);
@@ -224,8 +227,9 @@ fn a_punch_that_slips_at_its_edge_tends_to_goodmans_radius() {
     }
 }
 
-/// c/a does not depend on the profile, nor on the load (D. A. Spence, J. Elasticity 5, 297 (1975)): a punch in one step, a
-/// cone and a sphere in many, as every cell takes its reference where it touches. First order in the step.
+/// c/a does not depend on the profile, nor on the load (D. A. Spence, J. Elasticity 5, 297 (1975)): a punch
+/// in one step, a cone and a sphere in many steps, because the slip reference of a cell is set when it comes
+/// into contact. First order in the step.
 #[test]
 fn the_radius_that_sticks_depends_on_neither_profile_nor_load() {
     let (pair, mu) = (on_rigid(0.3), 0.15);
@@ -255,8 +259,9 @@ fn the_radius_that_sticks_depends_on_neither_profile_nor_load() {
     }
 }
 
-/// Around a closed loop of approach and displacement the work of both loads is what friction dissipates; no loop gives
-/// energy. The rule of trapezia leaves the first order of the step, as increments do.
+/// Around a closed loop of approach and displacement the work of both loads equals the energy that friction
+/// dissipates; no loop gains energy. The error of the trapezoidal rule is of first order in the step, as that
+/// of the increments.
 #[test]
 fn a_coupled_loop_never_gains_energy() {
     let corners = [[1.0, 0.0, 0.0], [1.5, 0.3, 0.0], [1.2, 0.3, 0.3], [0.8, -0.2, 0.0], [1.0, 0.0, 0.0]];

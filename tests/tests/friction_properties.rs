@@ -1,4 +1,4 @@
-//! What Coulomb's law and mechanics demand of any surface on any path, and values that make no sense.
+//! Properties that follow from Coulomb's law and mechanics for any surface on any path, and invalid values.
 
 use bem3d::Bem3d;
 use contact_model::{
@@ -13,7 +13,7 @@ use tests::{hard_map, rough_map, scene};
 const TOLERANCE: f64 = 1e-10;
 /// Energies and displacements of two solves at [`TOLERANCE`], which bounds the energy.
 const SAME: f64 = 1e-7;
-/// Tractions are good to the square root of the energy.
+/// The error of tractions is the square root of that of the energy.
 const TRACTION: f64 = 1e-4;
 /// Sums over a few hundred cells.
 const ROUNDING: f64 = 1e-11;
@@ -152,11 +152,11 @@ fn length([x, y]: [f64; 2]) -> f64 {
 proptest! {
     #![proptest_config(config(32))]
 
-    /// The work of the tangential force is stored or dissipated, to rounding; what is dissipated never falls; and
-    /// Coulomb's law holds cell by cell, in the fields.
+    /// The work of the tangential force is stored or dissipated, to rounding; the dissipated energy never
+    /// falls; and Coulomb's law holds cell by cell, in the fields.
     ///
-    /// With the force at the end of a step `Q . d(delta) = D + dU + dq'K dq/2`: the last term is what a step of any
-    /// length does more than a path of the same end.
+    /// With the force at the end of a step `Q . d(delta) = D + dU + dq'K dq/2`: the last term is the excess
+    /// of a step of any length over a path with the same end.
     #[test]
     fn work_is_stored_or_dissipated(drawn in any_contact(), legs in prop::collection::vec(any_leg(), 1..6)) {
         let (mut contact, sum) = (drawn.prepare(), drawn.sum());
@@ -194,8 +194,8 @@ proptest! {
         }
     }
 
-    /// A closed loop of the force loses energy: work is dissipated where the elastic energy is the same. Without
-    /// Poisson's ratio it ends where it began.
+    /// A closed loop of the force dissipates energy, since the elastic energy is the same at both ends. With
+    /// a Poisson's ratio of 0 it ends in the state in which it began.
     #[test]
     fn loops_close_and_lose_energy(
         drawn in any_contact(), top in 0.05_f64..0.97, part in 0.0_f64..1.0, angle in 0.0_f64..7.0, steps in 1_u32..4,
@@ -254,7 +254,7 @@ proptest! {
         }
     }
 
-    /// All eight symmetries of the square: a map and its loads turned have the turned tractions.
+    /// All eight symmetries of the square: a turned map under turned loads has the turned tractions.
     #[test]
     fn turned_and_mirrored(
         drawn in any_contact(), turns in 0_u8..4, mirror in any::<bool>(), legs in prop::collection::vec(any_leg(), 1..4),
@@ -322,9 +322,9 @@ fn advance(contact: &mut dyn PreparedContact, tangential: Tangential) -> Result<
     contact.advance(Step { time: 0.0, normal: Load::Force(0.3), tangential })
 }
 
-/// Errors name the value, and the path goes on as if nothing had been asked.
+/// Errors name the value, and the path continues as if the step had not been requested.
 #[test]
-fn tangential_loads_that_make_no_sense_are_named() {
+fn invalid_tangential_loads_are_named() {
     let (_, mut contact) = hostile();
     let (_, mut beside) = hostile();
     let good = Tangential::Force([0.05, 0.02]);
@@ -366,9 +366,10 @@ fn tangential_loads_that_make_no_sense_are_named() {
     }
 }
 
-/// Displacements of any size are gross slip: a state whose numbers are finite, or an error that names them.
+/// Displacements of any size lead to gross slip in a state with finite numbers, or to an error that names
+/// them.
 #[test]
-fn displacements_of_any_size_are_states_or_named() {
+fn displacements_of_any_size_are_solved_or_named() {
     let mut held = 0;
     for size in [5e-324, 1e-310, 1e-200, 1e-30, 1e10, 1e30, 1e150, 1e200, 1e300, f64::MAX] {
         let (_, mut contact) = hostile();
@@ -398,7 +399,7 @@ fn displacements_of_any_size_are_states_or_named() {
 }
 
 #[test]
-fn coefficients_that_make_no_sense_are_named() {
+fn invalid_coefficients_are_named() {
     let (drawn, _) = hostile();
     let mut scene = Scene { pair: Some(drawn.pair()), ..scene(drawn.map.clone()) };
     scene.outputs = Outputs { traction: true, ..Outputs::default() };

@@ -1,5 +1,5 @@
-//! How often the error of a grid, estimated from cells twice and four times as large, covers the error that a
-//! finer grid shows.
+//! Coverage of the discretisation error, estimated from cells twice and four times as large, compared with
+//! the error that a finer grid shows.
 
 use analysis::grid_error;
 use bem3d::Bem3d;
@@ -61,7 +61,8 @@ fn most_true_errors_of_resolved_contacts_are_within_the_estimate() {
     assert!(covered * 10 >= all * 9, "{covered} of {all}");
 }
 
-/// What estimates claim over what is true, on seeds that chose no constant: the table of the book. Minutes.
+/// The estimated over the true error, on seeds that were not used to choose constants: the table of the book.
+/// It takes minutes.
 #[test]
 #[ignore = "a table for the book, minutes in release"]
 fn how_wide_the_estimates_of_the_grid_are() {

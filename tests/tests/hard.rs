@@ -1,4 +1,4 @@
-//! Hard cases: tiny, flat, tied, far apart, huge and hopeless.
+//! Hard cases: tiny grids, flat maps, ties, distant contacts, huge loads and unattainable tolerances.
 
 use approx::assert_relative_eq;
 use bem3d::{Bem3d, Method};
@@ -36,7 +36,8 @@ fn full(cells: usize) -> f64 {
     model.prepare(&flat, 0).unwrap().solve(Load::Approach(1.0)).unwrap().stiffness.unwrap()
 }
 
-/// All heights equal: the punch, whichever load; the rms height is 0, so F_bar does not exist.
+/// With equal heights the contact is the flat punch under any load. The rms height is 0, so that F_bar does
+/// not exist.
 #[test]
 fn flat_maps_of_any_size() {
     for cells in [1, 2, 3, 4, 7, 13, 31, 61, 64] {
@@ -128,7 +129,7 @@ fn a_single_spike_and_two_distant_ones() {
     }
 }
 
-/// The whole range of forces in one sweep, in any order, against each load alone.
+/// The whole range of forces in one sweep, in any order, compared with each load alone.
 #[test]
 fn from_1e_minus_200_to_1e4_in_one_sweep() {
     let map = rough_map(2.4, 33, 5).unwrap();
@@ -191,7 +192,7 @@ fn no_load_is_no_contact() {
     }
 }
 
-/// What arithmetic cannot reach is never called converged.
+/// A tolerance that double precision cannot reach is never reported as converged.
 #[test]
 fn an_unattainable_tolerance_is_an_error() {
     let rough = scene(rough_map(2.2, 65, 4).unwrap());
@@ -215,7 +216,7 @@ fn an_unattainable_tolerance_is_an_error() {
     }
 }
 
-/// Too few rounds: an error with the best state, never a quiet one.
+/// With too few rounds the result is an error with the best state.
 #[test]
 fn too_few_rounds_are_an_error_or_enough() {
     let rough = scene(rough_map(2.2, 65, 4).unwrap());
@@ -232,9 +233,9 @@ fn too_few_rounds_are_an_error_or_enough() {
     }
 }
 
-/// Stopped after any number of questions: an error, and the next solve is as good as if nothing had happened.
+/// A solve stopped after any number of polls is an error, and the next solve is not affected.
 #[test]
-fn stopped_means_stopped() {
+fn a_stopped_solve_is_an_error_and_does_not_affect_the_next() {
     let rough = scene(rough_map(2.2, 65, 4).unwrap());
     let exact = press(&rough_map(2.2, 65, 4).unwrap(), Load::Force(1.0));
     let model = Bem3d { tolerance: TOLERANCE, ..Bem3d::default() };
@@ -273,7 +274,7 @@ fn rough_surface() -> SelfAffine {
 }
 
 #[test]
-fn heights_that_are_no_numbers_are_refused_with_their_place() {
+fn heights_that_are_no_numbers_are_refused_with_their_position() {
     for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         let heights = map(5, 1.0, |x, y| if (x, y) == (3, 1) { bad } else { 0.0 });
         let text = heights.unwrap_err().to_string();

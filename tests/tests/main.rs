@@ -1,4 +1,4 @@
-//! One program: it links once, and its tests share the processors.
+//! All physical tests as one program, which is linked once and whose tests share the processors.
 
 #![allow(clippy::unwrap_used)] // Helpers of tests; clippy.toml allows it in the tests themselves.
 

@@ -1,8 +1,8 @@
-//! Dependencies between the modules of each crate run one way: no module uses an item of one that uses its
-//! own.
+//! Dependencies between the modules of each crate have no cycles: no module uses an item of a module that
+//! depends on it.
 //!
 //! A use is a path to an item that another module defines, re-exports followed to the definition; a re-export
-//! itself is none. Methods, whose paths are not written, are not seen.
+//! itself is not a use. Methods, whose paths are not written, are not considered.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};

@@ -1,4 +1,4 @@
-//! Every contact set tried: the solver finds the one that satisfies the contact conditions.
+//! The solver compared with a search of every contact set for the one that satisfies the contact conditions.
 
 use approx::assert_relative_eq;
 use bem3d::{Bem3d, Method};
@@ -8,12 +8,12 @@ use proptest::test_runner::RngSeed;
 use tests::{every_contact_set, map, scene};
 
 const TOLERANCE: f64 = 1e-12;
-/// Rounding of a few cells; the stiffness has nothing else.
+/// Rounding of sums over a few cells, which is the only error of the stiffness.
 const ROUNDING: f64 = 1e-12;
-/// Nearer to a tie than this rounding decides, and no set is wrong.
+/// Closer to a tie than this the contact set depends on rounding, and either set is accepted.
 const TIE: f64 = 1e-9;
 
-/// The only solution, unless the case is a tie.
+/// The unique solution; `None` where the case is a tie.
 fn check(map: &HeightMap, cells: &[usize], load: Load) {
     let all = every_contact_set(map, cells, load);
     let [one] = &all[..] else {
@@ -50,7 +50,7 @@ fn check(map: &HeightMap, cells: &[usize], load: Load) {
     }
 }
 
-/// Forces and approaches from one cell to all: heights are within [0, 1], the cell is 1.
+/// Forces and approaches from one cell in contact to all; heights are within [0, 1], the side of a cell is 1.
 fn loads() -> impl Strategy<Value = Load> {
     prop_oneof![
         (-4.0_f64..1.5).prop_map(|x| Load::Force(10_f64.powf(x))),

@@ -1,4 +1,5 @@
-//! Friction cell by cell: boundary elements against closed forms and against their own normal contact.
+//! Friction cell by cell: boundary elements compared with closed forms and with differences of their own
+//! normal contacts.
 
 use analytic::CattaneoMindlin;
 use approx::assert_relative_eq;
@@ -39,8 +40,8 @@ fn advance(contact: &mut dyn PreparedContact, step: Step) -> ContactState {
     contact.advance(step).unwrap()
 }
 
-/// Without Poisson's ratio `q = mu (p(F) - p(F - Q/mu))` and `delta = mu (d(F) - d(F - Q/mu))` hold cell by cell,
-/// whatever the surface (Ciavarella 1998, Jaeger 1998), in one step and in many.
+/// Without Poisson's ratio `q = mu (p(F) - p(F - Q/mu))` and `delta = mu (d(F) - d(F - Q/mu))` hold cell by
+/// cell for any surface (Ciavarella 1998, Jaeger 1998), in one step and in many.
 #[test]
 fn without_poissons_ratio_tractions_are_differences_of_pressures() {
     let outputs = Outputs { pressure: true, traction: true, stick_slip: true, ..Outputs::default() };
@@ -113,8 +114,8 @@ fn a_disc_that_sticks_has_mindlins_stiffness() {
     assert!(errors.iter().all(|error| error.abs() < 0.006), "{errors:?}");
 }
 
-/// Loading, reversal and a smaller loop of a sphere, against Cattaneo, Mindlin and Deresiewicz, who neglect what
-/// tractions displace across: exact without Poisson's ratio.
+/// Loading, reversal and a smaller loop of a sphere, compared with Cattaneo, Mindlin and Deresiewicz, who
+/// neglect the displacements across the direction of the tractions: exact for a Poisson's ratio of 0.
 #[test]
 fn a_sphere_follows_cattaneo_mindlin_and_deresiewicz() {
     let shares = [0.5, 0.8, -0.2, 0.3, -0.9];
@@ -148,7 +149,7 @@ fn a_sphere_follows_cattaneo_mindlin_and_deresiewicz() {
 }
 
 #[test]
-fn more_than_friction_holds_is_an_error_or_gross_slip() {
+fn a_force_beyond_friction_is_an_error_and_a_displacement_gross_slip() {
     let outputs = Outputs { stick_area: true, ..Outputs::default() };
     let mut contact = model(32).prepare(&scene(rough(), alike(0.3), outputs), 1).unwrap();
     let force = 0.01;
@@ -176,7 +177,7 @@ fn more_than_friction_holds_is_an_error_or_gross_slip() {
 }
 
 #[test]
-fn bodies_that_couple_are_asked_about_it() {
+fn bodies_with_coupling_need_the_choice_of_it() {
     let pair = Pair { first: Body::Rigid, second: Body::Elastic { young: 3.0, poisson: 0.2 } };
     let mut scene = scene(rough(), pair, Outputs::default());
     let asked = model(24).prepare(&scene, 1).err().unwrap().to_string();
@@ -203,7 +204,7 @@ fn bodies_that_couple_are_asked_about_it() {
     assert!(change > 1e-4 && change < 0.5, "coupling changes displacements by {change}");
 }
 
-/// A stiffness of the branch is as accurate as the tolerance asks, and is the difference quotient of two steps.
+/// The stiffness of the branch is accurate to the tolerance, and equals the difference quotient of two steps.
 #[test]
 fn the_stiffness_of_the_branch_is_a_difference_quotient() {
     let outputs = Outputs { tangential_stiffness: true, ..Outputs::default() };
@@ -226,8 +227,8 @@ fn the_stiffness_of_the_branch_is_a_difference_quotient() {
     assert!(found[1].abs() < 0.01 * h * MU * force, "{found:?}");
 }
 
-/// In full contact with periodic boundaries a mean traction displaces nothing: what would have to be solved is rounding,
-/// and there is no stiffness.
+/// In full contact with periodic boundaries a uniform traction causes no displacement: there is nothing to
+/// solve but rounding, and no stiffness.
 #[test]
 fn a_periodic_surface_that_sticks_as_a_whole_does_not_move() {
     let outputs = Outputs {

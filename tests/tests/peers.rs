@@ -1,4 +1,4 @@
-//! Agreement with another program on its surface: data/peers.
+//! Agreement with the stored results of another program on the same surface: data/peers.
 
 use approx::assert_relative_eq;
 use bem3d::Bem3d;
@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use surface_io::{Preprocessing, ReadOptions, Scan};
 use tests::scene;
 
-/// What the reference states of itself: approach and stiffness to 1e-6.
+/// Accuracy that the reference states: approach and stiffness to 1e-6.
 const AGREEMENT: f64 = 1e-6;
 
 /// One row of the reference.

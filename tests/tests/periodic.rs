@@ -1,5 +1,5 @@
-//! The square that repeats itself: bem3d against Westergaard, Johnson-Greenwood-Higginson, the free square
-//! and itself.
+//! Periodic boundaries: bem3d compared with Westergaard, with Johnson, Greenwood and Higginson, with the free
+//! square, and with itself.
 
 use analytic::{Westergaard, westergaard};
 use approx::assert_relative_eq;
@@ -12,9 +12,9 @@ use std::sync::Arc;
 
 const AMPLITUDE: f64 = 0.01;
 
-/// Relative error of k times the cells a side, at most. Half a cell too much or too little at both edges
-/// changes k of a contact of the width c by `pi cot(pi c/2)/ln(1/r)` over the cells a side: 4.6, 4.0 and 7.0
-/// for r = 0.05, 0.3 and 0.8.
+/// Largest relative error of k times the number of cells along a side. Half a cell too much or too little at
+/// both edges changes k of a contact of the width c by `pi cot(pi c/2)/ln(1/r)` over the cells a side: 4.6,
+/// 4.0 and 7.0 for r = 0.05, 0.3 and 0.8.
 const FIRST_ORDER: f64 = 6.0;
 /// Grids of the convergence study.
 const CELLS: [usize; 4] = [32, 64, 128, 256];
@@ -200,10 +200,10 @@ fn fields_obey_the_contact_conditions_everywhere() {
     assert_relative_eq!(mean(&gap), contact.solve(load).unwrap().mean_gap.unwrap(), max_relative = 1e-9);
 }
 
-/// As in closed form (`analytic::Westergaard`): no force, at the gap asked for.
+/// As in closed form (`analytic::Westergaard`): the state has no force, and the requested gap.
 #[test]
 fn a_mean_gap_beyond_first_touch_is_a_state_apart() {
-    /// A gap goes into the units of the surface and back.
+    /// Rounding of the conversion of a gap into the units of the surface and back.
     const ROUNDING: f64 = 1e-13;
     let mut scene = periodic(rough(None));
     scene.outputs.gap = true;
@@ -224,7 +224,7 @@ fn a_mean_gap_beyond_first_touch_is_a_state_apart() {
 }
 
 #[test]
-fn what_a_periodic_square_takes_and_refuses() {
+fn loads_that_a_periodic_square_takes_and_refuses() {
     let mut contact = model(16, 1e-8).prepare(&periodic(rough(None)), 0).unwrap();
     assert!(matches!(contact.solve(Load::Approach(0.1)), Err(Error::Unsupported { .. })));
     assert!(matches!(contact.solve(Load::MeanGap(0.0)), Err(Error::Domain { .. })));
@@ -246,8 +246,8 @@ fn what_a_periodic_square_takes_and_refuses() {
     }
 }
 
-/// The counted area of a resolved surface is too large by an amount of first order; most of it goes with the
-/// correction for the boundary.
+/// The area of the cells in contact of a resolved surface is too large by an error of first order, most of
+/// which the correction for the boundary removes.
 #[test]
 fn the_corrected_area_converges_faster() {
     let mut surface = SelfAffine::new(2.2, 1.0, 0.01).unwrap();

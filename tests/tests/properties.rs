@@ -1,4 +1,4 @@
-//! What mechanics demands of any map under any load.
+//! Properties that follow from mechanics for any map under any load.
 
 use approx::assert_relative_eq;
 use bem3d::Bem3d;
@@ -12,12 +12,12 @@ const TOLERANCE: f64 = 1e-10;
 /// The certificate bounds gaps weighted by pressure in rms heights; an approach is one weighted by the
 /// tangent's pressure, up to ten times that, and two of them are compared.
 const SAME: f64 = 1e-8;
-/// Gaps that the certificate leaves open, in tolerances and rms heights (`Bem3d::tolerance`).
+/// Bound of the gaps that the certificate allows, in tolerances times the rms height (`Bem3d::tolerance`).
 const LEFT_OPEN: f64 = 10.0;
 /// Sums over a few hundred cells.
 const ROUNDING: f64 = 1e-12;
 
-/// Seeds of failures are kept beside the tests.
+/// Seeds of failures are stored beside the tests.
 fn config(cases: u32) -> ProptestConfig {
     ProptestConfig {
         rng_seed: RngSeed::Fixed(1),
@@ -27,7 +27,7 @@ fn config(cases: u32) -> ProptestConfig {
 }
 
 prop_compose! {
-    /// Any of the maps that solvers have tripped over, or a rough one, of up to 20 x 20 cells.
+    /// Any of the maps on which solvers have failed, or a rough one, of up to 20 x 20 cells.
     fn any_map()(
         kind in 0_u8..9, cells in 2_usize..21, seed in 0_u64..1000, noise in prop::collection::vec(0.0_f64..1.0, 400),
     ) -> HeightMap {
@@ -79,7 +79,7 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// What two states may differ in: a gap for d, that times k for F.
+/// Largest difference between two states: a gap for d, and that times k for F.
 fn assert_same(map: &HeightMap, a: &ContactState, b: &ContactState) {
     let k = a.stiffness.unwrap();
     let gap = SAME * unit(map).max(ROUNDING * a.approach.unwrap());
@@ -119,9 +119,9 @@ proptest! {
         }
     }
 
-    /// An offset that the heights can carry exactly changes no bit.
+    /// An offset that the heights represent exactly changes no bit.
     #[test]
-    fn moved(drawn in any_map(), steps in -2_000_000_000_i64..2_000_000_000, exponent in -6.0_f64..2.0, is_force in any::<bool>()) {
+    fn an_exact_offset_of_heights_changes_nothing(drawn in any_map(), steps in -2_000_000_000_i64..2_000_000_000, exponent in -6.0_f64..2.0, is_force in any::<bool>()) {
         let step = 2_f64.powi(-16);
         let at = |offset: f64| {
             let h = drawn.heights();
@@ -134,7 +134,7 @@ proptest! {
     /// Nested sets, convex F, k that never falls and is the difference quotient while the set stays, and the
     /// elastic energy between the sums of a convex force: chords above, tangents below.
     #[test]
-    fn on_the_way_down(drawn in any_map(), start in -6.0_f64..0.5, ratios in prop::collection::vec(1.001_f64..3.0, 1..8)) {
+    fn loading_at_increasing_approach(drawn in any_map(), start in -6.0_f64..0.5, ratios in prop::collection::vec(1.001_f64..3.0, 1..8)) {
         let mut press = prepare(&drawn);
         let mut d = 10_f64.powf(start) * unit(&drawn);
         let mut before: Option<(ContactState, Vec<f64>, f64)> = None;
@@ -170,7 +170,8 @@ proptest! {
         }
     }
 
-    /// Maxwell and Betti: what one state's pressure does on the other's displacement is mutual.
+    /// Reciprocity (Maxwell and Betti): the work of one state's pressure on the other's displacement equals
+    /// that of the other's pressure on its own.
     #[test]
     fn reciprocity(one in any_map(), noise in prop::collection::vec(0.0_f64..1.0, 400), exponents in (-3.0_f64..1.5, -3.0_f64..1.5)) {
         let other = hard_map(0, one.columns(), &noise).unwrap();

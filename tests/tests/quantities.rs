@@ -1,5 +1,5 @@
-//! What a column is called is what it is: every quantity of small random states against its definition, in
-//! every effect, boundary and kind of load, on rectangles with holes and oblong cells.
+//! Every column has the value of its definition: every quantity of small random states is checked, with every
+//! effect, boundary and kind of load, on rectangles with holes and oblong cells.
 //!
 //! A stiffness is compared with difference quotients of the force along the branch, gaps and approaches with
 //! the fields, areas, pressures and energies with the fields, dissipated energies with the work around a
@@ -22,7 +22,7 @@ use std::sync::Arc;
 const TOLERANCE: f64 = 1e-10;
 /// Rounding of sums over a few hundred cells, in the unit of the largest of them.
 const ROUNDING: f64 = 1e-9;
-/// Truncation of a difference quotient, and what the tolerance leaves of its difference.
+/// Truncation error of a difference quotient, and the error of its difference due to the tolerance.
 const QUOTIENT: f64 = 1e-4;
 
 /// Numbers in [0, 1) from a seed.
@@ -110,7 +110,7 @@ fn model(tolerance: f64) -> Bem3d {
     Bem3d { tolerance, ..Bem3d::default() }
 }
 
-/// What is wrong, one text for each.
+/// The faults found, in words.
 type Faults = Vec<String>;
 
 fn check(faults: &mut Faults, what: &str, found: f64, expected: f64, allowed: f64) {
@@ -198,7 +198,7 @@ fn fields(scene: &Scene, state: &ContactState, depth: Option<&[f64]>, faults: &m
     }
 }
 
-/// The stiffness of the cells that touch, held: that of a flat punch with their outline.
+/// The stiffness at a fixed contact area: that of a flat punch with the outline of the cells in contact.
 fn punch(scene: &Scene, state: &ContactState) -> Option<f64> {
     let map = map_of(scene);
     let p = state.pressure()?.values();
@@ -219,7 +219,7 @@ fn between(faults: &mut Faults, what: &str, k: f64, quotients: &[f64], error: f6
     }
 }
 
-/// The coordinate that the force is a function of: the approach, or the mean gap with the sign changed.
+/// The coordinate on which the force depends: the approach, or the negative mean gap.
 fn plane(state: &ContactState) -> f64 {
     state.approach.unwrap_or_else(|| -state.mean_gap.unwrap())
 }
@@ -282,7 +282,7 @@ fn elastic(seed: u64) -> Result<Faults, Error> {
     Ok(faults)
 }
 
-/// Walks a path from nothing; the state at its end.
+/// Follows a path from no contact, and returns the state at its end.
 fn walked(model: Bem3d, scene: &Scene, loads: &[Load]) -> Result<ContactState, Error> {
     let mut history = model.prepare(scene, 0)?;
     let mut last = None;
@@ -403,7 +403,7 @@ fn plastic_loop(seed: u64) -> Result<Faults, Error> {
     Ok(faults)
 }
 
-/// A contact with adhesion on smooth bumps; the law is drawn where it may be either.
+/// A contact with adhesion on smooth bumps; where both laws are possible, one is chosen at random.
 fn adhesive_scene(draw: &mut Draw, law: Option<AdhesionLaw>, cells: (usize, usize)) -> Scene {
     let holes = draw.chance(0.3);
     let noise = if law.is_some() { 0.3 * draw.unit() } else { 0.0 };
@@ -424,7 +424,7 @@ fn adhesive_scene(draw: &mut Draw, law: Option<AdhesionLaw>, cells: (usize, usiz
     scene
 }
 
-/// Planes up and down, from apart to pressed.
+/// Approaches up and down, from separation to compression.
 fn planes(draw: &mut Draw, scene: &Scene) -> Vec<f64> {
     let map = map_of(scene);
     let highest = if is_periodic(scene) {
@@ -487,8 +487,8 @@ fn exponential(seed: u64) -> Result<Faults, Error> {
     Ok(faults)
 }
 
-/// The slope of a front that moves by cells, from states further along the branch, against what the state
-/// claims. `None`: nothing claimed.
+/// Compares the slope with fronts that move by cells, from states further along the branch, with the
+/// stiffness that the state claims. `None` where the state claims none.
 fn moving_front(seed: u64, law: Option<AdhesionLaw>) -> Result<(Faults, Option<bool>), Error> {
     let mut draw = Draw::new(seed);
     let scene = adhesive_scene(&mut draw, law, (18, 18));
@@ -558,8 +558,8 @@ fn moving_front(seed: u64, law: Option<AdhesionLaw>) -> Result<(Faults, Option<b
     Ok((faults, Some((slope - k).abs() <= error * k.abs() + open)))
 }
 
-/// Slope at the first of some points of the parabola of least squares, with twice its standard error or the
-/// bias seen by halving the way.
+/// Slope of the least-squares parabola at the first of some points, with twice its standard error or its
+/// bias, estimated by halving the interval.
 fn parabola(points: &[(f64, f64)]) -> (f64, f64) {
     let fit = |points: &[(f64, f64)]| {
         let unit = points.last().unwrap().0;
@@ -639,7 +639,7 @@ fn friction(seed: u64) -> Result<Faults, Error> {
     Ok(faults)
 }
 
-/// A sphere of Prony's series that is pressed in at changing rates: its force is the relaxation of every
+/// A sphere with a Prony series that is indented at changing rates: its force is the relaxation of every
 /// increment of the elastic force, and its area that of the contact radius.
 fn rheology(seed: u64) -> Result<Faults, Error> {
     const STEPS: usize = 4000;
@@ -678,12 +678,12 @@ fn rheology(seed: u64) -> Result<Faults, Error> {
     Ok(faults)
 }
 
-/// How many times the default number of states.
+/// Multiple of the default number of states.
 fn times() -> u64 {
     std::env::var("QUANTITIES").ok().and_then(|times| times.parse().ok()).unwrap_or(1)
 }
 
-/// All faults of so many states of a kind, and how many were solved.
+/// All faults of a number of states of a kind, and the number of states that were solved.
 fn of_kind(kind: &str, count: u64, check: impl Fn(u64) -> Result<Faults, Error> + Sync) -> (usize, Faults) {
     let found: Vec<_> = (0..count * times()).into_par_iter().map(|seed| (seed, check(seed))).collect();
     let (mut solved, mut faults) = (0, Vec::new());
@@ -713,25 +713,25 @@ fn none(faults: &[String]) {
 }
 
 #[test]
-fn of_elastic_states() {
+fn quantities_of_elastic_states() {
     none(&of_kind("elastic", 900, elastic).1);
 }
 
 #[test]
-fn of_paths_with_a_hardness() {
+fn quantities_of_paths_with_a_hardness() {
     none(&of_kind("hardness", 600, plastic).1);
     none(&of_kind("hardness, loops", 30, plastic_loop).1);
 }
 
 #[test]
-fn of_attraction_across_gaps() {
+fn quantities_with_attraction_across_gaps() {
     let (solved, faults) = of_kind("adhesion, exponential", 500, exponential);
     none(&faults);
     assert!(solved as u64 > 400 * times(), "{solved}");
 }
 
 #[test]
-fn of_fronts_that_move_by_cells() {
+fn quantities_with_fronts_that_move_by_cells() {
     for (kind, law) in [("adhesion, short range", None), ("adhesion, Dugdale", Some(AdhesionLaw::Dugdale))] {
         let claims = std::sync::Mutex::new((0_u32, 0_u32));
         let (solved, faults) = of_kind(kind, 200, |seed| {
@@ -754,11 +754,11 @@ fn of_fronts_that_move_by_cells() {
 }
 
 #[test]
-fn of_rheology() {
+fn quantities_of_rheology() {
     none(&of_kind("rheology", 100, rheology).1);
 }
 
 #[test]
-fn of_friction() {
+fn quantities_of_friction() {
     none(&of_kind("friction", 100, friction).1);
 }

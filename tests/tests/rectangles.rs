@@ -1,5 +1,5 @@
-//! Rectangular maps, oblong cells and undefined points against plain sums, exact solutions and their own
-//! symmetries.
+//! Rectangular maps, oblong cells and undefined points, compared with plain sums, exact solutions and their
+//! own symmetries.
 
 use analytic::{Hertz, Westergaard};
 use approx::assert_relative_eq;
@@ -13,7 +13,7 @@ use stability::{PlainSum, relaxed, relaxed_by};
 use std::f64::consts::PI;
 use tests::scene;
 
-/// Tolerance of the solves, and what a solve may differ from a reference by, relative.
+/// Tolerance of the solves, and the largest relative difference of a solve from a reference.
 const TOLERANCE: f64 = 1e-11;
 const SAME: f64 = 1e-9;
 
@@ -57,7 +57,7 @@ fn pressure(state: &ContactState) -> &[f64] {
     state.pressure().unwrap().values()
 }
 
-/// A state at an approach against relaxation with plain sums: contact set, forces, stiffness, area.
+/// A state at an approach, compared with relaxation by plain sums: contact set, forces, stiffness, area.
 fn against_plain_sums(map: &HeightMap, approach: f64) {
     let slow = relaxed(map, approach);
     let cell = map.dx() * map.dy();
@@ -342,7 +342,7 @@ proptest! {
     }
 }
 
-/// What the cells say of a flat rectangle in full contact: every number by hand.
+/// The reported resolution of a flat rectangle in full contact, compared with numbers by hand.
 #[test]
 fn resolution_of_a_full_rectangle() {
     let mut scene = Scene::new(Surface::Flat { size: [2.0, 1.5].into() }, 1.0);

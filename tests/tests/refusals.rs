@@ -1,4 +1,4 @@
-//! What a model lacks it refuses; what was not asked for is not there.
+//! Models refuse what they do not support, and do not compute outputs that are not requested.
 
 use analytic::{
     CattaneoMindlin, FlatPunch, GreenwoodWilliamson, Hertz, Jkr, Persson, PowerLaw, PowerLawBody, Westergaard,
@@ -29,7 +29,7 @@ fn surfaces() -> [Surface; 9] {
     ]
 }
 
-/// A model and, surface by surface, whether it takes it (`x`), or refuses its numbers alone (`n`).
+/// A model and, for each surface, whether it takes it (`x`) or only refuses its parameters (`n`).
 fn models() -> Vec<(Box<dyn ContactModel>, &'static str)> {
     vec![
         //                                                                      rough map line sphere cone power circle square sine
@@ -43,7 +43,7 @@ fn models() -> Vec<(Box<dyn ContactModel>, &'static str)> {
     ]
 }
 
-/// Every model with every scene that it takes; these ask for the stiffness.
+/// Every model with every scene that it takes; the scenes request the stiffness.
 fn accepted() -> Vec<(Box<dyn ContactModel>, Vec<Scene>)> {
     models()
         .into_iter()
@@ -96,7 +96,7 @@ fn has(model: &str, surface: &Surface, effect: &str) -> bool {
     }
 }
 
-/// One of each effect, by a word of its refusal.
+/// An example of each effect, with a word of its refusal.
 fn each_effect() -> [(&'static str, Effects); 6] {
     let range = Adhesion::FiniteRange { work: 1e-3, range: 0.5, law: AdhesionLaw::Exponential };
     [
@@ -127,8 +127,8 @@ fn effects_are_refused() {
     }
 }
 
-/// Theories of periodic contact take nothing without periodic boundaries, and no other effect with them;
-/// their states have a mean gap and no approach.
+/// Theories of periodic contact take only scenes with periodic boundaries, and no other effect; their states
+/// have a mean gap and no approach.
 #[test]
 fn periodic_theories() {
     let mut with_cutoff = rough(2.4).unwrap();
@@ -181,7 +181,7 @@ fn periodic_theories() {
     }
 }
 
-/// Histories have one effect at a time; they refuse to do without it and the others beside it.
+/// Models of paths have one effect at a time; they refuse scenes without it and scenes with another effect.
 #[test]
 fn histories() {
     let pair = Pair { first: Body::Rigid, second: Body::Elastic { young: 0.75, poisson: 0.5 } };
@@ -222,7 +222,7 @@ fn histories() {
 
 const COPPER: Conductance = Conductance::Electrical { first: 1.7e-8, second: 1.7e-8 };
 
-/// The outputs that every model gives, those that only some have, and those that need cells: one at a time.
+/// The outputs that every model has, those that only some have, and those that need cells, one at a time.
 fn each_output() -> [Outputs; 8] {
     let none = Outputs::default();
     [
@@ -237,9 +237,9 @@ fn each_output() -> [Outputs; 8] {
     ]
 }
 
-/// Solves for exactly the outputs asked for, or refuses them: loaded and unloaded.
+/// Checks that a model computes exactly the requested outputs or refuses them, with and without load.
 #[test]
-fn outputs_are_those_asked_for() {
+fn only_requested_outputs_are_computed() {
     for (model, scenes) in accepted() {
         for scene in scenes {
             for outputs in [Outputs::default()].into_iter().chain(each_output()) {

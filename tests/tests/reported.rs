@@ -1,4 +1,4 @@
-//! Scenes that were once answered with a wrong number, with their right answers.
+//! Scenes for which a wrong number was once reported, with the right values.
 
 use analytic::jkr::AdhesiveSphere;
 use approx::assert_relative_eq;
@@ -19,8 +19,8 @@ fn walked(model: Bem3d, scene: &Scene, loads: &[Load]) -> Vec<ContactState> {
     loads.iter().map(&mut step).collect()
 }
 
-/// The slope along the branch of JKR, within the error that each state claims, and 2 E* a of the held area;
-/// once they were one number, 1.4 to 1.7 times the slope, with an error of 1e-8.
+/// The slope along the branch of JKR, within the error that each state claims, and 2 E* a at a fixed contact
+/// area. Earlier versions reported only one number, 1.4 to 1.7 times the slope, with an error of 1e-8.
 #[test]
 fn stiffness_of_a_sphere_with_short_range_is_the_slope_of_its_branch() {
     let work = 8.842e-6;
@@ -43,7 +43,7 @@ fn stiffness_of_a_sphere_with_short_range_is_the_slope_of_its_branch() {
     }
 }
 
-/// Conductance through a contact with an attraction across gaps is that of the cells that touch.
+/// Conductance through a contact with an attraction across gaps is that of the cells in contact.
 #[test]
 fn an_attraction_across_gaps_conducts_nothing() {
     for law in [AdhesionLaw::Exponential, AdhesionLaw::Dugdale] {
@@ -59,7 +59,8 @@ fn an_attraction_across_gaps_conducts_nothing() {
     }
 }
 
-/// Saturated cells conduct: once the conductance followed the elastic ones alone and fell with the load.
+/// Saturated cells conduct. In earlier versions the conductance included only the elastic cells and fell with
+/// the load.
 #[test]
 fn conductance_grows_with_a_contact_that_flows() {
     let surface = SelfAffine::new(2.2, 1.0, 0.01).map(Surface::SelfAffine).unwrap();
@@ -100,7 +101,7 @@ fn a_reload_to_an_old_load_is_as_the_first_time() {
     }
 }
 
-/// Undefined points hold nothing: the planes of the others pass each other.
+/// Undefined points carry nothing, so that the mean planes of the other points can pass each other.
 #[test]
 fn the_mean_gap_of_a_map_with_undefined_points_goes_below_zero() {
     let heights = vec![0.0, f64::NAN, 1e-2, f64::NAN, 0.0, f64::NAN, 0.0, f64::NAN];
@@ -148,8 +149,8 @@ fn complete_contact_with_adhesion_has_no_stiffness() {
     }
 }
 
-/// By mean gap from apart to complete contact and back: every gap has a state, also where none was stable at
-/// a fixed approach of a kernel with a constant in it.
+/// By mean gap from apart to complete contact and back: every gap has a state, also where no state is stable
+/// at a fixed approach of a kernel with a constant.
 #[test]
 fn every_mean_gap_of_a_periodic_contact_with_adhesion_has_a_state() {
     let surface = Surface::Sine { amplitude: 0.02, wavelength: 1.0, size: 1.0.into() };
@@ -168,7 +169,7 @@ fn every_mean_gap_of_a_periodic_contact_with_adhesion_has_a_state() {
     }
 }
 
-/// A loose tolerance is no reason to panic.
+/// A loose tolerance does not cause a panic.
 #[test]
 fn any_tolerance_below_one_is_taken_with_adhesion() {
     let mut scene = Scene::new(Surface::Sphere { radius: 1.0, size: 0.15.into() }, 1.0);

@@ -1,5 +1,5 @@
-//! Rheology by its properties: limits in time, bounds by energy, superposition; exact springs and those of a
-//! table alike.
+//! Rheology by its properties: limits in time, bounds by energy, superposition; both for the exact springs
+//! and for those of a table.
 
 use analytic::{FlatPunch, Hertz};
 use approx::assert_relative_eq;
@@ -8,7 +8,7 @@ use mdr1d::{Equivalent, Viscoelastic};
 
 const MODULUS: f64 = 4.0;
 const ARMS: [Relaxing; 2] = [Relaxing { weight: 2.0, time: 0.5 }, Relaxing { weight: 1.0, time: 3.0 }];
-/// `1 + sum w`: what the modulus is at once.
+/// `1 + sum w`: the instantaneous (glassy) modulus.
 const GLASSY: f64 = 4.0;
 /// Closed forms and quadratures.
 const EXACT: f64 = 1e-11;
@@ -30,7 +30,7 @@ fn sphere() -> Surface {
     Surface::Sphere { radius: 1.0, size: 2.0.into() }
 }
 
-/// E* of the relaxed body times this is what an elastic sphere carries.
+/// Force of an elastic sphere over E* of the relaxed body.
 fn elastic(d: f64) -> f64 {
     4.0 / 3.0 * MODULUS * d.powf(1.5)
 }
@@ -103,7 +103,7 @@ fn work_lies_between_the_relaxed_and_the_glassy_energy() {
 }
 
 #[test]
-fn a_face_answers_linearly() {
+fn a_flat_punch_responds_linearly() {
     // Without growth Boltzmann's superposition holds in d itself: the force of a sum of histories is the sum
     // of the forces.
     let punch = Surface::FlatCircle { radius: 0.3, size: 2.0.into() };

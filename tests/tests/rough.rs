@@ -1,4 +1,4 @@
-//! What must hold on every rough surface, whatever the numbers are.
+//! Properties that hold for every rough surface.
 
 use approx::assert_relative_eq;
 use bem3d::Bem3d;
@@ -7,8 +7,8 @@ use tests::{map, rough, rough_map, scene};
 
 /// Tolerance of the solves here.
 const TOLERANCE: f64 = 1e-10;
-/// Two solves of one state: each certificate bounds gaps against the rms height and k by itself; small
-/// approaches are shares of it.
+/// Bound of the difference between two solves of one state: each certificate bounds gaps relative to the rms
+/// height, and k relatively; small approaches are shares of the rms height.
 const SAME: f64 = 1e-7;
 
 fn model(cells: usize) -> Bem3d {
@@ -49,10 +49,10 @@ fn no_state_exceeds_the_plateau_of_its_grid() {
     }
 }
 
-/// Far beyond full contact the gaps that are left are a millionth of the approach: less than single precision
-/// sees.
+/// Far beyond full contact the residual gaps are a millionth of the approach, which is below the resolution
+/// of single precision.
 #[test]
-fn loads_a_million_times_the_relief() {
+fn loads_a_million_times_that_of_full_contact() {
     for (cells, fractal_dimension) in [(33, 2.0), (129, 2.0), (65, 2.8)] {
         let model = Bem3d { cells, tolerance: 1e-4, ..Bem3d::default() };
         let scene = Scene::new(Surface::SelfAffine(rough(fractal_dimension).unwrap()), 1.0);
@@ -217,7 +217,7 @@ fn loading_and_unloading_meet_the_same_states() {
 }
 
 #[test]
-fn chance_is_the_seed_and_nothing_else() {
+fn randomness_comes_from_the_seed_alone() {
     let solve = |seed: u64| sweep(&mut *prepared(2.4, 65, seed), [1e-2, 1.0, 20.0].map(Load::Force));
     let in_pool = |threads: usize, seed: u64| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
@@ -230,7 +230,7 @@ fn chance_is_the_seed_and_nothing_else() {
     assert_ne!(here[0].approach, solve(2)[0].approach);
 }
 
-/// An offset that the heights can carry exactly changes no bit.
+/// An offset that the heights represent exactly changes no bit.
 #[test]
 fn the_zero_of_heights_is_arbitrary() {
     // Multiples of 2^-20 below 16 in size.

@@ -1,4 +1,5 @@
-//! Any order of loads on any map: a solver that remembers gives what a fresh one gives.
+//! Any order of loads on any map: a solver with earlier loads in its memory gives the same states as a fresh
+//! one.
 
 use approx::assert_relative_eq;
 use bem3d::{Bem3d, Method};
@@ -16,7 +17,7 @@ proptest! {
     #![proptest_config(ProptestConfig { rng_seed: RngSeed::Fixed(1), failure_persistence: None, ..ProptestConfig::with_cases(150) })]
 
     #[test]
-    fn remembering_changes_nothing(
+    fn earlier_loads_do_not_change_a_state(
         kind in 0_u8..8, cells in 1_usize..40, seed in 0_u64..1000,
         noise in prop::collection::vec(0.0_f64..1.0, 1600),
         // Logarithm of the load over the rms height, and whether it is a force.

@@ -1,5 +1,5 @@
-//! Adhesion of short range on a grid against closed forms: spheres of JKR and, with waves, of Guduru,
-//! Kendall's punch, Johnson's wave.
+//! Adhesion of short range on a grid compared with closed forms: the sphere of JKR, the wavy sphere of
+//! Guduru, Kendall's punch and Johnson's wave.
 
 use analytic::adhesive_wave::WavyContact;
 use analytic::jkr::AdhesiveSphere;
@@ -34,7 +34,7 @@ fn unloaded_radius() -> f64 {
     (4.5 * PI * WORK).cbrt()
 }
 
-/// Places of a centre on the grid, in cells, the first beside all symmetries of the grid.
+/// Positions of a centre on the grid, in cells; the first one has none of the symmetries of the grid.
 const PLACES: [(f64, f64); 4] = [(0.19, 0.37), (0.0, 0.0), (0.5, 0.25), (0.5, 0.5)];
 
 /// That sphere on cells with sides `(side, side/oblong)`, `cells` of the longer ones in its radius without
@@ -54,7 +54,7 @@ fn sphere(cells: f64, oblong: usize, place: (f64, f64)) -> Scene {
     scene(map.unwrap())
 }
 
-/// Pull-off force over that of JKR, drawn apart in steps around it.
+/// Pull-off force over that of JKR, found by withdrawing in steps around it.
 fn pull_off(scene: &Scene) -> f64 {
     let exact = AdhesiveSphere::new(1.0, 1.0, WORK).unwrap().pull_off_at_force().unwrap();
     let mut history = path(scene);
@@ -78,7 +78,7 @@ fn a_sphere_is_pulled_off_by_one_and_a_half_pi_w_r_wherever_it_lies() {
 }
 
 #[test]
-fn oblong_cells_pull_off_alike() {
+fn oblong_cells_have_the_same_pull_off_force() {
     for oblong in [2, 3] {
         let found = pull_off(&sphere(12.0, oblong, PLACES[0]));
         assert!((found - 1.0).abs() < 0.012, "{oblong}: {found}");
@@ -200,7 +200,7 @@ fn a_wavy_sphere_sticks_and_comes_off_ring_by_ring() {
     const WAVES: f64 = 5.0;
     /// Energies and radii, relative; forces over the pull-off force of the smooth sphere.
     const SAME: f64 = 0.02;
-    /// The same of forces, which change fast before the contact snaps in.
+    /// The same for forces, which change fast before the contact snaps in.
     const FORCE: f64 = 0.025;
     let length = unloaded_radius() / WAVES;
     let wavy = WavySphere { amplitude: 4e-4, length };
@@ -283,8 +283,8 @@ fn a_flat_punch_comes_off_at_once() {
     assert!((2.0 * fine - coarse - 1.0).abs() < 0.02, "{coarse} {fine}");
 }
 
-/// Johnson's wave of length 1 with p periods across and q down so many cells, moved by a part of a cell, and
-/// the sides of its map.
+/// Johnson's wave of length 1 with p periods across and q down the given number of cells, shifted by a part
+/// of a cell, and the sides of its map.
 fn oblique_wave(cells: usize, (p, q): (u32, u32), place: f64) -> (Scene, Size) {
     let (p, q) = (f64::from(p), f64::from(q));
     let rows = if q > 0.0 { cells } else { 4 };
@@ -298,7 +298,7 @@ fn oblique_wave(cells: usize, (p, q): (u32, u32), place: f64) -> (Scene, Size) {
     (scene, size)
 }
 
-/// Of [`oblique_wave`].
+/// Amplitude of [`oblique_wave`].
 const AMPLITUDE: f64 = 0.02;
 
 /// Shares of Johnson's pressures at which that wave comes off and snaps into full contact, to 1e-3.
@@ -337,7 +337,7 @@ fn limits(cells: usize, direction: (u32, u32), place: f64) -> [f64; 2] {
     [f64::midpoint(held, lost), share - 0.5 * STEP]
 }
 
-/// Fewest, mean and most of a wave's limits over eight places of its fronts on the grid.
+/// Smallest value, mean and largest value of a wave's limits over eight positions of its fronts on the grid.
 fn over_places(cells: usize, direction: (u32, u32)) -> [[f64; 3]; 2] {
     let found: Vec<[f64; 2]> =
         (0..8).map(|k| limits(cells, direction, 0.02 + 0.125 * f64::from(k))).collect();
@@ -369,10 +369,10 @@ fn waves_in_other_directions_pull_off_and_snap_in_alike() {
 }
 
 /// The table of the book's page on adhesion of short range:
-/// `cargo test --release -p tests how_far_straight_fronts_are_trapped -- --ignored --nocapture`.
+/// `cargo test --release -p tests trapping_of_straight_fronts -- --ignored --nocapture`.
 #[test]
 #[ignore = "a table, minutes"]
-fn how_far_straight_fronts_are_trapped() {
+fn trapping_of_straight_fronts() {
     for (cells, direction) in [
         (64, (1, 0)),
         (128, (1, 0)),

@@ -47,7 +47,7 @@ fn full_contact_between_the_table_and_the_continuum() {
     assert_relative_eq!(square(128, Method::Auto), formula, max_relative = FORMULA);
 }
 
-/// The plateau of a correct N x N code in the paper's nondimensional, above its 1.
+/// The plateau of a correct N x N code in the normalisation of the paper, which lies above its 1.
 #[test]
 fn plateaus_in_the_units_of_the_paper() {
     for (cells, plateau) in [(129, 1.00642), (257, 1.00775)] {
@@ -57,7 +57,7 @@ fn plateaus_in_the_units_of_the_paper() {
     }
 }
 
-/// Flat cells at height 0 where `face` says so, everything else one side lower.
+/// A map with height 0 on the cells that `face` selects, and lower by one side elsewhere.
 fn faces(cells: usize, side: f64, face: impl Fn(usize, usize) -> bool) -> HeightMap {
     map(cells, side, |x, y| if face(x, y) { 0.0 } else { -side }).unwrap()
 }
@@ -85,8 +85,8 @@ fn two_cells() {
 
 /// Two circles of radius 1, centres 4 apart: k = 3.4436977378 E* a.
 const TWO_CIRCLES: f64 = 3.443_697_737_8;
-/// Sides of the square in radii. One side gives an error that depends on how the round edge lies on the
-/// cells; their mean does not.
+/// Sides of the square in radii. The error for one side depends on the position of the round edge relative to
+/// the cells; the mean does not.
 const SIDES: [f64; 8] = [6.13, 6.29, 6.41, 6.57, 6.71, 6.83, 6.97, 7.11];
 
 /// Mean relative error of k over [`SIDES`].

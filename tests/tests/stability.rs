@@ -1,4 +1,4 @@
-//! Every hard case of the registry: solved, witnessed and within its bound.
+//! Every hard case of the registry is solved, checked by the reference implementation and within its bound.
 
 use stability::{CaseResult, Effort};
 

@@ -1,4 +1,4 @@
-//! Scaling and symmetry: the same contact in other nondimensional, turned, mirrored, zoomed.
+//! Scaling and symmetry: the same contact in other units, turned, mirrored and zoomed.
 
 use approx::assert_relative_eq;
 use bem3d::Bem3d;
@@ -10,8 +10,8 @@ use std::sync::Arc;
 use tests::{embedded, map, rough_map, scene};
 
 const TOLERANCE: f64 = 1e-10;
-/// Two solves at [`TOLERANCE`]: the certificate is against the rms height, approaches here are down to a
-/// hundredth of it.
+/// Bound of the difference between two solves at [`TOLERANCE`]: the certificate is relative to the rms
+/// height, and approaches here are down to a hundredth of it.
 const SAME: f64 = 1e-7;
 
 const CELLS: usize = 33;
@@ -136,7 +136,7 @@ fn lateral_lengths_alone() {
 /// because the half-space is free outside. In the units of the frame that is Eq. 22: `k_bar` falls by C,
 /// `F_bar` by C times the ratio of the rms heights.
 #[test]
-fn the_frame_does_not_matter() {
+fn the_size_of_the_frame_does_not_matter() {
     let inner = map(CELLS, 1.0, |x, y| {
         let r2 = [x, y].map(|i| (i as f64 - 16.0) / 33.0).map(|t| t * t).iter().sum::<f64>();
         rough_map_value(x, y) - 8.0 * r2

@@ -1,4 +1,4 @@
-//! What is not asked for adds no work: counts of every model, output by output.
+//! Outputs that are not requested add no work: work counters of every model, output by output.
 
 use analytic::Hertz;
 use bem3d::{Bem3d, Method};
@@ -83,7 +83,7 @@ fn each_output_adds_its_own_work_and_no_other() {
 }
 
 #[test]
-fn formulas_and_lines_do_no_such_work() {
+fn formulas_and_lines_count_no_such_work() {
     let outputs = Outputs { stiffness: true, conductance: GRAPHITE, ..Outputs::default() };
     let sphere = Scene { outputs, ..Scene::new(Surface::Sphere { radius: 1.0, size: 1.0.into() }, 1.0) };
     for (model, scene) in [
@@ -138,10 +138,10 @@ fn a_summit_cut_by_the_edges_is_one_patch_where_they_are_one() {
     }
 }
 
-/// A history over a rough surface: the table once, then one solve per step; fields only where asked for, and
-/// not for the table.
+/// A path over a rough surface needs the table once, then one solve per step; fields are computed only where
+/// requested, and not for the table.
 #[test]
-fn a_history_pays_for_its_table_once() {
+fn a_path_computes_its_table_once() {
     let body = Body::Elastic { young: 2.0, poisson: 0.3 };
     let surface = Surface::SelfAffine(rough(2.3).unwrap());
     let mut scene = Scene::of_pair(surface, Pair { first: body, second: body }).unwrap();

@@ -23,8 +23,8 @@ pub use studies::{Redraw, TuningArguments};
 /// Reproduces Pohrt, Popov, Filippov, Phys. Rev. E 86, 026710 (2012): normal contact stiffness of fractal
 /// rough surfaces.
 ///
-/// Each figure is computed by real solves and written as CSV, SVG and PNG, with the paper's own claim beside
-/// each number.
+/// Each figure is computed by real solves and written as CSV, SVG and PNG, and each number is compared with
+/// the paper's own claim.
 #[derive(Debug, Parser)]
 #[command(name = "cargo xtask", bin_name = "cargo xtask", version, after_long_help = AFTER)]
 pub struct Arguments {
@@ -66,7 +66,7 @@ pub enum Command {
     /// Exponent alpha over the fractal dimension, 3D and 1D.
     #[command(after_help = EXPAND)]
     ReproduceFig3(Both),
-    /// Collapse of the 3D curves onto one.
+    /// Collapse of the 3D curves onto one curve.
     #[command(after_help = EXPAND)]
     ReproduceFig4(Solid),
     /// Three equivalent rough lines (CSV, NPY).
@@ -81,66 +81,71 @@ pub enum Command {
     /// All seven figures and the verification.
     #[command(after_help = EXPAND)]
     ReproduceAll(Both),
-    /// Every claim of the paper beside what is found here, disagreements first (verify.csv, verify.md).
+    /// Compares every claim of the paper with the numbers found here, disagreements first (verify.csv,
+    /// verify.md).
     #[command(after_help = EXPAND)]
     Verify(Both),
-    /// What an answer costs: work, time, memory and certificate of each solve.
+    /// Measures the cost of single solves: work, time, memory and certificate.
     #[command(after_long_help = bench::HELP)]
     Bench(BenchArguments),
-    /// What half and twice of each tuned constant of the solver cost on this machine (tuning.csv).
+    /// Measures the cost of half and of twice the value of each tuned constant of the solver on this machine
+    /// (tuning.csv).
     Tuning(TuningArguments),
-    /// What accuracy costs in time: one family of problems in every way there is (accuracy-cost.csv, .md and
-    /// picture).
+    /// Measures the time that accuracy costs: one family of problems, solved with every method
+    /// (accuracy-cost.csv, .md and picture).
     #[command(after_help = EXPAND)]
     AccuracyCost(AccuracyCost),
     /// Coverage of the error budgets: random surfaces, loads, grids and tolerances against references
     /// (budget-check.csv).
     #[command(after_help = EXPAND)]
     BudgetCheck(BudgetCheck),
-    /// Sec. II's two problems side by side: free and fractal, periodic with a roll-off; with Persson's and
-    /// Greenwood-Williamson's theories.
+    /// Compares the two problems of Sec. II of the paper, a free fractal surface and a periodic one with a
+    /// roll-off, and the theories of Persson and of Greenwood and Williamson.
     #[command(after_help = EXPAND)]
     ReproduceTwoCases(TwoCasesArguments),
-    /// The exponent of stiffness over force with bands, by pairs of surfaces on neighbouring grids
+    /// The exponent of stiffness over force with confidence bands, from surfaces solved on neighbouring grids
     /// (exponent.csv and others).
     #[command(after_help = EXPAND)]
     Exponent(ExponentArguments),
-    /// Partial slip of rough surfaces cell by cell, tangential over normal stiffness, and what approximations
-    /// by the normal contact miss (partial-slip.csv and others).
+    /// Partial slip of rough surfaces cell by cell: the ratio of tangential to normal stiffness, and the
+    /// error of approximations by the normal contact (partial-slip.csv and others).
     #[command(after_help = EXPAND)]
     PartialSlip(PartialSlipArguments),
-    /// What a command takes on many machines: jobs, core-hours, memory of a task, makespan, disk. Solves
-    /// nothing.
+    /// Predicts what a command needs on many machines: jobs, core-hours, memory of a task, makespan, disk.
+    /// Solves nothing.
     Plan(PlanArguments),
-    /// Writes a batch script for SLURM or HyperQueue that does the shards of a command and merges them; with
-    /// --now submits it. What is done is not done again.
+    /// Writes a batch script for SLURM or HyperQueue that runs the shards of a command and merges them; with
+    /// --now submits it. Finished jobs are not run again.
     Submit(SubmitArguments),
-    /// What is done, running, failed and missing of the shards in a directory.
+    /// Lists which shards in a directory are done, running, failed or missing.
     Status(ShardsArguments),
-    /// Tables and pictures from the shards in a directory: the bytes of one process. Refuses gaps, damage and
-    /// mixed plans.
+    /// Makes tables and pictures from the shards in a directory, byte for byte those of a single process.
+    /// Refuses missing or damaged shards and mixed plans.
     Merge(ShardsArguments),
-    /// A random share of the solves of Fig. 2 again, from nothing and to a tight tolerance (audit.csv).
+    /// Solves a random share of the states of Fig. 2 again, from a cold start and to a tight tolerance
+    /// (audit.csv).
     #[command(after_help = EXPAND)]
     Audit(Audit),
-    /// Every picture of directories again from their tables; solves nothing and touches no table.
+    /// Draws every picture of directories again from their tables; solves nothing and changes no table.
     Redraw(Redraw),
-    /// A small fixed run of Figs. 2 and 6 against the numbers in data/reference (for continuous integration).
+    /// Compares a small fixed run of Figs. 2 and 6 with the numbers in data/reference (for continuous
+    /// integration).
     CheckReference(Reference),
-    /// Hard cases: why each is hard, what is asserted, the figure reached (stability.csv, stability.md).
+    /// Solves the hard cases, and says why each is hard, what is asserted and which value was reached
+    /// (stability.csv, stability.md).
     Stability(StabilityArguments),
-    /// A script that completes arguments in a shell, for the program `xtask` or an alias of that name.
+    /// Prints a script that completes arguments in a shell, for the program `xtask` or an alias of that name.
     Completions {
         /// The shell.
         shell: clap_complete::Shell,
     },
-    /// Links and formulas of every Markdown file, commands and pictures of the book, and its pages where mdbook is
-    /// installed.
+    /// Checks the links and formulas of every Markdown file, the commands and pictures of the book, and its
+    /// pages where mdbook is installed.
     Book(BookArguments),
 }
 
 impl Command {
-    /// What a figure solves, and which ensembles it needs.
+    /// The sizes of the solves of a figure, and the ensembles that it needs.
     fn solved(&self) -> Option<(&SolveSizes, &'static [Model])> {
         Some(match self {
             Self::ReproduceFig2(a) | Self::ReproduceFig4(a) => (&a.solve, &[Model::Bem3d]),
@@ -157,13 +162,13 @@ impl Command {
         self.solved().map(|(_, models)| models)
     }
 
-    /// The accuracy that a figure is asked for, and which ensembles it needs.
+    /// The accuracy that was requested of a figure, and the ensembles that it needs.
     pub fn target(&self) -> Option<(&'static [Model], AccuracyTarget)> {
         let (solve, models) = self.solved()?;
         Some((models, solve.target()?))
     }
 
-    /// The shard that it is asked for.
+    /// The requested shard.
     pub fn shard(&self) -> Option<ShardChoice> {
         let sharded = match self {
             Self::Audit(a) => &a.solid.solve.sharded,
@@ -181,7 +186,7 @@ impl Command {
         self.request().out.unwrap_or_else(|| "out".into())
     }
 
-    /// What it asks for.
+    /// The request of these flags.
     pub fn request(&self) -> Request {
         let mut request = Request::default();
         match self {
@@ -223,7 +228,7 @@ mod tests {
     }
 
     #[test]
-    fn the_same_words_for_every_figure() {
+    fn every_figure_has_the_same_flags() {
         let arguments = parse(
             "verify --preset paper --cells 9 --surfaces 2 --elements 64 --lines 3 --fractal-dimensions 2.0,2.2 \
              --forces 1e-2:20:4 --tolerance 1e-3 --seed 7 --threads 2 --out d --fresh",
@@ -278,7 +283,7 @@ mod tests {
         ] {
             assert!(parse(line).is_err(), "{line}");
         }
-        // A negative force reaches the run, which names it.
+        // The parser lets a negative force through; the run then refuses it by name.
         assert!(parse("reproduce-fig2 --forces -1").is_ok());
     }
 
@@ -290,7 +295,7 @@ mod tests {
     }
 
     #[test]
-    fn benches_say_what_is_solved_and_where_it_goes() {
+    fn flags_of_the_bench_give_its_loads_and_files() {
         let asked = bench(
             "bench --surface a.npy --sweep 1:100:3,20 --tolerance 1e-8,1e-3 --csv d/t.csv --pressure p",
         );
@@ -308,14 +313,14 @@ mod tests {
         let Surfaces::SelfAffine { cells, fractal_dimensions, .. } = scaling.surfaces else { panic!() };
         assert_eq!((cells, fractal_dimensions, scaling.cold), (SCALING_CELLS.to_vec(), vec![2.4], true));
 
-        // Values that the words allow and the bench refuses.
+        // Values that the parser allows and the bench refuses.
         for line in ["bench --forces -1", "bench --forces 1:2"] {
             assert!(bench(line).bench().unwrap_err().to_string().starts_with("forces = "), "{line}");
         }
     }
 
     #[test]
-    fn a_wish_is_a_share_and_a_time() {
+    fn an_accuracy_target_is_a_share_and_a_time() {
         let target = |line: &str| parse(line).unwrap().command.target();
         let (models, asked) = target("reproduce-fig2 --accuracy 1% --budget 2h").unwrap();
         assert_eq!((models, asked), (&[Model::Bem3d][..], AccuracyTarget { share: 0.01, seconds: 7200.0 }));

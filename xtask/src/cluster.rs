@@ -6,21 +6,21 @@ use evaluation::{RealisationJob, Run, ensemble_jobs};
 use runs::cluster::{self, Division, Forecast, Status, check, quoted, run_shard, status, without_flags};
 use runs::{Error, JobList, Reporter, Result, ShardChoice};
 
-/// How the program calls itself.
+/// Name of the program in messages.
 const PROGRAM: &str = "cargo xtask";
 
 /// The jobs of a command.
 ///
 /// # Errors
-/// [`Error::Parameter`] for a command without any, and for what [`Run::new`] refuses.
+/// [`Error::Parameter`] for a command that has no jobs, and for the values that [`Run::new`] refuses.
 pub fn jobs(command: &Command) -> Result<Box<dyn JobList>> {
     if let Some((_, target)) = command.target() {
-        let expected = "no accuracy to choose sizes for while it solves; ask for it on one machine, and give the sizes that it prints";
+        let expected = "no accuracy together with --shard: run --accuracy on one machine first, and give the sizes that it prints";
         return Err(Error::parameter("accuracy", target.share, expected));
     }
     let request = command.request();
     if request.fresh {
-        return Err(Error::parameter("fresh", true, "no --fresh beside shards: choose another --out"));
+        return Err(Error::parameter("fresh", true, "no --fresh with --shard: choose another --out"));
     }
     if let Some(surfaces) = surfaces(command)? {
         return Ok(Box::new(surfaces));
@@ -31,7 +31,7 @@ pub fn jobs(command: &Command) -> Result<Box<dyn JobList>> {
         Command::BudgetCheck(options) => evaluation::budget_check_jobs(options.cases, options.seed),
         _ => {
             let expected = "reproduce-fig2, -fig3, -fig4, -fig6, -fig7, reproduce-all, verify, reproduce-two-cases, exponent, accuracy-cost or budget-check";
-            Err(Error::parameter("command", "one without jobs to share", expected))
+            Err(Error::parameter("command", "a command without jobs to share", expected))
         }
     }
 }
@@ -39,7 +39,7 @@ pub fn jobs(command: &Command) -> Result<Box<dyn JobList>> {
 /// Does one shard of a command.
 ///
 /// # Errors
-/// What [`jobs`] refuses; the first job that fails.
+/// As [`jobs`]; the first job that fails.
 pub fn shard(command: &Command, choice: ShardChoice, typed: &[String]) -> Result<(), runs::Failure> {
     let shard = choice.resolve(&|name| std::env::var(name).ok())?;
     let jobs = jobs(command)?;
@@ -77,10 +77,10 @@ fn parsed(typed: &[String]) -> Result<Command> {
     }
 }
 
-/// Tells what a command will take.
+/// Prints the prediction of what a command needs.
 ///
 /// # Errors
-/// What [`jobs`] refuses.
+/// As [`jobs`].
 pub fn plan(options: &PlanArguments) -> Result<()> {
     let command = parsed(&options.command)?;
     let here = std::thread::available_parallelism().map_or(1, usize::from);
@@ -91,10 +91,10 @@ pub fn plan(options: &PlanArguments) -> Result<()> {
     Ok(())
 }
 
-/// Writes the scripts of a command and submits them where that is asked for.
+/// Writes the scripts of a command, and submits them with `--now`.
 ///
 /// # Errors
-/// What [`jobs`] refuses, and what the engine refuses.
+/// As [`jobs`], and errors of the engine.
 pub fn submit(options: &SubmitArguments) -> Result<()> {
     let command = parsed(&options.command)?;
     let jobs = jobs(&command)?;
@@ -115,7 +115,7 @@ fn planned(options: &ShardsArguments) -> Result<(cluster::ShardPlan, Command, Bo
     Ok((plan, command, jobs))
 }
 
-/// Tells what is done of the shards of a directory.
+/// Prints the state of the shards of a directory.
 ///
 /// # Errors
 /// A directory without a plan or with several.

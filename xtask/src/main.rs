@@ -6,7 +6,7 @@
 //!
 //! Exit codes: 0 done, 1 an error (its message says where), 2 bad arguments, 3 done but some solves did not
 //! converge, stored numbers differ, a hard case fails, error budgets do not hold or a link or command of the
-//! book is broken, 130 stopped by a signal, 141 nobody reads standard output any more.
+//! book is broken, 130 stopped by a signal, 141 standard output was closed by its reader.
 
 mod arguments;
 mod book;
@@ -23,7 +23,7 @@ use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
 fn main() -> ExitCode {
-    // A path that is no UTF-8 is one all the same.
+    // A path that is not valid UTF-8 is still a path.
     let typed: Vec<String> =
         std::env::args_os().skip(1).map(|word| word.to_string_lossy().into_owned()).collect();
     let command = Arguments::parse().command;
@@ -88,7 +88,7 @@ fn solve(command: Command, typed: &[String]) -> Result<ExitCode> {
             let told = plan.lines.len();
             let settled = evaluation::settle(plan, models, target, &reporter)?;
             settled.lines.iter().skip(told).for_each(|line| runs::out!("{line}"));
-            // What was solved a moment ago is not solved again.
+            // The pilots have just been solved and are not solved again.
             Run { fresh: false, ..settled.run }
         }
         None => Run::new(&command.request())?,
@@ -130,7 +130,7 @@ fn solve(command: Command, typed: &[String]) -> Result<ExitCode> {
             if options.plan {
                 return Ok(ExitCode::SUCCESS);
             }
-            // The plan has dealt with what was stored.
+            // `--fresh` has already been applied by the plan.
             vec![paper::exponent(&paper::Exponent { fresh: false, ..study }, &reporter)?]
         }
         Command::PartialSlip(options) => vec![paper::partial_slip(&options.study(&run)?, &reporter)?],
@@ -167,8 +167,8 @@ fn redraw(options: &Redraw) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Ctrl-C, SIGTERM and SIGHUP end the process at once: what is finished is kept, and nothing else was begun
-/// that would be lost. Where the system grants no thread to tell of it, they do the same without a word.
+/// Ctrl-C, SIGTERM and SIGHUP end the process at once: finished results are kept, and an unfinished one is
+/// lost. Where the system grants no thread for the message, the process ends without it.
 fn tell_what_an_interruption_leaves(out: PathBuf) -> Result<()> {
     let tell = move || {
         let (count, units) = (Store::count(&out), out.join(".units"));
@@ -196,7 +196,7 @@ fn judged(outcomes: &[Judged]) -> Vec<Claim> {
     all
 }
 
-/// Prints what was made and what the paper says to it.
+/// Prints the files that were written and the comparison with the paper.
 fn report(outcomes: &[Outcome], claims: &[Claim], manifest: &Path) -> ExitCode {
     for outcome in outcomes {
         for file in &outcome.files {
@@ -208,7 +208,7 @@ fn report(outcomes: &[Outcome], claims: &[Claim], manifest: &Path) -> ExitCode {
         runs::out!("{line}");
     }
     if !claims.is_empty() {
-        runs::out!("\nThe paper beside these numbers:\n\n{}", paper::plain(claims));
+        runs::out!("\nThese numbers compared with the paper:\n\n{}", paper::plain(claims));
     }
     let seconds: f64 = outcomes.iter().map(|o| o.seconds).sum();
     let missing = outcomes.iter().map(|o| o.not_converged).max().unwrap_or(0);
@@ -217,13 +217,13 @@ fn report(outcomes: &[Outcome], claims: &[Claim], manifest: &Path) -> ExitCode {
         return ExitCode::SUCCESS;
     }
     runs::out!(
-        "done in {seconds:.1} s, but {missing} solves did not converge: they are in the samples with their status and in no mean"
+        "done in {seconds:.1} s, but {missing} solves did not converge: the samples hold them with their status, and the means leave them out"
     );
     ExitCode::from(3)
 }
 
-/// Prints each row as it comes and keeps the file whole all along, so that an interruption keeps what was
-/// solved; in the end the file is in the order asked for.
+/// Prints each row when it is solved and keeps the file complete, so that an interruption loses nothing; at
+/// the end the rows of the file are in the requested order.
 fn bench(options: &BenchArguments) -> Result<ExitCode> {
     let (csv, plot) = options.files();
     if let Some(directory) = csv.as_deref().and_then(Path::parent) {
@@ -327,7 +327,7 @@ fn line(row: &BenchRow) -> Result<String> {
     Ok(printed(row).map(|(name, width)| format!("{:>width$}", short(name))).join(" "))
 }
 
-/// Prints what each constant is worth as it is found.
+/// Prints the measurement of each constant when it is done.
 fn tuning(options: &TuningArguments) -> Result<ExitCode> {
     let TuningArguments { only, repetitions, out } = options;
     let header = std::sync::Once::new();

@@ -1,12 +1,12 @@
-//! Numbers that no machine has room for, and those that are none: each is refused before anything is solved
-//! or memory is asked for, by an error that names the flag and what was expected.
+//! Counts that are too large for any machine, and values that are not numbers. Each is refused before
+//! anything is solved or memory is allocated, by an error that names the flag and the expected values.
 
 #![allow(clippy::unwrap_used)] // Helpers outside #[test] functions.
 
 use std::path::Path;
 use std::process::{Command, Output};
 
-/// Counts that cost more than any machine has, and what is no count.
+/// Counts that are too large for any machine, and values that are no counts.
 const COUNTS: [&str; 9] = [
     "0",
     "1000000000",
@@ -18,10 +18,11 @@ const COUNTS: [&str; 9] = [
     "NaN",
     "1e9",
 ];
-/// What is no positive number.
+/// Values that are no positive numbers.
 const NUMBERS: [&str; 7] = ["0", "-1", "NaN", "inf", "-inf", "1e999", "x"];
 
-/// With at most 8 GB of addresses where the shell limits them: what asks for more would be an abort.
+/// Runs with at most 8 GB of address space where the shell can limit it: allocating more would abort the
+/// program.
 fn xtask(words: &[&str], directory: &Path) -> Output {
     let binary = env!("CARGO_BIN_EXE_xtask");
     let mut command = Command::new(if cfg!(unix) { "sh" } else { binary });
@@ -31,8 +32,8 @@ fn xtask(words: &[&str], directory: &Path) -> Output {
     command.args(words).current_dir(directory).output().unwrap()
 }
 
-/// What is wrong with the end of a command that is to be refused: with 1 or 2, and one message that names the
-/// flag.
+/// Describes how a command that has to be refused ends otherwise than with exit code 1 or 2 and one message
+/// that names the flag; `None` where it does not.
 fn refused(words: &[&str], flag: &str) -> Option<String> {
     let directory = tempfile::tempdir().unwrap();
     let output = xtask(words, directory.path());
@@ -46,7 +47,7 @@ fn refused(words: &[&str], flag: &str) -> Option<String> {
     (!well).then(|| format!("{}: {} {said}", words.join(" "), output.status))
 }
 
-/// The command, its flag, and values that it takes all the same.
+/// The command, its flag, and the values of the lists that this flag accepts.
 type Case = (&'static [&'static str], &'static str, &'static [&'static str]);
 
 const WITH_COUNTS: [Case; 28] = [
@@ -98,7 +99,7 @@ const WITH_NUMBERS: [Case; 15] = [
     (&["audit"], "--audit-tolerance", &[]),
 ];
 
-/// Before the words of the command that they are about.
+/// Flags of `submit` that stand before the command.
 const OF_ENGINES: [Case; 5] = [
     (&["plan"], "--nodes", &[]),
     (&["plan"], "--node-cores", &[]),
@@ -140,7 +141,7 @@ fn counts_beyond_every_machine_are_refused_by_name() {
 }
 
 #[test]
-fn what_is_no_number_is_refused_by_name() {
+fn values_that_are_no_numbers_are_refused_by_name() {
     let mut wrong = Vec::new();
     for (words, flag, taken) in WITH_NUMBERS {
         for value in NUMBERS.iter().filter(|value| !taken.contains(value)) {

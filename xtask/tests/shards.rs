@@ -1,4 +1,5 @@
-//! Commands divided into shards: the merge has the bytes of one process and solves nothing.
+//! Commands divided into shards: the merged files equal those of a single process, and merging solves
+//! nothing.
 
 #![allow(clippy::unwrap_used)] // Helpers outside #[test] functions.
 
@@ -7,7 +8,7 @@ use std::process::{Command, Output};
 
 fn xtask(words: &str, out: &Path) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_xtask"));
-    // The environment of an engine changes nothing without --shard.
+    // The environment of an engine has no effect without --shard.
     command.env("SLURM_ARRAY_TASK_ID", "7").env("HQ_TASK_ID", "7");
     command.args(words.split(' ')).arg("--out").arg(out).output().unwrap()
 }
@@ -16,7 +17,7 @@ fn said(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned() + &String::from_utf8_lossy(&output.stdout)
 }
 
-/// Jobs, and how many of them were found.
+/// Number of jobs, and number of those whose result was stored.
 fn work(output: &Output) -> (usize, usize) {
     let text = said(output);
     let lines = text.lines().filter(|line| line.contains("jobs done"));
@@ -28,7 +29,7 @@ fn work(output: &Output) -> (usize, usize) {
     lines.map(count).fold((0, 0), |a, b| (a.0 + b.0, a.1 + b.1))
 }
 
-/// Every file of a directory but what times and machines are written into.
+/// Every file of a directory except those that hold times and machines.
 fn files(directory: &Path) -> Vec<(String, Vec<u8>)> {
     let mut all: Vec<(String, Vec<u8>)> = std::fs::read_dir(directory)
         .unwrap()
@@ -72,7 +73,7 @@ fn merged_shards_are_the_undivided_command() {
 }
 
 #[test]
-fn what_cannot_be_divided_is_told() {
+fn commands_that_cannot_be_divided_are_errors() {
     let dir = tempfile::tempdir().unwrap();
     let refused = |words: &str, expected: &str| {
         let output = xtask(words, dir.path());
@@ -82,7 +83,7 @@ fn what_cannot_be_divided_is_told() {
     };
     refused("reproduce-fig2 --accuracy 5% --shard 0/2", "accuracy = 0.05: expected no accuracy");
     refused("reproduce-fig2 --fresh --shard 0/2", "fresh = true");
-    refused("audit --preset quick --shard 0/2", "command = one without jobs to share");
+    refused("audit --preset quick --shard 0/2", "command = a command without jobs to share");
     refused("reproduce-fig2 --shard 2/2", "i/2 with i from 0 to 1");
     refused("reproduce-fig2 --shard auto", "SLURM_ARRAY_TASK_MIN = nothing");
     refused("reproduce-fig1 --shard 0/2", "unexpected argument '--shard'");
@@ -98,7 +99,7 @@ fn what_cannot_be_divided_is_told() {
     );
 }
 
-/// Several commands in one directory: none is taken by itself, each when it is chosen.
+/// With several commands in one directory, `merge` needs the choice of one, and each can be chosen.
 #[test]
 fn a_chosen_plan_is_merged_beside_another() {
     let (both, one) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
@@ -118,7 +119,7 @@ fn a_chosen_plan_is_merged_beside_another() {
     assert!(read(both.path()) == read(one.path()) && !both.path().join("fig6.csv").exists());
 }
 
-/// A gap is told with what closes it, and that command closes it.
+/// The error for a missing shard names the command that computes it, and that command does.
 #[test]
 fn the_command_that_is_named_closes_the_gap() {
     let dir = tempfile::tempdir().unwrap();

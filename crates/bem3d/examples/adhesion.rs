@@ -1,15 +1,15 @@
 //! Paths with adhesion.
 //!
-//! `adhesion sphere LAW MU CELLS HALF_SIDE STEPS` draws a sphere (R = E* = 1) of Tabor's parameter MU from
-//! contact, and prints its path in Maugis's units and the pull-off force over pi w R; HALF_SIDE is half of
-//! the side in units of `(pi w R^2/K)^(1/3)`, K = 4/3. `adhesion jkr CELLS OFF STEPS` draws a sphere with
-//! short-range adhesion from its contact without load, CELLS in its radius.
-//! `adhesion cycle LAW MU CELLS HALF_SIDE STEPS` brings that sphere into contact and draws it off again, STEPS
-//! each way, and prints the energy of the cycle over pi w (pi w R^2/K)^(2/3), and its share outside of the two
-//! jumps in and out of contact.
-//! `adhesion heights CELLS HURST SEED FILE` writes the heights of that map, one a line.
+//! `adhesion sphere LAW MU CELLS HALF_SIDE STEPS` withdraws a sphere (R = E* = 1) with Tabor's parameter MU
+//! from contact, and prints its path in Maugis's units and the pull-off force over pi w R; HALF_SIDE is half
+//! of the side in units of `(pi w R^2/K)^(1/3)`, K = 4/3. `adhesion jkr CELLS OFF STEPS` withdraws a sphere
+//! with short-range adhesion from its contact at zero load, the radius of which is CELLS cells; the centre
+//! lies OFF cells beside the middle of the map. `adhesion cycle LAW MU CELLS HALF_SIDE STEPS` brings that
+//! sphere into contact and withdraws it again, with STEPS steps each way, and prints the energy of the cycle
+//! over pi w (pi w R^2/K)^(2/3), and the share of it that is lost outside of the two jumps into and out of
+//! contact. `adhesion heights CELLS HURST SEED FILE` writes the heights of that map, one a line.
 //! `adhesion map CELLS HURST SEED WORK RANGE TOLERANCE F1,F2,...` loads a periodic self-affine map (L = E* =
-//! h = 1) along these forces; WORK 0: without adhesion, RANGE 0: of short range.
+//! h = 1) along these forces. WORK = 0 means no adhesion, RANGE = 0 adhesion of short range.
 //! `adhesion challenge CELLS SIDE ROLL_OFF RANGE SEED P1,P2,...` presses a surface of the contact-mechanics
 //! challenge (Müser et al., Tribol. Lett. 65, 118 (2017)) at mean pressures over E* times the rms gradient,
 //! without and with adhesion; side, longest wave and range in nm.
@@ -56,8 +56,8 @@ fn main() -> Result<(), Box<dyn StdError>> {
     }
 }
 
-/// A sphere (R = E* = 1) with short-range adhesion, drawn off its contact without load. Its radius then is
-/// CELLS cells, its centre OFF cells beside the middle of the map.
+/// Withdraws a sphere (R = E* = 1) with short-range adhesion from its contact at zero load. The contact
+/// radius at zero load is CELLS cells, and the centre lies OFF cells beside the middle of the map.
 fn jkr(cells: f64, off: f64, steps: u32) -> Result<(), Box<dyn StdError>> {
     let work = 1e-4f64;
     let radius = (4.5 * PI * work).cbrt();
@@ -103,7 +103,7 @@ fn law_of(word: &str) -> Result<AdhesionLaw, Box<dyn StdError>> {
     }
 }
 
-/// A sphere (R = E* = 1) of Tabor's parameter `mu` with Maugis's units.
+/// A sphere (R = E* = 1) with Tabor's parameter `mu`, and Maugis's units for it.
 struct Sphere {
     scene: Scene,
     work: f64,
@@ -221,7 +221,8 @@ fn map(
 /// E*, work of adhesion and shortest wave of the challenge, SI; its rms gradient is 1.
 const CHALLENGE: (f64, f64, f64) = (25e6, 0.05, 1e-7);
 /// Width and number of the bins of pressure over E* times the rms gradient, and where the first one begins.
-/// The first and the last hold the rest; cells below 1e-9 E* are in none.
+/// The first and the last bin also hold all lower and higher pressures; cells with a pressure below 1e-9 E*
+/// are in no bin.
 const BINS: (f64, usize, f64) = (0.1, 42, -1.0);
 
 fn challenge(

@@ -1,13 +1,14 @@
-//! What hardness and adhesion cost beside the elastic solve of the same load:
+//! The cost of hardness and of adhesion compared with the elastic solve of the same load:
 //! `cargo run --release -p bem3d --example effects -- [CELLS ...]`.
 //!
 //! A periodic self-affine surface of rms gradient 0.1 (H = 0.8, roll-off at a quarter of the side) at the
 //! mean pressure 0.01 E*: the elastic state; a hardness of 0.05 E*, about the rms pressure of the elastic
 //! contact, and one of 0.02 E*; a work of adhesion of 4e-4 and 1.6e-3 E* times the side of a cell, of short
-//! range and with the exponential law over a fifth of a cell. Each is solved from nothing on one thread and
-//! on two; below two seconds twice, and the shorter time counts. `effects CELLS EFFECT THREADS`, EFFECT from
-//! 0 to 6 in the order of the table, solves one of them once and prints area, applications and seconds, and
-//! where the time went, so that its memory can be measured from outside.
+//! range and with the exponential law over a fifth of a cell. Each is solved from a cold start on one thread
+//! and on two. Solves of less than two seconds are run twice, and the shorter time is reported.
+//! `effects CELLS EFFECT THREADS`, EFFECT from 0 to 6 in the order of the table, solves one of them once and
+//! prints area, applications and seconds, and where the time went, so that its memory can be measured from
+//! outside.
 
 use bem3d::benchmarks::{Recorder, prepare_recorded};
 use bem3d::{

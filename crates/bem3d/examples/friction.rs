@@ -1,8 +1,9 @@
-//! Partial slip of one self-affine surface: work and time of an increment beside those of the normal load.
+//! Partial slip of one self-affine surface: work and time of an increment compared with those of the normal
+//! load.
 //!
-//! `friction CELLS:DF:SEED TOLERANCE NU MU SHARE F1,F2,...`: bodies alike, Poisson's ratio, coefficient of friction,
-//! tangential force over the largest one, F_bar of the normal loads. Each increment begins without traction, then from
-//! Ciavarella and Jaeger's tractions.
+//! `friction CELLS:DF:SEED TOLERANCE NU MU SHARE F1,F2,...`: two bodies with the same Poisson's ratio NU,
+//! coefficient of friction MU, tangential force as a share of the largest one, and the normal loads as F_bar.
+//! Each increment begins without traction, then from Ciavarella and Jaeger's tractions.
 
 use bem3d::benchmarks::{Part, PartialSlipBench, Recorder, prepare_recorded};
 use bem3d::{Bem3d, Load, Scene, SelfAffine, Surface};

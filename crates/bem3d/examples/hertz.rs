@@ -1,4 +1,4 @@
-//! A sphere on finer and finer cells: how the force and the stiffness approach those of Hertz.
+//! A sphere on finer and finer grids: the force and the stiffness converge to those of Hertz.
 //!
 //! `cargo run -p bem3d --example hertz`
 //!

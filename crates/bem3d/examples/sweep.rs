@@ -1,8 +1,8 @@
-//! Sweeps one surface over forces and prints the work of each load.
+//! Solves one surface at several forces and prints the work of each load.
 //!
-//! `sweep MAP.npy TOLERANCE F1,F2,...` for a square float64 NPY map (L = E* = 1), or `sweep CELLS:DF:SEED
-//! TOLERANCE F1,...` for a
-//! self-affine one. Forces are F_bar in the measured rms height.
+//! `sweep MAP.npy TOLERANCE F1,F2,...` for a square float64 NPY map (L = E* = 1), or
+//! `sweep CELLS:DF:SEED TOLERANCE F1,...` for a self-affine one. Forces are given as F_bar, which is formed
+//! with the measured rms height.
 
 use bem3d::Bem3d;
 use contact_model::{ContactModel, Error, HeightMap, Load, Scene, SelfAffine, Surface};

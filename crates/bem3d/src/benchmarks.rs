@@ -1,5 +1,5 @@
-//! The operators and the parts of a solve as a benchmark sees them. Not part of the interface: nothing here
-//! is kept from version to version.
+//! The operators and the parts of a solve, for benchmarks. This module is not part of the public interface
+//! and may change in any version.
 
 pub use crate::parts::{Part, Recorder, Spent};
 pub use crate::tuning::{CONSTANTS, Constant};
@@ -125,7 +125,7 @@ pub fn timed(name: &str, side: usize, step: usize) -> Option<Box<dyn FnMut() -> 
 /// The constant of bodies of Poisson's ratio 0.3.
 const TANGENTIAL: f64 = 0.3 / 0.7;
 
-/// Factors the first `count` cells of a grid; whether it was positive definite.
+/// Factors the matrix of the first `count` cells of a grid. Returns whether it was positive definite.
 pub fn factor(side: usize, count: usize) -> bool {
     let grid = Grid { columns: side, rows: side, stretch: 1.0 };
     let set = CellSet::from_index(grid, &(0..count as u32).collect::<Vec<_>>());
@@ -149,8 +149,9 @@ pub struct PartialSlip {
     pub stiffness: (usize, f64, f64),
 }
 
-/// One surface under a field of pressure (square cells, free boundaries), loaded tangentially from nothing by a
-/// share of its friction: one increment with `compliance = E* sum nu/(2 G)`, and the stiffness where asked for.
+/// One surface under a field of pressure (square cells, free boundaries), loaded tangentially from zero by a
+/// share of its friction: one increment with `compliance = E* sum nu/(2 G)`, and the stiffness where
+/// requested.
 pub struct PartialSlipBench {
     friction: Friction,
     cells: CellSet,

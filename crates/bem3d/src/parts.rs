@@ -1,12 +1,12 @@
-//! Where the time of a solve goes. A solver reads no clock: a benchmark that wants to know hands in a
-//! recorder with one.
+//! The time of the parts of a solve. A solver itself reads no clock: a benchmark passes a recorder that has
+//! one.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// A part of a solve that is timed by itself; what belongs to none is `Other`.
+/// A part of a solve that is timed separately; everything else is `Other`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Part {
-    /// What has no name of its own: preparing, vectors of the outer iteration, guesses.
+    /// Everything without a part of its own: preparation, vectors of the outer iteration, guesses.
     Other,
     /// Tables and symbols of the kernel, plans of transforms.
     Plans,
@@ -85,8 +85,8 @@ pub struct Spent {
     pub times: u64,
 }
 
-/// Charges time to the parts of a solve; clones share one account. By default it is off: then nothing is
-/// read, counted or kept.
+/// Charges time to the parts of a solve; clones share one account. By default it is off, and no time is read
+/// or stored.
 #[derive(Debug, Clone, Default)]
 pub struct Recorder(Option<Arc<Account>>);
 
@@ -110,7 +110,7 @@ impl Recorder {
         Self(Some(Arc::new(Account { clock, entries: Mutex::new(entries) })))
     }
 
-    /// What was spent since this was asked last, or since the beginning; empty when off.
+    /// The time since the last call, or since the beginning; empty when off.
     pub fn take(&self) -> Vec<(Part, Spent)> {
         let Some(account) = &self.0 else { return Vec::new() };
         let mut entries = account.entries();
@@ -120,7 +120,7 @@ impl Recorder {
         Part::ALL.into_iter().zip(spent).filter(|(_, spent)| *spent != Spent::default()).collect()
     }
 
-    /// Does some work as a part of its own, which the part around it does not count.
+    /// Runs some work as a separate part, whose time is not counted in the surrounding part.
     pub fn timed<R>(&self, part: Part, work: impl FnOnce() -> R) -> R {
         let Some(account) = &self.0 else { return work() };
         let around = account.enter(part);
@@ -131,7 +131,7 @@ impl Recorder {
 }
 
 impl Account {
-    /// The entries; those of a thread that panicked are as good as any.
+    /// The entries, including those of a thread that panicked.
     fn entries(&self) -> MutexGuard<'_, Entries> {
         self.entries.lock().unwrap_or_else(PoisonError::into_inner)
     }

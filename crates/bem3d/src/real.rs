@@ -74,7 +74,7 @@ pub fn smallest(values: &[f64]) -> f64 {
     fold(&chunks, f64::INFINITY, smaller)
 }
 
-/// Folds values in an order that a vector loop can take; `start` changes nothing.
+/// Folds values in an order that suits a vector loop; `start` has to be neutral.
 fn fold<T: Copy>(values: &[T], start: T, take: impl Fn(T, T) -> T) -> T {
     let ((chunks, rest), take) = (values.as_chunks::<LANES>(), &take);
     let lanes = widest(
@@ -134,7 +134,7 @@ pub fn sum<T: Real>(values: &[T]) -> f64 {
     map(values.len(), values.chunks(CHUNK), chunk).into_iter().sum()
 }
 
-/// Sum over two lists of what `value` makes of the numbers at one place.
+/// Sum of `value` over the numbers at the same position of two lists.
 pub fn sum_of_pairs(a: &[f64], b: &[f64], value: impl Fn(f64, f64) -> f64 + Sync) -> f64 {
     let value = &value;
     let chunk = |(a, b): (&[f64], &[f64])| -> f64 {

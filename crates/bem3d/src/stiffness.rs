@@ -10,7 +10,7 @@ use crate::real::{dot, each, sum, update};
 use contact_model::Stop;
 use std::borrow::Cow;
 
-/// Nondimensional stiffness with its evidence.
+/// Nondimensional stiffness with its error estimates.
 #[derive(Debug, Clone)]
 pub struct Stiffness {
     /// Ritz value of `1' G^-1 1`.
@@ -43,9 +43,9 @@ pub struct Responding<'a> {
     pub cells: Cow<'a, CellSet>,
     /// The bounds at which their pressure would no longer follow.
     pub bounds: Bounds,
-    /// Cells that cannot be on the wrong side, whatever is left of their gaps: those at the upper bound in a
-    /// contact that is held as a whole; those at the bound without a gap, where the direction of the load
-    /// decides.
+    /// Cells that cannot be on the wrong side of the set, whatever their residual gap: those at the upper
+    /// bound where the whole contact is fixed, and those at the bound without a gap where the direction of
+    /// the load decides.
     pub decided: CellSet,
 }
 
@@ -55,7 +55,7 @@ impl<'a> Responding<'a> {
         Self { cells: bounds.free(&state.contact, &state.p), bounds, decided: CellSet::default() }
     }
 
-    /// The whole contact, held: the upper bound limits nothing.
+    /// The whole contact with a fixed set of cells, without the upper bound.
     pub fn whole(state: &'a Solved, bounds: Bounds) -> Self {
         let decided = state.contact.without(&bounds.free(&state.contact, &state.p));
         Self { cells: Cow::Borrowed(&state.contact), bounds: Bounds::Unlimited, decided }

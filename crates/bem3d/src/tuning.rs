@@ -1,27 +1,28 @@
 //! The tuned constants of a solve: meaning, unit and value.
 //!
-//! Those of adhesion stand beside their iterations (`adhesion`, `model/adhesive_stiffness`). The book's page
-//! on tuned constants lists all numeric constants of this crate and, of those in [`Tuning`], the measured
-//! cost of half and of twice the value.
+//! Those of adhesion are defined beside their iterations (`adhesion`, `model/adhesive_stiffness`). The book's
+//! page on tuned constants lists all numeric constants of this crate and, of those in [`Tuning`], the
+//! measured cost of half and of twice the value.
 //!
-//! None of these numbers changes what a result converges to: they choose between ways to it and decide when
-//! an iteration evaluates the exact gap. Results that are compared bit by bit need the same values.
-//! `cargo xtask tuning` measures on the machine in hand what half and twice of each constant cost. Most were
-//! set between 2026-11-20 and 2026-11-22 on two-core machines (AMD EPYC of 2024, Intel Xeon with AVX-512).
+//! None of these numbers changes the limit of a result: they choose between equivalent methods and decide
+//! when an iteration evaluates the exact gap. Results that are compared bit by bit need the same values.
+//! `cargo xtask tuning` measures the cost of half and of twice each constant on your machine. Most were set
+//! between 2026-11-20 and 2026-11-22 on two-core machines (AMD EPYC of 2024, Intel Xeon with AVX-512).
 
-/// Constants that a solve reads; [`Tuning::DEFAULT`] is what is shipped.
+/// Constants that a solve reads; [`Tuning::DEFAULT`] has the shipped values.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tuning {
     // Cost model of one application of the influence matrix.
-    /// ns of one look-up and addition of the direct sum between scattered cells.
+    /// Time (ns) of one look-up and addition of the direct sum between scattered cells.
     pub pair_ns: f64,
-    /// ns per point and log2 of the points of a padded transform: one application in double precision.
+    /// Time (ns) of one application in double precision per point of a padded transform and log2 of their
+    /// number.
     pub point_ns: f64,
-    /// Time of an application in single precision over double.
+    /// Ratio of the times of an application in single and in double precision.
     pub single: f64,
-    /// ns of one close pair of the two-level operator, short runs and misses included.
+    /// Time (ns) of one close pair of the two-level operator, including short runs and cache misses.
     pub close_pair_ns: f64,
-    /// ns of one interpolation weight of the two-level operator.
+    /// Time (ns) of one interpolation weight of the two-level operator.
     pub spread_ns: f64,
     /// Radius of the near part of the two-level operator, in spacings, and points of its interpolation in
     /// each direction: an error of 4e-5 of the largest displacement in the test of `two_level`.
@@ -29,29 +30,29 @@ pub struct Tuning {
     /// See `reach`.
     pub order: usize,
     /// Radius of the near part of the two transforms, in spacings, and points of their interpolation in each
-    /// direction: an error below 1e-6 of the largest displacement for smooth pressures and 5e-6 for those
-    /// without order in the test of `two_transforms`.
+    /// direction: an error below 1e-6 of the largest displacement for smooth pressures and 5e-6 for random
+    /// ones in the test of `two_transforms`.
     pub dense_reach: usize,
     /// See `dense_reach`.
     pub dense_order: usize,
-    /// ns of a cell and a point of the interpolation of the two transforms, both directions.
+    /// Time (ns) of a cell and a point of the interpolation of the two transforms, both directions.
     pub filter_ns: f64,
-    /// The two-level operator is for at most one contact cell in so many of the window ...
+    /// The two-level operator is used for at most one contact cell in this number of cells of the window ...
     pub scattered: usize,
-    /// ... and for at most so many cells.
+    /// ... and for at most this number of contact cells.
     pub largest_scattered: usize,
-    /// A plan for a window serves a smaller one of at least this share of its cells: a new plan costs about
-    /// three applications.
+    /// A plan for a window is reused for a smaller one with at least this share of its cells: a new plan
+    /// costs about three applications.
     pub kept_window: f64,
     /// Length of the torus of pressure corrections, in window sides: exact up to lags of half of it.
     pub shortened: f64,
 
     // Factor or iterate.
-    /// ns of one multiplication of a Cholesky factorisation (faer, one thread).
+    /// Time (ns) of one multiplication of a Cholesky factorisation (faer, one thread).
     pub factor_ns: f64,
-    /// Applications that the iterative solution on one contact set takes, pressure and stiffness.
+    /// Number of applications of the iterative solution on one contact set, for pressure and stiffness.
     pub applications: f64,
-    /// Factorisations that the direct solution on one contact set takes.
+    /// Number of factorisations of the direct solution on one contact set.
     pub factors: f64,
     /// Largest set that is factored (memory: 16 n^2 bytes).
     pub largest_factor: usize,
@@ -61,28 +62,28 @@ pub struct Tuning {
     pub preconditioned: f64,
     /// The same for sets too large to factor, where it costs less than the steps that it saves.
     pub preconditioned_large: f64,
-    /// By this factor fewer steps with the preconditioner on sets between both shares: 1.6 to 1.8 for N =
-    /// 1024 and 2048, D_f = 2.4 and 2.8, F_bar = 0.1 and 0.3, 1e-3 and 1e-8 (2026-11, Xeon, applications
-    /// counted).
+    /// Factor by which the preconditioner reduces the number of steps on sets between both shares: 1.6 to 1.8
+    /// for N = 1024 and 2048, D_f = 2.4 and 2.8, F_bar = 0.1 and 0.3, 1e-3 and 1e-8 (2026-11, Xeon,
+    /// applications counted).
     pub preconditioner_saves: f64,
-    /// From so many cells on, residuals are extended into the gaps between contacts: below, zeros take fewer
-    /// steps. 2026-11, Xeon, five sweeps (`examples/sweep`) at N = 257 and 513, D_f = 2.0 to 2.8, 1e-8:
-    /// applications counted, no other set of surfaces tried.
+    /// From this number of cells on, residuals are extended into the gaps between contacts; for smaller sets
+    /// an extension by zeros takes fewer steps. 2026-11, Xeon, five sweeps (`examples/sweep`) at N = 257 and
+    /// 513, D_f = 2.0 to 2.8, 1e-8: applications counted, no other set of surfaces tried.
     pub extended: usize,
-    /// Share of a coarser value that a gap between contacts takes over in the preconditioner. 2026-11, Xeon,
-    /// sweeps of 20 loads at N = 512 and 1024, D_f = 2.4, 1e-8: 0.7 to 0.85 within 6 % of each other. Steps on
-    /// a given set are fewest with 0.7 at 3 % contact and 0.85 at 45 %.
+    /// Factor of a value of the next coarser level in a gap between contacts, in the preconditioner. 2026-11,
+    /// Xeon, sweeps of 20 loads at N = 512 and 1024, D_f = 2.4, 1e-8: 0.7 to 0.85 within 6 % of each other.
+    /// Steps on a given set are fewest with 0.7 at 3 % contact and 0.85 at 45 %.
     pub decay: f32,
 
     // Contact set.
-    /// Reduction of the error asked of an inner solve: half of what is still wanted, within this range. A
-    /// looser one restarts too often, a tighter one solves well on a set that will change.
+    /// Range of the reduction of the error by an inner solve, which is half of the reduction that is still
+    /// required. A weaker one restarts too often, a stronger one solves accurately on a set that will change.
     pub reduction: (f64, f64),
     /// The same while the residuals are above `early`: the set still changes a lot.
     pub early_reduction: f64,
     /// See `early_reduction`; relative, as the residuals.
     pub early: f64,
-    /// Steps of an inner solve at most.
+    /// Largest number of steps of an inner solve.
     pub inner_steps: usize,
     /// Residual gap, as a share of the tolerance, below which an inner solve need not go.
     pub floor: f64,
@@ -90,22 +91,22 @@ pub struct Tuning {
     pub better: f64,
     /// Outer iterations without better residuals after which the solve has stagnated.
     pub patience: usize,
-    /// The next gap is evaluated in single precision where the present one left exceeds the noise of single
-    /// precision, this share of the approach ...
+    /// The next gap is evaluated in single precision where the present residual gap exceeds the noise of
+    /// single precision, this share of the approach ...
     pub single_noise: f64,
-    /// ... and its change alone where it exceeds so many times what the present gap may be wrong by.
+    /// ... and only its change where it exceeds this multiple of the error bound of the present gap.
     pub resolved: f64,
     /// A cell is added when it penetrates by more than this multiple of the rms gap left on the contact:
-    /// penetrations below are within the error of the inner solve, and adding those cells would regrow the
-    /// set.
+    /// penetrations below are within the error of the inner solve, and adding those cells would enlarge the
+    /// set again.
     pub noise: f64,
-    /// With a hardness: share of a step from which it is taken whole ...
+    /// With a hardness: the share of a step above which the whole step is taken ...
     pub whole_step: f64,
-    /// ... and steps of the next inner solve at most after one that was not: long ones change the sets too
-    /// much at once. 2 solved every load of N = 257 and 1025, periodic and free, p_s = 1 to 0.01 of E* times
-    /// the rms gradient (2026-11); without a limit some stagnated.
+    /// ... and the largest number of steps of the next inner solve after a step that was shortened: long ones
+    /// change the sets too much at once. 2 solved every load of N = 257 and 1025, periodic and free, p_s = 1
+    /// to 0.01 of E* times the rms gradient (2026-11); without a limit some stagnated.
     pub short_steps: usize,
-    /// With a hardness: share of a step below which it is nothing, and the fall-back takes over.
+    /// With a hardness: the share of a step below which it counts as zero, and the fall-back takes over.
     pub jammed: f64,
     /// Outer iterations without better residuals, shortened ones among them, after which the fall-back takes
     /// over ...
@@ -114,62 +115,64 @@ pub struct Tuning {
     pub fall_back_steps: usize,
     /// ... until the residuals have fallen by this factor, by its square the second time, and so on.
     pub fall_back: f64,
-    /// Gaps below this share of the approach may be those of rounding: no fall-back is begun for them.
+    /// Gaps below this share of the approach may be due to rounding: no fall-back is begun for them.
     pub rounding: f64,
-    /// Candidates reach up to this multiple of the approach; a plane that ends higher costs one more outer
+    /// Candidates reach up to this multiple of the approach; a final approach beyond it costs one more outer
     /// iteration.
     pub candidates: f64,
-    /// Candidates up to one approach serve another of at least this share of it. Chosen without a
-    /// measurement.
+    /// Candidates up to one approach are reused for another one of at least this share of it. Chosen without
+    /// a measurement.
     pub kept_candidates: f64,
     /// Penetration that a factored solution leaves by rounding, relative to the approach.
     pub factor_rounding: f64,
-    /// Cells a side of the squares in which the largest gap left is kept; near a cell are its own square and
-    /// the eight around.
+    /// Number of cells along a side of the squares whose largest residual gap is kept; the near squares of a
+    /// cell are its own and the eight around it.
     pub undecided_square: usize,
-    /// What the weights beyond them add up to: 0.113 next to a straight edge (see `undecided`).
+    /// The sum of the weights beyond these squares: 0.113 next to a straight edge (see `undecided`).
     pub undecided_far: f64,
 
     // Stiffness.
-    /// Corrections at most; each gains a decade or more.
+    /// Largest number of corrections; each reduces the error by a factor of ten or more.
     pub stiffness_rounds: usize,
-    /// Steps of one correction at most.
+    /// Largest number of steps of one correction.
     pub stiffness_steps: usize,
-    /// Tolerance from which on the residual of a guess of q is evaluated in single precision or with two
-    /// levels, over the square of their error; what comes of it in double precision.
+    /// Tolerance, over the square of the error of single precision or of two levels, from which on the
+    /// residual of a guess of q is evaluated in this way; the residual of the result is evaluated in double
+    /// precision.
     pub stiffness_single: f64,
     /// Share of the tolerance that the linear solve may use up; the rest is left to undecided cells.
     pub stiffness_share: f64,
     /// Share of the tolerance that the iteration aims at: its own estimate is not yet checked in double
     /// precision.
     pub stiffness_aim: f64,
-    /// Reduction of the residual at most in one correction: single precision has no more to give.
+    /// Strongest reduction of the residual in one correction, which is the limit of single precision.
     pub stiffness_reduction: f64,
-    /// Times that the contact set is solved further for the sake of the stiffness ...
+    /// Largest number of times that the contact set is solved further for the stiffness ...
     pub tightenings: usize,
     /// ... by factors of the residuals in this range ...
     pub tighter: (f64, f64),
     /// ... aiming at this share of the tolerance.
     pub tight_aim: f64,
-    /// A periodic stiffness is solved again when its magnification turns out so many times the one expected.
+    /// A periodic stiffness is solved again when its error magnification is larger than the expected one by
+    /// this factor.
     pub misjudged: f64,
 
     // Initial guess.
-    /// Loads within this ratio of the last one start from it ...
+    /// Loads within this ratio of the last one start from its state ...
     pub warm: f64,
-    /// ... and from its tangent without further questions within this ratio.
+    /// ... and within this ratio from its tangent, without further checks.
     pub near: (f64, f64),
-    /// Where one cell in so many will touch, no tangent is followed far.
+    /// Where more than one cell in this number will be in contact, a tangent is not followed far.
     pub filling: f64,
-    /// Where one cell in so many will touch, the cells that a tangent predicts are counted before it is
-    /// followed ...
+    /// Where more than one cell in this number will be in contact, the cells that a tangent predicts are
+    /// counted before it is followed ...
     pub counted: f64,
-    /// ... and it is not if they are so many times what the load has grown by.
+    /// ... and it is not followed if their number has grown by more than this factor relative to the load.
     pub overshoot: f64,
     /// How far the secant between two loads is extrapolated beyond the last tangent for the initial guess of
-    /// q: half way, where it holds, it would be twice as far.
+    /// q. If the secant were exact at the middle between the loads, the value would be 2.
     pub extrapolation: f64,
-    /// Grids of at most the square of so many cells are solved without a coarser one.
+    /// Grids of at most this number of cells squared are solved without a coarser one.
     pub coarsest: usize,
     /// Tolerance and outer iterations on coarse grids: an initial guess, not a result.
     pub coarse_tolerance: f64,
@@ -178,7 +181,7 @@ pub struct Tuning {
 }
 
 impl Tuning {
-    /// What is shipped.
+    /// The shipped values.
     pub const DEFAULT: Self = Self {
         pair_ns: 2.0,
         point_ns: 0.17,
@@ -261,7 +264,7 @@ macro_rules! constants {
     };
 }
 
-/// Every constant of `Tuning`, for a study of what each is worth.
+/// Every constant of `Tuning`, for a study of the effect of each.
 pub const CONSTANTS: [Constant; 68] = constants![
     pair_ns,
     point_ns,
@@ -334,8 +337,8 @@ pub const CONSTANTS: [Constant; 68] = constants![
 ];
 
 impl Tuning {
-    /// What is shipped but for one constant; a torus is never shorter than its window, an order never odd, a
-    /// count never 0.
+    /// The shipped values with one constant multiplied; a torus is never shorter than its window, an order
+    /// never odd, a count never 0.
     pub fn with_multiple((_, multiply): Constant, factor: f64) -> Self {
         let mut tuning = Self::DEFAULT;
         multiply(&mut tuning, factor);
@@ -378,8 +381,8 @@ impl Multiply for usize {
 
 // Layout: constants of the compiled code.
 
-/// Rows that a thread takes at a time; even, as the blocks of the extension are. This and the next were
-/// chosen without a measurement of other values.
+/// Number of rows that a thread takes at a time; it is even, like the blocks of the extension. This and the
+/// next were chosen without a measurement of other values.
 pub const BAND: usize = 32;
 /// Bytes of a row in one stripe of a spectrum: four cache lines, so that a stripe of some thousand rows lies
 /// in the second cache.
@@ -388,7 +391,7 @@ pub const STRIPE_BYTES: usize = 256;
 pub const CACHE_LINE: usize = 64;
 /// Side of the squares in which columns and rows are exchanged: it divides the columns of a cache line.
 pub const SQUARE: usize = 4;
-/// Waves of a row that are taken apart or put together at a time: two registers of single precision.
+/// Number of waves of a row that are separated or combined at a time: two registers of single precision.
 pub const WAVES: usize = 8;
 /// Accumulators side by side in a sum: one 512-bit register of single precision.
 pub const LANES: usize = 16;
@@ -396,29 +399,29 @@ pub const LANES: usize = 16;
 pub const BLOCK: usize = 2048;
 /// Chunks that are counted before a count that is large enough ends.
 pub const COUNTED_CHUNKS: usize = 32;
-/// Numbers of a vector that a thread takes at a time, a multiple of [`BLOCK`].
+/// Number of values of a vector that a thread takes at a time, a multiple of [`BLOCK`].
 pub const CHUNK: usize = 8 * BLOCK;
-/// From so many cells a run on, values move run by run; below it, cell by cell is faster.
+/// From this number of cells per run on, values are copied run by run; below it, cell by cell is faster.
 pub const LONG_RUN: usize = 8;
 /// Cells that are passed one by one in a search for the next one of another set, which then goes on by
 /// halving.
 pub const PASSED_SINGLY: usize = 8;
-/// Levels of the preconditioner's extension at most: below `decay^8` nothing is left.
+/// Largest number of levels of the preconditioner's extension: contributions below `decay^8` are negligible.
 pub const EXTENSION_LEVELS: usize = 8;
-/// Numbers kept at most in the symbols of one kind: 134 MB of f64, four times the largest symbol of 2049
-/// cells a side.
+/// Largest number of values kept in the symbols of one kind: 134 MB of f64, four times the largest symbol of
+/// 2049 cells a side.
 pub const KEPT_SYMBOLS: usize = 1 << 24;
-/// The list of candidates is filled up to so many times the approach asked for, so that a path of loads does
-/// not scan the grid each time ...
+/// The list of candidates is filled up to this multiple of the requested approach, so that a path of loads
+/// does not scan the grid each time ...
 pub const CANDIDATES_AHEAD: f64 = 2.0;
-/// ... unless it would hold more than one cell in so many.
+/// ... unless it would hold more than one cell in this number.
 pub const LISTED_CANDIDATES: usize = 8;
-/// Largest factor from the error of `1' G^-1 1` with the shifted kernel to that of k; beyond it no digit of k
-/// is left.
+/// Largest factor from the error of `1' G^-1 1` with the shifted kernel to that of k; beyond it k has no
+/// valid digit.
 pub const MAGNIFIED: f64 = 1e10;
-/// Loads at most on the way to a mean gap.
+/// Largest number of loads in the search for a mean gap.
 pub const GAP_LOADS: usize = 60;
-/// Largest step of ln F between two of them.
+/// Largest step of ln F between two of these loads.
 pub const GAP_STEP: f64 = 3.0;
 
 #[cfg(test)]

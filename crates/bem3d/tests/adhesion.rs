@@ -1,4 +1,4 @@
-//! Adhesion behind the common traits: closed forms, paths, energies and refusals.
+//! Adhesion through the common traits: closed forms, paths, energies and refusals.
 
 #![allow(clippy::unwrap_used, clippy::float_cmp)] // Tests.
 
@@ -44,7 +44,7 @@ fn sphere(mu: f64, half: f64) -> (Scene, f64, f64) {
     (scene, unit * unit, PI * work)
 }
 
-/// Pull-off force over pi w R, drawn apart in these approaches.
+/// Pull-off force over pi w R, found by withdrawing through these approaches.
 fn pull_off(mu: f64, (cells, half): (usize, f64), approaches: impl Iterator<Item = f64>) -> f64 {
     let (scene, unit, force) = sphere(mu, half);
     let mut history = history(Bem3d { cells, tolerance: 1e-5, ..Bem3d::default() }, &scene);
@@ -58,7 +58,7 @@ fn down(from: f64, to: f64, steps: u32) -> impl Iterator<Item = f64> {
 }
 
 #[test]
-fn a_hard_sphere_is_pulled_off_by_two_pi_w_r() {
+fn a_hard_sphere_has_the_pull_off_force_two_pi_w_r() {
     let found = pull_off(0.02, (128, 24.0), down(0.3, -0.3, 12));
     assert!((found + 2.0).abs() < 0.02, "{found}");
 }
@@ -81,7 +81,7 @@ fn nothing_attracts_without_work() {
     }
 }
 
-/// Whatever was solved before, a single load begins from no contact.
+/// A single load begins from no contact, independent of earlier solves.
 #[test]
 fn a_single_load_is_on_the_branch_of_approach() {
     let surface = Surface::SelfAffine(SelfAffine::new(2.4, 1.0, 1.0).unwrap());
@@ -98,7 +98,7 @@ fn a_single_load_is_on_the_branch_of_approach() {
     assert_eq!(withdrawn.adhesive.unwrap().branch, Branch::Withdrawal);
 }
 
-/// Single loads that increase follow from each other: each state is that of its load alone, for less work.
+/// Single loads that increase follow from each other: each state is that of its load alone, with less work.
 #[test]
 fn increasing_loads_continue_from_the_last_state() {
     // What the tolerance leaves open of forces and of approaches, relative to the largest.
@@ -190,9 +190,9 @@ fn ranges_beyond_the_scales_of_the_surface_are_refused() {
     }
 }
 
-/// And hardly anything with little of it.
+/// A small work of adhesion changes the state little.
 #[test]
-fn little_work_changes_little() {
+fn a_small_work_of_adhesion_changes_little() {
     let surface = Surface::SelfAffine(SelfAffine::new(2.4, 1.0, 1.0).unwrap());
     let model = Bem3d { cells: 32, tolerance: 1e-8, ..Bem3d::default() };
     let load = Load::Force(0.5);
@@ -333,7 +333,7 @@ fn a_single_pull_begins_in_contact() {
 }
 
 #[test]
-fn what_makes_no_sense_is_refused() {
+fn invalid_parameters_are_refused() {
     let flat = || Surface::Flat { size: 1.0.into() };
     let prepared = |scene: &Scene| ContactModel::prepare(&Bem3d { cells: 8, ..Bem3d::default() }, scene, 0);
     for (work, range) in [(f64::NAN, 0.1), (-1.0, 0.1), (0.1, 0.0), (0.1, f64::NAN), (f64::INFINITY, 0.1)] {

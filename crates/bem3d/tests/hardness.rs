@@ -27,7 +27,7 @@ fn solved(model: Bem3d, scene: &Scene, load: Load) -> ContactState {
     ContactModel::prepare(&model, scene, 5).unwrap().solve(load).unwrap()
 }
 
-/// No pressure reaches the hardness: the same bits.
+/// Where no pressure reaches the hardness, the bits are those of the elastic state.
 #[test]
 fn a_large_hardness_gives_the_elastic_bits() {
     for boundary in [Boundary::Free, Boundary::Periodic] {
@@ -48,7 +48,7 @@ fn a_large_hardness_gives_the_elastic_bits() {
     }
 }
 
-/// A hardness far below `E*` times the slopes: the cells above a level carry it, each p_s.
+/// A hardness far below `E*` times the slopes: the cells above a level carry the load, each with p_s.
 #[test]
 fn a_small_hardness_gives_the_bearing_area() {
     for boundary in [Boundary::Free, Boundary::Periodic] {
@@ -75,7 +75,7 @@ fn a_small_hardness_gives_the_bearing_area() {
 
 /// Hertz until the pressure in the middle reaches the hardness; far beyond, the area is F / p_s.
 #[test]
-fn a_sphere_first_yields_where_hertz_says() {
+fn a_sphere_first_yields_at_the_load_of_hertz() {
     let scene = |hardness: Option<f64>| {
         let mut scene = Scene::new(Surface::Sphere { radius: 1.0, size: 1.0.into() }, 1.0);
         scene.outputs.area = true;
@@ -106,7 +106,7 @@ fn a_sphere_first_yields_where_hertz_says() {
     }
 }
 
-/// What every state must satisfy, by its fields.
+/// Checks the conditions that every state must satisfy, by its fields.
 fn check(state: &ContactState, hardness: f64) {
     let fields = state.fields.as_ref().unwrap();
     let (p, depth) = (fields.pressure.as_ref().unwrap(), fields.plastic_depth.as_ref().unwrap());
@@ -118,8 +118,8 @@ fn check(state: &ContactState, hardness: f64) {
     assert!((depth.integral() - plastic.volume).abs() <= 1e-9 * plastic.volume.max(1e-12));
 }
 
-/// Loads that rise in steps and at once lead to the same state; unloading is elastic, reloading comes back,
-/// and the work of a loop is what the indentation dissipated.
+/// Loads that rise in steps and at once lead to the same state; unloading is elastic, reloading returns to
+/// the same state, and the work of a loop is the energy that the indentation dissipated.
 #[test]
 fn a_path_remembers_its_indentation() {
     for (boundary, hardness, loads) in
@@ -166,9 +166,10 @@ fn a_path_remembers_its_indentation() {
     }
 }
 
-/// Drawn off an indented surface: no force, at the gap asked for, and the indentation stays.
+/// Withdrawal from an indented surface: the state has no force and the requested gap, and the indentation
+/// remains.
 #[test]
-fn a_path_is_drawn_off_its_indentation() {
+fn a_body_is_withdrawn_from_its_indentation() {
     let mut scene = rough(Some(4.0), Boundary::Periodic);
     scene.outputs.mean_gap = true;
     let mut path = Bem3d { cells: 32, ..TIGHT }.prepare(&scene, 5).unwrap();
@@ -213,7 +214,7 @@ fn a_loop_balances_its_energy() {
 }
 
 #[test]
-fn what_is_refused() {
+fn unsupported_combinations_are_refused() {
     let scene = rough(Some(2.0), Boundary::Free);
     // All cells at the hardness carry 2.
     let refused = ContactModel::prepare(&TIGHT, &scene, 5).unwrap().solve(Load::Force(2.0));
@@ -278,9 +279,9 @@ fn nearly_full_plasticity_converges() {
     assert!(last > 0.998);
 }
 
-/// A state on which the outer iteration stood still for ever: every step was cut at the bounds so that
-/// nothing of it went downhill. Its pressure obeys the conditions of the bounded problem, by the fields and
-/// whatever the method.
+/// A state on which the outer iteration once stagnated for ever, because every step was cut at the bounds so
+/// that no part of it lowered the energy. With every method its pressure satisfies the conditions of the
+/// bounded problem, checked by the fields.
 #[test]
 fn a_state_that_jams_the_outer_iteration_is_solved() {
     let heights: Vec<f64> = include_str!("data/jammed.csv")
@@ -311,7 +312,7 @@ fn a_state_that_jams_the_outer_iteration_is_solved() {
     }
 }
 
-/// A path that begins after a single load goes on from it, as one that reached it in a step does.
+/// A path that begins after a single load continues from it, as a path that reached this load in a step does.
 #[test]
 fn a_path_goes_on_from_a_load_that_was_solved() {
     let mut scene = Scene::new(Surface::Sphere { radius: 1.0, size: 1.0.into() }, 1.0);

@@ -1,4 +1,4 @@
-//! Thousands of small random states with a hardness: each one converges.
+//! Thousands of small random states with a hardness, each of which has to converge.
 
 #![allow(clippy::unwrap_used)]
 
@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 /// States of the test that always runs.
 const STATES: u64 = 20_000;
-/// One state in so many is solved to the tighter tolerance.
+/// One state in this number is solved to the tighter tolerance.
 const TIGHT_SHARE: u64 = 4;
 /// Both tolerances.
 const TOLERANCES: [f64; 2] = [1e-6, 1e-9];
@@ -43,7 +43,7 @@ impl Draw {
     }
 }
 
-/// White noise, smoothed so many times over a cell and its neighbours across the edges.
+/// White noise, smoothed repeatedly over a cell and its neighbours, periodically across the edges.
 fn heights(draw: &mut Draw, columns: usize, rows: usize) -> Vec<f64> {
     let mut h: Vec<f64> =
         (0..columns * rows).map(|_| (0..4).map(|_| draw.uniform()).sum::<f64>() - 2.0).collect();
@@ -178,7 +178,7 @@ fn every_small_state_converges() {
     converge(0, STATES, TOLERANCES);
 }
 
-/// Ten times as many, and tighter ones:
+/// Ten times as many states, with tighter tolerances:
 /// `cargo test --release -p bem3d --test hardness_states -- --ignored --nocapture`.
 #[test]
 #[ignore = "minutes"]

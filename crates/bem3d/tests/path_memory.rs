@@ -1,4 +1,5 @@
-//! A path that is interrupted after any step goes on from its memory to the bits of the whole path.
+//! A path that is interrupted after any step continues from its memory to the same bits as the uninterrupted
+//! path.
 
 #![allow(clippy::unwrap_used)] // Helpers of tests.
 
@@ -15,7 +16,7 @@ fn prepare(scene: &Scene, cells: usize) -> Box<dyn PreparedContact> {
     Bem3d { cells, ..Bem3d::default() }.prepare(scene, 3).unwrap()
 }
 
-/// Follows a path whole, and from the memory after each of its steps.
+/// Follows a path without interruption, and from the memory after each of its steps.
 fn check(name: &str, scene: &Scene, cells: usize, path: &[Step]) {
     let mut contact = prepare(scene, cells);
     let mut memories = Vec::new();

@@ -135,8 +135,8 @@ fn influence(x: f64, a: f64, periodic: bool) -> f64 {
     singular + a * (5.0 * smooth(x - at) + 8.0 * smooth(x) + 5.0 * smooth(x + at)) / 18.0
 }
 
-/// Pressure and plane by Gauss-Seidel with bounds 0 and `hardness` of each pressure, and bisection in the
-/// plane until they carry the force.
+/// Pressure and position of the plane by Gauss-Seidel, with each pressure between 0 and `hardness`, and
+/// bisection in the position until the pressures carry the force.
 fn reference(heights: &[f64], periodic: bool, per_length: f64, hardness: f64) -> Vec<f64> {
     let n = heights.len();
     let a = 1.0 / n as f64;
@@ -247,7 +247,7 @@ fn a_warm_start_is_a_cold_one() {
 }
 
 #[test]
-fn what_a_half_plane_has_not_is_refused_with_the_reason() {
+fn outputs_that_a_half_plane_lacks_are_refused_with_the_reason() {
     let body = scene(32, 1.0, Boundary::Free, rough);
     let refused = |scene: &Scene| Bem3d::default().prepare(scene, 0).map(|_| ()).unwrap_err().to_string();
     let mut contact = Bem3d::default().prepare(&body, 0).unwrap();

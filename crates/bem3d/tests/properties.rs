@@ -1,4 +1,4 @@
-//! What mechanics demands of any small map with a hardness, or with adhesion of finite range.
+//! Properties that follow from mechanics for any small map with a hardness, or with adhesion of finite range.
 
 #![allow(clippy::unwrap_used)]
 
@@ -7,18 +7,19 @@ use proptest::prelude::*;
 use proptest::test_runner::{FileFailurePersistence, RngSeed};
 use std::sync::Arc;
 
-/// Of the residuals. They are relative to the rms height, which is 1, and to the attraction of closed cells.
+/// Tolerance of the residuals, which are relative to the rms height (here 1) and to the attraction of closed
+/// cells.
 const TOLERANCE: f64 = 1e-9;
-/// What they leave open in a force, an approach or a volume, relative: stiff cells multiply a gap by up to a
-/// hundred. The pressure of a cell is off by a gap over its side.
+/// The resulting relative error of a force, an approach or a volume: stiff cells multiply a gap by up to a
+/// hundred. The error of the pressure of a cell is a gap over its side.
 const SAME: f64 = 1e-7;
 /// Sums over at most 144 cells, relative.
 const ROUNDING: f64 = 1e-12;
-/// A step of approach along a smooth branch of adhesion, in ranges: the force is linear over it but for its
-/// square.
+/// A step of approach along a smooth branch of adhesion, in ranges: over it the force is linear up to second
+/// order.
 const SMALL_STEP: f64 = 1e-3;
-/// What is left of the difference of two energies and of its force, of their sizes: the energy is stationary,
-/// so that it is wrong by the rounding of its sums, over a step of at least 1e-4.
+/// Relative error of the difference of two energies and of its force: the energy is stationary, so that its
+/// error is the rounding of its sums, over a step of at least 1e-4.
 const ENERGY: f64 = 1e-8;
 /// Steps of a loop in each direction.
 const STEPS: usize = 12;
@@ -101,7 +102,7 @@ fn highest(state: &ContactState) -> f64 {
     pressures(state).iter().copied().fold(0.0, f64::max)
 }
 
-/// How far the plane has come down: the approach, or what the mean gap has lost.
+/// The displacement of the plane: the approach, or the decrease of the mean gap.
 fn lowered(state: &ContactState) -> f64 {
     state.approach.unwrap_or_else(|| -state.mean_gap.unwrap())
 }
@@ -111,13 +112,13 @@ fn hardness_between(elastic: &ContactState, share: f64) -> f64 {
     elastic.force + share * (highest(elastic) - elastic.force)
 }
 
-/// Every contact cell of `small` that is surely one is a contact cell of `large`.
+/// Every certain contact cell of `small` is a contact cell of `large`.
 fn nested(small: &ContactState, large: &ContactState) -> bool {
     let surely = SAME * highest(small);
     pressures(small).iter().zip(pressures(large)).all(|(small, large)| *small <= surely || *large > 0.0)
 }
 
-/// Bounds of the pressure, the balance of the force, and the plastic part by its field.
+/// Checks the bounds of the pressure, the balance of the force, and the plastic part by its field.
 fn sound(state: &ContactState, hardness: f64, cell: f64) -> Result<(), TestCaseError> {
     let p = pressures(state);
     prop_assert!(p.iter().all(|p| (0.0..=hardness * (1.0 + ROUNDING)).contains(p)), "{:?} {}", p, hardness);
@@ -137,7 +138,8 @@ fn stored(state: &ContactState, cell: f64) -> f64 {
 proptest! {
     #![proptest_config(config(96))]
 
-    /// The softer a surface is, the more of it touches and flows and the deeper it is pressed in by a force.
+    /// Under a given force, a softer surface has more cells in contact, more saturated cells and a larger
+    /// approach.
     #[test]
     fn a_softer_surface_gives_way(
         map in any_map(), boundary in boundary(), exponent in -2.0_f64..1.0, shares in (0.02_f64..0.5, 0.5_f64..0.98),
@@ -185,8 +187,8 @@ proptest! {
         }
     }
 
-    /// A hardness that no pressure reaches on the way to the solution leaves the bits of the elastic state;
-    /// one above the pressures of the solution leaves the solution.
+    /// A hardness that no pressure reaches during the iteration does not change the bits of the elastic
+    /// state; one above the pressures of the solution does not change the solution.
     #[test]
     fn a_hardness_that_is_not_reached_changes_nothing(
         map in any_map(), boundary in boundary(), exponent in -3.0_f64..1.5, above in 1e-6_f64..1.0,
@@ -207,7 +209,7 @@ proptest! {
     }
 
     /// Loading, unloading and loading again. In each step the work of the load lies between the lower and the
-    /// higher force times the change of approach, and it is what is stored and dissipated.
+    /// higher force times the change of approach, and equals the stored and dissipated energy.
     #[test]
     fn a_loop_stores_and_dissipates_the_work(map in any_map(), deepest in 0.1_f64..1.5, share in 0.05_f64..0.9) {
         let (scene, cell) = (elastic(&map, Boundary::Free), map.dx() * map.dx());
@@ -292,10 +294,10 @@ fn at(path: &mut dyn PreparedContact, d: f64) -> ContactState {
 proptest! {
     #![proptest_config(config(64))]
 
-    /// The way back is at least as far in: more contact, more attraction, a lower force. Without hysteresis
-    /// both are one.
+    /// On the way back the contact and the attraction are at least as large, and the force is at most as
+    /// large. Without hysteresis both branches are equal.
     #[test]
-    fn withdrawal_lies_further_in(
+    fn withdrawal_has_more_contact_than_approach(
         map in any_map(), range in 0.05_f64..1.0, strength in 0.1_f64..0.99, deepest in -0.2_f64..0.8,
     ) {
         let scene = with_adhesion(&elastic(&map, Boundary::Free), strength * strongest(&map, range), range);
@@ -320,9 +322,9 @@ proptest! {
     }
 
     /// At an approach the attraction lowers the force, by no more than the largest traction on all cells, and
-    /// holds at least the elastic contact: with the work both differences fall to zero.
+    /// the contact contains at least the elastic one; both differences vanish with the work of adhesion.
     #[test]
-    fn little_attraction_is_next_to_none(
+    fn a_small_attraction_has_a_small_effect(
         map in any_map(), range in 0.05_f64..1.0, exponent in -8.0_f64..0.0, d in 0.01_f64..1.0,
     ) {
         let scene = elastic(&map, Boundary::Free);
@@ -361,7 +363,7 @@ proptest! {
         }
     }
 
-    /// There and back.
+    /// A turned map on the way in and back.
     #[test]
     fn a_turned_map_sticks_as_the_map_does(
         map in any_map(), symmetry in symmetry(), range in 0.05_f64..1.0, strength in 0.1_f64..0.9, depths in (0.0_f64..0.8, 0.1_f64..2.0),

@@ -1,11 +1,11 @@
-//! Does the estimated error of the stiffness cover the true one? Loose solves beside tight ones.
+//! The estimated error of the stiffness covers the true one: loose solves compared with tight ones.
 
 use bem3d::{Bem3d, Method};
 use contact_model::{Body, ContactModel, Coupling, Friction, Load, Pair, Scene, SelfAffine, Step, Surface};
 
 /// Coverage: share of the true errors that lie inside their estimate.
 const COVERAGE: f64 = 0.9;
-/// The median estimate is at most so many times the true error: a larger bound would be of no use.
+/// Largest ratio of the median estimate to the true error: a larger bound would not be useful.
 const OVERESTIMATE: f64 = 20.0;
 
 #[test]
@@ -40,9 +40,9 @@ fn the_estimated_error_of_k_covers_the_true_one() {
     assert!(median >= 1.0 / OVERESTIMATE, "the estimates are {} times too large", 1.0 / median);
 }
 
-/// Of the steps of this path one has a cell at the edge of contact that decides the stiffness.
+/// One of the steps of this path has a cell at the edge of contact on which the stiffness depends.
 #[test]
-fn the_stiffness_under_full_coupling_is_as_accurate_as_was_asked_for() {
+fn the_stiffness_under_full_coupling_meets_its_tolerance() {
     let pair = Pair { first: Body::Rigid, second: Body::Elastic { young: 1.0, poisson: 0.2 } };
     let mut scene = Scene::of_pair(Surface::Sphere { radius: 1.0, size: 1.0.into() }, pair).unwrap();
     scene.effects.friction = Friction::Coulomb { coefficient: 0.5, coupling: Some(Coupling::Full) };

@@ -1,4 +1,4 @@
-//! No bit of a state depends on the number of threads, nor on what else they do.
+//! No bit of a state depends on the number of threads or on their other work.
 
 use bem3d::{
     Adhesion, Bem3d, Boundary, ContactModel, ContactState, Field, Load, Result, Scene, SelfAffine, Surface,
@@ -6,7 +6,7 @@ use bem3d::{
 use rayon::ThreadPoolBuilder;
 use rayon::prelude::*;
 
-/// Every number of some states as bits.
+/// Every number of some states, as bits.
 fn bits(states: &[ContactState]) -> Vec<u64> {
     let of = |state: &ContactState| {
         let certificate = &state.report.certificate;
@@ -66,7 +66,7 @@ fn no_bit_depends_on_the_number_of_threads() {
     }
 }
 
-/// Two solves at a time on two threads: each finishes, with the bits that it has alone.
+/// Two solves at a time on two threads: each finishes with the same bits as alone.
 #[test]
 fn solves_side_by_side_do_not_disturb_each_other() {
     let model = Bem3d { cells: 300, tolerance: 1e-6, ..Bem3d::default() };

@@ -1,5 +1,5 @@
-//! The error budget of a small ensemble: what solver, grid and number of surfaces each leave open in the mean
-//! stiffness.
+//! The error budget of a small ensemble: the parts of solver, grid and number of surfaces in the error of the
+//! mean stiffness.
 //!
 //! `cargo run -p fractal-contact-evaluation --example error_budget -- DIRECTORY`
 //!

@@ -1,4 +1,4 @@
-//! A second look at stored solves: some of them again, from nothing and to a tight tolerance.
+//! Repeats some stored solves from a cold start and to a tight tolerance.
 
 use crate::header::{flags, header};
 use crate::limits::require;
@@ -30,14 +30,15 @@ impl SolvePair {
     }
 }
 
-/// Solves a random share of the 3D ensemble of a run again, each from nothing with the given tolerance, and
-/// writes `audit.csv`.
+/// Solves a random share of the 3D ensemble of a run again, each from a cold start to the given tolerance,
+/// and writes `audit.csv`.
 ///
-/// Which solves is decided by the master seed alone. Returns the outcome and one line that says how far the
-/// stored k are from the tight ones.
+/// The choice of the solves depends only on the master seed. Returns the outcome and one line with the
+/// differences between the stored k and the tight ones.
 ///
 /// # Errors
-/// [`runs::Error::Parameter`] for a share outside (0, 1] or a tolerance that is not tighter than the run's; what the solver refuses.
+/// [`runs::Error::Parameter`] for a share outside (0, 1] or a tolerance that is not tighter than the run's;
+/// errors of the solver.
 pub fn audit(run: &Run, share: f64, tolerance: f64, progress: &dyn Progress) -> Result<(Outcome, String)> {
     require(share > 0.0 && share <= 1.0, "share", share, "a number above 0, at most 1")?;
     let expected = format!("a number from 1e-12 to below the run's {:?}", run.tolerance);
@@ -83,8 +84,8 @@ pub fn audit(run: &Run, share: f64, tolerance: f64, progress: &dyn Progress) -> 
     Ok((session.close(outcome)?, summary))
 }
 
-/// One load of one surface from nothing. `None` where the stored or the tight solve has no stiffness to
-/// compare.
+/// Solves one load of one surface from a cold start. `None` where the stored or the tight solve has no
+/// stiffness to compare.
 fn again(
     (realisation, result): &(RealisationJob, RealisationResult),
     load: usize,
@@ -131,7 +132,7 @@ mod tests {
     use runs::{CsvFile, Silent};
 
     #[test]
-    fn loose_solves_keep_their_promise() {
+    fn loose_solves_are_within_their_claimed_errors() {
         let dir = tempfile::tempdir().unwrap();
         let request = Request {
             preset: Preset::Quick,

@@ -1,5 +1,5 @@
-//! What an answer costs: one row per surface, tolerance and load, with the work, the time, the memory and the
-//! certificate.
+//! Measures the cost of solves: one row for each surface, tolerance and load, with the work, the time, the
+//! memory and the certificate.
 
 use crate::forces::Forces;
 use crate::limits::{self, require, within};
@@ -21,20 +21,22 @@ use std::sync::{Arc, LazyLock};
 use std::time::Instant;
 use surface_io::write_npy;
 
-/// What is measured.
+/// The solves that are measured.
 #[derive(Debug, Clone)]
 pub struct Bench {
     /// Which surfaces.
     pub surfaces: Surfaces,
-    /// Loads F_bar: solved from the smallest up, rows in the order in which they were written.
+    /// Loads F_bar. They are solved in increasing order; the rows have the order in which the loads were
+    /// given.
     pub forces: Forces,
     /// Tolerances, each a series of its own.
     pub tolerances: Vec<f64>,
-    /// Edges of the square.
+    /// Boundary conditions at the edges of the square.
     pub boundary: Boundary,
     /// How the linear systems are solved.
     pub method: Method,
-    /// Each load from nothing, set-up included; else one prepared contact under increasing loads.
+    /// Whether each load is solved from a cold start, set-up included; otherwise one prepared contact is
+    /// solved under increasing loads.
     pub cold: bool,
     /// Threads, at least 1: as many series are solved at the same time, and threads without a series help
     /// inside the others.
@@ -43,16 +45,16 @@ pub struct Bench {
     pub pressure: Option<PathBuf>,
 }
 
-/// What the times of parts are read from, in nanoseconds.
+/// The clock for the times of the parts, in nanoseconds.
 pub type Clock = fn() -> u64;
 
-/// Nanoseconds since the process asked first.
+/// Nanoseconds since the first call in this process.
 pub fn elapsed() -> u64 {
     static START: LazyLock<Instant> = LazyLock::new(Instant::now);
     START.elapsed().as_nanos() as u64
 }
 
-/// Where the time of some rows went: a line for each part, the largest first.
+/// The time of some rows by the parts of a solve: a line for each part, the largest first.
 pub fn parts_table(rows: &[BenchRow]) -> Vec<String> {
     let mut parts: Vec<(Part, Spent)> = Vec::new();
     for &(part, spent) in rows.iter().flat_map(|row| &row.parts) {
@@ -76,7 +78,7 @@ pub fn parts_table(rows: &[BenchRow]) -> Vec<String> {
 /// Surfaces of a bench.
 #[derive(Debug, Clone)]
 pub enum Surfaces {
-    /// A map as it is, with square cells and `sqrt(Lx Ly) = 1`.
+    /// A map without preprocessing, with square cells and `sqrt(Lx Ly) = 1`.
     File(PathBuf),
     /// Self-affine surfaces without roll-off, every size with every fractal dimension.
     SelfAffine {
@@ -102,7 +104,7 @@ pub struct BenchRow {
     pub cells: Cells,
     /// F/(E* h L) with the measured rms height.
     pub force_bar: f64,
-    /// Asked for.
+    /// The requested tolerance.
     pub tolerance: f64,
     /// The state, converged or the best that was reached.
     pub state: ContactState,
@@ -110,19 +112,20 @@ pub struct BenchRow {
     pub normalisation: Normalisation,
     /// Wall-clock seconds: the first row of a prepared contact includes preparing it.
     pub seconds: f64,
-    /// Seconds of the processor on all threads, where the platform tells and no other series was solved
-    /// meanwhile.
+    /// Processor seconds on all threads, where the platform reports them and no other series was solved at
+    /// the same time.
     pub cpu_seconds: Option<f64>,
-    /// Where the time went: parts with their nanoseconds and how often they were done; empty without a clock.
+    /// The parts of the solve, with their nanoseconds and their number of calls; empty without a clock.
     pub parts: Vec<(Part, Spent)>,
-    /// Largest resident memory of the process during this row, in bytes, where the platform tells (with what
-    /// other threads hold; since the start of the process where the count cannot be set back).
+    /// Largest resident memory of the process during this row, in bytes, where the platform reports it. It
+    /// includes the memory of other threads, and counts from the start of the process where the count cannot
+    /// be reset.
     pub peak_memory: Option<u64>,
-    /// Whether it was solved from nothing.
+    /// Whether it was solved from a cold start.
     pub cold: bool,
 }
 
-/// Name of a column and what stands in it; absent is empty.
+/// Name of a column and its value; a missing value is empty.
 type BenchColumn = (&'static str, fn(&BenchRow) -> String);
 
 const COLUMNS: [BenchColumn; 26] = [
@@ -158,7 +161,7 @@ const COLUMNS: [BenchColumn; 26] = [
 pub const BENCH_COLUMNS: [&str; COLUMNS.len()] = names(&COLUMNS);
 
 impl BenchRow {
-    /// The row as text, in the order of [`BENCH_COLUMNS`]; absent is empty.
+    /// The row as text, in the order of [`BENCH_COLUMNS`]; missing values are empty.
     ///
     /// # Errors
     /// [`Error::Model`] when a value does not fit in a double.
@@ -171,7 +174,7 @@ impl BenchRow {
         &self.state.report.certificate
     }
 
-    /// The rms height, where there is one to count in.
+    /// The rms height, where the surface has one.
     fn height(&self) -> Option<f64> {
         self.normalisation.height.filter(|h| *h > 0.0)
     }
@@ -197,13 +200,13 @@ struct BenchSeries {
     model: Bem3d,
 }
 
-/// Solves everything, loads from the smallest up, and hands out each row as soon as it is there. The rows
-/// that it gives stand in the order asked for: surfaces, tolerances, loads. With a clock each row says where
-/// its time went.
+/// Solves everything, with increasing loads, and passes each row to `found` as soon as it is solved. The
+/// returned rows are in the requested order: surfaces, tolerances, loads. With a clock each row has the times
+/// of its parts.
 ///
 /// # Errors
-/// [`Error::Parameter`] or [`Error::File`] before anything is solved; [`Error::Model`] for what the model
-/// refuses; whatever `found` says. The first of them stops everything.
+/// [`Error::Parameter`] or [`Error::File`] before anything is solved; [`Error::Model`] for errors of the
+/// model; errors of `found`. The first error stops everything.
 pub fn bench(
     bench: &Bench,
     clock: Option<Clock>,
@@ -332,7 +335,7 @@ impl BenchSeries {
         Ok(rows)
     }
 
-    /// Writes the field and forgets it: a bench of many loads would keep them all.
+    /// Writes the field and drops it, since a bench of many loads would otherwise keep them all.
     fn save_pressure(&self, directory: &Path, row: &mut BenchRow) -> Result<()> {
         let Some(pressure) = row.state.fields.take().and_then(|f| f.pressure) else { return Ok(()) };
         let stem = Path::new(&self.surface)
@@ -438,7 +441,7 @@ mod tests {
     }
 
     #[test]
-    fn rows_stand_in_the_order_asked_for_whatever_the_threads() {
+    fn rows_are_in_the_requested_order_for_any_number_of_threads() {
         let surfaces = Surfaces::SelfAffine {
             cells: vec![17, 9],
             rows: None,
@@ -467,7 +470,7 @@ mod tests {
     }
 
     #[test]
-    fn a_load_that_gives_up_has_its_row() {
+    fn a_load_that_does_not_converge_has_a_row() {
         // Beyond double precision: reached or not, every load has its row and its certificate.
         let tired = Bench { method: Method::SingleLevel, tolerances: vec![1e-15], ..small() };
         let rows = bench(&tired, None, &|_| Ok(())).unwrap();

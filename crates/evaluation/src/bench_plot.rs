@@ -1,4 +1,4 @@
-//! The picture of a bench: cost over the number of cells, or over the load where there is one size only.
+//! Pictures of a bench: cost over the number of cells, or over the load where there is only one size.
 
 use crate::run::distinct;
 use crate::table_of::read_rows;
@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 const MARKS: [MarkShape; 5] =
     [MarkShape::Circle, MarkShape::Square, MarkShape::Triangle, MarkShape::Diamond, MarkShape::Cross];
 
-/// What the pictures of a bench hold.
+/// The pictures of a bench.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct BenchPlot {
     /// Files written.
@@ -22,7 +22,7 @@ pub struct BenchPlot {
     pub slopes: Vec<String>,
 }
 
-/// One solve as the picture sees it.
+/// One solve, with the columns that the picture uses.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 struct BenchPoint {
     surface: String,
@@ -41,7 +41,7 @@ impl BenchPoint {
     }
 }
 
-/// What the horizontal axis counts; the other one tells the curves apart.
+/// The quantity along the horizontal axis; the other one distinguishes the curves.
 #[derive(Clone, Copy)]
 struct Over {
     of: fn(&BenchPoint) -> f64,
@@ -60,7 +60,7 @@ const FORCE: Over = Over {
 };
 
 impl Over {
-    /// Different values, increasing.
+    /// The distinct values, increasing.
     fn values(self, points: &[BenchPoint]) -> Vec<f64> {
         distinct(points.iter().map(self.of))
     }
@@ -68,7 +68,7 @@ impl Over {
 
 /// Draws seconds over cells from a table of [`crate::write_bench`], as SVG and PNG; over force where all rows
 /// have one size, and in a second picture (`NAME-force`) where there are several of both. Solves that did not
-/// converge are hollow and in no fit.
+/// converge have hollow marks and are left out of the fits.
 ///
 /// # Errors
 /// [`Error::File`] for a table that cannot be read, [`Error::Parameter`] for a picture without a name.
@@ -168,7 +168,7 @@ fn curves(points: &[BenchPoint], other: Over) -> Vec<Vec<BenchPoint>> {
     curves
 }
 
-/// The tolerance of all solves, or how many there are.
+/// The tolerances of all solves, in words.
 fn tolerance_words(points: &[BenchPoint]) -> String {
     let all: Vec<String> = distinct(points.iter().map(|p| p.tolerance)).into_iter().map(number).collect();
     format!("tolerance of the certificate: {}", all.join(", "))

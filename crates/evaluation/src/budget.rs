@@ -13,12 +13,12 @@ use crate::tables::{FORCE_BAR, FRACTAL_DIMENSION, MODEL};
 use runs::{Header, Progress, Result, write_csv};
 use std::path::{Path, PathBuf};
 
-/// Half-widths of 95 %, absolute, by where they come from; `None` where nothing is known of one.
+/// Absolute half-widths of the 95 % intervals by source; `None` where a part is unknown.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Budget {
     /// From the tolerance of the solver: its own estimates, added up.
     pub algebraic: f64,
-    /// From the grid, with the waves that only finer ones carry.
+    /// From the grid, including the waves that only finer grids resolve.
     pub discretisation: Option<f64>,
     /// From the number of surfaces.
     pub ensemble: Option<f64>,
@@ -27,7 +27,7 @@ pub struct Budget {
 }
 
 impl Budget {
-    /// All together: `algebraic + sqrt(discretisation^2 + ensemble^2 + window^2)`; `None` where one of the
+    /// The total: `algebraic + sqrt(discretisation^2 + ensemble^2 + window^2)`; `None` where one of the
     /// first three is unknown.
     ///
     /// ```
@@ -63,8 +63,8 @@ impl Budgeted {
     }
 }
 
-/// What the tolerance leaves open in k, relative: the solver's estimate and what the missed load makes (k
-/// grows less than F).
+/// Relative error of k due to the tolerance: the solver's estimate and the effect of the load error (k grows
+/// less than F).
 pub(crate) fn algebraic(s: &Sample) -> f64 {
     s.certificate.stiffness_error.unwrap_or(0.0) + s.certificate.load_error
 }
@@ -87,7 +87,7 @@ pub fn state_budgets(run: &Run, models: &[Model], progress: &dyn Progress) -> Re
     session.close(outcome)
 }
 
-/// Writes `name-budget.csv`; its path, and to what k is known.
+/// Writes `name-budget.csv`. Returns its path and a line on the accuracy of k.
 ///
 /// # Errors
 /// A file that cannot be written.
@@ -146,7 +146,7 @@ pub(crate) fn budgets(measured: &Measured) -> Vec<Budgeted> {
     all
 }
 
-/// Mean over the converged surfaces of what their tolerance leaves open, relative.
+/// Mean over the converged surfaces of their relative error due to the tolerance.
 fn mean_algebraic(series: &Series, j: usize) -> f64 {
     let open: Vec<f64> = (series.realisations.iter())
         .map(|(_, r)| &r.samples[j])
@@ -178,7 +178,7 @@ fn row(measured: &Measured, series: &Series, j: usize) -> Option<Budgeted> {
     })
 }
 
-/// What a relative error of k at each force makes of alpha and, relative, of zeta: the weights of the
+/// The sensitivity of alpha and of zeta (relative) to a relative error of k at each force: the weights of the
 /// straight line.
 fn weights(series: &Series, inside: &[usize]) -> Vec<(f64, f64)> {
     let x: Vec<f64> = inside.iter().map(|&j| series.points[j].force_bar.ln()).collect();
@@ -225,7 +225,7 @@ pub(crate) fn write(path: &Path, measured: &Measured, all: &[Budgeted], header: 
     write_csv(path, &table, &header)
 }
 
-/// One line: to what k is known, floor rows apart.
+/// One line on the accuracy of k, without rows on the floor.
 pub(crate) fn reached(all: &[Budgeted]) -> String {
     let known: Vec<(&Budgeted, f64)> = all
         .iter()

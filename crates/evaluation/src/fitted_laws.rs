@@ -1,4 +1,4 @@
-//! What Figs. 3 and 7 have in common: the fitted power laws.
+//! The fitted power laws of Figs. 3 and 7.
 
 use crate::measured::{Measured, Series};
 use crate::run::distinct;
@@ -17,10 +17,11 @@ pub fn laws(measured: &Measured, window: &FitWindow) -> Vec<Result<FittedPowerLa
 /// compared.
 const FLOORS: [usize; 3] = [10, 30, 100];
 const LARGEST: [f64; 2] = [0.086, 0.03];
-/// A window shorter than this says little about a power law; the windows beside it may be half as long.
+/// A window shorter than this is too short for a power law; the windows that it is compared with may be half
+/// as long.
 const LEAST_DECADES: f64 = 1.0;
 
-/// A law over [`FitWindow::PAPER`] and what other windows make of it.
+/// A law over [`FitWindow::PAPER`], and its changes with other windows.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WindowedLaw {
     /// The law.
@@ -28,14 +29,14 @@ pub struct WindowedLaw {
     /// Largest changes of alpha and of zeta with floors of 30 and 100 contact cells on every surface and an
     /// upper end of 0.03, over at least half a decade.
     pub windows: (f64, f64),
-    /// 95 % half-widths of alpha and of ln zeta that the grid leaves; `None` without coarser grids.
+    /// 95 % half-widths of alpha and of ln zeta due to the grid; `None` without coarser grids.
     pub grid: Option<(f64, f64)>,
 }
 
-/// The law of a series, or why there is none to judge.
+/// The law of a series, or the reason why there is none.
 ///
 /// # Errors
-/// Words: too few loads, or a window of less than a decade.
+/// The reason in words: too few loads, or a window of less than a decade.
 pub fn windowed_law(measured: &Measured, series: &Series) -> Result<WindowedLaw, String> {
     let law = |floor: usize, largest: f64| {
         let window = FitWindow { max_force_bar: largest, min_contact_cells: floor, ..FitWindow::PAPER };
@@ -64,7 +65,7 @@ pub fn windowed_law(measured: &Measured, series: &Series) -> Result<WindowedLaw,
     Ok(WindowedLaw { fit, windows, grid })
 }
 
-/// 2.0, 2.05 .. 3.0 and the given ones: where formulas are tabulated.
+/// The fractal dimensions 2.0, 2.05 .. 3.0 and the given ones, at which formulas are tabulated.
 pub fn dense_dimensions(given: &[f64]) -> Vec<f64> {
     let steps = (0..=20).map(|i| f64::from(200 + 5 * i) / 100.0);
     distinct(steps.chain(given.iter().copied()))

@@ -17,8 +17,8 @@ const EXPECTED: &str = "positive numbers and logarithmic ranges MIN:MAX:COUNT, s
                         (1e-2,1,20 or 1e-6:20:23)";
 
 impl Forces {
-    /// Reads a list such as `1e-2,1,20`, a range `MIN:MAX:COUNT` (logarithmic, both ends in, exactly), or
-    /// several of both.
+    /// Reads a list such as `1e-2,1,20`, a range `MIN:MAX:COUNT` (logarithmic, with both ends exactly
+    /// included), or several of both.
     ///
     /// The result is sorted; a force named twice counts once.
     ///

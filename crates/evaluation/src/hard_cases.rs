@@ -1,4 +1,4 @@
-//! The table of hard cases: what was asserted and what was reached.
+//! The table of hard cases, with the assertions and the values reached.
 
 use crate::table_of::{TableOf, markdown_table};
 use analysis::Table;
@@ -8,11 +8,11 @@ use runs::{Header, Progress, Result, write_csv};
 use stability::{Case, CaseResult, Effort};
 use std::path::{Path, PathBuf};
 
-/// Solves hard cases ([`stability::cases`]) and writes `stability.csv` and `stability.md` into `out`. Gives
-/// the verdicts in the order of the cases, and the files.
+/// Solves hard cases ([`stability::cases`]) and writes `stability.csv` and `stability.md` into `out`. Returns
+/// the results in the order of the cases, and the files.
 ///
 /// # Errors
-/// [`runs::Error::File`] where a file cannot be written. A case that fails is no error but a row.
+/// [`runs::Error::File`] where a file cannot be written. A case that fails is not an error; it has a row.
 pub fn hard_cases(
     cases: &[Case],
     effort: Effort,

@@ -5,7 +5,7 @@ use crate::realisation::{Discretisation, Model};
 use crate::run::{Flag, Run, list};
 use runs::Header;
 
-/// The work that everything here reproduces.
+/// The paper that this project reproduces.
 pub const PAPER: &str = "R. Pohrt, V. L. Popov, A. E. Filippov, Normal contact stiffness of elastic solids with fractal rough \
      surfaces for one- and three-dimensional systems, Phys. Rev. E 86, 026710 (2012)";
 
@@ -14,7 +14,7 @@ pub fn header(command: String) -> Header {
     Header { sources: vec![PAPER.to_owned()], ..Header::new(command) }
 }
 
-/// The flags that decide the bytes of an ensemble of a model.
+/// The flags on which the results of an ensemble of a model depend.
 pub const fn flags(model: Model) -> &'static [Flag] {
     const BEM3D: [Flag; 6] =
         [Flag::CELLS, Flag::SURFACES, Flag::FRACTAL_DIMENSIONS, Flag::FORCES, Flag::TOLERANCE, Flag::SEED];

@@ -1,30 +1,32 @@
-//! Ensembles of rough surfaces and what they are worth: error budgets, accuracy targets, benchmarks, audits,
-//! hard cases.
+//! Ensembles of rough surfaces and their accuracy: error budgets, accuracy targets, benchmarks, audits, hard
+//! cases.
 //!
 //! A [`Run`] holds the plain parameters of one command: a [`Preset`], overridden by a [`Request`] and
-//! checked. [`measure`] solves the ensemble of a [`Model`], [`state_budgets`] states to what its means are
-//! known, [`plan`] and [`settle`] choose the sizes that meet an accuracy target, [`accuracy_cost`] shows
-//! what accuracy costs, [`budget_check`] whether the budgets hold, [`audit`] solves stored states again,
-//! [`bench()`] measures time, [`hard_cases`] writes the table of the registry `stability`.
+//! checked. [`measure`] solves the ensemble of a [`Model`], [`state_budgets`] writes the error budgets of its
+//! means, and [`plan`] and [`settle`] choose the sizes that meet an accuracy target. [`accuracy_cost`]
+//! measures the time that accuracy costs, and [`budget_check`] tests whether the budgets hold. [`audit`]
+//! solves stored states again, [`bench()`] measures time, and [`hard_cases`] writes the table of the registry
+//! `stability`.
 //!
 //! # Conventions
 //!
 //! * `F_bar = F/(E* h L)` with the **measured** rms height h of each surface; `k_bar = k/(1.1419 E* L)` (Eqs.
 //!   8, 10).
-//! * Means are arithmetic over the surfaces whose solve converged; the logarithmic mean stands beside. A
-//!   solve that does not converge is in the samples with its status, and in no mean.
-//! * Fewer than 10 contact cells are the one-cell floor of the grid: kept in every CSV, marked, left out of
-//!   lines and fits.
+//! * Means are arithmetic over the surfaces whose solve converged; the logarithmic mean is given as well. A
+//!   solve that does not converge is kept in the samples with its status, but left out of the means.
+//! * States with fewer than 10 contact cells depend on the grid (the one-cell floor): they are marked in
+//!   every CSV and left out of lines and fits.
 //!
 //! # Jobs
 //!
 //! A job is one surface under all its loads ([`RealisationJob`]), solved from the smallest load upwards with
-//! one prepared contact and kept in the result store of the run (`runs::Store`) under everything that decides
-//! its numbers. Other commands reuse it.
+//! one prepared contact and kept in the result store of the run (`runs::Store`) under a key of everything
+//! that determines its results. Other commands reuse it.
 //!
 //! # What it does not do
 //!
-//! No mechanics of its own, no figure of the paper (that is `paper`), no argument parsing (that is `xtask`).
+//! It has no mechanics of its own, no figure of the paper (see `paper`) and no argument parsing (see
+//! `xtask`).
 
 #![allow(clippy::format_push_string, clippy::format_collect)] // Text is built once per file: clear beats one allocation less.
 

@@ -1,23 +1,23 @@
-//! How large the numbers of a command may be: what costs more than any machine has is refused by name before
-//! memory is asked for.
+//! Limits of the sizes of a command: a size that is too large for any machine is refused by name before
+//! memory is allocated.
 
 use runs::{Error, Result};
 use std::fmt::Display;
 use std::ops::RangeInclusive;
 
-/// Cells a side of a surface: a map of 65536 x 65536 heights takes 34 GB by itself, and what fits is asked of
-/// the memory.
+/// Cells a side of a surface: a map of 65536 x 65536 heights takes 34 GB by itself, and whether it fits is
+/// decided by the memory.
 pub const CELLS: RangeInclusive<usize> = 3..=1 << 16;
 /// Elements of a line: 2^30 take 8 GB for the heights alone.
 pub const ELEMENTS: RangeInclusive<usize> = 3..=1 << 30;
-/// Surfaces, lines or cases of a study.
+/// Number of surfaces, lines or cases of a study.
 pub const COUNT: RangeInclusive<usize> = 1..=100_000;
 /// Jobs of a command: each is held in memory with its loads and has a result in the store.
 pub const MOST_JOBS: usize = 1_000_000;
 /// Loads of a command.
 pub const MOST_LOADS: usize = 10_000;
 
-/// States what must hold of the value of a parameter.
+/// Checks a condition on the value of a parameter.
 ///
 /// # Errors
 /// [`Error::Parameter`] with its name, the value and what was expected, where it does not hold.
@@ -30,7 +30,7 @@ pub fn require(
     if holds { Ok(()) } else { Err(Error::parameter(name, value, expected)) }
 }
 
-/// A number inside a range.
+/// Checks that a number lies inside a range.
 ///
 /// # Errors
 /// [`Error::Parameter`] with its name, the number and both ends.
@@ -40,7 +40,7 @@ pub fn within<T: PartialOrd + Display>(name: &'static str, value: T, range: &Ran
     Ok(value)
 }
 
-/// A tolerance of the solver of boundary elements.
+/// Checks a tolerance of the solver of boundary elements.
 ///
 /// # Errors
 /// [`Error::Parameter`] outside 1e-12 to 0.1.
@@ -48,7 +48,7 @@ pub fn tolerance(tolerance: f64) -> Result<()> {
     require((1e-12..=0.1).contains(&tolerance), "tolerance", tolerance, "a number from 1e-12 to 0.1")
 }
 
-/// So many jobs in all, of `count` surfaces, lines or cases.
+/// Checks the number of jobs, `count` times `of_each`.
 ///
 /// # Errors
 /// [`Error::Parameter`] beyond [`MOST_JOBS`].

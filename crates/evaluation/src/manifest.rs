@@ -1,4 +1,4 @@
-//! `manifest.json`: how and where the files of a directory were made.
+//! `manifest.json`: the commands and the machine that made the files of a directory.
 
 use crate::{Outcome, Run};
 use runs::Result;
@@ -6,7 +6,7 @@ use serde_json::{Map, Value, json};
 use std::path::{Path, PathBuf};
 
 /// Enters these outcomes of `command` (as typed) into `manifest.json`; entries of other commands in the same
-/// directory stay.
+/// directory are kept.
 ///
 /// # Errors
 /// [`runs::Error::File`] when it cannot be written.

@@ -10,7 +10,7 @@ use runs::amounts::duration;
 use runs::{Error, Job as _, Ordered, Progress, Result, Store};
 use std::sync::Arc;
 
-/// Surfaces that are solved on the coarser grids as well: enough to know the scatter of a difference to a
+/// Number of surfaces that are also solved on the coarser grids, which gives the scatter of a difference to a
 /// fifth.
 pub const COARSER_SURFACES: usize = 12;
 
@@ -19,7 +19,7 @@ pub const COARSER_SURFACES: usize = 12;
 pub struct Series {
     /// D_f.
     pub fractal_dimension: f64,
-    /// Its surfaces and what was solved of them, in the order of their index.
+    /// Its surfaces and their results, in the order of their index.
     pub realisations: Vec<(RealisationJob, RealisationResult)>,
     /// Converged stiffnesses on common forces.
     pub curves: Curves,
@@ -27,14 +27,14 @@ pub struct Series {
     pub points: Vec<EnsemblePoint>,
 }
 
-/// An ensemble of one model: what Figs. 2 and 6 show, and Figs. 3, 4, 7 evaluate.
+/// An ensemble of one model, which Figs. 2 and 6 show and Figs. 3, 4 and 7 evaluate.
 #[derive(Debug, Clone)]
 pub struct Measured {
     /// How it was solved.
     pub discretisation: Discretisation,
     /// One series per fractal dimension, increasing.
     pub series: Vec<Series>,
-    /// The first surfaces on grids half and a quarter as fine, which say what the grid leaves; `None` where
+    /// The first surfaces on grids half and a quarter as fine, for the discretisation error; `None` where
     /// those are too coarse.
     pub coarser: Option<Box<[Self; 2]>>,
 }
@@ -47,13 +47,13 @@ pub fn measure(model: Model, run: &Run, store: &Store, progress: &dyn Progress) 
     measure_showing(model, run, store, progress, &|_| Ok(()))
 }
 
-/// As [`measure`]; `show` gets what there is now and then, from any thread: whole ensembles of fewer surfaces
-/// or on a coarser grid, without their own coarser grids.
+/// As [`measure`]; `show` is called now and then, from any thread, with the results so far: whole ensembles
+/// of fewer surfaces or on a coarser grid, without their own coarser grids.
 ///
 /// The coarse grids come first, then the surfaces one by one.
 ///
 /// # Errors
-/// Those of `show` too.
+/// As [`measure`], and errors of `show`.
 pub fn measure_showing(
     model: Model,
     run: &Run,
@@ -84,7 +84,7 @@ pub fn measure_showing(
     Ok(Measured { coarser, ..measured_on })
 }
 
-/// What is solved, and how long that takes.
+/// A description of the solves, with their predicted time.
 fn words(model: Model, run: &Run, ensembles: &[Vec<RealisationJob>], store: &Store) -> String {
     let kind = match model {
         Model::Bem3d => "surfaces",
@@ -145,7 +145,7 @@ fn jobs(discretisation: Discretisation, surfaces: usize, run: &Run) -> Vec<Reali
 }
 
 impl Measured {
-    /// An ensemble on its own grid alone, from its jobs and their results.
+    /// An ensemble without coarser grids, from its jobs and their results.
     fn new(jobs: Vec<RealisationJob>, results: Vec<RealisationResult>, run: &Run) -> Result<Self> {
         let dimensions = run.dimensions();
         let first = jobs.first().ok_or_else(|| Error::parameter("surfaces", 0, "at least 1"))?;

@@ -1,18 +1,19 @@
-//! What a command leaves behind.
+//! The outcome of a command.
 
 use crate::measured::Measured;
 use std::path::PathBuf;
 
-/// What a figure (or the verification) made.
+/// The outcome of a figure or of the verification.
 #[derive(Debug, Clone, Default)]
 pub struct Outcome {
     /// `fig1` .. `fig7`, `verify`.
     pub name: &'static str,
     /// Files written, in order.
     pub files: Vec<PathBuf>,
-    /// Solves that did not meet their tolerance; they are in the samples and left out of every mean.
+    /// Number of solves that did not meet their tolerance; they are in the samples and left out of every
+    /// mean.
     pub not_converged: usize,
-    /// One line each: to what the numbers are known.
+    /// The accuracy of the results, one line for each ensemble.
     pub reached: Vec<String>,
     /// Wall-clock seconds of this command.
     pub seconds: f64,
@@ -23,13 +24,13 @@ pub struct Outcome {
 }
 
 impl Outcome {
-    /// Nothing made yet.
+    /// An outcome without files.
     #[must_use]
     pub fn new(name: &'static str) -> Self {
         Self { name, ..Self::default() }
     }
 
-    /// Files that rest on these ensembles, with what is known of their solves.
+    /// The outcome of files made from these ensembles.
     #[must_use]
     pub fn of(name: &'static str, files: Vec<PathBuf>, ensembles: &[&Measured]) -> Self {
         let seconds =
@@ -43,7 +44,7 @@ impl Outcome {
         }
     }
 
-    /// A file of budgets and what it says in one line.
+    /// Adds a file of budgets and its summary in one line.
     pub fn add_budget(&mut self, (path, reached): (PathBuf, String)) {
         self.files.push(path);
         self.reached.push(reached);

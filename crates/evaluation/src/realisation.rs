@@ -1,4 +1,4 @@
-//! One surface of an ensemble under all its loads: the job that is stored.
+//! One surface of an ensemble under all its loads, as a stored job.
 
 use crate::sample::Sample;
 use analysis::KnownPart;
@@ -41,7 +41,7 @@ impl Model {
     }
 }
 
-/// How a surface is discretised, and by which model.
+/// The discretisation of a surface, and its model.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Discretisation {
     /// Boundary elements.
@@ -59,7 +59,7 @@ pub enum Discretisation {
 }
 
 impl Discretisation {
-    /// Which model it is of.
+    /// The model that it belongs to.
     pub fn of(&self) -> Model {
         match self {
             Self::Bem3d { .. } => Model::Bem3d,
@@ -72,7 +72,7 @@ impl Discretisation {
         self.of().name()
     }
 
-    /// The same on so many cells a side, or elements.
+    /// The same with `size` cells along a side, or elements.
     #[must_use]
     pub fn with_size(self, size: usize) -> Self {
         match self {
@@ -89,8 +89,8 @@ impl Discretisation {
         }
     }
 
-    /// Memory that one surface needs at least, bytes: as many per cell as light loads take, per element as
-    /// drawing a line takes.
+    /// Lowest memory need of one surface in bytes: per cell that of light loads, per element that of
+    /// generating a line.
     pub fn memory(&self) -> f64 {
         match *self {
             Self::Bem3d { cells, .. } => bem3d::BYTES_PER_CELL * (cells as f64).powi(2),
@@ -98,8 +98,7 @@ impl Discretisation {
         }
     }
 
-    /// The same model on cells (elements) twice and four times as large; `None` where those are too coarse to
-    /// say anything.
+    /// The same model on cells (elements) twice and four times as large; `None` where those are too coarse.
     pub fn coarser(self) -> Option<[Self; 2]> {
         let by = |factor: usize| {
             let (size, coarsest) = match self {
@@ -133,12 +132,13 @@ impl Discretisation {
         stiffness / PAPER_STIFFNESS_FACTOR
     }
 
-    /// What the edge of a free square adds to the relative differences of k between grids, at a mean k_bar; a
-    /// line has no edge.
+    /// The part of the edge of a free square in the relative differences of k between grids, at a mean k_bar;
+    /// a line has no edge.
     ///
-    /// Its share is that of complete contact, where there is nothing else, times `(k/k_complete)^8`: half the
-    /// stiffness has less than a hundredth of it. It makes k too small on a coarse grid, short waves make it
-    /// too large: near complete contact both can cancel in the differences, and not in what is to come.
+    /// It is the difference at complete contact, where there is no other error, times `(k/k_complete)^8`: at
+    /// half the stiffness it is less than a hundredth of that. The edge makes k too small on a coarse grid,
+    /// short waves make it too large. Near complete contact both may cancel in the differences between these
+    /// grids, but not in those to finer grids.
     pub fn edge_part(self, stiffness_bar: f64) -> KnownPart {
         let Some([half, quarter]) = self.coarser() else { return KnownPart::default() };
         let [fine, half, quarter] = [self, half, quarter].map(Self::complete_contact);
@@ -161,10 +161,10 @@ impl Discretisation {
 /// Power of k over that of complete contact with which the error of a free edge sets in.
 const EDGE_POWER: i32 = 8;
 
-/// Coarsest grid and shortest line that say anything about a finer one.
+/// Coarsest grid and shortest line that are compared with a finer one.
 const COARSEST: (usize, usize) = (17, 1 << 9);
 
-/// Models that jobs share: what a line's ensemble plans once serves all its lines.
+/// Models that jobs share: the plan of an ensemble of lines is used for all its lines.
 #[derive(Debug, Default)]
 pub struct Models {
     /// By D_f and number of elements.
@@ -195,7 +195,7 @@ impl Models {
 /// One surface and its loads.
 #[derive(Debug, Clone)]
 pub struct RealisationJob {
-    /// How it is solved.
+    /// Its discretisation.
     pub discretisation: Discretisation,
     /// D_f.
     pub fractal_dimension: f64,
@@ -205,14 +205,14 @@ pub struct RealisationJob {
     pub seed: u64,
     /// Loads F_bar, increasing.
     pub forces: Arc<[f64]>,
-    /// What the jobs of an ensemble share; decides nothing.
+    /// Data that the jobs of an ensemble share; the results do not depend on it.
     pub models: Arc<Models>,
 }
 
-/// What was solved of a realisation.
+/// The results of a realisation.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RealisationResult {
-    /// Measured rms height of this surface, in which F_bar is counted.
+    /// Measured rms height of this surface, by which F_bar is normalised.
     pub rms_height: f64,
     /// Wall-clock seconds of preparing and solving (goes into the manifest and the run-time claim, never into
     /// a figure).
@@ -395,7 +395,7 @@ mod tests {
     }
 
     #[test]
-    fn a_solve_that_gives_up_is_recorded_with_its_status() {
+    fn a_solve_that_does_not_converge_is_recorded_with_its_status() {
         let job = RealisationJob {
             discretisation: Discretisation::Mdr1d { elements: 8 },
             fractal_dimension: 2.0,
@@ -453,7 +453,7 @@ mod tests {
     }
 
     #[test]
-    fn an_edge_that_hides_in_the_differences_is_found_again() {
+    fn an_edge_error_that_cancels_in_the_differences_is_found() {
         let grid = Discretisation::Bem3d { cells: 129, tolerance: 1e-3 };
         let edge = grid.edge_part(grid.complete_contact());
         // k of complete contact goes up by 0.4/N/1.15 to the limit, the two differences by as much and by

@@ -1,4 +1,4 @@
-//! Realisations in parallel, results in order.
+//! Solves realisations in parallel; the results are in order.
 
 use crate::realisation::{Model, RealisationJob, RealisationResult};
 use contact_model::never;
@@ -7,15 +7,15 @@ use runs::{
     threads_for_memory,
 };
 
-/// Solves what the store does not hold, the largest first, and gives the results in the order of
+/// Solves the jobs that the store does not hold, the largest first, and returns the results in the order of
 /// `jobs`. The results do not depend on `threads`.
 ///
-/// Each finished job is stored at once: an interruption loses those in flight. No more jobs are in flight
-/// than fit in memory; threads without a job help inside the others.
+/// Each finished job is stored at once, so that an interruption loses only the running jobs. No more jobs run
+/// at the same time than fit in memory; threads without a job help the others.
 ///
 /// # Errors
-/// [`runs::Error::Parameter`] for a size that does not fit in memory;
-/// the first error in the order of `jobs`; jobs that finished before stay stored.
+/// [`runs::Error::Parameter`] for a size that does not fit in memory; the first error in the order of `jobs`;
+/// jobs that finished before remain stored.
 pub fn solve_realisations(
     what: &str,
     jobs: &[RealisationJob],
@@ -27,7 +27,7 @@ pub fn solve_realisations(
     solve_in_order(what, &Ordered { jobs, order: &order, solved: &|_, _| Ok(()) }, store, threads, progress)
 }
 
-/// As [`solve_realisations`], in another order than that of the costs.
+/// As [`solve_realisations`], but not in the order of the costs.
 pub(crate) fn solve_in_order(
     what: &str,
     ordered: &Ordered<'_, RealisationJob>,
@@ -61,7 +61,7 @@ mod tests {
     use std::sync::Arc;
 
     #[test]
-    fn units_come_back_bit_for_bit_and_damage_does_not() {
+    fn stored_results_are_read_bit_for_bit_and_damaged_ones_are_not() {
         let discretisation = Discretisation::Mdr1d { elements: 64 };
         let job = RealisationJob {
             discretisation,

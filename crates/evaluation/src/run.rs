@@ -1,4 +1,4 @@
-//! One run: plain parameters, checked.
+//! The checked parameters of a run.
 
 use crate::forces::Forces;
 use crate::limits::{self, require, within};
@@ -6,18 +6,18 @@ use crate::realisation::{Discretisation, Model};
 use runs::Result;
 use std::path::PathBuf;
 
-/// PresetSizes of a run before single parameters are overridden.
+/// The sizes of a run before single parameters are overridden.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Preset {
-    /// Well under a minute; for a first look and for continuous integration.
+    /// Well under a minute; for a first test and for continuous integration.
     Quick,
     /// A few minutes on two cores; all six fractal dimensions.
     #[default]
     Default,
     /// The paper's own sizes: 2049 cells a side, 60 surfaces, 2^20 elements, 500 lines.
     Paper,
-    /// Where the paper saw no technical possibility in three dimensions: 16385 cells a side, a few surfaces,
-    /// light loads. Takes 4 to 5 GB for each surface in work.
+    /// Sizes that the paper considers technically impossible in three dimensions: 16385 cells a side, a few
+    /// surfaces, light loads. Needs 4 to 5 GB for each surface that is being solved.
     Extended,
 }
 
@@ -80,10 +80,10 @@ struct PresetSizes {
     tolerance: f64,
 }
 
-/// What the caller asks for; `None` is the preset's own value.
+/// The parameters that the caller gives; `None` takes the value of the preset.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Request {
-    /// PresetSizes to start from.
+    /// The sizes to start from.
     pub preset: Preset,
     /// Cells a side of each map.
     pub cells: Option<usize>,
@@ -107,11 +107,12 @@ pub struct Request {
     pub out: Option<PathBuf>,
     /// Ignore stored results.
     pub fresh: bool,
-    /// A `fig2.csv` or `fig6.csv` of another run, drawn under the curves.
+    /// A `fig2.csv` or `fig6.csv` of another run, drawn below the curves.
     pub over: Option<PathBuf>,
 }
 
-/// Everything that decides what a figure holds (and, last, what does not: threads, directory, fresh).
+/// Everything that determines the content of a figure and, at the end, the parameters that do not: threads,
+/// directory, fresh.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Run {
     /// The preset that the sizes started from.
@@ -142,7 +143,7 @@ pub struct Run {
     pub out: PathBuf,
     /// Ignore stored results.
     pub fresh: bool,
-    /// A table of another run that is drawn under the curves.
+    /// A table of another run that is drawn below the curves.
     pub over: Option<PathBuf>,
 }
 
@@ -156,10 +157,10 @@ pub const SEED: u64 = 86_026_710;
 pub const TOLERANCE: f64 = 1e-4;
 
 impl Run {
-    /// Expands the preset, applies what was asked for, checks it.
+    /// Expands the preset, applies the request, and checks the result.
     ///
     /// # Errors
-    /// [`runs::Error::Parameter`] naming the first value that makes no sense.
+    /// [`runs::Error::Parameter`] naming the first invalid value.
     ///
     /// ```
     /// use evaluation::{Preset, Request, Run};
@@ -200,7 +201,7 @@ impl Run {
         })
     }
 
-    /// The fractal dimensions asked for, or the paper's six.
+    /// The requested fractal dimensions, or the paper's six.
     pub fn dimensions(&self) -> Vec<f64> {
         self.fractal_dimensions.clone().unwrap_or_else(|| FRACTAL_DIMENSIONS.to_vec())
     }
@@ -214,7 +215,7 @@ impl Run {
         }
     }
 
-    /// The same with cells a side (elements) and surfaces (lines) of a model.
+    /// The same run with this number of cells a side (elements) and of surfaces (lines) of a model.
     #[must_use]
     pub fn with_sizes(&self, model: Model, size: usize, surfaces: usize) -> Self {
         match model {
@@ -223,9 +224,9 @@ impl Run {
         }
     }
 
-    /// The command that makes the same bytes, with every parameter of `flags` written out.
+    /// The command that makes the same files, with every parameter of `flags` written out.
     ///
-    /// What does not change them (threads, directory, fresh) is left out.
+    /// Parameters that do not change the files (threads, directory, fresh) are left out.
     pub fn command(&self, name: &str, flags: &[Flag]) -> String {
         let mut text = format!("cargo xtask {name} --preset {}", self.preset.as_str());
         for flag in flags {
@@ -237,11 +238,11 @@ impl Run {
     }
 }
 
-/// A parameter that changes results, and so belongs into a header.
+/// A parameter that changes results and is therefore written into headers.
 #[derive(Debug, Clone, Copy)]
 pub struct Flag {
     name: &'static str,
-    /// What a run says; `None` where its preset decides.
+    /// The value of a run; `None` where that of its preset holds.
     value: fn(&Run) -> Option<String>,
 }
 
@@ -286,7 +287,7 @@ pub fn list(values: &[f64]) -> String {
     values.iter().map(|v| format!("{v:?}")).collect::<Vec<_>>().join(",")
 }
 
-/// Different values, increasing.
+/// The distinct values, increasing.
 pub fn distinct(values: impl IntoIterator<Item = f64>) -> Vec<f64> {
     let mut all: Vec<f64> = values.into_iter().collect();
     all.sort_by(f64::total_cmp);
@@ -345,7 +346,7 @@ mod tests {
     }
 
     #[test]
-    fn the_command_says_what_matters_and_nothing_else() {
+    fn the_command_has_the_parameters_that_change_results_and_no_others() {
         let request = Request {
             fractal_dimensions: Some(vec![2.4, 2.0, 2.4]),
             forces: Some("1e-2, 1".into()),

@@ -1,15 +1,16 @@
-//! One surface under one load: what is kept of a state.
+//! The sample of a state: one surface under one load.
 
 use contact_model::{Certificate, ContactState, Normalisation, Result};
 use serde::{Deserialize, Serialize};
 
-/// Fewer contact cells than this are the one-cell floor of a grid: kept, marked, left out of fits and lines.
+/// States with fewer contact cells than this are on the one-cell floor of a grid: they are kept and marked,
+/// but left out of fits and lines.
 pub const FLOOR_CELLS: usize = 10;
 
-/// What is kept of one contact state, in the dimensionless words of the paper.
+/// The stored numbers of one contact state, normalised as in the paper.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Sample {
-    /// F_bar asked for (Eq. 10, with the surface's own measured rms height).
+    /// The requested F_bar (Eq. 10, with the surface's own measured rms height).
     pub force_bar: f64,
     /// F, in E* L^2 (the surface has E* = L = 1).
     pub force: f64,
@@ -17,7 +18,7 @@ pub struct Sample {
     pub approach_over_h: Option<f64>,
     /// k_bar (Eq. 8).
     pub stiffness_bar: Option<f64>,
-    /// Contact area over A0; only where the model claims an area.
+    /// Contact area over A0; `None` where the model has no area.
     pub contact_fraction: Option<f64>,
     /// Cells (elements) in contact.
     pub contact_cells: Option<usize>,
@@ -29,14 +30,14 @@ pub struct Sample {
     pub applications: usize,
     /// How the solve ended, as [`contact_model::Status::as_str`].
     pub status: String,
-    /// Which way the solver took.
+    /// The strategy of the solver.
     pub strategy: String,
-    /// The evidence.
+    /// The certificate.
     pub certificate: Certificate,
 }
 
 impl Sample {
-    /// Takes from a state what is kept.
+    /// The sample of a state.
     ///
     /// # Errors
     /// [`contact_model::Error::Domain`] when the surface has no rms height to normalise by.

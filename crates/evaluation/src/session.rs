@@ -5,7 +5,7 @@ use runs::{Result, Store, files};
 use std::path::Path;
 use std::time::Instant;
 
-/// The directory, made and cleaned, and the clock.
+/// The directory of the results, and the clock of the command.
 #[derive(Debug)]
 pub struct Session {
     /// The result store of the directory.
@@ -14,7 +14,7 @@ pub struct Session {
 }
 
 impl Session {
-    /// Makes and cleans a directory of results and opens its store; `fresh` forgets what is stored.
+    /// Creates and cleans a directory of results and opens its store; `fresh` removes the stored results.
     ///
     /// # Errors
     /// [`runs::Error::File`] where the system refuses.
@@ -25,10 +25,10 @@ impl Session {
         Ok(Self { store: Store::open(out, fresh)?, start })
     }
 
-    /// Enters the seconds since [`Session::open`].
+    /// Adds the seconds since [`Session::open`] to an outcome.
     ///
     /// # Errors
-    /// None; the result ends the chain of `?` of each command.
+    /// Never; it returns a result for convenience at the end of a command.
     #[allow(clippy::unnecessary_wraps)]
     pub fn close(&self, mut outcome: Outcome) -> Result<Outcome> {
         outcome.seconds = self.start.elapsed().as_secs_f64();

@@ -1,4 +1,4 @@
-//! What of an ensemble is solved while the rest is under way.
+//! The results of an ensemble that is still being solved.
 
 use crate::realisation::{RealisationJob, RealisationResult};
 use crate::run::Run;
@@ -6,13 +6,13 @@ use runs::Result;
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// Time between two looks, and before the first.
+/// Time between two calls, and before the first.
 const EVERY: Duration = Duration::from_secs(5);
 
-/// Surfaces on the finest grid that say more than the coarse ones.
+/// Number of surfaces on the finest grid from which on they are shown instead of the coarse ones.
 const FEWEST: usize = 3;
 
-/// Gets the jobs of a whole ensemble and their results.
+/// Receives the jobs of a whole ensemble and their results.
 type Show<'a> = dyn Fn(Vec<RealisationJob>, Vec<RealisationResult>) -> Result<()> + Sync + 'a;
 
 /// Collects results and shows whole ensembles of them now and then.
@@ -41,13 +41,13 @@ impl<'a> SoFar<'a> {
     /// Takes the result of a job; the jobs are numbered from the coarsest grid on.
     ///
     /// # Errors
-    /// Those of what shows it.
+    /// Errors of the function that shows the results.
     pub fn add(&self, job: usize, result: &RealisationResult) -> Result<()> {
         let Some((jobs, results)) = self.next(job, result) else { return Ok(()) };
         (self.show)(jobs, results)
     }
 
-    /// Takes the result; jobs and results that are to be shown now.
+    /// Takes a result. Returns the jobs and results that should be shown now.
     fn next(
         &self,
         job: usize,
@@ -78,8 +78,8 @@ impl<'a> SoFar<'a> {
         Some((self.ensembles[grid][..count].to_vec(), results?))
     }
 
-    /// The finest grid that says something, with the number of its first surfaces that are whole. `None` where
-    /// there is nothing yet, or nothing missing.
+    /// The finest grid that can be shown, with the number of its first surfaces that are complete. `None`
+    /// where there is nothing yet, or nothing is missing.
     fn best(&self, results: &[Vec<Option<RealisationResult>>]) -> Option<(usize, usize)> {
         let dimensions = self.run.dimensions().len().max(1);
         (0..results.len())

@@ -1,4 +1,4 @@
-//! The map that `bench` is given: heights on square cells, from an NPY file.
+//! Reads the map of `bench`: heights on square cells, from an NPY file.
 
 use contact_model::{Cells, HeightMap, Size};
 use runs::Result;
@@ -6,15 +6,16 @@ use runs::files::Error;
 use std::path::Path;
 use surface_io::{ContentError, Dimension, Format, Preprocessing, Quantity, ReadOptions, Scan, Sides};
 
-/// Reads an NPY array `[row, column]` of numbers as heights on square cells with `sqrt(Lx Ly) = 1`, as they
-/// are.
+/// Reads an NPY array `[row, column]` of numbers as heights on square cells with `sqrt(Lx Ly) = 1`, without
+/// preprocessing.
 ///
 /// Either byte order and either order of the axes; the shape is compared with the length of the file before
 /// anything is allocated.
 ///
 /// # Errors
-/// [`Error::System`] when it cannot be read; [`Error::Content`] when it is no NPY file, not of real numbers, shorter or longer
-/// than it says, or holds a number that is not finite (with its row and column).
+/// [`Error::System`] when it cannot be read; [`Error::Content`] when it is not an NPY file or not of real
+/// numbers, when its length differs from that in its header, or when it holds a number that is not finite
+/// (with its row and column).
 pub(crate) fn read_map(path: &Path) -> Result<HeightMap> {
     let wrong = |reason: String| Error::content(path, reason);
     let cell = Quantity::new(1.0, Dimension::NONE).map_err(|e| wrong(e.to_string()))?;

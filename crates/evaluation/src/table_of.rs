@@ -1,4 +1,4 @@
-//! Tables whose columns say what stands in them, and their rows read again.
+//! Tables whose columns define their values, and reading rows back.
 
 use analysis::{Column, Table, Value};
 use csv::StringRecord;
@@ -6,7 +6,7 @@ use runs::{CsvFile, Error, Result, number};
 use serde::de::DeserializeOwned;
 use std::path::Path;
 
-/// A table with one row for each item, built column by column: name, unit, meaning and value stand together.
+/// A table with one row for each item, built column by column from name, unit, meaning and value.
 ///
 /// ```
 /// use evaluation::TableOf;
@@ -31,7 +31,7 @@ impl<'a, T> TableOf<'a, T> {
         Self { title: title.into(), items, columns: Vec::new(), rows: vec![Vec::new(); items.len()] }
     }
 
-    /// Adds a column, as in [`Column`], and what stands in it for each item.
+    /// Adds a column, as in [`Column`], with its value for each item.
     #[must_use]
     pub fn column<V: Into<Value>>(
         mut self,
@@ -86,12 +86,12 @@ pub fn markdown_table<C: AsRef<str>, const N: usize>(
     format!("{head}\n{}", markdown_rows(rows))
 }
 
-/// A number as text; absent is empty.
+/// A number as text; empty where it is missing.
 pub(crate) fn maybe(value: Option<f64>) -> String {
     value.map(number).unwrap_or_default()
 }
 
-/// The rows of a CSV file as what their columns say.
+/// The rows of a CSV file, read by the names of the columns.
 ///
 /// # Errors
 /// [`Error::File`] for a column that is missing or an entry that does not fit it.

@@ -7,11 +7,11 @@ use crate::table_of::TableOf;
 use analysis::Table;
 use runs::Result;
 
-/// What a column `model` holds.
+/// Meaning of a column `model`.
 pub const MODEL: &str = "bem3d: 3D boundary elements; mdr1d: 1D reduction";
-/// What a column `fractal_dimension` holds.
+/// Meaning of a column `fractal_dimension`.
 pub const FRACTAL_DIMENSION: &str = "D_f = 3 - H of the 3D surface";
-/// What a column `force_bar` holds.
+/// Meaning of a column `force_bar`.
 pub const FORCE_BAR: &str = "F/(E* h L), h the measured rms height of each surface (Eq. 10)";
 const CELLS: &str = "cells a side (bem3d) or elements (mdr1d)";
 
@@ -59,7 +59,7 @@ fn seven_digits(value: f64) -> String {
     format!("{value:.6e}")
 }
 
-/// Every surface in one row, seven digits: what means and their errors can be computed from again.
+/// One row for each surface, with seven digits, from which means and their errors can be computed again.
 ///
 /// # Errors
 /// As [`TableOf::table`].
@@ -82,7 +82,7 @@ pub fn compact_table(title: &str, measured: &Measured) -> Result<Table> {
         .table()
 }
 
-/// Every surface and load: the samples of a figure.
+/// The samples of a figure: one row for each surface and load.
 ///
 /// # Errors
 /// As [`TableOf::table`].

@@ -1,4 +1,4 @@
-//! What each tuned constant of the boundary-element solver is worth: the time of a set of paths with half and
+//! The effect of each tuned constant of the boundary-element solver: the time of a set of paths with half and
 //! with twice its value.
 
 use crate::table_of::TableOf;
@@ -22,15 +22,16 @@ const PATHS: [WarmPath; 5] = [
     (1025, 2.7, &[0.1, 0.3], 1e-6),
 ];
 
-/// A run that takes so many times as long as with the value shipped is ended.
+/// A run that takes more than this multiple of the time with the shipped value is stopped.
 const LONGEST: f64 = 4.0;
 
-/// What a multiple of a constant does.
+/// The effect of a multiple of a constant.
 #[derive(Debug, Clone, Copy)]
 pub struct Multiple {
-    /// Time over that with the value shipped, of runs one after the other; the median of the repetitions.
+    /// Ratio of the time to that with the shipped value, of runs one after the other; the median of the
+    /// repetitions.
     pub time: f64,
-    /// Applications of the influence matrix over those with the value shipped.
+    /// Ratio of the applications of the influence matrix to those with the shipped value.
     pub applications: f64,
     /// Whether every load met its tolerance in time.
     pub converged: bool,
@@ -54,11 +55,12 @@ struct PathsCost {
     converged: bool,
 }
 
-/// Solves the set with half and twice of each constant whose name contains `only`, beside the value shipped,
-/// `repetitions` times; writes `tuning.csv` into `out` and hands out each row when it is there.
+/// Solves the set `repetitions` times with half, with twice and with the shipped value of each constant whose
+/// name contains `only`. Writes `tuning.csv` into `out` and passes on each row as soon as it is measured.
 ///
 /// # Errors
-/// [`Error::Parameter`] where no constant has such a name; what the model refuses; [`Error::File`] where the table cannot be written.
+/// [`Error::Parameter`] where no constant has such a name; errors of the model; [`Error::File`] where the
+/// table cannot be written.
 pub fn tuning(
     only: &str,
     repetitions: usize,

@@ -9,10 +9,10 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::atomic::Ordering;
 
-/// How the program calls itself.
+/// Name of the program in messages.
 const PROGRAM: &str = "fractal-contact";
 
-/// The plan of a scene: tasks begin elsewhere, so the path of the scene is absolute.
+/// The plan of a scene. Tasks start in other directories, so the path of the scene is absolute.
 fn plan_of(path: &Path, jobs: &dyn JobList) -> Result<ShardPlan> {
     let path = std::fs::canonicalize(path).map_err(runs::Error::file("find", path))?;
     let text = path.to_str().ok_or_else(|| {
@@ -60,7 +60,7 @@ fn forecast(jobs: &dyn JobList, plan: &Plan, division: &Division) -> Forecast {
     }
 }
 
-/// Tells what a scene takes on nodes of so many cores.
+/// Prints the prediction of what a scene needs on a number of nodes with a number of cores each.
 pub fn tell(
     scene: &SceneFile,
     plan: &Plan,
@@ -72,7 +72,7 @@ pub fn tell(
     Ok(())
 }
 
-/// Writes the scripts of a scene and submits them where that is asked for.
+/// Writes the scripts of a scene, and submits them with `--now`.
 pub fn submit(path: &Path, out: &Path, submission: &Submission, division: &Division) -> Result<ExitCode> {
     let scene = read_scene(path)?;
     let calibrated = Plan::calibrated(&scene)?;
@@ -94,7 +94,7 @@ fn planned(options: &ShardsArguments) -> Result<(ShardPlan, PathBuf, SceneFile)>
     Ok((plan, path, scene))
 }
 
-/// Tells what is done of the shards of a directory.
+/// Prints the state of the shards of a directory.
 pub fn status(options: &ShardsArguments) -> Result<ExitCode> {
     let (plan, _, scene) = planned(options)?;
     let jobs = jobs(&scene, &options.out);

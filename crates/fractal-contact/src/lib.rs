@@ -1,18 +1,19 @@
-//! Normal contact of elastic bodies with rough surfaces: one crate for the whole of it.
+//! Contact of elastic bodies with rough surfaces: this crate re-exports the solvers, the theories and the
+//! tools around them.
 //!
 //! # Modules
 //!
-//! | module | what it has |
+//! | module | contents |
 //! |---|---|
 //! | the root | scenes, loads, states, height maps and the traits of all models (`contact-model`), and the two solvers |
 //! | [`bem3d`] | exact contact in three dimensions by boundary elements, free or periodic |
 //! | [`mdr1d`] | the one-dimensional reduction; friction and rheology on top of any model ([`Equivalent`]) |
 //! | [`analytic`] | closed forms and theories: Hertz, JKR, Westergaard, Persson, Greenwood and Williamson, ... |
-//! | [`surface_gen`] | self-affine surfaces from a seed, and what is measured on a surface |
+//! | [`surface_gen`] | self-affine surfaces from a seed, and measurements on surfaces |
 //! | [`analysis`] | means, fits with errors, tables |
 //! | [`surface_statistics`] | parameters of ISO 25178, spectra with bands, fits with intervals |
-//! | [`surface_io`] | measured surfaces from files, fields into files |
-//! | `scenes` | text files that name what is pressed and what is asked, and the program `fractal-contact` |
+//! | [`surface_io`] | reads measured surfaces from files and writes fields |
+//! | `scenes` | scene files, which describe a contact problem and the requested results, and the program `fractal-contact` |
 //! | `runs`, `plots` | jobs with a result store, CSV and manifest; charts and pictures of maps (feature `scenes`) |
 //!
 //! ```
@@ -30,13 +31,13 @@
 //!
 //! # Features
 //!
-//! `scenes` (default): scenes and their files, pictures and result store. `program` (default): the program.
-//! `rayon` (default): surfaces are drawn, and large systems solved, on the threads of the pool in which they
-//! are asked for. `faer` (default): small contact sets are solved by a Cholesky factor. `simd` (default):
-//! transforms take the widest vector instructions that the processor has; without it and without `faer`,
-//! results are the same bytes on every processor of one architecture, as far as its mathematical functions
-//! are. `hdf5`, `tiff` and `x3p` (default): these formats of maps, with the crates that they need. Without
-//! default features the solvers, theories and other formats remain.
+//! `scenes` (default): scenes and their files, pictures and result store. `program` (default): the program
+//! `fractal-contact`. `rayon` (default): surfaces are generated and large systems solved on the threads of
+//! the current pool. `faer` (default): small contact sets are solved by a Cholesky factor. `simd` (default):
+//! transforms use the widest vector instructions of the processor. Without `simd` and `faer` the results are
+//! the same bytes on every processor of one architecture, provided that its mathematical functions are the
+//! same. `hdf5`, `tiff` and `x3p` (default): support for these formats of maps, with the crates that they
+//! need. Without default features the solvers, theories and other formats remain.
 
 #![allow(clippy::format_push_string, clippy::format_collect)] // Text is built once per file: clear beats one allocation less.
 

@@ -1,5 +1,4 @@
-//! The models of the library: a record each, from which scenes, help, tables and Python take all that they
-//! know of them.
+//! The models of the library, one record each. Scenes, help texts, tables and Python read these records.
 
 use analytic::{
     AdhesiveWave, CattaneoMindlin, FlatPunch, GreenwoodWilliamson, Hertz, Jkr, MaugisDugdale, Persson,
@@ -10,23 +9,23 @@ use contact_model::{ContactModel, Effect, LoadKind, Output, Paths, Scene, Surfac
 use mdr1d::{Equivalent, Mdr1d, PartialSlip, Viscoelastic};
 use std::fmt;
 
-/// All that is said of a model beside what it says itself (its name, its sources, its abilities).
+/// The description of a model, in addition to its own name, sources and abilities.
 #[derive(Clone, Copy)]
 #[non_exhaustive]
 pub struct ModelRecord {
     /// The model with its defaults.
     pub model: &'static dyn ContactModel,
-    /// What it is called in titles and legends.
+    /// Its name in titles and legends.
     pub title: &'static str,
     /// Name of its class in Python.
     pub class: &'static str,
-    /// What it is, in a sentence.
+    /// A description in one sentence.
     pub about: &'static str,
-    /// What one may expect of its numbers; a model with cells says more where its grid is known.
+    /// The accuracy to expect of its results; a model with cells says more once its grid is known.
     pub accuracy: &'static str,
-    /// Whether its numerics have options: then it is a variant of `scenes::Numerics`.
+    /// Whether its numerics have options; if so, it is a variant of `scenes::Numerics`.
     pub has_options: bool,
-    /// Whether it takes of a rough map what is measured on it, not the map.
+    /// Whether it uses statistics measured on a rough map instead of the map itself.
     pub is_statistical: bool,
 }
 
@@ -48,7 +47,7 @@ impl fmt::Debug for ModelRecord {
     }
 }
 
-/// What it is and what it can do, in a few lines.
+/// A description and the abilities, in a few lines.
 impl fmt::Display for ModelRecord {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "{}: {}", self.name(), self.about)?;
@@ -65,7 +64,7 @@ impl PartialEq for ModelRecord {
     }
 }
 
-/// A closed form: no options, nothing measured.
+/// The record of a closed form, which has no options and measures nothing.
 const fn formula(
     model: &'static dyn ContactModel,
     (title, class): (&'static str, &'static str),
@@ -188,12 +187,12 @@ pub static MODELS: &[ModelRecord] = &[
     },
 ];
 
-/// The models whose abilities hold all that a scene asks for, in words as a list of names.
+/// The models whose abilities cover everything that a scene requests.
 pub fn able(scene: &Scene) -> impl Iterator<Item = &'static ModelRecord> + '_ {
     MODELS.iter().filter(|record| record.model.abilities().lacks(scene).next().is_none())
 }
 
-/// The abilities of a model as rows of a table: what it is about, and the words for each.
+/// The abilities of a model as rows of a table: the name of a row, and its entries.
 pub fn abilities(model: &dyn ContactModel) -> Vec<(&'static str, Vec<&'static str>)> {
     let abilities = model.abilities();
     let paths = match abilities.paths {

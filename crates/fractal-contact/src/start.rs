@@ -1,11 +1,12 @@
-//! What every command that solves begins with: a scene with its grid, and signals that stop it.
+//! The beginning of every command that solves: it reads a scene with its grid, and installs the signals that
+//! stop it.
 
 use fractal_contact::scenes::{Error, Result, SceneFile};
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// A scene with the grid that it asks for.
+/// Reads a scene and chooses its grid where it requests an accuracy.
 pub fn read_scene(path: &Path) -> Result<SceneFile> {
     SceneFile::read(path)?.with_grid_for_accuracy(&|| false)
 }

@@ -116,7 +116,7 @@ fn plans_surfaces_results_and_completions_are_told() {
     assert!(info.contains("48") && info.contains("fractal dimension"), "{info}");
     assert!(info.contains("spectrum"), "{info}");
     let (info, _) = texts(&program(&["info", &path("s.npy")]));
-    assert!(info.contains("no map as it is"), "{info}");
+    assert!(info.contains("no map without further options"), "{info}");
     let (info, _) = texts(&program(&["info", &path("s.npy"), "--unit", "m", "--cell", "1 um"]));
     assert!(info.contains("rms height         1 um"), "{info}");
     program(&["run", &path("a.toml"), "--out", &path("out")]);

@@ -1,5 +1,5 @@
-//! Fig. 2 of the paper in small: stiffness over force of an ensemble in three dimensions, with the paper's
-//! claims beside it.
+//! A small version of Fig. 2 of the paper: stiffness over force of an ensemble in three dimensions, compared
+//! with the paper's claims.
 //!
 //! `cargo run -p fractal-contact-paper --example fig2_small -- DIRECTORY`
 //!

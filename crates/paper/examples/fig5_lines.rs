@@ -1,5 +1,4 @@
-//! Fig. 5 of the paper: what equivalent lines of three fractal dimensions look like, as CSV, SVG, PNG and
-//! NPY.
+//! Fig. 5 of the paper: equivalent lines of three fractal dimensions, as CSV, SVG, PNG and NPY.
 //!
 //! `cargo run -p fractal-contact-paper --example fig5_lines -- DIRECTORY`
 //!

@@ -1,5 +1,5 @@
-//! Exponents of ensembles of equivalent lines for three fractal dimensions beside the scaling 1/(1 + H) of
-//! Eq. 24.
+//! Exponents of ensembles of equivalent lines for three fractal dimensions, compared with the scaling 1/(1 +
+//! H) of Eq. 24.
 //!
 //! `cargo run -p fractal-contact-paper --example lines -- DIRECTORY`
 //!

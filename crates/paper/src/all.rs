@@ -8,7 +8,7 @@ use runs::{Progress, Result};
 /// Makes Figs. 1 to 7 and the verification.
 ///
 /// # Errors
-/// Those of each figure.
+/// As each figure.
 pub fn reproduce_all(run: &Run, progress: &dyn Progress) -> Result<Vec<Judged>> {
     let mut outcomes = vec![fig1::fig1(run, progress)?, fig5::fig5(run, progress)?];
     let (two, solid) = fig2::FIGURE.reproduce(run, progress)?;

@@ -1,31 +1,32 @@
-//! What the paper states, what a fair reading of it is, and what was found.
+//! Statements of the paper, their fair reading, and the results here.
 
 use analysis::Table;
 use evaluation::{TableOf, markdown_table};
 use runs::Result;
 use std::fmt;
 
-/// What was found of a statement.
+/// The verdict on a statement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Verdict {
     /// The interval found lies outside the fair reading.
     Contradicted,
-    /// The interval found holds other readings as well; the remark says what would decide.
+    /// The interval found lies partly inside and partly outside the fair reading; the remark says what would
+    /// decide.
     Unresolved,
     /// This run has no number; the remark says why.
     NoNumber,
-    /// It holds in one convention and not in another; the remark says in which.
+    /// The statement holds in one convention and not in another; the remark names them.
     Convention,
     /// The interval found lies inside the fair reading.
     Confirmed,
 }
 
 impl Verdict {
-    /// All, in the order of tables.
+    /// All verdicts, in the order of tables.
     pub const ALL: [Self; 5] =
         [Self::Contradicted, Self::Unresolved, Self::NoNumber, Self::Convention, Self::Confirmed];
 
-    /// The words of a table.
+    /// The word in tables.
     pub fn as_str(self) -> &'static str {
         match self {
             Self::Contradicted => "contradicted",
@@ -43,16 +44,16 @@ impl fmt::Display for Verdict {
     }
 }
 
-/// Words of the paper and how they are read.
+/// A sentence of the paper and its reading.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Statement {
-    /// The statement that the words belong to: rows of one name are judged together.
+    /// The statement that the sentence belongs to: rows with the same name are judged together.
     pub name: &'static str,
     /// The words, or the formula.
     pub quotation: &'static str,
-    /// Where they stand.
+    /// Where the sentence is in the paper.
     pub place: &'static str,
-    /// What a fair reader takes them to say, fixed before the comparison.
+    /// Their fair reading, fixed before the comparison.
     pub reading: &'static str,
 }
 
@@ -61,8 +62,8 @@ pub struct Statement {
 pub struct Estimate {
     /// The number.
     pub value: f64,
-    /// Half-width of the 95 % interval: scatter of the surfaces and whatever else the number depends on; 0
-    /// where it is exact.
+    /// Half-width of the 95 % interval, from the scatter of the surfaces and all other sources; 0 where the
+    /// number is exact.
     pub half_width: f64,
 }
 
@@ -94,7 +95,7 @@ impl Estimate {
         Self { value, half_width: value.abs() * relative }
     }
 
-    /// How far a ratio is from 1, whichever way.
+    /// The distance of a ratio from 1, in either direction.
     pub(crate) fn distance_from_one(&self) -> f64 {
         self.value.ln().abs()
     }
@@ -112,22 +113,23 @@ impl Estimate {
     }
 }
 
-/// A statement of the paper beside what was found.
+/// A statement of the paper, compared with the number found here.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Claim {
     /// The quantity.
     pub quantity: String,
     /// The paper's words.
     pub statement: Statement,
-    /// What the reading allows the quantity to be; infinite ends for "above" and "below".
+    /// The range of the quantity that the reading allows; infinite ends for "above" and "below".
     pub paper: [f64; 2],
-    /// What was found; `None` where this run has nothing to say.
+    /// The number found; `None` where this run has none.
     pub here: Option<Estimate>,
     /// The verdict.
     pub verdict: Verdict,
-    /// Conditions of the number; where there is none, what would decide.
+    /// Conditions of the number; where there is no number, what would decide.
     pub remark: String,
-    /// Half-width below which an interval about the same number would decide, where this one does not.
+    /// The half-width below which an interval about the same number would decide the statement, where this
+    /// one does not.
     pub decided_by: Option<f64>,
     /// Factor on the half-width with which all numbers of the statement are covered together with 95 %
     /// ([`together`]); 1 for a number that stands alone.
@@ -137,8 +139,8 @@ pub struct Claim {
 }
 
 impl Claim {
-    /// Judges a number by its interval alone: confirmed where it lies inside the reading, contradicted where
-    /// it misses it, else unresolved.
+    /// Judges a number by its interval alone: confirmed where the interval lies inside the reading,
+    /// contradicted where it lies outside, otherwise unresolved.
     ///
     /// ```
     /// use paper::{Claim, Estimate, Statement, Verdict};
@@ -169,7 +171,7 @@ impl Claim {
         claim.judged(here, 1.0)
     }
 
-    /// The same judged by an interval that is `factor` times as wide.
+    /// The same, with an interval that is `factor` times as wide.
     #[must_use]
     fn judged(self, here: Estimate, factor: f64) -> Self {
         let Estimate { value, half_width } = here;
@@ -187,8 +189,8 @@ impl Claim {
         Self { verdict, decided_by, factor, ..self }
     }
 
-    /// Beside the same quantity in another convention: where one is confirmed and the other contradicted, the
-    /// convention decides.
+    /// Compares with the same quantity in another convention: where one is confirmed and the other
+    /// contradicted, the verdict is that the convention decides.
     #[must_use]
     pub fn in_convention(mut self, convention: &str, value: f64) -> Self {
         // With the same half-width, so that both are judged alike.
@@ -224,7 +226,7 @@ impl Claim {
         Self { timed: true, ..Self::unresolved(self.quantity.clone(), self.statement, self.paper, remark) }
     }
 
-    /// What the reading allows, in words.
+    /// The range that the reading allows, in words.
     fn allowed(&self) -> String {
         match self.paper {
             [low, high] if !high.is_finite() => format!(">= {}", short(low)),
@@ -234,17 +236,17 @@ impl Claim {
         }
     }
 
-    /// Quantity, what the reading allows, what was found, and the verdict.
+    /// Quantity, range that the reading allows, number found, and verdict.
     fn short_cells(&self) -> [String; 4] {
         [self.quantity.clone(), self.allowed(), self.found(), self.verdict.to_string()]
     }
 
-    /// Half-width with all numbers of the statement together.
+    /// The half-width with which all numbers of the statement are covered together.
     fn half_width_together(&self) -> Option<f64> {
         self.here.map(|here| self.factor * here.half_width)
     }
 
-    /// The remark, with what would decide where this interval does not.
+    /// The remark and, where this interval does not decide, what would.
     fn conditions(&self) -> String {
         let Some(half_width) = self.decided_by else { return self.remark.clone() };
         let two_digits = format!("{half_width:.1e}").parse().unwrap_or(half_width);
@@ -253,7 +255,7 @@ impl Claim {
         joined(&self.remark, &decides)
     }
 
-    /// What was found, with its interval.
+    /// The number found, with its interval.
     fn found(&self) -> String {
         match self.here {
             None => String::new(),
@@ -275,11 +277,12 @@ pub fn sort(claims: &mut [Claim]) {
 /// Judges the rows of each statement together: by intervals that cover all of its numbers with 95 %
 /// (Bonferroni).
 ///
-/// A statement of the paper is about several fractal dimensions, loads or models, and the more rows it has,
-/// the likelier is one that misses by chance. Each interval is therefore widened so that it is wrong with 5 %
-/// over their number. That holds whatever the dependence of the rows (they share surfaces, and surfaces of
-/// unlike D_f share phases), and it leaves intervals, as Holm's steps do not. The factor is that of the
-/// normal law. Numbers without an interval, and rows that a convention decides, stay as they are.
+/// A statement of the paper is about several fractal dimensions, loads or models. The more rows it has, the
+/// more likely one of them misses by chance. Each interval is therefore widened so that it is wrong with a
+/// probability of 5 % divided by the number of rows. This is valid for any dependence of the rows (they share
+/// surfaces, and surfaces of different D_f share phases), and unlike Holm's procedure it gives intervals. The
+/// factor is that of the normal law. Numbers without an interval, and rows that a convention decides, are
+/// unchanged.
 pub fn together(claims: &mut [Claim]) {
     let scatters = |c: &Claim| c.here.is_some_and(|here| here.half_width > 0.0);
     let names: Vec<&str> = claims.iter().filter(|c| scatters(c)).map(|c| c.statement.name).collect();
@@ -299,17 +302,17 @@ pub struct JudgedStatement {
     pub name: &'static str,
     /// The paper's words, of its first row.
     pub quotation: &'static str,
-    /// Where they stand.
+    /// Where the sentence is in the paper.
     pub place: &'static str,
     /// Verdict of each row.
     pub rows: Vec<Verdict>,
-    /// That of all of them: contradicted where one row is; else as the row that is farthest from confirmed,
-    /// and not resolved where some rows have a number and some have none.
+    /// The verdict on all rows: contradicted where one row is; otherwise that of the row that is farthest
+    /// from confirmed, and unresolved where some rows have no number.
     pub verdict: Verdict,
 }
 
 impl JudgedStatement {
-    /// How many rows there are of each verdict.
+    /// Number of rows with each verdict.
     fn rows_in_words(&self) -> String {
         let count = |verdict: Verdict| self.rows.iter().filter(|row| **row == verdict).count();
         let each = Verdict::ALL.iter().filter(|v| count(**v) > 0).map(|v| format!("{} {v}", count(*v)));
@@ -339,7 +342,7 @@ pub fn statements(claims: &[Claim]) -> Vec<JudgedStatement> {
     all
 }
 
-/// How many statements and rows there are of each verdict, in one line.
+/// The numbers of statements and rows with each verdict, in one line.
 ///
 /// ```
 /// assert_eq!(
@@ -363,7 +366,7 @@ pub fn counts(claims: &[Claim]) -> String {
 /// The table of `verify.csv`.
 ///
 /// # Errors
-/// A row that does not fit the columns, which would be a mistake of this crate.
+/// A row that does not fit the columns, which would be an error of this crate.
 pub fn claims_table(title: &str, claims: &[Claim]) -> Result<Table> {
     const TOGETHER: &str = "of the interval that holds with 95 % for all numbers of the statement together (Bonferroni): it decides";
     const VERDICT: &str =
@@ -426,7 +429,7 @@ pub fn short_table(claims: &[Claim]) -> String {
     format!("{}\n\n{statements}\nThe rows:\n\n{}", counts(claims), markdown_table(head, rows))
 }
 
-/// One significant digit: enough for an error.
+/// One significant digit, which is enough for an error.
 fn rounded(v: f64) -> String {
     short(format!("{v:.0e}").parse().unwrap_or(v))
 }

@@ -1,10 +1,10 @@
 //! The claims of the paper: the table `claims.toml`, and how its entries become [`Claim`]s.
 //!
-//! An entry names its data ([`Data`]); what they give are [`Row`]s, one for each D_f or a single one. The
-//! verdict follows from the interval of the row and from what the entry allows ([`Claim::judge`],
-//! [`Claim::in_convention`]); the rows of one statement are judged together ([`crate::together`]). Identities that only test code (Eqs. 7, 19 to
-//! 23, full contact of a line) are tests, not claims. Area over force is judged where waves are resolved:
-//! [`crate::two_cases`].
+//! An entry names its data ([`Data`]), which give [`Row`]s: one for each D_f, or a single one. The verdict
+//! follows from the interval of the row and from what the entry allows ([`Claim::judge`],
+//! [`Claim::in_convention`]); the rows of one statement are judged together ([`crate::together`]). Identities
+//! that only test code (Eqs. 7, 19 to 23, full contact of a line) are tests, not claims. Area over force is
+//! judged where waves are resolved: [`crate::two_cases`].
 
 mod curves;
 mod ensemble;
@@ -23,10 +23,10 @@ pub(crate) use table::{CaseData, Cases, Data, Entry, Found, Row, entries};
 /// The commands whose claims `verify` judges, in the order of its table.
 pub(crate) const VERIFIED: [&str; 6] = ["fig3", "fig7", "fig4", "fig2", "fig6", "verify"];
 
-/// What the numbers of a command say of its claims.
+/// Judges the claims of a command by its numbers.
 ///
 /// # Errors
-/// What is solved for a claim alone, and an ensemble that the command does not have.
+/// Errors of solves for a claim alone; an ensemble that the command does not have.
 pub(crate) fn judged(command: &str, ensembles: &Ensembles<'_>) -> Result<Vec<Claim>> {
     let mut claims = Vec::new();
     for group in entries(command)?.chunk_by(|_, next| next.alternates) {
@@ -42,10 +42,10 @@ pub(crate) fn judged(command: &str, ensembles: &Ensembles<'_>) -> Result<Vec<Cla
     Ok(claims)
 }
 
-/// What an entry of the table is compared with.
+/// The numbers that an entry of the table is compared with.
 ///
 /// # Errors
-/// What a solver refuses; an ensemble that the command does not have.
+/// Errors of a solver; an ensemble that the command does not have.
 fn rows(ensembles: &Ensembles<'_>, entry: &'static Entry) -> Result<Vec<Row>> {
     let solid = || ensembles.of(Model::Bem3d);
     let line = || ensembles.of(Model::Mdr1d);
@@ -88,7 +88,7 @@ fn rows(ensembles: &Ensembles<'_>, entry: &'static Entry) -> Result<Vec<Row>> {
     })
 }
 
-/// What the figure of a command says of its claims, with these ensembles.
+/// Judges the claims of the figure of a command by these ensembles.
 ///
 /// # Errors
 /// As [`judged`].

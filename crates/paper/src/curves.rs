@@ -1,4 +1,4 @@
-//! What Figs. 2 and 6 have in common: k_bar over F_bar, files and picture.
+//! The common parts of Figs. 2 and 6: k_bar over F_bar, files and picture.
 
 use crate::claims;
 use crate::judged::Judged;
@@ -56,9 +56,9 @@ impl CurveFigure {
     }
 }
 
-/// The figure while it is solved: `name-so-far.csv`, `.svg`, `.png`, of coarser grids first, then of the
-/// surfaces that are whole. Another name than the figure's: what is there of an earlier run stays until this
-/// one is done.
+/// The figure while it is solved: `name-so-far.csv`, `.svg`, `.png`, first from coarser grids, then from the
+/// surfaces that are complete. The name differs from that of the figure, so that the files of an earlier run
+/// are kept until this one is done.
 struct SoFar<'a> {
     figure: &'a CurveFigure,
     run: &'a Run,
@@ -133,7 +133,7 @@ struct CurvePoint {
 /// The means of one fractal dimension.
 type CurvePoints = (f64, Vec<CurvePoint>);
 
-/// Reads the table of another run that is to be drawn under the curves, before anything is solved.
+/// Reads the table of another run that will be drawn below the curves, before anything is solved.
 ///
 /// # Errors
 /// As [`read`].
@@ -180,8 +180,8 @@ fn read(path: &Path, file: &CsvFile) -> Result<Vec<CurvePoints>> {
     Ok(curves)
 }
 
-/// Draws `name.svg` and `name.png` from a table of Fig. 2 or 6; `over` is a coarser run of the same figure,
-/// drawn beneath.
+/// Draws `name.svg` and `name.png` from a table of Fig. 2 or 6; `over` is a table of the same figure on a
+/// coarser grid, drawn below the curves.
 pub(crate) fn draw(name: &str, csv: &Path, over: Option<&Path>, out: &Path) -> Result<Vec<PathBuf>> {
     let file = CsvFile::read(csv)?;
     let curves = read(csv, &file)?;
@@ -253,8 +253,8 @@ fn above_floor(points: &[CurvePoint]) -> Vec<(f64, f64)> {
     points.iter().filter(|p| !p.below_floor).map(|p| (p.force, p.stiffness)).collect()
 }
 
-/// Whether each of these increasing loads has a mark: not a single load beside one of the regular loads,
-/// where two marks would lie on each other.
+/// Whether each of these increasing loads has a mark. A single load next to one of the regular loads has
+/// none, because two marks would overlap.
 fn apart(forces: &[f64]) -> Vec<bool> {
     let step = |a: f64, b: f64| (b / a).ln();
     let mut steps: Vec<f64> = forces.windows(2).map(|w| step(w[0], w[1])).collect();
@@ -272,7 +272,7 @@ fn apart(forces: &[f64]) -> Vec<bool> {
     kept
 }
 
-/// Eq. 12 where it is claimed to hold, `k_bar <= 0.18`, within the axes.
+/// Eq. 12 in the range in which the paper claims it, `k_bar <= 0.18`, within the axes.
 fn paper_law(d: f64, x: Axis, y: Axis) -> Vec<(f64, f64)> {
     let (x0, y0) = (x.ends().0, y.ends().0);
     let alpha = analytic::exponent_fit(d);

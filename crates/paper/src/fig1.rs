@@ -1,4 +1,4 @@
-//! Fig. 1: what the surfaces look like.
+//! Fig. 1: grey-scale maps of the surfaces.
 
 use crate::judged::Judged;
 use crate::{curves, words};
@@ -9,7 +9,7 @@ use runs::{CsvFile, Error, Progress, Result, files, threads_for_memory};
 use std::path::{Path, PathBuf};
 use surface_io::write_npy;
 
-/// Flags that decide what Fig. 1 holds.
+/// The flags on which Fig. 1 depends.
 pub const FLAGS: [Flag; 3] = [Flag::CELLS, Flag::FRACTAL_DIMENSIONS, Flag::SEED];
 
 /// Largest side of a map in the CSV.

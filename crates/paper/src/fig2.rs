@@ -19,7 +19,7 @@ pub(crate) const FIGURE: CurveFigure = CurveFigure {
 /// Source: Fig. 2 of the paper (2049 cells a side, 60 surfaces, F_bar from 1e-8 to 20).
 ///
 /// # Errors
-/// What the solver refuses, and files that cannot be written.
+/// Errors of the solver, and files that cannot be written.
 pub fn fig2(run: &Run, progress: &dyn Progress) -> Result<Judged> {
     Ok(FIGURE.reproduce(run, progress)?.0)
 }

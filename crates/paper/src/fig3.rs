@@ -34,7 +34,7 @@ pub(crate) const FIGURE: FittedFigure = FittedFigure {
 
 /// Fits both ensembles (solving what is not stored) and writes `fig3.csv`, `fig3.svg`, `fig3.png`.
 ///
-/// Source: Fig. 3 of the paper; Eq. 6 (`0.266 D_f`) and Eq. 24 (`1/(1 + H)`) beside.
+/// Source: Fig. 3 of the paper; Eq. 6 (`0.266 D_f`) and Eq. 24 (`1/(1 + H)`) are shown for comparison.
 ///
 /// # Errors
 /// As [`crate::fig2`] and [`crate::fig6`].

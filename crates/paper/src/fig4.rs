@@ -43,8 +43,8 @@ pub(crate) fn write(run: &Run, measured: &Measured) -> Result<Outcome> {
     Ok(Outcome::of("fig4", files, &[measured]))
 }
 
-/// Draws `fig4.svg` and `fig4.png` from the table: F_tilde over F_bar would be six curves on one diagonal,
-/// their ratio shows them apart.
+/// Draws `fig4.svg` and `fig4.png` from the table: F_tilde over F_bar would be six curves on one diagonal;
+/// their ratio distinguishes them.
 pub(crate) fn draw(csv: &Path, out: &Path) -> Result<Vec<PathBuf>> {
     let file = CsvFile::read(csv)?;
     let rows: Vec<(String, f64, f64, f64, bool)> = read_rows(csv, &file)?;

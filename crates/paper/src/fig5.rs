@@ -1,4 +1,4 @@
-//! Fig. 5: what the equivalent lines look like.
+//! Fig. 5: the equivalent lines.
 
 use crate::judged::Judged;
 use crate::{curves, words};
@@ -9,13 +9,13 @@ use runs::{CsvFile, Error, Progress, Result, threads_for_memory};
 use std::path::{Path, PathBuf};
 use surface_io::write_npy;
 
-/// Flags that decide what Fig. 5 holds.
+/// The flags on which Fig. 5 depends.
 pub const FLAGS: [Flag; 3] = [Flag::ELEMENTS, Flag::FRACTAL_DIMENSIONS, Flag::SEED];
 
 /// The paper's three lines, from top to bottom.
 const DIMENSIONS: [f64; 3] = [3.0, 2.5, 2.0];
 
-/// Bins of the CSV: two extremes each, more than a picture has pixels.
+/// Number of bins of the CSV, with two extremes each: more than a picture has pixels.
 const BINS: usize = 1000;
 
 /// Memory of drawing a line, bytes per element.

@@ -14,7 +14,7 @@ pub(crate) const FIGURE: CurveFigure =
 /// Source: Fig. 6 of the paper (2^20 elements, 500 lines).
 ///
 /// # Errors
-/// What the model refuses, and files that cannot be written.
+/// Errors of the model, and files that cannot be written.
 pub fn fig6(run: &Run, progress: &dyn Progress) -> Result<Judged> {
     Ok(FIGURE.reproduce(run, progress)?.0)
 }

@@ -25,7 +25,7 @@ pub(crate) const FIGURE: FittedFigure = FittedFigure {
 
 /// Fits both ensembles (solving what is not stored) and writes `fig7.csv`, `fig7.svg`, `fig7.png`.
 ///
-/// Source: Fig. 7 of the paper; Eq. 11 (`0.18/0.086^(0.266 D_f)`) beside.
+/// Source: Fig. 7 of the paper; Eq. 11 (`0.18/0.086^(0.266 D_f)`) is shown for comparison.
 ///
 /// # Errors
 /// As [`crate::fig2`] and [`crate::fig6`].

@@ -1,4 +1,4 @@
-//! What Figs. 3 and 7 have in common: fitted values over the fractal dimension.
+//! The common parts of Figs. 3 and 7: fitted values over the fractal dimension.
 
 use crate::claim::Estimate;
 use crate::claims::{self, Law};
@@ -14,7 +14,7 @@ use runs::{CsvFile, Error, Progress, Result, Store};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 
-/// Points of one fractal dimension stand this far from each other, so that none hides another.
+/// Distance between the points of one fractal dimension, so that none hides another.
 const BESIDE: f64 = 0.014;
 
 /// A figure of a parameter of `k_bar = zeta F_bar^alpha` over the fractal dimension.
@@ -24,7 +24,7 @@ pub(crate) struct FittedFigure {
     /// Names of the columns of the parameter and of its standard error.
     pub columns: [&'static str; 2],
     pub value: fn(&FittedPowerLaw) -> (f64, Option<f64>),
-    /// The parameter with all that its 95 % interval holds.
+    /// The parameter with its 95 % interval.
     pub estimate: fn(&Law) -> Estimate,
     pub formulas: &'static [Formula],
     /// Title of the picture and label of its axis.
@@ -35,9 +35,9 @@ pub(crate) struct FittedFigure {
 
 /// A formula of the paper.
 pub(crate) struct Formula {
-    /// In the column of models.
+    /// Its name in the column of models.
     pub name: &'static str,
-    /// In the column of notes.
+    /// Its text in the column of notes.
     pub note: &'static str,
     /// The parameter at D_f.
     pub of: fn(f64) -> f64,
@@ -45,20 +45,20 @@ pub(crate) struct Formula {
     pub style: LineStyle,
 }
 
-/// The ensembles of both models, surfaces first; what is not stored is solved.
+/// The ensembles of both models, surfaces first; they are solved where they are not stored.
 pub(crate) fn both(run: &Run, store: &Store, progress: &dyn Progress) -> Result<[Measured; 2]> {
     let [solid, line] = Model::BOTH.map(|model| measure(model, run, store, progress));
     Ok([solid?, line?])
 }
 
-/// A row of the table: a fit, why there is none, or a formula.
+/// A row of the table: a fit, the reason why there is none, or a formula.
 #[derive(Default)]
 struct FittedRow {
     model: &'static str,
     fractal_dimension: f64,
     value: Option<f64>,
     error: Option<f64>,
-    /// 95 %: scatter, window and grid.
+    /// 95 % half-width from scatter, window and grid.
     half_width: Option<f64>,
     /// The parameter over the window that all fractal dimensions of the model resolve, and its standard
     /// error.
@@ -154,8 +154,8 @@ impl FittedFigure {
 }
 
 impl FittedFigure {
-    /// Draws `name.svg` and `name.png` from the table; `finer` is a table of Fig. 2 whose fitted laws stand
-    /// beside.
+    /// Draws `name.svg` and `name.png` from the table; `finer` is a table of Fig. 2 on a finer grid, whose
+    /// fitted laws are drawn for comparison.
     pub fn draw(&self, csv: &Path, finer: Option<&Path>, out: &Path) -> Result<Vec<PathBuf>> {
         let file = CsvFile::read(csv)?;
         let rows: Vec<FittedPoint> = read_rows(csv, &file)?;
@@ -202,7 +202,7 @@ impl FittedFigure {
     }
 }
 
-/// A fitted value, or one of a formula, as the table has it.
+/// A fitted value, or one of a formula, read from the table.
 #[derive(Debug, Clone, Default, Deserialize)]
 struct FittedPoint {
     model: String,
@@ -244,7 +244,7 @@ fn laws_of_means(path: &Path, file: &CsvFile) -> Result<Vec<(f64, FittedPowerLaw
     Ok(laws)
 }
 
-/// Both models, and a finer run where there is one, with their error bars and the windows of their fits.
+/// Both models and, where given, a run on a finer grid, with their error bars and the windows of their fits.
 fn draw_points(picture: &mut Picture, all: &[(String, Vec<FittedPoint>)]) {
     let styles = [
         ("#0b559f", Mark::Solid(MarkShape::Circle), -1.0),
@@ -269,7 +269,7 @@ fn draw_points(picture: &mut Picture, all: &[(String, Vec<FittedPoint>)]) {
     }
 }
 
-/// Where the fits of a series begin and end.
+/// The ranges of the fits of a series.
 fn window(points: &[FittedPoint]) -> String {
     let (Some(first), Some(last)) = (points.first(), points.last()) else { return String::new() };
     let (Some(a), Some(b), Some(end)) = (first.force_bar_min, last.force_bar_min, first.force_bar_max) else {
@@ -293,7 +293,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn means_are_fitted_where_every_surface_touches_enough() {
+    fn means_are_fitted_where_every_surface_has_enough_cells_in_contact() {
         let dir = tempfile::tempdir().unwrap();
         let path = dir.path().join("fig2.csv");
         let mut text =

@@ -1,4 +1,4 @@
-//! What a command of the paper leaves behind.
+//! The outcome of a command of the paper.
 
 use crate::claim::Claim;
 use evaluation::Outcome;
@@ -8,7 +8,7 @@ use std::ops::Deref;
 #[derive(Debug, Clone)]
 pub struct Judged {
     outcome: Outcome,
-    /// The paper's claims beside what was found.
+    /// The paper's claims, compared with the numbers found here.
     pub claims: Vec<Claim>,
 }
 

@@ -2,17 +2,17 @@
 //! comparison.
 //!
 //! [`fig1`] .. [`fig7`] take the parameters of one command ([`evaluation::Run`]), compute, write their CSV,
-//! draw their picture from that CSV, and give an [`evaluation::Outcome`] with the paper's own claims beside
-//! the numbers ([`Judged`], [`Claim`]). [`verify`] judges them all, [`reproduce_all`] makes everything,
-//! [`check_reference`] compares a small run with stored numbers, [`redraw`] renews pictures from their
-//! tables.
+//! draw their picture from that CSV, and return an [`evaluation::Outcome`] with the paper's own claims
+//! compared with the numbers ([`Judged`], [`Claim`]). [`verify`] judges all claims, [`reproduce_all`] makes
+//! all figures and judges the claims, [`check_reference`] compares a small run with stored numbers, and
+//! [`redraw`] draws pictures again from their tables.
 //!
 //! Normalisation, means, jobs and the store are those of `evaluation`; CSV files those of `runs`.
 //!
 //! # What it does not do
 //!
-//! No mechanics of its own, no argument parsing (that is `xtask`), no figure beyond the paper's but
-//! [`two_cases`], [`exponent()`] and its sequel for friction, [`partial_slip()`].
+//! It has no mechanics of its own, no argument parsing (see `xtask`), and no figures beyond those of the
+//! paper except [`two_cases`], [`exponent()`] and its sequel for friction, [`partial_slip()`].
 //!
 //! ```no_run
 //! use evaluation::{Preset, Request, Run};

@@ -7,14 +7,14 @@ use std::path::{Path, PathBuf};
 /// Tables of other runs that some pictures show as well.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Beside {
-    /// A coarser table of the same figure, drawn beneath Fig. 2 or 6.
+    /// A table of the same figure on a coarser grid, drawn below the curves of Fig. 2 or 6.
     pub over: Option<PathBuf>,
-    /// A finer table of Fig. 2, whose fitted laws stand in Figs. 3 and 7.
+    /// A table of Fig. 2 on a finer grid, whose fitted laws are drawn in Figs. 3 and 7.
     pub finer: Option<PathBuf>,
 }
 
 /// Draws every picture of a directory again from the tables there: those of the figures, of the two cases, of
-/// what accuracy costs (its text as well) and of benches that have a picture. No table is touched.
+/// the study of accuracy (with its text) and of benches that have a picture. The tables are not changed.
 ///
 /// # Errors
 /// [`Error::File`] for a directory without such a table, for a table that cannot be read, and for pictures that cannot be written.

@@ -1,4 +1,4 @@
-//! A small run against stored numbers: what continuous integration compares.
+//! Compares a small run with stored numbers, for continuous integration.
 
 use crate::{fig2, fig6};
 use evaluation::{Request, Run};
@@ -36,10 +36,10 @@ fn small(out: PathBuf) -> Result<Run> {
 }
 
 /// Runs Figs. 2 and 6 at a small fixed size in `scratch` and compares with `reference/quick-fig2.csv` and
-/// `quick-fig6.csv`; with `bless` it rewrites those instead. Gives one line per difference.
+/// `quick-fig6.csv`; with `bless` it rewrites those instead. Returns one line per difference.
 ///
 /// # Errors
-/// What a figure refuses; a reference file that is missing or no table.
+/// Errors of a figure; a reference file that is missing or not a table.
 pub fn check_reference(
     reference: &Path,
     scratch: &Path,

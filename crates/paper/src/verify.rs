@@ -1,4 +1,4 @@
-//! Every claim of the paper beside what was found.
+//! Compares every claim of the paper with the numbers found here.
 
 use crate::claim::{Claim, claims_table, markdown, short_table, sort, together};
 use crate::claims;
@@ -10,8 +10,8 @@ use runs::{Progress, Result, files, write_csv};
 /// Judges every statement (solving what is not stored) and writes `verify.csv`, `verify.md` and the short
 /// `verify-table.md`, contradictions first.
 ///
-/// The ratio of run times is on the terminal and, in seconds, in the manifest: the files have the same bytes
-/// on every machine and for any number of threads.
+/// The ratio of run times is only printed on the terminal and, in seconds, written to the manifest, so that
+/// the other files have the same bytes on every machine and for any number of threads.
 ///
 /// # Errors
 /// As [`crate::fig2`] and [`crate::fig6`].

@@ -1,4 +1,4 @@
-//! What the labels of several pictures have in common.
+//! Labels that several pictures share.
 
 use runs::CsvFile;
 
@@ -19,8 +19,8 @@ pub(crate) fn title(file: &CsvFile) -> String {
     file.comments.first().cloned().unwrap_or_default()
 }
 
-/// Cells and surfaces of a model, from the header that `evaluation::describe` wrote; `None` where it names
-/// none.
+/// Cells and surfaces of a model, from the header that `evaluation::describe` wrote; `None` where the header
+/// names none.
 pub(crate) fn ensemble(file: &CsvFile, model: &str) -> Option<String> {
     let start = format!("{model}: ");
     let line = file.comments.iter().find_map(|c| c.strip_prefix(&start).filter(|c| c.contains("per D_f")))?;
@@ -50,7 +50,7 @@ pub(crate) fn elements(n: u64) -> String {
     }
 }
 
-/// What stands behind a flag in the command that made a table.
+/// The value of a flag in the command that made a table.
 pub(crate) fn flag<'a>(file: &'a CsvFile, name: &str) -> Option<&'a str> {
     let command = file.comments.iter().find_map(|c| c.strip_prefix("command: "))?;
     command.split_whitespace().skip_while(|w| *w != name).nth(1)
@@ -61,7 +61,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn headers_say_what_was_solved() {
+    fn headers_name_cells_and_surfaces() {
         let file = CsvFile {
             comments: vec![
                 "Fig. 2: curves".into(),

@@ -1,4 +1,4 @@
-//! Tiny runs of real solves: resume, threads, damage, files.
+//! Tiny runs of real solves: resumption, threads, damaged files, output files.
 
 #![allow(clippy::unwrap_used)] // Helpers outside #[test] functions.
 
@@ -60,7 +60,7 @@ fn results(out: &Path) -> (PathBuf, Vec<String>) {
 const TABLES: [&str; 2] = ["fig2.csv", "fig2-samples.csv"];
 
 #[test]
-fn threads_change_no_byte_and_the_seed_does() {
+fn results_depend_on_the_seed_and_not_on_threads() {
     let (a, b, c) =
         (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
     let one = Run::new(&Request { threads: Some(1), ..request(a.path()) }).unwrap();
@@ -119,7 +119,7 @@ fn other_figures_reuse_results_and_other_parameters_do_not() {
 }
 
 #[test]
-fn every_figure_leaves_its_files() {
+fn every_figure_writes_its_files() {
     let dir = tempfile::tempdir().unwrap();
     let run = run(dir.path());
     let figures = [fig1, fig2, fig3, fig4, fig5, fig6, fig7, verify];
@@ -213,7 +213,7 @@ fn means_have_budgets_where_the_grid_can_be_halved() {
 }
 
 #[test]
-fn a_wish_is_met_or_refused_with_its_price() {
+fn an_accuracy_target_is_met_or_refused_with_its_cost() {
     let dir = tempfile::tempdir().unwrap();
     let request = Request {
         forces: Some("1,20".to_owned()),

@@ -1,5 +1,5 @@
-//! A map small enough to try every contact set: the one that satisfies the contact conditions against the
-//! solver's.
+//! A map that is small enough to try every contact set: compares the one that satisfies the contact
+//! conditions with that of the solver.
 //!
 //! `cargo run -p fractal-contact-stability --example every_contact_set`
 //!

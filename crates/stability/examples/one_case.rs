@@ -1,4 +1,4 @@
-//! One hard case of the registry, solved and reported: why it is hard, what is asserted, what was found.
+//! Solves one hard case of the registry and prints why it is hard, what is asserted and what was found.
 //!
 //! `cargo run -p fractal-contact-stability --example one_case -- NAME` (without a name: a checkerboard)
 //!

@@ -1,11 +1,11 @@
-//! One hard case, and what came of it.
+//! One hard case, and its result.
 
 use crate::ledger::Ledger;
 use contact_model::Result;
 use rayon::prelude::*;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-/// How much work is put into a case.
+/// The size of the cases.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Effort {
     /// All cases together take less than a minute of processor time.
@@ -29,25 +29,25 @@ impl Effort {
     }
 }
 
-/// A hard case: it is solved for real, and its assertions are physical or exact.
+/// A hard case: a real solve with physical or exact assertions.
 #[derive(Debug, Clone, Copy)]
 pub struct Case {
     /// Short name, the key of the table.
     pub name: &'static str,
     /// Why a solver may fail here.
     pub why: &'static str,
-    /// What must hold besides the certificate of each state.
+    /// What is asserted besides the certificate of each state.
     pub asserted: &'static str,
     /// Largest figure that passes; 0 where bits or counts are compared.
     pub bound: f64,
-    /// Solves it and enters what was found.
+    /// Solves the case and records the deviations.
     pub(crate) solve: fn(&mut Ledger, Effort) -> Result<()>,
 }
 
 impl Case {
     /// Solves the case and judges it.
     ///
-    /// An error of a model, and even a panic, is a failed case: the others still run.
+    /// An error of a model, or even a panic, counts as a failed case, and the other cases still run.
     pub fn run(&self, effort: Effort) -> CaseResult {
         let mut ledger = Ledger::default();
         let solved = catch_unwind(AssertUnwindSafe(|| (self.solve)(&mut ledger, effort)));
@@ -62,12 +62,12 @@ impl Case {
     }
 }
 
-/// What came of a case.
+/// The result of a case.
 #[derive(Debug, Clone)]
 pub struct CaseResult {
     /// The case.
     pub case: Case,
-    /// The largest deviation found, dimensionless; `None` where it is no finite number.
+    /// The largest deviation found, dimensionless; `None` where it is not a finite number.
     pub figure: Option<f64>,
     /// Assertions that do not hold, in words, the first few.
     pub broken: Vec<String>,
@@ -85,8 +85,8 @@ impl CaseResult {
     }
 }
 
-/// Solves cases in parallel; threads without a case help inside the others. `found` hears of each as it ends.
-/// The verdicts come in the order of the cases.
+/// Solves cases in parallel; threads without a case help the others. `found` is called with each result. The
+/// results are returned in the order of the cases.
 pub fn run(cases: &[Case], effort: Effort, found: &(dyn Fn(&CaseResult) + Sync)) -> Vec<CaseResult> {
     let one = |case: &Case| {
         let verdict = case.run(effort);

@@ -1,4 +1,4 @@
-//! The slow, obviously right reference implementation: try every contact set.
+//! The slow and simple reference implementation: it tries every contact set.
 
 use crate::plain::{PlainSum, eliminate};
 use contact_model::{HeightMap, Load};
@@ -16,14 +16,14 @@ pub struct SmallContact {
     pub approach: f64,
     /// `1' K^-1 1` on the contact set.
     pub stiffness: f64,
-    /// Smallest of the positive forces over the mean one and positive gaps over the approach: how far from a
-    /// tie.
+    /// Distance from a tie: the smallest of the positive forces over the mean one and of the positive gaps
+    /// over the approach.
     pub margin: f64,
 }
 
 /// All contact sets among the `cells` (at most 16; all others must be out of reach) that satisfy `p > 0`
-/// inside and `g > 0` outside, by trying every one of them with Gauss's elimination. There should be exactly
-/// one.
+/// inside and `g > 0` outside, by trying every one of them with Gauss's elimination. Exactly one should be
+/// found.
 ///
 /// Cost O(2^n n^3).
 ///

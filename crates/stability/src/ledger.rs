@@ -1,11 +1,11 @@
-//! What a case found.
+//! The findings of a case.
 
 use contact_model::{ContactState, Error, Field, Result};
 
-/// Broken assertions that are kept in words.
+/// Largest number of broken assertions that are kept in words.
 const KEPT: usize = 5;
 
-/// Collects what a case finds: the largest deviation, and assertions that do not hold.
+/// Collects the findings of a case: the largest deviation, and assertions that do not hold.
 #[derive(Debug, Default)]
 pub struct Ledger {
     figure: f64,
@@ -14,7 +14,7 @@ pub struct Ledger {
 }
 
 impl Ledger {
-    /// Enters a deviation, dimensionless and >= 0. A NaN stays the figure whatever follows.
+    /// Records a deviation, dimensionless and >= 0. After a NaN the figure stays NaN.
     pub fn enter(&mut self, deviation: f64) {
         self.entries += 1;
         if deviation.is_nan() || deviation > self.figure {
@@ -22,26 +22,26 @@ impl Ledger {
         }
     }
 
-    /// Enters a number of things that differ.
+    /// Records a number of differing items.
     pub fn count(&mut self, differing: usize) {
         self.enter(differing as f64);
     }
 
-    /// Enters the relative deviation of a number from the exact one.
+    /// Records the relative deviation of a number from the exact one.
     pub fn near(&mut self, what: &str, found: f64, exact: f64) {
         let deviation = if exact.abs() > 0.0 { ((found - exact) / exact).abs() } else { found.abs() };
         self.must(deviation.is_finite(), || format!("{what}: {found} beside {exact}"));
         self.enter(deviation);
     }
 
-    /// Notes an assertion; `what` says in words what does not hold.
+    /// Records an assertion; `what` describes its failure in words.
     pub fn must(&mut self, holds: bool, what: impl FnOnce() -> String) {
         if !holds && self.broken.len() < KEPT {
             self.broken.push(what());
         }
     }
 
-    /// States that a state has so many cells in contact.
+    /// Asserts the number of cells in contact of a state.
     pub fn contact_cells(&mut self, state: &ContactState, expected: usize) {
         let (force, report) = (state.force, &state.report);
         self.must(report.contact_cells == Some(expected), || {
@@ -49,13 +49,14 @@ impl Ledger {
         });
     }
 
-    /// States that a certificate is within a tolerance.
+    /// Asserts that a certificate is within a tolerance.
     pub fn meets(&mut self, state: &ContactState, tolerance: f64) {
         let (force, report) = (state.force, &state.report);
         self.must(report.certificate.meets(tolerance), || format!("F {force}: {report:?}"));
     }
 
-    /// States that a state has so many cells in contact, and enters the relative deviation of its stiffness.
+    /// Asserts the number of cells in contact of a state, and records the relative deviation of its
+    /// stiffness.
     ///
     /// # Errors
     /// [`Error::Shape`] where it has none.
@@ -65,13 +66,13 @@ impl Ledger {
         Ok(())
     }
 
-    /// Enters the deviation of each value of a field from the exact one, over `largest`.
+    /// Records the deviation of each value of a field from the exact one, over `largest`.
     pub fn field<'a>(&mut self, found: &[f64], exact: impl IntoIterator<Item = &'a f64>, largest: f64) {
         found.iter().zip(exact).for_each(|(a, b)| self.enter((a - b).abs() / largest));
     }
 
-    /// Enters the deviations of force, approach and stiffness of one state from another; the contact must
-    /// have as many cells.
+    /// Records the deviations of force, approach and stiffness of one state from another, and asserts that
+    /// both have the same number of cells in contact.
     ///
     /// # Errors
     /// [`Error::Shape`] where a state lacks one of them.
@@ -98,7 +99,7 @@ impl Ledger {
         self.entries
     }
 
-    /// The figure, where it is a number, and what is broken.
+    /// The figure, where it is a number, and the broken assertions.
     pub(crate) fn close(self) -> (Option<f64>, Vec<String>) {
         (Some(self.figure).filter(|f| f.is_finite()), self.broken)
     }

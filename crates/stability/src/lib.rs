@@ -1,24 +1,24 @@
-//! Hard cases of contact mechanics, each solved for real and judged by a certificate and a physical or exact
-//! result.
+//! Hard cases of contact mechanics: each is solved, and its result is compared with a physical or exact one.
 //!
 //! # What it computes
 //!
-//! [`cases`] is the registry: what solvers of this field trip over (one cell, ties, full contact, loads over sixteen decades, units at
-//! the ends of f64, misleading warm starts, limits). A [`Case`] says why it is hard and what is asserted;
-//! [`Case::run`] solves it and gives a [`CaseResult`]: the largest deviation found ([`CaseResult::figure`]),
-//! the bound that it must keep, and assertions that do not hold. That a solver comes back is never an
-//! assertion: each case compares with a closed form, a symmetry, a bound of mechanics or a reference
-//! implementation.
+//! [`cases`] is the registry of problems on which solvers of this field fail (one cell, ties, full contact,
+//! loads over sixteen decades, units at the ends of f64, misleading warm starts, limits). A [`Case`] says why
+//! it is hard and what is asserted; [`Case::run`] solves it and returns a [`CaseResult`]: the largest
+//! deviation found ([`CaseResult::figure`]), the bound of this deviation, and the assertions that do not
+//! hold. It is not enough that a solver returns: each case compares its result with a closed form, a
+//! symmetry, a bound of mechanics or a reference implementation.
 //!
 //! # Conventions
 //!
-//! * Figures are relative deviations, or numbers of things that differ where bits are compared (bound 0).
-//! * Besides its certificate a state has a witness that shares nothing with the solver but Love's kernel: the
-//!   contact conditions and the force from plain sums over pairs (free boundaries, modulus 1, up to 129 cells
-//!   a side), the stiffness by Gauss's elimination (up to 220 cells).
-//! * A step of friction has a witness that shares nothing with the solver: Coulomb's conditions, forces, slip and
-//!   dissipated energy from plain sums of a tangential kernel that is integrated by Gauss's rule.
-//! * A case that fails, with an error or a panic, is a row like any other; the others still run.
+//! * Figures are relative deviations or, where bits are compared, the number of differing values (bound 0).
+//! * In addition to its certificate a state is checked by a reference implementation that shares only Love's
+//!   kernel with the solver: the contact conditions and the force from plain sums over pairs (free
+//!   boundaries, modulus 1, up to 129 cells a side), the stiffness by Gauss's elimination (up to 220 cells).
+//! * A step of friction is checked by a reference implementation that shares nothing with the solver:
+//!   Coulomb's conditions, forces, slip and dissipated energy from plain sums of a tangential kernel that is
+//!   integrated by Gauss's rule.
+//! * A case that fails, with an error or a panic, also has a row, and the other cases still run.
 //!
 //! # How accurate
 //!

@@ -12,7 +12,7 @@ pub fn map(cells: usize, side: f64, h: impl Fn(usize, usize) -> f64) -> Result<H
     HeightMap::new(cells, side, heights)
 }
 
-/// A scene of a map with modulus 1 that asks for the stiffness.
+/// A scene of a map with modulus 1 that requests the stiffness.
 pub fn scene(map: HeightMap) -> Scene {
     Scene::new(Surface::Heights(Arc::new(map)), 1.0)
 }
@@ -33,9 +33,9 @@ pub fn rough_map(fractal_dimension: f64, cells: usize, seed: u64) -> Result<Heig
     surface_gen::self_affine_map(&rough(fractal_dimension)?, cells, seed)
 }
 
-/// Maps on which solvers have failed, of `cells` x `cells` and drawn from numbers in [0, 1): white noise (0),
-/// the same in steps (1), stripes (2), a tilted plane (3), a few spikes (4), one sharp summit (5), heights
-/// over twenty decades (any other kind).
+/// Maps of `cells` x `cells` on which solvers have failed, made from random numbers in [0, 1). The kinds are
+/// white noise (0), the same in steps (1), stripes (2), a tilted plane (3), a few spikes (4), one sharp
+/// summit (5), heights over twenty decades (any other kind).
 ///
 /// # Errors
 /// Those of [`HeightMap::new`].
@@ -56,7 +56,8 @@ pub fn hard_map(kind: u8, cells: usize, noise: &[f64]) -> Result<HeightMap> {
     })
 }
 
-/// The map with its cells unchanged in the middle of `factor` times as many a side, all new ones at `height`.
+/// A map with `factor` times as many cells along a side: the given map in the middle, and all other cells at
+/// `height`.
 ///
 /// # Errors
 /// Those of [`HeightMap::new`].

@@ -1,4 +1,4 @@
-//! The slow, obviously right reference implementations: sums over pairs, Gauss's elimination, projected
+//! The slow and simple reference implementations: sums over pairs, Gauss's elimination, projected
 //! Gauss-Seidel.
 
 use bem3d::love::influence_of_rectangle;
@@ -12,8 +12,8 @@ const SETTLED: f64 = 1e-15;
 const SWEEPS: usize = 20_000;
 
 /// Periods of the images that a periodic kernel sums up on each side, for an extrapolation to infinitely
-/// many. What images beyond m periods add to a difference of the kernel is a series of odd powers of 1/(m +
-/// 1/2): four sums leave 1/(m + 1/2)^7.
+/// many. The contribution of images beyond m periods to a difference of the kernel is a series of odd powers
+/// of 1/(m + 1/2); with four sums the remaining error is of the order 1/(m + 1/2)^7.
 const IMAGES: [isize; 4] = [3, 6, 12, 24];
 
 /// Displacements of the cells of a grid under forces on them, by the plain sum, for modulus 1.
@@ -27,7 +27,7 @@ pub struct PlainSum {
 
 impl PlainSum {
     /// A table of all lags of a grid of `cells` (columns, rows) with sides `dx`, `dy`, on a half-space that
-    /// is unloaded outside.
+    /// is unloaded outside the grid.
     pub fn new([columns, rows]: [usize; 2], [dx, dy]: [f64; 2]) -> Self {
         let (unit, stretch) = scales(dx, dy);
         let lag = |i: usize| influence_of_rectangle(i % columns, i / columns, stretch) / (PI * unit);
@@ -39,10 +39,10 @@ impl PlainSum {
         Self::new([map.columns(), map.rows()], [map.dx(), map.dy()])
     }
 
-    /// The table for a map that repeats itself, from sums of Love's kernel over its images: no Fourier
-    /// transform and no spectrum.
+    /// The table for a periodic map, from sums of Love's kernel over its images: no Fourier transform and no
+    /// spectrum.
     ///
-    /// The sum has no limit but its differences have one; the kernel is counted from its smallest value.
+    /// The sum diverges but its differences converge; the kernel is measured from its smallest value.
     /// Accuracy about 1e-10 of the largest one. Cost: some 3000 influence coefficients a lag, more for long
     /// rectangles.
     pub fn periodic(map: &HeightMap) -> Self {
@@ -90,7 +90,7 @@ impl PlainSum {
     }
 }
 
-/// Sums of a kernel over the images of a map that repeats itself, at all lags, less that at no lag.
+/// Sums of a kernel over the images of a periodic map at all lags, less the sum at lag zero.
 pub(crate) fn images(map: &HeightMap, kernel: impl Fn(isize, isize) -> f64) -> Vec<f64> {
     let (columns, rows) = (map.columns(), map.rows());
     // As many images in each direction as make about a square.
@@ -143,7 +143,7 @@ pub struct Relaxed {
 }
 
 /// The state at an approach by projected Gauss-Seidel: each cell in turn gets the force that closes its gap,
-/// if that is no pull.
+/// or zero if that force would be negative.
 ///
 /// No guess, no contact set, no transform: slow and independent of everything that `bem3d` does. Cost O(n^2)
 /// a sweep and in memory for n cells within reach; a few hundred sweeps on 33 x 33 cells, thousands where a
@@ -155,8 +155,8 @@ pub fn relaxed(map: &HeightMap, approach: f64) -> Relaxed {
     relaxed_by(&PlainSum::of(map), map, approach)
 }
 
-/// The same with a given kernel; that of a periodic map may be counted from any value that leaves it
-/// positive, and the approach with it.
+/// The same with a given kernel. That of a periodic map may have any constant added that leaves it positive,
+/// which changes the approach accordingly.
 ///
 /// # Panics
 /// As [`relaxed`].

@@ -1,4 +1,4 @@
-//! Solves with a witness.
+//! Solves that are checked by the reference implementation.
 
 use crate::ledger::{Ledger, approach, pressure, stiffness};
 use crate::maps::scene;
@@ -11,12 +11,13 @@ use std::cell::Cell;
 
 /// Tolerance of the solves.
 pub(crate) const TOLERANCE: f64 = 1e-10;
-/// Two solves of one state at [`TOLERANCE`]: certificates count gaps in rms heights, approaches here are down
-/// to a thousandth of that.
+/// Bound of the difference between two solves of one state at [`TOLERANCE`]: certificates measure gaps in rms
+/// heights, and approaches here are down to a thousandth of that.
 pub(crate) const SAME: f64 = 1e-7;
-/// The approach may be off by so many tolerances of the rms height (`Bem3d::tolerance`).
+/// Largest error of the approach, in tolerances times the rms height (`Bem3d::tolerance`).
 const LEFT_OPEN: f64 = 10.0;
-/// The witness may find so many times the tolerance: its sums round differently.
+/// Largest residual of the reference implementation as a multiple of the tolerance, as its sums round
+/// differently.
 const WITNESS: f64 = 2.0;
 /// Rounding of sums over a few thousand cells, relative to the largest term.
 const ROUNDING: f64 = 1e-12;
@@ -26,26 +27,26 @@ const LARGEST_SET: usize = 220;
 /// Elimination of a set of that size.
 const ELIMINATED: f64 = 1e-9;
 
-/// The solver that cases are about.
+/// The solver that the cases test.
 pub(crate) fn tight() -> Bem3d {
     Bem3d { tolerance: TOLERANCE, ..Bem3d::default() }
 }
 
-/// A scene of a map with everything that the witness looks at.
+/// A scene of a map with all outputs that the reference implementation checks.
 pub(crate) fn watched(map: &HeightMap) -> Scene {
     let mut scene = scene(map.clone());
     (scene.outputs.area, scene.outputs.pressure) = (true, true);
     scene
 }
 
-/// The scene of [`watched`], repeated without end in both directions.
+/// The scene of [`watched`] with periodic boundaries.
 pub(crate) fn watched_periodic(map: &HeightMap) -> Scene {
     let mut scene = watched(map);
     scene.effects.boundary = Boundary::Periodic;
     scene
 }
 
-/// Says stop when it was asked more often than this.
+/// A stop function that requests a stop after this number of calls.
 pub(crate) fn stop_after(patience: usize) -> impl Fn() -> bool {
     let asked = Cell::new(0_usize);
     move || asked.replace(asked.get() + 1) >= patience
@@ -64,7 +65,7 @@ pub(crate) fn contact_set(state: &ContactState) -> Result<Vec<usize>> {
     Ok((0..pressure.len()).filter(|&i| pressure[i] > 0.0).collect())
 }
 
-/// Solves one load from nothing and has the witness look at the state.
+/// Solves one load from a cold start and checks the state by the reference implementation.
 pub(crate) fn press(ledger: &mut Ledger, map: &HeightMap, load: Load) -> Result<ContactState> {
     press_by(ledger, &tight(), map, load)
 }
@@ -80,7 +81,8 @@ pub(crate) fn press_by(
     press_again(ledger, &mut *contact, model.tolerance, map, load)
 }
 
-/// The same with a contact that may remember other loads; it must have been prepared with [`watched`].
+/// The same with a contact that may have solved other loads before; it must have been prepared with
+/// [`watched`].
 pub(crate) fn press_again(
     ledger: &mut Ledger,
     contact: &mut dyn PreparedContact,
@@ -93,7 +95,7 @@ pub(crate) fn press_again(
     Ok(state)
 }
 
-/// One load by factors and by iteration, each with its witness; they must agree.
+/// Solves one load by factorisation and by iteration and checks each; the two must agree.
 pub(crate) fn press_both(ledger: &mut Ledger, map: &HeightMap, load: Load) -> Result<ContactState> {
     let one = press(ledger, map, load)?;
     let other = press_by(ledger, &Bem3d { method: Method::Iterative, ..tight() }, map, load)?;
@@ -167,8 +169,8 @@ pub(crate) fn witness(
     Ok(())
 }
 
-/// Compares a state at an approach with the one that relaxation finds: contact set exactly; force and
-/// stiffness enter the figure.
+/// Compares a state at an approach with that of relaxation: the contact set has to be equal, and the
+/// deviations of force and stiffness are recorded.
 pub(crate) fn against_relaxation(ledger: &mut Ledger, map: &HeightMap, d: f64) -> Result<()> {
     let state = press_both(ledger, map, Load::Approach(d))?;
     let slow = relaxed(map, d);

@@ -3,9 +3,9 @@
 //!
 //! A traction q on a cell displaces by `1/(pi E*)` times the integral over the cell of a tensor that is
 //! homogeneous of degree -1 in the distance: `f = 1/r + c x^2/r^3` and its like, with `c = E* sum nu/(2 G)`
-//! (Cerruti; Johnson, Contact Mechanics (1985), Eq. 3.75). By Euler's theorem `div((x, y) f) = 2 f - f = f`, so
-//! that the integral is the one along the boundary of the cell, of `f (x, y) . n`. Gauss's rule takes it: neither
-//! Love's sums over corners nor those of `bem3d` are used.
+//! (Cerruti; Johnson, Contact Mechanics (1985), Eq. 3.75). By Euler's theorem `div((x, y) f) = 2 f - f = f`,
+//! so that the integral equals that of `f (x, y) . n` along the boundary of the cell. It is evaluated by
+//! Gauss's rule, without Love's sums over corners or those of `bem3d`.
 
 use crate::plain::{eliminate, images};
 use contact_model::{Body, HeightMap, Pair, Result};
@@ -18,7 +18,8 @@ const GAUSS: [(f64, f64); 4] = [
     (0.796_666_477_413_626_7, 0.222_381_034_453_374_48),
     (0.960_289_856_497_536_3, 0.101_228_536_290_376_26),
 ];
-/// Longest piece of an edge that the rule takes, in distances of the piece: leaves 1e-14.
+/// Longest piece of an edge for one application of the rule, in units of the distance of the piece: the error
+/// is about 1e-14.
 const PIECE: f64 = 0.5;
 /// Over-relaxation of the projected sweeps: below 2 each of them lowers the energy.
 const OVER: f64 = 1.5;
@@ -51,8 +52,8 @@ pub struct PlainShear {
 }
 
 impl PlainShear {
-    /// A table of all lags of a grid of `cells` (columns, rows) with sides `dx`, `dy`, on bodies of the constant
-    /// [`compliance`] that are unloaded outside.
+    /// A table of all lags of a grid of `cells` (columns, rows) with sides `dx`, `dy`, on bodies with the
+    /// constant [`compliance`] that are unloaded outside the grid.
     pub fn new([columns, rows]: [usize; 2], [dx, dy]: [f64; 2], compliance: f64) -> Self {
         let lag = |i: usize| {
             let at = [(i % columns) as f64 * dx, (i / columns) as f64 * dy];
@@ -66,8 +67,8 @@ impl PlainShear {
         Self::new([map.columns(), map.rows()], [map.dx(), map.dy()], compliance)
     }
 
-    /// The table for a map that repeats itself, by sums over its images; displacements are counted from their
-    /// mean. Accuracy and cost: as [`crate::PlainSum::periodic`], for square maps.
+    /// The table for a periodic map, by sums over its images; displacements are measured from their mean.
+    /// Accuracy and cost: as [`crate::PlainSum::periodic`], for square maps.
     pub fn periodic(map: &HeightMap, compliance: f64) -> Self {
         let (columns, rows) = (map.columns(), map.rows());
         let sides = [map.dx(), map.dy()];
@@ -172,7 +173,7 @@ pub struct Dragged<'a> {
     pub forces: Vec<[f64; 2]>,
     /// Tangential displacement of the bodies.
     pub displacement: [f64; 2],
-    /// What friction has dissipated.
+    /// Energy that friction has dissipated.
     pub dissipated: f64,
 }
 
@@ -188,9 +189,9 @@ impl<'a> Dragged<'a> {
         self.forces.iter().fold([0.0; 2], |[x, y], f| [x + f[0], y + f[1]])
     }
 
-    /// One increment, to a displacement, under the largest forces that friction holds at its end (cells without
-    /// one are not in contact): each cell in turn gets the force within its disk that takes its slip away, or as
-    /// much of it as the disk admits.
+    /// One increment to a displacement, with the largest friction force of each cell at its end (cells
+    /// without one are not in contact): each cell in turn gets the force that makes its slip zero, or the
+    /// nearest one within its disk.
     ///
     /// No sets, no transform and no linear system. Cost O(n^2) a sweep for n cells in contact.
     ///

@@ -1,4 +1,4 @@
-//! Paths of friction with a witness.
+//! Paths of friction that are checked by the reference implementation.
 
 use crate::ledger::{Ledger, known, largest, pressure};
 use crate::maps::scene;
@@ -13,23 +13,24 @@ use contact_model::{
 
 /// The coefficient of friction of most cases.
 pub(crate) const MU: f64 = 0.4;
-/// Where tractions and forces are compared that no force prescribes: their square is of the order of the gap, which
-/// has to be that much smaller.
+/// Tolerance where tractions and forces are compared that are not prescribed: the square of their error is of
+/// the order of the gap, which has to be smaller accordingly.
 pub(crate) const TIGHTER: f64 = 1e-13;
-/// Rounding of sums over a few hundred cells, and of the way into the solver's units and out again.
+/// Rounding of sums over a few hundred cells and of the conversion into the solver's units and back.
 pub(crate) const ROUNDING: f64 = 1e-12;
-/// Sums of the witness and of a transform, and what the kernel of images leaves.
+/// Differences between plain sums and a transform, and the error of the kernel of images.
 const SUMS: f64 = 1e-9;
-/// The witness may find so many times the tolerance: its sums round differently.
+/// Largest residual of the reference implementation as a multiple of the tolerance, as its sums round
+/// differently.
 const WITNESS: f64 = 2.0;
 
-/// Two bodies of this Poisson's ratio that are alike, of the modulus `E* = 1`.
+/// Two bodies with the same Poisson's ratio and the modulus `E* = 1`.
 pub(crate) fn alike(poisson: f64) -> Pair {
     let body = Body::Elastic { young: 2.0 * (1.0 - poisson * poisson), poisson };
     Pair { first: body, second: body }
 }
 
-/// A scene of friction with everything that the witness looks at.
+/// A scene of friction with all outputs that the reference implementation checks.
 pub(crate) fn rubbed(map: &HeightMap, pair: Pair, coefficient: f64) -> Scene {
     let mut scene = Scene { pair: Some(pair), ..scene(map.clone()) };
     scene.effects.friction = Friction::coulomb(coefficient);
@@ -60,12 +61,12 @@ impl Before {
     }
 }
 
-/// A contact on its path, watched.
+/// A contact on its path, whose steps are checked.
 pub(crate) struct Slide<'a> {
     map: &'a HeightMap,
     coefficient: f64,
     tolerance: f64,
-    /// What the kernel of images leaves of a duality gap; nothing with free boundaries.
+    /// The error of the duality gap due to the kernel of images; 0 with free boundaries.
     images: f64,
     sum: PlainShear,
     contact: Box<dyn PreparedContact>,
@@ -85,12 +86,12 @@ impl<'a> Slide<'a> {
         Self::of(map, &scene, coefficient)
     }
 
-    /// Of a scene with at least the outputs of [`rubbed`].
+    /// The contact of a scene with at least the outputs of [`rubbed`].
     pub(crate) fn of(map: &'a HeightMap, scene: &Scene, coefficient: f64) -> Result<Self> {
         Self::to(TOLERANCE, map, scene, coefficient)
     }
 
-    /// The same to a tolerance.
+    /// The same with a given tolerance.
     pub(crate) fn to(tolerance: f64, map: &'a HeightMap, scene: &Scene, coefficient: f64) -> Result<Self> {
         let constant = scene.pair.as_ref().map_or(Ok(0.0), compliance)?;
         let sum = match scene.effects.boundary {
@@ -103,7 +104,7 @@ impl<'a> Slide<'a> {
         Ok(Self { map, coefficient, tolerance, images, sum, contact, before })
     }
 
-    /// The kernel of the witness.
+    /// The kernel of the reference implementation.
     pub(crate) fn sum(&self) -> &PlainShear {
         &self.sum
     }
@@ -114,12 +115,12 @@ impl<'a> Slide<'a> {
         self.before = Before::nothing(self.map);
     }
 
-    /// One step, without the witness.
+    /// One step, without a check.
     pub(crate) fn attempt(&mut self, normal: Load, tangential: Tangential) -> Result<ContactState> {
         self.contact.advance(Step { time: 0.0, normal, tangential })
     }
 
-    /// One step to a force: the witness has looked at it.
+    /// One step to a force, with the check.
     pub(crate) fn force(
         &mut self,
         ledger: &mut Ledger,
@@ -129,7 +130,7 @@ impl<'a> Slide<'a> {
         self.step(ledger, normal, Tangential::Force(force))
     }
 
-    /// One step to a displacement: the witness has looked at it.
+    /// One step to a displacement, with the check.
     pub(crate) fn displace(
         &mut self,
         ledger: &mut Ledger,
@@ -219,7 +220,8 @@ impl<'a> Slide<'a> {
         Ok(())
     }
 
-    /// Stick and slip: by the field of classes, by its areas, by tractions below what friction can hold.
+    /// Checks stick and slip by the field of classes, by its areas, and by tractions below the limit of
+    /// friction.
     fn classes(&self, ledger: &mut Ledger, load: Tangential, state: &ContactState) -> Result<()> {
         let (found, p) = (tangential(state)?, pressure(state)?);
         let classes = state.fields.as_ref().and_then(|fields| fields.stick_slip.as_ref());
@@ -282,13 +284,13 @@ pub(crate) fn longest(v: &[[f64; 2]]) -> f64 {
     v.iter().fold(0.0, |longest, [x, y]| x.hypot(*y).max(longest))
 }
 
-/// Enters the deviation of each vector from the exact one, over `largest`.
+/// Records the deviation of each vector from the exact one, over `largest`.
 pub(crate) fn compare(ledger: &mut Ledger, found: &[[f64; 2]], exact: &[[f64; 2]], largest: f64) {
     found.iter().zip(exact).for_each(|(a, b)| ledger.enter((a[0] - b[0]).hypot(a[1] - b[1]) / largest));
 }
 
-/// Follows approaches and displacements, beside relaxation of both problems: tractions over the largest, a tenth of
-/// their deviation; forces and energies.
+/// Follows approaches and displacements and compares with relaxation of both problems: forces, energies, and
+/// a tenth of the deviation of the tractions over the largest one.
 pub(crate) fn against_dragging(
     ledger: &mut Ledger,
     map: &HeightMap,

@@ -1,4 +1,5 @@
-//! Tables of the tuned constants, from their source and from what half and twice of each cost.
+//! Tables of the tuned constants, from their source and from the measured cost of half and of twice the
+//! value.
 
 use super::sources::{Constant, constants, files, members};
 use super::{readmes::plain, root, table};
@@ -64,7 +65,7 @@ pub fn layout() -> String {
     table(&["constant", "value", "meaning"], found.iter().map(cells))
 }
 
-/// Numbers of `bem3d` beside those.
+/// The other constants of `bem3d`.
 pub fn others() -> String {
     let source = root().join("crates/bem3d/src");
     let mut rows = Vec::new();

@@ -1,4 +1,4 @@
-//! Which crates and modules there are, what they are for and which way they depend on each other.
+//! The lists of crates and modules with their purposes, and the direction of their dependencies.
 
 use super::sources::{Module, nearest, packages, reached};
 use super::{root, table};
@@ -57,7 +57,7 @@ fn wrapped(item: &str, margin: &str) -> String {
 }
 
 #[test]
-fn the_gate_lists_the_dependencies_that_there_are() {
+fn ci_lists_the_existing_dependencies() {
     let gate = std::fs::read_to_string(root().join(".ci/run")).unwrap();
     let all = packages();
     let mut listed = 0;
@@ -73,7 +73,7 @@ fn the_gate_lists_the_dependencies_that_there_are() {
 }
 
 #[test]
-fn models_meet_where_the_architecture_says() {
+fn models_are_used_together_only_where_the_architecture_says() {
     let all = packages();
     let models = |package| {
         let reached = reached(package, &all);

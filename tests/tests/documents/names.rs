@@ -1,11 +1,11 @@
-//! Names between backticks in documents that people write: files, items and commands are there.
+//! Checks that the files, items and commands between backticks in handwritten documents exist.
 
 use super::sources::files;
 use super::{BEGIN, END, root};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-/// Documents with names of this repository. The change log tells of names that are gone.
+/// Documents with names of this repository. The change log also has names that no longer exist.
 fn documents() -> Vec<PathBuf> {
     let mut found = files(&root().join("book/src"), ".md");
     found.retain(|page| !page.ends_with("SUMMARY.md"));
@@ -18,7 +18,7 @@ fn documents() -> Vec<PathBuf> {
     found
 }
 
-/// What stands between backticks outside of blocks of code and generated parts, with its line.
+/// The text between backticks outside of blocks of code and generated parts, with its line.
 fn quoted(text: &str) -> Vec<(usize, String)> {
     let (mut code, mut generated) = (false, false);
     let (mut found, mut open): (_, Option<String>) = (Vec::new(), None);
@@ -74,8 +74,8 @@ fn tree() -> BTreeSet<String> {
     found
 }
 
-/// Whether a name looks like a path of this repository, and not like a file that a program writes or a place
-/// holder.
+/// Whether a name looks like a path of this repository, and not like a placeholder or a file that a program
+/// writes.
 fn is_path(name: &str, top: &BTreeSet<&str>) -> bool {
     let plain = name.replace(", ", ",").chars().all(|c| c.is_alphanumeric() || "_./-{},".contains(c));
     let capitals = |part: &str| part.len() > 1 && part.chars().all(|c| c.is_uppercase() || c == '_');
@@ -124,7 +124,7 @@ fn words_between_backticks_are_found() {
 }
 
 #[test]
-fn names_in_documents_are_there() {
+fn names_in_documents_exist() {
     let tree = tree();
     let top: BTreeSet<&str> = tree.iter().map(String::as_str).filter(|name| !name.contains('/')).collect();
     let mut sources = String::new();

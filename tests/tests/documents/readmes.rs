@@ -1,4 +1,4 @@
-//! The README of each crate: the front page of its documentation.
+//! The README of each crate, generated from the front page of its documentation.
 
 use super::sources::Package;
 
@@ -38,7 +38,7 @@ pub fn readme(package: &Package) -> String {
             [fractal-contact](../../README.md).\n"
 }
 
-/// Text without links, but for those to other sites.
+/// Text without links, except those to other sites.
 pub fn plain(text: &str) -> String {
     let mut found = String::new();
     let mut rest = text;

@@ -47,7 +47,7 @@ fn depth(name: &str, uses: &Uses) -> usize {
     uses[name].iter().map(|used| 1 + depth(used, uses)).max().unwrap_or(0)
 }
 
-/// What a crate uses, directly or not.
+/// The crates that a crate uses, directly or indirectly.
 pub fn reached<'a>(package: &'a Package, all: &'a [Package]) -> BTreeSet<&'a str> {
     let mut found = BTreeSet::new();
     let mut open = vec![package];
@@ -61,7 +61,7 @@ pub fn reached<'a>(package: &'a Package, all: &'a [Package]) -> BTreeSet<&'a str
     found
 }
 
-/// What a crate uses directly and through no other crate that it uses.
+/// The crates that a crate uses directly and through no other crate that it uses.
 pub fn nearest<'a>(package: &'a Package, all: &'a [Package]) -> Vec<&'a str> {
     let used: Vec<&Package> = all.iter().filter(|other| package.uses.contains(&other.name)).collect();
     let implied = |name: &str| used.iter().any(|other| reached(other, all).contains(name));

@@ -27,27 +27,28 @@ of the best state, and the others go on.
 Exit codes: 0 done; 1 error; 2 bad arguments; 3 done, but some solves did not converge.";
 
 const BOUNDARIES: Words<Boundary> = &[
-    ("free", Boundary::Free, "Nothing presses outside the square"),
-    ("periodic", Boundary::Periodic, "The square repeats"),
+    ("free", Boundary::Free, "The half-space outside the square carries no load"),
+    ("periodic", Boundary::Periodic, "The square repeats periodically"),
 ];
 
 const METHODS: Words<Method> = &[
-    ("auto", Method::Auto, "The cheapest way for each set"),
-    ("iterative", Method::Iterative, "No factors"),
-    ("single-level", Method::SingleLevel, "No factors, no two-level sums, no coarse grids"),
+    ("auto", Method::Auto, "The method predicted to be cheapest for each contact set"),
+    ("iterative", Method::Iterative, "No Cholesky factors"),
+    ("single-level", Method::SingleLevel, "No Cholesky factors, no two-level operator, no coarse grids"),
 ];
 
 /// Flags of the bench.
 #[derive(Debug, Args)]
 pub struct BenchArguments {
-    /// An NPY map [row, column] of real numbers, taken as it is (square cells, L = sqrt(Lx Ly) = E* = 1,
-    /// F_bar by its measured rms height).
+    /// An NPY map [row, column] of real numbers, used without preprocessing (square cells, L = sqrt(Lx Ly) =
+    /// E* = 1; F_bar is formed with its measured rms height).
     #[arg(long, value_name = "FILE.npy", conflicts_with_all = ["cells", "rows", "fractal_dimensions", "seed"])]
     surface: Option<PathBuf>,
     /// Columns of generated surfaces, separated by commas [default: 257,513,1025].
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     cells: Option<Vec<usize>>,
-    /// Rows of generated surfaces: square cells on a rectangle of area 1 [default: as many as columns].
+    /// Rows of generated surfaces, which have square cells on a rectangle of area 1 [default: as many as
+    /// columns].
     #[arg(long, value_name = "N")]
     rows: Option<usize>,
     /// Fractal dimensions of generated surfaces, separated by commas.
@@ -62,7 +63,7 @@ pub struct BenchArguments {
     /// Seed of generated surfaces.
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Loads F_bar: numbers and logarithmic ranges MIN:MAX:COUNT (both ends in), separated by commas.
+    /// Loads F_bar: numbers and logarithmic ranges MIN:MAX:COUNT (both ends included), separated by commas.
     #[arg(
         long,
         visible_alias = "sweep",
@@ -71,10 +72,10 @@ pub struct BenchArguments {
         default_value = "1e-4,1e-2,0.1,1,20"
     )]
     forces: String,
-    /// Edges of the square.
+    /// Boundary conditions at the edges of the square.
     #[arg(long, value_parser = words(BOUNDARIES), default_value = "free")]
     boundary: Boundary,
-    /// Tolerances, separated by commas: bound of the certificate and of the error of k.
+    /// Tolerances, separated by commas: each bounds the residuals of the certificate and the error of k.
     #[arg(
         long,
         value_name = "LIST",
@@ -89,21 +90,21 @@ pub struct BenchArguments {
     /// Prepare anew for every load.
     #[arg(long)]
     cold: bool,
-    /// Cost as the work grows: 257 to 4097 cells and every load from nothing unless said otherwise, table and
-    /// pictures in out/bench-scaling.* unless named.
+    /// Measure how the cost grows with the size: by default 257 to 4097 cells, every load from a cold start,
+    /// table and pictures in out/bench-scaling.*.
     #[arg(long, conflicts_with = "surface")]
     scaling: bool,
-    /// Threads: as many series (surface and tolerance) are solved at the same time, and a thread without a
-    /// series helps inside the others. One series has all of them.
+    /// Threads: as many series (surface and tolerance) are solved at the same time. A thread without a series
+    /// of its own helps with the others; a single series uses all threads.
     #[arg(long, default_value_t = 1)]
     threads: usize,
-    /// Print where the time of the rows went, part by part.
+    /// Print how the time of the rows is divided among the parts of a solve.
     #[arg(long)]
     pub parts: bool,
     /// Write the pressure of every row as NPY into this directory.
     #[arg(long, value_name = "DIR")]
     pressure: Option<PathBuf>,
-    /// Write the table; it is whole all along.
+    /// Write the table to this file, which is complete at any time during the run.
     #[arg(long, value_name = "FILE.csv")]
     csv: Option<PathBuf>,
     /// Draw seconds over cells and over force from the table (SVG and PNG), and print the slopes of seconds
@@ -116,7 +117,7 @@ pub struct BenchArguments {
 const CELLS: [usize; 3] = [257, 513, 1025];
 /// Sizes that show how cost grows.
 pub(super) const SCALING_CELLS: [usize; 5] = [257, 513, 1025, 2049, 4097];
-/// Where its table goes.
+/// File of its table.
 pub(super) const SCALING_CSV: &str = "out/bench-scaling.csv";
 
 impl BenchArguments {
@@ -130,10 +131,10 @@ impl BenchArguments {
         (Some(csv), Some(plot))
     }
 
-    /// What it asks for.
+    /// The bench that these flags describe.
     ///
     /// # Errors
-    /// [`runs::Error::Parameter`] naming the value that makes no sense.
+    /// [`runs::Error::Parameter`] naming the value that is invalid.
     pub fn bench(&self) -> runs::Result<Bench> {
         let surfaces = match &self.surface {
             Some(path) => Surfaces::File(path.clone()),

@@ -8,8 +8,8 @@ use std::path::PathBuf;
 /// The part of a command's jobs that one process does.
 #[derive(Debug, Args)]
 pub struct Sharded {
-    /// Do one of N parts of the jobs, counted from 0, store what it finds and write no table: 0/4, or auto,
-    /// as the variables of a SLURM array or of a HyperQueue task say. `merge` makes the tables.
+    /// Do one of N parts of the jobs, counted from 0, store the results and write no table, such as 0/4; auto
+    /// takes i and N from the variables of a SLURM array or of a HyperQueue task. `merge` makes the tables.
     #[arg(long, value_name = "i/N")]
     pub shard: Option<ShardChoice>,
 }
@@ -19,13 +19,13 @@ pub struct Sharded {
 pub struct PlanArguments {
     #[command(flatten)]
     pub division: Division,
-    /// Nodes that the makespan is told for.
+    /// Number of nodes for which the makespan is predicted.
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..))]
     pub nodes: u16,
-    /// Cores of a node [default: those of this machine, or of a task where that has more].
+    /// Cores of a node [default: those of this machine, or those of a task if that is more].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     pub node_cores: Option<u16>,
-    /// Memory of a node in megabytes [default: enough].
+    /// Memory of a node in megabytes [default: no limit].
     #[arg(long, value_name = "MB", value_parser = clap::value_parser!(u64).range(1..=1_000_000_000))]
     pub node_memory: Option<u64>,
     /// The command, such as reproduce-fig2 --preset paper.
@@ -45,13 +45,13 @@ pub struct SubmitArguments {
     pub command: Vec<String>,
 }
 
-/// Flags of what reads a directory of shards.
+/// Flags of the commands that read a directory of shards.
 #[derive(Debug, Args)]
 pub struct ShardsArguments {
     /// Directory of the results.
     #[arg(long, value_name = "DIR", default_value = "out")]
     pub out: PathBuf,
-    /// The plan, by the beginning of its digest, where the directory holds several.
+    /// The beginning of the digest of the plan, where the directory holds several plans.
     #[arg(long, value_name = "DIGEST")]
     pub plan: Option<String>,
 }

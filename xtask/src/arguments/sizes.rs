@@ -50,24 +50,24 @@ impl Common {
 /// Flags of everything that is solved.
 #[derive(Debug, Args)]
 pub struct SolveSizes {
-    /// Loads F_bar: numbers and logarithmic ranges MIN:MAX:COUNT (both ends in), separated by commas.
+    /// Loads F_bar: numbers and logarithmic ranges MIN:MAX:COUNT (both ends included), separated by commas.
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     forces: Option<String>,
-    /// Threads; 0 is one per core. Changes no byte of a CSV.
+    /// Threads; 0 means one per core. The CSV files do not depend on it.
     #[arg(long, default_value_t = 0)]
     threads: usize,
     /// Ignore stored results and solve everything again.
     #[arg(long)]
     fresh: bool,
-    /// Choose grid, tolerance and number of surfaces so that each mean k_bar above the one-cell floor is
-    /// known to this (95 % half-width): a share or per cent, such as 0.02 or 2%. Pilots on finer and finer
-    /// grids run first.
+    /// Choose grid, tolerance and number of surfaces so that the relative error (half-width of the 95 %
+    /// interval) of each mean k_bar is at most this, except at loads that touch about one cell: a share or
+    /// per cent, such as 0.02 or 2%. Pilot solves on finer and finer grids run first.
     #[arg(long, value_name = "SHARE", value_parser = share, allow_hyphen_values = true)]
     accuracy: Option<f64>,
-    /// Most time that --accuracy may choose, such as 90s, 10min, 2h.
+    /// Longest predicted time that --accuracy may choose, such as 90s, 10min, 2h.
     #[arg(long, value_name = "TIME", value_parser = runs::amounts::seconds, default_value = "10min", requires = "accuracy", allow_hyphen_values = true)]
     budget: f64,
-    /// Draw the curves of another run's fig2.csv or fig6.csv underneath (Figs. 2 and 6).
+    /// Draw the curves of the fig2.csv or fig6.csv of another run below those of this one (Figs. 2 and 6).
     #[arg(long, value_name = "FILE.csv")]
     over: Option<PathBuf>,
     #[command(flatten)]
@@ -106,13 +106,13 @@ pub trait Sizes {
 /// Size of the 3D ensemble.
 #[derive(Debug, Args)]
 pub struct SolidSize {
-    /// Cells a side of each surface, N (any number from 3; the paper has 2049).
+    /// Number of cells N along a side of each surface (any number from 3; the paper has 2049).
     #[arg(long, value_name = "N")]
     cells: Option<usize>,
     /// Surfaces per fractal dimension (the paper has 60).
     #[arg(long, value_name = "COUNT")]
     surfaces: Option<usize>,
-    /// Tolerance of the 3D solver: bound of the certificate and of the error of k.
+    /// Tolerance of the 3D solver: it bounds the residuals of the certificate and the error of k.
     #[arg(long, value_name = "T", allow_hyphen_values = true)]
     tolerance: Option<f64>,
 }
@@ -145,7 +145,7 @@ impl Sizes for LineSize {
 pub struct Maps {
     #[command(flatten)]
     common: Common,
-    /// Cells a side of each map (the paper has 2049).
+    /// Number of cells along a side of each map (the paper has 2049).
     #[arg(long, value_name = "N")]
     cells: Option<usize>,
 }

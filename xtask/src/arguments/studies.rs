@@ -9,15 +9,15 @@ use paper::TwoCases;
 use paper::{Exponent, ExponentSizes, PartialSlip, PartialSlipSizes};
 use std::path::PathBuf;
 
-/// Flags of the second look.
+/// Flags of the audit.
 #[derive(Debug, Args)]
 pub struct Audit {
     #[command(flatten)]
     pub(super) solid: Solid,
-    /// Share of all solves.
+    /// Share of all solves that are repeated.
     #[arg(long, default_value_t = 0.01, allow_hyphen_values = true)]
     pub share: f64,
-    /// Tolerance of the second look.
+    /// Tolerance of the repeated solves.
     #[arg(long = "audit-tolerance", value_name = "T", default_value_t = 1e-8, allow_hyphen_values = true)]
     pub tight: f64,
 }
@@ -32,13 +32,13 @@ const DEPTHS: Words<Depth> = &[
 /// Flags of the study of accuracy.
 #[derive(Debug, Args)]
 pub struct AccuracyCost {
-    /// How much is solved. One thread: the times are those of each row.
+    /// How much is solved. It runs on one thread, so that each row has its own time.
     #[arg(long = "preset", value_name = "PRESET", value_parser = words(DEPTHS), default_value = "default")]
     pub depth: Depth,
     /// Master seed.
     #[arg(long, default_value_t = evaluation::SEED)]
     pub seed: u64,
-    /// Ignore what is stored and measure everything again.
+    /// Ignore stored results and measure everything again.
     #[arg(long)]
     pub fresh: bool,
     /// Directory of the results.
@@ -51,13 +51,13 @@ pub struct AccuracyCost {
 /// Flags of the check of error budgets.
 #[derive(Debug, Args)]
 pub struct BudgetCheck {
-    /// Random cases.
+    /// Number of random cases.
     #[arg(long, value_name = "COUNT", default_value_t = 100)]
     pub cases: usize,
     /// Master seed.
     #[arg(long, default_value_t = evaluation::SEED)]
     pub seed: u64,
-    /// Threads; 0 is one per core. Changes no byte of the CSV.
+    /// Threads; 0 means one per core. The CSV file does not depend on it.
     #[arg(long, default_value_t = 0)]
     pub threads: usize,
     /// Directory of the results.
@@ -70,13 +70,13 @@ pub struct BudgetCheck {
 /// Flags of the two cases.
 #[derive(Debug, Args)]
 pub struct TwoCasesArguments {
-    /// Cells a side.
+    /// Number of cells along a side.
     #[arg(long, default_value_t = 512, allow_hyphen_values = true)]
     cells: usize,
-    /// Cells of the shortest wave.
+    /// Number of cells in the shortest wavelength.
     #[arg(long, default_value_t = 8, allow_hyphen_values = true)]
     cells_per_wave: usize,
-    /// Surfaces of each case.
+    /// Number of surfaces of each case.
     #[arg(long, default_value_t = 16, allow_hyphen_values = true)]
     surfaces: usize,
     /// Fractal dimensions, separated by commas.
@@ -88,7 +88,8 @@ pub struct TwoCasesArguments {
         allow_hyphen_values = true
     )]
     fractal_dimensions: Vec<f64>,
-    /// Waves a side at which the spectrum rolls off, separated by commas; each with each fractal dimension.
+    /// Roll-off of the spectrum in waves per side, separated by commas; each is combined with each fractal
+    /// dimension.
     #[arg(
         long = "roll-off",
         value_name = "LIST",
@@ -97,16 +98,16 @@ pub struct TwoCasesArguments {
         allow_hyphen_values = true
     )]
     roll_offs: Vec<f64>,
-    /// Loads F_bar: numbers and logarithmic ranges MIN:MAX:COUNT.
+    /// Loads F_bar: numbers and logarithmic ranges MIN:MAX:COUNT, separated by commas.
     #[arg(long, value_name = "LIST", default_value = "1e-3:20:19", allow_hyphen_values = true)]
     forces: String,
-    /// Tolerance of every certificate.
+    /// Tolerance of each solve: it bounds the residuals of its certificate.
     #[arg(long, default_value_t = 1e-4, allow_hyphen_values = true)]
     tolerance: f64,
     /// Master seed.
     #[arg(long, default_value_t = evaluation::SEED)]
     seed: u64,
-    /// Surfaces solved at the same time (default: all cores).
+    /// Number of surfaces solved at the same time [default: all cores].
     #[arg(long, allow_hyphen_values = true)]
     pub(super) threads: Option<usize>,
     /// Directory of the results.
@@ -117,10 +118,10 @@ pub struct TwoCasesArguments {
 }
 
 impl TwoCasesArguments {
-    /// What it asks for.
+    /// The study that these flags describe.
     ///
     /// # Errors
-    /// [`runs::Error::Parameter`] for a list of loads that is none.
+    /// [`runs::Error::Parameter`] for an invalid list of loads.
     pub fn study(&self) -> runs::Result<TwoCases> {
         Ok(TwoCases {
             cells: self.cells,
@@ -141,8 +142,8 @@ impl TwoCasesArguments {
 /// Sizes of the study of the exponent.
 const EXPONENT_SIZES: Words<ExponentSizes> = &[
     ("quick", ExponentSizes::Quick, "Up to 129 cells and 2^12 elements: seconds"),
-    ("default", ExponentSizes::Default, "Up to 1025 cells and 2^20 elements; --plan says how long"),
-    ("full", ExponentSizes::Full, "Up to 16385 cells and 2^26 elements; --plan says how long"),
+    ("default", ExponentSizes::Default, "Up to 1025 cells and 2^20 elements; --plan predicts the time"),
+    ("full", ExponentSizes::Full, "Up to 16385 cells and 2^26 elements; --plan predicts the time"),
 ];
 
 /// Flags of the study of the exponent.
@@ -151,51 +152,52 @@ pub struct ExponentArguments {
     /// Sizes to start from; the other flags override them.
     #[arg(long, value_parser = words(EXPONENT_SIZES), default_value = "default")]
     preset: ExponentSizes,
-    /// Cells a side, from the coarsest grid to the finest, separated by commas.
+    /// Number of cells along a side, from the coarsest grid to the finest, separated by commas.
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     grids: Option<Vec<usize>>,
-    /// Surfaces of each grid, separated by commas.
+    /// Number of surfaces of each grid, separated by commas.
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     surfaces: Option<Vec<usize>>,
-    /// Elements of the lines, from few to many, separated by commas.
+    /// Number of elements of the lines, in increasing order, separated by commas.
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     elements: Option<Vec<usize>>,
-    /// Lines of each number of elements, separated by commas.
+    /// Number of lines for each number of elements, separated by commas.
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     lines: Option<Vec<usize>>,
-    /// Loads F_bar of the surfaces: numbers and logarithmic ranges MIN:MAX:COUNT (both ends in), separated by
-    /// commas.
+    /// Loads F_bar of the surfaces: numbers and logarithmic ranges MIN:MAX:COUNT (both ends included),
+    /// separated by commas.
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     forces: Option<String>,
-    /// Loads of the lines; the factor between both exists at loads that both have.
+    /// Loads of the lines; the factor between lines and surfaces is computed at the loads that both have.
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     line_forces: Option<String>,
     /// Fractal dimensions in [2, 3], separated by commas.
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     fractal_dimensions: Option<Vec<f64>>,
-    /// Share of k_bar that the finest grid may leave: each curve ends where it leaves more.
+    /// Largest discretisation error on the finest grid, as a share of k_bar: each curve ends where the error
+    /// is larger.
     #[arg(long, value_name = "SHARE", value_parser = share, default_value = "3%", allow_hyphen_values = true)]
     pub error: f64,
-    /// Solve nothing: make the tables again from these tables of samples (exponent-samples.csv, as it is or
-    /// packed by gzip), of runs with seeds of their own, separated by commas.
+    /// Solve nothing and make the tables again from these tables of samples (exponent-samples.csv, plain or
+    /// compressed by gzip) of runs with different seeds, separated by commas.
     #[arg(long, value_name = "CSV", value_delimiter = ',')]
     pub samples: Vec<PathBuf>,
-    /// Of --samples, those on which the hypotheses are tested (default: all).
+    /// The tables of --samples on which the hypotheses are tested [default: all].
     #[arg(long, value_name = "CSV", value_delimiter = ',', requires = "samples")]
     pub tested: Vec<PathBuf>,
     /// Master seed.
     #[arg(long, default_value_t = evaluation::SEED)]
     seed: u64,
-    /// Threads; 0 is one per core. Changes no byte of a CSV.
+    /// Threads; 0 means one per core. The CSV files do not depend on it.
     #[arg(long, default_value_t = 0)]
     threads: usize,
     /// Ignore stored results and solve everything again.
     #[arg(long)]
     fresh: bool,
-    /// Say what it will cost, and how many surfaces --budget is worth, and stop.
+    /// Predict the cost and the number of surfaces that --budget allows, and stop.
     #[arg(long)]
     pub plan: bool,
-    /// The time of --plan for surfaces, and again for lines, such as 90s, 10min, 2h.
+    /// With --plan: the time for the surfaces, and the same time again for the lines, such as 90s, 10min, 2h.
     #[arg(long, value_name = "TIME", value_parser = runs::amounts::seconds, default_value = "1h", allow_hyphen_values = true)]
     pub budget: f64,
     /// Directory of the results.
@@ -212,10 +214,10 @@ impl ExponentArguments {
         (request.out, request.fresh) = (Some(self.out.clone()), self.fresh);
     }
 
-    /// What it asks for; dimensions, seed, threads and directory are those of the run.
+    /// The study that these flags describe; dimensions, seed, threads and directory are those of the run.
     ///
     /// # Errors
-    /// [`runs::Error::Parameter`] for a list of loads that is none.
+    /// [`runs::Error::Parameter`] for an invalid list of loads.
     pub fn study(&self, run: &Run) -> runs::Result<Exponent> {
         let mut study = Exponent::new(self.preset)?;
         let lists = [
@@ -260,13 +262,13 @@ pub struct PartialSlipArguments {
     /// Sizes to start from; the other flags override them.
     #[arg(long, value_parser = words(PARTIAL_SLIP_SIZES), default_value = "default")]
     preset: PartialSlipSizes,
-    /// Cells a side.
+    /// Number of cells along a side.
     #[arg(long, allow_hyphen_values = true)]
     cells: Option<usize>,
-    /// Cells of the shortest wave.
+    /// Number of cells in the shortest wavelength.
     #[arg(long, allow_hyphen_values = true)]
     cells_per_wave: Option<usize>,
-    /// Surfaces of each boundary and fractal dimension.
+    /// Number of surfaces of each boundary and fractal dimension.
     #[arg(long, allow_hyphen_values = true)]
     surfaces: Option<usize>,
     /// Fractal dimensions, separated by commas.
@@ -275,19 +277,19 @@ pub struct PartialSlipArguments {
     /// Poisson's ratios, increasing from 0, separated by commas.
     #[arg(long = "poisson", value_name = "LIST", value_delimiter = ',', allow_hyphen_values = true)]
     poissons: Option<Vec<f64>>,
-    /// Loads F_bar: numbers and logarithmic ranges MIN:MAX:COUNT.
+    /// Loads F_bar: numbers and logarithmic ranges MIN:MAX:COUNT, separated by commas.
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     forces: Option<String>,
     /// Increments from no tangential force to the end of a loop, and half of those back.
     #[arg(long, allow_hyphen_values = true)]
     increments: Option<usize>,
-    /// Tolerance of every certificate.
+    /// Tolerance of each solve: it bounds the residuals of its certificate.
     #[arg(long, allow_hyphen_values = true)]
     tolerance: Option<f64>,
     /// Master seed.
     #[arg(long, default_value_t = evaluation::SEED)]
     seed: u64,
-    /// Threads; 0 is one per core. Changes no byte of a CSV.
+    /// Threads; 0 means one per core. The CSV files do not depend on it.
     #[arg(long, default_value_t = 0)]
     threads: usize,
     /// Ignore stored results and solve everything again.
@@ -304,10 +306,10 @@ impl PartialSlipArguments {
         (request.out, request.fresh) = (Some(self.out.clone()), self.fresh);
     }
 
-    /// What it asks for; seed, threads and directory are those of the run.
+    /// The study that these flags describe; seed, threads and directory are those of the run.
     ///
     /// # Errors
-    /// [`runs::Error::Parameter`] for a list of loads that is none.
+    /// [`runs::Error::Parameter`] for an invalid list of loads.
     pub fn study(&self, run: &Run) -> runs::Result<PartialSlip> {
         let sizes = PartialSlip::new(self.preset)?;
         let forces = self.forces.as_deref().map(Forces::parse).transpose()?;
@@ -328,22 +330,23 @@ impl PartialSlipArguments {
     }
 }
 
-/// Flags of pictures drawn again.
+/// Flags of `redraw`.
 #[derive(Debug, Args)]
 pub struct Redraw {
-    /// Directories with tables: of figures, two-cases, accuracy-cost or benches.
+    /// Directories with the tables of figures, two-cases, accuracy-cost or benches.
     #[arg(required = true, value_name = "DIR")]
     pub directories: Vec<PathBuf>,
-    /// A coarser table of the same figure, drawn beneath Figs. 2 and 6.
+    /// A table of the same figure on a coarser grid, drawn below the curves of Figs. 2 and 6.
     #[arg(long, value_name = "CSV")]
     over: Option<PathBuf>,
-    /// A finer table of Fig. 2, whose exponents and factors stand beside those of Figs. 3 and 7.
+    /// A table of Fig. 2 on a finer grid, whose exponents and factors are drawn beside those of Figs. 3 and
+    /// 7.
     #[arg(long, value_name = "CSV")]
     finer: Option<PathBuf>,
 }
 
 impl Redraw {
-    /// What is drawn beside.
+    /// The tables that are drawn for comparison.
     pub fn beside(&self) -> paper::Beside {
         paper::Beside { over: self.over.clone(), finer: self.finer.clone() }
     }
@@ -363,7 +366,7 @@ pub struct Reference {
 /// Flags of the hard cases.
 #[derive(Debug, Args)]
 pub struct StabilityArguments {
-    /// Larger grids, more surfaces and loads: minutes instead of seconds.
+    /// Use larger grids, more surfaces and more loads: minutes instead of seconds.
     #[arg(long)]
     pub thorough: bool,
     /// Directory of the results.
@@ -374,10 +377,10 @@ pub struct StabilityArguments {
 /// Flags of the tuned constants.
 #[derive(Debug, Args)]
 pub struct TuningArguments {
-    /// Constants with this in their names only.
+    /// Measure only the constants whose names contain this.
     #[arg(long, value_name = "NAME", default_value = "")]
     pub only: String,
-    /// Runs of each value; their median counts.
+    /// Number of runs of each value, of which the median is reported.
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..))]
     pub repetitions: u16,
     /// Directory of the table.
@@ -388,7 +391,7 @@ pub struct TuningArguments {
 /// Flags of the book.
 #[derive(Debug, Args)]
 pub struct BookArguments {
-    /// Make the pictures of the book again (book/pictures.sh), and nothing else.
+    /// Only draw the pictures of the book again (book/pictures.sh).
     #[arg(long)]
     pub pictures: bool,
 }

@@ -1,11 +1,11 @@
-//! Links of the built pages: the file is there, and so is the anchor.
+//! Checks the links of the built pages: both file and anchor have to exist.
 
 use runs::{Error, Result};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// What a check found.
+/// The result of a check.
 pub struct Found {
     /// Pages read.
     pub pages: usize,

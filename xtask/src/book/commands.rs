@@ -1,4 +1,4 @@
-//! The commands of the book, run as a reader would.
+//! Runs the commands of the book as a reader would.
 
 use runs::{Error, Result};
 use std::fs;
@@ -10,7 +10,7 @@ use std::process::{Command, Output};
 pub struct Block {
     /// File and line.
     pub place: String,
-    /// What stands in it.
+    /// Its text.
     pub text: String,
     /// Marked `long`: not run.
     pub long: bool,
@@ -67,8 +67,8 @@ pub fn programs(root: &Path) -> Result<[PathBuf; 2]> {
     Ok([own, scenes])
 }
 
-/// A temporary directory that looks like the repository to the commands: `data/`, and both programs on the
-/// path. It goes with its value.
+/// A temporary directory with `data/`, and with both programs on the path, in which the commands run as in
+/// the repository. It is removed when this value is dropped.
 pub struct Scratch {
     folder: tempfile::TempDir,
 }
@@ -103,7 +103,7 @@ impl Scratch {
         Ok(folder)
     }
 
-    /// Runs commands, the first failure ends them; `None`, or what they printed where one failed.
+    /// Runs commands up to the first failure. Returns `None`, or the output where one failed.
     pub fn run(&self, commands: &str) -> Result<Option<String>> {
         let here = self.folder.path();
         let path = std::env::var_os("PATH").unwrap_or_default();

@@ -1,4 +1,5 @@
-//! Formulas of every Markdown file, set by KaTeX: blocks fenced as `math`, and code between two dollar signs.
+//! Checks the formulas of every Markdown file with KaTeX: blocks fenced as `math`, and code between two
+//! dollar signs.
 
 use super::links;
 use runs::{Error, Result};
@@ -17,11 +18,11 @@ struct Formula {
     display: bool,
 }
 
-/// What a check found.
+/// The result of a check.
 pub struct Found {
     /// Formulas read.
     pub formulas: usize,
-    /// Whether node was there to set them.
+    /// Whether node was installed, so that they were checked.
     pub set: bool,
     /// `file:line: what is wrong`.
     pub wrong: Vec<String>,

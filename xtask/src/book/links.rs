@@ -1,4 +1,4 @@
-//! Links of every Markdown file of the repository: the file is there, and so is the heading.
+//! Checks the links of every Markdown file of the repository: both file and heading have to exist.
 
 use super::commands::pages;
 use runs::{Error, Result};
@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 /// Folders that hold nothing written by hand.
 const LEFT_OUT: [&str; 4] = ["target", "out", ".git", "book/book"];
 
-/// What a check found.
+/// The result of a check.
 pub struct Found {
     /// Files read.
     pub files: usize,
@@ -125,7 +125,7 @@ fn prose(text: &str) -> Vec<(usize, String)> {
     lines
 }
 
-/// What is wrong with a link of a file.
+/// The fault of a link of a file.
 fn wrong(file: &Path, link: &str, texts: &HashMap<PathBuf, String>) -> Option<String> {
     let (path, anchor) = link.split_once('#').map_or((link, None), |(path, anchor)| (path, Some(anchor)));
     let target = if path.is_empty() {

@@ -34,7 +34,7 @@ pub fn book(draw: bool) -> Result<ExitCode> {
     formulas.wrong.iter().for_each(|line| runs::out!("{line}"));
     let (count, wrong) = (formulas.formulas, formulas.wrong.len());
     if formulas.set {
-        runs::out!("{count} formulas set by KaTeX, {wrong} wrong");
+        runs::out!("{count} formulas checked with KaTeX, {wrong} wrong");
     } else {
         runs::out!("NOT CHECKED: {count} formulas, because node is not installed");
     }

@@ -1,4 +1,4 @@
-//! The pictures of the book: drawn by `book/pictures.sh`, and compared with those that are stored.
+//! Draws the pictures of the book by `book/pictures.sh` and compares them with the stored ones.
 
 use super::commands::Scratch;
 use runs::{Error, Result};
@@ -6,23 +6,23 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
-/// Where they are stored, and what draws them.
+/// The folder of the stored pictures, and the script that draws them.
 const FOLDER: &str = "book/src/pictures";
 const SCRIPT: &str = "book/pictures.sh";
-/// Drawn by hand.
+/// Pictures that are drawn by hand.
 const BY_HAND: [&str; 1] = ["conventions.svg"];
-/// A browser's picture of a page, which depends on its version and on the fonts of the machine.
+/// Pictures taken with a browser, which depend on its version and on the fonts of the machine.
 const OF_BROWSER: [&str; 1] = ["report.png"];
 
-/// Coordinates of an SVG may differ by so much, of 800 across a picture: less than half the width of a line. Other
-/// processors change the last digits of a number, and a solver with a tolerance up to its tolerance.
+/// Largest difference of the coordinates of an SVG, which is 800 wide: less than half the width of a line.
+/// Other processors change the last digits of a number, and a solver with a tolerance up to its tolerance.
 const COORDINATE: f64 = 0.5;
-/// Levels of 255 by which a colour may differ, and the share of pixels that may differ by more: an undecided cell
-/// or two on the other side of the boundary of a contact.
+/// Levels (of 255) by which a colour may differ, and the share of pixels that may differ by more, for a few
+/// undecided cells at the boundary of a contact.
 const LEVELS: u8 = 16;
 const PIXELS: f64 = 2e-4;
 
-/// Draws all pictures into a folder; what was printed where that failed.
+/// Draws all pictures into a folder. Returns the output where that failed.
 pub fn draw(root: &Path, scratch: &Scratch, folder: &Path) -> Result<Option<String>> {
     let script = root.join(SCRIPT);
     let text = fs::read_to_string(&script).map_err(Error::file("read", &script))?;
@@ -34,7 +34,7 @@ pub fn store(root: &Path, scratch: &Scratch) -> Result<Option<String>> {
     draw(root, scratch, &root.join(FOLDER))
 }
 
-/// Draws all pictures anew and tells which of the stored ones show something else, are drawn by nothing, or are
+/// Draws all pictures anew and lists the stored ones that differ, that the script does not draw, or that are
 /// missing.
 pub fn check(root: &Path, scratch: &Scratch) -> Result<Vec<String>> {
     let drawn = scratch.empty("drawn")?;
@@ -73,7 +73,7 @@ fn text(path: &Path) -> Result<String> {
     fs::read_to_string(path).map_err(Error::file("read", path))
 }
 
-/// How two SVG differ: labels exactly, coordinates by more than [`COORDINATE`].
+/// The difference of two SVG files in labels, or in coordinates by more than [`COORDINATE`].
 fn svg_differs(stored: &str, drawn: &str) -> Option<String> {
     let labels = |svg: &str| {
         let labels = svg.split("aria-label=\"").skip(1).filter_map(|after| after.split('"').next());
@@ -85,7 +85,7 @@ fn svg_differs(stored: &str, drawn: &str) -> Option<String> {
     }
     let ((old, from), (new, to)) = (numbers(stored), numbers(drawn));
     if old != new {
-        return Some("other lines or words".into());
+        return Some("different lines or text".into());
     }
     let farthest = from.iter().zip(&to).map(|(from, to)| (from - to).abs()).fold(0.0, f64::max);
     (farthest > COORDINATE).then(|| format!("something moved by {farthest:.1}"))
@@ -118,7 +118,7 @@ fn numbers(text: &str) -> (String, Vec<f64>) {
     (rest, found)
 }
 
-/// How two PNG differ: in size, or in more than [`PIXELS`] of them.
+/// The difference of two PNG files in size, or in more than the share [`PIXELS`] of the pixels.
 fn png_differs(stored: &Path, drawn: &Path) -> Result<Option<String>> {
     let ((old_size, old), (new_size, new)) = (pixels(stored)?, pixels(drawn)?);
     if old_size != new_size || old.len() != new.len() {

@@ -5,18 +5,19 @@ use crate::geometry::CellSet;
 use crate::real::{each, largest, smallest, sum, sum_of_pairs};
 use std::borrow::Cow;
 
-/// Rounds of scaling at most: each brings a cell to its upper bound or is the last one.
+/// Largest number of rounds of scaling: each round brings a cell to its upper bound or is the last one.
 const ROUNDS: usize = 100;
 
-/// Sums of pressures that differ by less than this share differ by rounding ...
+/// Sums of pressures whose relative difference is less than this are equal up to rounding ...
 const ROUNDING: f64 = 1e-13;
-/// ... and pressures by less than this one: rounding many of them leaves their sum within the other.
+/// ... and single pressures whose relative difference is less than this: many such roundings change their sum
+/// by less than `ROUNDING`.
 const CELL_ROUNDING: f64 = 2e-15;
-/// A pressure is that of whole cells at the upper bound where its cells are off by this share of the force in
-/// all.
+/// A pressure counts as one of cells that are all open or at the upper bound where the sum of the deviations
+/// is below this share of the force.
 const WHOLE: f64 = 1e-12;
-/// Where cells at the upper bound carry more than the force by at most this share, one of them gives way; by
-/// more, all of the contact does.
+/// Where the cells at the upper bound carry more than the force, but by at most this share, the pressure of
+/// one cell is reduced; beyond that the pressure of the whole contact is.
 const SMALL: f64 = 1e-6;
 
 /// The values that the pressure of a cell may have.
@@ -25,7 +26,7 @@ const SMALL: f64 = 1e-6;
 /// at the upper bound, whose negative gap is the plastic indentation. A cell is at its upper bound exactly
 /// where its pressure is that bound; no set is stored for it.
 ///
-/// The outer iteration, its residuals and its certificate ask the bounds and do not look inside. A tangential
+/// The outer iteration, its residuals and its certificate use only the methods of this type. A tangential
 /// problem would be a variant of its own: its cells have two unknowns each, and their bound is the disc
 /// `|q| <= mu p`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -36,15 +37,16 @@ pub enum Bounds {
     UpTo(f64),
 }
 
-/// What the gaps on all cells that could touch say about a pressure.
+/// The extreme gaps on all cells that could touch, under a pressure.
 #[derive(Debug, Clone, Copy)]
 pub struct Extremes {
-    /// Largest penetration, or gap of a cell at its upper bound; 0 without any.
+    /// Largest penetration, or largest gap of a cell at its upper bound; 0 where there is neither.
     pub deepest: f64,
-    /// Among all pressures between the bounds with the same sum, the one of the least work `sum q g` fills
-    /// the cells up to this gap.
+    /// Among all pressures q between the bounds with the same sum, the one with the least work `sum q g` is
+    /// at the upper bound on the cells whose gap is below this one.
     pub level: f64,
-    /// The work, over the sum and counted from that gap, which it takes from cells that are open.
+    /// The part of that work that comes from open cells, over the sum of the pressure; gaps are measured from
+    /// `level`.
     pub unfilled: f64,
 }
 
@@ -89,7 +91,7 @@ impl Bounds {
         }
     }
 
-    /// The cells at the upper bound that stay there: those whose gap is no larger than `noise`.
+    /// The cells that stay at the upper bound: those whose gap is no larger than `noise`.
     pub fn held(self, contact: &CellSet, p: &[f64], gap: &[f64], noise: f64) -> CellSet {
         if !self.is_reached(p) {
             return CellSet::default();
@@ -99,8 +101,8 @@ impl Bounds {
         contact.filter(&values, |g| g <= noise)
     }
 
-    /// Brings a pressure between its bounds and, where one is prescribed, to a force. Whether cells joined
-    /// the contact set to carry it.
+    /// Brings a pressure between its bounds and, where a force is prescribed, to that force. Returns whether
+    /// cells were added to the contact set to carry it.
     ///
     /// Cost: a few passes over the contact set; the whole grid where cells join.
     pub fn admit(
@@ -126,9 +128,9 @@ impl Bounds {
         force.is_some_and(|force| bring_to(force, upper, contact, p, candidates))
     }
 
-    /// The pressure that a correction on a set made: the cells in tension open, those beyond the upper bound
-    /// are brought back to it, and `held` ones, which are not in the set, are at theirs. Where a force is
-    /// prescribed, the others carry what these leave of it.
+    /// The pressure after a correction on a set: cells in tension open, cells beyond the upper bound are
+    /// brought back to it, and the `held` cells, which are not in the set, stay at it. Where a force is
+    /// prescribed, the free cells carry the rest of it.
     pub fn corrected(
         self,
         set: &CellSet,
@@ -158,10 +160,10 @@ impl Bounds {
         (all, p)
     }
 
-    /// The approach under which the gaps of the free cells vanish on average, weighted by their pressure: the
-    /// gap is then right where it carries. Without free cells the one up to which the lowest cells carry the
-    /// force at their bound. `displaced` is u + z on the contact set, `everywhere` on all cells that could
-    /// touch. `None` without pressure.
+    /// The approach at which the mean gap of the free cells, weighted by their pressure, vanishes. Without
+    /// free cells it is the approach up to which the lowest cells, all at their bound, carry the force.
+    /// `displaced` is u + z on the contact set, `everywhere` on all cells that could touch. `None` without
+    /// pressure.
     pub fn approach(self, p: &[f64], displaced: &[f64], everywhere: &[f64]) -> Option<f64> {
         let (upper, reached) = (self.upper(), self.is_reached(p));
         let carried =
@@ -173,7 +175,7 @@ impl Bounds {
         reached.then(|| nth(everywhere.to_vec(), p.len()))
     }
 
-    /// How far the gap of a cell is from what its pressure asks for.
+    /// By how much the gap of a cell with this pressure violates the contact condition.
     pub fn violation(self, p: f64, gap: f64) -> f64 {
         if p >= self.upper() {
             gap.max(0.0)
@@ -184,8 +186,8 @@ impl Bounds {
         }
     }
 
-    /// What a cell of a contact set adds to the duality gap over the force, from its gap and the level of
-    /// [`Extremes`].
+    /// The contribution of a cell of the contact set to the duality gap over the force, from its gap and the
+    /// level of [`Extremes`].
     pub fn excess(self, p: f64, gap: f64, level: f64, force: f64) -> f64 {
         // Below the lowest gap there is none: without an upper bound the first case never occurs.
         if gap < level { (self.upper() - p) / force * (level - gap) } else { p / force * (gap - level) }
@@ -193,8 +195,8 @@ impl Bounds {
 
     /// The extremes of the gap on `everywhere` under a pressure of this sum on a part of it.
     ///
-    /// Where no cell is at its upper bound, the bound is left out: the duality gap is then one from above,
-    /// and that of the same pressure without a bound.
+    /// Where no cell is at its upper bound, the bound is ignored: the duality gap is then that of the same
+    /// pressure without a bound, which is an upper estimate.
     pub fn extremes(
         self,
         force: f64,
@@ -219,7 +221,7 @@ impl Bounds {
     }
 }
 
-/// The value that has so many smaller ones, or the largest.
+/// The value that has `count` smaller ones, or the largest value.
 fn nth(mut values: Vec<f64>, count: usize) -> f64 {
     let last = count.min(values.len() - 1);
     *values.select_nth_unstable_by(last, f64::total_cmp).1
@@ -234,9 +236,9 @@ fn rescale(p: &mut [f64], force: f64) {
     }
 }
 
-/// Pressures that are at the upper bound up to rounding become exactly that. Where rounding alone tells the
-/// force from that of k cells at it, and k cells carry it so, these are brought to it and the others open:
-/// rounding would otherwise decide which cells count as free.
+/// Pressures that are at the upper bound up to rounding become exactly that. Where the force equals that of k
+/// cells at the bound up to rounding, and k cells carry it in this way, these are set to the bound and the
+/// others are opened: otherwise rounding would decide which cells count as free.
 fn round_to(upper: f64, contact: &mut CellSet, p: &mut Vec<f64>, force: Option<f64>) {
     if largest(p) < upper * (1.0 - WHOLE) {
         return;
@@ -260,11 +262,11 @@ fn round_to(upper: f64, contact: &mut CellSet, p: &mut Vec<f64>, force: Option<f
     }
 }
 
-/// Scales a positive pressure and cuts it at the upper bound so that its sum is the one wanted; where that is
-/// more than the cells carry, all are brought to their bound.
+/// Scales a positive pressure and cuts it at the upper bound so that its sum is `wanted`. Where that is more
+/// than the cells can carry, all are set to the bound.
 ///
-/// The sum is a concave function of the factor: Newton's method from below ends after as many steps as cells
-/// reach their bound in turn.
+/// The sum is a concave function of the factor: Newton's method from below takes at most one step for each
+/// cell that reaches its bound.
 fn scale_to(wanted: f64, upper: f64, p: &mut [f64]) {
     let mut factor = (wanted / sum(p)).max(0.0);
     for _ in 0..ROUNDS {
@@ -286,9 +288,9 @@ fn scale_to(wanted: f64, upper: f64, p: &mut [f64]) {
 }
 
 /// Brings a pressure to a force: the free cells are scaled, those that pass the upper bound are left at it.
-/// Where the contact set cannot carry the force, the next lowest cells join it. Whether any did. Where the
-/// cells at the bound alone carry a little more than the force, the one with the largest undeformed gap gives
-/// way.
+/// Where the contact set cannot carry the force, the next lowest cells are added. Where the cells at the
+/// bound alone carry a little more than the force, the pressure of the one with the largest undeformed gap is
+/// reduced. Returns whether cells were added.
 fn bring_to(
     force: f64,
     upper: f64,

@@ -19,7 +19,7 @@ pub struct Candidates {
     cap: f64,
 }
 
-/// Where the undeformed gaps begin and end.
+/// The range of the undeformed gaps.
 #[derive(Debug, Clone, Copy)]
 pub struct GapRange {
     /// The defined cell with the smallest gap, as a linear index.
@@ -72,15 +72,15 @@ impl Candidates {
         Arc::clone(&self.z)
     }
 
-    /// Where the gaps begin and end.
+    /// The range of the undeformed gaps.
     pub fn range(&self) -> GapRange {
         self.range
     }
 
     /// The cells with `z < d`.
     ///
-    /// Cost: the grid once for each doubling of d, else the candidates of the last doubling; the grid each
-    /// time where many lie below.
+    /// Cost: one pass over the grid for each doubling of d, and over the candidates of the last doubling
+    /// otherwise; one pass over the grid each time where many cells lie below.
     pub fn below(&mut self, d: f64) -> CellSet {
         if d > self.cap {
             let cap = CANDIDATES_AHEAD * d;
@@ -94,7 +94,7 @@ impl Candidates {
 
     /// Whether more than `count` cells lie below d.
     ///
-    /// Cost: the grid at most, much less where the answer is yes.
+    /// Cost: at most one pass over the grid, much less where the answer is yes.
     pub fn more_than(&self, count: usize, d: f64) -> bool {
         let below = |z: &[f64]| z.iter().filter(|&&z| z < d).count();
         let mut counted = 0;
@@ -104,9 +104,9 @@ impl Candidates {
         })
     }
 
-    /// So many of the lowest defined cells outside a set, fewer where there are no more.
+    /// The `count` lowest defined cells outside a set, or all of them where there are fewer.
     ///
-    /// Cost: the grid.
+    /// Cost: one pass over the grid.
     pub fn lowest_outside(&self, set: &CellSet, count: usize) -> CellSet {
         let mut taken = vec![false; self.z.len()];
         set.index(self.grid).for_each(|i| taken[i] = true);
@@ -157,8 +157,8 @@ mod tests {
 
     #[test]
     fn the_grid_is_scanned_for_twice_the_approach_in_any_unit() {
-        // Work: a path of loads up to twice the first one is served from the list, and the list holds no
-        // more.
+        // Work: a path of loads up to twice the first one uses the list, and the list holds no more cells
+        // than that.
         for unit in [2f64.powi(-40), 1.0, 2f64.powi(40)] {
             let z = (0..64).map(|i| f64::from(i) * unit).collect();
             let mut candidates = Candidates::new(Grid::square(8, 8), Arc::new(z));

@@ -1,4 +1,5 @@
-//! The fall-back of the outer iteration: steps along which the energy falls, whatever they begin with.
+//! The fall-back of the outer iteration: a descent method that lowers the energy in every step from any
+//! pressure.
 
 use super::bounds::Bounds;
 use crate::geometry::CellSet;
@@ -6,9 +7,9 @@ use crate::operator::Operators;
 use crate::real::{dot, each, sum, sum_of_pairs, update};
 use contact_model::Stop;
 
-/// Passes over the cells in a projection at most; a dozen are the rule.
+/// Largest number of passes over the cells in a projection; about a dozen are usual.
 const PASSES: usize = 200;
-/// A sum is met where it is off by less than this share: the rounding of a sum.
+/// A sum is accepted where its relative error is less than this: the rounding of a sum.
 const ROUNDING: f64 = 1e-15;
 
 /// The pressures between their bounds, of a given sum where the force is prescribed.
@@ -24,8 +25,8 @@ impl Feasible {
     /// The nearest feasible pressure: `min(max(y + mu, 0), p_s)`, with the mu that brings the sum to the
     /// force.
     ///
-    /// The sum rises with mu and is piecewise linear: Newton's method within a bracket, which is halved where
-    /// Newton's step leaves it.
+    /// The sum rises with mu and is piecewise linear. Newton's method solves for mu within a bracket, which
+    /// is halved where Newton's step leaves it.
     fn project(self, y: &mut [f64]) {
         let upper = self.bounds.upper();
         let Some(force) = self.force else {
@@ -81,8 +82,8 @@ impl Feasible {
 }
 
 /// Minimises the energy `p'Gp/2 + (z - d)'p` over the feasible pressures on a set of cells, `gap` being its
-/// gradient `Gp + z - d`: so many steps at most. Returns how many were taken; fewer where the energy cannot
-/// fall any more.
+/// gradient `Gp + z - d`, in at most the given number of steps. Returns the number of steps taken, which is
+/// smaller where the energy cannot fall any more.
 ///
 /// The first step goes towards the projection of `p - a gap`, to the minimum of the energy on the way or to
 /// its end. Conjugate gradients on the cells between their bounds follow, up to the first bound that a step
@@ -93,8 +94,8 @@ impl Feasible {
 ///
 /// Every step lowers the energy. With a step length a between the inverses of the largest and of the smallest
 /// eigenvalue of G, as every one here is, a projected gradient lowers it by at least a fixed share of its
-/// distance from the minimum; runs that begin with one each therefore converge to the only solution, from any
-/// pressure (D. P. Bertsekas, Nonlinear Programming, section 2.3).
+/// distance from the minimum; runs that begin with such a step therefore converge to the unique solution from
+/// any pressure (D. P. Bertsekas, Nonlinear Programming, section 2.3).
 ///
 /// Cost: one application of G in double precision a step.
 pub fn descend(
@@ -129,7 +130,7 @@ pub fn descend(
             update(&mut change, p, |change, p| *change -= p);
             1.0
         };
-        // The sum of the change is nothing but for rounding, which a plane far away would multiply.
+        // The sum of the change is zero up to rounding, and a distant plane would multiply that rounding.
         let slope = sum_of_pairs(&change, gap, |change, gap| change * (gap - plane));
         if slope.is_nan() || slope >= 0.0 {
             if on_face && conjugate.is_some() {
@@ -161,7 +162,8 @@ pub fn descend(
 }
 
 /// The gradient on the cells between their bounds, less its mean where the force is prescribed, zero on all
-/// others. Its square, that of the gradient on cells at a bound that they would leave, and the mean.
+/// others. Returns its square, the square of the gradient on cells that would leave their bound, and the
+/// mean.
 fn project_gradient(p: &[f64], gap: &[f64], feasible: Feasible, residual: &mut [f64]) -> (f64, f64, f64) {
     let Feasible { bounds, force } = feasible;
     let upper = bounds.upper();
@@ -189,7 +191,7 @@ fn project_gradient(p: &[f64], gap: &[f64], feasible: Feasible, residual: &mut [
     (dot(residual, residual), outside, mean)
 }
 
-/// How many times a change can be added before a pressure meets a bound.
+/// The largest multiple of a change that can be added before a pressure reaches a bound.
 fn room(p: &[f64], change: &[f64], upper: f64) -> f64 {
     let steps = p.iter().zip(change).map(|(p, &change)| {
         if change < 0.0 {

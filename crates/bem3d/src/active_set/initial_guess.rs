@@ -1,4 +1,4 @@
-//! Where a solve begins: from the tangent of the last state, or by nested iteration from the same surface on
+//! Initial guesses of a solve: the tangent of the last state, or nested iteration from the same surface on
 //! coarser grids.
 
 use super::candidates::GapRange;
@@ -29,7 +29,7 @@ pub struct LastState {
 }
 
 impl LastState {
-    /// How many times the last load is asked for.
+    /// The ratio of the requested load to the last one.
     pub fn ratio(&self, target: Control) -> f64 {
         match target {
             Control::Force(force) => force / self.force,
@@ -37,8 +37,8 @@ impl LastState {
         }
     }
 
-    /// A guess of q on cells of a state from the last one and the secant between them; on the way down the
-    /// last q alone.
+    /// A guess of q on the cells of a state, from the last q and the secant between the two states; where the
+    /// load falls, the last q alone.
     pub fn tangent_at(self, solved: &Solved, cells: &CellSet, tuning: &Tuning) -> Option<Vec<f64>> {
         let mut q = cells.carry(&self.contact, &self.tangent.as_ref()?.0);
         let way = solved.d - self.d;
@@ -58,7 +58,7 @@ impl LastState {
 
     /// Follows the tangent of the last state: `p + Dd q` on the same set. The stiffness grows with the load,
     /// so that the predicted approach is an upper bound and every new contact cell lies below it. Where no
-    /// stiffness was asked for, the pressure is scaled.
+    /// stiffness was requested, the pressure is scaled.
     pub fn extrapolated(&self, target: Control, tuning: &Tuning) -> Option<Guess> {
         let ratio = self.ratio(target);
         if !(1.0 / tuning.warm..=tuning.warm).contains(&ratio) {
@@ -81,9 +81,9 @@ impl LastState {
     /// Whether a load begins on coarse grids although a state is known.
     ///
     /// The tangent overshoots (the stiffness grows with every cell that joins); where it predicts far more
-    /// cells than the load has grown by, eliminating them costs more than a coarse solution at a third of the
-    /// price. `predicted` counts them with one application; where a good part of the grid will touch, the
-    /// answer is known without.
+    /// cells than the load has grown by, eliminating them costs about three times as much as a coarse
+    /// solution. `predicted` counts them with one application; where a good part of the grid will touch, the
+    /// answer is known without counting.
     pub fn overshoots(
         &self,
         target: Control,
@@ -108,7 +108,7 @@ pub fn predicted_cells(problem: &mut Problem, guess: &Guess) -> usize {
     gap.iter().filter(|&&g| g < guess.d).count().max(guess.set.len())
 }
 
-/// A guess for a load with nothing known.
+/// A guess for a load where no state is known.
 ///
 /// The cells with `z < F / k_1` (k_1: one cell alone, the softest contact) contain the contact set. If they
 /// are few they are the guess; otherwise the surface averaged over 2 x 2 cells is solved first. A coarse grid
@@ -171,8 +171,8 @@ fn blocks(grid: Grid, tuning: &Tuning) -> (usize, usize) {
     (halved(grid.columns), halved(grid.rows))
 }
 
-/// Nondimensional pressure at equal force: forces are counted in the side of a cell, so that a sum over
-/// coarse cells is smaller.
+/// Ratio of the nondimensional pressures on the coarse and the fine grid under the same force: forces are in
+/// units of the side of a cell, so that the sum over coarse cells is smaller.
 fn pressure_ratio(grid: Grid, tuning: &Tuning) -> f64 {
     let (across, down) = blocks(grid, tuning);
     ((across * down) as f64).sqrt()
@@ -208,7 +208,8 @@ fn coarser(problem: &Problem) -> Problem {
     coarse
 }
 
-/// Coarse pressure on the fine cells below it that lie under the plane (on all defined ones if none does).
+/// The coarse pressure on the fine cells within each coarse cell that lie under the plane (on all defined
+/// ones if none does).
 fn prolonged(problem: &Problem, solved: &Solved) -> Guess {
     let (grid, z, d) = (problem.grid(), problem.candidates.z(), solved.d);
     let tuning = problem.operators.tuning();

@@ -1,13 +1,13 @@
-//! How much of a step of the outer iteration is taken where cells meet their upper bound.
+//! The line search of the outer iteration where cells reach their upper bound.
 
-/// Shortens a step where the energy `p (u/2 + z)` passes its minimum on the way, before the share `whole` of
-/// it: the new pressure and its u + z become those of the minimum. The old ones are a pressure, the gap under
-/// it and its approach, all on the same cells. The share that is left, if it was shortened.
+/// Shortens a step where the energy `p (u/2 + z)` has its minimum before the share `whole` of the step: the
+/// new pressure and its u + z become those of the minimum. `old` holds a pressure, the gap under it and its
+/// approach, all on the same cells. Returns the share of the step that is taken, if it was shortened.
 ///
-/// Sets that follow from each other may alternate for ever without it. Both pressures obey the bounds and
+/// Without it the iteration may alternate between contact sets for ever. Both pressures obey the bounds and
 /// have the same force, and so has every pressure between them; u is linear. A step that was cut at the
-/// bounds need not begin downhill, though: nothing is left of a step that begins at its minimum, and the next
-/// one is the same again. See [`super::descent`].
+/// bounds need not begin downhill, though: a step whose minimum is at its beginning has length zero, and the
+/// next one is the same again. See [`super::descent`].
 pub fn shorten(old: (Vec<f64>, &[f64], f64), new: (&mut [f64], &mut [f64]), whole: f64) -> Option<f64> {
     let ((before, gap, d), (p, displaced)) = (old, new);
     let (mut first, mut last) = (0.0, 0.0);

@@ -1,4 +1,4 @@
-//! When the outer iteration ends, and what it asks of the next inner solve.
+//! The stopping criteria of the outer iteration and the accuracy of the next inner solve.
 
 use super::residuals::Residuals;
 use super::state::Limits;
@@ -6,22 +6,22 @@ use crate::linear::StoppingCriteria;
 use crate::tuning::Tuning;
 use contact_model::{Status, Stop};
 
-/// What the gap of a pressure says.
+/// The evaluation of the gap of a pressure.
 #[derive(Debug, Clone, Copy)]
 pub struct Evaluated {
     /// How well the contact conditions hold.
     pub residuals: Residuals,
     /// Whether the gap is known on every cell below the plane, in double precision.
     pub complete: bool,
-    /// What the gap may be wrong by, as a length.
+    /// Bound on the error of the gap, as a length.
     pub uncertainty: f64,
     /// Whether p and d are exact on the set, up to rounding.
     pub factored: bool,
-    /// How much was left of the step that led here, where it was shortened.
+    /// The share of the step that was taken to get here, where it was shortened.
     pub step: Option<f64>,
 }
 
-/// How to go on.
+/// The decision after an evaluation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Decision {
     /// The solve ends.
@@ -35,7 +35,7 @@ pub enum Decision {
 pub enum Look {
     /// In double precision.
     Exact,
-    /// What changed in single precision, where the gap before is known, else in double precision.
+    /// Only the change in single precision where the previous gap is known, otherwise in double precision.
     Change,
     /// In single precision.
     Rough,
@@ -58,7 +58,7 @@ pub struct OuterProgress {
     since_lowest: usize,
     /// The residuals that the fall-back has to reach, while it goes on.
     goal: Option<f64>,
-    /// How often it was begun.
+    /// Number of times that it was begun.
     begun: i32,
 }
 
@@ -85,13 +85,13 @@ impl OuterProgress {
         self.goal.is_some()
     }
 
-    /// Begins the fall-back where the outer iteration has come to nothing, ends it where it has done its
-    /// part. Whether neither goes on.
+    /// Begins the fall-back where the outer iteration makes no progress, and ends it once its goal is
+    /// reached. Returns whether neither can go on.
     ///
     /// The fall-back converges from every pressure, and the n-th time it goes on until the residuals are
-    /// 10^-n times the smallest of all before: it is left a few times at most, and each time the outer
-    /// iteration either reduces the residuals within so many iterations or is left again. So the solve ends,
-    /// but for rounding, at the tolerance.
+    /// 10^-n times the smallest of all before: it is used a few times at most, and each time the outer
+    /// iteration either reduces the residuals within a fixed number of iterations or is left again. So the
+    /// solve ends, up to rounding, at the tolerance.
     fn alternate(&mut self, error: f64, jammed: bool, resolved: bool, tuning: &Tuning) -> bool {
         if error < tuning.better * self.lowest {
             (self.lowest, self.since_lowest) = (error, 0);
@@ -154,7 +154,7 @@ impl OuterProgress {
     }
 }
 
-/// What an inner solve is asked for when the residuals are `error`.
+/// The stopping criteria of an inner solve when the residuals are `error`.
 pub fn criteria(limits: Limits, error: f64, d: f64, tuning: &Tuning) -> StoppingCriteria {
     let reduction = if error > tuning.early {
         tuning.early_reduction
@@ -206,7 +206,7 @@ mod tests {
         }
         // The gap is not known on every cell.
         assert_eq!(first(Evaluated { complete: false, ..good }, 1.0), Decision::Continue { best: false });
-        // A factored set may leave the rounding of its approach, here 1e-12 x 1000, and no more.
+        // The residual of a factored set may be the rounding of its approach, here 1e-12 x 1000, and no more.
         let factored = |deepest| {
             let residuals = Residuals { deepest, ..good.residuals };
             first(Evaluated { residuals, factored: true, ..good }, 1e3)
@@ -237,8 +237,8 @@ mod tests {
                 assert_eq!(progress.falls_back(), !rounding, "{error} {d}");
             }
         }
-        // What is followed by a gap in single precision takes no patience: only the limit of iterations ends
-        // it.
+        // Evaluations in single precision do not count against the patience: only the limit of iterations
+        // ends them.
         let mut progress = OuterProgress::new(TIGHT);
         let mut error = 0.5;
         let decisions = (0..=TIGHT.outer_iterations).map(|_| {
@@ -247,7 +247,7 @@ mod tests {
         });
         let end = Decision::End(Status::IterationLimit);
         assert_eq!(decisions.into_iter().position(|d| d == end), Some(TIGHT.outer_iterations));
-        // Nor do those of shortened steps, whose gaps are not evaluated.
+        // Shortened steps, whose gaps are not evaluated, do not count either.
         let mut progress = OuterProgress::new(TIGHT);
         let shortened = Evaluated { complete: false, ..seen(1e-5) };
         let mut decisions = (0..2 * TUNING.patience).map(|_| progress.judge(shortened, 1.0, &TUNING, &never));

@@ -5,7 +5,7 @@ use crate::geometry::CellSet;
 use crate::real::{sum, sum_of_pairs};
 use serde::{Deserialize, Serialize};
 
-/// The numbers of [`contact_model::Certificate`] that do not concern the load or the stiffness.
+/// The residuals of [`contact_model::Certificate`] other than those of the load and of the stiffness.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Residuals {
     /// `(sum p g - min sum q g) / (F s)` over all q between the bounds with the same sum F: without an upper
@@ -25,8 +25,8 @@ impl Residuals {
         self.duality_gap.max(self.penetration).max(self.complementarity)
     }
 
-    /// Residuals of a pressure `p` on a contact set from the gap `left` on it and on all cells that could
-    /// touch, `s` being the length that gaps are compared with.
+    /// Residuals of a pressure `p` on a contact set, from the gap `left` on that set and the gap on all cells
+    /// that could touch. Gaps are compared with the length `s`.
     ///
     /// Outside the candidates the gap is positive, so that their minimum is the minimum of all.
     pub fn measure(

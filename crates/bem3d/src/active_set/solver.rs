@@ -20,7 +20,7 @@ use contact_model::{Status, Stop};
 /// Rounding and early stops can break this, so each outer iteration evaluates the exact gap on all candidates
 /// and adds the cells that penetrate.
 ///
-/// Cost: 20 to 60 applications of G for four digits, a few factorisations for a small set.
+/// Cost: 20 to 60 applications of G for a tolerance of 1e-4, or a few factorisations for a small set.
 pub fn solve(problem: &mut Problem, target: Control, guess: Guess, limits: Limits, stop: Stop<'_>) -> Solved {
     let Guess { set, p, d } = guess;
     let reach = match target {
@@ -57,8 +57,8 @@ struct Pressure {
     q: Option<Vec<f64>>,
 }
 
-/// Candidates up to one approach serve another of at most so many times it: less than the margin with which
-/// they were chosen. Chosen without a measurement of other values.
+/// Candidates found for one approach are also used for another one of at most this multiple of it, which is
+/// less than the reserve with which they were chosen. Other values were not measured.
 const KEPT_REACH: f64 = 1.02;
 
 struct Solver<'a> {
@@ -70,13 +70,14 @@ struct Solver<'a> {
     state: Continuation,
     /// The gap left on its contact set.
     left: Vec<f64>,
-    /// Room for what a change of the pressure displaces.
+    /// Buffer for the displacement under a change of the pressure.
     displacement: Vec<f64>,
-    /// What the gap may be wrong by: nothing in double precision.
+    /// Bound on the error of the gap: 0 in double precision.
     uncertainty: f64,
-    /// The cells whose pressure has changed since the gap was evaluated, and what it was there, negative.
+    /// The cells whose pressure has changed since the gap was evaluated, with the negative of their pressure
+    /// at that time.
     measured: Option<(CellSet, Vec<f64>)>,
-    /// Candidates are wanted up to this approach.
+    /// Candidates are needed up to this approach.
     reach: f64,
     /// The best pressure so far, unless it is the present one.
     best: Pressure,
@@ -84,8 +85,8 @@ struct Solver<'a> {
     /// The pressure before with its gap, where cells were at their upper bound: steps from such a pressure
     /// may have to be shortened.
     before: Option<(Pressure, Continuation)>,
-    /// Steps of the next inner solve at most: few after one that was shortened, because long ones change the
-    /// sets too much at once.
+    /// Largest number of steps of the next inner solve: few after one that was shortened, because long ones
+    /// change the sets too much at once.
     inner_steps: usize,
 }
 
@@ -165,10 +166,10 @@ impl<'a> Solver<'a> {
         self.problem.operators.recorder().clone()
     }
 
-    /// Evaluates the gap under the present pressure, and at a prescribed force finds the approach that it
-    /// makes.
+    /// Evaluates the gap under the present pressure and, at a prescribed force, the approach that follows
+    /// from it.
     ///
-    /// One in single precision says how to go on, but is never evidence.
+    /// A gap in single precision decides how to go on, but never certifies a state.
     fn evaluate(&mut self, look: Look) -> Evaluated {
         let Self { problem, target, now, .. } = self;
         let Problem { bounds, candidates, .. } = &**problem;
@@ -204,7 +205,7 @@ impl<'a> Solver<'a> {
     /// Evaluates u + z under the present pressure on all cells that could touch; `joined`: cells were added
     /// to the contact set that may not be among the candidates.
     ///
-    /// In single precision what changed since the last gap is enough: the error is relative to what is
+    /// In single precision only the change since the last gap is evaluated: the error is relative to what is
     /// transformed.
     fn displace(&mut self, joined: bool, look: Look) {
         let Self { problem, now, state, reach, measured, displacement, uncertainty, .. } = self;
@@ -245,8 +246,8 @@ impl<'a> Solver<'a> {
         recorder.timed(Part::Sets, || candidates.add_to(checked, gap));
     }
 
-    /// Shortens the step that led to the present pressure where it passed the least energy. The share that is
-    /// left, if it did.
+    /// Shortens the step that led to the present pressure where it passed the minimum of the energy. Returns
+    /// the share of the step that is kept in that case.
     fn shorten(&mut self) -> Option<f64> {
         let (before, at) = self.before.take()?;
         let Continuation { checked, gap, .. } = &mut self.state;

@@ -1,4 +1,4 @@
-//! What is solved, from where, how well, and what comes of it.
+//! The problem, the load, the limits, the initial guess and the solution of a solve.
 
 use super::bounds::Bounds;
 use super::candidates::Candidates;
@@ -23,9 +23,9 @@ pub struct Problem {
     pub operators: Operators,
     /// Room for its linear systems.
     pub workspace: Workspace,
-    /// Between what the pressure of a cell lies.
+    /// The bounds of the pressure of a cell.
     pub bounds: Bounds,
-    /// The same surface on larger cells, once a cold start has asked for it.
+    /// The same surface on larger cells, once a cold start has needed it.
     pub coarser: Option<Box<Problem>>,
     /// Whether coarse grids may give initial guesses.
     pub nested: bool,
@@ -52,13 +52,13 @@ impl Problem {
         }
     }
 
-    /// Forgets what the loads before were solved with: plans, coarser grids, room.
+    /// Drops the plans, coarser grids and buffers of the loads before.
     pub fn forget_plans(&mut self) {
         self.operators.forget_plans();
         (self.workspace, self.coarser) = (Workspace::default(), None);
     }
 
-    /// The same; no time is charged.
+    /// As `recorded`, but no time is charged.
     #[cfg(test)]
     pub fn new(grid: Grid, z: Arc<Vec<f64>>, medium: impl Into<Medium>, tuning: &Tuning) -> Self {
         Self::recorded(grid, z, medium, tuning, &Recorder::default())
@@ -79,14 +79,14 @@ pub enum Control {
     Approach(f64),
 }
 
-/// How accurate, how long.
+/// Accuracy and length of a solve.
 #[derive(Debug, Clone, Copy)]
 pub struct Limits {
     /// Bound of the residuals.
     pub tolerance: f64,
     /// Length that gaps are compared with; `None`: the approach.
     pub height: Option<f64>,
-    /// Outer iterations at most.
+    /// Largest number of outer iterations.
     pub outer_iterations: usize,
     /// Whether small sets may be factored.
     pub factor: bool,
@@ -124,8 +124,8 @@ pub struct Solved {
     pub continuation: Continuation,
 }
 
-/// The exact gap of a state on all cells that could touch: what says which cells are undecided, and what a
-/// solve to a tighter tolerance begins with instead of evaluating it again.
+/// The exact gap of a state on all cells that could touch. It decides which cells are undecided, and a solve
+/// to a tighter tolerance starts from it instead of evaluating it again.
 #[derive(Debug, Clone, Default)]
 pub struct Continuation {
     /// The candidates, the contact set among them.
@@ -152,7 +152,7 @@ impl Solved {
         part.carry(&self.continuation.checked, &self.continuation.gap)
     }
 
-    /// How far the pressure of the `free` cells is from the nearest of its bounds.
+    /// The distance of the pressure of the `free` cells from the nearest of its bounds.
     pub fn room(&self, free: &CellSet, bounds: Bounds) -> Cow<'_, [f64]> {
         if bounds == Bounds::Unlimited && free.len() == self.contact.len() {
             return Cow::Borrowed(&self.p);
@@ -164,8 +164,8 @@ impl Solved {
         Cow::Owned(room)
     }
 
-    /// Cells outside the `free` ones that may belong to them: open cells whose gap is negative or below what
-    /// it can still change, and cells at the upper bound of which the same is true of the indentation.
+    /// Cells outside the `free` ones that may belong to them: open cells whose gap is negative or smaller
+    /// than the change that it can still undergo, and cells at the upper bound whose indentation is.
     pub fn undecided(&self, grid: Grid, free: &CellSet, left: &[f64], tuning: &Tuning) -> CellSet {
         let Continuation { checked, gap, .. } = &self.continuation;
         if free.len() == self.contact.len() {

@@ -1,4 +1,4 @@
-//! How far the gaps of open cells may still change: what decides whether a cell is open for sure.
+//! Bounds on the change of the gaps of open cells, which decide whether a cell is certainly open.
 //!
 //! On a contact set C the displacement of an open cell j follows those of the contact with weights
 //! `G_jC G_CC^-1`. Where G on C is an inverse M-matrix they are positive and their sum is below 1: no open
@@ -50,8 +50,8 @@ impl ChangeBound {
     }
 }
 
-/// The cells without contact whose gap is below what it can still change; `contact` is a subset of `checked`,
-/// `left` the gap on it.
+/// The cells without contact whose gap is smaller than the change that it can still undergo. `contact` is a
+/// subset of `checked`, and `left` is the gap on it.
 pub fn undecided(
     grid: Grid,
     contact: &CellSet,

@@ -1,11 +1,11 @@
-//! The attraction between the cells of a grid: a law of each cell's gap and, for a short range, what its
-//! neighbours change.
+//! The attraction between the cells of a grid: a law of each cell's gap and, for a short range, a factor that
+//! depends on its neighbours.
 //!
 //! # A short range on cells
 //!
-//! JKR's limit has no length below which the attraction acts, a grid has its cell. The work of adhesion w is
-//! put into the last cells of a contact, by a law of the gap with the largest traction `s0 = c sqrt(E* w/a)`,
-//! a the longer side of a cell: with `y = 1 - g/g0`,
+//! JKR's limit has no range of attraction, but a grid has the size of its cell. The work of adhesion w is put
+//! into the last cells of a contact, by a law of the gap with the largest traction `s0 = c sqrt(E* w/a)`, a
+//! the longer side of a cell: with `y = 1 - g/g0`,
 //!
 //! ```text
 //! s = s0 y (0.4 + 2.2 y - 1.6 y^2),    g0 = (15/8) w/s0.
@@ -57,29 +57,30 @@ use contact_model::Boundary;
 const FRONT_WIDTH: f64 = 0.415;
 /// Radius of the ring of neighbours, and how far from it they lie at most, in longer sides of a cell.
 const RING: (f64, f64) = (4.0, 1.5);
-/// How far cells follow a moved one of a front, in sides of a square cell.
+/// Distance up to which cells follow a moved cell of a front, in sides of a square cell.
 const FOLLOWING: f64 = 5.0;
 
 /// The attraction between the cells of a grid.
 #[derive(Debug, Clone)]
 pub struct Attraction {
-    /// Of one cell by itself.
+    /// The law of a single cell.
     pub law: Law,
     /// The neighbours that matter, for a short range.
     neighbours: Option<Neighbours>,
-    /// How much stronger than a cell on a straight front one is that has all neighbours, relative.
+    /// By which share the attraction of a cell whose neighbours are all attached exceeds that of a cell on a
+    /// straight front.
     strength: f64,
-    /// Of a short range: what a moved cell of a front takes of the others.
+    /// For a short range: the inverse kernel by which the cells of a front follow one that moves.
     inverse: Option<Inverse>,
 }
 
 impl Attraction {
-    /// Of a finite range: no cell asks for its neighbours.
+    /// The attraction of a finite range, in which neighbours play no part.
     pub fn of(law: Law) -> Self {
         Self { law, neighbours: None, strength: 0.0, inverse: None }
     }
 
-    /// Of a short range, of this work of adhesion over `pi E*` times the height, on a grid.
+    /// The attraction of short range on a grid. `work` is the work of adhesion over `pi E*` times the height.
     pub fn short(work: f64, grid: Grid, boundary: Boundary) -> Self {
         let (x, y) = grid.cell();
         let side = x.max(y);
@@ -98,7 +99,8 @@ impl Attraction {
         self.law.peak * (1.0 + self.strength)
     }
 
-    /// How much stronger than on a straight front a cell is that has all neighbours, relative.
+    /// By which share the attraction of a cell whose neighbours are all attached exceeds that on a straight
+    /// front.
     pub fn strength(&self) -> f64 {
         self.strength
     }
@@ -118,8 +120,8 @@ impl Attraction {
         }
     }
 
-    /// The cells that a small change of the load finds attached, where fronts stay: with a short range those
-    /// that hold more than half of their work. `None`: the attraction moves with the gaps.
+    /// The cells that stay attached under a small change of the load in which fronts do not move: with a
+    /// short range those that hold more than half of their work. `None`: the attraction follows the gaps.
     pub fn held(&self, cells: &CellSet, gap: &[f64]) -> Option<CellSet> {
         self.neighbours.as_ref().map(|_| cells.filter(gap, |g| self.law.attached(g) > 0.5))
     }
@@ -136,7 +138,7 @@ impl Attraction {
         self.held(cells, gap).unwrap_or_else(|| cells.filter(gap, |g| g < self.law.range))
     }
 
-    /// By what the attraction of each cell is multiplied; `None`: 1.
+    /// The factor of the attraction of each cell; `None`: all factors are 1.
     fn factors(&self, cells: &CellSet, gap: &[f64]) -> Option<Vec<f64>> {
         let neighbours = self.neighbours.as_ref()?;
         let attached: Vec<f64> = gap.iter().map(|&g| self.law.attached(g)).collect();
@@ -150,8 +152,8 @@ impl Attraction {
         self.times_factors(cells, gap, |g| self.law.traction(g))
     }
 
-    /// Magnitudes of the derivatives of the tractions, each in the gap of its own cell and with the
-    /// neighbours held.
+    /// Magnitudes of the derivatives of the tractions, each with respect to the gap of its own cell, with the
+    /// factors of the neighbours fixed.
     pub fn slopes(&self, cells: &CellSet, gap: &[f64]) -> Vec<f64> {
         self.times_factors(cells, gap, |g| self.law.slope(g))
     }
@@ -172,7 +174,7 @@ impl Attraction {
         gap.iter().zip(mean).map(|(g, mean)| own(g) * (1.0 - self.strength * (1.0 - mean))).sum()
     }
 
-    /// Largest distance of attractions from the law of their gaps, over that in contact.
+    /// Largest difference of an attraction from the law at its gap, over the attraction in contact.
     pub fn mismatch(&self, cells: &CellSet, attraction: &[f64], gap: &[f64]) -> f64 {
         let pairs = attraction.iter().zip(gap);
         match self.factors(cells, gap) {
@@ -183,8 +185,8 @@ impl Attraction {
         }
     }
 
-    /// By how much the attractions differ in all from the law of their gaps; at the jump of Dugdale's law
-    /// none do.
+    /// The sum of the differences of the attractions from the law at their gaps; at the jump of Dugdale's law
+    /// there is no difference.
     pub fn imbalance(&self, cells: &CellSet, attraction: &[f64], gap: &[f64]) -> f64 {
         let pairs = attraction.iter().zip(gap);
         match self.factors(cells, gap) {

@@ -1,4 +1,5 @@
-//! Passing a bottleneck: where a branch has just ended, or a jump is under way along an unstable direction.
+//! Passing a bottleneck: the load is just beyond the end of a branch, or a jump is under way along an
+//! unstable direction.
 //!
 //! Each update of the plain iteration changes little there until the system has left the bottleneck; the
 //! change has a minimum above zero. A Newton step looks for a state without change: it leads back to the
@@ -7,11 +8,12 @@
 
 use crate::real::dot;
 
-/// Updates in which the residual has to be halved.
+/// Number of updates within which the residual has to be halved.
 const PATIENCE: usize = 15;
-/// Plain updates between two extrapolations: what does not belong to the slow direction decays.
+/// Plain updates between two extrapolations, during which the parts outside the slow direction decay.
 const BETWEEN: usize = 3;
-/// The first extrapolation goes so many changes far; each one doubles it.
+/// The length of the first extrapolation, as a multiple of the change of an update; each further one is twice
+/// as long.
 const FIRST: f64 = 4.0;
 /// No attraction changes by more than this in an extrapolation, over the peak.
 const FARTHEST: f64 = 0.1;
@@ -21,7 +23,7 @@ const CONTRACTS: f64 = 0.9;
 /// Watches the residual of the updates, and leads through bottlenecks.
 #[derive(Debug, Default)]
 pub struct Bottleneck {
-    /// The residual that later ones are to halve, and updates since.
+    /// The residual that has to be halved, and the number of updates since.
     least: Option<f64>,
     since: usize,
     passage: Option<Passage>,
@@ -42,8 +44,8 @@ impl Bottleneck {
         *self = Self::default();
     }
 
-    /// How many times its change the iteration is to go, with this residual and this change of the attraction
-    /// over its peak; `None`: once, the residual falls.
+    /// The multiple of its change that the iteration should take, from this residual and this change of the
+    /// attraction over its peak. `None`: the change itself, because the residual falls.
     pub fn factor(&mut self, residual: f64, change: Vec<f64>) -> Option<f64> {
         let Some(passage) = &mut self.passage else {
             if self.least.is_none_or(|least| residual <= 0.5 * least) {

@@ -18,8 +18,8 @@ pub enum AdhesiveControl {
 }
 
 impl AdhesiveControl {
-    /// What stays as it is while the contact is corrected; `shift` is the constant in the kernel, 0 with free
-    /// boundaries.
+    /// The quantity that is fixed while the contact is corrected; `shift` is the constant in the kernel, 0
+    /// with free boundaries.
     pub(super) fn fixed(self, shift: f64) -> Fixed {
         match self {
             Self::Force(_) => Fixed::Force,
@@ -36,7 +36,7 @@ pub struct Equilibrium {
     pub d: f64,
     /// All cells that can touch or be attracted.
     pub cells: CellSet,
-    /// They are those whose undeformed gap is below this.
+    /// The cells are those whose undeformed gap is below this approach.
     pub(super) reach: f64,
     /// Contact pressure on them, >= 0.
     pub pressure: Vec<f64>,
@@ -44,7 +44,7 @@ pub struct Equilibrium {
     pub attraction: Vec<f64>,
     /// Gap on them, with the exact operator.
     pub gap: Vec<f64>,
-    /// What the law attracts with at that gap.
+    /// The attraction of the law at that gap.
     pub(super) lawful: Vec<f64>,
     /// Residuals of the contact conditions.
     pub residuals: Residuals,
@@ -57,7 +57,7 @@ pub struct Equilibrium {
 }
 
 impl Equilibrium {
-    /// The same state with nothing done for it yet.
+    /// The same state with its work counters at zero.
     pub fn again(&self) -> Self {
         Self { steps: 0, updates: 0, ..self.clone() }
     }
@@ -97,8 +97,8 @@ impl Equilibrium {
     }
 }
 
-/// Energy of a state, elastic and of the attraction; `shift` is the constant in the kernel, which stores
-/// none.
+/// Energy of a state, elastic and of the attraction. `shift` is the constant in the kernel, which stores no
+/// energy.
 pub fn energy(problem: &Problem, attraction: &Attraction, state: &Equilibrium) -> f64 {
     let z = problem.candidates.gaps(&state.cells);
     let force = state.force();

@@ -1,12 +1,12 @@
-//! Straight fronts of a short range on an infinite grid, in directions of small numbers: what the constants
-//! of [`super::attraction`] rest on.
+//! Straight fronts of a short range on an infinite grid, along lattice directions of small integers; the
+//! constants of [`super::attraction`] are derived from them.
 //!
-//! A strip of attached cells between two fronts along the direction (p, q) is drawn off a plane by a
-//! displacement. All cells of a row along the front do the same, so that rows are the unknowns; both fronts
-//! are mirror images. The attached share of the strip is prescribed and its displacement follows, so that
-//! every equilibrium is met, those between two stable places too. Over one row the energy release rate then
-//! has a largest value, at which a front recedes, and a least, at which it advances; their mean is w.
-//! `cargo test --release -p bem3d fronts -- --nocapture` prints the table.
+//! A strip of attached cells between two fronts along the direction (p, q) is pulled off a plane by a
+//! displacement. All cells of a row along the front have the same state, so that the rows are the unknowns;
+//! the two fronts are mirror images. The attached share of the strip is prescribed and its displacement
+//! follows, so that every equilibrium is met, those between two stable places too. Over one row the energy
+//! release rate then has a largest value, at which a front recedes, and a least, at which it advances; their
+//! mean is w. `cargo test --release -p bem3d fronts -- --nocapture` prints the table.
 
 #![allow(clippy::needless_range_loop)] // Indices as in the formulas.
 #![allow(clippy::cast_possible_wrap, clippy::cast_sign_loss)] // Small numbers.
@@ -27,7 +27,7 @@ const ROW: i64 = 6000;
 const HALF: f64 = 30.0;
 /// How far rows beyond the strip are unknowns, in longer sides of a cell.
 const BEYOND: f64 = 10.0;
-/// Places of the front in each row.
+/// Number of positions of the front in each row.
 const PLACES: usize = 16;
 
 /// A lattice row n of the direction (p, q) is the cells `(i, j)` with `q i - p j = n`; cells have the sides
@@ -39,7 +39,7 @@ struct Direction {
     stretch: f64,
 }
 
-/// What fronts of a direction do, over all their places on the grid.
+/// Energy and release rates of fronts along one direction, over all their positions on the grid.
 struct Front {
     /// Energy of a length of front, over w and the longer side of a cell.
     tension: f64,
@@ -50,7 +50,7 @@ struct Front {
 }
 
 impl Direction {
-    /// Along cells of these numbers.
+    /// The direction (p, q) on square cells.
     const fn square(p: i64, q: i64) -> Self {
         Self { p, q, stretch: 1.0 }
     }
@@ -91,8 +91,8 @@ impl Direction {
         sum - 2.0 / length * ((ROW as f64 + 0.5) * length).ln()
     }
 
-    /// Tension of the last cells of a strip that all hold on and opening of the next ones, where fronts
-    /// release `w = 1`.
+    /// Tension of the last closed cells of a strip and opening of the next ones, where the energy release
+    /// rate is `w = 1`.
     fn edge(&self) -> (f64, f64) {
         const ROWS: usize = 300;
         let length = self.period();
@@ -109,7 +109,7 @@ impl Direction {
         (scale * p[ROWS - 1], scale * (1.0 - beside))
     }
 
-    /// What fronts do whose cells are that much stronger where they have all neighbours.
+    /// The properties of fronts where a cell with all neighbours is stronger by the share `strength`.
     fn front(&self, strength: f64, attraction: &Attraction) -> Front {
         let strip = Strip::new(self, strength, attraction);
         let period = self.period();
@@ -187,8 +187,8 @@ impl Strip {
         self.spacing * self.factors(&self.gaps(net, drawn)).0.iter().sum::<f64>()
     }
 
-    /// Net pressures of a strip that is drawn so far that it releases w, the attraction of each sweep from the
-    /// gaps of the one before.
+    /// Net pressures of a strip at the displacement at which the energy release rate is w. The attraction of
+    /// each sweep follows from the gaps of the one before.
     fn attached(&self) -> (Vec<f64>, f64) {
         let n = self.influence.len();
         let drawn = (2.0 * PI * self.half).sqrt() * 2.0 / PI;
@@ -292,7 +292,8 @@ impl Strip {
     }
 }
 
-/// Straight fronts on these cells: bounds of the line tension, and of release rates of receding and advancing.
+/// Checks bounds of the line tension and of the release rates of receding and advancing straight fronts on
+/// these cells.
 #[test]
 fn fronts_move_at_w_in_all_directions_and_on_oblong_cells() {
     println!("cells  direction  tension  without neighbours  mean, receding, advancing release rate");
@@ -325,7 +326,7 @@ fn fronts_move_at_w_in_all_directions_and_on_oblong_cells() {
 /// The table of the book's page on adhesion of short range.
 #[test]
 fn half_of_tension_and_opening_is_the_release_rate_in_every_direction() {
-    // What the width of the strip and of the rows leave.
+    // The error of the finite widths of the strip and of the rows.
     const NEAR: f64 = 6e-3;
     for ((p, q), tension, opening) in [
         ((0, 1), 1.077, 1.856),

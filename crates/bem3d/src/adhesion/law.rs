@@ -1,19 +1,19 @@
-//! How the attraction falls with the gap.
+//! The law of the attraction as a function of the gap.
 
 use contact_model::AdhesionLaw;
 use std::f64::consts::PI;
 
-/// Gaps beyond so many ranges feel no exponential attraction: below the rounding of the largest traction,
-/// `exp(-36.7) = 2^-53`.
+/// Beyond this many ranges the exponential attraction is taken as zero: it is below the rounding of the
+/// largest traction, `exp(-36.7) = 2^-53`.
 const FARTHEST: f64 = 36.7;
 
 /// Traction in contact of a short range, in `sqrt(E* w/a)` with the longer side a of a cell; see
-/// [`super::attraction`]. Larger ones trap fronts between the rows of cells, smaller ones draw them apart.
+/// [`super::attraction`]. Larger values trap fronts between the rows of cells, smaller ones widen them.
 const FRONT_TRACTION: f64 = 0.59;
 /// Work of a short range over its peak times its range, `int_0^1 y (0.4 + 2.2 y - 1.6 y^2) dy`.
 const FRONT_WORK: f64 = 8.0 / 15.0;
 
-/// How the attraction falls.
+/// The shape of the law.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Shape {
     /// `peak exp(-g/range)`.
@@ -38,7 +38,7 @@ pub struct Law {
     pub peak: f64,
     /// Range.
     pub range: f64,
-    /// How it falls.
+    /// The shape of the law.
     pub shape: Shape,
 }
 

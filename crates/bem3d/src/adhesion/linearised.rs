@@ -34,12 +34,13 @@ use numerics::root::bisect;
 /// Slopes below this share of the largest one are left out: what they change is below the rounding of the
 /// sums.
 const FLAT: f64 = 1e-12;
-/// Solves on the contact reduce their residual by this factor; the response is corrected by rounds.
+/// Solves on the contact reduce their residual by this factor; further rounds correct the response.
 const INNER: f64 = 1e-2;
 /// With pressure that takes displacement back, until the energy of their error is this share of that of the
 /// displacement: r comes out too large by as much at most, the stability too small.
 const ENERGY: f64 = 3e-4;
-/// The reduced iteration ends where its residual has fallen by this factor, settled or not.
+/// The reduced iteration ends where its residual has fallen by this factor, whether or not the stability has
+/// settled.
 const REDUCED: f64 = 1e-9;
 /// Steps of inner solves at most.
 const INNER_STEPS: usize = 60;
@@ -50,13 +51,13 @@ const SETTLED: f64 = 3e-3;
 /// Rounds of correction of the response with the exact operator.
 const ROUNDS: usize = 4;
 
-/// What a small change of the load does.
+/// The response to a small change of the load.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Response {
     /// `1 - r` for the exponential law, with the approach or the force held as the control says; for
     /// Dugdale's law the smallest distance of the gap of a cell from the range, in ranges.
     pub stability: f64,
-    /// The stiffness where it was wanted and exists.
+    /// The stiffness, where it was requested and exists.
     pub stiffness: Option<Slope>,
     /// Steps of conjugate gradients.
     pub steps: usize,
@@ -98,13 +99,13 @@ struct Linearised<'a> {
     unit: f64,
     /// The constant that is taken from the kernel: all of it where the mean plane is held.
     constant: f64,
-    /// What takes their displacement of the contact back.
+    /// The correction on the contact for the displacement that the open cells cause there.
     near: Option<Near>,
     steps: usize,
     stop: Stop<'a>,
 }
 
-/// What conjugate gradients on the open cells found.
+/// The result of conjugate gradients on the open cells.
 struct Reduced {
     /// `G^ y`.
     displacement: Vec<f64>,
@@ -163,9 +164,9 @@ impl Linearised<'_> {
         let through = self.rough(&self.contact.clone(), &x, &open);
         update(&mut displacement, &through, |u, through| *u -= through);
         if let Some(near) = self.near.as_ref().filter(|_| !self.contact.is_empty()) {
-            // The pressure that takes displacement back does work on what the solve leaves. With it the product
-            // is symmetric and its error of the second order; without it waves close to their snap-in were
-            // called unstable.
+            // The correcting pressure does work on the residual displacement of the solve. With this term the
+            // product is symmetric and its error is of second order; without it waves close to their snap-in
+            // were classified as unstable.
             let residual = self.problem.workspace.residual();
             let residual = self.both.carry(&self.contact, &residual);
             let residual: Vec<f32> = residual.iter().map(|&r| r as f32).collect();
@@ -294,9 +295,9 @@ pub fn respond(
     response
 }
 
-/// The stiffness of the contact area of a state, held: of the closed cells and, with a short range, of those
-/// that hold more than half of their work. `None` where it is the whole of a periodic surface. Also the steps
-/// of conjugate gradients.
+/// The stiffness at a fixed contact area: that of the closed cells and, with a short range, of the cells that
+/// hold more than half of their work. `None` where the contact area is the whole of a periodic surface. Also
+/// returns the number of conjugate gradient steps.
 ///
 /// Cost: one or two solves on the contact.
 pub fn fixed_area(
@@ -323,7 +324,7 @@ impl Linearised<'_> {
     fn response(&mut self, control: AdhesiveControl, tolerance: Option<f64>) -> Response {
         let mut response = Response { stability: 1.0, ..Response::default() };
         if self.both.is_empty() {
-            // Nothing within reach: nothing responds.
+            // No cell is within reach: there is no response.
             return Response { stiffness: Some(Slope { value: 0.0, error: 0.0 }), ..response };
         }
         let (contact, open) = (self.contact.clone(), self.open.clone());

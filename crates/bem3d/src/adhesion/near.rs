@@ -1,9 +1,9 @@
-//! The displacement of open cells beside a contact that follows that of the contact.
+//! The displacement of open cells beside a contact, estimated from that of the contact.
 //!
 //! Where the net pressure acts on the contact C alone, the displacement of an open cell is the mean of those
 //! of all other cells, weighed with the magnitudes of the inverse kernel, about `1/r^3`, because `G^-1 u = 0`
-//! there. Here closed cells nearby count with their displacement, open ones nearby as the cell itself, and
-//! cells further away as at rest. With W the weights of contact cells nearby this is
+//! there. Here closed cells nearby enter with their displacement, open ones nearby with that of the cell
+//! itself, and cells further away with zero. With W the weights of contact cells nearby this is
 //!
 //! ```text
 //! u_Z = E u_C,    E = diag(1/(W 1 + f)) W,
@@ -22,7 +22,7 @@ use contact_model::Boundary;
 
 /// Cells nearer than this count, in sides of a square cell.
 const NEIGHBOURHOOD: f64 = 3.5;
-/// What stands for cells further away, as a share of the weights of all that are nearer.
+/// Weight of the cells further away, as a share of the weights of all nearer ones.
 const FURTHER: f64 = 0.05;
 
 /// E and its transpose, on the cells of a set.
@@ -35,8 +35,8 @@ pub struct Near {
 }
 
 impl Near {
-    /// [`Near::new`] where the attraction is of short range: the open cells of others are too many for what they
-    /// gain.
+    /// [`Near::new`] where the attraction is of short range: with other laws there are too many open cells
+    /// for this correction to pay.
     pub fn of(
         attraction: &Attraction,
         grid: (Grid, Boundary),
@@ -46,7 +46,7 @@ impl Near {
         (attraction.law.shape == Shape::Smooth).then(|| Self::new(grid, cells, is_open))
     }
 
-    /// On the cells of a set, of which some are open, 1, and the others closed, 0.
+    /// On the cells of a set; `is_open` is 1 on open cells and 0 on closed ones.
     pub fn new((grid, boundary): (Grid, Boundary), cells: &CellSet, is_open: &[f32]) -> Self {
         let around = Neighbours::around(grid, boundary == Boundary::Periodic, NEIGHBOURHOOD);
         let of_contact = |_: usize, k: usize, weight: f64| if is_open[k] > 0.0 { 0.0 } else { weight };

@@ -32,8 +32,8 @@ impl Neighbours {
         Self::new(grid, periodic, radius + width, |r| 1.0 - ((r - radius) / width).powi(2))
     }
 
-    /// All cells nearer than `farthest`, weights `1/r^3`: what the inverse of the kernel couples a cell with
-    /// the others by.
+    /// All cells nearer than `farthest`, with weights `1/r^3`, which is how the inverse of the kernel couples
+    /// cells.
     pub fn around(grid: Grid, periodic: bool, farthest: f64) -> Self {
         Self::new(grid, periodic, farthest, |r| if r > 0.0 { r.powi(-3) } else { 0.0 })
     }
@@ -41,7 +41,7 @@ impl Neighbours {
     /// With a weight of the distance, where that is positive, up to the farthest.
     fn new(grid: Grid, periodic: bool, farthest: f64, weight_at: impl Fn(f64) -> f64) -> Self {
         let (dx, dy) = grid.cell();
-        // So many cells of one side lie within a distance.
+        // Number of cells to one side within a distance.
         let within = |distance: f64, cell: f64| ((distance / cell).ceil() as usize).saturating_sub(1);
         let along = within(farthest, dy);
         let (mut total, mut moment) = (0.0, 0.0);
@@ -137,7 +137,7 @@ impl Neighbours {
         mean
     }
 
-    /// Of cells side by side, whose neighbourhood begins with these values.
+    /// The sums for cells side by side, whose neighbourhood begins with these values.
     #[expect(clippy::inline_always, reason = "a call would lose the instructions of its caller")]
     #[inline(always)]
     fn sums(&self, around: &[f64], width: usize) -> [f64; LANES] {
@@ -181,7 +181,8 @@ impl Neighbours {
     }
 }
 
-/// Places beside a window of this length, up to so far from it, with those in it that are whole periods away.
+/// Positions beside a window of this length, up to `reach` from it, each with the positions in the window
+/// that are whole periods away.
 fn images(reach: usize, length: usize, period: usize) -> Vec<(usize, usize)> {
     let window: Range<usize> = reach..reach + length;
     (0..length + 2 * reach)
@@ -249,8 +250,8 @@ mod tests {
             .collect()
     }
 
-    /// `cargo test --release -p bem3d cost_of_the_mean -- --ignored --nocapture`: nanoseconds a cell, of all
-    /// cells and of a rough contact, beside the sum of each cell by itself.
+    /// `cargo test --release -p bem3d cost_of_the_mean -- --ignored --nocapture`: nanoseconds per cell, for
+    /// all cells and for a rough contact, compared with the sum of one cell after the other.
     #[test]
     #[ignore = "a time"]
     fn cost_of_the_mean() {

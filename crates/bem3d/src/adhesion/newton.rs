@@ -1,4 +1,5 @@
-//! A Newton step for contact pressure and attraction together, and which of them stay on the branch.
+//! A Newton step for contact pressure and attraction together, and the conditions under which it stays on the
+//! branch.
 //!
 //! # The system
 //!
@@ -50,16 +51,16 @@
 //!   segment to t with `T(r) <= r` is found by halving: close to s there always is one.
 //!
 //! The law of a short range is convex for gaps beyond 0.54 of its range only: it is level in contact, so that
-//! fronts are not trapped. There the same signs are asked for, and that steps stay on the branch is found, not
-//! proven: of 6420 states of small grids none differs from that of the plain iteration
-//! (`of_thousands_of_states_how_many_leave_the_branch`).
+//! fronts are not trapped. There the same signs are required. That steps stay on the branch is then observed,
+//! not proven: of 6420 states on small grids none differs from that of the plain iteration
+//! (`newton_steps_leave_the_branch_in_none_of_thousands_of_states`).
 //!
-//! Steps whose changes have the other sign are not taken. Not tested is that no cell closes from beyond the
-//! range in a rising step and that none opens, which small changes make unlikely; a contact cell whose
-//! pressure would be negative opens. A system that is solved to a share of its residual leaves as much; so
-//! does contact that is not quite settled: signs hold up to [`SLACK`] of the present mismatch. Within
-//! [`NEAR`] of an equilibrium, where rounding and the contact decide the signs, a short step of either sign
-//! is taken. Stability is measured at the end in any case.
+//! Steps whose changes have the other sign are not taken. It is not checked that in a rising step no cell
+//! closes from beyond the range and none opens, which is unlikely for small changes; a contact cell whose
+//! pressure would be negative opens. The linear system and the contact are solved only to a share of their
+//! residuals: signs hold up to [`SLACK`] of the present mismatch. Within [`NEAR`] of an equilibrium, where
+//! rounding and the contact decide the signs, a short step of either sign is taken. Stability is measured at
+//! the end in any case.
 
 use super::attraction::Attraction;
 use super::equilibrium::Equilibrium;
@@ -92,10 +93,10 @@ const LONGEST: f64 = 1.0;
 const ROUNDS: usize = 2;
 /// Steps of minimal residuals at most.
 const STEPS: usize = 100;
-/// The own part of the block of Z is at least this share of N.
+/// The diagonal part of the block of Z is at least this share of N.
 const LEAST: f64 = 0.1;
 
-/// What the plain iteration would do to a state.
+/// The state that the plain iteration would reach in one update.
 pub struct Predicted<'a> {
     /// Contact pressure, brought to the force.
     pub pressure: &'a [f64],
@@ -129,7 +130,7 @@ struct Linear {
     is_open: Vec<f32>,
 }
 
-/// What solves it, on both sets of cells.
+/// The solution of the system, on both sets of cells.
 struct Solution {
     /// Change of the net pressure.
     change: Vec<f64>,
@@ -138,8 +139,8 @@ struct Solution {
     steps: usize,
 }
 
-/// A Newton step from a state, `None` where it may lead off the branch; and the steps of minimal residuals
-/// that were taken for it. `reduction`: of the residual of the linear system.
+/// A Newton step from a state, `None` where it may lead off the branch, and the number of steps of minimal
+/// residuals that it took. `reduction` is the factor by which the residual of the linear system is reduced.
 ///
 /// Cost: a product by G and two means over neighbours a step.
 pub fn step(
@@ -329,7 +330,7 @@ impl Linear {
             TorusInverse { transform, extension, recorder }.apply(contact, 0.0, &mut on_contact, &mut found);
             both.add_carried(contact, &found, z);
         };
-        // A net force that is fixed is a product with these; what is taken from it are the weights.
+        // A fixed net force is the product with these; the correction of it is distributed by the weights.
         let mut force = vec![0.0f32; n];
         neighbours(root, &mut force);
         let (mut weights, mut total) = (vec![0.0f32; n], 0.0);

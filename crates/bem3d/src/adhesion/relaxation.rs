@@ -1,19 +1,19 @@
-//! Fronts of a short range followed over several cells in one update.
+//! Following the fronts of a short range over several cells in one update.
 //!
-//! Where the attraction is that of the gaps of the update before, a front moves by a cell or so, and then the
-//! contact is solved anew. Before that, the cells beside a front follow one another here, by the inverse W of
-//! the kernel: with Q the net pressure that holds the gaps, a change e of one gap changes Q by `W e`. A cell is
-//! in balance where it is open and `Q + f s(g) = 0`, or closed and `Q + f s(0) >= 0`; f, what its neighbours
-//! multiply its attraction by, stays as it is.
+//! With the attraction from the gaps of the update before, a front moves by about one cell before the contact
+//! has to be solved anew. Before that, the cells beside a front follow one another here, by the inverse W of
+//! the kernel: with Q the net pressure that holds the gaps, a change e of one gap changes Q by `W e`. A cell
+//! is in balance where it is open and `Q + f s(g) = 0`, or closed and `Q + f s(0) >= 0`; f, what its
+//! neighbours multiply its attraction by, stays as it is.
 //!
 //! No gap passes an equilibrium. A cell that is out of balance by e moves by `e/W_0` at a time, W_0 the
 //! cell's own entry: less than what balances it with the others held, because its attraction moves it further
 //! in the same direction. All other entries of W are negative, so that a cell that closes makes others close,
 //! and one that opens makes them open; gaps that all close from above an equilibrium end above it. Cells that
-//! are out of reach are held, which makes changes smaller. This holds for exact contact, an approach or a force;
-//! contact is solved to a share of the last change only, and with a prescribed mean gap the map is not monotone.
-//! What is found then is in `followed_fronts_go_on_and_pass_no_equilibrium` and
-//! `of_thousands_of_states_how_many_leave_the_branch`.
+//! are out of reach are held, which makes changes smaller. This holds for exact contact, an approach or a
+//! force; contact is solved to a share of the last change only, and with a prescribed mean gap the map is not
+//! monotone. The tests of these cases are `followed_fronts_go_on_and_pass_no_equilibrium` and
+//! `newton_steps_leave_the_branch_in_none_of_thousands_of_states`.
 
 use super::attraction::Attraction;
 use super::equilibrium::Equilibrium;
@@ -42,8 +42,8 @@ pub struct Tractions<'a> {
     pub attraction: &'a mut [f64],
 }
 
-/// Follows the fronts of a state from the attraction of its gaps, `to.attraction`, to where they come to rest in
-/// W, or part of the way; `to` becomes what the cells then bear.
+/// Follows the fronts of a state from the attraction of its gaps, `to.attraction`, to where they come to rest
+/// under W, or part of the way. On return `to` holds the tractions there.
 ///
 /// Cost: for each cell and round a product with the part of W within its reach.
 pub fn follow(

@@ -21,17 +21,18 @@ use std::sync::Arc;
 
 /// Updates for each outer iteration allowed: the plain iteration contracts by the spectral radius only.
 const UPDATES: usize = 20;
-/// Room above the cells within reach, in ranges, so that small changes of the load keep the set.
+/// How far above the reach cells are still included, in ranges, so that small changes of the load keep the
+/// set.
 const AHEAD: f64 = 0.5;
 /// A contact whose force changes by more than this factor is solved from coarse grids.
 const FAR: f64 = 2.0;
 /// Tolerance of the elastic contact that a first load begins with.
 const FIRST: f64 = 1e-2;
 
-/// Why there is no state.
+/// Why a search ended without a state.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Ended {
-    /// As the elastic solver.
+    /// For the same reason as in the elastic solver.
     Status(Status),
     /// The attraction cannot hold the force.
     PulledOff,
@@ -114,8 +115,8 @@ impl Search<'_> {
         Err(Box::new((Ended::Status(Status::IterationLimit), state)))
     }
 
-    /// Whether the contact of a state is of another load than the one asked for: then it is solved from
-    /// coarse grids.
+    /// Whether the load of a state is far from the requested one; its contact is then solved from coarse
+    /// grids.
     fn is_far(&self, state: &Equilibrium) -> bool {
         let AdhesiveControl::Force(asked) = self.control else { return false };
         let (held, wanted) = (sum(&state.pressure), asked + sum(&state.attraction));
@@ -199,13 +200,13 @@ impl Search<'_> {
                 AdhesiveControl::Force(_) if force > 0.0 => {
                     state.d = state.pressure.iter().zip(&state.gap).map(|(p, g)| p / force * g).sum();
                 }
-                // Nothing touches yet: the flat comes down to the highest point.
+                // No cell is in contact yet: the plane moves to the highest point.
                 AdhesiveControl::Force(_) if !state.gap.is_empty() => state.d = smallest(&state.gap),
                 AdhesiveControl::Force(_) => {}
             }
             let d = state.d;
             each(&mut state.gap, |g| *g -= d);
-            // A cell outside is lifted by the attraction no farther than the one lifted most.
+            // The attraction displaces no cell outside by more than the largest displacement inside.
             let reach = d + law.reach() - lowest;
             if reach <= state.reach {
                 break;

@@ -14,10 +14,10 @@ use contact_model::{Boundary, never};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-/// Residuals of the solver in these tests.
+/// Tolerance of the solver in these tests.
 const TOLERANCE: f64 = 1e-9;
-/// Gaps of the solver and of the reference, in ranges: the tolerance over the smallest distance of an
-/// eigenvalue from 1 met here.
+/// Largest difference between gaps of the solver and of the reference, in ranges: the tolerance over the
+/// smallest distance of an eigenvalue from 1 in these tests.
 const SAME: f64 = 1e-6;
 
 const LIMITS: Limits =
@@ -247,7 +247,7 @@ fn gaps(grid: Grid, state: &Equilibrium) -> Vec<f64> {
     CellSet::all(grid).carry(&state.cells, &state.gap)
 }
 
-/// Law as strong as cells allow.
+/// The attraction of a law whose strength is this share of what the cells allow.
 fn law(range: f64, share: f64) -> Attraction {
     Attraction::of(Law { peak: share * range / 3.525_494, range, shape: Shape::Exponential })
 }
@@ -265,7 +265,8 @@ fn a_short_range_does_the_work_with_the_traction_of_its_longer_side() {
     }
 }
 
-/// Of a prescribed force that of a kernel with a very large constant, under which no force changes.
+/// At a prescribed force the reference is that of a kernel with a very large constant, under which the force
+/// cannot change.
 #[test]
 fn stability_is_that_of_the_dense_matrix_at_an_approach_and_at_a_force() {
     const NO_FORCE: f64 = 1e7;
@@ -455,7 +456,7 @@ fn compared(seeds: std::ops::Range<u64>) -> (usize, Vec<String>) {
         let short = Attraction::short((0.35 * range).powi(2) / PI, grid, boundary);
         for law in [short, law(range, 0.1 + 0.1 * numbers.next())] {
             let mut last: Option<Equilibrium> = None;
-            // A force that holds the surface at its first touch, and a multiple of what the law pulls with.
+            // The force at which the surface just touches, and a multiple of the attraction of the law.
             let by_force = numbers.next() < 0.5;
             for step in 0..10 {
                 let share = if step < 4 { 1.0 } else { -1.0 } * numbers.next();
@@ -506,7 +507,7 @@ fn newton_steps_stay_on_the_branch_of_the_plain_iteration() {
 /// Some minutes.
 #[test]
 #[ignore = "a study"]
-fn of_thousands_of_states_how_many_leave_the_branch() {
+fn newton_steps_leave_the_branch_in_none_of_thousands_of_states() {
     let (count, different) = compared(0..400);
     println!("{count} states, {} of them elsewhere", different.len());
     for what in &different {
@@ -546,7 +547,7 @@ fn stiffness_by_differences(boundary: Boundary) {
 }
 
 #[test]
-fn a_force_that_nothing_holds_is_told() {
+fn a_force_beyond_the_pull_off_force_is_an_error() {
     let grid = Grid::square(9, 9);
     let z = heights(grid, 2);
     let law = law(0.3, 0.2);

@@ -13,8 +13,8 @@ use crate::linear::{Fixed, StoppingCriteria};
 use crate::real::{each, largest, largest_difference, sum, update};
 use contact_model::Stop;
 
-/// An update lowers the gaps left on the contact by this factor: less than the attraction changes by would be
-/// lost, more is gone after the next change of the attraction.
+/// An update reduces the residual gaps on the contact by this factor. Less would lose part of the effect of
+/// the changed attraction, and more would be lost at the next change of the attraction.
 const REDUCTION: f64 = 0.05;
 /// The same for the plain iteration, whose contact is solved before the attraction is changed.
 const PLAIN_REDUCTION: f64 = 1e-2;
@@ -27,14 +27,14 @@ const STEPS: usize = 40;
 /// The plain iteration changes the attraction where no gap of the contact is wrong by more than this share of
 /// the range.
 const SETTLED: f64 = 1e-3;
-/// Otherwise: by more than this share of what the attraction changes its gaps by ...
+/// In the other updates: by more than this share of the change of its gaps under the attraction ...
 const BALANCE: f64 = 0.3;
 /// ... and at most this.
 const SETTLED_FIRST: f64 = 0.1;
 /// Bottlenecks are looked for when no gap changes by more than this share of the range in an update.
 const SLOW: f64 = 0.5;
-/// At a mean gap more attraction here opens gaps elsewhere, and cells may change sides for ever; from so many
-/// updates on the attraction changes by a share only ...
+/// At a prescribed mean gap more attraction in one place opens gaps in another, and cells may alternate for
+/// ever; from this many updates on only a share of the change of the attraction is taken ...
 const PATIENT: usize = 100;
 /// ... which is this.
 const DAMPED: f64 = 0.3;
@@ -44,14 +44,14 @@ const FIRST_STEP: f64 = 0.03;
 const LAST_STEP: f64 = 2e-4;
 /// A Newton step aims at this share of the tolerance.
 const AIM: f64 = 0.1;
-/// A Newton step that does not lower the mismatch by this factor was of no use.
+/// A Newton step that does not lower the mismatch by this factor counts as useless.
 const USEFUL: f64 = 0.5;
 /// After such a step, or one that was refused, the next one is solved better by this factor.
 const CLOSER: f64 = 0.1;
 /// Plain updates at most from a Newton step that was refused, or of no use, to the next one.
 const REST: usize = 8;
 
-/// What the updates before say about the next one.
+/// The history of the updates, from which the next one is chosen.
 #[derive(Debug)]
 pub struct Progress {
     bottleneck: Bottleneck,
@@ -187,8 +187,9 @@ impl Updates<'_> {
         self.bring_to_force(state)
     }
 
-    /// The pressure of a state brought to the force that an attraction leaves to it; `None` where that is
-    /// none. With an inverse of the kernel its fronts are followed, and the attraction becomes that at their end.
+    /// The pressure of a state brought to the force that an attraction leaves to it; `None` where the
+    /// attraction leaves no force for the contact. With an inverse of the kernel its fronts are followed, and
+    /// the attraction becomes that at their end.
     fn held(
         &self,
         state: &Equilibrium,
@@ -308,7 +309,7 @@ impl Contact {
     }
 }
 
-/// Goes so many times from one state to the next, between zero and `most`.
+/// Extrapolates by `factor` from one state to the next, within zero and `most`.
 fn extrapolate(factor: f64, from: &[f64], to: &mut [f64], most: f64) {
     update(to, from, |to, from| *to = (from + factor * (*to - from)).clamp(0.0, most));
 }

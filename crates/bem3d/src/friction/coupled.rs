@@ -1,4 +1,5 @@
-//! Normal and tangential contact together, where tractions displace normally and pressures tangentially.
+//! Coupled normal and tangential contact: tangential tractions cause normal displacements and pressures
+//! tangential ones.
 
 use super::increment::FrictionLimits;
 use super::state::{ForceTooLarge, Friction, FrictionLoad, FrictionState, PressedCells, SlipMemory};
@@ -8,7 +9,8 @@ use std::sync::Arc;
 
 /// Rounds at most.
 const ROUNDS: usize = 60;
-/// Rounds that may bring the normal displacements no nearer before the alternation is taken not to contract.
+/// Number of rounds without progress of the normal displacements after which the alternation counts as not
+/// contracting.
 const PATIENCE: usize = 4;
 
 /// A pair of states, certified together.
@@ -18,39 +20,40 @@ pub struct CoupledState {
     pub normal: Solved,
     /// The tractions.
     pub tangential: FrictionState,
-    /// Rounds, and how much nearer the last ones came to each other; above 1 the alternation does not contract.
+    /// Number of rounds of the alternation.
     pub rounds: usize,
-    /// See `rounds`; `None` after a single round.
+    /// Factor by which the last round reduced the change of the normal displacements; above 1 the alternation
+    /// does not contract. `None` after a single round.
     pub contraction: Option<f64>,
 }
 
 impl CoupledState {
-    /// How it ended: converged where both states are, each with the other one.
+    /// How it ended: converged where both states are converged, each with the other one.
     pub fn status(&self) -> Status {
         if self.normal.status == Status::Converged { self.tangential.status } else { self.normal.status }
     }
 }
 
-/// What an increment of both loads is asked for.
+/// The loads and the accuracy of an increment of both loads.
 #[derive(Debug, Clone, Copy)]
 pub struct CoupledLoad {
     /// The normal load at its end.
     pub normal: Control,
     /// The tangential load at its end.
     pub tangential: FrictionLoad,
-    /// How accurate the pressure is to be.
+    /// Accuracy of the pressure.
     pub normal_limits: Limits,
-    /// How accurate the tractions are to be.
+    /// Accuracy of the tractions.
     pub tangential_limits: FrictionLimits,
 }
 
 /// The state at the end of an increment, from the tractions before or from a pair that is near it.
 ///
 /// Alternates: the pressure on the surface that the last tractions deform, the tractions with the tangential
-/// displacement of that pressure. It ends when the gap of the pressure with the normal displacement of the last
-/// tractions, evaluated exactly, meets its tolerance: the certificates are those of one pair. Each round is about
-/// `beta mu` times as far from the solution as the one before; for a large product there need not be only one, and
-/// a pair that no longer comes nearer is [`Status::Stagnated`].
+/// displacement of that pressure. It ends when the gap of the pressure with the normal displacement of the
+/// last tractions, evaluated exactly, meets its tolerance: the certificates are those of one pair. Each round
+/// multiplies the error by about `beta mu`. For a large product the solution need not be unique, and an
+/// alternation that no longer converges is [`Status::Stagnated`].
 ///
 /// `z` are the undeformed gaps of the surface; the problem is left with those that the tractions deform.
 ///

@@ -1,13 +1,13 @@
-//! The tractions that friction admits: in each cell a disk, and with a prescribed force their sum.
+//! The tractions that friction admits: a disk in each cell and, with a prescribed force, a given sum.
 //!
-//! Vectors hold the components along x of all cells, then those along y. They are in units of about the largest limit, so
-//! that squares neither overflow nor count where they underflow.
+//! Vectors hold the components along x of all cells, then those along y. They are in units of about the
+//! largest limit, so that squares do not overflow and those that underflow are negligible.
 
 use crate::tuning::{CHUNK, LANES};
 use numerics::parallel::map;
 
-/// Newton's steps at most to the multiplier of a force; a handful are the rule, some sixty where all but a
-/// billionth of the friction is asked for.
+/// Newton's steps at most to the multiplier of a force; a handful are usual, some sixty where the force is
+/// within a billionth of the largest one.
 const STEPS: usize = 200;
 /// A force is met where it is off by less than this share of the largest one: the rounding of a sum.
 const ROUNDING: f64 = 2e-15;
@@ -24,7 +24,7 @@ pub fn total(v: &[f64]) -> [f64; 2] {
     [crate::real::sum(x), crate::real::sum(y)]
 }
 
-/// Sums over the cells of what `term` makes of a vector, another one and a number.
+/// Sums over the cells of `term`, which takes the vectors of two fields and a number.
 pub fn sums<const N: usize>(
     (a, b): (&[f64], &[f64]),
     limit: &[f64],
@@ -61,7 +61,7 @@ pub fn sums<const N: usize>(
     sums
 }
 
-/// The length of a vector, without a care for squares that underflow.
+/// The length of a vector; squares may underflow.
 pub fn length([x, y]: [f64; 2]) -> f64 {
     (x * x + y * y).sqrt()
 }
@@ -118,7 +118,7 @@ pub fn multiplier(v: &[f64], limit: &[f64], force: [f64; 2], start: [f64; 2]) ->
         if gx.hypot(gy) <= ROUNDING * most {
             break;
         }
-        // A hair of the trace keeps directions finite in which nothing resists.
+        // A tiny share of the trace keeps directions without resistance finite.
         let hair = 1e-14 * (xx + yy) + f64::MIN_POSITIVE;
         let (xx, yy) = (xx + hair, yy + hair);
         let determinant = xx * yy - xy * xy;

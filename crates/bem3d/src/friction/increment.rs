@@ -25,16 +25,16 @@ pub struct Increment<'a> {
     pub cells: &'a CellSet,
     /// Largest traction of each cell, the coefficient of friction times its pressure at the end.
     pub limit: &'a [f64],
-    /// What the elastic displacement and the slip have added up to at the beginning: the slip of the increment is
+    /// The sum of the elastic displacement and of the slip at the beginning: the slip of the increment is
     /// `w = delta - K q - reference`.
     pub reference: &'a [f64],
     /// Tangential load at the end.
     pub control: TangentialControl,
-    /// Displacement at the beginning: that at the end where nothing decides it.
+    /// Displacement at the beginning; also that at the end where no condition determines it.
     pub displacement: [f64; 2],
 }
 
-/// How accurate, how long.
+/// Accuracy and length of the solve of an increment.
 #[derive(Debug, Clone, Copy)]
 pub struct FrictionLimits {
     /// Bound of the duality gap relative to its scale.
@@ -43,7 +43,7 @@ pub struct FrictionLimits {
     pub iterations: usize,
 }
 
-/// Tractions on their way, and at the end of an increment.
+/// Tractions and slip during the iteration and at the end of an increment.
 #[derive(Debug, Clone)]
 pub struct Sliding {
     /// Tractions, admissible to rounding.
@@ -55,7 +55,7 @@ pub struct Sliding {
     /// `sum(b |w| - q . w)` with the exact operator, relative to `sum(b)` times the larger of `|delta|` and of the
     /// largest reference.
     pub duality_gap: f64,
-    /// What the force misses of the one that is prescribed, over the largest one.
+    /// Difference of the force from the prescribed one, over the largest force.
     pub load_error: f64,
     /// The cells that stick.
     pub stick: CellSet,
@@ -76,7 +76,7 @@ pub struct FrictionRoom {
     pub extensions: [Extension; 2],
     /// Vectors of the preconditioner.
     pub split: Room,
-    /// What the sums of corrections are taken from, in the present increment.
+    /// The weights by which the sums of corrections are kept, in the present increment.
     weights: Option<[Vec<f32>; 2]>,
 }
 
@@ -96,7 +96,7 @@ const ROUNDING: f64 = 8.0 * f64::EPSILON;
 const USELESS: f64 = 0.02;
 /// Newton's steps without a better gap after which projected gradients take over ...
 const PATIENCE: usize = 4;
-/// ... for so many steps, twice as many each time.
+/// ... for this number of steps, twice as many each further time.
 const GRADIENTS: usize = 8;
 /// A gap is better when it falls by this factor.
 const BETTER: f64 = 0.7;
@@ -109,7 +109,7 @@ const FURTHER: f64 = 0.2;
 const LEAST_REDUCTION: f64 = 0.02;
 /// Units of tractions are at least this share of displacements: squares of these stay finite.
 const SMALLEST_UNIT: f64 = 1e-100;
-/// Share of the friction of all cells that a force may ask for: at the whole of it the displacement has no bound.
+/// Largest force as a share of the friction of all cells: at the whole of it the displacement is unbounded.
 pub const LARGEST_SHARE: f64 = 1.0 - 1e-9;
 
 struct Solver<'a> {
@@ -147,8 +147,8 @@ struct Solver<'a> {
 /// `|y| <= b`; elsewhere `q = b y/|y| + tau t` with the tangent t and `(K tau)_t + tau |w|/b = w_t`, which is
 /// symmetric and positive definite. Conjugate gradients solve it roughly; the result is projected onto the
 /// admissible tractions, and the energy is minimised on the way there, along which it is a parabola: no step
-/// raises it. Where these steps come to nothing projected gradients with the same line search take over,
-/// which converge from everywhere; Newton's steps go on from there.
+/// raises it. Where these steps make no progress, projected gradients with the same line search take over,
+/// which converge from any start; Newton's steps go on from there.
 ///
 /// Cost: some 5 to 10 steps, of 2 applications and those of a handful of conjugate gradients each.
 /// Source: the conditions are those of Kalker's variational principle (J. J. Kalker, Three-Dimensional Elastic
@@ -201,7 +201,7 @@ fn in_units(
     found
 }
 
-/// The same by projected gradients alone, so many at most.
+/// The same by projected gradients alone, in at most the given number of steps.
 #[cfg(test)]
 pub fn by_gradients(
     operators: &mut TangentialOperators,
@@ -225,7 +225,7 @@ pub fn step(operators: &TangentialOperators) -> f64 {
     STEP / operators.table().own()
 }
 
-/// Nothing resists: no traction, all displacement is slip.
+/// The state without resistance: there is no traction, and all displacement is slip.
 fn free(increment: Increment<'_>) -> Sliding {
     let displacement = match increment.control {
         TangentialControl::Displacement(delta) => delta,
@@ -409,7 +409,7 @@ impl<'a> Solver<'a> {
         }
     }
 
-    /// One step of Newton's method; whether it was of use.
+    /// One step of Newton's method. Returns whether it made progress.
     fn newton(&mut self, stop: Stop<'_>) -> bool {
         let Increment { cells, limit, .. } = self.increment;
         let n = limit.len();
@@ -490,8 +490,8 @@ impl<'a> Solver<'a> {
         self.go_to(next)
     }
 
-    /// Projects tractions onto the admissible ones and goes there, or as far as the energy falls. Whether that
-    /// was of use.
+    /// Projects tractions onto the admissible ones and moves there, or as far as the energy falls. Returns
+    /// whether that made progress.
     fn go_to(&mut self, mut next: Vec<f64>) -> bool {
         let limit = self.increment.limit;
         let shift = self.force().map_or([0.0; 2], |force| multiplier(&next, limit, force, [0.0; 2]));

@@ -9,22 +9,23 @@ use crate::real::{dot, each, largest, sum, update};
 use crate::tuning::CHUNK;
 use numerics::parallel::map;
 
-/// Softness at most, `|w|/b` of a slip cell: beyond it nothing moves.
+/// Largest `|w|/b` of a slip cell; a cell beyond it is treated as if it did not move.
 const STIFFEST: f64 = 1e15;
 /// Share of the larger resistance below which the sum of the tractions cannot be moved in a direction.
 const IMMOVABLE: f64 = 1e-5;
 
-/// What the preconditioner takes for the compliance of a slip cell along its tangent, over its own. Of 0.25 to 4 the one
-/// of fewest steps: at N = 512, D_f = 2.4, F_bar = 20 they are 131, with 0.5 158; slip cells move together.
+/// The compliance that the preconditioner assumes for a slip cell along its tangent, over its own compliance.
+/// Of the values from 0.25 to 4 it takes the fewest steps (131 at N = 512, D_f = 2.4, F_bar = 20, and 158
+/// with the value 0.5), because slip cells move together.
 pub const SLIPPING: f32 = 2.0;
 
-/// What the traction of each cell may do.
+/// The admissible changes of the traction of each cell.
 #[derive(Debug, Clone, Default)]
 pub struct Branch {
     /// Unit vectors along which slip cells move; zero for stick cells. In double precision: of a slip that is
     /// large beside what is left on stick cells an angle of single precision would be as much.
     tangent: Vec<[f64; 2]>,
-    /// `|w|/b` of slip cells: what turns the traction into the direction of the slip.
+    /// `|w|/b` of slip cells: the term that turns the traction into the direction of the slip.
     turning: Vec<f32>,
     /// The cells that stick, and their places among all.
     pub stick: CellSet,
@@ -78,7 +79,7 @@ impl Branch {
         x != 0.0 || y != 0.0
     }
 
-    /// Removes what slip cells may not do.
+    /// Removes the components that slip cells do not admit.
     pub fn restrict(&self, v: &mut [f32]) {
         each_cell(v, &self.tangent, |[x, y], tangent| {
             let [tx, ty] = tangent.map(|t| t as f32);
@@ -124,9 +125,9 @@ impl Branch {
 pub struct Linearised<'a> {
     /// The kernel.
     pub kernel: PlannedVector<'a>,
-    /// The constant in its diagonal entries, which belongs to no displacement.
+    /// The constant in its diagonal entries, which is not part of the displacement.
     pub shift: f32,
-    /// What cells may do.
+    /// The admissible changes of the cells.
     pub branch: &'a Branch,
 }
 
@@ -163,7 +164,7 @@ impl InfluenceOperator<f32> for Linearised<'_> {
 pub struct Split<'a> {
     /// On stick cells.
     pub torus: TensorTorusInverse<'a>,
-    /// What cells may do.
+    /// The admissible changes of the cells.
     pub branch: &'a Branch,
     /// Compliance of a slip cell along its tangent: with its turning the diagonal.
     pub own: f32,
@@ -171,7 +172,7 @@ pub struct Split<'a> {
     pub sums: Option<FixedSums>,
     /// Vectors on the stick cells.
     pub room: Room,
-    /// What time is charged to.
+    /// The recorder of time.
     pub recorder: Recorder,
 }
 
@@ -351,8 +352,8 @@ pub fn extend(extensions: &mut [Extension; 2], torus: &TorusWindow, stick: &Cell
 pub struct TorusWindow {
     /// The window.
     pub window: crate::geometry::Window,
-    /// What a gap takes over of a coarser value.
+    /// Factor of a value of the next coarser level in a gap.
     pub decay: f32,
-    /// From so many cells on.
+    /// Number of cells from which on residuals are extended.
     pub extended: usize,
 }

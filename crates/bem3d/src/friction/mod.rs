@@ -7,10 +7,11 @@
 //! and what friction dissipates, `sum(q . w)`, is never negative. Dundurs' beta is that with the other body, on
 //! which q acts, as the first one.
 //!
-//! **Slip references.** What is subtracted, `(delta - u)_before`, is known on every cell of the surface, in contact or
-//! not: a cell that comes into contact takes its reference from there, one that leaves forgets its slip. Where
-//! within the increment a cell touches changes no traction (`Friction::advance`), unless pressures displace
-//! tangentially: then steps of a growing contact are to be small.
+//! **Slip references.** The term that is subtracted, `(delta - u)_before`, is known on every cell of the
+//! surface, in contact or not: a cell that comes into contact takes its reference from there, one that leaves
+//! forgets its slip. The moment within the increment at which a cell touches changes no traction
+//! (`Friction::advance`), unless pressures cause tangential displacements: then the steps of a growing
+//! contact have to be small.
 //!
 //! **Certificate.** The duality gap `sum(mu p |w| - q . w)` of admissible tractions bounds half the square of their
 //! error in the norm of K. It is given relative to `mu F` times a length, the larger of |delta| and of the largest
@@ -21,13 +22,13 @@
 //! Vectors hold the components along x of all cells, then those along y. Lengths and tractions are nondimensional as
 //! in the normal problem: cells of area 1, tractions so that `u = sum K q`.
 //!
-//! | part | does | reference implementation in the tests |
+//! | part | contents | reference implementation in the tests |
 //! |---|---|---|
 //! | `disks` | projections onto the admissible tractions, with a given sum | by hand |
 //! | `linearised` | the linear system of stick and slip cells, and its preconditioner | `increment` |
 //! | `increment` | Newton's method with line searches, projected gradients where it fails, certificate | dense matrices and accelerated gradients along paths; differences of two pressures without Poisson's ratio |
 //! | `stiffness` | `dT/d(delta)` of a branch and of full stick, with bounds | difference quotients; tighter solves |
-//! | `state` | what a path remembers; increments as the model asks for them | energy balance over loops |
+//! | `state` | the memory of a path, and its increments | energy balance over loops |
 //! | `coupled` | normal and tangential contact in turn where beta is not 0 | sums over pairs |
 
 mod coupled;

@@ -1,4 +1,4 @@
-//! A surface with friction on its way through increments.
+//! A surface with friction through the increments of a path.
 
 use super::disks::total;
 use super::increment::{self, FrictionLimits, FrictionRoom, Increment, Sliding, TangentialControl, exact};
@@ -22,7 +22,7 @@ pub struct PressedCells<'a> {
     pub pressure: &'a [f64],
 }
 
-/// What the next increment begins from. The default is no contact, no traction and no displacement.
+/// The start of the next increment. The default is no contact, no traction and no displacement.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct SlipMemory {
     /// The contact.
@@ -31,19 +31,19 @@ pub struct SlipMemory {
     pub traction: Vec<f64>,
     /// Tangential displacement of the bodies.
     pub displacement: [f64; 2],
-    /// `delta - u` on the contact, u being its tangential displacement: what has slipped altogether, counted for
-    /// each cell from where it would lie without any traction.
+    /// `delta - u` on the contact, with u its tangential displacement: the total slip of each cell from its
+    /// position without any traction.
     pub offset: Vec<f64>,
     /// Slip of each cell since it touched.
     pub slip: Vec<f64>,
-    /// Pressure on the contact, which displaces tangentially where both problems are coupled.
+    /// Pressure on the contact, which causes tangential displacements where both problems are coupled.
     pub pressure: Vec<f64>,
 }
 
 /// The state at the end of an increment.
 #[derive(Debug, Clone)]
 pub struct FrictionState {
-    /// What the next increment begins from: contact, tractions, displacement, slip since each cell touched.
+    /// The start of the next increment: contact, tractions, displacement, slip since each cell touched.
     pub memory: SlipMemory,
     /// Largest traction of each cell.
     pub limit: Vec<f64>,
@@ -57,7 +57,7 @@ pub struct FrictionState {
     pub stick: CellSet,
     /// Relative duality gap, see [`Sliding::duality_gap`].
     pub duality_gap: f64,
-    /// What the force misses of the one prescribed, over the largest one.
+    /// Difference of the force from the prescribed one, over the largest force.
     pub load_error: f64,
     /// Newton's steps and those of conjugate gradients.
     pub iterations: [usize; 2],
@@ -65,7 +65,7 @@ pub struct FrictionState {
     pub status: Status,
 }
 
-/// A tangential force that friction does not hold.
+/// Error: the tangential force is larger than friction can hold.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ForceTooLarge {
     /// The largest one.
@@ -81,7 +81,7 @@ pub struct FrictionLoad {
     pub control: TangentialControl,
 }
 
-/// What is held while a stiffness is asked for.
+/// Which cells may slip in the state whose stiffness is requested.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum StiffnessOf {
     /// The branch as the load goes on: stick cells, and slip cells in the directions in which they may move.
@@ -95,7 +95,7 @@ pub enum StiffnessOf {
 pub struct Friction {
     pub(super) operators: TangentialOperators,
     pub(super) room: FrictionRoom,
-    /// What tractions displace normally and pressures tangentially; `None` where that is nothing or neglected.
+    /// The coupling of normal and tangential displacements; `None` where it vanishes or is neglected.
     coupling: Option<CouplingOperator>,
 }
 
@@ -118,23 +118,24 @@ impl Friction {
         Self { operators, room: FrictionRoom::default(), coupling }
     }
 
-    /// Forgets the plans of the increments before, and their room. The coupling has one plan, of the grid.
+    /// Drops the plans and the buffers of the increments before. The coupling has one plan, of the grid.
     pub fn forget_plans(&mut self) {
         self.operators.forget_plans();
         self.room = FrictionRoom::default();
     }
 
-    /// Whether tractions displace normally, and pressures tangentially.
+    /// Whether the normal and the tangential problem are coupled.
     pub fn is_coupled(&self) -> bool {
         self.coupling.is_some()
     }
 
-    /// Normal displacement of the whole grid under the tractions of a state; nothing where it is not coupled.
+    /// Normal displacement of the whole grid under the tractions of a state; `None` where the problems are
+    /// not coupled.
     pub fn normal_displacement(&mut self, state: &SlipMemory) -> Option<Vec<f64>> {
         Some(self.coupling.as_mut()?.normal(&state.cells, &state.traction))
     }
 
-    /// Adds the tangential displacement that pressures make, times a sign.
+    /// Adds the tangential displacement under pressures, times a sign.
     fn add_pressed(
         &mut self,
         (from, pressure): (&CellSet, &[f64]),
@@ -281,7 +282,7 @@ impl Friction {
     }
 }
 
-/// A force that misses the largest one by less than this share of it is that.
+/// A force that differs from the largest one by less than this share counts as the largest one.
 const FORCE_ROUNDING: f64 = 1e-9;
 
 /// Vectors on one set carried to another.
@@ -295,9 +296,9 @@ fn carried(cells: &CellSet, from: &CellSet, v: &[f64]) -> Vec<f64> {
     carried
 }
 
-/// The cells that may be on the other side of stick and slip: by what the slip left on stick cells can change of
-/// their traction, and slip cells of no more slip than that. Then the other slip cells, whose slip is known to as
-/// much.
+/// First the cells for which stick or slip is undecided: stick cells that the residual slip could bring to
+/// their limit, and slip cells whose slip is no larger than the residual one. Then the other slip cells,
+/// whose slip is known to the residual slip.
 fn unknown(state: &FrictionState, branch: &Branch, smallest: f64) -> (Vec<Undecided>, Vec<Uncertain>) {
     let (n, q, w) = (state.limit.len(), &state.memory.traction, &state.slip);
     let slipped = |i: usize| w[i].hypot(w[n + i]);

@@ -16,23 +16,23 @@ pub struct TangentialStiffness {
     pub value: [f64; 3],
     /// Estimated error of the linear solves, relative to the larger eigenvalue.
     pub solve_error: f64,
-    /// Estimated error from the state: cells that may be on the wrong side of stick and slip, directions and slips that
-    /// are not known exactly; relative to the same.
+    /// Estimated error from the state, relative to the same: cells for which stick or slip is undecided, and
+    /// directions and slips that are not known exactly.
     pub set_error: f64,
     /// Conjugate gradient steps.
     pub steps: usize,
 }
 
-/// What the branch of a state is: the cells, and what their tractions may do.
+/// The branch of a state: the cells and the admissible changes of their tractions.
 #[derive(Debug, Clone, Copy)]
 pub struct Held<'a> {
     /// The contact.
     pub cells: &'a CellSet,
-    /// What each cell may do.
+    /// The admissible changes of each cell.
     pub branch: &'a Branch,
     /// Cells that may be on the other side of stick and slip.
     pub undecided: &'a [Undecided],
-    /// Slip cells of which the direction is known to so much of an angle, and the turning `|w|/b` to so much.
+    /// Slip cells whose direction and turning `|w|/b` are not known exactly.
     pub uncertain: &'a [Uncertain],
 }
 
@@ -43,7 +43,7 @@ pub struct Uncertain {
     pub cell: usize,
     /// Direction of its traction.
     pub radial: [f64; 2],
-    /// What may be wrong with the slip over the limit of the traction.
+    /// Bound on the error of the slip over the limit of the traction.
     pub turning: f64,
 }
 
@@ -58,11 +58,11 @@ pub struct Undecided {
     pub sticks: bool,
 }
 
-/// Corrections at most.
+/// Largest number of corrections.
 const ROUNDS: usize = 40;
-/// Reduction of the residual in one correction at most: single precision has no more to give.
+/// Strongest reduction of the residual in one correction, which is the limit of single precision.
 const REDUCTION: f64 = 1e-3;
-/// Reduction asked at least of a correction.
+/// Weakest reduction of the residual that a correction aims at.
 const LEAST_REDUCTION: f64 = 0.3;
 /// Steps of a correction at most.
 const STEPS: usize = 60;
@@ -232,7 +232,7 @@ pub fn larger([xx, yy, xy]: [f64; 3]) -> f64 {
     f64::midpoint(xx, yy) + (0.5 * (xx - yy)).hypot(xy)
 }
 
-/// Change of the stiffness by what is not known of the state, of both directions together.
+/// Change of the stiffness that the uncertainty of the state allows, of both directions together.
 ///
 /// An undecided slip cell that sticks adds at most `(e - K x)_e^2 / s` with the smallest eigenvalue s, where e is the
 /// direction of its traction; a stick cell that slips takes away at most `x_e^2` times its own compliance. To first

@@ -15,7 +15,7 @@ use oracle::Oracle;
 const LIMITS: FrictionLimits = FrictionLimits { tolerance: 1e-11, iterations: 100 };
 const MU: f64 = 0.4;
 
-/// Pressed cells of one load, in units of `u = sum I p`, and the approach.
+/// Cells in contact at one load, their pressure in units of `u = sum I p`, and the approach.
 struct Pressed {
     cells: CellSet,
     pressure: Vec<f64>,

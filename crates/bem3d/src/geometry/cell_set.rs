@@ -1,4 +1,4 @@
-//! Sets of cells of a grid: work follows the contact, not the grid.
+//! Sets of cells of a grid, so that the work is proportional to the contact, not to the grid.
 
 use super::grid::{Grid, Window};
 use crate::tuning::{BAND, LANES, LONG_RUN, PASSED_SINGLY};
@@ -234,7 +234,7 @@ impl CellSet {
 
     /// Adds the next row from two increasing lists of its columns.
     ///
-    /// Cost: what lies between cells of the shorter list is copied as a whole.
+    /// Cost: the cells between two cells of the shorter list are copied as a whole.
     fn push_merged(&mut self, y: usize, a: &[u32], b: &[u32]) {
         let first = self.columns.len();
         let (few, mut many) = if a.len() < b.len() { (a, b) } else { (b, a) };
@@ -565,7 +565,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn sets_are_what_plain_lists_say(
+        fn sets_equal_plain_lists(
             columns in 1usize..40, rows in 1usize..6,
             picks in prop::collection::vec(0.0..1.0f64, 240), density in 0.05..1.0f64, other in 0.05..1.0f64,
         ) {

@@ -7,19 +7,19 @@ use super::tangential::coupling;
 use crate::geometry::{Grid, Lengths, Window};
 use std::sync::{Arc, OnceLock};
 
-/// The kernel `J = (J_x, J_y)` of a grid, the integrals of `(x, y)/r^2` over a cell: with Dundurs' beta tractions
-/// displace normally by `u_z = beta (J_x q_x + J_y q_y)` and pressures tangentially by `-beta J p`, in the units of
-/// [`super::TangentialTable`]. Its mean is zero where the rectangle repeats itself.
+/// The kernel `J = (J_x, J_y)` of a grid, the integrals of `(x, y)/r^2` over a cell: with Dundurs' beta,
+/// tractions cause the normal displacement `u_z = beta (J_x q_x + J_y q_y)` and pressures the tangential one
+/// `-beta J p`, in the units of [`super::TangentialTable`]. With periodic boundaries its mean is zero.
 #[derive(Debug)]
 pub struct CouplingTable {
     grid: Grid,
     medium: Medium,
-    /// At the lags `0 ..= n/2`, where the rectangle repeats itself: `J_x`, and `J_y` of lags exchanged.
+    /// With periodic boundaries: `J_x`, and `J_y` with the lags exchanged, at the lags `0 ..= n/2`.
     periodic: OnceLock<[Vec<f64>; 2]>,
 }
 
 impl CouplingTable {
-    /// Of a grid.
+    /// The table of a grid.
     pub fn new(grid: Grid, medium: Medium) -> Self {
         Self { grid, medium, periodic: OnceLock::new() }
     }

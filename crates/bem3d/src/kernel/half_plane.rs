@@ -1,10 +1,10 @@
 //! Influence coefficients of a half-plane (plane strain): the displacement of the middle of a strip under
 //! uniform pressure on another.
 //!
-//! `u(x) = -(2 / (pi E*)) int p(s) ln(|x - s| / D) ds` has no zero at infinity: displacements are counted
-//! from a point at the distance D from each strip. D is twice the side of the map along x, so that every
-//! entry is positive and the matrix is an inverse M-matrix on every set tried. Pressure, contact and gap at a
-//! prescribed force do not depend on it; the approach and the stiffness do.
+//! `u(x) = -(2 / (pi E*)) int p(s) ln(|x - s| / D) ds` does not vanish at infinity: displacements are
+//! measured from a point at the distance D from each strip. D is twice the side of the map along x, so that
+//! every entry is positive and the matrix is an inverse M-matrix on every set tried. Pressure, contact and
+//! gap at a prescribed force do not depend on it; the approach and the stiffness do.
 
 use crate::geometry::Grid;
 use std::f64::consts::PI;
@@ -17,8 +17,8 @@ const DATUM: f64 = 2.0;
 /// Catalan's constant.
 const CATALAN: f64 = 0.915_965_594_177_219;
 
-/// Displacement at a lag of so many strips of width a under unit pressure, times `pi E* / c`; c is the unit
-/// of length and `stretch = a / c`: `2 (a/c) (ln(D/a) - <ln|x + t|>)`, the mean over `-1/2 < t < 1/2`.
+/// Displacement at a lag, in strips of width a, under unit pressure, times `pi E* / c`; c is the unit of
+/// length and `stretch = a / c`: `2 (a/c) (ln(D/a) - <ln|x + t|>)`, the mean over `-1/2 < t < 1/2`.
 pub fn influence(lag: usize, grid: Grid) -> f64 {
     let datum = (DATUM * grid.columns as f64).ln();
     2.0 * grid.stretch * (datum - mean_logarithm(lag))

@@ -4,24 +4,24 @@ use super::love::influence_of_rectangle;
 use super::symbol::Symbol;
 use crate::geometry::{Grid, Lengths};
 
-/// Cells a side of the torus that stands for the lattice.
+/// Cells along a side of the torus that approximates the lattice.
 const TORUS: usize = 64;
 
-/// What pressure a displacement of one cell takes, of that cell and of those around it.
+/// The pressures, on a cell and on those around it, that displace that cell alone.
 ///
 /// The kernel's inverse falls as `1/r^3`; only the cell's own value is positive.
 #[derive(Debug, Clone)]
 pub struct Inverse {
     /// The pressure of the cell itself, over its displacement.
     pub own: f64,
-    /// Most columns and rows away.
+    /// Largest distance in columns and in rows.
     pub reach: (usize, usize),
     /// Pressures of all cells of each row, the cell itself in the middle of the middle one.
     pub rows: Vec<Vec<f64>>,
 }
 
 impl Inverse {
-    /// Of the cells no further away than `farthest`, in sides of a square cell.
+    /// The inverse on the cells within the distance `farthest`, in sides of a square cell.
     ///
     /// Cost: two transforms of 4096 points.
     pub fn within(grid: Grid, farthest: f64) -> Self {
@@ -50,7 +50,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_inverse_takes_the_kernel_back_and_only_its_own_value_is_positive() {
+    fn the_inverse_undoes_the_kernel_and_only_its_own_value_is_positive() {
         for stretch in [1.0, 1.4, 0.6] {
             let grid = Grid { columns: 9, rows: 9, stretch };
             let inverse = Inverse::within(grid, 14.0);

@@ -1,5 +1,5 @@
-//! Influence coefficients: Love's for a half-space that is unloaded outside the map, the periodic ones, those
-//! of a half-plane, those of tangential tractions, and tables of them.
+//! Influence coefficients: those of Love for a half-space that is unloaded outside the map, of a periodic
+//! half-space, of a half-plane and of tangential tractions, and tables of them.
 
 mod alternating;
 mod coupling_table;

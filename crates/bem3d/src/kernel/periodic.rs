@@ -1,11 +1,11 @@
-//! The kernel of a rectangle that repeats itself for ever.
+//! The kernel for periodic boundaries.
 //!
-//! A mean pressure on every copy would sink an infinite half-space without limit; displacements are counted
-//! from their mean, which leaves a kernel of zero mean. That kernel is no inverse M-matrix, and cells outside
-//! `z < d` may penetrate. Adding a constant c to it changes neither the pressure under a given force nor the
-//! gap, only where the plane is counted from (`d + c F`), and with
-//! [`PeriodicKernel::shift`] every entry is positive, so that what the elimination and the candidates of the free kernel rely on holds
-//! again (`tests/tests/periodic.rs` checks the results).
+//! Under a mean pressure on every copy the displacement of an infinite half-space diverges; displacements are
+//! therefore measured from their mean, which gives a kernel of zero mean. That kernel is not an inverse
+//! M-matrix, and cells outside `z < d` may penetrate. Adding a constant c to it changes neither the pressure
+//! under a given force nor the gap, but only the reference of the plane (`d + c F`). With
+//! [`PeriodicKernel::shift`] every entry is positive, so that the assumptions of the elimination and of the
+//! candidates of the free kernel hold again (`tests/tests/periodic.rs` checks the results).
 
 use super::alternating::{TERMS, alternating_weights};
 use super::symbol::Symbol;
@@ -15,7 +15,7 @@ use std::f64::consts::{PI, TAU};
 /// Chebyshev polynomials in each direction for the smooth part of the symbol of square cells: the error falls
 /// as 5.8^-n.
 const MODES: usize = 22;
-/// From so many polynomials on, which oblong cells take, the sums are evaluated at every wave.
+/// From this number of polynomials on, which oblong cells need, the sums are evaluated at every wave.
 const MOST_MODES: usize = 256;
 /// `c N` of a square of N x N square cells: above 1.61554, the depth of the kernel half a period away in both
 /// directions (`(1 - sqrt 2) 4 zeta(1/2) beta(1/2)` for a point; 1.62 or less for cells).
@@ -66,7 +66,7 @@ impl PeriodicKernel {
         self.shift
     }
 
-    /// Kernel at a lag; lags beyond half a period are taken the other way round.
+    /// Kernel at a lag; lags beyond half a period are replaced by their complement to the period.
     pub fn at(&self, x: usize, y: usize) -> f64 {
         let fold = |lag: usize, period: usize| (lag % period).min(period - lag % period);
         let (x, y) = (fold(x, self.grid.columns), fold(y, self.grid.rows));
@@ -76,7 +76,7 @@ impl PeriodicKernel {
     }
 }
 
-/// What a point force does at a wave, over `2 pi`: see [`super::tangential`].
+/// Fourier transforms of the displacements under a point force, over `2 pi`: see [`super::tangential`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Integrand {
     /// `1/r`: `1/|q|`.
@@ -156,10 +156,11 @@ fn first(integrand: Integrand, x: f64, y: f64, a: f64, b: f64) -> f64 {
 
 /// From the values of an even function at a few waves between 0 and pi to those at the waves of a grid.
 ///
-/// What the waves that the grid takes for q add is analytic for `|x| < 2 pi` and `|Im x| < (a/b) pi`, so that
-/// polynomials in `2 (x/pi)^2 - 1` represent it: few of them unless the cells are oblong.
+/// The contribution of the waves that the grid does not distinguish from q (aliases) is analytic for
+/// `|x| < 2 pi` and `|Im x| < (a/b) pi`, so that polynomials in `2 (x/pi)^2 - 1` represent it: few of them
+/// unless the cells are oblong.
 struct Interpolation {
-    /// Where values are asked for.
+    /// The nodes at which values are needed.
     nodes: Vec<f64>,
     /// Weights of the values at each wave; empty where the nodes are the waves.
     weights: Vec<Vec<f64>>,
@@ -205,9 +206,9 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// The waves that the grid takes for (x, y): `sum 2 pi / |Q| sinc(X/2) sinc(Y/2)` over `X = x + 2 pi m`,
-/// `Y = y + 2 pi n`, `Q = (X/a, Y/b)`, without `m = n = 0`; `0 <= x, y <= pi`. Of other integrands than
-/// [`Integrand::Normal`] what takes the place of `1 / |Q|`.
+/// The aliases of the wave (x, y): `sum 2 pi / |Q| sinc(X/2) sinc(Y/2)` over `X = x + 2 pi m`,
+/// `Y = y + 2 pi n`, `Q = (X/a, Y/b)`, without `m = n = 0`; `0 <= x, y <= pi`. For other integrands than
+/// [`Integrand::Normal`] their factor replaces `1 / |Q|`.
 fn aliases(integrand: Integrand, weights: &[f64; TERMS], x: f64, y: f64, a: f64, b: f64) -> f64 {
     // sin((x + 2 pi m)/2) = (-1)^m sin(x/2): alternating sums over m = 1, 2, .. and m = -1, -2, ..
     let terms = |q: f64, side: f64| {

@@ -9,19 +9,19 @@ use realfft::RealToComplex;
 use rustfft::num_complex::Complex;
 use std::sync::Arc;
 
-/// How a kernel changes when a lag changes its sign.
+/// The parity of a kernel: its change when a lag changes its sign.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Parity {
-    /// Not at all: its transform is the sum of `f cos`.
+    /// Even: its transform is the sum of `f cos`.
     Even,
-    /// It changes its sign, too: its transform is `-i` times the sum of `f sin`. What an odd kernel has at lag
-    /// 0 and half way round does not count.
+    /// Odd: its transform is `-i` times the sum of `f sin`. Values of an odd kernel at lag 0 and at half the
+    /// length are ignored.
     Odd,
 }
 
 /// Real symbol of an even kernel on the half spectrum quarter, `symbol[kx * (ly / 2 + 1) + ky]`.
 ///
-/// Of a direction in which the kernel is odd these are sums of `f sin`, without the factor `-i`, and change
+/// In a direction in which the kernel is odd these are sums of `f sin`, without the factor `-i`, and change
 /// their sign with that of the wave.
 #[derive(Debug, Clone)]
 pub struct Symbol {
@@ -34,7 +34,7 @@ pub struct Symbol {
 impl Symbol {
     /// Discrete Fourier transform of the even kernel `kernel(x, y)`, lags 0 ..= l/2 in each direction.
     ///
-    /// Cost: one evaluation of the kernel a lag and two passes of real FFTs.
+    /// Cost: one evaluation of the kernel for each lag and two passes of real FFTs.
     pub fn of_kernel(lengths: Lengths, kernel: impl Fn(usize, usize) -> f64 + Sync) -> Self {
         Self::of_rows(lengths, |y, row| {
             for (x, value) in row.iter_mut().enumerate() {
@@ -91,7 +91,7 @@ impl Symbol {
     }
 }
 
-/// Columns that are gathered from the rows at a time: a cache line of each.
+/// Number of columns that are gathered from the rows at a time: a cache line of each row.
 const GATHERED: usize = CACHE_LINE / size_of::<f64>();
 
 /// Transforms even or odd sequences.

@@ -10,12 +10,12 @@ use contact_model::Boundary;
 use std::fmt;
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError, Weak};
 
-/// What deforms, and how it goes on outside the map.
+/// The body that deforms, and its continuation outside the map.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Medium {
     /// A half-space that is unloaded outside the map.
     HalfSpace,
-    /// A half-space on which the map repeats itself.
+    /// A half-space with periodic copies of the map.
     Periodic,
     /// A half-plane in plane strain, unloaded outside the line: one row of strips.
     HalfPlane,
@@ -36,13 +36,13 @@ impl From<Boundary> for Medium {
 
 /// The kernel at all lags of a grid and the symbols made from it.
 ///
-/// Rows and symbols are made when they are first needed: a contact of three cells does not pay for a table of
-/// four million. What it holds depends on the grid alone, so that sharing it changes no result.
+/// Rows and symbols are made when they are first needed, so that a contact of three cells does not compute a
+/// table of four million. Its values depend on the grid alone, so that sharing it changes no result.
 pub struct KernelTable {
     grid: Grid,
     medium: Medium,
     smallest_eigenvalue: f64,
-    /// Made at the first use where the rectangle repeats itself.
+    /// The periodic kernel, made at the first use with periodic boundaries.
     periodic: OnceLock<PeriodicKernel>,
     rows: Vec<OnceLock<Box<[f64]>>>,
     double: Mutex<Kept<f64>>,
@@ -113,8 +113,7 @@ impl KernelTable {
         self.periodic.get_or_init(|| kernel)
     }
 
-    /// The constant in the kernel: nothing with free boundaries, [`PeriodicKernel::shift`] with periodic
-    /// ones.
+    /// The constant in the kernel: 0 with free boundaries, [`PeriodicKernel::shift`] with periodic ones.
     pub fn shift(&self) -> f64 {
         if self.is_periodic() { self.periodic().shift() } else { 0.0 }
     }
@@ -219,7 +218,7 @@ impl KernelTable {
         })
     }
 
-    /// Symbol of the kernel at the lags of a circular grid, each taken the shorter way round.
+    /// Symbol of the kernel on a circular grid, with each lag taken the shorter way round.
     fn exact_symbol(&self, lengths: Lengths) -> Symbol {
         // The periodic kernel is made before threads ask for it.
         let _ = self.shift();
@@ -227,7 +226,7 @@ impl KernelTable {
     }
 }
 
-/// The symbols made last.
+/// The most recent symbols.
 #[derive(Debug)]
 pub(super) struct Kept<T> {
     made: Vec<(Lengths, Arc<Vec<T>>)>,
@@ -258,8 +257,9 @@ impl<T> Kept<T> {
 
 /// The symbol of some lengths, made where there is none.
 ///
-/// Nothing is locked while it is made: threads share that work, and one that waits may begin another solve,
-/// which would wait for the lock for ever. Two threads may make the same symbol; one of them is kept.
+/// No lock is held while it is made: threads share that work, and a thread that waits may begin another
+/// solve, which would then wait for the lock for ever. Two threads may make the same symbol; one of them is
+/// kept.
 pub(super) fn cached<T>(
     kept: &Mutex<Kept<T>>,
     lengths: Lengths,
@@ -272,7 +272,7 @@ pub(super) fn cached<T>(
     })
 }
 
-/// Locks; a panic of another thread while it filled a cache leaves nothing half-made behind.
+/// Locks the cache. A panic of another thread while it filled the cache leaves no incomplete entry.
 pub(super) fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }

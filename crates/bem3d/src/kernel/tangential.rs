@@ -16,8 +16,8 @@
 //! over the cell. The normal displacements differ in sign: of the two bodies together
 //! `u_z = beta/(pi E*) int x/r^2 q_x + y/r^2 q_y` with Dundurs' second constant
 //! `beta = E* ((1 - 2 nu_1)/G_1 - (1 - 2 nu_2)/G_2)/4`, where q acts on the first body; by reciprocity a
-//! pressure displaces tangentially by `u_x = -beta/(pi E*) int x/r^2 p`, towards itself in the body with the
-//! larger `(1 - 2 nu)/G`.
+//! pressure causes the tangential displacement `u_x = -beta/(pi E*) int x/r^2 p`, towards itself in the body
+//! with the larger `(1 - 2 nu)/G`.
 //!
 //! Integrals over a cell are sums over its corners, `f(e, n) - f(w, n) - f(e, s) + f(w, s)`, of functions whose
 //! mixed derivative is the integrand:
@@ -33,9 +33,9 @@
 
 use super::love::is_far;
 
-/// The integral of `x^2/r^3` over a cell of sides `stretch` and `1 / stretch`, seen from the centre of another
-/// one at the lattice offset (x, y); even in both lags. That of `y^2/r^3` is the same of lags and sides
-/// exchanged, to the last bit.
+/// The integral of `x^2/r^3` over a cell of sides `stretch` and `1 / stretch`, seen from the centre of
+/// another one at the lattice offset (x, y); even in both lags. That of `y^2/r^3` is the same with lags and
+/// sides exchanged, to the last bit.
 ///
 /// Accuracy: that of [`super::love::influence`], relative to the sum of both: 4e-12 just inside 64 longer sides,
 /// better than 1e-12 elsewhere.
@@ -66,7 +66,7 @@ pub fn across(x: usize, y: usize, stretch: f64) -> f64 {
 }
 
 /// The integral of `x/r^2` over a cell at the lattice offset (x, y): odd in x, even in y. That of `y/r^2` is
-/// the same of lags and sides exchanged.
+/// the same with lags and sides exchanged.
 ///
 /// Accuracy: relative to its largest value at the same distance, as [`along_x`].
 pub fn coupling(x: usize, y: usize, stretch: f64) -> f64 {
@@ -172,7 +172,7 @@ mod tests {
         NODES.into_iter().flat_map(|(x, w)| [(0.5 * x, 0.5 * w), (-0.5 * x, 0.5 * w)])
     }
 
-    /// The integral over a cell of what the point force at distance (x, y) does, in pieces.
+    /// The integral of the displacement under a point force over a cell at the distance (x, y), in pieces.
     fn quadrature(at: (usize, usize), stretch: f64, pieces: i32, f: impl Fn(f64, f64) -> f64) -> f64 {
         let nodes = || {
             let width = f64::from(pieces).recip();

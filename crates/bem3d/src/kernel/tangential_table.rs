@@ -10,18 +10,17 @@ use crate::real::Real;
 use std::fmt;
 use std::sync::{Arc, Mutex, OnceLock, Weak};
 
-/// Times the side of the square of a cell count: the constant in the kernel of a rectangle that repeats
-/// itself.
+/// The constant in the periodic kernel, over the side of the square with as many cells.
 const SHIFT: f64 = 2.0;
 
-/// An entry of the tensor that tractions are multiplied by.
+/// An entry of the influence tensor of tractions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Entry {
-    /// Traction along x displaces along x.
+    /// Displacement along x under a traction along x.
     XX,
-    /// Traction along y displaces along y.
+    /// Displacement along y under a traction along y.
     YY,
-    /// Traction along one displaces along the other; odd in both lags.
+    /// Displacement along one axis under a traction along the other; odd in both lags.
     XY,
 }
 
@@ -39,13 +38,13 @@ impl Entry {
 /// `E* sum nu/(2 G)`, in [0, 1].
 ///
 /// So `u_i = (h_c / (pi E*)) sum_j K(i - j) q_j`, the relative displacement of both bodies. With periodic
-/// boundaries displacements are counted from their mean, but for a constant ([`TangentialTable::shift`]) in
-/// both diagonal entries, which makes the kernel definite.
+/// boundaries displacements are measured from their mean, except for a constant ([`TangentialTable::shift`])
+/// in both diagonal entries, which makes the kernel definite.
 pub struct TangentialTable {
     grid: Grid,
     medium: Medium,
     compliance: f64,
-    /// Entries at the lags `0 ..= n/2`, where the rectangle repeats itself.
+    /// Entries at the lags `0 ..= n/2`, with periodic boundaries.
     periodic: OnceLock<[Vec<f64>; 3]>,
     rows: Vec<OnceLock<Box<[[f64; 3]]>>>,
     double: Mutex<Kept<[f64; 3]>>,
@@ -61,8 +60,8 @@ impl fmt::Debug for TangentialTable {
 }
 
 impl TangentialTable {
-    /// The table of a grid and of bodies of the constant `compliance`; one table serves all surfaces alive at the
-    /// same time. A half-plane has none: it is taken for a half-space.
+    /// The table of a grid and of bodies of the constant `compliance`; one table serves all surfaces alive at
+    /// the same time. There is no table for a half-plane, which is treated as a half-space.
     pub fn shared(grid: Grid, medium: impl Into<Medium>, compliance: f64) -> Arc<Self> {
         static LIVE: Mutex<Vec<Weak<TangentialTable>>> = Mutex::new(Vec::new());
         let medium = medium.into();
@@ -97,14 +96,15 @@ impl TangentialTable {
         self.medium == Medium::Periodic
     }
 
-    /// The constant in the diagonal entries: nothing with free boundaries.
+    /// The constant in the diagonal entries: 0 with free boundaries.
     pub fn shift(&self) -> f64 {
         if self.is_periodic() { SHIFT / (self.grid.count() as f64).sqrt() } else { 0.0 }
     }
 
-    /// A lower bound of the eigenvalues on every set of cells: that of the normal kernel. M adds nothing to a
-    /// wave along its own direction, and hardly less than nothing on the lattice: the smallest eigenvalue of K
-    /// is that of I or larger up to 2e-5 of it, for c = 0.43 and 1 and sides of a cell 1 : 1 to 1 : 9.
+    /// A lower bound of the eigenvalues on every set of cells: that of the normal kernel. For a wave along
+    /// its own direction the contribution of M vanishes in the continuum and is only slightly negative on the
+    /// lattice: the smallest eigenvalue of K is not below that of I by more than 2e-5 of it, for c = 0.43 and
+    /// 1 and sides of a cell 1 : 1 to 1 : 9.
     pub fn smallest_eigenvalue(&self) -> f64 {
         (1.0 - 1e-4) * smallest_eigenvalue(self.grid.stretch)
     }
@@ -150,7 +150,7 @@ impl TangentialTable {
         if entry == Entry::XY { sign_x * sign_y * value } else { value }
     }
 
-    /// Makes what threads would otherwise wait for.
+    /// Makes the parts for which threads would otherwise wait.
     fn prepare(&self) {
         if self.is_periodic() {
             self.periodic();
@@ -190,8 +190,8 @@ impl TangentialTable {
 
     /// Circular lengths of a transform that is exact on a window.
     ///
-    /// An even kernel takes `2 (n - 1)` cells; the entry across, which is odd, meets at lag `n - 1` its opposite
-    /// there.
+    /// An even kernel needs `2 (n - 1)` cells; the off-diagonal entry, which is odd, would coincide with its
+    /// negative at lag `n - 1`.
     pub fn exact_lengths(&self, window: Window) -> Lengths {
         self.within_period(Lengths::reaching(window, usize::MAX))
     }
@@ -254,8 +254,8 @@ impl TangentialTable {
     }
 }
 
-/// Real symmetric symbol `[xx, yy, xy]` on the half spectrum quarter, `[kx * (ly / 2 + 1) + ky]`; the entry
-/// across changes its sign with that of a wave.
+/// Real symmetric symbol `[xx, yy, xy]` on the half spectrum quarter, `[kx * (ly / 2 + 1) + ky]`; the
+/// off-diagonal entry changes its sign with that of a wave.
 #[derive(Debug, Clone)]
 pub struct TensorSymbol {
     lengths: Lengths,

@@ -1,12 +1,12 @@
-//! Small sets: the influence matrix itself and its Cholesky factor. Pressure and stiffness come from one
-//! factor.
+//! The direct solver of small sets: the influence matrix and its Cholesky factor, from which both pressure
+//! and stiffness are computed.
 
 use crate::geometry::CellSet;
 use crate::kernel::KernelTable;
 #[cfg(feature = "faer")]
 use faer::{Mat, Side, linalg::solvers::Llt, linalg::solvers::Solve};
 
-/// There is no factor without the feature `faer`: every set is then solved by iteration.
+/// Without the feature `faer` there is no factor, and every set is solved by iteration.
 #[cfg(not(feature = "faer"))]
 #[derive(Debug)]
 pub enum Factor {}

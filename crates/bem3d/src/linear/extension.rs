@@ -1,12 +1,12 @@
 //! Extension of displacements from the contact set into the gaps between, for the preconditioner.
 //!
 //! For every extension E of a function on the set C to a whole window, `E' G^-1 E >= (G_CC)^-1`, with
-//! equality for the displacement that the pressure makes. Zeros are an extension too, but a poor one: the
-//! jump at every edge of contact weighs as much as what is asked. Here a gap takes the mean of the contact
-//! around it on the finest of ever coarser grids that has contact there, times a decay for each level,
-//! interpolated linearly from level to level. Constant blocks would have jumps at their own edges, whose
-//! energy grows with the logarithm of the size of the gap: 21 steps instead of 14 for six digits at N = 1024
-//! where half of the cells are in contact.
+//! equality for the displacement under the pressure. Zeros are also an extension, but a poor one: the energy
+//! of the jumps at the edges of the contact is as large as that of the displacement itself. Here a gap takes
+//! the mean of the contact around it on the finest of ever coarser grids that has contact there, times a
+//! decay for each level, interpolated linearly from level to level. Constant blocks would have jumps at their
+//! own edges, whose energy grows with the logarithm of the size of the gap: with half of the cells in contact
+//! at N = 1024, six digits then take 21 steps instead of 14.
 
 use crate::geometry::{CellSet, Window};
 use crate::tuning::{BAND, EXTENSION_LEVELS};
@@ -19,13 +19,14 @@ pub struct Extension {
     window: Option<Window>,
     decay: f32,
     levels: Vec<Level>,
-    /// What each band of rows of the window adds to the row of blocks above it and to the one below.
+    /// The contribution of each band of rows of the window to the row of blocks above it and to the one
+    /// below.
     beyond: Vec<f32>,
 }
 
 #[derive(Debug, Default)]
 struct Level {
-    /// Blocks in a row, and one more of weight 0 where their number is odd.
+    /// Number of blocks in a row, with one more of weight 0 where the number is odd.
     width: usize,
     /// 1 / number of contact cells in the block; 0 for none.
     weight: Vec<f32>,
@@ -33,7 +34,7 @@ struct Level {
 }
 
 impl Extension {
-    /// Takes a set inside a window; a decay of 0 extends by zeros.
+    /// Prepares the extension of a set inside a window; a decay of 0 extends by zeros.
     pub fn set(&mut self, set: &CellSet, window: Window, decay: f32) {
         if decay <= 0.0 {
             (self.window, self.levels) = (None, Vec::new());
@@ -73,7 +74,7 @@ impl Extension {
         }
     }
 
-    /// Whether there are levels: without, an extension by zeros needs no sums.
+    /// Whether there are levels; without levels, an extension by zeros needs no sums.
     pub fn is_wanted(&self) -> bool {
         !self.levels.is_empty()
     }
@@ -124,8 +125,8 @@ impl Extension {
         }
     }
 
-    /// The transpose of [`Self::extend`], from what [`BandSums::add_transposed`] summed to what each contact
-    /// cell of a block receives.
+    /// The transpose of [`Self::extend`], from the sums of [`BandSums::add_transposed`] to the values that
+    /// each contact cell of a block receives.
     pub fn collect(&mut self) {
         self.add_beyond();
         for l in 1..self.levels.len() {
@@ -152,7 +153,7 @@ impl Extension {
         }
     }
 
-    /// Adds what bands of rows left for the rows of blocks of their neighbours.
+    /// Adds the contributions of bands of rows to the rows of blocks of their neighbours.
     fn add_beyond(&mut self) {
         let Some(first) = self.levels.first_mut() else { return };
         let (width, height) = (first.width, first.value.len() / first.width);
@@ -177,13 +178,13 @@ impl Extension {
         }
     }
 
-    /// What is passed to the cells of row y that are outside the set.
+    /// The values of the cells of row y outside the set.
     pub fn fill(&self, y: usize, row: &mut [f32]) {
         let Some(first) = self.levels.first() else { return row.fill(0.0) };
         first.interpolate(y, self.decay, row);
     }
 
-    /// What was collected for the cells of row y that are on the set.
+    /// The values collected for the cells of row y in the set.
     pub fn take(&self, y: usize, row: &mut [f32]) {
         let Some(first) = self.levels.first() else { return row.fill(0.0) };
         let above = &first.value[y / 2 * first.width..][..first.width];
@@ -201,8 +202,8 @@ const NEAR: f32 = 0.75;
 /// See `NEAR`.
 const NEXT: f32 = 0.25;
 
-/// The row of blocks that row y lies in, and the next one on its other side; of `rows`, the last ones stand for
-/// those beyond.
+/// The row of blocks that contains row y, and the next nearest one; beyond the first and the last of `rows`
+/// these are repeated.
 fn rows_around(y: usize, rows: usize) -> (usize, usize) {
     let own = y / 2;
     (own, if y.is_multiple_of(2) { own.saturating_sub(1) } else { (own + 1).min(rows - 1) })
@@ -246,8 +247,8 @@ impl Level {
         );
     }
 
-    /// `factor` times what the open blocks of this level pass back to row y of the coarser one, row by row: the
-    /// transpose of the interpolation between rows.
+    /// `factor` times the values that the open blocks of this level pass back to row y of the coarser one:
+    /// the transpose of the interpolation between rows.
     fn open_around(&self, y: usize, factor: f32, sums: &mut [f32]) {
         let (height, width) = (self.height(), self.width);
         let coarse = height.div_ceil(2);
@@ -300,13 +301,13 @@ pub struct BandSums<'a> {
     width: usize,
     decay: f32,
     values: &'a mut [f32],
-    /// What the rows of blocks above and below the band receive.
+    /// The sums for the rows of blocks above and below the band.
     beyond: &'a mut [f32],
     line: Vec<f32>,
 }
 
 impl BandSums<'_> {
-    /// Whether there are any: without levels, an extension by zeros needs no sums.
+    /// Whether there are sums; without levels, an extension by zeros needs none.
     pub fn is_wanted(&self) -> bool {
         self.width > 0
     }
@@ -416,7 +417,7 @@ mod tests {
         extension
     }
 
-    /// r on the set, what is passed on elsewhere.
+    /// r on the set, and the extended values elsewhere.
     fn forward(e: &mut Extension, mask: &[f32], r: &[f32]) -> Vec<f32> {
         e.clear();
         for (y, row) in r.chunks_exact(WIDTH).enumerate() {

@@ -4,7 +4,7 @@
 use crate::real::{Real, dot, update};
 use contact_model::Stop;
 
-/// What an iteration took and reached.
+/// Work and residual of an iteration.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct MinresOutcome {
     /// Steps, each with one product by the matrix.
@@ -13,11 +13,11 @@ pub struct MinresOutcome {
     pub reduction: f64,
 }
 
-/// Solves `A x = b` for symmetric A with a symmetric positive definite M that stands for the inverse of its
-/// magnitude, until the residual has fallen by a factor. `precondition(r, z)` writes `z = M r` and may change
-/// r where M is singular. Returns x.
+/// Solves `A x = b` for symmetric A with a symmetric positive definite preconditioner M that approximates the
+/// inverse of |A|, until the residual has fallen by a factor. `precondition(r, z)` writes `z = M r` and may
+/// change r where M is singular. Returns x.
 ///
-/// Cost: one product by each a step, seven vectors.
+/// Cost: one product by each in a step, and seven vectors.
 pub fn minres<T: Real>(
     mut product: impl FnMut(&[T], &mut [T]),
     mut precondition: impl FnMut(&mut [T], &mut [T]),

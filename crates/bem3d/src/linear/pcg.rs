@@ -11,8 +11,8 @@ use crate::tuning::CHUNK;
 use contact_model::Stop;
 use numerics::parallel::{map, widest};
 
-/// When an iteration ends: at the first of these, or one step earlier where the next step, if it gains as
-/// much as the last one, would meet a criterion. The caller measures the result.
+/// Stopping criteria of an iteration: it ends when one of them is met, or one step earlier where the next
+/// step would meet one if it gained as much as the last one. The caller measures the result.
 #[derive(Debug, Clone, Copy)]
 pub struct StoppingCriteria {
     /// The error has fallen by this factor (in the norm `sqrt(r' M r)` of the preconditioned residual) ...
@@ -21,20 +21,20 @@ pub struct StoppingCriteria {
     pub energy: Option<Energy>,
     /// ... or the residual is below this value everywhere ...
     pub floor: f64,
-    /// ... or so many steps are done.
+    /// ... or this number of steps is done.
     pub steps: usize,
 }
 
-/// How small the energy of the error shall be, in the units of the residual given.
+/// Required energy of the error, in the units of the given residual.
 #[derive(Debug, Clone, Copy)]
 pub struct Energy {
-    /// Relative error of the value that is allowed.
+    /// Allowed relative error of the value.
     pub share: f64,
     /// The value before the correction.
     pub base: f64,
 }
 
-/// What stays as it is while a pressure is corrected.
+/// The quantity that is fixed while a pressure is corrected.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Fixed {
     /// The approach: `G x = r`.
@@ -46,37 +46,37 @@ pub enum Fixed {
     MeanPlane(f64),
 }
 
-/// What an iteration took and found, in the units of the residual given.
+/// Work and result of an iteration, in the units of the given residual.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct PcgOutcome {
     /// Steps.
     pub steps: usize,
-    /// Applications of the influence matrix: one a step, and one that told nothing where the precision ended
-    /// the iteration.
+    /// Applications of the influence matrix: one in each step, and one more without effect where the
+    /// precision ended the iteration.
     pub applications: usize,
     /// Estimate from above of the energy `r' G^-1 r` at the beginning.
     pub energy: f64,
 }
 
-/// Room for linear systems, kept from one to the next.
+/// Buffers for linear systems, kept from one to the next.
 #[derive(Debug, Default)]
 pub struct Workspace {
     recipe: Option<Recipe>,
     double: Vectors<f64>,
     single: Vectors<f32>,
     extension: Extension,
-    /// What the numbers of the last system were divided by.
+    /// The divisor of the numbers of the last system.
     unit: f64,
 }
 
 impl Workspace {
-    /// A new load: what the sums of corrections are taken from is found again.
+    /// Prepares for a new load: the weights of the sums of corrections are computed again.
     pub fn begin_load(&mut self) {
         self.double.forget();
         self.single.forget();
     }
 
-    /// Takes a set and how systems on it are solved.
+    /// Sets the set of cells and the recipe for systems on it.
     pub fn take(&mut self, operators: &mut Operators, set: CellSet, recipe: Recipe) {
         if self.recipe.is_some_and(|last| last.has_preconditioner() != recipe.has_preconditioner()) {
             self.begin_load();
@@ -103,8 +103,8 @@ impl Workspace {
         if self.recipe.is_some_and(|recipe| recipe.is_single()) { &self.single.set } else { &self.double.set }
     }
 
-    /// Solves `G x = right` on the set approximately, or what `fixed` makes of it, and writes x over `right`.
-    /// Criteria and outcome are in the units of `right`.
+    /// Solves `G x = right` on the set approximately, or the constrained form of it for `fixed`, and writes x
+    /// over `right`. Criteria and outcome are in the units of `right`.
     pub fn solve(
         &mut self,
         operators: &mut Operators,
@@ -155,7 +155,7 @@ impl Workspace {
         PcgOutcome { energy: outcome.energy * square, ..outcome }
     }
 
-    /// What the last solution leaves of its equation, on its set, in the precision of its recipe.
+    /// The residual of the last solution on its set, in the precision of its recipe.
     pub fn residual(&self) -> Vec<f64> {
         let scaled = |r: f64| self.unit * r;
         if self.recipe.is_some_and(|recipe| recipe.is_single()) {
@@ -178,8 +178,8 @@ pub struct Vectors<T> {
     t: Vec<T>,
     kt: Vec<T>,
     z: Vec<T>,
-    /// What the sum of a correction is taken from: about `G^-1 1`, found on the first set of a load and
-    /// carried from set to set. Empty: not yet found.
+    /// The weights by which the sum of a correction is removed: about `G^-1 1`, computed on the first set of
+    /// a load and carried from set to set. Empty before that.
     weights: Vec<T>,
 }
 
@@ -209,7 +209,7 @@ impl<T: Real> Vectors<T> {
         }
     }
 
-    /// Forgets the weights: those of another load or preconditioner.
+    /// Drops the weights, which belong to another load or preconditioner.
     pub fn forget(&mut self) {
         self.weights.clear();
     }
@@ -224,7 +224,7 @@ impl<T: Real> Vectors<T> {
         update(solution, &self.x, |solution, x| *solution = unit * x.to_f64());
     }
 
-    /// The sum of the weights, which are found where there are none.
+    /// The sum of the weights, which are computed where there are none.
     fn weigh(&mut self, preconditioner: &mut dyn Preconditioner<T>) -> f64 {
         let total = sum(&self.weights);
         if total > 0.0 {
@@ -237,11 +237,11 @@ impl<T: Real> Vectors<T> {
     }
 }
 
-/// Solves `G x = r` on a set approximately, or what [`Fixed`] makes of it.
+/// Solves `G x = r` on a set approximately, or the constrained form of it for [`Fixed`].
 ///
-/// At a fixed force the equation is solved on the corrections without a sum: with the weights w, the residual
-/// is `r - (w'r / w'1) 1` and the preconditioned one `z - (1'z / 1'w) w`, which is symmetric and keeps the
-/// sum whatever the weights; `G^-1 1` is the best of them.
+/// At a fixed force the equation is solved for corrections whose sum is zero: with the weights w, the
+/// residual is `r - (w'r / w'1) 1` and the preconditioned one `z - (1'z / 1'w) w`, which is symmetric and
+/// keeps the sum whatever the weights; `G^-1 1` is the best of them.
 ///
 /// Cost: one application of G and one of the preconditioner a step. The caller checks the result with the
 /// exact operator.

@@ -8,7 +8,7 @@ use crate::real::{Real, dot, each, largest, sum};
 use crate::tuning::BAND;
 use numerics::parallel::map;
 
-/// What one application of a preconditioner finds.
+/// The result of one application of a preconditioner.
 #[derive(Debug, Clone, Copy)]
 pub struct Preconditioned {
     /// Largest magnitude of the residual.
@@ -19,16 +19,16 @@ pub struct Preconditioned {
     pub sum: f64,
 }
 
-/// A symmetric positive definite M that stands for the inverse of the influence matrix on a set.
+/// A symmetric positive definite M that approximates the inverse of the influence matrix on a set.
 pub trait Preconditioner<T> {
     /// Lowers the residual `r` by `offset` and writes `z = M r`.
     fn apply(&mut self, set: &CellSet, offset: T, r: &mut [T], z: &mut [T]) -> Preconditioned;
 
-    /// The energy `r' G^-1 r` is at most so many times `r' M r`.
+    /// Upper bound of the ratio of the energy `r' G^-1 r` to `r' M r`.
     fn energy_factor(&self) -> f64;
 }
 
-/// `M = 1`: for scattered contact, where every cell feels little of the others.
+/// `M = 1`: for scattered contact, where the cells hardly interact.
 #[derive(Debug, Clone, Copy)]
 pub struct Identity {
     /// Lower bound of the eigenvalues of the influence matrix.
@@ -56,7 +56,7 @@ pub struct TorusInverse<'a> {
     pub transform: &'a mut FftConvolution<f32>,
     /// The extension, for this set.
     pub extension: &'a mut Extension,
-    /// What its time is charged to.
+    /// The recorder that its time is charged to.
     pub recorder: Recorder,
 }
 
@@ -64,8 +64,8 @@ impl TorusInverse<'_> {
     /// Safety factor of the energy on a torus.
     ///
     /// `(G_CC)^-1 <= (G^-1)_CC` for every set C, so that the inverse on the whole lattice gives a bound;
-    /// wrapping the lattice on a torus makes it an estimate that a residual as wide as the torus can exceed
-    /// by some ten per cent.
+    /// wrapping the lattice on a torus turns the bound into an estimate, which residuals as wide as the torus
+    /// can exceed by some ten per cent.
     pub const SAFETY: f64 = 2.0;
 
     fn precondition(&mut self, set: &CellSet, offset: f32, r: &mut [f32], z: &mut [f32]) -> Preconditioned {

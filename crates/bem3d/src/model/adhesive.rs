@@ -20,11 +20,11 @@ use std::f64::consts::PI;
 pub const UNRESOLVED_RANGE: &str = "side of a cell";
 
 /// Largest product of the slope of the law and the own compliance of a cell. At 1 a single open cell would be
-/// unstable alone, whatever the surface does; at a fifth of it the cohesive zone, about `E* range^2/work`
-/// long, is five cells long.
+/// unstable by itself on any surface; at a fifth of it the cohesive zone, about `E* range^2/work` long, is
+/// five cells long.
 const RESOLVED: f64 = 0.2;
-/// Ranges over the height of the surface: rounding of the gaps hides smaller ones, and the surface in larger
-/// ones.
+/// Admissible ranges over the height of the surface: smaller ranges are lost in the rounding of the gaps, and
+/// relative to larger ones the surface is.
 const RANGES: std::ops::RangeInclusive<f64> = 1e-9..=1e9;
 /// A gap that has moved against the load by more than this, in ranges, has left the branch.
 const ON_BRANCH: f64 = 1e-3;
@@ -61,12 +61,13 @@ impl AdhesiveContact {
         Self { surface, attraction, last: None, plain: false }
     }
 
-    /// No contact again.
+    /// Resets to no contact.
     pub(super) fn forget(&mut self) {
         self.last = None;
     }
 
-    /// The state of a load: on a path from the last one, else that from no contact on the branch of approach.
+    /// The state of a load: on a path, from the last state; otherwise on the branch of approach from no
+    /// contact.
     pub(super) fn at(
         &mut self,
         load: ScaledLoad,
@@ -90,9 +91,9 @@ impl AdhesiveContact {
     /// Whether a single load may begin from the last state: one on the branch of approach, under a load of
     /// the same kind that is no larger.
     ///
-    /// From there the attraction rises to the equilibrium that it rises to from no contact, the nearest one
-    /// above both. At a mean gap more attraction in one place opens gaps in others, no state lies above
-    /// another, and each load begins anew.
+    /// From there the attraction rises to the same equilibrium as from no contact, which is the nearest one
+    /// above both. At a prescribed mean gap more attraction in one place opens gaps in others, so that no
+    /// state lies above another, and each load begins anew.
     fn continues(&self, control: AdhesiveControl) -> bool {
         let Some(last) = self.last.as_ref().filter(|last| last.branch == Branch::Approach) else {
             return false;
@@ -135,7 +136,7 @@ impl AdhesiveContact {
         self.finish(found, stop)
     }
 
-    /// The tolerance of a stiffness that moves with the gaps, where one is wanted.
+    /// The tolerance of a stiffness with attraction that follows the gaps, where one is requested.
     fn tolerance(&self) -> Option<f64> {
         let wanted = self.surface.outputs.stiffness && !self.attraction.moves_by_cells();
         wanted.then_some(self.surface.options.tolerance)
@@ -210,7 +211,7 @@ impl AdhesiveContact {
         }
     }
 
-    /// Whether a gap has moved against the load: then a step has gone beyond an equilibrium.
+    /// Whether a gap has moved against the load, which means that a step has gone beyond an equilibrium.
     fn left_branch(&self, last: &Equilibrium, now: &Equilibrium, rises: bool) -> bool {
         let before = now.cells.carry(&last.cells, &last.attraction);
         let known = now.cells.carry(&last.cells, &vec![1.0; last.cells.len()]);
@@ -220,7 +221,7 @@ impl AdhesiveContact {
         })
     }
 
-    /// The error of a force that nothing holds, with the last stable state.
+    /// The error for a force beyond pull-off, with the last stable state.
     fn pulled_off(&self, control: AdhesiveControl) -> Result<Error> {
         let force = if let AdhesiveControl::Force(f) = control { f } else { 0.0 };
         let value = self.surface.nondimensional.force(PI * force.abs())?.copysign(force);
@@ -289,9 +290,9 @@ impl AdhesiveContact {
         Ok(Last { equilibrium, control, branch, state: returned(state)? })
     }
 
-    /// The error of a force that was not prescribed, relative to it, estimated: what the tractions lack in
-    /// all, and what the largest stiffness of a contact in this place makes of the gaps left, both more where
-    /// the state is less stable. `None` without a force, and for a state that is not stable.
+    /// The error of a force that was not prescribed, relative to it, estimated: it is the sum of the residual
+    /// tractions and of the residual gaps times the largest stiffness of a contact of this extent, and is
+    /// larger where the state is less stable. `None` without a force, and for a state that is not stable.
     fn force_error(&self, control: AdhesiveControl, state: &Equilibrium, response: &Response) -> Option<f64> {
         let (AdhesiveControl::Plane(_), force) = (control, state.force().abs()) else { return None };
         let lack = self.attraction.imbalance(&state.cells, &state.attraction, &state.gap);

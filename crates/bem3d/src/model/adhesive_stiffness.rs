@@ -1,9 +1,9 @@
-//! The stiffnesses of a state with adhesion: along the branch, and of its contact area held.
+//! The stiffnesses of a state with adhesion: along the branch, and at a fixed contact area.
 //!
 //! An exponential attraction moves with the gaps, and its linearised equations have the stiffness. Fronts of
 //! a short range and the edges of Dugdale's zones move by whole cells: between two moves the force follows
-//! the gaps as if they were held, 1.4 to 1.8 times too stiff however small the cells. There the stiffness is
-//! a difference quotient: the state is followed along its branch until its fronts have moved by two cells,
+//! the gaps as with fixed fronts, 1.4 to 1.8 times too stiff for any size of the cells. There the stiffness
+//! is a difference quotient: the state is followed along its branch until its fronts have moved by two cells,
 //! and a parabola through the states found has its slope at the first one.
 
 use super::adhesive::AdhesiveContact;
@@ -15,10 +15,10 @@ use contact_model::{Branch, Status, Stop};
 const FIRST_STEP: f64 = 0.1;
 /// Fronts advance in a step by about this many cells ...
 const ADVANCE: f64 = 0.4;
-/// ... and until they have advanced by so many in all.
+/// ... and until they have advanced by this number of cells in total.
 const FAR_ENOUGH: f64 = 2.5;
-/// Until fronts have advanced by so many cells the force follows the gaps as if they were held: a fit takes
-/// in more points than those.
+/// Until fronts have advanced by this number of cells the force follows the gaps as with fixed fronts; a fit
+/// needs points beyond those.
 const NEAREST: f64 = 1.0;
 /// In a contact of fewer cells than a radius of 17, a front counts as advanced by a cell when it has taken
 /// this share of its area.
@@ -27,12 +27,13 @@ const NARROW: f64 = 0.12;
 const ADAPT: f64 = 2.0;
 /// Steps at most.
 const STEPS: usize = 14;
-/// Steps at least: a cubic through all points is to leave a scatter.
+/// Smallest number of steps, so that a cubic through all points has a residual scatter.
 const FEWEST: usize = 5;
-/// A step in which fronts advance by more than so many cells is a jump, which has no slope.
+/// A step in which fronts advance by more than this number of cells is a jump, which has no slope.
 const JUMP: f64 = 4.0;
-/// Neighbouring points leave a parabola on the same side, so that their scatter says less than that of as many
-/// points without relation: chosen so that the claimed error holds of 85 in 100 small random contacts.
+/// Neighbouring points deviate from a parabola to the same side, so that their scatter is less informative
+/// than that of independent points. This factor is chosen so that the claimed error holds for 85 of 100 small
+/// random contacts.
 const SMOOTH: f64 = 1.4;
 /// A slope with a larger relative error is not claimed.
 const CLAIMED: f64 = 0.5;
@@ -42,7 +43,7 @@ const CLAIMED: f64 = 0.5;
 pub(super) struct Stiffnesses {
     /// Along the branch.
     pub along_the_branch: Option<f64>,
-    /// Of the contact area held.
+    /// At a fixed contact area.
     pub fixed_area: Option<f64>,
     /// Largest relative error of the linear solves for them.
     pub solve_error: Option<f64>,
@@ -53,7 +54,7 @@ pub(super) struct Stiffnesses {
 }
 
 impl AdhesiveContact {
-    /// The stiffnesses that are asked for.
+    /// The requested stiffnesses.
     pub(super) fn stiffness(
         &mut self,
         state: &Equilibrium,
@@ -136,7 +137,7 @@ impl AdhesiveContact {
         (error <= CLAIMED * slope.abs()).then(|| (slope, error / slope.abs()))
     }
 
-    /// Cells that attract, with the shares that are attached, and the edges of their set.
+    /// The cells that attract with their attached shares, and the edges of their set.
     fn extent(&self, state: &Equilibrium) -> (f64, usize) {
         let attracting = self.attraction.attracting(&state.cells, &state.gap);
         let (cells, index, boundary) = self.surface.indexed(&attracting);
@@ -146,10 +147,10 @@ impl AdhesiveContact {
 
 /// The slope at the first of some points on a curve with scatter, and its estimated error.
 ///
-/// Parabolas of least squares go through more and more of the points, at least `fewest`: far ones lower what
-/// the scatter does, and are biased by what a parabola leaves out. The longest one is taken whose slope
-/// agrees with those of all shorter ones within twice the standard errors of both (Lepski's rule); the
-/// scatter is that around a cubic through all points.
+/// Parabolas of least squares go through more and more of the points, at least `fewest`: distant points
+/// reduce the effect of the scatter, but add a bias from the terms beyond a parabola. The longest one is
+/// taken whose slope agrees with those of all shorter ones within twice the standard errors of both (Lepski's
+/// rule); the scatter is that around a cubic through all points.
 fn first_slope(points: &[(f64, f64)], fewest: usize) -> Option<(f64, f64)> {
     if points.len() <= FEWEST {
         return None;

@@ -1,4 +1,4 @@
-//! What a state is certified by: how far it is from its load, and what that leaves open of the force.
+//! The certificate of a state: the error of its load, and the resulting error of the force.
 
 use super::prepared::{PreparedSurface, Tangent};
 use crate::active_set::{Continuation, Solved};
@@ -6,21 +6,21 @@ use crate::geometry::CellSet;
 use contact_model::{Certificate, Status, Stop};
 use std::f64::consts::PI;
 
-/// A stiffness may grow by this factor over what is left open of the load: by a sixth in the worst of 900
-/// small states at a tolerance of 1e-3, near complete contact.
+/// Largest factor by which a stiffness may grow within the error of the load; the worst of 900 small states
+/// at a tolerance of 1e-3, near complete contact, had an increase of a sixth.
 pub(super) const GROWTH: f64 = 1.25;
 
-/// How far a state is from its load, and what that leaves open of the force.
+/// The error of the load of a state, and the resulting error of the force.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct LoadError {
-    /// Relative miss of the load.
+    /// Relative error of the load.
     pub load: f64,
     /// Relative error of a force that was not prescribed.
     pub force: Option<f64>,
 }
 
 impl LoadError {
-    /// Of a prescribed force, with this relative miss.
+    /// The errors for a prescribed force with this relative error.
     pub fn of_force(miss: f64) -> Self {
         Self { load: miss.abs(), force: None }
     }
@@ -43,8 +43,8 @@ impl PreparedSurface {
         self.stiffness_error(&tangent.stiffness).max(whole)
     }
 
-    /// A bound of the stiffness near a state, nondimensional: that of the state where it is known, else that
-    /// of a circle around the contact, which has no smaller one (free boundaries only).
+    /// A bound of the stiffness near a state, nondimensional: that of the state where it is known, otherwise
+    /// that of a circle around the contact, which is at least as stiff (free boundaries only).
     pub(super) fn stiffest(&self, solved: &Solved, tangent: Option<&Tangent>) -> f64 {
         if let Some(Tangent { stiffness: t, .. }) = tangent {
             return t.value * self.magnification(t.value) * (1.0 + self.stiffness_error(t));
@@ -59,11 +59,11 @@ impl PreparedSurface {
         (window.width as f64 * dx).hypot(window.height as f64 * dy) / PI
     }
 
-    /// What a stiffness k makes of the gaps left on the contact and of a miss of the load, as an error of the
-    /// force.
+    /// The error of the force from the residual gaps on the contact and from the error of the load, with a
+    /// stiffness k.
     ///
-    /// The force is that of a surface whose heights differ by no more than those gaps, and it grows with
-    /// every height.
+    /// The force is that of a surface whose heights differ by at most those gaps, and it increases with every
+    /// height.
     pub(super) fn force_error(&self, solved: &Solved, k: f64, miss: f64) -> LoadError {
         let bounds = self.problem.bounds;
         let Continuation { checked, gap, .. } = &solved.continuation;

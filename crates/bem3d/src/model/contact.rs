@@ -33,7 +33,7 @@ pub struct PreparedBem3d {
     time: f64,
 }
 
-/// What answers a load: the only place where it matters whether surfaces attract each other.
+/// The solver of a load: the only place that distinguishes surfaces with and without adhesion.
 #[derive(Debug)]
 enum Contact {
     WithoutAdhesion(Box<PreparedSurface>),
@@ -82,7 +82,7 @@ impl PreparedBem3d {
         self.surface().scaled_load(load)
     }
 
-    /// The state of a load among others.
+    /// The state of a load, with the given relation to other loads.
     fn at(
         &mut self,
         load: ScaledLoad,
@@ -218,7 +218,7 @@ impl PreparedContact for PreparedBem3d {
     }
 }
 
-/// A step whose tangential load is nothing: there is no friction.
+/// A step without a tangential load, where there is no friction.
 ///
 /// # Errors
 /// [`Error::Unsupported`] for any other.
@@ -257,8 +257,8 @@ impl PreparedSurface {
         recorder.timed(Part::Results, || self.state(solved, tangent, error, slid, stop))
     }
 
-    /// The state of a load whose tractions displace normally. As in [`Self::settle`] both are solved further as
-    /// long as undecided cells could change the stiffness by more than the tolerance.
+    /// The state of a load with coupled normal and tangential displacements. As in [`Self::settle`] both are
+    /// solved further as long as undecided cells could change the stiffness by more than the tolerance.
     fn at_coupled(&mut self, target: Control, stop: Stop<'_>) -> Result<ContactState> {
         let (tuning, mut limits) = (*self.problem.operators.tuning(), self.limits());
         let Some((mut solved, mut slid)) = self.slide_coupled((target, limits), None, stop)? else {
@@ -290,7 +290,7 @@ impl PreparedSurface {
         self.state(solved, tangent, error, Some(slid), stop)
     }
 
-    /// How far a state is from its load.
+    /// The relative error of the load of a state.
     fn load_error(&self, target: Control, solved: &Solved, tangent: Option<&Tangent>) -> LoadError {
         match target {
             Control::Force(asked) => LoadError::of_force((solved.p.iter().sum::<f64>() - asked) / asked),
@@ -298,7 +298,7 @@ impl PreparedSurface {
         }
     }
 
-    /// About which share of the cells a load brings into contact.
+    /// An estimate of the share of the cells that a load brings into contact.
     fn expected_contact(&self, load: Load) -> f64 {
         let z = self.problem.candidates.z();
         match load {
@@ -323,9 +323,9 @@ impl PreparedSurface {
         }
     }
 
-    /// Pressure, and stiffness where asked for. The stiffness may need a more accurate pressure than the
-    /// certificate does: as long as undecided cells could change it by more than the tolerance, the contact
-    /// set is solved further.
+    /// Solves for the pressure and, where requested, for the stiffness. The stiffness may need a more
+    /// accurate pressure than the certificate does: as long as undecided cells could change it by more than
+    /// the tolerance, the contact set is solved further.
     pub(super) fn settle(
         &mut self,
         target: Control,
@@ -420,7 +420,7 @@ impl PreparedSurface {
         }
     }
 
-    /// The stiffness to a few per cent, from above; infinite where the contact is complete.
+    /// An upper estimate of the stiffness to a few per cent; infinite where the contact is complete.
     pub(super) fn rough_stiffness(&mut self, solved: &Solved, stop: Stop<'_>) -> f64 {
         const ROUGH: f64 = 0.02;
         if self.is_complete(solved) {

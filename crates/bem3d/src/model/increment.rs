@@ -15,7 +15,7 @@ use contact_model::{Error, Fields, Result, Status, StickSlip, Stop, Tangential, 
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-/// Times at most that an increment is solved further for the sake of its stiffness.
+/// Largest number of times that an increment is solved further for its stiffness.
 const TIGHTENINGS: usize = 4;
 
 impl PreparedSurface {
@@ -37,7 +37,7 @@ impl PreparedSurface {
         }
     }
 
-    /// Takes the surface again that no traction displaces, where tractions do.
+    /// Resets to the surface without displacements under tractions, where the problems are coupled.
     pub(super) fn undeform(&mut self) {
         if let Some(sliding) = self.sliding.as_ref().filter(|sliding| sliding.is_coupled()) {
             self.problem.candidates = Candidates::new(self.problem.grid(), Arc::clone(&sliding.undeformed));
@@ -52,7 +52,7 @@ impl PreparedSurface {
     /// The increment of friction under a pressure; `None` without friction.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`] for a tangential force that friction does not hold.
+    /// [`Error::OutOfRange`] for a tangential force beyond the limit of friction.
     pub(super) fn slide(&mut self, solved: &Solved, stop: Stop<'_>) -> Result<Option<Slid>> {
         let Some(mut sliding) = self.sliding.take() else { return Ok(None) };
         let slid = self.slide_by(&mut sliding, solved, stop);
@@ -89,7 +89,8 @@ impl PreparedSurface {
         Ok(Slid { state, stiffness, rounds: None })
     }
 
-    /// The state of a load where tractions displace normally, from one that is near where there is one.
+    /// The state of a load with coupled normal and tangential displacements, starting from a nearby state
+    /// where there is one.
     pub(super) fn slide_coupled(
         &mut self,
         (target, limits): (Control, Limits),
@@ -136,8 +137,8 @@ impl PreparedSurface {
         Ok((normal, Slid { state: found.tangential, stiffness, rounds }))
     }
 
-    /// The tangential stiffnesses that are asked for; none of a periodic surface that sticks as a whole, which moves
-    /// under no force.
+    /// The requested tangential stiffnesses; there is none for a periodic surface in full stick, which no
+    /// force moves.
     fn tangential_stiffness(
         &self,
         friction: &mut Friction,
@@ -153,7 +154,7 @@ impl PreparedSurface {
         asked.map(|(asked, of)| asked.then(|| friction.stiffness(state, of, self.options.tolerance, stop)))
     }
 
-    /// Enters the work of friction into that of the load.
+    /// Adds the work of friction to that of the load.
     fn count(&mut self, [applications, solves]: [usize; 2], now: [usize; 2]) {
         self.problem.operators.applications += now[0] - applications;
         self.problem.operators.solves += now[1] - solves;
@@ -173,7 +174,7 @@ impl PreparedSurface {
     /// The tangential part without contact; `None` without friction.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`] for a tangential force: nothing holds it.
+    /// [`Error::OutOfRange`] for a tangential force, which no contact can carry.
     pub(super) fn slide_apart(&mut self) -> Result<Option<Slid>> {
         let Some(sliding) = &self.sliding else { return Ok(None) };
         let displacement = match self.tangential_control(sliding.load)? {
@@ -203,7 +204,7 @@ impl PreparedSurface {
         Ok(Some(Slid { state, stiffness, rounds: None }))
     }
 
-    /// Keeps an increment to begin the next from.
+    /// Keeps an increment as the start of the next one.
     pub(super) fn remember_slip(&mut self, slid: Option<Slid>) {
         if let (Some(sliding), Some(Slid { state, .. })) = (&mut self.sliding, slid) {
             sliding.dissipated += state.dissipated;
@@ -253,7 +254,7 @@ impl PreparedSurface {
         ))
     }
 
-    /// Adds the fields of an increment that are asked for.
+    /// Adds the requested fields of an increment.
     pub(super) fn slip_fields(&self, slid: &Slid, fields: &mut Fields) -> Result<()> {
         let (grid, Slid { state, .. }) = (self.problem.grid(), slid);
         let cells = &state.memory.cells;

@@ -1,11 +1,11 @@
-//! From a load to the units of the surface.
+//! Conversion of a load into the units of the surface.
 
 use super::options::NAME;
 use super::prepared::PreparedSurface;
 use contact_model::{Error, Load, Result};
 use std::f64::consts::PI;
 
-/// How far the force of all cells at the hardness may be rounded on its way through units.
+/// Largest rounding of the force of all cells at the hardness in the conversion of units.
 const CAPACITY_ROUNDING: f64 = 1e-12;
 
 /// A load in the units of the surface, of either sign; a force over pi.
@@ -22,9 +22,9 @@ pub(super) enum ScaledLoad {
 /// How loads follow from each other.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum LoadSequence {
-    /// Each is the first one of a virgin surface.
+    /// Each load is the first one of a virgin surface.
     Single,
-    /// Each follows the last one.
+    /// Each load follows the last one.
     Path,
 }
 
@@ -32,8 +32,8 @@ impl PreparedSurface {
     /// A load of the scene in the units of the surface.
     ///
     /// # Errors
-    /// [`Error::Domain`] where no number holds it, [`Error::Unsupported`] for one that the surface does not have, [`Error::OutOfRange`] for
-    /// a force that all cells at the hardness do not carry.
+    /// [`Error::Domain`] where it overflows, [`Error::Unsupported`] for a kind of load that the surface does
+    /// not have, [`Error::OutOfRange`] for a force that all cells at the hardness do not carry.
     pub(super) fn scaled_load(&self, load: Load) -> Result<ScaledLoad> {
         let units = self.nondimensional;
         Ok(match load {

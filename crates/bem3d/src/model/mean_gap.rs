@@ -1,5 +1,5 @@
-//! What a rectangle that repeats itself has instead of an approach: a mean gap, and a stiffness from a kernel
-//! with a constant in it.
+//! Mean gaps with periodic boundaries, which replace the approach, and the stiffness from a kernel with a
+//! constant.
 
 use super::certificate::LoadError;
 use super::options::NAME;
@@ -15,7 +15,8 @@ impl PreparedSurface {
         self.mean_gap(self.is_complete(solved), solved.d, solved.p.iter().sum())
     }
 
-    /// Whether the mean gap of any force is above zero: no points are undefined, and nothing flows.
+    /// Whether the mean gap is positive at any force: this holds without undefined points and without a
+    /// hardness.
     fn has_complete_contact(&self) -> bool {
         self.problem.bounds == Bounds::Unlimited && self.defined == self.problem.grid().count()
     }

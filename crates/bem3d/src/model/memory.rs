@@ -1,18 +1,18 @@
-//! What a path with a hardness remembers: the indentation stays, and what is unloaded is elastic until the
-//! old pressures are reached again.
+//! The memory of a path with a hardness: the indentation remains, and unloading is elastic until the old
+//! pressures are reached again.
 
 use std::sync::Arc;
 
-/// The indentation of a surface, and where its path stands.
+/// The indentation of a surface, and the last state of its path.
 ///
 /// Each step is solved on the surface as the last one left it. As long as loads rise, that is the same as one
 /// step from the virgin surface: saturated cells stay so, and their indentation grows. Plastic flow under
-/// falling loads is not excluded, and counted where it happens.
+/// falling loads is not excluded, and is included where it occurs.
 ///
 /// Where a load is reached again, the old cells are about to flow, and the slope of the force jumps. The
-/// state decides: cells of the indentation whose pressure is the hardness, within what the tolerance leaves
-/// open, count as saturated, and the stiffness is that of a load that goes on in the direction of its last
-/// change. On the way up they flow, on the way down they do not.
+/// state decides: cells of the indentation whose pressure is the hardness, within the tolerance, count as
+/// saturated, and the stiffness is that of a load that goes on in the direction of its last change. With
+/// growing load they flow, with falling load they do not.
 #[derive(Debug)]
 pub(super) struct Memory {
     /// Undeformed gaps of the virgin surface.
@@ -26,13 +26,13 @@ pub(super) struct Memory {
 }
 
 impl Memory {
-    /// Of a virgin surface.
+    /// The memory of a virgin surface.
     pub fn new(virgin: Arc<Vec<f64>>) -> Self {
         Self { indentation: vec![0.0; virgin.len()], virgin, force: 0.0, rising: true }
     }
 
-    /// Whether the load of this force has grown since the last state; equal within `tolerance`, the last
-    /// direction goes on.
+    /// Whether the load has grown to this force since the last state; where both are equal within
+    /// `tolerance`, the last direction is kept.
     pub fn rises_to(&self, force: f64, tolerance: f64) -> bool {
         let same = (force - self.force).abs() <= tolerance * force.max(self.force);
         if same { self.rising } else { force > self.force }
@@ -48,12 +48,12 @@ impl Memory {
         (self.force, self.rising)
     }
 
-    /// Goes where a path stood.
+    /// Restores the memory of a path.
     pub fn recall(&mut self, force: f64, rising: bool) {
         (self.force, self.rising) = (force, rising);
     }
 
-    /// Goes on to the next state.
+    /// Advances to the next state.
     pub fn advance(&mut self, force: f64, tolerance: f64) {
         self.rising = self.rises_to(force, tolerance);
         self.force = force;

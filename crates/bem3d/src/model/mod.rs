@@ -1,4 +1,4 @@
-//! The boundary-element model behind the common trait.
+//! The boundary-element model as an implementation of the common trait.
 
 mod adhesive;
 mod adhesive_stiffness;
@@ -114,7 +114,8 @@ impl ContactModel for Bem3d {
 }
 
 impl Bem3d {
-    /// [`ContactModel::prepare`] with other constants than those shipped, or with the time charged to parts.
+    /// As [`ContactModel::prepare`], with other constants than the shipped ones, or with the time of the
+    /// parts recorded.
     pub(crate) fn prepare_with(
         &self,
         scene: &Scene,
@@ -143,11 +144,11 @@ impl Bem3d {
     }
 }
 
-/// Effects that no solver here takes together: attraction that indents, and friction of pressures that flow or
-/// pull.
+/// Refuses effects that the solvers do not combine: adhesion with a hardness, and friction with a hardness or
+/// with adhesion.
 ///
 /// # Errors
-/// [`Error::Unsupported`] for the first two that are on.
+/// [`Error::Unsupported`] for the first two of them that are on.
 fn refuse_together(effects: &Effects) -> Result<()> {
     let (hardness, adhesion) = (effects.hardness != Hardness::Off, effects.adhesion != Adhesion::Off);
     let friction = effects.friction != Friction::Off;

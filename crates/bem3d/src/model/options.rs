@@ -9,11 +9,12 @@ pub const NAME: &str = "bem3d";
 /// largest of `peak_memory_bytes` in `data/bench/scaling.csv`, rounded up.
 pub const BYTES_PER_CELL: f64 = 50.0;
 
-/// How much more contact takes that fills the grid, bytes for each cell, by the same table.
+/// Additional memory of a contact that fills the grid, bytes for each cell, by the same table.
 const FILLED_BYTES: f64 = 150.0;
-/// How much more friction takes in it: 580 bytes at N = 1025 with 94 % in contact (2026-11), rounded up.
+/// Additional memory of friction in such a contact, bytes for each cell: 580 at N = 1025 with 94 % in contact
+/// (2026-11), rounded up.
 const FRICTION_BYTES: f64 = 600.0;
-/// The box around a contact of a share s of the cells fills about so many times s of the grid.
+/// The bounding box of a contact with a share s of the cells fills about this multiple of s of the grid.
 const BOX_OVER_CONTACT: f64 = 6.0;
 
 /// Memory of a solve beyond [`BYTES_PER_CELL`], bytes for each cell of the grid, where a share of the cells
@@ -62,11 +63,11 @@ pub struct Bem3d {
     /// Bound t of the certificate and of the estimated relative error of k
     /// ([`contact_model::Certificate::meets`]).
     ///
-    /// The certificate counts gaps in rms heights, so that at a prescribed force the approach is good to a
-    /// few t (at worst about ten) of the rms height, not of itself: a light load on a rough surface wants a
-    /// smaller t for a precise d.
+    /// The certificate measures gaps in rms heights, so that at a prescribed force the error of the approach
+    /// is a few t (at worst about ten) times the rms height, not times the approach itself: a light load on a
+    /// rough surface needs a smaller t for a precise d.
     pub tolerance: f64,
-    /// Outer iterations at most (each a handful of operator applications).
+    /// Largest number of outer iterations (each needs a few operator applications).
     pub max_outer_iterations: usize,
     /// How small sets are solved.
     pub method: Method,
@@ -75,12 +76,13 @@ pub struct Bem3d {
 /// How the linear systems of one contact set are solved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Method {
-    /// Factor small sets, iterate on large ones: whichever is cheaper.
+    /// Factorise small sets and iterate on large ones, whichever is cheaper.
     #[default]
     Auto,
     /// Iterate always.
     Iterative,
-    /// One grid and one operator, to compare with: no factors, no two-level sums, no nested iteration.
+    /// One grid and one operator, for comparison: no factorisation, no two-level operator, no nested
+    /// iteration.
     SingleLevel,
 }
 
@@ -105,7 +107,7 @@ impl Bem3d {
         Cells { rows: self.rows.unwrap_or(nearly_square.rows), ..nearly_square }
     }
 
-    /// What planning and a light load need at least, with the fields that are asked for.
+    /// The lowest memory need of planning and of a light load, with the requested fields.
     pub(super) fn memory(&self, scene: &Scene) -> RequiredMemory {
         let cells = match &scene.surface {
             Surface::Heights(map) | Surface::Profile(map) => map.cells(),

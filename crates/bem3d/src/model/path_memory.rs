@@ -1,9 +1,9 @@
-//! What decides the next step of a path: the last state that was reached, and what an effect remembers.
+//! The memory of a path, which determines its next step: the last state, and the memory of effects.
 //!
-//! Whatever else a contact keeps from load to load (plans of transforms, coarser grids, room) is forgotten
-//! before each step of a path ([`PreparedSurface::forget_plans`]): the window that a plan was made for decides
-//! how a displacement is rounded. A contact that recalls a memory therefore goes on to the same bits as the
-//! one that never stopped.
+//! Everything else that a contact keeps from load to load (plans of transforms, coarser grids, buffers) is
+//! dropped before each step of a path ([`PreparedSurface::forget_plans`]), because the window for which a
+//! plan was made affects the rounding of displacements. A contact that is restored from a memory therefore
+//! continues to the same bits as one that was never interrupted.
 
 use super::adhesive::Last;
 use super::memory::Memory;
@@ -20,7 +20,7 @@ use std::borrow::Cow;
 pub(super) struct Remembered<'a> {
     /// Time of the last step.
     pub time: f64,
-    /// Where the solve of the next load begins.
+    /// The start of the solve of the next load.
     last: Option<Cow<'a, LastState>>,
     hardness: Option<Indented>,
     friction: Option<Slipped<'a>>,
@@ -28,7 +28,7 @@ pub(super) struct Remembered<'a> {
     pub adhesive: Option<Cow<'a, Last>>,
 }
 
-/// What a hardness leaves.
+/// The memory of a hardness.
 #[derive(Serialize, Deserialize)]
 struct Indented {
     cells: CellSet,
@@ -37,7 +37,7 @@ struct Indented {
     rising: bool,
 }
 
-/// What friction leaves.
+/// The memory of friction.
 #[derive(Serialize, Deserialize)]
 struct Slipped<'a> {
     memory: Cow<'a, SlipMemory>,
@@ -45,7 +45,7 @@ struct Slipped<'a> {
 }
 
 impl<'a> Remembered<'a> {
-    /// Of a surface on its path, and of the attraction on it.
+    /// The memory of a surface on its path, and of its adhesion.
     pub fn of(time: f64, surface: &'a PreparedSurface, adhesive: Option<&'a Last>) -> Self {
         let grid = surface.problem.grid();
         Self {
@@ -60,10 +60,10 @@ impl<'a> Remembered<'a> {
         }
     }
 
-    /// Puts a surface at the beginning of a path where it was.
+    /// Restores a surface at the beginning of a path to this memory.
     ///
     /// # Errors
-    /// [`PathMemory::unreadable`] for what is not of this surface and its effects.
+    /// [`PathMemory::unreadable`] for a memory that does not belong to this surface and its effects.
     pub fn recall(self, surface: &mut PreparedSurface) -> Result<Option<Last>> {
         let grid = surface.problem.grid();
         let Self { time, last, hardness, friction, adhesive } = self;
@@ -136,7 +136,7 @@ impl Last {
     }
 }
 
-/// Whether vectors have so many finite numbers for each cell.
+/// Whether vectors have this number of finite values for each cell.
 fn are_of(cells: &CellSet, each: usize, vectors: &[&Vec<f64>]) -> bool {
     vectors.iter().all(|v| v.len() == each * cells.len() && v.iter().all(|value| value.is_finite()))
 }

@@ -25,7 +25,8 @@ pub(super) struct Tangent {
     pub stiffness: Stiffness,
     /// The cells that respond.
     pub cells: CellSet,
-    /// Of the whole contact, where it is another one and wanted; `None` also where that is complete contact.
+    /// The stiffness of the whole contact, where it differs and is requested; also `None` for complete
+    /// contact.
     pub whole: Option<Stiffness>,
 }
 
@@ -51,7 +52,7 @@ pub struct PreparedSurface {
     /// Number of defined points.
     pub(super) defined: usize,
     pub(super) last: Option<LastState>,
-    /// What a path remembers. `None`: no path.
+    /// The memory of a path with a hardness; `None` without a path.
     pub(super) memory: Option<Memory>,
     /// Friction, and what it remembers of a path.
     pub(super) sliding: Option<Sliding>,
@@ -62,10 +63,10 @@ pub struct PreparedSurface {
 }
 
 impl Bem3d {
-    /// The heights that are pressed in a scene: given, or drawn on the cells of this model.
+    /// The heights of a scene: given, or generated on the cells of this model.
     ///
     /// # Errors
-    /// [`Error::Unsupported`] for a line; what drawing a surface refuses.
+    /// [`Error::Unsupported`] for a line; errors of generating a surface.
     pub fn heights(&self, scene: &Scene, seed: u64) -> Result<Arc<HeightMap>> {
         match &scene.surface {
             Surface::Heights(map) | Surface::Profile(map) => Ok(Arc::clone(map)),
@@ -147,8 +148,8 @@ impl PreparedSurface {
         })
     }
 
-    /// Takes the virgin surface again, of which nothing is known; on a `path` a hardness leaves an
-    /// indentation from here on.
+    /// Resets to the virgin surface without any state; on a `path` a hardness leaves an indentation from here
+    /// on.
     pub(super) fn begin(&mut self, path: bool) {
         if let Some(memory) = self.memory.take() {
             self.problem.candidates = Candidates::new(self.problem.grid(), memory.virgin);
@@ -163,7 +164,8 @@ impl PreparedSurface {
         }
     }
 
-    /// Forgets what loads before leave besides the memory of the path: plans of operators, coarser grids, room.
+    /// Drops everything that earlier loads left except the memory of the path: plans of operators, coarser
+    /// grids, buffers.
     pub(super) fn forget_plans(&mut self) {
         self.problem.forget_plans();
         if let Some(sliding) = &mut self.sliding {
@@ -175,7 +177,7 @@ impl PreparedSurface {
         self.problem.operators.table().boundary() == Boundary::Periodic
     }
 
-    /// Whether states have an approach: displacements are counted from those at infinity.
+    /// Whether states have an approach, which needs displacements that vanish at infinity.
     pub(super) fn has_approach(&self) -> bool {
         self.problem.operators.table().medium() == Medium::HalfSpace
     }
@@ -205,7 +207,7 @@ impl PreparedSurface {
         active_set::cold_start(&mut self.problem, target, limits, stop)
     }
 
-    /// How many times the relative error of k is that of `1' G^-1 1 = k'` with the constant c in G:
+    /// The ratio of the relative error of k to that of `1' G^-1 1 = k'` with the constant c in G:
     /// `k = k' / (1 - c k')`.
     ///
     /// 1 with free boundaries; grows without limit towards full contact of a periodic surface.
@@ -248,7 +250,7 @@ impl PreparedSurface {
         self.problem.coarser = None;
     }
 
-    /// Keeps a state to begin the next from.
+    /// Keeps a state as the start of the next one.
     pub(super) fn remember(&mut self, solved: Solved, tangent: Option<Tangent>) {
         // Cells that flow do not follow the tangent.
         let tangent = tangent.filter(|t| t.stiffness.value > 0.0).map(|t| {
@@ -270,7 +272,7 @@ impl PreparedSurface {
         (self.size.x / grid.columns as f64, self.size.y / grid.rows as f64)
     }
 
-    /// Work is counted from here.
+    /// Starts the counting of work.
     pub(super) fn begin_count(&mut self) {
         self.problem.operators.applications = 0;
         self.problem.operators.solves = 0;

@@ -4,9 +4,9 @@ use super::options::NAME;
 use crate::kernel::Medium;
 use contact_model::{Adhesion, Boundary, Conductance, Error, Friction, Outputs, Result, Scene, Surface};
 
-/// What deforms under a scene's surface: under a profile with free boundaries a half-plane. With periodic
-/// ones the kernel of one row is that of plane strain by itself, because a pressure that repeats itself with
-/// the row has no wave along y.
+/// The body under a scene's surface: under a profile with free boundaries a half-plane. With periodic ones
+/// the kernel of one row is that of plane strain by itself, because a pressure that is periodic with one row
+/// does not vary along y.
 pub(super) fn medium(scene: &Scene) -> Medium {
     match (&scene.surface, scene.effects.boundary) {
         (Surface::Profile(_), Boundary::Free) => Medium::HalfPlane,
@@ -14,7 +14,7 @@ pub(super) fn medium(scene: &Scene) -> Medium {
     }
 }
 
-/// Refuses what profiles do not have.
+/// Refuses effects and outputs that profiles do not have.
 ///
 /// # Errors
 /// [`Error::Unsupported`] for adhesion and friction, and for a displacement or a conductance of a half-plane.
@@ -47,8 +47,8 @@ pub(super) fn check(scene: &Scene) -> Result<()> {
     }
 }
 
-/// The outputs of a medium: the stiffness of a half-plane depends on where displacements are counted from and
-/// is not claimed.
+/// The outputs of a medium: the stiffness of a half-plane depends on the reference of the displacements and
+/// is not given.
 pub(super) fn outputs(outputs: Outputs, medium: Medium) -> Outputs {
     match medium {
         Medium::HalfPlane => Outputs { stiffness: false, stiffness_fixed_area: false, ..outputs },

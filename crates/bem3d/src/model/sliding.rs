@@ -1,4 +1,4 @@
-//! What friction adds to a surface and to a state.
+//! The friction of a surface, and the tangential part of a state.
 
 use super::options::NAME;
 use crate::active_set::Problem;
@@ -8,14 +8,14 @@ use crate::tuning::Tuning;
 use contact_model::{Certificate, Coupling, Friction as Law, Result, Scene, Tangential};
 use std::sync::Arc;
 
-/// What friction adds to a surface.
+/// The friction of a surface.
 #[derive(Debug)]
 pub(super) struct Sliding {
     pub(super) friction: Friction,
     pub(super) coefficient: f64,
-    /// The gaps that no traction deforms.
+    /// The undeformed gaps, without displacements under tractions.
     pub(super) undeformed: Arc<Vec<f64>>,
-    /// What the next increment begins from.
+    /// The start of the next increment.
     pub(super) before: SlipMemory,
     /// Nondimensional energy that friction dissipated since the first step.
     pub(super) dissipated: f64,
@@ -27,9 +27,9 @@ pub(super) struct Sliding {
 #[derive(Debug)]
 pub(super) struct Slid {
     pub(super) state: FrictionState,
-    /// Along the branch, and of the whole contact sticking.
+    /// The stiffness along the branch, and that of the whole contact in full stick.
     pub(super) stiffness: [Option<TangentialStiffness>; 2],
-    /// How the alternation of normal and tangential contact went, where they act on each other.
+    /// The convergence of the alternation of normal and tangential contact, where these are coupled.
     pub(super) rounds: Option<(usize, Option<f64>)>,
 }
 
@@ -52,7 +52,7 @@ impl Slid {
         self.state.iterations[1] + self.stiffness.iter().flatten().map(|k| k.steps).sum::<usize>()
     }
 
-    /// Enters what certifies it.
+    /// Adds its residuals to a certificate.
     pub(super) fn certify(&self, certificate: &mut Certificate) {
         certificate.tangential_duality_gap = Some(self.state.duality_gap);
         certificate.tangential_load_error = Some(self.state.load_error);
@@ -89,7 +89,7 @@ impl Sliding {
         }))
     }
 
-    /// Takes the surface again as it is before any load.
+    /// Resets the surface to its state before any load.
     pub(super) fn begin(&mut self) {
         (self.before, self.dissipated, self.load) = (SlipMemory::default(), 0.0, Tangential::default());
     }
@@ -99,7 +99,7 @@ impl Sliding {
         self.load = load;
     }
 
-    /// Whether tractions displace normally.
+    /// Whether the normal and the tangential problem are coupled.
     pub(super) fn is_coupled(&self) -> bool {
         self.friction.is_coupled()
     }

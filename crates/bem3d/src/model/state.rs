@@ -1,4 +1,4 @@
-//! From a solution to the state that is returned: one assembly, whatever the effects.
+//! Assembles the returned state from a solution, in the same way for all effects.
 
 use super::certificate::LoadError;
 use super::prepared::{PreparedSurface, Tangent};
@@ -12,7 +12,7 @@ use contact_model::{
 };
 use std::f64::consts::PI;
 
-/// What a state is assembled from, in the units of the surface; the force over pi.
+/// The parts of a state, in the units of the surface; forces are over pi.
 #[derive(Debug)]
 pub(super) struct Assembly<'a> {
     /// How the solve ended.
@@ -21,7 +21,7 @@ pub(super) struct Assembly<'a> {
     pub strategy: String,
     /// Steps of conjugate gradients.
     pub iterations: usize,
-    /// What it is certified by.
+    /// Its certificate.
     pub certificate: Certificate,
     /// Sum of the net pressure.
     pub force: f64,
@@ -41,13 +41,13 @@ pub(super) struct Assembly<'a> {
     pub area: f64,
     /// Stiffness along the branch.
     pub stiffness: Option<f64>,
-    /// Stiffness of the contact area held.
+    /// Stiffness at a fixed contact area.
     pub fixed_area: Option<f64>,
-    /// What adhesion adds.
+    /// The part of adhesion.
     pub adhesive: Option<AdhesiveState>,
     /// How well the cells resolve the contact.
     pub resolution: Option<ContactResolution>,
-    /// What friction adds.
+    /// The part of friction.
     pub slid: Option<&'a Slid>,
 }
 
@@ -61,7 +61,7 @@ pub(super) fn returned(state: ContactState) -> Result<ContactState> {
 }
 
 impl PreparedSurface {
-    /// The state in the units of the scene, with what is asked for.
+    /// The state in the units of the scene, with the requested outputs.
     pub(super) fn assemble(&mut self, found: Assembly<'_>) -> Result<ContactState> {
         let units = self.nondimensional;
         let mut fields = self.fields(found.pressure, found.d, found.indented)?;
@@ -95,8 +95,8 @@ impl PreparedSurface {
     }
 
     /// Mean gap of a state with this approach and force: the distance between the mean plane of the defined
-    /// heights and that of the deformed half-space, whose displacement under the kernel of zero mean has
-    /// none. Undefined points or a plastic indentation may bring the planes beyond each other.
+    /// heights and that of the deformed half-space, whose mean displacement vanishes with the kernel of zero
+    /// mean. With undefined points or a plastic indentation the mean gap may be negative.
     pub(super) fn mean_gap(&self, complete: bool, d: f64, force: f64) -> f64 {
         // What is left of complete contact is rounding.
         if complete { 0.0 } else { self.mean - (d - self.problem.operators.table().shift() * force) }
@@ -135,7 +135,7 @@ impl PreparedSurface {
         Ok(state)
     }
 
-    /// The state of a contact without adhesion; the next load begins from it.
+    /// The state of a contact without adhesion, from which the next load starts.
     pub(super) fn state(
         &mut self,
         solved: Solved,
@@ -214,7 +214,7 @@ impl PreparedSurface {
         slid.map_or_else(|| pressed.clone(), |slid| format!("{pressed}; {}", slid.strategy()))
     }
 
-    /// What has yielded, with a hardness: the number of cells at it, and the depths of new indentation.
+    /// With a hardness: the number of cells at the hardness, and the depths of new indentation.
     fn plastic(&self, saturated: usize, depth: &[f64]) -> Result<Option<PlasticState>> {
         let units = self.nondimensional;
         let Bounds::UpTo(hardness) = self.problem.bounds else { return Ok(None) };
@@ -224,8 +224,8 @@ impl PreparedSurface {
         Ok(Some(PlasticState::new(area, volume, units.pressure(PI * hardness)?)))
     }
 
-    /// The fields asked for, of a (net) pressure on a set at an approach, with the depth of the indentation
-    /// of saturated cells.
+    /// The requested fields of a (net) pressure on a set at an approach, with the depth of the indentation of
+    /// saturated cells.
     pub(super) fn fields(
         &mut self,
         (set, pressure): (&CellSet, &[f64]),
@@ -288,7 +288,7 @@ impl PreparedSurface {
         Field::new([grid.columns, grid.rows], self.size, values)
     }
 
-    /// What the cells say about how well they resolve the contact.
+    /// The measures of how well the cells resolve the contact.
     fn resolution(&self, solved: &Solved) -> Result<ContactResolution> {
         let (grid, contact) = (self.problem.grid(), &solved.contact);
         let largest = solved.p.iter().copied().fold(0.0, f64::max);
@@ -315,7 +315,7 @@ impl PreparedSurface {
         ([grid.columns, grid.rows], index, self.problem.operators.table().boundary())
     }
 
-    /// Connected patches of the contact set, where asked for.
+    /// Connected patches of the contact set, where requested.
     pub(super) fn patches(&self, contact: &CellSet) -> Result<Option<Patches>> {
         if !self.outputs.contact_patches {
             return Ok(None);

@@ -1,4 +1,4 @@
-//! What tractions displace normally and pressures tangentially.
+//! The coupling of normal and tangential displacements.
 
 use super::transform::Transform;
 use crate::geometry::{CellSet, Grid, Window};
@@ -26,7 +26,7 @@ struct Plan {
 }
 
 impl CouplingOperator {
-    /// Nothing is planned yet.
+    /// An operator without plans.
     pub fn new(grid: Grid, medium: Medium, beta: f64) -> Self {
         Self { beta, grid, table: CouplingTable::new(grid, medium), plan: None, applications: 0 }
     }
@@ -47,9 +47,9 @@ impl CouplingOperator {
         u
     }
 
-    /// All displacements under the fields given, `(p, q_x, q_y)`.
+    /// All displacements under the given fields, `(p, q_x, q_y)`.
     ///
-    /// Cost: the transforms of three fields of the grid, rows of zeros apart.
+    /// Cost: the transforms of three fields of the grid, except for rows of zeros.
     fn apply(&mut self, sources: &CellSet, given: &[Option<&[f64]>; 3], targets: &CellSet) -> Vec<Vec<f64>> {
         let mut u = vec![vec![0.0; targets.len()]; 3];
         if sources.is_empty() || targets.is_empty() || self.beta.abs() <= 0.0 {

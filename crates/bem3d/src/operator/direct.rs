@@ -1,4 +1,4 @@
-//! The influence matrix by direct summation: exact, O(n m), obviously right.
+//! The influence matrix by direct summation: exact and simple, O(n m).
 
 use super::influence::InfluenceOperator;
 use crate::geometry::CellSet;

@@ -42,13 +42,13 @@ impl<T: Real> FftConvolution<T> {
         self.transform.bands()
     }
 
-    /// Transforms the rows of the window: `fill` writes row y (given as zeros) where `given` says so.
+    /// Transforms the rows of the window: `fill` writes row y, which is zero before, for all y with `given`.
     pub fn forward(&mut self, given: impl Fn(usize) -> bool + Sync, fill: impl Fn(usize, &mut [T]) + Sync) {
         self.transform.forward(given, fill);
     }
 
     /// Multiplies the spectrum by the symbol: a transform of each column forward and back. Only the bands of
-    /// rows `wanted` are right afterwards.
+    /// rows in `wanted` are valid afterwards.
     ///
     /// Cost: O(lx ly log) with [`Self::forward`] and [`Self::backward`]; rows of zeros are not transformed.
     pub fn multiply(&mut self, wanted: impl Fn(usize) -> bool) {
@@ -109,7 +109,7 @@ pub struct Rounded {
 }
 
 impl Rounded {
-    /// `u` as `apply` finds it from `p` in single precision.
+    /// `u` from `apply`, which gets `p` in single precision.
     pub fn apply(&mut self, p: &[f64], u: &mut [f64], apply: impl FnOnce(&[f32], &mut [f32])) {
         let unit = binary_unit(p);
         let scale = unit.recip();

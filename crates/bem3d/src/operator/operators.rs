@@ -1,4 +1,4 @@
-//! The operators of one surface, each planned when it is first asked for.
+//! The operators of one surface, each planned when it is first used.
 
 use super::direct::DirectSum;
 use super::fft::FftConvolution;
@@ -13,7 +13,7 @@ use crate::real::Real;
 use crate::tuning::Tuning;
 use std::sync::Arc;
 
-/// The operators of one surface, with the count of what they did.
+/// The operators of one surface, with their work counters.
 #[derive(Debug)]
 pub struct Operators {
     table: Arc<KernelTable>,
@@ -27,7 +27,7 @@ pub struct Operators {
     two_transforms: Option<TwoTransforms>,
     /// Applications of the influence matrix so far, all precisions together.
     pub applications: usize,
-    /// Linear systems so far: factors and runs of conjugate gradients.
+    /// Number of linear systems so far: factorisations and runs of conjugate gradients.
     pub solves: usize,
     /// Whether approximations of the far field may be chosen.
     pub two_levels: bool,
@@ -35,8 +35,7 @@ pub struct Operators {
     last: Option<Recipe>,
 }
 
-/// The influence matrix in the way that was chosen for one application or one system, with what its time is
-/// charged to.
+/// The influence matrix in the form chosen for one application or one system, with the recorder of its time.
 #[derive(Debug)]
 pub struct Planned<'a> {
     way: Way<'a>,
@@ -73,13 +72,13 @@ where
 }
 
 impl Operators {
-    /// Nothing is planned yet, and no time is charged.
+    /// Operators without plans; no time is charged.
     #[cfg(test)]
     pub fn new(table: Arc<KernelTable>, tuning: &Tuning) -> Self {
         Self::recorded(table, tuning, &Recorder::default())
     }
 
-    /// Nothing is planned yet.
+    /// Operators without plans.
     pub fn recorded(table: Arc<KernelTable>, tuning: &Tuning, recorder: &Recorder) -> Self {
         Self {
             table,
@@ -98,8 +97,8 @@ impl Operators {
         }
     }
 
-    /// Forgets all plans. How a displacement is rounded then follows from what is asked for from here on alone,
-    /// and no longer from the windows before.
+    /// Drops all plans. The rounding of displacements then depends only on the applications from here on, and
+    /// not on earlier windows.
     pub fn forget_plans(&mut self) {
         let Self { table, tuning, recorder, applications, solves, two_levels, .. } = self;
         let (applications, solves, two_levels) = (*applications, *solves, *two_levels);
@@ -112,7 +111,7 @@ impl Operators {
         &self.table
     }
 
-    /// What time is charged to.
+    /// The recorder of time.
     pub fn recorder(&self) -> &Recorder {
         &self.recorder
     }
@@ -122,7 +121,7 @@ impl Operators {
         &self.tuning
     }
 
-    /// Who chooses between the operators.
+    /// The chooser between the operators.
     pub fn planner(&self) -> Planner<'_> {
         Planner { table: &self.table, tuning: &self.tuning, two_levels: self.two_levels }
     }
@@ -147,8 +146,8 @@ impl Operators {
         self.recorder.timed(Part::Double, || transform.apply(sources, p, targets, u));
     }
 
-    /// The error of [`Self::rough`] over the largest displacement, rather too large; 0 where sums over pairs are
-    /// cheapest.
+    /// An upper estimate of the error of [`Self::rough`] over the largest displacement; 0 where sums over
+    /// pairs are cheapest.
     pub fn roughness(&self, sources: &CellSet, targets: &CellSet) -> f64 {
         let windows = sources.window().into_iter().chain(targets.window());
         windows.reduce(Window::union).map_or(0.0, |w| self.planner().fast(sources, targets, w).error())
@@ -161,8 +160,7 @@ impl Operators {
         self.application(application, window).apply(sources, p, targets, u);
     }
 
-    /// Makes room for `u` on the targets and counts an application, unless there is nothing to apply or
-    /// nothing to apply it to.
+    /// Resizes `u` to the targets and counts an application, unless the sources or the targets are empty.
     fn begin(&mut self, sources: &CellSet, targets: &CellSet, u: &mut Vec<f64>) -> Option<Window> {
         u.resize(targets.len(), 0.0);
         let (Some(from), Some(to)) = (sources.window(), targets.window()) else {
@@ -209,7 +207,7 @@ type Slots<'a> = (
     &'a mut Option<TwoTransforms>,
 );
 
-/// Plans an application in single precision, or takes a plan that serves.
+/// Plans an application in single precision, or reuses a suitable plan.
 fn plan<'a>(
     application: Application,
     window: Window,
@@ -247,7 +245,7 @@ fn plan<'a>(
     Planned { way, part, recorder }
 }
 
-/// The convolution of `slot` where it serves the window, else a new one.
+/// The convolution of `slot` where it can be used for the window, otherwise a new one.
 fn planned<'a, T: Real>(
     slot: &'a mut Option<FftConvolution<T>>,
     window: Window,

@@ -1,4 +1,4 @@
-//! How one linear system is solved: a pure function of sizes, with the measured constants of [`Tuning`].
+//! The recipe of a linear system: a pure function of sizes, with the measured constants of [`Tuning`].
 
 use super::two_level::Split;
 use super::two_transforms::TwoTransforms;
@@ -21,7 +21,7 @@ pub enum Application {
 }
 
 impl Application {
-    /// Its error over the largest displacement, rather too large.
+    /// An upper estimate of its error over the largest displacement.
     pub fn error(self) -> f64 {
         match self {
             Self::Direct => 0.0,
@@ -61,7 +61,7 @@ pub struct Recipe {
 }
 
 impl Recipe {
-    /// Whether vectors are in single precision: all that a transform in single precision can use.
+    /// Whether vectors are in single precision, which is enough for a transform in single precision.
     pub fn is_single(&self) -> bool {
         matches!(self.application, Application::Fft(_) | Application::TwoTransforms(_))
             || self.has_preconditioner()
@@ -94,7 +94,7 @@ impl fmt::Display for Recipe {
     }
 }
 
-/// Chooses for one grid.
+/// Chooses recipes for one grid.
 #[derive(Debug, Clone, Copy)]
 pub struct Planner<'a> {
     /// The kernel.
@@ -183,10 +183,10 @@ impl Planner<'_> {
         best
     }
 
-    /// How a system on a set is solved of which `contact` cells are known to be in contact. `every_lag`:
+    /// The recipe of a system on a set of which `contact` cells are known to be in contact. `every_lag`:
     /// whether the kernel must be exact at every lag, as for the stiffness, or may be that of a shorter
-    /// torus, as for corrections of the pressure: at a prescribed force they have no sum, so that the far
-    /// lags count for little, and the exact gap that follows sees what is left.
+    /// torus, as for corrections of the pressure: at a prescribed force their sum is zero, so that long lags
+    /// matter little, and the exact gap that is evaluated afterwards includes the rest.
     pub fn system(&self, set: &CellSet, contact: usize, every_lag: bool) -> Option<Recipe> {
         let (window, tuning) = (set.window()?, self.tuning);
         let share = contact as f64 / window.count() as f64;
@@ -294,7 +294,7 @@ mod tests {
     }
 
     #[test]
-    fn a_system_is_planned_by_what_touches() {
+    fn a_system_is_planned_by_the_number_of_cells_in_contact() {
         with(GRID, Boundary::Free, |planner| {
             let plan = |set: &CellSet, every_lag| planner.system(set, set.len(), every_lag).unwrap();
             let dense = plan(&every(2), true);

@@ -1,4 +1,4 @@
-//! The tangential operators of one surface, each planned when it is first asked for.
+//! The tangential operators of one surface, each planned when it is first used.
 
 use super::influence::InfluenceOperator;
 use super::vector::{DirectVectorSum, VectorConvolution};
@@ -9,12 +9,12 @@ use crate::real::Real;
 use crate::tuning::Tuning;
 use std::sync::Arc;
 
-/// Real products of a pair of cells over those of one of normal contact.
+/// Number of products for a pair of cells, over that of normal contact.
 const PAIR: f64 = 3.0;
-/// Transforms of a field over those of one of normal contact.
+/// Number of transforms of a field, over that of normal contact.
 const TRANSFORMS: f64 = 2.0;
 
-/// `u = K q` on one surface, with the count of what was done.
+/// `u = K q` on one surface, with work counters.
 #[derive(Debug)]
 pub struct TangentialOperators {
     table: Arc<TangentialTable>,
@@ -24,18 +24,18 @@ pub struct TangentialOperators {
     single: Option<VectorConvolution<f32>>,
     shortened: Option<VectorConvolution<f32>>,
     torus: Option<VectorConvolution<f32>>,
-    /// Applications so far, all precisions together; each moves two components.
+    /// Number of applications so far in all precisions; each has two components.
     pub applications: usize,
     /// Linear systems so far.
     pub solves: usize,
 }
 
-/// The kernel in the way that is cheaper for one set.
+/// The kernel in the form that is cheaper for one set.
 #[derive(Debug)]
 pub enum PlannedVector<'a> {
     /// Sum over all pairs.
     Direct(DirectVectorSum<'a>, &'a Recorder),
-    /// Transforms in single precision, with what their time is charged to.
+    /// Transforms in single precision, with the recorder of their time.
     Fft(&'a mut VectorConvolution<f32>, Part, &'a Recorder),
 }
 
@@ -53,7 +53,7 @@ impl InfluenceOperator<f32> for PlannedVector<'_> {
 }
 
 impl TangentialOperators {
-    /// Nothing is planned yet.
+    /// Operators without plans.
     pub fn new(table: Arc<TangentialTable>, tuning: &Tuning, recorder: &Recorder) -> Self {
         Self {
             table,
@@ -68,7 +68,7 @@ impl TangentialOperators {
         }
     }
 
-    /// Forgets all plans, as [`super::Operators::forget_plans`].
+    /// Drops all plans, as [`super::Operators::forget_plans`].
     pub fn forget_plans(&mut self) {
         let fresh = Self::new(Arc::clone(&self.table), &self.tuning, &self.recorder);
         *self = Self { applications: self.applications, solves: self.solves, ..fresh };
@@ -84,12 +84,12 @@ impl TangentialOperators {
         &self.tuning
     }
 
-    /// What time is charged to.
+    /// The recorder of time.
     pub fn recorder(&self) -> &Recorder {
         &self.recorder
     }
 
-    /// Whether the sum over pairs is cheaper than transforms of so many points.
+    /// Whether the sum over pairs is cheaper than transforms of this number of points.
     fn is_direct(&self, sources: usize, targets: usize, lengths: Lengths, share: f64) -> bool {
         let points = lengths.points() as f64;
         let transforms = TRANSFORMS * share * self.tuning.point_ns * points * points.log2();
@@ -150,7 +150,7 @@ impl TangentialOperators {
     }
 }
 
-/// The convolution of `slot` where it serves the window, else a new one.
+/// The convolution of `slot` where it can be used for the window, otherwise a new one.
 fn planned<'a, T: Real>(
     slot: &'a mut Option<VectorConvolution<T>>,
     window: Window,

@@ -1,9 +1,9 @@
-//! Transforms of fields on a window of the grid: of pairs of their rows, and of their columns.
+//! Transforms of fields on a window of the grid, along pairs of their rows and along their columns.
 //!
-//! Two real rows a and b are one complex row `z = a + i b`, whose transform has those of both in it:
-//! `A(k) = (Z(k) + Z*(-k)) / 2` and `B(k) = (Z(k) - Z*(-k)) / 2i`. They are taken apart where the spectra of
-//! rows are stored, and put together where they are read: a complex transform of length n is as fast as a
-//! real one, which is a complex one of half the length and a pass over its result.
+//! Two real rows a and b are one complex row `z = a + i b`, whose transform contains those of both:
+//! `A(k) = (Z(k) + Z*(-k)) / 2` and `B(k) = (Z(k) - Z*(-k)) / 2i`. They are separated when the spectra of
+//! rows are stored, and combined when these are read: a complex transform of length n is as fast as a real
+//! one, which is a complex one of half the length and a pass over its result.
 
 use crate::geometry::{Lengths, Window};
 use crate::real::Real;
@@ -36,7 +36,7 @@ pub struct Transform<T: Real, const N: usize> {
     /// cache line begins).
     spectrum: Vec<Complex<T>>,
     start: usize,
-    /// Which bands of rows were given last.
+    /// The bands of rows that were given last.
     given: Vec<bool>,
     buffers: Vec<Buffers<T>>,
 }
@@ -111,7 +111,7 @@ impl<T: Real, const N: usize> Transform<T, N> {
         self.field
     }
 
-    /// Buffers for as many threads as the transform is worth.
+    /// Buffers for as many threads as the size of the transform justifies.
     fn make_buffers(&mut self) {
         let zero = Complex::default();
         let Lengths { x, y } = self.lengths;
@@ -137,7 +137,7 @@ impl<T: Real, const N: usize> Transform<T, N> {
         length + Self::TOGETHER
     }
 
-    /// Transforms the rows of the fields: `fill` writes row y (given as zeros) where `given` says so.
+    /// Transforms the rows of the fields: `fill` writes row y, which is zero before, for all y with `given`.
     pub fn forward(&mut self, given: impl Fn(usize) -> bool + Sync, fill: impl Fn(usize, &mut [T]) + Sync) {
         self.make_buffers();
         let Self { window: Window { width, .. }, field, row_forward, buffers, .. } = self;
@@ -182,8 +182,8 @@ impl<T: Real, const N: usize> Transform<T, N> {
         });
     }
 
-    /// Changes the spectra: a transform of each column forward and back, between them `act` on the columns of all
-    /// fields at wave kx. Only the bands of rows `wanted` are right afterwards.
+    /// Changes the spectra: a transform of each column forward and back, between them `act` on the columns of
+    /// all fields at wave kx. Only the bands of rows in `wanted` are valid afterwards.
     ///
     /// Cost: O(N lx ly log) with [`Self::forward`] and [`Self::backward`]; rows of zeros are not transformed.
     pub fn change(
@@ -338,7 +338,8 @@ fn take_apart<T: Real>(
     );
 }
 
-/// Writes what `value` makes of each number of one list and of that of another at the same place from its end.
+/// Writes `value` of each number of one list and of the number of another list at the same position from its
+/// end.
 #[expect(clippy::inline_always, reason = "a call would lose the instructions of its caller")]
 #[inline(always)]
 fn from_both<T: Real>(

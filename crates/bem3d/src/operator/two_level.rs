@@ -5,8 +5,8 @@
 //! even polynomial in r (multi-level summation; Brandt and Lubrecht, J. Comput. Phys. 90, 348 (1990); Hardy
 //! et al., J. Chem. Theory Comput. 11, 766 (2015)). S is interpolated from a lattice of a few cells' spacing,
 //! where an FFT of that much smaller size sums it; the rest is exact for each close pair. The cost follows
-//! the number of cells and of close pairs; the window counts only by its lattice. It is made for square cells
-//! and the free kernel.
+//! the number of cells and of close pairs; the window matters only by the size of its lattice. It is made for
+//! square cells and the free kernel.
 
 use super::fft::FftConvolution;
 use super::influence::InfluenceOperator;
@@ -34,8 +34,8 @@ impl Split {
         self.spacing * self.reach
     }
 
-    /// Error over the largest displacement with six points, rather too large: 1e-4 at a reach of six spacings,
-    /// 4e-6 at twelve.
+    /// Upper estimate of the error over the largest displacement with six points: 1e-4 at a reach of six
+    /// spacings, 4e-6 at twelve.
     pub fn error(self) -> f64 {
         (self.reach as f64).powi(-5)
     }
@@ -55,7 +55,7 @@ impl Split {
         Lengths::reaching(window, self.radius())
     }
 
-    /// Interpolation weights of a cell that lies so many cells behind a node.
+    /// Interpolation weights of a cell at this number of cells behind a node.
     pub fn weights(self, cell: usize) -> Vec<f64> {
         lagrange(cell as f64 / self.spacing as f64, self.order)
     }
@@ -67,7 +67,7 @@ impl Split {
         Symbol::of_kernel(Lengths::free(lattice), far)
     }
 
-    /// What the smooth kernel leaves at a lag: nothing from the radius on.
+    /// The near part of the kernel at a lag, `I - S`: 0 from the radius on.
     pub fn near(self, x: usize, y: usize) -> f64 {
         let (r, radius) = (distance(x, y), self.radius() as f64);
         if r < radius { influence(x, y) - smooth(r, radius) } else { 0.0 }
@@ -198,7 +198,7 @@ impl TwoLevel {
 }
 
 impl<T: Real> InfluenceOperator<T> for TwoLevel {
-    /// Up to the error of the interpolation, between sets inside the window.
+    /// The result is exact up to the error of the interpolation. Both sets have to lie inside the window.
     ///
     /// Cost: order^2 for each cell, one for each close pair, and the transform of the lattice.
     fn apply(&mut self, sources: &CellSet, p: &[T], targets: &CellSet, u: &mut [T]) {

@@ -1,11 +1,11 @@
 //! Two transforms for dense sets: the smooth far field on a coarse lattice, the near field on the window.
 //!
-//! The kernel is split as in [`super::two_level`]. What is left of it near by ends at the radius R, so that
-//! its convolution needs a torus of n + R - 1 cells instead of the 2 (n - 1) of the whole kernel. That is a
-//! quarter of the points, but of the whole one half of the rows are empty, and interpolation takes its
-//! part: an application takes 0.7 to 0.8 of the time (N = 512 to 2048, all cells, one thread of an EPYC,
-//! 2026-11). Interpolation is separable; along rows it is done where they are read and written anyway. In
-//! single precision, for square cells and the free kernel.
+//! The kernel is split as in [`super::two_level`]. The near part ends at the radius R, so that its
+//! convolution needs a torus of n + R - 1 cells along a side instead of the 2 (n - 1) of the whole kernel.
+//! That is about a quarter of the points. Since half of the rows of the whole transform are empty, and
+//! interpolation takes time as well, an application takes 0.7 to 0.8 of the time (N = 512 to 2048, all cells,
+//! one thread of an EPYC, 2026-11). Interpolation is separable; along rows it is done where they are read and
+//! written anyway. In single precision, for square cells and the free kernel.
 
 use super::fft::{FftConvolution, Rounded};
 use super::influence::InfluenceOperator;
@@ -134,7 +134,7 @@ impl TwoTransforms {
         );
     }
 
-    /// The near field, and what the far field adds.
+    /// The near field, to which the far field is added.
     fn convolve_near(&mut self, sources: &CellSet, p: &[f32], targets: &CellSet, u: &mut [f32]) {
         let Self { window, lattice, interpolation, near, potential, .. } = self;
         let Window { x: x0, y: y0, width, .. } = *window;
@@ -175,7 +175,7 @@ impl TwoTransforms {
 }
 
 impl InfluenceOperator<f32> for TwoTransforms {
-    /// Up to the error of the interpolation, between sets inside the window.
+    /// The result is exact up to the error of the interpolation. Both sets have to lie inside the window.
     ///
     /// Cost: a transform of little more than the window and one of the lattice, and `2 order (1 + 1 /
     /// spacing)` multiplications for each cell of the window.
@@ -314,7 +314,7 @@ mod tests {
         exact.iter().zip(&fast).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / largest
     }
 
-    /// A set full of holes, a pressure as smooth as the grid allows and one without any order.
+    /// A set with many holes, a smooth pressure and a random one.
     fn pressures(grid: Grid) -> (CellSet, [Vec<f64>; 2]) {
         let set = CellSet::numbered(grid, |i| i * i % 7 < 3);
         let wave = |(x, y): (usize, usize)| 2.0 + (x as f64 / 9.0).sin() * (y as f64 / 14.0).cos();

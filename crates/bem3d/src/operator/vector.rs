@@ -11,8 +11,9 @@ use std::sync::Arc;
 
 /// A planned convolution on a window. Values on a set of n cells are n components along x, then n along y.
 ///
-/// An application takes two transforms forward and two back. The entry of the kernel across is odd in both lags, so that its
-/// transform is real, too, and changes its sign with that of a wave: a quarter of the symbol is kept of each entry.
+/// An application takes two transforms forward and two back. The off-diagonal entry of the kernel is odd in
+/// both lags, so that its transform is also real and changes its sign with that of a wave: a quarter of the
+/// symbol is stored for each entry.
 pub struct VectorConvolution<T: Real> {
     transform: Transform<T, 2>,
     /// Entries `[xx, yy, xy]` of the symbol divided by the number of points.
@@ -46,7 +47,7 @@ impl<T: Real> VectorConvolution<T> {
         bands.take(count)
     }
 
-    /// Transforms both components: `fill` writes row y of each (given as zeros) where `given` says so.
+    /// Transforms both components: `fill` writes row y of each, which is zero before, for all y with `given`.
     pub fn forward(
         &mut self,
         given: impl Fn(usize) -> bool + Sync,
@@ -59,7 +60,7 @@ impl<T: Real> VectorConvolution<T> {
         );
     }
 
-    /// Multiplies the spectra by the symbol. Only the bands of rows `wanted` are right afterwards.
+    /// Multiplies the spectra by the symbol. Only the bands of rows in `wanted` are valid afterwards.
     pub fn multiply(&mut self, wanted: impl Fn(usize) -> bool) {
         let (rows, height) = (self.transform.rows(), self.window().height);
         let (symbol, half) = (&self.symbol, self.transform.lengths().y / 2 + 1);

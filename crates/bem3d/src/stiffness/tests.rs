@@ -1,4 +1,4 @@
-//! Values beside the literature and a factor, and the error that a stiffness states, part by part, in every
+//! Stiffnesses compared with the literature and with a factor, and the parts of their stated error, in every
 //! recipe.
 
 use super::*;
@@ -33,7 +33,7 @@ fn preconditioned() -> [Tuning; 2] {
     [pairs, transforms]
 }
 
-/// On the whole contact.
+/// The stiffness of the whole contact.
 fn solve(
     problem: &mut Problem,
     state: &Solved,

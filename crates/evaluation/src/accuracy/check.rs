@@ -12,10 +12,11 @@ use contact_model::never;
 use runs::{JobList, Progress, Result, Threads, collect, run_stored, write_csv};
 use std::path::Path;
 
-/// Share of the true errors that a budget is to hold, and the level of the exact binomial test of it.
+/// Share of the true errors that budgets should contain, and the level of the exact binomial test of it.
 const COVERED: f64 = 0.95;
 const LEVEL: f64 = 0.01;
-/// Smallest median of error over budget: below, budgets are too wide to be of use. Normal errors have 0.34.
+/// Smallest median of error over budget: below it, budgets are too wide to be useful. For normally
+/// distributed errors it is 0.34.
 const SHARP: f64 = 0.2;
 
 /// One range of loads at one fractal dimension.
@@ -34,7 +35,7 @@ pub struct Stratum {
 }
 
 impl Stratum {
-    /// The range and its hits in words.
+    /// The range and the number of errors inside, in words.
     fn words(&self) -> String {
         let ((low, high), d) = (self.loads, self.fractal_dimension);
         format!("D_f {d:?}, F_bar {low:?} to {high:?}: {} of {}", self.inside, self.cases)
@@ -46,7 +47,7 @@ impl Stratum {
     }
 }
 
-/// What the check found.
+/// The result of the check.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Coverage {
     /// Cases.
@@ -97,19 +98,19 @@ impl std::fmt::Display for Coverage {
 }
 
 /// Draws random (surface, load, grid, tolerance), predicts the error of k as the figures do, compares with
-/// the same surface on cells four times smaller at 1e-10, and writes `budget-check.csv`. The cases go round
-/// the strata: 720 are 40 in each.
+/// the same surface solved to 1e-10 on cells four times smaller, and writes `budget-check.csv`. The cases are
+/// distributed evenly over the strata, so that 720 cases are 40 in each.
 ///
 /// Cases on the one-cell floor (fewer than 10 contact cells on some surface) are drawn again, as the figures
-/// mark such rows. The truth is itself on a finite grid: with errors of first order it is known to a quarter
-/// of them.
+/// mark such rows. The reference is itself computed on a finite grid: with errors of first order, its own
+/// error is a quarter of them.
 ///
 /// Cases that are stored in the directory are not solved again, and a larger number of cases begins with the
 /// same ones.
 ///
 /// # Errors
-/// [`runs::Error::Parameter`] for fewer cases than strata, no thread, or a directory that another process works in; what
-/// the solver refuses; files that cannot be written.
+/// [`runs::Error::Parameter`] for fewer cases than strata, no thread, or a directory that another process
+/// works in; errors of the solver; files that cannot be written.
 pub fn budget_check(
     cases: usize,
     seed: u64,
@@ -133,7 +134,7 @@ pub fn budget_check(
     Ok((session.close(outcome)?, coverage))
 }
 
-/// What [`budget_check`] solves, case by case.
+/// The cases of [`budget_check`] as jobs.
 ///
 /// # Errors
 /// [`runs::Error::Parameter`] for fewer cases than strata.

@@ -1,4 +1,4 @@
-//! How much the study solves: presets, and the ways that follow from their sizes.
+//! Presets for the size of the study, and the methods that follow from their sizes.
 
 use super::row::Way;
 use super::sizes::StudySizes;

@@ -1,4 +1,4 @@
-//! One problem solved in every way: references, errors and their parts.
+//! Solves one problem with every method, and finds references, errors and their parts.
 
 use super::limit::{Limit, limit};
 use super::pressure;
@@ -12,7 +12,7 @@ use contact_model::{ContactModel, Stop};
 use mdr1d::Mdr1d;
 use runs::Result;
 
-/// One problem in every way; asks `stop` between the ways.
+/// Solves one problem with every method; polls `stop` between the methods.
 pub(crate) fn solve_problem(
     problem: &StudyProblem,
     sizes: &StudySizes,
@@ -37,7 +37,7 @@ pub(crate) fn solve_problem(
     Ok((rows, orders))
 }
 
-/// Lines and closed forms for the bodies whose answer is known; rough surfaces have theirs as means.
+/// Lines and closed forms for the bodies with a known solution; for rough surfaces these are means.
 fn others(problem: &StudyProblem, sizes: &StudySizes) -> Result<Vec<StudyRow>> {
     let exact = problem.exact();
     if exact[0].is_none() {
@@ -112,7 +112,7 @@ fn compare(problem: &StudyProblem, sizes: &StudySizes, rows: &mut [StudyRow], or
         let answer = &row.answer;
         let mut errors = [None; 4];
         for (q, limit) in limits.iter().enumerate() {
-            // Never nearer than the reference itself is known.
+            // The error is never smaller than the uncertainty of the reference.
             errors[q] = limit.zip(of(answer, q)).map(|(l, v)| l.distance(v).max(l.relative()));
         }
         errors[3] = tight.last().and_then(|finest| pressure_error(problem, answer, finest));
@@ -132,7 +132,7 @@ fn compare(problem: &StudyProblem, sizes: &StudySizes, rows: &mut [StudyRow], or
     }
 }
 
-/// The answer on a grid at a tolerance.
+/// The result on a grid at a tolerance.
 fn on(rows: &[StudyRow], n: usize, t: f64) -> Option<&Answer> {
     let same = |r: &&StudyRow| {
         matches!(r.way, Way::Solid { cells, tolerance, method: Method::Auto }

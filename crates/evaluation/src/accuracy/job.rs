@@ -1,4 +1,4 @@
-//! One part of the study, as a job that is stored: a problem in every way, or an ensemble under all loads.
+//! One part of the study, as a stored job: a problem with every method, or an ensemble under all loads.
 
 use super::depth::Depth;
 use super::every_way::solve_problem;
@@ -12,13 +12,13 @@ use runs::{Error, Job, JobList, Result, ResultKind};
 use serde::{Deserialize, Serialize};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Number of the format of stored parts. Raise it when [`StudyPart`] changes, or how limits, errors and
-/// references come about, or the closed forms.
+/// Number of the format of stored parts. Raise it when [`StudyPart`] changes, or the computation of limits,
+/// errors and references, or the closed forms.
 const STORED: u32 = 2;
 
-/// Predicted processor milliseconds of one load on one grid, solved from nothing: the problems of
-/// `data/accuracy` took between 0.4 and 1.3 of it, cases of the check that are not drawn again between 0.8
-/// and 2.2.
+/// Predicted processor milliseconds of one load on one grid from a cold start. The problems of
+/// `data/accuracy` took between 0.4 and 1.3 times this, cases of the check that are not drawn again between
+/// 0.8 and 2.2 times.
 pub(super) fn cold_cost(discretisation: Discretisation, force_bar: f64) -> u64 {
     // Without a load before it, a rough surface takes as long as a smooth one: about what the prediction for
     // sweeps says in the middle of the fractal dimensions.
@@ -27,25 +27,25 @@ pub(super) fn cold_cost(discretisation: Discretisation, force_bar: f64) -> u64 {
     RealisationJob { discretisation, fractal_dimension, index: 0, seed: 0, forces, models }.cost()
 }
 
-/// What is solved together.
+/// A task, which is solved as a whole.
 #[derive(Debug, Clone)]
 enum StudyTask {
-    /// One problem, in every way.
+    /// One problem, with every method.
     Problem(Box<StudyProblem>),
     /// One ensemble of this fractal dimension.
     Ensemble(f64, Discretisation),
-    /// What closed forms say of the means of this fractal dimension.
+    /// The closed forms for the means of this fractal dimension.
     ClosedForms(f64),
 }
 
-/// What a task gave.
+/// The result of a task.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) enum StudyPart {
-    /// Of a problem; the rows are without their pressures.
+    /// The result of a problem; the rows have no pressures.
     Problem(Vec<StudyRow>, Vec<Order>),
-    /// Of an ensemble.
+    /// The result of an ensemble.
     Ensemble(EnsembleMeans),
-    /// Of closed forms.
+    /// The results of closed forms.
     ClosedForms(Vec<ClosedForm>),
 }
 
@@ -57,8 +57,8 @@ pub(super) struct StudyJob {
     task: StudyTask,
 }
 
-/// Everything that a study solves: first the problems, then the ensembles of each fractal dimension, then the
-/// closed forms of each.
+/// All tasks of a study: first the problems, then the ensembles of each fractal dimension, then the closed
+/// forms of each.
 pub(super) fn jobs(sizes: &StudySizes, seed: u64) -> Result<Vec<StudyJob>> {
     let problems = StudyProblem::all(sizes.grids[0])?.into_iter().map(|p| StudyTask::Problem(Box::new(p)));
     let of = |d| discretisations(sizes).into_iter().map(move |n| StudyTask::Ensemble(d, n));
@@ -69,7 +69,7 @@ pub(super) fn jobs(sizes: &StudySizes, seed: u64) -> Result<Vec<StudyJob>> {
     Ok(problems.chain(ensembles).chain(forms).map(job).collect())
 }
 
-/// What [`super::accuracy_cost`] solves: one job for each problem, each ensemble, and the closed forms of
+/// The jobs of [`super::accuracy_cost`]: one job for each problem, each ensemble, and the closed forms of
 /// each fractal dimension.
 ///
 /// A job measures on one thread, and no two jobs of a process measure at the same time, whatever the threads.
@@ -77,7 +77,7 @@ pub(super) fn jobs(sizes: &StudySizes, seed: u64) -> Result<Vec<StudyJob>> {
 /// one kind with nothing else to do.
 ///
 /// # Errors
-/// None that a depth can cause; [`Error::Model`] where a surface cannot be made.
+/// [`Error::Model`] where a surface cannot be generated, which no depth causes.
 pub fn accuracy_cost_jobs(depth: Depth, seed: u64) -> Result<Box<dyn JobList>> {
     Ok(Box::new(jobs(&depth.sizes(), seed)?))
 }
@@ -87,7 +87,7 @@ impl StudyJob {
         matches!(self.task, StudyTask::Problem(_))
     }
 
-    /// Every way in which a problem may be solved.
+    /// Every method with which a problem may be solved.
     fn ways(&self) -> Vec<Way> {
         let mut ways = self.sizes.solids();
         ways.extend([Way::Line { elements: self.sizes.elements[0] }, Way::Formula(Formula::Hertz)]);
@@ -235,7 +235,7 @@ mod tests {
         ensembles: &[17],
     };
 
-    /// Of a sphere, a band and a spectrum, of ensembles of surfaces and lines, and of closed forms.
+    /// Jobs of a sphere, a band and a spectrum, of ensembles of surfaces and lines, and of closed forms.
     fn some() -> Vec<StudyJob> {
         let all = jobs(&SIZES, 1).unwrap();
         assert_eq!((all.len(), all.partition_point(StudyJob::is_problem)), (26 + 3 * 3, 26));

@@ -1,21 +1,21 @@
-//! The limit of a sequence of grids: where the observed order is established, the extrapolated value, and how
-//! certain it is.
+//! The limit of a sequence of grids with its uncertainty; it is extrapolated where the order of convergence
+//! is established.
 
 use serde::{Deserialize, Serialize};
 
-/// Orders that are looked for: the square root of a cell (slower is no order that five grids can show) to the
-/// fourth power.
+/// Range of the orders that are searched, from 1/2 (slower convergence cannot be established with five grids)
+/// to 4.
 const ORDERS: (f64, f64) = (0.5, 4.0);
 /// Step of the search.
 const STEP: f64 = 0.02;
-/// What is extrapolated is at most so much of the finest value: a number that vanishes in the limit has no
-/// relative error.
+/// Largest extrapolation, as a share of the finest value: a number that vanishes in the limit has no relative
+/// error.
 const REACH: f64 = 0.5;
-/// A sequence follows its order when the residual of the fit is at most so much of the error of its finest
+/// A sequence follows its order when the residual of the fit is at most this share of the error of its finest
 /// grid.
 const FOLLOWS: f64 = 0.25;
 
-/// Where a sequence goes.
+/// The limit of a sequence.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Limit {
     /// The extrapolated value, or that of the finest grid where no order is established.
@@ -23,12 +23,12 @@ pub(crate) struct Limit {
     /// How far the limit may be from `value`: half of what was extrapolated and the residual of the fit;
     /// without an order the largest distance from the finest grid to the two before it.
     pub uncertainty: f64,
-    /// Order in the cell, where established.
+    /// Order of convergence in the cell size, where established.
     pub order: Option<f64>,
 }
 
 impl Limit {
-    /// Known without any sequence.
+    /// A limit that is known exactly.
     pub fn exact(value: f64) -> Self {
         Self { value, uncertainty: 0.0, order: None }
     }

@@ -1,4 +1,4 @@
-//! Means over ensembles: how far surfaces scatter, and what lines and closed forms are worth as an answer for
+//! Means over ensembles: the scatter of surfaces, and the errors of lines and closed forms as estimates of
 //! the mean.
 
 use super::limit::limit;
@@ -36,7 +36,7 @@ pub(crate) fn discretisations(sizes: &StudySizes) -> Vec<Discretisation> {
     solids.chain(lines).collect()
 }
 
-/// What a closed form says of a mean.
+/// The value of a closed form for a mean.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct ClosedForm {
     /// Number of the load.
@@ -74,7 +74,7 @@ pub(crate) fn job(
     RealisationJob { discretisation, fractal_dimension: d, index, seed, forces: Arc::from(LOADS), models }
 }
 
-/// Solves an ensemble; asks `stop` between the surfaces.
+/// Solves an ensemble; polls `stop` between the surfaces.
 pub(crate) fn ensemble(
     discretisation: Discretisation,
     d: f64,
@@ -164,7 +164,8 @@ fn at_load(
     rows
 }
 
-/// Eq. 12 where it is claimed to hold, and the plateau of the rigid square under the largest load.
+/// Eq. 12 in the range in which the paper claims it, and the plateau of the rigid square under the largest
+/// load.
 pub(crate) fn closed_forms(d: f64, stop: Stop<'_>) -> Result<Vec<ClosedForm>> {
     let surface = SelfAffine::new(d, 1.0, 1.0).map_err(Error::model("Eq. 12"))?;
     let scene = Scene::new(Surface::SelfAffine(surface), 1.0);

@@ -1,9 +1,9 @@
-//! What accuracy costs in time, and which part of an error dominates.
+//! The computing time that accuracy costs, and the dominant part of the error.
 //!
-//! [`accuracy_cost`] solves bodies with a known answer and self-affine surfaces in every way that this project has, and says how far
-//! each answer is off and what it took. References are exact answers, or the limit of fine grids at the
-//! tightest tolerance, extrapolated where the observed order is established; each comes with its uncertainty,
-//! and no error is reported below it.
+//! [`accuracy_cost`] solves bodies with a known solution and self-affine surfaces with every method of this
+//! project, and reports the error and the cost of each. References are exact answers, or the limit of fine
+//! grids at the tightest tolerance, extrapolated where the observed order is established; each comes with its
+//! uncertainty, and no error is reported below it.
 
 mod check;
 mod depth;
@@ -39,14 +39,14 @@ use std::path::{Path, PathBuf};
 const NAME: &str = "accuracy-cost";
 
 /// Runs the study and writes `accuracy-cost.csv`, `accuracy-order.csv`, `accuracy-cost.svg`,
-/// `accuracy-cost.png` (drawn from the CSV) and `accuracy-cost.md` into a directory. What is stored there is
-/// not solved again, and keeps the times of the machine that solved it.
+/// `accuracy-cost.png` (drawn from the CSV) and `accuracy-cost.md` into a directory. Results stored there are
+/// not solved again and keep the times of the machine that solved them.
 ///
-/// It runs on one thread, so that processor seconds are those of each row; they, the memory and which rows
-/// are on the Pareto front are all that differs between machines.
+/// It runs on one thread, so that each row has its own processor seconds. Only these, the memory and the rows
+/// on the Pareto front differ between machines.
 ///
 /// # Errors
-/// What a solver refuses, a directory that another process works in, and files that cannot be written.
+/// Errors of a solver, a directory that another process works in, and files that cannot be written.
 pub fn accuracy_cost(
     depth: Depth,
     seed: u64,
@@ -112,7 +112,7 @@ mod tests {
     use runs::{CsvFile, JobList as _, Silent, Store};
     use std::sync::atomic::{AtomicUsize, Ordering};
 
-    /// A quarter of the finest quick grid: a second of work.
+    /// A quarter of the finest quick grid, which takes a second.
     const TINY: StudySizes = StudySizes {
         grids: &[17, 33, 65],
         between: &[25, 49],
@@ -158,7 +158,7 @@ mod tests {
         assert!(text.contains("## Which part dominates") && !text.contains("NaN") && !text.contains("inf"));
     }
 
-    /// Less still.
+    /// An even smaller study.
     const SMALL: StudySizes = StudySizes {
         grids: &[17, 33],
         between: &[25],

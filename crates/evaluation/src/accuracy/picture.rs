@@ -11,10 +11,10 @@ use std::path::{Path, PathBuf};
 const SHORTEST: f64 = 1e-5;
 /// Smallest error shown: the references are not better.
 const SMALLEST: f64 = 1e-4;
-/// What one may want to know k to.
+/// Typical accuracy targets for k.
 pub(crate) const TARGETS: [f64; 3] = [0.1, 0.01, 0.001];
 
-/// A row of the table as picture and text see it.
+/// A row of the table, with the columns that picture and text use.
 #[derive(Debug, Clone, Deserialize)]
 pub(crate) struct AccuracyPoint {
     pub family: String,
@@ -51,7 +51,7 @@ pub(crate) fn read(csv: &Path) -> Result<Vec<AccuracyPoint>> {
     read_rows(csv, &CsvFile::read(csv)?)
 }
 
-/// Different values, increasing.
+/// The distinct values, increasing.
 pub(crate) fn values(points: &[AccuracyPoint], of: impl Fn(&AccuracyPoint) -> Option<f64>) -> Vec<f64> {
     distinct(points.iter().filter_map(of))
 }
@@ -79,7 +79,7 @@ pub(crate) fn draw(csv: &Path, out: &Path, name: &str) -> Result<Vec<PathBuf>> {
     Ok(Panels { pictures, columns: 2, title, legend: legend(&points, &dimensions) }.save(out, name)?)
 }
 
-/// One pair of axes for all panels, no longer than the points.
+/// One pair of axes for all panels, as long as the points need.
 fn axes(points: &[AccuracyPoint]) -> (Axis, Axis) {
     let shown = || points.iter().filter(|p| is_front(p) || p.family == "mean");
     let (_, slow) = extent(shown().filter_map(|p| p.seconds)).unwrap_or((0.0, 1.0));
@@ -87,7 +87,7 @@ fn axes(points: &[AccuracyPoint]) -> (Axis, Axis) {
     (Axis::Log(SHORTEST, 2.0 * slow.max(1e-2)), Axis::Log(SMALLEST, (2.0 * bad).clamp(0.2, 1.0)))
 }
 
-/// Solves of boundary elements that no other beats in both error and time.
+/// Whether it is a solve of boundary elements that no other one beats in both error and time.
 fn is_front(p: &AccuracyPoint) -> bool {
     p.pareto && p.model == "bem3d" && (p.family == "band" || p.family == "spectrum")
 }

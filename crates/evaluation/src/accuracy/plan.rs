@@ -1,7 +1,7 @@
-//! From an accuracy target to settings: pilots on finer and finer grids, and as many surfaces as their
-//! scatter asks for.
+//! Chooses settings for an accuracy target: pilot solves on finer and finer grids give the discretisation
+//! error, and their scatter the number of surfaces.
 //!
-//! The choice rests on counts and on predicted costs, never on a clock: the same target gives the same
+//! The choice depends on counts and predicted costs, not on measured times: the same target gives the same
 //! settings.
 
 use crate::budget::{self, Budgeted};
@@ -13,7 +13,7 @@ use analysis::{AccuracyTarget, GridTrial, first_grid};
 use runs::amounts::duration;
 use runs::{Error, Job as _, Progress, Result, Store, files};
 
-/// Surfaces and lines of a pilot: their scatter is itself known to a fifth, and to a tenth.
+/// Numbers of surfaces and of lines of a pilot: their scatter is known to a fifth and to a tenth.
 const PILOT_SURFACES: usize = 16;
 const PILOT_LINES: usize = 64;
 /// Grids and lines to choose from.
@@ -23,10 +23,10 @@ const LINES: [usize; 6] = [1 << 12, 1 << 14, 1 << 16, 1 << 18, 1 << 20, 1 << 22]
 const POWERS: (f64, f64) = (2.2, 1.1);
 /// Most surfaces that are planned for.
 const MOST_SURFACES: f64 = *crate::limits::COUNT.end() as f64;
-/// More surfaces than the scatter found asks for, by this factor.
+/// Factor on the number of surfaces that the observed scatter requires.
 const MORE: f64 = 1.1;
 
-/// Settings that should meet a target.
+/// Settings that are predicted to meet a target.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AccuracyPlan {
     /// The run with its settings.
@@ -37,16 +37,17 @@ pub struct AccuracyPlan {
     pub lines: Vec<String>,
 }
 
-/// The settings that meet a target (the 95 % half-width of each mean k_bar above the floor), after pilots
-/// that are stored with the run: it solves nothing of them again.
+/// The settings that meet a target (the 95 % half-width of each mean k_bar above the floor), found by pilot
+/// solves, which are stored with the run and not solved again.
 ///
-/// On each grid a pilot solves 16 surfaces (64 lines) under all loads, with the coarser grids that say what
-/// the grid leaves. The first grid that leaves less than the target is taken, with as many surfaces as the
-/// pilot's scatter asks for.
+/// On each grid a pilot solves 16 surfaces (64 lines) under all loads, together with coarser grids, which
+/// give the discretisation error. The first grid whose discretisation error is below the target is chosen,
+/// with the number of surfaces that the scatter of the pilot requires.
 ///
 /// # Errors
-/// [`Error::Parameter`] for sizes or a tolerance that were given beside the target, and for an accuracy outside (0, 1), a budget that is not
-/// positive, or a target beyond the budget, with what the last grid leaves; what the pilot's solves refuse.
+/// [`Error::Parameter`] for sizes or a tolerance that were given beside the target, and for an accuracy
+/// outside (0, 1), a budget that is not positive, or a target beyond the budget, with the error of the last
+/// grid; errors of the pilot's solves.
 pub fn plan(
     request: &Request,
     models: &[Model],
@@ -61,7 +62,7 @@ pub fn plan(
         ("tolerance", request.tolerance.map(|t| format!("{t:?}"))),
     ];
     for (name, value) in given {
-        let expected = "nothing beside an accuracy target, which chooses it";
+        let expected = "no value together with an accuracy target, which chooses it";
         require(value.is_none(), name, value.unwrap_or_default(), expected)?;
     }
     let AccuracyTarget { share, seconds } = target;
@@ -79,13 +80,13 @@ pub fn plan(
     Ok(plan)
 }
 
-/// Solves what a plan chose and adds surfaces until the target is met, as far as the budget goes: the pilot
-/// predicts, the run decides.
+/// Solves what a plan chose and adds surfaces until the target is met, as far as the budget allows: the pilot
+/// only predicts this number.
 ///
-/// The results are stored with the run, so that the figure itself solves nothing again.
+/// The results are stored with the run, so that the figure does not solve them again.
 ///
 /// # Errors
-/// What the solver refuses.
+/// Errors of the solver.
 pub fn settle(
     mut plan: AccuracyPlan,
     models: &[Model],
@@ -110,8 +111,9 @@ pub fn settle(
     Ok(plan)
 }
 
-/// Surfaces that bring every mean above the floor within a target, a tenth more than the scatter found asks
-/// for; no more than there are where all are within, or where the rest is not a matter of their number.
+/// The number of surfaces with which every mean above the floor meets a target, a tenth more than the
+/// observed scatter requires. It is the present number where all means meet the target, or where more
+/// surfaces would not help.
 fn surfaces_wanted(all: &[Budgeted], target: f64, count: usize) -> f64 {
     let factors = above_floor(all).filter(|b| b.relative().is_some_and(|r| r > target)).map(|b| {
         let (grid, ensemble) = (b.budget.discretisation.unwrap_or(0.0), b.budget.ensemble.unwrap_or(0.0));
@@ -127,13 +129,13 @@ fn above_floor(all: &[Budgeted]) -> impl Iterator<Item = &Budgeted> {
     all.iter().filter(|b| b.force_bar.is_some() && !b.below_floor)
 }
 
-/// What a pilot on one grid says.
+/// The result of a pilot on one grid.
 #[derive(Debug, Clone, Copy)]
 struct Pilot {
-    /// Surfaces that its scatter asks for.
+    /// Number of surfaces that its scatter requires.
     surfaces: f64,
-    /// D_f and F_bar of the mean of which grid and tolerance leave most; `None` where coarser grids say
-    /// nothing of any.
+    /// D_f and F_bar of the mean with the largest error of grid and tolerance; `None` where coarser grids
+    /// give no estimate.
     worst: Option<(f64, f64)>,
 }
 
@@ -199,7 +201,7 @@ fn seconds(model: Model, run: &Run) -> f64 {
     jobs.iter().map(|job| 1e-3 * job.cost() as f64).sum::<f64>() / run.threads.max(1) as f64
 }
 
-/// Those of one surface more.
+/// Predicted seconds of one more surface.
 fn seconds_of_one(model: Model, run: &Run) -> f64 {
     let size = run.ensemble(model).0.size();
     let [one, none] = [1, 0].map(|more| run.with_sizes(model, size, COARSER_SURFACES + more));

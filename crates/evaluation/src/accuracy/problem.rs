@@ -1,4 +1,4 @@
-//! What is solved in every way: bodies with an exact answer and rough surfaces under four loads.
+//! The problems of the study: bodies with an exact solution and rough surfaces under four loads.
 
 use analytic::flat_punch::SQUARE_STIFFNESS;
 use contact_model::{Amplitude, Line, Load, Scene, SelfAffine, Surface, line_length};
@@ -25,16 +25,16 @@ pub(crate) const DIMENSIONS: [f64; 3] = [2.0, 2.4, 2.8];
 /// Groups of problems that share a meaning of "error".
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) enum Family {
-    /// Hertz's sphere: every number is known.
+    /// Hertz's sphere, for which every quantity is known.
     Sphere,
     /// The rigid square punch.
     Square,
-    /// One surface whose waves all grids resolve, sampled ever finer: what is found is the discretisation.
+    /// One surface whose waves are resolved by all grids: finer grids change the discretisation error only.
     Band,
-    /// Waves to the end of each grid at a fixed constant of the spectrum: what finer grids add is the
-    /// truncation.
+    /// Waves down to the cell of each grid, with a fixed constant of the spectrum: finer grids add waves, and
+    /// so reduce the truncation error.
     Spectrum,
-    /// The mean of an ensemble, each surface counted in its own rms height as in Figs. 2 and 6.
+    /// The mean of an ensemble, with each surface normalised by its own rms height as in Figs. 2 and 6.
     Mean,
 }
 
@@ -50,7 +50,7 @@ impl Family {
     }
 }
 
-/// Which problem a row is about.
+/// The problem to which a row belongs.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub(crate) struct ProblemKey {
     pub family: Family,
@@ -117,7 +117,7 @@ impl StudyProblem {
         Self { key: ProblemKey::body(Family::Square), scene, load: Load::Force(1.0) }
     }
 
-    /// Stiffness, approach and area as formulas say: `a = RADIUS`, `d = a^2 / R`, `k = 2 E* a`; `d = F/k` of
+    /// Stiffness, approach and area from formulas: `a = RADIUS`, `d = a^2 / R`, `k = 2 E* a`; `d = F/k` of
     /// the punch.
     pub fn exact(&self) -> [Option<f64>; 3] {
         match self.key.family {
@@ -137,8 +137,8 @@ impl StudyProblem {
         Some((0..cells * cells).map(|i| pressure(at(i % cells), at(i / cells))).collect())
     }
 
-    /// The scene of the one-dimensional model where it is another one: a flat line of the length that stands
-    /// for the square.
+    /// The scene of the one-dimensional model where it differs: a flat line of the length that replaces the
+    /// square.
     pub fn line(&self, elements: usize) -> Result<Scene> {
         let mut scene = self.scene.clone();
         scene.outputs.pressure = false;

@@ -1,4 +1,4 @@
-//! A random case of the check of error budgets: what is drawn, its budget and its truth.
+//! A random case of the check of error budgets: its parameters, its budget and its reference.
 
 use super::job::cold_cost;
 use crate::budget::algebraic;
@@ -18,17 +18,17 @@ use surface_gen::surface_seed;
 const STORED: u32 = 2;
 /// Tolerance of the references.
 pub(super) const REFERENCE: f64 = 1e-10;
-/// The reference grid has cells so many times smaller.
+/// Ratio of the cell sizes of the grid and of the reference grid.
 pub(super) const FINER: usize = 4;
 /// Grids and tolerances that are drawn from.
 const CELLS: [usize; 5] = [65, 97, 129, 193, 257];
 const TOLERANCES: (f64, f64) = (1e-6, 1e-1);
-/// Ranges of loads; each with each of the paper's fractal dimensions is a stratum, and the cases go round
-/// them.
+/// Ranges of loads. Each range with each of the paper's fractal dimensions is a stratum, and the cases are
+/// distributed evenly over the strata.
 const LOADS: [(f64, f64); 3] = [(1e-3, 0.086), (0.086, 2.0), (2.0, 20.0)];
 pub(super) const STRATA: usize = LOADS.len() * FRACTAL_DIMENSIONS.len();
 
-/// One case with its truth.
+/// One case with its reference.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct RandomCase {
     pub fractal_dimension: f64,
@@ -71,7 +71,7 @@ pub(super) fn stratum(number: usize) -> (f64, (f64, f64)) {
 pub(super) struct CaseJob {
     /// Master seed.
     pub seed: u64,
-    /// Number of the case, which says its stratum.
+    /// Number of the case, which determines its stratum.
     pub number: u64,
 }
 
@@ -146,8 +146,8 @@ fn draw(seed: u64, number: u64, attempt: u64) -> (usize, f64, f64) {
     (pick(u(1), &CELLS), logarithmic(u(2), loads), logarithmic(u(3), TOLERANCES))
 }
 
-/// Seed of the surface of a case. Those that its budget comes from follow from it: others for each case, so
-/// that the cases are independent.
+/// Seed of the surface of a case. The seeds of the surfaces for its budget follow from it and differ between
+/// cases, so that the cases are independent.
 fn surface(seed: u64, number: u64) -> u64 {
     surface_seed(seed ^ 0xca5e, 1 + number)
 }

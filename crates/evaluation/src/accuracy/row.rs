@@ -1,4 +1,4 @@
-//! One way to answer one problem: what it gave, what it cost, how far off it is.
+//! One solution of one problem by one method: its result, cost and errors.
 
 use super::problem::ProblemKey;
 use crate::realisation::Discretisation;
@@ -27,7 +27,7 @@ impl Formula {
     }
 }
 
-/// How an answer is found.
+/// The method of a solution.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub(crate) enum Way {
     /// Boundary elements.
@@ -53,7 +53,7 @@ enum StoredMethod {
 }
 
 impl Way {
-    /// That of the surfaces of an ensemble.
+    /// The method for the surfaces of an ensemble.
     pub fn of(discretisation: Discretisation) -> Self {
         match discretisation {
             Discretisation::Bem3d { cells, tolerance } => {
@@ -94,7 +94,7 @@ impl Way {
     }
 }
 
-/// What a way gave and what it cost.
+/// Result and cost of a solution.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Answer {
     /// k in units of E* L.
@@ -117,11 +117,11 @@ pub(crate) struct Answer {
 /// The four contributions to the error of k, relative.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Parts {
-    /// What the tightest tolerance on the same grid changes.
+    /// Difference to the tightest tolerance on the same grid.
     pub algebraic: Option<f64>,
-    /// What the limit of fine grids changes (waves included that only they carry).
+    /// Difference to the limit of fine grids, including the waves that only these resolve.
     pub discretisation: Option<f64>,
-    /// What three dimensions change.
+    /// Difference to three dimensions.
     pub model: Option<f64>,
     /// Standard error of the mean of 60 surfaces.
     pub ensemble: Option<f64>,
@@ -137,10 +137,10 @@ pub(crate) struct StudyRow {
     pub answer: Answer,
     /// Relative errors of k, d, area, and L2 of the pressure.
     pub errors: [Option<f64>; 4],
-    /// How certain the reference of k is, relative.
+    /// Relative uncertainty of the reference of k.
     pub reference_error: Option<f64>,
     pub parts: Parts,
-    /// No row of the same problem is both cheaper and nearer.
+    /// Whether no row of the same problem is both faster and more accurate.
     pub pareto: bool,
 }
 
@@ -163,8 +163,8 @@ impl StudyRow {
     }
 }
 
-/// A measurement has a thread of its own, to which `stop` cannot be sent: it is asked before each
-/// measurement.
+/// An error if `stop` is set. A measurement runs on its own thread, to which `stop` cannot be sent; it is
+/// therefore polled before each measurement.
 pub(crate) fn unless_stopped(stop: Stop<'_>) -> Result<()> {
     if stop.stops() {
         return Err(Error::model("accuracy against time")(contact_model::Error::Stopped { best: None }));
@@ -172,8 +172,8 @@ pub(crate) fn unless_stopped(stop: Stop<'_>) -> Result<()> {
     Ok(())
 }
 
-/// Prepares and solves from nothing, on one thread, with the meters running. A model that does not claim this
-/// load or surface gives `None`.
+/// Prepares and solves from a cold start on one thread, and measures the cost. `None` for a model that does
+/// not support this load or surface.
 pub(crate) fn measure(
     model: &dyn ContactModel,
     scene: &Scene,

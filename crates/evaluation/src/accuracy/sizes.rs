@@ -1,11 +1,11 @@
-//! Grids and tolerances of the study, and the orders that it finds.
+//! Grids and tolerances of the study, and the observed orders of convergence.
 
 use super::limit::Limit;
 use super::problem::ProblemKey;
 use analysis::observed_power;
 use serde::{Deserialize, Serialize};
 
-/// StudySizes of a study.
+/// The sizes of a study.
 #[derive(Debug, Clone)]
 pub(crate) struct StudySizes {
     /// Grids for every tolerance of `tolerances`, coarsest first.
@@ -16,7 +16,7 @@ pub(crate) struct StudySizes {
     pub tolerances: &'static [f64],
     /// Tolerances on the finest grid.
     pub finest: &'static [f64],
-    /// The grid that sees all of 1e-1 .. 1e-10 and every operator.
+    /// The grid on which all tolerances from 1e-1 to 1e-10 and every operator are solved.
     pub ladder: usize,
     /// The tolerance of references.
     pub tight: f64,
@@ -28,7 +28,7 @@ pub(crate) struct StudySizes {
     pub ensembles: &'static [usize],
 }
 
-/// A number that has a sequence of grids.
+/// A quantity whose convergence with the grid is studied.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) enum Quantity {
     Stiffness,
@@ -51,12 +51,13 @@ impl Quantity {
     }
 }
 
-/// Where a number goes on ever finer grids.
+/// The convergence of a quantity on finer and finer grids.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Order {
     pub problem: ProblemKey,
     pub quantity: Quantity,
-    /// Order in the cell: of the extrapolation where established, else the slope of the errors.
+    /// Order of convergence in the cell size: that of the extrapolation where established, otherwise the
+    /// slope of the errors.
     pub power: Option<f64>,
     /// Whether errors are known against an exact answer or an established order.
     pub established: bool,

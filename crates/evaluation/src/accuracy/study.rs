@@ -1,4 +1,4 @@
-//! Solves every problem in every way and compares.
+//! Solves every problem with every method and compares the results.
 
 use super::job::{StudyJob, StudyPart, jobs};
 use super::means;
@@ -7,18 +7,18 @@ use super::sizes::{Order, StudySizes};
 use contact_model::never;
 use runs::{Progress, Result, Store, Threads, collect, run_stored};
 
-/// Everything that was found.
+/// All results of the study.
 #[derive(Debug, Default)]
 pub(crate) struct Study {
     pub rows: Vec<StudyRow>,
     pub orders: Vec<Order>,
 }
 
-/// Solves everything that the store does not hold, one job at a time and on one thread: times are what the
-/// study is about.
+/// Solves everything that the store does not hold, one job at a time and on one thread, because the study
+/// measures times.
 pub(crate) fn study(sizes: &StudySizes, seed: u64, store: &Store, progress: &dyn Progress) -> Result<Study> {
     let jobs = jobs(sizes, seed)?;
-    // First what measures memory: it counts from what the process holds.
+    // Jobs that measure memory come first, because memory is measured from what the process already holds.
     let (problems, means) = jobs.split_at(jobs.partition_point(StudyJob::is_problem));
     let solve =
         |what, jobs| collect(run_stored(what, jobs, store, Threads { total: 1, jobs: 1 }, progress, &never));

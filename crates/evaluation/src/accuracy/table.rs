@@ -10,7 +10,7 @@ use runs::Result;
 const FAMILY: &str = "sphere, square: exact answers known; band: one surface of resolved waves sampled ever finer; spectrum: waves to \
     the end of each grid at a fixed constant of C(q); mean: ensembles, each surface in its own rms height";
 
-/// A table whose first columns say which problem a row is about.
+/// A table whose first columns name the problem of each row.
 fn of_problems<'a, T>(
     title: &'static str,
     items: &'a [T],

@@ -1,4 +1,5 @@
-//! The text: what it takes, when less is enough, which part dominates. Written from the tables.
+//! Writes the text about the study from its tables: the cost of a given accuracy, when cheaper methods
+//! suffice, and which part of the error dominates.
 
 use super::picture::{AccuracyPoint, TARGETS, read, values};
 use crate::table_of::{markdown_rows, read_rows};
@@ -10,7 +11,7 @@ use std::path::Path;
 const PAPER_CELLS: f64 = 2049.0;
 const PAPER_TOLERANCE: f64 = 1e-3;
 
-/// The text with places for what the tables say.
+/// The text with placeholders for values from the tables.
 const TEMPLATE: &str = include_str!("text.template");
 
 pub(crate) fn text(csv: &Path, order: &Path) -> Result<String> {
@@ -80,8 +81,8 @@ fn label(p: &AccuracyPoint) -> [String; 2] {
     }
 }
 
-/// The cheapest row in three dimensions within an error that every finer grid keeps too: a lucky grid between
-/// worse ones is no way.
+/// The cheapest row in three dimensions within an error that every finer grid also keeps, so that a grid that
+/// is accurate by chance does not count.
 fn cheapest<'a>(
     points: &'a [AccuracyPoint],
     problem: &AccuracyPoint,
@@ -89,7 +90,7 @@ fn cheapest<'a>(
 ) -> Option<&'a AccuracyPoint> {
     let solid = || points.iter().filter(|p| p.same_problem(problem) && p.model == "bem3d");
     let within = |p: &AccuracyPoint| p.error.is_some_and(|e| e <= target);
-    // On each grid the row at the tightest tolerance differs from itself by nothing.
+    // The row at the tightest tolerance of each grid has an algebraic error of zero.
     let tight = |p: &AccuracyPoint| p.algebraic.is_some_and(|a| a <= 0.0);
     let kept = |size: Option<f64>| solid().all(|p| p.size <= size || !tight(p) || within(p));
     solid()
@@ -97,7 +98,7 @@ fn cheapest<'a>(
         .min_by(|a, b| a.seconds.unwrap_or(0.0).total_cmp(&b.seconds.unwrap_or(0.0)))
 }
 
-/// The picture in a few sentences.
+/// A summary of the picture in a few sentences.
 fn short(points: &[AccuracyPoint]) -> String {
     let mut text = String::new();
     for (family, words) in [
@@ -188,7 +189,7 @@ fn less(points: &[AccuracyPoint]) -> String {
     }))
 }
 
-/// The rows of the table, and how often each part dominates.
+/// The rows of the table, and a sentence on how often each part dominates.
 fn parts(points: &[AccuracyPoint], orders: &Orders) -> (String, String) {
     let mut counts = [0_usize; 3];
     let rows = markdown_rows(problems(points, "spectrum").into_iter().map(|problem| {
@@ -245,8 +246,8 @@ struct Sequence {
 }
 
 impl Sequence {
-    /// The error of the finest grid, or the uncertainty of the limit, carried to the paper's grid by the
-    /// order (the square root of the cell where none is seen).
+    /// The error of the finest grid, or the uncertainty of the limit, extrapolated to the paper's grid with
+    /// the order of convergence (1/2 where none is observed).
     fn carried(&self, finest: f64) -> f64 {
         let error = self.error_finest.unwrap_or(0.0).max(self.limit_error.unwrap_or(0.0));
         error * (finest / PAPER_CELLS).powf(self.order.unwrap_or(0.5).max(0.0))

@@ -1,15 +1,15 @@
-//! Scenes: a short text file says what is pressed, what is asked and which effects count; only that is
-//! computed.
+//! Scenes: a short text file describes the bodies in contact, the effects to include and the requested
+//! results; nothing else is computed.
 //!
 //! # What it computes
 //!
 //! A [`SceneFile`] is read from TOML: `[scene]` (models, material, surface, loads or a path), `[effects]`,
-//! `[outputs]`, `[models.NAME]` (numerics) and `[sampling]`. [`Plan`] says what will be done, what will not
-//! and why, and what it will cost; [`run`] answers the scene with every model that it names and writes
-//! `results.csv`, `manifest.json` and what the scene asks for; [`info`] tells what a file holds,
-//! [`GeneratedSurface`] draws a surface into one. A [`Registry`] adds models of the user's own to those that
-//! scenes name. The mechanics are those of the model crates; the program `fractal-contact` is a thin layer on
-//! this library.
+//! `[outputs]`, `[models.NAME]` (numerics) and `[sampling]`. [`Plan`] says what will be computed, what will
+//! not and why, and what it will cost. [`run`] solves the scene with every model that it names and writes
+//! `results.csv`, `manifest.json` and the files that the scene requests. [`info`] describes the contents of a
+//! file, and [`GeneratedSurface`] writes a random surface into one. A [`Registry`] adds the user's own models
+//! to those that scenes can name. The mechanics are those of the model crates; the program `fractal-contact`
+//! is a thin layer on this library.
 //!
 //! ```
 //! use fractal_contact::scenes::{Options, Plan, SceneFile, run};
@@ -37,33 +37,33 @@
 //!   only), `mean_pressure`, `approach` or, with periodic boundaries, `mean_gap`: one number, a list, or `{
 //!   from, to, count }`, logarithmic unless `spacing = "linear"`. They are solved in the order given;
 //!   increasing is the fastest.
-//! * What depends on the path (friction, rheology) takes `[[scene.path]]` instead: ends of straight pieces,
-//!   each with `states` points; what a step does not name stays as it was.
+//! * Effects that depend on the path (friction, rheology) need `[[scene.path]]` instead: the ends of straight
+//!   pieces, each with `states` points. A quantity that a step does not name keeps its value.
 //! * `[scene.surface]` is random (`self_affine`) or a `file`; `[scene.body]` is a sphere, cone, ...; with
-//!   both, heights add.
+//!   both, their heights are added.
 //! * `side = s` is a square, `size = [Lx, Ly]` a rectangle; L is `sqrt(Lx Ly)`, mean pressure and contact
 //!   fraction are over `Lx Ly`. Undefined points of a file are an error unless they are filled or kept
 //!   (`undefined = "no_contact"`). NPY arrays are `[row, column]`, rows along y.
-//! * Effects and outputs are off unless named. What a model lacks is an error before anything is computed,
-//!   with the models that have it.
-//! * A load outside a model's range has its row with the reason (`status` is `refused`), and the others go
-//!   on.
+//! * Effects and outputs are off unless named. If a model lacks an effect or an output, that is an error
+//!   before anything is computed; the message names the models that have it.
+//! * A load outside a model's range has a row with the reason (`status` is `refused`), and the other loads
+//!   are solved.
 //! * `results.csv` has the same bytes for any number of threads; after an interruption, states that follow
 //!   the kept ones of a surface agree within the tolerance. Times and the machine are in `manifest.json`.
 //!
 //! # Errors
 //!
-//! A mistake in a scene is a [`Diagnostic`], and so is a note on a key with a new name: what, the line with
-//! the place underlined, and a remedy. Unknown keys are mistakes. The tables are read key by key rather than
-//! derived, because a derived reader knows neither units nor remedies, and loses the place of a value in an
-//! enum.
+//! A mistake in a scene is a [`Diagnostic`], and so is a note on a renamed key: it holds a message, the line
+//! with the place underlined, and a remedy. Unknown keys are mistakes. The tables are read key by key rather
+//! than derived, because a derived reader knows neither units nor remedies, and loses the place of a value in
+//! an enum.
 //!
 //! # How accurate, how fast
 //!
-//! As the models are; the plan says so for each. Reading, planning and writing take milliseconds. The
-//! prediction of cost solves a few of the loads on a grid of a quarter of the cells (at most 257, at most 3
-//! s) and scales by measured exponents: within a factor of six on the scenes of `data/scenes`, files and
-//! pictures apart.
+//! The accuracy is that of the models; the plan states it for each. Reading, planning and writing take
+//! milliseconds. The prediction of cost solves a few of the loads on a grid of a quarter of the cells (at
+//! most 257, at most 3 s) and scales by measured exponents: within a factor of six on the scenes of
+//! `data/scenes`, files and pictures apart.
 //!
 //! # What it does not do
 //!

@@ -142,7 +142,7 @@ pub(super) fn largest_ratio(
     Row::only(largest.ok_or_else(none))
 }
 
-/// Cells in contact on every surface from which k_3D counts as resolved in a ratio.
+/// Number of cells in contact on every surface from which on k_3D counts as resolved in a ratio.
 const RESOLVED: usize = 100;
 
 /// Loads at which the surface resolves its contact.
@@ -275,8 +275,8 @@ pub(super) fn decades(solid: &Ensemble<'_>, factor: f64) -> Vec<Row> {
     })
 }
 
-/// Seconds of the stored jobs of both models, whenever they were solved. They depend on the machine: never
-/// part of a file.
+/// Seconds of the stored jobs of both models, whenever they were solved. They depend on the machine and are
+/// therefore not written to files.
 pub(super) fn run_times(solid: &Ensemble<'_>, line: &Ensemble<'_>) -> Vec<Row> {
     let (solid, line) = (solid.measured, line.measured);
     let (t3, t1) = (solid.seconds(), line.seconds());

@@ -1,4 +1,4 @@
-//! The ensembles of a command with their fitted laws, and what several numbers of them need.
+//! The ensembles of a command with their fitted laws, and functions that several claims use.
 
 use super::table::{Found, Reason, Row};
 use crate::claim::Estimate;
@@ -9,29 +9,30 @@ use runs::{Error, Result};
 /// The ensembles that a command has solved.
 pub(crate) struct Ensembles<'a>(Vec<Ensemble<'a>>);
 
-/// An ensemble and the law of each of its series, or why there is none to judge.
+/// An ensemble and the law of each of its series, or the reason why there is none.
 pub(super) struct Ensemble<'a> {
     pub measured: &'a Measured,
     pub laws: Vec<std::result::Result<Law, Reason>>,
 }
 
-/// A power law of one series, with what its window leaves.
+/// A power law of one series, with the uncertainty of its window.
 #[derive(Debug, Clone)]
 pub(crate) struct Law {
     /// D_f.
     pub fractal_dimension: f64,
     /// The fit over the window of Figs. 3 and 7.
     pub fit: FittedPowerLaw,
-    /// alpha: scatter and, in quadrature, the largest change with other windows and what the grid leaves.
+    /// alpha, with its interval from the scatter and, in quadrature, the largest change with other windows
+    /// and the discretisation error.
     pub alpha: Estimate,
     /// The same of zeta.
     pub zeta: Estimate,
-    /// The part of alpha's half-width that the grid leaves.
+    /// The discretisation error in alpha's half-width.
     pub grid: f64,
 }
 
 impl<'a> Ensembles<'a> {
-    /// With their laws.
+    /// The ensembles with their laws.
     pub fn new(measured: &[&'a Measured]) -> Self {
         let of = |&measured: &&'a Measured| {
             let laws = measured.series.iter().map(|series| Law::new(measured, series)).collect();
@@ -79,7 +80,7 @@ impl Ensemble<'_> {
 }
 
 impl Law {
-    /// The law of a series, or why there is none to judge.
+    /// The law of a series, or the reason why there is none.
     pub fn new(measured: &Measured, series: &Series) -> std::result::Result<Self, Reason> {
         let WindowedLaw { fit, windows, grid } = windowed_law(measured, series)?;
         let grid = grid.ok_or("no coarser grid says what this one leaves")?;
@@ -102,27 +103,28 @@ impl Law {
         format!("{points} loads, {force_bar_min:.1e} to {force_bar_max:.1e}")
     }
 
-    /// The loads of the fit, whatever they touch.
+    /// The loads of the fit, regardless of the number of cells in contact.
     pub fn loads(&self) -> FitWindow {
         between(self.fit.force_bar_min, self.fit.force_bar_max)
     }
 }
 
-/// Why a scatter is missing.
+/// The reason why a scatter is missing.
 pub(super) const ONE_SURFACE: &str = "one surface has no scatter";
 
-/// All loads from one to another, with a little slack for their rounding.
+/// All loads in a range, with a small tolerance for their rounding.
 pub(super) fn between(min: f64, max: f64) -> FitWindow {
     FitWindow { min_force_bar: min * (1.0 - 1e-9), max_force_bar: max * (1.0 + 1e-9), min_contact_cells: 0 }
 }
 
-/// The law of the surfaces `draw`, without an error.
+/// The law fitted to the surfaces `draw`, without an error.
 pub(super) fn law_of(curves: &Curves, window: &FitWindow, draw: &[usize]) -> Option<FittedPowerLaw> {
     let once = Bootstrap { resamples: 0, ..Bootstrap::default() };
     fit_power_law(&curves.resampled(draw), window, &once).ok()
 }
 
-/// A number of any choice of surfaces: its value for all, and its scatter over redrawn ones.
+/// A number that is computed from a choice of surfaces: its value for all surfaces, and its scatter over
+/// resampled ones.
 pub(super) fn resampled(surfaces: usize, number: impl Fn(&[usize]) -> Option<f64>) -> Option<Estimate> {
     let all: Vec<usize> = (0..surfaces).collect();
     Estimate::normal(number(&all)?, Bootstrap::default().standard_error(surfaces, number))

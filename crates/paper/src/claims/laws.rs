@@ -6,7 +6,7 @@ use crate::claim::Estimate;
 use analysis::{Bootstrap, Crossing, FitWindow, crossing, interpolate, sum};
 use evaluation::{FLOOR_CELLS, Series, laws};
 
-/// What the intervals of exponents hold.
+/// The sources of error in the intervals of exponents, in words.
 const INTERVAL: &str = "the interval holds scatter, floors of 10, 30 and 100 cells, upper ends of 0.086 and 0.03, and what the grid leaves";
 
 pub(super) fn exponents(ensemble: &Ensemble<'_>) -> Vec<Row> {
@@ -32,7 +32,7 @@ pub(super) fn differences(solid: &Ensemble<'_>, line: &Ensemble<'_>) -> Vec<Row>
         .collect()
 }
 
-/// alpha over D_f, of each one's own window and of the window that all have.
+/// alpha over D_f, with the own window of each D_f and with the window that all have in common.
 pub(super) fn over_dimension(ensemble: &Ensemble<'_>) -> Vec<Row> {
     let own: Result<Vec<&Law>, &Reason> = ensemble.laws.iter().map(Result::as_ref).collect();
     let own = match own {
@@ -91,7 +91,7 @@ pub(super) fn halves(ensemble: &Ensemble<'_>) -> Vec<Row> {
     })
 }
 
-/// alpha from a small load to a middle one minus alpha above.
+/// alpha from the first load to the second minus alpha above the second.
 pub(super) fn below_minus_above(line: &Ensemble<'_>, from: f64, middle: f64) -> Vec<Row> {
     let low = FitWindow { min_force_bar: from * (1.0 - 1e-9), max_force_bar: middle, ..FitWindow::PAPER };
     let high = FitWindow { min_force_bar: middle, ..FitWindow::PAPER };
@@ -141,7 +141,7 @@ pub(super) fn stiffness_over_law(ensemble: &Ensemble<'_>, load: f64) -> Vec<Row>
     })
 }
 
-/// zeta of lines over zeta of surfaces, at the D_f where they are farthest apart.
+/// zeta of lines over zeta of surfaces, at the D_f where the two differ most.
 fn farthest_factors(solid: &Ensemble<'_>, line: &Ensemble<'_>) -> Option<(Estimate, String)> {
     let ratios = solid.laws.iter().zip(&line.laws).filter_map(|(solid, line)| {
         let (solid, line) = (solid.as_ref().ok()?, line.as_ref().ok()?);

@@ -22,7 +22,7 @@ fn full_contact(what: &str, model: &dyn ContactModel, scene: &Scene, force: f64)
     solved.map_err(Error::model(format!("full contact of {what}")))?.stiffness.ok_or_else(no_stiffness)
 }
 
-/// Of the rigid square in the limit of small cells.
+/// The stiffness of the rigid square in the limit of small cells.
 fn square() -> Result<Estimate> {
     let scene = Scene::new(Surface::Flat { size: 1.0.into() }, 1.0);
     let of = |cells: usize| {
@@ -84,7 +84,7 @@ pub(super) fn ratio_of_heights(dimensions: &[f64]) -> Result<Vec<Row>> {
     dimensions.iter().map(row).collect()
 }
 
-/// Cells a side, and surfaces: seconds, whatever the size of the run.
+/// Number of cells along a side and of surfaces; they take seconds, independent of the size of the run.
 const CELLS: usize = 513;
 const SURFACES: u64 = 24;
 

@@ -20,7 +20,7 @@ pub(crate) struct Entry {
     quantity: String,
     pub data: Data,
     allowed: Limits,
-    /// The entry whose statement it belongs to; its own otherwise.
+    /// The entry to whose statement it belongs; otherwise its own.
     part_of: Option<String>,
     only: Option<Only>,
     pub cases: Option<Cases>,
@@ -31,7 +31,7 @@ pub(crate) struct Entry {
     timed: bool,
 }
 
-/// What is compared with the paper.
+/// The number that is compared with the paper.
 #[derive(Debug, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Data {
@@ -87,7 +87,7 @@ pub(crate) enum Data {
     FarthestRatio,
     /// k/(E* L) of the square in full contact.
     Plateau,
-    /// That of the line over that of the square.
+    /// k/(E* L) of the line in full contact, over that of the square.
     RatioOfPlateaus,
     /// Share of the cells in contact that lie within a quarter of the side from their centre, at these D_f.
     ShareInOneRegion(Vec<f64>),
@@ -97,13 +97,13 @@ pub(crate) enum Data {
     RatioOfHeights(Vec<f64>),
     /// Seconds of surfaces over seconds of lines.
     RunTimes,
-    /// Nothing here, for this reason.
+    /// No number, for this reason.
     NotJudged(String),
     /// A number of the two problems: [`crate::two_cases`].
     TwoCases(CaseData),
 }
 
-/// What is compared for a case of the two problems.
+/// The number that is compared for a case of the two problems.
 #[derive(Debug, Clone, Copy, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum CaseData {
@@ -119,7 +119,7 @@ pub(crate) enum CaseData {
     Kappa,
 }
 
-/// Which of the two problems' cases an entry speaks of.
+/// The case of the two problems to which an entry refers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 pub(crate) enum Cases {
     #[serde(rename = "without a roll-off")]
@@ -151,7 +151,7 @@ impl Equation {
     }
 }
 
-/// What the paper has for a number.
+/// The value of the paper for a number.
 #[derive(Debug, Clone, Copy, Deserialize)]
 #[serde(untagged)]
 enum Printed {
@@ -168,7 +168,7 @@ impl Printed {
     }
 }
 
-/// What a reading allows.
+/// The range that a reading allows.
 #[derive(Debug, Clone, Copy, Deserialize)]
 #[serde(rename_all = "snake_case")]
 enum Limits {
@@ -198,7 +198,7 @@ impl Limits {
     }
 }
 
-/// Fractal dimensions that a statement speaks of.
+/// The fractal dimensions to which a statement refers.
 #[derive(Debug, Clone, Copy, Deserialize)]
 #[serde(rename_all = "snake_case")]
 enum Only {
@@ -207,17 +207,17 @@ enum Only {
     Above(f64),
 }
 
-/// A number with its conditions, or why there is none.
+/// A number with its conditions, or the reason why there is none.
 pub(crate) type Found = std::result::Result<(Estimate, String), Reason>;
 
-/// Why there is no number.
+/// The reason why there is no number.
 pub(crate) type Reason = Cow<'static, str>;
 
-/// One number beside an entry.
+/// One number for an entry.
 pub(crate) struct Row {
-    /// D_f; NaN for what has none.
+    /// D_f; NaN for a number without one.
     pub fractal_dimension: f64,
-    /// What stands for {} in the quantity.
+    /// The text that replaces {} in the quantity.
     pub label: String,
     pub found: Found,
     /// The same number in the other convention of the entry.
@@ -230,7 +230,7 @@ impl Row {
         Self { fractal_dimension, ..Self::of(format!("{fractal_dimension:?}"), found) }
     }
 
-    /// Of something else.
+    /// A number without a fractal dimension.
     pub fn of(label: impl Into<String>, found: Found) -> Self {
         Self { fractal_dimension: f64::NAN, label: label.into(), found, in_convention: None }
     }
@@ -299,7 +299,7 @@ fn read(text: &str) -> std::result::Result<ClaimTable, toml::de::Error> {
 /// The entries that a command judges.
 ///
 /// # Errors
-/// A table that cannot be read, which would be a mistake of this crate.
+/// A table that cannot be read, which would be an error of this crate.
 pub(crate) fn entries(command: &str) -> Result<&'static [Entry]> {
     let table = TABLE.as_ref().map_err(|error| wrong(error))?;
     Ok(table.get(command).ok_or_else(|| wrong(&format!("no claims of {command}")))?)

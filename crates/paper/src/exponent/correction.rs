@@ -1,12 +1,12 @@
 //! A power law with a correction to scaling, k = zeta F^alpha (1 + c F^omega), by weighted least squares of
 //! logarithms.
 //!
-//! For given omega and c the rest is a straight line; for given omega, c is found by Gauss and Newton's method
-//! on what the line leaves (variable projection, G. H. Golub and V. Pereyra, SIAM J. Numer. Anal. 10, 413
-//! (1973)); omega by a scan of its range and golden sections about the best of it.
+//! For given omega and c the rest is a straight line. For given omega, c is found by the Gauss-Newton method
+//! on the residuals of the line (variable projection, G. H. Golub and V. Pereyra, SIAM J. Numer. Anal. 10,
+//! 413 (1973)); omega is found by a scan of its range and golden sections about the best value.
 
-/// The range of omega, a free exponent of the correction: below, the correction is itself a power law of the
-/// whole window; above, a cut.
+/// The range of omega, the free exponent of the correction: below it, the correction is itself a power law
+/// over the whole window; above it, a cut-off.
 pub const OMEGA: [f64; 2] = [0.25, 2.0];
 /// Values of omega in the scan, evenly spaced in its logarithm.
 const SCAN: usize = 9;
@@ -14,21 +14,21 @@ const SCAN: usize = 9;
 const SECTIONS: usize = 14;
 /// Steps of Gauss and Newton, which converge within five or so.
 const STEPS: usize = 40;
-/// A step so small ends them: far below every error of c.
+/// A step below this ends the iteration; it is far below every error of c.
 const SMALL: f64 = 1e-9;
 
 /// The fitted law.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Correction {
-    /// Power of the force towards zero force.
+    /// Exponent alpha in the limit of zero force.
     pub alpha: f64,
-    /// Its factor.
+    /// Factor zeta of the power law.
     pub zeta: f64,
     /// Factor of the correction.
     pub c: f64,
     /// Power of the correction.
     pub omega: f64,
-    /// Weighted sum of squares of what is left of ln k.
+    /// Weighted sum of the squared residuals of ln k.
     pub misfit: f64,
 }
 
@@ -48,7 +48,7 @@ impl Points {
         (whole && finite).then_some(Self { x, y, weights })
     }
 
-    /// The law that fits best, with this omega, or any within [`OMEGA`].
+    /// The law that fits best, with this omega or, without one, with any omega in [`OMEGA`].
     pub fn fit(&self, omega: Option<f64>) -> Option<Correction> {
         if let Some(omega) = omega {
             return self.with(omega);
@@ -137,7 +137,7 @@ impl Points {
         [law.alpha, law.zeta, law.c, law.misfit].iter().all(|v| v.is_finite()).then_some(law)
     }
 
-    /// What the straight line over ln F leaves of numbers, and its intercept and slope.
+    /// The residuals of a straight line over ln F, and its intercept and slope.
     fn without_line(&self, of: &[f64]) -> (Vec<f64>, [f64; 2]) {
         let all: f64 = self.weights.iter().sum();
         let mean = |v: &[f64]| v.iter().zip(&self.weights).map(|(v, w)| v * w).sum::<f64>() / all;
@@ -161,7 +161,7 @@ impl Points {
 mod tests {
     use super::*;
 
-    /// Points of an exact law, six a decade over five decades, with unlike weights.
+    /// Points of an exact law, six per decade over five decades, with different weights.
     fn points([alpha, zeta, c, omega]: [f64; 4]) -> Points {
         let x: Vec<f64> = (0..31).map(|i| (1e-6_f64).ln() + f64::from(i) * 10_f64.ln() / 6.0).collect();
         let y = x.iter().map(|x| zeta.ln() + alpha * x + (c * (omega * x).exp()).ln_1p()).collect();

@@ -11,21 +11,22 @@ use surface_gen::{LineGenerator, MapGenerator};
 /// Points on each side of a local slope: at six loads a decade the line goes through two thirds of one.
 pub const SLOPE_REACH: usize = 2;
 
-/// Draws of a simultaneous band: its factor is known to 2 %.
+/// Number of random draws for a simultaneous band, which gives its factor to 2 %.
 const BAND_DRAWS: usize = 2000;
 /// Their seed.
 const BAND_SEED: u64 = 48;
 
-/// The grid whose rms height counts the forces of a fixed spectrum: the paper's.
+/// The grid whose rms height normalises the forces of a fixed spectrum: that of the paper.
 pub const REFERENCE_CELLS: usize = 2049;
 
-/// In which rms height F_bar is counted.
+/// The rms height by which F_bar is normalised.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Convention {
-    /// The measured one of each grid, as the paper has it: a finer grid has lower long waves.
+    /// The measured rms height of each grid, as in the paper: on a finer grid the long waves have smaller
+    /// amplitudes.
     Measured,
-    /// That of one spectrum on 2049 x 2049 cells: a finer grid has the same long waves and more short ones;
-    /// the line has the same spectrum.
+    /// The rms height of one fixed spectrum on 2049 x 2049 cells: a finer grid has the same long waves and
+    /// more short ones, and the line has the same spectrum.
     FixedSpectrum,
 }
 
@@ -47,7 +48,7 @@ impl Convention {
 pub struct Banded {
     /// From the scatter of the surfaces.
     pub scatter: Uncertain,
-    /// What the finest grid leaves.
+    /// The discretisation error of the finest grid.
     pub grid: f64,
 }
 
@@ -62,19 +63,21 @@ impl Banded {
         self.scatter.half_width() + self.grid
     }
 
-    /// The interval that is wrong with probability `level`, either way; what the grid leaves does not grow
-    /// with it.
+    /// The interval that is wrong with probability `level`, two-sided. The discretisation error does not
+    /// depend on the level.
     pub fn interval(&self, level: f64) -> [f64; 2] {
         let half = self.scatter.half_width_at(level) + self.grid;
         [self.value() - half, self.value() + half]
     }
 
-    /// Probability that chance moves the number as far from `expected`, beyond what the grid leaves.
+    /// p-value: the probability that chance moves the number as far from `expected`, beyond the
+    /// discretisation error.
     pub fn chance_of(&self, expected: f64) -> f64 {
         self.scatter.chance_of(expected, self.grid)
     }
 
-    /// The difference from a number of other surfaces: variances and what grids leave add up.
+    /// The difference from a number of independent surfaces: the variances and the discretisation errors are
+    /// added.
     pub fn minus(&self, other: &Self) -> Self {
         Self { scatter: self.scatter.minus(&other.scatter), grid: self.grid + other.grid }
     }
@@ -85,7 +88,7 @@ impl Banded {
 pub struct MeanCurve {
     /// `bem3d` or `mdr1d`.
     pub model: &'static str,
-    /// How forces are counted.
+    /// How forces are normalised.
     pub convention: Convention,
     /// D_f.
     pub fractal_dimension: f64,
@@ -104,11 +107,11 @@ pub struct MeanCurve {
 }
 
 impl MeanCurve {
-    /// The mean curve of all pairs of a fractal dimension; `error` is the relative error that the finest grid
-    /// may leave.
+    /// The mean curve of all pairs of a fractal dimension; `error` is the largest allowed relative
+    /// discretisation error of the finest grid.
     ///
     /// # Errors
-    /// [`Error::Model`] for fewer than two whole pairs on a level.
+    /// [`Error::Model`] for fewer than two complete pairs on a level.
     pub fn new(rungs: &Rungs, convention: Convention, error: f64) -> Result<Self> {
         let d = rungs.fractal_dimension;
         let what = |e| Error::model(format!("the mean curve of {} at D_f = {d:?}", rungs.model.name()))(e);
@@ -238,7 +241,7 @@ impl MeanCurve {
         Some(Banded { scatter: self.levels.propagated(value, gradient), grid })
     }
 
-    /// What the finest grid leaves of a number of the mean curve at these points.
+    /// The discretisation error of the finest grid in a number of the mean curve at these points.
     pub fn grid_part(&self, points: Range<usize>, quantity: impl Fn(&[f64]) -> Option<f64>) -> Option<f64> {
         // Points on unlike grids: the larger of what they leave.
         let mut grids: Vec<usize> = points.map(|j| self.levels.levels_at(j)).collect();
@@ -270,7 +273,7 @@ impl MeanCurve {
     }
 }
 
-/// Rms heights of one spectrum on the grids of the levels, in that of the reference grid.
+/// Rms heights of one spectrum on the grids of the levels, over that of the reference grid.
 fn spectrum_heights(rungs: &Rungs) -> contact_model::Result<Vec<f64>> {
     let surface = SelfAffine {
         amplitude: Amplitude::Spectrum(1.0),
@@ -295,8 +298,8 @@ fn difference(pair: &Pair, level: usize, forces: &[f64], heights: &[f64]) -> Opt
     Some(fine.iter().zip(&coarse).map(|(fine, coarse)| fine - coarse).collect())
 }
 
-/// k_bar at forces that are counted in another height than the surface's own, `height` of its own; up to the
-/// last load that was solved.
+/// k_bar at forces that are normalised by another rms height, which is `height` times the surface's own; up
+/// to the last load that was solved.
 fn stiffnesses(solved: &Solved, forces: &[f64], height: f64) -> Option<Vec<f64>> {
     let points: Option<Vec<(f64, f64)>> =
         solved.forces.iter().zip(&solved.stiffnesses).map(|(f, k)| Some((f.ln(), (*k)?.ln()))).collect();

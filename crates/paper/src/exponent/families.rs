@@ -9,9 +9,9 @@ use std::ops::Range;
 pub struct Test {
     /// A to D.
     pub family: &'static str,
-    /// How many tests it has.
+    /// Number of tests of the family.
     pub of: usize,
-    /// What is tested.
+    /// The quantity that is tested.
     pub quantity: &'static str,
     /// `bem3d`, `mdr1d` or both.
     pub model: &'static str,
@@ -21,13 +21,13 @@ pub struct Test {
     pub window: &'static str,
     /// The hypothesis in words.
     pub hypothesis: &'static str,
-    /// What the hypothesis says of the number.
+    /// The value of the number under the hypothesis.
     pub expected: f64,
-    /// The number; absent where the run has none.
+    /// The number; `None` where the run has none.
     pub value: Option<f64>,
     /// Its interval, simultaneous with all of the family.
     pub interval: Option<[f64; 2]>,
-    /// Probability of such a distance by chance, for this one test; absent for intervals of the bootstrap.
+    /// p-value of this single test; `None` for intervals of the bootstrap.
     pub chance: Option<f64>,
     /// Whether the window is resolved.
     pub resolved: bool,
@@ -69,7 +69,7 @@ const RATIOS: [(&str, f64); 7] = [
 /// Families B and C.
 const WINDOWS: [(&str, f64); 6] =
     [(HEAVIER, 2.4), (HEAVIER, 2.6), (HEAVIER, 2.8), (HEAVIER, 3.0), (LIGHTER, 2.4), (LIGHTER, 2.6)];
-/// Family D, surfaces and lines each.
+/// Family D, for surfaces and for lines.
 const LIMITS: [f64; 4] = [2.4, 2.6, 2.8, 3.0];
 
 /// Number of tests of family D.

@@ -9,14 +9,14 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use surface_gen::surface_seed;
 
-/// Grids, from coarse to fine, and how many surfaces each has.
+/// Grids from coarse to fine, and the number of surfaces of each.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Ladder {
     /// The model; cells a side or elements are those of each level.
     pub model: Discretisation,
     /// Cells a side, or elements, increasing.
     pub sizes: Vec<usize>,
-    /// Surfaces of each level.
+    /// Number of surfaces of each level.
     pub surfaces: Vec<usize>,
     /// Loads F_bar.
     pub forces: Forces,
@@ -24,15 +24,15 @@ pub struct Ladder {
     pub heavy: Option<(f64, usize)>,
 }
 
-/// What one surface has on one grid.
+/// The results of one surface on one grid.
 #[derive(Debug, Clone)]
 pub struct Solved {
     /// F_bar, increasing.
     pub forces: Vec<f64>,
-    /// k_bar at each; absent where a solve did not meet its tolerance. Five digits: those of the table of
-    /// samples, so that all tables follow from it bit for bit.
+    /// k_bar at each force; `None` where a solve did not meet its tolerance. It has the five digits of the
+    /// table of samples, so that all tables follow from that table bit for bit.
     pub stiffnesses: Vec<Option<f64>>,
-    /// Processor seconds; absent for what was read from a table.
+    /// Processor seconds; `None` for results read from a table.
     pub seconds: Option<f64>,
 }
 
@@ -43,7 +43,7 @@ pub struct Pair {
     pub index: usize,
     /// On the grid of the level.
     pub fine: Solved,
-    /// On the next coarser grid; absent on the coarsest.
+    /// On the next coarser grid; `None` on the coarsest.
     pub coarse: Option<Solved>,
 }
 
@@ -62,7 +62,7 @@ pub struct Rungs {
     pub levels: Vec<Vec<Pair>>,
 }
 
-/// A realisation of a study and where it belongs.
+/// A realisation of a study and its place in it.
 struct Place {
     dimension: usize,
     level: usize,
@@ -105,7 +105,7 @@ impl Ladder {
         }
     }
 
-    /// What each level needs, on its own grid and, under the same loads, on the next coarser one.
+    /// The jobs of each level, on its own grid and, under the same loads, on the next coarser one.
     fn places(&self, dimensions: &[f64], seed: u64, surfaces: &[usize]) -> Vec<Place> {
         let mut places = Vec::new();
         for (level, &count) in surfaces.iter().enumerate() {
@@ -134,7 +134,7 @@ impl Ladder {
         places
     }
 
-    /// Surfaces of the level of this size that the store holds whole, from the first on.
+    /// Number of surfaces of the level of this size that the store holds completely, from the first on.
     pub fn stored(&self, dimensions: &[f64], seed: u64, size: usize, store: &Store) -> usize {
         let asked = self.sizes.iter().zip(&self.surfaces);
         let level: Vec<usize> = asked.map(|(&own, &count)| if own == size { count } else { 0 }).collect();
@@ -143,13 +143,13 @@ impl Ladder {
         surfaces.take_while(|places| places.iter().all(|place| is_solved(&place.job, store))).count()
     }
 
-    /// Everything that a study solves.
+    /// All jobs of a study.
     pub fn jobs(&self, dimensions: &[f64], seed: u64) -> Vec<RealisationJob> {
         shared(self.places(dimensions, seed, &self.surfaces).iter())
     }
 
-    /// Solves so many surfaces of each level, or takes them from the store: the largest grids first, each
-    /// with the threads that its memory allows.
+    /// Solves a number of surfaces of each level or reads them from the store, the largest grids first, each
+    /// with as many threads as its memory allows.
     ///
     /// # Errors
     /// As [`solve_realisations`].
@@ -198,7 +198,7 @@ impl Ladder {
     }
 }
 
-/// The jobs of places, which share what they plan once.
+/// The jobs of these places, which share plans.
 fn shared<'a>(places: impl Iterator<Item = &'a Place>) -> Vec<RealisationJob> {
     let models = Arc::default();
     places.map(|place| RealisationJob { models: Arc::clone(&models), ..place.job.clone() }).collect()
@@ -216,7 +216,7 @@ impl From<&RealisationResult> for Solved {
     }
 }
 
-/// What the table of samples keeps of a stiffness.
+/// A stiffness rounded as in the table of samples.
 fn five_digits(stiffness: f64) -> Option<f64> {
     format!("{stiffness:.4e}").parse().ok()
 }
@@ -229,13 +229,13 @@ impl Rungs {
 }
 
 impl Pair {
-    /// Seconds of both solves, as far as they are known.
+    /// Seconds of both solves, where known.
     pub fn seconds(&self) -> f64 {
         let seconds = |solved: &Solved| solved.seconds.unwrap_or(0.0);
         seconds(&self.fine) + self.coarse.as_ref().map_or(0.0, seconds)
     }
 
-    /// Loads at which one of the solves did not meet its tolerance.
+    /// Number of loads at which one of the solves did not meet its tolerance.
     pub fn not_converged(&self) -> usize {
         let results = std::iter::once(&self.fine).chain(&self.coarse);
         results.flat_map(|r| &r.stiffnesses).filter(|k| k.is_none()).count()

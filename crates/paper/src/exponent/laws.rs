@@ -5,7 +5,7 @@ use super::curve::{Banded, Convention, MeanCurve};
 use analysis::slope_weights;
 use std::ops::Range;
 
-/// Largest load that grids finer than those of the heavy loads solve.
+/// Largest load on the finer grids, which do not solve the heavy loads.
 pub const LARGEST: f64 = 2e-2;
 
 /// Windows of one decade, each with its name: fixed, and the same for every curve.
@@ -22,13 +22,13 @@ pub const DECADES: [(&str, Range<f64>); 5] = [
 pub struct LawRow {
     /// Name of the model.
     pub model: &'static str,
-    /// How forces are counted.
+    /// How forces are normalised.
     pub convention: Convention,
     /// D_f.
     pub fractal_dimension: f64,
     /// Name of the window.
     pub window: &'static str,
-    /// Whether all of it is resolved.
+    /// Whether the whole window is resolved.
     pub resolved: bool,
     /// The exponent.
     pub alpha: Banded,
@@ -89,25 +89,25 @@ pub fn law_rows(curves: &[MeanCurve]) -> Vec<LawRow> {
 pub struct Limit {
     /// Name of the model.
     pub model: &'static str,
-    /// How forces are counted.
+    /// How forces are normalised.
     pub convention: Convention,
     /// D_f.
     pub fractal_dimension: f64,
-    /// What is held or cut.
+    /// The fixed omega or the shorter window of this fit, in words.
     pub variant: &'static str,
     /// The loads.
     pub forces: Range<f64>,
-    /// How many there are.
+    /// Number of loads.
     pub points: usize,
     /// Whether all of them are resolved.
     pub resolved: bool,
     /// The law of the mean curve.
     pub law: Correction,
-    /// 95 % interval of alpha, what the grid leaves included.
+    /// 95 % interval of alpha, with the discretisation error.
     pub interval: [f64; 2],
     /// The same at the level of the family of hypotheses.
     pub family: [f64; 2],
-    /// What the finest grid leaves of alpha.
+    /// The discretisation error of alpha on the finest grid.
     pub grid: f64,
     /// 95 % interval of omega from the scatter.
     pub omega: [f64; 2],
@@ -122,18 +122,18 @@ impl Limit {
 
 /// The fit that is judged.
 pub const FREE: &str = "free";
-/// With omega held.
+/// With fixed omega.
 pub const HELD: &str = "omega 0.5";
 /// With another upper end.
 pub const SHORT: &str = "to 0.06";
 
-/// Bootstrap samples of a fit that is judged: an end at the level of the family rests on six of them or more;
-/// and of one beside it.
+/// Number of bootstrap samples of a fit that is judged (an end at the level of the family then rests on six
+/// of them or more), and of a fit for comparison.
 const DRAWS: [usize; 2] = [2000, 500];
 /// Their seed.
 const DRAW_SEED: u64 = 0x48;
 
-/// Where the fits of a curve begin: fixed before the second run (`data/exponent/hypotheses.md`).
+/// Lower end of the fits of a curve, fixed before the second run (`data/exponent/hypotheses.md`).
 fn first_force(model: &str, d: f64) -> f64 {
     let tenths = (10.0 * d).round() as u32;
     match (model, tenths) {
@@ -148,8 +148,8 @@ fn first_force(model: &str, d: f64) -> f64 {
     }
 }
 
-/// Fits of all curves: the one that is judged ([`judged_limit`]) and, by the measured rms height, those
-/// beside it.
+/// Fits of all curves: the one that is judged ([`judged_limit`]) and, for forces normalised by the measured
+/// rms height, further fits for comparison.
 pub fn limits(curves: &[MeanCurve], family: usize) -> Vec<Limit> {
     let mut limits = Vec::new();
     let [_, beside] = DRAWS;
@@ -166,7 +166,7 @@ pub fn limits(curves: &[MeanCurve], family: usize) -> Vec<Limit> {
     limits
 }
 
-/// The fit of a curve that is judged, together with so many others of its family.
+/// The fit of a curve that is judged, with an interval for this number of tests in its family.
 pub fn judged_limit(curve: &MeanCurve, family: usize) -> Option<Limit> {
     let start = first_force(curve.model, curve.fractal_dimension);
     limit(curve, (FREE, start..0.2, None), (family, DRAWS[0]))
@@ -229,7 +229,7 @@ fn limit(
 /// k_1D/k_3D at a load.
 #[derive(Debug, Clone, Copy)]
 pub struct Ratio {
-    /// How forces are counted.
+    /// How forces are normalised.
     pub convention: Convention,
     /// D_f.
     pub fractal_dimension: f64,
@@ -239,16 +239,16 @@ pub struct Ratio {
     pub logarithm: Banded,
 }
 
-/// k_1D/k_3D over a window that both resolve.
+/// k_1D/k_3D over a window that both models resolve.
 #[derive(Debug, Clone)]
 pub struct Factor {
-    /// How forces are counted.
+    /// How forces are normalised.
     pub convention: Convention,
     /// D_f.
     pub fractal_dimension: f64,
     /// Name of the window.
     pub window: &'static str,
-    /// Whether both resolve it.
+    /// Whether both models resolve it.
     pub resolved: bool,
     /// Mean of ln(k_1D/k_3D) over the loads.
     pub logarithm: Banded,
@@ -262,7 +262,7 @@ pub fn raised(logarithm: &Banded) -> (f64, f64) {
     (value, value * logarithm.half_width())
 }
 
-/// Line over surface at every load that both resolve, and over decades below [`LARGEST`].
+/// The ratio of line to surface at every load that both resolve, and over decades below [`LARGEST`].
 pub fn ratios(curves: &[MeanCurve]) -> (Vec<Ratio>, Vec<Factor>) {
     let (mut ratios, mut factors) = (Vec::new(), Vec::new());
     for solid in curves.iter().filter(|c| c.model == "bem3d") {

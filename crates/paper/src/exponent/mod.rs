@@ -4,9 +4,9 @@
 //! surfaces; the mean on the finest grid is the sum of the mean on the coarsest and of all differences
 //! ([`analysis::Multilevel`]). From it come local slopes with a band over all forces together, exponents over
 //! fixed windows and towards zero force (a fit with a correction to scaling), and the factor between line and
-//! surface, each with the part that the finest grid leaves. The grid is not extrapolated: a curve is resolved
-//! down to where that part exceeds the stated error. Hypotheses that were fixed before a run are tested on it
-//! alone.
+//! surface, each with the discretisation error of the finest grid. The results are not extrapolated in the
+//! grid: a curve counts as resolved down to the load at which this error exceeds the stated one. Hypotheses
+//! that were fixed before a run are tested on it alone.
 //!
 //! All tables follow from `exponent-samples.csv` ([`exponent_of_samples`]).
 
@@ -37,7 +37,7 @@ use ladder::{Pair, Rungs};
 use runs::{Header, Progress, Result, Store, files, write_csv};
 use std::path::{Path, PathBuf};
 
-/// What the study solves.
+/// The parameters of the study.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Exponent {
     /// D_f.
@@ -46,7 +46,7 @@ pub struct Exponent {
     pub solid: Ladder,
     /// The one-dimensional reduction.
     pub line: Ladder,
-    /// Relative error that the finest grid may leave of k_bar.
+    /// Largest allowed relative discretisation error of k_bar on the finest grid.
     pub error: f64,
     /// Master seed.
     pub seed: u64,
@@ -74,7 +74,7 @@ impl Exponent {
     /// The study at these sizes.
     ///
     /// # Errors
-    /// None for the sizes there are; [`runs::Error::Parameter`] of a list of loads.
+    /// None for the existing sizes; [`runs::Error::Parameter`] for an invalid list of loads.
     pub fn new(sizes: ExponentSizes) -> Result<Self> {
         let (cells, surfaces, elements, lines, solid_forces, line_forces): (&[_], &[_], &[_], &[_], _, _) =
             match sizes {
@@ -134,10 +134,10 @@ impl Exponent {
         self.line.validate("elements", "lines", dimensions)
     }
 
-    /// Everything that it solves.
+    /// All jobs of the study.
     ///
     /// # Errors
-    /// [`runs::Error::Parameter`] for sizes that make no sense.
+    /// [`runs::Error::Parameter`] for invalid sizes.
     pub fn jobs(&self) -> Result<Vec<RealisationJob>> {
         self.validate()?;
         Ok(self
@@ -165,16 +165,18 @@ impl Exponent {
     }
 }
 
-/// Surfaces of each level that are solved first, so that the cost is known before the rest begins.
+/// Number of surfaces of each level that are solved first, so that the cost is known before the others are
+/// solved.
 const PILOT: usize = 2;
 
-/// Lines that say what the study costs, and how many surfaces `seconds` of all threads are worth.
+/// Lines of text with the predicted cost of the study, and with the number of surfaces that can be solved in
+/// `seconds` on all threads.
 ///
-/// What is stored counts as measured; besides, a few surfaces of the smaller grids are solved (those of the
-/// study, nothing is lost): grids that together take a thousandth of the cells of the largest one.
+/// Stored results count as measured. In addition, a few surfaces of the smaller grids are solved (which the
+/// study uses as well), on grids that together have a thousandth of the cells of the largest one.
 ///
 /// # Errors
-/// What the study refuses; what a model or the store refuses.
+/// As the study; errors of a model or of the store.
 pub fn exponent_plan(study: &Exponent, seconds: f64, progress: &dyn Progress) -> Result<Vec<String>> {
     study.validate()?;
     let store = Store::open(&study.out, study.fresh)?;
@@ -196,10 +198,11 @@ pub fn exponent_plan(study: &Exponent, seconds: f64, progress: &dyn Progress) ->
     Ok(lines)
 }
 
-/// Solves what is not stored, and writes `exponent-samples.csv` and what [`exponent_of_samples`] makes of it.
+/// Solves everything that is not stored, and writes `exponent-samples.csv` and the files that
+/// [`exponent_of_samples`] makes from it.
 ///
 /// # Errors
-/// [`runs::Error::Parameter`] for sizes that make no sense; what a model or the file system refuses.
+/// [`runs::Error::Parameter`] for invalid sizes; errors of a model or of the file system.
 pub fn exponent(study: &Exponent, progress: &dyn Progress) -> Result<Judged> {
     study.validate()?;
     let session = Session::open(&study.out, study.fresh)?;
@@ -233,14 +236,14 @@ pub fn exponent(study: &Exponent, progress: &dyn Progress) -> Result<Judged> {
     session.close(outcome).map(Judged::from)
 }
 
-/// Writes, from tables of samples of runs with seeds of their own, all together, `exponent.csv` (curves and
-/// local slopes), `exponent-levels.csv`, `exponent-laws.csv` (decades), `exponent-limit.csv` (towards zero
-/// force), `exponent-ratio.csv`, `exponent-factor.csv`, the pictures of slopes and ratios, and `exponent.md`,
-/// tables for a page; from the samples of `tested` alone `exponent-tests.csv`. Nothing is solved.
+/// Combines the tables of samples of runs with different seeds, and writes `exponent.csv` (curves and local
+/// slopes), `exponent-levels.csv`, `exponent-laws.csv` (decades), `exponent-limit.csv` (towards zero force),
+/// `exponent-ratio.csv`, `exponent-factor.csv`, the pictures of slopes and ratios, and `exponent.md` with
+/// tables for a page. `exponent-tests.csv` is made from the samples of `tested` alone. Nothing is solved.
 ///
 /// # Errors
-/// [`runs::Error::File`] for a file that is no table of samples or cannot be read or written,
-/// [`runs::Error::Parameter`] for runs that do not go together.
+/// [`runs::Error::File`] for a file that is not a table of samples or cannot be read or written,
+/// [`runs::Error::Parameter`] for runs that cannot be combined.
 pub fn exponent_of_samples(paths: &[PathBuf], tested: &[PathBuf], error: f64, out: &Path) -> Result<Judged> {
     require(error > 0.0 && error < 1.0, "error", error, "a share above 0 and below 1")?;
     let read = |paths: &[PathBuf]| -> Result<Vec<Rungs>> {

@@ -1,4 +1,4 @@
-//! The pictures: local slopes with bands beside the laws, and line over surface.
+//! The pictures: local slopes with bands and the laws, and the ratio of line to surface.
 
 use crate::words;
 use evaluation::{distinct, read_rows};

@@ -1,10 +1,10 @@
-//! What the study will cost, and how many surfaces a time is worth.
+//! Predicts the cost of the study, and the number of surfaces for a given time.
 
 use super::ladder::{Ladder, Pair, Rungs};
 use evaluation::Forces;
 
-/// Differences between grids that are not measured yet scatter so much less than those of the level before
-/// (in variance), at most.
+/// Largest ratio of the variance of a level to that of the level before, for differences between grids that
+/// are not measured yet.
 const SHRINKS: f64 = 0.5;
 
 /// One level of a ladder.
@@ -12,7 +12,7 @@ const SHRINKS: f64 = 0.5;
 pub struct LevelCost {
     /// Cells a side, or elements.
     pub size: usize,
-    /// Surfaces asked for.
+    /// Requested number of surfaces.
     pub surfaces: usize,
     /// Processor seconds of one surface for all fractal dimensions, both grids.
     pub seconds: f64,
@@ -21,12 +21,12 @@ pub struct LevelCost {
     pub variance: f64,
     /// Whether seconds and variance were measured, or follow from the level below.
     pub measured: bool,
-    /// Surfaces that make the error smallest in the time given.
+    /// Number of surfaces that minimises the error in the given time.
     pub best: usize,
 }
 
-/// Seconds and scatter of each level, from what is solved, and the numbers of surfaces that a time is worth:
-/// in proportion to `sqrt(variance/seconds)` (Giles 2008).
+/// Seconds and scatter of each level from the solved surfaces, and the best numbers of surfaces for a given
+/// time, in proportion to `sqrt(variance/seconds)` (Giles 2008).
 pub fn costs(ladder: &Ladder, rungs: &[Rungs], seconds: f64) -> Vec<LevelCost> {
     let mut levels: Vec<LevelCost> = Vec::with_capacity(ladder.sizes.len());
     for (level, &size) in ladder.sizes.iter().enumerate() {
@@ -82,7 +82,7 @@ fn variance(rungs: &[Rungs], level: usize) -> Option<f64> {
     (!all.is_empty()).then(|| all.iter().sum::<f64>() / all.len() as f64)
 }
 
-/// The levels as lines of text, with the time that the numbers asked for take on so many threads.
+/// The levels as lines of text, with the time of the requested numbers of surfaces on this number of threads.
 pub fn lines(name: &str, forces: &Forces, levels: &[LevelCost], threads: usize) -> Vec<String> {
     let mut lines = vec![format!(
         "{name}, loads {}: {:>9} {:>9} {:>14} {:>10} {:>14}",

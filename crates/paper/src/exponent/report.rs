@@ -17,12 +17,12 @@ fn surfaces_or_lines(model: &str) -> &'static str {
     if model == "bem3d" { "surfaces" } else { "lines" }
 }
 
-/// A probability: small ones as a power of ten.
+/// A probability; small ones are written as a power of ten.
 fn chance(of: f64) -> String {
     if of < 1e-3 { format!("{of:.0e}") } else { format!("{of:.3}") }
 }
 
-/// What was solved: surfaces of each grid and fractal dimension.
+/// The number of surfaces solved on each grid for each fractal dimension.
 fn solved(rungs: &[Rungs]) -> String {
     let rows = rungs.iter().map(|r| {
         let levels = r.sizes.iter().zip(&r.levels).map(|(size, pairs)| format!("{size}: {}", pairs.len()));
@@ -64,7 +64,7 @@ fn towards_zero(limits: &[Limit]) -> String {
     markdown_table(head, rows)
 }
 
-/// Exponents decade by decade, resolved ones.
+/// The resolved exponents, decade by decade.
 fn decades(laws: &[LawRow]) -> String {
     let head = "| | D_f | F_bar | alpha, 95 % | of it the grid | 0.266 D_f | 1/(1 + H) | inside |\n|---|---|---|---|---|---|---|---|";
     let rows = laws.iter().filter(|r| r.resolved && r.convention == Convention::Measured).map(|r| {
@@ -129,7 +129,7 @@ fn hypotheses(tests: &[Test]) -> String {
     markdown_table(head, rows)
 }
 
-/// Everything that a page shows: what was solved, exponents towards zero force and decade by decade, the
+/// All tables of a page: the numbers of surfaces, exponents towards zero force and decade by decade, the
 /// factor between line and surface, and the tests of the hypotheses.
 pub fn report(
     command: &str,

@@ -1,4 +1,4 @@
-//! The table of samples read back, and several of them together.
+//! Reads the table of samples, and combines several of them.
 
 use super::ladder::{Pair, Rungs, Solved};
 use evaluation::{Discretisation, Forces, read_rows};
@@ -31,8 +31,8 @@ fn same(a: f64, b: f64) -> bool {
 /// All pairs of a table of samples, each model and fractal dimension by itself, in its order.
 ///
 /// # Errors
-/// [`Error::File`] for a file that cannot be read or is no such table: its loads are those of the command in
-/// its header.
+/// [`Error::File`] for a file that cannot be read or is not such a table. The loads are those of the command
+/// in its header.
 pub fn read(path: &Path) -> Result<Vec<Rungs>> {
     let file = CsvFile::read(path)?;
     let wrong = |what: &str| Error::content(path, format!("no table {SAMPLES}: {what}"));
@@ -90,10 +90,10 @@ pub fn read(path: &Path) -> Result<Vec<Rungs>> {
     Ok(all)
 }
 
-/// The pairs of several runs with seeds of their own together, at the loads that they have in common.
+/// Combines the pairs of several runs with different seeds, at the loads that they have in common.
 ///
 /// # Errors
-/// [`Error::Parameter`] for a model and fractal dimension whose levels are of unlike sizes, or that have no
+/// [`Error::Parameter`] for a model and fractal dimension whose levels have different sizes, or that have no
 /// load in common.
 pub fn together(runs: Vec<Vec<Rungs>>) -> Result<Vec<Rungs>> {
     let mut all: Vec<Rungs> = Vec::new();
@@ -133,7 +133,7 @@ pub fn together(runs: Vec<Vec<Rungs>>) -> Result<Vec<Rungs>> {
 }
 
 impl Solved {
-    /// Keeps these loads, as far as it has them.
+    /// Keeps these loads, where it has them.
     fn keep(&mut self, forces: &[f64]) {
         let own = |f: &f64| {
             let at = self.forces.iter().position(|other| same(*f, *other))?;

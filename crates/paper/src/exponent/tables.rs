@@ -88,7 +88,7 @@ pub fn levels(curves: &[MeanCurve]) -> Result<Table> {
         .table()
 }
 
-/// Exponents over decades beside the laws.
+/// Exponents over decades, compared with the laws.
 pub fn laws(rows: &[LawRow]) -> Result<Table> {
     TableOf::new("Exponents decade by decade, and the laws that lie in their intervals", rows)
         .column("model", "-", MODEL, |r| r.model)

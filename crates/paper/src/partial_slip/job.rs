@@ -12,7 +12,7 @@ use mdr1d::Equivalent;
 use runs::{Error, Job, Result, ResultKind};
 use std::sync::Arc;
 
-/// Number of the format of stored results. Raise it when [`SurfaceSlips`] changes, or what its numbers mean.
+/// Number of the format of stored results. Raise it when [`SurfaceSlips`] changes, or the meaning of its numbers.
 const FORMAT: u32 = 1;
 
 /// One surface with one boundary under all loads, for all Poisson's ratios.
@@ -29,10 +29,11 @@ const STIFFNESS_TOLERANCE: f64 = 1e-3;
 /// Both components of the traction at each share, along each direction.
 type Tractions = [Vec<[Vec<f64>; 2]>; 2];
 
-/// Along x and along y: the mean of both has no part of a surface's own direction but its square.
+/// Directions of the force, along x and along y: in the mean of both, the anisotropy of a surface enters only
+/// with its square.
 const DIRECTIONS: [[f64; 2]; 2] = [[1.0, 0.0], [0.0, 1.0]];
 
-/// What a surface is pressed with, and what its displacements are counted in.
+/// The normal load of a surface, and the unit of its displacements.
 #[derive(Clone, Copy)]
 struct Pressed {
     force: f64,
@@ -90,8 +91,8 @@ impl SlipJob {
         model.prepare(&scene, self.seed).map_err(Error::model(self.name()))
     }
 
-    /// Under one load with one Poisson's ratio; the tractions of the first ratio are filled in, and the
-    /// others are compared with them.
+    /// Solves one load with one Poisson's ratio. The tractions of the first ratio are stored, and those of
+    /// the others are compared with them.
     fn slipped(
         &self,
         [pressed, sliding, cycling, yielding]: [&mut (dyn PreparedContact + 'static); 4],
@@ -153,7 +154,7 @@ impl SlipJob {
         Ok(slipped)
     }
 
-    /// The equivalent profile of the bodies without Poisson's ratio: in these units it is that of all.
+    /// The equivalent profile of bodies with Poisson's ratio 0; in these units it is the same for all ratios.
     fn equivalent(
         contact: &mut dyn PreparedContact,
         force: f64,
@@ -181,8 +182,8 @@ impl SlipJob {
     }
 }
 
-/// Stiffness along the branch at each share; none where it misses its tolerance, because it jumps where a cell
-/// begins to slip.
+/// Stiffness along the branch at each share; `None` where it does not meet its tolerance, because it jumps
+/// where a cell begins to slip.
 fn stiffness(
     contact: &mut dyn PreparedContact,
     load: Pressed,

@@ -11,7 +11,7 @@ pub(super) struct SolvedCase<'a> {
     pub(super) surfaces: &'a [SurfaceSlips],
 }
 
-/// Tangential over normal stiffness, sticking, over Mindlin's ratio.
+/// Ratio of tangential to normal stiffness in full stick, over Mindlin's ratio.
 pub(super) struct StiffnessRow {
     pub(super) case: SlipCase,
     pub(super) force_bar: f64,
@@ -19,7 +19,7 @@ pub(super) struct StiffnessRow {
     /// Share of the square in contact.
     pub(super) contact: Option<Estimate>,
     pub(super) min_contact_cells: usize,
-    /// Of the mean of both directions.
+    /// The ratio for the mean of both directions.
     pub(super) ratio: Option<Estimate>,
     pub(super) along_x: Option<Estimate>,
     pub(super) along_y: Option<Estimate>,
@@ -29,8 +29,8 @@ pub(super) struct StiffnessRow {
     pub(super) left_out: usize,
 }
 
-/// A state of first loading: what it is, and what is missed. The misses are relative and of each surface,
-/// approximation over solution less 1.
+/// A state of first loading, and the errors of the approximations: approximation over solution less 1, for
+/// each surface.
 pub(super) struct SlipRow {
     pub(super) case: SlipCase,
     pub(super) force_bar: f64,
@@ -76,7 +76,7 @@ fn ratios(slipped: &Slipped, poisson: f64) -> [f64; 4] {
     [middle / mindlin, xx / mindlin, yy / mindlin, (xx - yy).hypot(2.0 * xy) / middle]
 }
 
-/// Loads and Poisson's ratios with their places.
+/// Loads and Poisson's ratios with their indices.
 fn places(study: &PartialSlip) -> impl Iterator<Item = ((usize, f64), (usize, f64))> + '_ {
     let forces = study.forces.values().iter().copied().enumerate();
     forces.flat_map(|force| study.poissons.iter().copied().enumerate().map(move |nu| (force, nu)))
@@ -106,7 +106,7 @@ pub(super) fn stiffness(study: &PartialSlip, solved: &[SolvedCase<'_>]) -> Vec<S
     rows
 }
 
-/// An approximation against the solution of each surface.
+/// An approximation compared with the solution of each surface.
 fn missed(pairs: impl Iterator<Item = [Option<f64>; 2]>) -> Option<Estimate> {
     let both = pairs.filter_map(|[approximation, solution]| Some(approximation? / solution? - 1.0));
     mean(both.filter(|miss| miss.is_finite()))

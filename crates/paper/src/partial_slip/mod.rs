@@ -1,11 +1,10 @@
-//! Partial slip of rough surfaces cell by cell, and what approximations by the normal contact miss of it.
+//! Partial slip of rough surfaces cell by cell, and the errors of approximations by the normal contact.
 //!
 //! The approximation of Ciavarella and Jaeger takes tractions `mu (p(F) - p(F - Q/mu))` and the displacement
 //! `mu (E*/G*) (d(F) - d(F - Q/mu))`. It solves Coulomb's problem where Poisson's ratio is 0
-//! (`tests/tests/partial_slip.rs`), and depends on Poisson's ratio through G*/E* alone. So the solution
-//! without Poisson's ratio, in the units of its tractions and of `mu (E*/G*) d(F)`, is that approximation for
-//! every other ratio, and the difference of both is what it misses. `equivalent` is compared in the same
-//! units.
+//! (`tests/tests/partial_slip.rs`), and depends on Poisson's ratio through G*/E* alone. So the solution for a
+//! Poisson's ratio of 0, in units of its tractions and of `mu (E*/G*) d(F)`, is that approximation for every
+//! other ratio, and the difference of the two is its error. `equivalent` is compared in the same units.
 
 mod job;
 mod means;
@@ -34,11 +33,10 @@ const NAME: &str = "partial-slip";
 
 /// Solves the contacts and writes `partial-slip.csv` (first loading), `partial-slip-stiffness.csv`,
 /// `partial-slip-loops.csv`, `partial-slip-samples.csv`, pictures and `partial-slip.md` into the directory of
-/// the study. What is stored there is not solved again.
+/// the study. Stored results are not solved again.
 ///
 /// # Errors
-/// [`runs::Error::Parameter`] for numbers that make no sense, what a model refuses, and files that cannot be
-/// written.
+/// [`runs::Error::Parameter`] for invalid parameters, errors of a model, and files that cannot be written.
 pub fn partial_slip(study: &PartialSlip, progress: &dyn Progress) -> Result<Judged> {
     study.check()?;
     let session = Session::open(&study.out, study.fresh)?;
@@ -176,7 +174,7 @@ mod tests {
     }
 
     #[test]
-    fn nonsense_is_named() {
+    fn invalid_parameters_are_named() {
         let small = || small(Path::new("never-made"));
         for (study, name) in [
             (PartialSlip { threads: 0, ..small() }, "threads"),

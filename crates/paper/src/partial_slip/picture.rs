@@ -61,12 +61,12 @@ fn same(a: f64, b: f64) -> bool {
     (a - b).abs() < 1e-9
 }
 
-/// The one of the middle, the larger of two.
+/// The middle value, or the larger of the two middle ones.
 fn middle(values: &[f64]) -> f64 {
     values.get(values.len() / 2).copied().unwrap_or_default()
 }
 
-/// The value that comes nearest.
+/// The nearest value.
 fn nearest(values: &[f64], to: f64) -> f64 {
     values.iter().copied().min_by(|a, b| (a - to).abs().total_cmp(&(b - to).abs())).unwrap_or(to)
 }
@@ -125,7 +125,7 @@ fn curves(rows: &[SlipRow], out: &Path) -> Result<Vec<PathBuf>> {
     Ok(picture.save(out, "partial-slip-curve")?)
 }
 
-/// What the paper of 2014 shows: share that sticks and stiffness, over the tangential force.
+/// As in the paper of 2014: share of the contact that sticks, and stiffness, over the tangential force.
 fn fractions(rows: &[SlipRow], out: &Path) -> Result<Vec<PathBuf>> {
     type Column = (fn(&SlipRow) -> Option<f64>, fn(&SlipRow) -> Option<f64>);
     let (forces, ratios) =
@@ -203,7 +203,8 @@ fn ratios(rows: &[StiffnessRow], out: &Path) -> Result<Vec<PathBuf>> {
     Ok(Panels { pictures, columns, title, legend }.save(out, "partial-slip-stiffness")?)
 }
 
-/// What Ciavarella and Jaeger miss: four numbers over Poisson's ratio, for several tangential forces.
+/// The errors of Ciavarella and Jaeger's approximation: four numbers over Poisson's ratio, for several
+/// tangential forces.
 fn misses(slips: &[SlipRow], loops: &[LoopRow], out: &Path) -> Result<Vec<PathBuf>> {
     type Found = (f64, f64, f64, f64, Option<f64>, Option<f64>);
     let d = distinct(slips.iter().map(|r| r.fractal_dimension)).first().copied().unwrap_or_default();

@@ -1,4 +1,4 @@
-//! What was found, in short tables.
+//! The results in short tables.
 
 use super::means::{LoopRow, SlipRow, StiffnessRow};
 use super::study::PartialSlip;
@@ -12,7 +12,7 @@ fn same(a: f64, b: f64) -> bool {
     (a - b).abs() < 1e-9
 }
 
-/// With as many decimals as an interval of two digits has.
+/// A number with as many decimals as its interval has with two digits.
 fn plain(of: Option<Estimate>) -> String {
     of.map_or_else(String::new, |Estimate { value, half_width }| format!("{value:.4} ± {half_width:.4}"))
 }

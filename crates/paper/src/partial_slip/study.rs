@@ -1,4 +1,4 @@
-//! What the study of partial slip solves, and what a surface gives.
+//! The parameters of the study of partial slip, and the results of a surface.
 
 use contact_model::{Body, Boundary, Effects, Friction, Outputs, Pair, Scene, SelfAffine, Surface};
 use evaluation::limits::{self, require, within};
@@ -8,8 +8,8 @@ use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 use std::path::PathBuf;
 
-/// Coefficient of friction. Where normal and tangential contact are independent, it scales tractions and
-/// displacements alone.
+/// Coefficient of friction. Where normal and tangential contact are independent, it only scales tractions and
+/// displacements.
 pub(super) const COEFFICIENT: f64 = 0.3;
 /// Waves a side at which the spectrum of periodic surfaces rolls off.
 pub(super) const ROLL_OFF: f64 = 4.0;
@@ -18,10 +18,11 @@ pub(super) const SHARES: [f64; 10] = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.
 /// Largest Q/(mu F) of loops.
 pub(super) const AMPLITUDES: [f64; 3] = [0.3, 0.6, 0.9];
 
-/// What the study of partial slip solves.
+/// The parameters of the study of partial slip.
 ///
-/// Bodies are alike, so that Dundurs' second constant is 0 and normal and tangential contact are independent.
-/// Their modulus is such that E* is the same for every Poisson's ratio: pressures are too.
+/// Both bodies have the same constants, so that Dundurs' second constant is 0 and normal and tangential
+/// contact are independent. Their modulus is such that E* is the same for every Poisson's ratio: pressures
+/// are too.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PartialSlip {
     /// Cells a side.
@@ -112,7 +113,7 @@ impl PartialSlip {
     /// The study at these sizes.
     ///
     /// # Errors
-    /// None for the sizes there are; [`Error::Parameter`] of a list of loads.
+    /// None for the existing sizes; [`Error::Parameter`] for an invalid list of loads.
     pub fn new(sizes: PartialSlipSizes) -> Result<Self> {
         let quick = sizes == PartialSlipSizes::Quick;
         let (cells, surfaces, forces) = if quick { (32, 3, "0.2") } else { (128, 10, "0.05,0.2,1") };
@@ -188,20 +189,22 @@ pub(super) struct Slipped {
     /// Share of the square in contact.
     pub(super) contact: f64,
     pub(super) contact_cells: usize,
-    /// Tangential stiffness of the whole contact, sticking, over the normal one: xx, yy, xy.
+    /// Tangential stiffness of the whole contact in full stick, over the normal stiffness: xx, yy, xy.
     pub(super) stiffness: [f64; 3],
-    /// At the [`SHARES`] of a first loading, mean of a force along x and one along y; none with periodic boundaries.
+    /// At the [`SHARES`] of a first loading, mean of a force along x and one along y; empty with periodic
+    /// boundaries.
     pub(super) points: Vec<SlipPoint>,
-    /// Energy that a loop of each of the [`AMPLITUDES`] dissipates, over mu F and the displacement that counts [`SlipPoint::displacement`].
+    /// Energy that a loop of each of the [`AMPLITUDES`] dissipates, over mu F and the unit of
+    /// [`SlipPoint::displacement`].
     pub(super) dissipated: Vec<f64>,
 }
 
-/// A state of a first loading. Displacements are counted in mu (E*/G*) d(F), the displacement at which the
-/// contact slides as a whole by Ciavarella and Jaeger.
+/// A state of a first loading. Displacements are in units of mu (E*/G*) d(F), the displacement at which the
+/// contact slides as a whole according to Ciavarella and Jaeger.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub(super) struct SlipPoint {
     pub(super) displacement: f64,
-    /// Share of the contact that sticks; of the equivalent profile (c/a)^2.
+    /// Share of the contact that sticks; for the equivalent profile (c/a)^2.
     pub(super) stick: f64,
     /// dQ/ddelta over that without tangential force; none of the equivalent profile.
     pub(super) stiffness: Option<f64>,
@@ -224,17 +227,17 @@ impl SlipPoint {
     }
 }
 
-/// What a surface gives.
+/// The results of a surface.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct SurfaceSlips {
-    /// By force, then by Poisson's ratio; none where the tolerance was missed.
+    /// By force, then by Poisson's ratio; `None` where the tolerance was not met.
     pub(super) solved: Vec<Option<Slipped>>,
     /// The equivalent profile by force, free boundaries alone: points and dissipated energies.
     pub(super) equivalent: Vec<Option<(Vec<SlipPoint>, Vec<f64>)>>,
 }
 
 impl SurfaceSlips {
-    /// Of a force and a Poisson's ratio, by their places.
+    /// The results for a force and a Poisson's ratio, by their indices.
     pub(super) fn at(&self, study: &PartialSlip, force: usize, poisson: usize) -> Option<&Slipped> {
         self.solved.get(force * study.poissons.len() + poisson)?.as_ref()
     }

@@ -8,7 +8,7 @@ use evaluation::{Discretisation, RealisationJob};
 use runs::{Error, Job, Result, ResultKind};
 use std::sync::Arc;
 
-/// Number of the format of stored solves. Raise it when [`CaseSolve`] changes, or what its numbers mean.
+/// Number of the format of stored solves. Raise it when [`CaseSolve`] changes, or the meaning of its numbers.
 const FORMAT: u32 = 2;
 
 /// One surface of one case under all loads.

@@ -1,4 +1,4 @@
-//! The two cases of Sec. II side by side: a free fractal square, and a periodic one whose spectrum rolls off.
+//! Compares the two cases of Sec. II: a free fractal square, and a periodic one whose spectrum rolls off.
 
 mod job;
 mod picture;
@@ -28,11 +28,10 @@ use study::{CaseCurve, CasePoint, CaseSolve, Solves, SurfaceCase};
 
 /// Solves the two cases (and the two mixed ones) of each fractal dimension and roll-off with boundary
 /// elements, Persson's and Greenwood and Williamson's theories, and writes `two-cases.csv`,
-/// `two-cases-pairs.csv`, pictures and `two-cases.md` into a directory. What is stored there is not solved
-/// again.
+/// `two-cases-pairs.csv`, pictures and `two-cases.md` into a directory. Stored results are not solved again.
 ///
 /// # Errors
-/// [`Error::Parameter`] for numbers that make no sense, what a model refuses, and files that cannot be written.
+/// [`Error::Parameter`] for invalid parameters, errors of a model, and files that cannot be written.
 pub fn two_cases(study: &TwoCases, out: &Path, progress: &dyn Progress) -> Result<Judged> {
     study.check()?;
     let session = Session::open(out, false)?;
@@ -86,7 +85,7 @@ pub fn two_cases(study: &TwoCases, out: &Path, progress: &dyn Progress) -> Resul
     session.close(outcome).map(|outcome| Judged::new(outcome, claims))
 }
 
-/// What a study solves, the coarser grids included.
+/// The jobs of a study, the coarser grids included.
 ///
 /// # Errors
 /// As [`two_cases`] before it solves.
@@ -105,7 +104,8 @@ fn jobs(study: &TwoCases) -> Vec<CaseJob> {
     all.map(|(case, seed)| CaseJob { study: Arc::clone(&shared), case, seed }).collect()
 }
 
-/// All surfaces of all cases, each under increasing loads; in order, whatever the number of threads.
+/// Solves all surfaces of all cases, each under increasing loads. The results are in order for any number of
+/// threads.
 fn solve(study: &TwoCases, store: &Store, progress: &dyn Progress) -> Result<Vec<Vec<Solves>>> {
     let jobs = jobs(study);
     let memory = jobs.iter().map(Job::memory).fold(0.0, f64::max);
@@ -149,7 +149,7 @@ fn mean_curve(
     CaseCurve { case, model: "bem3d", points }
 }
 
-/// A theory where it holds.
+/// The results of a theory in its range of validity.
 fn theory(study: &TwoCases, case: SurfaceCase, model: &dyn ContactModel) -> Result<CaseCurve> {
     let mut scene = case.scene(study)?;
     scene.outputs.area = true;
@@ -268,7 +268,7 @@ mod tests {
     }
 
     #[test]
-    fn nonsense_is_named() {
+    fn invalid_parameters_are_named() {
         let out = Path::new("never-made");
         for (study, name) in [
             (TwoCases { threads: 0, ..small() }, "threads"),

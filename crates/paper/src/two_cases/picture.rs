@@ -11,7 +11,7 @@ use runs::{CsvFile, Result};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 
-/// Stiffness above which the pictures end: towards full contact of a periodic square it has no limit.
+/// Largest stiffness in the pictures: that of a periodic square diverges towards full contact.
 const HIGHEST: f64 = 300.0;
 
 const ROLL_OFF: &str = "waves a side where the spectrum rolls off; empty for one that is fractal to the side";

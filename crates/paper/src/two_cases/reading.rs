@@ -1,4 +1,4 @@
-//! What the curves say about the paper's belief.
+//! Compares the curves with the expectations of the paper.
 
 use super::study::{CaseCurve, CasePoint, PairRow, Solves, SurfaceCase, TwoCases};
 use crate::claim::{Claim, Estimate, plain};
@@ -12,7 +12,7 @@ use runs::{Error, Result};
 /// far from full contact.
 const AREAS: [f64; 2] = [0.01, 0.2];
 
-/// A slope counts as that of a proportionality when it differs from 1 by no more.
+/// Largest difference of a slope from 1 that still counts as proportionality.
 const PROPORTIONAL: f64 = 0.1;
 
 /// `d ln k / d ln F` at each point from its neighbours.
@@ -35,8 +35,9 @@ pub(super) struct SolvedCase<'a> {
     pub(super) coarser: &'a [Solves],
 }
 
-/// What Sec. II expects: an exponent below 1 without a roll-off; 1, and a factor of the order of unity, for
-/// the periodic surface with one, and only for that; and what Secs. I and IV say of the area.
+/// Judges the expectations of Sec. II: an exponent below 1 without a roll-off; 1, and a factor of the order
+/// of unity, for the periodic surface with one, and only for that; and the statements of Secs. I and IV about
+/// the area.
 ///
 /// # Errors
 /// As [`claims::entries`].
@@ -74,7 +75,7 @@ fn exponent(solved: SolvedCase<'_>, window: &FitWindow) -> Found {
     Ok((alpha, format!("{window}; {cells} cells a side; the interval holds the scatter")))
 }
 
-/// k h/F in a window: k_bar counts 1.1419 E* L, F_bar counts E* h L.
+/// k h/F in a window; k_bar is in units of 1.1419 E* L, F_bar in units of E* h L.
 fn constant(curve: &CaseCurve, window: &FitWindow) -> Found {
     let inside = window.min_force_bar..=window.max_force_bar;
     let points = curve.points.iter().filter(|p| inside.contains(&p.force_bar));
@@ -84,14 +85,14 @@ fn constant(curve: &CaseCurve, window: &FitWindow) -> Found {
     Ok((range, format!("the interval is the range over the loads; {window}")))
 }
 
-/// Cells in contact from which an area counts as resolved, and the largest share of the square.
+/// Number of cells in contact from which on an area counts as resolved, and the largest share of the square.
 const RESOLVED: (usize, f64) = (100, 0.1);
 
 /// Area over force: its exponent, and kappa.
 ///
-/// Their intervals hold the scatter of the surfaces and, in quadrature, the difference from cells twice as
-/// large: an area counted in cells is too large by a part that falls with the first order, so that as much is
-/// left.
+/// Their intervals contain the scatter of the surfaces and, in quadrature, the difference from cells twice as
+/// large: the error of the area of the cells in contact is of first order, so that it is about as large as
+/// this difference.
 fn areas(solved: SolvedCase<'_>) -> [Found; 2] {
     let (cells, share) = RESOLVED;
     let inside = |p: &CasePoint| {
@@ -138,7 +139,7 @@ fn areas(solved: SolvedCase<'_>) -> [Found; 2] {
     found().map_or_else(none, |both| both.map(Ok))
 }
 
-/// Periodic over free stiffness, surface by surface, for both spectra.
+/// Ratio of periodic to free stiffness, surface by surface, for both spectra.
 pub(super) fn pairs(study: &TwoCases, solved: &[Vec<Solves>]) -> Result<Vec<PairRow>> {
     let mut rows = Vec::new();
     let cases = study.cases();
@@ -218,7 +219,7 @@ pub(super) fn difference(theory: &CaseCurve, solved: &CaseCurve) -> Option<f64> 
     relative.max_by(f64::total_cmp)
 }
 
-/// What was found, in words and short tables; `pictures` are the names of what is drawn.
+/// The results in words and short tables; `pictures` are the names of the pictures.
 pub(super) fn summary(
     study: &TwoCases,
     pictures: &[String],

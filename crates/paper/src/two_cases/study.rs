@@ -1,4 +1,4 @@
-//! The two problems and what is found of them.
+//! The two problems and their results.
 
 use crate::claim::Estimate;
 use analysis::StiffnessSample;
@@ -11,17 +11,17 @@ use std::f64::consts::TAU;
 
 pub(crate) const NAME: &str = "two-cases";
 
-/// What is solved.
+/// The parameters of the study.
 ///
-/// Sec. II of the paper tells two problems apart: fractal up to the size of the system with free edges, where
-/// it expects `k ~ F^alpha`, and a spectrum that ends at a longest wave, of which a periodic patch stands for
-/// the rest, where Persson finds `k ~ F`.
+/// Sec. II of the paper distinguishes two problems. One is fractal up to the size of the system and has free
+/// edges; there it expects `k ~ F^alpha`. In the other the spectrum ends at a longest wave and a periodic
+/// patch represents the whole surface; there Persson finds `k ~ F`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TwoCases {
     /// Cells a side.
     pub cells: usize,
-    /// Cells of the shortest wave: the theories want a spectrum with an end, and the grid resolves it. The
-    /// same surfaces are solved with half as many as well.
+    /// Number of cells in the shortest wave: the theories need a spectrum with an end, which the grid
+    /// resolves. The same surfaces are also solved with half as many cells.
     pub cells_per_wave: usize,
     /// Surfaces of each case.
     pub surfaces: usize,
@@ -48,8 +48,8 @@ pub(super) struct SurfaceCase {
     pub(super) roll_off: Option<f64>,
 }
 
-/// The paper's two cases, and the other two that tell boundary and spectrum apart: name and colour, as the
-/// table and the pictures have them.
+/// The paper's two cases, and the two others that separate the effects of boundary and spectrum: name and
+/// colour in the table and the pictures.
 pub(super) const NAMES: [(&str, &str); 4] = [
     ("free, fractal", "#30126e"),
     ("free, roll-off", "#8c2d5a"),
@@ -97,7 +97,7 @@ impl SurfaceCase {
     }
 }
 
-/// Periodic over free stiffness of the same surfaces.
+/// Ratio of periodic to free stiffness of the same surfaces.
 pub(super) struct PairRow {
     pub(super) fractal_dimension: f64,
     /// Waves a side at the roll-off; `None` for a spectrum that is fractal to the side.
@@ -109,8 +109,8 @@ pub(super) struct PairRow {
 }
 
 impl TwoCases {
-    /// The paper's two cases and the two between, of each fractal dimension: first those that are fractal to
-    /// the side, which all roll-offs share.
+    /// The paper's two cases and the two mixed ones for each fractal dimension: first those that are fractal
+    /// up to the side, which all roll-offs have in common.
     pub(super) fn cases(&self) -> Vec<SurfaceCase> {
         let spectra = || std::iter::once(None).chain(self.roll_offs.iter().copied().map(Some));
         let of = |&fractal_dimension: &f64| {
@@ -173,14 +173,14 @@ impl TwoCases {
     }
 }
 
-/// What one solve gave.
+/// The result of one solve.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub(super) enum CaseSolve {
     /// A stiffness and the share of the square in contact.
     StiffnessSample(StiffnessSample, f64),
     /// Full contact of a periodic square, which has no stiffness.
     FullContact,
-    /// It missed its tolerance.
+    /// A solve that did not meet its tolerance.
     NotConverged,
 }
 

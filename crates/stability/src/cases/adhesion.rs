@@ -64,7 +64,7 @@ fn attracted(map: &HeightMap, work: f64, range: f64) -> Scene {
     attracted_by(map, Adhesion::FiniteRange { work, range, law: AdhesionLaw::Exponential })
 }
 
-/// States that a state meets its tolerance and is stable.
+/// Asserts that a state meets its tolerance and is stable.
 pub(super) fn meets_and_is_stable(ledger: &mut Ledger, state: &ContactState) {
     ledger.meets(state, TOLERANCE);
     let stability = state.adhesive.map_or(f64::NAN, |adhesive| adhesive.stability);
@@ -79,8 +79,8 @@ pub(super) fn go(history: &mut dyn PreparedContact, load: Load) -> Result<Contac
     history.advance(Step::normal(0.0, load))
 }
 
-/// What a state with free boundaries leaves open: of open cells the difference between the traction and the
-/// law of the gap, of closed ones a contact pressure that pulls; both over work/range. By plain sums.
+/// The residual of a state with free boundaries, by plain sums: for open cells the difference between the
+/// traction and the law of the gap, for closed ones a negative contact pressure, both over work/range.
 fn conditions(
     ledger: &mut Ledger,
     map: &HeightMap,

@@ -1,4 +1,4 @@
-//! The same question twice.
+//! Repeated solves of the same problem.
 
 use crate::case::{Case, Effort};
 use crate::ledger::Ledger;

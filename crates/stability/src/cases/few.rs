@@ -57,7 +57,7 @@ pub(super) const CASES: [Case; 6] = [
     },
 ];
 
-/// Flat cells at height 0 where `face` says so, everything else one side lower.
+/// A map with height 0 on the cells that `face` selects, and lower by one side elsewhere.
 pub(super) fn faces(cells: usize, face: impl Fn(usize, usize) -> bool) -> Result<HeightMap> {
     map(cells, 1.0, |x, y| if face(x, y) { 0.0 } else { -1.0 })
 }

@@ -10,10 +10,11 @@ use crate::slide::{
 use contact_model::{Body, ContactState, Error, HeightMap, Load, Pair, Result, Tangential};
 use std::f64::consts::PI;
 
-/// By hand, beside [`TIGHTER`]: the direction of a traction is good to the square root of the gap.
+/// Bound for results by hand at [`TIGHTER`]: the error of the direction of a traction is the square root of
+/// the gap.
 const BY_HAND: f64 = 1e-7;
-/// A duality gap of 1e-10 leaves tractions their square root in the energy norm: displacements, forces and energies
-/// are of second order.
+/// With a duality gap of 1e-10, the error of the tractions in the energy norm is its square root; that of
+/// displacements, forces and energies is of second order.
 const SECOND_ORDER: f64 = 1e-8;
 /// A direction that is no axis.
 const ALONG: [f64; 2] = [0.6, 0.8];
@@ -458,14 +459,14 @@ fn threads(ledger: &mut Ledger, effort: Effort) -> Result<()> {
     Ok(())
 }
 
-/// The witness of normal contact has the same kernel where there is no Poisson's ratio.
+/// With a Poisson's ratio of 0 the kernel is that of the reference implementation of normal contact.
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::plain::PlainSum;
 
     #[test]
-    fn a_plain_shear_of_nothing_is_the_plain_sum() {
+    fn a_plain_shear_without_poissons_ratio_is_the_plain_sum() {
         let map = rough_map(2.4, 8, 1).unwrap();
         let normal = PlainSum::of(&map).stiffness(&[3, 4, 12, 20]);
         let k = crate::PlainShear::of(&map, 0.0).stiffness(&[3, 4, 12, 20]);

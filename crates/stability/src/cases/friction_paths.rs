@@ -10,9 +10,10 @@ use crate::slide::{
 use contact_model::{Boundary, ContactModel, Error, HeightMap, Load, Result, Scene, Step, Tangential};
 use std::f64::consts::PI;
 
-/// Two states at a tolerance of 1e-10 of the energy: displacements and energies.
+/// Bound of displacements and energies between two states at a tolerance of 1e-10 of the energy.
 const SECOND_ORDER: f64 = 1e-8;
-/// Beside relaxation: tractions as well, in shares of the largest, a tenth of them.
+/// Bound in comparison with relaxation, which includes a tenth of the deviation of the tractions over the
+/// largest one.
 const RELAXED: f64 = 1e-7;
 
 pub(super) const CASES: [Case; 7] = [

@@ -39,8 +39,8 @@ pub(super) const CASES: [Case; 4] = [
     },
 ];
 
-/// What a state leaves open of the conditions of `0 <= p <= p_s`, gaps in rms heights (approaches where there
-/// is none); by plain sums.
+/// The residual of the conditions of `0 <= p <= p_s`, by plain sums. Gaps are in rms heights, or in
+/// approaches where there is no rms height.
 fn conditions(ledger: &mut Ledger, map: &HeightMap, hardness: f64, state: &ContactState) -> Result<()> {
     ledger.meets(state, tight().tolerance);
     let (p, d) = (pressure(state)?, approach(state)?);
@@ -70,7 +70,7 @@ fn conditions(ledger: &mut Ledger, map: &HeightMap, hardness: f64, state: &Conta
     Ok(())
 }
 
-/// Solves a map for forces, as shares of what all cells carry.
+/// Solves a map for forces, given as shares of the largest force that all cells carry.
 fn pressed(ledger: &mut Ledger, map: &HeightMap, hardness: f64, shares: &[f64]) -> Result<Vec<ContactState>> {
     let mut scene = watched(map);
     scene.outputs.stiffness = false;

@@ -1,4 +1,4 @@
-//! What arithmetic and patience cannot reach, and what transforms and sums must.
+//! Tolerances and iteration limits that cannot be met, and the accuracy of transforms and sums.
 
 use crate::case::{Case, Effort};
 use crate::ledger::{Ledger, approach, stiffness};

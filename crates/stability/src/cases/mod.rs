@@ -1,4 +1,4 @@
-//! The registry.
+//! The registry of hard cases.
 
 mod adhesion;
 mod chance;

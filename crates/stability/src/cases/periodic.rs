@@ -1,4 +1,4 @@
-//! The square that repeats itself.
+//! Periodic boundaries.
 
 use crate::case::{Case, Effort};
 use crate::ledger::{Ledger, largest, mean_gap, pressure, stiffness};

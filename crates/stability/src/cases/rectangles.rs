@@ -1,4 +1,4 @@
-//! Maps that are no squares, cells that are no squares, and points that are not there.
+//! Rectangular maps, rectangular cells and undefined points.
 
 use crate::case::{Case, Effort};
 use crate::ledger::{Ledger, approach, largest, pressure, stiffness};

@@ -1,4 +1,4 @@
-//! Adhesion of short range: the work is in the last cells of a contact.
+//! Adhesion of short range: the work of adhesion acts in the last cells of a contact.
 
 use super::adhesion::{attracted_by, go, meets_and_is_stable, path};
 use crate::case::{Case, Effort};
@@ -30,17 +30,17 @@ pub(super) const CASES: [Case; 2] = [
 
 /// Largest traction of a cell on a straight front, over `sqrt(E* w/a)`; a is the longer side of a cell.
 const STRENGTH: f64 = 0.59;
-/// Energy of a front that its neighbours take away, over `a w` and its length.
+/// Energy of a front that the factors of the neighbours compensate, over `a w` and its length.
 const FRONT: f64 = 0.415;
-/// Neighbours lie on a ring of this radius and half width, within so many a.
+/// Neighbours lie on a ring of this radius and half width, in units of a.
 const RING: (f64, f64) = (4.0, 1.5);
 const NEAR: isize = 6;
 /// Share of the area in nearly full contact.
 const NEARLY: f64 = 0.85;
 
-/// What a state leaves open, square cells: of open cells the difference between the traction and that of
-/// their gap and their neighbours, of closed ones a contact pressure that pulls. Tractions over the largest
-/// one of a straight front, gaps over the range. By plain sums.
+/// The residual of a state on square cells, by plain sums: for open cells the difference between the traction
+/// and that of their gap and their neighbours, for closed ones a negative contact pressure. Tractions are
+/// over the largest one of a straight front, gaps over the range.
 fn conditions(
     ledger: &mut Ledger,
     sum: &PlainSum,
@@ -76,7 +76,7 @@ fn conditions(
     Ok(())
 }
 
-/// By what the neighbours multiply the traction of each cell: 1 on a straight front, more inside.
+/// The factor of the traction of each cell due to its neighbours: 1 on a straight front, more inside.
 fn factors(map: &HeightMap, periodic: bool, attached: &[f64]) -> Vec<f64> {
     let (columns, rows) = (map.columns().cast_signed(), map.rows().cast_signed());
     let lags = || (-NEAR..=NEAR).flat_map(|y| (-NEAR..=NEAR).map(move |x| (x, y)));
@@ -99,7 +99,7 @@ fn factors(map: &HeightMap, periodic: bool, attached: &[f64]) -> Vec<f64> {
 }
 
 fn pinned(ledger: &mut Ledger, effort: Effort) -> Result<()> {
-    /// What fronts are trapped by, and cells of a tenth of the radius.
+    /// Bound for the trapping of fronts, and for cells of a tenth of the radius.
     const JKR: f64 = 0.04;
     let in_radius = effort.pick(10.0, 24.0);
     let work = 1e-4;
@@ -151,7 +151,7 @@ fn pinned(ledger: &mut Ledger, effort: Effort) -> Result<()> {
 }
 
 fn avalanche(ledger: &mut Ledger, effort: Effort) -> Result<()> {
-    /// Of areas, between two solves of one state.
+    /// Bound for areas, between two solves of one state.
     const LOOP: f64 = 1e-6;
     let cells = effort.pick(48, 96);
     let map = rough_map(2.2, cells, 2)?.scaled(1.0, 0.02)?;

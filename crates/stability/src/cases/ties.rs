@@ -1,4 +1,4 @@
-//! Ties: cells that touch together.
+//! Ties: several cells that come into contact at the same load.
 
 use super::few::faces;
 use crate::case::{Case, Effort};

@@ -1,4 +1,4 @@
-//! Nondimensionalisation and zeros that a caller may choose.
+//! Nondimensionalisation, and a caller's choice of units and of the zero of heights.
 
 use crate::case::{Case, Effort};
 use crate::ledger::{Ledger, approach, stiffness};
@@ -6,7 +6,8 @@ use crate::maps::{map, rough_map};
 use crate::press::{tight, watched};
 use contact_model::{ContactModel, ContactState, Error, HeightMap, Load, Result};
 
-/// A handful of roundings on the way into the solver's units and out again, times what a solve makes of them.
+/// A few roundings from the conversion into the solver's units and back, times their amplification in a
+/// solve.
 const NEUTRAL: f64 = 1e-11;
 
 pub(super) const CASES: [Case; 5] = [
@@ -73,8 +74,8 @@ fn moved(ledger: &mut Ledger, effort: Effort) -> Result<()> {
     Ok(())
 }
 
-/// A cell of 2^-5 or 2^-7: the units hold one number that is no power of two, so every product is rounded
-/// once.
+/// With cells of 2^-5 or 2^-7 the units contain only one number that is not a power of two, so that every
+/// product is rounded once.
 fn powers_of_two(ledger: &mut Ledger, effort: Effort) -> Result<()> {
     let here = rough_map(2.4, effort.pick(32, 128), 9)?;
     for exponent in [-500, 500] {

@@ -13,12 +13,12 @@ use std::sync::Arc;
 #[cfg(feature = "faer")]
 mod reference;
 
-/// Bound of the residuals, in approaches.
+/// Bound of the residuals, as a share of the approach.
 const TIGHT: Limits = Limits { tolerance: 1e-10, height: None, outer_iterations: 200, factor: true };
-/// What they leave open in the pressure of a few cells.
+/// Error that these residuals allow in the pressure of a few cells, relative.
 const SAME: f64 = 1e-7;
-/// A solution nearer to a tie than this share of the hardness or of the approach may be found with a cell on
-/// its other side.
+/// Where a solution is nearer to a tie than this share of the hardness or of the approach, a cell may be
+/// assigned to the other side of the tie.
 const TIE: f64 = 1e-6;
 
 /// A solution of the conditions on a tiny grid.
@@ -131,7 +131,7 @@ fn a_force_is_shared_by_hand() {
     };
     // One cell is saturated, the other takes the rest.
     assert_eq!(brought(&[0, 1], &[1.0, 0.25], 1.5), (vec![0, 1], vec![1.0, 0.5]));
-    // Less than the saturated cell carries: all fall.
+    // The force is less than the saturated cell carries: all pressures are reduced.
     assert_eq!(brought(&[0, 1], &[1.0, 1.0], 1.0), (vec![0, 1], vec![0.5, 0.5]));
     // The lowest cells outside join; an undefined one never does.
     assert_eq!(brought(&[0], &[1.0], 1.5), (vec![0, 1], vec![1.0, 0.5]));
@@ -154,9 +154,9 @@ fn cells_join_saturate_and_stay_saturated_by_hand() {
     let (_, cells, p) = brought(&[0], &[2.0], 7.0, 2.0);
     assert_eq!((cells, p[0]), (vec![0, 1, 2, 4], 2.0));
     p[1..].iter().for_each(|p| assert_relative_eq!(*p, 5.0 / 3.0, max_relative = 1e-14));
-    // The rest of the cells falls, the saturated one does not.
+    // The pressure of the other cell falls, that of the saturated one does not.
     assert_eq!(brought(&[0, 1], &[1.0, 0.8], 1.4, 1.0).2[0].to_bits(), 1f64.to_bits());
-    // One saturates on the way: the other takes what it leaves.
+    // One cell saturates on the way: the other carries the rest.
     let (grown, _, p) = brought(&[0, 1, 2], &[1.0, 0.5, 0.25], 2.8, 1.0);
     assert!(!grown && p[1] >= 1.0);
     assert_relative_eq!(p[2], 0.8, max_relative = 1e-14);
@@ -230,7 +230,7 @@ fn forces_of_whole_cells_by_hand() {
     let p = [1.0, most, little, 1e-14];
     assert_eq!(saturated(&p, Some(2.0)), (vec![0, 1], vec![1.0, 1.0]));
     assert_eq!(saturated(&p, Some(2.0 + 1e-13)), (vec![0, 1], vec![1.0, 1.0]));
-    // Another force, no force, other cells: left as they are.
+    // With another force, without a force or on other cells the pressures are unchanged.
     for (p, force) in [(p, Some(2.0 + 1e-12)), (p, None), ([1.0, 0.5, 0.5, 1e-14], Some(2.0)), (p, Some(3.0))]
     {
         assert_eq!(saturated(&p, force), (vec![0, 1, 2, 3], p.to_vec()), "{force:?}");
@@ -257,7 +257,7 @@ fn one_cell_gives_way_where_the_saturated_ones_carry_a_little_too_much() {
     let (cells, p) = brought(&[1.0, 1.0, 1.0, 1e-9], 3.0 - 1e-8);
     assert_eq!((cells, p[0], p[2]), (vec![0, 1, 2], 1.0, 1.0));
     assert_relative_eq!(p[1], 1.0 - 1e-8, max_relative = 1e-14);
-    // More than that is taken from all.
+    // A larger excess is taken from all cells.
     assert_eq!(brought(&[1.0, 1.0], 1.0).1, [0.5, 0.5]);
 }
 

@@ -1,4 +1,4 @@
-//! Against minima that are known, and as a method of its own.
+//! Tests against known minima, and of the descent used on its own.
 
 use super::*;
 use crate::geometry::Grid;
@@ -46,8 +46,8 @@ fn evaluated(operators: &mut Operators, cells: &CellSet, p: &[f64], z: &[f64]) -
     (energy, u)
 }
 
-/// From pressures far from any solution: the energy falls at every step, the bounds and the force hold, and
-/// what is left of the conditions goes to zero, with and without a hardness.
+/// Starting from pressures far from any solution, the energy falls in every step, the bounds and the force
+/// hold, and the residuals of the conditions tend to zero, with and without a hardness.
 #[test]
 fn every_step_lowers_the_energy_and_the_end_is_the_solution() {
     for (grid, boundary) in [

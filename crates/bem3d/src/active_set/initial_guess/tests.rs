@@ -1,4 +1,5 @@
-//! The tangent of the last state beside the state that it predicts, and coarse grids beside the fine one.
+//! The tangent of the last state compared with the state that it predicts, and coarse grids compared with the
+//! fine one.
 
 use super::*;
 use crate::active_set::Bounds;

@@ -73,7 +73,7 @@ fn recipes() -> [(Tuning, &'static str, &'static str); 6] {
     ]
 }
 
-/// The recipe of the last system is the one that the tuned constants are made for.
+/// Asserts that the last system was solved with the recipe that these tuned constants select.
 fn assert_recipe(problem: &Problem, (_, begins, ends): (Tuning, &str, &str)) {
     let recipe = problem.operators.last().unwrap().to_string();
     assert!(recipe.starts_with(begins) && recipe.ends_with(ends), "{recipe}");
@@ -185,7 +185,7 @@ fn the_stiffness_of_a_large_contact_is_the_same_in_every_recipe() {
 }
 
 #[test]
-fn a_state_taken_up_again_is_not_evaluated_again() {
+fn a_resumed_state_is_not_evaluated_again() {
     let loose = Limits { tolerance: 1e-2, ..limits(false) };
     for (columns, rows, force) in [(31, 31, 2.0), (96, 96, 4000.0), (57, 20, 30.0)] {
         let (grid, target) = (Grid::square(columns, rows), Control::Force(force));
@@ -223,8 +223,8 @@ fn a_state_taken_up_again_is_not_evaluated_again() {
 
 #[test]
 fn work_of_standard_solves_is_pinned() {
-    // Counts, not times: a change of the algorithm shows here. The band leaves room for other processors'
-    // last digits.
+    // Counts, not times: a change of the algorithm shows here. The range allows for the different rounding of
+    // other processors.
     let grid = Grid::square(64, 64);
     for (force, most) in [(0.5, 50), (5.0, 60), (50.0, 60)] {
         let mut problem = problem(grid, &rough(grid, 3), Tuning::DEFAULT);

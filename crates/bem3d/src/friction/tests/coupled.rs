@@ -5,7 +5,7 @@ use crate::kernel::{CouplingTable, KernelTable, Medium};
 use contact_model::Status;
 use std::sync::Arc;
 
-/// What one rigid body and one elastic body have in common.
+/// The constants of a pair of one rigid and one elastic body.
 struct Pair {
     c: f64,
     beta: f64,

@@ -1,5 +1,5 @@
-//! The reference: every pair of cells of a small grid, accelerated projected gradients, no sets and no
-//! transforms.
+//! The reference implementation: sums over every pair of cells of a small grid and accelerated projected
+//! gradients, without sets or transforms.
 
 use crate::friction::TangentialControl;
 use crate::geometry::{CellSet, Grid};
@@ -7,7 +7,7 @@ use crate::kernel::TangentialTable;
 
 /// Steps at most.
 const STEPS: usize = 200_000;
-/// A step of this share of the tractions ends it.
+/// The iteration ends at a step of less than this share of the tractions.
 const SMALL: f64 = 1e-14;
 
 /// All cells of a grid, also those without contact, whose tractions are zero.

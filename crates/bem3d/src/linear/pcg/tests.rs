@@ -1,5 +1,5 @@
-//! Each reason to stop, beside runs that end after every step and are looked at in double precision;
-//! solutions beside a factor.
+//! Each stopping criterion, compared with runs that end after every step and are evaluated in double
+//! precision; solutions compared with those of a factor.
 
 use super::*;
 use crate::geometry::{Grid, Lengths};
@@ -12,7 +12,7 @@ use crate::tuning::Tuning;
 use approx::assert_relative_eq;
 use contact_model::{Boundary, never};
 
-/// Single precision inside: what one correction can be asked for, relative to the norm of the solution.
+/// The accuracy of one correction in single precision, relative to the norm of the solution.
 const SINGLE: f64 = 1e-4;
 const SQUARE: Grid = Grid { columns: 16, rows: 16, stretch: 1.0 };
 const OBLONG: Grid = Grid { columns: 13, rows: 19, stretch: 1.2 };
@@ -59,19 +59,19 @@ fn both(set: &CellSet) -> [Recipe; 2] {
     [Conditioning::Identity, torus].map(|conditioning| recipe(set, Application::Direct, conditioning))
 }
 
-/// Only the number of steps ends it.
+/// Criteria that end only by the number of steps.
 fn endless(steps: usize) -> StoppingCriteria {
     StoppingCriteria { reduction: 0.0, energy: None, floor: 0.0, steps }
 }
 
 struct Solution {
     x: Vec<f64>,
-    /// What the workspace says is left.
+    /// The residual according to the workspace.
     residual: Vec<f64>,
     outcome: PcgOutcome,
 }
 
-/// What a list of both calls by whether the sum is fixed.
+/// Selects from a list of two by whether the sum is fixed.
 fn fixed(sum: bool) -> Fixed {
     if sum { Fixed::Force } else { Fixed::Approach }
 }
@@ -172,7 +172,7 @@ fn every_recipe_reaches_the_factored_solution() {
 }
 
 #[test]
-fn where_a_set_lies_in_its_grid_does_not_matter() {
+fn the_position_of_a_set_in_its_grid_does_not_matter() {
     let grid = Grid::square(40, 40);
     let at = |x0: usize, y0: usize| {
         let cells = scattered(SQUARE);
@@ -190,7 +190,7 @@ fn where_a_set_lies_in_its_grid_does_not_matter() {
 }
 
 #[test]
-fn what_a_workspace_held_before_does_not_matter() {
+fn earlier_contents_of_a_workspace_do_not_matter() {
     let (set, mut operators) = (scattered(SQUARE), operators(SQUARE));
     let r = right(set.len(), 1.0);
     for fixed_sum in [false, true] {
@@ -284,7 +284,7 @@ fn the_energy_of_the_error_is_compared_with_the_value_gained() {
 }
 
 #[test]
-fn it_ends_at_the_first_step_with_the_reduction_asked_for() {
+fn it_ends_at_the_first_step_with_the_requested_reduction() {
     let set = scattered(SQUARE);
     let right = right(set.len(), 1.0);
     for recipe in both(&set) {
@@ -321,7 +321,7 @@ fn the_floor_is_the_largest_residual() {
 }
 
 #[test]
-fn work_is_counted_and_a_uniform_gap_asks_for_none_under_a_given_force() {
+fn work_is_counted_and_a_uniform_gap_needs_none_under_a_given_force() {
     let (set, mut operators) = (scattered(SQUARE), operators(SQUARE));
     let uniform = vec![1.0; set.len()];
     let [identity, torus] = both(&set);

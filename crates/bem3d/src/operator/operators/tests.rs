@@ -1,4 +1,4 @@
-//! Every operator beside the direct sum, plans that are kept, and work that is counted.
+//! Every operator compared with the direct sum, the reuse of plans, and the counting of work.
 
 use super::*;
 use crate::geometry::{Grid, Lengths};

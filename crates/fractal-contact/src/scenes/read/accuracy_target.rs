@@ -4,7 +4,7 @@ use crate::scenes::read::{Entries, Entry, Read, System};
 use analysis::AccuracyTarget;
 use surface_io::Dimension;
 
-/// Seconds that an accuracy may cost where nothing is said.
+/// Default budget of `accuracy`, in seconds.
 const BUDGET: f64 = 600.0;
 
 /// Reads `accuracy` and `budget`, with the place of the former.
@@ -14,7 +14,7 @@ pub(crate) fn read_accuracy<'a>(scene: &Entries<'a>) -> Read<Option<(AccuracyTar
     let budget = scene.beside("budget", "accuracy", help)?;
     let Some(entry) = accuracy else { return Ok(None) };
     let share = if entry.as_word() == Some("best") { 0.0 } else { read_share(&entry)? };
-    // A time of the one who waits: it has a unit in every scene.
+    // The budget is a waiting time: it has a unit in every scene.
     let seconds = budget.map_or(Ok(BUDGET), |entry| entry.positive(Dimension::TIME, System::Si))?;
     Ok(Some((AccuracyTarget { share, seconds }, entry)))
 }

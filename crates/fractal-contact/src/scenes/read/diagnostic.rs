@@ -1,4 +1,4 @@
-//! What is wrong with a scene, shown where it stands.
+//! Mistakes in a scene, shown at their place in the text.
 
 use contact_model::Error;
 use std::fmt;
@@ -8,8 +8,8 @@ use std::path::{Path, PathBuf};
 /// Longest part of a line that is shown.
 const SHOWN: usize = 100;
 
-/// A mistake in a scene, or a note on it: what, where and how to mend it. Its `Display` is a few lines with
-/// the place underlined.
+/// A mistake in a scene, or a note on it: the message, its place and a remedy. Its `Display` is a few lines
+/// with the place underlined.
 ///
 /// ```
 /// use fractal_contact::scenes::Diagnostic;
@@ -28,22 +28,22 @@ pub struct Diagnostic {
     place: Option<Box<SourceSpan>>,
 }
 
-/// What callers that raise an error of their own tell apart.
+/// The kinds that callers with an error type of their own distinguish.
 #[derive(Debug, Clone, PartialEq)]
 enum Kind {
     Note,
     Mistake,
     /// A value of another type than expected, or none where one is needed.
     Type,
-    /// A number that makes no sense.
+    /// A number outside of its range.
     Domain(Box<Error>),
 }
 
-/// Where the text stands.
+/// The place of a mistake in the text.
 #[derive(Debug, Clone, PartialEq, Eq)]
 struct SourceSpan {
     path: PathBuf,
-    /// Line and column from 1, the line and how much of it is meant.
+    /// Line and column from 1, the text of the line and the length of the marked part.
     line: Option<(usize, usize, String, usize)>,
 }
 
@@ -53,7 +53,7 @@ impl Diagnostic {
         Self { message: message.into(), kind: Kind::Mistake, span: None, help: None, place: None }
     }
 
-    /// A remark on the whole file, which is read all the same.
+    /// A remark on the whole file, which is still read.
     pub fn note(message: impl Into<String>) -> Self {
         Self { kind: Kind::Note, ..Self::new(message) }
     }
@@ -63,7 +63,7 @@ impl Diagnostic {
         Self { kind: Kind::Type, ..Self::new(message) }
     }
 
-    /// A number that makes no sense.
+    /// A number outside of its range.
     pub(crate) fn of_domain(message: impl Into<String>, error: Error) -> Self {
         Self { kind: Kind::Domain(Box::new(error)), ..Self::new(message) }
     }
@@ -73,7 +73,7 @@ impl Diagnostic {
         self.kind == Kind::Type
     }
 
-    /// The number that makes no sense, as [`Error::Domain`].
+    /// The number outside of its range, as [`Error::Domain`].
     pub fn domain(&self) -> Option<&Error> {
         match &self.kind {
             Kind::Domain(error) => Some(error),
@@ -81,21 +81,21 @@ impl Diagnostic {
         }
     }
 
-    /// At these bytes of the text, where they are known; a place given before stays.
+    /// Sets the place to these bytes of the text, where they are known; a place given before is kept.
     #[must_use]
     pub fn at(mut self, span: impl Into<Option<Range<usize>>>) -> Self {
         self.span = self.span.or(span.into());
         self
     }
 
-    /// How to mend it.
+    /// Adds a remedy.
     #[must_use]
     pub fn with_help(mut self, help: impl Into<String>) -> Self {
         self.help = Some(help.into());
         self
     }
 
-    /// With the file and its text, so that the place can be shown.
+    /// Adds the file and its text, so that the place can be shown.
     #[must_use]
     pub fn placed(mut self, path: &Path, text: &str) -> Self {
         let line = self.span.clone().map(|span| excerpt(text, &span));
@@ -103,7 +103,7 @@ impl Diagnostic {
         self
     }
 
-    /// In a text that is no file yet: these words are told in place of its path.
+    /// For a text that is not in a file yet: the message shows these words instead of a path.
     #[must_use]
     pub fn told_of(mut self, words: &str) -> Self {
         if let Some(place) = &mut self.place {
@@ -112,12 +112,12 @@ impl Diagnostic {
         self
     }
 
-    /// What is wrong, without the place.
+    /// The message, without the place.
     pub fn message(&self) -> &str {
         &self.message
     }
 
-    /// What to do about it.
+    /// The remedy.
     pub fn help(&self) -> Option<&str> {
         self.help.as_deref()
     }

@@ -1,10 +1,10 @@
-//! How pressure, gap and contact areas are distributed in one state.
+//! Distributions of pressure, gap and contact areas in one state.
 
 use contact_model::{Field, Patches};
 
 /// Bins of pressures and gaps: the square root of the number of values, within these.
 const BINS: (usize, usize) = (4, 50);
-/// What may be distributed.
+/// The quantity of a distribution.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Distributed {
     /// The pressure of the cells in contact, as a density over the nominal area: its integral is the contact
@@ -12,7 +12,7 @@ pub enum Distributed {
     Pressure,
     /// The gap of the others, in the same way.
     Gap,
-    /// Areas of connected contacts: number of contacts per area.
+    /// Areas of connected contacts, as the number of contacts per area.
     Patches,
 }
 
@@ -38,7 +38,7 @@ impl Distributed {
 /// A bin: its ends and the density in it.
 pub(crate) type Bin = [f64; 3];
 
-/// Those of a state with pressure, gap and contacts, as far as they were asked for; each cell has this area.
+/// The requested distributions of a state with pressure, gap and contacts; `cell` is the area of a cell.
 pub(crate) fn of_state(
     asked: &[Distributed],
     (pressure, gap, patches): (Option<&Field>, Option<&Field>, Option<&Patches>),

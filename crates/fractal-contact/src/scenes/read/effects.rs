@@ -1,4 +1,4 @@
-//! `[effects]`: each off unless named.
+//! `[effects]`: an effect is off unless the scene names it.
 
 use crate::scenes::read::{Diagnostic, Entries, Entry, Read, System, amount, number};
 use contact_model::{
@@ -6,17 +6,17 @@ use contact_model::{
 };
 use surface_io::Dimension;
 
-/// A key of `[effects]`. Scenes, Python, the plan and the book take from here all that they say of it.
+/// A key of `[effects]`. Scenes, Python, the plan and the book take its description from here.
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct EffectKey {
     /// The key.
     pub name: &'static str,
-    /// What stands for it in a scene.
+    /// The values that it takes in a scene.
     pub takes: &'static str,
-    /// What it is, in a sentence or two.
+    /// A description in a sentence or two.
     pub about: &'static str,
-    /// What holds where it is not named.
+    /// The behaviour where it is not named.
     pub off: &'static str,
     read: fn(&Entry<'_>, System, &mut Effects) -> Read<()>,
     /// Its numbers, where it is on.
@@ -129,7 +129,7 @@ pub struct EffectLine {
     pub name: &'static str,
     /// Whether it is simulated.
     pub on: bool,
-    /// With which numbers, or why not.
+    /// Its parameters, or why it is off.
     pub reason: String,
 }
 
@@ -258,7 +258,7 @@ mod tests {
     use super::*;
     use contact_model::Effect;
 
-    /// Each effect of the library has its key here, and is told where it is on.
+    /// Each effect of the library has its key here, and is reported where it is on.
     #[test]
     fn every_effect_has_its_key() {
         for effect in Effect::ALL {

@@ -1,4 +1,4 @@
-//! A table of a scene, read key by key: what nobody asks for is an error.
+//! Reads a table of a scene key by key; a key that is never read is an error.
 
 use crate::scenes::read::Diagnostic;
 use contact_model::Error;
@@ -23,8 +23,8 @@ pub enum System {
 }
 
 impl System {
-    /// Unit of a column of a table: without units a dimensional number is in the scene's own, and only pure
-    /// numbers and texts keep theirs.
+    /// Unit of a column of a table. In a scene without units a dimensional number is in the scene's own
+    /// units; only pure numbers and texts keep theirs.
     pub(crate) fn unit(self, si: &'static str) -> &'static str {
         match (self, si) {
             (Self::Si, _) | (Self::None, "1" | "-") => si,
@@ -32,7 +32,7 @@ impl System {
         }
     }
 
-    /// Unit of a picture: nothing where the scene has none.
+    /// Unit in a picture; empty where the scene has no units.
     pub(crate) fn shown(self, si: &str) -> &str {
         if self == Self::Si { si } else { "" }
     }
@@ -55,7 +55,7 @@ enum Content<'a> {
 }
 
 impl<'a> Entries<'a> {
-    /// A table of this name, `scene.surface`; the whole file has none.
+    /// A table of this name, such as `scene.surface`; the whole file has an empty name.
     fn named(name: &str, table: &'a DeTable<'a>) -> Self {
         let content = Content::Table(table);
         Self { name: name.into(), span: None, content, known: RefCell::default() }
@@ -101,7 +101,7 @@ impl<'a> Entries<'a> {
         self.entry(key)
     }
 
-    /// What a key holds, if it is there.
+    /// The value of a key as `read` reads it, if it is there.
     pub fn optional<T>(
         &self,
         key: &'static str,
@@ -110,7 +110,7 @@ impl<'a> Entries<'a> {
         self.find(key).map(|entry| read(&entry)).transpose()
     }
 
-    /// Replaces a value by what a key holds, if it is there.
+    /// Replaces a value by that of a key, if it is there.
     pub fn set<T>(
         &self,
         value: &mut T,
@@ -120,7 +120,7 @@ impl<'a> Entries<'a> {
         self.optional(key, read).map(|given| given.into_iter().for_each(|given| *value = given))
     }
 
-    /// The value of a key that says nothing without another one.
+    /// The value of a key that has no meaning without another one.
     pub fn beside(&self, key: &'static str, other: &str, help: &str) -> Read<Option<Entry<'a>>> {
         let entry = self.find(key);
         match &entry {
@@ -132,7 +132,7 @@ impl<'a> Entries<'a> {
         }
     }
 
-    /// The value of any key without making it a known one.
+    /// The value of any key, which does not count as read by this.
     pub fn entry(&self, key: &str) -> Option<Entry<'a>> {
         match &self.content {
             Content::Table(table) => {
@@ -158,7 +158,8 @@ impl<'a> Entries<'a> {
         })
     }
 
-    /// The key that one of these was probably meant by, as a mistake; what lacks them is `otherwise`.
+    /// The mistake of an unknown key that is probably a misspelling of one of these; otherwise the mistake
+    /// `otherwise`.
     pub fn misspelt_or(&self, keys: &[&str], otherwise: Diagnostic) -> Diagnostic {
         let known = self.known.borrow();
         let near = |name: &str| keys.iter().find(|key| distance(name, key) <= 1 + key.len() / 4);
@@ -192,7 +193,7 @@ impl<'a> Entries<'a> {
         Ok(found)
     }
 
-    /// Errors where a key was given that nobody asked for.
+    /// An error where a key was given that was never read.
     pub fn finish(self) -> Read<()> {
         self.known_only()
     }
@@ -208,7 +209,7 @@ impl<'a> Entries<'a> {
                 } else {
                     format!("{what} in {}", self.title())
                 };
-                // Names of older versions are read, not recommended.
+                // Names of older versions are read, but not suggested.
                 let current: Vec<&str> =
                     known.iter().copied().filter(|k| !["chance", "width", "modulus"].contains(k)).collect();
                 return Err(Diagnostic::new(format!("`{name}` is no {what}"))
@@ -243,12 +244,12 @@ pub(crate) fn suggestion(name: &str, known: &[&str]) -> String {
     }
 }
 
-/// Levenshtein's distance; of a long name, which is near to none, from its beginning.
+/// Levenshtein's distance; only the first 64 characters of a long name count.
 fn distance(a: &str, b: &str) -> usize {
     strsim::levenshtein(&a.chars().take(64).collect::<String>(), b)
 }
 
-/// LengthOrPair along x and y.
+/// One length, or two along x and y.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum LengthOrPair {
     One(f64),
@@ -318,7 +319,7 @@ impl<'a> Entry<'a> {
         }
     }
 
-    /// A table; a value that is none stands for a table of this key alone.
+    /// A table; any other value stands for a table with this key alone.
     pub fn table_or(&self, key: &'static str) -> Read<Entries<'a>> {
         if self.is_table() {
             return self.table();
@@ -365,7 +366,7 @@ impl<'a> Entry<'a> {
             .ok_or_else(|| self.wrong("true or false", "true or false, without quotes"))
     }
 
-    /// One of these words, each with what it stands for.
+    /// One of these words, each with its value.
     pub fn choice<T: Copy>(&self, words: &[(&str, T)]) -> Read<T> {
         let names: Vec<&str> = words.iter().map(|(name, _)| *name).collect();
         let example = names.iter().map(|n| format!("\"{n}\"")).collect::<Vec<_>>().join(" or ");
@@ -373,7 +374,7 @@ impl<'a> Entry<'a> {
             return Err(self.wrong("a word", &example));
         };
         words.iter().find(|(name, _)| *name == text).map(|(_, value)| *value).ok_or_else(|| {
-            self.diagnostic(format!("`{}` is \"{text}\": no word that is known here", self.path))
+            self.diagnostic(format!("`{}` is \"{text}\": unknown value", self.path))
                 .with_help(suggestion(text, &names))
         })
     }

@@ -10,7 +10,7 @@ use surface_io::{Dimension, Metric, Preprocessing, Quantity, ReadOptions, Scan, 
 
 /// Memory of drawing a surface and writing it, bytes per cell.
 const BYTES: f64 = 24.0;
-/// Columns or rows: what fits is asked of the memory.
+/// Largest number of columns or rows; whether they fit is decided by the memory.
 const MOST: usize = 1 << 24;
 
 /// A self-affine surface to be drawn. Lengths are texts such as `1 mm`, all of them or none with a unit.
@@ -26,7 +26,7 @@ pub struct GeneratedSurface {
     pub fractal_dimension: f64,
     /// Rms height.
     pub rms_height: String,
-    /// Below waves of this length the spectrum is constant.
+    /// Roll-off wavelength: the spectrum is constant for longer waves.
     pub roll_off_wavelength: Option<String>,
     /// The shortest wave.
     pub shortest_wavelength: Option<String>,
@@ -39,12 +39,12 @@ pub struct GeneratedSurface {
 }
 
 impl GeneratedSurface {
-    /// Draws the surface, writes it by the name's ending ([`surface_io::write_map`]) and says in a few lines
-    /// what it is.
+    /// Generates the surface, writes it in the format of the name's ending ([`surface_io::write_map`]) and
+    /// returns a description in a few lines.
     ///
     /// # Errors
-    /// [`Error::Argument`] for a length that is none or units that do not fit, [`Error::Run`] for numbers
-    /// that make no sense, [`Error::Surface`] for another ending or a file that cannot be written.
+    /// [`Error::Argument`] for an invalid length or units that do not fit, [`Error::Run`] for numbers outside
+    /// of their range, [`Error::Surface`] for an unknown ending or a file that cannot be written.
     pub fn write(&self, path: &Path) -> Result<String> {
         let mut units: Option<Dimension> = None;
         let wrong = |name: &'static str, e: surface_io::QuantityError| Error::Argument {
@@ -95,12 +95,12 @@ impl GeneratedSurface {
     }
 }
 
-/// Writes an artificial twin of a map into a file: its spectrum with the phases of a seed, and says what it
-/// is.
+/// Writes an artificial twin of a map into a file: a surface with the spectrum of the map and random phases
+/// of a seed. Returns a description.
 ///
-/// The map is that of a surface's file as `declared` and after `preprocessing`; where it is not periodic,
-/// take its trend off and lay a window over it. With `keep_heights` the twin has the distribution of its
-/// heights too.
+/// The map is read from a file with the options `declared` and processed by `preprocessing`. Where it is not
+/// periodic, remove its trend and apply a window. With `keep_heights` the twin also has the distribution of
+/// the map's heights.
 ///
 /// # Errors
 /// [`Error::Surface`] for files that cannot be read or written, [`Error::Run`] for undefined points and a map of equal heights.
@@ -121,7 +121,7 @@ pub fn write_twin(
     write(out, &drawn.map_err(runs::Error::model("the twin"))?, metric)
 }
 
-/// Writes a surface and says what it is.
+/// Writes a surface and returns a description.
 fn write(path: &Path, Drawn { map, spectrum_residual }: &Drawn, metric: Metric) -> Result<String> {
     write_map(path, map, metric)?;
     let (unit, system) = if metric == Metric::Metres { ("m", System::Si) } else { ("none", System::None) };

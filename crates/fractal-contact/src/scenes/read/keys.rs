@@ -1,19 +1,20 @@
-//! The keys of a scene and what they mean, as the book prints them. The keys of `[effects]` and the outputs that
-//! models answer have tables of their own.
+//! The keys of a scene and their meaning, as the book prints them. The keys of `[effects]` and the outputs
+//! that models answer have tables of their own.
 
-/// Keys of a table that are told of together.
+/// Keys of a table that are described together.
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct SceneKeys {
     /// The table, as `scene.surface`.
     pub table: &'static str,
-    /// What the table says where these keys belong to one kind of it, as `kind = "file"`; else nothing.
+    /// Where these keys belong to one kind of the table, the line that selects it, as `kind = "file"`;
+    /// otherwise empty.
     pub kind: &'static str,
-    /// The keys; of each group one is given, never two.
+    /// The keys in groups; at most one key of a group may be given.
     pub groups: &'static [&'static [&'static str]],
-    /// What they are, in Markdown; it names the keys of tables that are their values.
+    /// A description in Markdown; it names the keys of tables that are their values.
     pub about: &'static str,
-    /// What holds where they are not given; nothing where they have to be.
+    /// The default; empty where the keys are required.
     pub default: &'static str,
 }
 
@@ -70,7 +71,7 @@ pub static SCENE_KEYS: &[SceneKeys] = &[
     keys(
         "scene",
         &[&["hardness"]],
-        "pressure above which a state has a note (the contact stays elastic)",
+        "pressure above which a state has a note; the contact stays elastic",
         "E*/10",
     ),
     keys(
@@ -81,7 +82,7 @@ pub static SCENE_KEYS: &[SceneKeys] = &[
         "",
     ),
     keys("scene", &[&["budget"]], "predicted time that `accuracy` may take, on one thread", "`\"10 min\"`"),
-    keys("scene.path", &[&["time"]], "end of a straight piece of a history", "that of the step before"),
+    keys("scene.path", &[&["time"]], "end of a straight piece of the path", "that of the step before"),
     keys(
         "scene.path",
         &[&["force", "mean_pressure", "approach", "mean_gap"]],
@@ -128,7 +129,7 @@ pub static SCENE_KEYS: &[SceneKeys] = &[
     ),
     file(
         &[&["channel"]],
-        "number, from 0, or name, where a file has several maps",
+        "number (from 0) or name of the map, where a file has several",
         "the only one of heights",
     ),
     file(
@@ -141,13 +142,13 @@ pub static SCENE_KEYS: &[SceneKeys] = &[
             &["missing"],
             &["skip_lines"],
         ],
-        "how it is meant, where the file does not say; `missing` is a number, `inf` too",
+        "how to read the file, where it does not say so itself; `missing` is a number, which may be `inf`",
         "",
     ),
     file(
         &[&["axes"]],
         "`\"xy\"` or `\"yx\"`: what the two indices of an array are (HDF5, MATLAB, NetCDF without names)",
-        "the custom of the format, noted",
+        "the convention of the format, with a note",
     ),
     file(
         &[&["border"]],
@@ -158,8 +159,8 @@ pub static SCENE_KEYS: &[SceneKeys] = &[
     file(&[&["height_scale"]], "height of one count, for a file of counts", ""),
     file(
         &[&["undefined", "fill"]],
-        "points without a height (NaN, `missing`): `undefined = \"no_contact\"` keeps them, they cannot touch; \
-         `fill` gives them one: `\"neighbours\"`, `\"plane\"` or a height",
+        "points without a height (NaN, `missing`): `undefined = \"no_contact\"` keeps them, and they cannot \
+         touch; `fill` gives them one: `\"neighbours\"`, `\"plane\"` or a height",
         "an error",
     ),
     file(
@@ -188,7 +189,7 @@ pub static SCENE_KEYS: &[SceneKeys] = &[
     ),
     file(
         &[&["tip_radius"]],
-        "of the instrument: the distance from which heights are reliable is reported",
+        "radius of the tip of the instrument; the distance from which on heights are reliable is reported",
         "",
     ),
     file(
@@ -198,7 +199,8 @@ pub static SCENE_KEYS: &[SceneKeys] = &[
     ),
     file(
         &[&["filter_across"]],
-        "cut-off wavelength of a Gaussian low-pass filter across the scan lines, along y, from four cells to the side",
+        "cut-off wavelength of a Gaussian low-pass filter across the scan lines (along y), between four cells and \
+         the side",
         "none",
     ),
     file(
@@ -213,7 +215,8 @@ pub static SCENE_KEYS: &[SceneKeys] = &[
     ),
     file(
         &[&["window"]],
-        "`\"hann\"`: deviations from the mean tapered to the edges, over the rms of the taper, for periodic boundaries",
+        "`\"hann\"`, for periodic boundaries: deviations from the mean are tapered towards the edges and divided \
+         by the rms of the taper",
         "",
     ),
     file(
@@ -231,10 +234,16 @@ pub static SCENE_KEYS: &[SceneKeys] = &[
     keys(
         "scene.second_surface",
         &[&["facing"]],
-        "`\"x\"` or `\"y\"` reversed as it is laid on its face, or `\"none\"`",
+        "axis that is reversed when the surface is turned over to face the first: `\"x\"`, `\"y\"` or \
+         `\"none\"`",
         "`\"x\"`",
     ),
-    keys("scene.second_surface", &[&["offset"]], "of its middle from that of the first, `[x, y]`", "0"),
+    keys(
+        "scene.second_surface",
+        &[&["offset"]],
+        "displacement of its centre from that of the first surface, `[x, y]`",
+        "0",
+    ),
     keys(
         "scene.body",
         &[&["kind"]],
@@ -243,11 +252,16 @@ pub static SCENE_KEYS: &[SceneKeys] = &[
          `wavelength`)",
         "",
     ),
-    keys("scene.body", &[&["side", "size"]], "of the rectangle; not on a surface", ""),
+    keys("scene.body", &[&["side", "size"]], "sides of the rectangle; not together with a surface", ""),
     keys("models.bem3d", &[&["cells"], &["rows"]], "columns and rows", "257, nearly square cells"),
-    keys("models.bem3d", &[&["tolerance"], &["max_outer_iterations"]], "of the solver", "1e-6, 200"),
+    keys(
+        "models.bem3d",
+        &[&["tolerance"], &["max_outer_iterations"]],
+        "tolerance and largest number of outer iterations of the solver",
+        "1e-6, 200",
+    ),
     keys("models.bem3d", &[&["method"]], "`\"auto\"`, `\"iterative\"`, `\"single_level\"`", "`\"auto\"`"),
-    keys("models.mdr1d", &[&["elements"]], "of a rough line", "65536"),
+    keys("models.mdr1d", &[&["elements"]], "number of elements of a rough line", "65536"),
     keys(
         "models.equivalent",
         &[&["per_decade"], &["decades"]],
@@ -264,15 +278,15 @@ pub static SCENE_KEYS: &[SceneKeys] = &[
     keys(
         "sampling",
         &[&["seed"]],
-        "required for random surfaces, and for `mdr1d` on a file (lines); surface i has the seed of surface i of \
-         the figures",
+        "required for random surfaces, and for `mdr1d` on a file, which draws random lines; surface i has the seed \
+         of surface i of the figures",
         "",
     ),
     keys("sampling", &[&["surfaces"]], "number of surfaces", "1"),
     keys(
         "outputs",
         &[&["drawn_states"]],
-        "numbers of the loads or steps, from 0, whose fields become pictures, in files and in the report: `[3, 9]`",
+        "numbers of the loads or steps (from 0) whose fields are drawn, in files and in the report: `[3, 9]`",
         "all",
     ),
     keys(
@@ -312,7 +326,7 @@ pub(crate) mod tests {
     use std::collections::BTreeSet;
 
     thread_local! {
-        /// Tables and keys that were asked for.
+        /// Tables and keys that were read.
         static ASKED: RefCell<BTreeSet<(String, &'static str)>> = const { RefCell::new(BTreeSet::new()) };
     }
 
@@ -356,7 +370,7 @@ pub(crate) mod tests {
                 .contains(&true)
     }
 
-    /// Every key that the scenes of the repository are asked for is declared, and every declared key is asked for.
+    /// Every key that is read from the scenes of the repository is declared, and every declared key is read.
     #[test]
     fn what_is_read_is_what_is_declared() {
         ASKED.with_borrow_mut(BTreeSet::clear);

@@ -1,10 +1,10 @@
-//! What is prescribed: loads one by one, or a path.
+//! The prescribed loads: independent loads, or a path.
 
 use crate::scenes::read::{Entries, Entry, Read, System};
 use contact_model::{Load, Normalisation, Size, Step, Tangential};
 use surface_io::Dimension;
 
-/// Most loads of a range; more are a slip of the finger.
+/// Largest number of loads of a range; more are taken for a typing error.
 const MOST: u64 = 10_000;
 
 /// What a list of loads prescribes.
@@ -25,7 +25,7 @@ pub enum LoadKind {
 impl LoadKind {
     const ALL: [Self; 5] = [Self::Force, Self::ForceBar, Self::MeanPressure, Self::Approach, Self::MeanGap];
 
-    /// Its key in the file, its dimension and unit in SI, and what it is in tables.
+    /// Its key in the file, its dimension and unit in SI, and its description in tables.
     fn record(self) -> (&'static str, Dimension, &'static str, &'static str) {
         match self {
             Self::Force => ("force", Dimension::FORCE, "N", "force"),
@@ -52,7 +52,7 @@ impl LoadKind {
         self.record().2
     }
 
-    /// What it is, in a phrase.
+    /// A description in a phrase.
     pub(crate) fn meaning(self) -> &'static str {
         self.record().3
     }
@@ -61,7 +61,7 @@ impl LoadKind {
 /// Loads, solved one by one in this order.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LoadList {
-    /// What the numbers are.
+    /// The quantity that is prescribed.
     pub kind: LoadKind,
     /// The numbers, in SI or the scene's own units.
     pub values: Vec<f64>,
@@ -83,7 +83,7 @@ impl LoadList {
     }
 }
 
-/// What is asked of the models.
+/// The states that the models compute.
 #[derive(Debug, Clone, PartialEq)]
 pub enum LoadRequest {
     /// States under loads.
@@ -118,7 +118,7 @@ impl LoadRequest {
         [0, 1].map(|along| steps.iter().any(|step| step.tangential.components()[along].abs() > 0.0))
     }
 
-    /// Whether an approach or a mean gap may be prescribed, of which the force is a result with an error.
+    /// Whether an approach or a mean gap may be prescribed, so that the force is a result with an error.
     pub(crate) fn prescribes_distance(&self) -> bool {
         match self {
             Self::Loads(loads) => matches!(loads.kind, LoadKind::Approach | LoadKind::MeanGap),
@@ -129,8 +129,8 @@ impl LoadRequest {
     }
 }
 
-/// Reads the loads or the path of `[scene]`. `pulls`: loads may be negative (adhesion); the size is that of
-/// the nominal contact area, for mean pressures along a path.
+/// Reads the loads or the path of `[scene]`. `pulls` allows negative loads (adhesion). `size` is that of the
+/// nominal contact area, for mean pressures along a path.
 pub(crate) fn read_request<'a>(
     scene: &Entries<'a>,
     system: System,
@@ -254,7 +254,7 @@ fn read_path(entry: &Entry<'_>, system: System, pulls: bool, size: Size) -> Read
         table.set(&mut time, "time", |e| e.quantity(Dimension::TIME, system))?;
         let normal = match table.one_of(&["force", "approach", "mean_pressure", "mean_gap"])? {
             Some(("force", e)) => Load::Force(e.quantity(Dimension::FORCE, system)?),
-            // As a list of mean pressures has them.
+            // The mean pressure times the nominal contact area, as for a list of mean pressures.
             Some(("mean_pressure", e)) => {
                 Load::Force(e.quantity(Dimension::PRESSURE, system)? * size.length() * size.length())
             }
@@ -277,7 +277,8 @@ fn read_path(entry: &Entry<'_>, system: System, pulls: bool, size: Size) -> Read
         if steps.is_empty() {
             last = beginning(normal, tangential);
         } else if steps.iter().all(|step| step.tangential == Tangential::default()) {
-            // Nothing was moved yet, whichever of both is prescribed now.
+            // At the beginning neither a displacement nor a force is applied, whichever of them is prescribed
+            // now.
             last.tangential = unloaded(tangential);
         }
         let states = table.find("states");
@@ -288,7 +289,7 @@ fn read_path(entry: &Entry<'_>, system: System, pulls: bool, size: Size) -> Read
             return Err(entry
                 .diagnostic(format!("{count} states: expected at most {MOST} along the whole path"))
                 .with_help(
-                    "states in between are increments of friction, and else for looking at: ask for fewer",
+                    "states in between are increments of friction, and otherwise only shown: request fewer",
                 ));
         }
         table.finish()?;
@@ -315,7 +316,7 @@ fn read_path(entry: &Entry<'_>, system: System, pulls: bool, size: Size) -> Read
     Ok(steps)
 }
 
-/// No contact and no load, in the words of the first step.
+/// The state without contact and load, with the quantities that the first step prescribes.
 fn beginning(normal: Load, tangential: Tangential) -> Step {
     let normal = match normal {
         Load::Approach(_) => Load::Approach(0.0),
@@ -326,7 +327,7 @@ fn beginning(normal: Load, tangential: Tangential) -> Step {
     Step { time: 0.0, normal, tangential: unloaded(tangential) }
 }
 
-/// Zero of what is prescribed.
+/// Zero of the prescribed tangential quantity.
 fn unloaded(tangential: Tangential) -> Tangential {
     match tangential {
         Tangential::Displacement(_) => Tangential::Displacement([0.0; 2]),

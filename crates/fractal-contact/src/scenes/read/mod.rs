@@ -1,4 +1,4 @@
-//! A scene as it was written: from TOML to typed values, with the place of each mistake.
+//! Reads a scene from TOML into typed values, and reports each mistake with its place.
 
 pub(crate) mod accuracy_target;
 pub(crate) mod diagnostic;

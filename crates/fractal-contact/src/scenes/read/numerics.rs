@@ -1,4 +1,4 @@
-//! The models by name, and what `[models.NAME]` says about their numerics.
+//! The models by name, and their numerical options in `[models.NAME]`.
 
 use crate::models::{MODELS, ModelRecord};
 use crate::scenes::read::{Diagnostic, Entries, Entry, Read, RegisteredModel, suggestion};
@@ -12,7 +12,7 @@ use std::sync::Arc;
 /// Largest grid of a scene is the square of this many cells: 54 GB for a light load.
 pub(crate) const MOST_CELLS: usize = 1 << 15;
 
-/// Grid on which models are asked whether they can answer.
+/// Cells of the grid on which it is tested whether models can solve a scene.
 const PROBE_CELLS: usize = 33;
 const PROBE_ELEMENTS: usize = 1 << 10;
 
@@ -36,8 +36,8 @@ pub enum Numerics {
     Registered(RegisteredModel),
 }
 
-/// The same with at most so many cells along the longer side of the grid on a rectangle of this size, in the
-/// same proportion.
+/// The same model with at most `most` cells along the longer side of the grid on a rectangle of this size, in
+/// the same proportion.
 fn reduced(model: Bem3d, most: usize, size: Size) -> Bem3d {
     let Cells { columns, rows } = model.grid(size);
     let longer = columns.max(rows);
@@ -66,7 +66,7 @@ impl Numerics {
         Self::all().find(|numerics| numerics.name() == name)
     }
 
-    /// With the options of the text of `[models.NAME]` without its heading, on top of those that it has.
+    /// Changes the options that a text names; the text has the form of `[models.NAME]` without its heading.
     ///
     /// # Errors
     /// What is wrong, as in a scene.
@@ -101,18 +101,18 @@ impl Numerics {
         }
     }
 
-    /// What is said of a model of the library.
+    /// The record of a model of the library.
     fn record(&self) -> Option<&'static ModelRecord> {
         ModelRecord::named(self.name())
     }
 
-    /// Whether it answers for one surface rather than for the spectrum that it was drawn from: a theory gives
-    /// the same for every seed.
+    /// Whether its results depend on the realisation of the surface and not only on its spectrum: a theory
+    /// gives the same results for every seed.
     pub fn depends_on_realisation(&self) -> bool {
         self.is_stored()
     }
 
-    /// Whether it takes of a rough map what is measured on it, not the map.
+    /// Whether it uses statistics measured on a rough map instead of the map itself.
     pub(crate) fn is_statistical(&self) -> bool {
         self.record().is_some_and(|record| record.is_statistical)
     }
@@ -132,7 +132,7 @@ impl Numerics {
         }
     }
 
-    /// The numerics of boundary elements, where they press.
+    /// The options of the boundary elements, where the model uses them.
     pub fn boundary_elements(&self) -> Option<&Bem3d> {
         match self {
             Self::Bem3d(numerics) | Self::Equivalent(Equivalent { model: numerics, .. }) => Some(numerics),
@@ -140,8 +140,8 @@ impl Numerics {
         }
     }
 
-    /// The same on a grid of at most these cells along the longer side of a rectangle of this size, or
-    /// elements.
+    /// The same model on a grid of at most `cells` cells along the longer side of a rectangle of this size,
+    /// or with at most `elements` elements.
     #[must_use]
     pub fn reduced(self, cells: usize, elements: usize, size: Size) -> Self {
         match self {
@@ -155,13 +155,13 @@ impl Numerics {
         }
     }
 
-    /// The same on a grid that is only asked whether it can answer.
+    /// The same model on a small grid, to test whether it can solve a scene.
     #[must_use]
     pub(crate) fn probe(&self, size: Size) -> Self {
         self.clone().reduced(PROBE_CELLS, PROBE_ELEMENTS, size)
     }
 
-    /// What one may expect of its numbers, in a sentence; `cells` of models that have them.
+    /// The accuracy to expect of its results, in a sentence. `cells` is used by models that have cells.
     pub fn accuracy(&self, rough: bool, cells: Cells) -> String {
         let Cells { columns, rows } = cells;
         match self {

@@ -1,4 +1,4 @@
-//! `[outputs]`: what is not asked for is not computed and not stored.
+//! `[outputs]`: only requested outputs are computed and stored.
 
 use crate::scenes::read::{Distributed, Entries, Entry, Read, System};
 use contact_model::{Conductance, FIELDS, FieldQuantity, Output, Outputs, Shown};
@@ -45,12 +45,12 @@ pub(crate) static HEIGHTS: FieldQuantity = FieldQuantity {
     take: |_| Vec::new(),
 };
 
-/// What is asked for: of the models, and as files.
+/// The requested outputs: results of the models, and files.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct RequestedOutputs {
-    /// Of the models.
+    /// Results of the models.
     pub outputs: Outputs,
-    /// Fields that files are asked of, with their formats.
+    /// Fields that are written to files, with their formats.
     pub files: Vec<(Output, Vec<FieldFormat>)>,
     /// Formats of the heights as they are solved: after crop, fill and detrend, or as drawn.
     pub heights: Vec<FieldFormat>,
@@ -58,11 +58,11 @@ pub struct RequestedOutputs {
     pub distributions: Vec<Distributed>,
     /// Whether states of boundary elements are compared with those on coarser grids.
     pub grid_error: bool,
-    /// Whether the surface is described: parameters, spectra, height differences.
+    /// Whether statistics of the surface are computed: parameters, spectra, height differences.
     pub statistics: bool,
     /// Whether curves are drawn.
     pub curves: bool,
-    /// Numbers of the loads or steps whose fields are drawn; `None`: of all.
+    /// Numbers of the loads or steps whose fields are drawn; `None` means all.
     pub drawn_states: Option<Vec<usize>>,
 }
 
@@ -86,7 +86,7 @@ impl RequestedOutputs {
         asked.map_or(&[], |(_, formats)| formats)
     }
 
-    /// Every output with whether it is asked for.
+    /// Every output, with whether it is requested.
     pub fn lines(&self) -> Vec<(&'static str, bool)> {
         let of_models = Output::ALL.iter().map(|&output| (output.name(), self.outputs.asks(output)));
         let files = [
@@ -147,7 +147,7 @@ pub(crate) fn read_outputs(table: Option<Entries<'_>>, system: System) -> Read<R
         }
     }
     let counted = |of: Distributed| requested.distributions.contains(&of);
-    // Pictures outline the contact, and where there is contact, the gap is rounding.
+    // Pictures outline the contact; the gap in contact is only rounding.
     let outlined = requested.files.iter().any(|(_, formats)| formats.contains(&FieldFormat::Png));
     let pressure = outlined || counted(Distributed::Pressure) || counted(Distributed::Gap);
     let gap = counted(Distributed::Gap);
@@ -167,7 +167,7 @@ fn read_formats(entry: &Entry<'_>) -> Read<Vec<FieldFormat>> {
     if !entry.is_list() && !entry.is_text() {
         return if entry.flag()? {
             Err(entry
-                .diagnostic("a field is asked for without a format")
+                .diagnostic("a field is requested without a format")
                 .with_help("name its files: `[\"npy\"]`, `[\"npy\", \"png\", \"vti\"]`"))
         } else {
             Ok(Vec::new())

@@ -1,5 +1,5 @@
-//! What a seed draws on cells: self-affine surfaces, isotropic or with a lay, artificial twins of a map, and
-//! either with a prescribed distribution of heights.
+//! Random surfaces that are generated from a seed: self-affine surfaces, isotropic or anisotropic with a lay,
+//! and artificial twins of a map; all of them optionally with a prescribed distribution of heights.
 
 use crate::scenes::read::{System, amount, number, sampled, sampled_cells};
 use contact_model::{Amplitude, Cells, HeightMap, Result, SelfAffine, Size};
@@ -19,24 +19,24 @@ pub enum RandomSpectrum {
         /// Waves longer along a lay; `None`: isotropic.
         anisotropy: Option<Anisotropy>,
     },
-    /// That of a map, on the cells of the map.
+    /// The spectrum of a map, on the cells of the map.
     Twin {
         /// The map.
         of: Arc<HeightMap>,
-        /// What the twin has in common with it.
+        /// Which part of the spectrum the twin has in common with the map.
         like: TwinSpectrum,
     },
 }
 
-/// A surface that a seed draws on cells.
+/// A surface that is generated from a seed on a grid.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RandomSurface {
     /// The amplitudes of its waves.
     pub spectrum: RandomSpectrum,
-    /// The distribution of its heights; `None`: what random phases give, nearly Gaussian.
+    /// The distribution of its heights; `None` leaves that of random phases, which is nearly Gaussian.
     pub heights: Option<HeightDistribution>,
-    /// Where it is sampled on a coarser grid: the cells on which it is drawn, and the most along the longer
-    /// side that are kept.
+    /// Where it is sampled on a coarser grid: the cells on which it is generated, and the largest number of
+    /// cells along the longer side that are kept.
     sampling: Option<(Cells, usize)>,
 }
 
@@ -62,7 +62,8 @@ impl RandomSurface {
         }
     }
 
-    /// The cells that it brings: a twin those of its map, a sampled surface those that are left.
+    /// The cells that it defines itself: those of the map for a twin, those that are kept for a sampled
+    /// surface.
     pub(crate) fn own_cells(&self) -> Option<Cells> {
         match (&self.sampling, &self.spectrum) {
             (Some((cells, longer)), _) => Some(sampled_cells(*cells, *longer)),
@@ -71,19 +72,19 @@ impl RandomSurface {
         }
     }
 
-    /// The same surface on at most so many cells along the longer side, where it is drawn on `cells`
-    /// otherwise.
+    /// The same surface on at most `longer` cells along the longer side, where it is otherwise generated on
+    /// `cells`.
     ///
-    /// A self-affine surface without a distribution of heights is drawn on the coarser cells, with fewer
-    /// short waves. With one, maps that are drawn on two grids differ by some per cent of the rms height: it
-    /// is drawn on the finer cells, and sampled.
+    /// A self-affine surface without a prescribed distribution of heights is generated on the coarser cells,
+    /// with fewer short waves. With a prescribed distribution, maps generated on two grids differ by some per
+    /// cent of the rms height; such a surface is generated on the finer cells and sampled.
     pub(crate) fn coarser(&self, cells: Cells, longer: usize) -> Self {
         let drawn = matches!(self.spectrum, RandomSpectrum::SelfAffine { .. }) && self.heights.is_none();
         let finest = self.sampling.map_or(cells, |(finest, _)| finest);
         Self { sampling: (!drawn).then_some((finest, longer)), ..self.clone() }
     }
 
-    /// The map that a seed draws on these cells; a twin has those of its map, whatever they are.
+    /// The map of a seed on these cells; a twin always has the cells of its map.
     ///
     /// # Errors
     /// Those of [`WaveGenerator`], [`PrescribedMap`] and [`surface_gen::self_affine_map`].
@@ -91,7 +92,7 @@ impl RandomSurface {
         Ok(self.draw(cells.into(), seed)?.map)
     }
 
-    /// Bytes that drawing it takes at the peak, the map included.
+    /// Peak memory of generating it in bytes, the map included.
     pub fn memory(&self, cells: impl Into<Cells>) -> f64 {
         let cells = self.sampling.map_or(cells.into(), |(finest, _)| finest);
         match (&self.heights, &self.spectrum) {
@@ -107,7 +108,7 @@ impl RandomSurface {
         }
     }
 
-    /// Draws it; `cells` count where it brings none of its own.
+    /// Generates it; `cells` is used where it does not define its own cells.
     ///
     /// # Errors
     /// Those of [`WaveGenerator`], [`PrescribedMap`] and [`surface_gen::self_affine_map`].
@@ -137,7 +138,7 @@ impl RandomSurface {
         Ok(Drawn { map, spectrum_residual })
     }
 
-    /// In a phrase.
+    /// A description in a phrase.
     pub(crate) fn describe(&self, system: System) -> String {
         let mut text = match &self.spectrum {
             RandomSpectrum::SelfAffine { surface, anisotropy } => {
@@ -171,7 +172,7 @@ impl RandomSurface {
         text
     }
 
-    /// Everything that decides what a seed draws, in a line.
+    /// Everything that determines the surface of a seed, in a line.
     pub(crate) fn key(&self) -> String {
         let spectrum = match &self.spectrum {
             RandomSpectrum::Twin { of, like } => format!("twin {like:?} of {}", map_key(of)),
@@ -230,7 +231,7 @@ mod tests {
     }
 
     #[test]
-    fn coarser_grids_sample_what_is_another_surface_on_them() {
+    fn surfaces_that_depend_on_the_grid_are_sampled_on_coarser_grids() {
         let surface = SelfAffine { roll_off: Some(30.0), ..SelfAffine::new(2.2, 1.0, 0.01).unwrap() };
         let plain = RandomSpectrum::SelfAffine { surface, anisotropy: None };
         let of = Arc::new(RandomSurface::new(plain.clone(), None).map(64, 1).unwrap());

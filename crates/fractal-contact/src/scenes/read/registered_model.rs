@@ -1,10 +1,10 @@
-//! A model of the user's own.
+//! Models written by the user.
 
 use contact_model::ContactModel;
 use std::fmt;
 use std::sync::Arc;
 
-/// A model of a [`crate::scenes::Registry`]. Two of one name and version are the same.
+/// A model of a [`crate::scenes::Registry`]. Two models with the same name and version are equal.
 #[derive(Clone)]
 pub struct RegisteredModel {
     name: &'static str,
@@ -22,7 +22,7 @@ impl RegisteredModel {
         self.name
     }
 
-    /// What was given when it was added.
+    /// The version that was given when it was added.
     pub fn version(&self) -> &str {
         &self.version
     }

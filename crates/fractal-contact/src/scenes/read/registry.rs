@@ -5,13 +5,13 @@ use crate::scenes::read::{Error, RegisteredModel, Result};
 use contact_model::ContactModel;
 use std::sync::Arc;
 
-/// Models written by the user, which scenes name beside those of the library.
+/// Models written by the user, which scenes can name in the same way as those of the library.
 ///
-/// A registered model is configured in code: `[models.NAME]` has no keys for it. It is given the surface as
-/// the scene describes it (a random one is the model's own to draw from the seed; sums of a random surface
-/// and a body are not passed on), answers for each of the scene's random surfaces, and its states are stored
-/// under its name and version: **change the version with anything that changes a result**, or results stored
-/// by an earlier model are taken.
+/// A registered model is configured in code: `[models.NAME]` has no keys for it. It receives the surface as
+/// the scene describes it. The model itself generates a random surface from the seed; sums of a random
+/// surface and a body are not passed on. It solves each of the scene's random surfaces, and its states are
+/// stored under its name and version: **change the version with anything that changes a result**, or results
+/// stored by an earlier version of the model are reused.
 ///
 /// ```
 /// use fractal_contact::scenes::{Plan, Registry, SceneFile};

@@ -1,4 +1,4 @@
-//! A map on fewer cells.
+//! Sampling of a map on fewer cells.
 
 use contact_model::{Cells, HeightMap, Result};
 

@@ -1,4 +1,4 @@
-//! `[scene.surface]` with `kind = "file"`: a measured map, as it is declared.
+//! `[scene.surface]` with `kind = "file"`: a measured map and its options.
 
 use crate::scenes::read::{Diagnostic, Entries, Entry, LengthOrPair, Read, System, amount, number};
 use contact_model::HeightMap;
@@ -14,7 +14,7 @@ pub(crate) struct FileMap {
     pub map: HeightMap,
     /// Metadata of its file.
     pub metadata: String,
-    /// From which distance on the tip of the instrument lets heights be seen.
+    /// The distance from which on the tip of the instrument resolves heights.
     pub reliable_from: Option<f64>,
     /// Remarks on the keys.
     pub notes: Vec<Diagnostic>,
@@ -22,7 +22,7 @@ pub(crate) struct FileMap {
     pub profile: bool,
 }
 
-/// A map in numbers, which have units as text where it is in metres.
+/// The description of a map, with units where its lengths are in metres.
 pub(crate) fn description(map: &HeightMap, system: System) -> Description {
     let description = surface_io::describe(map);
     if system == System::Si { description.in_metres() } else { description }
@@ -41,7 +41,7 @@ pub(crate) fn read_map(table: &Entries<'_>, system: System, directory: &Path) ->
         if e.problem().is_none() {
             return diagnostic.with_help("a relative path counts from the folder of the scene");
         }
-        diagnostic.with_help("`format`, `unit`, `size`, `cell`, `crop`, `fill`, `undefined`, `missing` in [scene.surface] say how it is meant")
+        diagnostic.with_help("`format`, `unit`, `size`, `cell`, `crop`, `fill`, `undefined`, `missing` in [scene.surface] say how to read it")
     };
     let scan = Scan::read(&path, &declared).map_err(wrong)?;
     let metadata = scan.metadata();
@@ -81,7 +81,7 @@ pub(crate) fn read_map(table: &Entries<'_>, system: System, directory: &Path) ->
     Ok(FileMap { map, metadata, reliable_from, notes, profile })
 }
 
-/// How the file is meant.
+/// The options for reading the file.
 fn read_options(table: &Entries<'_>, system: System, notes: &mut Vec<Diagnostic>) -> Read<ReadOptions> {
     let unit = |key: &'static str| -> Read<Option<Unit>> {
         table.optional(key, |entry| {
@@ -123,7 +123,7 @@ fn read_options(table: &Entries<'_>, system: System, notes: &mut Vec<Diagnostic>
     Ok(declared)
 }
 
-/// Reads the surface of the second body, lays it on the first face to face, and adds both.
+/// Reads the surface of the second body, turns it over so that it faces the first, and adds both.
 pub(crate) fn read_second(
     table: &Entries<'_>,
     first: &HeightMap,
@@ -162,7 +162,7 @@ pub(crate) fn read_second(
     Ok(FileMap { map: sum, metadata, reliable_from, notes, profile: false })
 }
 
-/// What a profile is taken for.
+/// A note on how a profile is used.
 fn uniform(file: &Entry<'_>, map: &HeightMap) -> Diagnostic {
     let help = "contact is that of plane strain: `bem3d` solves it, pressures do not depend on that width, and force over width is the force \
                 per length; theories of isotropic surfaces and `mdr1d` are refused";
@@ -173,13 +173,14 @@ fn uniform(file: &Entry<'_>, map: &HeightMap) -> Diagnostic {
     Diagnostic::note(message).at(file.span()).with_help(help)
 }
 
-/// What makes a map answer otherwise than its owner may expect.
+/// A property of a map that may make its results differ from what the user expects.
 pub(crate) struct Remark {
     pub message: String,
     pub help: &'static str,
 }
 
-/// Remarks on a map after its preprocessing: a tilt, unless what becomes of it is `declared`, and a spike.
+/// Remarks on a map after its preprocessing: a tilt, unless the scene `declared` what to do with it, and a
+/// spike.
 pub(crate) fn remarks(
     scan: &Scan,
     preprocessing: &Preprocessing,
@@ -216,12 +217,12 @@ pub(crate) fn exchanged_sides(
     let [dx, dy] = swapped(declared, map)?.map(|side| ascii(&amount(side, system.shown("m"))));
     Some(Remark {
         message: format!("cells of {dx} x {dy}: with both sides of `size` exchanged they would be squares"),
-        help: "the first side of `size` is along x, along the columns; where the cells are oblong, all is well",
+        help: "the first side of `size` is along x, along the columns; ignore this where the cells are oblong",
     })
 }
 
-/// The highest point in rms heights above the mean, where it stands alone: a Gaussian map of 1e8 points
-/// reaches 6.
+/// The highest point and its height above the mean over the rms height, where it is a single spike. The
+/// highest point of a Gaussian map of 1e8 points is at about 6.
 pub(crate) fn spike(map: &HeightMap) -> Option<(usize, usize, f64)> {
     const ALONE: f64 = 8.0;
     let known: Vec<f64> = map.defined().collect();
@@ -241,8 +242,8 @@ fn swapped(declared: &ReadOptions, map: &surface_io::Metadata) -> Option<[f64; 2
     (!square(x, y) && square(y, x)).then(|| [x / columns, y / rows])
 }
 
-/// The tilt of a map over its whole size in rms heights of what is left without it, where that changes its
-/// contact.
+/// The tilt of a map over its whole size, over the rms height of the map without it, where the tilt changes
+/// the contact.
 fn tilt(scan: &Scan, preprocessing: &Preprocessing, map: &HeightMap) -> Option<f64> {
     /// A tilt below this is hidden by the roughness.
     const HIDDEN: f64 = 1.0;

@@ -1,4 +1,4 @@
-//! A scene as it stands in a file.
+//! A scene as it is read from a file.
 
 use crate::scenes::EFFECT_KEYS;
 use crate::scenes::read::{
@@ -15,36 +15,36 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use surface_io::Dimension;
 
-/// Longest scene; a longer file is something else.
+/// Largest size of a scene file in bytes; a longer file is not a scene.
 const LONGEST: u64 = 1 << 20;
 
 /// Most surfaces of a scene.
 const MOST_SURFACES: u64 = 1_000_000;
 
-/// One question with everything that decides its answer.
+/// A contact problem with everything that determines its results.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SceneFile {
-    /// Where it was read.
+    /// Path of the file.
     pub path: PathBuf,
-    /// The file itself.
+    /// Text of the file.
     pub text: String,
-    /// Whether numbers carry units; without them results are in the scene's own.
+    /// Whether numbers carry units; without them results are in the scene's own units.
     pub system: System,
     /// The models in the order named.
     pub models: Vec<Numerics>,
-    /// What is pressed.
+    /// The surface of the contact.
     pub surface: SceneSurface,
     /// Contact modulus E* of the pair.
     pub contact_modulus: f64,
-    /// Pressure above which a state is marked; E*/10 where none is given.
+    /// Pressure above which a state has a note; E*/10 where none is given.
     pub hardness: Option<f64>,
-    /// Which accuracy the grid is chosen for ([`SceneFile::with_grid_for_accuracy`]).
+    /// The accuracy for which the grid is chosen ([`SceneFile::with_grid_for_accuracy`]).
     pub accuracy: Option<AccuracyTarget>,
     /// Both bodies, where they are named.
     pub pair: Option<Pair>,
     /// Effects, off unless named.
     pub effects: Effects,
-    /// What is asked of the models.
+    /// The loads or the path.
     pub request: LoadRequest,
     /// What is computed and stored.
     pub requested: RequestedOutputs,
@@ -52,9 +52,10 @@ pub struct SceneFile {
     pub sampling: Sampling,
     /// Metadata of the surface's file.
     pub metadata: Option<String>,
-    /// From which distance on the tip of the instrument lets heights be seen, where the scene names one.
+    /// The distance from which on the tip of the instrument resolves heights, where the scene gives its
+    /// radius.
     pub reliable_from: Option<f64>,
-    /// Remarks on what stands in the file, such as keys that have a new name.
+    /// Remarks on the file, such as keys that have a new name.
     pub notes: Vec<Diagnostic>,
     places: Places,
 }
@@ -68,7 +69,7 @@ pub struct Sampling {
     pub surfaces: usize,
 }
 
-/// Where things stand in the text.
+/// Places in the text, for messages.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 struct Places {
     models: Vec<Range<usize>>,
@@ -130,8 +131,8 @@ impl SceneFile {
         }
     }
 
-    /// The scene with pictures of the fields of these states alone, loads or steps counted from 0, in place of
-    /// `drawn_states` in its `[outputs]`.
+    /// The scene with pictures of the fields of these states only, instead of `drawn_states` in its
+    /// `[outputs]`. Loads or steps are counted from 0.
     ///
     /// # Errors
     /// A [`Diagnostic`] that names the first of them that the scene does not have.
@@ -165,13 +166,13 @@ impl SceneFile {
         }
         let bytes = runs::files::read(path, LONGEST)?;
         let Ok(text) = String::from_utf8(bytes) else {
-            let help = "`fractal-contact info FILE` says what a surface or a result holds";
+            let help = "`fractal-contact info FILE` describes a surface or a result";
             return Err(Diagnostic::new("not a text file (UTF-8)").with_help(help).placed(path, "").into());
         };
         Self::parse_with(path, text, registry)
     }
 
-    /// Reads a text; `path` is where messages say that it stands, and where its files are looked for.
+    /// Reads a text. Messages show `path` as its file, and files that it names are looked up relative to it.
     ///
     /// # Errors
     /// [`crate::scenes::Error::Scene`] with the place of the first mistake.
@@ -206,7 +207,7 @@ impl SceneFile {
         Ok(scene)
     }
 
-    /// The physics that one model is given for one surface.
+    /// The physical problem for one model and one surface.
     ///
     /// # Errors
     /// As [`SceneSurface::for_model`].
@@ -220,7 +221,7 @@ impl SceneFile {
         })
     }
 
-    /// Seed of surface number `index`, the same that the figures use.
+    /// Seed of surface number `index`, as in the figures of the paper.
     pub fn seed(&self, index: usize) -> u64 {
         surface_gen::surface_seed(self.sampling.seed, index as u64)
     }
@@ -240,7 +241,7 @@ impl SceneFile {
         self.placed(diagnostic, self.places.of_effect(name))
     }
 
-    /// A mistake of the accuracy that is asked for.
+    /// A mistake of the requested accuracy.
     pub(crate) fn at_accuracy(&self, diagnostic: Diagnostic) -> Diagnostic {
         self.placed(diagnostic, self.places.accuracy.clone())
     }
@@ -250,18 +251,18 @@ impl SceneFile {
         if self.text.is_empty() { diagnostic } else { diagnostic.placed(&self.path, &self.text) }
     }
 
-    /// Whether a seed decides what a model is given or draws.
+    /// Whether the surface of some model depends on the seed.
     pub(crate) fn is_random(&self) -> bool {
         let given = self.surface.given_map().is_some();
         self.surface.is_random() || given && self.models.iter().any(|m| self.surface.is_random_for(m))
     }
 
-    /// Whether it needs models that remember.
+    /// Whether it is a path, which needs models with a memory.
     pub fn is_history(&self) -> bool {
         matches!(self.request, LoadRequest::Path(_))
     }
 
-    /// The comment at the head of the file: what it shows.
+    /// The comment at the head of the file, which says what the scene shows.
     pub fn comment(&self) -> String {
         let lines = self.text.lines().take_while(|l| l.starts_with('#'));
         lines.map(|l| l.trim_start_matches('#').trim()).collect::<Vec<_>>().join(" ")
@@ -344,7 +345,7 @@ fn places(
     names.filter_map(|name| Some((name, table.entry(name)?.key_span()))).collect()
 }
 
-/// E*, from itself or from both bodies, and a note where it stands under the name that it had before.
+/// E*, given directly or by both bodies, and a note where it has its former name.
 fn read_material(scene: &Entries<'_>, system: System) -> Read<(f64, Option<Pair>, Option<Diagnostic>)> {
     match scene.one_of(&["contact_modulus", "modulus", "bodies"])? {
         Some(("contact_modulus", entry)) => Ok((entry.positive(Dimension::PRESSURE, system)?, None, None)),
@@ -432,21 +433,22 @@ fn read_sampling(
     Ok(Sampling { seed, surfaces: count as usize })
 }
 
-/// What an accuracy chooses is not given.
+/// Checks that the grid is not given where an accuracy chooses it.
 fn check_no_grid(options: Option<&Entries<'_>>) -> Read<()> {
     let Some(entry) = options.and_then(|options| options.entry("bem3d")) else { return Ok(()) };
     let table = entry.table()?;
     for key in ["cells", "rows", "tolerance"] {
         if let Some(given) = table.entry(key) {
             return Err(given
-                .diagnostic_at_key(format!("`{key}` is given beside `accuracy`, which chooses it"))
+                .diagnostic_at_key(format!("`{key}` is given together with `accuracy`, which chooses it"))
                 .with_help("keep one of them"));
         }
     }
     Ok(())
 }
 
-/// A map brings its own cells, and those of a generated surface are not too many.
+/// Checks that no cells are given for a map, which has its own, and that a generated surface has not too
+/// many.
 fn check_cells(
     options: Option<&Entries<'_>>,
     models: &[(Numerics, Entry<'_>)],
@@ -484,7 +486,8 @@ fn check_cells(
     Ok(())
 }
 
-/// Theories of rough surfaces take a map, or none: heights of a body are no part of its statistics.
+/// Checks that theories of rough surfaces have no body added to a map: its heights are not part of the
+/// statistics.
 fn check_homogeneous(
     scene: &Entries<'_>,
     models: &[(Numerics, Entry<'_>)],
@@ -499,7 +502,7 @@ fn check_homogeneous(
     Err(name.diagnostic(message).with_help("remove [scene.body], or the model from `models`"))
 }
 
-/// Loads that contradict the boundary or the surface.
+/// Checks that the loads do not contradict the boundary or the surface.
 fn check_request(
     request: &LoadRequest,
     entry: &Entry<'_>,
@@ -530,7 +533,7 @@ fn check_request(
         {
             Err(entry
                 .diagnostic_at_key(
-                    "`force_bar` counts forces in the rms height of a rough surface, which this body has not",
+                    "`force_bar` is normalised by the rms height of a rough surface, which this body does not have",
                 )
                 .with_help("prescribe `force` or `approach`"))
         }
@@ -538,7 +541,8 @@ fn check_request(
     }
 }
 
-/// What depends on where displacements of a half-plane are counted from: of a profile with free boundaries.
+/// Checks that nothing is requested of a profile with free boundaries that depends on the zero of the
+/// displacements of a half-plane.
 fn check_half_plane(
     request: &LoadRequest,
     entry: &Entry<'_>,
@@ -571,7 +575,7 @@ fn check_half_plane(
     Err(Diagnostic::new(message).at(places.of_output(name)).with_help(help))
 }
 
-/// States that are drawn are states of the scene.
+/// Checks that the states to be drawn exist in the scene.
 fn check_drawn_states(requested: &RequestedOutputs, request: &LoadRequest) -> Read<()> {
     let count = request.count();
     let Some(state) = requested.drawn_states.iter().flatten().find(|state| **state >= count) else {
@@ -581,12 +585,12 @@ fn check_drawn_states(requested: &RequestedOutputs, request: &LoadRequest) -> Re
         .with_help(format!("numbers of loads or steps from 0 to {}", count.saturating_sub(1))))
 }
 
-/// Whether boundary elements have an effect that depends on the path.
+/// Whether an effect of the boundary elements depends on the path.
 pub(crate) fn depends_on_path(effects: &Effects) -> bool {
     effects.hardness != Hardness::Off || effects.adhesion != Adhesion::Off
 }
 
-/// Effects that remember need a path and models that follow one.
+/// Checks that effects with a memory have a path and models that can follow one.
 fn check_histories(
     models: &[(Numerics, Entry<'_>)],
     request: &LoadRequest,
@@ -628,7 +632,7 @@ fn check_histories(
     Ok(())
 }
 
-/// A tangential load along y is for models that answer loads in both directions.
+/// Checks that a tangential load along y is given only to models that take both directions.
 fn check_tangential(models: &[(Numerics, Entry<'_>)], request: &LoadRequest, effects: &Effects) -> Read<()> {
     let both = |numerics: &Numerics| numerics.model().abilities().directions == Directions::Plane;
     let Some((numerics, model)) = models.iter().find(|(numerics, _)| !both(numerics)) else { return Ok(()) };
@@ -650,8 +654,8 @@ fn check_tangential(models: &[(Numerics, Entry<'_>)], request: &LoadRequest, eff
         .with_help(help))
 }
 
-/// A model that can neglect the coupling of normal and tangential tractions, and that can solve it, is told
-/// which, where these bodies couple.
+/// Checks that the coupling of normal and tangential tractions is given, where these bodies couple and a
+/// model can either neglect or solve it.
 fn check_coupling(
     models: &[(Numerics, Entry<'_>)],
     pair: Option<&Pair>,

@@ -11,12 +11,13 @@ use std::sync::Arc;
 use surface_gen::{Anisotropy, HeightDistribution, TwinSpectrum, WaveGenerator};
 use surface_io::Dimension;
 
-/// What is pressed: a surface, or what a seed draws on cells, alone or on a body.
+/// The surface of the contact: a given one, or a random one, alone or on a body.
 #[derive(Debug, Clone, PartialEq)]
 pub enum SceneSurface {
     /// One surface.
     Plain(Surface),
-    /// A random surface that is drawn on the cells of each model; heights of a body are added.
+    /// A random surface that is generated on the cells of each model, to which the heights of a body may be
+    /// added.
     Drawn {
         /// The random part.
         rough: RandomSurface,
@@ -34,7 +35,7 @@ impl SceneSurface {
         }
     }
 
-    /// Whether a seed decides what it looks like.
+    /// Whether it depends on the seed.
     pub fn is_random(&self) -> bool {
         matches!(self, Self::Plain(Surface::SelfAffine(_)) | Self::Drawn { .. })
     }
@@ -44,8 +45,8 @@ impl SceneSurface {
         matches!(self, Self::Plain(Surface::Profile(_)))
     }
 
-    /// Whether a model has other numbers for other seeds: of a given map only the line that stands for it
-    /// has.
+    /// Whether the results of a model depend on the seed. For a given map only those of the random line of
+    /// `mdr1d` do.
     pub(crate) fn is_random_for(&self, numerics: &Numerics) -> bool {
         if self.is_profile() {
             return false;
@@ -54,7 +55,7 @@ impl SceneSurface {
         numerics.depends_on_realisation() && (!given || matches!(numerics, Numerics::Mdr1d(_)))
     }
 
-    /// Whether it is rough: it has an rms height in which forces can be counted.
+    /// Whether it is rough, so that it has an rms height by which forces can be normalised.
     pub fn is_rough(&self) -> bool {
         matches!(
             self,
@@ -72,7 +73,7 @@ impl SceneSurface {
         }
     }
 
-    /// Cells that it brings, whatever a model asks for: those of a given map, and of its twin.
+    /// The cells that it defines itself, which models have to use: those of a given map or of its twin.
     pub(crate) fn own_cells(&self) -> Option<Cells> {
         match self {
             Self::Plain(Surface::Heights(map) | Surface::Profile(map)) => Some(map.cells()),
@@ -81,13 +82,13 @@ impl SceneSurface {
         }
     }
 
-    /// Whether a seed draws another surface on other cells, and not only more or fewer short waves of the
-    /// same one.
+    /// Whether the surface of a seed on other cells is a different one, and does not only have more or fewer
+    /// short waves.
     pub(crate) fn differs_by_grid(&self) -> bool {
         matches!(self, Self::Drawn { rough, .. } if rough.heights.is_some()) && self.own_cells().is_none()
     }
 
-    /// The same surface on at most so many cells along its longer side, where a model has `cells` otherwise.
+    /// The same surface on at most `longer` cells along its longer side, where a model otherwise has `cells`.
     pub(crate) fn coarser(&self, cells: Cells, longer: usize) -> Result<Self> {
         Ok(match self {
             Self::Plain(Surface::Heights(map)) => {
@@ -103,7 +104,7 @@ impl SceneSurface {
         })
     }
 
-    /// In a phrase, lengths in the units of a scene of this system.
+    /// A description in a phrase, with lengths in the units of this system.
     pub fn describe(&self, system: System) -> String {
         match self {
             Self::Plain(Surface::SelfAffine(s)) => describe_self_affine(s, system),
@@ -140,7 +141,7 @@ impl SceneSurface {
         }
     }
 
-    /// Everything that decides its heights, but the seed, in a line.
+    /// Everything that determines its heights except the seed, in a line.
     pub(crate) fn key(&self) -> String {
         match self {
             Self::Plain(Surface::Heights(map)) => map_key(map),
@@ -150,10 +151,11 @@ impl SceneSurface {
         }
     }
 
-    /// What a model is given: what is drawn is drawn on the model's own cells.
+    /// The surface for a model; a random surface is generated on the model's own cells.
     ///
     /// # Errors
-    /// [`Error::Unsupported`] for a model without cells and a surface that needs them, and what drawing it refuses.
+    /// [`Error::Unsupported`] for a model without cells and a surface that needs them; errors of generating
+    /// the surface.
     pub fn for_model(&self, numerics: &Numerics, seed: u64) -> Result<Surface> {
         let (rough, body) = match self {
             Self::Plain(surface) => return Ok(surface.clone()),
@@ -196,7 +198,7 @@ pub(crate) struct SurfaceEntry {
     pub surface: SceneSurface,
     /// Metadata of its file.
     pub metadata: Option<String>,
-    /// From which distance on the tips of its instruments let heights be seen.
+    /// The distance from which on the tips of its instruments resolve heights.
     pub reliable_from: Option<f64>,
     /// Remarks on the keys.
     pub notes: Vec<Diagnostic>,
@@ -253,7 +255,7 @@ pub(crate) fn read_surface(scene: &Entries<'_>, system: System, directory: &Path
         let body = body.map(|body| read_body(&body, Some(map.size()), system)).transpose()?;
         if let Some((entry, like, keep_heights)) = twin {
             let of = Arc::new(map);
-            // What stands in the way of a twin is found before anything is solved.
+            // Obstacles to a twin are found before anything is solved.
             WaveGenerator::twin(&of, like).map_err(|e| {
                 entry.diagnostic(format!("no twin of this map: {e}")).with_help(
                     "undefined points need `fill`; a map that is not periodic `detrend` and `window = \"hann\"`",
@@ -282,7 +284,7 @@ pub(crate) fn read_surface(scene: &Entries<'_>, system: System, directory: &Path
     Ok(SceneSurface::Drawn { rough: RandomSurface::new(spectrum, heights), body }.into())
 }
 
-/// What a profile is not combined with.
+/// Refuses keys that cannot be combined with a profile.
 fn refuse_for_profile(
     scene: &Entries<'_>,
     twin: Option<&Entry<'_>>,
@@ -320,7 +322,7 @@ fn read_twin<'a>(table: &Entries<'a>, is_second: bool) -> Read<Option<(Entry<'a>
 
 /// `anisotropy` and `lay`.
 fn read_anisotropy(table: &Entries<'_>) -> Read<Option<Anisotropy>> {
-    let help = "add `anisotropy = 4`: waves along the lay are so many times as long as across";
+    let help = "add `anisotropy = 4`: waves along the lay are then four times as long as across it";
     let lay = table.beside("lay", "anisotropy", help)?;
     let Some(ratio) = table.find("anisotropy") else { return Ok(None) };
     let lay = lay.map_or(Ok(0.0), |lay| lay.angle())?;

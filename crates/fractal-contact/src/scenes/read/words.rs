@@ -1,4 +1,4 @@
-//! What scenes, loads, units and models are called in titles and labels.
+//! Names of scenes, loads, units and models in titles and labels.
 
 use crate::models::ModelRecord;
 use crate::scenes::read::{LoadKind, LoadRequest, SceneFile, System, amount, short};
@@ -6,14 +6,14 @@ use contact_model::units::{ascii, to_digits};
 use contact_model::{Body, Error, Hardness};
 use std::path::Path;
 
-/// The scene's name in a title: that of its file, of `NAME/scene.toml` that of its folder.
+/// The scene's name in a title: that of its file or, for `NAME/scene.toml`, that of its folder.
 pub(crate) fn scene_name(scene: &SceneFile) -> String {
     let folder = scene.path.parent().and_then(Path::file_name).filter(|_| scene.path.ends_with("scene.toml"));
     let name = folder.or_else(|| scene.path.file_stem());
     name.map_or_else(String::new, |n| n.to_string_lossy().replace(['-', '_'], " "))
 }
 
-/// A load in words, with its unit; a step by its number.
+/// A load in words, with its unit; a step of a path by its number.
 pub(crate) fn load(scene: &SceneFile, state: usize) -> String {
     match &scene.request {
         LoadRequest::Loads(loads) => {
@@ -28,8 +28,8 @@ pub(crate) fn load(scene: &SceneFile, state: usize) -> String {
 /// Poisson's ratio of the examples that say what a contact modulus means.
 const EXAMPLE_POISSON: f64 = 0.3;
 
-/// E* of a scene and which bodies have it: the two that are given, else examples, because E* is easily taken for a
-/// Young's modulus.
+/// E* of a scene with its bodies: the two that are given, or else examples of bodies with this E*, because E*
+/// is easily mistaken for a Young's modulus.
 pub(crate) fn contact_modulus(scene: &SceneFile) -> String {
     let unit = scene.system.shown("Pa");
     let modulus = ascii(&amount(scene.contact_modulus, unit));
@@ -55,7 +55,7 @@ pub(crate) fn contact_modulus(scene: &SceneFile) -> String {
 
 /// Why a model refuses a load, with the units of the scene.
 pub(crate) fn refusal(scene: &SceneFile, error: &Error) -> String {
-    /// What is counted in a unit of SI; names go on with what they mean.
+    /// Beginnings of the names of quantities, with their SI units.
     const UNITS: [(&str, &str); 6] = [
         ("force", "N"),
         ("tangential force", "N"),
@@ -70,7 +70,7 @@ pub(crate) fn refusal(scene: &SceneFile, error: &Error) -> String {
     };
     let Some((_, unit)) = UNITS.iter().find(of) else { return error.to_string() };
     let unit = scene.system.shown(unit);
-    // As many digits as tell the value from the ends.
+    // As many digits as are needed to distinguish the value from the limits.
     let told = |digits| [value, min, max].map(|v| ascii(&to_digits(*v, unit, digits)));
     let apart = |digits: &usize| {
         let [value, min, max] = told(*digits);
@@ -91,12 +91,12 @@ pub(crate) fn refusal(scene: &SceneFile, error: &Error) -> String {
     format!("{name} = {value} is {range}, the range in which the model holds{hardness}")
 }
 
-/// A unit with its powers raised: `m^2` and `W/K`.
+/// A unit with its powers as superscripts, such as `m^2` and `W/K`.
 pub(crate) fn unit_label(unit: &str) -> String {
     format!("$\\rm{{{unit}}}$")
 }
 
-/// What a model is called outside code.
+/// Name of a model in titles and texts.
 pub(crate) fn model_name(name: &str) -> &str {
     ModelRecord::named(name).map_or(name, |record| record.title)
 }

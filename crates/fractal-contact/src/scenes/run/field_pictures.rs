@@ -1,4 +1,5 @@
-//! Pictures of fields. They are drawn last, when the range of all loads is known: one surface has one scale.
+//! Pictures of fields. They are drawn last, when the range over all loads is known, so that all pictures of a
+//! surface have one scale.
 
 use crate::scenes::read::{FieldFormat, HEIGHTS, Result, SceneFile, words};
 use crate::scenes::run::{FieldFile, FieldView, ModelResult, StateRecord, StoredFile};
@@ -9,16 +10,16 @@ use std::borrow::Cow;
 use std::io::Write as _;
 use std::path::Path;
 
-/// Where values wait for being drawn, beside the stored results.
+/// The folder in which values are kept until they are drawn, beside the stored results.
 const WAITING: &str = ".units/";
 const EXTENSION: &str = "f64";
-/// Of what the report shows.
+/// Ending of the files with the values that the report shows.
 const VIEW: &str = "view";
 /// The field that says where there is contact.
 const PRESSURE: &str = "pressure";
 
 impl StoredFile {
-    /// Whether it is of the program's own use only.
+    /// Whether it is a file for the program's own use only.
     pub fn is_hidden(&self) -> bool {
         self.name.starts_with(WAITING)
     }
@@ -31,7 +32,7 @@ pub(crate) fn is_needed(scene: &SceneFile, name: &str) -> bool {
     fields.any(|field| field.name == name || name == PRESSURE && field.outlined)
 }
 
-/// What is shown of a field: its values, or the magnitude of its components.
+/// The values of a field that are shown: its own, or the magnitude of its components.
 pub(crate) fn magnitude<'a>(components: &[Cow<'a, [f64]>]) -> Cow<'a, [f64]> {
     match components {
         [values] => values.clone(),
@@ -46,12 +47,12 @@ pub(crate) fn keep(out: &Path, file: FieldFile<'_>, values: &[f64]) -> Result<St
     keep_bytes(out, FieldFile { extension: EXTENSION, ..file }, &bytes)
 }
 
-/// Keeps what the report shows of a field.
+/// Keeps the values of a field that the report shows.
 pub(crate) fn keep_view(out: &Path, file: FieldFile<'_>, view: &FieldView) -> Result<StoredFile> {
     keep_bytes(out, FieldFile { extension: VIEW, ..file }, &view.encode())
 }
 
-/// What [`keep_view`] kept of a state.
+/// The values of a state that [`keep_view`] kept.
 pub(crate) fn view(out: &Path, file: FieldFile<'_>) -> Option<FieldView> {
     let name = format!("{WAITING}{}", FieldFile { extension: VIEW, ..file });
     FieldView::decode(&runs::files::read(&out.join(name), u64::MAX).ok()?)
@@ -68,8 +69,8 @@ fn keep_bytes(out: &Path, file: FieldFile<'_>, bytes: &[u8]) -> Result<StoredFil
     StoredFile::of(out, name)
 }
 
-/// Draws the fields of all states, each quantity in one range; of a complete result the values kept for it
-/// are then removed.
+/// Draws the fields of all states, each quantity in one range. The values kept for drawing are removed once a
+/// result is complete.
 pub(crate) fn draw(
     scene: &SceneFile,
     (model, surface): (&str, usize),
@@ -134,7 +135,7 @@ pub(crate) fn draw(
     if result.complete {
         for state in &mut result.states {
             for file in state.files.extract_if(.., |file| file.name.ends_with(EXTENSION)) {
-                // It may be gone since it was read: nobody needs it any more.
+                // The file may already have been removed; it is not needed any more.
                 let _ = std::fs::remove_file(out.join(file.name));
             }
         }
@@ -142,7 +143,7 @@ pub(crate) fn draw(
     Ok(())
 }
 
-/// Removes what a run that was killed kept for drawing.
+/// Removes the values that a killed run kept for drawing.
 pub(crate) fn sweep(out: &Path) {
     let entries = std::fs::read_dir(out.join(WAITING)).into_iter().flatten().flatten();
     for path in

@@ -1,4 +1,4 @@
-//! What a report shows of a field: at most 256 x 256 values, each that of one cell.
+//! The part of a field that a report shows: at most 256 x 256 values, each that of one cell.
 
 use contact_model::{Cells, Shown};
 
@@ -18,7 +18,7 @@ pub(crate) fn shown_words(shown: Shown) -> &'static str {
 /// Blocks of cells, each with the value of one of them.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct FieldView {
-    /// Of the field.
+    /// Cells of the field.
     pub cells: Cells,
     /// Cells along a side of a block; 1 shows every cell.
     pub block: usize,
@@ -26,7 +26,7 @@ pub(crate) struct FieldView {
     pub rows: usize,
     /// Row-major; NaN where points are undefined.
     pub values: Vec<f32>,
-    /// Which cell of its block each value is of: row * block + column in it.
+    /// The cell of its block from which each value comes: row * block + column within the block.
     pub places: Vec<u16>,
 }
 

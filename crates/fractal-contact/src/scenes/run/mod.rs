@@ -1,4 +1,4 @@
-//! The states of a scene: each model on each surface, solved and kept.
+//! Solves and stores the states of a scene, for each model on each surface.
 
 pub(crate) mod field_pictures;
 pub(crate) mod field_view;

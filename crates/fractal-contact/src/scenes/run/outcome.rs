@@ -1,27 +1,27 @@
-//! Where a scene is run, and what came of it.
+//! Options and outcome of the run of a scene.
 
 use crate::scenes::plan::Cost;
 use std::path::PathBuf;
 
-/// Where and how a scene is run; nothing here changes a number.
+/// Where and how a scene is run; these options do not change the results.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Options {
     /// Directory of the results.
     pub out: PathBuf,
-    /// Threads: each takes one model on one surface; those that are left help inside the others.
+    /// Number of threads: each takes one model on one surface; idle threads help the others.
     pub threads: usize,
     /// Whether stored results are computed again.
     pub fresh: bool,
 }
 
-/// What a run gave.
+/// The outcome of a run.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct SceneOutcome {
     /// Files, in the order written.
     pub files: Vec<PathBuf>,
-    /// States asked for: loads or steps, times surfaces, times models.
+    /// Number of requested states: loads or steps, times surfaces, times models.
     pub requested: usize,
-    /// States in `results.csv`.
+    /// Number of states in `results.csv`.
     pub states: usize,
     /// How many of these were refused or did not reach their tolerance.
     pub failed: usize,
@@ -35,14 +35,16 @@ pub struct SceneOutcome {
     pub stopped: bool,
     /// Wall-clock seconds.
     pub seconds: f64,
-    /// Largest resident memory of the process while it ran, bytes, where the system tells.
+    /// Peak resident memory of the process in bytes, where the system reports it.
     pub peak_memory: Option<u64>,
-    /// What each model did: name, cost, bytes of field files. Seconds are of threads, stored ones included.
+    /// For each model its name, its cost and the bytes of its field files. Seconds are summed over threads
+    /// and include stored results.
     pub actual: Vec<(&'static str, Cost, u64)>,
 }
 
 impl SceneOutcome {
-    /// States that were asked for and not attempted: after a stop, and after the step at which a path failed.
+    /// Number of requested states that were not attempted: those after a stop, and those after the step at
+    /// which a path failed.
     pub fn not_attempted(&self) -> usize {
         self.requested - self.states
     }

@@ -1,5 +1,5 @@
-//! What is kept of a path that may be interrupted: its states so far, and a checkpoint from which the next
-//! load is solved to the same bits.
+//! Stores a path that may be interrupted: its states so far, and a checkpoint from which the next load is
+//! solved to the same bits.
 
 use crate::scenes::read::Result;
 use crate::scenes::run::ModelResult;
@@ -7,9 +7,10 @@ use contact_model::{PathMemory, PreparedContact};
 use runs::{Checkpoint, Progress, StatesInHand};
 use std::time::{Duration, Instant};
 
-/// What is solved is kept at most so often: a kill loses what is younger, and the state in hand.
+/// Shortest time between two writes of the results: a kill loses the states since the last one, and the state
+/// that is being solved.
 const KEEP_EVERY: Duration = Duration::from_secs(1);
-/// Time between two checkpoints, over that of writing one, at least.
+/// Smallest ratio of the time between two checkpoints to the time of writing one.
 const SHARE: u32 = 20;
 
 /// Keeps a result in the store.
@@ -21,9 +22,9 @@ pub(crate) struct Keeper<'a> {
     pub store: Option<&'a KeepResult<'a>>,
     pub checkpoint: Checkpoint,
     pub progress: &'a dyn Progress,
-    /// What the path is called in notes.
+    /// Name of the path in notes.
     pub name: String,
-    /// Is told how many of its states are solved.
+    /// Receives the number of its states that are solved.
     told_states: &'a StatesInHand<'a>,
     last: Instant,
     /// Time that the last checkpoint took.
@@ -58,8 +59,8 @@ impl<'a> Keeper<'a> {
         Ok(())
     }
 
-    /// Puts a contact where a path stood when it was interrupted, and leaves the states before that in the
-    /// result: none where the path begins anew. A checkpoint that is not used is told of.
+    /// Restores a contact to the point at which a path was interrupted, and leaves the states before that in
+    /// the result (none where the path begins anew). A checkpoint that cannot be used is reported.
     pub fn resume(&mut self, result: &mut ModelResult, contact: &mut dyn PreparedContact) {
         let (done, unused) = self.resumed(result, contact);
         (result.kept, self.kept) = (done, done);
@@ -71,7 +72,7 @@ impl<'a> Keeper<'a> {
         }
     }
 
-    /// How many steps are done, or why a checkpoint is not used.
+    /// The number of steps that are done, or why a checkpoint cannot be used.
     fn resumed(
         &self,
         result: &ModelResult,
@@ -99,8 +100,8 @@ impl<'a> Keeper<'a> {
         }
     }
 
-    /// Keeps the states of a path and its memory, where the last time was long ago or the path is interrupted
-    /// now. What cannot be kept is told of once, and the path goes on.
+    /// Stores the states of a path and its memory, where the last time was long ago or the path is
+    /// interrupted now. A failure to store them is reported once, and the path goes on.
     pub fn keep_path(&mut self, result: &mut ModelResult, contact: &dyn PreparedContact, interrupted: bool) {
         self.told_states.solved(result.states.len());
         let done = result.states.len();

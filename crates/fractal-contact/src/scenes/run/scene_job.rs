@@ -1,4 +1,4 @@
-//! A model and a surface as a job, and its result as text.
+//! A model on a surface as a job, and its result as text.
 
 use crate::scenes::plan::{FORMAT, ModelOnSurface, calibration};
 use crate::scenes::read::{Error, Result, SceneFile};
@@ -7,7 +7,7 @@ use contact_model::Stop;
 use runs::{Checkpoint, Job, JobList, Progress, ResultKind, Silent, StatesInHand};
 use std::path::Path;
 
-/// A unit with what all units of a run share.
+/// A model on a surface, with the data that all jobs of a run share.
 pub(crate) struct SceneJob<'a> {
     pub unit: ModelOnSurface,
     pub scene: &'a SceneFile,
@@ -70,7 +70,7 @@ impl Job for SceneJob<'_> {
         Ok(result)
     }
 
-    /// A result with a state or a file missing or changed is as good as absent.
+    /// A result counts as absent where a state or a file is missing or changed.
     fn is_whole(&self, result: &ModelResult) -> bool {
         result.complete && result.states.iter().all(|state| state.is_whole(self.out))
     }
@@ -87,7 +87,7 @@ pub(crate) fn units(scene: &SceneFile) -> Vec<ModelOnSurface> {
         .collect()
 }
 
-/// The same as jobs that write their fields into `out`.
+/// The same, as jobs that write their fields into `out`.
 pub(crate) fn scene_jobs<'a>(scene: &'a SceneFile, out: &'a Path) -> Vec<SceneJob<'a>> {
     units(scene).into_iter().map(|unit| SceneJob { unit, scene, out }).collect()
 }

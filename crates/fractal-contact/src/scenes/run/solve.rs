@@ -1,4 +1,4 @@
-//! One model and one surface under all loads, or along the whole path.
+//! Solves one model on one surface under all loads, or along the whole path.
 
 use crate::scenes::plan::{GridComparison, ModelOnSurface, solved_map};
 use crate::scenes::read::{
@@ -16,13 +16,13 @@ use std::path::Path;
 use std::time::Instant;
 
 impl ModelOnSurface {
-    /// Answers the loads that `result` lacks, in their order, and gives the result to `keep` after each. A
-    /// load that a model refuses has its row with the reason, and the others go on. A path goes on from its
-    /// checkpoint, or begins anew.
+    /// Solves the loads that `result` lacks, in their order, and passes the result to `keep` after each. A
+    /// load that a model refuses has a row with the reason, and the others are solved. A path goes on from
+    /// its checkpoint, or begins anew.
     ///
     /// # Errors
-    /// [`Error::Run`] where the scene cannot be prepared, and files that cannot be written. A stop is no
-    /// error: the result is then not complete.
+    /// [`Error::Run`] where the scene cannot be prepared, and files that cannot be written. A stop is not an
+    /// error: the result is then incomplete.
     pub fn solve(
         &self,
         scene: &SceneFile,
@@ -155,8 +155,8 @@ impl ModelOnSurface {
                 }
                 Err(error) => match error.into_best() {
                     Ok(best) => {
-                        // The best one of a solve that missed its tolerance, and where a pull was not held the
-                        // last stable one.
+                        // The best state of a solve that missed its tolerance or, beyond the pull-off force,
+                        // the last stable state.
                         let state = largest.enter(step.normal, best.with_fields(None).with_patches(None));
                         let solved = Solved { state, normalisation, warnings: Vec::new(), grid: None };
                         StateRecord::new(index, Answer::State(Box::new(solved)))
@@ -167,7 +167,7 @@ impl ModelOnSurface {
             let failed = record.converged().is_none();
             result.states.push(record);
             if failed {
-                // What comes after a step that failed would be another path.
+                // The steps after one that failed would belong to another path.
                 break;
             }
             keep(result, contact, false);
@@ -176,8 +176,8 @@ impl ModelOnSurface {
         Ok(())
     }
 
-    /// The record of a state: its fields become files, where these are asked for, and are counted where
-    /// distributions are.
+    /// The record of a state: its fields are written to files where these are requested, and binned where
+    /// distributions are requested.
     fn recorded(
         &self,
         scene: &SceneFile,
@@ -211,7 +211,7 @@ impl ModelOnSurface {
             if drawn && field_pictures::is_needed(scene, name) {
                 kept.files.push(field_pictures::keep(out, file(""), &all)?);
             }
-            // One surface is shown, and only fields that files are asked of.
+            // Only the first surface is shown, and only fields that are written to files.
             if drawn && surface == 0 && !formats.is_empty() {
                 let view = FieldView::new(quantity.shown, field.cells(), &shown);
                 kept.files.push(field_pictures::keep_view(out, file(""), &view)?);

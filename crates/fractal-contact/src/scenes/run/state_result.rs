@@ -1,4 +1,4 @@
-//! What is kept of a model's states, and the names of their files.
+//! The stored results of a model, and the names of their files.
 
 use crate::scenes::plan::GridErrors;
 use crate::scenes::read::{Bin, Distributed, HEIGHTS, Result, SceneFile, amount, words};
@@ -10,25 +10,25 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::path::Path;
 
-/// What one model gave on one surface.
+/// The results of one model on one surface.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(from = "StoredResult")]
 pub(crate) struct ModelResult {
-    /// Of all runs that had a part in it.
+    /// Seconds of all runs that contributed to it.
     pub seconds: f64,
-    /// Whether nothing is left to be solved.
+    /// Whether all states are solved.
     pub complete: bool,
     /// States in the order of the loads.
     pub states: Vec<StateRecord>,
     /// How many states an earlier run had kept: all of a result that is read back.
     #[serde(skip_serializing)]
     pub kept: usize,
-    /// What the user should know of this run.
+    /// Notes for the user on this run.
     #[serde(skip_serializing)]
     pub notes: Vec<String>,
 }
 
-/// What is read back of a [`ModelResult`].
+/// The part of a [`ModelResult`] that is read back.
 #[derive(Deserialize)]
 #[serde(rename = "ModelResult")]
 struct StoredResult {
@@ -43,41 +43,41 @@ impl From<StoredResult> for ModelResult {
     }
 }
 
-/// Quantities that say where a state of a path is.
+/// Quantities that describe a state of a path in words.
 const REACHED: [&str; 5] =
     ["force", "approach", "mean_gap", "tangential_displacement", "tangential_displacement_y"];
 
-/// One state as it is kept. All that is told of it is a view of this.
+/// One state as it is stored. All tables and pictures are made from these records.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct StateRecord {
     /// Number of the load or step.
     pub index: usize,
     pub answer: Answer,
-    /// Distributions that are asked for.
+    /// The requested distributions.
     pub distributions: Vec<(Distributed, Vec<Bin>)>,
     /// Files of fields.
     pub files: Vec<StoredFile>,
 }
 
-/// What a model gave for a load.
+/// The answer of a model to a load.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) enum Answer {
-    /// A state; also the best one of a solve that missed its tolerance, which its status says.
+    /// A state, including the best one of a solve that missed its tolerance (see its status).
     State(Box<Solved>),
-    /// Why there is none.
+    /// The reason why there is no state.
     Refused(String),
 }
 
-/// A state with what is found out about it.
+/// A state with its warnings and its grid errors.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Solved {
-    /// Without fields, which are files.
+    /// The state without its fields, which are in files.
     pub state: ContactState,
-    /// Of its surface.
+    /// Normalisation of its surface.
     pub normalisation: Normalisation,
-    /// What may be wrong with it all the same.
+    /// Warnings on a state that may be wrong although it is solved.
     pub warnings: Vec<Warning>,
-    /// Where it was compared with coarser grids.
+    /// Its errors, where it was compared with coarser grids.
     pub grid: Option<GridErrors>,
 }
 
@@ -100,17 +100,17 @@ impl StateRecord {
         self.solved().filter(|solved| solved.state.report.status == Status::Converged)
     }
 
-    /// Whether it is the last stable state before a pull that was not held.
+    /// Whether it is the last stable state before pull-off.
     pub fn is_pulled_off(&self) -> bool {
         self.solved().is_some_and(|solved| solved.state.report.status == Status::PulledOff)
     }
 
-    /// How it ended, in the word of tables.
+    /// How it ended, as in tables.
     pub fn status(&self) -> &'static str {
         self.solved().map_or("refused", |solved| solved.state.report.status.as_str())
     }
 
-    /// Why a model refused the load, or what to beware of.
+    /// Why a model refused the load, or the warnings on the state.
     pub fn note(&self) -> Option<String> {
         match &self.answer {
             Answer::Refused(reason) => Some(reason.clone()),
@@ -121,13 +121,13 @@ impl StateRecord {
         }
     }
 
-    /// The load in words; of a path the step with what was reached there: forces and distances.
+    /// The load in words; for a path the number of the step with the forces and distances reached there.
     pub fn words(&self, scene: &SceneFile) -> String {
         let mut text = words::load(scene, self.index);
         let Some(solved) = self.solved().filter(|_| scene.is_history()) else { return text };
         for quantity in REACHED.into_iter().filter_map(Quantity::named) {
             let Some(value) = quantity.number(&solved.state, &solved.normalisation) else { continue };
-            // What is along y is told where something is.
+            // Components along y are shown only where they are not zero.
             if quantity.name.ends_with("_y") && value == 0.0 {
                 continue;
             }
@@ -137,7 +137,7 @@ impl StateRecord {
         text
     }
 
-    /// Whether all its files are still what they were.
+    /// Whether all its files are unchanged.
     pub fn is_whole(&self, out: &Path) -> bool {
         self.files.iter().all(|file| file.is_whole(out))
     }
@@ -153,7 +153,7 @@ pub(crate) struct SolvedUnit<'a> {
 }
 
 impl SolvedUnit<'_> {
-    /// Its states, each with itself.
+    /// Its states, each together with this value.
     pub fn records(&self) -> impl Iterator<Item = (&Self, &StateRecord)> {
         self.states.iter().map(move |record| (self, record))
     }
@@ -170,20 +170,20 @@ pub(crate) struct StoredFile {
 }
 
 impl StoredFile {
-    /// Of a file as it is.
+    /// The record of a file as it is now.
     pub fn of(out: &Path, name: String) -> Result<Self> {
         let path = out.join(&name);
         let content = runs::files::read(&path, u64::MAX)?;
         Ok(Self { name, bytes: content.len() as u64, digest: fnv1a_128(&content) })
     }
 
-    /// Whether the file is still what it was.
+    /// Whether the file is unchanged.
     pub fn is_whole(&self, out: &Path) -> bool {
         Self::of(out, self.name.clone()).is_ok_and(|found| found == *self)
     }
 }
 
-/// What the name of a field's file says.
+/// The parts of the name of a field's file.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct FieldFile<'a> {
     pub field: &'a str,

@@ -1,25 +1,25 @@
-//! What may be wrong with a state though it is solved as well as it was asked for, and what to do about it.
+//! Warnings on states that may be wrong although they are solved to the requested tolerance, with remedies.
 
 use crate::scenes::plan::{GridErrors, within};
 use crate::scenes::read::{SceneFile, SceneSurface};
 use contact_model::{ContactState, Coupling, Friction, Hardness, Scene, Surface};
 use serde::{Deserialize, Serialize};
 
-/// Fewer cells in contact than this are those of the grid.
+/// With fewer cells in contact than this the results depend on the grid.
 const FEW_CELLS: usize = 10;
-/// A cell that carries more than this share of the load stands alone.
+/// A cell that carries more than this share of the load counts as a single spike.
 const ALONE: f64 = 0.5;
-/// The boundary of a contact that is resolved changes its area by less than this share.
+/// The boundary cells of a resolved contact are less than this share of its area.
 const UNRESOLVED: f64 = 0.1;
-/// Pressure over E* from which metals, of hardness unknown, are beyond elasticity.
+/// Pressure over E* above which metals of unknown hardness are assumed to yield.
 const YIELD: f64 = 0.1;
 
-/// Whether the numbers of a state are those of the grid.
+/// Whether a state rests on so few cells that it depends on the grid.
 pub(crate) fn rests_on_few_cells(state: &ContactState) -> bool {
     state.report.contact_cells.is_some_and(|cells| (1..FEW_CELLS).contains(&cells))
 }
 
-/// Something to beware of.
+/// A warning on a state.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) enum Warning {
     FewCells,
@@ -44,7 +44,7 @@ impl Warning {
         Self::Coupling,
     ];
 
-    /// What stands in the row of the state, and what to do about it.
+    /// The text in the row of the state, and the remedy.
     pub fn words(self) -> [&'static str; 2] {
         match self {
             Self::FewCells => [
@@ -69,24 +69,24 @@ impl Warning {
             ],
             Self::Accuracy => [
                 "accuracy not reached",
-                "the columns `_grid_error` say what was: the grid was chosen on surface 0, others may need more cells (ask for an `accuracy` of half the share)",
+                "the columns `_grid_error` have the errors reached: the grid was chosen on surface 0, and other surfaces may need more cells (request an `accuracy` of half the share)",
             ],
             Self::Stiffness => [
                 "stiffness not known",
-                "complete contact has none; at a jump or a kink of the path it is not claimed: take the difference of neighbouring states",
+                "complete contact has no stiffness, and at a jump or a kink of the path none is given: take the difference of neighbouring states",
             ],
             Self::Coupling => [
                 "coupling of normal and tangential tractions neglected",
-                "bodies of different compressibility have it (second Dundurs constant not 0): a model with `coupling = \"full\"` solves both together",
+                "bodies of different compressibility have this coupling (second Dundurs constant not 0): a model with `coupling = \"full\"` solves both together",
             ],
         }
     }
 
-    /// All that concern a state.
+    /// All warnings that concern a state.
     pub fn of(scene: &SceneFile, state: &ContactState, errors: Option<&GridErrors>) -> Vec<Self> {
         let circumstances = Circumstances {
             flat: matches!(scene.surface, SceneSurface::Plain(Surface::Flat { .. })),
-            // Below a hardness that limits the pressure nothing is marked.
+            // Where a hardness limits the pressure, no state is marked.
             hardness: match scene.effects.hardness {
                 Hardness::Off => scene.hardness.unwrap_or(YIELD * scene.contact_modulus),
                 _ => f64::INFINITY,
@@ -100,21 +100,21 @@ impl Warning {
         circumstances.warnings(state, missed)
     }
 
-    /// All of them as one note; `None` for none.
+    /// All warnings as one note; `None` where there are none.
     pub fn note(all: &[Self]) -> Option<String> {
         let texts: Vec<&str> = all.iter().map(|warning| warning.words()[0]).collect();
         (!texts.is_empty()).then(|| texts.join("; "))
     }
 }
 
-/// What decides, besides a state, whether a warning concerns it.
+/// The properties of a scene that decide, together with a state, whether a warning applies.
 #[derive(Debug, Clone, Copy)]
 struct Circumstances {
-    /// All of a flat rectangle touches, its edges too.
+    /// Whether the body is a flat rectangle, which is in contact up to its edges.
     flat: bool,
-    /// The pressure from which a state is marked.
+    /// The pressure above which a state is marked.
     hardness: f64,
-    /// Whether the stiffness is asked for.
+    /// Whether the stiffness is requested.
     stiffness: bool,
     neglects_coupling: bool,
 }
@@ -167,14 +167,14 @@ impl StateNotes {
         })
     }
 
-    /// What may be wrong with a state, and after a colon what to do about it.
+    /// The warnings on a state, each followed by a colon and the remedy.
     pub fn of(&self, state: &ContactState) -> Vec<String> {
         let told = |warning: Warning| warning.words().join(": ");
         self.0.warnings(state, false).into_iter().map(told).collect()
     }
 }
 
-/// Whether normal and tangential tractions of these bodies act on each other, and the friction leaves it out.
+/// Whether normal and tangential tractions of these bodies are coupled, but the scene neglects the coupling.
 fn neglects_coupling(scene: &SceneFile) -> bool {
     let Some(pair) = scene.pair.as_ref() else { return false };
     let friction = match scene.effects.friction {

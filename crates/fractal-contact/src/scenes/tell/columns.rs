@@ -1,4 +1,4 @@
-//! The columns of `results.csv`: the quantities that a scene asks for.
+//! The columns of `results.csv`: the quantities that a scene requests.
 
 use crate::scenes::plan::RMS_SLOPE;
 use crate::scenes::read::{LoadList, LoadRequest, Numerics, SceneFile};
@@ -7,7 +7,7 @@ use analysis::{Column, Table, Value};
 use contact_model::quantities::{Compared, QUANTITIES, Quantity, Question};
 use contact_model::{Directions, Source};
 
-/// The error of a quantity that the cells leave, and the order of convergence.
+/// The discretisation error of a quantity, and the order of convergence.
 const GRID_ERROR: &str = "estimated relative error of the grid, from cells twice and four times as large";
 const GRID_ORDER: &str = "order of convergence as observed on these grids; empty where none is seen";
 const GRID_ERROR_PERIODIC: &str = "estimated relative error of the grid, from cells twice and four times as large; empty with free boundaries, where the pressure at an \
@@ -27,7 +27,7 @@ pub(crate) fn plain((name, unit, meaning): ColumnWords) -> Column {
     Column { name, unit, meaning }
 }
 
-/// A table whose rows, of which each is a `what`, have a value for each column.
+/// A table whose rows have a value for each column. `what` names a row in errors.
 ///
 /// # Errors
 /// A number that is not finite.
@@ -44,7 +44,7 @@ pub(crate) fn table<const N: usize>(
     Ok(table)
 }
 
-/// The works that a scene's numbers rest on, each with `model` or `quantity` and the name of the one that takes it.
+/// The sources of a scene's results, each with `model` or `quantity` and the name of that model or quantity.
 pub(crate) fn sources(scene: &SceneFile) -> Vec<(&'static str, &'static str, Source)> {
     let of_models = scene.models.iter().flat_map(|numerics| {
         let model = numerics.model();
@@ -58,7 +58,7 @@ pub(crate) fn sources(scene: &SceneFile) -> Vec<(&'static str, &'static str, Sou
     of_models.chain(of_quantities).collect()
 }
 
-/// The quantities that a scene asks for, in the order of the table of all.
+/// The quantities that a scene requests, in the order of the table of all quantities.
 pub(crate) fn asked(scene: &SceneFile) -> impl Iterator<Item = &'static Quantity> + '_ {
     let answers_both = |model: &Numerics| model.model().abilities().directions == Directions::Plane;
     let [_, along_y] = scene.request.shears();
@@ -74,7 +74,7 @@ pub(crate) fn asked(scene: &SceneFile) -> impl Iterator<Item = &'static Quantity
     QUANTITIES.iter().filter(move |quantity| quantity.asked_by.holds(&question))
 }
 
-/// Those of them whose error of the grid is told.
+/// Those of them whose discretisation error is reported.
 pub(crate) fn with_grid_errors(scene: &SceneFile) -> impl Iterator<Item = &'static Quantity> + '_ {
     asked(scene).filter(|quantity| scene.requested.grid_error && quantity.compared != Compared::No)
 }
@@ -107,7 +107,7 @@ pub(crate) fn columns(scene: &SceneFile) -> Vec<Column> {
         columns.push(plain(("rms_slope_grid_error", "1", GRID_ERROR)));
         columns.push(plain(("rms_slope_grid_order", "1", GRID_ORDER)));
     }
-    columns.push(plain(("note", "-", "why a model refused a load, or what to beware of")));
+    columns.push(plain(("note", "-", "why a model refused a load, or warnings on the state")));
     columns
 }
 
@@ -130,7 +130,7 @@ pub(crate) fn row(scene: &SceneFile, unit: &SolvedUnit<'_>, record: &StateRecord
     row
 }
 
-/// A quantity of a state; of a refused load its status alone.
+/// A quantity of a state; a refused load has only a status.
 pub(crate) fn value(record: &StateRecord, quantity: &Quantity) -> Value {
     if quantity.name == "status" {
         return record.status().into();
@@ -148,7 +148,7 @@ mod tests {
     use crate::scenes::plan::grid_comparison::compared;
 
     #[test]
-    fn what_is_compared_has_the_columns_of_its_name() {
+    fn compared_quantities_have_columns_of_their_grid_errors() {
         for quantity in compared() {
             let [.., error, order, _, _] = quantity.columns;
             assert_eq!(

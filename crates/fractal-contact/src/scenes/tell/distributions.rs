@@ -9,7 +9,7 @@ use plots::{Chart, Curve};
 /// Curves of a model in one picture.
 const CURVES: usize = 5;
 
-/// The names of all files that a scene may have of them.
+/// The names of all files of distributions that a scene may have.
 pub(crate) fn files(scene: &SceneFile) -> Vec<String> {
     let names = scene.requested.distributions.iter().map(|of| of.name());
     names.flat_map(|name| ["csv", "svg", "png"].map(|end| format!("distribution-{name}.{end}"))).collect()

@@ -9,14 +9,14 @@ use contact_model::quantities::{Average, Quantity, Role};
 /// A mean, and the standard deviation of one number where there are two.
 type MeanAndDeviation = (f64, Option<f64>);
 
-/// A quantity, or what the grid leaves in it.
+/// A quantity, or its discretisation error.
 type Averaged = (&'static Quantity, bool);
 
-/// What is averaged over the surfaces of a scene, in the order of columns: quantities, then errors of the
-/// grid.
+/// The numbers that are averaged over the surfaces of a scene, in the order of columns: quantities, then
+/// discretisation errors.
 fn averaged(scene: &SceneFile) -> Vec<Averaged> {
     let quantities = columns::asked(scene).filter(|quantity| quantity.average != Average::No);
-    // Where a pressure has no limit there is no error to be averaged.
+    // Where a pressure does not converge there is no error to be averaged.
     let errors = columns::with_grid_errors(scene)
         .filter(|quantity| quantity.compared == contact_model::quantities::Compared::Yes);
     quantities.map(|quantity| (quantity, false)).chain(errors.map(|quantity| (quantity, true))).collect()
@@ -40,15 +40,15 @@ impl Mean {
         self.with_error(quantity, false)
     }
 
-    /// Mean and, for two surfaces or more, half of its 95 % interval: so many standard errors as Student's
-    /// distribution with a degree of freedom less than surfaces asks for.
+    /// Mean and, for two surfaces or more, half of its 95 % interval, from Student's distribution with one
+    /// degree of freedom less than there are surfaces.
     pub fn interval(&self, quantity: &Quantity) -> Option<MeanAndDeviation> {
         let (mean, deviation, surfaces) = self.find(quantity, false)?;
         let half = |deviation: f64| student(surfaces as f64 - 1.0) * deviation / (surfaces as f64).sqrt();
         Some((mean, deviation.map(half)))
     }
 
-    /// The same of the error that the grid leaves in it.
+    /// The same for its discretisation error.
     pub fn grid_error(&self, quantity: &Quantity) -> Option<MeanAndDeviation> {
         self.with_error(quantity, true)
     }
@@ -76,7 +76,7 @@ pub(crate) fn means<'a>(scene: &SceneFile, units: &[SolvedUnit<'a>]) -> Vec<Mean
             let of_model = || units.iter().filter(|unit| unit.model == model);
             let at = |unit: &SolvedUnit<'a>| unit.states.iter().find(|record| record.index == state);
             let solved: Vec<&Solved> = of_model().filter_map(at).filter_map(StateRecord::converged).collect();
-            // A path that has ended keeps what is told of it as a whole.
+            // A path that has ended keeps the quantities of the path as a whole.
             let until = |unit: &SolvedUnit<'a>| {
                 let records = unit.states.iter().filter(|record| record.index <= state);
                 records.filter_map(StateRecord::solved).next_back()
@@ -106,7 +106,8 @@ pub(crate) fn means<'a>(scene: &SceneFile, units: &[SolvedUnit<'a>]) -> Vec<Mean
     means
 }
 
-/// How many surfaces these means are of and what is told with them; empty where none is of several surfaces.
+/// The number of surfaces of these means and the kind of their intervals, in words; empty where no mean is
+/// over several surfaces.
 pub(crate) fn words<'a>(means: impl Iterator<Item = &'a Mean>) -> String {
     let counts: Vec<usize> = means.map(|mean| mean.surfaces).filter(|surfaces| *surfaces > 1).collect();
     let (Some(few), Some(many)) = (counts.iter().copied().min(), counts.iter().copied().max()) else {
@@ -116,19 +117,19 @@ pub(crate) fn words<'a>(means: impl Iterator<Item = &'a Mean>) -> String {
     format!("means over {surfaces} surfaces ± half of the 95 % interval, {}", distribution(few, many))
 }
 
-/// What intervals of means over surfaces follow from.
+/// The distribution from which intervals of means follow, in words.
 pub(crate) fn distribution(few: usize, many: usize) -> String {
     match few {
         2 if few == many => "by Student's t with 1 degree of freedom".to_owned(),
         few if few == many => format!("by Student's t with {} degrees of freedom", few - 1),
-        _ => "by Student's t with a degree of freedom less than surfaces".to_owned(),
+        _ => "by Student's t with one degree of freedom less than surfaces".to_owned(),
     }
 }
 
 /// The means as a table: `surfaces`, and for each quantity its mean, standard error and standard deviation.
 pub(crate) fn table(scene: &SceneFile, title: String, means: &[Mean]) -> contact_model::Result<Table> {
     let unit = columns::prescribed(scene).map_or("1", |column| column.unit);
-    let prescribed = ("prescribed", unit, "what the load prescribes; empty along a path");
+    let prescribed = ("prescribed", unit, "prescribed value of the load; empty along a path");
     let surfaces = ("surfaces", "1", "surfaces on which the state reached its tolerance");
     let mut all = [columns::MODEL, columns::STATE, prescribed, surfaces].map(columns::plain).to_vec();
     let averaged = averaged(scene);

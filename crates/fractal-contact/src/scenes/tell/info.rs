@@ -1,4 +1,4 @@
-//! What a file holds: a scene, a surface or a table of results.
+//! Descriptions of files: a scene, a surface or a table of results.
 
 use crate::scenes::plan::{Plan, of_slopes};
 use crate::scenes::read::{
@@ -16,12 +16,12 @@ use surface_io::{
 /// A few lines on a scene (`.toml`), a table (`.csv` with a header that explains itself) or a surface
 /// (anything else).
 ///
-/// `declared` is what the caller says about a surface's file, `preprocessing` what is done to its map before
+/// `declared` are the options for reading a surface's file, and `preprocessing` is applied to its map before
 /// it is described.
 ///
 /// # Errors
-/// As [`SceneFile::read`] and [`crate::scenes::check`] for scenes; [`Error::Run`] and [`Error::Surface`] with
-/// what is wrong with the file.
+/// As [`SceneFile::read`] and [`crate::scenes::check`] for scenes; [`Error::Run`] and [`Error::Surface`] for
+/// errors of the file.
 pub fn info(path: &Path, declared: &ReadOptions, preprocessing: &Preprocessing) -> Result<String> {
     let ending = path.extension().and_then(|e| e.to_str()).unwrap_or_default();
     match ending {
@@ -78,7 +78,7 @@ fn surface(path: &Path, declared: &ReadOptions, preprocessing: &Preprocessing) -
             let mut description = description(&found.map, system);
             let mut fit = "";
             if description.hurst.is_ok() {
-                // One exponent is told: that with an interval, of the statistics.
+                // Only one exponent is shown: that of the statistics, which has an interval.
                 description = description.without_fit();
                 fit = "fractal dimension  with --out DIR, which fits the spectrum, with its interval\n";
             }
@@ -92,18 +92,19 @@ fn surface(path: &Path, declared: &ReadOptions, preprocessing: &Preprocessing) -
             let remarks: String = remarks.map(|Remark { message, help }| line(&message, help)).collect();
             format!("{text}{fit}{}{remarks}", slopes.unwrap_or_default())
         }
-        // What stands in the way of a map is part of the answer.
-        Err(error) => format!("{}\n\nno map as it is: {error}\n", scan.metadata()),
+        // The reason why the file gives no map is part of the description.
+        Err(error) => format!("{}\n\nno map without further options: {error}\n", scan.metadata()),
     })
 }
 
-/// As [`info`] of a surface, and its statistics: tables and pictures of parameters, spectra and height
-/// differences and `report.html` in a directory, the parameters as lines.
+/// As [`info`] of a surface, with its statistics. Tables and pictures of parameters, spectra and height
+/// differences and `report.html` are written into a directory; the parameters are also returned as lines.
 ///
-/// The map is taken as a piece of a larger surface: not periodic.
+/// The map is taken as a piece of a larger surface and not as periodic.
 ///
 /// # Errors
-/// [`Error::Surface`] with what is wrong with the file or stands in the way of a map; [`Error::Run`] for files that cannot be written.
+/// [`Error::Surface`] for errors of the file and where it gives no map; [`Error::Run`] for files that cannot
+/// be written.
 pub fn info_statistics(
     path: &Path,
     declared: &ReadOptions,
@@ -141,7 +142,7 @@ pub fn info_statistics(
     };
     files.push(report.write(out)?);
     let names: Vec<String> = runs::file_names(&files);
-    // One exponent is told: that with an interval, of the statistics.
+    // Only one exponent is shown: that of the statistics, which has an interval.
     let text = described(&scan, &found, &description(&found.map, system).without_fit());
     Ok(format!("{text}\n{}\n{}: {}\n", statistics.text(), out.display(), names.join(", ")))
 }
@@ -152,19 +153,19 @@ fn system(of: &Metadata) -> System {
     if metric { System::Si } else { System::None }
 }
 
-/// What was understood of a file, what was done to its map, and what the map is.
+/// The metadata of a file, the steps of its preprocessing, and a description of the map.
 fn described(scan: &Scan, found: &Preprocessed, description: &Description) -> String {
     let steps: String = found.steps.iter().map(|step| format!("then       {step}\n")).collect();
     format!("{}\n{steps}\n{description}\n", scan.metadata())
 }
 
-/// What is known of each channel of a file of several.
+/// A description of each channel of a file with several.
 fn each(file: SurfaceFile<'_>) -> Result<String> {
     let mut text = format!("{} channels; --channel NUMBER or NAME describes one\n", file.len());
     for scan in file.scans() {
         match scan {
             Ok(scan) => text += &format!("\n{}\n", scan.metadata()),
-            // The others are told all the same.
+            // The other channels are described nevertheless.
             Err(error) if error.problem().is_some() => text += &format!("\nnot read   {error}\n"),
             Err(error) => return Err(error.into()),
         }
@@ -175,14 +176,14 @@ fn each(file: SurfaceFile<'_>) -> Result<String> {
 /// All channels of a surface's file as JSON:
 /// `{"channels": [{"name", "columns", "rows", "profile", "size": [x, y], "heights", "unit", "undefined", "minimum", "maximum", "rms"}]}`.
 ///
-/// Heights as the file has them, before anything is done to them. Lengths are in metres, and then `unit` is
-/// "m"; values of another or no unit stand as they are in the file. `heights` is false where the file says
-/// that they are none (a phase, a current). `rms` is about the mean, `undefined` a share of the points; what
-/// the file does not say and `declared` does not either is null. A channel that is not read beside others is
-/// `{"error"}`; `notes` are remarks on what the file says.
+/// Heights are those of the file before any preprocessing. Lengths are in metres, and then `unit` is "m";
+/// values with another or no unit are given as in the file. `heights` is false where the file says that the
+/// channel does not hold heights (but a phase or a current). `rms` is about the mean, `undefined` is a share
+/// of the points, and a value that neither the file nor `declared` gives is null. A channel that cannot be
+/// read beside others is `{"error"}`; `notes` are remarks on the file.
 ///
 /// # Errors
-/// [`Error::Surface`] with what is wrong with the file.
+/// [`Error::Surface`] for errors of the file.
 pub fn info_json(path: &Path, declared: &ReadOptions) -> Result<String> {
     let file = SurfaceFile::open(path, declared)?;
     let mut channels = Vec::with_capacity(file.len());

@@ -1,4 +1,4 @@
-//! `manifest.json`: the whole scene, what it was run with, what it cost, what to cite.
+//! `manifest.json`: the whole scene, the versions and options of the run, its cost and the sources to cite.
 
 use crate::scenes::plan::{Cost, FORMAT, Plan};
 use crate::scenes::read::{Result, SceneFile};
@@ -8,7 +8,8 @@ use serde_json::{Value, json};
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 
-/// Writes what is known before anything is solved, so that an interrupted run owns its files.
+/// Writes the part that is known before anything is solved, so that the files of an interrupted run are known
+/// as its own.
 pub(crate) fn write_begun(scene: &SceneFile, options: &Options, files: &BTreeSet<String>) -> Result<PathBuf> {
     let begun = json!({
         "project": "fractal-contact",
@@ -20,7 +21,7 @@ pub(crate) fn write_begun(scene: &SceneFile, options: &Options, files: &BTreeSet
     Ok(runs::write_manifest(&options.out, &begun)?)
 }
 
-/// Writes it.
+/// Writes the manifest.
 pub(crate) fn write(
     scene: &SceneFile,
     plan: &Plan,
@@ -58,7 +59,7 @@ pub(crate) fn write(
         "surfaces": scene.sampling.surfaces,
         "effects": effects,
         "outputs": outputs,
-        // What was understood of its file, and what was done to it, line by line.
+        // Metadata of its file and steps of the preprocessing, line by line.
         "surface_file": scene.metadata.as_ref().map(|told| told.lines().collect::<Vec<_>>()),
         "map": plan.prepared.as_ref().map(map),
         "models": models,

@@ -1,4 +1,4 @@
-//! What is told of the states: tables, pictures, the report, the manifest. All are views of the states.
+//! Presentation of the states: tables, pictures, the report and the manifest.
 
 pub(crate) mod columns;
 pub(crate) mod distributions;
@@ -32,7 +32,7 @@ mod tests {
         SelfAffine, Step, Surface, Tangential,
     };
 
-    /// A scene that asks for what this asks for, and for as little else as it can.
+    /// A scene that requests this, and as little else as possible.
     fn asking(asked: AskedBy) -> SceneFile {
         let mut scene = asking_nothing();
         ask(&mut scene, asked);
@@ -90,10 +90,10 @@ mod tests {
         }
     }
 
-    /// A quantity of the table that a scene asks for is in its CSV, in the table of the console and of the
-    /// report, in the means and the curves.
+    /// Every quantity that a scene requests is in its CSV, in the tables of the console and of the report, in
+    /// the means and in the curves.
     #[test]
-    fn every_quantity_is_told_everywhere() {
+    fn every_requested_quantity_is_in_all_tables_and_pictures() {
         for quantity in QUANTITIES {
             let (name, scene) = (quantity.name, asking(quantity.asked_by));
             assert!(columns::asked(&scene).any(|asked| asked.name == name), "{name} is not asked for");

@@ -13,10 +13,10 @@ use std::path::{Path, PathBuf};
 const STYLE: &str = include_str!("page/page.css");
 const SCRIPT: &str = include_str!("page/page.js");
 
-/// How a field is read.
+/// How the values of a field are read on the page.
 pub(crate) const READING: &str = "A click, or the arrow keys, read the value of a cell; a double click, + and - zoom, and so does the wheel with shift or control.";
 
-/// Writes `report.html`: a heading, what stands below it, and sections of (id, name in the list, heading,
+/// Writes `report.html`: a heading, the content below it, and sections of (id, name in the list, heading,
 /// content).
 pub(crate) fn write(
     out: &Path,
@@ -51,12 +51,12 @@ pub(crate) fn write(
     Ok(path)
 }
 
-/// A sentence whose words between backticks are those of scenes and files.
+/// A sentence in which text between backticks becomes code.
 pub(crate) fn words(text: &str) -> Markup {
     html! { @for (i, part) in text.split('`').enumerate() { @if i % 2 == 1 { code { (part) } } @else { (part) } } }
 }
 
-/// A unit with its powers raised: `µm^2`.
+/// A unit with its powers as superscripts, such as `µm^2`.
 pub(crate) fn unit(unit: &str) -> Markup {
     let mut parts = unit.split('^');
     let first = parts.next().unwrap_or_default();
@@ -65,7 +65,7 @@ pub(crate) fn unit(unit: &str) -> Markup {
     html! { (first) @for part in parts { @let (raised, rest) = part.split_at(power(part)); sup { (raised) } (rest) } }
 }
 
-/// A chart as a picture that keeps its names to itself.
+/// A chart as an embedded picture, so that its identifiers do not clash with those of other charts.
 pub(crate) fn chart(chart: &Chart) -> Result<Markup> {
     let svg = STANDARD.encode(chart.svg()?);
     let plain = format!("{}, {}", chart.title, chart.subtitle).replace(['$', '\\'], "");
@@ -96,11 +96,11 @@ pub(crate) fn statistics(of: &MapStatisticsTables) -> Markup {
     }
 }
 
-/// Most ticks along the longer side of a map, and along one however short.
+/// Largest number of ticks along the longer side of a map, and along any shorter side.
 const TICKS: [f64; 2] = [6.0, 2.0];
 
-/// Where the ticks of an axis from 0 to its length are, at most so many steps: multiples of 1, 2 or 5 times a
-/// power of ten.
+/// The ticks of an axis from 0 to its length, with at most `most` steps: multiples of 1, 2 or 5 times a power
+/// of ten.
 fn ticks(length: f64, most: f64) -> Vec<f64> {
     let least = length / most;
     let power = 10f64.powf(least.log10().floor());
@@ -110,7 +110,7 @@ fn ticks(length: f64, most: f64) -> Vec<f64> {
     (0..=count.min(most as usize)).map(|i| i as f64 * step).collect()
 }
 
-/// A field with axes that is read by clicks and keys, with a picture in its place where no script runs.
+/// A field with axes, whose values are read by clicks and keys; where no script runs, it is a picture.
 ///
 /// # Errors
 /// A picture that cannot be encoded.

@@ -8,7 +8,7 @@ use contact_model::{Adhesion, Boundary, Hardness};
 use plots::{Chart, Curve};
 use std::path::{Path, PathBuf};
 
-/// What stands along the horizontal axis.
+/// The quantity along the horizontal axis.
 #[derive(Clone, Copy)]
 enum Axis {
     Quantity(&'static Quantity),
@@ -16,8 +16,8 @@ enum Axis {
     Load,
 }
 
-/// `curve-Y.svg` and `.png` for every quantity that the scene asked for, and `curve-Y-deviation` where the curves
-/// of several models lie on each other.
+/// `curve-Y.svg` and `.png` for every quantity that the scene requests, and `curve-Y-deviation` where the
+/// curves of several models coincide.
 pub(crate) fn curves(
     scene: &SceneFile,
     units: &[SolvedUnit<'_>],
@@ -31,8 +31,7 @@ pub(crate) fn curves(
     Ok(files)
 }
 
-/// A chart for every quantity that the scene asked for and that varies, by its name, followed by that of the
-/// deviations.
+/// A chart for every requested quantity that varies, with its name, followed by that of the deviations.
 pub(crate) fn charts(scene: &SceneFile, units: &[SolvedUnit<'_>], means: &[Mean]) -> Vec<(String, Chart)> {
     let mut charts = Vec::new();
     for (x, y) in pairs(scene) {
@@ -46,12 +45,12 @@ pub(crate) fn charts(scene: &SceneFile, units: &[SolvedUnit<'_>], means: &[Mean]
     charts
 }
 
-/// What the name of a picture of deviations ends with.
+/// Ending of the names of pictures of deviations.
 const DEVIATION: &str = "-deviation";
-/// Curves that differ by less than this share everywhere cannot be told apart in one chart.
+/// Curves that differ by less than this share everywhere cannot be distinguished in one chart.
 const TOGETHER: f64 = 0.1;
 
-/// How far all curves are from the first one, in per cent, where they cannot be told apart.
+/// The deviations of all curves from the first one in per cent, where the curves cannot be distinguished.
 fn deviation(scene: &SceneFile, chart: &Chart, y: &'static Quantity) -> Option<Chart> {
     let [first, others @ ..] = &chart.curves[..] else { return None };
     if scene.is_history() || others.is_empty() {
@@ -68,7 +67,7 @@ fn deviation(scene: &SceneFile, chart: &Chart, y: &'static Quantity) -> Option<C
         (same && together).then(|| Curve { label: curve.label.clone(), points, careful, ..Curve::default() })
     };
     let curves = chart.curves.iter().map(of).collect::<Option<Vec<Curve>>>()?;
-    // What is left of equal formulas is rounding.
+    // Equal formulas differ only by rounding.
     let differ = curves.iter().flat_map(|curve| &curve.points).any(|point| point.1.abs() > 100.0 * HELD);
     if !differ {
         return None;
@@ -90,8 +89,8 @@ pub(crate) fn curve_files(scene: &SceneFile) -> Vec<String> {
     names.flat_map(|name| ["svg", "png"].map(|end| format!("{name}.{end}"))).collect()
 }
 
-/// What is drawn over what: every quantity that is drawn, over the load, the time, or what a loop is drawn
-/// over.
+/// The pairs of quantities that are drawn: each quantity over the load, over the time, or over the quantity
+/// of a loop.
 fn pairs(scene: &SceneFile) -> Vec<(Axis, &'static Quantity)> {
     let drawn = || columns::asked(scene).filter(|quantity| quantity.drawn);
     let named = |name: &str| columns::asked(scene).find(|quantity| quantity.name == name);
@@ -100,7 +99,7 @@ fn pairs(scene: &SceneFile) -> Vec<(Axis, &'static Quantity)> {
         drawn().filter(|y| y.name != x).map(|y| (Axis::Quantity(axis), y)).collect()
     };
     if let LoadRequest::Loads(loads) = &scene.request {
-        // A force that is prescribed in other words is no answer.
+        // A force that is prescribed in another form is not a result.
         let answers = |pairs: Vec<(Axis, &'static Quantity)>| {
             pairs.into_iter().filter(|(_, y)| y.name != "force").collect()
         };
@@ -129,12 +128,12 @@ fn pairs(scene: &SceneFile) -> Vec<(Axis, &'static Quantity)> {
     })
 }
 
-/// A number that changes by less than this share of the largest is held: what is left is the tolerance of the
-/// solver.
+/// A quantity that changes by less than this share of its largest value counts as constant: the rest is the
+/// tolerance of the solver.
 const HELD: f64 = 1e-5;
 
-/// A constant, such as a force that is held, is no picture, and neither is a single state or anything over a time
-/// that does not pass.
+/// Whether a curve varies. A constant (such as a prescribed force), a single state or a curve over a constant
+/// time is not drawn.
 fn varies(points: &[(f64, f64)]) -> bool {
     let changes = |of: fn(&(f64, f64)) -> f64| {
         let ends = |(low, high): (f64, f64), value: f64| (low.min(value), high.max(value));
@@ -145,7 +144,7 @@ fn varies(points: &[(f64, f64)]) -> bool {
 }
 
 impl Axis {
-    /// In words, with its symbol.
+    /// Its name in words and its symbol.
     fn words(self) -> (&'static str, &'static str) {
         match self {
             Self::Quantity(quantity) => (quantity.words, quantity.symbol),
@@ -160,7 +159,7 @@ impl Axis {
         }
     }
 
-    /// Without its unit.
+    /// The label without a unit.
     fn label(self) -> String {
         let (words, symbol) = self.words();
         if symbol.is_empty() { words.to_owned() } else { format!("{words} ${symbol}$") }
@@ -174,8 +173,8 @@ impl Axis {
     }
 }
 
-/// What is drawn in a chart of a quantity: itself, and of an area that which is less by what cells add at its
-/// boundary.
+/// The curves in a chart of a quantity: the quantity itself and, for an area, also the corrected area, which
+/// is smaller because boundary cells count in part.
 fn drawn_with(scene: &SceneFile, y: &'static Quantity) -> Vec<(&'static Quantity, &'static str)> {
     let corrected = columns::asked(scene).find(|quantity| quantity.name == "area_corrected");
     match corrected {
@@ -207,7 +206,8 @@ fn curve(
             Some(((x, number(y)?), (error, rests_on_few_cells(&solved.state))))
         };
         let states: Vec<_> = records.filter_map(state).filter(|(point, _)| shown(point)).collect();
-        // By a factor, because an error of more than the number itself has no lower end on these axes.
+        // The band is given by a factor, because an error larger than the value itself would have no lower
+        // end on logarithmic axes.
         let end = |((x, y), (error, _)): &((f64, f64), (Option<f64>, bool))| {
             error.map(|error| (*x, y / (1.0 + error), y * (1.0 + error)))
         };
@@ -229,8 +229,8 @@ fn curve(
     Curve { label, points: points.filter(shown).collect(), band: band.collect(), ..Curve::default() }
 }
 
-/// Whether a chart of a history begins with the bodies apart, all its numbers 0: over time, so that what a step
-/// of the load does at once is seen, and over a load that leaves an indentation.
+/// Whether a chart of a path begins at zero, with the bodies apart: over time, so that the immediate response
+/// to a step of the load is seen, and over a load that leaves an indentation.
 fn begins_at_zero(scene: &SceneFile, x: Axis) -> bool {
     let over = |name: &str| matches!(x, Axis::Quantity(quantity) if quantity.name == name);
     let effects = &scene.effects;
@@ -254,7 +254,7 @@ fn chart(
         };
         let mut curves: Vec<(Curve, &str)> =
             quantities.iter().map(curve).filter(|(curve, _)| !curve.points.is_empty()).collect();
-        // A model without cells has nothing to correct.
+        // A model without cells has no corrected area.
         let several = curves.len() > 1;
         curves.iter_mut().filter(|_| several).for_each(|(curve, suffix)| curve.label += suffix);
         curves.into_iter().map(|(curve, _)| curve).collect::<Vec<_>>()
@@ -274,13 +274,13 @@ fn chart(
     }
     let mut title = format!("{} over {}", y.words, x.words().0);
     title[..1].make_ascii_uppercase();
-    // One load makes no band.
+    // A single load has no band.
     let shaded = curves.iter().any(|curve| curve.band.len() > 1);
     let surfaces = match scene.sampling.surfaces {
         1 if shaded => "; shaded: the estimated error of the grid, as a factor".to_owned(),
         1 => String::new(),
         asked => {
-            // A run that was interrupted has fewer.
+            // An interrupted run has fewer surfaces.
             let solved = |mean: &&Mean| mean.surfaces > 1 || asked == 1;
             let counts: Vec<usize> = means.iter().filter(solved).map(|mean| mean.surfaces).collect();
             let (few, many) = (counts.iter().min().copied(), counts.iter().max().copied());
@@ -314,7 +314,7 @@ mod tests {
     use super::varies;
 
     #[test]
-    fn what_is_held_is_no_picture() {
+    fn constant_quantities_are_not_drawn() {
         let points = |values: &[f64]| (1_u8..).map(f64::from).zip(values.iter().copied()).collect::<Vec<_>>();
         assert!(!varies(&points(&[1.0])) && varies(&points(&[1.0, 1.1])) && varies(&points(&[0.0, 1e-300])));
         assert!(!varies(&[]) && !varies(&points(&[0.2, 0.2 + 1e-9])) && !varies(&points(&[0.0, 0.0])));

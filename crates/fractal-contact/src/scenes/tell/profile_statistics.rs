@@ -7,8 +7,7 @@ use surface_statistics::{
 };
 
 impl MapStatisticsTables {
-    /// Everything that is known of one row: heights, spectrum, differences and slopes along x, Hurst
-    /// exponent.
+    /// Measures one row: heights, spectrum, differences and slopes along x, Hurst exponent.
     pub(super) fn measure_profile(&mut self, map: &HeightMap, boundary: Boundary, instrument: Option<f64>) {
         self.remarks.push(
             "a profile: parameters are those of one line (ISO 21920-2), not areal ones; no filter was applied, so that they are of the primary \
@@ -20,7 +19,7 @@ impl MapStatisticsTables {
         if let Some(spectrum) = self.known("spectrum", PowerSpectrum::along_x(map, taper)) {
             self.spectra.push(("x", spectrum));
         }
-        // Of the tip's distance the stencil has two.
+        // The stencil spans twice the distance of the tip.
         let instrument = instrument.map(|distance| 2.0 * distance);
         if let Some(fit) = self.known("Hurst exponent", ProfileFit::new(map, boundary, instrument)) {
             let [shortest, longest] = fit.wavelengths;

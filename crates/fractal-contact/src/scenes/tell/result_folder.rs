@@ -1,4 +1,4 @@
-//! Whose files are in a directory of results: those that its manifest lists are the program's own.
+//! Ownership of the files in a directory of results: the files that its manifest lists belong to the program.
 
 use crate::scenes::read::{Result, SceneFile};
 use crate::scenes::run::field_of_file;
@@ -7,7 +7,7 @@ use serde_json::Value;
 use std::collections::BTreeSet;
 use std::path::{Component, Path, PathBuf};
 
-/// The largest manifest that is read.
+/// Largest size of a manifest that is read, in bytes.
 const LARGEST_MANIFEST: u64 = 1 << 28;
 
 /// A directory that a run may write into.
@@ -59,7 +59,7 @@ impl ResultFolder {
         files
     }
 
-    /// Removes what earlier runs wrote here and is not among `files`; gives their number.
+    /// Removes the files of earlier runs that are not among `files`, and returns their number.
     ///
     /// # Errors
     /// A file that cannot be removed.
@@ -76,12 +76,12 @@ impl ResultFolder {
     }
 }
 
-/// What the manifest of a scene's run says of its files.
+/// The files of a run according to its manifest.
 #[derive(Debug, Default, PartialEq)]
 struct Manifest {
-    /// Their names; those that lead elsewhere are nobody's.
+    /// Their names; names that point outside of the directory are ignored.
     files: BTreeSet<String>,
-    /// Whether the run did not come to its end: then there may be fields that it does not list.
+    /// Whether the run was interrupted: there may then be fields that it does not list.
     interrupted: bool,
 }
 
@@ -129,7 +129,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn only_plain_names_in_a_scene_s_manifest_are_owned() {
+    fn only_plain_names_in_the_manifest_of_a_scene_are_owned() {
         let dir = tempfile::tempdir().unwrap();
         let manifest = |text: &str| std::fs::write(dir.path().join("manifest.json"), text).unwrap();
         assert_eq!(Manifest::read(dir.path()), Manifest::default());

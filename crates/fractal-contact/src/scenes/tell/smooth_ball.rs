@@ -1,13 +1,13 @@
-//! The smooth ball beside a rough one: Hertz's formula under the same loads, as a curve to compare with.
+//! The smooth ball that a rough one is compared with: Hertz's formula under the same loads.
 
 use crate::scenes::read::{LoadKind, LoadRequest, SceneFile, SceneSurface};
 use contact_model::{ContactModel as _, ContactState, Effects, Normalisation, Outputs, Scene, Surface};
 
-/// What its curve is called.
+/// Label of its curve.
 pub(crate) const LABEL: &str = "smooth ball, Hertz";
 
-/// States of the ball without its roughness, by the number of the load; none for other bodies, for paths, for
-/// loads that count in a rms height, and where an effect is on that the formula lacks.
+/// States of the ball without its roughness, with the number of the load. There are none for other bodies,
+/// for paths, for loads that are normalised by the rms height, and with an effect that the formula lacks.
 pub(crate) fn states(scene: &SceneFile) -> Vec<(usize, ContactState, Normalisation)> {
     let SceneSurface::Drawn { body: Some(body @ Surface::Sphere { .. }), .. } = &scene.surface else {
         return Vec::new();
@@ -21,7 +21,7 @@ pub(crate) fn states(scene: &SceneFile) -> Vec<(usize, ContactState, Normalisati
     let smooth = Scene { outputs, ..Scene::new(body.clone(), scene.contact_modulus) };
     let Ok(mut contact) = analytic::Hertz.prepare(&smooth, 0) else { return Vec::new() };
     let normalisation = contact.normalisation();
-    // A contact beyond the rectangle has no answer.
+    // A contact larger than the rectangle has no state.
     let state = |(index, value): (usize, &f64)| {
         let state = requests.load(*value, &normalisation).and_then(|load| contact.solve(load)).ok()?;
         Some((index, state, normalisation))

@@ -14,11 +14,11 @@ use surface_statistics::{
 
 /// Bins in a decade of wavenumbers and of distances.
 const PER_DECADE: f64 = 10.0;
-/// Of the bands.
+/// Confidence level of the bands.
 pub(crate) const LEVEL: f64 = 0.95;
-/// Probability of a worse fit below which intervals say nothing.
+/// Probability of a worse fit below which intervals are meaningless.
 const DOUBTFUL: f64 = 0.01;
-/// The files.
+/// Names of the files.
 pub(crate) const FILES: [&str; 10] = [
     "statistics.csv",
     "spectrum.csv",
@@ -53,7 +53,7 @@ pub(crate) struct Scale {
     pub curvature: (ScaleDependence, Bands),
 }
 
-/// What a map is, and why some of it is not known.
+/// The statistics of a map, and the reasons why some are not known.
 pub(crate) struct MapStatisticsTables {
     pub system: System,
     /// Whether they are of a profile.
@@ -66,13 +66,13 @@ pub(crate) struct MapStatisticsTables {
     pub reliable: Option<[f64; 2]>,
     /// Reasons why a part is missing.
     pub notes: Vec<String>,
-    /// What was done to the map for a part.
+    /// Changes of the map that a part needed.
     pub remarks: Vec<String>,
 }
 
 impl MapStatisticsTables {
-    /// Measures a map: of a periodic surface without a window, else under Hann's over its deviation from the
-    /// mean. Of a `profile` what one row says.
+    /// Measures a map: a periodic surface without a window, any other one with Hann's window on its deviation
+    /// from the mean. A `profile` is measured along its row.
     pub fn new(
         map: &HeightMap,
         profile: bool,
@@ -213,9 +213,9 @@ impl MapStatisticsTables {
     }
 
     fn fit(&mut self, map: &HeightMap, boundary: Boundary, instrument: Option<f64>) {
-        // Of the tip's distance the stencil has two.
+        // The stencil spans twice the distance of the tip.
         let instrument = instrument.map(|distance| 2.0 * distance);
-        // Where nothing is left between both limits, the limits are known all the same.
+        // The limits are known even where no wavelength lies between them.
         let longest = map.size().x.min(map.size().y) * if boundary == Boundary::Free { 0.5 } else { 1.0 };
         self.reliable = instrument.map(|shortest| [shortest, longest]);
         let Some(reliable) = self.known("wavelengths", ReliableWavelengths::new(map, boundary, instrument))
@@ -270,7 +270,7 @@ impl MapStatisticsTables {
         })
     }
 
-    /// Of the first surface of a scene, as it is solved.
+    /// The statistics of the first surface of a scene, as it is solved.
     ///
     /// # Errors
     /// A surface that cannot be drawn.
@@ -289,8 +289,8 @@ impl MapStatisticsTables {
         Ok(Self::new(&map, profile, scene.effects.boundary, scene.reliable_from, scene.system))
     }
 
-    /// The parameters as texts: symbol, value, interval, meaning; value and interval in one multiple of the
-    /// unit.
+    /// The parameters as texts: symbol, value, interval and meaning. Value and interval have the same
+    /// multiple of the unit.
     pub fn rows(&self) -> impl Iterator<Item = [String; 4]> {
         self.parameters.iter().map(|p| {
             let size = p.value.or(p.ends[0]).or(p.ends[1]).unwrap_or_default();
@@ -314,7 +314,7 @@ impl MapStatisticsTables {
         })
     }
 
-    /// The parameters as aligned lines, what is missing below.
+    /// The parameters as aligned lines, followed by those that are missing.
     pub fn text(&self) -> String {
         let mut text = String::new();
         for [symbol, value, interval, meaning] in self.rows() {

@@ -1,4 +1,5 @@
-//! Files of the statistics of a map: tables as CSV, pictures of spectrum, height differences and slopes.
+//! Writes the statistics of a map: tables as CSV, and pictures of the spectrum, of height differences and of
+//! slopes.
 
 use crate::scenes::read::Result;
 use crate::scenes::tell::{Bands, FILES, LEVEL, MapStatisticsTables, columns};
@@ -22,7 +23,7 @@ fn shaded(x: &[f64], bands: &[Option<[f64; 2]>]) -> Vec<(f64, f64, f64)> {
     x.iter().zip(bands).filter_map(|(&x, band)| band.map(|[low, high]| (x, low, high))).collect()
 }
 
-/// What a band is, where there is one.
+/// The description of a band, where there is one.
 fn shade_words(curves: &[Curve]) -> &'static str {
     let shaded = curves.iter().any(|curve| curve.band.len() > 1);
     if shaded { "; shaded: where 95 % of Gaussian surfaces are" } else { "" }

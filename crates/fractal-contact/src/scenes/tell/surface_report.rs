@@ -1,4 +1,5 @@
-//! `report.html` of a surface: what its file says, what was done to it, the map, and its statistics.
+//! `report.html` of a surface: the metadata of its file, the steps of preprocessing, the map and its
+//! statistics.
 
 use crate::scenes::read::{HEIGHTS, Result, description};
 use crate::scenes::run::{FieldView, field_pictures};
@@ -12,12 +13,12 @@ use surface_io::Metadata;
 /// Bins of the distribution of heights.
 const BINS: usize = 60;
 
-/// What a page is made of.
+/// The contents of a page.
 pub(crate) struct SurfaceReport<'a> {
-    /// Of the file.
+    /// Name of the file.
     pub name: &'a str,
     pub metadata: &'a Metadata,
-    /// What was done to the map, in order.
+    /// Steps of the preprocessing, in order.
     pub steps: &'a [String],
     pub map: &'a HeightMap,
     pub statistics: &'a MapStatisticsTables,
@@ -84,7 +85,7 @@ impl SurfaceReport<'_> {
         page::field(&picture, &view)
     }
 
-    /// Shares of the heights, beside those of the normal law.
+    /// Distribution of the heights, with that of the normal law.
     fn distribution(&self) -> Chart {
         let heights: Vec<f64> = self.map.defined().collect();
         let count = heights.len() as f64;

@@ -1,4 +1,5 @@
-//! Random states against a dense reference: the conditions to rounding, by exchanging cells one at a time.
+//! Random states compared with a dense reference, which satisfies the contact conditions to rounding by
+//! exchanging cells one at a time.
 
 use super::super::super::{Bounds, Control, Guess, Limits, Problem, Solved, cold_start, solve};
 use crate::geometry::{CellSet, Grid};
@@ -16,7 +17,7 @@ const TOLERANCE: f64 = 1e-9;
 /// Conditions of the reference: rounding of a few hundred additions, in units of the heights and of the
 /// largest pressure.
 const ROUNDING: f64 = 1e-11;
-/// Exchanges of single cells at most.
+/// Largest number of exchanges of single cells.
 const EXCHANGES: usize = 400;
 
 fn random(state: &mut u64) -> f64 {
@@ -24,7 +25,7 @@ fn random(state: &mut u64) -> f64 {
     (*state >> 11) as f64 / (1u64 << 53) as f64
 }
 
-/// What a cell does in the reference.
+/// The state of a cell in the reference.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Kind {
     Open,
@@ -42,7 +43,8 @@ struct Dense {
 }
 
 impl Dense {
-    /// Pressure, gap and approach of an assignment; `None` where no elastic cell is left to take a force.
+    /// Pressure, gap and approach of an assignment; `None` where no elastic cell is left to carry a
+    /// prescribed force.
     fn state(&self, kinds: &[Kind]) -> Option<(Vec<f64>, Vec<f64>, f64)> {
         let (n, all) = (kinds.len(), CellSet::all(self.grid));
         let of = |kind: Kind| (0..n as u32).filter(|&i| kinds[i as usize] == kind).collect::<Vec<_>>();
@@ -76,7 +78,7 @@ impl Dense {
     }
 
     /// The solution, from the cells of a state: the cell that violates its condition most changes its kind,
-    /// until none does. `None` where the force is that of whole cells or the exchanges do not end.
+    /// until none does. `None` where saturated cells alone carry the force or the exchanges do not end.
     fn solution(&self, mut kinds: Vec<Kind>) -> Option<(Vec<f64>, f64)> {
         for _ in 0..EXCHANGES {
             let (p, gap, d) = self.state(&kinds)?;
@@ -145,7 +147,7 @@ fn state(number: u64) -> (Dense, Boundary) {
     (Dense { grid, table, z, hardness, target }, boundary)
 }
 
-/// How the cells of a solved state are taken by the reference.
+/// The kind of each cell of a solved state, as the reference counts it.
 fn kinds(dense: &Dense, solved: &Solved) -> Vec<Kind> {
     let p = CellSet::all(dense.grid).carry(&solved.contact, &solved.p);
     let kind = |p: f64| {
@@ -181,8 +183,8 @@ fn random_states_are_those_of_a_dense_reference() {
         compared += 1;
         saturated += u64::from(p.iter().any(|&p| p >= hardness));
         let found = CellSet::all(grid).carry(&solved.contact, &solved.p);
-        // The energy of the difference is below what the gaps left open allow: twice the duality gap and the
-        // miss of the complementarity.
+        // The energy of the difference is below its bound from the residual gaps: twice the duality gap and
+        // the complementarity residual.
         let change: Vec<f64> = found.iter().zip(&p).map(|(a, b)| a - b).collect();
         let mut u = vec![0.0; p.len()];
         DirectSum(&dense.table).apply(&CellSet::all(grid), &change, &CellSet::all(grid), &mut u);

@@ -1,4 +1,4 @@
-//! Single outer iterations, and the gap beside plain sums.
+//! Single outer iterations, and the gap compared with plain sums.
 
 use super::*;
 
@@ -39,7 +39,7 @@ fn a_gap_is_complete_up_to_where_candidates_were_listed() {
 }
 
 #[test]
-fn what_changed_is_known_to_its_uncertainty() {
+fn the_change_of_a_gap_is_known_to_its_uncertainty() {
     let grid = Grid::square(60, 60);
     let target = Control::Force(900.0);
     for (tuning, begins, _) in recipes() {
@@ -193,7 +193,7 @@ fn bowl() -> (Grid, Vec<f64>, Guess) {
 }
 
 #[test]
-fn a_gap_is_what_plain_sums_say() {
+fn a_gap_equals_that_of_plain_sums() {
     let (grid, z, guess) = bowl();
     for height in [None, Some(0.3)] {
         for target in [Control::Force(7.0), Control::Approach(0.5), Control::Approach(6.0)] {
