@@ -12,7 +12,7 @@ use std::time::Duration;
 const PREFIX: &str = ".partial-";
 
 /// Temporary files whose writing process cannot be looked up (no /proc) are removed after this age.
-const ABANDONED: Duration = Duration::from_secs(24 * 3600);
+const ABANDONED: Duration = Duration::from_hours(24);
 
 /// Creates a directory and those above it.
 ///

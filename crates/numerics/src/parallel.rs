@@ -80,12 +80,15 @@ pub fn for_each<T: Send, B: Send>(
     mut tasks: impl ExactSizeIterator<Item = T> + Send,
     work: impl Fn(&mut B, T) + Sync,
 ) {
-    // One loop, which is compiled once.
-    let all = |buffer: &mut B, next: &mut dyn FnMut() -> Option<T>| {
-        while let Some(task) = next() {
-            work(buffer, task);
-        }
-    };
+    share(buffers, &mut tasks, &work);
+}
+
+/// [`for_each`], compiled once for each type of task and buffer and not for each of hundreds of loops.
+fn share<T: Send, B: Send>(
+    buffers: &mut [B],
+    tasks: &mut (dyn ExactSizeIterator<Item = T> + Send),
+    work: &(dyn Fn(&mut B, T) + Sync),
+) {
     #[cfg(feature = "rayon")]
     if let helpers @ 1.. = buffers.len().min(tasks.len()).saturating_sub(1)
         && let Some(_sharing) = Sharing::begin()
@@ -94,13 +97,17 @@ pub fn for_each<T: Send, B: Send>(
         let buffers = Mutex::new(buffers.iter_mut());
         on_threads(helpers, &|| {
             if let Some(buffer) = next(&buffers) {
-                all(buffer, &mut || next(&tasks));
+                while let Some(task) = next(&tasks) {
+                    work(buffer, task);
+                }
             }
         });
         return;
     }
     if let Some(buffer) = buffers.first_mut() {
-        all(buffer, &mut || tasks.next());
+        for task in tasks {
+            work(buffer, task);
+        }
     }
 }
 
@@ -114,13 +121,22 @@ fn next<I: Iterator>(shared: &Mutex<I>) -> Option<I::Item> {
 /// elements of a vector loop, decides the number of threads.
 pub fn map<T: Send, R: Send + Default>(
     total: usize,
-    tasks: impl ExactSizeIterator<Item = T> + Send,
+    mut tasks: impl ExactSizeIterator<Item = T> + Send,
     work: impl Fn(T) -> R + Sync,
+) -> Vec<R> {
+    collect(threads_for(total), &mut tasks, &work)
+}
+
+/// [`map`], compiled once for each type of task and result.
+fn collect<T: Send, R: Send + Default>(
+    threads: usize,
+    tasks: &mut (dyn ExactSizeIterator<Item = T> + Send),
+    work: &(dyn Fn(T) -> R + Sync),
 ) -> Vec<R> {
     let mut results: Vec<R> = Vec::new();
     results.resize_with(tasks.len(), R::default);
-    let mut buffers = vec![(); threads_for(total)];
-    for_each(&mut buffers, tasks.zip(&mut results), |(), (task, result)| *result = work(task));
+    let mut buffers = vec![(); threads];
+    share(&mut buffers, &mut tasks.zip(&mut results), &|(), (task, result)| *result = work(task));
     results
 }
 

@@ -173,7 +173,11 @@ impl WaveGenerator {
         };
         if variances.iter().all(|v| *v <= 0.0) {
             let q = surface.short_cutoff.unwrap_or(0.0);
-            return Err(Error::domain("short_cutoff", q, "at least that of the longest wave, or none remain"));
+            return Err(Error::domain(
+                "short_cutoff",
+                q,
+                "at least that of the longest wave, or none remain",
+            ));
         }
         Self::of_variances(cells, size, variances, rms)
     }

@@ -34,10 +34,10 @@ pub(crate) fn contact_modulus(scene: &SceneFile) -> String {
     let unit = scene.system.shown("Pa");
     let modulus = ascii(&amount(scene.contact_modulus, unit));
     let body = |body: Body| match body {
-        Body::Rigid => "a rigid body".to_owned(),
         Body::Elastic { young, poisson } => {
             format!("a body with E = {}, nu = {}", ascii(&amount(young, unit)), short(poisson))
         }
+        _ => "a rigid body".to_owned(),
     };
     match (&scene.pair, scene.system) {
         (Some(pair), _) => format!("E* = {modulus}: {} on {}", body(pair.first), body(pair.second)),

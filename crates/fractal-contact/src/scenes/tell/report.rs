@@ -1,7 +1,7 @@
 //! `report.html`: a run in one page, which needs no network and no other file.
 
 use crate::scenes::plan::{Cost, Plan};
-use crate::scenes::read::{HEIGHTS, Result, SceneFile, amount, number, short, words};
+use crate::scenes::read::{HEIGHTS, Result, SceneFile, number, short, words};
 use crate::scenes::run::{FieldFile, FieldView, SceneOutcome, SolvedUnit, StateRecord, field_pictures};
 use crate::scenes::tell::{MapStatisticsTables, Mean, columns, distributions, page, pictures, summary};
 use analysis::Value;
