@@ -196,6 +196,11 @@ def test_scenes_say_what_they_take():
         fc.Scene(SPHERE, contact_modulus="1 GPa")
     with pytest.raises(TypeError, match=r"give contact_modulus or bodies$"):
         fc.Scene(SPHERE)
+    with pytest.warns(FutureWarning, match="`modulus` is read as `contact_modulus`"):
+        former = fc.Scene(SPHERE, modulus=2.0)
+    assert former == fc.Scene(SPHERE, contact_modulus=2.0)
+    with pytest.raises(TypeError, match="not both"):
+        fc.Scene(SPHERE, contact_modulus=2.0, modulus=2.0)
     body = fc.Body(2.0, 0.3)
     with pytest.raises(TypeError, match="not both"):
         fc.Scene(SPHERE, 1.0, bodies=(body, None))

@@ -68,7 +68,7 @@ def test_states_and_what_belongs_to_them_are_pickled():
         assert pickle.loads(pickle.dumps(value)) == value
     with pytest.raises(fc.ShapeError, match="pickled by this version"):
         fc.Certificate._of_bytes(b"\xff")
-    text = '[scene]\nunits = "none"\nmodels = ["hertz"]\nmodulus = 1\nforce = 1\n'
+    text = '[scene]\nunits = "none"\nmodels = ["hertz"]\ncontact_modulus = 1\nforce = 1\n'
     scene = fc.Scene.from_toml(text + '[scene.body]\nkind = "sphere"\nradius = 1\nside = 4\n')
     again = pickle.loads(pickle.dumps(scene))
     assert (again.text, again.models, again.plan()) == (scene.text, scene.models, scene.plan())

@@ -241,7 +241,7 @@ impl Job for RealisationJob {
         let forces: Vec<String> = self.forces.iter().map(|f| format!("{f:?}")).collect();
         format!(
             "format {FORMAT}\n{discretisation}surface self-affine, no roll-off, spectrum to the end of the grid\n\
-             side 1.0\nrms_height 1.0\nmodulus 1.0\nfractal_dimension {:?}\nseed {}\nforce_bar {}\n",
+             side 1.0\nrms_height 1.0\ncontact_modulus 1.0\nfractal_dimension {:?}\nseed {}\nforce_bar {}\n",
             self.fractal_dimension,
             self.seed,
             forces.join(" "),

@@ -18,7 +18,7 @@ fn results(directory: &Path, file: &str) -> CsvFile {
     CsvFile::read(&directory.join("out").join(file)).unwrap()
 }
 
-const MAP: &str = "[scene]\nmodels = [\"bem3d\"]\nmodulus = \"100 GPa\"\nforce = \"FORCE\"\n\
+const MAP: &str = "[scene]\nmodels = [\"bem3d\"]\ncontact_modulus = \"100 GPa\"\nforce = \"FORCE\"\n\
     [scene.surface]\nkind = \"file\"\npath = \"map.csv\"\nunit = \"nm\"\ncell = \"1 um\"\n[outputs]\narea = true\n";
 
 /// A wavy map of 40 x 30 cells, in nm, with something added.
@@ -32,6 +32,25 @@ fn write_map(directory: &Path, more: impl Fn(usize, usize) -> f64) {
         (0..40).map(|x| format!("{:.3}", height(x, y) + more(x, y))).collect::<Vec<_>>().join(",") + "\n"
     };
     std::fs::write(directory.join("map.csv"), (0..30).map(row).collect::<String>()).unwrap();
+}
+
+#[test]
+fn the_former_name_of_the_contact_modulus_is_read_with_a_note() {
+    let read = |text: String| SceneFile::parse(Path::new("scene.toml"), text).unwrap();
+    let (former, present) = (read(WAVES.replace("contact_modulus", "modulus")), read(WAVES.to_owned()));
+    assert_eq!(former.contact_modulus.to_bits(), present.contact_modulus.to_bits());
+    let notes = |scene: &SceneFile| scene.notes.iter().map(ToString::to_string).collect::<String>();
+    assert!(!notes(&present).contains("modulus"), "{}", notes(&present));
+    assert_eq!(
+        notes(&former).matches("`modulus` is read as `contact_modulus`, which is E* of the pair").count(),
+        1
+    );
+    // Both at once is a mistake, and so is a misspelt one, whose right name is recommended.
+    let mistake = |text: String| SceneFile::parse(Path::new("scene.toml"), text).unwrap_err().to_string();
+    let both = mistake(WAVES.replace("contact_modulus", "modulus = 2\ncontact_modulus"));
+    assert!(both.contains("`contact_modulus` and `modulus` are both given"), "{both}");
+    let misspelt = mistake(WAVES.replace("contact_modulus", "modulous"));
+    assert!(misspelt.contains("contact_modulus"), "{misspelt}");
 }
 
 /// What is added to a map.
@@ -88,7 +107,7 @@ fn a_tilt_that_decides_is_told_unless_the_scene_says_what_to_do() {
 #[test]
 fn several_surfaces_have_a_mean_and_theories_one_surface() {
     let dir = tempfile::tempdir().unwrap();
-    let text = "[scene]\nunits = \"none\"\nmodels = [\"bem3d\", \"persson\"]\nmodulus = 1\nmean_pressure = [1e-4, 1e-3]\n\
+    let text = "[scene]\nunits = \"none\"\nmodels = [\"bem3d\", \"persson\"]\ncontact_modulus = 1\nmean_pressure = [1e-4, 1e-3]\n\
         [scene.surface]\nkind = \"self_affine\"\nside = 1\nhurst = 0.7\nrms_height = 0.01\n\
         roll_off_wavelength = 0.5\nshortest_wavelength = 0.1\n[effects]\nboundary = \"periodic\"\n\
         [outputs]\nstiffness = true\narea = true\ncurves = true\nheights = [\"npy\"]\n[models.bem3d]\ncells = 32\n\
@@ -120,7 +139,7 @@ fn several_surfaces_have_a_mean_and_theories_one_surface() {
     assert_eq!(maps.len(), 3);
 }
 
-const WAVES: &str = "[scene]\nunits = \"none\"\nmodels = [\"bem3d\"]\nmodulus = 1\nmean_pressure = [1e-3, 1e-2]\n\
+const WAVES: &str = "[scene]\nunits = \"none\"\nmodels = [\"bem3d\"]\ncontact_modulus = 1\nmean_pressure = [1e-3, 1e-2]\n\
     [scene.surface]\nkind = \"self_affine\"\nside = 1\nhurst = 0.8\nrms_height = 0.01\nroll_off_wavelength = 0.5\n\
     shortest_wavelength = 0.2\n[effects]\nboundary = \"periodic\"\n[outputs]\nstiffness = true\narea = true\n\
     [models.bem3d]\ncells = 64\n[sampling]\nseed = 5\n";

@@ -6,7 +6,7 @@ use std::path::Path;
 use std::process::{Command, Output};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-const SCENE: &str = "# Three surfaces by two models.\n[scene]\nunits = \"none\"\nmodels = [\"bem3d\", \"mdr1d\"]\nmodulus = 1\n\
+const SCENE: &str = "# Three surfaces by two models.\n[scene]\nunits = \"none\"\nmodels = [\"bem3d\", \"mdr1d\"]\ncontact_modulus = 1\n\
     force_bar = { from = 1e-2, to = 1, count = 3 }\n[scene.surface]\nkind = \"self_affine\"\nside = 1\nhurst = 0.7\nrms_height = 0.01\n\
     [outputs]\nstiffness = true\ncurves = true\n[models.bem3d]\ncells = 33\n[models.mdr1d]\nelements = 1024\n\
     [sampling]\nseed = 7\nsurfaces = 3\n";

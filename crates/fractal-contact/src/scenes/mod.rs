@@ -16,7 +16,7 @@
 //! use runs::{CsvFile, Silent};
 //!
 //! // Hertz: F = (4/3) E* sqrt(R) d^1.5 = 1 at d = 0.8254818122 (E* = R = 1).
-//! let text = "[scene]\nunits = \"none\"\nmodels = [\"hertz\", \"mdr1d\"]\nmodulus = 1\nforce = 1\n\
+//! let text = "[scene]\nunits = \"none\"\nmodels = [\"hertz\", \"mdr1d\"]\ncontact_modulus = 1\nforce = 1\n\
 //!             [scene.body]\nkind = \"sphere\"\nradius = 1\nside = 4\n";
 //! let scene = SceneFile::parse("hertz.toml".as_ref(), text.into())?;
 //! let out = std::env::temp_dir().join(format!("fractal-contact-doc-{}", std::process::id()));

@@ -27,7 +27,7 @@ impl ModelOnSurface {
             contact_modulus, hardness, accuracy, pair, effects, request, requested, system, ..
         } = scene;
         format!(
-            "format {FORMAT} {}\nversion {}\nmodel {:?}\nsurface {surface}\nmodulus {contact_modulus:?}\nhardness {hardness:?}\naccuracy {accuracy:?}\npair {pair:?}\neffects {effects:?}\n\
+            "format {FORMAT} {}\nversion {}\nmodel {:?}\nsurface {surface}\ncontact_modulus {contact_modulus:?}\nhardness {hardness:?}\naccuracy {accuracy:?}\npair {pair:?}\neffects {effects:?}\n\
              request {request:?}\noutputs {requested:?} {system:?}\nnumber {}\nseed {}\n",
             bem3d::FORMAT,
             env!("CARGO_PKG_VERSION"),

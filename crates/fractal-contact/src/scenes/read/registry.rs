@@ -36,7 +36,7 @@ use std::sync::Arc;
 ///     }
 /// }
 /// let registry = Registry::new().with(Mine, "1")?;
-/// let text = "[scene]\nunits = \"none\"\nmodels = [\"hertz\", \"mine\"]\nmodulus = 1\nforce = 1\n\
+/// let text = "[scene]\nunits = \"none\"\nmodels = [\"hertz\", \"mine\"]\ncontact_modulus = 1\nforce = 1\n\
 ///             [scene.body]\nkind = \"sphere\"\nradius = 1\nside = 4\n";
 /// let scene = SceneFile::parse_with("mine.toml".as_ref(), text.into(), &registry)?;
 /// assert_eq!(Plan::new(&scene)?.models[1].name, "mine");

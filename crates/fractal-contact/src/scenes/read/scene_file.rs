@@ -178,7 +178,7 @@ impl SceneFile {
     /// [`crate::scenes::Error::Scene`] with the place of the first mistake.
     ///
     /// ```
-    /// let text = "[scene]\nunits = \"none\"\nmodels = [\"hertz\"]\nmodulus = 1\nforce = [0.001, 1]\n\
+    /// let text = "[scene]\nunits = \"none\"\nmodels = [\"hertz\"]\ncontact_modulus = 1\nforce = [0.001, 1]\n\
     ///             [scene.body]\nkind = \"sphere\"\nradius = 1\nside = 4\n";
     /// let scene = fractal_contact::scenes::SceneFile::parse("hertz.toml".as_ref(), text.into())?;
     /// assert_eq!(scene.models[0].name(), "hertz");
