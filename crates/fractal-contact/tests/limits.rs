@@ -17,7 +17,7 @@ const COUNTS: [&str; 9] = [
     "1e9",
 ];
 
-const SCENE: &str = "[scene]\nunits = \"none\"\nmodels = [\"bem3d\"]\nmodulus = 1\nforce_bar = [0.01, 0.1]\n[scene.surface]\nkind = \"self_affine\"\n\
+const SCENE: &str = "[scene]\nunits = \"none\"\nmodels = [\"bem3d\"]\ncontact_modulus = 1\nforce_bar = [0.01, 0.1]\n[scene.surface]\nkind = \"self_affine\"\n\
     side = 1\nhurst = 0.7\nrms_height = 0.01\n[outputs]\nstiffness = true\n[models.bem3d]\ncells = 33\n[sampling]\nseed = 7\nsurfaces = 3\n";
 
 /// With at most 8 GB of addresses where the shell limits them: what asks for more would be an abort.

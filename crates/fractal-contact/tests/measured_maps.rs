@@ -20,7 +20,7 @@ fn folder(keys: &str) -> (tempfile::TempDir, fractal_contact::scenes::Result<Sce
     let map = HeightMap::new([4, 3], [4e-3, 3e-3], metres).unwrap();
     surface_io::write_map(&dir.path().join("upper.x3p"), &map, surface_io::Metric::Metres).unwrap();
     let text = format!(
-        "[scene]\nmodels = [\"bem3d\"]\nmodulus = \"1 GPa\"\nforce = \"1 N\"\n[scene.surface]\n\
+        "[scene]\nmodels = [\"bem3d\"]\ncontact_modulus = \"1 GPa\"\nforce = \"1 N\"\n[scene.surface]\n\
          kind = \"file\"\npath = \"lower.npy\"\nunit = \"um\"\ncell = \"1 mm\"\ndetrend = \"none\"\n{keys}\n"
     );
     let scene = SceneFile::parse(&dir.path().join("a.toml"), text);
@@ -71,7 +71,9 @@ fn two_bodies_lie_face_to_face() {
     let alone = "[scene.body]\nkind = \"sphere\"\nradius = \"1 m\"\nside = \"4 mm\"";
     let random = SceneFile::parse(
         "a.toml".as_ref(),
-        format!("[scene]\nmodels = [\"bem3d\"]\nmodulus = \"1 GPa\"\nforce = \"1 N\"\n{alone}\n{SECOND}"),
+        format!(
+            "[scene]\nmodels = [\"bem3d\"]\ncontact_modulus = \"1 GPa\"\nforce = \"1 N\"\n{alone}\n{SECOND}"
+        ),
     );
     assert!(random.unwrap_err().to_string().contains("is added to a measured [scene.surface]"));
 }
@@ -116,7 +118,7 @@ fn scan_lines_are_repaired_where_it_is_named() {
     std::fs::write(dir.path().join("afm.npy"), bytes).unwrap();
     let scene = |keys: &str| {
         let text = format!(
-            "[scene]\nmodels = [\"bem3d\"]\nmodulus = \"1 GPa\"\nforce = \"1 N\"\n[scene.surface]\n\
+            "[scene]\nmodels = [\"bem3d\"]\ncontact_modulus = \"1 GPa\"\nforce = \"1 N\"\n[scene.surface]\n\
              kind = \"file\"\npath = \"afm.npy\"\nunit = \"um\"\ncell = \"1 mm\"\ndetrend = \"none\"\n{keys}\n"
         );
         SceneFile::parse(&dir.path().join("a.toml"), text)

@@ -39,7 +39,7 @@ fn rough(i: usize) -> f64 {
 /// The text of a scene of that profile.
 fn text(scene: &str, surface: &str, rest: &str) -> String {
     format!(
-        "[scene]\nmodulus = \"10 GPa\"\n{scene}\n[scene.surface]\nkind = \"file\"\n{LINE}{surface}\n{rest}\n"
+        "[scene]\ncontact_modulus = \"10 GPa\"\n{scene}\n[scene.surface]\nkind = \"file\"\n{LINE}{surface}\n{rest}\n"
     )
 }
 

@@ -119,7 +119,7 @@ fn means_are_over_the_ends_of_all_paths() {
     steps.extend((0..40).map(|i| -3e-5 * 1.15f64.powi(i)));
     let step = |(i, force)| format!("[[scene.path]]\ntime = {i}\nforce = {force:e}\n");
     let text = format!(
-        "[scene]\nunits = \"none\"\nmodels = [\"bem3d\"]\nmodulus = 1\n[scene.surface]\nkind = \"self_affine\"\nside = 1\n\
+        "[scene]\nunits = \"none\"\nmodels = [\"bem3d\"]\ncontact_modulus = 1\n[scene.surface]\nkind = \"self_affine\"\nside = 1\n\
          hurst = 0.8\nrms_height = 0.01\n[effects]\nadhesion = {{ work = 1e-4 }}\n[models.bem3d]\ncells = 33\n[sampling]\n\
          surfaces = 3\nseed = 1\n{}",
         steps.iter().enumerate().map(step).collect::<Vec<_>>().concat()

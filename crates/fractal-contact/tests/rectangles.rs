@@ -16,7 +16,7 @@ fn of_file(keys: &str) -> fractal_contact::scenes::Result<SceneFile> {
     heights[6] = f64::NAN;
     std::fs::write(dir.path().join("map.npy"), surface_io::npy(&[3, 4], &heights).unwrap()).unwrap();
     let text = format!(
-        "[scene]\nmodels = [\"bem3d\"]\nmodulus = \"1 GPa\"\nforce = \"1 N\"\n[scene.surface]\n\
+        "[scene]\nmodels = [\"bem3d\"]\ncontact_modulus = \"1 GPa\"\nforce = \"1 N\"\n[scene.surface]\n\
          kind = \"file\"\npath = \"map.npy\"\nunit = \"um\"\n{keys}\n"
     );
     SceneFile::parse(&dir.path().join("a.toml"), text)
@@ -103,7 +103,7 @@ fn number(file: &CsvFile, name: &str) -> f64 {
 #[test]
 fn results_of_a_rectangle() {
     let scene = generated(
-        "models = [\"hertz\"]\nmodulus = 2\nmean_pressure = 1e-3\n[scene.body]\nkind = \"sphere\"\nradius = 1\n\
+        "models = [\"hertz\"]\ncontact_modulus = 2\nmean_pressure = 1e-3\n[scene.body]\nkind = \"sphere\"\nradius = 1\n\
          size = [9, 1]\n[outputs]\nstiffness = true\narea = true\n",
     );
     assert_eq!(scene.surface.size(), Size { x: 9.0, y: 1.0 });
@@ -119,7 +119,7 @@ fn results_of_a_rectangle() {
     let plan = Plan::new(&scene).unwrap().to_string();
     assert!(plan.contains("a sphere on a rectangle of sides 9 x 1"), "{plan}");
 
-    let rough = "models = [\"mdr1d\"]\nmodulus = 1\nforce_bar = 0.1\n[scene.surface]\nkind = \"self_affine\"\nhurst = 0.7\n\
+    let rough = "models = [\"mdr1d\"]\ncontact_modulus = 1\nforce_bar = 0.1\n[scene.surface]\nkind = \"self_affine\"\nhurst = 0.7\n\
                  rms_height = 0.01\nSIZE\n[models.mdr1d]\nelements = 256\n[sampling]\nseed = 1\n";
     let force = |size: &str| number(&results(&generated(&rough.replace("SIZE", size))), "force");
     approx::assert_relative_eq!(force("size = [4, 1]"), force("side = 2"), max_relative = ROUNDING);
@@ -136,7 +136,7 @@ fn results_of_a_rectangle() {
 fn columns_and_rows_of_boundary_elements() {
     let of = |options: &str| {
         generated(&format!(
-            "models = [\"bem3d\"]\nmodulus = 1\nforce = 1\n[scene.surface]\nkind = \"self_affine\"\nhurst = 0.7\n\
+            "models = [\"bem3d\"]\ncontact_modulus = 1\nforce = 1\n[scene.surface]\nkind = \"self_affine\"\nhurst = 0.7\n\
              rms_height = 0.01\nsize = [4, 1]\n[scene.body]\nkind = \"sphere\"\nradius = 3\n[models.bem3d]\n{options}\n\
              [sampling]\nseed = 1\n"
         ))
@@ -230,7 +230,7 @@ fn a_rectangle_is_pressed() {
     heights[30] = f64::NAN;
     let bytes = surface_io::npy(&[rows, columns], &heights).unwrap();
     std::fs::write(dir.path().join("map.npy"), bytes).unwrap();
-    let text = "[scene]\nmodels = [\"bem3d\"]\nmodulus = \"1 GPa\"\nmean_pressure = \"1 MPa\"\n[scene.surface]\nkind = \"file\"\n\
+    let text = "[scene]\nmodels = [\"bem3d\"]\ncontact_modulus = \"1 GPa\"\nmean_pressure = \"1 MPa\"\n[scene.surface]\nkind = \"file\"\n\
                 path = \"map.npy\"\nunit = \"nm\"\nsize = [\"24 um\", \"4 um\"]\nundefined = \"no_contact\"\n[outputs]\narea = true\n\
                 stiffness = true\npressure = [\"npy\", \"png\", \"vti\"]\ngap = [\"npy\", \"png\", \"vti\"]\n";
     let scene = SceneFile::parse(&dir.path().join("a.toml"), text.into()).unwrap_or_else(|e| panic!("{e}"));

@@ -6,7 +6,7 @@ use runs::Silent;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-const SCENE: &str = "[scene]\nunits = \"none\"\nmodels = [\"bem3d\"]\nmodulus = 1\nforce_bar = [LOADS]\n\
+const SCENE: &str = "[scene]\nunits = \"none\"\nmodels = [\"bem3d\"]\ncontact_modulus = 1\nforce_bar = [LOADS]\n\
     [scene.surface]\nkind = \"self_affine\"\nside = 1\nhurst = 0.7\nrms_height = 0.01\n\
     [outputs]\nstiffness = true\npressure = [\"npy\"]\n[models.bem3d]\ncells = 65\n[sampling]\nseed = 3\n";
 
@@ -129,7 +129,7 @@ fn links_in_the_store_are_not_followed() {
     std::os::unix::fs::symlink(&kept, out.join(".units/pressure-bem3d-0-000.f64")).unwrap();
     // What a run that was killed kept for drawing.
     std::fs::write(out.join(".units/gap-bem3d-7-000.f64"), "old").unwrap();
-    let text = "[scene]\nunits = \"none\"\nmodels = [\"bem3d\"]\nmodulus = 1\nforce = 0.01\n\
+    let text = "[scene]\nunits = \"none\"\nmodels = [\"bem3d\"]\ncontact_modulus = 1\nforce = 0.01\n\
         [scene.body]\nkind = \"sphere\"\nradius = 1\nside = 1\n[outputs]\npressure = [\"png\"]\n[models.bem3d]\ncells = 17\n";
     let scene = SceneFile::parse("scene.toml".as_ref(), text.into()).unwrap();
     let options = Options { out: out.clone(), threads: 1, fresh: false };
@@ -300,7 +300,7 @@ fn a_path_that_pulls_off_ends_with_its_last_stable_state() {
     let step = |(i, force)| format!("[[scene.path]]\ntime = {i}\nforce = {force:e}\n");
     let steps = forces.iter().enumerate().map(step).collect::<Vec<_>>().concat();
     let text = format!(
-        "[scene]\nunits = \"none\"\nmodels = [\"bem3d\"]\nmodulus = 1\n[scene.body]\nkind = \"sphere\"\nradius = 1\n\
+        "[scene]\nunits = \"none\"\nmodels = [\"bem3d\"]\ncontact_modulus = 1\n[scene.body]\nkind = \"sphere\"\nradius = 1\n\
          side = 0.3\n[effects]\nadhesion = {{ work = 1e-4 }}\n[models.bem3d]\ncells = 49\n{steps}"
     );
     let scene = path_scene(dir.path(), &text);

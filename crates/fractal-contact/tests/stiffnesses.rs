@@ -17,7 +17,7 @@ fn solved(directory: &Path, text: &str) -> (SceneOutcome, CsvFile) {
     (outcome, CsvFile::read(&directory.join("out/results.csv")).unwrap())
 }
 
-const SPHERE: &str = "[scene]\nunits = \"none\"\nmodels = [\"jkr\", \"mdr1d\"]\nmodulus = 1\nforce = [-0.03, 0, 0.1]\n\
+const SPHERE: &str = "[scene]\nunits = \"none\"\nmodels = [\"jkr\", \"mdr1d\"]\ncontact_modulus = 1\nforce = [-0.03, 0, 0.1]\n\
     [scene.body]\nkind = \"sphere\"\nradius = 1\nside = 4\n[effects]\nadhesion = { work = 0.01 }\n\
     [outputs]\narea = true\nstiffness = true\nstiffness_fixed_area = true\ncurves = true\n\
     conductance = { kind = \"electrical\", resistivities = [1, 3] }\n";
@@ -57,7 +57,7 @@ fn an_adhesive_contact_has_two_stiffnesses_and_conducts_through_its_area() {
     assert!(file.numbers("conductance").unwrap().iter().all(Option::is_some));
 }
 
-const ROUGH: &str = "[scene]\nunits = \"none\"\nmodels = [\"bem3d\"]\nmodulus = 1\nmean_pressure = [1e-3, 1e-2]\n\
+const ROUGH: &str = "[scene]\nunits = \"none\"\nmodels = [\"bem3d\"]\ncontact_modulus = 1\nmean_pressure = [1e-3, 1e-2]\n\
     [scene.surface]\nkind = \"self_affine\"\nside = 1\nhurst = 0.8\nrms_height = 0.01\nroll_off_wavelength = 0.5\n\
     shortest_wavelength = 0.2\n[effects]\nboundary = \"periodic\"\n[outputs]\nstiffness = true\ngrid_error = true\n\
     stiffness_fixed_area = true\nconductance = { kind = \"electrical\", resistivities = [1, 3] }\n[models.bem3d]\n\

@@ -28,11 +28,11 @@ fn write(dir: &Path, map: &HeightMap) {
     std::fs::write(dir.join("map.csv"), text).unwrap();
 }
 
-const PERIODIC: &str = "[scene]\nunits = \"none\"\nmodels = [\"bem3d\", \"persson\", \"greenwood_williamson\"]\nmodulus = 1\n\
+const PERIODIC: &str = "[scene]\nunits = \"none\"\nmodels = [\"bem3d\", \"persson\", \"greenwood_williamson\"]\ncontact_modulus = 1\n\
     mean_pressure = [0.002, 0.01]\n[scene.surface]\nkind = \"file\"\npath = \"map.csv\"\nsize = 1\nunit = \"none\"\n\
     [effects]\nboundary = \"periodic\"\n[outputs]\narea = true\nstiffness = true\nmean_gap = true\n";
 
-const FREE: &str = "[scene]\nunits = \"none\"\nmodels = [\"bem3d\", \"mdr1d\", \"power_law\"]\nmodulus = 1\n\
+const FREE: &str = "[scene]\nunits = \"none\"\nmodels = [\"bem3d\", \"mdr1d\", \"power_law\"]\ncontact_modulus = 1\n\
     force_bar = [0.01, 0.05]\n[scene.surface]\nkind = \"file\"\npath = \"map.csv\"\nsize = 1\nunit = \"none\"\n\
     [models.mdr1d]\nelements = 4096\n[sampling]\nseed = 1\nsurfaces = 3\n[outputs]\nstiffness = true\n";
 

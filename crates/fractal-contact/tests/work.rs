@@ -41,7 +41,7 @@ const LOADS: [f64; 2] = [0.01, 0.1];
 
 fn text(model: &str, effects: &str, outputs: &str) -> String {
     format!(
-        "[scene]\nunits = \"none\"\nmodels = [\"{model}\"]\nmodulus = 1\nforce_bar = [{}, {}]\n[scene.surface]\nkind = \"self_affine\"\n\
+        "[scene]\nunits = \"none\"\nmodels = [\"{model}\"]\ncontact_modulus = 1\nforce_bar = [{}, {}]\n[scene.surface]\nkind = \"self_affine\"\n\
          side = 1\nhurst = 0.8\nrms_height = 0.01\n[models.{model}]\ncells = {CELLS}\nmethod = \"iterative\"\n[sampling]\nseed = 3\n[effects]\n{effects}\n[outputs]\n{outputs}\n",
         LOADS[0], LOADS[1]
     )

@@ -385,7 +385,7 @@ pub(crate) mod tests {
             }
         }
         // Tables that no scene of the repository has.
-        let theories = "[scene]\nunits = \"none\"\nmodels = [\"persson\", \"greenwood_williamson\"]\nmodulus = 1\n\
+        let theories = "[scene]\nunits = \"none\"\nmodels = [\"persson\", \"greenwood_williamson\"]\ncontact_modulus = 1\n\
                         [models.persson]\n[models.greenwood_williamson]\n";
         let _ = SceneFile::parse(std::path::Path::new("theories.toml"), theories.into());
         let asked = ASKED.with_borrow(Clone::clone);

@@ -38,6 +38,7 @@ pub(crate) fn contact_modulus(scene: &SceneFile) -> String {
         Body::Elastic { young, poisson } => {
             format!("a body with E = {}, nu = {}", ascii(&amount(young, unit)), short(poisson))
         }
+        other => format!("{other:?}"),
     };
     match (&scene.pair, scene.system) {
         (Some(pair), _) => format!("E* = {modulus}: {} on {}", body(pair.first), body(pair.second)),
