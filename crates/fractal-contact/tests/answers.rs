@@ -232,7 +232,7 @@ fn an_accuracy_chooses_the_grid() {
         (asked("accuracy = \"few\"\ncontact_modulus"), "expected a pure number"),
         (
             WAVES.replace("contact_modulus", "accuracy = 0.01\ncontact_modulus"),
-            "`cells` is given beside `accuracy`",
+            "`cells` is given together with `accuracy`",
         ),
         (
             asked("accuracy = 0.1\ncontact_modulus").replace("stiffness = true\narea = true", ""),
