@@ -79,6 +79,10 @@ pub(crate) fn summary(scene: &SceneFile, units: &[SolvedUnit<'_>], means: &[Mean
     // Terminals and fonts without these are still in use, and scenes are written with `um`.
     let plain = |text: &str| text.replace('µ', "u").replace(PLUS_MINUS, "+-");
     for mut model in of_models(scene, units, means) {
+        // A run that was stopped before its first state.
+        if model.rows.is_empty() {
+            continue;
+        }
         model.heads.iter_mut().for_each(|head| head.unit = plain(&head.unit));
         model.rows.iter_mut().flatten().for_each(|cell| *cell = plain(cell));
         let brackets = if model.of_surfaces.is_empty() { "" } else { ": " };
