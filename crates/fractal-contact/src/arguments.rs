@@ -13,8 +13,9 @@ use std::path::PathBuf;
 use std::str::FromStr;
 use surface_io::{Preprocessing, ReadOptions};
 
-/// Contact of rough and smooth elastic bodies from a short text file: it says what is pressed, what is asked
-/// and which effects count; only that is computed.
+/// Computes the contact of rough and smooth elastic bodies. `press` answers the commonest question about a
+/// measured map. For everything else a short text file, the scene, names the bodies, the loads, the effects
+/// and the results that are computed.
 #[derive(Debug, Parser)]
 #[command(name = "fractal-contact", version, after_long_help = AFTER)]
 pub struct Arguments {
@@ -26,7 +27,15 @@ pub struct Arguments {
 /// unknown flag; words and paths may not.
 pub fn command() -> clap::Command {
     Arguments::command().mut_subcommands(|command| {
+        let presses = ["press", "new"].contains(&command.get_name());
         command.mut_args(|argument| {
+            // A map that is pressed has no tilt unless somebody wants it; other commands leave a map as it
+            // is.
+            let argument = if presses && argument.get_id() == "detrend" {
+                argument.default_value(PRESS_DETREND.word())
+            } else {
+                argument
+            };
             let flag = argument.get_long().is_some() && argument.get_action().takes_values();
             let words = !argument.get_possible_values().is_empty() && !argument.is_hide_possible_values_set();
             let path = argument.get_value_parser().type_id() == TypeId::of::<PathBuf>();
@@ -34,6 +43,9 @@ pub fn command() -> clap::Command {
         })
     })
 }
+
+/// What `press` and `new` subtract from a map where no flag says it.
+pub const PRESS_DETREND: surface_io::Detrend = surface_io::Detrend::Plane;
 
 const AFTER: &str = "\
 A scene:
@@ -52,21 +64,27 @@ A scene:
   cells = 129
 
 Examples:
-  fractal-contact press map.sur --contact-modulus '115 GPa' --pressure '1 MPa,10 MPa'    the contact of a measured map
-  fractal-contact plan scene.toml              what will be computed, what not and why, what it will cost
-  fractal-contact run scene.toml               results.csv, manifest.json and what the scene asks for, in out/scene/
+  fractal-contact press map.sur --bodies '210 GPa 0.3, 210 GPa 0.3' --pressure '1 MPa,10 MPa'     the contact of a measured map
+  fractal-contact plan scene.toml              what will be computed, how accurately, and how long it takes
+  fractal-contact run scene.toml               writes report.html, results.csv and the requested fields into out/scene/
   fractal-contact run scene.toml --out DIR --threads 2
-  fractal-contact submit scene.toml --engine slurm --tasks 20 --now      its surfaces on a cluster; then status, merge
+  fractal-contact submit scene.toml --engine slurm --tasks 20 --now      its surfaces on a cluster; then status and merge
   fractal-contact models                       what each model can do
-  fractal-contact info results.csv             also scenes and surfaces
+  fractal-contact info results.csv             also for scenes and surfaces
   fractal-contact surface rough.txt --seed 1 --size '1 mm' --rms-height '1 um'
   fractal-contact completions bash > /etc/bash_completion.d/fractal-contact
   fractal-contact man ~/.local/share/man/man1
 
-Exit codes: 0 done; 1 error; 2 a mistake in the scene or the arguments; 3 done, but some loads were refused or did not converge; 130 stopped
-by Ctrl-C, SIGTERM or SIGHUP, with the states so far in the files (a second signal ends at once); 141 nobody reads the output any more.
-The same command goes on where it was stopped: finished states are kept in .units of the folder of results, also after a kill.
-A folder of results belongs to one run: files of an earlier scene are removed, files of somebody else are not overwritten.";
+Exit codes:
+  0    Everything was computed.
+  1    An error ended the command.
+  2    There is a mistake in the scene or in the arguments.
+  3    The command ran to its end, but some loads were refused or did not converge.
+  130  Ctrl-C, SIGTERM or SIGHUP stopped the run. The states so far are in the files. A second signal ends the program at once.
+  141  Nobody reads the output any more.
+
+A run that was stopped or killed goes on with the same command: finished states are kept in the folder .units of the results.
+A folder of results belongs to one run: the files of an earlier scene are removed, and files of other programs are never overwritten.";
 
 const SURFACE: &str = "\
 Examples:
@@ -74,78 +92,89 @@ Examples:
   fractal-contact surface rough.txt --seed 1 --cells 513 --size '1 mm' --rms-height '1 um' --fractal-dimension 2.2
   fractal-contact surface long.xyz --seed 1 --cells 512 --size '4 mm x 1 mm' --rms-height '1 um'
 
-An NPY file holds heights only: a scene that reads it says `unit`, and `size` or `cell`. Text and XYZ say them themselves.";
+An NPY file holds heights only, so a scene that reads it has to name `unit`, and `size` or `cell`. Text and XYZ files hold these too.";
 
 const PRESS: &str = "\
 Examples:
-  fractal-contact press map.sur --contact-modulus '115 GPa' --pressure '1 MPa,10 MPa'
-  fractal-contact press map.npy --unit nm --cell '0.5 um' --contact-modulus '115 GPa' --pressure '1 MPa,10 MPa'
+  fractal-contact press map.sur --bodies '210 GPa 0.3, 210 GPa 0.3' --pressure '1 MPa,10 MPa'
+  fractal-contact press map.npy --unit nm --cell '0.5 um' --bodies 'rigid, 70 GPa 0.33' --pressure '1 MPa,10 MPa'
   fractal-contact press map.sur --bodies 'rigid, 70 GPa 0.33' --force '1 N' --hardness '1 GPa' --fill neighbours
   fractal-contact press map.sur --bodies '210 GPa 0.3, 210 GPa 0.3' --force '1 N' --friction 0.3 --tangential-force '0.1 N'
+  fractal-contact press map.sur --contact-modulus '115 GPa' --pressure '1 MPa,10 MPa'
 
-What neither the file nor the flags say is asked for, with the whole command. A tilt is subtracted unless --detrend says what is.";
+Bodies, a load, and the unit and size of a map whose file does not hold them are needed. If something is missing, the program asks for it and
+prints the whole command with an example. A tilt of the map is subtracted: --detrend none keeps it.";
 
 #[derive(Debug, Subcommand)]
 pub enum Command {
-    /// The contact of a map at once: writes the scene that flags describe, and runs it.
+    /// Computes the contact of a measured map: writes a scene from the flags, and runs it.
     #[command(after_help = PRESS)]
     Press {
         #[command(flatten)]
         asked: Box<PressArguments>,
-        /// Directory of the results and of scene.toml [default: out/NAME of the map].
+        /// Directory of the results and of the scene that is run (scene.toml) [default: out/NAME of the map].
         #[arg(long, value_name = "DIR")]
         out: Option<PathBuf>,
-        /// Threads; each takes one model on one surface [default: all].
+        /// Number of threads. Each one solves one model on one surface [default: all].
         #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..).map(usize::from))]
         threads: Option<usize>,
+        /// Also prints the whole plan before the run, and time, work and memory after it.
+        #[arg(long, short)]
+        verbose: bool,
     },
-    /// The scene of `press` without its run, to be edited.
+    /// Writes the scene that `press` would run, so that it can be edited first.
     #[command(after_help = PRESS)]
     New {
         #[command(flatten)]
         asked: Box<PressArguments>,
-        /// The scene [default: NAME.toml of the map]; a file that exists is left alone.
+        /// File of the scene, which is never overwritten [default: NAME.toml of the map].
         #[arg(long, value_name = "FILE")]
         scene: Option<PathBuf>,
     },
-    /// Which models and grids, which effects and outputs and why, accuracy, time and memory to expect.
+    /// Prints what a scene will compute and what it leaves out, how accurate it will be, and how long it will
+    /// take.
     Plan {
         /// The scene.
         scene: PathBuf,
-        /// Also what it takes on so many nodes: jobs, core-hours, memory of a task, makespan, disk.
+        /// Also predicts jobs, core-hours, memory of a task, duration and disk space on N nodes of a cluster.
         #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
         nodes: Option<u16>,
-        /// Cores of a node [default: those of this machine].
+        /// Cores of each node [default: those of this machine].
         #[arg(long, value_name = "N", requires = "nodes", value_parser = clap::value_parser!(u16).range(1..))]
         node_cores: Option<u16>,
         #[command(flatten)]
         division: Division,
     },
-    /// The models, and what each can do: surfaces, boundaries, effects, loads, paths, outputs.
+    /// Lists the models and what each can do: surfaces, boundaries, effects, loads, paths, outputs.
     Models {
-        /// One of them alone.
+        /// The name of one model, which is then listed alone.
         name: Option<String>,
     },
-    /// Computes what the scene asks for.
+    /// Computes a scene and writes its results.
     Run {
         /// The scene.
         scene: PathBuf,
         /// Directory of the results [default: out/NAME of the scene].
         #[arg(long, value_name = "DIR")]
         out: Option<PathBuf>,
-        /// Threads; each takes one model on one surface [default: all].
+        /// Number of threads. Each one solves one model on one surface [default: all].
         #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..).map(usize::from))]
         threads: Option<usize>,
-        /// Compute again what is stored.
+        /// Computes everything anew, also the states that an earlier run has stored.
         #[arg(long)]
         fresh: bool,
-        /// Do one of N parts of the surfaces, counted from 0, store what it finds and write no table: 0/4, or
-        /// auto, as the variables of a SLURM array or of a HyperQueue task say. `merge` makes the tables.
+        /// Computes part i of N parts of the surfaces, counted from 0 (such as 0/4), and stores it without
+        /// tables. `auto` takes i and N from the variables of a SLURM array or of a HyperQueue task. `merge`
+        /// then writes the tables.
         #[arg(long, value_name = "i/N", conflicts_with = "fresh")]
         shard: Option<ShardChoice>,
+        /// Also prints the whole plan before the run, and time, work and memory after it.
+        #[arg(long, short)]
+        verbose: bool,
     },
-    /// Writes a batch script for SLURM or HyperQueue that does the shards of a scene and merges them; with
-    /// --now submits it. What is done is not done again.
+    /// Writes a batch script for SLURM or HyperQueue that computes the shards of a scene and merges them.
+    /// With
+    /// --now it is submitted. Shards that are done are not computed again.
     Submit {
         /// The scene.
         scene: PathBuf,
@@ -157,52 +186,60 @@ pub enum Command {
         #[command(flatten)]
         division: Division,
     },
-    /// What is done, running, failed and missing of the shards in a folder of results.
+    /// Prints which shards in a folder of results are done, running, failed or missing.
     Status(ShardsArguments),
-    /// Tables and pictures from the shards in a folder of results. Refuses gaps, damage and mixed plans.
-    Merge(ShardsArguments),
-    /// What a scene, a surface or a table of results holds.
+    /// Writes tables and pictures from the shards in a folder of results. It refuses missing and damaged
+    /// shards and those of different plans.
+    Merge {
+        #[command(flatten)]
+        options: ShardsArguments,
+        /// Also prints the whole plan before the tables, and time, work and memory after them.
+        #[arg(long, short)]
+        verbose: bool,
+    },
+    /// Prints what a scene, a surface or a table of results holds.
     Info {
-        /// A scene (.toml), results (.csv) or a surface (files of instruments and programs, NPY, text).
+        /// A scene (.toml), results (.csv) or a surface (a file of an instrument or program, NPY or text).
         file: PathBuf,
-        /// All channels of a surface's file as JSON, lengths in metres.
+        /// Prints all channels of the file of a surface as JSON, with lengths in metres.
         #[arg(long, conflicts_with = "channel")]
         json: bool,
-        /// Directory for statistics of a surface: parameters of ISO 25178, spectra with bands, height
-        /// differences, fit.
+        /// Writes statistics of a surface into this directory: parameters of ISO 25178, spectra with their
+        /// intervals, height differences, and a self-affine fit.
         #[arg(long, value_name = "DIR", conflicts_with = "json")]
         out: Option<PathBuf>,
         #[command(flatten)]
         more: Box<MapArguments>,
     },
-    /// Draws a self-affine surface into a file, by its ending: .npy, .txt (text matrix), .xyz, .vti, .h5,
-    /// .x3p, .gwy or .nc.
+    /// Generates a random self-affine surface. The ending of the file chooses its format: .npy, .txt (text
+    /// matrix), .xyz, .vti, .h5, .x3p, .gwy or .nc.
     #[command(after_help = SURFACE)]
     Surface(Box<SurfaceArguments>),
-    /// Draws an artificial twin of a map: its spectrum, the phases of a seed.
+    /// Generates an artificial twin of a map: a surface with the same spectrum and random phases.
     Twin {
-        /// The map: what `info` reads.
+        /// The map, in any format that `info` reads.
         file: PathBuf,
-        /// The twin, in the format of its ending as with `surface`.
+        /// The file of the twin. Its ending chooses the format, as for `surface`.
         twin: PathBuf,
-        /// The same seed is the same twin.
+        /// Seed of the random phases. The same seed gives the same twin.
         #[arg(long)]
         seed: u64,
-        /// An isotropic twin: means over rings of the spectrum instead of each wave.
+        /// Makes the twin isotropic: it has the mean of the spectrum over all directions.
         #[arg(long)]
         rings: bool,
-        /// With the distribution of the map's heights, met exactly, instead of a nearly Gaussian one.
+        /// Gives the twin exactly the height distribution of the map. Without it the heights are nearly
+        /// Gaussian.
         #[arg(long)]
         keep_heights: bool,
         #[command(flatten)]
         more: Box<MapArguments>,
     },
-    /// A script that completes arguments in a shell.
+    /// Prints a script with which a shell completes the arguments of this program.
     Completions {
         /// The shell.
         shell: clap_complete::Shell,
     },
-    /// Manual pages of the program and of each command, for `man`.
+    /// Writes the manual pages of the program and of each command.
     Man {
         /// Directory of the pages, such as ~/.local/share/man/man1.
         directory: PathBuf,
@@ -254,49 +291,53 @@ where
 /// What is pressed and how.
 #[derive(Debug, clap::Args)]
 pub struct PressArguments {
-    /// The map: files of instruments and programs, NPY, text.
+    /// The measured map: a file of an instrument or program, NPY or text.
     pub map: PathBuf,
-    /// E* of the pair, such as "115 GPa".
+    /// Young's modulus and Poisson's ratio of both bodies, such as "210 GPa 0.3, 70 GPa 0.33". A body may be
+    /// "rigid". If only one body is given, the other one is rigid.
+    #[arg(long)]
+    pub bodies: Option<Bodies>,
+    /// Contact modulus E* of the pair, such as "115 GPa", instead of --bodies. It is not a Young's modulus.
     #[arg(long, value_name = "MODULUS", conflicts_with = "bodies")]
     contact_modulus: Option<String>,
     /// The name of --contact-modulus before the first release.
     #[arg(long = "modulus", value_name = "MODULUS", hide = true, conflicts_with_all = ["bodies", "contact_modulus"])]
     former_modulus: Option<String>,
-    /// Young's modulus and Poisson's ratio of both bodies, such as "210 GPa 0.3, 70 GPa 0.33"; of one, and the other
-    /// is rigid.
-    #[arg(long)]
-    pub bodies: Option<Bodies>,
-    /// Mean pressures over the map, such as "1 MPa,10 MPa".
+    /// Mean pressures over the area of the map, such as "1 MPa,10 MPa".
     #[arg(long, value_name = "LIST", conflicts_with_all = ["force", "approach"])]
     pressure: Option<String>,
     /// Normal forces, such as "1 N,10 N".
     #[arg(long, value_name = "LIST", conflicts_with = "approach")]
     force: Option<String>,
-    /// Approaches from first touch, such as "10 nm,100 nm".
+    /// Approaches of the bodies, counted from first touch, such as "10 nm,100 nm".
     #[arg(long, value_name = "LIST")]
     approach: Option<String>,
-    /// What lies outside of the map: free (nothing that carries load) or periodic (the map again).
-    #[arg(long, value_parser = ["free", "periodic"])]
-    pub boundary: Option<String>,
-    /// Hardness of the softer body, such as "2 GPa": the contact flows there.
+    /// What lies outside of the map. With a free boundary nothing there carries load. With a periodic
+    /// boundary the map is one tile of an endless surface.
+    #[arg(long, default_value = "free", value_parser = ["free", "periodic"])]
+    pub boundary: String,
+    /// Hardness of the softer body, such as "2 GPa". The contact flows where the pressure reaches it.
     #[arg(long, value_name = "PRESSURE")]
     pub hardness: Option<String>,
-    /// Coefficient of friction; with --bodies and --tangential-force.
+    /// Coefficient of Coulomb's friction. It needs --bodies and --tangential-force.
     #[arg(long, value_name = "MU")]
     pub friction: Option<f64>,
-    /// Tangential force along x, such as "0.1 N".
+    /// Tangential force along x, such as "0.1 N", applied after the normal load.
     #[arg(long, value_name = "FORCE", requires = "friction")]
     pub tangential_force: Option<String>,
-    /// Of normal and tangential tractions where the bodies differ: none or full.
+    /// Whether normal and tangential tractions act on each other if the bodies differ: full solves both
+    /// together, none neglects the coupling.
     #[arg(long, value_parser = ["none", "full"], requires = "friction")]
     pub coupling: Option<String>,
-    /// Error of the cells that is allowed, such as "1 %": as few cells as reach it.
+    /// Accepted error of the grid, such as "1 %". The program then chooses the smallest number of cells that
+    /// reaches it.
     #[arg(long, value_name = "SHARE", conflicts_with_all = ["cells", "hardness", "friction"])]
     pub accuracy: Option<String>,
-    /// Columns after averaging over larger cells [default: those of the map].
+    /// Number of columns, if the map is averaged over larger cells [default: those of the map].
     #[arg(long, value_name = "N")]
     cells: Option<usize>,
-    /// What becomes of points without a height: no_contact (they cannot touch); see --fill.
+    /// How points without a height are treated: with no_contact they cannot touch. Or give them heights with
+    /// --fill.
     #[arg(long, conflicts_with = "fill", value_parser = words!(surface_io::Undefined))]
     pub undefined: Option<surface_io::Undefined>,
     #[command(flatten)]
@@ -309,6 +350,11 @@ impl PressArguments {
         self.more.clone().options()
     }
 
+    /// What is subtracted from the map, in the word of a scene.
+    pub fn detrend(&self) -> &'static str {
+        self.more.detrend.word()
+    }
+
     /// E* as it was written, under the flag's name or its former one.
     pub fn contact_modulus(&self) -> Option<&str> {
         self.contact_modulus.as_deref().or(self.former_modulus.as_deref())
@@ -317,7 +363,7 @@ impl PressArguments {
     /// Said once where a flag was given under a former name.
     pub fn note(&self) -> Option<&'static str> {
         self.former_modulus.is_some().then_some(
-            "note: `--modulus` is read as `--contact-modulus`, which is E* of the pair\n  = help: for Young's modulus and Poisson's ratio give `--bodies`",
+            "note: `--modulus` is read as `--contact-modulus`, which is E* of the pair\n  = help: To give Young's modulus and Poisson's ratio, use `--bodies`.",
         )
     }
 
@@ -382,56 +428,57 @@ impl std::str::FromStr for Bodies {
     }
 }
 
-/// Flags of a surface that is drawn.
+/// Flags of a random surface.
 #[derive(Debug, clap::Args)]
 pub struct SurfaceArguments {
-    /// The file.
+    /// The file of the surface.
     pub file: PathBuf,
-    /// Cells along x: columns.
+    /// Number of cells along x, the columns.
     #[arg(long, default_value_t = 257)]
     pub cells: usize,
-    /// Cells along y [default: as many as make the cells nearest to squares].
+    /// Number of cells along y, the rows [default: the number that makes the cells as square as possible].
     #[arg(long)]
     pub rows: Option<usize>,
-    /// Side of a square, such as "1 mm" or a plain number, or both of a rectangle, "2 mm x 1 mm".
+    /// Side of a square surface, such as "1 mm" or a plain number, or both sides of a rectangle, such as "2
+    /// mm x 1 mm".
     #[arg(long, visible_alias = "side", default_value = "1")]
     pub size: String,
     /// Fractal dimension in [2, 3] [default: 2.4].
     #[arg(long)]
     pub fractal_dimension: Option<f64>,
-    /// Hurst exponent in [0, 1], instead of the fractal dimension: 3 minus it.
+    /// Hurst exponent in [0, 1], instead of the fractal dimension, which is 3 minus the Hurst exponent.
     #[arg(long, conflicts_with = "fractal_dimension")]
     pub hurst: Option<f64>,
-    /// Rms height of the samples, such as "1 um", or a plain number.
+    /// Rms height of the surface, such as "1 um" or a plain number.
     #[arg(long, default_value = "0.01")]
     pub rms_height: String,
-    /// Longer waves have a constant spectrum [default: none].
+    /// Roll-off wavelength: the spectrum of longer waves is constant [default: none].
     #[arg(long, value_name = "LENGTH")]
     pub roll_off_wavelength: Option<String>,
-    /// The shortest wave [default: two cells].
+    /// Wavelength of the shortest wave [default: two cells].
     #[arg(long, value_name = "LENGTH")]
     pub shortest_wavelength: Option<String>,
-    /// Ratio of wavelengths along the lay to those across [default: 1, isotropic].
+    /// Ratio of the wavelengths along the lay to those across it [default: 1, an isotropic surface].
     #[arg(long, value_name = "RATIO")]
     pub anisotropy: Option<f64>,
     /// Direction of the lay in degrees, from x towards y.
     #[arg(long, value_name = "DEGREES", default_value_t = 0.0, requires = "anisotropy")]
     pub lay: f64,
-    /// Shape of Weibull's law of the heights [default: nearly Gaussian].
+    /// Shape parameter of a Weibull distribution of the heights [default: heights are nearly Gaussian].
     #[arg(long, value_name = "SHAPE")]
     pub weibull: Option<f64>,
-    /// The same seed is the same surface, here and in a scene.
+    /// Seed of the random surface. The same seed gives the same surface, here and in a scene.
     #[arg(long)]
     pub seed: u64,
 }
 
-/// Flags of what reads a folder of shards.
+/// Flags of the commands that read a folder of shards.
 #[derive(Debug, clap::Args)]
 pub struct ShardsArguments {
     /// Directory of the results.
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
-    /// The plan, by the beginning of its digest, where the directory holds several.
+    /// The beginning of the digest of a plan, if the directory holds shards of several plans.
     #[arg(long, value_name = "DIGEST")]
     pub plan: Option<String>,
 }
@@ -440,76 +487,80 @@ pub struct ShardsArguments {
 /// described.
 #[derive(Debug, Default, Clone, clap::Args)]
 pub struct MapArguments {
-    /// Number, from 0, or name of the channel of a file with several.
+    /// Channel of a file with several channels: its number, counted from 0, or its name.
     #[arg(long)]
     channel: Option<surface_io::ChannelChoice>,
-    /// Format of a surface, where its name and content do not tell.
+    /// Format of the file, if its name and its content do not show it.
     #[arg(long, value_parser = words!(surface_io::Format))]
     format: Option<surface_io::Format>,
-    /// Unit of its heights, such as nm.
+    /// Unit of the heights, such as nm.
     #[arg(long)]
     unit: Option<surface_io::Unit>,
-    /// Side of a square map, such as "1 mm", or both of a rectangle, "2 mm x 1 mm".
+    /// Side of a square map, such as "1 mm", or both sides of a rectangular one, such as "2 mm x 1 mm".
     #[arg(long, conflicts_with = "cell")]
     size: Option<surface_io::Sides>,
-    /// Side of one cell, such as "0.5 um", or both, "0.5 um x 0.25 um".
+    /// Side of one cell of the map, such as "0.5 um", or both sides, such as "0.5 um x 0.25 um".
     #[arg(long)]
     cell: Option<surface_io::Sides>,
-    /// Unit of x and y of points, such as um.
+    /// Unit of x and y in a file of points, such as um.
     #[arg(long)]
     lateral_unit: Option<surface_io::Unit>,
-    /// Height of one count of a file of counts, such as "0.25 nm".
+    /// Height of one count, such as "0.25 nm", in a file whose heights are counts.
     #[arg(long, value_name = "LENGTH")]
     height_scale: Option<surface_io::Quantity>,
-    /// How decimals are written.
+    /// Decimal separator of a text file.
     #[arg(long, default_value = "point", value_parser = words!(surface_io::Decimal))]
     decimal: surface_io::Decimal,
-    /// What the two indices of an array are, where its file does not say: xy (the first is x) or yx.
+    /// Order of the two indices of an array, if the file does not hold it: xy (the first index is x) or yx.
     #[arg(long, value_parser = words!(surface_io::Axes))]
     axes: Option<surface_io::Axes>,
-    /// What the first line and the first column of a text matrix are, where they may be coordinates: axes or
+    /// Meaning of the first line and the first column of a text matrix, if they may be coordinates: axes or
     /// heights.
     #[arg(long, value_parser = words!(surface_io::Border))]
     border: Option<surface_io::Border>,
-    /// A number that stands for an undefined point, such as -9999.
+    /// Number that marks an undefined point in the file, such as -9999.
     #[arg(long)]
     missing: Option<f64>,
-    /// Lines of text to leave out at the beginning.
+    /// Number of lines to skip at the beginning of a text file.
     #[arg(long, default_value_t = 0)]
     skip_lines: usize,
-    /// Part of the map: centre, defined (the largest rectangle without undefined points), or
+    /// Part of the map that is used: centre, defined (the largest rectangle without undefined points), or
     /// "row,column,rows,columns".
     #[arg(long, value_parser = Open::<surface_io::Crop>::new(&["centre", "defined"]), hide_possible_values = true)]
     crop: Option<surface_io::Crop>,
-    /// Shifts scan lines (rows) to a common height: median_difference (to the line before) or median.
+    /// Shifts scan lines (rows) to a common height: median_difference (relative to the line before) or
+    /// median.
     #[arg(long, value_name = "HOW", value_parser = words!(surface_io::AlignLines))]
     align_lines: Option<surface_io::AlignLines>,
-    /// Streaks along x, at most four rows tall, become undefined beyond so many robust standard deviations of
-    /// the differences between rows.
+    /// Removes scars (streaks along x, at most four rows high): points become undefined if they differ from
+    /// the rows beside them by more than TIMES robust standard deviations.
     #[arg(long, value_name = "TIMES")]
     scars: Option<f64>,
-    /// Heights farther from their neighbours than so many robust standard deviations become undefined.
+    /// Removes outliers: points become undefined if they differ from their neighbours by more than TIMES
+    /// robust standard deviations.
     #[arg(long, value_name = "TIMES")]
     outliers: Option<f64>,
-    /// Radius of the instrument's tip, such as "10 nm": says from which distance on heights are reliable.
+    /// Radius of the tip of the instrument, such as "10 nm". From it follows the wavelength below which the
+    /// heights are not reliable.
     #[arg(long, value_name = "LENGTH")]
     tip_radius: Option<surface_io::Quantity>,
-    /// Heights for undefined points: neighbours, plane or one height [default: they stay undefined].
+    /// Gives undefined points a height: that of their neighbours, that of the mean plane, or one height such
+    /// as "3 nm".
     #[arg(long, value_name = "HEIGHTS", value_parser = Open::<surface_io::Fill>::new(&["neighbours", "plane"]), hide_possible_values = true)]
     fill: Option<surface_io::Fill>,
-    /// What is subtracted.
+    /// Trend that is subtracted from the heights.
     #[arg(long, default_value = "none", value_parser = words!(surface_io::Detrend))]
     detrend: surface_io::Detrend,
-    /// Cut-off wavelength of a Gaussian low-pass filter across the scan lines, along y, such as "2 nm".
+    /// Cut-off wavelength of a Gaussian low-pass filter along y, across the scan lines, such as "2 nm".
     #[arg(long, value_name = "LENGTH")]
     filter_across: Option<surface_io::Quantity>,
-    /// Which axis is reversed.
+    /// Axis whose direction is reversed.
     #[arg(long, value_parser = words!(surface_io::Mirror))]
     mirror: Option<surface_io::Mirror>,
-    /// Degrees by which the map is turned.
+    /// Angle in degrees by which the map is turned, from x towards y.
     #[arg(long, default_value = "0", value_parser = ["0", "90", "180", "270"])]
     rotate: String,
-    /// Taper towards the edges.
+    /// Window by which the heights taper to zero towards the edges.
     #[arg(long, value_parser = words!(surface_io::Window))]
     window: Option<surface_io::Window>,
 }

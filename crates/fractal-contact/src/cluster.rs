@@ -2,9 +2,11 @@
 
 use crate::arguments::ShardsArguments;
 use crate::start::{read_scene, stopped_by_signals};
-use fractal_contact::scenes::{Error, Options, Plan, Result, SceneFile, jobs, run_scene_shard};
+use fractal_contact::scenes::{
+    Error, Options, Plan, PredictedFrom, Result, SceneFile, jobs, run_scene_shard,
+};
 use runs::cluster::{Division, Forecast, ShardPlan, Submission, check, quoted};
-use runs::{JobList, ShardChoice};
+use runs::{JobList, Progress, ShardChoice};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::atomic::Ordering;
@@ -26,14 +28,19 @@ fn plan_of(path: &Path, jobs: &dyn JobList) -> Result<ShardPlan> {
 }
 
 /// Does one shard of a scene.
-pub fn shard(path: &Path, choice: ShardChoice, options: &Options) -> Result<ExitCode> {
+pub fn shard(
+    path: &Path,
+    choice: ShardChoice,
+    options: &Options,
+    progress: &dyn Progress,
+) -> Result<ExitCode> {
     let shard = choice.resolve(&|name| std::env::var(name).ok())?;
     let scene = read_scene(path)?;
     fractal_contact::scenes::check(&scene)?;
     let plan = plan_of(path, &*jobs(&scene, &options.out))?;
     let stopped = stopped_by_signals()?;
     let stop = || stopped.load(Ordering::Relaxed);
-    let report = run_scene_shard(&scene, &plan, shard, options, &runs::Reporter::new(), &stop);
+    let report = run_scene_shard(&scene, &plan, shard, options, progress, &stop);
     let report = report.map_err(|failure| match failure.downcast::<Error>() {
         Ok(error) => *error,
         Err(failure) => match failure.downcast::<runs::Error>() {
@@ -42,7 +49,7 @@ pub fn shard(path: &Path, choice: ShardChoice, options: &Options) -> Result<Exit
         },
     })?;
     if stop() {
-        runs::err!("stopped: the states so far are kept; the same command goes on with the others");
+        runs::err!("Stopped: the states so far are kept. The same command goes on with the others.");
         return Ok(ExitCode::from(130));
     }
     runs::out!("{report}");
@@ -53,9 +60,7 @@ pub fn shard(path: &Path, choice: ShardChoice, options: &Options) -> Result<Exit
 fn forecast(jobs: &dyn JobList, plan: &Plan, division: &Division) -> Forecast {
     let forecast = Forecast::new(jobs, division);
     match plan.predicted() {
-        Some(cost) => {
-            forecast.measured(cost.seconds, "from small solves on this machine, within a factor of six")
-        }
+        Some(cost) => forecast.measured(cost.seconds, PredictedFrom::SmallSolves.words()),
         None => forecast,
     }
 }

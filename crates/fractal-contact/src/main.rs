@@ -9,8 +9,8 @@ use arguments::{Arguments, Command, PressArguments};
 use clap::{ArgMatches, FromArgMatches as _};
 use fractal_contact::models::{MODELS, ModelRecord};
 use fractal_contact::scenes::{
-    Error, GeneratedSurface, Options, Plan, Result, SceneOutcome, info, info_json, info_statistics, run,
-    write_twin,
+    Error, GeneratedSurface, Options, Plan, Result, SceneOutcome, System, info, info_json, info_statistics,
+    run, write_twin,
 };
 use fractal_contact::surface_gen::{Anisotropy, HeightDistribution, TwinSpectrum};
 use press::SurfaceKeys;
@@ -37,8 +37,8 @@ fn main() -> ExitCode {
 
 fn execute(arguments: Arguments, matches: &ArgMatches) -> Result<ExitCode> {
     match arguments.command {
-        Command::Press { asked, out, threads } => {
-            press_map((&asked, &SurfaceKeys::given(matches)), out, threads)
+        Command::Press { asked, out, threads, verbose } => {
+            press_map((&asked, &SurfaceKeys::given(matches)), out, threads, verbose)
         }
         Command::New { asked, scene } => write_scene((&asked, &SurfaceKeys::given(matches)), scene),
         Command::Plan { scene, nodes, node_cores, division } => {
@@ -56,12 +56,12 @@ fn execute(arguments: Arguments, matches: &ArgMatches) -> Result<ExitCode> {
             }
             Ok(ExitCode::SUCCESS)
         }
-        Command::Run { scene, out, threads, fresh, shard } => {
+        Command::Run { scene, out, threads, fresh, shard, verbose } => {
             let out = out.unwrap_or_else(|| default_directory(&scene));
             let options = Options { out, threads: threads.unwrap_or_else(all_threads), fresh };
             match shard {
-                Some(choice) => cluster::shard(&scene, choice, &options),
-                None => run_scene(&scene, &options),
+                Some(choice) => cluster::shard(&scene, choice, &options, &reporter(verbose)),
+                None => run_scene(&scene, &options, verbose),
             }
         }
         Command::Submit { scene, out, submission, division } => {
@@ -69,9 +69,9 @@ fn execute(arguments: Arguments, matches: &ArgMatches) -> Result<ExitCode> {
             cluster::submit(&scene, &out, &submission, &division)
         }
         Command::Status(options) => cluster::status(&options),
-        Command::Merge(options) => {
+        Command::Merge { options, verbose } => {
             let scene = cluster::merged(&options)?;
-            run_scene(&scene, &Options { out: options.out, threads: all_threads(), fresh: false })
+            run_scene(&scene, &Options { out: options.out, threads: all_threads(), fresh: false }, verbose)
         }
         Command::Info { file, json, out, more } => {
             let (declared, preprocessing) = more.options();
@@ -135,6 +135,7 @@ fn press_map(
     (asked, keys): (&PressArguments, &SurfaceKeys),
     out: Option<PathBuf>,
     threads: Option<usize>,
+    verbose: bool,
 ) -> Result<ExitCode> {
     let out = out.unwrap_or_else(|| default_directory(&asked.map));
     let path = out.join("scene.toml");
@@ -143,16 +144,17 @@ fn press_map(
     if let Some(note) = asked.note() {
         runs::err!("{note}");
     }
-    runs::err!("{}", path.display());
-    run_scene(&path, &Options { out, threads: threads.unwrap_or_else(all_threads), fresh: false })
+    if verbose {
+        runs::err!("{}", path.display());
+    }
+    run_scene(&path, &Options { out, threads: threads.unwrap_or_else(all_threads), fresh: false }, verbose)
 }
 
 /// Writes the scene that flags describe.
 fn write_scene((asked, keys): (&PressArguments, &SurfaceKeys), scene: Option<PathBuf>) -> Result<ExitCode> {
-    let path =
-        scene.unwrap_or_else(|| Path::new(asked.map.file_name().unwrap_or_default()).with_extension("toml"));
+    let path = scene.unwrap_or_else(|| default_scene(&asked.map));
     if path.exists() {
-        let reason = format!("{} exists: move it away, or name another with --scene", path.display());
+        let reason = format!("{} exists: move it away, or give another name with --scene", path.display());
         return Err(Error::Argument { name: "scene", reason });
     }
     let scene = press::scene(asked, keys, &path)?;
@@ -186,71 +188,115 @@ fn default_directory(scene: &Path) -> PathBuf {
     Path::new("out").join(scene.file_stem().unwrap_or_default())
 }
 
+/// `NAME.toml` where the program is called.
+fn default_scene(map: &Path) -> PathBuf {
+    Path::new(map.file_name().unwrap_or_default()).with_extension("toml")
+}
+
 /// Text as a terminal has room for it; in files and pipes lines stay whole.
 fn shown(text: String, terminal: bool) -> String {
     if terminal { runs::folded(&text) } else { text }
 }
 
-/// The report, to be opened, and in one line what else is in the folder: pictures and fields are counted, there may be
-/// thousands.
+/// The report, to be opened, and what else is in its folder, in one line: pictures and fields are counted,
+/// there may be thousands.
 fn written(folder: &Path, files: &[PathBuf]) -> String {
     const REPORT: &str = "report.html";
-    let (mut named, mut pictures, mut fields, mut report) = (Vec::new(), 0, 0, String::new());
+    let (mut named, mut pictures, mut fields) = (Vec::new(), 0, 0);
     for file in files {
         let name = file.file_name().unwrap_or_default().to_string_lossy();
         match file.extension().and_then(|ending| ending.to_str()) {
             Some("png" | "svg") => pictures += 1,
             Some("npy" | "vti") => fields += 1,
-            _ if name == REPORT => report = format!("{}\n", file.display()),
+            _ if name == REPORT => {}
             _ => named.push(name.into_owned()),
         }
     }
     let counts = [(pictures, "pictures"), (fields, "fields")];
     named.extend(counts.iter().filter(|(count, _)| *count > 0).map(|(count, of)| format!("{count} {of}")));
-    format!("{report}{}: {}\n", folder.display(), named.join(", "))
+    format!("{}, and beside it {}\n", folder.join(REPORT).display(), named.join(", "))
 }
 
-fn run_scene(path: &Path, options: &Options) -> Result<ExitCode> {
+/// What tells how far a run is.
+fn reporter(verbose: bool) -> runs::Reporter {
+    if verbose { runs::Reporter::new() } else { runs::Reporter::quiet() }
+}
+
+/// Writes to standard error, folded on a terminal.
+fn say(text: String) {
+    runs::print_error(format_args!("{}\n", shown(text, std::io::stderr().is_terminal())));
+}
+
+/// Runs a scene and prints its answer: a line on what is solved, the states, what to beware of, and the
+/// report. `verbose` prints the whole plan before, and what the run took after.
+fn run_scene(path: &Path, options: &Options, verbose: bool) -> Result<ExitCode> {
     let scene = read_scene(path)?;
-    let plan = Plan::calibrated(&scene)?;
-    let terminal = std::io::stderr().is_terminal();
-    runs::print_error(format_args!("{}", shown(plan.to_string(), terminal)));
-    let stopped = stopped_by_signals()?;
-    let outcome = run(&scene, &plan, options, &runs::Reporter::new(), &|| stopped.load(Ordering::Relaxed))?;
-    for (planned, (name, actual, bytes)) in plan.models.iter().zip(&outcome.actual) {
-        if let Some(predicted) = &planned.predicted {
-            runs::err!("{name}\n{}", shown(format!("  predicted  {predicted}"), terminal));
+    let plan = Plan::for_run(&scene)?;
+    if verbose {
+        say(plan.to_string());
+    } else {
+        say(plan.line(options.threads));
+        if scene.pair.is_none() && scene.system == System::Si {
+            say(plan.contact_modulus.clone());
         }
-        let actual = format!("  actual     {actual} (earlier runs included), {bytes} bytes of field files");
-        runs::err!("{}", shown(actual, terminal));
+        plan.notes.iter().for_each(|note| say(note.to_string()));
+    }
+    let stopped = stopped_by_signals()?;
+    let outcome = run(&scene, &plan, options, &reporter(verbose), &|| stopped.load(Ordering::Relaxed))?;
+    runs::print(format_args!("{}", outcome.summary));
+    for note in &outcome.notes {
+        say(format!("note: {note}"));
+    }
+    // The scene that `press` has written stands beside its results.
+    let own = Some(path.to_owned()).filter(|path| path.parent() == Some(&options.out));
+    let files: Vec<PathBuf> = own.into_iter().chain(outcome.files.iter().cloned()).collect();
+    runs::print(format_args!("{}", written(&options.out, &files)));
+    if verbose {
+        say_costs(&plan, &outcome);
+    }
+    Ok(how_it_went(&outcome))
+}
+
+/// What a run took, beside what was predicted.
+fn say_costs(plan: &Plan, outcome: &SceneOutcome) {
+    for (planned, (name, actual, bytes)) in plan.models.iter().zip(&outcome.actual) {
+        runs::err!("{name}");
+        if let Some(predicted) = plan.predicted_words(planned) {
+            say(format!("  predicted  {predicted}"));
+        }
+        say(format!("  actual     {actual} (earlier runs included), {bytes} bytes of field files"));
     }
     if let Some(peak) = outcome.peak_memory {
-        runs::err!("memory       {} MB at the peak, the program itself included", peak / 1_000_000);
+        runs::err!("memory       {} MB at the peak, with the program itself", peak / 1_000_000);
     }
-    for note in &outcome.notes {
-        runs::err!("{}", shown(format!("note: {note}"), terminal));
-    }
-    runs::print(format_args!("{}\n", outcome.summary));
-    runs::print(format_args!("{}", written(&options.out, &outcome.files)));
-    let SceneOutcome { requested, states, failed, kept, .. } = outcome;
-    let not_attempted = outcome.not_attempted();
+    let SceneOutcome { requested, states, kept, .. } = outcome;
     runs::err!(
-        "states       {requested} asked for, {states} in the table ({kept} of them kept from an earlier run)"
+        "states       {requested} requested, {states} in the table ({kept} of them kept from an earlier run)"
     );
+}
+
+/// Says what was refused, missed its tolerance or was not attempted, and gives the exit code.
+fn how_it_went(outcome: &SceneOutcome) -> ExitCode {
+    let SceneOutcome { requested, states, failed, .. } = *outcome;
+    let not_attempted = outcome.not_attempted();
+    let were = |count: usize| if count == 1 { "was" } else { "were" };
     if failed > 0 {
-        runs::err!("             {failed} were refused or did not reach their tolerance");
+        say(format!(
+            "{failed} of {requested} states {} refused or did not reach the tolerance: see the column `status` of results.csv.",
+            were(failed)
+        ));
     }
     if outcome.stopped {
-        runs::err!(
-            "stopped: {states} of {requested} states are kept; the same command goes on with the others"
-        );
-        return Ok(ExitCode::from(130));
+        say(format!(
+            "Stopped: {states} of {requested} states are kept. The same command goes on with the others."
+        ));
+        return ExitCode::from(130);
     }
     if not_attempted > 0 {
-        runs::err!("             {not_attempted} were not attempted: they come after a step that failed");
+        say(format!(
+            "{not_attempted} of {requested} states {} not attempted, because they come after a step that failed.",
+            were(not_attempted)
+        ));
     }
-    if failed > 0 {
-        return Ok(ExitCode::from(3));
-    }
-    Ok(ExitCode::SUCCESS)
+    if failed > 0 { ExitCode::from(3) } else { ExitCode::SUCCESS }
 }

@@ -1,5 +1,5 @@
-//! `press` and `new`: the scene of the commonest question, how large the contact of a measured map is, from
-//! flags.
+//! `press` and `new`: from flags to the scene of the commonest question, how large the contact of a measured
+//! map is.
 
 use crate::arguments::{Arguments, Bodies, Command, MapArguments, PressArguments, command};
 use clap::parser::ValueSource;
@@ -9,7 +9,7 @@ use runs::cluster::{quoted, toml};
 use std::ffi::OsString;
 use std::fmt::Write as _;
 use std::path::{Component, Path, PathBuf};
-use surface_io::{Metadata, SurfaceFile};
+use surface_io::{ContentError, Metadata, SurfaceFile};
 
 /// Flags whose values are numbers in a scene.
 const NUMBERS: [&str; 6] = ["missing", "skip_lines", "scars", "outliers", "rotate", "cells"];
@@ -42,25 +42,40 @@ impl SurfaceKeys {
     }
 }
 
-/// What a command lacks.
+/// A flag that a command lacks.
 struct Lacking {
     flag: &'static str,
     example: String,
+    /// What the flag is, for the message.
     why: String,
+    /// Another flag that can be given instead, and what it is.
+    instead: Option<(&'static str, &'static str)>,
 }
 
 /// The scene of a map, at the place where it will stand.
 ///
 /// # Errors
-/// [`Error::Argument`] with everything that neither the flags nor the file say, and the whole command or, where
-/// flags that are given are wrong, what is wrong with them; what is wrong with the file or with the scene.
+/// [`Error::Argument`] with all flags that are missing and the whole command with an example of each. Where a
+/// flag that is given is wrong, the message begins with that and repeats no command. Other errors are those of
+/// the file and of the scene.
 pub fn scene(asked: &PressArguments, keys: &SurfaceKeys, at: &Path) -> Result<SceneFile> {
     if asked.map.extension().is_some_and(|ending| ending == "toml") {
-        let reason = format!("{} is a scene: `fractal-contact run` takes it", asked.map.display());
+        let reason =
+            format!("{} is a scene and not a map: `fractal-contact run` takes it", asked.map.display());
         return Err(Error::Argument { name: "map", reason });
     }
     let (declared, _) = asked.map_options();
-    let known = SurfaceFile::open(&asked.map, &declared).and_then(SurfaceFile::scan)?;
+    let known = SurfaceFile::open(&asked.map, &declared).and_then(SurfaceFile::scan);
+    let known = known.map_err(|error| match error.problem() {
+        Some(ContentError::Channel { choice: None, matching: 2.., list }) => {
+            let map = asked.map.display();
+            let reason = format!(
+                "{map} has several channels with heights: choose one with --channel. The channels are {list}"
+            );
+            Error::Argument { name: "channel", reason }
+        }
+        _ => error.into(),
+    })?;
     let lacking = lacking(asked, keys, known.metadata());
     if !lacking.is_empty() {
         return Err(Error::Argument { name: "command", reason: question(&asked.map, &lacking) });
@@ -83,22 +98,24 @@ pub fn scene(asked: &PressArguments, keys: &SurfaceKeys, at: &Path) -> Result<Sc
 
 fn lacking(asked: &PressArguments, keys: &SurfaceKeys, map: &Metadata) -> Vec<Lacking> {
     let mut lacking = Vec::new();
-    let mut add = |missing: bool, flag, example: &str, why: String| {
+    let mut add = |missing: bool, flag, example: &str, why: String, instead| {
         if missing {
-            lacking.push(Lacking { flag, example: example.to_owned(), why });
+            lacking.push(Lacking { flag, example: example.to_owned(), why, instead });
         }
     };
     add(
         map.unit.is_none() && !keys.has(&["unit", "height_scale"]),
         "--unit",
         "nm",
-        format!("unit of the heights: numbers alone in {}", map.format),
+        format!("unit of the heights, which this file ({}) does not hold", map.format),
+        None,
     );
     add(
         map.size.is_none() && !keys.has(&["size", "cell"]),
         "--cell",
         "0.5 um",
-        format!("side of one of the {} x {} cells, or --size of the map", map.columns, map.rows),
+        format!("side of one of the {} x {} cells of the map", map.columns, map.rows),
+        Some(("--size", "side of the whole map, instead of --cell")),
     );
     add(
         map.undefined > 0
@@ -107,42 +124,45 @@ fn lacking(asked: &PressArguments, keys: &SurfaceKeys, map: &Metadata) -> Vec<La
             && keys.value("crop") != Some("defined"),
         "--undefined",
         "no_contact",
-        format!(
-            "{} points have no height: they cannot touch, or --fill neighbours gives them one",
-            map.undefined
-        ),
+        format!("{} points have no height: with no_contact they cannot touch", map.undefined),
+        Some(("--fill", "gives them a height, instead of --undefined: `--fill neighbours`")),
     );
     add(
         asked.friction.is_some() && asked.bodies.is_none(),
         "--bodies",
         "rigid, 210 GPa 0.3",
-        "Young's modulus and Poisson's ratio of both bodies: friction needs them".to_owned(),
+        "Young's modulus and Poisson's ratio of both bodies, which friction needs".to_owned(),
+        None,
+    );
+    add(
+        asked.friction.is_none() && asked.contact_modulus().is_none() && asked.bodies.is_none(),
+        "--bodies",
+        "210 GPa 0.3, 210 GPa 0.3",
+        "Young's modulus and Poisson's ratio of both bodies, here steel on steel".to_owned(),
+        Some(("--contact-modulus", "E* of the pair, instead of --bodies: '115 GPa' is steel on steel")),
     );
     let couple = asked.bodies.as_ref().is_none_or(Bodies::couple);
     add(
         asked.friction.is_some() && couple && asked.coupling.is_none(),
         "--coupling",
         "full",
-        "of normal and tangential tractions where the bodies differ: full solves both, none neglects it"
+        "the bodies differ, so normal and tangential tractions act on each other: full solves both, none neglects this"
             .to_owned(),
-    );
-    add(
-        asked.friction.is_none() && asked.contact_modulus().is_none() && asked.bodies.is_none(),
-        "--contact-modulus",
-        "115 GPa",
-        "E* of the pair: 115 GPa is steel on steel; or --bodies".to_owned(),
+        None,
     );
     add(
         asked.load().is_none(),
         "--pressure",
         "1 MPa,10 MPa",
-        "mean pressure over the map, one or several; or --force or --approach".to_owned(),
+        "mean pressure over the area of the map, one value or several".to_owned(),
+        Some(("--force", "normal force, instead of --pressure; or --approach, counted from first touch")),
     );
     add(
         asked.friction.is_some() && asked.tangential_force.is_none(),
         "--tangential-force",
         "10 mN",
-        "what friction has to hold".to_owned(),
+        "tangential force along x, which friction has to hold".to_owned(),
+        None,
     );
     lacking
 }
@@ -172,13 +192,15 @@ fn mistake(lacking: &[Lacking]) -> Option<String> {
 }
 
 /// One message with everything that is missing and the command with an example of each. A command with a mistake
-/// is not repeated: the mistake is told first.
+/// is not repeated: the mistake comes first.
 fn question(map: &Path, lacking: &[Lacking]) -> String {
     let mistake = mistake(lacking);
     let mut text = mistake.as_ref().map_or_else(String::new, |mistake| format!("{mistake}\n"));
-    let _ = write!(text, "{} and the flags do not say", map.display());
-    for Lacking { flag, why, .. } in lacking {
-        let _ = write!(text, "\n  {flag:<19} {why}");
+    let _ = write!(text, "some flags are missing for the contact of {}:", map.display());
+    for Lacking { flag, why, instead, .. } in lacking {
+        for (flag, why) in std::iter::once((*flag, why.as_str())).chain(*instead) {
+            let _ = write!(text, "\n  {flag:<19} {why}");
+        }
     }
     if mistake.is_some() {
         return text;
@@ -188,9 +210,13 @@ fn question(map: &Path, lacking: &[Lacking]) -> String {
     for Lacking { flag, example, .. } in lacking {
         command.extend([(*flag).to_owned(), quoted(example)]);
     }
-    let examples: Vec<&str> = lacking.iter().map(|lacking| lacking.example.as_str()).collect();
-    let _ =
-        write!(text, "\nwith examples ({}) for your values:\n  {}", examples.join("; "), command.join(" "));
+    let examples: Vec<String> = lacking.iter().map(|lacking| format!("'{}'", lacking.example)).collect();
+    let _ = write!(
+        text,
+        "\nThe whole command, with examples that your values replace ({}):\n  {}",
+        examples.join("; "),
+        command.join(" ")
+    );
     text
 }
 
@@ -199,7 +225,7 @@ fn text(asked: &PressArguments, keys: &SurfaceKeys, at: &Path) -> String {
     let mut scene = Lines::default();
     let _ = writeln!(
         scene.text,
-        "# Contact of the map {}. `fractal-contact run` takes this file; every key: \"What a scene may say\" in the book.",
+        "# Contact of the map {}. `fractal-contact run` takes this file; \"What a scene may say\" in the book has every key.",
         asked.map.file_name().unwrap_or_default().to_string_lossy().escape_default()
     );
     scene.table("scene");
@@ -216,7 +242,11 @@ fn text(asked: &PressArguments, keys: &SurfaceKeys, at: &Path) -> String {
         (None, None) => {}
     }
     if let Some(accuracy) = &asked.accuracy {
-        scene.line("accuracy", &toml(accuracy), "error of the cells that is allowed: fewer are taken");
+        scene.line(
+            "accuracy",
+            &toml(accuracy),
+            "accepted error of the grid, which decides the number of cells",
+        );
     }
     if let Some((key, values)) = asked.load() {
         let comment = match key {
@@ -246,10 +276,13 @@ fn text(asked: &PressArguments, keys: &SurfaceKeys, at: &Path) -> String {
         scene.line("undefined", &toml(undefined.word()), "points without a height cannot touch");
     }
     if !keys.has(&["detrend"]) {
-        scene.line("detrend", "\"plane\"", "a tilt is taken for one of the measurement; \"none\" keeps it");
+        scene.line("detrend", &toml(asked.detrend()), "subtracts a tilt; \"none\" keeps it");
     }
+    scene.table("effects");
+    scene.comment("\"free\": pressed by itself, nothing outside of the map carries load.");
+    scene.comment("\"periodic\": one tile of an endless surface, as many other programs assume.");
+    scene.line("boundary", &toml(&asked.boundary), "");
     let effects = [
-        ("boundary", asked.boundary.as_deref().map(toml)),
         (
             "hardness",
             asked.hardness.as_deref().map(|pressure| format!("{{ pressure = {} }}", toml(pressure))),
@@ -262,12 +295,9 @@ fn text(asked: &PressArguments, keys: &SurfaceKeys, at: &Path) -> String {
             }),
         ),
     ];
-    if effects.iter().any(|(_, value)| value.is_some()) {
-        scene.table("effects");
-        for (key, value) in effects {
-            if let Some(value) = value {
-                scene.line(key, &value, "");
-            }
+    for (key, value) in effects {
+        if let Some(value) = value {
+            scene.line(key, &value, "");
         }
     }
     scene.table("outputs");
@@ -285,7 +315,7 @@ fn text(asked: &PressArguments, keys: &SurfaceKeys, at: &Path) -> String {
             scene.line(
                 "grid_error",
                 "true",
-                "the error of the cells, from cells twice and four times as large",
+                "the error of the grid, from cells twice and four times as large",
             );
         }
     }
@@ -305,6 +335,10 @@ impl Lines {
 
     fn array_of_tables(&mut self, name: &str) {
         let _ = write!(self.text, "\n[[{name}]]\n");
+    }
+
+    fn comment(&mut self, text: &str) {
+        let _ = writeln!(self.text, "# {text}");
     }
 
     fn line(&mut self, key: &str, value: &str, comment: &str) {
@@ -389,5 +423,109 @@ mod tests {
         assert_eq!(surface_value("fill", "3 nm"), "\"3 nm\"");
         assert_eq!(value_or_list("1 MPa, 10 MPa"), "[\"1 MPa\", \"10 MPa\"]");
         assert_eq!(value_or_list("1 MPa"), "\"1 MPa\"");
+    }
+
+    /// A tilted map of 8 x 8 heights that has decimals.
+    fn tilted_map(folder: &Path) -> PathBuf {
+        let height = |x: usize, y: usize| format!("{}.5", 9 * x + (x * y) % 5);
+        let row = |y: usize| (0..8).map(|x| height(x, y)).collect::<Vec<_>>().join(" ");
+        let path = folder.join("map.txt");
+        std::fs::write(&path, (0..8).map(row).collect::<Vec<_>>().join("\n")).unwrap();
+        path
+    }
+
+    /// What a command with these flags writes, read.
+    fn scene_of(name: &str, map: &Path, flags: &[String]) -> Result<SceneFile> {
+        let map = map.to_str().unwrap();
+        let needed = ["--unit", "nm", "--cell", "1 um", "--bodies", "70 GPa 0.33", "--force", "1 uN"];
+        let words = ["fractal-contact", name, map].into_iter().chain(needed).map(str::to_owned);
+        let matches = command().try_get_matches_from(words.chain(flags.iter().cloned())).unwrap();
+        let asked = match Arguments::from_arg_matches(&matches).unwrap().command {
+            Command::Press { asked, .. } | Command::New { asked, .. } => asked,
+            other => panic!("{other:?}"),
+        };
+        let at = Path::new("scene.toml");
+        SceneFile::parse(at, text(&asked, &SurfaceKeys::given(&matches), at))
+    }
+
+    /// Whether two scenes solve the same, whatever their texts are.
+    fn same(a: &SceneFile, b: &SceneFile) -> bool {
+        a.system == b.system
+            && a.models == b.models
+            && a.surface == b.surface
+            && a.contact_modulus.to_bits() == b.contact_modulus.to_bits()
+            && (a.hardness, a.accuracy, a.pair) == (b.hardness, b.accuracy, b.pair)
+            && a.effects == b.effects
+            && a.request == b.request
+            && a.requested == b.requested
+            && a.sampling == b.sampling
+            && a.reliable_from == b.reliable_from
+    }
+
+    /// Each argument whose help shows a default, with that.
+    fn shown_defaults(name: &str) -> Vec<(clap::Arg, String)> {
+        let mut whole = command();
+        whole.build();
+        let arguments = whole.find_subcommand(name).unwrap().get_arguments();
+        let shown = |argument: &clap::Arg| {
+            let default =
+                argument.get_default_values().first().map(|word| word.to_string_lossy().into_owned());
+            let default = default.filter(|_| !argument.is_hide_default_value_set());
+            let help = [argument.get_help(), argument.get_long_help()]
+                .into_iter()
+                .flatten()
+                .map(ToString::to_string);
+            let in_help = help
+                .collect::<String>()
+                .split_once("[default: ")
+                .map(|(_, rest)| rest.split(']').next().unwrap().to_owned());
+            Some((argument.clone(), default.or(in_help)?))
+        };
+        arguments.filter(|argument| argument.get_action().takes_values()).filter_map(shown).collect()
+    }
+
+    #[test]
+    fn every_default_in_the_help_is_what_the_scene_has() {
+        let folder = tempfile::tempdir().unwrap();
+        let map = tilted_map(folder.path());
+        for name in ["press", "new"] {
+            let scene = |flags: &[String]| scene_of(name, &map, flags);
+            let plain = scene(&[]).unwrap();
+            let mut compared = Vec::new();
+            for (argument, shown) in shown_defaults(name) {
+                let flag = |value: &str| [format!("--{}", argument.get_long().unwrap()), value.to_owned()];
+                let id = argument.get_id().as_str();
+                let default = match (id, shown.as_str()) {
+                    ("out", "out/NAME of the map") => {
+                        assert_eq!(crate::default_directory(&map), Path::new("out/map"));
+                        continue;
+                    }
+                    ("scene", "NAME.toml of the map") => {
+                        assert_eq!(crate::default_scene(&map), Path::new("map.toml"));
+                        continue;
+                    }
+                    // `Options` has no default of its own.
+                    ("threads", "all") => continue,
+                    ("cells", "those of the map") => "8",
+                    (_, shown) => shown,
+                };
+                assert!(same(&scene(&flag(default)).unwrap(), &plain), "{name} --{id} {default}");
+                // Another value is another scene, or a mistake: the comparison sees the flag.
+                let values = argument.get_possible_values();
+                let other =
+                    values.iter().map(clap::builder::PossibleValue::get_name).find(|value| *value != default);
+                let other = scene(&flag(other.unwrap_or("4")));
+                assert!(other.is_err() || !same(&other.unwrap(), &plain), "{name} --{id}");
+                compared.push(id.to_owned());
+            }
+            compared.sort_unstable();
+            assert_eq!(compared, ["boundary", "cells", "decimal", "detrend", "rotate", "skip_lines"]);
+        }
+        // Other commands leave a map as it is.
+        for name in ["info", "twin"] {
+            let detrend =
+                shown_defaults(name).into_iter().find(|(argument, _)| argument.get_id() == "detrend");
+            assert_eq!(detrend.unwrap().1, "none");
+        }
     }
 }

@@ -18,14 +18,18 @@ pub fn stopped_by_signals() -> Result<Arc<AtomicBool>> {
     // A handler without its thread would swallow the signals; their default action leaves the finished states
     // in the store.
     if !runs::grants_a_thread() {
-        runs::err!("note: the system grants no thread: Ctrl-C ends the run at once, without its tables");
+        runs::err!(
+            "note: the system grants no thread. Ctrl-C therefore ends the run at once and writes no tables."
+        );
         return Ok(stopped);
     }
     ctrlc::set_handler(move || {
         if flag.swap(true, Ordering::Relaxed) {
             std::process::exit(130);
         }
-        runs::err!("stopping: the states so far are written; once more ends at once");
+        runs::err!(
+            "Stopping: the states so far are being written. A second Ctrl-C ends the program at once."
+        );
     })
     .map_err(|e| Error::Argument { name: "Ctrl-C", reason: e.to_string() })?;
     Ok(stopped)

@@ -77,12 +77,32 @@ fn traps_are_named_with_a_remedy() {
         let note = file.texts("note").unwrap()[0];
         for words in said {
             assert!(note.contains(words), "{i}: {note}");
-            let line = outcome.notes.iter().find(|line| line.contains(words)).unwrap();
-            assert!(line.contains("(1 of 1 states): "), "{line}");
+        }
+        // Each has a sentence that says where, what and what to do.
+        let sentences = outcome.notes.iter().filter(|line| line.starts_with("In the only state "));
+        assert!(sentences.clone().count() >= said.len(), "{i}: {:?}", outcome.notes);
+        assert!(sentences.clone().all(|line| line.matches(". ").count() >= 1), "{i}: {:?}", outcome.notes);
+        let all = outcome.notes.concat();
+        for sentence in sentences_of(i) {
+            assert!(all.contains(sentence), "{i}: {sentence} in {all}");
         }
         for words in silent {
             assert!(!note.contains(words), "{i}: {note}");
         }
+    }
+}
+
+/// What a run says of the traps above.
+fn sentences_of(case: usize) -> &'static [&'static str] {
+    match case {
+        1 => &[
+            "In the only state fewer than 10 cells are in contact. ",
+            "In the only state one cell carries most of the load. ",
+            "In the only state the pressure is above the hardness of 500 MPa (it reaches ",
+        ],
+        2 => &["In the only state cells at the edge of the rectangle are in contact. "],
+        3 => &["In the only state the pressure is above a tenth of E*, 10 GPa (it reaches "],
+        _ => &[],
     }
 }
 
@@ -130,7 +150,7 @@ fn several_surfaces_have_a_mean_and_theories_one_surface() {
         max_relative = 1e-12
     );
     assert_eq!((at("surfaces", 0), at("surfaces", 2), at("stiffness_se", 2)), (Some(3.0), Some(1.0), None));
-    assert!(outcome.summary.contains("stiffness") && outcome.summary.contains(" ± "), "{}", outcome.summary);
+    assert!(outcome.summary.contains("stiffness") && outcome.summary.contains(" +- "), "{}", outcome.summary);
     let drawn = std::fs::read_to_string(dir.path().join("out/curve-stiffness.svg")).unwrap();
     assert!(drawn.contains("95 % interval by Student") && drawn.contains("t with 2 degrees of freedom"));
     // The map of each surface, once.
@@ -194,10 +214,10 @@ fn an_accuracy_chooses_the_grid() {
         (outcome.notes.join("\n"), error[0].unwrap().max(error[1].unwrap()))
     };
     let (notes, error) = answer(&scene);
-    assert!(error < 0.04 && !notes.contains("accuracy not reached"), "{error} {notes}");
+    assert!(error < 0.04 && !notes.contains("accuracy is not reached"), "{error} {notes}");
     let mut missed = scene.clone();
     missed.accuracy.as_mut().unwrap().share = 1e-6;
-    assert!(answer(&missed).0.contains("accuracy not reached (2 of 2 states)"));
+    assert!(answer(&missed).0.contains("In all 2 states the requested accuracy is not reached."));
     // Of a given map every so many-th cell; never more than there are.
     write_map(dir.path(), |_, _| 0.0);
     let map = |accuracy: &str| {
@@ -215,7 +235,7 @@ fn an_accuracy_chooses_the_grid() {
     let notes: String = best.notes.iter().map(ToString::to_string).collect();
     assert!(notes.contains("the best accuracy within the budget: bem3d on "), "{notes}");
     let outcome = run(&best, &Plan::new(&best).unwrap(), &options, &Silent, &|| false).unwrap();
-    assert!(!outcome.notes.join("\n").contains("accuracy not reached"), "{outcome:?}");
+    assert!(!outcome.notes.join("\n").contains("accuracy is not reached"), "{outcome:?}");
     std::fs::write(dir.path().join("one.csv"), "1.0\n").unwrap();
     for (text, words) in [
         (map("1 %").replace("map.csv", "one.csv"), "the map's own cells are too few to compare"),
@@ -224,14 +244,14 @@ fn an_accuracy_chooses_the_grid() {
         (asked("accuracy = 0.002\nbudget = \"1 us\"\ncontact_modulus"), "and the budget is under 1 ms"),
         (
             asked("accuracy = 0.0001\nbudget = \"2 s\"\ncontact_modulus"),
-            " cells along the longer side leave ",
+            " cells along the longer side have an error of ",
         ),
         (asked("budget = \"1 s\"\ncontact_modulus"), "`budget` is given, but no `accuracy`"),
         (asked("accuracy = \"100 %\"\ncontact_modulus"), "expected a share above 0 and below 100 %"),
         (asked("accuracy = \"few\"\ncontact_modulus"), "expected a pure number"),
         (
             WAVES.replace("contact_modulus", "accuracy = 0.01\ncontact_modulus"),
-            "`cells` is given beside `accuracy`",
+            "`cells` is given together with `accuracy`",
         ),
         (
             asked("accuracy = 0.1\ncontact_modulus").replace("stiffness = true\narea = true", ""),

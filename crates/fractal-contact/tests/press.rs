@@ -40,9 +40,20 @@ fn what_is_missing_is_asked_for_at_once_and_the_command_told_does_it() {
     let dir = folder();
     let (code, _, said) = program(dir.path(), &["press", "holes.txt"]);
     assert_eq!(code, Some(2), "{said}");
-    for flag in ["--unit", "--cell", "--undefined", "--contact-modulus", "--pressure"] {
-        assert!(said.contains(&format!("\n  {flag}")), "{flag}: {said}");
-    }
+    let flags = [
+        "--unit",
+        "--cell",
+        "--size",
+        "--undefined",
+        "--fill",
+        "--bodies",
+        "--contact-modulus",
+        "--pressure",
+    ];
+    let places =
+        flags.map(|flag| said.find(&format!("\n  {flag}")).unwrap_or_else(|| panic!("{flag}: {said}")));
+    assert!(places.is_sorted(), "{said}");
+    assert!(said.contains("--bodies '210 GPa 0.3, 210 GPa 0.3'"), "{said}");
     assert!(!dir.path().join("out").exists());
     // The command to copy, as a shell takes it.
     let command = said.trim_end().lines().next_back().unwrap().trim();
@@ -55,7 +66,16 @@ fn what_is_missing_is_asked_for_at_once_and_the_command_told_does_it() {
     assert_eq!(code, Some(0), "{said}");
     assert!(told.contains("results.csv"), "{told}");
     let scene = std::fs::read_to_string(dir.path().join("out/holes/scene.toml")).unwrap();
-    assert!(scene.contains("detrend = \"plane\"") && scene.contains("undefined = \"no_contact\""), "{scene}");
+    for line in [
+        "detrend = \"plane\"",
+        "undefined = \"no_contact\"",
+        "\n[effects]\n# \"free\": pressed by itself",
+        "\nboundary = \"free\"\n",
+    ] {
+        assert!(scene.contains(line), "{line} in {scene}");
+    }
+    let page = std::fs::read_to_string(dir.path().join("out/holes/report.html")).unwrap();
+    assert!(page.contains("</h1><p>The boundary is free: the surface is pressed by itself"), "{page}");
     // The scene alone gives the same table.
     let table = || std::fs::read(dir.path().join("out/holes/results.csv")).unwrap();
     let first = table();
@@ -80,7 +100,7 @@ fn a_wrong_flag_is_told_before_what_is_missing_and_not_repeated() {
     ];
     for (wrong, told) in cases {
         let (code, _, said) = program(dir.path(), &[&["press", "map.txt"], wrong].concat());
-        let (first, then) = said.split_once("map.txt and the flags do not say").unwrap();
+        let (first, then) = said.split_once("some flags are missing for the contact of map.txt:").unwrap();
         assert!(code == Some(2) && first.contains(told), "{said}");
         assert!(then.contains("\n  --unit") && then.contains("\n  --cell"), "{said}");
         assert!(!then.contains("fractal-contact press"), "{said}");
@@ -201,29 +221,108 @@ fn a_force_beyond_the_hardness_is_told_with_units() {
     let (code, _, said) = program(dir.path(), &[&asked[..], &FLAGS].concat());
     let told = "every cell is at the hardness) = 1 N is outside 0 N to 32 uN, the range in which the model holds; the hardness is 2 MPa";
     assert!(code == Some(3) && said.contains(told), "{said}");
-    let foreseen = "note: a mean pressure of 62.5 GPa is no state: at the hardness of 2 MPa every cell flows";
+    let foreseen =
+        "note: a mean pressure of 62.5 GPa cannot be reached: at the hardness of 2 MPa every cell flows";
     assert!(said.contains(foreseen), "{said}");
 }
 
+const PRESSED: [&str; 5] = ["press", "map.txt", "--pressure", "1 kPa,2 kPa,3 kPa", "--out"];
+
 #[test]
-fn files_are_told_in_two_lines() {
+fn the_answer_comes_first_and_the_rest_with_verbose() {
     let dir = folder();
-    let asked = [
-        "press",
-        "map.txt",
-        "--contact-modulus",
-        "1 GPa",
-        "--pressure",
-        "1 kPa,2 kPa,3 kPa",
-        "--out",
-        "found",
-    ];
-    let (code, told, said) = program(dir.path(), &[&asked[..], &FLAGS].concat());
+    let modulus = ["--contact-modulus", "1 GPa"];
+    let (code, told, said) = program(dir.path(), &[&PRESSED[..], &["found"], &modulus, &FLAGS].concat());
     assert_eq!(code, Some(0), "{said}");
-    let lines: Vec<&str> = told.trim_end().lines().rev().take(2).collect();
-    assert_eq!(lines[1], "found/report.html");
+    // Standard error: what is solved, what E* means, and what to beware of.
+    let mut lines = said.lines();
+    assert_eq!(
+        lines.next(),
+        Some("bem3d, 8 x 8 cells of 500 nm, free boundary, 3 states, about 2 s"),
+        "{said}"
+    );
+    let modulus_line =
+        "E* = 1 GPa: two like bodies with E = 1.82 GPa, or one with E = 910 MPa on a rigid one (nu = 0.3)";
+    assert_eq!(lines.next(), Some(modulus_line), "{said}");
+    assert!(lines.all(|line| line.starts_with("note: ")), "{said}");
+    // Standard output: the states, and one line of files.
+    assert!(told.starts_with("bem3d\n") && told.contains("[kPa]"), "{told}");
+    let files = told.lines().next_back().unwrap();
+    assert!(files.starts_with("found/report.html, and beside it scene.toml, results.csv, "), "{files}");
+    assert!(files.ends_with(" pictures, 3 fields"), "{files}");
+    assert!(told.lines().filter(|line| *line != files).all(|line| line.chars().count() <= 80), "{told}");
+    // With both bodies E* is no question.
+    let bodies = ["--bodies", "1 GPa 0.3", "--verbose"];
+    let (code, told, said) = program(dir.path(), &[&PRESSED[..], &["all"], &bodies, &FLAGS].concat());
+    assert_eq!(code, Some(0), "{said}");
+    assert!(told.starts_with("bem3d\n") && told.contains("[kPa]"), "{told}");
+    for words in [
+        "all/scene.toml\n",
+        "\neffects\n",
+        "\nmodels\n  bem3d\n    grid       8 x 8 cells of 500 nm\n",
+        "estimate    ",
+        "from the sizes and times stored in the program, within a factor of ten",
+        " jobs done in ",
+        "  predicted  ",
+        "  actual     ",
+        "states       3 requested, 3 in the table (0 of them kept from an earlier run)",
+    ] {
+        assert!(said.contains(words), "{words}: {said}");
+    }
+    let (_, _, said) = program(dir.path(), &[&PRESSED[..], &["all"], &bodies, &FLAGS].concat());
+    assert!(said.contains("(3 of them kept from an earlier run)"), "{said}");
+    // `plan` still solves small grids.
+    let (code, told, _) = program(dir.path(), &["plan", "all/scene.toml"]);
+    assert!(code == Some(0) && told.contains("from small solves on this machine"), "{told}");
+}
+
+/// The text of a cell in a table with a row for each quantity.
+fn cell<'a>(table: &'a str, quantity: &str, state: usize) -> &'a str {
+    let line = table.lines().find(|line| line.trim_start().starts_with(quantity)).unwrap();
+    line.split("  ").filter(|part| !part.trim().is_empty()).nth(state + 1).unwrap().trim()
+}
+
+#[test]
+fn a_number_stands_beside_its_error() {
+    let dir = tempfile::tempdir().unwrap();
+    let height =
+        |x: f64, y: f64| 20.0 * ((0.3 * x).sin() * (0.25 * y).cos() + 0.4 * (0.9 * x + 1.1 * y).sin());
+    let rows = (0..64).map(|y| {
+        let row = (0..64).map(|x| format!("{:.4}", height(f64::from(x), f64::from(y))));
+        row.collect::<Vec<_>>().join(" ") + "\n"
+    });
+    std::fs::write(dir.path().join("map.txt"), rows.collect::<String>()).unwrap();
+    let asked = ["press", "map.txt", "--pressure", "0.5 MPa,1 MPa,2 MPa", "--out", "waves"];
+    let more = ["--bodies", "1 GPa 0.3", "--boundary", "periodic"];
+    let (code, told, said) = program(dir.path(), &[&asked[..], &more, &FLAGS].concat());
+    assert_eq!(code, Some(0), "{said}");
+    assert!(said.starts_with("bem3d, 64 x 64 cells of 500 nm, periodic boundary, 3 states, "), "{said}");
+    let page = std::fs::read_to_string(dir.path().join("waves/report.html")).unwrap();
+    assert!(page.contains("</h1><p>The boundary is periodic: the surface is one tile of an endless surface"));
+    let file = runs::CsvFile::read(&dir.path().join("waves/results.csv")).unwrap();
+    let column = |name: &str| file.numbers(name).unwrap();
+    // Errors are shares in the file and have the unit of their number in the table.
+    for (quantity, errors) in [
+        ("stiffness", &["stiffness_grid_error", "stiffness_error"][..]),
+        ("area", &["area_grid_error"]),
+        ("contact_fraction", &["area_grid_error"]),
+    ] {
+        for state in 0..3 {
+            let shown = cell(&told, &format!("{quantity} ["), state);
+            let (value, error) = shown.split_once(" +- ").unwrap_or_else(|| panic!("{quantity}: {told}"));
+            let [value, error] = [value, error].map(|text| text.parse::<f64>().unwrap());
+            let share: f64 = errors.iter().map(|name| column(name)[state].unwrap()).sum();
+            // Two digits, or one that is 3 at least; the value ends at the same decimal place.
+            assert!((error / value / share - 1.0).abs() < 0.3, "{quantity}: {shown}, {share}");
+        }
+    }
+    assert!(!told.contains("_grid_error"), "{told}");
     assert!(
-        lines[0].starts_with("found: results.csv, ") && lines[0].ends_with(" pictures, 3 fields"),
+        told.contains("The number behind +- is the estimated error of the grid and of the solver."),
         "{told}"
+    );
+    assert!(
+        page.contains("The number behind ± is the estimated error of the grid"),
+        "the report says what it is"
     );
 }

@@ -1,6 +1,6 @@
 //! The program itself: exit codes, resume, the same bytes.
 
-use fractal_contact::scenes::{Options, Plan, SceneFile, run};
+use fractal_contact::scenes::{Options, Plan, PredictedFrom, SceneFile, run};
 use runs::{Progress, Silent};
 use std::path::Path;
 use std::process::{Command, Output};
@@ -55,6 +55,36 @@ fn a_stopped_run_goes_on_and_ends_in_the_same_bytes() {
     assert_eq!(bytes("whole"), bytes("parts"));
 }
 
+/// Small solves predict the cost of a run only where its sizes say that it is long, or say nothing.
+#[test]
+fn a_short_run_is_predicted_from_its_sizes() {
+    let plan = |text: String| {
+        let scene = SceneFile::parse(Path::new("three.toml"), text).unwrap_or_else(|error| panic!("{error}"));
+        Plan::for_run(&scene).unwrap()
+    };
+    let short = plan(SCENE.into());
+    assert_eq!(short.predicted_from, Some(PredictedFrom::Sizes));
+    let seconds = short.predicted().unwrap().seconds;
+    assert!(seconds > 0.0 && seconds < 1.0, "{seconds}");
+    let line = short.line(2);
+    let expected = "bem3d, 33 x 33 cells of 0.0303; mdr1d, a line of 1024 elements; free boundary, 3 states on each of 3 surfaces, less than 1 s";
+    assert_eq!(line, expected);
+    assert!(short.to_string().contains("(from the sizes and times stored in the program"), "{short}");
+    let long = plan(SCENE.replace("surfaces = 3", "surfaces = 100000"));
+    let adhesive = "[effects]\nadhesion = { work = 1e-6 }\n[outputs]";
+    let unknown = plan(
+        SCENE
+            .replace("\"mdr1d\"", "")
+            .replace("[models.mdr1d]\nelements = 1024\n", "")
+            .replace("[outputs]", adhesive),
+    );
+    for measured in [long, unknown] {
+        assert_eq!(measured.predicted_from, Some(PredictedFrom::SmallSolves));
+        assert!(measured.predicted().unwrap().applications > 0.0);
+        assert!(measured.to_string().contains("(from small solves on this machine"), "{measured}");
+    }
+}
+
 #[test]
 fn exit_codes_say_how_it_went() {
     let dir = tempfile::tempdir().unwrap();
@@ -64,7 +94,8 @@ fn exit_codes_say_how_it_went() {
     // The fit of the paper ends at F_bar = 0.086.
     let beyond = SCENE.replace("\"mdr1d\"", "\"power_law\"").replace("[models.mdr1d]\nelements = 1024\n", "");
     std::fs::write(path("beyond.toml"), beyond).unwrap();
-    let out = |name: &str| program(&["run", &path(name), "--out", &path("out"), "--threads", "2"]);
+    let out =
+        |name: &str| program(&["run", &path(name), "--out", &path("out"), "--threads", "2", "--verbose"]);
     let good = out("good.toml");
     assert_eq!(good.status.code(), Some(0), "{}", texts(&good).1);
     assert!(texts(&good).0.contains("results.csv") && texts(&good).1.contains("predicted"));
@@ -74,6 +105,15 @@ fn exit_codes_say_how_it_went() {
     let beyond = out("beyond.toml");
     assert_eq!(beyond.status.code(), Some(3), "{}", texts(&beyond).1);
     assert!(texts(&beyond).1.contains("is outside [0, 0.086]"));
+    // What failed is said without the rest, too.
+    let beyond = program(&["run", &path("beyond.toml"), "--out", &path("out")]);
+    let (_, said) = texts(&beyond);
+    assert_eq!(beyond.status.code(), Some(3), "{said}");
+    assert!(
+        said.contains("is outside [0, 0.086]") && said.contains(" states were refused or did not "),
+        "{said}"
+    );
+    assert!(!said.contains("predicted") && !said.contains("jobs done"), "{said}");
     assert_eq!(program(&["run", &path("nowhere.toml")]).status.code(), Some(1));
 }
 

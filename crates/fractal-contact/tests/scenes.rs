@@ -144,8 +144,11 @@ fn a_path_beyond_the_hardness_is_told_by_the_plan() {
     for load in ["force = \"2000 N\"", "mean_pressure = \"2 GPa\""] {
         let told = notes(text.replace("force = \"300 N\"", load));
         let [note] = &told[..] else { panic!("{told:?}") };
-        assert!(note.contains("a mean pressure of 2 GPa is no state: at the hardness of 1 GPa"), "{note}");
-        assert!(note.contains("the path ends before such a step"), "{note}");
+        assert!(
+            note.contains("a mean pressure of 2 GPa cannot be reached: at the hardness of 1 GPa"),
+            "{note}"
+        );
+        assert!(note.contains("The path ends before this step"), "{note}");
     }
     // The force that belongs to an approach is not known beforehand.
     assert_eq!(notes(text.replace("force = \"300 N\"", "approach = \"1 mm\"")), Vec::<String>::new());

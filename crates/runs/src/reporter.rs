@@ -21,10 +21,14 @@ const FRAME: Duration = Duration::from_millis(100);
 /// Least work, in seconds, from which a remaining time is predicted.
 const FIRST: f64 = 1.0;
 
-/// Reports the progress of a run on standard error, for programs.
+/// Reports on standard error how far a run is: for programs.
+///
+/// On a terminal there is a bar. [`Reporter::new`] also prints the title of a stage, what was done in it and,
+/// where there is no terminal, a line now and then; [`Reporter::quiet`] prints the bar and notes alone.
 #[derive(Debug)]
 pub struct Reporter {
     terminal: bool,
+    quiet: bool,
     stage: Mutex<Stage>,
 }
 
@@ -53,7 +57,12 @@ impl Reporter {
     /// A reporter; it checks once whether standard error is a terminal.
     pub fn new() -> Self {
         let stage = Stage::new(ProgressBar::hidden(), 0, Instant::now());
-        Self { terminal: std::io::stderr().is_terminal(), stage: Mutex::new(stage) }
+        Self { terminal: std::io::stderr().is_terminal(), quiet: false, stage: Mutex::new(stage) }
+    }
+
+    /// Prints nothing but the bar of a terminal, which goes in the end, and notes.
+    pub fn quiet() -> Self {
+        Self { quiet: true, ..Self::new() }
     }
 
     fn with(&self, change: impl FnOnce(&mut Stage)) {
@@ -165,14 +174,14 @@ impl Stage {
     }
 
     /// Moves the bar, or now and then writes a line.
-    fn show(&mut self, terminal: bool) {
+    fn show(&mut self, terminal: bool, quiet: bool) {
         let (gone, cost) = (self.begun.elapsed().as_secs_f64(), self.done.cost());
         let left = self.done.left(gone);
         if terminal {
             self.left.store(left.unwrap_or(f64::NAN).to_bits(), Ordering::Relaxed);
             self.bar.set_position((STEPS * cost) as u64);
             self.bar.set_message(self.words.clone());
-        } else if self.told.elapsed() >= EVERY {
+        } else if !quiet && self.told.elapsed() >= EVERY {
             self.told = Instant::now();
             let share = 100.0 * cost / self.done.total.max(1.0);
             let left = left.map_or_else(String::new, |left| format!(", about {} left", duration(left)));
@@ -183,7 +192,9 @@ impl Stage {
 
 impl Progress for Reporter {
     fn begin(&self, what: &str, total: u64) {
-        crate::err!("{what}");
+        if !self.quiet {
+            crate::err!("{what}");
+        }
         let now = Instant::now();
         let bar = if self.terminal {
             ProgressBar::new((STEPS * total as f64) as u64)
@@ -214,7 +225,7 @@ impl Progress for Reporter {
             s.done.add(cost, reused);
             s.jobs += 1;
             s.reused += usize::from(reused);
-            s.show(self.terminal);
+            s.show(self.terminal, self.quiet);
         });
     }
 
@@ -227,13 +238,16 @@ impl Progress for Reporter {
             s.shown = Instant::now();
             s.done.set(job);
             s.words = words(job);
-            s.show(self.terminal);
+            s.show(self.terminal, self.quiet);
         });
     }
 
     fn end(&self) {
         self.with(|s| {
             s.bar.finish_and_clear();
+            if self.quiet {
+                return;
+            }
             let seconds = s.begun.elapsed().as_secs_f64();
             crate::err!("{} jobs done in {seconds:.1} s, {} of them found on disk", s.jobs, s.reused);
         });

@@ -3,7 +3,8 @@
 use crate::scenes::plan::{Cost, ModelOnSurface, ModelPlan, Plan, SharedStop, calibration};
 use crate::scenes::read::{Result, SceneFile, System, effect_lines, number, words};
 use crate::scenes::run::{
-    Answer, ModelResult, Options, SceneOutcome, SolvedUnit, Warning, field_pictures, scene_jobs, units,
+    Answer, ModelResult, Options, SceneOutcome, Solved, SolvedUnit, Warning, field_pictures, scene_jobs,
+    units,
 };
 use crate::scenes::tell::{
     MapStatisticsTables, Report, ResultFolder, columns, distributions, ensemble, manifest, pictures, summary,
@@ -121,7 +122,7 @@ pub fn run(
     let removed = folder.remove_others(&outcome.files)?;
     if removed > 0 {
         let out = options.out.display();
-        outcome.notes.push(format!("{removed} files that an earlier run left in {out} were removed"));
+        outcome.notes.push(format!("{removed} files that an earlier run left in {out} were removed."));
     }
     manifest::write(scene, plan, options, &outcome)?;
     Ok(outcome)
@@ -160,7 +161,7 @@ fn count(
     options: &Options,
     outcome: &mut SceneOutcome,
 ) {
-    let mut warned = [0; Warning::ALL.len()];
+    let mut warned: [Vec<&Solved>; Warning::ALL.len()] = Default::default();
     // A formula has no cells that a warning could be about.
     let mut counted = 0;
     let mut missed: Vec<String> = Vec::new();
@@ -193,7 +194,7 @@ fn count(
                         missed.push(format!("{}: {error}", record.words(scene)));
                     }
                     for &warning in &solved.warnings {
-                        warned[warning as usize] += 1;
+                        warned[warning as usize].push(solved);
                     }
                 }
             }
@@ -207,12 +208,14 @@ fn count(
             1 => " (and one more state)".to_owned(),
             count => format!(" (and {count} more states)"),
         };
-        let note = format!("{first}{others}: `tolerance` in [models] says how small these have to be");
+        let note = format!(
+            "{first}{others}. The largest of these numbers has to be below `tolerance` in [models.NAME]: a larger tolerance accepts the state."
+        );
         outcome.notes.push(note);
     }
-    for (warning, count) in Warning::ALL.into_iter().zip(warned).filter(|(_, count)| *count > 0) {
-        let [words, remedy] = warning.words();
-        outcome.notes.push(format!("{words} ({count} of {counted} states): {remedy}"));
+    for (warning, concerned) in Warning::ALL.into_iter().zip(warned).filter(|(_, states)| !states.is_empty())
+    {
+        outcome.notes.push(warning.sentence(scene, &concerned, counted));
     }
 }
 

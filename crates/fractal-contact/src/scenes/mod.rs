@@ -61,9 +61,10 @@
 //! # How accurate, how fast
 //!
 //! The accuracy is that of the models; the plan states it for each. Reading, planning and writing take
-//! milliseconds. The prediction of cost solves a few of the loads on a grid of a quarter of the cells (at
-//! most 257, at most 3 s) and scales by measured exponents: within a factor of six on the scenes of
-//! `data/scenes`, files and pictures apart.
+//! milliseconds. [`Plan::calibrated`] predicts the cost: it solves a few of the loads on a grid of a quarter of
+//! the cells (at most 257, at most 3 s) and scales by measured exponents, within a factor of six on the scenes
+//! of `data/scenes`, files and pictures apart. [`Plan::for_run`] does so only where the sizes of the scene and
+//! stored times predict more than 5 s.
 //!
 //! # What it does not do
 //!
@@ -79,7 +80,7 @@ pub use analysis::AccuracyTarget;
 pub use answer::{run, run_scene_shard};
 pub use plan::accuracy::SharedStop;
 pub use plan::cost::Cost;
-pub use plan::scene_plan::{ModelPlan, Plan, check};
+pub use plan::scene_plan::{ModelPlan, Plan, PredictedFrom, check};
 pub use read::diagnostic::Diagnostic;
 pub use read::distributed::Distributed;
 pub use read::effects::{EFFECT_KEYS, EffectKey, EffectLine, effect_lines, parse_effects};

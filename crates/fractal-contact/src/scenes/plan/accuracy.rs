@@ -86,7 +86,7 @@ impl SceneFile {
         let Cells { columns, rows } = cells(&chosen.scene, &chosen.scene.models[0]);
         let percent = |share: f64| format!("{} %", short(100.0 * share));
         let note = Diagnostic::note(format!(
-            "{}: bem3d on {columns} x {rows} cells, which leave {} on surface 0, in about {}",
+            "{}: bem3d on {columns} x {rows} cells, with an error of {} on the first surface, in about {}",
             asked(target),
             percent(chosen.error),
             time(chosen.seconds)
@@ -94,7 +94,8 @@ impl SceneFile {
         self.models[place] = chosen.scene.models[0].clone();
         self.surface = chosen.scene.surface;
         self.requested.grid_error = true;
-        self.notes.push(note.with_help("`grid_error` in the results says what it came to"));
+        self.notes
+            .push(note.with_help("The columns `_grid_error` of the results hold the errors of the run."));
         Ok(self)
     }
 

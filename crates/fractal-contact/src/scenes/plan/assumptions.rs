@@ -82,37 +82,36 @@ impl Assumptions {
             100.0 * map.tilt,
             map.edge_step
         );
-        let help = "`detrend = \"plane\"` where the tilt is that of the measurement; theories take it for waves as long as the map";
+        let help = "Subtract it (`detrend = \"plane\"`) if it is a tilt of the measurement. Theories take it for waves as long as the map.";
         note(!tilted, &concerned, message, help);
         let message = format!(
             "opposite edges of the map differ by {:.1} times the largest step inside: it is no period of a surface",
             map.edge_step
         );
         let help = if scene.effects.boundary == Boundary::Periodic {
-            "`bem3d` solves the map with this step, theories take it as a piece of an infinite surface: free boundaries, or loads that do not touch the step"
+            "`bem3d` solves the map with this step, and theories take it as a piece of an infinite surface. Use free boundaries, or loads at which the step is not in contact."
         } else {
-            "waves as long as the map are known least: prefer a larger map, and `detrend = \"plane\"` where it is tilted"
+            "Waves as long as the map are known least. Use a larger map, and `detrend = \"plane\"` if it is tilted."
         };
         note(tilted || !map.windowed, &concerned, message, help);
         let message = format!(
             "the map is anisotropic: the rms slope along one direction is {:.2} of that along another, and the theory has one spectrum for all",
             map.isotropy
         );
-        let help = "the mean over directions is taken; compare with `bem3d`, which solves the map as it is";
+        let help = "The theory takes the mean over directions. Compare it with `bem3d`, which solves the map as it is.";
         note(tilted || map.isotropy >= ISOTROPIC, &Numerics::is_statistical, message, help);
         let message = format!(
             "heights are not Gaussian (skewness {:.2}, kurtosis {:.2} instead of 0 and 3), and the theory knows the spectrum alone",
             map.skewness, map.kurtosis
         );
-        let help = "the highest summits decide at light loads: compare with `bem3d` there, and fill spikes of the measurement";
+        let help = "At light loads the highest summits decide. Compare the theory with `bem3d` there, and fill spikes of the measurement.";
         let gaussian = map.skewness.abs() <= SKEWNESS && (map.kurtosis - 3.0).abs() <= KURTOSIS;
         note(spiked || gaussian, &Numerics::is_statistical, message, help);
         let message = format!(
             "{:.0} % of the variance of heights is in the longest waves: mean gap and stiffness of one map scatter around the theory's",
             100.0 * map.longest_waves
         );
-        let help =
-            "the theory is one of many long waves: take a map several times larger, or trust the area alone";
+        let help = "The theory assumes many long waves. Use a map that is several times larger, or trust the area alone.";
         note(tilted || map.longest_waves <= LONGEST, &statistical, message, help);
         notes
     }

@@ -1,9 +1,9 @@
-//! The cost of a run, predicted from small solves of the same kind.
+//! The cost of a run, predicted from its sizes alone or from small solves of the same kind.
 
-use crate::scenes::plan::Cost;
+use crate::scenes::plan::{Cost, ModelOnSurface};
 use crate::scenes::read::{LoadRequest, Numerics, Result, SceneFile, cells, sampled};
 use bem3d::BYTES_PER_CELL;
-use contact_model::{Adhesion, Cells, ContactState, Surface};
+use contact_model::{Adhesion, Cells, ContactState, Coupling, Friction, Surface};
 use mdr1d::BYTES_PER_ELEMENT;
 use std::time::{Duration, Instant};
 
@@ -28,6 +28,62 @@ const FRONTS_APPLICATIONS_EXPONENT: f64 = 0.8;
 /// What adhesion takes beside, where all cells are within reach: states of the last sweeps. Measured from
 /// outside on that example.
 const ADHESION_BYTES: f64 = 300.0;
+
+/// Time of one model from the sizes of its solves and from times that were measured once
+/// ([`ModelOnSurface::cost`]), within a factor of ten. Operator applications and linear solves are not
+/// predicted.
+///
+/// `None` where no time is known: for models of the user's own, and for adhesion and coupled friction, whose
+/// sweeps depend on the contact more than on its size.
+pub(crate) fn from_sizes(scene: &SceneFile, model: usize) -> Option<Cost> {
+    let numerics = &scene.models[model];
+    let coupled = matches!(scene.effects.friction, Friction::Coulomb { coupling: Some(Coupling::Full), .. });
+    let known = match numerics {
+        Numerics::Bem3d(_) | Numerics::Equivalent(_) => scene.effects.adhesion == Adhesion::Off && !coupled,
+        Numerics::Registered(_) => false,
+        _ => true,
+    };
+    if !known {
+        return None;
+    }
+    let surfaces = if scene.surface.is_random_for(numerics) { scene.sampling.surfaces as f64 } else { 1.0 };
+    let milliseconds = ModelOnSurface { model, surface: 0 }.cost(scene) as f64;
+    let states = scene.request.count() as f64 * surfaces;
+    let (fields, field_bytes, memory) = fields(scene, numerics, states);
+    Some(Cost {
+        seconds: 1e-3 * milliseconds * surfaces * with_coarser_grids(scene, numerics),
+        memory: if numerics.boundary_elements().is_some() {
+            memory + least_memory(scene, numerics)
+        } else {
+            0.0
+        },
+        fields,
+        field_bytes,
+        ..Cost::default()
+    })
+}
+
+/// The work of a state with that of its coarser grids, over its own.
+fn with_coarser_grids(scene: &SceneFile, numerics: &Numerics) -> f64 {
+    if scene.requested.grid_error && matches!(numerics, Numerics::Bem3d(_)) {
+        1.0 + 0.5f64.powf(TIME_EXPONENT) + 0.25f64.powf(TIME_EXPONENT)
+    } else {
+        1.0
+    }
+}
+
+/// Number of the fields of all states, their bytes, and the memory of those of one state with what adhesion
+/// takes; all zero for a model without cells.
+fn fields(scene: &SceneFile, numerics: &Numerics, states: f64) -> (f64, f64, f64) {
+    let (Numerics::Bem3d(_) | Numerics::Equivalent(_)) = numerics else { return (0.0, 0.0, 0.0) };
+    let Cells { columns, rows } = cells(scene, numerics);
+    let count = columns as f64 * rows as f64;
+    let outputs = &scene.requested.outputs;
+    let named = [outputs.pressure, outputs.displacement, outputs.gap, outputs.plastic_depth];
+    let of_state = named.iter().filter(|f| **f).count() as f64;
+    let adhesion = if scene.effects.adhesion == Adhesion::Off { 0.0 } else { ADHESION_BYTES };
+    (of_state * states, of_state * states * count * 8.0, count * (adhesion + 8.0 * of_state))
+}
 
 /// Time and work of a small solve, scaled. What a small grid refuses is not predicted: its run will tell.
 pub(crate) fn predict(scene: &SceneFile, numerics: &Numerics) -> Cost {
@@ -68,21 +124,14 @@ pub(crate) fn predict(scene: &SceneFile, numerics: &Numerics) -> Cost {
         solved.later / solved.states.saturating_sub(1).max(1) as f64 * requested.saturating_sub(1) as f64;
     cost.seconds =
         surfaces * (solved.prepare * time.powf(2.0 / TIME_EXPONENT) + (solved.first + later) * time);
-    if scene.requested.grid_error && matches!(numerics, Numerics::Bem3d(_)) {
-        cost.seconds *= 1.0 + 0.5f64.powf(TIME_EXPONENT) + 0.25f64.powf(TIME_EXPONENT);
-    }
+    cost.seconds *= with_coarser_grids(scene, numerics);
     cost.applications *= applications * per_state;
     cost.linear_solves *= per_state;
     cost.fields *= per_state;
-    let outputs = &scene.requested.outputs;
     if let Numerics::Bem3d(_) | Numerics::Equivalent(_) = numerics {
-        let named = [outputs.pressure, outputs.displacement, outputs.gap, outputs.plastic_depth];
-        let fields = named.iter().filter(|f| **f).count() as f64;
-        cost.fields = fields * total;
-        cost.field_bytes = cost.fields * count * 8.0;
-        let adhesion = if scene.effects.adhesion == Adhesion::Off { 0.0 } else { ADHESION_BYTES };
-        cost.memory =
-            count * (BYTES_PER_CELL + bem3d::bytes_per_cell(solved.filled) + adhesion + 8.0 * fields);
+        let memory;
+        (cost.fields, cost.field_bytes, memory) = fields(scene, numerics, total);
+        cost.memory = memory + count * (BYTES_PER_CELL + bem3d::bytes_per_cell(solved.filled));
     }
     cost
 }

@@ -15,4 +15,4 @@ pub(crate) use grid_comparison::{
     GridComparison, GridErrors, Numbers, RMS_SLOPE, compared, on_grid, solve, solved_map,
 };
 pub(crate) use model_on_surface::{FORMAT, ModelOnSurface, probe};
-pub(crate) use scene_plan::{ModelPlan, Plan, of_slopes};
+pub(crate) use scene_plan::{ModelPlan, Plan, PredictedFrom, of_slopes};

@@ -2,14 +2,36 @@
 
 use crate::scenes::plan::{Assumptions, Cost, ModelOnSurface, calibration, probe};
 use crate::scenes::read::{
-    Diagnostic, EffectLine, LoadKind, LoadRequest, Numerics, Result, SceneFile, System, amount, cells,
-    description, effect_lines, short, words,
+    Diagnostic, EffectLine, FieldFormat, HEIGHTS, LoadKind, LoadRequest, Numerics, Result, SceneFile, System,
+    amount, cells, description, effect_lines, short, words,
 };
 use bem3d::UNRESOLVED_RANGE;
 use contact_model::units::ascii;
-use contact_model::{Cells, Hardness, Load, Step};
-use runs::amounts::{memory, time};
+use contact_model::{Boundary, Cells, Hardness, Load, Step};
+use runs::amounts::{duration, memory, time};
 use std::fmt;
+
+/// What a predicted cost rests on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PredictedFrom {
+    /// The sizes of the scene and times that are compiled in. Operator applications and linear solves, which
+    /// are not predicted then, are 0 in [`Cost`].
+    Sizes,
+    /// Small solves of the same kind, made for the plan.
+    SmallSolves,
+}
+
+impl PredictedFrom {
+    /// In words, with what the prediction is worth.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Sizes => "from the sizes and times stored in the program, within a factor of ten",
+            Self::SmallSolves => {
+                "from small solves on this machine, scaled with the cells, within a factor of six"
+            }
+        }
+    }
+}
 
 /// What one model will do.
 #[derive(Debug, Clone, PartialEq)]
@@ -20,7 +42,7 @@ pub struct ModelPlan {
     pub grid: String,
     /// What to expect of its numbers.
     pub accuracy: String,
-    /// An estimate for all surfaces and loads; `None` before calibration.
+    /// Predicted for all surfaces and loads; `None` before a prediction.
     pub predicted: Option<Cost>,
 }
 
@@ -40,6 +62,8 @@ pub struct Plan {
     pub notes: Vec<Diagnostic>,
     /// E*, and which bodies have it.
     pub contact_modulus: String,
+    /// What lies outside of the rectangle.
+    pub boundary: Boundary,
     /// Whether numbers carry units.
     pub system: System,
     /// Number of states for each surface, and of surfaces.
@@ -52,6 +76,10 @@ pub struct Plan {
     pub outputs: Vec<(&'static str, bool)>,
     /// The models in their order.
     pub models: Vec<ModelPlan>,
+    /// Pictures of fields and distributions, which are not in the predicted costs.
+    pub pictures: usize,
+    /// What the predicted costs rest on; `None` before a prediction.
+    pub predicted_from: Option<PredictedFrom>,
 }
 
 /// Checks that every model can answer the scene, on small grids.
@@ -139,12 +167,15 @@ impl Plan {
                 .chain(beyond_hardness(scene))
                 .collect(),
             contact_modulus: words::contact_modulus(scene),
+            boundary: scene.effects.boundary,
             system: scene.system,
             states: scene.request.count(),
             surfaces: scene.sampling.surfaces,
             effects: effect_lines(&scene.effects, scene.system),
             outputs: scene.requested.lines(),
             models,
+            pictures: pictures(scene),
+            predicted_from: None,
         })
     }
 
@@ -175,7 +206,64 @@ impl Plan {
         for (numerics, model) in scene.models.iter().zip(&mut plan.models) {
             model.predicted = Some(calibration::predict(scene, numerics));
         }
+        plan.predicted_from = Some(PredictedFrom::SmallSolves);
         Ok(plan)
+    }
+
+    /// The plan of a scene that is solved at once: where its sizes predict some seconds at most, small solves
+    /// would take as long as the scene, and there are none.
+    ///
+    /// # Errors
+    /// As [`check`].
+    pub fn for_run(scene: &SceneFile) -> Result<Self> {
+        calibration::jobs_in_memory(scene, 1)?;
+        let costs: Option<Vec<Cost>> =
+            (0..scene.models.len()).map(|model| calibration::from_sizes(scene, model)).collect();
+        let Some(costs) =
+            costs.filter(|costs| costs.iter().map(|cost| cost.seconds).sum::<f64>() <= FEW_SECONDS)
+        else {
+            return Self::calibrated(scene);
+        };
+        let mut plan = Self::new(scene)?;
+        for (cost, model) in costs.into_iter().zip(&mut plan.models) {
+            model.predicted = Some(cost);
+        }
+        plan.predicted_from = Some(PredictedFrom::Sizes);
+        Ok(plan)
+    }
+
+    /// The plan in a line, for this many threads: models, grids, boundary, states and predicted time.
+    pub fn line(&self, threads: usize) -> String {
+        let of_model = |model: &ModelPlan| match model.grid.as_str() {
+            NO_GRID | OWN_GRID => model.name.to_owned(),
+            grid => format!("{}, {grid}", model.name),
+        };
+        let models: Vec<String> = self.models.iter().map(of_model).collect();
+        let boundary = match self.boundary {
+            Boundary::Periodic => "periodic boundary",
+            _ => "free boundary",
+        };
+        let states = if self.states == 1 { "1 state".to_owned() } else { format!("{} states", self.states) };
+        let surfaces =
+            if self.surfaces > 1 { format!(" on each of {} surfaces", self.surfaces) } else { String::new() };
+        let time = self.predicted().map_or_else(String::new, |cost| {
+            let at_once = threads.clamp(1, self.models.len() * self.surfaces);
+            match (cost.seconds + PICTURE_SECONDS * self.pictures as f64) / at_once as f64 {
+                seconds if seconds < 1.0 => ", less than 1 s".to_owned(),
+                seconds => format!(", about {}", duration(seconds)),
+            }
+        });
+        let then = if models.len() > 1 { ";" } else { "," };
+        format!("{}{then} {boundary}, {states}{surfaces}{time}", models.join("; "))
+    }
+
+    /// What is predicted of a model, in words.
+    pub fn predicted_words(&self, model: &ModelPlan) -> Option<String> {
+        let cost = model.predicted?;
+        Some(match self.predicted_from {
+            Some(PredictedFrom::Sizes) => time(cost.seconds),
+            _ => cost.to_string(),
+        })
     }
 
     /// The sum over the models.
@@ -194,6 +282,13 @@ impl Plan {
     }
 }
 
+/// Below this many seconds of predicted work a scene is solved without small solves before it.
+const FEW_SECONDS: f64 = 5.0;
+/// Seconds of one thread that a picture takes; measured once.
+const PICTURE_SECONDS: f64 = 0.2;
+/// What stands in place of a grid where a model has none, and where it is not known here.
+const NO_GRID: &str = "none: a formula";
+const OWN_GRID: &str = "the model's own";
 /// Its spectrum takes seconds and three times its memory on the largest map.
 const LARGEST_DESCRIBED: usize = 1 << 24;
 /// Largest rms slope of which linear elasticity of half-spaces is an approximation of some per cent.
@@ -205,17 +300,20 @@ const FLAT_SLOPE: f64 = 3e-4;
 pub(crate) fn of_slopes(system: System, map: Option<&surface_io::Description>) -> Option<Diagnostic> {
     let slope = map?.rms_slope;
     let (what, help) = if slope > SMALL_SLOPE {
-        ("every model here assumes small slopes", "beyond 0.3 take the results as those of a linear theory")
+        (
+            "every model here assumes small slopes",
+            "If they are, take the results as those of a linear theory: slopes above 0.3 are not small.",
+        )
     } else if slope > 0.0 && slope < FLAT_SLOPE {
         (
             "few surfaces are that smooth",
-            "a mean pressure of E* times the slope closes nearly all of such a contact",
+            "If they are, a mean pressure of E* times the slope closes nearly all of the contact.",
         )
     } else {
         return None;
     };
     let message = format!("the rms slope of the map is {}, and {what}", short(slope));
-    let help = format!("are the unit of the heights and the size of the map right? {help}");
+    let help = format!("Are the unit of the heights and the size of the map right? {help}");
     (system == System::Si).then(|| Diagnostic::note(message).with_help(help))
 }
 
@@ -230,22 +328,37 @@ fn beyond_hardness(scene: &SceneFile) -> Option<Diagnostic> {
                 LoadKind::Force => area,
                 LoadKind::ForceBar | LoadKind::Approach | LoadKind::MeanGap => return None,
             };
-            (loads.values.iter().map(|value| value / area).collect(), "other loads are solved")
+            (loads.values.iter().map(|value| value / area).collect(), "The other loads are solved.")
         }
         LoadRequest::Path(steps) => {
             let mean = |step: &Step| match step.normal {
                 Load::Force(force) => Some(force / area),
                 _ => None,
             };
-            (steps.iter().filter_map(mean).collect(), "the path ends before such a step")
+            (steps.iter().filter_map(mean).collect(), "The path ends before this step.")
         }
     };
     let largest = means.into_iter().filter(|&mean| mean >= pressure).max_by(f64::total_cmp)?;
     let [largest, hardness] =
         [largest, pressure].map(|value| ascii(&amount(value, scene.system.shown("Pa"))));
-    let message =
-        format!("a mean pressure of {largest} is no state: at the hardness of {hardness} every cell flows");
-    Some(Diagnostic::note(message).with_help(format!("a smaller load, or a larger `hardness`; {rest}")))
+    let message = format!(
+        "a mean pressure of {largest} cannot be reached: at the hardness of {hardness} every cell flows"
+    );
+    Some(Diagnostic::note(message).with_help(format!("Use a smaller load or a larger `hardness`. {rest}")))
+}
+
+/// Pictures of the fields of all states and of distributions.
+fn pictures(scene: &SceneFile) -> usize {
+    let drawn = |state: usize| {
+        let fields = scene.requested.fields();
+        let drawn = fields.filter(|(field, formats)| {
+            let once = field.name != HEIGHTS.name || state == 0;
+            formats.contains(&FieldFormat::Png) && scene.requested.draws(field.name, state) && once
+        });
+        drawn.count()
+    };
+    let of_surface: usize = (0..scene.request.count()).map(drawn).sum();
+    of_surface * scene.sampling.surfaces * scene.models.len() + scene.requested.distributions.len()
 }
 
 fn prepared(scene: &SceneFile) -> Option<surface_io::Description> {
@@ -270,8 +383,8 @@ fn grid(scene: &SceneFile, numerics: &Numerics) -> String {
             }
         }
         Numerics::Mdr1d(m) if scene.surface.is_rough() => format!("a line of {} elements", m.elements),
-        Numerics::Registered(_) => "the model's own".into(),
-        _ => "none: a formula".into(),
+        Numerics::Registered(_) => OWN_GRID.into(),
+        _ => NO_GRID.into(),
     }
 }
 
@@ -345,7 +458,7 @@ impl fmt::Display for Plan {
                 "  {}\n    grid       {}\n    accuracy   {}",
                 model.name, model.grid, model.accuracy
             )?;
-            if let Some(cost) = &model.predicted {
+            if let Some(cost) = self.predicted_words(model) {
                 writeln!(f, "    estimate   {cost}")?;
             }
         }
@@ -354,10 +467,8 @@ impl fmt::Display for Plan {
             if cost.memory > 0.0 {
                 write!(f, ", {} of memory for each thread", memory(cost.memory))?;
             }
-            writeln!(
-                f,
-                " (from small solves on this machine, scaled with the cells: within a factor of six; files and pictures come on top)"
-            )?;
+            let from = self.predicted_from.map_or("", PredictedFrom::words);
+            writeln!(f, " ({from}; files and pictures come on top)")?;
         }
         Ok(())
     }

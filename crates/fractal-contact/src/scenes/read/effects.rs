@@ -137,8 +137,10 @@ pub struct EffectLine {
 pub fn effect_lines(effects: &Effects, system: System) -> Vec<EffectLine> {
     let line = |key: &EffectKey| {
         let words = (key.words)(effects, system);
-        let (on, off) = (words.is_some(), format!("not named: {}", key.off));
-        EffectLine { name: key.name, on, reason: words.unwrap_or(off) }
+        // A boundary is always there, whether it is named or not.
+        let off = if key.name == "boundary" { "free" } else { "not named" };
+        let reason = || format!("{off}: {}", key.off);
+        EffectLine { name: key.name, on: words.is_some(), reason: words.unwrap_or_else(reason) }
     };
     EFFECT_KEYS.iter().map(line).collect()
 }

@@ -335,7 +335,7 @@ pub(crate) mod tests {
     }
 
     /// Names of older versions, which are read and not recommended.
-    const OLDER: [&str; 2] = ["chance", "width"];
+    const OLDER: [&str; 3] = ["modulus", "chance", "width"];
 
     fn of(table: &str) -> impl Iterator<Item = &'static SceneKeys> {
         SCENE_KEYS.iter().filter(move |keys| keys.table == table)

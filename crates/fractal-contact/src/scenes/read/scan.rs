@@ -62,8 +62,8 @@ pub(crate) fn read_map(table: &Entries<'_>, system: System, directory: &Path) ->
         let message = format!(
             "the map is tapered to its edges and divided by the rms of the taper: rms height {before} before, {after} after"
         );
-        let help = "theories take the spectrum, which a homogeneous surface keeps; `bem3d` presses the tapered map, whose smooth edges carry \
-                    load: on self-affine maps its contact fraction was 0.4 to 2.6 times that without the window";
+        let help = "Theories take the spectrum, which a homogeneous surface keeps. But `bem3d` presses the tapered map, whose smooth edges \
+                    carry load: on self-affine maps its contact fraction was 0.4 to 2.6 times that without the window.";
         notes.push(Diagnostic::note(message).at(entry.span()).with_help(help));
     }
     for Remark { message, help } in remarks(&scan, &preprocessing, &map, table.find("detrend").is_some()) {
@@ -164,8 +164,8 @@ pub(crate) fn read_second(
 
 /// A note on how a profile is used.
 fn uniform(file: &Entry<'_>, map: &HeightMap) -> Diagnostic {
-    let help = "contact is that of plane strain: `bem3d` solves it, pressures do not depend on that width, and force over width is the force \
-                per length; theories of isotropic surfaces and `mdr1d` are refused";
+    let help = "The contact is one of plane strain, and `bem3d` solves it. Pressures do not depend on that width, and the force over the width is \
+                the force per length. Theories of isotropic surfaces and `mdr1d` are refused.";
     let width = number(map.size().y);
     let message = format!(
         "a profile: the body is taken as uniform along y, and forces are those on a width of {width}"
@@ -193,7 +193,7 @@ pub(crate) fn remarks(
             message: format!(
                 "the map is tilted: from edge to edge by {share:.1} times its rms height without the tilt"
             ),
-            help: "its highest corner carries the load: `detrend` by \"plane\", or \"none\" where the tilt is real",
+            help: "Its highest corner then carries the load. Subtract the tilt (`detrend` by \"plane\"), or say that it is real (\"none\").",
         });
     }
     if let Some((row, column, height)) = spike(map) {
@@ -201,8 +201,8 @@ pub(crate) fn remarks(
             message: format!(
                 "the highest point, in row {row}, column {column} (from 0) of the map as solved, stands {height:.0} times the rms height above the mean"
             ),
-            help: "it carries the first load; where it is a spike of the measurement, declare its height (as in the file) as `missing`, and \
-                   say with `fill` or `undefined` what stands there instead",
+            help: "It carries the first load. If it is a spike of the measurement, declare its height (as in the file) as `missing`, and say \
+                   with `fill` or `undefined` what stands there instead.",
         });
     }
     remarks
@@ -217,7 +217,7 @@ pub(crate) fn exchanged_sides(
     let [dx, dy] = swapped(declared, map)?.map(|side| ascii(&amount(side, system.shown("m"))));
     Some(Remark {
         message: format!("cells of {dx} x {dy}: with both sides of `size` exchanged they would be squares"),
-        help: "the first side of `size` is along x, along the columns; ignore this where the cells are oblong",
+        help: "The first side of `size` is along x, the direction of the rows. Ignore this if the cells are really oblong.",
     })
 }
 

@@ -352,7 +352,7 @@ fn read_material(scene: &Entries<'_>, system: System) -> Read<(f64, Option<Pair>
         Some(("modulus", entry)) => {
             let note = Diagnostic::note("`modulus` is read as `contact_modulus`, which is E* of the pair")
                 .at(entry.key_span())
-                .with_help("for Young's modulus and Poisson's ratio write `bodies`");
+                .with_help("To give Young's modulus and Poisson's ratio, write `bodies`.");
             Ok((entry.positive(Dimension::PRESSURE, system)?, None, Some(note)))
         }
         Some((_, entry)) => {

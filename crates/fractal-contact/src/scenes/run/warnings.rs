@@ -1,7 +1,9 @@
 //! Warnings on states that may be wrong although they are solved to the requested tolerance, with remedies.
 
 use crate::scenes::plan::{GridErrors, within};
-use crate::scenes::read::{SceneFile, SceneSurface};
+use crate::scenes::read::{SceneFile, SceneSurface, amount, number};
+use crate::scenes::run::Solved;
+use contact_model::units::{ascii, rounded};
 use contact_model::{ContactState, Coupling, Friction, Hardness, Scene, Surface};
 use serde::{Deserialize, Serialize};
 
@@ -44,42 +46,114 @@ impl Warning {
         Self::Coupling,
     ];
 
-    /// The text in the row of the state, and the remedy.
-    pub fn words(self) -> [&'static str; 2] {
+    /// What stands in the row of the state.
+    pub fn label(self) -> &'static str {
         match self {
-            Self::FewCells => [
-                "fewer than 10 contact cells",
-                "the numbers are those of the grid: a larger load or smaller cells",
-            ],
-            Self::OneCell => [
-                "one cell carries most of the load",
-                "is it a spike of the measurement? `missing = HEIGHT` (as in the file) takes it out; else smaller cells",
-            ],
-            Self::Edge => [
-                "contact at the edge of the rectangle",
-                "the edge decides too: a larger map, a smaller load, `detrend`, or `boundary = \"periodic\"`",
-            ],
-            Self::Yield => [
-                "pressure above the hardness (E*/10 where none is given)",
-                "bodies yield there, and these are elastic: take area and largest pressure as bounds",
-            ],
-            Self::Area => [
-                "area not resolved",
-                "the boundary of the contact is more than a tenth of its area: more cells, neither area is that of small cells",
-            ],
-            Self::Accuracy => [
-                "accuracy not reached",
-                "the columns `_grid_error` have the errors reached: the grid was chosen on surface 0, and other surfaces may need more cells (request an `accuracy` of half the share)",
-            ],
-            Self::Stiffness => [
-                "stiffness not known",
-                "complete contact has no stiffness, and at a jump or a kink of the path none is given: take the difference of neighbouring states",
-            ],
-            Self::Coupling => [
-                "coupling of normal and tangential tractions neglected",
-                "bodies of different compressibility have this coupling (second Dundurs constant not 0): a model with `coupling = \"full\"` solves both together",
-            ],
+            Self::FewCells => "fewer than 10 contact cells",
+            Self::OneCell => "one cell carries most of the load",
+            Self::Edge => "contact at the edge of the rectangle",
+            Self::Yield => "pressure above the hardness (E*/10 where none is given)",
+            Self::Area => "area not resolved",
+            Self::Accuracy => "accuracy not reached",
+            Self::Stiffness => "stiffness not known",
+            Self::Coupling => "coupling of normal and tangential tractions neglected",
         }
+    }
+
+    /// What it means and what to do about it, in full sentences.
+    fn advice(self) -> &'static str {
+        match self {
+            Self::FewCells => {
+                "The numbers are then those of the grid and not of the surface. Use a larger load or smaller cells."
+            }
+            Self::OneCell => {
+                "If it is a spike of the measurement, remove it (`outliers = 8`, or `missing = HEIGHT` with its height as in the file). \
+                 Otherwise use smaller cells."
+            }
+            Self::Edge => {
+                "With a free boundary the edge then decides the answer too. Use a larger map or a smaller load, subtract a tilt \
+                 (`detrend = \"plane\"`), or choose `boundary = \"periodic\"` if the surface is a part of a larger one."
+            }
+            Self::Yield => {
+                "The bodies flow there, but this solution is elastic: the true area is larger and the true pressure is smaller. Give \
+                 the `hardness` in [effects], which limits the pressure."
+            }
+            Self::Area => {
+                "Neither `area` nor `area_corrected` is the area that small cells would give. Use smaller cells; for a measured map \
+                 this means a measurement with smaller pixels."
+            }
+            Self::Accuracy => {
+                "The grid was chosen on the first surface, and other surfaces may need more cells. Request half of the `accuracy`; \
+                 the columns `_grid_error` hold the errors of this grid."
+            }
+            Self::Stiffness => {
+                "Complete contact has none, and at a jump or a kink of a path it is not defined. Take the difference of two \
+                 neighbouring states."
+            }
+            Self::Coupling => {
+                "These bodies differ in their compressibility, so the tractions act on each other (the second Dundurs constant is not 0). \
+                 Use `coupling = \"full\"`, which solves both together."
+            }
+        }
+    }
+
+    /// What a run says of all states that it concerns: how many of the `counted` ones, the worst number among
+    /// them, and what to do.
+    pub fn sentence(self, scene: &SceneFile, concerned: &[&Solved], counted: usize) -> String {
+        let states = match (concerned.len(), counted) {
+            (1, 1) => "In the only state".to_owned(),
+            (count, all) if count == all => format!("In all {all} states"),
+            (count, all) => format!("In {count} of {all} states"),
+        };
+        let worst = |number: &dyn Fn(&Solved) -> Option<f64>| {
+            concerned.iter().filter_map(|solved| number(solved)).reduce(f64::max)
+        };
+        let percent = |share: f64| format!("{} %", number(rounded(100.0 * share, 2)));
+        let pressure = |value: f64| ascii(&amount(value, scene.system.shown("Pa")));
+        let what = match self {
+            Self::FewCells => format!("{states} fewer than 10 cells are in contact."),
+            Self::OneCell => format!("{states} one cell carries most of the load."),
+            Self::Edge => format!("{states} cells at the edge of the rectangle are in contact."),
+            Self::Yield => {
+                let largest = worst(&|solved| Some(solved.state.resolution?.largest_pressure));
+                let largest =
+                    largest.map_or_else(String::new, |value| format!(" (it reaches {})", pressure(value)));
+                if let Some(hardness) = scene.hardness {
+                    format!("{states} the pressure is above the hardness of {}{largest}.", pressure(hardness))
+                } else {
+                    let limit = pressure(YIELD * scene.contact_modulus);
+                    format!(
+                        "{states} the pressure is above a tenth of E*, {limit}{largest}. No hardness is given, and metals flow at less."
+                    )
+                }
+            }
+            Self::Area => {
+                let error = worst(&|solved| Some(solved.grid.as_ref()?.of("area")?.error));
+                let boundary = worst(&|solved| {
+                    let (area, corrected) = (solved.state.area?, solved.state.resolution?.corrected_area?);
+                    Some((area - corrected) / area)
+                });
+                let words = match (error, boundary) {
+                    (Some(error), _) => {
+                        format!("the area has an estimated error of up to {}", percent(error))
+                    }
+                    (None, Some(share)) => {
+                        format!(
+                            "cells at the boundary of the contact are up to {} of its area",
+                            percent(share)
+                        )
+                    }
+                    (None, None) => "the boundary of the contact is more than a tenth of its area".to_owned(),
+                };
+                format!("{states} the grid is too coarse for the contact: {words}.")
+            }
+            Self::Accuracy => format!("{states} the requested accuracy is not reached."),
+            Self::Stiffness => format!("{states} the stiffness is not known."),
+            Self::Coupling => {
+                format!("{states} the coupling of normal and tangential tractions is neglected.")
+            }
+        };
+        format!("{what} {}", self.advice())
     }
 
     /// All warnings that concern a state.
@@ -102,7 +176,7 @@ impl Warning {
 
     /// All warnings as one note; `None` where there are none.
     pub fn note(all: &[Self]) -> Option<String> {
-        let texts: Vec<&str> = all.iter().map(|warning| warning.words()[0]).collect();
+        let texts: Vec<&str> = all.iter().map(|warning| warning.label()).collect();
         (!texts.is_empty()).then(|| texts.join("; "))
     }
 }
@@ -169,8 +243,8 @@ impl StateNotes {
 
     /// The warnings on a state, each followed by a colon and the remedy.
     pub fn of(&self, state: &ContactState) -> Vec<String> {
-        let told = |warning: Warning| warning.words().join(": ");
-        self.0.warnings(state, false).into_iter().map(told).collect()
+        let note = |warning: Warning| format!("{}: {}", warning.label(), warning.advice());
+        self.0.warnings(state, false).into_iter().map(note).collect()
     }
 }
 

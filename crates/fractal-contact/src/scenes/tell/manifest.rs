@@ -1,6 +1,6 @@
 //! `manifest.json`: the whole scene, the versions and options of the run, its cost and the sources to cite.
 
-use crate::scenes::plan::{Cost, FORMAT, Plan};
+use crate::scenes::plan::{Cost, FORMAT, Plan, PredictedFrom};
 use crate::scenes::read::{Result, SceneFile};
 use crate::scenes::run::{Options, SceneOutcome};
 use crate::scenes::tell::columns;
@@ -40,7 +40,7 @@ pub(crate) fn write(
             json!({
                 "name": name,
                 "grid": planned.grid,
-                "predicted": planned.predicted.as_ref().map(cost),
+                "predicted": planned.predicted.as_ref().map(|cost| predicted(cost, plan.predicted_from)),
                 "actual": cost(actual),
                 "field_file_bytes": bytes,
             })
@@ -94,6 +94,18 @@ fn map(map: &surface_io::Description) -> Value {
         "fitted_wavenumbers": map.fitted,
         "spectrum": map.spectrum,
     })
+}
+
+/// A predicted cost, with what it rests on; what is not predicted is null.
+fn predicted(of: &Cost, from: Option<PredictedFrom>) -> Value {
+    let mut value = cost(of);
+    value["from"] = json!(from.map(PredictedFrom::words));
+    if from == Some(PredictedFrom::Sizes) {
+        for unknown in ["applications", "linear_solves"] {
+            value[unknown] = Value::Null;
+        }
+    }
+    value
 }
 
 fn cost(cost: &Cost) -> Value {

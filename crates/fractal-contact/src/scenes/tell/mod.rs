@@ -11,6 +11,7 @@ pub(crate) mod profile_statistics;
 pub(crate) mod report;
 pub(crate) mod result_folder;
 pub(crate) mod smooth_ball;
+pub(crate) mod stated_error;
 pub(crate) mod statistics;
 pub(crate) mod statistics_files;
 pub(crate) mod summary;

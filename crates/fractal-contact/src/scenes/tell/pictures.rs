@@ -304,7 +304,7 @@ fn chart(
         curves,
         logarithmic: !scene.is_history(),
         directed: scene.is_history(),
-        careful: Warning::FewCells.words()[0].to_owned(),
+        careful: Warning::FewCells.label().to_owned(),
     }
     .in_units([x, Axis::Quantity(y)].map(|axis| axis.unit(scene)))
 }

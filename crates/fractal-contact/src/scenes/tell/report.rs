@@ -1,12 +1,12 @@
 //! `report.html`: a run in one page, which needs no network and no other file.
 
-use crate::scenes::plan::{Cost, Plan};
+use crate::scenes::plan::{Cost, Plan, PredictedFrom};
 use crate::scenes::read::{HEIGHTS, Result, SceneFile, number, short, words};
 use crate::scenes::run::{FieldFile, FieldView, SceneOutcome, SolvedUnit, StateRecord, field_pictures};
 use crate::scenes::tell::{MapStatisticsTables, Mean, columns, distributions, page, pictures, summary};
 use analysis::Value;
-use contact_model::FieldQuantity;
 use contact_model::quantities::{Quantity, Role};
+use contact_model::{Boundary, FieldQuantity};
 use maud::{Markup, PreEscaped, html};
 use plots::{Chart, Curve};
 use runs::amounts::{memory, time};
@@ -36,6 +36,7 @@ impl Report<'_> {
         let (curves, fields, distributions) = (self.curves()?, self.fields(out)?, self.distributions()?);
         let spectrum = self.spectrum()?;
         let head = html! {
+            p { (boundary(self.plan.boundary)) }
             @if !self.plan.shows.is_empty() { p.lead { (page::words(&self.plan.shows)) } }
             (self.verdict())
         };
@@ -62,8 +63,8 @@ impl Report<'_> {
         let warnings = self.outcome.notes.len() + self.plan.notes.len();
         html! {
             p.verdict.warned[!fine] {
-                @if fine && states == 1 { "The state asked for was answered and is certified." }
-                @else if fine { "All " (states) " states asked for were answered and are certified." }
+                @if fine && states == 1 { "The requested state was solved and is certified." }
+                @else if fine { "All " (states) " requested states were solved and are certified." }
                 @else { (states) " of " (requested) " states were attempted; " (failed) " of them were refused or missed their tolerance." }
                 @if stopped { " The run was stopped before its end." }
                 @if warnings > 0 { " " a href="#beware" { (warnings) @if warnings == 1 { " thing" } @else { " things" } " to beware of" } "." }
@@ -78,7 +79,7 @@ impl Report<'_> {
                 div.verdict.warned id="beware" {
                     strong { "To beware of" }
                     ul {
-                        @for note in &self.plan.notes { li { (page::words(note.message())) @if let Some(help) = note.help() { ": " (page::words(help)) } } }
+                        @for note in &self.plan.notes { li { (page::words(note.message())) @if let Some(help) = note.help() { ". " (page::words(&sentence(help))) } } }
                         @for note in &self.outcome.notes { li { (page::words(note)) } }
                     }
                 }
@@ -101,6 +102,7 @@ impl Report<'_> {
                     }
                 }
                 @if !model.same.is_empty() { p { "In all states: " (page::unit(&model.same.join(", ").replace('_', " "))) "." } }
+                @if !model.errors.is_empty() { p { (page::words(model.errors)) } }
                 @for line in &model.of_paths { p { (page::unit(&line.replace('_', " "))) "." } }
             }
             p { "All columns, with their meaning and in plain SI, are in results.csv." }
@@ -203,20 +205,22 @@ impl Report<'_> {
     }
 
     fn work(&self) -> Markup {
-        let row = |name: &str, what: &str, cost: &Cost| {
+        let row = |name: &str, what: &str, cost: &Cost, counted: bool| {
+            let count = |of: f64| if counted { number(of.round()) } else { "-".to_owned() };
             html! { tr {
-                td { (name) } td { (what) } td { (time(cost.seconds)) } td { (number(cost.applications.round())) }
-                td { (number(cost.linear_solves.round())) }
+                td { (name) } td { (what) } td { (time(cost.seconds)) } td { (count(cost.applications)) }
+                td { (count(cost.linear_solves)) }
                 td { (number(cost.fields.round())) @if cost.field_bytes > 0.0 { " (" (memory(cost.field_bytes)) ")" } }
             } }
         };
+        let counted = self.plan.predicted_from != Some(PredictedFrom::Sizes);
         html! {
             div.scroll { table {
                 caption { "Time of one thread; earlier runs included" }
                 tr { @for h in ["model", "", "time", "operator applications", "linear solves", "fields"] { th scope="col" { (h) } } }
                 @for (planned, (name, actual, _)) in self.plan.models.iter().zip(&self.outcome.actual) {
-                    @if let Some(cost) = &planned.predicted { (row(words::model_name(name), "planned", cost)) }
-                    (row(words::model_name(name), "actual", actual))
+                    @if let Some(cost) = &planned.predicted { (row(words::model_name(name), "planned", cost, counted)) }
+                    (row(words::model_name(name), "actual", actual, true))
                 }
             } }
             p {
@@ -316,6 +320,24 @@ impl Report<'_> {
         let mut sorted: Vec<&StateRecord> = states.iter().collect();
         sorted.sort_by(|a, b| self.load(b).total_cmp(&self.load(a)));
         sorted
+    }
+}
+
+/// A text that begins like a sentence.
+fn sentence(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+}
+
+/// What lies outside of the rectangle, and what that means.
+fn boundary(boundary: Boundary) -> &'static str {
+    match boundary {
+        Boundary::Periodic => {
+            "The boundary is periodic: the surface is one tile of an endless surface, and its copies carry load too."
+        }
+        _ => {
+            "The boundary is free: the surface is pressed by itself, and nothing outside of its rectangle carries load."
+        }
     }
 }
 

@@ -3,6 +3,7 @@
 
 use crate::scenes::read::{LoadList, LoadRequest, SceneFile, amount, multiple, number, short};
 use crate::scenes::run::{SolvedUnit, StateRecord};
+use crate::scenes::tell::stated_error::{OF_GRID, OF_SOLVER, PLUS_MINUS, relative_error, with_error};
 use crate::scenes::tell::{Mean, columns, ensemble};
 use analysis::Value;
 use contact_model::quantities::{Quantity, Role, Unit};
@@ -29,6 +30,8 @@ pub(crate) struct ModelStates {
     pub left_out: usize,
     /// What is the same in all states, in words.
     pub same: Vec<String>,
+    /// What the numbers behind ± are; empty where there are none.
+    pub errors: &'static str,
     /// What is told of each path as a whole, one line a surface or one of means.
     pub of_paths: Vec<String>,
 }
@@ -73,20 +76,29 @@ impl Head {
 /// The states of each model as aligned text of at most 80 characters a line where the words allow it.
 pub(crate) fn summary(scene: &SceneFile, units: &[SolvedUnit<'_>], means: &[Mean]) -> String {
     let mut text = String::new();
+    // Terminals and fonts without these are still in use, and scenes are written with `um`.
+    let plain = |text: &str| text.replace('µ', "u").replace(PLUS_MINUS, "+-");
     for mut model in of_models(scene, units, means) {
-        // Terminals and fonts without it are still in use, and scenes are written with `um`.
-        model.heads.iter_mut().for_each(|head| head.unit = head.unit.replace('µ', "u"));
+        // A run that was stopped before its first state.
+        if model.rows.is_empty() {
+            continue;
+        }
+        model.heads.iter_mut().for_each(|head| head.unit = plain(&head.unit));
+        model.rows.iter_mut().flatten().for_each(|cell| *cell = plain(cell));
         let brackets = if model.of_surfaces.is_empty() { "" } else { ": " };
-        text += &format!("{}{brackets}{}\n", model.name, model.of_surfaces);
+        text += &runs::folded(&format!("{}{brackets}{}\n", model.name, plain(&model.of_surfaces)));
         text += &table_text(&model.heads, &model.rows);
         if model.left_out > 0 {
             text += &format!("  ... {} more states\n", model.left_out);
         }
         if !model.same.is_empty() {
-            text += &format!("  in all states: {}\n", model.same.join(", ").replace('µ', "u"));
+            text += &runs::folded(&plain(&format!("  in all states: {}\n", model.same.join(", "))));
         }
         for line in model.of_paths {
-            text += &format!("  {}\n", line.replace('µ', "u"));
+            text += &format!("  {}\n", plain(&line));
+        }
+        if !model.errors.is_empty() {
+            text += &runs::folded(&plain(&format!("  {}\n", model.errors)));
         }
     }
     text
@@ -181,7 +193,8 @@ impl From<Option<f64>> for Cell {
     }
 }
 
-/// Every answer that a scene asks for, each with the error of its grid.
+/// Every answer that a scene asks for, each followed by the mean error of its grid, which means over surfaces
+/// have.
 fn shown(scene: &SceneFile) -> Vec<Shown> {
     let mut shown = Vec::new();
     for quantity in columns::asked(scene).filter(|quantity| quantity.role == Role::Answer) {
@@ -230,7 +243,13 @@ impl Shown {
             }
         };
         match value {
-            Value::Number(v) => Cell::Number(v, None),
+            Value::Number(v) => {
+                let error = match self {
+                    Self::Answer(quantity) => relative_error(record, quantity),
+                    Self::GridError(_) => None,
+                };
+                Cell::Number(v, error.map(|error| error * v.abs()))
+            }
             Value::Count(n) => Cell::Word(n.to_string()),
             Value::Text(word) => Cell::Word(word),
             _ => Cell::Nothing,
@@ -274,9 +293,7 @@ fn read_column(unit: &str, cells: &[Cell]) -> (String, Vec<String>) {
     let text = |cell: &Cell| match cell {
         Cell::Nothing => NOTHING.to_owned(),
         Cell::Word(word) => word.clone(),
-        Cell::Number(value, Some(half)) => {
-            format!("{} ± {}", short(factor * value), percent(half / value.abs()))
-        }
+        Cell::Number(value, Some(half)) => with_error(factor * value, factor * half),
         Cell::Number(value, None) => short(factor * value),
     };
     (shown, cells.iter().map(text).collect())
@@ -299,11 +316,11 @@ pub(crate) fn of_models(scene: &SceneFile, units: &[SolvedUnit<'_>], means: &[Me
     let of_model = |name: &'static str| {
         let states = || units.iter().filter(move |unit| unit.model == name).flat_map(|unit| unit.states);
         let means = || means.iter().filter(move |mean| mean.model == name);
-        let column = |of_state: &dyn Fn(&StateRecord) -> Cell,
-                      of_mean: &dyn Fn(&Mean) -> Cell|
-         -> Vec<Cell> {
-            states().filter(|_| means().next().is_none()).map(of_state).chain(means().map(of_mean)).collect()
-        };
+        let averaged = means().next().is_some();
+        let column =
+            |of_state: &dyn Fn(&StateRecord) -> Cell, of_mean: &dyn Fn(&Mean) -> Cell| -> Vec<Cell> {
+                states().filter(|_| !averaged).map(of_state).chain(means().map(of_mean)).collect()
+            };
         let first = if let Some((key, unit)) = prescribed {
             let of_state = |record: &StateRecord| scene.request.prescribed(record.index).into();
             (key, scene.system.unit(unit), column(&of_state, &|mean| mean.prescribed.into()))
@@ -311,7 +328,10 @@ pub(crate) fn of_models(scene: &SceneFile, units: &[SolvedUnit<'_>], means: &[Me
             let step = |index: usize| Cell::Word(index.to_string());
             ("state", "", column(&|record| step(record.index), &|mean| step(mean.state)))
         };
-        let rest = shown.iter().map(|of| {
+        // In a state the error of the grid stands behind its number; behind a mean there is the interval of
+        // the mean.
+        let columns = shown.iter().filter(|of| averaged || matches!(of, Shown::Answer(_)));
+        let rest = columns.map(|of| {
             (of.name(), of.unit(scene), column(&|record| of.of_state(record), &|mean| of.of_mean(mean)))
         });
         let (mut heads, mut kept, mut same) = (Vec::new(), Vec::new(), Vec::new());
@@ -335,6 +355,14 @@ pub(crate) fn of_models(scene: &SceneFile, units: &[SolvedUnit<'_>], means: &[Me
             kept.push(cells);
         }
         let count = kept.first().map_or(0, Vec::len);
+        let compared = states().any(|record| record.solved().is_some_and(|solved| solved.grid.is_some()));
+        let errors = if averaged || !kept.iter().flatten().any(|cell| cell.contains(PLUS_MINUS)) {
+            ""
+        } else if compared {
+            OF_GRID
+        } else {
+            OF_SOLVER
+        };
         ModelStates {
             name,
             of_surfaces: ensemble::words(means()),
@@ -344,6 +372,7 @@ pub(crate) fn of_models(scene: &SceneFile, units: &[SolvedUnit<'_>], means: &[Me
                 .collect(),
             left_out: count.saturating_sub(MOST),
             same,
+            errors,
             of_paths: of_paths(scene, name, units, means().next_back()),
         }
     };
@@ -401,7 +430,7 @@ mod tests {
         let cells = [Cell::Nothing, Cell::Number(-2e-3, Some(1.38e-4)), Cell::Word("a".into())];
         assert_eq!(
             read_column("N", &cells),
-            ("mN".to_owned(), ["-", "-2.000 ± 6.9 %", "a"].map(str::to_owned).to_vec())
+            ("mN".to_owned(), ["-", "-2.00 ± 0.14", "a"].map(str::to_owned).to_vec())
         );
         assert_eq!(read_column("scene", &numbers(&[2e-7])).1, ["2.000e-7"]);
     }
