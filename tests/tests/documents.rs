@@ -130,18 +130,6 @@ fn models_page() -> String {
     )
 }
 
-fn readme() -> String {
-    let effects = |record: &ModelRecord| {
-        let keys: Vec<&str> = record.model.abilities().effects.iter().map(|effect| effect.key()).collect();
-        let mut keys = keys;
-        keys.dedup();
-        keys.join(", ")
-    };
-    let cells =
-        |record: &ModelRecord| vec![format!("`{}`", record.name()), record.about.to_owned(), effects(record)];
-    table(&["model", "what it is", "effects"], MODELS.iter().map(cells))
-}
-
 /// The keys of `[effects]` of a scene.
 fn effects() -> String {
     let cells = |key: &EffectKey| {
@@ -234,7 +222,6 @@ fn documents_follow_from_the_tables() {
     };
     let documents = [
         parts("GLOSSARY.md", &[("quantities", glossary())]),
-        parts("README.md", &[("models", readme())]),
         parts(
             "book/src/scene-file.md",
             &[

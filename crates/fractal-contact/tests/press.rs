@@ -36,6 +36,34 @@ fn program(folder: &Path, arguments: &[&str]) -> (Option<i32>, String, String) {
 }
 
 #[test]
+fn the_first_command_of_the_readme_prints_what_stands_there() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let readme = std::fs::read_to_string(root.join("README.md")).unwrap();
+    let block = |language: &str| {
+        let (_, rest) = readme.split_once(&format!("```{language}\n")).unwrap();
+        rest.split_once("```").unwrap().0.to_owned()
+    };
+    let map = root.join("data/scenes/polished.x3p");
+    let arguments = [
+        "press",
+        map.to_str().unwrap(),
+        "--bodies",
+        "210 GPa 0.3, 210 GPa 0.3",
+        "--pressure",
+        "2 MPa,5 MPa,20 MPa",
+    ];
+    let command = block("sh");
+    for argument in &arguments[2..] {
+        assert!(command.contains(argument), "{command}");
+    }
+    assert!(command.contains("press data/scenes/polished.x3p"), "{command}");
+    let dir = tempfile::tempdir().unwrap();
+    let (code, told, notes) = program(dir.path(), &arguments);
+    assert_eq!(code, Some(0), "{notes}");
+    assert_eq!(told, block("text"));
+}
+
+#[test]
 fn what_is_missing_is_asked_for_at_once_and_the_command_told_does_it() {
     let dir = folder();
     let (code, _, said) = program(dir.path(), &["press", "holes.txt"]);
