@@ -10,8 +10,8 @@ use contact_model::units::{rounded, short};
 /// `+-`.
 pub(crate) const PLUS_MINUS: &str = "±";
 /// What the numbers behind it are where grids are compared, and where they are not.
-pub(crate) const OF_GRID: &str = "The number behind ± is the estimated error of the grid and of the solver. A number without \
-                                 it has no such estimate, or an error below its last digit.";
+pub(crate) const OF_GRID: &str = "The number behind ± is the estimated error of the grid and of the solver. Without ± \
+                                 no error is estimated, or it does not change the digits shown.";
 pub(crate) const OF_SOLVER: &str = "The number behind ± is the estimated error of the solver on these cells. It does not \
                                    contain the error of the grid, which `grid_error = true` in [outputs] estimates.";
 
