@@ -5,6 +5,8 @@
 
 #![allow(clippy::needless_pass_by_value)] // Arguments of Python functions come as values.
 #![allow(clippy::unnecessary_wraps)]
+#![allow(clippy::format_push_string)]
+#![allow(missing_debug_implementations)] // Python prints its objects by their `__repr__`.
 
 mod contact;
 mod ensemble;

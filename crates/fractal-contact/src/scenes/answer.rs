@@ -3,7 +3,7 @@
 use crate::scenes::plan::{Cost, ModelOnSurface, ModelPlan, Plan, SharedStop, calibration};
 use crate::scenes::read::{Result, SceneFile, System, effect_lines, number, words};
 use crate::scenes::run::{
-    Answer, ModelResult, Options, SceneOutcome, Solved, SolvedUnit, Warning, field_pictures, scene_jobs,
+    Answer, Concerned, ModelResult, Options, SceneOutcome, SolvedUnit, Warning, field_pictures, scene_jobs,
     units,
 };
 use crate::scenes::tell::{
@@ -161,7 +161,7 @@ fn count(
     options: &Options,
     outcome: &mut SceneOutcome,
 ) {
-    let mut warned: [Vec<&Solved>; Warning::ALL.len()] = Default::default();
+    let mut warned: [Vec<Concerned<'_>>; Warning::ALL.len()] = Default::default();
     // A formula has no cells that a warning could be about.
     let mut counted = 0;
     let mut missed: Vec<String> = Vec::new();
@@ -194,7 +194,7 @@ fn count(
                         missed.push(format!("{}: {error}", record.words(scene)));
                     }
                     for &warning in &solved.warnings {
-                        warned[warning as usize].push(solved);
+                        warned[warning as usize].push((&solved.state, solved.grid.as_ref()));
                     }
                 }
             }

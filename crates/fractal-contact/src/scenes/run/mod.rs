@@ -16,4 +16,4 @@ pub(crate) use scene_job::{scene_jobs, units};
 pub(crate) use state_result::{
     Answer, FieldFile, ModelResult, Solved, SolvedUnit, StateRecord, StoredFile, field_of_file,
 };
-pub(crate) use warnings::{Warning, rests_on_few_cells};
+pub(crate) use warnings::{Concerned, Warning, rests_on_few_cells};

@@ -2,7 +2,6 @@
 
 use crate::scenes::plan::{GridErrors, within};
 use crate::scenes::read::{SceneFile, SceneSurface, amount, number};
-use crate::scenes::run::Solved;
 use contact_model::units::{ascii, rounded};
 use contact_model::{ContactState, Coupling, Friction, Hardness, Scene, Surface};
 use serde::{Deserialize, Serialize};
@@ -20,6 +19,9 @@ const YIELD: f64 = 0.1;
 pub(crate) fn rests_on_few_cells(state: &ContactState) -> bool {
     state.report.contact_cells.is_some_and(|cells| (1..FEW_CELLS).contains(&cells))
 }
+
+/// A state that a warning concerns, and its discretisation errors where they were estimated.
+pub(crate) type Concerned<'a> = (&'a ContactState, Option<&'a GridErrors>);
 
 /// A warning on a state.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -99,14 +101,14 @@ impl Warning {
 
     /// What a run says of all states that it concerns: how many of the `counted` ones, the worst number among
     /// them, and what to do.
-    pub fn sentence(self, scene: &SceneFile, concerned: &[&Solved], counted: usize) -> String {
+    pub fn sentence(self, scene: &SceneFile, concerned: &[Concerned<'_>], counted: usize) -> String {
         let states = match (concerned.len(), counted) {
             (1, 1) => "In the only state".to_owned(),
             (count, all) if count == all => format!("In all {all} states"),
             (count, all) => format!("In {count} of {all} states"),
         };
-        let worst = |number: &dyn Fn(&Solved) -> Option<f64>| {
-            concerned.iter().filter_map(|solved| number(solved)).reduce(f64::max)
+        let worst = |number: &dyn Fn(&Concerned<'_>) -> Option<f64>| {
+            concerned.iter().filter_map(number).reduce(f64::max)
         };
         let percent = |share: f64| format!("{} %", number(rounded(100.0 * share, 2)));
         let pressure = |value: f64| ascii(&amount(value, scene.system.shown("Pa")));
@@ -115,7 +117,7 @@ impl Warning {
             Self::OneCell => format!("{states} one cell carries most of the load."),
             Self::Edge => format!("{states} cells at the edge of the rectangle are in contact."),
             Self::Yield => {
-                let largest = worst(&|solved| Some(solved.state.resolution?.largest_pressure));
+                let largest = worst(&|(state, _)| Some(state.resolution?.largest_pressure));
                 let largest =
                     largest.map_or_else(String::new, |value| format!(" (it reaches {})", pressure(value)));
                 if let Some(hardness) = scene.hardness {
@@ -128,9 +130,9 @@ impl Warning {
                 }
             }
             Self::Area => {
-                let error = worst(&|solved| Some(solved.grid.as_ref()?.of("area")?.error));
-                let boundary = worst(&|solved| {
-                    let (area, corrected) = (solved.state.area?, solved.state.resolution?.corrected_area?);
+                let error = worst(&|(_, errors)| Some(errors.as_ref()?.of("area")?.error));
+                let boundary = worst(&|(state, _)| {
+                    let (area, corrected) = (state.area?, state.resolution?.corrected_area?);
                     Some((area - corrected) / area)
                 });
                 let words = match (error, boundary) {
