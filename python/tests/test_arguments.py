@@ -52,7 +52,9 @@ def test_any_iterable_of_numbers_is_taken(values):
     for of in (lambda it: it, iter, lambda it: (value for value in it)):
         assert [state.force for state in CONTACT.sweep(force=of(values))] == pytest.approx([0.5, 1.0])
         assert [state.force for state in CONTACT.follow(force=of(values))] == pytest.approx([0.5, 1.0])
-        states = fc.ensemble(fc.PowerLaw(), fc.Scene(ROUGH, contact_modulus=1.0), seed=1, surfaces=1, force_bar=of(values))
+        states = fc.ensemble(
+            fc.PowerLaw(), fc.Scene(ROUGH, contact_modulus=1.0), seed=1, surfaces=1, force_bar=of(values)
+        )
         assert len(states[0]) == 2
     assert list(CONTACT.sweep(force=[])) == []
 
@@ -260,7 +262,9 @@ def test_outputs_default_to_what_the_model_can():
     assert fc.Bem3d(cells=16).prepare(fc.Scene(SPHERE, contact_modulus=1.0)).solve(force=0.01).stiffness > 0
     # What is asked for is not left out.
     with pytest.raises(fc.Unsupported, match="stiffness"):
-        fc.Viscoelastic().prepare(fc.Scene(SPHERE, contact_modulus=1.0, effects={"rheology": solid}, outputs=["stiffness"]))
+        fc.Viscoelastic().prepare(
+            fc.Scene(SPHERE, contact_modulus=1.0, effects={"rheology": solid}, outputs=["stiffness"])
+        )
     # Another lack is told as it is.
     with pytest.raises(fc.Unsupported, match="rheology of Maxwell"):
         fc.Hertz().prepare(creeping)

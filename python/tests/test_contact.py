@@ -198,7 +198,9 @@ def test_ensembles_are_the_surfaces_of_rust():
 
 
 def test_conductance_and_patches():
-    scene = fc.Scene(rough(), contact_modulus=1.0, outputs=["area", "contact_patches"], conductance=("electrical", 1.0, 1.0))
+    scene = fc.Scene(
+        rough(), contact_modulus=1.0, outputs=["area", "contact_patches"], conductance=("electrical", 1.0, 1.0)
+    )
     state = fc.Bem3d().prepare(scene).solve(force=0.01)
     assert state.patches.sum() == pytest.approx(state.area) and np.all(np.diff(state.patches) <= 0)
     assert state.conductance > 0 and state.stiffness is None

@@ -83,7 +83,9 @@ def test_numbers_of_effects_are_properties():
 
 
 def test_what_attracts_is_a_tension():
-    scene = fc.Scene(SPHERE, contact_modulus=1.0, effects={"adhesion": EXPONENTIAL}, outputs=["pressure", "gap", "area"])
+    scene = fc.Scene(
+        SPHERE, contact_modulus=1.0, effects={"adhesion": EXPONENTIAL}, outputs=["pressure", "gap", "area"]
+    )
     state = fc.Bem3d(cells=64, tolerance=1e-7).prepare(scene).solve(approach=0.01)
     open_, cell = state.gap > 1e-6, 1.0 / 64**2
     assert state.pressure.sum() * cell == pytest.approx(state.force)
@@ -169,7 +171,9 @@ def test_steps_by_approach_and_mean_pressure_may_pull():
 def test_a_sphere_jumps_into_contact_and_off():
     # Tabor's parameter is 1.7: between a jump in and a jump off both branches are stable.
     law = {"work": WORK, "range": 0.006}
-    scene = fc.Scene(fc.Surface.sphere(radius=1.0, size=0.8), contact_modulus=1.0, effects={"adhesion": law}, outputs=["area"])
+    scene = fc.Scene(
+        fc.Surface.sphere(radius=1.0, size=0.8), contact_modulus=1.0, effects={"adhesion": law}, outputs=["area"]
+    )
     path = fc.Bem3d(cells=128, tolerance=1e-5).prepare(scene)
     approach = np.linspace(-0.04, 0.02, 25)
     nearer, apart = (fc.table(path.follow(approach=steps)) for steps in (approach, approach[::-1]))
@@ -491,7 +495,9 @@ def test_effects_are_values():
     assert effects.adhesion == EXPONENTIAL and fc.Effects(hardness=1.0) != fc.Effects(hardness=2.0)
     scene = fc.Scene(SPHERE, contact_modulus=1.0, effects=effects)
     assert (
-        pickle.loads(pickle.dumps(scene)) == scene == fc.Scene(SPHERE, contact_modulus=1.0, effects={"adhesion": EXPONENTIAL})
+        pickle.loads(pickle.dumps(scene))
+        == scene
+        == fc.Scene(SPHERE, contact_modulus=1.0, effects={"adhesion": EXPONENTIAL})
     )
 
 
@@ -598,7 +604,9 @@ def test_closed_forms_of_adhesion():
     effects = {"boundary": "periodic", "adhesion": 1e-4}
     state = fc.AdhesiveWave().prepare(fc.Scene(wave, contact_modulus=1.0, effects=effects)).solve(mean_pressure=-1e-4)
     assert state.force == pytest.approx(-1e-4) and state.branch is None
-    dry = fc.Westergaard().prepare(fc.Scene(wave, contact_modulus=1.0, effects={"boundary": "periodic"}, outputs=["area"]))
+    dry = fc.Westergaard().prepare(
+        fc.Scene(wave, contact_modulus=1.0, effects={"boundary": "periodic"}, outputs=["area"])
+    )
     sticky = fc.AdhesiveWave().prepare(fc.Scene(wave, contact_modulus=1.0, effects=effects, outputs=["area"]))
     assert sticky.solve(mean_pressure=1e-3).area > dry.solve(mean_pressure=1e-3).area
 

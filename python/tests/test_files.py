@@ -170,7 +170,9 @@ def test_scenes_are_run_as_by_the_program(tmp_path):
     assert again.kept == 3
     # The same physics by hand: the same bits.
     scene = fc.Scene(
-        fc.Surface.self_affine(fractal_dimension=2.4, size=1e-3, rms_height=1e-6), contact_modulus=100e9, outputs=["stiffness"]
+        fc.Surface.self_affine(fractal_dimension=2.4, size=1e-3, rms_height=1e-6),
+        contact_modulus=100e9,
+        outputs=["stiffness"],
     )
     contact = fc.Bem3d(cells=65).prepare(scene, seed=fc.surface_gen.surface_seed(3, 0))
     forces = [contact.normalisation.force(force_bar) for force_bar in (0.01, 0.1, 1.0)]
@@ -219,7 +221,9 @@ def test_a_sweep_has_the_bits_of_rust():
     told = subprocess.run([program], check=True, capture_output=True, text=True).stdout.splitlines()
     rough = fc.Surface.self_affine(fractal_dimension=2.4, size=1.0, rms_height=0.01)
     heights = fc.surface_gen.self_affine_map(rough, 129, fc.surface_gen.surface_seed(7, 3))
-    contact = fc.Bem3d(tolerance=1e-8).prepare(fc.Scene(heights, contact_modulus=1.0, outputs=["stiffness", "pressure"]))
+    contact = fc.Bem3d(tolerance=1e-8).prepare(
+        fc.Scene(heights, contact_modulus=1.0, outputs=["stiffness", "pressure"])
+    )
     assert len(told) == 20
     for i, line in enumerate(told):
         expected = [np.uint64(int(bits, 16)).view(np.float64) for bits in line.split()]

@@ -104,7 +104,9 @@ def test_errors_are_pickled():
 def measured(cells):
     surface = rough(cells)
     told = fc.statistics.power_spectrum(surface)["density"].sum(), fc.surface_gen.twin(surface, 3).rms_height
-    theory = fc.Persson().prepare(fc.Scene(surface, contact_modulus=1.0, outputs=["area"], effects={"boundary": "periodic"}))
+    theory = fc.Persson().prepare(
+        fc.Scene(surface, contact_modulus=1.0, outputs=["area"], effects={"boundary": "periodic"})
+    )
     return (*told, theory.solve(force=0.01).area, fc.statistics.parameters(surface)["Sal"])
 
 
@@ -214,7 +216,12 @@ def test_an_exception_of_a_callback_ends_an_ensemble():
 
     with pytest.raises(RuntimeError, match="enough") as caught:
         fc.ensemble(
-            fc.Bem3d(cells=129), fc.Scene(surface, contact_modulus=1.0), seed=1, surfaces=2000, force_bar=[1.0], progress=fail
+            fc.Bem3d(cells=129),
+            fc.Scene(surface, contact_modulus=1.0),
+            seed=1,
+            surfaces=2000,
+            force_bar=[1.0],
+            progress=fail,
         )
     # What was done is not lost.
     finished = caught.value.finished
@@ -333,7 +340,9 @@ def resident():
 
 @pytest.mark.skipif(not os.path.exists("/proc/self/statm"), reason="no /proc")
 def test_memory_stays_flat_over_ten_thousand_solves():
-    contact = fc.Bem3d().prepare(fc.Scene(rough(17), contact_modulus=1.0, outputs=["pressure", "gap", "contact_patches"]))
+    contact = fc.Bem3d().prepare(
+        fc.Scene(rough(17), contact_modulus=1.0, outputs=["pressure", "gap", "contact_patches"])
+    )
 
     def solve(count):
         for i in range(count):

@@ -99,7 +99,8 @@ def work(number):
         for i in range(20):
             contacts[i % 2].solve(force=0.01 * (1 + i % 3))
     else:
-        states = fc.ensemble(fc.Bem3d(cells=129), fc.Scene(surface, contact_modulus=1.0), seed=1, surfaces=8, force=[0.1])
+        scene = fc.Scene(surface, contact_modulus=1.0)
+        states = fc.ensemble(fc.Bem3d(cells=129), scene, seed=1, surfaces=8, force=[0.1])
         assert len(states) == 8
 
 in_threads(6, work)

@@ -278,8 +278,8 @@ class Scene:
             if contact_modulus is not None:
                 raise TypeError("give contact_modulus, or modulus under its former name, not both")
             warnings.warn(
-                "`modulus` is read as `contact_modulus`, which is E* of the pair: for Young's modulus and Poisson's ratio "
-                "give `bodies`",
+                "`modulus` is read as `contact_modulus`, which is E* of the pair: for Young's modulus and Poisson's "
+                "ratio give `bodies`",
                 FutureWarning,
                 stacklevel=2,
             )
