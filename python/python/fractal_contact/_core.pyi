@@ -293,14 +293,14 @@ class ContactState:
         """
     @property
     def stick_area(self) -> float | None:
-        """float or None: stick area, area of the contact whose traction is below what friction can hold [m^2]."""
+        """float or None: stick area, area of the contact whose traction is below the limit of friction [m^2]."""
     @property
     def slip_area(self) -> float | None:
-        """float or None: slip area, area of the contact whose traction is what friction can hold [m^2]."""
+        """float or None: slip area, area of the contact whose traction is at the limit of friction [m^2]."""
     @property
     def tangential_stiffness(self) -> float | None:
-        """float or None: tangential stiffness, dQ_x/ddelta_x along the branch of states, the pressures held: what
-        sticks goes on sticking, what slips goes on slipping [N/m].
+        """float or None: tangential stiffness, dQ_x/ddelta_x along the branch of states at fixed pressures: cells
+        that stick continue to stick, cells that slip continue to slip [N/m].
         """
     @property
     def tangential_stiffness_xy(self) -> float | None:
@@ -323,7 +323,7 @@ class ContactState:
         """float or None: tangential stiffness along y, sticking, dQ_y/ddelta_y of the same [N/m]."""
     @property
     def stick_radius(self) -> float | None:
-        """float or None: stick radius, inside it nothing slips [m]."""
+        """float or None: stick radius, radius inside which nothing slips [m]."""
     @property
     def dissipated(self) -> float | None:
         """float or None: energy dissipated by friction, energy lost to friction since the first step [J]."""
@@ -354,7 +354,7 @@ class ContactState:
         """
     @property
     def pull_off_error(self) -> float | None:
-        """float or None: error of the largest pull, what the steps of the path leave open: the pull-off force is at
+        """float or None: error of the largest pull, upper bound of the remaining error: the pull-off force is at
         most pull_off + pull_off_error; empty where no load is beyond it [N].
         """
     @property
@@ -373,7 +373,7 @@ class ContactState:
         """float or None: k/(1.1419 E* L) of this stiffness, L = sqrt(Lx Ly)."""
     @property
     def stiffness_fixed_area(self) -> float | None:
-        """float or None: stiffness of the held area, stiffness of the whole contact area, held (periodic: -dF/d(mean
+        """float or None: stiffness at fixed contact area: all cells in contact stay bonded (periodic: -dF/d(mean
         gap)) [N/m].
         """
     @property
@@ -381,18 +381,18 @@ class ContactState:
         """float or None: real contact area [m^2]."""
     @property
     def area_corrected(self) -> float | None:
-        """float or None: corrected area, area less what cells add at its boundary (Yastrebov et al. 2017) [m^2]."""
+        """float or None: corrected area, area corrected for the cells at its boundary (Yastrebov et al. 2017) [m^2]."""
     @property
     def contact_fraction(self) -> float | None:
         """float or None: contact fraction, A/(Lx Ly), undefined points included."""
     @property
     def conductance(self) -> float | None:
-        """float or None: conductance, 2 k/(E* (rho_1 + rho_2)) with the stiffness of the whole contact area, held
-        (Barber) [S, W/K].
+        """float or None: conductance, 2 k/(E* (rho_1 + rho_2)) with the stiffness at fixed contact area (Barber) [S,
+        W/K].
         """
     @property
     def largest_patch(self) -> float | None:
-        """float or None: area of the largest contact, area of the largest [m^2]."""
+        """float or None: area of the largest contact, area of the largest patch [m^2]."""
     @property
     def largest_pressure(self) -> float | None:
         """float or None: largest pressure, of a cell; grows with smaller cells until they resolve the shortest wave,
@@ -403,10 +403,12 @@ class ContactState:
         """str: status, how the solve ended."""
     @property
     def strategy(self) -> str:
-        """str: strategy, which way the solver took."""
+        """str: strategy, method that the solver used."""
     @property
     def contact_cells(self) -> int | None:
-        """int or None: contact cells, cells or elements in contact; fewer than 10 are the grid's own."""
+        """int or None: contact cells, cells or elements in contact; with fewer than 10 the result depends on the
+        grid.
+        """
     @property
     def iterations(self) -> int:
         """int: iterations, of the linear solvers."""
@@ -421,7 +423,7 @@ class ContactState:
         """int: fields over the grid that the state holds."""
     @property
     def field_bytes(self) -> int:
-        """int: bytes of fields, their bytes."""
+        """int: bytes of fields, bytes of these fields."""
     @property
     def duality_gap(self) -> float:
         """float: duality gap, sum p (g - min g)/(F s)."""
@@ -433,7 +435,7 @@ class ContactState:
         """float: complementarity, sum p |g|/(F s)."""
     @property
     def load_error(self) -> float:
-        """float: load error, |F - F_asked|/F_asked; of a mean gap its miss over s."""
+        """float: load error, |F - F_prescribed|/F_prescribed; of a mean gap its error over s."""
     @property
     def force_error(self) -> float | None:
         """float or None: bound of the relative error of the force under a prescribed approach or mean gap; an
@@ -451,7 +453,7 @@ class ContactState:
         """
     @property
     def tangential_load_error(self) -> float | None:
-        """float or None: tangential load error, |Q - Q_asked|/(mu F), solved cell by cell."""
+        """float or None: tangential load error, |Q - Q_prescribed|/(mu F), solved cell by cell."""
     @property
     def tangential_stiffness_error(self) -> float | None:
         """float or None: estimated relative error of the tangential stiffness."""
