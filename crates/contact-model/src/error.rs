@@ -38,7 +38,7 @@ pub enum Error {
     Unsupported {
         /// Name of the model ([`crate::ContactModel::name`]).
         model: &'static str,
-        /// What was requested of it.
+        /// The effect, load or output that was requested.
         what: Cow<'static, str>,
     },
     /// A load lies outside the range in which the model holds.

@@ -44,7 +44,7 @@ pub fn command() -> clap::Command {
     })
 }
 
-/// What `press` and `new` subtract from a map where no flag says it.
+/// The default of `--detrend` in `press` and `new`: the tilt of the map is subtracted.
 pub const PRESS_DETREND: surface_io::Detrend = surface_io::Detrend::Plane;
 
 const AFTER: &str = "\

@@ -217,7 +217,7 @@ fn written(folder: &Path, files: &[PathBuf]) -> String {
     format!("{}, and beside it {}\n", folder.join(REPORT).display(), named.join(", "))
 }
 
-/// What tells how far a run is.
+/// The progress of a run, on the terminal or not at all.
 fn reporter(verbose: bool) -> runs::Reporter {
     if verbose { runs::Reporter::new() } else { runs::Reporter::quiet() }
 }
@@ -257,7 +257,7 @@ fn run_scene(path: &Path, options: &Options, verbose: bool) -> Result<ExitCode> 
     Ok(how_it_went(&outcome))
 }
 
-/// What a run took, beside what was predicted.
+/// The cost of a run: time, work and memory, beside the prediction.
 fn say_costs(plan: &Plan, outcome: &SceneOutcome) {
     for (planned, (name, actual, bytes)) in plan.models.iter().zip(&outcome.actual) {
         runs::err!("{name}");
