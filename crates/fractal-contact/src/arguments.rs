@@ -312,7 +312,7 @@ pub struct PressArguments {
     /// Approaches of the bodies, counted from first touch, such as "10 nm,100 nm".
     #[arg(long, value_name = "LIST")]
     approach: Option<String>,
-    /// What lies outside of the map. With a free boundary nothing there carries load. With a periodic
+    /// Boundary of the map. With a free boundary nothing outside the map carries load. With a periodic
     /// boundary the map is one tile of an endless surface.
     #[arg(long, default_value = "free", value_parser = ["free", "periodic"])]
     pub boundary: String,
@@ -350,7 +350,7 @@ impl PressArguments {
         self.more.clone().options()
     }
 
-    /// What is subtracted from the map, in the word of a scene.
+    /// The fit that is subtracted from the map, in the word of a scene.
     pub fn detrend(&self) -> &'static str {
         self.more.detrend.word()
     }

@@ -255,10 +255,9 @@ impl FieldPicture<'_> {
         let mut distance: Vec<usize> =
             all.clone().map(|i| if !self.contact.is_empty() && touches(i) { 0 } else { FAR }).collect();
         for ring in 1..=OUTLINE_WIDTH {
-            let reached = |i: &usize| distance[*i] == FAR && around(*i).any(|j| distance[j] == ring - 1);
-            let reached: Vec<usize> = all.clone().filter(reached).collect();
-            for i in reached {
-                distance[i] = ring;
+            let reached = all.clone().filter(|i| distance[*i] == ring - 1).flat_map(around);
+            for i in reached.collect::<Vec<_>>() {
+                distance[i] = distance[i].min(ring);
             }
         }
         let pixel = |i: usize| match distance[i] {
