@@ -5,8 +5,8 @@ use analytic::CattaneoMindlin;
 use approx::assert_relative_eq;
 use bem3d::Bem3d;
 use contact_model::{
-    Body, Boundary, ContactModel, ContactState, Coupling, Effects, Error, Friction, Load, Outputs, Pair,
-    PreparedContact, Scene, SelfAffine, Step, StickSlip, Surface, Tangential,
+    Body, Boundary, ContactModel, ContactState, Coupling, Effects, Error, Friction, HeightMap, Load, Outputs,
+    Pair, PreparedContact, Scene, SelfAffine, Step, StickSlip, Surface, Tangential,
 };
 
 const MU: f64 = 0.3;
@@ -225,6 +225,35 @@ fn the_stiffness_of_the_branch_is_a_difference_quotient() {
     let found = [0, 1].map(|i| k[i][0] * moved[0] + k[i][1] * moved[1]);
     assert_relative_eq!(found[0], h * MU * force, max_relative = 0.01);
     assert!(found[1].abs() < 0.01 * h * MU * force, "{found:?}");
+}
+
+/// The force after a reversal of 40 nm is the same whether the ball has slid 10 mm before or 0.1 mm: the
+/// accuracy of an increment does not depend on what lies behind.
+#[test]
+fn a_reversal_forgets_how_far_the_contact_has_slid() {
+    let steel = Body::Elastic { young: 210e9, poisson: 0.3 };
+    let ball = Surface::Heights(
+        HeightMap::from_fn(65, 200e-6, |ix, iy| {
+            let [x, y] = [ix, iy].map(|i| (i as f64 - 32.0) * 200e-6 / 65.0);
+            -(x * x + y * y) / (2.0 * 10e-3)
+        })
+        .unwrap()
+        .into(),
+    );
+    let scene = scene(ball, Pair { first: steel, second: steel }, Outputs::default());
+    let model = Bem3d { cells: 65, ..Bem3d::default() };
+    let forces = [1e-4, 1e-2].map(|slid: f64| {
+        let mut contact = model.prepare(&scene, 0).unwrap();
+        let mut found = None;
+        for (time, delta) in [(0.0, 0.0), (1.0, slid), (2.0, slid - 40e-9)] {
+            let tangential = Tangential::Displacement([delta, 0.0]);
+            let state = advance(&mut *contact, Step { time, normal: Load::Force(1.0), tangential });
+            found = Some(state.tangential.unwrap().force[0]);
+        }
+        found.unwrap()
+    });
+    assert!(forces[0] > 0.0 && forces[0] < MU);
+    assert_relative_eq!(forces[0], forces[1], max_relative = 1e-5);
 }
 
 /// In full contact with periodic boundaries a uniform traction causes no displacement: there is nothing to

@@ -509,8 +509,9 @@ pub struct Certificate {
     /// Largest difference between the attractive traction of a cell and that of the law of adhesion at its
     /// gap, over `work/range`; `None` without adhesion of finite range.
     pub equilibrium: Option<f64>,
-    /// `sum (mu p |w| - w . q) / (mu F |delta|)`, with the slip w of the last step and the tangential
-    /// displacement delta (the largest displacement that slip is counted from, where that is larger): the
+    /// `sum (mu p |w| - w . q) / (mu F |delta - m|)`, with the slip w of the last step, the tangential
+    /// displacement delta and the mean m, weighted by the pressure, of the displacements that the slip of the
+    /// cells is counted from (the largest difference of one of them from m, where that is larger): the
     /// duality gap of the convex programme of one step of friction. Half the square of the error of the
     /// tractions, in the norm of their elastic energy, is at most the gap. 0 without displacement; `None`
     /// without friction, and for models that do not solve it cell by cell.

@@ -52,8 +52,9 @@ pub struct Sliding {
     pub slip: Vec<f64>,
     /// Tangential displacement of the bodies.
     pub displacement: [f64; 2],
-    /// `sum(b |w| - q . w)` with the exact operator, relative to `sum(b)` times the larger of `|delta|` and of the
-    /// largest reference.
+    /// `sum(b |w| - q . w)` with the exact operator, relative to `sum(b)` times the larger of `|delta - m|` and of the
+    /// largest `|reference - m|`, m the mean of the references weighted by the limits. How far the bodies have slid
+    /// before, which is in delta and in the references alike, is not in it.
     pub duality_gap: f64,
     /// Difference of the force from the prescribed one, over the largest force.
     pub load_error: f64,
@@ -165,9 +166,40 @@ pub fn solve(
     if largest(increment.limit) <= 0.0 {
         return free(increment);
     }
-    in_units(increment, start, |increment, start| {
-        Solver::new(operators, room, increment, start, limits).iterate(stop)
+    from_mean(increment, |increment| {
+        in_units(increment, start, |increment, start| {
+            Solver::new(operators, room, increment, start, limits).iterate(stop)
+        })
     })
+}
+
+/// Solves with displacements and references that are counted from the mean reference, weighted by the limits.
+/// Only their difference is in the conditions, and after long slip both are much larger than it.
+fn from_mean(increment: Increment<'_>, solve: impl FnOnce(Increment<'_>) -> Sliding) -> Sliding {
+    let Increment { limit, reference, control, displacement, .. } = increment;
+    let (n, most) = (limit.len(), sum(limit));
+    let mean: [f64; 2] = std::array::from_fn(|component| dot(limit, &reference[component * n..][..n]) / most);
+    if !(mean[0].is_finite() && mean[1].is_finite()) || length(mean) <= 0.0 {
+        return solve(increment);
+    }
+    let from = |[x, y]: [f64; 2]| [x - mean[0], y - mean[1]];
+    let mut less = reference.to_vec();
+    for (less, mean) in less.chunks_exact_mut(n).zip(mean) {
+        each(less, |r| *r -= mean);
+    }
+    let displacement = from(displacement);
+    match control {
+        TangentialControl::Displacement(delta) => {
+            let control = TangentialControl::Displacement(from(delta));
+            let found = solve(Increment { reference: &less, control, displacement, ..increment });
+            Sliding { displacement: delta, ..found }
+        }
+        TangentialControl::Force(_) => {
+            let found = solve(Increment { reference: &less, displacement, ..increment });
+            let [x, y] = found.displacement;
+            Sliding { displacement: [x + mean[0], y + mean[1]], ..found }
+        }
+    }
 }
 
 /// Solves in units of about the largest limit, a power of two.
