@@ -7,6 +7,8 @@ use bem3d::{
     Adhesion, AdhesionLaw, Bem3d, Boundary, ContactModel, ContactState, Friction, Hardness, Load, Pair,
     PathMemory, PreparedContact, Scene, SelfAffine, Step, Surface, Tangential,
 };
+use contact_model::{Error, never};
+use std::cell::Cell;
 
 fn rough(hurst: f64, rms: f64) -> Surface {
     Surface::SelfAffine(SelfAffine::new(3.0 - hurst, 1.0, rms).unwrap())
@@ -40,6 +42,51 @@ fn check(name: &str, scene: &Scene, cells: usize, path: &[Step]) {
     }
 }
 
+/// Follows a path that is asked to stop at some poll, for polls from the first to the last one, each later than
+/// the one before by a share `1/finer` of it. The path then stands where the last finished step left it, and
+/// goes on to the states of the path that nobody stopped.
+fn stop_anywhere(name: &str, scene: &Scene, (cells, finer): (usize, usize), path: &[Step]) {
+    let mut contact = prepare(scene, cells);
+    let mut states: Vec<ContactState> = Vec::new();
+    let mut memories = Vec::new();
+    for step in path {
+        states.push(contact.advance(*step).unwrap());
+        memories.push(contact.memory().unwrap());
+    }
+    let (mut polls, mut stops) = (0_usize, 0);
+    loop {
+        let mut contact = prepare(scene, cells);
+        let left = Cell::new(polls);
+        let stop = || left.replace(left.get().saturating_sub(1)) == 0;
+        let mut stopped = false;
+        for (i, step) in path.iter().enumerate() {
+            let mut found = contact.advance_until(*step, if stopped { &never } else { &stop });
+            if let Err(Error::Stopped { best }) = &found {
+                if let Some(best) = best {
+                    let tangential = best.tangential.as_ref();
+                    assert!(
+                        best.stiffness.is_none() && best.stiffness_fixed_area.is_none(),
+                        "{name}: {polls}"
+                    );
+                    assert!(tangential.is_none_or(|t| t.stiffness.is_none()), "{name}: {polls}");
+                }
+                if i > 0 {
+                    assert_eq!(contact.memory().unwrap(), memories[i - 1], "{name}: poll {polls}, step {i}");
+                }
+                stopped = true;
+                found = contact.advance(*step);
+            }
+            assert_eq!(found.unwrap(), states[i], "{name}: poll {polls}, step {i}");
+        }
+        if !stopped {
+            break;
+        }
+        stops += 1;
+        polls += 1 + polls / finer;
+    }
+    assert!(stops >= path.len(), "{name}: {stops} stops in {polls} polls");
+}
+
 fn normal(loads: impl IntoIterator<Item = Load>) -> Vec<Step> {
     loads.into_iter().enumerate().map(|(i, load)| Step::normal(i as f64, load)).collect()
 }
@@ -56,6 +103,8 @@ fn elastic() {
     (periodic.outputs.mean_gap, periodic.outputs.area) = (true, true);
     let gaps = [0.02, 0.015, 0.01, 0.012, 0.03, 0.01].map(Load::MeanGap);
     check("elastic by mean gap", &periodic, 64, &normal(gaps));
+    periodic.outputs.stiffness = true;
+    stop_anywhere("elastic by mean gap", &periodic, (24, 8), &normal(gaps));
 }
 
 #[test]
@@ -65,6 +114,8 @@ fn hardness() {
     scene.outputs.plastic_depth = true;
     let forces = [1e-3, 4e-3, 8e-3, 2e-3, 0.0, 5e-3, 8e-3, 1.2e-2, 6e-3].map(Load::Force);
     check("hardness", &scene, 129, &normal(forces));
+    scene.outputs.stiffness = true;
+    stop_anywhere("hardness", &scene, (33, 8), &normal(forces));
 }
 
 #[test]
@@ -97,7 +148,10 @@ fn friction() {
                 Friction::Coulomb { coefficient: 0.4, coupling: Some(bem3d::Coupling::Full) };
         }
         scene.outputs.tangential_stiffness = !full;
-        check(if full { "friction, coupled" } else { "friction" }, &scene, cells, &path);
+        let name = if full { "friction, coupled" } else { "friction" };
+        check(name, &scene, cells, &path);
+        scene.outputs.tangential_stiffness = true;
+        stop_anywhere(name, &scene, (if full { 13 } else { 33 }, 8), &path);
     }
 }
 
@@ -117,6 +171,8 @@ fn adhesion() {
         scene.outputs.area = true;
         check(name, &scene, 65, &normal(approaches));
         check(name, &scene, 65, &normal(forces));
+        scene.outputs.stiffness = true;
+        stop_anywhere(name, &scene, (65, 1), &normal(approaches[1..3].iter().copied()));
         scene.effects.boundary = Boundary::Periodic;
         scene.outputs.mean_gap = true;
         check(name, &scene, 64, &normal(gaps));

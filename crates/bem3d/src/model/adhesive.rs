@@ -1,5 +1,6 @@
 //! Contacts with adhesion of finite range: a path of loads on one surface.
 
+use super::adhesive_stiffness::Stiffnesses;
 use super::certificate::GROWTH;
 use super::load::{LoadSequence, ScaledLoad};
 use super::options::NAME;
@@ -244,11 +245,11 @@ impl AdhesiveContact {
             Some(last) if !self.rises(control, &last.equilibrium) => Branch::Withdrawal,
             _ => Branch::Approach,
         };
-        let stiffness = self.stiffness(&equilibrium, &response, branch, stop);
+        let mut stiffness = self.stiffness(&equilibrium, &response, branch, stop);
         let force_error = self.force_error(control, &equilibrium, &response);
         let surface = &mut self.surface;
         let residuals = equilibrium.residuals;
-        let certificate = Certificate {
+        let mut certificate = Certificate {
             duality_gap: residuals.duality_gap,
             penetration: residuals.penetration,
             complementarity: residuals.complementarity,
@@ -259,13 +260,20 @@ impl AdhesiveContact {
             force_error,
             ..Certificate::default()
         };
+        let status = surface.ended(status, &certificate, stop);
+        if status == Status::Stopped {
+            // The stiffnesses, and the error that follows from them, may be unfinished.
+            stiffness = Stiffnesses { steps: stiffness.steps, ..Stiffnesses::default() };
+            (certificate.stiffness_error, certificate.quotient_error) = (None, None);
+            certificate.force_error = None;
+        }
         let units = surface.nondimensional;
         let stored = PI * energy(&surface.problem, &self.attraction, &equilibrium);
         // A force times a length.
         let stored = stored.signum() * units.approach(units.force(stored.abs())?)?;
         let contact = equilibrium.contact();
         let state = surface.assemble(Assembly {
-            status: surface.ended(status, &certificate, stop),
+            status,
             strategy: format!(
                 "attraction on {} cells, {} updates",
                 equilibrium.cells.len(),

@@ -27,12 +27,12 @@ impl LoadError {
 }
 
 impl PreparedSurface {
-    /// How a solve ended whose state has this certificate.
+    /// How a solve ended whose state has this certificate. A solve that was asked to stop has stopped: its
+    /// pressures may meet the tolerance while a stiffness that was to follow is unfinished.
     pub(super) fn ended(&self, found: Status, certificate: &Certificate, stop: Stop<'_>) -> Status {
         match found {
-            Status::Converged if certificate.meets(self.options.tolerance) => Status::Converged,
-            Status::Converged if stop.stops() => Status::Stopped,
-            Status::Converged => Status::Stagnated,
+            _ if stop.stops() => Status::Stopped,
+            Status::Converged if !certificate.meets(self.options.tolerance) => Status::Stagnated,
             other => other,
         }
     }

@@ -93,11 +93,21 @@ impl PreparedBem3d {
         if self.loads != loads {
             let solved = self.solved.take();
             self.begin(loads);
-            if let (LoadSequence::Path, Some(solved)) = (loads, solved) {
-                self.state_at(solved, Tangential::default(), loads, stop)?;
+            if let (LoadSequence::Path, Some(solved)) = (loads, solved)
+                && let Err(error) = self.state_at(solved, Tangential::default(), loads, stop)
+            {
+                self.begin(LoadSequence::Single);
+                self.solved = Some(solved);
+                return Err(error);
             }
         }
-        let state = self.state_at(load, tangential, loads, stop)?;
+        let state = match self.state_at(load, tangential, loads, stop) {
+            // What a solve finds while it is being stopped, such as a pull-off, need not be so.
+            Err(error) if stop.stops() && !matches!(error, Error::Stopped { .. }) => {
+                return Err(Error::Stopped { best: None });
+            }
+            found => found?,
+        };
         self.solved = (loads == LoadSequence::Single).then_some(load);
         Ok(state)
     }
@@ -120,7 +130,13 @@ impl PreparedBem3d {
                     }
                     sliding.ask(tangential);
                 }
-                surface.at(load, stop)
+                // A path that was stopped goes on from where it was.
+                let last = if loads == LoadSequence::Path { surface.last.clone() } else { None };
+                let found = surface.at(load, stop);
+                if loads == LoadSequence::Path && matches!(found, Err(Error::Stopped { .. })) {
+                    surface.last = last;
+                }
+                found
             }
             Contact::WithAdhesion(contact) => contact.at(load, loads, stop),
         }

@@ -141,7 +141,7 @@ impl PreparedSurface {
         solved: Solved,
         mut tangent: Option<Tangent>,
         error: LoadError,
-        slid: Option<Slid>,
+        mut slid: Option<Slid>,
         stop: Stop<'_>,
     ) -> Result<ContactState> {
         let force: f64 = solved.p.iter().sum();
@@ -164,6 +164,14 @@ impl PreparedSurface {
                 (certificate, tangent) = (rest, None);
             }
         }
+        let status = self.ended(solved.status, &certificate, stop);
+        if status == Status::Stopped {
+            // The stiffnesses, and the error that follows from one, may be unfinished.
+            tangent = None;
+            (certificate.stiffness_error, certificate.force_error) = (None, None);
+            certificate.tangential_stiffness_error = None;
+            slid = slid.map(|slid| Slid { stiffness: [None, None], ..slid });
+        }
         let (saturated, depth) = plastic_depth(&solved, self.problem.bounds);
         let k = |t: &Stiffness| PI * t.value * self.magnification(t.value);
         let stiffness = tangent.as_ref().map(|t| k(&t.stiffness));
@@ -173,7 +181,7 @@ impl PreparedSurface {
             _ => None,
         };
         let state = self.assemble(Assembly {
-            status: self.ended(solved.status, &certificate, stop),
+            status,
             strategy: self.strategy(&solved, slid.as_ref()),
             iterations: solved.steps
                 + tangent.as_ref().map_or(0, Tangent::steps)
