@@ -139,6 +139,7 @@ fn press_map(
 ) -> Result<ExitCode> {
     let out = out.unwrap_or_else(|| default_directory(&asked.map));
     let path = out.join("scene.toml");
+    press::check_place(&path)?;
     let scene = press::scene(asked, keys, &path)?;
     runs::files::write_whole(&path, scene.text.as_bytes())?;
     if let Some(note) = asked.note() {

@@ -206,7 +206,7 @@ fn question(map: &Path, lacking: &[Lacking]) -> String {
         return text;
     }
     let mut command = vec!["fractal-contact".to_owned()];
-    command.extend(std::env::args().skip(1).map(|word| quoted(&word)));
+    command.extend(std::env::args_os().skip(1).map(|word| quoted(&word.to_string_lossy())));
     for Lacking { flag, example, .. } in lacking {
         command.extend([(*flag).to_owned(), quoted(example)]);
     }
@@ -220,12 +220,36 @@ fn question(map: &Path, lacking: &[Lacking]) -> String {
     text
 }
 
+/// How a scene begins that `press` or `new` has written.
+const HEADING: &str = "# Contact of the map ";
+/// Largest scene that is looked at, in bytes.
+const LARGEST_SCENE: u64 = 1 << 24;
+
+/// Refuses a place for the scene of `press` where something lies that `press` has not written.
+///
+/// # Errors
+/// [`Error::Argument`] that names the file.
+pub fn check_place(path: &Path) -> Result<()> {
+    let refused = |what: &str| {
+        let reason =
+            format!("{} {what}, and is not overwritten: give another directory with --out", path.display());
+        Err(Error::Argument { name: "out", reason })
+    };
+    match std::fs::symlink_metadata(path) {
+        Err(_) => Ok(()),
+        Ok(about) if about.is_symlink() => refused("is a symbolic link"),
+        Ok(about) if !about.is_file() => refused("is not a regular file"),
+        Ok(_) if runs::files::read(path, LARGEST_SCENE)?.starts_with(HEADING.as_bytes()) => Ok(()),
+        Ok(_) => refused("was not written by `press`"),
+    }
+}
+
 /// The scene as TOML with comments.
 fn text(asked: &PressArguments, keys: &SurfaceKeys, at: &Path) -> String {
     let mut scene = Lines::default();
     let _ = writeln!(
         scene.text,
-        "# Contact of the map {}. `fractal-contact run` takes this file; \"What a scene may say\" in the book has every key.",
+        "{HEADING}{}. `fractal-contact run` takes this file; \"What a scene may say\" in the book has every key.",
         asked.map.file_name().unwrap_or_default().to_string_lossy().escape_default()
     );
     scene.table("scene");
@@ -380,10 +404,12 @@ fn surface_value(key: &str, value: &str) -> String {
     }
 }
 
-/// The path of a map as the scene at `at` has to say it.
+/// The path of a map as the scene at `at` has to say it. Where a folder of the scene is a symbolic link, `..` leads
+/// to a place above its target, so that the path is absolute.
 fn seen_from(map: &Path, at: &Path) -> String {
     let folder = at.parent().unwrap_or(Path::new(""));
-    let below = folder.components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir));
+    let below = folder.components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir))
+        && !folder.ancestors().any(Path::is_symlink);
     let steps = folder.components().filter(|part| matches!(part, Component::Normal(_))).count();
     let path = if map.is_absolute() {
         map.to_owned()

@@ -354,3 +354,44 @@ fn a_number_stands_beside_its_error() {
         "the report says what it is"
     );
 }
+
+/// What lies where `press` writes its scene is overwritten only if `press` has written it.
+#[cfg(unix)]
+#[test]
+fn press_overwrites_nothing_of_others() {
+    let dir = folder();
+    let at = |name: &str| dir.path().join(name);
+    let needed = ["press", "map.txt", "--bodies", "70 GPa 0.33", "--force", "1 uN"];
+    let press = |out: &str| program(dir.path(), &[&needed[..], &FLAGS[..], &["--out", out]].concat());
+    std::fs::create_dir(at("mine")).unwrap();
+    std::fs::write(at("mine/scene.toml"), "# mine\n").unwrap();
+    std::fs::create_dir(at("link")).unwrap();
+    std::fs::write(at("precious"), "precious").unwrap();
+    std::os::unix::fs::symlink(at("precious"), at("link/scene.toml")).unwrap();
+    std::fs::create_dir(at("pipe")).unwrap();
+    assert!(Command::new("mkfifo").arg(at("pipe/scene.toml")).status().unwrap().success());
+    for (out, why) in [
+        ("mine", "was not written by `press`"),
+        ("link", "is a symbolic link"),
+        ("pipe", "is not a regular file"),
+    ] {
+        let (code, _, stderr) = press(out);
+        assert_eq!(code, Some(2), "{stderr}");
+        assert!(stderr.contains(&format!("{out}/scene.toml {why}")), "{stderr}");
+    }
+    assert_eq!(std::fs::read_to_string(at("mine/scene.toml")).unwrap(), "# mine\n");
+    assert_eq!(std::fs::read_to_string(at("precious")).unwrap(), "precious");
+    // Its own scene is, and so is one whose folder is a link: the map is the one that was named.
+    assert_eq!(press("plain").0, Some(0));
+    assert_eq!(press("plain").0, Some(0));
+    std::fs::create_dir_all(at("far/results")).unwrap();
+    std::fs::write(at("far/map.txt"), "0 1\n1 0\n").unwrap();
+    std::os::unix::fs::symlink(at("far/results"), at("linked")).unwrap();
+    assert_eq!(press("linked/map").0, Some(0));
+    // The comments have the path of the map.
+    let rows = |out: &str| -> Vec<String> {
+        let table = std::fs::read_to_string(at(out).join("patches.csv")).unwrap();
+        table.lines().filter(|line| !line.starts_with('#')).map(str::to_owned).collect()
+    };
+    assert_eq!(rows("linked/map"), rows("plain"));
+}
