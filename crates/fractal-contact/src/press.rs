@@ -220,12 +220,12 @@ fn question(map: &Path, lacking: &[Lacking]) -> String {
     text
 }
 
-/// How a scene begins that `press` or `new` has written.
+/// First words of a scene that `press` or `new` has written.
 const HEADING: &str = "# Contact of the map ";
 /// Largest scene that is looked at, in bytes.
 const LARGEST_SCENE: u64 = 1 << 24;
 
-/// Refuses a place for the scene of `press` where something lies that `press` has not written.
+/// Refuses to overwrite a file that `press` has not written, a symbolic link, a pipe or a device.
 ///
 /// # Errors
 /// [`Error::Argument`] that names the file.

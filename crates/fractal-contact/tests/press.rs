@@ -355,7 +355,7 @@ fn a_number_stands_beside_its_error() {
     );
 }
 
-/// What lies where `press` writes its scene is overwritten only if `press` has written it.
+/// `press` overwrites a file called `scene.toml` only if it is a scene that `press` has written.
 #[cfg(unix)]
 #[test]
 fn press_overwrites_nothing_of_others() {
