@@ -1,6 +1,5 @@
 //! Contacts with adhesion of finite range: a path of loads on one surface.
 
-use super::adhesive_stiffness::Stiffnesses;
 use super::certificate::GROWTH;
 use super::load::{LoadSequence, ScaledLoad};
 use super::options::NAME;
@@ -263,7 +262,7 @@ impl AdhesiveContact {
         let status = surface.ended(status, &certificate, stop);
         if status == Status::Stopped {
             // The stiffnesses, and the error that follows from them, may be unfinished.
-            stiffness = Stiffnesses { steps: stiffness.steps, ..Stiffnesses::default() };
+            stiffness = stiffness.unfinished();
             (certificate.stiffness_error, certificate.quotient_error) = (None, None);
             certificate.force_error = None;
         }

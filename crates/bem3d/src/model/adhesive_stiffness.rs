@@ -53,6 +53,13 @@ pub(super) struct Stiffnesses {
     pub steps: usize,
 }
 
+impl Stiffnesses {
+    /// None of them, with the steps that were taken for them.
+    pub(super) fn unfinished(self) -> Self {
+        Self { steps: self.steps, ..Self::default() }
+    }
+}
+
 impl AdhesiveContact {
     /// The requested stiffnesses.
     pub(super) fn stiffness(
