@@ -193,7 +193,7 @@ impl PartialSlipBench {
             q
         });
         let contact = PressedCells { cells, pressure };
-        let limits = FrictionLimits { tolerance, iterations: 100 };
+        let limits = FrictionLimits { tolerance, unresolved: tolerance, iterations: 100 };
         let control = TangentialControl::Force([force, 0.0]);
         let load = FrictionLoad { coefficient, control };
         let guess = guess.as_ref().map(|q| (&*cells, &q[..]));

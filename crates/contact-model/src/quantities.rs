@@ -460,7 +460,8 @@ pub static QUANTITIES: &[Quantity] = &quantities! {
         "area of the contact whose traction is at the limit of friction"
         => |s, _| s.tangential.and_then(|t| t.slip_area).into();
     "tangential_stiffness" "tangential stiffness" "k_{xx}" Si("N/m"); AskedBy::Output(Output::TangentialStiffness);
-        "dQ_x/ddelta_x along the branch of states at fixed pressures: cells that stick continue to stick, cells that slip continue to slip"
+        "dQ_x/ddelta_x along the branch of states at fixed pressures: cells that stick continue to stick, cells that slip continue to slip; \
+         a step in which nothing moves keeps which of them slipped in the last one that moved"
         => |s, _| s.tangential.and_then(|t| t.stiffness).map(|k| k[0][0]).into();
     "tangential_stiffness_xy" "tangential stiffness, x of y" "k_{xy}" Si("N/m"); AskedBy::Output(Output::TangentialStiffness);
         "dQ_x/ddelta_y of the same; it is dQ_y/ddelta_x too"
@@ -519,7 +520,8 @@ pub static QUANTITIES: &[Quantity] = &quantities! {
         { role: Role::OfPath, drawn: false }
         => |s, _| s.pull_off.and_then(|p| p.mean_gap).into();
     "stiffness" "stiffness" "k" Si("N/m"); AskedBy::Output(Output::Stiffness);
-        "dF/dd along the branch of states (periodic: -dF/d(mean gap)): fronts of an adhesive contact move, saturated cells flow"
+        "dF/dd along the branch of states (periodic: -dF/d(mean gap)): fronts of an adhesive contact move, saturated cells flow; \
+         with full coupling the tangential load is held"
         { compared: Compared::Yes }
         => |s, _| s.stiffness.into();
     "stiffness_bar" "stiffness" "\\bar{k}" One; AskedBy::Output(Output::Stiffness);
@@ -615,8 +617,8 @@ pub static QUANTITIES: &[Quantity] = &quantities! {
           average: Average::No, drawn: false }
         => |s, _| s.report.certificate.tangential_stiffness_error.into();
     "stiffness_error" "error of the stiffness" "" One; AnyStiffness;
-        "estimated relative error of the stiffness; that of a difference quotient with adhesion of short range and Dugdale's law, where \
-         the cells decide it and not the tolerance"
+        "estimated relative error of the stiffness; that of a difference quotient with full coupling, and with adhesion of \
+         short range and Dugdale's law, where the cells decide it and not the tolerance"
         { role: Role::Residual("an estimate of the relative error of the stiffness, on these cells"), average: Average::No, drawn: false }
         => |s, _| s.report.certificate.error_of_stiffness().into();
 };

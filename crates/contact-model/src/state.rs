@@ -545,8 +545,10 @@ impl Certificate {
     }
 
     /// Estimated relative error of the stiffness, whether it is a difference quotient or not.
+    /// [`Certificate::stiffness_error`] is that of the stiffness at fixed contact area where the stiffness is a
+    /// quotient.
     pub fn error_of_stiffness(&self) -> Option<f64> {
-        self.stiffness_error.or(self.quotient_error)
+        self.quotient_error.or(self.stiffness_error)
     }
 
     /// The largest of the numbers that the tolerance bounds; NaN if one of them is.

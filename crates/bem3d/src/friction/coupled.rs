@@ -3,7 +3,7 @@
 
 use super::increment::FrictionLimits;
 use super::state::{ForceTooLarge, Friction, FrictionLoad, FrictionState, PressedCells, SlipMemory};
-use crate::active_set::{self, Candidates, Control, Guess, Limits, Problem, Residuals, Solved};
+use crate::active_set::{self, Candidates, Continuation, Control, Guess, Limits, Problem, Residuals, Solved};
 use contact_model::{Status, Stop};
 use std::sync::Arc;
 
@@ -47,7 +47,8 @@ pub struct CoupledLoad {
     pub tangential_limits: FrictionLimits,
 }
 
-/// The state at the end of an increment, from the tractions before or from a pair that is near it.
+/// The state at the end of an increment, from the state before; a guess of the pressure, and tractions that are nearer
+/// than those before, are where it begins.
 ///
 /// Alternates: the pressure on the surface that the last tractions deform, the tractions with the tangential
 /// displacement of that pressure. It ends when the gap of the pressure with the normal displacement of the
@@ -64,20 +65,16 @@ pub fn advance(
     friction: &mut Friction,
     before: &SlipMemory,
     load: CoupledLoad,
-    near: Option<(Guess, SlipMemory)>,
+    (mut guess, mut tractions): (Option<Guess>, Option<SlipMemory>),
     stop: Stop<'_>,
 ) -> Result<CoupledState, ForceTooLarge> {
     let CoupledLoad { normal: control, tangential, normal_limits, tangential_limits } = load;
-    let grid = problem.grid();
-    let (mut guess, mut tractions) = near.unzip();
     let from = tractions.as_ref().unwrap_or(before);
     let mut raised = friction.normal_displacement(from).unwrap_or_else(|| vec![0.0; z.len()]);
+    deform(problem, z, &raised);
     let (mut last, mut contraction, mut idle, mut rounds) = (f64::INFINITY, None, 0, 0);
     loop {
         rounds += 1;
-        let deformed = z.iter().zip(&raised).map(|(z, raised)| z + raised).collect();
-        problem.candidates = Candidates::new(grid, Arc::new(deformed));
-        problem.coarser = None;
         let from = match guess.take() {
             Some(guess) => guess,
             None => active_set::cold_start(problem, control, normal_limits, stop),
@@ -88,6 +85,7 @@ pub fn advance(
         let state = friction.advance(before, contact, tangential, start, tangential_limits, stop)?;
         let next = friction.normal_displacement(&state.memory).unwrap_or_else(|| vec![0.0; z.len()]);
         let far = next.iter().zip(&raised).fold(0.0, |far: f64, (a, b)| far.max((a - b).abs()));
+        deform(problem, z, &next);
         measure(problem, &mut normal, control, normal_limits, (&next, &raised));
         if rounds > 1 {
             contraction = Some(far / last);
@@ -108,25 +106,44 @@ pub fn advance(
     }
 }
 
-/// Measures the residuals of a pressure with the normal displacement of other tractions than it was found with.
+/// Gives the problem the surface that tractions raise by this displacement.
+fn deform(problem: &mut Problem, z: &[f64], raised: &[f64]) {
+    let deformed = z.iter().zip(raised).map(|(z, raised)| z + raised).collect();
+    problem.candidates = Candidates::new(problem.grid(), Arc::new(deformed));
+    problem.coarser = None;
+}
+
+/// Measures the residuals of a pressure with the normal displacement of other tractions than it was found with,
+/// on every cell that may touch the surface that these deform.
 fn measure(
-    problem: &Problem,
+    problem: &mut Problem,
     solved: &mut Solved,
     control: Control,
     limits: Limits,
     (next, raised): (&[f64], &[f64]),
 ) {
     let (grid, bounds) = (problem.grid(), problem.bounds);
-    let checked = &solved.continuation.checked;
-    let gap = &mut solved.continuation.gap;
+    let Continuation { checked, gap, reach } = &mut solved.continuation;
+    // First u + z.
     for (i, gap) in checked.index(grid).zip(&mut *gap) {
         *gap += next[i] - raised[i] + solved.d;
     }
-    let left = solved.contact.carry(checked, gap);
     if control.force().is_some() {
+        let left = solved.contact.carry(checked, gap);
         solved.d = bounds.approach(&solved.p, &left, gap).unwrap_or(solved.d);
     }
     let d = solved.d;
+    let others = problem.candidates.below(d).without(checked);
+    if !others.is_empty() {
+        let mut u = Vec::new();
+        problem.operators.exact(&solved.contact, &solved.p, &others, &mut u);
+        problem.candidates.add_to(&others, &mut u);
+        let all = checked.union(&others);
+        let mut whole = all.carry(checked, gap);
+        all.add_carried(&others, &u, &mut whole);
+        (*checked, *gap) = (all, whole);
+    }
+    *reach = d;
     for gap in &mut *gap {
         *gap -= d;
     }

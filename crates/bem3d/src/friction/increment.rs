@@ -39,6 +39,8 @@ pub struct Increment<'a> {
 pub struct FrictionLimits {
     /// Bound of the duality gap relative to its scale.
     pub tolerance: f64,
+    /// Changes from the state before count as none below this share of the same scales.
+    pub unresolved: f64,
     /// Newton's steps at most.
     pub iterations: usize,
 }
@@ -56,6 +58,8 @@ pub struct Sliding {
     /// largest `|reference - m|`, m the mean of the references weighted by the limits. How far the bodies have slid
     /// before, which is in delta and in the references alike, is not in it.
     pub duality_gap: f64,
+    /// The length in its scale.
+    pub length: f64,
     /// Difference of the force from the prescribed one, over the largest force.
     pub load_error: f64,
     /// The cells that stick.
@@ -230,6 +234,7 @@ fn in_units(
         each(vector, |v| *v *= unit);
     }
     found.displacement = found.displacement.map(|delta| delta * unit);
+    found.length *= unit;
     found
 }
 
@@ -257,6 +262,15 @@ pub fn step(operators: &TangentialOperators) -> f64 {
     STEP / operators.table().own()
 }
 
+/// The cells that stick: those for which `y = q + rho w` is within the limit.
+pub fn sticking(cells: &CellSet, (q, w): (&[f64], &[f64]), limit: &[f64], rho: f64) -> CellSet {
+    let n = limit.len();
+    let sticks: Vec<bool> = (limit.iter().enumerate())
+        .map(|(i, b)| length([q[i] + rho * w[i], q[n + i] + rho * w[n + i]]) <= *b)
+        .collect();
+    cells.filter(&sticks, |sticks| sticks)
+}
+
 /// The state without resistance: there is no traction, and all displacement is slip.
 fn free(increment: Increment<'_>) -> Sliding {
     let displacement = match increment.control {
@@ -272,6 +286,7 @@ fn free(increment: Increment<'_>) -> Sliding {
         slip,
         displacement,
         duality_gap: 0.0,
+        length: 0.0,
         load_error: 0.0,
         stick: CellSet::default(),
         iterations: 0,
@@ -408,12 +423,17 @@ impl<'a> Solver<'a> {
         let [gap] = sums((q, w), increment.limit, |[qx, qy], [wx, wy], b| {
             [(b * length([wx, wy]) - qx * wx - qy * wy).max(0.0)]
         });
-        let scale = self.most * self.reach.max(length(*delta));
         // Where nothing is displaced, as under uniform tractions with periodic boundaries, displacements are rounding.
         let table = self.operators.table();
         let displaced = table.own() + table.shift() * length(total(q));
         let gap = if gap > ROUNDING * self.most * displaced { gap } else { 0.0 };
+        let scale = self.most * self.length();
         self.gap = if scale > 0.0 { gap / scale } else { 0.0 };
+    }
+
+    /// The length with which slips are compared.
+    fn length(&self) -> f64 {
+        self.reach.max(length(self.delta))
     }
 
     fn state(&self, status: Status) -> Sliding {
@@ -422,10 +442,6 @@ impl<'a> Solver<'a> {
             let [x, y] = total(q);
             length([x - fx, y - fy]) / self.most
         });
-        let n = increment.limit.len();
-        let sticks: Vec<bool> = (increment.limit.iter().enumerate())
-            .map(|(i, b)| length([q[i] + rho * w[i], q[n + i] + rho * w[n + i]]) <= *b)
-            .collect();
         let mut traction = q.clone();
         project(&mut traction, increment.limit, [0.0; 2]);
         Sliding {
@@ -433,8 +449,9 @@ impl<'a> Solver<'a> {
             slip: w.clone(),
             displacement: *delta,
             duality_gap: self.gap,
+            length: self.length(),
             load_error,
-            stick: increment.cells.filter(&sticks, |sticks| sticks),
+            stick: sticking(increment.cells, (q, w), increment.limit, *rho),
             iterations: self.iterations,
             steps: self.steps,
             status,

@@ -40,7 +40,7 @@ mod stiffness;
 #[cfg(test)]
 mod tests;
 
-pub use coupled::{CoupledLoad, advance as advance_coupled};
+pub use coupled::{CoupledLoad, CoupledState, advance as advance_coupled};
 pub use increment::{FrictionLimits, TangentialControl};
 pub use state::{
     ForceTooLarge, Friction, FrictionLoad, FrictionState, PressedCells, SlipMemory, StiffnessOf,

@@ -36,6 +36,8 @@ pub struct SlipMemory {
     pub offset: Vec<f64>,
     /// Slip of each cell since it touched.
     pub slip: Vec<f64>,
+    /// Slip in the last increment in which anything moved: it tells the cells that slipped from those that stuck.
+    pub moved: Vec<f64>,
     /// Pressure on the contact, which causes tangential displacements where both problems are coupled.
     pub pressure: Vec<f64>,
 }
@@ -47,7 +49,7 @@ pub struct FrictionState {
     pub memory: SlipMemory,
     /// Largest traction of each cell.
     pub limit: Vec<f64>,
-    /// Slip of the increment.
+    /// Slip of the increment; where nothing moved in it, that of the last one in which anything did.
     pub slip: Vec<f64>,
     /// Sum of the tractions.
     pub force: [f64; 2],
@@ -167,6 +169,10 @@ impl Friction {
     /// `w` times a positive number, which changes neither the direction of the slip nor whether there is any. A
     /// cell that leaves forgets its slip.
     ///
+    /// An increment in which nothing moves, within the tolerance, leaves the state before as it is. Whether its cells
+    /// stick or slip would be a matter of rounding otherwise. A number of such increments, each too small to be
+    /// resolved, still adds up, because each is measured from the last one that moved.
+    ///
     /// `guess` are tractions on some cells to begin with, admissible or not; `None`: those before.
     ///
     /// # Errors
@@ -208,12 +214,37 @@ impl Friction {
             slip,
             displacement,
             duality_gap,
+            length,
             load_error,
             stick,
             iterations,
             steps,
             status,
         } = increment::solve(operators, room, increment, start, limits, stop);
+        let rho = increment::step(operators);
+        let most = limits.unresolved * sum(&limit);
+        let same = most > 0.0
+            && *cells == before.cells
+            && status == Status::Converged
+            && change(&before.pressure, pressure) * coefficient <= most
+            && change(&before.traction, &traction) <= most
+            && weighted(&limit, &slip) <= most * length;
+        if same {
+            let limit: Vec<f64> = before.pressure.iter().map(|p| coefficient * p).collect();
+            let (traction, moved) = (&before.traction, before.moved.clone());
+            return Ok(FrictionState {
+                force: total(traction),
+                dissipated: 0.0,
+                stick: increment::sticking(cells, (traction, &moved), &limit, rho),
+                memory: before.clone(),
+                limit,
+                slip: moved,
+                duality_gap,
+                load_error,
+                iterations: [iterations, steps],
+                status,
+            });
+        }
         let mut since = carried(cells, &before.cells, &before.slip);
         since.iter_mut().zip(&slip).for_each(|(since, slip)| *since += slip);
         Ok(FrictionState {
@@ -225,6 +256,7 @@ impl Friction {
                 displacement,
                 offset: offset.iter().zip(&slip).map(|(offset, slip)| offset + slip).collect(),
                 slip: since,
+                moved: slip.clone(),
                 pressure: pressure.to_vec(),
             },
             limit,
@@ -284,6 +316,17 @@ impl Friction {
 
 /// A force that differs from the largest one by less than this share counts as the largest one.
 const FORCE_ROUNDING: f64 = 1e-9;
+
+/// The sum of the lengths of the changes from one field to another.
+fn change(from: &[f64], to: &[f64]) -> f64 {
+    from.iter().zip(to).fold(0.0, |sum, (from, to)| sum + (to - from).abs())
+}
+
+/// The sum of the lengths of slips, weighted by the limits.
+fn weighted(limit: &[f64], slip: &[f64]) -> f64 {
+    let (x, y) = slip.split_at(limit.len());
+    limit.iter().zip(x.iter().zip(y)).fold(0.0, |sum, (b, (x, y))| sum + b * x.hypot(*y))
+}
 
 /// Vectors on one set carried to another.
 fn carried(cells: &CellSet, from: &CellSet, v: &[f64]) -> Vec<f64> {

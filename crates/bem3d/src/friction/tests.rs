@@ -12,7 +12,7 @@ use approx::assert_relative_eq;
 use contact_model::{Boundary, Status, never};
 use oracle::Oracle;
 
-const LIMITS: FrictionLimits = FrictionLimits { tolerance: 1e-11, iterations: 100 };
+const LIMITS: FrictionLimits = FrictionLimits { tolerance: 1e-11, unresolved: 1e-11, iterations: 100 };
 const MU: f64 = 0.4;
 
 /// Cells in contact at one load, their pressure in units of `u = sum I p`, and the approach.
@@ -398,7 +398,7 @@ fn stiffnesses_are_difference_quotients() {
         let all = &states[0];
         let mut solver = friction(grid, boundary, 0.43);
         let most = all.friction();
-        let limits = FrictionLimits { tolerance: 1e-14, iterations: 100 };
+        let limits = FrictionLimits { tolerance: 1e-14, ..LIMITS };
         let advance = |solver: &mut Friction, before: &SlipMemory, control| {
             solver.advance(before, all.cells(), load(control), None, limits, &never).unwrap()
         };
@@ -482,7 +482,7 @@ fn every_increment_converges() {
         };
         let c = next().abs();
         let mut solver = friction(grid, boundary, c);
-        let limits = FrictionLimits { tolerance: 1e-9, iterations: 300 };
+        let limits = FrictionLimits { tolerance: 1e-9, iterations: 300, ..LIMITS };
         let found =
             increment::solve(&mut solver.operators, &mut solver.room, increment, start, limits, &never);
         assert_eq!(
@@ -518,7 +518,7 @@ fn projected_gradients_alone_converge() {
             control,
             displacement: first.memory.displacement,
         };
-        let limits = FrictionLimits { tolerance: 1e-9, iterations: 0 };
+        let limits = FrictionLimits { tolerance: 1e-9, iterations: 0, ..LIMITS };
         let start = vec![0.0; 2 * limit.len()];
         let found =
             increment::by_gradients(&mut solver.operators, &mut solver.room, increment, start, limits, 2000);

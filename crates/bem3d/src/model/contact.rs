@@ -273,41 +273,13 @@ impl PreparedSurface {
         recorder.timed(Part::Results, || self.state(solved, tangent, error, slid, stop))
     }
 
-    /// The state of a load with coupled normal and tangential displacements. As in [`Self::settle`] both are
-    /// solved further as long as undecided cells could change the stiffness by more than the tolerance.
-    fn at_coupled(&mut self, target: Control, stop: Stop<'_>) -> Result<ContactState> {
-        let (tuning, mut limits) = (*self.problem.operators.tuning(), self.limits());
-        let Some((mut solved, mut slid)) = self.slide_coupled((target, limits), None, stop)? else {
-            return Err(Error::unsupported(NAME, "coupling without friction"));
-        };
-        let wanted = self.outputs.needs_stiffness() && !self.is_complete(&solved);
-        let mut tangent = wanted.then(|| self.tangent(&solved, (None, None), None, stop));
-        for _ in 0..tuning.tightenings {
-            let Some(found) = tangent.as_ref() else { break };
-            let (error, before) = (self.tangent_error(found), solved.residuals.worst());
-            if solved.status != Status::Converged || error <= self.options.tolerance || stop.stops() {
-                break;
-            }
-            limits.tolerance =
-                tuning.tightened(self.options.tolerance / error) * limits.tolerance.min(before);
-            let near = Some((&solved, &slid));
-            let Ok(Some((next, slipped))) = self.slide_coupled((target, limits), near, stop) else { break };
-            if next.residuals.worst() >= before || slipped.state.status != Status::Converged {
-                break;
-            }
-            // As in `settle`.
-            let converged = next.residuals.worst() <= self.options.tolerance;
-            let status = if converged { Status::Converged } else { next.status };
-            let steps = solved.steps + found.steps() + slid.steps() + next.steps;
-            (solved, slid) = (Solved { steps, status, ..next }, slipped);
-            tangent = Some(self.tangent(&solved, (None, None), None, stop));
-        }
-        let error = self.load_error(target, &solved, tangent.as_ref());
-        self.state(solved, tangent, error, Some(slid), stop)
-    }
-
     /// The relative error of the load of a state.
-    fn load_error(&self, target: Control, solved: &Solved, tangent: Option<&Tangent>) -> LoadError {
+    pub(super) fn load_error(
+        &self,
+        target: Control,
+        solved: &Solved,
+        tangent: Option<&Tangent>,
+    ) -> LoadError {
         match target {
             Control::Force(asked) => LoadError::of_force((solved.p.iter().sum::<f64>() - asked) / asked),
             Control::Approach(_) => self.force_error(solved, self.stiffest(solved, tangent), 0.0),
@@ -388,7 +360,7 @@ impl PreparedSurface {
     }
 
     /// The stiffnesses of a state from guesses of q, along the branch and of the whole contact, and of k.
-    fn tangent(
+    pub(super) fn tangent(
         &mut self,
         solved: &Solved,
         (q, of_whole): (Option<Vec<f64>>, Option<Vec<f64>>),
@@ -451,7 +423,7 @@ impl PreparedSurface {
     /// The cells that follow a small change of the load as it goes on: those below the hardness. On a path,
     /// cells of the indentation that are at the hardness again flow when the load grows, and do not when it
     /// falls.
-    fn responding<'a>(&self, solved: &'a Solved) -> Responding<'a> {
+    pub(super) fn responding<'a>(&self, solved: &'a Solved) -> Responding<'a> {
         let bounds = self.problem.bounds;
         let mut responding = Responding::free(solved, bounds);
         let Some(memory) = &self.memory else { return responding };

@@ -2,24 +2,26 @@
 //! to the tangential part of a state.
 
 use super::load::held;
-use super::options::NAME;
+use super::options::{Bem3d, NAME};
 use super::prepared::PreparedSurface;
 use super::sliding::{Slid, Sliding};
-use crate::active_set::{Candidates, Control, Guess, Limits, Solved};
+use crate::active_set::{Candidates, Solved};
 use crate::friction::{
-    CoupledLoad, ForceTooLarge, Friction, FrictionLimits, FrictionLoad, FrictionState, PressedCells,
-    SlipMemory, StiffnessOf, TangentialControl, TangentialStiffness, advance_coupled,
+    ForceTooLarge, Friction, FrictionLimits, FrictionLoad, FrictionState, PressedCells, SlipMemory,
+    StiffnessOf, TangentialControl, TangentialStiffness,
 };
 use crate::geometry::CellSet;
 use contact_model::{Error, Fields, Result, Status, StickSlip, Stop, Tangential, TangentialState};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
+/// Changes below this number of tolerances count as none: pressures that are solved anew differ by some.
+const UNRESOLVED: f64 = 10.0;
 /// Largest number of times that an increment is solved further for its stiffness.
-const TIGHTENINGS: usize = 4;
+pub(super) const TIGHTENINGS: usize = 4;
 
 impl PreparedSurface {
-    fn tangential_control(&self, load: Tangential) -> Result<TangentialControl> {
+    pub(super) fn tangential_control(&self, load: Tangential) -> Result<TangentialControl> {
         let units = self.nondimensional;
         let each = |values: [f64; 2], name, of: &dyn Fn(f64) -> f64| -> Result<[f64; 2]> {
             let [x, y] = values.map(|value| held(name, value, of(value.abs()).copysign(value)));
@@ -45,8 +47,9 @@ impl PreparedSurface {
         }
     }
 
-    fn friction_limits(&self) -> FrictionLimits {
-        FrictionLimits { tolerance: self.options.tolerance, iterations: self.options.max_outer_iterations }
+    pub(super) fn friction_limits(&self) -> FrictionLimits {
+        let Bem3d { tolerance, max_outer_iterations: iterations, .. } = self.options;
+        FrictionLimits { tolerance, unresolved: UNRESOLVED * tolerance, iterations }
     }
 
     /// The increment of friction under a pressure; `None` without friction.
@@ -72,11 +75,11 @@ impl PreparedSurface {
         let mut stiffness = self.tangential_stiffness(friction, &state, stop);
         // The error of a stiffness by the cells that may stick or slip falls as the square root of the gap.
         for _ in 0..TIGHTENINGS {
-            let error = stiffness[0].as_ref().map_or(0.0, |k| k.solve_error + k.set_error);
+            let error = branch_error(&stiffness);
             if error <= tolerance || state.status != Status::Converged || stop.stops() {
                 break;
             }
-            limits.tolerance *= (0.5 * tolerance / error).powi(2).clamp(1e-4, 0.1);
+            limits.tolerance = limits.tolerance.min(state.duality_gap) * further(tolerance / error);
             let guess = Some((&solved.contact, &state.memory.traction[..]));
             let Ok(next) = friction.advance(before, contact, load, guess, limits, stop) else { break };
             if next.duality_gap >= state.duality_gap {
@@ -86,60 +89,12 @@ impl PreparedSurface {
             stiffness = self.tangential_stiffness(friction, &state, stop);
         }
         self.count(work, friction.work());
-        Ok(Slid { state, stiffness, rounds: None })
-    }
-
-    /// The state of a load with coupled normal and tangential displacements, starting from a nearby state
-    /// where there is one.
-    pub(super) fn slide_coupled(
-        &mut self,
-        (target, limits): (Control, Limits),
-        near: Option<(&Solved, &Slid)>,
-        stop: Stop<'_>,
-    ) -> Result<Option<(Solved, Slid)>> {
-        let Some(mut sliding) = self.sliding.take() else { return Ok(None) };
-        let found = self.slide_coupled_by(&mut sliding, (target, limits), near, stop);
-        self.sliding = Some(sliding);
-        found.map(Some)
-    }
-
-    fn slide_coupled_by(
-        &mut self,
-        sliding: &mut Sliding,
-        (target, limits): (Control, Limits),
-        near: Option<(&Solved, &Slid)>,
-        stop: Stop<'_>,
-    ) -> Result<(Solved, Slid)> {
-        let Sliding { friction, coefficient, before, load, undeformed, .. } = sliding;
-        let control = self.tangential_control(*load)?;
-        let load = CoupledLoad {
-            normal: target,
-            tangential: FrictionLoad { coefficient: *coefficient, control },
-            normal_limits: limits,
-            tangential_limits: FrictionLimits {
-                // That of the branch's stiffness falls as its square root.
-                tolerance: limits.tolerance * if self.outputs.tangential_stiffness { 1e-2 } else { 1.0 },
-                ..self.friction_limits()
-            },
-        };
-        let work = friction.work();
-        let surface = (&mut self.problem, &undeformed[..]);
-        let near = near.map(|(normal, slid)| {
-            let guess = Guess { set: normal.contact.clone(), p: normal.p.clone(), d: normal.d };
-            (guess, slid.state.memory.clone())
-        });
-        let found = advance_coupled(surface, friction, before, load, near, stop);
-        let found = found.map_err(|beyond| self.gross_slip(control, beyond))?;
-        let stiffness = self.tangential_stiffness(friction, &found.tangential, stop);
-        self.count(work, friction.work());
-        let (status, rounds) = (found.status(), Some((found.rounds, found.contraction)));
-        let normal = Solved { status, ..found.normal };
-        Ok((normal, Slid { state: found.tangential, stiffness, rounds }))
+        Ok(Slid { state, stiffness, normal_stiffness: None, rounds: None })
     }
 
     /// The requested tangential stiffnesses; there is none for a periodic surface in full stick, which no
     /// force moves.
-    fn tangential_stiffness(
+    pub(super) fn tangential_stiffness(
         &self,
         friction: &mut Friction,
         state: &FrictionState,
@@ -155,12 +110,12 @@ impl PreparedSurface {
     }
 
     /// Adds the work of friction to that of the load.
-    fn count(&mut self, [applications, solves]: [usize; 2], now: [usize; 2]) {
+    pub(super) fn count(&mut self, [applications, solves]: [usize; 2], now: [usize; 2]) {
         self.problem.operators.applications += now[0] - applications;
         self.problem.operators.solves += now[1] - solves;
     }
 
-    fn gross_slip(&self, control: TangentialControl, beyond: ForceTooLarge) -> Error {
+    pub(super) fn gross_slip(&self, control: TangentialControl, beyond: ForceTooLarge) -> Error {
         let TangentialControl::Force([x, y]) = control else {
             return Error::unsupported(NAME, "a displacement that friction does not hold");
         };
@@ -201,7 +156,7 @@ impl PreparedSurface {
         let nothing = |asked: bool| asked.then(TangentialStiffness::default);
         let stiffness =
             [self.outputs.tangential_stiffness, self.outputs.tangential_stiffness_stuck].map(nothing);
-        Ok(Some(Slid { state, stiffness, rounds: None }))
+        Ok(Some(Slid { state, stiffness, normal_stiffness: None, rounds: None }))
     }
 
     /// Keeps an increment as the start of the next one.
@@ -283,4 +238,14 @@ impl PreparedSurface {
         }
         Ok(())
     }
+}
+
+/// The relative error of the stiffness along the branch; 0 where none was asked for.
+pub(super) fn branch_error(stiffness: &[Option<TangentialStiffness>; 2]) -> f64 {
+    stiffness[0].as_ref().map_or(0.0, |k| k.solve_error + k.set_error)
+}
+
+/// The factor by which a duality gap is to fall for an error of the stiffness to fall by `factor`.
+pub(super) fn further(factor: f64) -> f64 {
+    (0.5 * factor).powi(2).clamp(1e-4, 0.1)
 }

@@ -23,7 +23,8 @@ impl PreparedSurface {
 
     /// The state at a nondimensional mean gap, by Newton's method in ln F where the stiffness is known and
     /// secants where it is not: the gap falls about linearly with ln F. It is met to the tolerance, in rms
-    /// heights.
+    /// heights. Where every cell in contact is at the hardness one force belongs to a range of gaps, and the search
+    /// goes on in the approach.
     pub(super) fn at_mean_gap(&mut self, asked: f64, stop: Stop<'_>) -> Result<ContactState> {
         let first = self.problem.candidates.range().first;
         if asked >= self.mean - first {
@@ -49,10 +50,13 @@ impl PreparedSurface {
         // With a hardness no force reaches that of all cells at it; without, this is infinite.
         let (mut low, mut high) = (f64::NEG_INFINITY, self.capacity().ln());
         x = x.min(high - GAP_STEP);
+        let mut control = Control::Force(x.exp());
+        // Approaches at which the gap is too large, and too small.
+        let mut approaches = [f64::NEG_INFINITY, f64::INFINITY];
         let mut before: Option<(f64, f64)> = None;
         let mut steps = 0;
         for _ in 0..GAP_LOADS {
-            let (mut solved, tangent) = self.settle(Control::Force(x.exp()), limits, stop);
+            let (mut solved, tangent) = self.settle(control, limits, stop);
             steps += solved.steps;
             let miss = self.gap_of(&solved) - asked;
             let met = miss.abs() <= limits.tolerance * limits.height.unwrap_or(self.mean);
@@ -68,12 +72,25 @@ impl PreparedSurface {
                 let slid = self.slide(&solved, stop)?;
                 return self.state(solved, tangent, error, slid, stop);
             }
+            let (force, d): (f64, f64) = (solved.p.iter().sum(), solved.d);
             if miss > 0.0 {
                 low = low.max(x);
+                approaches[0] = d.max(approaches[0]);
             } else {
                 high = high.min(x);
+                approaches[1] = d.min(approaches[1]);
             }
-            let force: f64 = solved.p.iter().sum();
+            let reached = self.problem.bounds.is_reached(&solved.p);
+            if matches!(control, Control::Approach(_)) || reached && self.responding(&solved).cells.is_empty()
+            {
+                let slope = tangent.as_ref().map_or(1.0, |t| self.magnification(t.stiffness.value));
+                let next = d + miss * slope;
+                let [far, near] = approaches;
+                let within = next > far && next < near;
+                control = Control::Approach(if within { next } else { f64::midpoint(far, near) });
+                self.remember(solved, tangent);
+                continue;
+            }
             let slope = match (&tangent, before) {
                 (Some(t), _) => t.stiffness.value * self.magnification(t.stiffness.value) / force,
                 (None, Some((x0, miss0))) if (miss0 - miss).abs() > 0.0 => (x - x0) / (miss0 - miss),
@@ -85,10 +102,15 @@ impl PreparedSurface {
             x = if next > low && next < high {
                 next
             } else if low.is_finite() && high.is_finite() {
+                if reached {
+                    control = Control::Approach(f64::midpoint(approaches[0], approaches[1]));
+                    continue;
+                }
                 f64::midpoint(low, high)
             } else {
                 x + GAP_STEP.copysign(miss)
             };
+            control = Control::Force(x.exp());
         }
         let units = self.nondimensional;
         let value = units.approach(asked.abs())?.copysign(asked);

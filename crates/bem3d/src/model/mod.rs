@@ -4,6 +4,7 @@ mod adhesive;
 mod adhesive_stiffness;
 mod certificate;
 mod contact;
+mod coupled;
 mod increment;
 mod load;
 mod mean_gap;

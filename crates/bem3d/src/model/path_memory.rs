@@ -107,9 +107,9 @@ impl Indented {
 
 impl Slipped<'_> {
     fn fits(&self, grid: Grid) -> bool {
-        let SlipMemory { cells, traction, displacement, offset, slip, pressure } = &*self.memory;
+        let SlipMemory { cells, traction, displacement, offset, slip, moved, pressure } = &*self.memory;
         cells.is_on(grid)
-            && are_of(cells, 2, &[traction, offset, slip])
+            && are_of(cells, 2, &[traction, offset, slip, moved])
             && are_of(cells, 1, &[pressure])
             && displacement.iter().all(|d| d.is_finite())
             && self.dissipated.is_finite()

@@ -29,6 +29,8 @@ pub(super) struct Slid {
     pub(super) state: FrictionState,
     /// The stiffness along the branch, and that of the whole contact in full stick.
     pub(super) stiffness: [Option<TangentialStiffness>; 2],
+    /// Where both problems are coupled, dF/dd of both with the tangential load held, over pi, and its relative error.
+    pub(super) normal_stiffness: Option<(f64, f64)>,
     /// The convergence of the alternation of normal and tangential contact, where these are coupled.
     pub(super) rounds: Option<(usize, Option<f64>)>,
 }
@@ -58,6 +60,7 @@ impl Slid {
         certificate.tangential_load_error = Some(self.state.load_error);
         let errors = self.stiffness.iter().flatten().map(|k| k.solve_error + k.set_error);
         certificate.tangential_stiffness_error = errors.reduce(f64::max);
+        certificate.quotient_error = self.normal_stiffness.map(|(_, error)| error);
     }
 }
 

@@ -65,6 +65,7 @@ impl PreparedSurface {
     pub(super) fn assemble(&mut self, found: Assembly<'_>) -> Result<ContactState> {
         let units = self.nondimensional;
         let mut fields = self.fields(found.pressure, found.d, found.indented)?;
+        self.raise(found.slid, &mut fields)?;
         if let (Some(fields), Some(slid)) = (&mut fields, found.slid) {
             self.slip_fields(slid, fields)?;
         }
@@ -169,16 +170,20 @@ impl PreparedSurface {
             // The stiffnesses, and the error that follows from one, may be unfinished.
             tangent = None;
             (certificate.stiffness_error, certificate.force_error) = (None, None);
-            certificate.tangential_stiffness_error = None;
-            slid = slid.map(|slid| Slid { stiffness: [None, None], ..slid });
+            (certificate.tangential_stiffness_error, certificate.quotient_error) = (None, None);
+            slid = slid.map(|slid| Slid { stiffness: [None, None], normal_stiffness: None, ..slid });
         }
         let (saturated, depth) = plastic_depth(&solved, self.problem.bounds);
         let k = |t: &Stiffness| PI * t.value * self.magnification(t.value);
-        let stiffness = tangent.as_ref().map(|t| k(&t.stiffness));
+        let of_pressures = tangent.as_ref().map(|t| k(&t.stiffness));
         let fixed_area = match &tangent {
             Some(Tangent { whole: Some(whole), .. }) => Some(k(whole)),
-            Some(t) if t.cells.len() == solved.contact.len() => stiffness,
+            Some(t) if t.cells.len() == solved.contact.len() => of_pressures,
             _ => None,
+        };
+        let stiffness = match &slid {
+            Some(slid) if slid.rounds.is_some() => slid.normal_stiffness.map(|(slope, _)| PI * slope),
+            _ => of_pressures,
         };
         let state = self.assemble(Assembly {
             status,
@@ -275,6 +280,17 @@ impl PreparedSurface {
             }
         }
         Ok(Some(fields))
+    }
+
+    /// Adds what tractions displace to the displacement, where both problems are coupled. The gap has it already.
+    fn raise(&mut self, slid: Option<&Slid>, fields: &mut Option<Fields>) -> Result<()> {
+        let (Some(sliding), Some(slid)) = (&mut self.sliding, slid) else { return Ok(()) };
+        let Some(Fields { displacement: Some(displacement), .. }) = fields else { return Ok(()) };
+        let Some(raised) = sliding.friction.normal_displacement(&slid.state.memory) else { return Ok(()) };
+        let height = self.height;
+        let values = displacement.values().iter().zip(&raised).map(|(u, raised)| u + raised * height);
+        *displacement = self.field(values.collect())?;
+        Ok(())
     }
 
     /// The indentation of a path and of the saturated cells.

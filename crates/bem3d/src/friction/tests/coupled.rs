@@ -19,7 +19,7 @@ impl Pair {
 }
 
 const NORMAL: Limits = Limits { tolerance: 1e-10, height: None, outer_iterations: 200, factor: true };
-const TANGENTIAL: FrictionLimits = FrictionLimits { tolerance: 1e-11, iterations: 100 };
+const TANGENTIAL: FrictionLimits = FrictionLimits { tolerance: 1e-11, unresolved: 1e-11, iterations: 100 };
 
 /// Undeformed gaps of a surface that is curved and rough.
 fn gaps(grid: Grid) -> Vec<f64> {
@@ -63,7 +63,7 @@ impl Contact {
             normal_limits: NORMAL,
             tangential_limits: TANGENTIAL,
         };
-        coupled::advance((&mut self.problem, &self.z), &mut self.friction, before, load, None, &never)
+        coupled::advance((&mut self.problem, &self.z), &mut self.friction, before, load, (None, None), &never)
             .unwrap()
     }
 
