@@ -66,7 +66,7 @@ fn quantities_page() -> String {
     };
     let compared = |quantity: &Quantity| match quantity.compared {
         Compared::Yes => "yes",
-        Compared::Periodic => "periodic",
+        Compared::Periodic => "periodic, resolved waves",
         Compared::No => "",
     };
     let told: Vec<BTreeSet<&str>> = MODELS.iter().map(|record| told(record.model)).collect();

@@ -6,8 +6,8 @@ use bem3d::Bem3d;
 use contact_model::{Amplitude, Boundary, ContactModel, Effects, Load, Outputs, Scene, SelfAffine, Surface};
 use std::f64::consts::TAU;
 
-/// Stiffness, corrected area and largest pressure under each force.
-fn states(surface: &Surface, boundary: Boundary, cells: usize, seed: u64, forces: &[f64]) -> Vec<[f64; 3]> {
+/// Stiffness, corrected area and largest pressure under each force, and the number of cells in contact.
+fn states(surface: &Surface, boundary: Boundary, cells: usize, seed: u64, forces: &[f64]) -> Vec<[f64; 4]> {
     let scene = Scene {
         surface: surface.clone(),
         contact_modulus: 1.0,
@@ -19,7 +19,9 @@ fn states(surface: &Surface, boundary: Boundary, cells: usize, seed: u64, forces
     let state = |&force: &f64| {
         let state = contact.solve(Load::Force(force)).unwrap();
         let resolution = state.resolution.unwrap();
-        [state.stiffness.unwrap(), resolution.corrected_area.unwrap(), resolution.largest_pressure]
+        let area = resolution.corrected_area.unwrap();
+        let cells = state.report.contact_cells.unwrap() as f64;
+        [state.stiffness.unwrap(), area, resolution.largest_pressure, cells]
     };
     forces.iter().map(state).collect()
 }
@@ -117,6 +119,43 @@ fn how_wide_the_estimates_of_the_grid_are() {
                 ratios[n * 9 / 10],
                 ratios[n - 1]
             );
+        }
+    }
+}
+
+/// How often the estimates contain the number on cells four times or eight times smaller where waves go down to
+/// the cell, by the number of cells in contact: a table of the book. It takes minutes.
+#[test]
+#[ignore = "a table for the book, minutes"]
+fn how_often_the_estimates_hold_with_waves_down_to_the_cell() {
+    let forces = [3e-6, 1e-5, 3e-5, 1e-4, 3e-4, 1e-3, 3e-3, 1e-2];
+    println!("boundary, cells in contact, number, inside %: stiffness, corrected area, largest pressure");
+    for (boundary, more) in [(Boundary::Free, 1), (Boundary::Periodic, 0)] {
+        // Cells in contact, and which of the three numbers are inside.
+        let mut found: Vec<(f64, [bool; 3])> = Vec::new();
+        for d in [2.0, 2.2, 2.4, 2.6, 2.8] {
+            let surface = Surface::SelfAffine(SelfAffine::new(d, 1.0, 0.01).unwrap());
+            for seed in 500..506 {
+                let grids = [512, 128, 64, 32, 16]
+                    .map(|cells: usize| states(&surface, boundary, cells + more, seed, &forces));
+                for (fine, i) in (1..3).flat_map(|fine| (0..forces.len()).map(move |i| (fine, i))) {
+                    let inside = std::array::from_fn(|q| {
+                        let number = |grid: usize| grids[grid][i][q];
+                        let claimed =
+                            grid_error(number(fine), number(fine + 1), number(fine + 2)).unwrap().error;
+                        (number(0) / number(fine) - 1.0).abs() <= claimed
+                    });
+                    found.push((grids[fine][i][3], inside));
+                }
+            }
+        }
+        for (from, to) in [(0.0, 10.0), (10.0, 100.0), (100.0, f64::INFINITY)] {
+            let class: Vec<_> = found.iter().filter(|(cells, _)| (from..to).contains(cells)).collect();
+            let share = |q: usize| {
+                100.0 * class.iter().filter(|(_, inside)| inside[q]).count() as f64 / class.len() as f64
+            };
+            let [k, area, pressure] = [0, 1, 2].map(share);
+            println!("{boundary:?}, {from} to {to}, {}, {k:.0}, {area:.0}, {pressure:.0}", class.len());
         }
     }
 }

@@ -317,7 +317,7 @@ pub enum Average {
 pub enum Compared {
     /// With any boundary.
     Yes,
-    /// With periodic boundaries only: elsewhere it may have no limit as cells shrink.
+    /// With periodic boundaries and resolved waves only: elsewhere it may have no limit as cells shrink.
     Periodic,
     /// Not compared.
     No,

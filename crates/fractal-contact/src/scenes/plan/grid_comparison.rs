@@ -13,6 +13,11 @@ use std::sync::Arc;
 /// Grids with fewer cells along their longer side say nothing.
 const FEWEST_CELLS: usize = 16;
 
+/// Largest relative change of the rms slope, from cells to those twice as large, of a surface whose waves the
+/// larger cells still carry. Of such waves it changes by rounding alone; of self-affine ones down to the cell by
+/// 4 % and more, on up to 8192 cells a side.
+const RESOLVED_SLOPE: f64 = 0.02;
+
 /// Name of the slope of a surface in tables of what a grid does.
 pub(crate) const RMS_SLOPE: &str = "rms_slope";
 
@@ -45,16 +50,21 @@ fn numbers(state: &ContactState, normalisation: &Normalisation, rms_slope: f64) 
     found.chain([(RMS_SLOPE, rms_slope)]).collect()
 }
 
-/// Their errors from three grids, where they are known to hold.
+/// Their errors from three grids, where they are known to hold. The largest pressure has a limit where no edge
+/// carries load and where finer cells bring no shorter waves, which the slope of the surface shows.
 fn errors(
     boundary: Boundary,
     fine: &Numbers,
     half: &Numbers,
     quarter: &Numbers,
 ) -> BTreeMap<String, GridError> {
+    let resolved = match (fine.get(RMS_SLOPE), half.get(RMS_SLOPE)) {
+        (Some(fine), Some(half)) => (half - fine).abs() <= RESOLVED_SLOPE * fine,
+        _ => false,
+    };
+    let limited = boundary == Boundary::Periodic && resolved;
     let unknown = |name: &str| {
-        boundary != Boundary::Periodic
-            && Quantity::named(name).is_some_and(|quantity| quantity.compared == Compared::Periodic)
+        !limited && Quantity::named(name).is_some_and(|quantity| quantity.compared == Compared::Periodic)
     };
     let error = |(&name, &fine): (&&'static str, &f64)| {
         let error = grid_error(fine, *half.get(name)?, *quarter.get(name)?)?;
@@ -168,16 +178,19 @@ mod tests {
     use super::*;
 
     /// With free edges 37 of 54 errors of the largest pressure were inside their estimates, of the other
-    /// numbers 94 to 98 %.
+    /// numbers 94 to 98 %; of periodic surfaces with waves down to the cell 36 % of 480.
     #[test]
     fn the_largest_pressure_has_no_error_where_its_limit_may_be_infinite() {
         let all = || compared().map(|quantity| quantity.name).chain([RMS_SLOPE]);
-        let [fine, half, quarter] = [1.0, 1.1, 1.3].map(|value| all().map(|name| (name, value)).collect());
-        let unknown = |boundary| {
+        let unknown = |boundary, slope_of_half| {
+            let [fine, mut half, quarter]: [Numbers; 3] =
+                [1.0, 1.1, 1.3].map(|value| all().map(|name| (name, value)).collect());
+            half.insert(RMS_SLOPE, slope_of_half);
             let errors = errors(boundary, &fine, &half, &quarter);
-            all().filter(|name| !errors.contains_key(*name)).collect()
+            all().filter(|name| !errors.contains_key(*name)).collect::<Vec<_>>()
         };
-        let (free, periodic): (Vec<_>, Vec<_>) = (unknown(Boundary::Free), unknown(Boundary::Periodic));
-        assert_eq!((free, periodic), (vec!["largest_pressure"], vec![]));
+        assert_eq!(unknown(Boundary::Free, 1.0), ["largest_pressure"]);
+        assert_eq!(unknown(Boundary::Periodic, 0.96), ["largest_pressure"]);
+        assert!(unknown(Boundary::Periodic, 0.99).is_empty());
     }
 }

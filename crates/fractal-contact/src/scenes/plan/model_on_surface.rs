@@ -4,7 +4,7 @@ use crate::scenes::read::{Numerics, SceneFile, cells};
 use contact_model::{Cells, Scene};
 
 /// Number of the format of stored units; it changes with anything that changes a state.
-pub(crate) const FORMAT: u32 = 10;
+pub(crate) const FORMAT: u32 = 11;
 
 /// One model and one surface.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -11,9 +11,9 @@ use contact_model::{Directions, Source};
 const GRID_ERROR: &str = "estimated relative error of the grid, from cells twice and four times as large";
 const GRID_ORDER: &str = "order of convergence as observed on these grids; empty where none is seen";
 const GRID_ERROR_PERIODIC: &str = "estimated relative error of the grid, from cells twice and four times as large; empty with free boundaries, where the pressure at an \
-     edge of the rectangle or a spike grows without limit";
+     edge of the rectangle or a spike grows without limit, and where the surface has waves that cells twice as large do not resolve";
 const GRID_ORDER_PERIODIC: &str = "order of convergence as observed on these grids; empty where none is seen; empty with free boundaries, where the pressure at an edge \
-     of the rectangle or a spike grows without limit";
+     of the rectangle or a spike grows without limit, and where the surface has waves that cells twice as large do not resolve";
 
 /// Name, unit and meaning of a column.
 pub(crate) type ColumnWords = (&'static str, &'static str, &'static str);
