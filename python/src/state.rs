@@ -151,8 +151,9 @@ impl Certificate {
         self.0.equilibrium
     }
 
-    /// float or None: duality gap of the last step of friction over sliding force times tangential displacement;
-    /// None without friction, and where a model does not solve it cell by cell.
+    /// float or None: duality gap of the last step of friction over sliding force times tangential displacement,
+    /// without how far the contact has slid before; None without friction, and where a model does not solve it
+    /// cell by cell.
     #[getter]
     fn tangential_duality_gap(&self) -> Option<f64> {
         self.0.tangential_duality_gap

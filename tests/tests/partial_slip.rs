@@ -88,6 +88,38 @@ fn without_poissons_ratio_tractions_are_differences_of_pressures() {
     }
 }
 
+/// Without Poisson's ratio the contact slides from `mu d(F)` on. A force of mu F has this displacement but for the
+/// last billionth of the force, which is 1e-6 of it for a sphere (Cattaneo and Mindlin) and less on cells, of which
+/// one sticks last.
+#[test]
+fn the_displacement_at_the_sliding_force_is_the_least_at_which_the_contact_slides() {
+    let sphere = Surface::Sphere { radius: 1.0, size: 0.4.into() };
+    let scene = scene(sphere, alike(0.0), Outputs::default());
+    let force = 2e-3;
+    let at = |q: f64| {
+        let mut contact = model(64).prepare(&scene, 0).unwrap();
+        let before = advance(&mut *contact, step(0.0, force, [0.0; 2]));
+        let state = advance(&mut *contact, step(1.0, force, [q, 0.0]));
+        (MU * before.approach.unwrap(), state.tangential.unwrap())
+    };
+    let (least, slides) = at(MU * force);
+    assert_relative_eq!(slides.force[0], MU * force, max_relative = 1e-15);
+    let missing = 1.0 - slides.displacement[0] / least;
+    assert!((0.0..=1e-6).contains(&missing), "{missing:e}");
+    let (_, nearly) = at(MU * force * (1.0 - 1e-9));
+    assert_relative_eq!(nearly.displacement[0], slides.displacement[0], max_relative = 1e-12);
+    // The closed form takes mu F itself.
+    let model = CattaneoMindlin.prepare(&scene, 0);
+    let mut contact = model.unwrap();
+    contact.advance(step(0.0, force, [0.0; 2])).unwrap();
+    let share = |q: f64, contact: &mut dyn PreparedContact| {
+        contact.advance(step(1.0, force, [q, 0.0])).unwrap().tangential.unwrap().displacement[0]
+    };
+    let nearly = share(MU * force * (1.0 - 1e-9), &mut *contact);
+    let slides = share(MU * force, &mut *contact);
+    assert_relative_eq!(1.0 - nearly / slides, 1e-6, max_relative = 1e-3);
+}
+
 /// Q = 8 G a delta/(2 - nu) on one body, and the stiffness is that number.
 #[test]
 fn a_disc_that_sticks_has_mindlins_stiffness() {

@@ -602,9 +602,10 @@ pub static QUANTITIES: &[Quantity] = &quantities! {
           average: Average::No, drawn: false }
         => |s, _| s.report.certificate.equilibrium.into();
     "tangential_duality_gap" "tangential duality gap" "" One; FrictionInPlane;
-        "sum (mu p |w| - w . q)/(mu F |delta|) of the last step, solved cell by cell"
+        "sum (mu p |w| - w . q)/(mu F D) of the last step, solved cell by cell; D is the larger of |delta - m| and the largest |s - m|, \
+         with the mean m, weighted by mu p, of the displacements s from which the slip of the cells counts"
         { role: Role::Residual("the tractions minimise the elastic energy of the step of friction: by how much it could still fall, over sliding force \
-                                times tangential displacement"),
+                                times tangential displacement, without how far the contact has slid before"),
           average: Average::No, drawn: false }
         => |s, _| s.report.certificate.tangential_duality_gap.into();
     "tangential_load_error" "tangential load error" "" One; FrictionInPlane; "|Q - Q_prescribed|/(mu F), solved cell by cell"

@@ -509,12 +509,13 @@ pub struct Certificate {
     /// Largest difference between the attractive traction of a cell and that of the law of adhesion at its
     /// gap, over `work/range`; `None` without adhesion of finite range.
     pub equilibrium: Option<f64>,
-    /// `sum (mu p |w| - w . q) / (mu F |delta - m|)`, with the slip w of the last step, the tangential
-    /// displacement delta and the mean m, weighted by the pressure, of the displacements that the slip of the
-    /// cells is counted from (the largest difference of one of them from m, where that is larger): the
-    /// duality gap of the convex programme of one step of friction. Half the square of the error of the
-    /// tractions, in the norm of their elastic energy, is at most the gap. 0 without displacement; `None`
-    /// without friction, and for models that do not solve it cell by cell.
+    /// `sum (mu p |w| - w . q) / (mu F D)`, with the slip w of the last step. D is the larger of
+    /// `|delta - m|` and of the largest `|s - m|`, with the tangential displacement delta and the mean m,
+    /// weighted by the pressure, of the displacements s from which the slip of the cells counts: how far the
+    /// contact has slid before is not in it. The sum is the duality gap of the convex programme of one step of
+    /// friction. Half the square of the error of the tractions, in the norm of their elastic energy, is at most
+    /// this sum. 0 without displacement; `None` without friction, and for models that do not solve it cell by
+    /// cell.
     pub tangential_duality_gap: Option<f64>,
     /// `|Q - Q_prescribed| / (mu F)`; 0 where the tangential displacement was prescribed, `None` as above.
     pub tangential_load_error: Option<f64>,

@@ -10,7 +10,8 @@ use std::fmt;
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Tangential {
-    /// Tangential force that the second body exerts on the first.
+    /// Tangential force that the second body exerts on the first, at most mu F in size. At mu F the whole contact
+    /// slides, and its displacement is the least at which it does; a model may give that to a relative 1e-6.
     Force([f64; 2]),
     /// Tangential displacement of the second body relative to the first, far from the contact.
     Displacement([f64; 2]),

@@ -322,7 +322,8 @@ pub struct PressArguments {
     /// Coefficient of Coulomb's friction. It needs --bodies and --tangential-force.
     #[arg(long, value_name = "MU")]
     pub friction: Option<f64>,
-    /// Tangential force along x, such as "0.1 N", applied after the normal load.
+    /// Tangential force along x, such as "0.1 N", applied after the normal load. It is at most the coefficient
+    /// of friction times the force.
     #[arg(long, value_name = "FORCE", requires = "friction")]
     pub tangential_force: Option<String>,
     /// Whether normal and tangential tractions act on each other if the bodies differ: full solves both

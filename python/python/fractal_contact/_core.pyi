@@ -217,8 +217,9 @@ class Certificate:
         """
     @property
     def tangential_duality_gap(self) -> float | None:
-        """float or None: duality gap of the last step of friction over sliding force times tangential displacement;
-        None without friction, and where a model does not solve it cell by cell.
+        """float or None: duality gap of the last step of friction over sliding force times tangential displacement,
+        without how far the contact has slid before; None without friction, and where a model does not solve it
+        cell by cell.
         """
     @property
     def tangential_load_error(self) -> float | None:
@@ -448,8 +449,9 @@ class ContactState:
         """
     @property
     def tangential_duality_gap(self) -> float | None:
-        """float or None: tangential duality gap, sum (mu p |w| - w . q)/(mu F |delta|) of the last step, solved cell
-        by cell.
+        """float or None: tangential duality gap, sum (mu p |w| - w . q)/(mu F D) of the last step, solved cell by
+        cell; D is the larger of |delta - m| and the largest |s - m|, with the mean m, weighted by mu p, of the
+        displacements s from which the slip of the cells counts.
         """
     @property
     def tangential_load_error(self) -> float | None:
@@ -638,6 +640,8 @@ class Contact:
                 three may be negative with adhesion.
         tangential_force, tangential_displacement : float or (float, float), optional
                 At most one of them: along x, or along x (columns) and along y (rows); no tangential force otherwise.
+                A force is at most ``sliding_force``; at that the displacement is the least at which the contact
+                slides.
         stop : threading.Event, optional
                 As in `solve`.
 

@@ -114,7 +114,9 @@ const FURTHER: f64 = 0.2;
 const LEAST_REDUCTION: f64 = 0.02;
 /// Units of tractions are at least this share of displacements: squares of these stay finite.
 const SMALLEST_UNIT: f64 = 1e-100;
-/// Largest force as a share of the friction of all cells: at the whole of it the displacement is unbounded.
+/// Largest force as a share of the friction of all cells: at the whole of it the displacement is unbounded. A
+/// larger force is solved as this one, and what the certificate compares is this one too. Its displacement is below
+/// the least one at which the contact slides, by at most 1e-6 of it for a ball: `(1 - Q/(mu F))^(2/3)` by Cattaneo.
 pub const LARGEST_SHARE: f64 = 1.0 - 1e-9;
 
 struct Solver<'a> {

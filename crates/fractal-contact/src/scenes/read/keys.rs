@@ -92,7 +92,7 @@ pub static SCENE_KEYS: &[SceneKeys] = &[
     keys(
         "scene.path",
         &[&["tangential_force", "tangential_displacement"]],
-        "one value along x, or a pair along x and y",
+        "one value along x, or a pair along x and y; a force of [at most mu F](friction.md#one-step-is-one-increment)",
         "that of the step before",
     ),
     keys(
