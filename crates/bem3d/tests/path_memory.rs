@@ -64,11 +64,21 @@ fn stop_anywhere(name: &str, scene: &Scene, (cells, finer): (usize, usize), path
             if let Err(Error::Stopped { best }) = &found {
                 if let Some(best) = best {
                     let tangential = best.tangential.as_ref();
+                    let certificate = &best.report.certificate;
+                    let unfinished = [
+                        best.stiffness,
+                        best.stiffness_fixed_area,
+                        best.conductance,
+                        certificate.stiffness_error,
+                        certificate.quotient_error,
+                        certificate.force_error,
+                        certificate.tangential_stiffness_error,
+                    ];
+                    assert_eq!(unfinished, [None; 7], "{name}: {polls}");
                     assert!(
-                        best.stiffness.is_none() && best.stiffness_fixed_area.is_none(),
+                        tangential.is_none_or(|t| t.stiffness.is_none() && t.stiffness_stuck.is_none()),
                         "{name}: {polls}"
                     );
-                    assert!(tangential.is_none_or(|t| t.stiffness.is_none()), "{name}: {polls}");
                 }
                 if i > 0 {
                     assert_eq!(contact.memory().unwrap(), memories[i - 1], "{name}: poll {polls}, step {i}");

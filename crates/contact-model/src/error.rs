@@ -68,7 +68,8 @@ pub enum Error {
     },
     /// The caller stopped the solve (a deadline, Ctrl-C).
     Stopped {
-        /// Best state so far where there is one.
+        /// Best state so far where there is one. It has no stiffness, nor anything that follows from one
+        /// ([`crate::Status::Stopped`]).
         best: Option<Box<ContactState>>,
     },
 }

@@ -451,7 +451,9 @@ pub enum Status {
     IterationLimit,
     /// No further progress at this precision: the tolerance is below what the arithmetic can reach.
     Stagnated,
-    /// The caller stopped the solve.
+    /// The caller stopped the solve. Such a state has no stiffness of any kind, nothing that follows from one,
+    /// such as a conductance, and none of the errors that follow from one (`stiffness_error`, `quotient_error`,
+    /// `force_error`, `tangential_stiffness_error`): they may have been unfinished.
     Stopped,
     /// The contact could not bear the prescribed pull: this is the last stable state before it.
     PulledOff,

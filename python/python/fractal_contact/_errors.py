@@ -111,7 +111,7 @@ class Stopped(Error):
     Attributes
     ----------
     best : ContactState or None
-        The best state so far.
+        The best state so far. It has no stiffness, and no conductance or error that follows from one.
     finished : dict
         For an ensemble: the states of the surfaces that were finished, by their number.
     """
