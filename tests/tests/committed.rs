@@ -317,6 +317,76 @@ fn exponents_of_the_two_problems_are_those_of_their_table() {
     }
 }
 
+/// ln F_bar and ln k_bar of a curve, at the loads at which every surface has ten cells or elements in contact.
+fn curve(figure: &str, d: f64) -> Vec<(f64, f64)> {
+    let rows = of_dimension(rows(&format!("data/figures/paper/{figure}.csv")), d);
+    let resolved = rows.iter().filter(|row| row["below_floor"] == "false");
+    resolved.map(|row| (number(row, "force_bar").ln(), number(row, "stiffness_bar").ln())).collect()
+}
+
+/// Between the points of a curve, along straight lines.
+fn interpolated(curve: &[(f64, f64)], x: f64) -> f64 {
+    let pair = curve.windows(2).find(|pair| pair[0].0 <= x && x <= pair[1].0).unwrap();
+    pair[0].1 + (x - pair[0].0) * (pair[1].1 - pair[0].1) / (pair[1].0 - pair[0].0)
+}
+
+/// What the one-dimensional reduction makes of rough surfaces, in the table of the book and in every text
+/// that says it.
+#[test]
+fn stiffness_of_lines_over_that_of_surfaces_is_that_of_the_curves() {
+    let curves = DIMENSIONS.map(|d| [curve("fig2", d), curve("fig6", d)]);
+    let page = text("book/src/theories-rough.md");
+    for row in table(&page, "| F_bar | D_f = 2.0 | 2.2 | 2.4 | 2.6 | 2.8 | 3.0 |") {
+        let x = row[0].parse::<f64>().unwrap().ln();
+        let ratios = curves.each_ref().map(|[surfaces, lines]| {
+            format!("{:.2}", (interpolated(lines, x) - interpolated(surfaces, x)).exp())
+        });
+        assert_eq!(row[1..], ratios, "F_bar = {}", row[0]);
+    }
+    let ratios = |from: f64, to: f64| {
+        let of = |[surfaces, lines]: &[Vec<(f64, f64)>; 2]| -> Vec<f64> {
+            let at = surfaces.iter().filter(|(x, _)| (from..=to).contains(&x.exp()));
+            at.map(|(x, k)| (interpolated(lines, *x) - k).exp()).collect()
+        };
+        let all: Vec<f64> = curves.iter().flat_map(of).collect();
+        let [least, most] = [f64::min, f64::max].map(|of| all.iter().copied().reduce(of).unwrap());
+        [least, most]
+    };
+    let [least, most] = ratios(0.0, f64::INFINITY);
+    let all = format!("{least:.2} to {most:.2} times");
+    let [least, most] = ratios(0.999, 1.001).map(|ratio| 100.0 * (ratio - 1.0));
+    let at_one = format!("{least:.0} to {most:.0} %");
+    let accuracy = fractal_contact::models::ModelRecord::named("mdr1d").unwrap().accuracy;
+    let front = text("crates/mdr1d/src/lib.rs");
+    for (what, said) in [(page.as_str(), &all), (accuracy, &all), (&front, &all), (&front, &at_one)] {
+        let what = what.replace("\n//!", "").replace('\n', " ");
+        assert!(what.contains(said.as_str()), "{said} in {what}");
+    }
+}
+
+/// The free square is the periodic one and a rigid square punch in series.
+#[test]
+fn free_and_periodic_stiffnesses_differ_by_a_punch_in_series() {
+    let solved = rows("data/figures/two-cases/two-cases.csv");
+    let mut worst: f64 = 0.0;
+    for spectrum in ["fractal", "roll-off"] {
+        let of = |boundary: &str| {
+            let case = format!("{boundary}, {spectrum}");
+            let rows = solved.iter().filter(|row| row["model"] == "bem3d" && row["case"] == case);
+            // k_bar is over 1.1419 E* L.
+            rows.map(|row| 1.1419 * number(row, "stiffness_bar")).collect::<Vec<_>>()
+        };
+        let (free, periodic) = (of("free"), of("periodic"));
+        assert_eq!([free.len(), periodic.len()], [19; 2]);
+        for (free, periodic) in free.iter().zip(periodic) {
+            let rule = 1.0 / (1.0 / periodic + 1.0 / 1.1523);
+            worst = worst.max((rule / free - 1.0).abs());
+        }
+    }
+    let said = format!("k_free within {:.1} %", 100.0 * worst);
+    assert!(text("book/src/boundaries.md").contains(&said), "{said}");
+}
+
 /// The surfaces of the study of partial slip with this load and Poisson's ratio.
 fn slip_samples<'a>(all: &'a [Row], boundary: &str, at: [f64; 3]) -> BTreeMap<&'a str, &'a Row> {
     let own = all.iter().filter(|row| {

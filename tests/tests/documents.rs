@@ -121,7 +121,8 @@ fn models_page() -> String {
         "# What each model can do\n\n\
          This page lists the abilities that each model declares as data (`ContactModel::abilities`): what a scene may\n\
          ask of it. A scene that asks for more is refused before anything is computed, with the models that can.\n\
-         Combinations that a model cannot do together it refuses itself. Python has the same as `model.supports`.\n\n{}\n## What they are\n\n{}",
+         A model takes one effect beside the boundary at a time: a hardness, adhesion and friction are refused together,\n\
+         and so are friction and rheology. Python has the same as `model.supports`.\n\n{}\n## What they are\n\n{}",
         table(
             &["model", "surfaces", "boundaries", "effects", "needs", "loads", "paths", "outputs"],
             MODELS.iter().map(cells)

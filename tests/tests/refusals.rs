@@ -127,6 +127,33 @@ fn effects_are_refused() {
     }
 }
 
+/// No model takes two effects beside the boundary at once.
+#[test]
+fn two_effects_together_are_refused() {
+    let body = Body::Elastic { young: 2.0, poisson: 0.3 };
+    let sphere = Surface::Sphere { radius: 1.0, size: 0.5.into() };
+    let scene = Scene::of_pair(sphere, Pair { first: body, second: body }).unwrap();
+    let [_, adhesion, hardness, range, friction, rheology] = each_effect().map(|(_, effects)| effects);
+    let hardness = |effects| Effects { hardness: hardness.hardness, ..effects };
+    let friction_too = |effects| Effects { friction: friction.friction, ..effects };
+    let pairs = [
+        hardness(adhesion),
+        hardness(range),
+        hardness(friction),
+        hardness(rheology),
+        friction_too(adhesion),
+        friction_too(range),
+        friction_too(rheology),
+        Effects { rheology: rheology.rheology, ..adhesion },
+        Effects { rheology: rheology.rheology, ..range },
+    ];
+    for record in fractal_contact::models::MODELS {
+        for effects in pairs {
+            unsupported(record.model, &Scene { effects, ..scene.clone() });
+        }
+    }
+}
+
 /// Theories of periodic contact take only scenes with periodic boundaries, and no other effect; their states
 /// have a mean gap and no approach.
 #[test]

@@ -28,7 +28,8 @@ use std::sync::Arc;
 ///
 /// **The normal part is a state that M has solved for exactly this load**, for an elastic material.
 /// Tangential results are those of the Cattaneo-Mindlin and Ciavarella-Jaeger approximation: exact for round
-/// contacts, with errors of a few per cent for others. They need a contact that grows with the load, so that
+/// contacts as far as its assumptions hold (tractions do not change pressures, and slip is along the load),
+/// with errors of a few per cent for others. They need a contact that grows with the load, so that
 /// k(d) never falls; this is checked at every state, and [`Error::OutOfRange`] otherwise. Viscoelastic
 /// results are exact for any shape while the contact grows in time, which is checked as in
 /// [`crate::Viscoelastic`]. `contact_radius` and `stick_radius` are those of the round contact of the same
@@ -142,7 +143,7 @@ impl<M: ContactModel> ContactModel for Equivalent<M> {
                 what: "springs with Coulomb's limit (Ch. 5), springs that relax (Ch. 7), profiles of contacts of any shape from their k(d)",
             },
             Source {
-                citation: "J. Jaeger, Arch. Appl. Mech. 65, 478 (1995); M. Ciavarella, Int. J. Solids Struct. 35, 2349 (1998)",
+                citation: "J. Jaeger, Arch. Appl. Mech. 65, 478 (1995); M. Ciavarella, J. Appl. Mech. 65, 998 (1998)",
                 what: "partial slip as a difference of normal contacts, for any shape",
             },
             Source {

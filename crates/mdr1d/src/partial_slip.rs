@@ -55,7 +55,7 @@ impl ContactModel for PartialSlip {
                 what: "tangential springs G*, each with Coulomb's limit (Ch. 5)",
             },
             Source {
-                citation: "J. Jaeger, Arch. Appl. Mech. 65, 478 (1995); M. Ciavarella, Int. J. Solids Struct. 35, 2349 (1998)",
+                citation: "J. Jaeger, Arch. Appl. Mech. 65, 478 (1995); M. Ciavarella, J. Appl. Mech. 65, 998 (1998)",
                 what: "partial slip as a difference of normal contacts, the approximation behind the springs",
             },
         ]

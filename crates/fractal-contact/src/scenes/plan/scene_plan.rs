@@ -147,7 +147,7 @@ impl Plan {
             .map(|m| ModelPlan {
                 name: m.name(),
                 grid: grid(scene, m),
-                accuracy: m.accuracy(scene.surface.is_rough(), cells(scene, m)) + &taken(m),
+                accuracy: m.accuracy(cells(scene, m)) + &taken(m),
                 predicted: None,
             })
             .collect();

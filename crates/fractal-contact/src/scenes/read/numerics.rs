@@ -162,7 +162,7 @@ impl Numerics {
     }
 
     /// The accuracy to expect of its results, in a sentence. `cells` is used by models that have cells.
-    pub fn accuracy(&self, rough: bool, cells: Cells) -> String {
+    pub fn accuracy(&self, cells: Cells) -> String {
         let Cells { columns, rows } = cells;
         match self {
             Self::Bem3d(numerics) => format!(
@@ -170,13 +170,14 @@ impl Numerics {
                  themselves are of first order where a body has edges, and loads that touch fewer than 10 cells are the grid's own",
                 numerics.tolerance
             ),
-            Self::Mdr1d(_) if rough => "exact for its line; against three dimensions 7 to 18 % too stiff near F_bar = 1, exponents as 1/(1+H)".into(),
             Self::Equivalent(_) => format!(
-                "the normal part is that of bem3d on {columns} x {rows} cells; tangential results are exact for round contacts, a few per cent off for \
-                 others; relaxation is exact while the contact grows, which is checked; the table of k(d) has four digits for smooth \
+                "the normal part is that of bem3d on {columns} x {rows} cells; tangential results are exact for round contacts within Cattaneo's and \
+                 Mindlin's assumptions, a few per cent off for others; relaxation is exact while the contact grows, which is checked; the table of k(d) has four digits for smooth \
                  bodies, about two for rough ones (its uncertainty is in `strategy`)"
             ),
-            Self::Registered(own) => format!("that of a model of the user's own, version \"{}\"", own.version()),
+            Self::Registered(own) => {
+                format!("that of a model of the user's own, version \"{}\"", own.version())
+            }
             other => other.record().map_or_else(String::new, |record| record.accuracy.to_owned()),
         }
     }
