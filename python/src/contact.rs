@@ -305,7 +305,8 @@ impl Contact {
     ///     three may be negative with adhesion.
     /// tangential_force, tangential_displacement : float or (float, float), optional
     ///     At most one of them: along x, or along x (columns) and along y (rows); no tangential force otherwise.
-    ///     A force is at most ``sliding_force``; at that the displacement is the least at which the contact slides.
+    ///     A force is at most ``sliding_force``; at that the displacement is the least at which the contact
+    ///     slides.
     /// stop : threading.Event, optional
     ///     As in `solve`.
     ///
