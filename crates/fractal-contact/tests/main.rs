@@ -8,6 +8,7 @@ mod friction;
 mod limits;
 mod measured_maps;
 mod own_models;
+mod paths;
 mod press;
 mod profiles;
 mod program;

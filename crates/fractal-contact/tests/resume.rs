@@ -148,7 +148,7 @@ const PATH: &str = "[scene]\nunits = \"none\"\nmodels = [\"bem3d\"]\nPAIR\n[scen
     hurst = 0.7\nrms_height = 0.01\n[outputs]\npressure = [\"npy\"]\n[effects]\nEFFECT\n[models.bem3d]\ncells = 49\n\
     [sampling]\nseed = 3\nSTEPS";
 
-/// Paths on which something is remembered, each of seven steps.
+/// Paths on which something is remembered, each of seven states.
 fn paths() -> Vec<(&'static str, String)> {
     let steps = |values: [f64; 7], key: &str, tangential: bool| -> String {
         let step = |(i, value): (usize, f64)| {
@@ -165,6 +165,14 @@ fn paths() -> Vec<(&'static str, String)> {
     let pulled = [0.004, 0.012, 0.02, 0.008, 0.0, -0.002, -0.004];
     let forces = |tangential| steps(pressed, "force", tangential);
     let approaches = || steps(pulled, "approach", false);
+    let pieces = |first: &str, then: &str| {
+        format!(
+            "[[scene.path]]\n{first} = 6e-3\n[[scene.path]]\n{then} = 1e-2\nstates = 4\n[[scene.path]]\n{first} = 1e-2\nstates = 2\n"
+        )
+    };
+    let sheared = "[[scene.path]]\nforce = 6e-3\ntangential_force = 1e-3\n\
+        [[scene.path]]\napproach = 0.015\ntangential_displacement = -1e-3\nstates = 4\n\
+        [[scene.path]]\ntangential_force = 1e-3\nstates = 2\n";
     let contact_modulus = "contact_modulus = 1";
     let scene = |pair: &str, effect: &str, steps: String| {
         PATH.replace("PAIR", pair).replace("EFFECT", effect).replace("STEPS", &steps)
@@ -182,6 +190,20 @@ fn paths() -> Vec<(&'static str, String)> {
                 approaches(),
             ),
         ),
+        // Pieces that prescribe another quantity than the one before, interrupted inside and at their ends.
+        (
+            "hardness, another quantity",
+            scene(contact_modulus, "hardness = 0.05", pieces("force", "approach")),
+        ),
+        (
+            "short range, another quantity",
+            scene(contact_modulus, "adhesion = { work = 4e-5 }", pieces("force", "approach")),
+        ),
+        (
+            "mean gap, another quantity",
+            scene(contact_modulus, "boundary = \"periodic\"\nhardness = 0.2", pieces("force", "mean_gap")),
+        ),
+        ("friction, another quantity", scene(bodies, "friction = 0.4", sheared.to_owned())),
     ]
 }
 

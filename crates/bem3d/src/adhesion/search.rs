@@ -168,13 +168,11 @@ impl Search<'_> {
         state.steps += solved.steps;
     }
 
-    /// How far the force of a state is from the one prescribed, relative to it; where a force of zero is
-    /// prescribed, relative to the pressure of the contact.
+    /// How far the force of a state is from the one prescribed, relative to [`Equilibrium::force_scale`].
     pub fn load_error(&self, state: &Equilibrium) -> f64 {
         let AdhesiveControl::Force(asked) = self.control else { return 0.0 };
         let miss = (state.force() - asked).abs();
-        let scale = if asked.abs() > 0.0 { asked.abs() } else { sum(&state.pressure) };
-        if miss > 0.0 { miss / scale } else { 0.0 }
+        if miss > 0.0 { miss / state.force_scale(asked) } else { 0.0 }
     }
 
     /// Evaluates the gap with the exact operator on all cells within reach.

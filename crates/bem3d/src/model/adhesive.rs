@@ -314,7 +314,12 @@ impl AdhesiveContact {
             AdhesiveControl::Force(f) => (f, last.force()),
             AdhesiveControl::Plane(plane) => (plane, last.plane(self.shift())),
         };
-        (a - b).abs() <= self.surface.options.tolerance * a.abs().max(b.abs())
+        let larger = a.abs().max(b.abs());
+        let scale = match control {
+            AdhesiveControl::Force(_) => last.force_scale(larger),
+            AdhesiveControl::Plane(_) => larger,
+        };
+        (a - b).abs() <= self.surface.options.tolerance * scale
     }
 }
 

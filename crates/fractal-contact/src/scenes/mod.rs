@@ -38,7 +38,9 @@
 //!   from, to, count }`, logarithmic unless `spacing = "linear"`. They are solved in the order given;
 //!   increasing is the fastest.
 //! * Effects that depend on the path (friction, rheology) need `[[scene.path]]` instead: the ends of straight
-//!   pieces, each with `states` points. A quantity that a step does not name keeps its value.
+//!   pieces, each with `states` points. A quantity that a step does not name keeps its value. One that a
+//!   step prescribes in place of another (an approach after a force) begins at its value in the state that
+//!   was reached.
 //! * `[scene.surface]` is random (`self_affine`) or a `file`; `[scene.body]` is a sphere, cone, ...; with
 //!   both, their heights are added.
 //! * `side = s` is a square, `size = [Lx, Ly]` a rectangle; L is `sqrt(Lx Ly)`, mean pressure and contact
@@ -91,6 +93,7 @@ pub use read::keys::{SCENE_KEYS, SceneKeys};
 pub use read::loads::{LoadKind, LoadList, LoadRequest};
 pub use read::numerics::Numerics;
 pub use read::outputs::{FieldFormat, RequestedOutputs};
+pub use read::path::PathPiece;
 pub use read::random_surface::{RandomSpectrum, RandomSurface};
 pub use read::registered_model::RegisteredModel;
 pub use read::registry::Registry;

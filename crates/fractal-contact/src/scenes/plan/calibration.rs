@@ -1,7 +1,7 @@
 //! The cost of a run, predicted from its sizes alone or from small solves of the same kind.
 
 use crate::scenes::plan::{Cost, ModelOnSurface};
-use crate::scenes::read::{LoadRequest, Numerics, Result, SceneFile, cells, sampled};
+use crate::scenes::read::{LoadRequest, Numerics, Result, SceneFile, cells, sampled, step_to};
 use bem3d::BYTES_PER_CELL;
 use contact_model::{Adhesion, Cells, ContactState, Coupling, Friction, Surface};
 use mdr1d::BYTES_PER_ELEMENT;
@@ -229,11 +229,15 @@ fn small_solves(
                 solved.count(begun, &state, size);
             }
         }
-        LoadRequest::Path(steps) => {
-            for step in steps {
+        LoadRequest::Path(pieces) => {
+            let mut states: Vec<ContactState> = Vec::new();
+            for i in 0..scene.request.count() {
                 let begun = Instant::now();
-                let Ok(state) = contact.advance_until(*step, &stop) else { break };
+                let step = step_to(i, pieces, numerics.name(), |before| states.get(before));
+                let Ok(state) = step.and_then(|step| contact.advance_until(step, &stop)) else { break };
                 solved.count(begun, &state, size);
+                // What is long, as at most 10 000 of them are kept.
+                states.push(state.with_fields(None).with_patches(None));
             }
         }
     }

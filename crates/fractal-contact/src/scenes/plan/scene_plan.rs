@@ -330,12 +330,12 @@ fn beyond_hardness(scene: &SceneFile) -> Option<Diagnostic> {
             };
             (loads.values.iter().map(|value| value / area).collect(), "The other loads are solved.")
         }
-        LoadRequest::Path(steps) => {
+        LoadRequest::Path(_) => {
             let mean = |step: &Step| match step.normal {
                 Load::Force(force) => Some(force / area),
                 _ => None,
             };
-            (steps.iter().filter_map(mean).collect(), "The path ends before this step.")
+            (scene.request.ends().filter_map(mean).collect(), "The path ends before this step.")
         }
     };
     let largest = means.into_iter().filter(|&mean| mean >= pressure).max_by(f64::total_cmp)?;

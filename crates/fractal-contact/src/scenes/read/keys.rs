@@ -98,7 +98,7 @@ pub static SCENE_KEYS: &[SceneKeys] = &[
     keys(
         "scene.path",
         &[&["states"]],
-        "number of equal parts of the piece, each with a state at its end",
+        "number of equal parts of the piece, each with a state at its end; a quantity prescribed anew begins at its value in the state reached",
         "1",
     ),
     random(

@@ -11,6 +11,7 @@ pub(crate) mod keys;
 pub(crate) mod loads;
 pub(crate) mod numerics;
 pub(crate) mod outputs;
+pub(crate) mod path;
 pub(crate) mod random_surface;
 pub(crate) mod registered_model;
 pub(crate) mod registry;
@@ -30,6 +31,7 @@ pub(crate) use error::{Error, Result};
 pub(crate) use loads::{LoadKind, LoadList, LoadRequest, read_request};
 pub(crate) use numerics::{MOST_CELLS, Numerics, read_models};
 pub(crate) use outputs::{FieldFormat, HEIGHTS, RequestedOutputs, read_outputs};
+pub(crate) use path::{PathPiece, step_to};
 pub(crate) use random_surface::{
     Drawn, RandomSpectrum, RandomSurface, describe_self_affine, describe_sides, map_key,
 };

@@ -8,8 +8,8 @@ use crate::scenes::read::{
 };
 use analysis::AccuracyTarget;
 use contact_model::{
-    Adhesion, Body, Boundary, Cells, Directions, Effect, Effects, Friction, Hardness, Load, Pair, Paths,
-    Rheology, Scene,
+    Adhesion, Body, Boundary, Cells, Directions, Effect, Effects, Friction, Hardness, Load, Output, Pair,
+    Paths, Rheology, Scene,
 };
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -212,12 +212,16 @@ impl SceneFile {
     /// # Errors
     /// As [`SceneSurface::for_model`].
     pub fn scene(&self, numerics: &Numerics, seed: u64) -> contact_model::Result<Scene> {
+        let mut outputs = self.requested.outputs;
+        // A piece that begins at the mean gap reached needs it.
+        outputs.mean_gap |= self.request.begins_at_mean_gap()
+            && numerics.model().abilities().outputs.contains(&Output::MeanGap);
         Ok(Scene {
             surface: self.surface.for_model(numerics, seed)?,
             contact_modulus: self.contact_modulus,
             pair: self.pair,
             effects: self.effects,
-            outputs: self.requested.outputs,
+            outputs,
         })
     }
 
@@ -512,7 +516,7 @@ fn check_request(
     let periodic = effects.boundary == Boundary::Periodic;
     let prescribes = |kind: LoadKind, of_step: fn(&Load) -> bool| match request {
         LoadRequest::Loads(loads) => loads.kind == kind,
-        LoadRequest::Path(steps) => steps.iter().any(|step| of_step(&step.normal)),
+        LoadRequest::Path(_) => request.ends().any(|step| of_step(&step.normal)),
     };
     if periodic && prescribes(LoadKind::Approach, |load| matches!(load, Load::Approach(_))) {
         return Err(entry
@@ -558,7 +562,7 @@ fn check_half_plane(
                 gap and its stiffness have a meaning";
     let by_approach = match request {
         LoadRequest::Loads(loads) => loads.kind == LoadKind::Approach,
-        LoadRequest::Path(steps) => steps.iter().any(|step| matches!(step.normal, Load::Approach(_))),
+        LoadRequest::Path(_) => request.ends().any(|step| matches!(step.normal, Load::Approach(_))),
     };
     if by_approach {
         let message = format!("an approach of a profile with free boundaries: {why}");

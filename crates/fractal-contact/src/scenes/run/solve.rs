@@ -2,15 +2,14 @@
 
 use crate::scenes::plan::{GridComparison, ModelOnSurface, solved_map};
 use crate::scenes::read::{
-    Error, FieldFormat, HEIGHTS, LoadRequest, Numerics, Result, SceneFile, cells, distributed, words,
+    Error, FieldFormat, HEIGHTS, LoadRequest, Numerics, PathPiece, Result, SceneFile, cells, distributed,
+    step_to, words,
 };
 use crate::scenes::run::{
     Answer, FieldFile, FieldView, Keeper, ModelResult, Solved, StateRecord, StoredFile, Warning,
     field_pictures,
 };
-use contact_model::{
-    Cells, ContactState, Field, FieldQuantity, LargestPull, Load, PreparedContact, Step, Stop,
-};
+use contact_model::{Cells, ContactState, Field, FieldQuantity, LargestPull, Load, PreparedContact, Stop};
 use std::borrow::Cow;
 use std::path::Path;
 use std::time::Instant;
@@ -47,14 +46,14 @@ impl ModelOnSurface {
                 };
                 self.loads(scene, contact.as_mut(), out, stop, &mut result, &mut keep)?;
             }
-            LoadRequest::Path(steps) => {
+            LoadRequest::Path(pieces) => {
                 keeper.resume(&mut result, contact.as_mut());
                 let mut keep =
                     |result: &mut ModelResult, contact: &dyn PreparedContact, interrupted: bool| {
                         result.seconds = before + start.elapsed().as_secs_f64();
                         keeper.keep_path(result, contact, interrupted);
                     };
-                self.path(scene, contact.as_mut(), (steps, out), stop, &mut result, &mut keep)?;
+                self.path(scene, contact.as_mut(), (pieces, out), stop, &mut result, &mut keep)?;
             }
         }
         let of = (numerics.name(), self.surface);
@@ -130,20 +129,32 @@ impl ModelOnSurface {
         &self,
         scene: &SceneFile,
         contact: &mut dyn PreparedContact,
-        (steps, out): (&[Step], &Path),
+        (pieces, out): (&[PathPiece], &Path),
         stop: Stop<'_>,
         result: &mut ModelResult,
         keep: &mut dyn FnMut(&mut ModelResult, &dyn PreparedContact, bool),
     ) -> Result<()> {
         let normalisation = contact.normalisation();
         let mut largest = LargestPull::default();
-        for (step, record) in steps.iter().zip(&result.states) {
-            if let Some(solved) = record.solved() {
+        let model = self.numerics(scene).name();
+        let step_of = |index: usize, states: &[StateRecord]| {
+            step_to(index, pieces, model, |before| Some(&states.get(before)?.solved()?.state))
+        };
+        for (index, record) in result.states.iter().enumerate() {
+            if let (Some(solved), Ok(step)) = (record.solved(), step_of(index, &result.states)) {
                 let _ = largest.enter(step.normal, solved.state.clone());
             }
         }
-        for (index, step) in steps.iter().enumerate().skip(result.states.len()) {
-            let record = match contact.advance_until(*step, stop) {
+        for index in result.states.len()..scene.request.count() {
+            let step = match step_of(index, &result.states) {
+                Ok(step) => step,
+                Err(error) => {
+                    let refused = Answer::Refused(words::refusal(scene, &error));
+                    result.states.push(StateRecord::new(index, refused));
+                    break;
+                }
+            };
+            let record = match contact.advance_until(step, stop) {
                 Ok(state) => {
                     let state = largest.enter(step.normal, state);
                     let warnings = Warning::of(scene, &state, None);
@@ -290,7 +301,7 @@ fn write_vti(
 mod tests {
     use super::*;
     use crate::scenes::{LoadKind, LoadList, SceneSurface};
-    use contact_model::{Fields, HeightMap, Output, SolveReport};
+    use contact_model::{Fields, HeightMap, Output, SolveReport, Step};
     use std::sync::Arc;
 
     /// Fields of 2 rows x 3 columns with oblong cells; the second point of the second row is undefined.
@@ -345,7 +356,7 @@ mod tests {
     #[test]
     fn fields_of_two_components_are_whole_in_every_format() {
         let surface = SceneSurface::Plain(contact_model::Surface::Flat { size: [6.0, 1.0].into() });
-        let steps = LoadRequest::Path(vec![Step::normal(0.0, Load::Force(1.0))]);
+        let steps = LoadRequest::Path(vec![Step::normal(0.0, Load::Force(1.0)).into()]);
         let mut scene = SceneFile::new(vec![Numerics::Bem3d(bem3d::Bem3d::default())], surface, 1.0, steps);
         if let Numerics::Bem3d(elements) = &mut scene.models[0] {
             (elements.cells, elements.rows) = (3, Some(2));

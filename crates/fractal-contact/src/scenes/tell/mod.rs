@@ -75,7 +75,7 @@ mod tests {
                 effects.friction = Friction::coulomb(0.3);
                 let tangential = Tangential::Force([0.1, 0.1]);
                 let step = Step { tangential, ..Step::normal(0.0, Load::Force(1.0)) };
-                scene.request = LoadRequest::Path(vec![step; 2]);
+                scene.request = LoadRequest::Path(vec![step.into(); 2]);
             }
             AskedBy::Effect("hardness") => effects.hardness = Hardness::Limit { pressure: 1.0 },
             AskedBy::Effect("adhesion") => effects.adhesion = Adhesion::ShortRange { work: 1.0 },
@@ -83,7 +83,7 @@ mod tests {
             AskedBy::Effect("rheology") => effects.rheology = Rheology::Maxwell { viscosity: 1.0 },
             AskedBy::Effect(key) => assert!(Effect::ALL.iter().any(|effect| effect.key() == key), "{key}"),
             AskedBy::Path => {
-                scene.request = LoadRequest::Path(vec![Step::normal(0.0, Load::Force(1.0)); 2]);
+                scene.request = LoadRequest::Path(vec![Step::normal(0.0, Load::Force(1.0)).into(); 2]);
             }
             AskedBy::All(each) => each.iter().for_each(|asked| ask(scene, *asked)),
             AskedBy::Always | AskedBy::RoughSurface | AskedBy::FreeBoundary | AskedBy::PrescribedDistance => {

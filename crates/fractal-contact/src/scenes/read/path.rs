@@ -1,0 +1,387 @@
+//! A path of loads: straight pieces, each divided into steps while the path is followed.
+
+use crate::scenes::read::{Entry, Read, System};
+use contact_model::{ContactState, Error, Load, Result, Size, Step, Tangential};
+use surface_io::Dimension;
+
+/// Largest number of loads or states; more are taken for a typing error.
+pub(crate) const MOST: u64 = 10_000;
+/// A value between two others that is smaller than this many roundings of the larger one is zero. The product
+/// and the sum that make it have less than three.
+const ROUNDINGS: f64 = 4.0;
+
+/// A straight piece of a path.
+///
+/// Its states divide the way from where the path stands to its end into equal parts. A load that the piece
+/// before prescribed as well begins at the value prescribed there. Where a piece prescribes another quantity
+/// than the one before (an approach after a force), that quantity begins at its value in the state that was
+/// reached, which each model and each surface has its own of.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PathPiece {
+    /// Its end, which the last of its states has exactly.
+    pub end: Step,
+    /// Number of its states, >= 1.
+    pub states: usize,
+}
+
+/// A piece with one state.
+impl From<Step> for PathPiece {
+    fn from(end: Step) -> Self {
+        Self { end, states: 1 }
+    }
+}
+
+/// The step that leads to a state of a path. `reached` gives the states before it by their number; only the
+/// last state of the piece before is looked at, so that a path which is resumed has the same steps.
+///
+/// # Errors
+/// [`Error::Unsupported`] with the name of the model where that state lacks the quantity that the piece
+/// prescribes anew, [`Error::Domain`] for a state beyond the end of the path.
+pub(crate) fn step_to<'a>(
+    state: usize,
+    pieces: &[PathPiece],
+    model: &'static str,
+    reached: impl Fn(usize) -> Option<&'a ContactState>,
+) -> Result<Step> {
+    let mut first = 0;
+    let mut before: Option<Step> = None;
+    for &PathPiece { end, states } in pieces {
+        let part = state - first + 1;
+        if part == states {
+            return Ok(end);
+        }
+        if part < states {
+            let from = match before {
+                None => beginning(end),
+                Some(before) => {
+                    let stands = first.checked_sub(1).and_then(&reached);
+                    let lacks = |quantity: &str| {
+                        let what = format!(
+                            "a piece of {states} states that begins to prescribe {quantity}: the state before it has none"
+                        );
+                        Error::unsupported(model, what)
+                    };
+                    Step {
+                        normal: normal_start(before.normal, end.normal, stands).map_err(lacks)?,
+                        tangential: tangential_start(before.tangential, end.tangential, stands)
+                            .map_err(lacks)?,
+                        ..before
+                    }
+                }
+            };
+            return Ok(between(from, end, part as f64 / states as f64));
+        }
+        first += states;
+        before = Some(end);
+    }
+    Err(Error::domain("state", state as f64, format!("a number below {first}, the states of the path")))
+}
+
+/// The state without contact and load, with the quantities that the first step prescribes.
+fn beginning(first: Step) -> Step {
+    let normal = match first.normal {
+        Load::Approach(_) => Load::Approach(0.0),
+        // The distance at first touch is not known here.
+        Load::MeanGap(gap) => Load::MeanGap(gap),
+        _ => Load::Force(0.0),
+    };
+    let tangential = match first.tangential {
+        Tangential::Displacement(_) => Tangential::Displacement([0.0; 2]),
+        _ => Tangential::default(),
+    };
+    Step { time: 0.0, normal, tangential }
+}
+
+/// The normal load at which a piece begins; the name of the quantity that the reached state lacks otherwise.
+fn normal_start(
+    before: Load,
+    end: Load,
+    reached: Option<&ContactState>,
+) -> std::result::Result<Load, &'static str> {
+    match (before, end) {
+        (Load::Force(_), Load::Force(_))
+        | (Load::Approach(_), Load::Approach(_))
+        | (Load::MeanGap(_), Load::MeanGap(_)) => Ok(before),
+        (_, Load::Approach(_)) => {
+            reached.and_then(|state| state.approach).map(Load::Approach).ok_or("an approach")
+        }
+        (_, Load::MeanGap(_)) => {
+            reached.and_then(|state| state.mean_gap).map(Load::MeanGap).ok_or("a mean gap")
+        }
+        _ => reached.map(|state| Load::Force(state.force)).ok_or("a force"),
+    }
+}
+
+/// As [`normal_start`], of the tangential load.
+fn tangential_start(
+    before: Tangential,
+    end: Tangential,
+    reached: Option<&ContactState>,
+) -> std::result::Result<Tangential, &'static str> {
+    let reached = reached.and_then(|state| state.tangential.as_ref());
+    match (before, end) {
+        (Tangential::Force(_), Tangential::Force(_))
+        | (Tangential::Displacement(_), Tangential::Displacement(_)) => Ok(before),
+        (_, Tangential::Displacement(_)) => reached
+            .map(|state| Tangential::Displacement(state.displacement))
+            .ok_or("a tangential displacement"),
+        _ => reached.map(|state| Tangential::Force(state.force)).ok_or("a tangential force"),
+    }
+}
+
+/// A point of a straight piece whose ends prescribe the same quantities.
+fn between(from: Step, to: Step, t: f64) -> Step {
+    let mix = |a: f64, b: f64| zero_if_rounded(a + (b - a) * t, [a, b]);
+    let both = |a: [f64; 2], b: [f64; 2]| [mix(a[0], b[0]), mix(a[1], b[1])];
+    let normal = match (from.normal, to.normal) {
+        (Load::Force(a), Load::Force(b)) => Load::Force(mix(a, b)),
+        (Load::Approach(a), Load::Approach(b)) => Load::Approach(mix(a, b)),
+        (Load::MeanGap(a), Load::MeanGap(b)) => Load::MeanGap(mix(a, b)),
+        (_, other) => other,
+    };
+    let tangential = match (from.tangential, to.tangential) {
+        (Tangential::Force(a), Tangential::Force(b)) => Tangential::Force(both(a, b)),
+        (Tangential::Displacement(a), Tangential::Displacement(b)) => Tangential::Displacement(both(a, b)),
+        (_, other) => other,
+    };
+    Step { time: mix(from.time, to.time), normal, tangential }
+}
+
+/// A value between two ends: exactly zero where it differs from that by the rounding of the ends alone, so
+/// that a division which passes through zero meets it.
+pub(crate) fn zero_if_rounded(value: f64, ends: [f64; 2]) -> f64 {
+    let largest = ends[0].abs().max(ends[1].abs());
+    if value.abs() <= ROUNDINGS * f64::EPSILON * largest { 0.0 } else { value }
+}
+
+/// Reads `[[scene.path]]`. `pulls` allows negative loads (adhesion). `size` is that of the nominal contact
+/// area, for mean pressures.
+pub(crate) fn read_path(entry: &Entry<'_>, system: System, pulls: bool, size: Size) -> Read<Vec<PathPiece>> {
+    if !entry.is_list() {
+        return Err(entry
+            .diagnostic_at_key("`path` is no list of steps")
+            .with_help("write [[scene.path]] once for each step"));
+    }
+    let mut pieces: Vec<PathPiece> = Vec::new();
+    let mut last = Step::normal(0.0, Load::Force(0.0));
+    let mut total = 0_u64;
+    for item in entry.list() {
+        let table = item.table()?;
+        let mut time = last.time;
+        table.set(&mut time, "time", |e| e.quantity(Dimension::TIME, system))?;
+        let normal = match table.one_of(&["force", "approach", "mean_pressure", "mean_gap"])? {
+            Some(("force", e)) => Load::Force(e.quantity(Dimension::FORCE, system)?),
+            // The mean pressure times the nominal contact area, as for a list of mean pressures.
+            Some(("mean_pressure", e)) => {
+                Load::Force(e.quantity(Dimension::PRESSURE, system)? * size.length() * size.length())
+            }
+            Some(("mean_gap", e)) => Load::MeanGap(e.quantity(Dimension::LENGTH, system)?),
+            Some((_, e)) => Load::Approach(e.quantity(Dimension::LENGTH, system)?),
+            None if pieces.is_empty() => {
+                return Err(item
+                    .diagnostic("the first step of the path has no normal load")
+                    .with_help("give `force`, `mean_pressure`, `approach` or (periodic) `mean_gap`"));
+            }
+            None => last.normal,
+        };
+        let tangential = match table.one_of(&["tangential_force", "tangential_displacement"])? {
+            Some(("tangential_force", e)) => {
+                Tangential::Force(read_tangential(&e, Dimension::FORCE, system)?)
+            }
+            Some((_, e)) => Tangential::Displacement(read_tangential(&e, Dimension::LENGTH, system)?),
+            None => last.tangential,
+        };
+        let states = table.find("states");
+        let count = states.as_ref().map_or(Ok(1), |e| e.count(1))?;
+        if let Some(entry) = states
+            && count.saturating_add(total) > MOST
+        {
+            return Err(entry
+                .diagnostic(format!("{count} states: expected at most {MOST} along the whole path"))
+                .with_help(
+                    "states in between are increments of friction, and otherwise only shown: request fewer",
+                ));
+        }
+        table.finish()?;
+        let end = Step { time, normal, tangential };
+        let checked = if pulls { end.validated_with_adhesion(last.time) } else { end.validated(last.time) };
+        checked.map_err(|e| {
+            let help = match &e {
+                Error::Domain { name, .. } if name == "time" => "times never decrease along a path",
+                _ if pulls => "loads are finite numbers",
+                _ => "loads are finite, and normal loads at least 0: only `adhesion` in [effects] lets a contact pull",
+            };
+            item.diagnostic(e.to_string()).with_help(help)
+        })?;
+        total = total.saturating_add(count);
+        pieces.push(PathPiece { end, states: count as usize });
+        last = end;
+    }
+    if pieces.is_empty() {
+        return Err(entry
+            .diagnostic("the path has no step")
+            .with_help("write [[scene.path]] once for each step"));
+    }
+    Ok(pieces)
+}
+
+/// A tangential load: one number along x, or a pair along x and along y.
+fn read_tangential(entry: &Entry<'_>, dimension: Dimension, system: System) -> Read<[f64; 2]> {
+    let component = |item: &Entry<'_>| item.quantity(dimension, system);
+    match &entry.list()[..] {
+        [x, y] => Ok([component(x)?, component(y)?]),
+        [x] if !entry.is_list() => Ok([component(x)?, 0.0]),
+        components => {
+            let example = match (system, dimension) {
+                (System::None, _) => "[25, 10]",
+                (System::Si, Dimension::LENGTH) => "[\"2 um\", \"1 um\"]",
+                (System::Si, _) => "[\"25 N\", \"10 N\"]",
+            };
+            let message = format!("a tangential load of {} components", components.len());
+            let help = format!("give one value along x, or a pair along x and along y, such as {example}");
+            Err(entry.diagnostic(message).with_help(help))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scenes::read::{Entries, LoadRequest};
+    use contact_model::{SolveReport, TangentialState};
+
+    fn path(text: &str) -> Read<Vec<PathPiece>> {
+        let size = Size { x: 4.0, y: 1.0 };
+        Entries::of_text("scene", text, |scene| {
+            read_path(&scene.require("path", "")?, System::None, true, size)
+        })
+    }
+
+    /// All steps of a path whose states are all `reached`.
+    fn steps(pieces: &[PathPiece], reached: Option<&ContactState>) -> Result<Vec<Step>> {
+        let count = pieces.iter().map(|piece| piece.states).sum();
+        (0..count).map(|state| step_to(state, pieces, "mine", |_| reached)).collect()
+    }
+
+    fn state() -> ContactState {
+        ContactState::new(0.75, SolveReport::exact("test"))
+    }
+
+    #[test]
+    fn tangential_loads_have_two_components_and_every_part_mixes_both() {
+        let pieces = path(
+            "[[path]]\nmean_pressure = 3\n[[path]]\ntangential_force = [2, -4]\nstates = 2\n[[path]]\ntangential_force = 1\n\
+             [[path]]\ntangential_displacement = [0.5, 0.25]",
+        )
+        .unwrap();
+        let steps = steps(&pieces, None).unwrap();
+        let tangential: Vec<Tangential> = steps.iter().map(|step| step.tangential).collect();
+        let forces = [[0.0, 0.0], [1.0, -2.0], [2.0, -4.0], [1.0, 0.0]].map(Tangential::Force);
+        assert_eq!(tangential[..4], forces);
+        assert_eq!(tangential[4], Tangential::Displacement([0.5, 0.25]));
+        // The mean pressure of a path is the force over the nominal area, and stays as it was.
+        assert!(steps.iter().all(|step| step.normal == Load::Force(12.0)));
+        assert_eq!(LoadRequest::Path(pieces).shears(), [true, true]);
+        let along_x = path("[[path]]\nmean_gap = 1\ntangential_displacement = 2").unwrap();
+        assert_eq!(along_x[0].end.normal, Load::MeanGap(1.0));
+        assert_eq!(LoadRequest::Path(along_x).shears(), [true, false]);
+        for wrong in ["[]", "[1]", "[1, 2, 3]", "[1, \"2 N\"]", "[1, nan]", "\"1 N\"", "{ x = 1 }"] {
+            assert!(path(&format!("[[path]]\nforce = 1\ntangential_force = {wrong}")).is_err(), "{wrong}");
+        }
+    }
+
+    /// Both quantities begin where the state stands, and end exactly where they are asked to.
+    #[test]
+    fn quantities_that_are_prescribed_anew_begin_at_the_state_reached() {
+        let pieces = path(
+            "[[path]]\ntime = 1\nforce = 2\ntangential_force = [0.5, 0.25]\n\
+             [[path]]\ntime = 3\napproach = 0.1\ntangential_displacement = [-0.3, 0]\nstates = 4\n\
+             [[path]]\nforce = 0.1\nstates = 2\n[[path]]\nmean_gap = 8\nstates = 2\n\
+             [[path]]\ntangential_force = [0, 1]\nstates = 2",
+        )
+        .unwrap();
+        let reached = state()
+            .with_approach(0.5)
+            .with_mean_gap(4.0)
+            .with_tangential(TangentialState::new([0.25, -1.0], [0.5, 1.0]));
+        let steps = steps(&pieces, Some(&reached)).unwrap();
+        let approaches = [0.5 + (0.1 - 0.5) * 0.25, 0.3, 0.5 + (0.1 - 0.5) * 0.75, 0.1];
+        let shifts = [[0.3, 0.75], [0.1, 0.5], [-0.1, 0.25], [-0.3, 0.0]];
+        for (i, (step, (d, u))) in steps[1..5].iter().zip(approaches.into_iter().zip(shifts)).enumerate() {
+            assert_eq!(step.normal, Load::Approach(d), "{i}");
+            let Tangential::Displacement([x, y]) = step.tangential else { panic!("{step:?}") };
+            assert!((x - u[0]).abs() < 1e-15 && (y - u[1]).abs() < 1e-15, "{i}: {step:?}");
+            assert!((step.time - (1.5 + 0.5 * i as f64)).abs() < 1e-15, "{step:?}");
+        }
+        assert_eq!(steps[4], pieces[1].end);
+        let normal: Vec<Load> = steps[5..].iter().map(|step| step.normal).collect();
+        assert_eq!(normal[..2], [0.75 + (0.1 - 0.75) * 0.5, 0.1].map(Load::Force));
+        assert_eq!(normal[2..], [6.0, 8.0, 8.0, 8.0].map(Load::MeanGap));
+        assert!(steps[4..9].iter().all(|step| step.tangential == Tangential::Displacement([-0.3, 0.0])));
+        assert_eq!(steps[9].tangential, Tangential::Force([0.125, 0.0]));
+        assert_eq!(steps[10].tangential, Tangential::Force([0.0, 1.0]));
+        let request = LoadRequest::Path(pieces);
+        assert!(request.begins_at_mean_gap() && request.prescribes_distance());
+        let continued = path("[[path]]\nmean_gap = 1\n[[path]]\nmean_gap = 2\nstates = 2").unwrap();
+        assert!(!LoadRequest::Path(continued).begins_at_mean_gap());
+    }
+
+    /// From the beginning, and where the same quantity goes on, no state is looked at.
+    #[test]
+    fn quantities_that_go_on_begin_at_the_value_prescribed_before() {
+        let pieces = path(
+            "[[path]]\napproach = 0.2\ntangential_displacement = 0.4\nstates = 2\n[[path]]\napproach = 0.3\nstates = 2\n\
+             [[path]]\napproach = -0.1\ntangential_displacement = 0\nstates = 4",
+        )
+        .unwrap();
+        let steps = steps(&pieces, None).unwrap();
+        let normal: Vec<Load> = steps.iter().map(|step| step.normal).collect();
+        let last = [0.3 + (-0.1 - 0.3) * 0.25, 0.3 + (-0.1 - 0.3) * 0.5, 0.0, -0.1];
+        assert_eq!(normal[..4], [0.1, 0.2, 0.2 + (0.3 - 0.2) * 0.5, 0.3].map(Load::Approach));
+        assert_eq!(normal[4..], last.map(Load::Approach));
+        assert_eq!(steps[0].tangential, Tangential::Displacement([0.2, 0.0]));
+        assert_eq!(steps[3].tangential, Tangential::Displacement([0.4, 0.0]));
+        assert_eq!(steps[5].tangential, Tangential::Displacement([0.2, 0.0]));
+        let gap = path("[[path]]\nmean_gap = 2\nstates = 3").unwrap();
+        assert!(self::steps(&gap, None).unwrap().iter().all(|step| step.normal == Load::MeanGap(2.0)));
+        assert!(step_to(3, &gap, "mine", |_| None).unwrap_err().to_string().contains("below 3"));
+    }
+
+    /// 0.3 - 0.4 * 3/4 is 5.6e-17 in double precision.
+    #[test]
+    fn a_division_through_zero_meets_it_exactly() {
+        for (from, to, states, zero) in
+            [(0.3, -0.1, 4, 2), (-0.1, 0.3, 4, 0), (0.7, -0.1, 8, 6), (1.1, -2.2, 9, 2)]
+        {
+            let text = format!("[[path]]\nforce = {from}\n[[path]]\nforce = {to}\nstates = {states}");
+            let steps = steps(&path(&text).unwrap(), None).unwrap();
+            let Load::Force(force) = steps[1 + zero].normal else { panic!("{steps:?}") };
+            assert_eq!(force.to_bits(), 0, "from {from} to {to}: {force:e}");
+        }
+        // What is small and no rounding stays.
+        assert!(zero_if_rounded(1e-15, [1.0, -1.0]) > 0.0 && zero_if_rounded(-1e-300, [0.0, -1e-299]) < 0.0);
+        assert_eq!(zero_if_rounded(-2e-16, [1.0, -1.0]).to_bits(), 0);
+    }
+
+    #[test]
+    fn a_state_without_the_quantity_is_told_by_name() {
+        for (first, then, quantity) in [
+            ("force = 1", "approach = 2", "an approach"),
+            ("force = 1", "mean_gap = 2", "a mean gap"),
+            ("force = 1", "tangential_displacement = 2", "a tangential displacement"),
+            ("force = 1\ntangential_displacement = 1", "tangential_force = 2", "a tangential force"),
+        ] {
+            let pieces =
+                |states| path(&format!("[[path]]\n{first}\n[[path]]\n{then}\nstates = {states}")).unwrap();
+            let refused = steps(&pieces(3), Some(&state())).unwrap_err().to_string();
+            assert_eq!(
+                refused,
+                format!(
+                    "the model mine does not support a piece of 3 states that begins to prescribe {quantity}: the state before it has none"
+                )
+            );
+            // One state is the end itself.
+            assert_eq!(steps(&pieces(1), None).unwrap().len(), 2);
+        }
+    }
+}
