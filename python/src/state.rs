@@ -110,8 +110,8 @@ impl Certificate {
     }
 
     /// float: relative difference of the force from the prescribed one; of a prescribed mean gap its error over
-    /// the rms height. With adhesion, where the prescribed force is below a thousandth of the force of the contact
-    /// pressure, relative to that force.
+    /// the rms height. With adhesion relative to a thousandth of the force of the contact pressure where that is
+    /// larger than the prescribed force.
     #[getter]
     fn load_error(&self) -> f64 {
         self.0.load_error

@@ -589,7 +589,7 @@ pub static QUANTITIES: &[Quantity] = &quantities! {
         { role: Role::Residual("where there is pressure there is no gap"), average: Average::No, drawn: false }
         => |s, _| s.report.certificate.complementarity.into();
     "load_error" "load error" "" One; Always;
-        "|F - F_prescribed|/F_prescribed, or over the force of the contact pressure where adhesion leaves below 1e-3 of it; of a mean gap its error over s"
+        "|F - F_prescribed|/F_prescribed, with adhesion at least over 1e-3 of the force of the contact pressure; of a mean gap its error over s"
         { role: Role::Residual("the force, or the mean gap, is the prescribed one"), average: Average::No, drawn: false }
         => |s, _| s.report.certificate.load_error.into();
     "force_error" "error of the force" "" One; PrescribedDistance;

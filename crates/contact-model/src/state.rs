@@ -492,9 +492,9 @@ pub struct Certificate {
     #[cfg_attr(feature = "serde", serde(with = "known_or_infinite"))]
     pub complementarity: f64,
     /// `|F - F_prescribed| / F_prescribed`; for a prescribed mean gap its error over s; 0 for a prescribed
-    /// approach. With adhesion that is solved cell by cell, where F_prescribed is below a thousandth of the
-    /// force of the contact pressure (and at 0), the error is over the force of the contact pressure: F is
-    /// then what its difference from the force of the attraction leaves.
+    /// approach. With adhesion that is solved cell by cell it is over a thousandth of the force of the contact
+    /// pressure where that is larger than F_prescribed: near 0 the force is what pressure and attraction, which
+    /// cancel, leave.
     #[cfg_attr(feature = "serde", serde(with = "known_or_infinite"))]
     pub load_error: f64,
     /// Estimated relative error of the stiffness, and of that at fixed contact area where both are computed;

@@ -268,6 +268,24 @@ fn friction_of_two_directions_is_told_everywhere() {
     assert!(out.join("curve-tangential_force.svg").is_file());
 }
 
+/// The block has no approach: a piece that would begin at it is refused by name, and what is before it stands.
+#[test]
+fn a_piece_that_begins_at_a_quantity_which_a_model_lacks_is_refused() {
+    let dir = tempfile::tempdir().unwrap();
+    let text =
+        SCENE.replace("tangential_displacement = [\"3 m\", \"4 m\"]", "approach = \"1 um\"\nstates = 2");
+    let scene = parsed(&text, dir.path()).unwrap_or_else(|e| panic!("{e}"));
+    let plan = Plan::calibrated(&scene).unwrap_or_else(|e| panic!("{e}"));
+    let out = dir.path().join("out");
+    let options = Options { out: out.clone(), threads: 1, fresh: false };
+    let outcome = run(&scene, &plan, &options, &Silent, &contact_model::never).unwrap();
+    assert_eq!((outcome.requested, outcome.states, outcome.failed), (6, 5, 1));
+    let file = CsvFile::read(&out.join("results.csv")).unwrap();
+    assert_eq!(file.texts("status").unwrap()[4], "refused");
+    let note = file.texts("note").unwrap()[4].to_owned();
+    assert!(note.contains("block") && note.contains("begins to prescribe an approach"), "{note}");
+}
+
 #[test]
 fn bodies_that_couple_are_asked_how_where_a_model_can_do_either() {
     let dir = tempfile::tempdir().unwrap();

@@ -17,7 +17,8 @@ impl Solved {
             SceneFile::parse("scene.toml".as_ref(), text.into()).unwrap_or_else(|e| panic!("{e}\n{text}"));
         let dir = tempfile::tempdir().unwrap();
         let options = Options { out: dir.path().into(), threads: 2, fresh: false };
-        let plan = Plan::new(&scene).unwrap_or_else(|e| panic!("{e}\n{text}"));
+        // Its small solves follow the path as well.
+        let plan = Plan::calibrated(&scene).unwrap_or_else(|e| panic!("{e}\n{text}"));
         let outcome = run(&scene, &plan, &options, &Silent, &contact_model::never).unwrap();
         let file = CsvFile::read(&dir.path().join("results.csv")).unwrap();
         assert!(outcome.failed == 0 && outcome.states == outcome.requested, "{outcome:?}\n{text}");
@@ -366,4 +367,36 @@ fn a_path_of_forces_crosses_zero() {
         let found = solved.column("bem3d", 0, "force")[1];
         assert!((found - small.parse::<f64>().unwrap()).abs() < 1e-6, "{small}: {found:e}");
     }
+}
+
+/// Under a force of zero the two forces of pressure and attraction leave their rounding, which is no load that
+/// has changed.
+#[test]
+fn a_force_of_zero_that_is_held_stays_on_its_branch() {
+    let text = "[scene]\nunits = \"none\"\nmodels = [\"bem3d\"]\nmodulus = 1\n[scene.body]\nkind = \"sphere\"\nradius = 1\nside = 1\n\
+        [effects]\nadhesion = { work = 0.002, range = 0.05, law = \"exponential\" }\n[models.bem3d]\ncells = CELLS\ntolerance = 1e-12\n\
+        [[scene.path]]\nforce = 0.003\n[[scene.path]]\nforce = 0\n[[scene.path]]\nforce = 0\nstates = 3\n";
+    for cells in ["48", "64", "96"] {
+        let solved = Solved::of(&text.replace("CELLS", cells));
+        assert_eq!(solved.file.texts("branch").unwrap()[1..], ["withdrawal"; 4], "{cells} cells");
+    }
+}
+
+/// Pressing a rough contact with full coupling displaces it although no tangential force acts: a prescribed
+/// displacement begins there, and not at zero.
+#[test]
+fn a_coupled_contact_is_displaced_from_where_pressing_has_left_it() {
+    let text = format!(
+        "{}[effects]\nfriction = {{ coefficient = 0.3, coupling = \"full\" }}\n[[scene.path]]\nforce = 0.01\n\
+         [[scene.path]]\ntangential_displacement = 0.004\nstates = 4\n",
+        ROUGH
+            .replace("modulus = 1", "bodies = [{ young = 1, poisson = 0.1 }, \"rigid\"]")
+            .replace("surfaces = 2", "surfaces = 1")
+            .replace("cells = 32", "cells = 16")
+    );
+    let states = Solved::of(&text).assert_is(0, 0, &|i, before| {
+        let tangential = if i == 0 { Tangential::default() } else { shifted(&before[0], 0.004, i, 4) };
+        Step { tangential, ..Step::normal(0.0, Load::Force(0.01)) }
+    });
+    assert!(shift(&states[0]).abs() > 1e-5 && sheared(&states[0]).abs() <= 0.0, "{:?}", states[0].tangential);
 }

@@ -7,10 +7,10 @@ use crate::linear::Fixed;
 use crate::real::{dot, sum};
 use serde::{Deserialize, Serialize};
 
-/// A prescribed force below this share of the force of the contact pressure is negligible: the sums of
-/// pressure and attraction have roundings of some 1e-16 of that, so that a force above it is met to the
-/// smallest tolerances, of 1e-12, relative to itself.
-const NEGLIGIBLE: f64 = 1e-3;
+/// Smallest force that the error of a prescribed force is relative to, as a share of the force of the contact
+/// pressure. The sums of pressure and attraction, whose difference is the force, have roundings of some 1e-16 of
+/// that, which a tolerance of 1e-12 leaves room for.
+const SMALLEST: f64 = 1e-3;
 
 /// What is prescribed, nondimensional; of either sign.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -72,11 +72,11 @@ impl Equilibrium {
         self.pressure.iter().zip(&self.attraction).map(|(p, s)| p - s).collect()
     }
 
-    /// The force that the error of a prescribed force is relative to: the prescribed one or, where that is
-    /// negligible beside it, the force of the contact pressure, of which the attraction leaves the rest.
+    /// The force that the error of a prescribed force is relative to: the prescribed one, or a share of the
+    /// force of the contact pressure where that is larger, as near a force of zero pressure and attraction
+    /// cancel.
     pub fn force_scale(&self, asked: f64) -> f64 {
-        let pressed = sum(&self.pressure);
-        if asked.abs() > NEGLIGIBLE * pressed { asked.abs() } else { pressed }
+        asked.abs().max(SMALLEST * sum(&self.pressure))
     }
 
     /// The plane of [`AdhesiveControl::Plane`] that a state has, from the constant in the kernel.
