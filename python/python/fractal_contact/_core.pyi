@@ -188,7 +188,8 @@ class Certificate:
     @property
     def load_error(self) -> float:
         """float: relative difference of the force from the prescribed one; of a prescribed mean gap its error over
-        the rms height.
+        the rms height. With adhesion relative to a thousandth of the force of the contact pressure where that is
+        larger than the prescribed force.
         """
     @property
     def stiffness_error(self) -> float | None:
@@ -436,7 +437,9 @@ class ContactState:
         """float: complementarity, sum p |g|/(F s)."""
     @property
     def load_error(self) -> float:
-        """float: load error, |F - F_prescribed|/F_prescribed; of a mean gap its error over s."""
+        """float: load error, |F - F_prescribed|/F_prescribed, with adhesion at least over 1e-3 of the force of the
+        contact pressure; of a mean gap its error over s.
+        """
     @property
     def force_error(self) -> float | None:
         """float or None: bound of the relative error of the force under a prescribed approach or mean gap; an
