@@ -546,6 +546,30 @@ fn stiffness_by_differences(boundary: Boundary) {
     }
 }
 
+/// The error is relative to the force or to a thousandth of that of the pressure, whichever is larger; a force
+/// of rounded zero has the state of zero.
+#[test]
+fn forces_near_zero_are_met_relative_to_the_pressure() {
+    let grid = Grid::square(9, 9);
+    let z = heights(grid, 2);
+    let law = law(0.3, 0.2);
+    let mut problem = problem(grid, &z, Boundary::Free);
+    let mut search = search(&mut problem, &law, AdhesiveControl::Force(0.0), false);
+    let start = search.first(&never);
+    let zero = search.from(start, &never).unwrap();
+    let pressed: f64 = zero.pressure.iter().sum();
+    for asked in [5.6e-17, -1e-300, 1e-12 * pressed, -1e-5 * pressed, 2e-3 * pressed] {
+        search.control = AdhesiveControl::Force(asked);
+        let state = search.from(zero.again(), &never).unwrap();
+        let pressed: f64 = state.pressure.iter().sum();
+        let error = (state.force() - asked).abs() / asked.abs().max(1e-3 * pressed);
+        approx::assert_relative_eq!(search.load_error(&state), error, max_relative = 1e-6, epsilon = 1e-14);
+        assert!(error <= TOLERANCE, "{asked:e}: {error:e}");
+    }
+    search.control = AdhesiveControl::Force(2.0 * pressed);
+    approx::assert_relative_eq!(search.load_error(&zero), 1.0, max_relative = 1e-9);
+}
+
 #[test]
 fn a_force_beyond_the_pull_off_force_is_an_error() {
     let grid = Grid::square(9, 9);
