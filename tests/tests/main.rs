@@ -5,6 +5,7 @@
 mod abilities;
 mod adhesion;
 mod committed;
+mod contact_program;
 mod documents;
 mod ensembles;
 mod equivalent;

@@ -1,8 +1,8 @@
-//! Agreement with the stored results of another program on the same surface: data/peers.
+//! Agreement with the stored results of other programs on the same surface: data/peers.
 
 use approx::assert_relative_eq;
 use bem3d::Bem3d;
-use contact_model::{ContactModel, ContactState, Load, PreparedContact};
+use contact_model::{Boundary, ContactModel, ContactState, Load, PreparedContact};
 use std::path::PathBuf;
 use surface_io::{Preprocessing, ReadOptions, Scan};
 use tests::scene;
@@ -77,5 +77,26 @@ fn each_load_alone() {
         let mut contact = prepared();
         let state = press(&mut *contact, &row);
         agree(&*contact, &state, &row);
+    }
+}
+
+/// Contact cells of the elastic first step of a viscoelastic map of others, by a reference implementation for
+/// cells under constant pressure. The program that the map comes from has another discretisation, with 612 and
+/// 4645 cells, which the same implementation finds with it (python/tests/test_periodic_map.py).
+#[test]
+fn a_periodic_map_under_two_pressures() {
+    let declared = ReadOptions { size: "1".parse().ok(), ..ReadOptions::default() };
+    let scan = Scan::read(data("surface_maxwell_N256.npy"), &declared).unwrap();
+    let mut scene = scene(scan.map(&Preprocessing::default()).unwrap());
+    // 4 G for nu = 1/2: an elastic branch of G = 1, and 50 of G = 3 in a step of time of 1/6.
+    let branches = (0..50).map(|i| 10_f64.powf(-1.0 + 10.0 * f64::from(i) / 49.0));
+    scene.contact_modulus = 4.0 * (1.0 + 3.0 * branches.map(|tau| tau / (tau + 1.0 / 6.0)).sum::<f64>());
+    assert_relative_eq!(scene.contact_modulus, 575.0927, max_relative = 1e-7);
+    scene.effects.boundary = Boundary::Periodic;
+    let mut contact = Bem3d { tolerance: 1e-8, ..Bem3d::default() }.prepare(&scene, 0).unwrap();
+    for (mean_pressure, cells, of_the_source) in [(2.0, 607, 612.0), (16.0, 4605, 4645.0)] {
+        let state = contact.solve(Load::Force(mean_pressure)).unwrap();
+        assert_eq!(state.report.contact_cells, Some(cells));
+        assert_relative_eq!(cells as f64, of_the_source, max_relative = 0.01);
     }
 }
