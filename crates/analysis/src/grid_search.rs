@@ -7,7 +7,7 @@ pub struct AccuracyTarget {
     /// Largest relative error (half-width of an interval) of the quantity that the caller chooses; 0 means as
     /// small as the time allows.
     pub share: f64,
-    /// Time budget in seconds.
+    /// Time budget in seconds, with which predicted times are compared.
     pub seconds: f64,
 }
 
@@ -36,11 +36,12 @@ impl AccuracyTarget {
 pub struct GridTrial<T> {
     /// Largest relative discretisation error of the grid; `None` where it is not known.
     pub error: Option<f64>,
-    /// Seconds of the trial.
+    /// Predicted seconds of the trial. A measured time would make the choice depend on what else the machine
+    /// does.
     pub seconds: f64,
-    /// Seconds that the run takes beyond the trial; infinite where no run on this grid reaches the target.
+    /// Predicted seconds that the run takes beyond the trial; infinite where no run on this grid reaches the target.
     pub rest: f64,
-    /// Seconds of the run on a grid that is as expensive as this one but has no error: the least time of
+    /// Predicted seconds of the run on a grid that is as expensive as this one but has no error: the least time of
     /// finer grids is estimated from it.
     pub least_rest: f64,
     /// Further data of the caller.

@@ -64,7 +64,7 @@ pub struct SolveSizes {
     /// per cent, such as 0.02 or 2%. Pilot solves on finer and finer grids run first.
     #[arg(long, value_name = "SHARE", value_parser = share, allow_hyphen_values = true)]
     accuracy: Option<f64>,
-    /// Longest predicted time that --accuracy may choose, such as 90s, 10min, 2h.
+    /// Longest predicted time of one thread that --accuracy may choose, such as 90s, 10min, 2h.
     #[arg(long, value_name = "TIME", value_parser = runs::amounts::seconds, default_value = "10min", requires = "accuracy", allow_hyphen_values = true)]
     budget: f64,
     /// Draw the curves of the fig2.csv or fig6.csv of another run below those of this one (Figs. 2 and 6).

@@ -1,8 +1,8 @@
 //! Chooses settings for an accuracy target: pilot solves on finer and finer grids give the discretisation
 //! error, and their scatter the number of surfaces.
 //!
-//! The choice depends on counts and predicted costs, not on measured times: the same target gives the same
-//! settings.
+//! The choice depends on counts and on predicted costs of one thread, and neither on measured times nor on the
+//! number of threads: the same target gives the same settings on every machine.
 
 use crate::budget::{self, Budgeted};
 use crate::limits::require;
@@ -31,7 +31,7 @@ const MORE: f64 = 1.1;
 pub struct AccuracyPlan {
     /// The run with its settings.
     pub run: Run,
-    /// Predicted seconds, of the pilots and of the run.
+    /// Predicted seconds of one thread, of the pilots and of the run.
     pub seconds: f64,
     /// The prediction in words, one line each.
     pub lines: Vec<String>,
@@ -190,15 +190,16 @@ fn choose(
     plan.run = plan.run.with_sizes(model, size, trial.kept.surfaces as usize);
     plan.seconds += seconds;
     let (words, percent) = (words(model, &plan.run), 100.0 * target.share);
+    let takes = duration(seconds);
     plan.lines
-        .push(format!("{words} should give each mean to {percent:.2} % in about {}", duration(seconds)));
+        .push(format!("{words} should give each mean to {percent:.2} % in about {takes} of one thread"));
     Ok(())
 }
 
-/// Predicted seconds of all surfaces of a model, coarser grids included.
+/// Predicted seconds of all surfaces of a model on one thread, coarser grids included.
 fn seconds(model: Model, run: &Run) -> f64 {
     let jobs = ensemble_jobs(run, &[model]);
-    jobs.iter().map(|job| 1e-3 * job.cost() as f64).sum::<f64>() / run.threads.max(1) as f64
+    jobs.iter().map(|job| 1e-3 * job.cost() as f64).sum()
 }
 
 /// Predicted seconds of one more surface.
@@ -222,6 +223,19 @@ fn words(model: Model, run: &Run) -> String {
 mod tests {
     use super::*;
     use approx::assert_relative_eq;
+
+    /// A machine with more cores would otherwise choose finer grids and more surfaces.
+    #[test]
+    fn the_time_that_chooses_is_that_of_one_thread() {
+        for model in Model::BOTH {
+            let on = |threads| {
+                let request = Request { threads: Some(threads), ..Request::default() };
+                seconds_of_one(model, &Run::new(&request).unwrap())
+            };
+            assert!(on(1) > 0.0);
+            assert_relative_eq!(on(1), on(8), max_relative = 0.0);
+        }
+    }
 
     #[test]
     fn surfaces_are_added_where_their_scatter_is_the_reason() {
