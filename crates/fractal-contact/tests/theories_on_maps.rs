@@ -1,11 +1,12 @@
 //! Theories of rough surfaces beside the solved map: what they take from it, what is said, what is refused.
 
-use contact_model::{HeightMap, SelfAffine};
+use contact_model::{ContactModel, HeightMap, Load, Scene, SelfAffine, Surface};
 use fractal_contact::scenes::{Options, Plan, SceneFile, run};
 use runs::{CsvFile, Silent};
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
 use std::path::Path;
+use surface_gen::{Exact, HeightDistribution, PrescribedMap, TwinSpectrum, WaveGenerator};
 
 /// A surface of many waves: roll-off at an eighth of the side.
 fn surface() -> SelfAffine {
@@ -118,6 +119,42 @@ fn periodic_theories_answer_for_a_map_beside_the_solver() {
     let area = column(&file, "persson", "area");
     let slope = (8.0 / std::f64::consts::PI).sqrt() / gradient;
     assert!((area[0] / (0.002 * slope) - 1.0).abs() < 0.01, "{area:?} {slope}");
+}
+
+/// Each seed has a twin of its own, whose spectrum differs where its heights are prescribed.
+#[test]
+fn theories_answer_for_the_twin_of_each_seed() {
+    let map = drawn(64);
+    let text = PERIODIC.replace("\"bem3d\", ", "").replace(
+        "unit = \"none\"\n[effects]",
+        "unit = \"none\"\ntwin = \"waves\"\nkeep_heights = true\n[effects]",
+    );
+    let text = text + "[sampling]\nseed = 7\nsurfaces = 3\n";
+    let (_, file) = solved(&map, &text);
+    let waves = WaveGenerator::twin(&map, TwinSpectrum::EachWave).unwrap();
+    let heights = HeightDistribution::Of(std::sync::Arc::new(map));
+    let loads = [Load::Force(0.002), Load::Force(0.01)];
+    let models: [&dyn ContactModel; 2] =
+        [&analytic::Persson::default(), &analytic::GreenwoodWilliamson::default()];
+    for model in models {
+        let found = column(&file, model.name(), "stiffness");
+        let numbers = file.numbers("surface").unwrap();
+        assert_eq!((found.len(), numbers.iter().flatten().count()), (6, 12));
+        let mut wanted = Vec::new();
+        for seed in (0..3).map(|surface| surface_gen::surface_seed(7, surface)) {
+            let twin = PrescribedMap::new(&waves, &heights, Exact::Distribution, seed).unwrap().map;
+            let mut scene = Scene::new(Surface::Heights(std::sync::Arc::new(twin)), 1.0);
+            scene.effects.boundary = contact_model::Boundary::Periodic;
+            (scene.outputs.stiffness, scene.outputs.area, scene.outputs.mean_gap) = (true, true, true);
+            let mut contact = model.prepare(&scene, seed).unwrap();
+            let solved = |load| contact.solve_until(load, &contact_model::never).unwrap();
+            wanted.extend(loads.map(solved).map(|state| state.stiffness.unwrap()));
+        }
+        for (found, wanted) in found.iter().zip(&wanted) {
+            assert!((found / wanted - 1.0).abs() < 1e-12, "{}: {found} {wanted}", model.name());
+        }
+        assert!(found[0].to_bits() != found[2].to_bits() && found[2].to_bits() != found[4].to_bits());
+    }
 }
 
 #[test]

@@ -106,10 +106,10 @@ impl Numerics {
         ModelRecord::named(self.name())
     }
 
-    /// Whether its results depend on the realisation of the surface and not only on its spectrum: a theory
-    /// gives the same results for every seed.
+    /// Whether its results depend on the realisation of a self-affine surface and not only on its spectrum: a
+    /// theory takes the spectrum and gives the same results for every seed.
     pub fn depends_on_realisation(&self) -> bool {
-        self.is_stored()
+        matches!(self, Self::Bem3d(_) | Self::Equivalent(_) | Self::Mdr1d(_) | Self::Registered(_))
     }
 
     /// Whether it uses statistics measured on a rough map instead of the map itself.

@@ -46,13 +46,15 @@ impl SceneSurface {
     }
 
     /// Whether the results of a model depend on the seed. For a given map only those of the random line of
-    /// `mdr1d` do.
+    /// `mdr1d` do. A map that is drawn from the seed is another one for each seed, also for a theory that
+    /// measures its statistics.
     pub(crate) fn is_random_for(&self, numerics: &Numerics) -> bool {
-        if self.is_profile() {
-            return false;
+        match self {
+            Self::Drawn { .. } => true,
+            Self::Plain(Surface::Heights(_)) => matches!(numerics, Numerics::Mdr1d(_)),
+            Self::Plain(Surface::Profile(_)) => false,
+            Self::Plain(_) => numerics.depends_on_realisation(),
         }
-        let given = matches!(self, Self::Plain(Surface::Heights(_)));
-        numerics.depends_on_realisation() && (!given || matches!(numerics, Numerics::Mdr1d(_)))
     }
 
     /// Whether it is rough, so that it has an rms height by which forces can be normalised.
