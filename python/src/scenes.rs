@@ -135,9 +135,10 @@ pub fn run_scene<'py>(
         Ok(())
     };
     let (outcome, raised) = pool::run(py, token, &mut listen, |stop| {
-        let chosen = file.with_grid_for_accuracy(stop)?;
+        let options = Options { out, threads, fresh };
+        let chosen = file.with_grid_for_accuracy(&options, &counter, stop)?;
         let plan = Plan::calibrated(&chosen)?;
-        run(&chosen, &plan, &Options { out, threads, fresh }, &counter, stop)
+        run(&chosen, &plan, &options, &counter, stop)
     })?;
     raised.map_or(Ok(()), Err)?;
     // What was finished is kept, and the next run goes on from it.

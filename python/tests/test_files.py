@@ -2,6 +2,7 @@
 
 import os
 import subprocess
+import threading
 from pathlib import Path
 
 import numpy as np
@@ -192,6 +193,28 @@ def test_scenes_are_run_as_by_the_program(tmp_path):
     assert rows[0] == rows[1]
     for name in ("pressure-bem3d-0-000.npy", "pressure-bem3d-0-002.npy"):
         assert (tmp_path / "python" / name).read_bytes() == (tmp_path / "program" / name).read_bytes()
+
+
+def test_an_accuracy_is_chosen_once_and_goes_on_after_a_stop(tmp_path):
+    text = SCENE.replace("\n[models.bem3d]\ncells = 65\n", "").replace("[0.01, 0.1, 1.0]", "[0.5, 1.0]")
+    asked = fc.Scene.from_toml(text.replace("[scene]\n", '[scene]\naccuracy = "60 %"\nmemory = "1 GB"\n'))
+    whole = fc.run_scene(asked, tmp_path / "whole")
+    # Both states of the grid are those of the pilot.
+    assert (whole.states, whole.kept, whole.failed) == (2, 2, 0)
+    field = np.load(tmp_path / "whole/pressure-bem3d-0-001.npy")
+    assert field.shape == (257, 257) and max(whole.results["stiffness_grid_error"]) < 0.6
+    # The first grid is stored when the stop comes.
+    stop = threading.Event()
+    with pytest.raises(fc.Stopped):
+        fc.run_scene(asked, tmp_path / "parts", stop=stop, progress=lambda *_: stop.set())
+    parts = fc.run_scene(asked, tmp_path / "parts")
+    assert (tmp_path / "parts/results.csv").read_bytes() == (tmp_path / "whole/results.csv").read_bytes()
+    assert parts.results["stiffness"].tolist() == whole.results["stiffness"].tolist()
+    with pytest.raises(fc.SceneError, match="the `memory` is 10 MB"):
+        fc.run_scene(
+            fc.Scene.from_toml(text.replace("[scene]\n", '[scene]\naccuracy = "1e-4 %"\nmemory = "10 MB"\n')),
+            tmp_path / "small",
+        )
 
 
 def test_mistakes_in_scenes_show_their_place(tmp_path):

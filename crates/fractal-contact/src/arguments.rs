@@ -136,6 +136,10 @@ pub enum Command {
     Plan {
         /// The scene.
         scene: PathBuf,
+        /// Directory of the results, in which the states are kept that `accuracy` solves to choose the grid
+        /// [default: out/NAME of the scene].
+        #[arg(long, value_name = "DIR")]
+        out: Option<PathBuf>,
         /// Also predicts jobs, core-hours, memory of a task, duration and disk space on N nodes of a cluster.
         #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
         nodes: Option<u16>,
@@ -330,8 +334,8 @@ pub struct PressArguments {
     /// together, none neglects the coupling.
     #[arg(long, value_parser = ["none", "full"], requires = "friction")]
     pub coupling: Option<String>,
-    /// Accepted error of the grid, such as "1 %". The program then chooses the smallest number of cells that
-    /// reaches it.
+    /// Accepted error of the grid, such as "1 %", or "best". The program then chooses the smallest number of
+    /// cells that reaches it, the same on every machine, within the default `budget` and `memory` of a scene.
     #[arg(long, value_name = "SHARE", conflicts_with_all = ["cells", "hardness", "friction"])]
     pub accuracy: Option<String>,
     /// Number of columns, if the map is averaged over larger cells [default: those of the map].

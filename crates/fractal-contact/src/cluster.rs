@@ -1,7 +1,7 @@
 //! Scenes on many machines: shards, their plan, submission, status and merge.
 
 use crate::arguments::ShardsArguments;
-use crate::start::{read_scene, stopped_by_signals};
+use crate::start::{stopped_by_signals, with_grid};
 use fractal_contact::scenes::{
     Error, Options, Plan, PredictedFrom, Result, SceneFile, jobs, run_scene_shard,
 };
@@ -35,10 +35,12 @@ pub fn shard(
     progress: &dyn Progress,
 ) -> Result<ExitCode> {
     let shard = choice.resolve(&|name| std::env::var(name).ok())?;
-    let scene = read_scene(path)?;
+    let (scene, stopped) = (SceneFile::read(path)?, stopped_by_signals()?);
+    let Some(scene) = with_grid(scene, options, progress, &stopped)? else {
+        return Ok(ExitCode::from(130));
+    };
     fractal_contact::scenes::check(&scene)?;
     let plan = plan_of(path, &*jobs(&scene, &options.out))?;
-    let stopped = stopped_by_signals()?;
     let stop = || stopped.load(Ordering::Relaxed);
     let report = run_scene_shard(&scene, &plan, shard, options, progress, &stop);
     let report = report.map_err(|failure| match failure.downcast::<Error>() {
@@ -77,11 +79,15 @@ pub fn tell(
     Ok(())
 }
 
-/// Writes the scripts of a scene, and submits them with `--now`.
-pub fn submit(path: &Path, out: &Path, submission: &Submission, division: &Division) -> Result<ExitCode> {
-    let scene = read_scene(path)?;
-    let calibrated = Plan::calibrated(&scene)?;
-    let jobs = jobs(&scene, out);
+/// Writes the scripts of a scene, which was read from a path, and submits them with `--now`.
+pub fn submit(
+    (path, scene): (&Path, &SceneFile),
+    out: &Path,
+    submission: &Submission,
+    division: &Division,
+) -> Result<ExitCode> {
+    let calibrated = Plan::calibrated(scene)?;
+    let jobs = jobs(scene, out);
     let plan = plan_of(path, &*jobs)?;
     let forecast = |division: &Division| forecast(&*jobs, &calibrated, division);
     runs::out!("{}", submission.submit(&plan, &*jobs, out, division, &forecast)?);
@@ -95,7 +101,7 @@ fn planned(options: &ShardsArguments) -> Result<(ShardPlan, PathBuf, SceneFile)>
         [run, path] if run == "run" => PathBuf::from(path),
         _ => return Err(runs::Error::parameter("plan", plan.command(), "fractal-contact run SCENE").into()),
     };
-    let scene = read_scene(&path)?;
+    let scene = SceneFile::read(&path)?.with_stored_grid(&options.out)?;
     Ok((plan, path, scene))
 }
 

@@ -9,12 +9,12 @@ use arguments::{Arguments, Command, PressArguments};
 use clap::{ArgMatches, FromArgMatches as _};
 use fractal_contact::models::{MODELS, ModelRecord};
 use fractal_contact::scenes::{
-    Error, GeneratedSurface, Options, Plan, Result, SceneOutcome, System, info, info_json, info_statistics,
-    run, write_twin,
+    Error, GeneratedSurface, Options, Plan, Result, SceneFile, SceneOutcome, System, info, info_json,
+    info_statistics, run, write_twin,
 };
 use fractal_contact::surface_gen::{Anisotropy, HeightDistribution, TwinSpectrum};
 use press::SurfaceKeys;
-use start::{read_scene, stopped_by_signals};
+use start::{stopped_by_signals, with_grid};
 use std::io::IsTerminal as _;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -41,8 +41,9 @@ fn execute(arguments: Arguments, matches: &ArgMatches) -> Result<ExitCode> {
             press_map((&asked, &SurfaceKeys::given(matches)), out, threads, verbose)
         }
         Command::New { asked, scene } => write_scene((&asked, &SurfaceKeys::given(matches)), scene),
-        Command::Plan { scene, nodes, node_cores, division } => {
-            let scene = read_scene(&scene)?;
+        Command::Plan { scene, out, nodes, node_cores, division } => {
+            let out = out.unwrap_or_else(|| default_directory(&scene));
+            let Some(scene) = read_to_plan(&scene, out)? else { return Ok(STOPPED.into()) };
             let plan = Plan::calibrated(&scene)?;
             runs::print(format_args!("{}", shown(plan.to_string(), std::io::stdout().is_terminal())));
             if let Some(nodes) = nodes {
@@ -66,7 +67,8 @@ fn execute(arguments: Arguments, matches: &ArgMatches) -> Result<ExitCode> {
         }
         Command::Submit { scene, out, submission, division } => {
             let out = out.unwrap_or_else(|| default_directory(&scene));
-            cluster::submit(&scene, &out, &submission, &division)
+            let Some(read) = read_to_plan(&scene, out.clone())? else { return Ok(STOPPED.into()) };
+            cluster::submit((&scene, &read), &out, &submission, &division)
         }
         Command::Status(options) => cluster::status(&options),
         Command::Merge { options, verbose } => {
@@ -228,10 +230,26 @@ fn say(text: String) {
     runs::print_error(format_args!("{}\n", shown(text, std::io::stderr().is_terminal())));
 }
 
+/// Exit code of a command that a signal stopped.
+const STOPPED: u8 = 130;
+
+/// Reads a scene and chooses its grid; `None` where a signal came first. Where no grid is chosen a signal ends
+/// the program at once.
+fn read_to_plan(path: &Path, out: PathBuf) -> Result<Option<SceneFile>> {
+    let scene = SceneFile::read(path)?;
+    if scene.accuracy.is_none() {
+        return Ok(Some(scene));
+    }
+    let options = Options { out, threads: all_threads(), fresh: false };
+    with_grid(scene, &options, &reporter(false), &*stopped_by_signals()?)
+}
+
 /// Runs a scene and prints its answer: a line on what is solved, the states, what to beware of, and the
 /// report. `verbose` prints the whole plan before, and what the run took after.
 fn run_scene(path: &Path, options: &Options, verbose: bool) -> Result<ExitCode> {
-    let scene = read_scene(path)?;
+    let scene = SceneFile::read(path)?;
+    let (stopped, reporter) = (stopped_by_signals()?, reporter(verbose));
+    let Some(scene) = with_grid(scene, options, &reporter, &stopped)? else { return Ok(STOPPED.into()) };
     let plan = Plan::for_run(&scene)?;
     if verbose {
         say(plan.to_string());
@@ -242,8 +260,7 @@ fn run_scene(path: &Path, options: &Options, verbose: bool) -> Result<ExitCode> 
         }
         plan.notes.iter().for_each(|note| say(note.to_string()));
     }
-    let stopped = stopped_by_signals()?;
-    let outcome = run(&scene, &plan, options, &reporter(verbose), &|| stopped.load(Ordering::Relaxed))?;
+    let outcome = run(&scene, &plan, options, &reporter, &|| stopped.load(Ordering::Relaxed))?;
     runs::print(format_args!("{}", outcome.summary));
     for note in &outcome.notes {
         say(format!("note: {note}"));
@@ -291,7 +308,7 @@ fn how_it_went(outcome: &SceneOutcome) -> ExitCode {
         say(format!(
             "Stopped: {states} of {requested} states are kept. The same command goes on with the others."
         ));
-        return ExitCode::from(130);
+        return STOPPED.into();
     }
     if not_attempted > 0 {
         say(format!(

@@ -1,14 +1,24 @@
-//! The beginning of every command that solves: it reads a scene with its grid, and installs the signals that
-//! stop it.
+//! The beginning of every command that solves: the grid of a scene, and the signals that stop it.
 
-use fractal_contact::scenes::{Error, Result, SceneFile};
-use std::path::Path;
+use fractal_contact::scenes::{Error, Options, Result, SceneFile};
+use runs::Progress;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Reads a scene and chooses its grid where it requests an accuracy.
-pub fn read_scene(path: &Path) -> Result<SceneFile> {
-    SceneFile::read(path)?.with_grid_for_accuracy(&|| false)
+/// Chooses the grid of a scene that requests an accuracy; `None` where `stopped` became true meanwhile.
+pub fn with_grid(
+    scene: SceneFile,
+    options: &Options,
+    progress: &dyn Progress,
+    stopped: &AtomicBool,
+) -> Result<Option<SceneFile>> {
+    match scene.with_grid_for_accuracy(options, progress, &|| stopped.load(Ordering::Relaxed)) {
+        Err(_) if stopped.load(Ordering::Relaxed) => {
+            runs::err!("Stopped: the states so far are kept. The same command goes on with the others.");
+            Ok(None)
+        }
+        chosen => chosen.map(Some),
+    }
 }
 
 /// Becomes true with the first Ctrl-C, SIGTERM or SIGHUP; the second ends the process.

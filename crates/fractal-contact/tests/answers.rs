@@ -23,15 +23,20 @@ const MAP: &str = "[scene]\nmodels = [\"bem3d\"]\ncontact_modulus = \"100 GPa\"\
 
 /// A wavy map of 40 x 30 cells, in nm, with something added.
 fn write_map(directory: &Path, more: impl Fn(usize, usize) -> f64) {
+    write_map_of(directory, 1, more);
+}
+
+/// The same waves with this many times as many cells a side.
+fn write_map_of(directory: &Path, finer: usize, more: impl Fn(usize, usize) -> f64) {
     let height = |x: usize, y: usize| {
-        100.0
-            * ((x as f64 * 0.5).sin() * (y as f64 * 0.4).cos()
-                + 0.3 * (x as f64 * 1.3 + y as f64 * 1.7).sin())
+        let [x, y] = [x, y].map(|place| place as f64 / finer as f64);
+        100.0 * ((x * 0.5).sin() * (y * 0.4).cos() + 0.3 * (x * 1.3 + y * 1.7).sin())
     };
     let row = |y: usize| {
-        (0..40).map(|x| format!("{:.3}", height(x, y) + more(x, y))).collect::<Vec<_>>().join(",") + "\n"
+        let heights = (0..40 * finer).map(|x| format!("{:.3}", height(x, y) + more(x, y)));
+        heights.collect::<Vec<_>>().join(",") + "\n"
     };
-    std::fs::write(directory.join("map.csv"), (0..30).map(row).collect::<String>()).unwrap();
+    std::fs::write(directory.join("map.csv"), (0..30 * finer).map(row).collect::<String>()).unwrap();
 }
 
 #[test]
@@ -193,7 +198,9 @@ fn an_accuracy_chooses_the_grid() {
     let read = |text: &str| {
         let path = dir.path().join("scene.toml");
         std::fs::write(&path, text).unwrap();
-        SceneFile::read(&path).and_then(|scene| scene.with_grid_for_accuracy(&|| false))
+        let options = Options { out: dir.path().join("pilot"), threads: 2, fresh: false };
+        SceneFile::read(&path)
+            .and_then(|scene| scene.with_grid_for_accuracy(&options, &Silent, &contact_model::never))
     };
     let asked = |accuracy: &str| {
         WAVES.replace("\n[models.bem3d]\ncells = 64", "").replace("contact_modulus", accuracy)
@@ -216,37 +223,42 @@ fn an_accuracy_chooses_the_grid() {
     let (notes, error) = answer(&scene);
     assert!(error < 0.04 && !notes.contains("accuracy is not reached"), "{error} {notes}");
     let mut missed = scene.clone();
-    missed.accuracy.as_mut().unwrap().share = 1e-6;
+    missed.accuracy.as_mut().unwrap().target.share = 1e-6;
     assert!(answer(&missed).0.contains("In all 2 states the requested accuracy is not reached."));
     // Of a given map every so many-th cell; never more than there are.
-    write_map(dir.path(), |_, _| 0.0);
+    write_map_of(dir.path(), 8, |_, _| 0.0);
     let map = |accuracy: &str| {
-        MAP.replace("FORCE", "5 N").replace("models", &format!("accuracy = \"{accuracy}\"\nmodels"))
+        let accuracy = format!("accuracy = \"{accuracy}\"\nmodels");
+        MAP.replace("FORCE", "5 N").replace("models", &accuracy).replace("1 um", "125 nm")
     };
     let coarse = read(&map("60 %")).unwrap();
-    assert!(
-        coarse.surface.describe(coarse.system).contains("a map of 20 x 15 cells")
-            || coarse.surface.describe(coarse.system).contains("40 x 30")
-    );
+    assert!(coarse.surface.describe(coarse.system).contains("a map of 160 x 120 cells"));
     // The best is all cells, where the budget allows them; the run does not call it missed.
     let best = read(&map("best")).unwrap();
     let all = read(&map("best").replace("accuracy = \"best\"\n", "")).unwrap();
     assert_eq!(best.surface.describe(best.system), all.surface.describe(all.system));
     let notes: String = best.notes.iter().map(ToString::to_string).collect();
-    assert!(notes.contains("the best accuracy within the budget: bem3d on "), "{notes}");
+    assert!(notes.contains("the best accuracy within the budget and the memory: bem3d on "), "{notes}");
     let outcome = run(&best, &Plan::new(&best).unwrap(), &options, &Silent, &|| false).unwrap();
     assert!(!outcome.notes.join("\n").contains("accuracy is not reached"), "{outcome:?}");
     std::fs::write(dir.path().join("one.csv"), "1.0\n").unwrap();
     for (text, words) in [
         (map("1 %").replace("map.csv", "one.csv"), "the map's own cells are too few to compare"),
-        (map("0.1 %"), "accuracy of 0.1000 %: the map's own cells have an error of "),
-        (map("0.1 %"), "(`area_corrected` under force 5 N)"),
+        (map("0.01 %"), "accuracy of 0.01000 %: the map's own cells have an error of "),
+        (map("0.01 %"), "(`area_corrected` under force 5 N)"),
         (asked("accuracy = 0.002\nbudget = \"1 us\"\ncontact_modulus"), "and the budget is under 1 ms"),
         (
             asked("accuracy = 0.0001\nbudget = \"2 s\"\ncontact_modulus"),
             " cells along the longer side have an error of ",
         ),
         (asked("budget = \"1 s\"\ncontact_modulus"), "`budget` is given, but no `accuracy`"),
+        (asked("memory = \"1 GB\"\ncontact_modulus"), "`memory` is given, but no `accuracy`"),
+        (asked("accuracy = 0.1\nmemory = 4\ncontact_modulus"), "expected an amount of memory above 0"),
+        (asked("accuracy = 0.1\nmemory = \"4 g\"\ncontact_modulus"), "MB, GB or TB, such as \"4 GB\""),
+        (
+            asked("accuracy = 0.0001\nmemory = \"20 MB\"\ncontact_modulus"),
+            "512 cells along the longer side need up to 52 MB, and the `memory` is 20 MB",
+        ),
         (asked("accuracy = \"100 %\"\ncontact_modulus"), "expected a share above 0 and below 100 %"),
         (asked("accuracy = \"few\"\ncontact_modulus"), "expected a pure number"),
         (

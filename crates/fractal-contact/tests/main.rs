@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used)] // Helpers of tests.
 
+mod accuracy;
 mod answers;
 mod bad_scenes;
 mod friction;

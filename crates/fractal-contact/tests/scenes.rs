@@ -24,7 +24,14 @@ fn folder() -> PathBuf {
 /// A scene of this text, whose files are beside the scene of this name.
 fn scene_of(name: &str, text: String) -> SceneFile {
     let scene = SceneFile::parse(&folder().join(name), text).unwrap_or_else(|e| panic!("{e}"));
-    scene.with_grid_for_accuracy(&contact_model::never).unwrap_or_else(|e| panic!("{e}"))
+    with_grid(scene).unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// A scene with the grid for its accuracy, by a pilot in a folder of its own.
+fn with_grid(scene: SceneFile) -> fractal_contact::scenes::Result<SceneFile> {
+    let dir = tempfile::tempdir().unwrap();
+    let options = Options { out: dir.path().into(), threads: 2, fresh: false };
+    scene.with_grid_for_accuracy(&options, &Silent, &contact_model::never)
 }
 
 fn solved(name: &str) -> (SceneOutcome, CsvFile, tempfile::TempDir) {
@@ -550,8 +557,7 @@ fn an_accuracy_is_not_asked_of_surfaces_that_differ_by_grid() {
     let text = std::fs::read_to_string(folder().join("skewed.toml")).unwrap();
     let text = text.replace("weibull = 6", "weibull = 6\n").replace("[models.bem3d]\ncells = 128\n", "");
     let asked = text.replace("[scene]\n", "[scene]\naccuracy = \"5 %\"\n");
-    let error =
-        parsed(&asked).unwrap().with_grid_for_accuracy(&contact_model::never).unwrap_err().to_string();
+    let error = with_grid(parsed(&asked).unwrap()).unwrap_err().to_string();
     assert!(error.contains("is another one on each") && error.contains("grid_error"), "{error}");
 }
 

@@ -85,7 +85,8 @@ fn the_conductance_has_the_error_of_the_stiffness_that_it_follows_from() {
             .replace("[models.bem3d]\ncells = 64\n", "")
             .replace("contact_modulus", "accuracy = 0.2\ncontact_modulus");
         let scene = SceneFile::parse("scene.toml".as_ref(), text).unwrap();
-        scene.with_grid_for_accuracy(&|| false).unwrap().models[0].size()
+        let options = Options { out: dir.path().join("pilot"), threads: 2, fresh: false };
+        scene.with_grid_for_accuracy(&options, &Silent, &|| false).unwrap().models[0].size()
     };
     assert_eq!(cells(&alone), cells(ROUGH));
 }

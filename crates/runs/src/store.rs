@@ -8,6 +8,7 @@
 
 use crate::error::{Error, Result};
 use crate::progress::Progress;
+use contact_model::Stop;
 use std::collections::HashMap;
 use std::fs::{self, File, TryLockError};
 use std::io::{Read as _, Seek as _, SeekFrom, Write as _};
@@ -31,6 +32,8 @@ const ENDING: &str = "pack";
 /// Shortest time between two flushes to the disk: a crash of the machine, not of the process, loses later
 /// results.
 const SYNC_EVERY: Duration = Duration::from_secs(1);
+/// Time between two attempts to lock a store that another process holds.
+const WAIT: Duration = Duration::from_millis(50);
 /// A pack is rewritten when more than this number of bytes, and more than half of it, belong to results that
 /// were replaced.
 const LEAST_WASTE: u64 = 1 << 20;
@@ -201,6 +204,33 @@ impl Store {
         };
         let packs = Packs::read(&directory, &|found| !of_others(found))?;
         Ok(Self(Arc::new(Shared { directory, head, packs: Mutex::new(packs), _lock: None })))
+    }
+
+    /// Opens a store for results that all shards need before their jobs are known. Others may use the directory
+    /// at the same time, but one process at a time holds such a store: the next one waits for it, and finds
+    /// its results. With `fresh` no stored result is read.
+    ///
+    /// # Errors
+    /// [`crate::Error::File`] when the directory cannot be made or read; [`crate::Error::Model`] with
+    /// [`contact_model::Error::Stopped`] when `stop` said so while it waited.
+    pub fn open_for_all(out: &Path, fresh: bool, stop: Stop<'_>) -> Result<Self> {
+        let directory = directory(out);
+        files::create_directory(&directory)?;
+        let path = directory.join("lock-for-all");
+        let lock = loop {
+            match lock(&path, out) {
+                Err(Error::Parameter { .. }) if stop.stops() => {
+                    let waited = Error::model("waiting for another process that solves the same states");
+                    return Err(waited(contact_model::Error::Stopped { best: None }));
+                }
+                Err(Error::Parameter { .. }) => std::thread::sleep(WAIT),
+                other => break other?,
+            }
+        };
+        let head =
+            PackHead { instructions: crate::manifest::instructions().join(" "), ..PackHead::default() };
+        let packs = if fresh { Packs::default() } else { Packs::read(&directory, &|_| true)? };
+        Ok(Self(Arc::new(Shared { directory, head, packs: Mutex::new(packs), _lock: lock })))
     }
 
     /// Reports packs that are not used because they are of another format, once in a process, which may open
@@ -634,6 +664,35 @@ mod tests {
         assert_eq!(again.load(KEY).as_deref(), Some(TEXT));
         drop((store, again));
         assert!(File::open(dir.path().join(".units/lock")).unwrap().try_lock().is_ok());
+    }
+
+    /// What one process solves for all, the next one finds; a shard may be at work beside them.
+    #[test]
+    fn a_store_for_all_is_waited_for() {
+        let dir = tempfile::tempdir().unwrap();
+        let never = || false;
+        Store::open_for_all(dir.path(), false, &never).unwrap().save(KEY, TEXT).unwrap();
+        let path = dir.path().join(".units/lock-for-all");
+        let other = File::options().append(true).open(path).unwrap();
+        other.lock().unwrap();
+        let asked = std::sync::atomic::AtomicUsize::new(0);
+        let third = || asked.fetch_add(1, std::sync::atomic::Ordering::Relaxed) == 2;
+        let refused = Store::open_for_all(dir.path(), false, &third).unwrap_err();
+        let stopped = contact_model::Error::Stopped { best: None };
+        assert!(matches!(refused, Error::Model { source, .. } if source == stopped));
+        // A run and a shard have locks of their own.
+        let run = Store::open(dir.path(), false).unwrap();
+        Store::open_shared(dir.path(), "p", Shard { index: 0, count: 2 }).unwrap();
+        let release = || {
+            other.unlock().unwrap();
+            false
+        };
+        assert_eq!(
+            Store::open_for_all(dir.path(), false, &release).unwrap().load(KEY).as_deref(),
+            Some(TEXT)
+        );
+        assert_eq!(Store::open_for_all(dir.path(), true, &never).unwrap().load(KEY), None);
+        drop(run);
     }
 
     #[test]

@@ -147,7 +147,8 @@ def run_scene(
         Numbers of the loads or steps, from 0, whose fields become pictures, in files and in the report; by default
         those that the scene names in ``[outputs]``, or all.
     progress : callable, optional
-        Called with the relative cost that is done and that of all.
+        Called with the relative cost that is done and that of all. Where the scene requests an ``accuracy``, each
+        grid that is tried for it counts by itself before the run.
     stop : threading.Event, optional
         Set by another thread, it ends the run with `Stopped`; the next run continues from the finished parts.
     """

@@ -1,10 +1,10 @@
 //! From a scene to its files: planned, solved, told.
 
-use crate::scenes::plan::{Cost, ModelOnSurface, ModelPlan, Plan, SharedStop, calibration};
+use crate::scenes::plan::{Cost, ModelOnSurface, ModelPlan, Plan, calibration};
 use crate::scenes::read::{Result, SceneFile, System, effect_lines, number, words};
 use crate::scenes::run::{
-    Answer, Concerned, ModelResult, Options, SceneOutcome, SolvedUnit, Warning, field_pictures, scene_jobs,
-    units,
+    Answer, Concerned, ModelResult, Options, SceneOutcome, SharedStop, SolvedUnit, Warning, field_pictures,
+    remove_trials, scene_jobs, take_trial, units,
 };
 use crate::scenes::tell::{
     MapStatisticsTables, Report, ResultFolder, columns, distributions, ensemble, manifest, pictures, summary,
@@ -50,6 +50,7 @@ pub fn run(
     if options.fresh {
         Checkpoint::remove_all(&options.out);
     }
+    take_trial(scene, &options.out, &store);
     let units = units(scene);
     let jobs = scene_jobs(scene, &options.out);
     let done = run_stored(&title(scene), &jobs, &store, threads, progress, stop);
@@ -118,6 +119,7 @@ pub fn run(
     if !outcome.stopped {
         field_pictures::sweep(&options.out);
         Checkpoint::remove_all(&options.out);
+        remove_trials(&options.out);
     }
     let removed = folder.remove_others(&outcome.files)?;
     if removed > 0 {
@@ -149,6 +151,9 @@ pub fn run_scene_shard(
     // The files of an earlier run are this one's to replace, as for a run that is not divided.
     let folder = ResultFolder::claim(&options.out, scene)?;
     manifest::write_begun(scene, options, &folder.files(scene))?;
+    if scene.accuracy.is_some() {
+        take_trial(scene, &options.out, &Store::view(&options.out)?);
+    }
     let jobs = scene_jobs(scene, &options.out);
     run_shard(plan, &jobs, shard, (&options.out, options.threads), progress, stop)
 }

@@ -66,7 +66,8 @@
 //! milliseconds. [`Plan::calibrated`] predicts the cost: it solves a few of the loads on a grid of a quarter of
 //! the cells (at most 257, at most 3 s) and scales by measured exponents, within a factor of six on the scenes
 //! of `data/scenes`, files and pictures apart. [`Plan::for_run`] does so only where the sizes of the scene and
-//! stored times predict more than 5 s.
+//! stored times predict more than 5 s. No grid is chosen by these times: [`SceneFile::with_grid_for_accuracy`]
+//! compares a budget with times that are compiled in.
 //!
 //! # What it does not do
 //!
@@ -80,9 +81,9 @@ mod tell;
 
 pub use analysis::AccuracyTarget;
 pub use answer::{run, run_scene_shard};
-pub use plan::accuracy::SharedStop;
 pub use plan::cost::Cost;
 pub use plan::scene_plan::{ModelPlan, Plan, PredictedFrom, check};
+pub use read::accuracy_target::RequestedAccuracy;
 pub use read::diagnostic::Diagnostic;
 pub use read::distributed::Distributed;
 pub use read::effects::{EFFECT_KEYS, EffectKey, EffectLine, effect_lines, parse_effects};
@@ -100,6 +101,7 @@ pub use read::registry::Registry;
 pub use read::scene_file::{Sampling, SceneFile};
 pub use read::scene_surface::SceneSurface;
 pub use run::outcome::{Options, SceneOutcome};
+pub use run::pilot::SharedStop;
 pub use run::scene_job::jobs;
 pub use run::warnings::StateNotes;
 pub use tell::info::{info, info_json, info_statistics};

@@ -1,23 +1,23 @@
 //! `accuracy` in `[scene]`: the grid that an accuracy asks for, instead of the other way round.
+//!
+//! The choice is a function of the scene, of the errors that its grids are found to have, and of the cost
+//! model that is compiled in. No clock enters, and nothing of the machine: the same scene has the same grid
+//! everywhere.
 
-use crate::scenes::plan::{GridErrors, Numbers, calibration, compared, on_grid, solve};
+use crate::scenes::plan::grid_comparison::FEWEST_CELLS;
+use crate::scenes::plan::{GridErrors, calibration, compared, on_grid};
 use crate::scenes::read::{
-    Diagnostic, LoadRequest, MOST_CELLS, Numerics, Result, SceneFile, cells, short, words,
+    Diagnostic, LoadRequest, MOST_CELLS, Numerics, RequestedAccuracy, Result, SceneFile, cells, short, words,
 };
-use analysis::{AccuracyTarget, GridTrial, grid_error};
+use analysis::{AccuracyTarget, GridTrial};
 use bem3d::Bem3d;
 use contact_model::quantities::{AskedBy, Quantity};
-use contact_model::{Boundary, Cells, Load};
-use runs::amounts::time;
-use std::time::Instant;
+use contact_model::{Boundary, Cells};
+use runs::amounts::{memory, time};
 
-/// Polled from any thread, between iterations: `true` means stop now.
-pub type SharedStop<'a> = &'a (dyn Fn() -> bool + Sync);
-
-/// Cells along the longer side of the coarsest grid of the pilot.
-const COARSEST: usize = 33;
-/// The two coarser grids of a state, over the work of the state itself, and that.
-const WITH_COARSER: f64 = 1.25;
+/// Cells along the longer side of the coarsest grid that is tried; it is compared with a half and a quarter
+/// of them.
+const COARSEST: usize = 128;
 /// The largest tolerance with areas among what an accuracy is about.
 const OF_AREAS: f64 = 1e-5;
 
@@ -42,127 +42,191 @@ fn largest(scene: &SceneFile, errors: &GridErrors) -> Option<f64> {
     controlled(scene).into_iter().try_fold(0.0_f64, |largest, name| Some(largest.max(errors.of(name)?.error)))
 }
 
-impl SceneFile {
-    /// The scene with the grid and the tolerance that its `accuracy` asks for; itself where it asks for none.
-    ///
-    /// A pilot solves the loads on surface 0 with 33, 65, 129, ... cells along the longer side of the grid
-    /// (of a given map: with every so many-th of its cells, at last with all of them) and estimates the
-    /// errors of stiffness (of either kind), corrected area, conductance and mean gap, as far as they are
-    /// outputs, from three grids each ([`analysis::grid_error`]). It stops at the first grid with small
-    /// enough errors of which the coarser one's were at most twice as large: nothing is extrapolated. The best
-    /// accuracy is that of the finest grid within the budget and the memory. The run
-    /// then compares every state with coarser grids itself (`grid_error`): on surface 0 it finds what the
-    /// pilot found, and of other surfaces it says where the accuracy is missed. For one surface the pilot
-    /// takes as long as the run.
-    ///
-    /// # Errors
-    /// [`crate::scenes::Error::Scene`] where no grid gives the accuracy or the predicted time is beyond the budget, with the accuracy that is to be had;
-    /// for a scene without a model, a load or an output that an accuracy could be about;
-    /// [`crate::scenes::Error::Run`] for what the pilot's solves refuse.
-    pub fn with_grid_for_accuracy(mut self, stop: SharedStop<'_>) -> Result<Self> {
-        let Some(target) = self.accuracy else { return Ok(self) };
-        calibration::jobs_in_memory(&self, 1)?;
-        let place = self.models.iter().position(|m| matches!(m, Numerics::Bem3d(_)));
-        let Some(place) = place.filter(|_| matches!(self.request, LoadRequest::Loads(_))) else {
-            let diagnostic =
-                Diagnostic::new("`accuracy` chooses the grid of bem3d under loads, and there is none here")
-                    .with_help("remove it, or name \"bem3d\" in `models`");
-            return Err(self.at_accuracy(diagnostic).into());
-        };
-        if controlled(&self).is_empty() {
-            let diagnostic =
-                Diagnostic::new("`accuracy` of what? no number that it could be about is an output")
-                    .with_help("ask for `stiffness`, `area`, `conductance` or `mean_gap` in [outputs]");
-            return Err(self.at_accuracy(diagnostic).into());
-        }
-        if self.surface.differs_by_grid() {
-            let diagnostic = Diagnostic::new(
-                "`accuracy` compares grids, and a surface with a prescribed distribution of heights is another one on each",
-            )
-            .with_help("give `cells` in [models.bem3d] and `grid_error = true`: coarser grids then sample one surface");
-            return Err(self.at_accuracy(diagnostic).into());
-        }
-        let chosen = self.first_grid(&self.models[place], target, stop)?;
-        let Cells { columns, rows } = cells(&chosen.scene, &chosen.scene.models[0]);
-        let percent = |share: f64| format!("{} %", short(100.0 * share));
-        let note = Diagnostic::note(format!(
-            "{}: bem3d on {columns} x {rows} cells, with an error of {} on the first surface, in about {}",
-            asked(target),
-            percent(chosen.error),
-            time(chosen.seconds)
-        ));
-        self.models[place] = chosen.scene.models[0].clone();
-        self.surface = chosen.scene.surface;
-        self.requested.grid_error = true;
-        self.notes
-            .push(note.with_help("The columns `_grid_error` of the results hold the errors of the run."));
-        Ok(self)
+/// A grid that may be chosen, with its cost by the model that is compiled in.
+#[derive(Debug, Clone)]
+pub(crate) struct Candidate {
+    /// The scene with this grid: its run is that of the chosen one.
+    pub scene: SceneFile,
+    /// Place of `bem3d` among its models.
+    pub model: usize,
+    /// Memory of one surface at most, in bytes.
+    pub memory: f64,
+    /// Seconds of one surface with its coarser grids, and of all surfaces.
+    seconds: [f64; 2],
+    /// Cells along the longer side.
+    longer: usize,
+    /// Whether these are all cells of a given map.
+    is_own: bool,
+}
+
+impl Candidate {
+    fn new(scene: &SceneFile, model: usize, numerics: &Numerics, longer: usize) -> Result<Self> {
+        let failed = runs::Error::model(format!("a grid of {longer} cells along the longer side"));
+        let mut on = on_grid(scene, numerics, longer).map_err(failed)?;
+        let mut whole = scene.clone();
+        (whole.models[model], whole.surface) = (on.models.remove(0), on.surface);
+        // The run compares every state with coarser grids, and so the trial of a grid is a part of its run.
+        whole.requested.grid_error = true;
+        let all = calibration::of_sizes(&whole, model).seconds;
+        let surfaces = whole.surfaces_of(&whole.models[model]) as f64;
+        let is_own = scene.surface.own_cells().is_some_and(|own| own.columns.max(own.rows) == longer);
+        let memory = calibration::largest_memory(&whole, model);
+        Ok(Self { scene: whole, model, memory, seconds: [all / surfaces, all], longer, is_own })
     }
 
-    /// The first grid that gives an accuracy, with its scene.
-    fn first_grid(&self, model: &Numerics, target: AccuracyTarget, stop: SharedStop<'_>) -> Result<Chosen> {
-        let failed = |error| runs::Error::model("the pilot of `accuracy`")(error);
-        let own = self.surface.own_cells().map(|Cells { columns, rows }| columns.max(rows));
-        let given = own.is_some();
-        let model = with_tolerance(self, model, target);
-        // What else is wrong with a grid is told by its trial.
-        let fits = |longer: &usize| {
-            !on_grid(self, &model, *longer).is_ok_and(|scene| calibration::jobs_in_memory(&scene, 1).is_err())
-        };
-        let grids: Vec<usize> = grids(self).into_iter().take_while(fits).collect();
-        let normalised_on = if given { grids.last() } else { grids.first() };
-        let loads = loads(self, &model, normalised_on.copied().unwrap_or(COARSEST)).map_err(failed)?;
-        let runs = WITH_COARSER * self.sampling.surfaces as f64;
-        let controlled = controlled(self);
-        let mut solved: Vec<Vec<Option<Numbers>>> = Vec::new();
-        let trial = |longer: usize| -> Result<GridTrial<(SceneFile, Option<Worst>)>> {
-            let start = Instant::now();
-            let scene = on_grid(self, &model, longer).map_err(failed)?;
-            let timed = || solve(&scene, self.seed(0), &loads, &stop);
-            solved.push(runs::on_one_thread(timed).map_err(failed)?);
-            let seconds = start.elapsed().as_secs_f64();
-            let worst = Worst::of(&controlled, &solved);
-            let (error, rest) = (worst.as_ref().map(|worst| worst.error), seconds * runs);
-            Ok(GridTrial { error, seconds, rest, least_rest: rest, kept: (scene, worst) })
-        };
-        let found = analysis::first_grid(&grids, target, calibration::TIME_EXPONENT, trial)?;
-        let (_, GridTrial { error, rest, kept, .. }) = found.map_err(|none| {
-            let grid = |longer: usize| {
-                if given && Some(longer) == own {
-                    "the map's own cells".to_owned()
-                } else {
-                    format!("{longer} cells along the longer side")
-                }
-            };
-            let place = |kept: &(SceneFile, Option<Worst>)| {
-                kept.1.as_ref().map_or_else(String::new, |worst| worst.words(self))
-            };
-            let reason = none.words(target.seconds, &grid, &place, &time);
-            let message = format!("{}: {reason}", asked(target));
-            let help = "`accuracy = \"best\"` takes what the `budget` and the memory reach; or ask for larger loads, fewer outputs, less, or a \
-                        larger `budget`";
-            crate::scenes::Error::from(self.at_accuracy(Diagnostic::new(message).with_help(help)))
-        })?;
-        Ok(Chosen { scene: kept.0, error: error.unwrap_or(0.0), seconds: rest })
+    /// Its cells.
+    pub fn cells(&self) -> Cells {
+        cells(&self.scene, &self.scene.models[self.model])
     }
+
+    /// Its name in messages.
+    fn words(&self) -> String {
+        if self.is_own {
+            "the map's own cells".to_owned()
+        } else {
+            format!("{} cells along the longer side", self.longer)
+        }
+    }
+}
+
+/// Errors of the states of surface 0 on a grid, by the number of the load; `None` where they are not known.
+pub(crate) type ErrorsOfStates = Vec<Option<GridErrors>>;
+
+/// The grid and the tolerance that an accuracy asks for.
+///
+/// `errors` solves the loads on surface 0 on grids that double, from the coarsest one, and this takes the
+/// first one with small enough errors of which the coarser one's were at most twice as large: nothing is
+/// extrapolated. Counted are stiffness (of either kind), corrected area, conductance and mean gap, as far as
+/// they are outputs. The best accuracy is that of the finest grid within the budget and the memory, for which
+/// nothing is solved.
+///
+/// # Errors
+/// [`crate::scenes::Error::Scene`] where no grid gives the accuracy or its predicted time is beyond the budget, with the
+/// accuracy that is to be had; for a scene without a model, a load or an output that an accuracy could be
+/// about; what `errors` returns.
+pub(crate) fn choose(
+    scene: &SceneFile,
+    requested: RequestedAccuracy,
+    errors: &mut dyn FnMut(&Candidate) -> Result<ErrorsOfStates>,
+) -> Result<Candidate> {
+    let RequestedAccuracy { target, memory: most } = requested;
+    let model = model(scene)?;
+    let mut all = candidates(scene, model, target)?;
+    let fitting = all.iter().take_while(|candidate| candidate.memory <= most).count();
+    let beyond = all.get(fitting).map(|candidate| {
+        let needed = memory(candidate.memory);
+        format!("{} need up to {needed}, and the `memory` is {}", candidate.words(), memory(most))
+    });
+    all.truncate(fitting);
+    if all.is_empty() {
+        return Err(none_found(scene, requested, &beyond.unwrap_or_default()).into());
+    }
+    let coarsest = &all[0];
+    if coarsest.seconds[1] > target.seconds {
+        let [takes, budget] = [coarsest.seconds[1], target.seconds].map(time);
+        let reason = format!("{} would take about {takes}, and the budget is {budget}", coarsest.words());
+        return Err(none_found(scene, requested, &reason).into());
+    }
+    let (mut chosen, error) = if target.is_best() {
+        let finest = all.iter().rposition(|candidate| candidate.seconds[1] <= target.seconds);
+        (all.swap_remove(finest.unwrap_or_default()), None)
+    } else {
+        let grids: Vec<usize> = all.iter().map(|candidate| candidate.longer).collect();
+        let trial = |longer: usize| -> Result<GridTrial<(usize, Option<Worst>)>> {
+            let place = grids.iter().position(|&grid| grid == longer).unwrap_or_default();
+            let worst = Worst::of(&controlled(scene), &errors(&all[place])?);
+            let [one, surfaces] = all[place].seconds;
+            // The run takes the states of surface 0 from the trial.
+            let rest = surfaces - one;
+            let error = worst.as_ref().map(|worst| worst.error);
+            Ok(GridTrial { error, seconds: one, rest, least_rest: rest, kept: (place, worst) })
+        };
+        let found = analysis::first_grid(&grids, target, calibration::time_exponent(scene), trial)?;
+        let (_, trial) = found.map_err(|none| {
+            let name = |longer: usize| {
+                all.iter().find(|c| c.longer == longer).map_or_else(String::new, Candidate::words)
+            };
+            let place = |kept: &(usize, Option<Worst>)| {
+                kept.1.as_ref().map_or_else(String::new, |worst| worst.words(scene))
+            };
+            let mut reason = none.words(target.seconds, &name, &place, &time);
+            if let (analysis::NoGrid::Finest(_), Some(beyond)) = (&none, &beyond) {
+                reason += &format!("; {beyond}");
+            }
+            none_found(scene, requested, &reason)
+        })?;
+        (all.swap_remove(trial.kept.0), trial.error)
+    };
+    let note = Diagnostic::note(format!("{}: {}", asked(target), chosen_words(&chosen, error)));
+    chosen
+        .scene
+        .notes
+        .push(note.with_help("The columns `_grid_error` of the results hold the errors of the run."));
+    Ok(chosen)
+}
+
+fn chosen_words(chosen: &Candidate, error: Option<f64>) -> String {
+    let Cells { columns, rows } = chosen.cells();
+    let error = error.map_or_else(String::new, |error| {
+        format!(" with an error of {} % on the first surface,", short(100.0 * error))
+    });
+    let takes = time(chosen.seconds[1]);
+    format!("bem3d on {columns} x {rows} cells,{error} in about {takes} of a thread of the reference machine")
+}
+
+fn none_found(scene: &SceneFile, requested: RequestedAccuracy, reason: &str) -> Diagnostic {
+    let help = "`accuracy = \"best\"` takes what the `budget` and the `memory` reach; or ask for larger loads, fewer \
+                outputs, less, or a larger `budget` or `memory`";
+    let message = format!("{}: {reason}", asked(requested.target));
+    scene.at_accuracy(Diagnostic::new(message).with_help(help))
 }
 
 /// What was asked for.
 fn asked(target: AccuracyTarget) -> String {
     if target.is_best() {
-        return "the best accuracy within the budget".to_owned();
+        return "the best accuracy within the budget and the memory".to_owned();
     }
     format!("an accuracy of {} %", short(100.0 * target.share))
 }
 
-/// A grid that was chosen.
-struct Chosen {
-    /// With one model.
-    scene: SceneFile,
-    /// Error on surface 0.
-    error: f64,
-    /// Seconds of the run on one thread.
-    seconds: f64,
+/// The place of `bem3d`, in a scene for which it can choose a grid.
+fn model(scene: &SceneFile) -> Result<usize> {
+    let place = scene.models.iter().position(|m| matches!(m, Numerics::Bem3d(_)));
+    let Some(place) = place.filter(|_| matches!(scene.request, LoadRequest::Loads(_))) else {
+        let diagnostic =
+            Diagnostic::new("`accuracy` chooses the grid of bem3d under loads, and there is none here")
+                .with_help("remove it, or name \"bem3d\" in `models`");
+        return Err(scene.at_accuracy(diagnostic).into());
+    };
+    if controlled(scene).is_empty() {
+        let diagnostic = Diagnostic::new("`accuracy` of what? no number that it could be about is an output")
+            .with_help("ask for `stiffness`, `area`, `conductance` or `mean_gap` in [outputs]");
+        return Err(scene.at_accuracy(diagnostic).into());
+    }
+    if scene.surface.differs_by_grid() {
+        let diagnostic = Diagnostic::new(
+            "`accuracy` compares grids, and a surface with a prescribed distribution of heights is another one on each",
+        )
+        .with_help("give `cells` in [models.bem3d] and `grid_error = true`: coarser grids then sample one surface");
+        return Err(scene.at_accuracy(diagnostic).into());
+    }
+    Ok(place)
+}
+
+/// The grids to choose from, from coarse to fine: those that have coarser ones to be compared with.
+fn candidates(scene: &SceneFile, model: usize, target: AccuracyTarget) -> Result<Vec<Candidate>> {
+    let numerics = with_tolerance(scene, &scene.models[model], target);
+    let grids = grids(scene);
+    if grids.is_empty() {
+        let own = scene.surface.own_cells().map_or(0, |own| own.columns.max(own.rows));
+        let diagnostic = Diagnostic::new(format!(
+            "{}: the map's own cells are too few to compare with coarser ones, {own} along the longer side",
+            asked(target)
+        ))
+        .with_help(format!("an accuracy needs at least {}; remove it", fewest_of_a_map()));
+        return Err(scene.at_accuracy(diagnostic).into());
+    }
+    grids.into_iter().map(|longer| Candidate::new(scene, model, &numerics, longer)).collect()
 }
 
 /// The largest error of a grid.
@@ -174,17 +238,13 @@ struct Worst {
 }
 
 impl Worst {
-    /// Of the last grid, compared with the two before it; loads that a grid refuses are left out: the run
-    /// says so.
-    fn of(quantities: &[&'static str], solved: &[Vec<Option<Numbers>>]) -> Option<Self> {
-        let [.., quarter, half, fine] = solved else { return None };
-        let one = |(load, quantity): (usize, &'static str)| {
-            let number = |grid: &Vec<Option<Numbers>>| grid[load].as_ref()?.get(quantity).copied();
-            let error = grid_error(number(fine)?, number(half)?, number(quarter)?)?.error;
-            Some(Self { error, quantity, load })
+    /// Over all states; those without an error are left out: the run says so.
+    fn of(quantities: &[&'static str], errors: &ErrorsOfStates) -> Option<Self> {
+        let of_state = |(load, errors): (usize, &Option<GridErrors>)| {
+            let one = |&quantity| Some(Self { error: errors.as_ref()?.of(quantity)?.error, quantity, load });
+            quantities.iter().filter_map(one).max_by(|a, b| a.error.total_cmp(&b.error))
         };
-        let all = (0..fine.len()).flat_map(|load| quantities.iter().map(move |&quantity| (load, quantity)));
-        all.filter_map(one).max_by(|a, b| a.error.total_cmp(&b.error))
+        errors.iter().enumerate().filter_map(of_state).max_by(|a, b| a.error.total_cmp(&b.error))
     }
 
     fn words(&self, scene: &SceneFile) -> String {
@@ -212,27 +272,119 @@ fn largest_cells(scene: &SceneFile) -> usize {
     ((MOST_CELLS as f64 * (size.x / size.x.max(size.y))).round() as usize).max(1)
 }
 
+/// The fewest cells along the longer side of a map that can be compared with coarser ones.
+fn fewest_of_a_map() -> usize {
+    4 * (FEWEST_CELLS - 1) + 1
+}
+
 /// Grids that double: of free squares one more than powers of two, so that a coarser grid has every second
 /// point; of a given map its own cells, every second one, every fourth.
 fn grids(scene: &SceneFile) -> Vec<usize> {
     if let Some(Cells { columns, rows }) = scene.surface.own_cells() {
-        let own = columns.max(rows);
-        let coarser = |n: &usize| Some(n.div_ceil(2)).filter(|&fewer| fewer >= COARSEST / 4 && fewer < *n);
-        let mut grids: Vec<usize> = std::iter::successors(Some(own), coarser).collect();
+        let coarser = |n: &usize| Some(n.div_ceil(2)).filter(|fewer| fewer < n);
+        let all = std::iter::successors(Some(columns.max(rows)), coarser);
+        let mut grids: Vec<usize> = all.take_while(|&n| n >= fewest_of_a_map()).collect();
         grids.reverse();
         return grids;
     }
     let odd = usize::from(scene.effects.boundary == Boundary::Free);
-    let doubled = std::iter::successors(Some(COARSEST - 1), |n| Some(2 * n));
+    let doubled = std::iter::successors(Some(COARSEST), |n| Some(2 * n));
     doubled.map(|n| n + odd).take_while(|&n| n <= MOST_CELLS).collect()
 }
 
-/// The loads of a scene for surface 0 on a grid, in its own normalisation.
-fn loads(scene: &SceneFile, model: &Numerics, longer: usize) -> contact_model::Result<Vec<Load>> {
-    let grid = on_grid(scene, model, longer)?;
-    let LoadRequest::Loads(loads) = &scene.request else { return Ok(Vec::new()) };
-    let seed = scene.seed(0);
-    let normalisation =
-        grid.models[0].model().prepare(&grid.scene(&grid.models[0], seed)?, seed)?.normalisation();
-    loads.values.iter().map(|&value| loads.load(value, &normalisation)).collect()
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scenes::{LoadKind, LoadList, SceneSurface};
+    use contact_model::{SelfAffine, Surface};
+
+    fn scene(accuracy: &str, surfaces: usize) -> SceneFile {
+        let text = format!(
+            "[scene]\nunits = \"none\"\nmodels = [\"bem3d\"]\ncontact_modulus = 1\nmean_pressure = [1e-3, 1e-2]\n{accuracy}\n\
+             [scene.surface]\nkind = \"self_affine\"\nside = 1\nhurst = 0.8\nrms_height = 0.01\n\
+             [effects]\nboundary = \"periodic\"\n[outputs]\nstiffness = true\n[sampling]\nseed = 5\nsurfaces = {surfaces}\n"
+        );
+        SceneFile::parse("scene.toml".as_ref(), text).unwrap()
+    }
+
+    /// The grid that is chosen, or why there is none, where the stiffness under the second load has an error
+    /// of `order` over the cells, and the grids that were tried.
+    fn chosen(scene: &SceneFile, error: impl Fn(usize) -> f64) -> (Result<usize, String>, Vec<usize>) {
+        let mut tried = Vec::new();
+        let mut errors = |candidate: &Candidate| {
+            tried.push(candidate.longer);
+            let of = |share: f64| {
+                let mut error = analysis::grid_error(1.0, 1.1, 1.3).unwrap();
+                error.error = share;
+                Some(GridErrors { rms_slope: 0.1, errors: [("stiffness".to_owned(), error)].into() })
+            };
+            Ok(vec![of(0.1 * error(candidate.longer)), of(error(candidate.longer)), None])
+        };
+        let found = choose(scene, scene.accuracy.unwrap(), &mut errors);
+        (found.map(|found| found.longer).map_err(|error| error.to_string()), tried)
+    }
+
+    #[test]
+    fn a_table_of_errors_chooses_the_grid() {
+        let first_order = |n: usize| 4.0 / n as f64;
+        let asked = |keys: &str| chosen(&scene(keys, 1), first_order);
+        // 4/256 is enough, and 4/128 at most twice as much.
+        assert_eq!(asked("accuracy = 0.016"), (Ok(256), vec![128, 256]));
+        assert_eq!(asked("accuracy = 0.015"), (Ok(512), vec![128, 256, 512]));
+        assert_eq!(asked("accuracy = 0.016\nbudget = \"1 h\"\nmemory = \"1 TB\"").0, Ok(256));
+        let (refused, tried) = asked("accuracy = 1e-3\nbudget = \"2 s\"");
+        let refused = refused.unwrap_err();
+        assert!(tried.len() < 5 && refused.contains(" and the budget is 2.0 s"), "{tried:?} {refused}");
+        assert!(refused.contains("(`stiffness` under mean pressure 0.01)"), "{refused}");
+        let (refused, tried) = asked("accuracy = 1e-3\nmemory = \"60 MB\"");
+        let refused = refused.unwrap_err();
+        assert_eq!(tried, [128, 256, 512]);
+        assert!(
+            refused.contains("1024 cells along the longer side need up to 210 MB, and the `memory` is 60 MB"),
+            "{refused}"
+        );
+        assert!(asked("accuracy = 1e-3\nmemory = \"1 MB\"").1.is_empty());
+    }
+
+    /// Nothing is solved for it.
+    #[test]
+    fn the_best_is_the_finest_grid_within_budget_and_memory() {
+        let best = |keys: &str, surfaces: usize| {
+            let (found, tried) =
+                chosen(&scene(&format!("accuracy = \"best\"\n{keys}"), surfaces), |_| f64::NAN);
+            assert!(tried.is_empty());
+            found
+        };
+        // Two states of 1.2 us for each cell, and a fourth more for the coarser grids.
+        assert_eq!(best("budget = \"3.3 s\"", 1), Ok(1024));
+        assert_eq!(best("budget = \"3.3 s\"", 4), Ok(512));
+        assert_eq!(best("budget = \"1 h\"", 1), Ok(4096));
+        assert_eq!(best("budget = \"1 h\"\nmemory = \"14 GB\"", 1), Ok(8192));
+        assert!(best("budget = \"1 us\"", 1).unwrap_err().contains("and the budget is under 1 ms"));
+    }
+
+    #[test]
+    fn adhesion_takes_longer() {
+        let mut scene = scene("accuracy = \"best\"\nbudget = \"1 min\"", 1);
+        assert_eq!(chosen(&scene, |_| 0.0).0, Ok(2048));
+        scene.effects.adhesion = contact_model::Adhesion::ShortRange { work: 1e-3 };
+        assert_eq!(chosen(&scene, |_| 0.0).0, Ok(512));
+    }
+
+    #[test]
+    fn grids_have_coarser_ones_to_be_compared_with() {
+        let plain = |surface| {
+            let loads = LoadRequest::Loads(LoadList { kind: LoadKind::Force, values: vec![1.0] });
+            SceneFile::new(vec![Numerics::Bem3d(Bem3d::default())], SceneSurface::Plain(surface), 1.0, loads)
+        };
+        let free = plain(Surface::SelfAffine(SelfAffine::new(2.2, 1.0, 0.01).unwrap()));
+        assert_eq!(grids(&free)[..3], [129, 257, 513]);
+        let map = |columns: usize| {
+            let heights = (0..2 * columns).map(|i| i as f64).collect();
+            let map = contact_model::HeightMap::new([columns, 2], [columns as f64, 2.0], heights).unwrap();
+            grids(&plain(Surface::Heights(std::sync::Arc::new(map))))
+        };
+        assert_eq!(map(1000), [63, 125, 250, 500, 1000]);
+        assert_eq!((map(61), map(60)), (vec![61], vec![]));
+    }
 }

@@ -1,4 +1,7 @@
 //! The cost of a run, predicted from its sizes alone or from small solves of the same kind.
+//!
+//! What is chosen by a cost (the grid of an accuracy) rests on [`of_sizes`], in which no clock enters. Times
+//! that are measured here are printed and decide nothing.
 
 use crate::scenes::plan::{Cost, ModelOnSurface};
 use crate::scenes::read::{LoadRequest, Numerics, Result, SceneFile, cells, sampled, step_to};
@@ -28,6 +31,15 @@ const FRONTS_APPLICATIONS_EXPONENT: f64 = 0.8;
 /// What adhesion takes beside, where all cells are within reach: states of the last sweeps. Measured from
 /// outside on that example.
 const ADHESION_BYTES: f64 = 300.0;
+/// Up to this number of cells a side a dense state takes a microsecond for each cell, and beyond it the time
+/// grows with [`TIME_EXPONENT`]: 0.7 to 1.0 us at 513, 0.9 to 1.8 at 2049, 1.5 to 5 at 4097 and 8193
+/// (`data/bench/scaling.csv`, `data/bench/large.csv`). A light contact takes down to a thirtieth of that.
+const DENSE_CELLS: f64 = 513.0;
+/// Time with an adhesion of short range over that without at this number of cells a side, by the table of
+/// `book/src/effects-cost.md`: 6 to 9 there, 10 to 31 at 1025. With a finite range it is about a third.
+const FRONTS_CELLS: f64 = 257.0;
+const FRONTS_TIME: f64 = 9.0;
+const RANGE_TIME: f64 = 3.0;
 
 /// Time of one model from the sizes of its solves and from times that were measured once
 /// ([`ModelOnSurface::cost`]), within a factor of ten. Operator applications and linear solves are not
@@ -43,24 +55,52 @@ pub(crate) fn from_sizes(scene: &SceneFile, model: usize) -> Option<Cost> {
         Numerics::Registered(_) => false,
         _ => true,
     };
-    if !known {
-        return None;
-    }
-    let surfaces = if scene.surface.is_random_for(numerics) { scene.sampling.surfaces as f64 } else { 1.0 };
+    known.then(|| of_sizes(scene, model))
+}
+
+/// The cost of one model by the sizes of its solves and by times that are compiled in, those of a thread of a
+/// Xeon of 2.5 GHz: a function of the scene and of nothing else. With adhesion and for models of the user's
+/// own it is a guess.
+pub(crate) fn of_sizes(scene: &SceneFile, model: usize) -> Cost {
+    let numerics = &scene.models[model];
+    let surfaces = scene.surfaces_of(numerics) as f64;
     let milliseconds = ModelOnSurface { model, surface: 0 }.cost(scene) as f64;
     let states = scene.request.count() as f64 * surfaces;
     let (fields, field_bytes, memory) = fields(scene, numerics, states);
-    Some(Cost {
-        seconds: 1e-3 * milliseconds * surfaces * with_coarser_grids(scene, numerics),
-        memory: if numerics.boundary_elements().is_some() {
-            memory + least_memory(scene, numerics)
-        } else {
-            0.0
-        },
+    let has_cells = numerics.boundary_elements().is_some();
+    let growth = if has_cells { growth(scene, numerics) } else { 1.0 };
+    Cost {
+        seconds: 1e-3 * milliseconds * growth * surfaces * with_coarser_grids(scene, numerics),
+        memory: if has_cells { memory + least_memory(scene, numerics) } else { 0.0 },
         fields,
         field_bytes,
         ..Cost::default()
-    })
+    }
+}
+
+/// Exponent with which the time of a state grows with its cells a side.
+pub(crate) fn time_exponent(scene: &SceneFile) -> f64 {
+    if scene.effects.adhesion == Adhesion::Off { TIME_EXPONENT } else { FRONTS_TIME_EXPONENT }
+}
+
+/// The time of a state over a microsecond for each cell.
+fn growth(scene: &SceneFile, numerics: &Numerics) -> f64 {
+    let Cells { columns, rows } = cells(scene, numerics);
+    let side = (columns as f64 * rows as f64).sqrt();
+    let fronts = (side / FRONTS_CELLS).max(1.0).powf(FRONTS_TIME_EXPONENT - TIME_EXPONENT);
+    let adhesion = match scene.effects.adhesion {
+        Adhesion::Off => 1.0,
+        Adhesion::FiniteRange { .. } => RANGE_TIME * fronts,
+        _ => FRONTS_TIME * fronts,
+    };
+    adhesion * (side / DENSE_CELLS).max(1.0).powf(TIME_EXPONENT - 2.0)
+}
+
+/// Memory of one surface of a model with cells in a contact that fills the grid, in bytes: the most that a
+/// state takes.
+pub(crate) fn largest_memory(scene: &SceneFile, model: usize) -> f64 {
+    let Cells { columns, rows } = cells(scene, &scene.models[model]);
+    of_sizes(scene, model).memory + bem3d::bytes_per_cell(1.0) * columns as f64 * rows as f64
 }
 
 /// The work of a state with that of its coarser grids, over its own.
@@ -94,7 +134,7 @@ pub(crate) fn predict(scene: &SceneFile, numerics: &Numerics) -> Cost {
     let warm = numerics.clone().reduced(WARM_CELLS, CALIBRATION_ELEMENTS, size);
     let _ = small_solves(scene, &warm, (WARM_CELLS, grid), &contact_model::never);
     let requested = scene.request.count();
-    let surfaces = if scene.surface.is_random_for(numerics) { scene.sampling.surfaces as f64 } else { 1.0 };
+    let surfaces = scene.surfaces_of(numerics) as f64;
     let total = requested as f64 * surfaces;
     let begin = Instant::now();
     let stop = || begin.elapsed() > CALIBRATION_TIME;

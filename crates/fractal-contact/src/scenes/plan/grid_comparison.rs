@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// Grids with fewer cells along their longer side say nothing.
-const FEWEST_CELLS: usize = 16;
+pub(crate) const FEWEST_CELLS: usize = 16;
 
 /// Largest relative change of the rms slope, from cells to those twice as large, of a surface whose waves the
 /// larger cells still carry. Of such waves it changes by rounding alone; of self-affine ones down to the cell by
@@ -22,7 +22,7 @@ const RESOLVED_SLOPE: f64 = 0.02;
 pub(crate) const RMS_SLOPE: &str = "rms_slope";
 
 /// Numbers of one state on one grid, by their names; those that the model does not claim are absent.
-pub(crate) type Numbers = BTreeMap<&'static str, f64>;
+type Numbers = BTreeMap<&'static str, f64>;
 
 /// What the grid does to a state.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -130,12 +130,7 @@ pub(crate) fn on_grid(scene: &SceneFile, numerics: &Numerics, longer: usize) -> 
 }
 
 /// The numbers of one model, the first of a scene, under loads; `None` where it does not answer one.
-pub(crate) fn solve(
-    scene: &SceneFile,
-    seed: u64,
-    loads: &[Load],
-    stop: Stop<'_>,
-) -> Result<Vec<Option<Numbers>>> {
+fn solve(scene: &SceneFile, seed: u64, loads: &[Load], stop: Stop<'_>) -> Result<Vec<Option<Numbers>>> {
     let numerics = &scene.models[0];
     let slope = rms_slope(scene, &*solved_map(scene, numerics, seed)?)?;
     let mut found = vec![None; loads.len()];

@@ -8,11 +8,9 @@ pub(crate) mod grid_comparison;
 pub(crate) mod model_on_surface;
 pub(crate) mod scene_plan;
 
-pub(crate) use accuracy::{SharedStop, within};
+pub(crate) use accuracy::{Candidate, ErrorsOfStates, choose, within};
 pub(crate) use assumptions::Assumptions;
 pub(crate) use cost::Cost;
-pub(crate) use grid_comparison::{
-    GridComparison, GridErrors, Numbers, RMS_SLOPE, compared, on_grid, solve, solved_map,
-};
+pub(crate) use grid_comparison::{GridComparison, GridErrors, RMS_SLOPE, compared, on_grid, solved_map};
 pub(crate) use model_on_surface::{FORMAT, ModelOnSurface, probe};
-pub(crate) use scene_plan::{ModelPlan, Plan, PredictedFrom, of_slopes};
+pub(crate) use scene_plan::{ModelPlan, Plan, PredictedFrom, check, of_slopes};

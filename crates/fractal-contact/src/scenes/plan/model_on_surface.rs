@@ -23,9 +23,9 @@ impl ModelOnSurface {
     /// Everything that decides its numbers.
     pub fn key(&self, scene: &SceneFile) -> String {
         let surface = scene.surface.key();
-        let SceneFile {
-            contact_modulus, hardness, accuracy, pair, effects, request, requested, system, ..
-        } = scene;
+        // Its budget and its memory decide the grid alone, which is part of the model.
+        let accuracy = scene.accuracy.map(|requested| requested.target.share);
+        let SceneFile { contact_modulus, hardness, pair, effects, request, requested, system, .. } = scene;
         format!(
             "format {FORMAT} {}\nversion {}\nmodel {:?}\nsurface {surface}\ncontact_modulus {contact_modulus:?}\nhardness {hardness:?}\naccuracy {accuracy:?}\npair {pair:?}\neffects {effects:?}\n\
              request {request:?}\noutputs {requested:?} {system:?}\nnumber {}\nseed {}\n",

@@ -78,10 +78,23 @@ pub static SCENE_KEYS: &[SceneKeys] = &[
         "scene",
         &[&["accuracy"]],
         "share (`\"1 %\"` or 0.01) that the error of the grid may have, instead of `cells` and `tolerance`; or \
-         `\"best\"`: as small as `budget` and memory allow",
+         `\"best\"`: as small as `budget` and `memory` allow",
         "",
     ),
-    keys("scene", &[&["budget"]], "predicted time that `accuracy` may take, on one thread", "`\"10 min\"`"),
+    keys(
+        "scene",
+        &[&["budget"]],
+        "time that `accuracy` may take, as predicted from the sizes for one thread of a [reference \
+         machine](scene-results.md#the-grid-for-an-accuracy); it chooses the same grid on every machine",
+        "`\"10 min\"`",
+    ),
+    keys(
+        "scene",
+        &[&["memory"]],
+        "memory of one surface that `accuracy` may take, in MB, GB or TB; a machine that has less than the grid \
+         needs refuses",
+        "`\"4 GB\"`",
+    ),
     keys("scene.path", &[&["time"]], "end of a straight piece of the path", "that of the step before"),
     keys(
         "scene.path",

@@ -21,7 +21,7 @@ pub(crate) mod scene_file;
 pub(crate) mod scene_surface;
 pub(crate) mod words;
 
-pub(crate) use accuracy_target::read_accuracy;
+pub(crate) use accuracy_target::{RequestedAccuracy, read_accuracy};
 pub(crate) use contact_model::units::{amount, multiple, number, short};
 pub(crate) use diagnostic::Diagnostic;
 pub(crate) use distributed::{Bin, Distributed};

@@ -3,10 +3,9 @@
 use crate::scenes::EFFECT_KEYS;
 use crate::scenes::read::{
     Diagnostic, Entries, Entry, LoadKind, LoadRequest, MOST_CELLS, Numerics, Read, Registry,
-    RequestedOutputs, Result, SceneSurface, SurfaceEntry, System, outputs, read_accuracy, read_effects,
-    read_models, read_outputs, read_request, read_surface, short,
+    RequestedAccuracy, RequestedOutputs, Result, SceneSurface, SurfaceEntry, System, outputs, read_accuracy,
+    read_effects, read_models, read_outputs, read_request, read_surface, short,
 };
-use analysis::AccuracyTarget;
 use contact_model::{
     Adhesion, Body, Boundary, Cells, Directions, Effect, Effects, Friction, Hardness, Load, Output, Pair,
     Paths, Rheology, Scene,
@@ -39,7 +38,7 @@ pub struct SceneFile {
     /// Pressure above which a state has a note; E*/10 where none is given.
     pub hardness: Option<f64>,
     /// The accuracy for which the grid is chosen ([`SceneFile::with_grid_for_accuracy`]).
-    pub accuracy: Option<AccuracyTarget>,
+    pub accuracy: Option<RequestedAccuracy>,
     /// Both bodies, where they are named.
     pub pair: Option<Pair>,
     /// Effects, off unless named.
@@ -261,6 +260,11 @@ impl SceneFile {
         self.surface.is_random() || given && self.models.iter().any(|m| self.surface.is_random_for(m))
     }
 
+    /// Number of surfaces on which a model has results of its own: one where they do not depend on the seed.
+    pub(crate) fn surfaces_of(&self, numerics: &Numerics) -> usize {
+        if self.surface.is_random_for(numerics) { self.sampling.surfaces } else { 1 }
+    }
+
     /// Whether it is a path, which needs models with a memory.
     pub fn is_history(&self) -> bool {
         matches!(self.request, LoadRequest::Path(_))
@@ -328,7 +332,7 @@ fn read_scene(root: &Entries<'_>, directory: &Path, registry: &Registry) -> Read
     Ok(SceneFile {
         system,
         hardness,
-        accuracy: accuracy.map(|(target, _)| target),
+        accuracy: accuracy.map(|(requested, _)| requested),
         pair,
         effects,
         requested,

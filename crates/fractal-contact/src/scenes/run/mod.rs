@@ -4,6 +4,7 @@ pub(crate) mod field_pictures;
 pub(crate) mod field_view;
 pub(crate) mod outcome;
 pub(crate) mod path_keeper;
+pub(crate) mod pilot;
 pub(crate) mod scene_job;
 pub(crate) mod solve;
 pub(crate) mod state_result;
@@ -12,7 +13,8 @@ pub(crate) mod warnings;
 pub(crate) use field_view::{FieldView, shown_words};
 pub(crate) use outcome::{Options, SceneOutcome};
 pub(crate) use path_keeper::Keeper;
-pub(crate) use scene_job::{scene_jobs, units};
+pub(crate) use pilot::{SharedStop, remove_trials, take_trial};
+pub(crate) use scene_job::{SceneJob, scene_jobs, units};
 pub(crate) use state_result::{
     Answer, FieldFile, ModelResult, Solved, SolvedUnit, StateRecord, StoredFile, field_of_file,
 };

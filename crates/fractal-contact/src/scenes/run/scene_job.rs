@@ -1,11 +1,12 @@
 //! A model on a surface as a job, and its result as text.
 
 use crate::scenes::plan::{FORMAT, ModelOnSurface, calibration};
-use crate::scenes::read::{Error, Result, SceneFile};
-use crate::scenes::run::{Keeper, ModelResult};
+use crate::scenes::read::{Error, Result, SceneFile, cells};
+use crate::scenes::run::{Keeper, ModelResult, field_pictures};
 use contact_model::Stop;
 use runs::{Checkpoint, Job, JobList, Progress, ResultKind, Silent, StatesInHand};
 use std::path::Path;
+use std::time::Instant;
 
 /// A model on a surface, with the data that all jobs of a run share.
 pub(crate) struct SceneJob<'a> {
@@ -13,6 +14,9 @@ pub(crate) struct SceneJob<'a> {
     pub scene: &'a SceneFile,
     /// Directory of the results.
     pub out: &'a Path,
+    /// Whether it draws pictures of its fields at the end; a job that does not is complete when it is done
+    /// again by one that does.
+    pub draws: bool,
 }
 
 impl Job for SceneJob<'_> {
@@ -65,7 +69,15 @@ impl Job for SceneJob<'_> {
         let states = [begun.kept, self.scene.request.count()];
         let told = StatesInHand::new((self.name(), self.cost()), states, progress, stop);
         let mut keeper = Keeper::new(store, checkpoint, progress, self.name(), &told);
-        let result = self.unit.solve(self.scene, self.out, begun, &mut keeper, &told)?;
+        let mut result = self.unit.solve(self.scene, self.out, begun, &mut keeper, &told)?;
+        if self.draws {
+            let (start, numerics) = (Instant::now(), self.unit.numerics(self.scene));
+            let cells = cells(self.scene, numerics);
+            field_pictures::draw(self.scene, (model, surface), cells, self.out, &mut result)?;
+            result.seconds += start.elapsed().as_secs_f64();
+        } else {
+            result.complete = false;
+        }
         keeper.finish(&result)?;
         Ok(result)
     }
@@ -79,17 +91,15 @@ impl Job for SceneJob<'_> {
 /// Every model of a scene on every surface, in the order of the tables. A theory, which is the same for every
 /// seed, has one surface.
 pub(crate) fn units(scene: &SceneFile) -> Vec<ModelOnSurface> {
-    let surfaces = |model: usize| {
-        if scene.surface.is_random_for(&scene.models[model]) { scene.sampling.surfaces } else { 1 }
-    };
+    let surfaces = |model: usize| 0..scene.surfaces_of(&scene.models[model]);
     (0..scene.models.len())
-        .flat_map(|model| (0..surfaces(model)).map(move |surface| ModelOnSurface { model, surface }))
+        .flat_map(|model| surfaces(model).map(move |surface| ModelOnSurface { model, surface }))
         .collect()
 }
 
 /// The same, as jobs that write their fields into `out`.
 pub(crate) fn scene_jobs<'a>(scene: &'a SceneFile, out: &'a Path) -> Vec<SceneJob<'a>> {
-    units(scene).into_iter().map(|unit| SceneJob { unit, scene, out }).collect()
+    units(scene).into_iter().map(|unit| SceneJob { unit, scene, out, draws: true }).collect()
 }
 
 /// The jobs of a scene whose results go to `out`: each model on each surface.

@@ -170,9 +170,9 @@ impl Warning {
             stiffness: scene.requested.outputs.stiffness,
             neglects_coupling: neglects_coupling(scene),
         };
-        let missed = scene
-            .accuracy
-            .is_some_and(|target| !errors.is_some_and(|errors| within(scene, errors, target.share)));
+        let missed = scene.accuracy.is_some_and(|requested| {
+            !errors.is_some_and(|errors| within(scene, errors, requested.target.share))
+        });
         circumstances.warnings(state, missed)
     }
 
