@@ -372,15 +372,6 @@ impl HeightMap {
         ))
     }
 
-    /// Every so many heights along both sides, for pictures.
-    fn _sampled<'py>(&self, py: Python<'py>, step: usize) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let step = step.max(1);
-        let rows = self.0.heights().chunks(self.0.columns()).step_by(step);
-        let values = rows.flat_map(|row| row.iter().step_by(step).copied()).collect();
-        PyArray1::from_vec(py, values)
-            .reshape([self.0.rows().div_ceil(step), self.0.columns().div_ceil(step)])
-    }
-
     fn _repr_html_(slf: Bound<'_, Self>) -> PyResult<Bound<'_, PyAny>> {
         slf.py().import("fractal_contact._html")?.call_method1("height_map", (&slf,))
     }

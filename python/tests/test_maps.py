@@ -1,6 +1,7 @@
 """Maps as arrays, and pictures of maps and states."""
 
 import base64
+import io
 import re
 
 import numpy as np
@@ -113,6 +114,23 @@ def test_pictures_have_the_shape_of_the_rectangle_and_a_scale():
         known = map_.heights[np.isfinite(map_.heights)]
         assert f"<span>{known.max():.4g}</span>" in html and f"<span>{known.min():.4g}</span>" in html
         assert f"{map_.size[0]:.4g} x {map_.size[1]:.4g}" in html
+
+
+def test_pictures_of_large_maps_keep_shares_and_say_so():
+    image = pytest.importorskip("matplotlib.image")
+    for columns, rows in ((400, 200), (1300, 650)):
+        # A quarter of the cells is high, in squares of one cell, and one cell is higher than all others.
+        heights = np.zeros((rows, columns))
+        heights[::2, ::2] = 1.0
+        heights[100, 101] = 2.0
+        html = fc.HeightMap(heights, size=(columns, rows))._repr_html_()
+        png = base64.b64decode(re.search(r"base64,([^\"]*)", html).group(1))
+        pixels = image.imread(io.BytesIO(png))[..., :3]
+        assert pixels.shape[1] == min(columns, 512) and ("one of about" in html) == (columns > 512)
+        # Half of the scale.
+        high = np.abs(pixels - np.array([33, 145, 140]) / 255).max(axis=2) < 0.02
+        assert high.mean() == pytest.approx(0.25, abs=1e-3 if columns > 512 else 0)
+        assert "<span>2</span>" in html and (pixels[..., 0] > 0.95).sum() >= 1
 
 
 def test_states_show_what_they_have():

@@ -139,17 +139,6 @@ impl Fields {
     }
 }
 
-/// Which cell of a block stands for it, where a field is shown on fewer points than it has.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Shown {
-    /// The cell of the largest value, so that a single cell under pressure is seen; zeros get no colour.
-    Largest,
-    /// The cell of the smallest value, so that a single cell without a gap is seen.
-    Smallest,
-    /// The cell in the middle.
-    Middle,
-}
-
 /// A field of a state, with everything that tables, files and pictures need to know about it.
 #[derive(Debug, Clone, Copy)]
 pub struct FieldQuantity {
@@ -165,8 +154,8 @@ pub struct FieldQuantity {
     pub meaning: &'static str,
     /// Number of components: 1, or 2 along x and y.
     pub components: usize,
-    /// Which cell is shown; of two components their magnitude decides.
-    pub shown: Shown,
+    /// Whether pictures leave zeros white: where there is no contact, there is no pressure.
+    pub white_zero: bool,
     /// Whether the sign matters: zero then separates pressures from tensions, or two directions.
     pub signed: bool,
     /// The classes that the values 0, 1, ... stand for; empty for a field of measured values.
@@ -188,7 +177,7 @@ pub static FIELDS: &[FieldQuantity] = &[
         unit: "Pa",
         meaning: "pressure of each cell; negative, a tension, with adhesion only",
         components: 1,
-        shown: Shown::Largest,
+        white_zero: true,
         signed: true,
         classes: &[],
         outlined: false,
@@ -202,7 +191,7 @@ pub static FIELDS: &[FieldQuantity] = &[
         unit: "m",
         meaning: "gap to the indented surface; infinite at undefined points",
         components: 1,
-        shown: Shown::Smallest,
+        white_zero: false,
         signed: false,
         classes: &[],
         outlined: true,
@@ -216,7 +205,7 @@ pub static FIELDS: &[FieldQuantity] = &[
         unit: "m",
         meaning: "depth of the plastic indentation >= 0",
         components: 1,
-        shown: Shown::Largest,
+        white_zero: true,
         signed: false,
         classes: &[],
         outlined: true,
@@ -230,7 +219,7 @@ pub static FIELDS: &[FieldQuantity] = &[
         unit: "m",
         meaning: "displacement of the elastic surface",
         components: 1,
-        shown: Shown::Middle,
+        white_zero: false,
         signed: true,
         classes: &[],
         outlined: true,
@@ -244,7 +233,7 @@ pub static FIELDS: &[FieldQuantity] = &[
         unit: "Pa",
         meaning: "tangential traction of each cell, along x and along y",
         components: 2,
-        shown: Shown::Largest,
+        white_zero: true,
         signed: false,
         classes: &[],
         outlined: false,
@@ -258,7 +247,7 @@ pub static FIELDS: &[FieldQuantity] = &[
         unit: "m",
         meaning: "slip of the bodies relative to each other since the cell came into contact, along x and along y",
         components: 2,
-        shown: Shown::Largest,
+        white_zero: true,
         signed: false,
         classes: &[],
         outlined: true,
@@ -272,7 +261,7 @@ pub static FIELDS: &[FieldQuantity] = &[
         unit: "",
         meaning: "0 where there is no contact, 1 where it sticks, 2 where it slips",
         components: 1,
-        shown: Shown::Largest,
+        white_zero: true,
         signed: false,
         classes: &["open", "stick", "slip"],
         outlined: false,

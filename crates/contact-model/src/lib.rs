@@ -71,7 +71,7 @@ pub use cells::{Cells, Size};
 pub use conductance::Conductance;
 pub use effects::*;
 pub use error::{Error, Result};
-pub use fields::{FIELDS, Field, FieldQuantity, Fields, Shown, StickSlip};
+pub use fields::{FIELDS, Field, FieldQuantity, Fields, StickSlip};
 pub use height_map::HeightMap;
 pub use line::Line;
 pub use load::Load;

@@ -10,6 +10,7 @@ mod limits;
 mod measured_maps;
 mod own_models;
 mod paths;
+mod pictures;
 mod press;
 mod profiles;
 mod program;

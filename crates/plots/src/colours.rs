@@ -1,7 +1,6 @@
 //! Values as colours.
 
 use crate::map::{encode_rgb, share};
-use contact_model::Shown;
 use files::Result;
 use std::path::Path;
 
@@ -40,32 +39,29 @@ impl Palette {
 /// Maps values to colours.
 ///
 /// ```
-/// use contact_model::Shown;
 /// use plots::{ColourScale, Palette};
-/// let scale = ColourScale::new((-1.0, 3.0), Shown::Middle, true);
+/// let scale = ColourScale::new((-1.0, 3.0), false, true);
 /// assert_eq!((scale.ends(), scale.palette()), ((-3.0, 3.0), Palette::BlueRed));
-/// assert_eq!(ColourScale::new((2.0, 3.0), Shown::Largest, true).ends(), (0.0, 3.0));
+/// assert_eq!(ColourScale::new((2.0, 3.0), true, true).ends(), (0.0, 3.0));
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ColourScale {
     low: f64,
     high: f64,
     palette: Palette,
-    zero_is_white: bool,
+    white_zero: bool,
 }
 
 impl ColourScale {
-    /// The scale of values in this range. It is viridis from end to end; under [`Shown::Largest`] it begins
-    /// at 0, and zero is white. A `signed` field with values of both signs has blue to red, symmetric about a
-    /// white zero.
-    pub fn new((low, high): (f64, f64), shown: Shown, signed: bool) -> Self {
-        let zero_is_white = shown == Shown::Largest;
+    /// The scale of values in this range. It is viridis from end to end; with a white zero it begins at 0. A
+    /// `signed` field with values of both signs has blue to red, symmetric about a white zero.
+    pub fn new((low, high): (f64, f64), white_zero: bool, signed: bool) -> Self {
         let (least, most) = (low.abs().min(high.abs()), low.abs().max(high.abs()));
         if signed && low < 0.0 && high > 0.0 && least >= TWO_SIGNS * most && most.is_finite() {
-            return Self { low: -most, high: most, palette: Palette::BlueRed, zero_is_white };
+            return Self { low: -most, high: most, palette: Palette::BlueRed, white_zero };
         }
-        let low = if zero_is_white { low.min(0.0) } else { low };
-        Self { low, high, palette: Palette::Viridis, zero_is_white }
+        let low = if white_zero { low.min(0.0) } else { low };
+        Self { low, high, palette: Palette::Viridis, white_zero }
     }
 
     /// The scale of a constant with room around it.
@@ -85,15 +81,15 @@ impl ColourScale {
     }
 
     /// Whether zero has no colour.
-    pub fn zero_is_white(self) -> bool {
-        self.zero_is_white
+    pub fn white_zero(self) -> bool {
+        self.white_zero
     }
 
     /// The colour of a value; undefined ones are grey, a scale without a length has its middle colour.
     pub fn colour(self, value: f64) -> [u8; 3] {
         match value {
             v if !v.is_finite() => UNDEFINED,
-            v if self.zero_is_white && v.abs() <= 0.0 => [255; 3],
+            v if self.white_zero && v.abs() <= 0.0 => [255; 3],
             v if self.high > self.low => self.palette.at(share(v, self.low, self.high).clamp(0.0, 1.0)),
             _ => self.palette.at(0.5),
         }
@@ -103,8 +99,8 @@ impl ColourScale {
     ///
     /// # Errors
     /// [`crate::Error::Content`] where the encoder refuses.
-    pub fn encode(self, columns: usize, values: &[f32]) -> Result<Vec<u8>> {
-        let colour = |v: &f32| self.colour(f64::from(*v));
+    pub fn encode(self, columns: usize, values: &[f64]) -> Result<Vec<u8>> {
+        let colour = |v: &f64| self.colour(*v);
         let pixels: Vec<[u8; 3]> = values.chunks(columns.max(1)).rev().flatten().map(colour).collect();
         encode_rgb(Path::new("a picture"), columns, &pixels.into_flattened())
     }
@@ -120,18 +116,17 @@ pub fn viridis() -> [[u8; 3]; 256] {
 }
 
 /// A PNG with a pixel for each value, the last row on top: viridis from the lowest to the highest of the
-/// range, undefined points grey, and white at 0 where `zero_is_white`.
+/// range, undefined points grey, and white at 0 where `white_zero`.
 ///
 /// # Errors
 /// [`crate::Error::Content`] where the encoder refuses.
 pub fn encode_viridis(
     columns: usize,
-    values: &[f32],
-    [low, high]: [f32; 2],
-    zero_is_white: bool,
+    values: &[f64],
+    [low, high]: [f64; 2],
+    white_zero: bool,
 ) -> Result<Vec<u8>> {
-    let (low, high) = (f64::from(low), f64::from(high));
-    ColourScale { low, high, palette: Palette::Viridis, zero_is_white }.encode(columns, values)
+    ColourScale { low, high, palette: Palette::Viridis, white_zero }.encode(columns, values)
 }
 
 #[cfg(test)]
@@ -140,19 +135,19 @@ mod tests {
 
     #[test]
     fn zero_is_in_the_middle_where_a_field_has_signs() {
-        let scale = ColourScale::new((-2.0, 6.0), Shown::Largest, true);
+        let scale = ColourScale::new((-2.0, 6.0), true, true);
         let [r, g, b] = scale.colour(1e-9);
         assert!(r.min(g).min(b) > 235, "{r} {g} {b}");
         let ([low, .., blue], [red, .., high]) = (scale.colour(-6.0), scale.colour(6.0));
         assert!(blue > low && red > high && scale.colour(0.0) == [255; 3]);
         // Rounding is no sign, and neither has a height one.
         for (range, signed) in [((-1e-9, 6.0), true), ((-2.0, 6.0), false), ((2.0, 6.0), true)] {
-            let scale = ColourScale::new(range, Shown::Middle, signed);
+            let scale = ColourScale::new(range, false, signed);
             assert_eq!((scale.palette(), scale.ends()), (Palette::Viridis, range));
         }
-        let nothing = ColourScale::new((f64::INFINITY, f64::NEG_INFINITY), Shown::Middle, true);
+        let nothing = ColourScale::new((f64::INFINITY, f64::NEG_INFINITY), false, true);
         assert_eq!(nothing.colour(f64::NAN), UNDEFINED);
-        let constant = ColourScale::new((3.0, 3.0), Shown::Middle, true).widened();
+        let constant = ColourScale::new((3.0, 3.0), false, true).widened();
         assert_eq!((constant.ends(), constant.colour(3.0)), ((0.0, 6.0), Palette::Viridis.at(0.5)));
     }
 }

@@ -4,12 +4,12 @@ use crate::axis::Axis;
 use crate::colours::ColourScale;
 use crate::drawing::{Anchor, Drawing, Paint, Rectangle, polygon, polyline};
 use crate::frame::{Frame, Side, TICK, TickStyle};
-use crate::style::INK;
+use crate::pixels::{Pixels, raster, reduction};
+use crate::style::{INK, NEUTRAL};
 use crate::text::Fonts;
 use contact_model::units::multiple;
-use contact_model::{Cells, Shown, Size};
+use contact_model::{Cells, Size};
 use files::{Error, Result};
-use std::ops::Range;
 use std::path::Path;
 
 /// A field with its title and labels.
@@ -31,8 +31,8 @@ pub struct FieldPicture<'a> {
     pub size: Size,
     /// Values on the cells, row-major; NaN where a point is undefined.
     pub values: &'a [f64],
-    /// The value that a pixel shows, where it covers several cells.
-    pub shown: Shown,
+    /// Whether zeros are white, as where there is no contact.
+    pub white_zero: bool,
     /// Whether the sign matters, as for pressures and tensions: a field with both signs is blue to red.
     pub signed: bool,
     /// Ends of the colour scale, so that several pictures share one; `None`: those of the values.
@@ -46,10 +46,12 @@ pub struct FieldPicture<'a> {
     pub classes: &'a [&'a str],
 }
 
-/// Longer side of the map, in units of the drawing; the shorter one has at least a twentieth of it.
-const SIDE: f64 = 520.0;
-/// Pixels of the image per unit.
-const PIXELS: f64 = 2.0;
+/// Pixels along the longer side of the map, about: with more cells along it the picture is reduced.
+const SIDE: usize = 1040;
+/// The least length of the shorter side, as a share of the longer one.
+const SHORTEST: f64 = 0.05;
+/// Units of the drawing per pixel.
+const PIXEL: f64 = 0.5;
 const LEFT: f64 = 84.0;
 const TOP: f64 = 62.0;
 const RIGHT: f64 = 124.0;
@@ -69,8 +71,11 @@ const ARROWS: f64 = 26.0;
 /// Length of an arrow and of its head, in distances between arrows.
 const ARROW: f64 = 0.85;
 const ARROW_HEAD: f64 = 0.28;
-/// Where less than this share of the pixels is under pressure, each of these is drawn three pixels wide.
-const SPARSE: f64 = 0.02;
+/// Width of the line around the map; it lies outside of its pixels.
+const LINE: f64 = 1.2;
+/// Size of the line that says how a picture is reduced, and its room.
+const NOTE: f64 = 12.0;
+const NOTE_ROOM: f64 = 20.0;
 
 impl FieldPicture<'_> {
     /// The smallest and the largest finite value.
@@ -85,13 +90,16 @@ impl FieldPicture<'_> {
             0 => self.range.unwrap_or_else(|| Self::ends(self.values)),
             count => (0.0, (count - 1) as f64),
         };
-        ColourScale::new(range, self.shown, self.signed)
+        ColourScale::new(range, self.white_zero, self.signed)
     }
 
     /// Writes a PNG, y upwards. The colours are those of [`FieldPicture::scale`]; undefined points are grey,
-    /// the contact has a white outline with a black edge. Under [`Shown::Largest`] a field of which less than
-    /// 2 % of the pixels are above zero has each of these drawn three pixels wide. Arrows have one length;
+    /// the contact has a white outline with a black edge, which lies outside of it. Arrows have one length;
     /// each shows the sum of the vectors of a block of cells, at their centre weighted by magnitude.
+    ///
+    /// Up to 1040 cells along the longer side, a cell that is a square has a square of whole pixels. Where a
+    /// pixel has several cells, it shows one of them, so chosen that shares of areas, means and extrema are
+    /// those of the field, and a line below the map says so.
     ///
     /// Cost: linear in the number of cells.
     ///
@@ -116,21 +124,28 @@ impl FieldPicture<'_> {
         let fonts = Fonts::load()?;
         let size = self.size;
         let longer = size.x.max(size.y);
-        let [w, h] = [size.x, size.y].map(|side| SIDE * (side / longer).max(0.05));
-        let mut drawing = Drawing::new(LEFT + w + RIGHT, TOP + h.max(160.0) + BELOW);
+        let pixels = raster(self.cells, size, SIDE, SHORTEST);
+        let [w, h] = [pixels.columns, pixels.rows].map(|count| PIXEL * count as f64);
+        let note = reduction(self.cells, pixels);
+        let bottom = TOP + h.max(160.0) + BELOW;
+        let mut drawing = Drawing::new(LEFT + w + RIGHT, bottom + note.as_ref().map_or(0.0, |_| NOTE_ROOM));
         let frame = [LEFT, TOP, w, h];
         let scale = self.scale().widened();
         let (low, high) = scale.ends();
         let color = |v: f64| scale.colour(v);
-        let [columns, rows] = [w, h].map(|side| (side * PIXELS).round() as usize);
-        let image = self.image(columns, rows, color).into_flattened();
-        drawing.image(frame, image, columns);
+        let image = self.image(pixels, color).into_flattened();
+        drawing.image(frame, image, pixels.columns);
+        if let Some(note) = note {
+            let set = fonts.fitted(&note, NOTE, w + RIGHT);
+            drawing.label(set, (LEFT, bottom + 0.5 * NOTE_ROOM), Anchor::Start, false, NEUTRAL);
+        }
         self.draw_arrows(&mut drawing, frame);
         let (length_unit, per_length) = multiple(self.length_unit, longer);
         let map = Frame { fonts: &fonts, place: frame, style: TickStyle::OF_MAPS };
         map.axis(&mut drawing, Side::Below, Axis::Linear(0.0, per_length * size.x), None);
         map.axis(&mut drawing, Side::Left, Axis::Linear(0.0, per_length * size.y), None);
-        map.outline(&mut drawing, 1.2);
+        let around = [LEFT - 0.5 * LINE, TOP - 0.5 * LINE, w + LINE, h + LINE];
+        Frame { place: around, ..map }.outline(&mut drawing, LINE);
         let with = |words: &str, unit: &str| {
             if unit.is_empty() { words.to_owned() } else { format!("{words} ({unit})") }
         };
@@ -144,7 +159,7 @@ impl FieldPicture<'_> {
         }
         // The bar is at least as high as its labels need.
         let bar = [beside, TOP, BAR, h.max(160.0)];
-        let steps = (bar[3] * PIXELS) as usize;
+        let steps = (bar[3] / PIXEL) as usize;
         let ramp = |i: usize| {
             let t = (i as f64 + 0.5) / steps as f64;
             color(low * t + high * (1.0 - t))
@@ -231,7 +246,9 @@ impl FieldPicture<'_> {
     }
 
     /// Colours of all pixels, the upper left one first.
-    fn image(&self, columns: usize, rows: usize, color: impl Fn(f64) -> [u8; 3]) -> Vec<[u8; 3]> {
+    fn image(&self, pixels: Cells, color: impl Fn(f64) -> [u8; 3]) -> Vec<[u8; 3]> {
+        let Cells { columns, rows } = pixels;
+        let reduced = Pixels::new(self.cells, pixels, self.values);
         // From the lower left corner.
         let at = |i: usize| (i % columns, i / columns);
         let around = |i: usize| {
@@ -241,19 +258,10 @@ impl FieldPicture<'_> {
             down.flat_map(move |y| across.clone().map(move |x| y * columns + x))
         };
         let all = 0..columns * rows;
-        let mut values: Vec<f64> = all.clone().map(|i| self.pixel(at(i).0, columns, at(i).1, rows)).collect();
-        let loaded = values.iter().filter(|v| **v > 0.0).count() as f64;
-        if self.shown == Shown::Largest && loaded < SPARSE * values.len() as f64 {
-            values = all.clone().map(|i| around(i).map(|j| values[j]).fold(values[i], f64::max)).collect();
-        }
-        let touches = |i: usize| {
-            let (across, down) = self.cells_of(at(i).0, columns, at(i).1, rows);
-            down.into_iter()
-                .any(|row| self.contact[row * self.cells.columns..][across.clone()].contains(&true))
-        };
+        let shown: Vec<usize> = all.clone().map(|i| reduced.cell(at(i).0, at(i).1)).collect();
+        let touches = |cell: &usize| self.contact.get(*cell) == Some(&true);
         // Pixels from the contact: 0 in it, then 1 and 2 of the outline.
-        let mut distance: Vec<usize> =
-            all.clone().map(|i| if !self.contact.is_empty() && touches(i) { 0 } else { FAR }).collect();
+        let mut distance: Vec<usize> = shown.iter().map(|cell| if touches(cell) { 0 } else { FAR }).collect();
         for ring in 1..=OUTLINE_WIDTH {
             let reached = all.clone().filter(|i| distance[*i] == ring - 1).flat_map(around);
             for i in reached.collect::<Vec<_>>() {
@@ -262,33 +270,9 @@ impl FieldPicture<'_> {
         }
         let pixel = |i: usize| match distance[i] {
             ring @ 1..=OUTLINE_WIDTH => OUTLINE[ring - 1],
-            _ => color(values[i]),
+            _ => color(self.values[shown[i]]),
         };
         (0..rows).rev().flat_map(|y| (0..columns).map(move |x| y * columns + x)).map(pixel).collect()
-    }
-
-    /// Columns and rows of the cells that fall on a pixel, counted from the lower left corner.
-    fn cells_of(&self, x: usize, columns: usize, y: usize, rows: usize) -> (Range<usize>, Range<usize>) {
-        let range = |i: usize, pixels: usize, cells: usize| {
-            let first = i * cells / pixels;
-            first..((i + 1) * cells).div_ceil(pixels).clamp(first + 1, cells)
-        };
-        (range(x, columns, self.cells.columns), range(y, rows, self.cells.rows))
-    }
-
-    /// The value of a pixel.
-    fn pixel(&self, x: usize, columns: usize, y: usize, rows: usize) -> f64 {
-        let row = |iy: usize| &self.values[iy * self.cells.columns..][..self.cells.columns];
-        let (across, down) = self.cells_of(x, columns, y, rows);
-        let middle =
-            || row(usize::midpoint(down.start, down.end - 1))[usize::midpoint(across.start, across.end - 1)];
-        let values = || down.clone().flat_map(|iy| row(iy)[across.clone()].iter().copied());
-        // Of numbers and NaN the number.
-        match self.shown {
-            Shown::Largest => values().fold(f64::NAN, f64::max),
-            Shown::Smallest => values().fold(f64::NAN, f64::min),
-            Shown::Middle => middle(),
-        }
     }
 }
 
@@ -297,7 +281,7 @@ mod tests {
     use super::*;
     use contact_model::Field;
 
-    fn picture(field: &Field, shown: Shown) -> FieldPicture<'_> {
+    fn picture(field: &Field, white_zero: bool) -> FieldPicture<'_> {
         let (title, subtitle, quantity) = ("t".into(), "s".into(), "p".into());
         let (cells, size, values) = (field.cells(), field.size(), field.values());
         let contact = &[];
@@ -310,7 +294,7 @@ mod tests {
             cells,
             size,
             values,
-            shown,
+            white_zero,
             signed: false,
             range: None,
             contact,
@@ -320,22 +304,131 @@ mod tests {
     }
 
     /// Colours of a PNG at points of the map, counted from its lower left corner in shares of its sides.
-    fn colors(field: &Field, shown: Shown, at: &[(f64, f64)]) -> Vec<[u8; 3]> {
+    fn colors(field: &Field, white_zero: bool, at: &[(f64, f64)]) -> Vec<[u8; 3]> {
         let dir = tempfile::tempdir().unwrap();
         let path = dir.path().join("f.png");
-        picture(field, shown).save(&path).unwrap();
-        let file = std::io::BufReader::new(std::fs::File::open(&path).unwrap());
+        picture(field, white_zero).save(&path).unwrap();
+        let (pixels, map) = read_map(&path, field);
+        let pixel = |&(x, y): &(f64, f64)| {
+            let (x, y) = ((x * pixels.columns as f64) as usize, (y * pixels.rows as f64) as usize);
+            map[y * pixels.columns + x]
+        };
+        at.iter().map(pixel).collect()
+    }
+
+    /// The pixels inside the frame of a picture of a field, from the lower left corner.
+    fn read_map(path: &Path, field: &Field) -> (Cells, Vec<[u8; 3]>) {
+        let file = std::io::BufReader::new(std::fs::File::open(path).unwrap());
         let mut reader = png::Decoder::new(file).read_info().unwrap();
         let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
         let info = reader.next_frame(&mut bytes).unwrap();
-        let longer = field.size().x.max(field.size().y);
-        let (w, h) = (SIDE * field.size().x / longer, SIDE * field.size().y / longer);
-        let pixel = |&(x, y): &(f64, f64)| {
-            let (x, y) = (((LEFT + x * w) * PIXELS) as usize, ((TOP + (1.0 - y) * h) * PIXELS) as usize);
-            let at = 3 * (y * info.width as usize + x);
-            [bytes[at], bytes[at + 1], bytes[at + 2]]
+        let samples = info.color_type.samples();
+        let pixels = raster(field.cells(), field.size(), SIDE, SHORTEST);
+        let (left, top) = ((LEFT / PIXEL) as usize, (TOP / PIXEL) as usize);
+        let pixel = |i: usize| {
+            let (x, y) = (left + i % pixels.columns, top + pixels.rows - 1 - i / pixels.columns);
+            let at = samples * (y * info.width as usize + x);
+            [0, 1, 2].map(|channel| bytes[at + channel.min(samples - 1)])
         };
-        at.iter().map(pixel).collect()
+        (pixels, (0..pixels.columns * pixels.rows).map(pixel).collect())
+    }
+
+    /// How far shares of the area and means of a reduced picture may be from those of its field, in parts of
+    /// the whole: about three times what was found.
+    const REDUCTION: f64 = 1e-3;
+    /// Of sums over 1e5 cells.
+    const ROUNDING: f64 = 1e-10;
+
+    /// A rough rectangle pressed to some share of its area, with holes: a pressure, undefined in the holes.
+    fn pressed(cells: [usize; 2], size: [f64; 2], seed: u64) -> Field {
+        let surface = contact_model::SelfAffine::new(2.2, size, 1.0).unwrap();
+        let map = surface_gen::self_affine_map(&surface, cells, seed).unwrap();
+        let hole = |i: usize| (i % cells[0] / 7 + i / cells[0] / 5) % 11 == 0;
+        let pressure = |(i, h): (usize, &f64)| if hole(i) { f64::NAN } else { (h - 0.7).max(0.0) };
+        Field::new(cells, size, map.heights().iter().enumerate().map(pressure).collect()).unwrap()
+    }
+
+    /// Every picture is read back: shares of the classes, contact and mean pressure are those of the field. The
+    /// maps are small, at the limit and beyond it; rectangles, strips and oblong cells.
+    #[test]
+    fn pictures_have_the_shares_of_their_fields() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("a.png");
+        for (cells, size, whole) in [
+            ([64, 48], [4.0, 3.0], true),
+            ([512, 256], [2.0, 1.0], true),
+            ([1040, 130], [8.0, 1.0], true),
+            ([1100, 1100], [1.0, 1.0], false),
+            ([2049, 683], [3.0, 1.0], false),
+            ([300, 200], [1.0, 1.0], false),
+            ([450, 1200], [1.0, 1.0], false),
+            ([4000, 40], [100.0, 1.0], false),
+        ] {
+            let field = pressed(cells, size, 7);
+            let count = field.values().len() as f64;
+            let tolerance = if whole { ROUNDING } else { REDUCTION };
+            let near = |found: f64, expected: f64, what: &str| {
+                let off = (found - expected).abs();
+                println!("{cells:?} {what}: {expected:.5} in the field, off by {off:.1e}");
+                assert!(off <= tolerance, "{cells:?} {what}: {found} for {expected}");
+            };
+            let (low, high) = FieldPicture::ends(field.values());
+            let drawn = picture(&field, true);
+            assert_eq!(drawn.scale().ends(), (0.0, high), "{low}");
+            drawn.save(&path).unwrap();
+            let (pixels, map) = read_map(&path, &field);
+            let share =
+                |color: [u8; 3]| map.iter().filter(|p| **p == color).count() as f64 / map.len() as f64;
+            let of = |test: &dyn Fn(f64) -> bool| {
+                field.values().iter().filter(|v| test(**v)).count() as f64 / count
+            };
+            near(share([255; 3]), of(&|v| v == 0.0), "open");
+            near(share(crate::colours::UNDEFINED), of(&f64::is_nan), "undefined");
+            // The largest pressure has its colour.
+            assert!(share(crate::viridis()[255]) > 0.0);
+            // Mean colour, by channel, and with it the mean pressure.
+            let scale = drawn.scale();
+            let sum = |sum: [f64; 3], c: [u8; 3]| [0, 1, 2].map(|i| sum[i] + f64::from(c[i]) / 255.0);
+            let of_cells = field.values().iter().map(|v| scale.colour(*v)).fold([0.0; 3], sum);
+            let of_pixels = map.iter().copied().fold([0.0; 3], sum);
+            for (found, expected) in of_pixels.into_iter().zip(of_cells) {
+                near(found / map.len() as f64, expected / count, "colour");
+            }
+            let reduced = Pixels::new(field.cells(), pixels, field.values());
+            let shown =
+                (0..map.len()).map(|i| field.values()[reduced.cell(i % pixels.columns, i / pixels.columns)]);
+            let mean = shown.filter(|v| v.is_finite()).sum::<f64>() / map.len() as f64;
+            let expected = field.values().iter().filter(|v| v.is_finite()).sum::<f64>() / count;
+            near(mean / high, expected / high, "pressure");
+            // Classes of a contact, of which the harder pressed half sticks.
+            let class = |v: &f64| {
+                if *v > 0.4 {
+                    1.0
+                } else if *v > 0.0 {
+                    2.0
+                } else {
+                    0.0
+                }
+            };
+            let classes = Field::new(cells, size, field.values().iter().map(class).collect()).unwrap();
+            let drawn = FieldPicture { classes: &["open", "stick", "slip"], ..picture(&classes, true) };
+            drawn.save(&path).unwrap();
+            let (_, map) = read_map(&path, &classes);
+            for value in [0.0, 1.0, 2.0] {
+                let found = map.iter().filter(|p| **p == drawn.scale().colour(value)).count();
+                let expected = classes.values().iter().filter(|v| **v == value).count();
+                near(found as f64 / map.len() as f64, expected as f64 / count, "class");
+            }
+            // A gap, in which the contact is outlined: the line lies outside of it.
+            let gap: Vec<f64> = field.values().iter().map(|v| if *v > 0.0 { 0.0 } else { 1.0 }).collect();
+            let contact: Vec<bool> = field.values().iter().map(|v| *v > 0.0).collect();
+            let gap = Field::new(cells, size, gap).unwrap();
+            let drawn = FieldPicture { contact: &contact, ..picture(&gap, false) };
+            drawn.save(&path).unwrap();
+            let (_, map) = read_map(&path, &gap);
+            let inside = map.iter().filter(|p| **p == drawn.scale().colour(0.0)).count();
+            near(inside as f64 / map.len() as f64, of(&|v| v > 0.0), "outlined");
+        }
     }
 
     #[test]
@@ -343,11 +436,8 @@ mod tests {
         // A row of 2 x 1 at the bottom carries pressure at the right, the row above at the left; one point is
         // undefined.
         let field = Field::new([3, 2], [3.0, 2.0], vec![0.0, f64::NAN, 1.0, 2.0, 0.0, 0.0]).unwrap();
-        let found = colors(
-            &field,
-            Shown::Largest,
-            &[(0.15, 0.25), (0.5, 0.25), (0.85, 0.25), (0.15, 0.75), (0.5, 0.75)],
-        );
+        let found =
+            colors(&field, true, &[(0.15, 0.25), (0.5, 0.25), (0.85, 0.25), (0.15, 0.75), (0.5, 0.75)]);
         let viridis = |t| colorous::VIRIDIS.eval_continuous(t).into_array();
         assert_eq!(found, [[255; 3], crate::colours::UNDEFINED, viridis(0.5), viridis(1.0), [255; 3]]);
         // One of a million cells.
@@ -355,7 +445,7 @@ mod tests {
         values[1000 * 2000 + 500] = 1.0;
         let large = Field::new(2000, 1.0, values).unwrap();
         let (x, y) = ((500.0 + 0.5) / 2000.0, (1000.0 + 0.5) / 2000.0);
-        assert_eq!(colors(&large, Shown::Largest, &[(x, y), (0.3, 0.3)]), [viridis(1.0), [255; 3]]);
+        assert_eq!(colors(&large, true, &[(x, y), (0.3, 0.3)]), [viridis(1.0), [255; 3]]);
     }
 
     #[test]
@@ -364,10 +454,9 @@ mod tests {
         let values: Vec<f64> = (0..25).map(|i| if i == 12 { 0.0 } else { 1.0 }).collect();
         let field = Field::new([5, 5], [5.0, 5.0], values.clone()).unwrap();
         let touching: Vec<bool> = values.iter().map(|v| *v == 0.0).collect();
-        let picture =
-            FieldPicture { contact: &touching, range: Some((0.0, 2.0)), ..picture(&field, Shown::Smallest) };
+        let picture = FieldPicture { contact: &touching, range: Some((0.0, 2.0)), ..picture(&field, false) };
         let viridis = |t| colorous::VIRIDIS.eval_continuous(t / 2.0).into_array();
-        let image = picture.image(50, 50, viridis);
+        let image = picture.image([50, 50].into(), viridis);
         let count = |color| image.iter().filter(|pixel| **pixel == color).count();
         // The contact has 10 x 10 pixels, with its outline 14 x 14.
         let [line, edge] = OUTLINE;
@@ -379,8 +468,8 @@ mod tests {
         values[5050] = 0.0;
         let field = Field::new(100, 1.0, values.clone()).unwrap();
         let touching: Vec<bool> = values.iter().map(|v| *v == 0.0).collect();
-        let picture = FieldPicture { contact: &touching, ..self::picture(&field, Shown::Smallest) };
-        let image = picture.image(10, 10, viridis);
+        let picture = FieldPicture { contact: &touching, ..self::picture(&field, false) };
+        let image = picture.image([10, 10].into(), viridis);
         let count = |color| image.iter().filter(|pixel| **pixel == color).count();
         assert_eq!(OUTLINE.map(count), [8, 16]);
     }
@@ -418,13 +507,15 @@ mod tests {
             let values = [x.hypot(y)];
             let field = Field::new(1, 1.0, values.to_vec()).unwrap();
             let (x, y) = ([x], [y]);
-            let picture = FieldPicture { arrows: Some([&x, &y]), ..picture(&field, Shown::Largest) };
-            let mut drawing = Drawing::new(LEFT + SIDE + RIGHT, TOP + SIDE + BELOW);
-            picture.draw_arrows(&mut drawing, [LEFT, TOP, SIDE, SIDE]);
+            let picture = FieldPicture { arrows: Some([&x, &y]), ..picture(&field, true) };
+            let side = PIXEL * SIDE as f64;
+            let mut drawing = Drawing::new(LEFT + side + RIGHT, TOP + side + BELOW);
+            picture.draw_arrows(&mut drawing, [LEFT, TOP, side, side]);
             drawing.svg(&Fonts::load().unwrap(), Path::new("a picture")).unwrap()
         };
-        let middle = (LEFT + 0.5 * SIDE, TOP + 0.5 * SIDE);
-        let half = 0.5 * ARROW * SIDE;
+        let side = PIXEL * SIDE as f64;
+        let middle = (LEFT + 0.5 * side, TOP + 0.5 * side);
+        let half = 0.5 * ARROW * side;
         let shaft = |dx: f64, dy: f64| {
             let ends = [-half, half].map(|along| (middle.0 + along * dx, middle.1 - along * dy));
             format!("d=\"M{} {}L{} {}", ends[0].0, ends[0].1, ends[1].0, ends[1].1)
@@ -438,7 +529,7 @@ mod tests {
         let classes = &["open", "stick", "slip"][..];
         let dir = tempfile::tempdir().unwrap();
         let path = dir.path().join("c.png");
-        let picture = FieldPicture { classes, ..picture(&field, Shown::Largest) };
+        let picture = FieldPicture { classes, ..picture(&field, true) };
         picture.save(&path).unwrap();
         let short = FieldPicture { arrows: Some([&[0.0; 3], &[0.0; 2]]), ..picture };
         assert!(short.save(&path).is_err());
@@ -447,11 +538,23 @@ mod tests {
     #[test]
     fn constant_and_oblong_fields_are_drawn() {
         let flat = Field::new([2, 2], [1.0, 1.0], vec![3.0; 4]).unwrap();
-        assert_ne!(colors(&flat, Shown::Middle, &[(0.5, 0.5)])[0], [255; 3]);
+        assert_ne!(colors(&flat, false, &[(0.5, 0.5)])[0], [255; 3]);
         let zero = Field::new([2, 2], [1.0, 1.0], vec![0.0; 4]).unwrap();
-        assert_eq!(colors(&zero, Shown::Largest, &[(0.5, 0.5)])[0], [255; 3]);
+        assert_eq!(colors(&zero, true, &[(0.5, 0.5)])[0], [255; 3]);
         let dir = tempfile::tempdir().unwrap();
         let long = Field::new([100, 1], [100.0, 1.0], (0..100).map(f64::from).collect()).unwrap();
-        picture(&long, Shown::Smallest).save(&dir.path().join("g.png")).unwrap();
+        picture(&long, false).save(&dir.path().join("g.png")).unwrap();
+        // The largest and the smallest numbers, as sides and as values.
+        for side in [1.7e308, 1e-300, 1e-307, 1e-318] {
+            let values: Vec<f64> = (0..12).map(|i| f64::from(i) / 12.0 * side).collect();
+            for (cells, sides) in [([4, 3], [side, 0.75 * side]), ([3, 4], [side, side])] {
+                let field = Field::new(cells, sides, values.clone()).unwrap();
+                let path = dir.path().join("h.png");
+                picture(&field, false).save(&path).unwrap();
+                let (_, map) = read_map(&path, &field);
+                assert_eq!([map[0], map[map.len() - 1]], [0, 255].map(|i| crate::viridis()[i]), "{side:e}");
+                crate::write_grey(&path, cells, sides, field.values()).unwrap();
+            }
+        }
     }
 }

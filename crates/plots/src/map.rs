@@ -1,5 +1,6 @@
 //! Maps as grey-scale PNG.
 
+use crate::pixels::Pixels;
 use contact_model::{Cells, Size};
 use files::{Error, Result};
 use std::path::Path;
@@ -11,7 +12,8 @@ const MOST_PIXELS: f64 = 4096.0;
 /// PNG, y upwards: the lowest value is white, the highest black, undefined points (NaN) are transparent.
 ///
 /// The picture has the aspect ratio of the rectangle. A pixel is a square of the shorter side of a cell, or
-/// larger where the picture would have more than 4096 of them along a side.
+/// larger where cells are oblong and the picture would have more than 4096 of them along a side. A pixel on
+/// several cells shows one of them, so chosen that shares of areas, the mean and the extrema are kept.
 ///
 /// # Errors
 /// [`Error::Content`] for another number of values than cells, no cells or a size that is not positive,
@@ -30,10 +32,10 @@ pub fn write_grey(path: &Path, cells: impl Into<Cells>, size: impl Into<Size>, v
     let [width, height] = pixels(cells, size);
     let transparent = values.iter().any(|v| !v.is_finite());
     let mut bytes = Vec::with_capacity(width * height * if transparent { 2 } else { 1 });
+    let picture = Pixels::new(cells, Cells { columns: width, rows: height }, values);
     for y in (0..height).rev() {
-        let row = &values[y * rows / height * columns..][..columns];
         for x in 0..width {
-            let value = row[x * columns / width];
+            let value = values[picture.cell(x, y)];
             let defined = value.is_finite();
             bytes.push(if defined { shade(value, low, high) } else { 255 });
             if transparent {

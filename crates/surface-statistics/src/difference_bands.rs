@@ -4,7 +4,7 @@ use crate::chi_square::factors;
 use crate::derivatives::ScaleDependence;
 use crate::difference::HeightDifference;
 use crate::taper::Taper;
-use contact_model::{Boundary, HeightMap, Result, Size};
+use contact_model::{Boundary, Error, HeightMap, Result, Size};
 use std::f64::consts::{PI, TAU};
 use surface_gen::periodogram;
 
@@ -56,12 +56,18 @@ impl DifferenceBands {
     /// Computes the spectrum of a map. Cost O(N log N), memory about three times that of the map.
     ///
     /// # Errors
-    /// [`contact_model::Error::Domain`] for undefined points.
+    /// [`contact_model::Error::Domain`] for undefined points, and for sides so short that wavenumbers are no
+    /// finite numbers.
     pub fn new(map: &HeightMap, boundary: Boundary) -> Result<Self> {
         let free = boundary == Boundary::Free;
         let tapered = if free && map.undefined() == 0 { Some(Taper::Hann.over(map)?) } else { None };
         let (size, cells) = (map.size(), map.cells());
         let fundamental = TAU / size.x.max(size.y);
+        let shortest = (size.x / cells.columns as f64).min(size.y / cells.rows as f64);
+        if !(RINGS * TAU / shortest).is_finite() {
+            let expected = "longer, so that wavenumbers are finite (choose other units)";
+            return Err(Error::domain("side of a cell", shortest, expected));
+        }
         let mut waves: [Vec<Waves>; 3] = std::array::from_fn(|_| Vec::new());
         periodogram(tapered.as_ref().unwrap_or(map), |wave| {
             let [mx, my] = wave.index;

@@ -167,7 +167,6 @@ class HeightMap:
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
     def __reduce__(self) -> tuple[Any, ...]: ...
-    def _sampled(self, step: int) -> NDArray[np.float64]: ...
     def _repr_html_(self) -> str: ...
 
 @final
@@ -845,9 +844,10 @@ def ensemble(
     `progress` is called with the number of surfaces that are done and that of all.
     """
 
-def picture(values: NDArray[np.float64], low: float, high: float) -> bytes:
-    """A PNG with a pixel for each value, the last row on top: viridis from `low` to `high`, values that are not
-    finite grey.
+def picture(values: NDArray[np.float64], low: float, high: float) -> tuple[bytes, str]:
+    """A PNG, the last row on top: viridis from `low` to `high`, values that are not finite grey. Up to 512 values
+    along a side have a pixel each; of more, a pixel shows one of those that lie on it, so chosen that shares
+    of areas, means and extrema are kept, and the text says so.
     """
 
 def threads() -> int:

@@ -12,14 +12,19 @@ from numpy.typing import NDArray
 from . import _core
 from ._core import ContactState, HeightMap
 
-# Most values along a side of a picture, and its sides on the screen.
-MOST, WIDE, HIGH = 256, 320, 400
+# Largest sides of a picture on the screen.
+WIDE, HIGH = 320, 400
 
 
-def _image(values: NDArray[np.float64], low: float, high: float, size: tuple[float, float], alt: str) -> str:
-    png = base64.b64encode(_core.picture(values, low, high)).decode("ascii")
+def _image(
+    values: NDArray[np.float64], low: float, high: float, size: tuple[float, float], alt: str
+) -> tuple[str, str]:
+    """The picture, and what it says of itself where it has fewer pixels than values."""
+    png, reduction = _core.picture(values, low, high)
+    data = base64.b64encode(png).decode("ascii")
     style = f"width:{size[0]:.0f}px;height:{size[1]:.0f}px;image-rendering:pixelated;display:block"
-    return f'<img alt="{html.escape(alt)}" style="{style}" src="data:image/png;base64,{png}">'
+    image = f'<img alt="{html.escape(alt)}" style="{style}" src="data:image/png;base64,{data}">'
+    return image, reduction
 
 
 def picture(values: NDArray[np.float64], size: tuple[float, float], title: str) -> str:
@@ -29,29 +34,27 @@ def picture(values: NDArray[np.float64], size: tuple[float, float], title: str) 
     across, up = size
     scale = min(WIDE / across, HIGH / up)
     wide, high_ = max(across * scale, 1.0), max(up * scale, 1.0)
-    map_ = _image(values, low, high, (wide, high_), f"{title}, the first row at the bottom")
-    bar = _image(np.linspace(low, high, 256)[:, None], low, high, (12, high_), "colour bar")
-    small = "font-size:85%"
+    map_, reduction = _image(values, low, high, (wide, high_), f"{title}, the first row at the bottom")
+    bar, _ = _image(np.linspace(low, high, 256)[:, None], low, high, (12, high_), "colour bar")
+    small, sides = "font-size:85%", f"{across:.4g} x {up:.4g}"
+    said = f"{sides}. {reduction}" if reduction else sides
     return (
         f'<figure style="display:inline-block;margin:0 1.5em 0.5em 0;vertical-align:top">'
         f"<figcaption>{html.escape(title)}</figcaption>"
         f'<div style="display:flex;gap:6px">{map_}{bar}'
         f'<div style="display:flex;flex-direction:column;justify-content:space-between;{small}">'
         f"<span>{high:.4g}</span><span>{low:.4g}</span></div></div>"
-        f'<div style="{small}">{across:.4g} x {up:.4g}</div></figure>'
+        f'<div style="{small}">{said}</div></figure>'
     )
 
 
 def height_map(map_: HeightMap) -> str:
     """A map: what it is, and its picture."""
-    step = -(-max(map_.shape) // MOST)
-    return f"<div>{html.escape(repr(map_))}</div>{picture(map_._sampled(step), map_.size, 'height')}"
+    return f"<div>{html.escape(repr(map_))}</div>{picture(map_.heights, map_.size, 'height')}"
 
 
 def _field(values: NDArray[np.float64]) -> NDArray[np.float64]:
-    step = -(-max(values.shape[-2:]) // MOST)
-    sampled = values[..., ::step, ::step]
-    return np.asarray(sampled if sampled.ndim == 2 else np.hypot(*sampled), dtype=np.float64, order="C")
+    return np.asarray(values if values.ndim == 2 else np.hypot(*values), dtype=np.float64, order="C")
 
 
 def _shown(value: Any) -> str:

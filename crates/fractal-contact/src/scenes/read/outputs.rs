@@ -1,7 +1,7 @@
 //! `[outputs]`: only requested outputs are computed and stored.
 
 use crate::scenes::read::{Distributed, Entries, Entry, Read, System};
-use contact_model::{Conductance, FIELDS, FieldQuantity, Output, Outputs, Shown};
+use contact_model::{Conductance, FIELDS, FieldQuantity, Output, Outputs};
 use surface_io::Dimension;
 
 /// A file format of a field.
@@ -37,7 +37,7 @@ pub(crate) static HEIGHTS: FieldQuantity = FieldQuantity {
     unit: "m",
     meaning: "heights as they are solved: after crop, fill and detrend, or as drawn",
     components: 1,
-    shown: Shown::Middle,
+    white_zero: false,
     signed: false,
     classes: &[],
     outlined: false,

@@ -163,7 +163,7 @@ pub(crate) fn picture<'a>(
     cells: Cells,
     values: &'a [f64],
 ) -> FieldPicture<'a> {
-    let &FieldQuantity { name, words, symbol, unit, components, shown, signed, classes, .. } = field;
+    let &FieldQuantity { name, words, symbol, unit, components, white_zero, signed, classes, .. } = field;
     let load = match state {
         Some(state) if name != HEIGHTS.name => state.words(scene),
         _ => "as solved".to_owned(),
@@ -187,7 +187,7 @@ pub(crate) fn picture<'a>(
         cells,
         size,
         values,
-        shown,
+        white_zero,
         signed,
         range: None,
         contact: &[],

@@ -1,110 +1,102 @@
-//! The part of a field that a report shows: at most 256 x 256 values, each that of one cell.
+//! The part of a field that a report shows: at most 512 x 512 values, each that of one cell.
 
-use contact_model::{Cells, Shown};
+use contact_model::Cells;
 
-/// Largest number of values along a side.
-const MOST: usize = 256;
-const MAGIC: [u8; 4] = *b"view";
+/// Largest number of values along a side: about the pixels of a map on a page. A curve over x has more room.
+const MOST: usize = 512;
+const MOST_ALONG_A_ROW: usize = 8192;
+const MAGIC: [u8; 4] = *b"map2";
+/// Magnitudes that single precision holds with all its digits.
+const SINGLE: [f64; 2] = [1e-30, 1e30];
 
-/// Which cell of a block is shown, in words.
-pub(crate) fn shown_words(shown: Shown) -> &'static str {
-    match shown {
-        Shown::Middle => "the cell in the middle",
-        Shown::Largest => "the largest value",
-        Shown::Smallest => "the smallest value",
-    }
-}
-
-/// Blocks of cells, each with the value of one of them.
+/// Cells of a field: all of them, or those that keep shares, means and extrema ([`plots::shown_cells`]).
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct FieldView {
     /// Cells of the field.
     pub cells: Cells,
-    /// Cells along a side of a block; 1 shows every cell.
-    pub block: usize,
-    pub columns: usize,
-    pub rows: usize,
+    /// Columns and rows that are shown.
+    pub shown: Cells,
+    /// The smallest and the largest value of the field; `None` where none is defined.
+    pub ends: Option<(f64, f64)>,
+    /// What the values are multiplied with: 1, unless single precision cannot hold them.
+    pub factor: f64,
     /// Row-major; NaN where points are undefined.
     pub values: Vec<f32>,
-    /// The cell of its block from which each value comes: row * block + column within the block.
-    pub places: Vec<u16>,
+    /// The cell of each value: its column and its row, counted from the first cell on its pixel. Empty where
+    /// every cell is shown.
+    pub places: Vec<[u8; 2]>,
 }
 
 impl FieldView {
-    /// From the values of a field, row-major, NaN where undefined.
-    pub fn new(shown: Shown, cells: Cells, values: &[f64]) -> Self {
-        let Cells { columns, rows } = cells;
-        let block = columns.max(rows).div_ceil(MOST).max(1);
-        let (across, down) = (columns.div_ceil(block), rows.div_ceil(block));
-        let mut view =
-            Self { cells, block, columns: across, rows: down, values: Vec::new(), places: Vec::new() };
-        for i in 0..across * down {
-            let (x, y) = ((i % across) * block, (i / across) * block);
-            let (w, h) = (block.min(columns - x), block.min(rows - y));
-            let at = |place: usize| values[(y + place / block) * columns + x + place % block];
-            let inside = || (0..h).flat_map(|j| (0..w).map(move |i| j * block + i));
-            let defined = || inside().filter(|place| at(*place).is_finite());
-            let place = match shown {
-                Shown::Middle => Some((h / 2) * block + w / 2),
-                Shown::Largest => defined().max_by(|a, b| at(*a).total_cmp(&at(*b))),
-                Shown::Smallest => defined().min_by(|a, b| at(*a).total_cmp(&at(*b))),
-            };
-            view.values.push(place.map_or(f32::NAN, |place| at(place) as f32));
-            view.places.push(place.unwrap_or(0) as u16);
-        }
-        view
+    /// From the values of a field, row-major, not finite where undefined.
+    pub fn new(cells: Cells, values: &[f64]) -> Self {
+        let most = if cells.rows == 1 { MOST_ALONG_A_ROW } else { MOST };
+        let (shown, of) = plots::shown_cells(cells, most, values);
+        let (low, high) = plots::FieldPicture::ends(values);
+        let largest = low.abs().max(high.abs());
+        let held = (SINGLE[0]..=SINGLE[1]).contains(&largest) || !(low <= high && largest > 0.0);
+        let factor = if held { 1.0 } else { largest };
+        let value =
+            |cell: &usize| if values[*cell].is_finite() { (values[*cell] / factor) as f32 } else { f32::NAN };
+        let place = |(i, cell): (usize, &usize)| {
+            let at = [i % shown.columns, i / shown.columns];
+            let first = [at[0] * cells.columns / shown.columns, at[1] * cells.rows / shown.rows];
+            [cell % cells.columns - first[0], cell / cells.columns - first[1]].map(|offset| offset as u8)
+        };
+        let places = if shown == cells { Vec::new() } else { of.iter().enumerate().map(place).collect() };
+        let values = of.iter().map(value).collect();
+        Self { cells, shown, ends: (low <= high).then_some((low, high)), factor, values, places }
     }
 
-    /// The smallest and the largest value; `None` where none is defined.
-    pub fn ends(&self) -> Option<[f32; 2]> {
-        let finite = || self.values.iter().copied().filter(|v| v.is_finite());
-        Some([finite().reduce(f32::min)?, finite().reduce(f32::max)?])
+    /// What a picture of it says of itself, where it has less values than cells.
+    pub fn reduction(&self) -> Option<String> {
+        plots::reduction(self.cells, self.shown)
     }
 
     /// The values of the first row over the middles of their cells.
     pub fn row(&self, length: f64) -> Vec<(f64, f64)> {
-        let step = length / self.cells.columns as f64;
-        let shown = self.values.iter().zip(&self.places).take(self.columns).enumerate();
-        shown
-            .map(|(i, (&value, &place))| {
-                let column = i * self.block + usize::from(place) % self.block;
-                ((column as f64 + 0.5) * step, f64::from(value))
-            })
-            .collect()
+        let middle = |i: usize| {
+            let first = i * self.cells.columns / self.shown.columns;
+            let column = first + self.places.get(i).map_or(0, |place| usize::from(place[0]));
+            (column as f64 + 0.5) / self.cells.columns as f64 * length
+        };
+        let values = self.values.iter().take(self.shown.columns).enumerate();
+        values.map(|(i, &value)| (middle(i), f64::from(value) * self.factor)).collect()
     }
 
     /// As bytes, little-endian.
     pub fn encode(&self) -> Vec<u8> {
-        let head = [self.cells.columns, self.cells.rows, self.block].map(|n| (n as u64).to_le_bytes());
-        let mut bytes = [&MAGIC[..], head.as_flattened()].concat();
+        let head = [self.cells, self.shown].map(|Cells { columns, rows }| [columns, rows].map(|n| n as u64));
+        let (low, high) = self.ends.unwrap_or((f64::NAN, f64::NAN));
+        let mut bytes = MAGIC.to_vec();
+        bytes.extend(head.as_flattened().iter().flat_map(|n| n.to_le_bytes()));
+        bytes.extend([low, high, self.factor].iter().flat_map(|v| v.to_le_bytes()));
         bytes.extend(self.values.iter().flat_map(|v| v.to_le_bytes()));
-        bytes.extend(self.places.iter().flat_map(|v| v.to_le_bytes()));
+        bytes.extend_from_slice(self.places.as_flattened());
         bytes
     }
 
     /// From bytes; `None` where they are none of [`FieldView::encode`].
     pub fn decode(bytes: &[u8]) -> Option<Self> {
-        let (head, rest) = bytes.strip_prefix(&MAGIC)?.split_at_checked(24)?;
+        let (head, rest) = bytes.strip_prefix(&MAGIC)?.split_at_checked(56)?;
+        let words = head.as_chunks().0;
         let number = |i: usize| {
-            let bytes = head.get(8 * i..8 * i + 8)?.try_into().ok()?;
-            usize::try_from(u64::from_le_bytes(bytes)).ok().filter(|n| (1..1 << 24).contains(n))
+            usize::try_from(u64::from_le_bytes(words[i])).ok().filter(|n| (1..1 << 24).contains(n))
         };
-        let (columns, rows, block) = (number(0)?, number(1)?, number(2)?);
-        let (across, down) = (columns.div_ceil(block), rows.div_ceil(block));
-        let count = across * down;
-        if rest.len() != 6 * count || block > MOST {
+        let cells = Cells { columns: number(0)?, rows: number(1)? };
+        let shown = Cells { columns: number(2)?, rows: number(3)? };
+        let [low, high, factor] = [4, 5, 6].map(|i| f64::from_le_bytes(words[i]));
+        let count =
+            shown.checked_count().filter(|_| shown.columns <= cells.columns && shown.rows <= cells.rows)?;
+        let (values, places) = rest.split_at_checked(count.checked_mul(4)?)?;
+        let places = places.as_chunks().0;
+        let expected = if shown == cells { 0 } else { count };
+        if places.len() != expected || rest.len() != 4 * count + 2 * expected {
             return None;
         }
-        let (values, places) = rest.split_at(4 * count);
-        let (values, places) = (values.as_chunks().0, places.as_chunks().0);
-        Some(Self {
-            cells: Cells { columns, rows },
-            block,
-            columns: across,
-            rows: down,
-            values: values.iter().map(|v| f32::from_le_bytes(*v)).collect(),
-            places: places.iter().map(|v| u16::from_le_bytes(*v)).collect(),
-        })
+        let values = values.as_chunks().0.iter().map(|v| f32::from_le_bytes(*v)).collect();
+        let ends = (low <= high).then_some((low, high));
+        Some(Self { cells, shown, ends, factor, values, places: places.to_vec() })
     }
 }
 
@@ -114,25 +106,41 @@ mod tests {
 
     #[test]
     fn every_value_is_that_of_its_cell() {
-        let cells = Cells { columns: 700, rows: 301 };
-        let mut values: Vec<f64> = (0..700 * 301).map(|i| f64::from(i * 7919 % 1000)).collect();
+        let cells = Cells { columns: 1400, rows: 601 };
+        let mut values: Vec<f64> = (0..1400 * 601).map(|i| f64::from(i * 7919 % 1000)).collect();
         values[5] = f64::NAN;
-        for shown in [Shown::Largest, Shown::Smallest, Shown::Middle] {
-            let view = FieldView::new(shown, cells, &values);
-            assert_eq!((view.block, view.columns, view.rows), (3, 234, 101));
-            for (i, (&v, &place)) in view.values.iter().zip(&view.places).enumerate() {
-                let (x, y) = ((i % 234) * 3 + usize::from(place) % 3, (i / 234) * 3 + usize::from(place) / 3);
-                let value = values[y * 700 + x] as f32;
-                assert!(value.to_bits() == v.to_bits(), "{shown:?}: {x}, {y}");
-            }
-            let bytes = view.encode();
-            let read = FieldView::decode(&bytes).unwrap();
-            assert_eq!((read.places, read.values.len()), (view.places, view.values.len()));
-            for end in [0, 3, 10, 28, bytes.len() - 1] {
-                assert!(FieldView::decode(&bytes[..end]).is_none());
-            }
+        let view = FieldView::new(cells, &values);
+        assert_eq!((view.shown, view.ends), (Cells { columns: 512, rows: 220 }, Some((0.0, 999.0))));
+        for (i, (&v, place)) in view.values.iter().zip(&view.places).enumerate() {
+            let [x, y] = place.map(usize::from);
+            let (x, y) = (i % 512 * 1400 / 512 + x, i / 512 * 601 / 220 + y);
+            let value = values[y * 1400 + x] as f32;
+            assert!(value.to_bits() == v.to_bits(), "{x}, {y}");
         }
-        let small = FieldView::new(Shown::Smallest, [2, 1].into(), &[f64::NAN, 1.0]);
-        assert_eq!((small.block, small.places.as_slice(), small.ends()), (1, &[0, 0][..], Some([1.0, 1.0])));
+        let shown =
+            |of: &dyn Fn(f64) -> f64| view.values.iter().map(|v| of(f64::from(*v))).sum::<f64>() / 112_640.0;
+        let mean = shown(&|v| if v.is_finite() { v } else { 0.0 });
+        assert!((mean - 499.5).abs() < 1.0, "{mean}");
+        let bytes = view.encode();
+        let read = FieldView::decode(&bytes).unwrap();
+        assert_eq!((read.places, read.ends, read.values.len()), (view.places.clone(), view.ends, 112_640));
+        for end in [0, 3, 10, 28, 60, bytes.len() - 1] {
+            assert!(FieldView::decode(&bytes[..end]).is_none());
+        }
+        let small = FieldView::new([2, 1].into(), &[f64::NAN, 1.0]);
+        assert_eq!((small.shown, small.places.len(), small.ends), (small.cells, 0, Some((1.0, 1.0))));
+        assert_eq!(FieldView::decode(&small.encode()).unwrap().row(4.0)[1], (3.0, 1.0));
+    }
+
+    #[test]
+    fn numbers_beyond_single_precision_are_shown() {
+        for scale in [1e-310, 1.0, 1.7e308] {
+            let view = FieldView::new([3, 1].into(), &[0.0, -0.5 * scale, scale]);
+            let values: Vec<f64> = view.row(3.0).iter().map(|(_, v)| v / scale).collect();
+            assert!((values[1] + 0.5).abs() < 1e-6 && (values[2] - 1.0).abs() < 1e-6, "{values:?}");
+        }
+        let nothing = FieldView::new([2, 2].into(), &[f64::NAN; 4]);
+        assert_eq!((nothing.ends, nothing.factor), (None, 1.0));
+        assert_eq!(FieldView::new([2, 2].into(), &[0.0; 4]).ends, Some((0.0, 0.0)));
     }
 }

@@ -10,7 +10,7 @@ pub(crate) mod solve;
 pub(crate) mod state_result;
 pub(crate) mod warnings;
 
-pub(crate) use field_view::{FieldView, shown_words};
+pub(crate) use field_view::FieldView;
 pub(crate) use outcome::{Options, SceneOutcome};
 pub(crate) use path_keeper::Keeper;
 pub(crate) use pilot::{SharedStop, remove_trials, take_trial};

@@ -229,7 +229,7 @@ impl ModelOnSurface {
             }
             // Only the first surface is shown, and only fields that are written to files.
             if drawn && surface == 0 && !formats.is_empty() {
-                let view = FieldView::new(quantity.shown, field.cells(), &shown);
+                let view = FieldView::new(field.cells(), &shown);
                 kept.files.push(field_pictures::keep_view(out, file(""), &view)?);
             }
             for &format in formats {

@@ -1,7 +1,7 @@
 //! A page of HTML that needs no network and no other file: its frame, charts, fields and statistics.
 
 use crate::scenes::read::{Result, multiple, short};
-use crate::scenes::run::{FieldView, shown_words};
+use crate::scenes::run::FieldView;
 use crate::scenes::tell::MapStatisticsTables;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
@@ -115,24 +115,26 @@ fn ticks(length: f64, most: f64) -> Vec<f64> {
 /// # Errors
 /// A picture that cannot be encoded.
 pub(crate) fn field(picture: &FieldPicture<'_>, view: &FieldView) -> Result<Markup> {
-    let [least, most] = view.ends().unwrap_or_default().map(f64::from);
+    let (least, most) = view.ends.unwrap_or_default();
     let own = FieldPicture { range: Some(picture.range.unwrap_or((least, most))), ..picture.clone() };
     let scale = own.scale();
     let (low, high) = scale.ends();
-    let png = scale.encode(view.columns, &view.values)?;
+    let values: Vec<f64> = view.values.iter().map(|v| f64::from(*v) * view.factor).collect();
+    let png = scale.encode(view.shown.columns, &values)?;
     let size = picture.size;
     let (length, per_length) = multiple(picture.length_unit, size.x.max(size.y));
     let (unit_name, per_unit) = multiple(picture.unit, high.abs().max(low.abs()));
     let with = |text: String| html! { (text) " " (unit(&unit_name)) };
     let end = |v: f64| with(short(per_unit * v));
     let words = picture.quantity.split('$').next().unwrap_or_default().trim().trim_end_matches(", magnitude");
-    let shown = shown_words(picture.shown);
+    let reduction = view.reduction();
     let data = serde_json::json!({
-        "across": view.columns, "down": view.rows, "block": view.block, "picked": shown,
-        "dx": size.x / view.cells.columns as f64, "dy": size.y / view.cells.rows as f64,
-        "low": low, "high": high, "zero": scale.zero_is_white(), "palette": scale.palette() as usize,
-        "quantity": words, "unit": unit_name, "per": per_unit, "classes": picture.classes,
-        "length": length, "scale": per_length,
+        "across": view.shown.columns, "down": view.shown.rows,
+        "columns": view.cells.columns, "rows": view.cells.rows,
+        "sides": [size.x * per_length, size.y * per_length], "length": length,
+        "low": low / view.factor, "high": high / view.factor, "zero": scale.white_zero(),
+        "palette": scale.palette() as usize, "quantity": words, "unit": unit_name,
+        "per": per_unit * view.factor, "classes": picture.classes,
     });
     let plain = |v: f64| format!("{} {unit_name}", short(per_unit * v)).trim_end().to_owned();
     let of_cells = format!("{} columns and {} rows", view.cells.columns, view.cells.rows);
@@ -151,9 +153,9 @@ pub(crate) fn field(picture: &FieldPicture<'_>, view: &FieldView) -> Result<Mark
         format!("background:rgb({r},{g},{b})")
     };
     let axis = |side: f64, edge: &str| {
-        let most = (TICKS[0] * side / size.x.max(size.y)).max(TICKS[1]);
+        let most = (TICKS[0] * (side / size.x.max(size.y))).max(TICKS[1]);
         let side = side * per_length;
-        html! { @for tick in ticks(side, most) { span style=(format!("{edge}:{:.3}%", 100.0 * tick / side)) { (number(contact_model::units::rounded(tick, 12))) } } }
+        html! { @for tick in ticks(side, most) { span style=(format!("{edge}:{:.3}%", 100.0 * (tick / side))) { (number(contact_model::units::rounded(tick, 12))) } } }
     };
     let name = |axis: &str| html! { i { (axis) } @if !length.is_empty() { " (" (length) ")" } };
     Ok(html! {
@@ -177,14 +179,14 @@ pub(crate) fn field(picture: &FieldPicture<'_>, view: &FieldView) -> Result<Mark
             }
             figcaption {
                 strong { (picture.title) } ", " (picture.subtitle)
-                @if view.block > 1 { "; each pixel is " (shown) " of " (view.block) " x " (view.block) " cells" }
+                @if let Some(reduction) = reduction { ". " (reduction) }
             }
             output aria-live="polite" {}
             script.values type="application/octet-stream" {
                 (PreEscaped(STANDARD.encode(view.values.iter().flat_map(|v| v.to_le_bytes()).collect::<Vec<u8>>())))
             }
             script.places type="application/octet-stream" {
-                (PreEscaped(STANDARD.encode(view.places.iter().flat_map(|v| v.to_le_bytes()).collect::<Vec<u8>>())))
+                (PreEscaped(STANDARD.encode(view.places.as_flattened())))
             }
         }
     })

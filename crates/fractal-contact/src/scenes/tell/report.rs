@@ -13,8 +13,8 @@ use runs::amounts::{memory, time};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// Bytes that the fields of a page may take: it stays below 5 MB.
-const MOST_BYTES: usize = 4_000_000;
+/// Bytes that the fields of a page may take: five to thirty of 512 x 512 cells.
+const MOST_BYTES: usize = 12_000_000;
 
 /// What a page is made of.
 pub(crate) struct Report<'a> {
@@ -253,7 +253,7 @@ impl Report<'_> {
         }
         if let (Some(map), false) = (self.scene.surface.given_map(), views.iter().any(View::is_surface)) {
             let model = self.scene.models.first().map_or("", |model| model.name());
-            let shown = FieldView::new(HEIGHTS.shown, map.cells(), map.heights());
+            let shown = FieldView::new(map.cells(), map.heights());
             views.insert(0, View { shown, field: &HEIGHTS, model, state: None });
         }
         // The map first.
@@ -272,6 +272,7 @@ impl Report<'_> {
                 field_pictures::picture(self.scene, field, model, (0, *state), shown.cells, &[]);
             picture.range = ranges.get(&(field.name, *model)).copied();
             let figure = if self.scene.surface.is_profile() {
+                picture.subtitle += &shown.reduction().map_or_else(String::new, |said| format!("; {said}"));
                 page::chart(&field_pictures::row_chart(&picture, shown.row(self.scene.surface.size().x)))?
             } else {
                 page::field(&picture, shown)?
@@ -357,7 +358,7 @@ impl View<'_> {
 
     /// A traction before anything was moved, for example.
     fn is_zero(&self) -> bool {
-        !self.is_surface() && self.shown.ends() == Some([0.0; 2])
+        !self.is_surface() && self.shown.ends == Some((0.0, 0.0))
     }
 }
 
@@ -365,7 +366,7 @@ impl View<'_> {
 fn ranges<'a>(views: &[View<'a>]) -> BTreeMap<(&'static str, &'a str), (f64, f64)> {
     let mut ranges = BTreeMap::new();
     for View { shown, field, model, .. } in views {
-        let Some([low, high]) = shown.ends().map(|ends| ends.map(f64::from)) else { continue };
+        let Some((low, high)) = shown.ends else { continue };
         let range = ranges.entry((field.name, *model)).or_insert((low, high));
         *range = (low.min(range.0), high.max(range.1));
     }

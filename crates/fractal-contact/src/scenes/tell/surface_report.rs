@@ -61,9 +61,9 @@ impl SurfaceReport<'_> {
         let map = self.map;
         let values: Vec<f64> =
             map.heights().iter().map(|h| if h.is_finite() { *h } else { f64::NAN }).collect();
-        let view = FieldView::new(HEIGHTS.shown, map.cells(), &values);
+        let view = FieldView::new(map.cells(), &values);
         let unit = self.statistics.system.shown("m");
-        let picture = FieldPicture {
+        let mut picture = FieldPicture {
             title: "Heights".into(),
             subtitle: self.name.into(),
             quantity: HEIGHTS.words.into(),
@@ -72,7 +72,7 @@ impl SurfaceReport<'_> {
             cells: map.cells(),
             size: map.size(),
             values: &[],
-            shown: HEIGHTS.shown,
+            white_zero: HEIGHTS.white_zero,
             signed: false,
             range: None,
             contact: &[],
@@ -80,6 +80,7 @@ impl SurfaceReport<'_> {
             classes: &[],
         };
         if self.statistics.profile {
+            picture.subtitle += &view.reduction().map_or_else(String::new, |said| format!("; {said}"));
             return page::chart(&field_pictures::row_chart(&picture, view.row(map.size().x)));
         }
         page::field(&picture, &view)

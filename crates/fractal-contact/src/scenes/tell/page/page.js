@@ -6,10 +6,11 @@ const palette = new Uint8Array(bytes(document.getElementById("palette").textCont
 document.querySelectorAll("figure.field").forEach((figure) => {
   const f = JSON.parse(figure.dataset.field);
   const values = new Float32Array(bytes(figure.querySelector(".values").textContent));
-  const places = new Uint16Array(bytes(figure.querySelector(".places").textContent));
+  const places = new Uint8Array(bytes(figure.querySelector(".places").textContent));
   const digits = (v, n) => Number(v.toPrecision(n)).toString();
   const output = figure.querySelector("output");
   const picture = figure.querySelector("img");
+  const [length, height] = f.sides;
 
   // One pixel for each value, the last row on top.
   const source = document.createElement("canvas");
@@ -26,9 +27,10 @@ document.querySelectorAll("figure.field").forEach((figure) => {
   source.getContext("2d").putImageData(image, 0, 0);
 
   const canvas = document.createElement("canvas");
-  const ratio = Math.min(20, Math.max(0.05, (f.down * f.dy) / (f.across * f.dx)));
-  canvas.width = 1024;
-  canvas.height = Math.max(32, Math.round(1024 * ratio));
+  const ratio = Math.min(20, Math.max(0.05, height / length));
+  // A whole number of pixels across each value.
+  canvas.width = f.across * Math.max(1, Math.round(1024 / f.across));
+  canvas.height = Math.max(32, Math.round(canvas.width * ratio));
   canvas.tabIndex = 0;
   canvas.setAttribute("role", "img");
   canvas.setAttribute("aria-label", picture.alt + " Arrow keys move a cursor, whose value is read below the map; plus and minus zoom.");
@@ -45,17 +47,16 @@ document.querySelectorAll("figure.field").forEach((figure) => {
     const spans = [];
     for (let i = Math.ceil(from / step - 1e-9); i * step <= to * (1 + 1e-9) && spans.length < 12; i++) {
       const span = document.createElement("span");
-      span.style[edge] = `${(100 * (i * step - from)) / (to - from)}%`;
+      span.style[edge] = `${100 * ((i * step - from) / (to - from))}%`;
       span.textContent = digits(i * step, 12);
       spans.push(span);
     }
     figure.querySelector(selector).replaceChildren(...spans);
   };
   const scaleBar = (to, width) => {
-    const least = width / 8;
-    const length = round(least);
-    const [long, high, edge] = [(length / width) * canvas.width, 12, 24];
-    const text = `${digits(length, 12)} ${f.length}`.trim();
+    const bar = round(width / 8);
+    const [long, high, edge] = [(bar / width) * canvas.width, 12, 24];
+    const text = `${digits(bar, 12)} ${f.length}`.trim();
     to.font = "600 36px system-ui, sans-serif";
     const wide = Math.max(long, to.measureText(text).width);
     const y = canvas.height - edge - 12;
@@ -78,7 +79,7 @@ document.querySelectorAll("figure.field").forEach((figure) => {
     to.fillStyle = "#fff";
     to.fillRect(0, 0, canvas.width, canvas.height);
     to.drawImage(source, left, top, w, h, 0, 0, canvas.width, canvas.height);
-    const [perColumn, perRow] = [f.block * f.dx * f.scale, f.block * f.dy * f.scale];
+    const [perColumn, perRow] = [length / f.across, height / f.down];
     axis(".x", "left", left * perColumn, (left + w) * perColumn, Math.min(1, 1 / ratio));
     axis(".y", "bottom", (f.down - top - h) * perRow, (f.down - top) * perRow, Math.min(1, ratio));
     scaleBar(to, w * perColumn);
@@ -95,13 +96,13 @@ document.querySelectorAll("figure.field").forEach((figure) => {
   const choose = (i, j) => {
     chosen = [Math.min(Math.max(0, i), f.across - 1), Math.min(Math.max(0, j), f.down - 1)];
     const at = chosen[1] * f.across + chosen[0];
-    const column = chosen[0] * f.block + (places[at] % f.block);
-    const row = chosen[1] * f.block + Math.floor(places[at] / f.block);
+    // Of several cells on a pixel one is shown.
+    const column = Math.floor((chosen[0] * f.columns) / f.across) + (places[2 * at] || 0);
+    const row = Math.floor((chosen[1] * f.rows) / f.down) + (places[2 * at + 1] || 0);
     const measure = () => `${(values[at] * f.per).toPrecision(7)} ${f.unit}`;
     const value = !Number.isFinite(values[at]) ? "undefined" : f.classes.length ? f.classes[values[at]] : measure();
-    const of = f.block > 1 ? ` (${f.picked} of ${f.block} x ${f.block} cells)` : "";
-    output.textContent = `${f.quantity} ${value}${of} at column ${column}, row ${row}: x = ${digits((column + 0.5) * f.dx * f.scale, 4)}, ` +
-      `y = ${digits((row + 0.5) * f.dy * f.scale, 4)} ${f.length}`;
+    output.textContent = `${f.quantity} ${value} at column ${column}, row ${row}: x = ${digits(((column + 0.5) / f.columns) * length, 4)}, ` +
+      `y = ${digits(((row + 0.5) / f.rows) * height, 4)} ${f.length}`;
     const [w, h] = [f.across / zoom, f.down / zoom];
     if (chosen[0] < left || chosen[0] >= left + w) left = chosen[0] - w / 2;
     if (f.down - 1 - chosen[1] < top || f.down - 1 - chosen[1] >= top + h) top = f.down - chosen[1] - h / 2;
