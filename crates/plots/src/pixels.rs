@@ -19,13 +19,13 @@ const STEPS: [f64; 2] = [0.754_877_666_246_692_7, 0.569_840_290_998_053_2];
 /// these cells take up parts of the numbers from 0 to 1 that are as long as their areas on the pixel; the
 /// pixel shows the cell with its threshold, and the thresholds of neighbouring pixels are spread evenly from 0
 /// to 1. The share of the area in contact, or in any class, the mean, and the distribution of the values are
-/// therefore those of the field. The picture of 2049 x 2049 cells on 1040 x 1040 pixels has them to
-/// about 1e-4 of its area.
+/// therefore those of the field, to within 0.7 over the root of the number of pixels in parts of the area.
 ///
 /// The pixels with the smallest and the largest value show these, so that a single cell in contact is seen.
 pub(crate) struct Pixels<'a> {
     cells: Cells,
-    pixels: Cells,
+    /// Columns and rows of pixels.
+    grid: Cells,
     values: &'a [f64],
     /// Pixels that show the smallest and the largest finite value, with the cells of these.
     ends: [Option<(usize, usize)>; 2],
@@ -44,28 +44,28 @@ impl<'a> Pixels<'a> {
             let (x, y) = (cell % cells.columns, cell / cells.columns);
             over(y, pixels.rows, cells.rows) * pixels.columns + over(x, pixels.columns, cells.columns)
         };
-        Self { cells, pixels, values, ends: ends.map(|end| end.map(|(cell, _)| (pixel(cell), cell))) }
+        Self { cells, grid: pixels, values, ends: ends.map(|end| end.map(|(cell, _)| (pixel(cell), cell))) }
     }
 
     /// The cell that a pixel shows, both counted along rows from the lower left corner.
     pub fn cell(&self, x: usize, y: usize) -> usize {
         let columns = self.cells.columns;
-        if self.pixels == self.cells {
+        if self.grid == self.cells {
             return y * columns + x;
         }
         let (across, up) =
-            (covered(x, self.pixels.columns, columns), covered(y, self.pixels.rows, self.cells.rows));
+            (covered(x, self.grid.columns, columns), covered(y, self.grid.rows, self.cells.rows));
         if across.len() == 1 && up.len() == 1 {
             return up.start * columns + across.start;
         }
-        let pixel = y * self.pixels.columns + x;
+        let pixel = y * self.grid.columns + x;
         if let Some((_, cell)) = self.ends.iter().flatten().find(|(at, _)| *at == pixel) {
             return *cell;
         }
-        let wide: Vec<usize> = across.clone().map(|i| overlap(x, i, self.pixels.columns, columns)).collect();
+        let wide: Vec<usize> = across.clone().map(|i| overlap(x, i, self.grid.columns, columns)).collect();
         let mut parts: Vec<(usize, usize)> = Vec::with_capacity(across.len() * up.len());
         for row in up {
-            let high = overlap(y, row, self.pixels.rows, self.cells.rows);
+            let high = overlap(y, row, self.grid.rows, self.cells.rows);
             let cells = across.clone().zip(&wide);
             parts.extend(cells.map(|(column, wide)| (row * columns + column, wide * high)));
         }
