@@ -151,7 +151,7 @@ fn the_sphere_before_it_rolls() {
     let (force, mu) = (0.4705, 0.4013);
     let alike = body(1.0, 0.28);
     for columns in [34, 90] {
-        let ball = paraboloid(0.002963, [columns, 33], [-4.125; 2], 0.25);
+        let ball = paraboloid(0.002_963, [columns, 33], [-4.125; 2], 0.25);
         let mut contact = prepared(ball, Pair { first: alike, second: alike }, Friction::coulomb(mu));
         let tangential = Tangential::force_along_x(-0.657 * mu * force);
         let state = contact.advance(Step { time: 0.0, normal: Load::Force(force), tangential }).unwrap();
@@ -169,7 +169,7 @@ fn the_sphere_before_it_rolls() {
 /// Spence's compression, with full coupling in 35 increments (examples/spence35).
 #[test]
 fn spences_compression_in_35_increments() {
-    let map = paraboloid(0.004116, [45, 45], [-4.4999; 2], 0.2);
+    let map = paraboloid(0.004_116, [45, 45], [-4.4999; 2], 0.2);
     // The second body is 200 000 times as stiff, which CONTACT calls rigid.
     let pair = Pair { first: body(0.5, 0.0), second: body(1e5, 0.0) };
     let friction = Friction::Coulomb { coefficient: 0.2986, coupling: Some(Coupling::Full) };
@@ -212,7 +212,7 @@ fn spences_compression_in_35_increments() {
 
     // Without friction and on a rigid body, by an independent program.
     let pair = Pair { second: Body::Rigid, ..pair };
-    let smooth = prepared(map, pair, Friction::Off).solve(Load::Force(0.470508)).unwrap();
+    let smooth = prepared(map, pair, Friction::Off).solve(Load::Force(0.470_508)).unwrap();
     assert_eq!(smooth.report.contact_cells, Some(973));
     assert_printed("approach", smooth.approach.unwrap(), "0.1008115");
     assert_printed("largest pressure", largest(smooth.pressure().unwrap()), "0.0183430");
