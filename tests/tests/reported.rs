@@ -4,8 +4,8 @@ use analytic::jkr::AdhesiveSphere;
 use approx::assert_relative_eq;
 use bem3d::Bem3d;
 use contact_model::{
-    Adhesion, AdhesionLaw, Boundary, Conductance, ContactModel, ContactState, Error, Hardness, HeightMap,
-    Load, Scene, SelfAffine, Step, Surface,
+    Adhesion, AdhesionLaw, Body, Boundary, Conductance, ContactModel, ContactState, Coupling, Error,
+    Friction, Hardness, HeightMap, Load, Pair, Scene, SelfAffine, Step, Surface, Tangential,
 };
 use std::sync::Arc;
 
@@ -179,5 +179,66 @@ fn any_tolerance_below_one_is_taken_with_adhesion() {
         let found = ContactModel::prepare(&model, &scene, 0).unwrap().solve(Load::Approach(1e-3));
         // So loose a state may be no minimum of the energy, which is told.
         assert!(matches!(found, Ok(_) | Err(Error::NotConverged { .. })), "{tolerance}: {found:?}");
+    }
+}
+
+/// With a low hardness every cell in contact flows, and one force belongs to a range of mean gaps. In earlier
+/// versions such gaps were refused ("0.03 is above 0.04").
+#[test]
+fn a_mean_gap_at_which_every_cell_in_contact_flows_has_a_state() {
+    const PRESSURE: f64 = 0.002;
+    let surface = SelfAffine::new(2.2, 1.0, 0.01).map(Surface::SelfAffine).unwrap();
+    let mut scene = Scene::new(surface, 1.0);
+    scene.effects.boundary = Boundary::Periodic;
+    scene.effects.hardness = Hardness::Limit { pressure: PRESSURE };
+    (scene.outputs.mean_gap, scene.outputs.stiffness, scene.outputs.area) = (true, true, true);
+    let mut contact = Bem3d { cells: 32, ..Bem3d::default() }.prepare(&scene, 1).unwrap();
+    let (mut last, mut flowing) = (0.0, 0);
+    for i in 0..9 {
+        let gap = 0.02 - 0.002 * f64::from(i);
+        let state = contact.solve(Load::MeanGap(gap)).unwrap();
+        assert!((state.mean_gap.unwrap() - gap).abs() < 1e-6 * 0.01, "{gap}: {state:?}");
+        assert!(state.force >= last, "{gap}: {} after {last}", state.force);
+        last = state.force;
+        let all = state.area.unwrap() * PRESSURE;
+        if state.force > 0.0 && state.force >= all * (1.0 - 1e-12) {
+            flowing += 1;
+            assert_relative_eq!(state.force, all, max_relative = 1e-12);
+        }
+    }
+    assert!(flowing > 3, "{flowing}");
+}
+
+/// A step that changes nothing keeps the cells that stick and those that slip. In earlier versions rounding told
+/// them apart: stick areas of 0.082, 0.156, 0.179, 0.181 in four equal states.
+#[test]
+fn a_step_of_nothing_keeps_stick_and_slip() {
+    let pair = Pair { first: Body::Elastic { young: 1.0, poisson: 0.3 }, second: Body::Rigid };
+    for coupling in [Coupling::Neglected, Coupling::Full] {
+        let mut scene = Scene::of_pair(Surface::Sphere { radius: 1.0, size: 1.0.into() }, pair).unwrap();
+        scene.effects.friction = Friction::Coulomb { coefficient: 0.3, coupling: Some(coupling) };
+        (scene.outputs.stick_area, scene.outputs.tangential_stiffness) = (true, true);
+        let mut contact = Bem3d { cells: 33, ..Bem3d::default() }.prepare(&scene, 0).unwrap();
+        let mut at = |tangential| {
+            let step = Step { time: 0.0, normal: Load::Force(0.02), tangential };
+            contact.advance(step).unwrap().tangential.unwrap()
+        };
+        at(Tangential::Force([0.0; 2]));
+        let first = at(Tangential::Force([0.003, 0.001]));
+        // By the force again, then by the displacement that it reached.
+        for tangential in [
+            Tangential::Force([0.003, 0.001]),
+            Tangential::Force([0.003, 0.001]),
+            Tangential::Displacement(first.displacement),
+        ] {
+            let again = at(tangential);
+            assert_eq!(again.stick_area.unwrap().to_bits(), first.stick_area.unwrap().to_bits());
+            assert_relative_eq!(
+                again.stiffness.unwrap()[0][0],
+                first.stiffness.unwrap()[0][0],
+                max_relative = 1e-6
+            );
+            assert_relative_eq!(again.dissipated, first.dissipated);
+        }
     }
 }
