@@ -198,16 +198,18 @@ fn spences_compression_in_35_increments() {
     }
     let state = last.unwrap();
     assert_eq!(counts(&state), [921, 225, 696]);
-    // The gap is made of approach, height and the displacements of both bodies; CONTACT prints that of the first,
-    // with an accuracy of 1e-6.
+    // The displacement is that of both bodies, and the gap is made of it, approach and height; CONTACT prints the
+    // displacement of the first, with an accuracy of 1e-6.
     let of_the_first = 1.0 / (1.0 + 0.5 / 1e5);
-    let gap = state.gap().unwrap();
+    let (gap, displacement) = (state.gap().unwrap(), state.displacement().unwrap());
     let profile = rows("data/peers/contact-spence-displacement.csv");
     assert_eq!(profile.len(), map.columns());
     for (ix, row) in profile.iter().enumerate() {
         let height = map.heights()[22 * map.columns() + ix];
-        let found = of_the_first * (state.approach.unwrap() + height + gap.at(ix, 22));
+        let found = of_the_first * displacement.at(ix, 22);
         assert!(printed_with_error(found, &row["displacement"], 1e-6), "displacement: {found}, {row:?}");
+        let moved = state.approach.unwrap() + height + gap.at(ix, 22);
+        assert!((displacement.at(ix, 22) - moved).abs() < 1e-9 * moved, "{moved}");
     }
 
     // Without friction and on a rigid body, by an independent program.

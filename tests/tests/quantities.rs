@@ -639,128 +639,127 @@ fn friction(seed: u64) -> Result<Faults, Error> {
     Ok(faults)
 }
 
-/// A rough map with friction cell by cell, coupled or not, on a path with changing controls and with steps in
-/// which nothing changes: areas, forces and displacements with the fields, a repeated step with the one before, and
-/// with full coupling the stiffness with the difference quotient of one more step.
-fn sheared(seed: u64) -> Result<Faults, Error> {
-    /// Steps of the normal force of the quotient; its own error is of the second order, estimated by the third.
-    const GROWTH: [f64; 2] = [2e-4, 4e-4];
-    let mut draw = Draw::new(seed);
+/// The scene of a rough map with friction cell by cell, its coefficient, and a normal force.
+fn rubbed(draw: &mut Draw, holes: bool) -> Result<(Scene, f64, f64), Error> {
     let noise = draw.between(0.0, 0.3);
-    let map = heights(&mut draw, (6, 6), noise, seed.is_multiple_of(3));
+    let map = heights(draw, (6, 6), noise, holes);
     let body = Body::Elastic { young: draw.between(0.5, 3.0), poisson: draw.between(0.0, 0.45) };
     let other = [Body::Rigid, body][draw.count(0, 1)];
-    let mut scene = scene(&mut draw, map);
+    let mut scene = scene(draw, map);
     let pair = Pair { first: body, second: other };
     (scene.contact_modulus, scene.pair) = (pair.contact_modulus()?, Some(pair));
     let coefficient = draw.between(0.05, 0.8);
-    let full = draw.chance(0.6);
-    let coupling = Some(if full { Coupling::Full } else { Coupling::Neglected });
+    let coupling = Some(if draw.chance(0.6) { Coupling::Full } else { Coupling::Neglected });
     scene.effects.friction = Friction::Coulomb { coefficient, coupling };
     let outputs = &mut scene.outputs;
     (outputs.traction, outputs.slip, outputs.stick_slip, outputs.stick_area) = (true, true, true, true);
     (outputs.tangential_stiffness, outputs.tangential_stiffness_stuck) = (true, true);
     let map = map_of(&scene);
-    let (count, cell) = (map.heights().len() as f64, map.dx() * map.dy());
-    let force = scene.contact_modulus * 0.1 * (count * cell).sqrt() * 10_f64.powf(draw.between(-2.5, 0.0));
+    let size = (map.heights().len() as f64 * map.dx() * map.dy()).sqrt();
+    let force = scene.contact_modulus * 0.1 * size * 10_f64.powf(draw.between(-2.5, 0.0));
+    Ok((scene, coefficient, force))
+}
+
+/// Areas, forces and the sliding force of a state with friction against its fields.
+fn rubbed_fields(scene: &Scene, coefficient: f64, state: &ContactState, faults: &mut Faults) {
+    let cell = map_of(scene).dx() * map_of(scene).dy();
+    let (found, all) = (state.tangential.unwrap(), state.fields.as_ref().unwrap());
+    let of_class = |class: StickSlip| {
+        let classes = all.stick_slip.as_ref().unwrap().values();
+        classes.iter().filter(|&&value| (value - class.value()).abs() < 0.5).count() as f64 * cell
+    };
+    let area = state.area.unwrap();
+    check(faults, "stick area", found.stick_area.unwrap(), of_class(StickSlip::Stick), ROUNDING * area);
+    check(faults, "slip area", found.slip_area.unwrap(), of_class(StickSlip::Slip), ROUNDING * area);
+    let most = coefficient * state.force;
+    check(faults, "sliding force", found.sliding_force.unwrap(), most, ROUNDING * most);
+    for (k, traction) in all.traction.as_ref().unwrap().iter().enumerate() {
+        let sum = traction.values().iter().sum::<f64>() * cell;
+        check(faults, "tangential force", found.force[k], sum, (2.0 * TOLERANCE + ROUNDING) * most);
+    }
+}
+
+/// The slope of the force after a path, by one more step of the normal force, which grows by so small a share; and
+/// how far it may be from the one-sided slope at the state.
+fn slope_after(scene: &Scene, steps: &[Step], state: &ContactState, sign: f64) -> Option<(f64, f64)> {
+    let [one, two] = [2e-4, 4e-4].map(|growth| {
+        let mut contact = model(1e-12).prepare(scene, 0).ok()?;
+        let mut at = None;
+        for step in steps {
+            at = Some(contact.advance(*step).ok()?);
+        }
+        let normal = Load::Force(state.force * (1.0 + sign * growth));
+        let (at, next) = (at?, contact.advance(Step { normal, ..*steps.last()? }).ok()?);
+        let way = match (at.approach, next.approach) {
+            (Some(at), Some(next)) => next - at,
+            _ => at.mean_gap? - next.mean_gap?,
+        };
+        Some((next.force - at.force) / way)
+    });
+    let (one, two): (f64, f64) = (one?, two?);
+    Some((2.0 * one - two, (two - one).abs()))
+}
+
+/// A rough map with friction cell by cell, coupled or not, on a path with changing controls and with steps in
+/// which nothing changes: areas, forces and displacements with the fields, a repeated step with the one before, and
+/// with full coupling the stiffness with the difference quotient of one more step.
+fn sheared(seed: u64) -> Result<Faults, Error> {
+    let mut draw = Draw::new(seed);
+    let (scene, coefficient, force) = rubbed(&mut draw, seed.is_multiple_of(3))?;
     let mut contact = model(TOLERANCE).prepare(&scene, 0)?;
     let mut faults = Vec::new();
     let mut steps: Vec<Step> = Vec::new();
     let (mut normal, mut last): (f64, Option<ContactState>) = (force, None);
     for _ in 0..draw.count(2, 5) {
         let again = last.as_ref().filter(|_| draw.chance(0.3));
-        let step = match (again, steps.last()) {
-            (Some(_), Some(before)) => *before,
-            _ => {
-                if draw.chance(0.4) {
-                    normal = force * draw.between(0.5, 2.0);
-                }
-                let (size, angle) = (draw.between(0.0, 0.9), 2.0 * PI * draw.unit());
-                let pair = |size: f64| [size * angle.cos(), size * angle.sin()];
-                let tangential = if draw.chance(0.5) {
-                    Tangential::Force(pair(coefficient * normal * size))
-                } else {
-                    let reach = coefficient * normal / (scene.contact_modulus * (count * cell).sqrt());
-                    Tangential::Displacement(pair(reach * size * 2.0))
-                };
-                Step { time: 0.0, normal: Load::Force(normal), tangential }
+        let step = if let (Some(_), Some(before)) = (again, steps.last()) {
+            *before
+        } else {
+            if draw.chance(0.4) {
+                normal = force * draw.between(0.5, 2.0);
             }
+            let (size, angle) = (draw.between(0.0, 0.9), 2.0 * PI * draw.unit());
+            let along = |size: f64| [size * angle.cos(), size * angle.sin()];
+            let tangential = if draw.chance(0.5) {
+                Tangential::Force(along(coefficient * normal * size))
+            } else {
+                let map = map_of(&scene);
+                let side = (map.heights().len() as f64 * map.dx() * map.dy()).sqrt();
+                Tangential::Displacement(along(
+                    2.0 * size * coefficient * normal / (scene.contact_modulus * side),
+                ))
+            };
+            Step { time: 0.0, normal: Load::Force(normal), tangential }
         };
         let state = contact.advance(step)?;
         if let Some(before) = again {
-            let ([one, other], k) =
-                ([before, &state].map(|s| s.tangential.unwrap()), "after a step of nothing");
+            let [one, other] = [before, &state].map(|s| s.tangential.unwrap());
             for (what, one, other) in [
                 ("stick area", one.stick_area.unwrap(), other.stick_area.unwrap()),
-                ("dissipated", one.dissipated, other.dissipated),
+                ("dissipated energy", one.dissipated, other.dissipated),
                 ("force", one.force[0], other.force[0]),
                 ("displacement", one.displacement[0], other.displacement[0]),
+                (
+                    "stiffness",
+                    one.stiffness.map_or(0.0, |k| k[0][0]),
+                    other.stiffness.map_or(0.0, |k| k[0][0]),
+                ),
             ] {
-                check(&mut faults, &format!("{what} {k}"), other, one, 1e-9 * one.abs());
-            }
-            if let (Some(one), Some(other)) = (one.stiffness, other.stiffness) {
-                check(
-                    &mut faults,
-                    &format!("tangential stiffness {k}"),
-                    other[0][0],
-                    one[0][0],
-                    1e-8 * one[0][0],
-                );
+                check(&mut faults, &format!("{what} after a step of nothing"), other, one, 1e-8 * one.abs());
             }
         }
         fields(&scene, &state, None, &mut faults);
-        let (found, classes) = (state.tangential.unwrap(), state.fields.as_ref().unwrap());
-        let of_class = |class: StickSlip| {
-            let classes = classes.stick_slip.as_ref().unwrap().values();
-            classes.iter().filter(|&&value| (value - class.value()).abs() < 0.5).count() as f64 * cell
-        };
-        let area = state.area.unwrap();
-        check(
-            &mut faults,
-            "stick area",
-            found.stick_area.unwrap(),
-            of_class(StickSlip::Stick),
-            ROUNDING * area,
-        );
-        check(&mut faults, "slip area", found.slip_area.unwrap(), of_class(StickSlip::Slip), ROUNDING * area);
-        let most = coefficient * state.force;
-        check(&mut faults, "sliding force", found.sliding_force.unwrap(), most, ROUNDING * most);
-        for (k, traction) in classes.traction.as_ref().unwrap().iter().enumerate() {
-            let sum = traction.values().iter().sum::<f64>() * cell;
-            check(
-                &mut faults,
-                "tangential force",
-                found.force[k],
-                sum,
-                2.0 * TOLERANCE * most + ROUNDING * most,
-            );
-        }
+        rubbed_fields(&scene, coefficient, &state, &mut faults);
         let before = last.as_ref().map_or(0.0, |state| state.force);
         steps.push(step);
-        last = Some(state);
-        let state = last.as_ref().unwrap();
-        // That of pressures alone is checked without friction.
-        let quotient = state.report.certificate.quotient_error;
-        let (true, Some(k), Some(error)) = (full, state.stiffness, quotient) else { continue };
-        let sign = if state.force < before * (1.0 - TOLERANCE) { -1.0 } else { 1.0 };
-        let quotients = GROWTH.map(|growth| {
-            let mut contact = model(1e-12).prepare(&scene, 0).ok()?;
-            let mut at = None;
-            for step in &steps {
-                at = Some(contact.advance(*step).ok()?);
+        // Without coupling the stiffness is that of pressures alone, which is checked without friction.
+        if let (Some(k), Some(error)) = (state.stiffness, state.report.certificate.quotient_error) {
+            let sign = if state.force < before * (1.0 - TOLERANCE) { -1.0 } else { 1.0 };
+            if let Some((slope, open)) = slope_after(&scene, &steps, &state, sign) {
+                check(&mut faults, "stiffness", k, slope, error * k + open + QUOTIENT * k);
             }
-            let next = Step { normal: Load::Force(state.force * (1.0 + sign * growth)), ..step };
-            let (at, next) = (at?, contact.advance(next).ok()?);
-            let way = match (at.approach, next.approach) {
-                (Some(at), Some(next)) => next - at,
-                _ => at.mean_gap? - next.mean_gap?,
-            };
-            Some((next.force - at.force) / way)
-        });
-        if let [Some(one), Some(two)] = quotients {
-            let own = (two - one).abs();
-            check(&mut faults, "stiffness", k, 2.0 * one - two, error * k + own + QUOTIENT * k);
         }
+        last = Some(state);
     }
     Ok(faults)
 }
