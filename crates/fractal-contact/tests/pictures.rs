@@ -118,7 +118,7 @@ fn compare(dir: &Path, case: &Case<'_>) {
     text = text.replace("FORCE", load[0]).replace("TANGENTIAL", load[1]);
     text = text.replace("COLUMNS", &columns.to_string()).replace("ROWS", &rows.to_string());
     if surface.contains("\"file\"") {
-        text = text.split("[models.bem3d]").next().unwrap().to_owned();
+        text.truncate(text.find("[models.bem3d]").unwrap());
     } else {
         text += "[sampling]\nseed = 1\n";
     }
@@ -133,7 +133,7 @@ fn compare(dir: &Path, case: &Case<'_>) {
     let file = |field: &str, extension: &str| out.join(format!("{field}-bem3d-0-002.{extension}"));
     let classes = values(&file("stick_slip", "npy"), count);
     let share = |of: &dyn Fn(usize) -> bool| (0..count).filter(|i| of(*i)).count() as f64 / count as f64;
-    let [open, stick, slip] = [0.0, 1.0, 2.0].map(|class| share(&|i| classes[i] == class));
+    let [open, stick, slip] = [0.0, 1.0, 2.0].map(|class| share(&|i| (classes[i] - class).abs() < 0.5));
     assert!(stick > 0.01 && slip > 0.01 && open > 0.1, "{open} {stick} {slip}");
     let tell = |found: f64, expected: f64, tolerance: f64, what: &str| {
         println!("{columns} x {rows}, {what}: {:.4} %, off by {:.1e}", 100.0 * expected, found - expected);
@@ -226,7 +226,7 @@ fn pictures_have_the_areas_of_the_table() {
     // A measured map with holes.
     let surface = contact_model::SelfAffine::new(2.2, [90.0, 60.0], 0.8).unwrap();
     let map = surface_gen::self_affine_map(&surface, [90, 60], 5).unwrap();
-    let hole = |i: usize| (i % 90 / 7 + i / 90 / 5) % 6 == 0;
+    let hole = |i: usize| (i % 90 / 7 + i / 90 / 5).is_multiple_of(6);
     let heights = map.heights().iter().enumerate().map(|(i, h)| if hole(i) { f64::NAN } else { *h });
     let map = HeightMap::with_undefined([90, 60], [90.0, 60.0], heights.collect()).unwrap();
     surface_io::write_map(&dir.path().join("map.npy"), &map, surface_io::Metric::Unitless).unwrap();
