@@ -54,6 +54,7 @@ impl PreparedSurface {
         // Approaches at which the gap is too large, and too small.
         let mut approaches = [f64::NEG_INFINITY, f64::INFINITY];
         let mut before: Option<(f64, f64)> = None;
+        let mut followed: Option<(f64, f64)> = None;
         let mut steps = 0;
         for _ in 0..GAP_LOADS {
             let (mut solved, tangent) = self.settle(control, limits, stop);
@@ -83,7 +84,11 @@ impl PreparedSurface {
             let reached = self.problem.bounds.is_reached(&solved.p);
             if matches!(control, Control::Approach(_)) || reached && self.responding(&solved).cells.is_empty()
             {
-                let slope = tangent.as_ref().map_or(1.0, |t| self.magnification(t.stiffness.value));
+                // Cells that begin to flow are in the secant and not in the tangent.
+                let tangent_slope = tangent.as_ref().map_or(1.0, |t| self.magnification(t.stiffness.value));
+                let secant = followed.map_or(f64::NAN, |(d0, miss0)| (d - d0) / (miss0 - miss));
+                let slope = if secant.is_finite() && secant > 0.0 { secant } else { tangent_slope };
+                followed = Some((d, miss));
                 let next = d + miss * slope;
                 let [far, near] = approaches;
                 let within = next > far && next < near;
