@@ -301,7 +301,8 @@ class ContactState:
     @property
     def tangential_stiffness(self) -> float | None:
         """float or None: tangential stiffness, dQ_x/ddelta_x along the branch of states at fixed pressures: cells
-        that stick continue to stick, cells that slip continue to slip [N/m].
+        that stick continue to stick, cells that slip continue to slip; a step in which nothing moves keeps which of
+        them slipped in the last one that moved [N/m].
         """
     @property
     def tangential_stiffness_xy(self) -> float | None:
@@ -367,7 +368,7 @@ class ContactState:
     @property
     def stiffness(self) -> float | None:
         """float or None: stiffness, dF/dd along the branch of states (periodic: -dF/d(mean gap)): fronts of an
-        adhesive contact move, saturated cells flow [N/m].
+        adhesive contact move, saturated cells flow; with full coupling the tangential load is held [N/m].
         """
     @property
     def stiffness_bar(self) -> float | None:
@@ -463,8 +464,9 @@ class ContactState:
         """float or None: estimated relative error of the tangential stiffness."""
     @property
     def stiffness_error(self) -> float | None:
-        """float or None: estimated relative error of the stiffness; that of a difference quotient with adhesion of
-        short range and Dugdale's law, where the cells decide it and not the tolerance.
+        """float or None: estimated relative error of the stiffness; that of a difference quotient with full
+        coupling, and with adhesion of short range and Dugdale's law, where the cells decide it and not the
+        tolerance.
         """
     @property
     def pressure(self) -> NDArray[np.float64] | None:
