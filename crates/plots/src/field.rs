@@ -420,7 +420,8 @@ mod tests {
             drawn.save(&path).unwrap();
             let (_, map) = read_map(&path, &classes);
             for value in [0.0, 1.0, 2.0] {
-                let found = map.iter().filter(|p| **p == drawn.scale().colour(value)).count();
+                let colour = drawn.scale().colour(value);
+                let found = map.iter().filter(|p| **p == colour).count();
                 let expected = classes.values().iter().filter(|v| (**v - value).abs() < 0.5).count();
                 near(found as f64 / map.len() as f64, expected as f64 / count, "class");
             }
@@ -431,7 +432,8 @@ mod tests {
             let drawn = FieldPicture { contact: &contact, ..picture(&gap, false) };
             drawn.save(&path).unwrap();
             let (_, map) = read_map(&path, &gap);
-            let inside = map.iter().filter(|p| **p == drawn.scale().colour(0.0)).count();
+            let touching = drawn.scale().colour(0.0);
+            let inside = map.iter().filter(|p| **p == touching).count();
             near(inside as f64 / map.len() as f64, of(&|v| v > 0.0), "outlined");
         }
     }

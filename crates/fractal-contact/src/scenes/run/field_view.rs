@@ -107,7 +107,7 @@ mod tests {
     #[test]
     fn every_value_is_that_of_its_cell() {
         let cells = Cells { columns: 1400, rows: 601 };
-        let mut values: Vec<f64> = (0..1400 * 601).map(|i| f64::from(i * 7919 % 1000)).collect();
+        let mut values: Vec<f64> = (0..1400 * 601_u64).map(|i| (i * 7919 % 1000) as f64).collect();
         values[5] = f64::NAN;
         let view = FieldView::new(cells, &values);
         assert_eq!((view.shown, view.ends), (Cells { columns: 512, rows: 220 }, Some((0.0, 999.0))));
