@@ -71,7 +71,7 @@ impl Image {
         Self::decode(&std::fs::read(path).unwrap())
     }
 
-    /// The map inside the axes, of so many pixels.
+    /// The map inside the axes, with this number of pixels.
     fn map(&self, [width, height]: [usize; 2]) -> Self {
         let [left, top] = CORNER;
         let row = |y: usize| &self.pixels[(top + y) * self.width + left..][..width];

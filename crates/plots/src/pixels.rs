@@ -32,7 +32,7 @@ pub(crate) struct Pixels<'a> {
 }
 
 impl<'a> Pixels<'a> {
-    /// A picture of so many columns and rows of pixels; values row-major, not finite where undefined.
+    /// A picture with this number of columns and rows of pixels; values row-major, not finite where undefined.
     ///
     /// Cost: linear in the number of cells.
     pub fn new(cells: Cells, pixels: Cells, values: &'a [f64]) -> Self {
@@ -80,7 +80,7 @@ impl<'a> Pixels<'a> {
     }
 }
 
-/// Cells on a pixel, along one side of so many pixels and cells.
+/// The cells that a pixel covers along one side, which has this number of pixels and of cells.
 fn covered(pixel: usize, pixels: usize, cells: usize) -> Range<usize> {
     pixel * cells / pixels..((pixel + 1) * cells).div_ceil(pixels)
 }

@@ -15,13 +15,13 @@ use contact_model::{ContactState, Error, Result, Status, Stop};
 
 /// The step of a difference quotient, over the elastic approach of a circle around the contact.
 const STEP: f64 = 1e-4;
-/// Tolerances of the states of a difference quotient: of the pressures, and of the tractions, whose error is the
-/// square root of theirs.
+/// Tolerances of the states of a difference quotient: of the pressures, and of the tractions, whose error falls as
+/// the square root of their tolerance.
 const TIGHT: [f64; 2] = [1e-12, 1e-15];
 /// A quotient with a larger relative error is not claimed.
 const CLAIMED: f64 = 0.5;
 
-/// What limits an increment of both loads.
+/// Accuracy and length of the solves of an increment of both loads.
 #[derive(Debug, Clone, Copy)]
 struct CoupledLimits {
     normal: Limits,

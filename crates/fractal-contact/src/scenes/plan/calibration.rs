@@ -1,6 +1,6 @@
 //! The cost of a run, predicted from its sizes alone or from small solves of the same kind.
 //!
-//! What is chosen by a cost (the grid of an accuracy) rests on [`of_sizes`], in which no clock enters. Times
+//! The choice of the grid for an accuracy rests on [`of_sizes`], in which no clock enters. Times
 //! that are measured here are printed and decide nothing.
 
 use crate::scenes::plan::{Cost, ModelOnSurface};

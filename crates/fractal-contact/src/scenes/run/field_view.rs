@@ -18,7 +18,7 @@ pub(crate) struct FieldView {
     pub shown: Cells,
     /// The smallest and the largest value of the field; `None` where none is defined.
     pub ends: Option<(f64, f64)>,
-    /// What the values are multiplied with: 1, unless single precision cannot hold them.
+    /// Factor of the values: 1, unless single precision cannot hold them.
     pub factor: f64,
     /// Row-major; NaN where points are undefined.
     pub values: Vec<f32>,
@@ -48,7 +48,7 @@ impl FieldView {
         Self { cells, shown, ends: (low <= high).then_some((low, high)), factor, values, places }
     }
 
-    /// What a picture of it says of itself, where it has less values than cells.
+    /// The sentence below its picture, where it has fewer values than cells.
     pub fn reduction(&self) -> Option<String> {
         plots::reduction(self.cells, self.shown)
     }
