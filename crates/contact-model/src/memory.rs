@@ -1,7 +1,7 @@
-//! The memory of a path, as bytes that can be kept outside of the contact.
+//! The memory of a path or of single loads, as bytes that can be kept outside of the contact.
 
-/// The memory of a path ([`crate::PreparedContact::memory`]): another contact of the same model, scene and
-/// seed can continue from it ([`crate::PreparedContact::recall`]).
+/// The memory of the loads of a contact ([`crate::PreparedContact::memory`]): another contact of the same
+/// model, scene and seed can continue from it ([`crate::PreparedContact::recall`]).
 ///
 /// The bytes are those of [postcard](https://postcard.jamesmunns.com), without a name or a version of their
 /// format: whoever keeps them must also keep what they belong to, and a check that they are complete.

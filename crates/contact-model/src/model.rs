@@ -221,9 +221,10 @@ pub trait PreparedContact: Send {
         path.iter().map(|step| Ok(largest.enter(step.normal, self.advance(*step)?))).collect()
     }
 
-    /// The memory of the path, which together with the next load determines the next state: another contact
-    /// of the same model, scene and seed continues from it with identical bits ([`PreparedContact::recall`]).
-    /// `None` where a model has no such memory: its paths must be followed anew.
+    /// The memory of the loads so far, of a path or each by itself, which together with the next load
+    /// determines the next state: another contact of the same model, scene and seed continues from it with
+    /// identical bits ([`PreparedContact::recall`]). `None` where a model has no such memory: its paths must
+    /// be followed anew, and each load by itself is solved without those before it.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`] where there is no room for it.
@@ -231,8 +232,9 @@ pub trait PreparedContact: Send {
         Ok(None)
     }
 
-    /// Restores the place on its path of a contact of the same model, scene and seed. The next call must be
-    /// [`PreparedContact::advance_until`].
+    /// Restores a contact of the same model, scene and seed to what it was when it gave this memory. The next
+    /// call must be the one that followed there, of [`PreparedContact::advance_until`] or
+    /// [`PreparedContact::solve_until`].
     ///
     /// # Errors
     /// [`Error::Shape`] for a memory that this model did not write on this surface; the contact is then as

@@ -52,10 +52,13 @@ impl Problem {
         }
     }
 
-    /// Drops the plans, coarser grids and buffers of the loads before.
+    /// Drops the plans and buffers of the loads before, on the coarser grids too.
     pub fn forget_plans(&mut self) {
         self.operators.forget_plans();
-        (self.workspace, self.coarser) = (Workspace::default(), None);
+        self.workspace = Workspace::default();
+        if let Some(coarser) = &mut self.coarser {
+            coarser.forget_plans();
+        }
     }
 
     /// As `recorded`, but no time is charged.

@@ -5,7 +5,7 @@ use super::adhesive::{AdhesiveContact, attraction};
 use super::certificate::LoadError;
 use super::load::{LoadSequence, ScaledLoad};
 use super::options::{Bem3d, NAME, bytes_per_cell, friction_bytes_per_cell};
-use super::path_memory::Remembered;
+use super::path_memory::{Place, Remembered};
 use super::prepared::{PreparedSurface, Tangent};
 use super::sliding::Sliding;
 use crate::active_set::{self, Control, Limits, Solved};
@@ -26,11 +26,7 @@ use std::borrow::Cow;
 #[derive(Debug)]
 pub struct PreparedBem3d {
     contact: Contact,
-    loads: LoadSequence,
-    /// The single load that was solved last, from which a path goes on.
-    solved: Option<ScaledLoad>,
-    /// Time of the last step of a path.
-    time: f64,
+    place: Place,
 }
 
 /// The solver of a load: the only place that distinguishes surfaces with and without adhesion.
@@ -54,7 +50,7 @@ impl PreparedBem3d {
             Some(attraction) => Contact::WithAdhesion(Box::new(AdhesiveContact::new(surface, attraction))),
             None => Contact::WithoutAdhesion(Box::new(surface)),
         };
-        Ok(Self { contact, loads: LoadSequence::Single, solved: None, time: 0.0 })
+        Ok(Self { contact, place: Place { loads: LoadSequence::Single, solved: None, time: 0.0 } })
     }
 
     fn surface(&self) -> &PreparedSurface {
@@ -90,14 +86,14 @@ impl PreparedBem3d {
         loads: LoadSequence,
         stop: Stop<'_>,
     ) -> Result<ContactState> {
-        if self.loads != loads {
-            let solved = self.solved.take();
+        if self.place.loads != loads {
+            let solved = self.place.solved.take();
             self.begin(loads);
             if let (LoadSequence::Path, Some(solved)) = (loads, solved)
                 && let Err(error) = self.state_at(solved, Tangential::default(), loads, stop)
             {
                 self.begin(LoadSequence::Single);
-                self.solved = Some(solved);
+                self.place.solved = Some(solved);
                 return Err(error);
             }
         }
@@ -108,7 +104,7 @@ impl PreparedBem3d {
             }
             found => found?,
         };
-        self.solved = (loads == LoadSequence::Single).then_some(load);
+        self.place.solved = (loads == LoadSequence::Single).then_some(load);
         Ok(state)
     }
 
@@ -119,9 +115,7 @@ impl PreparedBem3d {
         loads: LoadSequence,
         stop: Stop<'_>,
     ) -> Result<ContactState> {
-        if loads == LoadSequence::Path {
-            self.surface_mut().forget_plans();
-        }
+        self.surface_mut().forget_plans();
         match &mut self.contact {
             Contact::WithoutAdhesion(surface) => {
                 if let Some(sliding) = &mut surface.sliding {
@@ -130,10 +124,10 @@ impl PreparedBem3d {
                     }
                     sliding.ask(tangential);
                 }
-                // A path that was stopped goes on from where it was.
-                let last = if loads == LoadSequence::Path { surface.last.clone() } else { None };
+                // Loads that were stopped go on from where they were.
+                let last = surface.last.clone();
                 let found = surface.at(load, stop);
-                if loads == LoadSequence::Path && matches!(found, Err(Error::Stopped { .. })) {
+                if matches!(found, Err(Error::Stopped { .. })) {
                     surface.last = last;
                 }
                 found
@@ -144,7 +138,7 @@ impl PreparedBem3d {
 
     /// Takes the virgin surface again.
     fn begin(&mut self, loads: LoadSequence) {
-        (self.loads, self.time, self.solved) = (loads, 0.0, None);
+        self.place = Place { loads, solved: None, time: 0.0 };
         match &mut self.contact {
             Contact::WithoutAdhesion(surface) => surface.begin(loads == LoadSequence::Path),
             Contact::WithAdhesion(contact) => contact.forget(),
@@ -178,8 +172,8 @@ impl PreparedContact for PreparedBem3d {
 
     fn advance_until(&mut self, step: Step, stop: Stop<'_>) -> Result<ContactState> {
         let step = match self.contact {
-            Contact::WithoutAdhesion(_) => step.validated(self.time)?,
-            Contact::WithAdhesion(_) => step.validated_with_adhesion(self.time)?,
+            Contact::WithoutAdhesion(_) => step.validated(self.place.time)?,
+            Contact::WithAdhesion(_) => step.validated_with_adhesion(self.place.time)?,
         };
         if self.surface().sliding.is_none() {
             without_tangential(step)?;
@@ -191,12 +185,12 @@ impl PreparedContact for PreparedBem3d {
         let state = match self.at(load, step.tangential, LoadSequence::Path, stop) {
             Err(Error::NotConverged { best }) => {
                 // The last stable state is that of the step before.
-                let time = if best.report.status == Status::PulledOff { self.time } else { step.time };
+                let time = if best.report.status == Status::PulledOff { self.place.time } else { step.time };
                 return Err(Error::NotConverged { best: Box::new(best.with_time(time)) });
             }
             found => found?,
         };
-        self.time = step.time;
+        self.place.time = step.time;
         Ok(state.with_time(step.time))
     }
 
@@ -205,31 +199,31 @@ impl PreparedContact for PreparedBem3d {
     }
 
     fn memory(&self) -> Result<Option<PathMemory>> {
-        if self.loads == LoadSequence::Single {
-            // No path has begun, or it goes on from a load that is solved first.
-            return Ok(None);
-        }
         let adhesive = match &self.contact {
             Contact::WithoutAdhesion(_) => None,
             Contact::WithAdhesion(contact) => contact.last.as_ref(),
         };
-        PathMemory::of(&Remembered::of(self.time, self.surface(), adhesive)).map(Some)
+        PathMemory::of(&Remembered::of(self.place, self.surface(), adhesive)).map(Some)
     }
 
     fn recall(&mut self, memory: &PathMemory) -> Result<()> {
         self.restart();
         let remembered: Remembered<'_> = memory.read()?;
         let unreadable = PathMemory::unreadable(memory.bytes().len());
-        let time = remembered.time;
-        match &mut self.contact {
-            Contact::WithoutAdhesion(_) if remembered.adhesive.is_some() => return Err(unreadable),
+        let place = remembered.place;
+        self.begin(place.loads);
+        let fits = match &mut self.contact {
+            Contact::WithoutAdhesion(_) if remembered.adhesive.is_some() => Err(unreadable.clone()),
             Contact::WithoutAdhesion(surface) => remembered.recall(surface).map(|_| ()),
             Contact::WithAdhesion(contact) => {
                 remembered.recall(&mut contact.surface).map(|last| contact.last = last)
             }
+        };
+        if fits.is_err() {
+            self.restart();
+            return Err(unreadable);
         }
-        .map_err(|_| unreadable)?;
-        self.time = time;
+        self.place = place;
         Ok(())
     }
 }

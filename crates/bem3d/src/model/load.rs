@@ -3,13 +3,14 @@
 use super::options::NAME;
 use super::prepared::PreparedSurface;
 use contact_model::{Error, Load, Result};
+use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
 /// Largest rounding of the force of all cells at the hardness in the conversion of units.
 const CAPACITY_ROUNDING: f64 = 1e-12;
 
 /// A load in the units of the surface, of either sign; a force over pi.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub(super) enum ScaledLoad {
     /// Sum of the net pressure.
     Force(f64),
@@ -20,7 +21,7 @@ pub(super) enum ScaledLoad {
 }
 
 /// How loads follow from each other.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) enum LoadSequence {
     /// Each load is the first one of a virgin surface.
     Single,

@@ -1,11 +1,14 @@
-//! The memory of a path, which determines its next step: the last state, and the memory of effects.
+//! The memory of a path or of single loads, which determines the next state: the last state, and the memory of
+//! effects.
 //!
-//! Everything else that a contact keeps from load to load (plans of transforms, coarser grids, buffers) is
-//! dropped before each step of a path ([`PreparedSurface::forget_plans`]), because the window for which a
-//! plan was made affects the rounding of displacements. A contact that is restored from a memory therefore
-//! continues to the same bits as one that was never interrupted.
+//! The plans of transforms and the buffers of a load are dropped before the next one
+//! ([`PreparedSurface::forget_plans`]), because the window for which a plan was made affects the rounding of
+//! displacements. Everything else that a contact keeps from load to load follows from the surface alone. A
+//! contact that is restored from a memory therefore continues to the same bits as one that was never
+//! interrupted.
 
 use super::adhesive::Last;
+use super::load::{LoadSequence, ScaledLoad};
 use super::memory::Memory;
 use super::prepared::PreparedSurface;
 use crate::active_set::{Candidates, LastState};
@@ -15,17 +18,26 @@ use contact_model::{PathMemory, Result};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
-/// All that a contact remembers of its path.
+/// All that a contact remembers of its loads.
 #[derive(Serialize, Deserialize)]
 pub(super) struct Remembered<'a> {
-    /// Time of the last step.
-    pub time: f64,
+    pub place: Place,
     /// The start of the solve of the next load.
     last: Option<Cow<'a, LastState>>,
     hardness: Option<Indented>,
     friction: Option<Slipped<'a>>,
     /// The end of the last step, of contacts with adhesion.
     pub adhesive: Option<Cow<'a, Last>>,
+}
+
+/// Where a contact is in its loads.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub(super) struct Place {
+    pub loads: LoadSequence,
+    /// The single load that was solved last, from which a path goes on.
+    pub solved: Option<ScaledLoad>,
+    /// Time of the last step of a path.
+    pub time: f64,
 }
 
 /// The memory of a hardness.
@@ -45,11 +57,11 @@ struct Slipped<'a> {
 }
 
 impl<'a> Remembered<'a> {
-    /// The memory of a surface on its path, and of its adhesion.
-    pub fn of(time: f64, surface: &'a PreparedSurface, adhesive: Option<&'a Last>) -> Self {
+    /// The memory of a surface at a place in its loads, and of its adhesion.
+    pub fn of(place: Place, surface: &'a PreparedSurface, adhesive: Option<&'a Last>) -> Self {
         let grid = surface.problem.grid();
         Self {
-            time,
+            place,
             last: surface.last.as_ref().map(Cow::Borrowed),
             hardness: surface.memory.as_ref().map(|memory| Indented::of(grid, memory)),
             friction: surface.sliding.as_ref().map(|sliding| Slipped {
@@ -60,14 +72,14 @@ impl<'a> Remembered<'a> {
         }
     }
 
-    /// Restores a surface at the beginning of a path to this memory.
+    /// Restores a surface without any state to this memory.
     ///
     /// # Errors
     /// [`PathMemory::unreadable`] for a memory that does not belong to this surface and its effects.
     pub fn recall(self, surface: &mut PreparedSurface) -> Result<Option<Last>> {
         let grid = surface.problem.grid();
-        let Self { time, last, hardness, friction, adhesive } = self;
-        let fits = time.is_finite()
+        let Self { place, last, hardness, friction, adhesive } = self;
+        let fits = place.time.is_finite()
             && last.as_ref().is_none_or(|last| last.fits(grid))
             && adhesive.as_ref().is_none_or(|last| last.fits(grid))
             && hardness.as_ref().is_none_or(|indented| indented.fits(grid))

@@ -164,8 +164,8 @@ impl PreparedSurface {
         }
     }
 
-    /// Drops everything that earlier loads left except the memory of the path: plans of operators, coarser
-    /// grids, buffers.
+    /// Drops the plans of operators and the buffers of earlier loads, which would affect the rounding of the
+    /// next one.
     pub(super) fn forget_plans(&mut self) {
         self.problem.forget_plans();
         if let Some(sliding) = &mut self.sliding {

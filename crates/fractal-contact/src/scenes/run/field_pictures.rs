@@ -8,7 +8,7 @@ use contact_model::{Cells, FieldQuantity};
 use plots::{Chart, Curve, FieldPicture};
 use std::borrow::Cow;
 use std::io::Write as _;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// The folder in which values are kept until they are drawn, beside the stored results.
 const WAITING: &str = ".units/";
@@ -69,15 +69,15 @@ fn keep_bytes(out: &Path, file: FieldFile<'_>, bytes: &[u8]) -> Result<StoredFil
     StoredFile::of(out, name)
 }
 
-/// Draws the fields of all states, each quantity in one range. The values kept for drawing are removed once a
-/// result is complete.
+/// Draws the fields of all states, each quantity in one range. Once a result is complete it does not name the
+/// values kept for drawing any more; their files are returned, to be removed when the result is stored.
 pub(crate) fn draw(
     scene: &SceneFile,
     (model, surface): (&str, usize),
     cells: Cells,
     out: &Path,
     result: &mut ModelResult,
-) -> Result<()> {
+) -> Result<Vec<PathBuf>> {
     let file = |field, state, extension| FieldFile { field, model, surface, state, extension };
     let read = |field, state, components: usize| -> Option<Vec<Cow<'_, [f64]>>> {
         let name = format!("{WAITING}{}", file(field, state, EXTENSION));
@@ -132,15 +132,12 @@ pub(crate) fn draw(
             state.files.push(StoredFile::of(out, name)?);
         }
     }
-    if result.complete {
-        for state in &mut result.states {
-            for file in state.files.extract_if(.., |file| file.name.ends_with(EXTENSION)) {
-                // The file may already have been removed; it is not needed any more.
-                let _ = std::fs::remove_file(out.join(file.name));
-            }
-        }
+    let mut drawn = Vec::new();
+    for state in result.states.iter_mut().filter(|_| result.complete) {
+        let waiting = state.files.extract_if(.., |file| file.name.ends_with(EXTENSION));
+        drawn.extend(waiting.map(|file| out.join(file.name)));
     }
-    Ok(())
+    Ok(drawn)
 }
 
 /// Removes the values that a killed run kept for drawing.

@@ -1,5 +1,5 @@
-//! Stores a path that may be interrupted: its states so far, and a checkpoint from which the next load is
-//! solved to the same bits.
+//! Stores a run that may be interrupted: the states so far of a model on a surface, and a checkpoint from which
+//! the next load is solved to the same bits.
 
 use crate::scenes::read::Result;
 use crate::scenes::run::ModelResult;
@@ -22,7 +22,7 @@ pub(crate) struct Keeper<'a> {
     pub store: Option<&'a KeepResult<'a>>,
     pub checkpoint: Checkpoint,
     pub progress: &'a dyn Progress,
-    /// Name of the path in notes.
+    /// Name of the model and its surface in notes.
     pub name: String,
     /// Receives the number of its states that are solved.
     told_states: &'a StatesInHand<'a>,
@@ -46,63 +46,54 @@ impl<'a> Keeper<'a> {
         Self { store, checkpoint, progress, name, told_states, last, took, kept: 0, told: false }
     }
 
-    /// Keeps states that do not depend on each other.
-    ///
-    /// # Errors
-    /// What cannot be written.
-    pub fn keep(&mut self, result: &ModelResult) -> Result<()> {
-        self.told_states.solved(result.states.len());
-        if let Some(store) = self.store.filter(|_| self.last.elapsed() >= KEEP_EVERY) {
-            store(result)?;
-            self.last = Instant::now();
-        }
-        Ok(())
-    }
-
-    /// Restores a contact to the point at which a path was interrupted, and leaves the states before that in
-    /// the result (none where the path begins anew). A checkpoint that cannot be used is reported.
-    pub fn resume(&mut self, result: &mut ModelResult, contact: &mut dyn PreparedContact) {
-        let (done, unused) = self.resumed(result, contact);
-        (result.kept, self.kept) = (done, done);
-        result.states.truncate(done);
-        self.told_states.solved(done);
-        if let Some(unused) = unused {
-            contact.restart();
-            self.tell(result, format!("{unused}. It is not used: the path of {} begins anew", self.name));
-        }
-    }
-
-    /// The number of steps that are done, or why a checkpoint cannot be used.
-    fn resumed(
-        &self,
-        result: &ModelResult,
-        contact: &mut dyn PreparedContact,
-    ) -> (usize, Option<runs::Unused>) {
+    /// Restores a contact to the point at which it was interrupted, and leaves the states before that in the
+    /// result. A checkpoint that cannot be used is reported: a path then begins anew, and loads that do not
+    /// depend on each other keep their states.
+    pub fn resume(&mut self, result: &mut ModelResult, contact: &mut dyn PreparedContact, is_path: bool) {
         if self.store.is_none() {
-            return (0, None);
-        }
-        let unused = |reason: &str| (0, Some(self.checkpoint.unused(reason)));
-        match self.checkpoint.read() {
-            Ok(None) => (0, None),
-            Err(why) => (0, Some(why)),
-            Ok(Some((done, memory))) => {
-                let done = usize::try_from(done).unwrap_or(usize::MAX);
-                let states = result.states.get(..done).unwrap_or_default();
-                let whole = states.iter().enumerate().all(|(i, s)| s.index == i && s.converged().is_some());
-                if states.is_empty() || !whole {
-                    return unused("states or files of the path before it are missing or were changed");
-                }
-                match contact.recall(&PathMemory::from_bytes(memory)) {
-                    Ok(()) => (done, None),
-                    Err(error) => unused(&error.to_string()),
+            result.states.clear();
+        } else {
+            match self.recalled(result, contact) {
+                Ok(done) => result.states.truncate(done),
+                Err(unused) => {
+                    contact.restart();
+                    let then = if is_path {
+                        result.states.clear();
+                        format!("the path of {} begins anew", self.name)
+                    } else {
+                        format!("the loads of {} that are left begin anew", self.name)
+                    };
+                    self.tell(result, format!("{unused}. It is not used: {then}"));
                 }
             }
         }
+        let done = result.states.len();
+        (result.kept, self.kept) = (done, done);
+        self.told_states.solved(done);
     }
 
-    /// Stores the states of a path and its memory, where the last time was long ago or the path is
-    /// interrupted now. A failure to store them is reported once, and the path goes on.
-    pub fn keep_path(&mut self, result: &mut ModelResult, contact: &dyn PreparedContact, interrupted: bool) {
+    /// The number of states before the checkpoint, to which the contact is restored; 0 where there is none.
+    fn recalled(
+        &self,
+        result: &ModelResult,
+        contact: &mut dyn PreparedContact,
+    ) -> std::result::Result<usize, runs::Unused> {
+        let Some((done, memory)) = self.checkpoint.read()? else { return Ok(0) };
+        let done = usize::try_from(done).unwrap_or(usize::MAX);
+        let states = result.states.get(..done).unwrap_or_default();
+        if states.is_empty() || states.iter().enumerate().any(|(i, state)| state.index != i) {
+            let reason = "states before it, or their files, are missing or were changed";
+            return Err(self.checkpoint.unused(reason));
+        }
+        match contact.recall(&PathMemory::from_bytes(memory)) {
+            Ok(()) => Ok(done),
+            Err(error) => Err(self.checkpoint.unused(&error.to_string())),
+        }
+    }
+
+    /// Stores the states and the memory of the contact, where the last time was long ago or it is interrupted
+    /// now. A failure to store them is reported once, and the next load is solved.
+    pub fn keep(&mut self, result: &mut ModelResult, contact: &dyn PreparedContact, interrupted: bool) {
         self.told_states.solved(result.states.len());
         let done = result.states.len();
         let long = KEEP_EVERY.max(SHARE * self.took);
@@ -112,12 +103,12 @@ impl<'a> Keeper<'a> {
         let Some(store) = self.store else { return };
         let start = Instant::now();
         let kept = match contact.memory() {
-            Ok(None) => return,
+            Ok(None) => store(result),
             // The states first: a checkpoint is of no use without those before it.
             Ok(Some(memory)) => {
                 store(result).and_then(|()| self.checkpoint.write(done as u64, memory.bytes()))
             }
-            Err(error) => Err(runs::Error::model("memory of the path")(error)),
+            Err(error) => Err(runs::Error::model("memory of the loads")(error)),
         };
         match kept {
             Ok(()) => self.kept = done,
@@ -125,7 +116,7 @@ impl<'a> Keeper<'a> {
                 self.told = true;
                 let name = &self.name;
                 let text = format!(
-                    "{error}. The path of {name} goes on; an interruption would lose what follows its last checkpoint"
+                    "{error}. {name} goes on; an interruption would lose what follows its last checkpoint"
                 );
                 self.tell(result, text);
             }
@@ -134,15 +125,17 @@ impl<'a> Keeper<'a> {
         (self.last, self.took) = (Instant::now(), start.elapsed());
     }
 
-    /// A complete result needs no checkpoint.
+    /// A complete result needs no checkpoint. It is stored where what was stored of it before needs the
+    /// checkpoint, or `files` that are now to be removed.
     ///
     /// # Errors
     /// Where the result cannot be stored.
-    pub fn finish(&self, result: &ModelResult) -> Result<()> {
-        if let Some(store) = self.store.filter(|_| self.kept > 0 && result.complete) {
+    pub fn finish(&self, result: &ModelResult, files: bool) -> Result<()> {
+        let Some(store) = self.store.filter(|_| result.complete) else { return Ok(()) };
+        if self.kept > 0 || files {
             store(result)?;
-            self.checkpoint.remove();
         }
+        self.checkpoint.remove();
         Ok(())
     }
 

@@ -70,15 +70,20 @@ impl Job for SceneJob<'_> {
         let told = StatesInHand::new((self.name(), self.cost()), states, progress, stop);
         let mut keeper = Keeper::new(store, checkpoint, progress, self.name(), &told);
         let mut result = self.unit.solve(self.scene, self.out, begun, &mut keeper, &told)?;
+        let mut drawn = Vec::new();
         if self.draws {
             let (start, numerics) = (Instant::now(), self.unit.numerics(self.scene));
             let cells = cells(self.scene, numerics);
-            field_pictures::draw(self.scene, (model, surface), cells, self.out, &mut result)?;
+            drawn = field_pictures::draw(self.scene, (model, surface), cells, self.out, &mut result)?;
             result.seconds += start.elapsed().as_secs_f64();
         } else {
             result.complete = false;
         }
-        keeper.finish(&result)?;
+        keeper.finish(&result, !drawn.is_empty())?;
+        for file in drawn {
+            // It may already have been removed; it is not needed any more.
+            let _ = std::fs::remove_file(file);
+        }
         Ok(result)
     }
 

@@ -2,14 +2,14 @@
 
 use crate::scenes::plan::{GridComparison, ModelOnSurface, solved_map};
 use crate::scenes::read::{
-    Error, FieldFormat, HEIGHTS, LoadRequest, Numerics, PathPiece, Result, SceneFile, cells, distributed,
-    step_to, words,
+    Error, FieldFormat, HEIGHTS, LoadList, LoadRequest, Numerics, PathPiece, Result, SceneFile, cells,
+    distributed, step_to, words,
 };
 use crate::scenes::run::{
     Answer, FieldFile, FieldView, Keeper, ModelResult, Solved, StateRecord, StoredFile, Warning,
     field_pictures,
 };
-use contact_model::{Cells, ContactState, Field, FieldQuantity, LargestPull, Load, PreparedContact, Stop};
+use contact_model::{Cells, Field, FieldQuantity, LargestPull, Load, PreparedContact, Stop};
 use std::borrow::Cow;
 use std::path::Path;
 use std::time::Instant;
@@ -45,21 +45,23 @@ impl ModelOnSurface {
         let before = result.seconds;
         let prepared = numerics.model().prepare(&physics, seed);
         let mut contact = prepared.map_err(runs::Error::model(what()))?;
+        let is_path = matches!(scene.request, LoadRequest::Path(_));
+        // Loads that were complete have lost a file; those of a contact without a memory are solved each by
+        // itself.
+        let goes_on = is_path || !result.complete && contact.memory().is_ok_and(|memory| memory.is_some());
+        if goes_on {
+            keeper.resume(&mut result, contact.as_mut(), is_path);
+        }
+        result.complete = false;
+        let mut keep = |result: &mut ModelResult, contact: &dyn PreparedContact, interrupted: bool| {
+            result.seconds = before + start.elapsed().as_secs_f64();
+            keeper.keep(result, contact, interrupted);
+        };
         match &scene.request {
-            LoadRequest::Loads(_) => {
-                let mut keep = |result: &mut ModelResult| {
-                    result.seconds = before + start.elapsed().as_secs_f64();
-                    keeper.keep(result)
-                };
-                self.loads(scene, contact.as_mut(), out, stop, &mut result, &mut keep)?;
+            LoadRequest::Loads(loads) => {
+                self.loads(scene, contact.as_mut(), (loads, out), stop, &mut result, &mut keep)?;
             }
             LoadRequest::Path(pieces) => {
-                keeper.resume(&mut result, contact.as_mut());
-                let mut keep =
-                    |result: &mut ModelResult, contact: &dyn PreparedContact, interrupted: bool| {
-                        result.seconds = before + start.elapsed().as_secs_f64();
-                        keeper.keep_path(result, contact, interrupted);
-                    };
                 self.path(scene, contact.as_mut(), (pieces, out), stop, &mut result, &mut keep)?;
             }
         }
@@ -71,18 +73,16 @@ impl ModelOnSurface {
         &self,
         scene: &SceneFile,
         contact: &mut dyn PreparedContact,
-        out: &Path,
+        (requests, out): (&LoadList, &Path),
         stop: Stop<'_>,
         result: &mut ModelResult,
-        keep: &mut dyn FnMut(&mut ModelResult) -> Result<()>,
+        keep: &mut dyn FnMut(&mut ModelResult, &dyn PreparedContact, bool),
     ) -> Result<()> {
-        let LoadRequest::Loads(requests) = &scene.request else { return Ok(()) };
         let normalisation = contact.normalisation();
-        let missing: Vec<usize> =
-            (0..requests.values.len()).filter(|&i| result.states.iter().all(|s| s.index != i)).collect();
-        let load = |&index: &usize| requests.load(requests.values[index], &normalisation);
-        let loads = missing.iter().map(load).collect::<contact_model::Result<Vec<Load>>>();
+        let load = |&value: &f64| requests.load(value, &normalisation);
+        let loads = requests.values.iter().map(load).collect::<contact_model::Result<Vec<Load>>>();
         let numerics = self.numerics(scene);
+        // All loads, also of a run that goes on: each state on a coarser grid begins with the one before it.
         let comparison = match &loads {
             Ok(loads) if scene.requested.grid_error && matches!(numerics, Numerics::Bem3d(_)) => {
                 match GridComparison::solve(scene, numerics, scene.seed(self.surface), loads, stop) {
@@ -94,39 +94,39 @@ impl ModelOnSurface {
             }
             _ => None,
         };
-        let mut written = Ok(());
-        let mut answer = |place: usize, found: contact_model::Result<ContactState>| {
-            let index = missing[place];
+        for index in 0..requests.values.len() {
+            let place = result.states.partition_point(|state| state.index < index);
+            if result.states.get(place).is_some_and(|state| state.index == index) {
+                continue;
+            }
+            let found = match &loads {
+                Ok(loads) => contact.solve_until(loads[index], stop),
+                // A surface without an rms height has no F_bar: no load has an answer, and each row says so.
+                Err(error) => Err(error.clone()),
+            };
             let record = match found {
                 Ok(state) => {
                     let grid = comparison
                         .as_ref()
-                        .map(|comparison| comparison.errors(place, &state, &normalisation));
+                        .map(|comparison| comparison.errors(index, &state, &normalisation));
                     let warnings = Warning::of(scene, &state, grid.as_ref());
-                    self.recorded(scene, Solved { state, normalisation, warnings, grid }, out, index)
+                    self.recorded(scene, Solved { state, normalisation, warnings, grid }, out, index)?
                 }
                 Err(contact_model::Error::NotConverged { best }) => {
                     let state = best.with_fields(None).with_patches(None);
                     let solved = Solved { state, normalisation, warnings: Vec::new(), grid: None };
-                    Ok(StateRecord::new(index, Answer::State(Box::new(solved))))
+                    StateRecord::new(index, Answer::State(Box::new(solved)))
                 }
-                Err(other) => Ok(StateRecord::new(index, Answer::Refused(words::refusal(scene, &other)))),
+                Err(contact_model::Error::Stopped { .. }) => {
+                    keep(result, contact, true);
+                    return Ok(());
+                }
+                Err(other) => StateRecord::new(index, Answer::Refused(words::refusal(scene, &other))),
             };
-            written = record.and_then(|record| {
-                let place = result.states.partition_point(|s| s.index < index);
-                result.states.insert(place, record);
-                keep(result)
-            });
-            // A file that cannot be written ends the sweep; its error is the one that is returned.
-            if written.is_ok() { Ok(()) } else { Err(contact_model::Error::Stopped { best: None }) }
-        };
-        let swept = match loads {
-            Ok(loads) => contact.sweep(&loads, stop, &mut answer),
-            // A surface without an rms height has no F_bar: no load has an answer, and each row says so.
-            Err(error) => (0..missing.len()).try_for_each(|i| answer(i, Err(error.clone()))),
-        };
-        written?;
-        result.complete = swept.is_ok();
+            result.states.insert(place, record);
+            keep(result, contact, false);
+        }
+        result.complete = true;
         Ok(())
     }
 
@@ -334,11 +334,14 @@ mod tests {
         // Three files of each field, its values for the picture, and what the report shows of it.
         assert_eq!((kept.files.len(), kept.solved().unwrap().state.fields.is_none()), (10, true));
         let mut result = ModelResult { states: vec![kept], complete: true, ..ModelResult::default() };
-        field_pictures::draw(&scene, ("bem3d", 0), [3, 2].into(), dir.path(), &mut result).unwrap();
+        let drawn = field_pictures::draw(&scene, ("bem3d", 0), [3, 2].into(), dir.path(), &mut result);
+        let drawn = drawn.unwrap();
         let files = &result.states[0].files;
         assert_eq!((files.len(), files.iter().filter(|file| file.is_hidden()).count()), (10, 2));
         assert!(files.iter().all(|file| file.is_whole(dir.path())), "{files:?}");
-        assert_eq!(std::fs::read_dir(dir.path().join(".units")).unwrap().count(), 2);
+        // What the report shows, and the values that were drawn.
+        assert_eq!(std::fs::read_dir(dir.path().join(".units")).unwrap().count(), 4);
+        assert!(drawn.len() == 2 && drawn.iter().all(|file| file.exists()), "{drawn:?}");
         let scan = |name: &str| {
             surface_io::Scan::read(dir.path().join(name), &surface_io::ReadOptions::default()).unwrap()
         };
