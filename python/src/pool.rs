@@ -1,7 +1,7 @@
 //! Solves on the threads of one pool, without the interpreter's lock, and with Ctrl-C heard meanwhile.
 
 use crate::numbers::{Single, of_value_or_type, shown};
-use fractal_contact::runs::MOST_THREADS;
+use fractal_contact::runs::{JOB_STACK, MOST_THREADS};
 use pyo3::exceptions::{PyRuntimeError, PyTypeError};
 use pyo3::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
@@ -32,7 +32,7 @@ fn pool() -> PyResult<Arc<ThreadPool>> {
 }
 
 fn new_pool(threads: usize) -> PyResult<Arc<ThreadPool>> {
-    let built = ThreadPoolBuilder::new().num_threads(threads).build();
+    let built = ThreadPoolBuilder::new().num_threads(threads).stack_size(JOB_STACK).build();
     built.map(Arc::new).map_err(|error| PyRuntimeError::new_err(error.to_string()))
 }
 

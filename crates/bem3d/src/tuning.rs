@@ -421,6 +421,8 @@ pub const LISTED_CANDIDATES: usize = 8;
 pub const MAGNIFIED: f64 = 1e10;
 /// Largest number of loads in the search for a mean gap.
 pub const GAP_LOADS: usize = 60;
+/// Number of these loads under which cells flow, before the search goes on in the approach.
+pub const FLOWING_GAP_LOADS: usize = 10;
 /// Largest step of ln F between two of these loads.
 pub const GAP_STEP: f64 = 3.0;
 

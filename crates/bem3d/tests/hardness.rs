@@ -191,6 +191,34 @@ fn a_body_is_withdrawn_from_its_indentation() {
     assert!(go(Load::MeanGap(0.99 * touching)).force > 0.0);
 }
 
+/// Mean gaps at which nearly every cell in contact flows: the force of a state hardly changes with its gap, and
+/// its stiffness is asked for. Each gap is met, the force falls with it, and an approach by small steps of the
+/// gap gives the same forces.
+#[test]
+fn mean_gaps_of_soft_bodies_are_found() {
+    let mut surface = SelfAffine::new(2.2, 1.0, 0.01).unwrap();
+    surface.short_cutoff = None;
+    let mut scene = Scene::new(Surface::SelfAffine(surface), 1.0);
+    scene.effects.boundary = Boundary::Periodic;
+    scene.effects.hardness = Hardness::Limit { pressure: 2e-3 };
+    (scene.outputs.mean_gap, scene.outputs.area) = (true, true);
+    let model = Bem3d { cells: 32, ..Bem3d::default() };
+    for stiffness in [false, true] {
+        scene.outputs.stiffness = stiffness;
+        let mut contact = model.prepare(&scene, 1).unwrap();
+        let mut force = 0.0;
+        for i in 0..12 {
+            let gap = 0.024 - 0.002 * f64::from(i);
+            let state = contact.solve(Load::MeanGap(gap)).unwrap();
+            assert!((state.mean_gap.unwrap() - gap).abs() <= 1e-6 * 0.01, "{gap}: {:?}", state.mean_gap);
+            assert!(state.force > force, "{gap}: {} after {force}", state.force);
+            force = state.force;
+            let alone = model.prepare(&scene, 1).unwrap().solve(Load::MeanGap(gap)).unwrap();
+            assert!((alone.force / force - 1.0).abs() < 1e-3, "{gap}: {} {force}", alone.force);
+        }
+    }
+}
+
 /// Steps of a loop in each direction.
 const STEPS: usize = 200;
 

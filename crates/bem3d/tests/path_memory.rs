@@ -42,6 +42,46 @@ fn check(name: &str, scene: &Scene, cells: usize, path: &[Step]) {
     }
 }
 
+/// Solves loads that do not depend on each other without interruption, and from the memory after each of them.
+fn check_loads(name: &str, scene: &Scene, cells: usize, loads: &[Load]) {
+    let mut contact = prepare(scene, cells);
+    let solved = |load: &Load| (contact.solve(*load).unwrap(), contact.memory().unwrap().unwrap());
+    let whole: Vec<(ContactState, PathMemory)> = loads.iter().map(solved).collect();
+    for (done, (_, memory)) in whole.iter().enumerate() {
+        let mut other = prepare(scene, cells);
+        // What was solved before leaves no trace.
+        other.advance(Step::normal(0.0, loads[0])).unwrap();
+        other.recall(memory).unwrap();
+        for (i, load) in loads.iter().enumerate().skip(done + 1) {
+            assert_eq!(other.solve(*load).unwrap(), whole[i].0, "{name}: load {i} after load {done}");
+            assert_eq!(other.memory().unwrap().as_ref(), Some(&whole[i].1), "{name}, load {i}");
+        }
+    }
+}
+
+#[test]
+fn loads_without_a_path() {
+    let forces = [1e-4, 4e-3, 2e-2, 1e-3, 8e-3].map(Load::Force);
+    let mut scene = Scene::new(rough(0.7, 0.01), 1.0);
+    (scene.outputs.stiffness, scene.outputs.area) = (true, true);
+    check_loads("elastic", &scene, 129, &forces);
+    scene.effects.hardness = Hardness::Limit { pressure: 0.05 };
+    check_loads("hardness", &scene, 65, &forces);
+    scene.effects.hardness = Hardness::Off;
+    let approaches = [0.004, 0.008, 0.012, 0.006].map(Load::Approach);
+    for adhesion in [
+        Adhesion::ShortRange { work: 1e-5 },
+        Adhesion::FiniteRange { work: 4e-5, range: 3e-3, law: AdhesionLaw::Exponential },
+    ] {
+        scene.effects.adhesion = adhesion;
+        check_loads("adhesion", &scene, 49, &approaches);
+    }
+    scene.effects.adhesion = Adhesion::Off;
+    scene.effects.boundary = Boundary::Periodic;
+    scene.outputs.mean_gap = true;
+    check_loads("mean gaps", &scene, 64, &[0.02, 0.012, 0.008, 0.016].map(Load::MeanGap));
+}
+
 /// Follows a path that is asked to stop at some poll, for polls from the first to the last one, each later than
 /// the one before by a share `1/finer` of it. The path then stands where the last finished step left it, and
 /// goes on to the states of the path that nobody stopped.
@@ -207,7 +247,6 @@ fn memories_that_are_not_of_the_surface_are_refused() {
     let adhesive = memory(&scene, 65);
     scene.effects.adhesion = Adhesion::Off;
     let mut contact = prepare(&scene, 65);
-    assert_eq!(contact.memory(), Ok(None), "no path has begun");
     for other in [&larger, &plastic, &adhesive] {
         assert!(contact.recall(other).is_err());
     }

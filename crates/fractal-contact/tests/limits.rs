@@ -34,6 +34,17 @@ fn said(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned() + &String::from_utf8_lossy(&output.stdout)
 }
 
+/// The threads of jobs have stacks of their own size, whatever the environment asks for.
+#[test]
+fn the_environment_does_not_take_the_stack() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = |name: &str| dir.path().join(name).to_str().unwrap().to_owned();
+    std::fs::write(path("scene.toml"), SCENE).unwrap();
+    let arguments = ["run", &path("scene.toml"), "--out", &path("out"), "--threads", "2"];
+    let output = Command::new(PROGRAM).args(arguments).env("RUST_MIN_STACK", "1").output().unwrap();
+    assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+}
+
 #[test]
 fn numbers_beyond_every_machine_are_refused_by_name() {
     let dir = tempfile::tempdir().unwrap();

@@ -319,6 +319,10 @@ fn a_run_that_is_stopped_at_any_poll_ends_with_the_same_bytes() {
             let (out, asked) = (dir.path().join("out"), AtomicUsize::new(0));
             let stop = || asked.fetch_add(1, Ordering::Relaxed) >= polls;
             let stopped = run_until(&scene, &out, &stop).unwrap().stopped;
+            // A run that is stopped before it begins leaves what there is.
+            let before = names(&out);
+            run_until(&scene, &out, &|| true).unwrap();
+            assert_eq!(names(&out), before, "{name}: {polls}");
             let resumed = run_whole(&scene, &out);
             assert!(resumed.notes.iter().all(|note| !note.contains("anew")), "{name}: {:?}", resumed.notes);
             for ((file, found), (_, wanted)) in files(&out).iter().zip(&wanted) {

@@ -5,7 +5,7 @@ use crate::error::Error;
 use crate::progress::Progress;
 use crate::shard::largest_first;
 use crate::store::Store;
-use crate::threads::granted_pool;
+use crate::threads::{JOB_STACK, granted_pool};
 use contact_model::Stop;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -34,7 +34,7 @@ impl Threads {
 
 /// Does some work on one thread, whatever the pool around it, for measurements of time.
 pub fn on_one_thread<T: Send>(work: impl FnOnce() -> T + Send) -> T {
-    match granted_pool(1, 0) {
+    match granted_pool(1, JOB_STACK) {
         Some(pool) => pool.install(work),
         // A system that grants no thread has one, this one.
         None => work(),
@@ -73,7 +73,7 @@ pub fn run_jobs<T: Send + Sync, E: Send + Sync>(
             let _ = results[i].set(result);
         }
     };
-    match granted_pool(total.clamp(1, useful), 0) {
+    match granted_pool(total.clamp(1, useful), JOB_STACK) {
         Some(pool) => {
             pool.broadcast(|worker| {
                 if worker.index() < jobs.max(1) {

@@ -65,4 +65,4 @@ pub use reporter::Reporter;
 pub use shard::{MOST_SHARDS, Shard, ShardChoice, TASKS, assign, largest_first};
 pub use store::{Pack, PackHead, Store, fnv1a_128};
 pub use terminal::{folded, print, print_error};
-pub use threads::{MOST_THREADS, THREADS_VARIABLE, granted_pool, grants_a_thread, with_threads};
+pub use threads::{JOB_STACK, MOST_THREADS, THREADS_VARIABLE, granted_pool, grants_a_thread, with_threads};

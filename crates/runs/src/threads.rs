@@ -20,6 +20,10 @@ pub const THREADS_VARIABLE: &str = "RAYON_NUM_THREADS";
 /// Stack of a program's thread: what the first thread of a process has.
 const STACK: usize = 8 << 20;
 
+/// Stack of a thread for jobs, in bytes: what the standard library gives without `RUST_MIN_STACK`, which could
+/// ask for too little.
+pub const JOB_STACK: usize = 2 << 20;
+
 /// Runs a program in a pool of its own: one thread per core, or as many as `asked`, the value of
 /// [`THREADS_VARIABLE`], says.
 ///
@@ -49,20 +53,17 @@ pub fn with_threads<T: Send>(asked: Option<&OsStr>, work: impl FnOnce() -> T + S
 }
 
 /// A pool of `threads` threads, or of half as many, a quarter and so on, as the system grants; `None` where
-/// it grants none. Their stacks of `stack` bytes (0: the default) take a quarter of a limited address space
-/// at most.
+/// it grants none. Their stacks of `stack` bytes take a quarter of a limited address space at most.
 pub fn granted_pool(threads: usize, stack: usize) -> Option<ThreadPool> {
     /// Threads of a pool that could not be filled need a moment to end: until then their stacks are taken.
     const PAUSE: Duration = Duration::from_millis(50);
     /// Part of the address space for stacks. A thread that is granted and finds no room to begin in ends the
     /// process: the limit is not to be tried.
     const PART: u64 = 4;
-    let room = address_space().filter(|_| stack > 0).map(|left| (left / PART / stack as u64) as usize);
+    let room = address_space().map(|left| (left / PART / stack.max(1) as u64) as usize);
     let mut threads = threads.clamp(1, room.unwrap_or(MOST_THREADS).clamp(1, MOST_THREADS));
     loop {
-        let builder = ThreadPoolBuilder::new().num_threads(threads);
-        let builder = if stack > 0 { builder.stack_size(stack) } else { builder };
-        if let Ok(pool) = builder.build() {
+        if let Ok(pool) = ThreadPoolBuilder::new().num_threads(threads).stack_size(stack).build() {
             return Some(pool);
         }
         if threads == 1 {
@@ -100,6 +101,6 @@ mod tests {
     #[test]
     fn a_stack_that_no_system_grants_leaves_the_calling_thread() {
         assert!(granted_pool(4, usize::MAX / 4).is_none());
-        assert_eq!(granted_pool(2, 0).unwrap().current_num_threads(), 2);
+        assert_eq!(granted_pool(2, JOB_STACK).unwrap().current_num_threads(), 2);
     }
 }

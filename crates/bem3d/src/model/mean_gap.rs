@@ -3,10 +3,10 @@
 
 use super::certificate::LoadError;
 use super::options::NAME;
-use super::prepared::PreparedSurface;
+use super::prepared::{PreparedSurface, Tangent};
 use super::sliding::Sliding;
 use crate::active_set::{Bounds, Control, Solved};
-use crate::tuning::{GAP_LOADS, GAP_STEP};
+use crate::tuning::{FLOWING_GAP_LOADS, GAP_LOADS, GAP_STEP};
 use contact_model::{ContactState, Error, Result, Status, Stop};
 
 impl PreparedSurface {
@@ -23,8 +23,8 @@ impl PreparedSurface {
 
     /// The state at a nondimensional mean gap, by Newton's method in ln F where the stiffness is known and
     /// secants where it is not: the gap falls about linearly with ln F. It is met to the tolerance, in rms
-    /// heights. Where every cell in contact is at the hardness one force belongs to a range of gaps, and the search
-    /// goes on in the approach.
+    /// heights. Where cells at the hardness carry nearly all of the force, one force belongs to a range of gaps,
+    /// and the search goes on in the approach.
     pub(super) fn at_mean_gap(&mut self, asked: f64, stop: Stop<'_>) -> Result<ContactState> {
         let first = self.problem.candidates.range().first;
         if asked >= self.mean - first {
@@ -44,35 +44,23 @@ impl PreparedSurface {
             return Err(Error::unsupported(NAME, what));
         }
         self.begin_count();
-        let (limits, side) = (self.limits(), (self.problem.grid().count() as f64).sqrt());
+        let side = (self.problem.grid().count() as f64).sqrt();
         // A wave of the rms height and the length of the map closes at about side x rms.
         let mut x = self.last.as_ref().map_or(0.1 * side, |last| last.force).ln();
         // With a hardness no force reaches that of all cells at it; without, this is infinite.
         let (mut low, mut high) = (f64::NEG_INFINITY, self.capacity().ln());
         x = x.min(high - GAP_STEP);
-        let mut control = Control::Force(x.exp());
         // Approaches at which the gap is too large, and too small.
-        let mut approaches = [f64::NEG_INFINITY, f64::INFINITY];
+        let mut approaches = [first, f64::INFINITY];
         let mut before: Option<(f64, f64)> = None;
-        let mut followed: Option<(f64, f64)> = None;
         let mut steps = 0;
-        for _ in 0..GAP_LOADS {
-            let (mut solved, tangent) = self.settle(control, limits, stop);
-            steps += solved.steps;
-            let miss = self.gap_of(&solved) - asked;
-            let met = miss.abs() <= limits.tolerance * limits.height.unwrap_or(self.mean);
-            if met || solved.status != Status::Converged || stop.stops() {
-                solved.steps = steps;
-                let k = match &tangent {
-                    Some(tangent) => self.stiffest(&solved, Some(tangent)),
-                    // A secant between the loads tried would be too small: the force is convex.
-                    None => self.rough_stiffness(&solved, stop),
-                };
-                let error = self.force_error(&solved, k, miss.abs());
-                let error = LoadError { load: miss.abs() / limits.height.unwrap_or(self.mean), ..error };
-                let slid = self.slide(&solved, stop)?;
-                return self.state(solved, tangent, error, slid, stop);
+        for load in 0..GAP_LOADS {
+            let tried = self.try_gap(asked, Control::Force(x.exp()), stop);
+            steps += tried.solved.steps;
+            if tried.ends {
+                return self.at_gap(tried, steps, stop);
             }
+            let GapTried { solved, tangent, miss, .. } = tried;
             let (force, d): (f64, f64) = (solved.p.iter().sum(), solved.d);
             if miss > 0.0 {
                 low = low.max(x);
@@ -81,45 +69,119 @@ impl PreparedSurface {
                 high = high.min(x);
                 approaches[1] = d.min(approaches[1]);
             }
-            let reached = self.problem.bounds.is_reached(&solved.p);
-            if matches!(control, Control::Approach(_)) || reached && self.responding(&solved).cells.is_empty()
-            {
-                // Cells that begin to flow are in the secant and not in the tangent.
-                let tangent_slope = tangent.as_ref().map_or(1.0, |t| self.magnification(t.stiffness.value));
-                let secant = followed.map_or(f64::NAN, |(d0, miss0)| (d - d0) / (miss0 - miss));
-                let slope = if secant.is_finite() && secant > 0.0 { secant } else { tangent_slope };
-                followed = Some((d, miss));
-                let next = d + miss * slope;
-                let [far, near] = approaches;
-                let within = next > far && next < near;
-                control = Control::Approach(if within { next } else { f64::midpoint(far, near) });
-                self.remember(solved, tangent);
-                continue;
-            }
             let slope = match (&tangent, before) {
                 (Some(t), _) => t.stiffness.value * self.magnification(t.stiffness.value) / force,
                 (None, Some((x0, miss0))) if (miss0 - miss).abs() > 0.0 => (x - x0) / (miss0 - miss),
                 _ => 1.0 / self.mean,
             };
-            before = Some((x, miss));
             let next = x + (miss * slope).clamp(-GAP_STEP, GAP_STEP);
+            let (within, bracketed) = (next > low && next < high, low.is_finite() && high.is_finite());
+            let flows = self.problem.bounds.is_reached(&solved.p);
+            let in_approach = flows
+                && (self.responding(&solved).cells.is_empty()
+                    || bracketed && !within
+                    || load >= FLOWING_GAP_LOADS);
+            before = Some((x, miss));
             self.remember(solved, tangent);
-            x = if next > low && next < high {
+            if in_approach {
+                return self.at_gap_by_approach(asked, approaches, steps, stop);
+            }
+            x = if within {
                 next
-            } else if low.is_finite() && high.is_finite() {
-                if reached {
-                    control = Control::Approach(f64::midpoint(approaches[0], approaches[1]));
-                    continue;
-                }
+            } else if bracketed {
                 f64::midpoint(low, high)
             } else {
                 x + GAP_STEP.copysign(miss)
             };
-            control = Control::Force(x.exp());
         }
+        Err(self.no_such_gap(asked)?)
+    }
+
+    /// The same by approaches between one at which the gap is too large and one at which it is too small, if
+    /// that is known.
+    fn at_gap_by_approach(
+        &mut self,
+        asked: f64,
+        [mut far, mut near]: [f64; 2],
+        mut steps: usize,
+        stop: Stop<'_>,
+    ) -> Result<ContactState> {
+        let first = self.problem.candidates.range().first;
+        let mut last = None;
+        // How much the gap at an approach is too large; 0 ends the search.
+        let mut miss = |d: f64| {
+            if d <= first {
+                return self.mean - first - asked;
+            }
+            let tried = self.try_gap(asked, Control::Approach(d), stop);
+            steps += tried.solved.steps;
+            if tried.ends {
+                last = Some(tried);
+                return 0.0;
+            }
+            self.remember(tried.solved, tried.tangent);
+            tried.miss
+        };
+        let mut step = far - first + asked.abs() + f64::MIN_POSITIVE;
+        for _ in 0..GAP_LOADS {
+            if near.is_finite() {
+                break;
+            }
+            let d = far + step;
+            if miss(d) > 0.0 {
+                far = d
+            } else {
+                near = d
+            }
+            step *= 2.0;
+        }
+        numerics::root::between(far, near, miss);
+        match last {
+            Some(tried) => self.at_gap(tried, steps, stop),
+            None => Err(self.no_such_gap(asked)?),
+        }
+    }
+
+    /// Solves for a load in the search for a mean gap.
+    fn try_gap(&mut self, asked: f64, control: Control, stop: Stop<'_>) -> GapTried {
+        let limits = self.limits();
+        let (solved, tangent) = self.settle(control, limits, stop);
+        let miss = self.gap_of(&solved) - asked;
+        let met = miss.abs() <= limits.tolerance * limits.height.unwrap_or(self.mean);
+        let ends = met || solved.status != Status::Converged || stop.stops();
+        GapTried { solved, tangent, miss, ends }
+    }
+
+    /// The state of the load that ended the search, after a number of steps.
+    fn at_gap(&mut self, tried: GapTried, steps: usize, stop: Stop<'_>) -> Result<ContactState> {
+        let GapTried { mut solved, tangent, miss, .. } = tried;
+        solved.steps = steps;
+        let k = match &tangent {
+            Some(tangent) => self.stiffest(&solved, Some(tangent)),
+            // A secant between the loads tried would be too small: the force is convex.
+            None => self.rough_stiffness(&solved, stop),
+        };
+        let error = self.force_error(&solved, k, miss.abs());
+        let error = LoadError { load: miss.abs() / self.limits().height.unwrap_or(self.mean), ..error };
+        let slid = self.slide(&solved, stop)?;
+        self.state(solved, tangent, error, slid, stop)
+    }
+
+    /// The error for a mean gap that no load gives.
+    fn no_such_gap(&self, asked: f64) -> Result<Error> {
         let units = self.nondimensional;
         let value = units.approach(asked.abs())?.copysign(asked);
         let min = if self.has_complete_contact() { 0.0 } else { f64::NEG_INFINITY };
-        Err(Error::OutOfRange { name: "mean gap".into(), value, min, max: units.approach(self.mean)? })
+        Ok(Error::OutOfRange { name: "mean gap".into(), value, min, max: units.approach(self.mean)? })
     }
+}
+
+/// A load in the search for a mean gap.
+struct GapTried {
+    solved: Solved,
+    tangent: Option<Tangent>,
+    /// How much its gap is too large.
+    miss: f64,
+    /// Whether it ends the search: the gap is met, or the load has not converged, or was stopped.
+    ends: bool,
 }

@@ -54,7 +54,12 @@ pub fn run(
     let units = units(scene);
     let jobs = scene_jobs(scene, &options.out);
     let done = run_stored(&title(scene), &jobs, &store, threads, progress, stop);
-    let results = done.into_iter().map(Option::transpose).collect::<Result<Vec<_>>>()?;
+    let mut results = done.into_iter().map(Option::transpose).collect::<Result<Vec<_>>>()?;
+    for (result, job) in results.iter_mut().zip(&jobs) {
+        if result.is_none() {
+            *result = job.stored(&store);
+        }
+    }
     let mut outcome =
         SceneOutcome { requested: scene.request.count() * units.len(), ..SceneOutcome::default() };
     let solved: Vec<SolvedUnit<'_>> = (units.iter().zip(&results))

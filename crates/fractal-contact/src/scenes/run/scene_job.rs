@@ -4,7 +4,7 @@ use crate::scenes::plan::{FORMAT, ModelOnSurface, calibration};
 use crate::scenes::read::{Error, Result, SceneFile, cells};
 use crate::scenes::run::{Keeper, ModelResult, field_pictures};
 use contact_model::Stop;
-use runs::{Checkpoint, Job, JobList, Progress, ResultKind, Silent, StatesInHand};
+use runs::{Checkpoint, Job, JobList, Progress, ResultKind, Silent, StatesInHand, Store};
 use std::path::Path;
 use std::time::Instant;
 
@@ -90,6 +90,20 @@ impl Job for SceneJob<'_> {
     /// A result counts as absent where a state or a file is missing or changed.
     fn is_whole(&self, result: &ModelResult) -> bool {
         result.complete && result.states.iter().all(|state| state.is_whole(self.out))
+    }
+}
+
+impl SceneJob<'_> {
+    /// What the store holds of a job that a stopped run has not begun: its result, or the states of the newest
+    /// part of it.
+    pub fn stored(&self, store: &Store) -> Option<ModelResult> {
+        let key = self.stored_key();
+        let stored = || store.texts(&key).filter_map(|text| Self::KIND.decode(&text));
+        let mut found = stored().find(|result| self.is_whole(result)).or_else(|| stored().next())?;
+        found.states.retain(|state| state.is_whole(self.out));
+        found.complete &= found.states.len() == self.scene.request.count();
+        found.kept = found.states.len();
+        Some(found)
     }
 }
 
