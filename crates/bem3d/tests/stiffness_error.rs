@@ -1,7 +1,9 @@
 //! The estimated error of the stiffness covers the true one: loose solves compared with tight ones.
 
 use bem3d::{Bem3d, Method};
-use contact_model::{Body, ContactModel, Coupling, Friction, Load, Pair, Scene, SelfAffine, Step, Surface};
+use contact_model::{
+    Body, Boundary, ContactModel, Coupling, Friction, Load, Pair, Scene, SelfAffine, Step, Surface,
+};
 
 /// Coverage: share of the true errors that lie inside their estimate.
 const COVERAGE: f64 = 0.9;
@@ -52,5 +54,27 @@ fn the_stiffness_under_full_coupling_meets_its_tolerance() {
         let load = Load::Force(0.05 / 40.0 * f64::from(step));
         let state = contact.advance(Step::normal(f64::from(step), load)).unwrap();
         assert!(state.report.certificate.meets(model.tolerance), "{}", state.report.certificate);
+    }
+}
+
+/// At a prescribed mean gap the stiffness is that of the gap asked for, and not only of the gap that was reached.
+#[test]
+fn of_a_prescribed_mean_gap() {
+    for seed in 0..3 {
+        let mut surface = SelfAffine::new(2.3, 1.0, 0.01).unwrap();
+        surface.roll_off = Some(2.0);
+        let mut scene = Scene::new(Surface::SelfAffine(surface), 1.0);
+        scene.effects.boundary = Boundary::Periodic;
+        let solved = |tolerance: f64| {
+            let mut contact =
+                Bem3d { cells: 96, tolerance, ..Bem3d::default() }.prepare(&scene, seed).unwrap();
+            let gaps = [0.018, 0.015, 0.01, 0.006, 0.004, 0.002];
+            gaps.map(|gap| contact.solve(Load::MeanGap(gap)).unwrap())
+        };
+        for (rough, tight) in solved(1e-3).iter().zip(&solved(1e-9)) {
+            let (k, exact) = (rough.stiffness.unwrap(), tight.stiffness.unwrap());
+            let error = rough.report.certificate.error_of_stiffness().unwrap_or(0.0);
+            assert!((k / exact - 1.0).abs() <= error + 1e-4, "seed {seed}: {k} {exact} {error}");
+        }
     }
 }

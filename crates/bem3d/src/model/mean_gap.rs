@@ -6,7 +6,7 @@ use super::options::NAME;
 use super::prepared::{PreparedSurface, Tangent};
 use super::sliding::Sliding;
 use crate::active_set::{Bounds, Control, Solved};
-use crate::tuning::{FLOWING_GAP_LOADS, GAP_LOADS, GAP_STEP};
+use crate::tuning::{FLOWING_GAP_LOADS, GAP_LOADS, GAP_STEP, POLISHED_GAP};
 use contact_model::{ContactState, Error, Result, Status, Stop};
 
 impl PreparedSurface {
@@ -54,8 +54,9 @@ impl PreparedSurface {
         let mut approaches = [first, f64::INFINITY];
         let mut before: Option<(f64, f64)> = None;
         let mut steps = 0;
+        let mut polish = self.outputs.needs_stiffness();
         for load in 0..GAP_LOADS {
-            let tried = self.try_gap(asked, Control::Force(x.exp()), stop);
+            let tried = self.try_gap(asked, Control::Force(x.exp()), &mut polish, stop);
             steps += tried.solved.steps;
             if tried.ends {
                 return self.at_gap(tried, steps, stop);
@@ -113,7 +114,7 @@ impl PreparedSurface {
             if d <= first {
                 return self.mean - first - asked;
             }
-            let tried = self.try_gap(asked, Control::Approach(d), stop);
+            let tried = self.try_gap(asked, Control::Approach(d), &mut false, stop);
             steps += tried.solved.steps;
             if tried.ends {
                 last = Some(tried);
@@ -142,12 +143,15 @@ impl PreparedSurface {
         }
     }
 
-    /// Solves for a load in the search for a mean gap.
-    fn try_gap(&mut self, asked: f64, control: Control, stop: Stop<'_>) -> GapTried {
+    /// Solves for a load in the search for a mean gap. With `polish`, one that meets the gap is followed by one
+    /// more, unless it does so by far: the stiffness can depend more on the gap than the force does.
+    fn try_gap(&mut self, asked: f64, control: Control, polish: &mut bool, stop: Stop<'_>) -> GapTried {
         let limits = self.limits();
         let (solved, tangent) = self.settle(control, limits, stop);
         let miss = self.gap_of(&solved) - asked;
-        let met = miss.abs() <= limits.tolerance * limits.height.unwrap_or(self.mean);
+        let bound = limits.tolerance * limits.height.unwrap_or(self.mean);
+        let met = miss.abs() <= bound && !(*polish && miss.abs() > POLISHED_GAP * bound);
+        *polish &= miss.abs() > bound;
         let ends = met || solved.status != Status::Converged || stop.stops();
         GapTried { solved, tangent, miss, ends }
     }

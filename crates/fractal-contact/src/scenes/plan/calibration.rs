@@ -20,6 +20,9 @@ const WARM_CELLS: usize = 17;
 const CALIBRATION_LOADS: usize = 4;
 /// It stops by itself after this time.
 const CALIBRATION_TIME: Duration = Duration::from_secs(3);
+/// Memory of a state until the tables and the report are written, in bytes: a path of 10 000 states takes 8500
+/// for each.
+const BYTES_PER_STATE: f64 = 1e4;
 /// Time of one load over cells a side: N^1.9 to N^2.6 as measured by `cargo xtask bench --scaling`.
 pub(crate) const TIME_EXPONENT: f64 = 2.3;
 /// Applications of the operator over cells a side, as measured by the same.
@@ -188,6 +191,9 @@ pub(crate) fn least_memory(scene: &SceneFile, numerics: &Numerics) -> f64 {
 
 /// As many jobs at the same time as there is memory for.
 pub(crate) fn jobs_in_memory(scene: &SceneFile, most: usize) -> Result<usize> {
+    let states: usize =
+        scene.models.iter().map(|numerics| scene.surfaces_of(numerics) * scene.request.count()).sum();
+    runs::threads_for_memory(1, BYTES_PER_STATE * states as f64, "number of states", states)?;
     let mut jobs = most;
     for numerics in &scene.models {
         let name = if numerics.boundary_elements().is_some() { "cells" } else { "elements" };
