@@ -423,7 +423,9 @@ pub const MAGNIFIED: f64 = 1e10;
 pub const GAP_LOADS: usize = 60;
 /// Number of these loads under which cells flow, before the search goes on in the approach.
 pub const FLOWING_GAP_LOADS: usize = 10;
-/// A mean gap is met by far below this share of its tolerance.
+/// Largest number of loads that meet a mean gap and are followed by another one ...
+pub const POLISHING_LOADS: usize = 3;
+/// ... because they do not meet it to this share of its tolerance.
 pub const POLISHED_GAP: f64 = 0.01;
 /// Largest step of ln F between two of these loads.
 pub const GAP_STEP: f64 = 3.0;

@@ -6,7 +6,7 @@ use super::options::NAME;
 use super::prepared::{PreparedSurface, Tangent};
 use super::sliding::Sliding;
 use crate::active_set::{Bounds, Control, Solved};
-use crate::tuning::{FLOWING_GAP_LOADS, GAP_LOADS, GAP_STEP, POLISHED_GAP};
+use crate::tuning::{FLOWING_GAP_LOADS, GAP_LOADS, GAP_STEP, POLISHED_GAP, POLISHING_LOADS};
 use contact_model::{ContactState, Error, Result, Status, Stop};
 
 impl PreparedSurface {
@@ -54,7 +54,8 @@ impl PreparedSurface {
         let mut approaches = [first, f64::INFINITY];
         let mut before: Option<(f64, f64)> = None;
         let mut steps = 0;
-        let mut polish = self.outputs.needs_stiffness();
+        // Loads that meet the gap and are followed by another one.
+        let mut polish = POLISHING_LOADS;
         for load in 0..GAP_LOADS {
             let tried = self.try_gap(asked, Control::Force(x.exp()), &mut polish, stop);
             steps += tried.solved.steps;
@@ -70,19 +71,26 @@ impl PreparedSurface {
                 high = high.min(x);
                 approaches[1] = d.min(approaches[1]);
             }
+            let complete = self.is_complete(&solved);
+            if complete {
+                // Every force from that of the first complete contact on has the gap 0.
+                let least = solved.p.iter().copied().fold(f64::INFINITY, f64::min);
+                high = high.min((force - least * solved.p.len() as f64).ln());
+            }
             let slope = match (&tangent, before) {
                 (Some(t), _) => t.stiffness.value * self.magnification(t.stiffness.value) / force,
                 (None, Some((x0, miss0))) if (miss0 - miss).abs() > 0.0 => (x - x0) / (miss0 - miss),
                 _ => 1.0 / self.mean,
             };
             let next = x + (miss * slope).clamp(-GAP_STEP, GAP_STEP);
-            let (within, bracketed) = (next > low && next < high, low.is_finite() && high.is_finite());
+            let bracketed = low.is_finite() && high.is_finite();
+            let within = next > low && next < high && !(complete && bracketed);
             let flows = self.problem.bounds.is_reached(&solved.p);
             let in_approach = flows
                 && (self.responding(&solved).cells.is_empty()
                     || bracketed && !within
                     || load >= FLOWING_GAP_LOADS);
-            before = Some((x, miss));
+            before = (!complete).then_some((x, miss));
             self.remember(solved, tangent);
             if in_approach {
                 return self.at_gap_by_approach(asked, approaches, steps, stop);
@@ -114,7 +122,7 @@ impl PreparedSurface {
             if d <= first {
                 return self.mean - first - asked;
             }
-            let tried = self.try_gap(asked, Control::Approach(d), &mut false, stop);
+            let tried = self.try_gap(asked, Control::Approach(d), &mut 0, stop);
             steps += tried.solved.steps;
             if tried.ends {
                 last = Some(tried);
@@ -143,15 +151,19 @@ impl PreparedSurface {
         }
     }
 
-    /// Solves for a load in the search for a mean gap. With `polish`, one that meets the gap is followed by one
-    /// more, unless it does so by far: the stiffness can depend more on the gap than the force does.
-    fn try_gap(&mut self, asked: f64, control: Control, polish: &mut bool, stop: Stop<'_>) -> GapTried {
+    /// Solves for a load in the search for a mean gap. One that meets the gap is followed by another one, up to
+    /// `polish` times, unless it meets it by far: near full contact the force is so convex, and its stiffness
+    /// depends so much on the gap, that their errors would be too small otherwise.
+    fn try_gap(&mut self, asked: f64, control: Control, polish: &mut usize, stop: Stop<'_>) -> GapTried {
         let limits = self.limits();
         let (solved, tangent) = self.settle(control, limits, stop);
         let miss = self.gap_of(&solved) - asked;
         let bound = limits.tolerance * limits.height.unwrap_or(self.mean);
-        let met = miss.abs() <= bound && !(*polish && miss.abs() > POLISHED_GAP * bound);
-        *polish &= miss.abs() > bound;
+        let mut met = miss.abs() <= bound;
+        if met && miss.abs() > POLISHED_GAP * bound && *polish > 0 {
+            *polish -= 1;
+            met = false;
+        }
         let ends = met || solved.status != Status::Converged || stop.stops();
         GapTried { solved, tangent, miss, ends }
     }
