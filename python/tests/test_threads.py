@@ -174,3 +174,52 @@ while True:
         time.sleep(0.002)
     _, told = process.communicate(timeout=LONG)
     assert "KeyboardInterrupt" in told and "panic" not in told.lower(), told
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
+@pytest.mark.parametrize("effect", ["hardness", "friction", "short range", "exponential"])
+def test_a_path_that_ctrl_c_stops_goes_on_to_the_same_states(effect):
+    run(
+        f"effect = {effect!r}"
+        + """
+body = fc.Elastic(young=0.75, poisson=0.5)
+effects, outputs, cells, key, loads = {
+    "hardness": ({"hardness": 0.05}, ["stiffness", "plastic_depth"], 257, "force", [1e-3, 4e-3, 8e-3, 2e-3, 6e-3]),
+    "friction": ({"friction": 0.4}, ["stiffness", "tangential_stiffness"], 129, "force", [1e-3, 4e-3, 8e-3, 2e-3, 6e-3]),
+    "short range": ({"adhesion": {"work": 4e-5}}, ["stiffness"], 97, "approach", [0.004, 0.012, 0.02, 0.008, 0.0]),
+    "exponential": ({"adhesion": {"work": 4e-5, "range": 3e-3, "law": "exponential"}}, ["stiffness"], 129, "approach",
+                    [0.004, 0.012, 0.02, 0.008, 0.0]),
+}[effect]
+scene = fc.Scene(rough(cells), bodies=(None, body), effects=effects, outputs=outputs)
+
+def steps():
+    for i, load in enumerate(loads):
+        step = {key: load, "time": float(i)}
+        if effect == "friction":
+            step["tangential_force"] = 1e-4 * [0.0, 1.0, 2.0, -1.0, 1.0][i]
+        yield step
+
+whole = fc.Bem3d().prepare(scene)
+begun = time.monotonic()
+expected = [whole.advance(**step) for step in steps()]
+lasts = time.monotonic() - begun
+random = np.random.default_rng(1)
+stops = 0
+for trial in range(6):
+    path = fc.Bem3d().prepare(scene)
+    for step, wanted in zip(steps(), expected):
+        signal.signal(signal.SIGALRM, signal.default_int_handler)
+        state = None
+        signal.setitimer(signal.ITIMER_REAL, random.uniform(1e-3, lasts / 3.0))
+        try:
+            state = path.advance(**step)
+            signal.setitimer(signal.ITIMER_REAL, 0.0)
+        except KeyboardInterrupt:
+            # It may come just after the step.
+            if state is None:
+                stops += 1
+                state = path.advance(**step)
+        assert state == wanted, (trial, step, state, wanted)
+assert stops > 2, stops
+"""
+    )
