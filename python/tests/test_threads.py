@@ -183,12 +183,13 @@ def test_a_path_that_ctrl_c_stops_goes_on_to_the_same_states(effect):
         f"effect = {effect!r}"
         + """
 body = fc.Elastic(young=0.75, poisson=0.5)
+law = {"work": 4e-5, "range": 3e-3, "law": "exponential"}
 forces, approaches = [1e-3, 4e-3, 8e-3, 2e-3, 6e-3], [0.004, 0.012, 0.02, 0.008, 0.0]
 effects, outputs, cells, key, loads = {
     "hardness": ({"hardness": 0.05}, ["stiffness", "plastic_depth"], 257, "force", forces),
     "friction": ({"friction": 0.4}, ["stiffness", "tangential_stiffness"], 129, "force", forces),
     "short range": ({"adhesion": {"work": 4e-5}}, ["stiffness"], 97, "approach", approaches),
-    "exponential": ({"adhesion": {"work": 4e-5, "range": 3e-3, "law": "exponential"}}, ["stiffness"], 129, "approach", approaches),
+    "exponential": ({"adhesion": law}, ["stiffness"], 129, "approach", approaches),
 }[effect]
 scene = fc.Scene(rough(cells), bodies=(None, body), effects=effects, outputs=outputs)
 
