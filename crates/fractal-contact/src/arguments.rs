@@ -205,7 +205,8 @@ pub enum Command {
     Info {
         /// A scene (.toml), results (.csv) or a surface (a file of an instrument or program, NPY or text).
         file: PathBuf,
-        /// Prints all channels of the file of a surface as JSON, with lengths in metres.
+        /// Prints all channels of the file of a surface as JSON, with lengths in metres, after the steps of the
+        /// preprocessing that is asked for.
         #[arg(long, conflicts_with = "channel")]
         json: bool,
         /// Writes statistics of a surface into this directory: parameters of ISO 25178, spectra with their

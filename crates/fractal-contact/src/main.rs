@@ -78,7 +78,7 @@ fn execute(arguments: Arguments, matches: &ArgMatches) -> Result<ExitCode> {
         Command::Info { file, json, out, more } => {
             let (declared, preprocessing) = more.options();
             let text = match out {
-                None if json => info_json(&file, &declared)?,
+                None if json => info_json(&file, &declared, &preprocessing)?,
                 None => info(&file, &declared, &preprocessing)?,
                 Some(out) => info_statistics(&file, &declared, &preprocessing, &out)?,
             };

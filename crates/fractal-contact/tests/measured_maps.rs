@@ -194,6 +194,20 @@ fn channels_are_told_and_chosen() {
     let (_, text, _) = info(&["lower.npy", "--json"]);
     let found: Value = serde_json::from_str(&text).unwrap();
     assert!(found["channels"][0]["size"].is_null() && found["channels"][0]["unit"].is_null(), "{text}");
+    // Each step is done, whether or not the size is known.
+    for (file, known) in [("upper.x3p", true), ("lower.npy", false)] {
+        let (code, text, said) = info(&[file, "--json", "--crop", "1,1,2,2", "--detrend", "mean"]);
+        let found: Value =
+            serde_json::from_str(&text).unwrap_or_else(|error| panic!("{error}: {text}{said}"));
+        let channel = &found["channels"][0];
+        assert_eq!((code, &channel["columns"], &channel["rows"]), (Some(0), &2.into(), &2.into()), "{text}");
+        assert_eq!(
+            (channel["size"].is_null(), channel["steps"].as_array().unwrap().len()),
+            (!known, 2),
+            "{text}"
+        );
+        assert!(number(&channel["maximum"]) > 0.0 && number(&channel["minimum"]) < 0.0, "{text}");
+    }
     let (code, _, said) = info(&["upper.x3p", "--channel", "3"]);
     assert!(code == Some(1) && said.contains("channel 3 is not in the file: the channels are 0"), "{said}");
     let (code, text, _) = info(&["upper.x3p", "--channel", "0", "--rotate", "90"]);

@@ -10,7 +10,7 @@ use runs::Header;
 use std::path::Path;
 use surface_io::{
     Description, Detrend, Dimension, Metadata, Preprocessed, Preprocessing, Quantity, ReadOptions, Scan,
-    SurfaceFile,
+    SurfaceFile, Undefined,
 };
 
 /// A few lines on a scene (`.toml`), a table (`.csv` with a header that explains itself) or a surface
@@ -174,22 +174,24 @@ fn each(file: SurfaceFile<'_>) -> Result<String> {
 }
 
 /// All channels of a surface's file as JSON:
-/// `{"channels": [{"name", "columns", "rows", "profile", "size": [x, y], "heights", "unit", "undefined", "minimum", "maximum", "rms"}]}`.
+/// `{"channels": [{"name", "columns", "rows", "profile", "size": [x, y], "heights", "unit", "undefined", "minimum", "maximum", "rms", "notes", "steps"}]}`.
 ///
-/// Heights are those of the file before any preprocessing. Lengths are in metres, and then `unit` is "m";
-/// values with another or no unit are given as in the file. `heights` is false where the file says that the
-/// channel does not hold heights (but a phase or a current). `rms` is about the mean, `undefined` is a share
-/// of the points, and a value that neither the file nor `declared` gives is null. A channel that cannot be
-/// read beside others is `{"error"}`; `notes` are remarks on the file.
+/// Heights are those of the file, or of its map after the steps of `preprocessing` where there are any; `steps`
+/// has a line for each. Lengths are in metres, and then `unit` is "m"; values with another or no unit are given
+/// as in the file. `heights` is false where the file says that the channel does not hold heights (but a phase
+/// or a current). `rms` is about the mean, `undefined` is a share of the points, and a value that neither the
+/// file nor `declared` gives is null. A channel that cannot be read beside others, or that gives no map, is
+/// `{"error"}`; `notes` are remarks on the file.
 ///
 /// # Errors
 /// [`Error::Surface`] for errors of the file.
-pub fn info_json(path: &Path, declared: &ReadOptions) -> Result<String> {
+pub fn info_json(path: &Path, declared: &ReadOptions, preprocessing: &Preprocessing) -> Result<String> {
     let file = SurfaceFile::open(path, declared)?;
     let mut channels = Vec::with_capacity(file.len());
-    for scan in file.scans() {
-        channels.push(match scan {
-            Ok(scan) => channel(scan.metadata()),
+    for (number, scan) in file.scans().enumerate() {
+        let found = scan.and_then(|scan| channel(&scan, number, (path, declared), preprocessing));
+        channels.push(match found {
+            Ok(channel) => channel,
             Err(error) if error.problem().is_some() => serde_json::json!({ "error": error.to_string() }),
             Err(error) => return Err(error.into()),
         });
@@ -197,7 +199,55 @@ pub fn info_json(path: &Path, declared: &ReadOptions) -> Result<String> {
     Ok(format!("{:#}\n", serde_json::json!({ "channels": channels })))
 }
 
-fn channel(metadata: &Metadata) -> serde_json::Value {
+/// The channel of a number, after the steps of its preprocessing.
+fn channel(
+    scan: &Scan,
+    number: usize,
+    (path, declared): (&Path, &ReadOptions),
+    preprocessing: &Preprocessing,
+) -> surface_io::Result<serde_json::Value> {
+    let metadata = scan.metadata();
+    let mut described = of_metadata(metadata);
+    if *preprocessing == Preprocessing::default() {
+        return Ok(described);
+    }
+    let mut preprocessing = preprocessing.clone();
+    if preprocessing.fill.is_none() {
+        // Their share is told.
+        preprocessing.undefined.get_or_insert(Undefined::NoContact);
+    }
+    let known = metadata.size.is_some();
+    let Preprocessed { map, steps, .. } = if known {
+        scan.preprocessed(&preprocessing)?
+    } else {
+        // Most steps need no lengths: cells of 1, whose size is not told.
+        let dimension = metadata.unit.as_ref().map_or(Dimension::NONE, |unit| unit.value.dimension());
+        let cell = Quantity::new(1.0, dimension).ok().map(Into::into);
+        let file = SurfaceFile::open(path, &ReadOptions { cell, ..declared.clone() })?;
+        match file.scans().nth(number) {
+            Some(scan) => scan?.preprocessed(&preprocessing)?,
+            None => scan.preprocessed(&preprocessing)?,
+        }
+    };
+    let (low, high) =
+        map.defined().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), h| (low.min(h), high.max(h)));
+    let some = low <= high;
+    for (name, value) in [
+        ("columns", map.columns().into()),
+        ("rows", map.rows().into()),
+        ("size", serde_json::json!(known.then(|| [map.size().x, map.size().y]))),
+        ("undefined", serde_json::json!(map.undefined() as f64 / map.heights().len() as f64)),
+        ("minimum", serde_json::json!(some.then_some(low))),
+        ("maximum", serde_json::json!(some.then_some(high))),
+        ("rms", serde_json::json!(some.then(|| surface_gen::rms_height(&map.defined().collect::<Vec<_>>())))),
+        ("steps", steps.into()),
+    ] {
+        described[name] = value;
+    }
+    Ok(described)
+}
+
+fn of_metadata(metadata: &Metadata) -> serde_json::Value {
     let unit = metadata.unit.as_ref().map(|unit| &unit.value);
     let metric = unit.filter(|unit| unit.dimension() == Dimension::LENGTH);
     let height = |value: f64| metric.map_or(value, |unit| unit.to_si(value));
@@ -219,5 +269,6 @@ fn channel(metadata: &Metadata) -> serde_json::Value {
         "maximum": metadata.range.map(|[_, high]| height(high)),
         "rms": metadata.rms_height.map(height),
         "notes": metadata.notes,
+        "steps": Vec::<String>::new(),
     })
 }
