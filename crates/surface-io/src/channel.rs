@@ -71,6 +71,9 @@ pub(crate) struct StoredChannel {
     pub(crate) axes: FileAxes,
     /// Notes for people: statements of the file that are not used or that are ambiguous.
     pub(crate) notes: Vec<String>,
+    /// The type in which the heights are compared with [`crate::ReadOptions::missing`]: that of the numbers
+    /// where these are the heights.
+    pub(crate) compared: NumberType,
     pub(crate) heights: StoredHeights,
 }
 
@@ -180,21 +183,21 @@ pub(crate) enum Undefined {
     Equal(f64),
     /// One of two numbers.
     Either(f64, f64),
-    /// One number within the digits that a header prints of a float32.
+    /// One number within the seven digits that a header prints of a float32.
     Near(f64),
     /// This one and all larger ones.
     AtLeast(f64),
 }
 
 impl Undefined {
-    /// Whether this number stands for an undefined point.
-    pub(crate) fn holds(self, number: f64) -> bool {
+    /// Whether a number that is stored in this type stands for an undefined point.
+    pub(crate) fn holds(self, stored: NumberType, number: f64) -> bool {
         match self {
             Self::None => false,
-            Self::Equal(mark) => (number - mark).abs() <= 0.0,
-            Self::Either(a, b) => Self::Equal(a).holds(number) || Self::Equal(b).holds(number),
+            Self::Equal(mark) => stored.same(number, mark),
+            Self::Either(a, b) => stored.same(number, a) || stored.same(number, b),
             Self::Near(mark) => (number - mark).abs() <= 1.5e-7 * mark.abs(),
-            Self::AtLeast(mark) => number >= mark,
+            Self::AtLeast(mark) => number >= mark || stored.same(number, mark),
         }
     }
 }
@@ -217,6 +220,12 @@ impl RawHeights {
             shift: 0.0,
             undefined: Undefined::None,
         }
+    }
+
+    /// The type in which heights are compared with a mark of the caller: scaled ones are doubles.
+    pub(crate) fn compared(&self) -> NumberType {
+        let plain = (self.scale - 1.0).abs() <= 0.0 && self.shift.abs() <= 0.0;
+        if plain { self.number } else { NumberType::F64 }
     }
 
     /// The type of the numbers and their order, for people.
@@ -342,7 +351,7 @@ impl RawHeights {
     }
 
     fn height(&self, number: f64) -> f64 {
-        if self.undefined.holds(number) {
+        if self.undefined.holds(self.number, number) {
             return f64::NAN;
         }
         // Adding nothing would still lose the sign of -0.
@@ -368,8 +377,8 @@ impl StoredChannel {
         extent: [Option<Extent>; 2],
     ) -> Result<Self> {
         raw.check(source, rows, columns)?;
-        let details = raw.details();
-        Ok(Self { extent, ..Self::of(StoredHeights::Raw(raw), details, [rows, columns], unit) })
+        let (details, compared) = (raw.details(), raw.compared());
+        Ok(Self { extent, compared, ..Self::of(StoredHeights::Raw(raw), details, [rows, columns], unit) })
     }
 
     /// A channel without a name whose heights another reader makes.
@@ -391,7 +400,8 @@ impl StoredChannel {
         unit: StoredUnit,
     ) -> Self {
         let (extent, axes, notes) = ([None; 2], FileAxes::Fixed, Vec::new());
-        Self { name: None, details, rows, columns, unit, extent, axes, notes, heights }
+        let compared = NumberType::F64;
+        Self { name: None, details, rows, columns, unit, extent, axes, notes, compared, heights }
     }
 
     /// The channel of numbers as [`StoredChannel::new`], undefined where those of a mask are not 0.
@@ -405,8 +415,8 @@ impl StoredChannel {
     ) -> Result<Self> {
         raw.check(source, rows, columns)?;
         mask.check(source, rows, columns)?;
-        let details = format!("{}, {detail}", raw.details());
-        Ok(Self::deferred(details, [rows, columns], unit, extent, move |source| {
+        let (details, compared) = (format!("{}, {detail}", raw.details()), raw.compared());
+        let read = move |source: &mut Source<'_>| {
             let mut heights = raw.read(source, rows, columns)?;
             mask.each(source, rows, columns, &mut |i, masked| {
                 if masked.abs() > 0.0 {
@@ -414,7 +424,8 @@ impl StoredChannel {
                 }
             })?;
             Ok(heights)
-        }))
+        };
+        Ok(Self { compared, ..Self::deferred(details, [rows, columns], unit, extent, read) })
     }
 
     /// Notes sides in a unit that is no length, which are not used.

@@ -85,6 +85,29 @@ impl NumberType {
         256_f64.powi(self.size.into())
     }
 
+    /// Whether two numbers are one where this type holds them: a header prints more or fewer digits than a
+    /// number has, and a double beside float32 has more of them. What is beyond the range of the type is none
+    /// of its numbers.
+    pub(crate) fn same(self, a: f64, b: f64) -> bool {
+        let one = |a: f64, b: f64| a.to_bits() == b.to_bits() || (a - b).abs() <= 0.0;
+        let [x, y] = [a, b].map(|number| self.nearest(number));
+        one(a, b) || (x.is_finite() && one(x, y))
+    }
+
+    /// The nearest float of this type; integers stay as they are.
+    fn nearest(self, number: f64) -> f64 {
+        match (self.kind, self.size) {
+            (Kind::Float, 2) => {
+                // Ten bits behind the first one, down to 2^-24.
+                let digit = 2_f64.powi((number.abs().log2().floor().clamp(-14.0, 15.0) as i32) - 10);
+                let nearest = (number / digit).round_ties_even() * digit;
+                if nearest.abs() > 65504.0 { f64::INFINITY.copysign(number) } else { nearest }
+            }
+            (Kind::Float, 4) => f64::from(number as f32),
+            _ => number,
+        }
+    }
+
     /// Bytes of one number.
     pub(crate) fn bytes(self) -> usize {
         usize::from(self.size)

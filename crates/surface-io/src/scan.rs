@@ -129,14 +129,12 @@ impl Scan {
         mut heights: Vec<f64>,
         declared: &ReadOptions,
     ) -> Result<Self, ContentError> {
-        let StoredChannel { name, details, rows, columns, unit, extent, mut notes, .. } = channel;
-        if let Some(undefined) = declared.missing {
-            for h in &mut heights {
-                if h.to_bits() == undefined.to_bits() || (*h - undefined).abs() <= 0.0 {
-                    *h = f64::NAN;
-                }
-            }
+        let StoredChannel { name, details, rows, columns, unit, extent, mut notes, compared, .. } = channel;
+        if let Some(mark) = declared.missing {
+            heights.iter_mut().filter(|h| compared.same(**h, mark)).for_each(|h| *h = f64::NAN);
         }
+        // Before the scale of the caller, as `missing` is: the number that a note names is to be one for it.
+        notes.extend(lone_extremes(&heights));
         check_unit("unit", declared.unit.as_ref())?;
         let (unit, no_heights) = match unit {
             StoredUnit::Unknown => (None, None),
@@ -162,7 +160,6 @@ impl Scan {
                 range = Some([h.min(low), h.max(high)]);
             }
         }
-        notes.extend(lone_extremes(&heights));
         let count = [columns, rows];
         // Points of a map may lie in one row by chance.
         let profile = rows == 1 && format != Format::Xyz && matches!(extent, [Some(_), None]);
@@ -266,10 +263,14 @@ fn lone_extremes(heights: &[f64]) -> Vec<String> {
         let alone = to > from && (value - next).abs() > ALONE * (to - from);
         let count = heights.iter().filter(|h| (**h - value).abs() <= 0.0).count();
         alone.then(|| {
-            let (value, from, to) = (number(value), five(from), five(to));
+            let (from, to) = (five(from), five(to));
+            // All its digits: as the note has it, `missing` is to find the same number.
+            let plain = (1e-3..1e16).contains(&value.abs());
+            let mark = if plain { value.to_string() } else { format!("{value:e}") };
             let points = if count == 1 { "1 point".to_owned() } else { format!("{count} points") };
             format!(
-                "{points} of {value}, all others are from {from} to {to}: a mark of undefined points? missing = {value} makes them so"
+                "{points} of {}, all others are from {from} to {to}: a mark of undefined points? missing = {mark} makes them so",
+                number(value)
             )
         })
     };

@@ -11,6 +11,7 @@ pub(crate) use matrix::matrix;
 use crate::error::{ContentError, NumberKind, Place};
 use crate::fields::decoded;
 use crate::format::Format;
+use crate::number_type::NumberType;
 use crate::options::{Decimal, ReadOptions};
 use contact_model::units::number;
 use number::unquoted;
@@ -226,7 +227,9 @@ impl TextTable {
             map.heading.finish()?;
             map.scale = map.heading.scale;
             if let Some(mark) = map.heading.missing {
-                map.values.iter_mut().filter(|h| (**h - mark).abs() <= 0.0).for_each(|h| *h = f64::NAN);
+                // Grids of ESRI hold float32, whatever number of digits their cells and their header have.
+                let marks = |h: &f64| NumberType::F32.same(*h, mark);
+                map.values.iter_mut().filter(|h| marks(h)).for_each(|h| *h = f64::NAN);
             }
         }
         Ok(maps)

@@ -166,7 +166,7 @@ fn channel(
     let raw = |bytes| RawHeights { order, scale, shift, undefined, ..RawHeights::new(bytes, number) };
     let held = raw(Bytes::Held(Vec::new()));
     held.check_scale(source)?;
-    let (unit, extent) = (values.unit, extent(&attributes));
+    let (unit, extent, compared) = (values.unit, extent(&attributes), held.compared());
     let mut channel = match dataset.layout() {
         Err(e) => {
             // The other channels of the file are read all the same.
@@ -200,6 +200,7 @@ fn channel(
         // Never written, in other files, or mapped from other data sets.
         Ok(_) => return Ok(None),
     };
+    channel.compared = compared;
     channel.take_axes(axes, values.custom);
     channel.notes.extend(values.notes);
     channel.check_counts(number, values.scaled);

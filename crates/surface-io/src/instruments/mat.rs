@@ -181,6 +181,7 @@ fn channel(
     } else {
         StoredChannel::new(source, raw(Bytes::File(begin + at)), [rows, columns], unit, [None; 2])?
     };
+    channel.compared = number;
     channel.take_axes(FileAxes::Assumed(Axes::Yx), "MATLAB draws rows along y");
     Ok(channel.named(&name))
 }

@@ -88,11 +88,8 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
     };
     let attributes = &heights.attributes;
     let (scale, shift) = (attributes.scale.unwrap_or(1.0), attributes.shift.unwrap_or(0.0));
-    let of_number =
-        |mark: f64| if number.is_float() && number.bytes() == 4 { f64::from(mark as f32) } else { mark };
     let own = if number.is_float() { Some(FILL) } else { None };
-    let marks = [attributes.fill.or(own), attributes.missing].map(|mark| mark.map(of_number));
-    let undefined = match marks {
+    let undefined = match [attributes.fill.or(own), attributes.missing] {
         [Some(fill), Some(missing)] => Undefined::Either(fill, missing),
         [Some(mark), None] | [None, Some(mark)] => Undefined::Equal(mark),
         [None, None] => Undefined::None,

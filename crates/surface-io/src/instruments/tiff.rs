@@ -290,6 +290,7 @@ fn channel(
     let undefined = page.missing.map_or(Undefined::None, Undefined::Equal);
     let raw = RawHeights { reversed, scale, shift, undefined, ..RawHeights::new(held, kind) };
     raw.check_scale(source)?;
+    let compared = raw.compared();
     let image = Image { number, size: page.size, bytes: u64::from(bits / 8), raw };
     let details = format!("{}, row by row", kind.name());
     let extent = match &jpk {
@@ -302,7 +303,7 @@ fn channel(
         None => format!("image {number}"),
     };
     let channel = StoredChannel::deferred(details, shape, unit, extent, move |source| image.read(source));
-    Ok(Some(channel.named(&name)))
+    Ok(Some(StoredChannel { compared, ..channel.named(&name) }))
 }
 
 /// What is needed to read one image.

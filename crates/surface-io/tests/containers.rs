@@ -1,0 +1,79 @@
+//! What a container states about its arrays is used, or reported. Its files are those of other programs:
+//! `files/containers/make.py` writes most of them.
+
+#![allow(clippy::unwrap_used)] // Tests, as a whole.
+
+use surface_io::{Metadata, ReadOptions, Scan};
+
+/// The heights of [`file`] as `make.py` has them, row by row.
+const HEIGHTS: [f64; 12] = [1.3, 2.9, 2.2, 4.1, 0.7, 5.2, 3.3, 1.8, 2.4, 0.2, 6.1, 3.7];
+
+fn file(name: &str) -> Vec<u8> {
+    std::fs::read(format!("{}/tests/files/containers/{name}", env!("CARGO_MANIFEST_DIR"))).unwrap()
+}
+
+fn read_with(name: &str, options: &ReadOptions) -> surface_io::Result<Scan> {
+    Scan::from_bytes(name, &file(name), options)
+}
+
+fn read(name: &str) -> Scan {
+    read_with(name, &ReadOptions::default()).unwrap()
+}
+
+fn heights(scan: &Scan) -> Vec<f64> {
+    let Metadata { rows, columns, .. } = *scan.metadata();
+    (0..rows * columns).map(|i| scan.height(i / columns, i % columns).unwrap_or(f64::NAN)).collect()
+}
+
+/// Whether a scan of 3 rows of 4 has these heights times a factor, to the digits of float32.
+#[track_caller]
+fn holds(scan: &Scan, expected: &[f64], factor: f64) {
+    assert_eq!((scan.metadata().rows, scan.metadata().columns), (3, 4));
+    let found = heights(scan);
+    for (found, expected) in found.iter().zip(expected.iter().map(|h| h * factor)) {
+        let same = (found - expected).abs() <= 1e-7 * expected.abs();
+        assert!(same || (found.is_nan() && expected.is_nan()), "{found} {expected}");
+    }
+}
+
+fn holed() -> [f64; 12] {
+    let mut heights = HEIGHTS;
+    heights[6] = f64::NAN;
+    heights
+}
+
+#[test]
+fn marks_are_compared_as_the_numbers_are_stored() {
+    for name in
+        ["nodata-34.tif", "nodata-9999.9.tif", "nodata-15-digits.tif", "double-fill.h5", "double-missing.nc"]
+    {
+        holds(&read(name), &holed(), 1.0);
+    }
+    let grid =
+        "ncols 2\nnrows 2\ncellsize 1\nNODATA_value -3.402823466385289e+38\n1 -3.40282346638529e+38\n2 3\n";
+    let scan = Scan::from_bytes("a.asc", grid.as_bytes(), &ReadOptions::default()).unwrap();
+    assert_eq!((scan.metadata().undefined, scan.height(0, 1)), (1, None));
+}
+
+#[test]
+fn the_mark_that_a_note_proposes_makes_points_undefined() {
+    let scale = ReadOptions { height_scale: "0.3 nm".parse().ok(), ..ReadOptions::default() };
+    for options in [ReadOptions::default(), scale] {
+        let scan = read_with("undeclared.tif", &options).unwrap();
+        let note = &scan.metadata().notes[0];
+        let mark = note.split_once("missing = ").unwrap().1.split(' ').next().unwrap();
+        assert_eq!(mark, "-9999.900390625", "{note}");
+        // As it is stored, and as people write it.
+        for mark in [mark, "-9999.9"] {
+            let options = ReadOptions { missing: mark.parse().ok(), ..options.clone() };
+            let scan = read_with("undeclared.tif", &options).unwrap();
+            let factor = if options.height_scale.is_some() { 0.3e-9 } else { 1.0 };
+            holds(&scan, &holed(), factor);
+            assert!(scan.metadata().notes.is_empty());
+        }
+    }
+    // A neighbour of the mark is a height.
+    let next = f64::from(f32::from_bits((-9999.9_f32).to_bits() - 1));
+    let options = ReadOptions { missing: Some(next), ..ReadOptions::default() };
+    assert_eq!(read_with("undeclared.tif", &options).unwrap().metadata().undefined, 0);
+}
