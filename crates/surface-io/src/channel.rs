@@ -33,7 +33,7 @@ impl StoredUnit {
         if text.is_empty() {
             return Self::Unknown;
         }
-        match text.parse::<Unit>() {
+        match Unit::of_file(text) {
             Ok(unit) if unit.dimension() == Dimension::LENGTH => Self::Heights(unit),
             _ => Self::NoHeights(Some(text.chars().take(32).collect())),
         }
@@ -133,6 +133,7 @@ pub(crate) struct RawHeights {
 }
 
 /// Where numbers are.
+#[derive(Clone)]
 pub(crate) enum Bytes {
     /// In the file, from an offset on.
     File(u64),
@@ -190,6 +191,26 @@ pub(crate) enum Undefined {
 }
 
 impl Undefined {
+    /// The numbers of the attributes `_FillValue` and `missing_value`, as NetCDF and HDF5 have them.
+    pub(crate) fn either(fill: Option<f64>, missing: Option<f64>) -> Self {
+        match (fill, missing) {
+            (Some(fill), Some(missing)) => Self::Either(fill, missing),
+            (Some(mark), None) | (None, Some(mark)) => Self::Equal(mark),
+            (None, None) => Self::None,
+        }
+    }
+
+    /// The same with other numbers.
+    pub(crate) fn map(self, other: impl Fn(f64) -> f64) -> Self {
+        match self {
+            Self::None => Self::None,
+            Self::Equal(mark) => Self::Equal(other(mark)),
+            Self::Either(a, b) => Self::Either(other(a), other(b)),
+            Self::Near(mark) => Self::Near(other(mark)),
+            Self::AtLeast(mark) => Self::AtLeast(other(mark)),
+        }
+    }
+
     /// Whether a number that is stored in this type stands for an undefined point.
     pub(crate) fn holds(self, stored: NumberType, number: f64) -> bool {
         match self {

@@ -56,7 +56,7 @@ impl Extent {
 }
 
 fn length(value: f64, unit: &str) -> Option<Quantity> {
-    let unit = unit.parse::<Unit>().ok().filter(|unit| unit.dimension() == Dimension::LENGTH)?;
+    let unit = Unit::of_file(unit).ok().filter(|unit| unit.dimension() == Dimension::LENGTH)?;
     Quantity::of(value, &unit).ok().filter(|length| length.value() > 0.0)
 }
 

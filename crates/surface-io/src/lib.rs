@@ -62,9 +62,13 @@
 //! * **Channels** that cannot be read are listed with the reason beside those that can.
 //! * **Counts.** Grey levels and other numbers without a unit become heights by [`ReadOptions::height_scale`]
 //!   only. Integers of an HDF5 file that have a unit of length and no scale are counts too.
-//! * **Axes.** Arrays without names of their axes (HDF5, MATLAB, NetCDF) are read by the custom of the
-//!   format, which is noted; [`ReadOptions::axes`] says which index is x, and is an error where the file or
-//!   the format defines it.
+//! * **Axes.** Names of dimensions decide the order of an array (`x`, `lon`, `easting`, ... and `y`, `lat`,
+//!   `northing`, ...). Arrays without such names (HDF5, MATLAB, NetCDF) are read by the custom of the format,
+//!   which is noted; [`ReadOptions::axes`] says which index is x, and is an error where the file or the format
+//!   defines it.
+//! * **Coordinates** of named dimensions in equal steps and in a unit of length give the size, and turn an
+//!   axis on which they descend; other units are noted and the size is asked for. Unequal steps are an error.
+//! * **Marks** of undefined points are compared as the numbers are stored: -9999.9 is that number in float32.
 //! * **Undefined points** are refused without a [`Fill`] or [`Undefined::NoContact`] (and with both).
 //!   Infinite heights are always refused.
 //! * Row j is y, column i is x, the first row is y = 0: `heights[j * columns + i]`, NPY arrays are `[row,
@@ -111,6 +115,7 @@
 // What only the formats that are left out need.
 #![cfg_attr(not(all(feature = "hdf5", feature = "tiff", feature = "x3p")), allow(dead_code))]
 
+mod array;
 mod channel;
 mod choice;
 mod composite;

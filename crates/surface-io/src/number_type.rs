@@ -60,6 +60,20 @@ impl NumberType {
         Self { little: false, ..self }
     }
 
+    /// The integer of as many bytes with a sign or without.
+    pub(crate) fn with_sign(self, signed: bool) -> Self {
+        Self { kind: if signed { Kind::Signed } else { Kind::Unsigned }, ..self }
+    }
+
+    /// The integer of this type with the bytes of one of the other sign, such as 65535 for -1.
+    pub(crate) fn wrapped(self, number: f64) -> f64 {
+        match self.kind {
+            Kind::Unsigned if number < 0.0 => number + self.values(),
+            Kind::Signed if number >= 0.5 * self.values() => number - self.values(),
+            _ => number,
+        }
+    }
+
     /// Whether it is a float, which NaN is one of.
     pub(crate) fn is_float(self) -> bool {
         self.kind == Kind::Float

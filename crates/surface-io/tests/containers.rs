@@ -3,7 +3,7 @@
 
 #![allow(clippy::unwrap_used)] // Tests, as a whole.
 
-use surface_io::{Metadata, ReadOptions, Scan};
+use surface_io::{Axes, Metadata, Quantity, ReadOptions, Scan};
 
 /// The heights of [`file`] as `make.py` has them, row by row.
 const HEIGHTS: [f64; 12] = [1.3, 2.9, 2.2, 4.1, 0.7, 5.2, 3.3, 1.8, 2.4, 0.2, 6.1, 3.7];
@@ -76,4 +76,83 @@ fn the_mark_that_a_note_proposes_makes_points_undefined() {
     let next = f64::from(f32::from_bits((-9999.9_f32).to_bits() - 1));
     let options = ReadOptions { missing: Some(next), ..ReadOptions::default() };
     assert_eq!(read_with("undeclared.tif", &options).unwrap().metadata().undefined, 0);
+}
+
+fn sides(scan: &Scan) -> Option<[f64; 2]> {
+    scan.metadata().cell.as_ref().map(|cell| cell.value.map(Quantity::value))
+}
+
+#[track_caller]
+fn noted(scan: &Scan, words: &str) {
+    let notes = &scan.metadata().notes;
+    assert!(notes.iter().any(|note| note.contains(words)), "{words}: {notes:?}");
+}
+
+#[track_caller]
+fn refused(name: &str, words: &str) {
+    let error = read_with(name, &ReadOptions::default()).unwrap_err().to_string();
+    assert!(error.contains(words), "{error}");
+}
+
+#[test]
+fn names_of_dimensions_decide_the_order() {
+    holds(&read("nc4-yx.nc"), &HEIGHTS, 1e-6);
+    holds(&read("xy.nc"), &HEIGHTS, 1.0);
+    let other = ReadOptions { axes: Some(Axes::Xy), ..ReadOptions::default() };
+    let error = read_with("nc4-yx.nc", &other).unwrap_err().to_string();
+    assert!(error.contains("axes: yx in the file, but xy"), "{error}");
+    refused("time.nc", "found time and x");
+}
+
+#[test]
+fn coordinates_give_the_size_and_the_direction() {
+    let near = |scan: &Scan, cell: [f64; 2]| {
+        let found = sides(scan).unwrap();
+        assert!((0..2).all(|i| (found[i] / cell[i] - 1.0).abs() < 1e-6), "{found:?}");
+    };
+    let scan = read("nc4-yx.nc");
+    near(&scan, [1e-6, 2e-6]);
+    noted(&scan, "sides along x by its coordinates, 0 to 3e-6 m");
+    // Without the numbers of NetCDF-4, by the lengths.
+    let scan = read("scales.h5");
+    holds(&scan, &HEIGHTS, 1.0);
+    near(&scan, [2e-6, 2e-6]);
+    // Of a square no length says it.
+    noted(&read("scales-square.h5"), "scales of dimensions of one length are not told apart");
+    let down: Vec<f64> = HEIGHTS.chunks(4).rev().flatten().copied().collect();
+    for name in ["descending.nc", "descending-3.nc"] {
+        let scan = read(name);
+        holds(&scan, &down, 1.0);
+        near(&scan, [1.0, 2.0]);
+        noted(&scan, "lat descends in the file");
+    }
+    for (name, words) in [("degrees.nc", "degrees_north, which are no length"), ("plain.nc", "have no unit")]
+    {
+        let scan = read(name);
+        holds(&scan, &HEIGHTS, 1.0);
+        assert_eq!(sides(&scan), None);
+        noted(&scan, words);
+        let cell = ReadOptions { cell: "1 um".parse().ok(), ..ReadOptions::default() };
+        near(&read_with(name, &cell).unwrap(), [1e-6, 1e-6]);
+    }
+    for name in ["uneven.nc", "uneven-3.nc"] {
+        refused(name, "coordinates y in equal steps, number 1 is 2");
+    }
+    let other = ReadOptions { cell: "1 um".parse().ok(), ..ReadOptions::default() };
+    assert!(read_with("nc4-yx.nc", &other).is_err());
+}
+
+#[test]
+fn integers_are_unsigned_where_the_file_says_so() {
+    let counts = [1.0, 2.0, 3.0, 4.0, 400.0, 500.0, 600.0, f64::NAN, 327.67, 327.68, 0.07, 0.09];
+    holds(&read("nc4-unsigned.nc"), &counts, 1e-8);
+    let scan = read("unsigned-3.nc");
+    holds(&scan, &counts, 10.0);
+    noted(&scan, "int16 are uint16");
+}
+
+#[test]
+fn variables_of_netcdf_3_have_any_name() {
+    holds(&read("nc3-z.nc"), &HEIGHTS, 1.0);
+    refused("line.nc", "its variables are profile (x)");
 }

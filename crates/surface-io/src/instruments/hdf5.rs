@@ -5,15 +5,17 @@
 //! HDF5 Dimension Scales and the Image and Palette specifications, for packed values the NetCDF attribute
 //! conventions.
 //!
-//! - **Order.** The attribute `DIMENSION_LABELS` of a data set decides (`y`, `x` or `x`, `y`), or
-//!   `CLASS = "IMAGE"` (rows first). A data set without either has x first, as SurfaceTopography and MATLAB
-//!   write it, which is noted; [`crate::Axes`] `yx` takes the first index for y. The first row is y = 0.
+//! - **Order.** The attribute `DIMENSION_LABELS` of a data set decides, or the names of its dimension scales,
+//!   as [`crate::array`] takes them, or `CLASS = "IMAGE"` (rows first). A data set without any has x first, as
+//!   SurfaceTopography and MATLAB write it, which is noted; [`crate::Axes`] `yx` takes the first index for y.
+//!   The first row is y = 0.
 //! - **Unit.** The attribute `unit` or `units` of the data set, nothing else. `none` are plain numbers.
 //!   Integers with a unit of length and without a scale are counts of an unknown height:
 //!   [`crate::ReadOptions::height_scale`] says it.
-//! - **Size.** The attribute `size` of two numbers, along x and y, beside `size_unit`; this crate writes
-//!   them. HDF5 itself has no size.
-//! - **Values.** `scale_factor`, `add_offset`, `_FillValue` and `missing_value` count as NetCDF defines them.
+//! - **Size.** The attribute `size` of two numbers, along x and y, beside `size_unit`, which this crate
+//!   writes, or the coordinates in dimension scales.
+//! - **Values.** `scale_factor`, `add_offset`, `_FillValue`, `missing_value` and `_Unsigned` count as NetCDF
+//!   defines them.
 //! - **Undefined points.** NaN, fill values, chunks that were never written.
 //!
 //! Programs that write attributes of their own:
@@ -37,23 +39,24 @@
 //! (4 GB for a file of 4 kB), so numbers are decoded here.
 
 mod attributes;
+mod scales;
 mod vendor;
 mod write;
 
 pub use write::hdf5;
 
 use super::prelude::*;
+use crate::array::{Array, Dimension, Numbers};
 use crate::channel::{FileAxes, undefined_heights};
 use crate::inflate::RATIO;
 use crate::options::Axes;
-use crate::quantity::{Dimension, Quantity, Unit};
 use crate::source::Budget;
-use attributes::{Attributes, UNIT, Values, numbers, packed, text, unit};
+use attributes::{Attributes, LABELS, SIZE, SIZE_UNIT, UNIT, describe, text};
 use flate2::read::ZlibDecoder;
 use hdf5_pure::{
-    AttrValue, Chunk, Dataset, Datatype, DatatypeByteOrder, File, FloatingPointLayout, Group, Layout,
-    ReadSeekSource,
+    Chunk, Dataset, Datatype, DatatypeByteOrder, File, FloatingPointLayout, Group, Layout, ReadSeekSource,
 };
+use scales::Scale;
 use std::collections::{HashSet, VecDeque};
 use std::io::Read as _;
 
@@ -68,11 +71,6 @@ const DEFLATE: u16 = 1;
 const SHUFFLE: u16 = 2;
 const FLETCHER32: u16 = 3;
 
-/// Attributes that this crate writes and reads.
-const SIZE: &str = "size";
-const SIZE_UNIT: &str = "size_unit";
-const LABELS: &str = "DIMENSION_LABELS";
-
 pub(crate) const READER: Reader =
     Reader { format: Format::Hdf5, recognises: super::magic::is_hdf5, channels };
 
@@ -82,14 +80,21 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
     let file = File::from_source(input).map_err(|e| unreadable(source, &e))?;
     let mut channels = Vec::new();
     let mut taken = HashSet::new();
+    let mut scales = Vec::new();
     let mut seen = 0;
     // Level by level, so that what has two names gets its shorter one.
     let mut waiting: VecDeque<(String, Group, usize)> = [(String::new(), file.root(), 0)].into();
     while let Some((path, group, depth)) = waiting.pop_front() {
         let beside = group.attrs().unwrap_or_default();
-        for (name, dataset) in group.iter_datasets().map_err(|e| unreadable(source, &e))? {
+        let datasets = group.iter_datasets().map_err(|e| unreadable(source, &e))?;
+        let datasets: Vec<_> = datasets.take(MOST).collect();
+        for (name, dataset) in &datasets {
+            scales::collect(&mut scales, source, (&path, name), dataset);
+        }
+        for (name, dataset) in datasets {
             seen += 1;
             let name = join(&path, &name);
+            let beside = Beside { path: &path, attributes: &beside, scales: &scales };
             if let Some(channel) = channel(source, &dataset, &beside, &name, &mut taken).transpose() {
                 channels.push(StoredChannel::listed(Some(name), channel)?);
             }
@@ -126,11 +131,20 @@ fn unreadable(source: &Source<'_>, error: &dyn std::fmt::Display) -> crate::erro
     source.wrong(0, format!("a file as its specification has it ({said})"))
 }
 
+/// What stands beside a data set.
+struct Beside<'a> {
+    /// Path and attributes of its group.
+    path: &'a str,
+    attributes: &'a Attributes,
+    /// Those of its group and of the groups before.
+    scales: &'a [Scale],
+}
+
 /// The channel of a data set; `None` for those that are no map.
 fn channel(
     source: &Source<'_>,
     dataset: &Dataset,
-    beside: &Attributes,
+    beside: &Beside<'_>,
     name: &str,
     taken: &mut HashSet<u64>,
 ) -> Result<Option<StoredChannel>> {
@@ -146,65 +160,92 @@ fn channel(
     if matlab == Some("char") || (matlab.is_some() && (first, second) == (1, 1)) {
         return Ok(None);
     }
-    let packed = packed(&attributes).map_err(|expected| source.wrong(0, expected))?;
-    let values = match vendor::values(dataset, beside, name, &attributes) {
-        Some(values) => values.map_err(|expected| source.wrong(0, expected))?,
-        None => Values { unit: unit(&attributes), ..packed },
+    let dimensions = [first, second].map(|length| Dimension::of_length(length as usize));
+    let custom = "as SurfaceTopography and MATLAB write it, no label says it";
+    let mut array = Array::new(name, dimensions, number, (FileAxes::Assumed(Axes::Xy), custom));
+    let described = describe(&mut array, &attributes)
+        .and_then(|()| vendor::describe(&mut array, dataset, beside.attributes, &attributes));
+    described.map_err(|expected| source.wrong(0, expected))?;
+    scales::name(&mut array, beside.scales, beside.path, dataset, &attributes);
+    let Some((address, found)) = layout(source, dataset, name, number, [first, second])? else {
+        return Ok(None);
     };
-    let axes = axes(&attributes).unwrap_or(FileAxes::Assumed(values.axes));
-    let order = axes.order();
-    let (lines, along) = (first, second);
-    let claimed = number.bytes_of([lines, along]);
+    if address.is_some_and(|address| !taken.insert(address)) {
+        return Ok(None);
+    }
+    let numbers = match found {
+        Found::Stored(bytes) => Numbers::Stored(bytes),
+        Found::Chunked(pieces) => {
+            Numbers::Decoded(", in chunks", Box::new(move |raw, source| pieces.read(raw, source)))
+        }
+        Found::Unread(said) => {
+            // The other channels of the file are read all the same.
+            Numbers::Decoded("", Box::new(move |_, source| Err(unreadable(source, &said))))
+        }
+    };
+    array.channel(source, numbers).map(Some)
+}
+
+/// Where the numbers of a data set are.
+enum Found {
+    Stored(Bytes),
+    Chunked(Pieces),
+    /// What the other crate says about them.
+    Unread(String),
+}
+
+impl Found {
+    /// The numbers line by line, scaled and marked as `by` has it.
+    fn read(&self, by: &RawHeights, source: &mut Source<'_>, [lines, along]: [usize; 2]) -> Result<Vec<f64>> {
+        let RawHeights { number, scale, shift, undefined, .. } = *by;
+        let raw = |bytes| RawHeights { scale, shift, undefined, ..RawHeights::new(bytes, number) };
+        match self {
+            Self::Stored(bytes) => raw(bytes.clone()).read(source, lines, along),
+            Self::Chunked(pieces) => pieces.read(&raw(Bytes::Held(Vec::new())), source),
+            Self::Unread(said) => Err(unreadable(source, said)),
+        }
+    }
+}
+
+/// Where the numbers of a data set of one or two dimensions are, and their address where they have one;
+/// `None` where they were never written, or are in other files or data sets.
+fn layout(
+    source: &Source<'_>,
+    dataset: &Dataset,
+    name: &str,
+    number: NumberType,
+    shape: [u64; 2],
+) -> Result<Option<(Option<u64>, Found)>> {
     let most = RATIO.saturating_mul(source.length());
-    if claimed.is_none_or(|claimed| claimed > most) {
-        let expected = format!("{name} of {first} x {second} numbers in at most {most} bytes");
+    if number.bytes_of(shape).is_none_or(|claimed| claimed > most) {
+        let [lines, along] = shape;
+        let expected = format!("{name} of {lines} x {along} numbers in at most {most} bytes");
         return Err(source.wrong(0, expected));
     }
-    let (lines, along) = (lines as usize, along as usize);
-    let shape = order.shape([lines, along]);
-    let Values { scale, shift, undefined, .. } = values;
-    let raw = |bytes| RawHeights { order, scale, shift, undefined, ..RawHeights::new(bytes, number) };
-    let held = raw(Bytes::Held(Vec::new()));
-    held.check_scale(source)?;
-    let (unit, extent, compared) = (values.unit, extent(&attributes), held.compared());
-    let mut channel = match dataset.layout() {
-        Err(e) => {
-            // The other channels of the file are read all the same.
-            let said = e.to_string();
-            let read = move |source: &mut Source<'_>| Err(unreadable(source, &said));
-            StoredChannel::deferred(held.details(), shape, unit, extent, read)
-        }
+    let [lines, along] = shape.map(|length| length as usize);
+    Ok(match dataset.layout() {
+        Err(e) => Some((None, Found::Unread(e.to_string()))),
         Ok(Layout::Compact { .. }) => {
             let bytes = dataset.read_raw().map_err(|e| unreadable(source, &e))?;
-            StoredChannel::new(source, raw(Bytes::Held(bytes)), shape, unit, extent)?
+            Some((None, Found::Stored(Bytes::Held(bytes))))
         }
         Ok(Layout::Contiguous { address: Some(address), .. }) => {
-            if !taken.insert(address) {
-                return Ok(None);
-            }
-            StoredChannel::new(source, raw(Bytes::File(address)), shape, unit, extent)?
+            Some((Some(address), Found::Stored(Bytes::File(address))))
         }
         Ok(Layout::Chunked { chunk_shape, .. }) => {
+            let chunk = match chunk_shape[..] {
+                [a, b] => [a, b],
+                [along] => [1, along],
+                _ => return Ok(None),
+            };
             let chunks = dataset.chunks().map_err(|e| e.to_string().chars().take(200).collect::<String>());
-            if let Ok(Some(chunk)) = chunks.as_ref().map(|chunks| chunks.first())
-                && !taken.insert(chunk.address)
-            {
-                return Ok(None);
-            }
-            let details = format!("{}, in chunks", held.details());
-            let [a, b] = chunk_shape[..] else { return Ok(None) };
+            let address = chunks.as_ref().ok().and_then(|chunks| chunks.first()).map(|chunk| chunk.address);
+            let flat = chunk_shape.len() == 1;
             let (name, filters) = (name.to_owned(), dataset.filters());
-            let pieces = Pieces { name, raw: held, chunk: [a, b], filters, chunks, lines, along };
-            StoredChannel::deferred(details, shape, unit, extent, move |source| pieces.read(source))
+            Some((address, Found::Chunked(Pieces { name, chunk, flat, filters, chunks, lines, along })))
         }
-        // Never written, in other files, or mapped from other data sets.
-        Ok(_) => return Ok(None),
-    };
-    channel.compared = compared;
-    channel.take_axes(axes, values.custom);
-    channel.notes.extend(values.notes);
-    channel.check_counts(number, values.scaled);
-    Ok(Some(channel.named(name)))
+        Ok(_) => None,
+    })
 }
 
 /// Whole IEEE floats and integers; `None` for all else.
@@ -242,35 +283,13 @@ fn number_type(datatype: &Datatype) -> Option<NumberType> {
     }
 }
 
-/// The order of the axes, where the file says it.
-fn axes(attributes: &Attributes) -> Option<FileAxes> {
-    if let Some([first, second]) = attributes.get(LABELS).and_then(AttrValue::as_strings) {
-        match (first.as_str(), second.as_str()) {
-            ("x", "y") => return Some(FileAxes::Said(Axes::Xy)),
-            ("y", "x") => return Some(FileAxes::Said(Axes::Yx)),
-            _ => {}
-        }
-    }
-    (text(attributes, "CLASS") == Some("IMAGE")).then_some(FileAxes::Said(Axes::Yx))
-}
-
-fn extent(attributes: &Attributes) -> [Option<Extent>; 2] {
-    let sides = || {
-        let unit = attributes.get(SIZE_UNIT)?.as_str()?.parse::<Unit>().ok()?;
-        let [x, y] = numbers(attributes, SIZE)?[..] else { return None };
-        let known = unit.dimension() == Dimension::LENGTH || unit == Unit::none();
-        let side = |side: f64| Quantity::of(side, &unit).ok().filter(|q| known && q.value() > 0.0);
-        Some([Extent::Side(side(x)?), Extent::Side(side(y)?)])
-    };
-    sides().map_or([None; 2], |[x, y]| [Some(x), Some(y)])
-}
-
 /// A data set in chunks.
 struct Pieces {
     name: String,
-    raw: RawHeights,
     /// Lines and numbers along them of one chunk.
     chunk: [u64; 2],
+    /// Whether the data set has one dimension: one line.
+    flat: bool,
     /// In the order in which they were applied.
     filters: Vec<u16>,
     chunks: std::result::Result<Vec<Chunk>, String>,
@@ -279,13 +298,13 @@ struct Pieces {
 }
 
 impl Pieces {
-    fn read(&self, source: &mut Source<'_>) -> Result<Vec<f64>> {
+    fn read(&self, raw: &RawHeights, source: &mut Source<'_>) -> Result<Vec<f64>> {
         let chunks = self.chunks.as_ref().map_err(|e| unreadable(source, e))?;
         if let Some(filter) = self.filters.iter().find(|f| !matches!(**f, DEFLATE | SHUFFLE | FLETCHER32)) {
             let expected = format!("{} packed by deflate or not at all, it has filter {filter}", self.name);
             return Err(source.wrong(0, expected));
         }
-        let size = self.raw.number.bytes();
+        let size = raw.number.bytes();
         let [tall, wide] = self.chunk;
         let most = RATIO.saturating_mul(source.length());
         let bytes = tall.checked_mul(wide).and_then(|n| n.checked_mul(size as u64)).unwrap_or(u64::MAX);
@@ -299,24 +318,26 @@ impl Pieces {
         if chunks.len() as u128 > count {
             return Err(source.wrong(0, format!("{count} chunks at most, found {}", chunks.len())));
         }
-        let shape @ [rows, columns] = self.raw.order.shape([self.lines, self.along]);
+        let shape @ [rows, columns] = raw.order.shape([self.lines, self.along]);
         let mut heights = undefined_heights(source, rows, columns)?;
         let wide = wide as usize;
         for chunk in chunks {
-            let (Some(&line), Some(&at)) = (chunk.offset.first(), chunk.offset.get(1)) else {
-                return Err(source.wrong(chunk.address, "two coordinates of a chunk"));
+            let (line, at) = match chunk.offset[..] {
+                [at, ..] if self.flat => (0, at),
+                [line, at, ..] => (line, at),
+                _ => return Err(source.wrong(chunk.address, "coordinates of a chunk")),
             };
             if line >= self.lines as u64 || at >= self.along as u64 {
                 // Left over from before the data set was made smaller.
                 continue;
             }
             let (line, at) = (line as usize, at as usize);
-            let unpacked = self.unpacked(source, chunk, bytes)?;
+            let unpacked = self.unpacked(source, chunk, bytes, size)?;
             let taken = wide.min(self.along - at);
             for (i, row) in unpacked.chunks_exact(wide * size).take(self.lines - line).enumerate() {
-                for (k, raw) in row.chunks_exact(size).take(taken).enumerate() {
+                for (k, number) in row.chunks_exact(size).take(taken).enumerate() {
                     let place = [line + i, at + k];
-                    let (cell, height) = self.raw.placed(source, shape, place, raw)?;
+                    let (cell, height) = raw.placed(source, shape, place, number)?;
                     heights[cell] = height;
                 }
             }
@@ -325,7 +346,7 @@ impl Pieces {
     }
 
     /// The numbers of a chunk.
-    fn unpacked(&self, source: &mut Source<'_>, chunk: &Chunk, bytes: u64) -> Result<Vec<u8>> {
+    fn unpacked(&self, source: &mut Source<'_>, chunk: &Chunk, bytes: u64, size: usize) -> Result<Vec<u8>> {
         let mut data = source.bytes(chunk.address, chunk.storage_size)?;
         for (i, filter) in self.filters.iter().enumerate().rev() {
             if i < 32 && chunk.filter_mask >> i & 1 == 1 {
@@ -333,7 +354,7 @@ impl Pieces {
             }
             match *filter {
                 FLETCHER32 => data.truncate(data.len().saturating_sub(4)),
-                SHUFFLE => data = unshuffled(&data, self.raw.number.bytes()),
+                SHUFFLE => data = unshuffled(&data, size),
                 _ => {
                     let mut plain = Vec::new();
                     // A checksum may stand behind the numbers.

@@ -1,15 +1,15 @@
-//! NetCDF-3 (CDF-1, CDF-2, CDF-5) as contact.engineering and `SurfaceTopography` write it: a variable
-//! `heights(x, y)`.
+//! NetCDF-3 (CDF-1, CDF-2, CDF-5): the variable `heights` where there is one, as contact.engineering and
+//! `SurfaceTopography` write it, and else every variable of numbers over two dimensions.
 //!
 //! After "The NetCDF Classic Format Specification"
 //! (<https://docs.unidata.ucar.edu/nug/current/file_format_specifications.html>) and `IO/NC.py` of
 //! SurfaceTopography. The last index runs fastest: of `heights(x, y)` that is y, so the file goes column by
-//! column; row j is y = j * cell; `heights(y, x)` is read too. Dimensions of other names are taken for y and
-//! x, as the CF conventions order them; [`crate::Axes`] `xy` takes the first for x. The attribute `length` of
-//! the variables `x` and `y` is the side, their attribute `unit` (or `units`) its unit, that of `heights` the
-//! unit of the heights. Undefined points are NaN, the values of the attributes `_FillValue` and
-//! `missing_value`, the library's own fill value in floats without the former, and points where a variable
-//! `mask` is not 0. `scale_factor` and `add_offset` are applied after that, as the conventions say.
+//! column. What names and coordinates of dimensions mean stands in [`crate::array`]; dimensions of other names
+//! are taken for y and x, as the CF conventions order them. The attribute `length` of the variables `x` and
+//! `y` is the side, their attribute `unit` (or `units`) its unit; variables without it are coordinates.
+//! Undefined points are NaN, the values of the attributes `_FillValue` and `missing_value`, the library's own
+//! fill value in floats without the former, and points of `heights` where a variable `mask` is not 0.
+//! `scale_factor` and `add_offset` are applied after that, and `_Unsigned` before, as the conventions say.
 //!
 //! Own code: `netcdf3` 0.6 reserves memory for as many dimensions as a file claims, reads whole variables and
 //! no CDF-5. Not read: line scans, a dimension without a limit, NetCDF-4 (an HDF5 file).
@@ -19,12 +19,17 @@ mod write;
 pub use write::netcdf;
 
 use super::prelude::*;
+use crate::array::{Array, Coordinates, Dimension, Numbers};
 use crate::channel::FileAxes;
 use crate::options::Axes;
 
 const MAGIC: &[u8] = b"CDF";
 /// What the library writes where nothing was written, as double and as float.
 const FILL: f64 = f64::from_bits(0x479e_0000_0000_0000);
+/// Most variables that are looked at.
+const MOST: usize = 1000;
+/// Variables that are named in an error.
+const NAMED: usize = 20;
 
 pub(crate) const READER: Reader = Reader {
     format: Format::NetCdf,
@@ -35,6 +40,7 @@ pub(crate) const READER: Reader = Reader {
 /// What is kept of a variable.
 #[derive(Debug, Default)]
 struct Variable {
+    name: String,
     /// Numbers of its dimensions; of more than two, two.
     dimensions: Vec<u64>,
     rank: u64,
@@ -46,7 +52,10 @@ struct Variable {
 /// What is kept of its attributes.
 #[derive(Debug, Default)]
 struct Attributes {
-    unit: Option<String>,
+    unit: String,
+    /// `axis` or `standard_name`: what coordinates are of.
+    role: String,
+    unsigned: String,
     length: Option<f64>,
     fill: Option<f64>,
     missing: Option<f64>,
@@ -54,66 +63,96 @@ struct Attributes {
     shift: Option<f64>,
 }
 
-/// The variables that are looked for.
-const NAMES: [&str; 4] = ["heights", "mask", "x", "y"];
-
 fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
     let mut header = Header::new(source)?;
-    let dimensions = header.dimensions()?;
+    let mut dimensions = header.dimensions()?;
     header.attributes(&mut Attributes::default())?;
-    let [heights, mask, x, y] = header.variables()?;
-    let Some(heights) = heights else {
-        return Err(source.wrong(0, "a variable called heights"));
+    let variables = header.variables()?;
+    let over_two = |v: &&Variable| v.rank == 2 && v.number.is_some() && v.name != "mask";
+    let maps: Vec<&Variable> = match variables.iter().find(|variable| variable.name == "heights") {
+        Some(heights) => vec![heights],
+        None => variables.iter().filter(over_two).collect(),
     };
-    let wrong = |source: &Source<'_>, expected: &str| Err(source.wrong(heights.offset, expected));
-    let named = |number: &u64| {
-        let at = usize::try_from(*number).ok()?;
-        dimensions.get(at).map(|(name, length)| (name.as_str(), *length as usize))
-    };
-    let of: Vec<_> = heights.dimensions.iter().filter_map(named).collect();
-    let (axes, [first, second]) = match (of.as_slice(), heights.rank) {
-        ([("x", columns), ("y", rows)], 2) => (FileAxes::Said(Axes::Xy), [*columns, *rows]),
-        ([("y", rows), ("x", columns)], 2) => (FileAxes::Said(Axes::Yx), [*rows, *columns]),
-        ([(first, rows), (second, columns)], 2)
-            if ![first, second].iter().any(|n| ["x", "y"].contains(n)) =>
-        {
-            (FileAxes::Assumed(Axes::Yx), [*rows, *columns])
+    if maps.is_empty() {
+        let named = variables.iter().take(NAMED).map(|variable| variable.shown(&dimensions));
+        let found = if variables.is_empty() { vec!["none".to_owned()] } else { named.collect() };
+        let expected = "a variable called heights, or one of numbers over two dimensions";
+        return Err(source.wrong(0, format!("{expected}, its variables are {}", found.join(", "))));
+    }
+    for dimension in &mut dimensions {
+        let of = |v: &&Variable| v.rank == 1 && v.name == dimension.name;
+        if let Some(variable) = variables.iter().find(of) {
+            variable.along(source, dimension)?;
         }
-        _ => return wrong(source, "heights over the dimensions x and y, or over two of other names"),
-    };
-    let order = axes.order();
-    let shape = order.shape([first, second]);
-    let Some(number) = heights.number else {
-        return wrong(source, "heights that are numbers");
-    };
-    let attributes = &heights.attributes;
-    let (scale, shift) = (attributes.scale.unwrap_or(1.0), attributes.shift.unwrap_or(0.0));
-    let own = if number.is_float() { Some(FILL) } else { None };
-    let undefined = match [attributes.fill.or(own), attributes.missing] {
-        [Some(fill), Some(missing)] => Undefined::Either(fill, missing),
-        [Some(mark), None] | [None, Some(mark)] => Undefined::Equal(mark),
-        [None, None] => Undefined::None,
-    };
-    let raw = RawHeights { order, scale, shift, undefined, ..RawHeights::at(heights.offset, number) };
-    let side = |variable: Option<Variable>| {
-        let Attributes { unit, length, .. } = variable?.attributes;
-        Extent::of_side(length?, &unit?)
-    };
-    let unit = StoredUnit::written(heights.attributes.unit.as_deref().unwrap_or_default());
-    let extent = [side(x), side(y)];
-    let mut channel = match mask {
-        None => StoredChannel::new(source, raw, shape, unit, extent)?,
-        Some(Variable { dimensions, rank: 2, number: Some(number), offset, .. })
-            if dimensions == heights.dimensions =>
-        {
-            let mask = RawHeights { order, ..RawHeights::at(offset, number) };
-            StoredChannel::masked(source, raw, (mask, "masked points undefined"), shape, unit, extent)?
+    }
+    let channel = |variable: &Variable| variable.channel(source, &dimensions, &variables);
+    maps.into_iter()
+        .map(|variable| StoredChannel::listed(Some(variable.name.clone()), channel(variable)))
+        .collect()
+}
+
+impl Variable {
+    /// Its name and its dimensions, for people.
+    fn shown(&self, dimensions: &[Dimension]) -> String {
+        let named = |&number: &u64| dimensions.get(usize::try_from(number).ok()?);
+        let mut names: Vec<&str> =
+            self.dimensions.iter().filter_map(named).map(|d| d.name.as_str()).collect();
+        if self.rank > 2 {
+            names.push("...");
         }
-        Some(_) => return wrong(source, "a mask over the same dimensions as heights"),
-    };
-    channel.check_counts(number, attributes.scale.is_some());
-    channel.take_axes(axes, "as the conventions have it, the dimensions have other names than x and y");
-    Ok(vec![channel.named("heights")])
+        format!("{} ({})", self.name, names.join(", ")).chars().take(80).collect()
+    }
+
+    /// Puts the coordinates that it has into its dimension. One with a length has the size instead.
+    fn along(&self, source: &mut Source<'_>, dimension: &mut Dimension) -> Result<()> {
+        let Attributes { length: None, unit, role, scale, shift, .. } = &self.attributes else {
+            return Ok(());
+        };
+        let (Some(number), 1..) = (self.number, dimension.length) else { return Ok(()) };
+        let (scale, shift) = (scale.unwrap_or(1.0), shift.unwrap_or(0.0));
+        let raw = RawHeights { scale, shift, ..RawHeights::at(self.offset, number) };
+        let values = raw.read(source, 1, dimension.length)?;
+        dimension.coordinates = Coordinates::new(&values, raw.compared(), unit);
+        dimension.role.clone_from(role);
+        Ok(())
+    }
+
+    fn channel(
+        &self,
+        source: &Source<'_>,
+        dimensions: &[Dimension],
+        variables: &[Self],
+    ) -> Result<StoredChannel> {
+        let wrong = |expected: &str| source.wrong(self.offset, format!("{} {expected}", self.name));
+        let named = |&number: &u64| dimensions.get(usize::try_from(number).ok()?).cloned();
+        let of: Vec<Dimension> = self.dimensions.iter().filter_map(named).collect();
+        let (Ok(of), 2) = (<[Dimension; 2]>::try_from(of), self.rank) else {
+            return Err(wrong("over the dimensions x and y, or over two of other names"));
+        };
+        let number = self.number.ok_or_else(|| wrong("that are numbers"))?;
+        let custom = "as the conventions have it, the dimensions have other names than x and y";
+        let mut array = Array::new(&self.name, of, number, (FileAxes::Assumed(Axes::Yx), custom));
+        let Attributes { unit, unsigned, fill, missing, scale, shift, .. } = &self.attributes;
+        let own = if number.is_float() { Some(FILL) } else { None };
+        array.undefined = Undefined::either(fill.or(own), *missing);
+        (array.scale, array.shift, array.unit) = (*scale, *shift, StoredUnit::written(unit));
+        array.unsigned = unsigned.parse().ok();
+        let variable = |name: &str| variables.iter().find(|variable| variable.name == name);
+        array.extent = ["x", "y"].map(|name| {
+            let Attributes { unit, length, .. } = &variable(name)?.attributes;
+            Extent::of_side((*length)?, unit).filter(|_| !unit.is_empty())
+        });
+        array.mask = match variable("mask").filter(|_| self.name == "heights") {
+            None => None,
+            Some(Self { dimensions, rank: 2, number: Some(number), offset, .. })
+                if *dimensions == self.dimensions =>
+            {
+                Some(RawHeights::at(*offset, *number))
+            }
+            Some(_) => return Err(wrong("with a mask over the same dimensions")),
+        };
+        array.channel(source, Numbers::Stored(Bytes::File(self.offset)))
+    }
 }
 
 /// The header, read from its beginning to its end.
@@ -169,10 +208,14 @@ impl<'s, 'a> Header<'s, 'a> {
         self.text(length)
     }
 
-    fn dimensions(&mut self) -> Result<Vec<(String, u64)>> {
+    fn dimensions(&mut self) -> Result<Vec<Dimension>> {
         let mut found = Vec::new();
         for _ in 0..self.list(10)? {
-            found.push((self.name()?, self.count()?));
+            if found.len() == MOST {
+                return Err(self.file.wrong(format!("{MOST} dimensions at most")));
+            }
+            let (name, length) = (self.name()?, self.count()? as usize);
+            found.push(Dimension { name, ..Dimension::of_length(length) });
         }
         Ok(found)
     }
@@ -183,8 +226,14 @@ impl<'s, 'a> Header<'s, 'a> {
             let (kind, count) = (self.u32()?, self.count()?);
             let size = self.size(kind)?;
             let length = size.checked_mul(count).ok_or_else(|| self.file.wrong("fewer values"))?;
-            if kind == 2 && matches!(name.as_str(), "unit" | "units") {
-                keep.unit = Some(self.text(length)?);
+            let text = match name.as_str() {
+                "unit" | "units" => Some(&mut keep.unit),
+                "axis" | "standard_name" => Some(&mut keep.role),
+                "_Unsigned" => Some(&mut keep.unsigned),
+                _ => None,
+            };
+            if let (Some(text), 2) = (text, kind) {
+                *text = self.text(length)?;
                 continue;
             }
             let at = self.file.at;
@@ -212,12 +261,13 @@ impl<'s, 'a> Header<'s, 'a> {
         Ok(())
     }
 
-    /// The variables of [`NAMES`].
-    fn variables(&mut self) -> Result<[Option<Variable>; 4]> {
-        let mut found = [const { None }; 4];
+    fn variables(&mut self) -> Result<Vec<Variable>> {
+        let mut found = Vec::new();
         for _ in 0..self.list(11)? {
-            let name = self.name()?;
-            let mut variable = Variable { rank: self.count()?, ..Variable::default() };
+            if found.len() == MOST {
+                return Err(self.file.wrong(format!("{MOST} variables at most")));
+            }
+            let mut variable = Variable { name: self.name()?, rank: self.count()?, ..Variable::default() };
             for i in 0..variable.rank {
                 let dimension = self.count()?;
                 if i < 2 {
@@ -230,9 +280,7 @@ impl<'s, 'a> Header<'s, 'a> {
             variable.number = number(kind);
             self.count()?;
             variable.offset = if self.version == 1 { self.u32()? } else { self.file.get()? };
-            if let Some(at) = NAMES.iter().position(|known| *known == name) {
-                found[at] = Some(variable);
-            }
+            found.push(variable);
         }
         Ok(found)
     }

@@ -40,6 +40,22 @@ impl Unit {
         Self { text: String::new(), dimension: Dimension::NONE, exponent: 0, factor: 1.0 }
     }
 
+    /// Reads a unit as files of other programs write it, also in words: `meters`, `Nanometre`.
+    pub(crate) fn of_file(text: &str) -> Result<Self, QuantityError> {
+        let word = text.trim().to_lowercase().replace("metre", "meter");
+        let prefix = match word.trim_end_matches('s').strip_suffix("meter") {
+            Some("") => "",
+            Some("kilo") => "k",
+            Some("centi") => "c",
+            Some("milli") => "m",
+            Some("micro") => "u",
+            Some("nano") => "n",
+            Some("pico") => "p",
+            _ => return text.parse(),
+        };
+        format!("{prefix}m").parse()
+    }
+
     /// Dimension: what it measures.
     pub fn dimension(&self) -> Dimension {
         self.dimension

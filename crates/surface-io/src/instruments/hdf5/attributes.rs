@@ -1,29 +1,19 @@
 //! Attributes of HDF5, which define the meaning of the numbers in a data set.
 
+use crate::array::Array;
 use crate::channel::{StoredUnit, Undefined};
-use crate::options::Axes;
-use crate::quantity::Unit;
+use crate::extent::Extent;
+use crate::quantity::{Dimension, Quantity, Unit};
 use hdf5_pure::AttrValue;
 use std::collections::HashMap;
 
 pub(super) type Attributes = HashMap<String, AttrValue>;
 
-/// The attribute of the unit, which this crate writes too.
+/// Attributes that this crate writes and reads.
 pub(super) const UNIT: &str = "unit";
-
-/// What the numbers of a data set stand for.
-pub(super) struct Values {
-    pub(super) scale: f64,
-    pub(super) shift: f64,
-    pub(super) undefined: Undefined,
-    pub(super) unit: StoredUnit,
-    /// Whether the file gives a scale.
-    pub(super) scaled: bool,
-    /// Order of the axes where no label says it, and why.
-    pub(super) axes: Axes,
-    pub(super) custom: &'static str,
-    pub(super) notes: Vec<String>,
-}
+pub(super) const SIZE: &str = "size";
+pub(super) const SIZE_UNIT: &str = "size_unit";
+pub(super) const LABELS: &str = "DIMENSION_LABELS";
 
 /// A text, alone or as the only one of an array.
 pub(super) fn text<'a>(attributes: &'a Attributes, key: &str) -> Option<&'a str> {
@@ -35,8 +25,13 @@ pub(super) fn text<'a>(attributes: &'a Attributes, key: &str) -> Option<&'a str>
     value.as_str().or_else(only)
 }
 
+/// The unit as it is written.
+pub(super) fn written(attributes: &Attributes) -> Option<&str> {
+    text(attributes, UNIT).or_else(|| text(attributes, "units")).map(str::trim)
+}
+
 pub(super) fn unit(attributes: &Attributes) -> StoredUnit {
-    match text(attributes, UNIT).or_else(|| text(attributes, "units")).map(str::trim) {
+    match written(attributes) {
         None => StoredUnit::Unknown,
         Some("none") => StoredUnit::Heights(Unit::none()),
         Some(text) => StoredUnit::written(text),
@@ -62,19 +57,24 @@ pub(super) fn number(attributes: &Attributes, key: &str) -> std::result::Result<
     }
 }
 
-/// What is packed or marked as NetCDF defines it.
-pub(super) fn packed(attributes: &Attributes) -> std::result::Result<Values, String> {
+/// What the attributes of every program state: unit, size, packing and marks as NetCDF defines them.
+pub(super) fn describe(array: &mut Array, attributes: &Attributes) -> std::result::Result<(), String> {
     let of = |key: &str| number(attributes, key);
-    let mark = of("_FillValue")?.or(of("missing_value")?);
-    let scale = of("scale_factor")?;
-    Ok(Values {
-        scale: scale.unwrap_or(1.0),
-        shift: of("add_offset")?.unwrap_or(0.0),
-        undefined: mark.map_or(Undefined::None, Undefined::Equal),
-        unit: StoredUnit::Unknown,
-        scaled: scale.is_some(),
-        axes: Axes::Xy,
-        custom: "as SurfaceTopography and MATLAB write it, no label says it",
-        notes: Vec::new(),
-    })
+    array.undefined = Undefined::either(of("_FillValue")?, of("missing_value")?);
+    (array.scale, array.shift) = (of("scale_factor")?, of("add_offset")?);
+    array.unsigned = text(attributes, "_Unsigned").and_then(|text| text.parse().ok());
+    array.unit = unit(attributes);
+    array.extent = extent(attributes);
+    Ok(())
+}
+
+fn extent(attributes: &Attributes) -> [Option<Extent>; 2] {
+    let sides = || {
+        let unit = attributes.get(SIZE_UNIT)?.as_str()?.parse::<Unit>().ok()?;
+        let [x, y] = numbers(attributes, SIZE)?[..] else { return None };
+        let known = unit.dimension() == Dimension::LENGTH || unit == Unit::none();
+        let side = |side: f64| Quantity::of(side, &unit).ok().filter(|q| known && q.value() > 0.0);
+        Some([Extent::Side(side(x)?), Extent::Side(side(y)?)])
+    };
+    sides().map_or([None; 2], |[x, y]| [Some(x), Some(y)])
 }

@@ -29,3 +29,48 @@ with netCDF4.Dataset("double-missing.nc", "w", format="NETCDF3_CLASSIC") as f:
 tifffile.imwrite("nodata-15-digits.tif", holed(np.finfo("f4").min),
                  extratags=[(42113, 2, 0, "-3.40282346638529e+38", True)])
 tifffile.imwrite("undeclared.tif", holed(-9999.9))
+
+# Names of dimensions, and coordinates along them.
+
+
+def nc(name, dimensions, z=Z, kind="NETCDF4", **attributes):
+    """A variable z over two dimensions (name, coordinates, unit)."""
+    with netCDF4.Dataset(name, "w", format=kind) as f:
+        for name, values, unit in dimensions:
+            f.createDimension(name, len(values))
+            v = f.createVariable(name, "f4", (name,))
+            v[:] = values
+            if unit:
+                v.units = unit
+        v = f.createVariable("z", z.dtype, [d[0] for d in dimensions])
+        v.set_auto_maskandscale(False)
+        v.units = "nm"
+        v.setncatts(attributes)
+        v[:] = z
+
+
+up, down, uneven = [0, 2, 4], [4, 2, 0], [0, 2, 5]
+nc("descending.nc", [("lat", down, "meters"), ("lon", [0, 1, 2, 3], "m")])
+nc("descending-3.nc", [("lat", down, "meters"), ("lon", [0, 1, 2, 3], "m")], kind="NETCDF3_CLASSIC")
+nc("xy.nc", [("x", [0, 1, 2, 3], "um"), ("y", up, "um")], z=Z.T.copy())
+nc("degrees.nc", [("lat", [50, 50.1, 50.2], "degrees_north"), ("lon", [7, 7.1, 7.2, 7.3], "degrees_east")])
+nc("plain.nc", [("y", up, ""), ("x", [0, 1, 2, 3], "")])
+nc("uneven.nc", [("y", uneven, "m"), ("x", [0, 1, 2, 3], "m")])
+nc("uneven-3.nc", [("y", uneven, "m"), ("x", [0, 1, 2, 3], "m")], kind="NETCDF3_CLASSIC")
+nc("time.nc", [("time", up, "s"), ("x", [0, 1, 2, 3], "m")])
+nc("unsigned-3.nc", [("y", up, "um"), ("x", [0, 1, 2, 3], "um")], kind="NETCDF3_CLASSIC",
+   z=np.array([[100, 200, 300, 400], [-25536, -15536, -5536, -1], [32767, -32768, 7, 9]], "i2"),
+   _Unsigned="true", scale_factor=0.1, missing_value=np.int16(-1))
+for name, values in ("scales.h5", Z), ("scales-square.h5", Z[:, :3]):
+    with h5py.File(name, "w") as f:
+        g = f.create_group("a")
+        d = g.create_dataset("z", data=values)
+        d.attrs["units"] = "nm"
+        for i, name in enumerate(["y", "x"]):
+            s = f.create_dataset(name, data=2e-6 * np.arange(values.shape[i]), chunks=(2,), compression="gzip")
+            s.attrs["units"] = "m"
+            s.make_scale()
+            d.dims[i].attach_scale(s)
+with netCDF4.Dataset("line.nc", "w", format="NETCDF3_CLASSIC") as f:
+    f.createDimension("x", 3)
+    f.createVariable("profile", "f8", ("x",))[:] = [1, 2, 3]
