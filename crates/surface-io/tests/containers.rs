@@ -3,7 +3,7 @@
 
 #![allow(clippy::unwrap_used)] // Tests, as a whole.
 
-use surface_io::{Axes, Metadata, Quantity, ReadOptions, Scan};
+use surface_io::{Axes, Metadata, Quantity, ReadOptions, Scan, SurfaceFile};
 
 /// The heights of [`file`] as `make.py` has them, row by row.
 const HEIGHTS: [f64; 12] = [1.3, 2.9, 2.2, 4.1, 0.7, 5.2, 3.3, 1.8, 2.4, 0.2, 6.1, 3.7];
@@ -155,4 +155,52 @@ fn integers_are_unsigned_where_the_file_says_so() {
 fn variables_of_netcdf_3_have_any_name() {
     holds(&read("nc3-z.nc"), &HEIGHTS, 1.0);
     refused("line.nc", "its variables are profile (x)");
+}
+
+#[test]
+fn statements_of_a_tiff_are_used_or_reported() {
+    holds(&read("mask-page.tif"), &holed(), 1.0);
+    holds(&read("mask-tiles.tif"), &holed(), 1.0);
+    let found = heights(&read("scale-offset.tif"));
+    assert!(found.iter().zip(HEIGHTS).all(|(a, b)| (a - b).abs() < 1e-12), "{found:?}");
+    noted(&read("geotiff-utm.tif"), "pixels of 10 x 5");
+    let scan = read("metres.tif");
+    assert_eq!((sides(&scan), scan.metadata().unit.is_some()), (Some([10.0, 5.0]), true));
+    // The image of less resolution is no second map.
+    holds(&read("overview.tif"), &HEIGHTS, 1.0);
+    refused("wrong-scale.tif", "a number as scale of GDAL's metadata, found \"two\"");
+    refused("mask-packed.tif", "found 1 bits and compression 32773");
+    noted(&read("no-number.tif"), "marks undefined points by \"none\"");
+}
+
+#[test]
+fn images_of_a_lext_file_are_what_their_names_say() {
+    let scan = read("pages.lext");
+    assert_eq!(scan.metadata().name.as_deref(), Some("HEIGHT"));
+    assert_eq!(scan.metadata().unit.as_ref().map(|unit| unit.value.to_string()).as_deref(), Some("m"));
+    let cell = sides(&scan).unwrap();
+    assert!(cell.iter().all(|side| (side / 0.25e-6 - 1.0).abs() < 1e-12), "{cell:?}");
+}
+
+#[test]
+fn damaged_containers_do_not_panic() {
+    let directory = format!("{}/tests/files/containers", env!("CARGO_MANIFEST_DIR"));
+    for entry in std::fs::read_dir(directory).unwrap() {
+        let name = entry.unwrap().file_name().into_string().unwrap();
+        let whole = file(&name);
+        for i in 0..300 {
+            let mut bytes = whole.clone();
+            // Places far apart and, in turn, several values; at last shorter and shorter files.
+            let at = (i * 7919) % bytes.len();
+            match i % 4 {
+                0 => bytes[at] = 0xff,
+                1 => bytes[at] = bytes[at].wrapping_add(1),
+                2 => bytes[at] = 0,
+                _ => bytes.truncate(at),
+            }
+            if let Ok(read) = SurfaceFile::from_bytes(&name, &bytes, &ReadOptions::default()) {
+                read.scans().for_each(drop);
+            }
+        }
+    }
 }

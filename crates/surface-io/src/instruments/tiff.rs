@@ -4,14 +4,15 @@
 //! `ij/io/FileOpener.java` and `FileSaver.java` of
 //! <https://github.com/imagej/ImageJ>.
 //!
-//! - **Unit and scale.** TIFF states neither, so [`crate::ReadOptions::height_scale`] or a unit is required.
-//!   Only ImageJ's description is used: `cf=0` with `c0` and `c1` makes values `c0 + c1 * number`, `vunit` is
-//!   their unit; another `cf` makes them no heights.
+//! - **Unit and scale.** TIFF states neither, so [`crate::ReadOptions::height_scale`] or a unit is required,
+//!   unless ImageJ's description has them (`cf=0` with `c0` and `c1` makes values `c0 + c1 * number`, `vunit`
+//!   is their unit; another `cf` makes them no heights), or GDAL's metadata (`scale`, `offset`, `unittype`).
 //! - **Size.** By ImageJ's `unit` (and `yunit`), pixels per unit in the tags of the resolution. Resolutions
 //!   per inch, and those without that description, are those of print or screens.
 //! - **Order.** The first row is the top one and y = 0; the orientations 2, 3 and 4 are turned, 5 to 8 are
 //!   refused.
-//! - **Undefined points.** NaN, and what GDAL's tag of no data says.
+//! - **Undefined points.** NaN, what GDAL's tag of no data says, and points that a mask page leaves out.
+//! - **Passed** are images of less resolution (`NewSubfileType` 1), which are listed as no heights.
 //!
 //! Pictures of 8 bits or in colours, and those where white is zero, are refused. Read are uncompressed data,
 //! LZW, Deflate and `PackBits` in strips and tiles. Of OME's description the physical size of a pixel counts
@@ -21,17 +22,24 @@
 //! their own.
 
 mod directory;
+mod gdal;
 mod jpk;
+mod lext;
+mod mask;
 mod park;
 
 use super::prelude::*;
-use crate::channel::undefined_heights;
+use crate::array::{Array, Dimension as Along, Numbers};
+use crate::channel::{FileAxes, undefined_heights};
 use crate::error::{ContentError, Error, Place};
 use crate::inflate::RATIO;
 use crate::number_type::exact;
 use crate::quantity::{Dimension, Quantity, Unit};
 use directory::{Directories, MOST};
+use gdal::Gdal;
 use jpk::Jpk;
+use lext::Lext;
+use mask::Mask;
 use quick_xml::events::Event;
 use std::collections::HashMap;
 use std::io::{Read, Seek};
@@ -40,8 +48,11 @@ use tiff::decoder::{ChunkType, Decoder, DecodingResult, Limits};
 use tiff::tags::Tag;
 use tiff::{ColorType, TiffError, TiffResult};
 
-/// GDAL's mark of undefined points, as text.
-const NODATA: Tag = Tag::GdalNodata;
+/// Bits of `NewSubfileType`: an image of less resolution, a mask.
+const REDUCED: u32 = 1;
+const MASK: u32 = 4;
+/// Longest description of an image but the first: its name.
+const NAME: usize = 64;
 /// Longest text or list in a directory, in bytes.
 const LONGEST: usize = 1 << 20;
 
@@ -78,8 +89,8 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
     loop {
         let mut page = Page::of(&mut decoder).map_err(|e| Error::content(&path)(unreadable(&e)))?;
         if !pages.is_empty() {
-            // All images may share one long text, and nothing but that of the first is looked at.
-            page.description = None;
+            // All images may share one long text, and of others than the first only names are looked at.
+            page.description = page.description.filter(|text| text.len() <= NAME);
         }
         pages.push(page);
         if !decoder.more_images() || pages.len() == MOST {
@@ -90,12 +101,23 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
     drop(decoder);
     // ImageJ describes a stack in its first image.
     let text = pages.first().and_then(|page| page.description.as_deref());
-    let (image_j, microscope) = (ImageJ::of(text), text.map_or([None; 2], of_microscope));
-    let alone = pages.len() == 1;
+    let first = First {
+        image_j: ImageJ::of(text),
+        microscope: text.map_or([None; 2], of_microscope),
+        lext: Lext::of(text),
+        alone: pages.iter().filter(|page| page.subfile & MASK == 0).count() == 1,
+    };
     let mut channels = Vec::new();
+    let masked: Vec<bool> = pages.iter().skip(1).map(|page| page.subfile & MASK > 0).collect();
     for (number, page) in pages.into_iter().enumerate() {
-        let jpk = if page.bits.is_some() { Jpk::of(source, &tags, number)? } else { None };
-        channels.extend(channel(source, number, &page, (image_j.as_ref(), microscope), (jpk, alone))?);
+        if page.bits.is_none() || page.subfile & MASK > 0 {
+            continue;
+        }
+        let jpk = Jpk::of(source, &tags, number)?;
+        let shape = [page.size.1 as usize, page.size.0 as usize];
+        let mask = masked.get(number).is_some_and(|&mask| mask);
+        let mask = mask.then(|| Mask::of(source, &tags, number + 1, shape)).transpose()?;
+        channels.extend(channel(source, number, page, &first, (jpk, mask))?);
     }
     if channels.is_empty() {
         let what = "a TIFF picture of 8 bits, in colours or with white as zero";
@@ -116,8 +138,18 @@ struct Page {
     resolution: [Option<f64>; 2],
     resolution_unit: u16,
     description: Option<String>,
-    /// The mark of undefined points that GDAL writes.
-    missing: Option<f64>,
+    /// What kind of image it is.
+    subfile: u32,
+    gdal: Gdal,
+}
+
+/// What the first image says of all.
+struct First {
+    image_j: Option<ImageJ>,
+    microscope: [Option<Extent>; 2],
+    lext: Option<Lext>,
+    /// Whether there is no other image.
+    alone: bool,
 }
 
 impl Page {
@@ -145,12 +177,9 @@ impl Page {
             Some(Value::Ascii(text)) => Some(text),
             _ => None,
         };
-        let missing = match decoder.find_tag(NODATA)? {
-            Some(Value::Ascii(text)) => text.trim_matches(['\0', ' ']).parse().ok(),
-            _ => None,
-        };
         Ok(Self {
-            missing,
+            gdal: Gdal::of(decoder)?,
+            subfile: decoder.find_tag_unsigned(Tag::NewSubfileType)?.unwrap_or(0),
             size,
             bits,
             sample_format,
@@ -207,14 +236,14 @@ impl ImageJ {
     }
 
     /// Unit, scale and shift of the heights.
-    fn heights(&self) -> (StoredUnit, f64, f64) {
+    fn heights(&self) -> (StoredUnit, Option<f64>, Option<f64>) {
         /// Numbers of ImageJ's calibrations.
         const STRAIGHT_LINE: f64 = 0.0;
         const NONE: f64 = 20.0;
         let is = |function: f64, known: f64| (function - known).abs() < 0.5;
         match (self.number("cf"), self.number("c0"), self.number("c1")) {
-            (None, ..) => (StoredUnit::Unknown, 1.0, 0.0),
-            (Some(function), ..) if is(function, NONE) => (StoredUnit::Unknown, 1.0, 0.0),
+            (None, ..) => (StoredUnit::Unknown, None, None),
+            (Some(function), ..) if is(function, NONE) => (StoredUnit::Unknown, None, None),
             (Some(function), Some(shift), Some(scale)) if is(function, STRAIGHT_LINE) => {
                 let unit = match (self.length("vunit"), self.0.get("vunit").map(String::as_str)) {
                     (Some(unit), _) => StoredUnit::Heights(unit),
@@ -222,34 +251,34 @@ impl ImageJ {
                     (None, None | Some("" | "Gray Value")) => StoredUnit::Unknown,
                     (None, Some(other)) => StoredUnit::NoHeights(Some(other.chars().take(32).collect())),
                 };
-                (unit, scale, shift)
+                (unit, Some(scale), Some(shift))
             }
-            _ => (StoredUnit::NoHeights(Some("a calibration that is no straight line".into())), 1.0, 0.0),
+            _ => (StoredUnit::NoHeights(Some("a calibration that is no straight line".into())), None, None),
         }
     }
 
-    fn extent(&self, page: &Page) -> [Option<Extent>; 2] {
+    fn extent(&self, resolution: &[Option<f64>; 2], resolution_unit: u16) -> [Option<Extent>; 2] {
         let x = self.length("unit");
         let y = if self.0.contains_key("yunit") { self.length("yunit") } else { x.clone() };
         let cell = |unit: Option<Unit>, per_unit: Option<f64>| {
             let (unit, per_unit) = (unit?, per_unit?);
-            let unit = match page.resolution_unit {
+            let unit = match resolution_unit {
                 1 => unit,
                 3 => "cm".parse().ok()?,
                 _ => return None,
             };
             Quantity::of(1.0 / per_unit, &unit).ok().filter(|q| q.value() > 0.0).map(Extent::Cell)
         };
-        [cell(x, page.resolution[0]), cell(y, page.resolution[1])]
+        [cell(x, resolution[0]), cell(y, resolution[1])]
     }
 }
 
 fn channel(
     source: &Source<'_>,
     number: usize,
-    page: &Page,
-    (description, microscope): (Option<&ImageJ>, [Option<Extent>; 2]),
-    (jpk, alone): (Option<Jpk>, bool),
+    page: Page,
+    first: &First,
+    (jpk, mask): (Option<Jpk>, Option<Mask>),
 ) -> Result<Option<StoredChannel>> {
     let (columns, rows) = page.size;
     let Some(bits) = page.bits else { return Ok(None) };
@@ -263,8 +292,6 @@ fn channel(
             return Err(source.wrong(0, expected));
         }
     };
-    let shape = [rows as usize, columns as usize];
-    source.check_cells(shape)?;
     let claimed = u128::from(rows) * u128::from(columns) * u128::from(bits / 8);
     if claimed > u128::from(RATIO.saturating_mul(source.length())) {
         let expected = format!("{columns} x {rows} numbers in {} bytes (cut short?)", source.length());
@@ -277,33 +304,45 @@ fn channel(
     };
     // Byte order and packing are the other crate's; what it decodes has this type.
     let Some(kind) = NumberType::new(letter, bits / 8, true) else { return Ok(None) };
-    let (unit, scale, shift) = match &jpk {
-        Some(jpk) => (jpk.unit.clone(), jpk.scale, jpk.shift),
-        None => description.map_or((StoredUnit::Unknown, 1.0, 0.0), ImageJ::heights),
-    };
-    // The first row is the bottom of JPK's image.
-    let reversed = match &jpk {
-        Some(jpk) if !jpk.reflected => [reversed[0], !reversed[1]],
-        _ => reversed,
-    };
-    let held = Bytes::Held(Vec::new());
-    let undefined = page.missing.map_or(Undefined::None, Undefined::Equal);
-    let raw = RawHeights { reversed, scale, shift, undefined, ..RawHeights::new(held, kind) };
-    raw.check_scale(source)?;
-    let compared = raw.compared();
-    let image = Image { number, size: page.size, bytes: u64::from(bits / 8), raw };
-    let details = format!("{}, row by row", kind.name());
-    let extent = match &jpk {
-        Some(jpk) => jpk.extent,
-        None => description.map_or_else(|| microscope, |description| description.extent(page)),
-    };
-    let name = match jpk {
-        Some(jpk) => jpk.name,
-        None if alone => String::new(),
-        None => format!("image {number}"),
-    };
-    let channel = StoredChannel::deferred(details, shape, unit, extent, move |source| image.read(source));
-    Ok(Some(StoredChannel { compared, ..channel.named(&name) }))
+    let dimensions = [rows, columns].map(|count| Along::of_length(count as usize));
+    let name = if first.alone { String::new() } else { format!("image {number}") };
+    let mut array = Array::new(&name, dimensions, kind, (FileAxes::Fixed, ""));
+    let Gdal { scale, shift, unit, missing, extent, notes, wrong } = page.gdal;
+    if let Some(expected) = wrong {
+        return Err(source.wrong(0, format!("{expected} in image {number}")));
+    }
+    array.undefined = missing.map_or(Undefined::None, Undefined::Equal);
+    (array.notes, array.reversed) = (notes, reversed);
+    (array.scale, array.shift, array.extent) = (scale, shift, extent);
+    array.unit = StoredUnit::written(unit.as_deref().unwrap_or_default());
+    let description = page.description.as_deref().unwrap_or_default().trim();
+    if let Some(jpk) = jpk {
+        // The first row is the bottom of JPK's image.
+        array.reversed[1] ^= !jpk.reflected;
+        (array.name, array.unit, array.extent) = (jpk.name, jpk.unit, jpk.extent);
+        (array.scale, array.shift) = (Some(jpk.scale), Some(jpk.shift));
+    } else if let Some(lext) = &first.lext {
+        description.clone_into(&mut array.name);
+        (array.unit, array.scale, array.extent) = lext.image(description);
+    } else if let Some(image_j) = &first.image_j {
+        let (unit, scale, shift) = image_j.heights();
+        if array.scale.is_some() && scale.is_some() {
+            return Err(source.wrong(0, "one scale of the heights, found those of ImageJ and of GDAL"));
+        }
+        (array.scale, array.shift) = (array.scale.or(scale), array.shift.or(shift));
+        array.unit = if unit == StoredUnit::Unknown { array.unit } else { unit };
+        array.extent = image_j.extent(&page.resolution, page.resolution_unit);
+    } else if array.extent == [None; 2] {
+        array.extent = first.microscope;
+    }
+    if page.subfile & REDUCED > 0 {
+        array.unit = StoredUnit::NoHeights(Some("an image of less resolution".into()));
+    }
+    let details = format!("{}, row by row{}", kind.name(), if mask.is_some() { ", with a mask" } else { "" });
+    let image = Image { number, size: page.size, bytes: u64::from(bits / 8), mask };
+    let numbers = Numbers::Decoded("", Box::new(move |raw, source| image.read(raw, source)));
+    // Byte order and packing are not those of the file any more.
+    Ok(Some(StoredChannel { details, ..array.channel(source, numbers)? }))
 }
 
 /// What is needed to read one image.
@@ -312,24 +351,31 @@ struct Image {
     size: (u32, u32),
     /// Bytes of a number.
     bytes: u64,
-    /// What becomes of its numbers.
-    raw: RawHeights,
+    mask: Option<Mask>,
 }
 
 impl Image {
-    fn read(&self, source: &mut Source<'_>) -> Result<Vec<f64>> {
+    fn read(&self, raw: &RawHeights, source: &mut Source<'_>) -> Result<Vec<f64>> {
         let (columns, rows) = (self.size.0 as usize, self.size.1 as usize);
         let mut heights = undefined_heights(source, rows, columns)?;
         let path = source.path().to_owned();
         let most = RATIO.saturating_mul(source.length());
         let mut decoder = open(source)?;
-        let read = self.chunks(&mut decoder, most, &mut heights);
+        let read = self.chunks(raw, &mut decoder, most, &mut heights);
         read.map_err(Error::content(&path))?;
+        drop(decoder);
+        if let Some(mask) = &self.mask {
+            mask.each(source, &mut |place| {
+                let [row, column] = raw.place([rows, columns], place);
+                heights[row * columns + column] = f64::NAN;
+            })?;
+        }
         Ok(heights)
     }
 
     fn chunks<R: Read + Seek>(
         &self,
+        raw: &RawHeights,
         decoder: &mut Decoder<R>,
         most: u64,
         heights: &mut [f64],
@@ -360,7 +406,7 @@ impl Image {
                 let decoded = decoder.read_chunk(number).map_err(failed)?;
                 let (wide, tall) = (wide.min(columns - left) as usize, tall.min(rows - top) as usize);
                 let to = [top as usize, left as usize];
-                self.put(&decoded, [tall, wide], to, heights)?;
+                self.put(raw, &decoded, ([tall, wide], to), heights)?;
             }
         }
         Ok(())
@@ -369,15 +415,15 @@ impl Image {
     /// Puts the numbers of a strip or tile, with its numbers of rows and columns, in their places.
     fn put(
         &self,
+        raw: &RawHeights,
         decoded: &DecodingResult,
-        [tall, wide]: [usize; 2],
-        [top, left]: [usize; 2],
+        ([tall, wide], [top, left]): ([usize; 2], [usize; 2]),
         heights: &mut [f64],
     ) -> Result<(), ContentError> {
         let shape = [self.size.1 as usize, self.size.0 as usize];
         for k in 0..tall * wide {
             let place = [top + k / wide, left + k % wide];
-            let [row, column] = self.raw.place(shape, place);
+            let [row, column] = raw.place(shape, place);
             let inexact = |value| ContentError::Inexact { place: Place::Cell { row, column }, value };
             let number = match decoded {
                 DecodingResult::U16(all) => all.get(k).map(|&n| f64::from(n)),
@@ -397,7 +443,7 @@ impl Image {
             };
             let number =
                 number.ok_or_else(|| unreadable(&format!("{tall} x {wide} numbers in a strip or tile")))?;
-            self.raw.put_number(heights, shape, place, number);
+            raw.put_number(heights, shape, place, number);
         }
         Ok(())
     }

@@ -90,6 +90,24 @@ impl Directories {
         source.fields(self.order, entry.at, entry.length)?.text(entry.length as usize).map(Some)
     }
 
+    /// All whole numbers of a tag.
+    pub(super) fn whole(&self, source: &mut Source<'_>, image: usize, tag: u16) -> Result<Vec<u64>> {
+        let Some(entry) = self.entry(image, tag) else { return Ok(Vec::new()) };
+        let size = match entry.kind {
+            3 => 2,
+            4 | 13 => 4,
+            16 | 18 => 8,
+            _ => return Ok(Vec::new()),
+        };
+        let bytes = source.bytes(entry.at, entry.length)?;
+        let digit = |n: u64, &byte: &u8| n << 8 | u64::from(byte);
+        let number = |bytes: &[u8]| match self.order {
+            ByteOrder::Big => bytes.iter().fold(0, digit),
+            ByteOrder::Little => bytes.iter().rev().fold(0, digit),
+        };
+        Ok(bytes.chunks_exact(size).map(number).collect())
+    }
+
     /// The first number of a tag, where it is finite.
     pub(super) fn number(&self, source: &mut Source<'_>, image: usize, tag: u16) -> Result<Option<f64>> {
         let Some(entry) = self.entry(image, tag) else { return Ok(None) };

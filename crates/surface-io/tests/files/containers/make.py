@@ -74,3 +74,31 @@ for name, values in ("scales.h5", Z), ("scales-square.h5", Z[:, :3]):
 with netCDF4.Dataset("line.nc", "w", format="NETCDF3_CLASSIC") as f:
     f.createDimension("x", 3)
     f.createVariable("profile", "f8", ("x",))[:] = [1, 2, 3]
+
+# TIFF.
+items = '<GDALMetadata>\n  <Item name="{}" sample="0" role="{}">{}</Item>\n</GDALMetadata>'
+
+
+def ascii(tag, text):
+    return (tag, 2, 0, text, True)
+
+
+projected = [(33550, 12, 3, (10.0, 5.0, 0.0), True), (34735, 3, 12, (1, 1, 0, 2, 1024, 0, 1, 1, 3076, 0, 1, 9001), True)]
+tifffile.imwrite("metres.tif", Z.astype("f4"),
+                 extratags=[*projected, ascii(42112, items.format("UNITTYPE", "unittype", "metre"))])
+tifffile.imwrite("wrong-scale.tif", Z.astype("f4"), extratags=[ascii(42112, items.format("SCALE", "scale", "two"))])
+tifffile.imwrite("no-number.tif", Z.astype("f4"), extratags=[ascii(42113, "none")])
+with tifffile.TiffWriter("overview.tif") as f:
+    f.write(Z.astype("f4"))
+    f.write(Z[::2, ::2].astype("f4"), subfiletype=1)
+valid = np.ones(Z.shape, bool)
+valid[1, 2] = False
+for name, options in ("mask-tiles.tif", {"tile": (16, 16), "compression": "zlib"}), ("mask-packed.tif", {"compression": "packbits"}):
+    with tifffile.TiffWriter(name) as f:
+        f.write(Z.astype("f4"))
+        f.write(valid, subfiletype=4, photometric="mask", **options)
+
+# What is no map.
+with h5py.File("volume.h5", "w") as f:
+    f["stack"] = np.zeros((2, 3, 4))
+    f["line"] = np.zeros(3)
