@@ -183,6 +183,23 @@ fn images_of_a_lext_file_are_what_their_names_say() {
 }
 
 #[test]
+fn frames_of_a_scan_are_channels_and_indices_are_none() {
+    let name = "jpk-two-frames.h5-jpk";
+    let bytes = file(name);
+    let scans = SurfaceFile::from_bytes(name, &bytes, &ReadOptions::default()).unwrap().scans();
+    let scans: Vec<Scan> = scans.map(Result::unwrap).collect();
+    let (maps, others): (Vec<&Scan>, Vec<&Scan>) =
+        scans.iter().partition(|scan| scan.metadata().no_heights.is_none());
+    assert_eq!((maps.len(), others.len()), (2, 2));
+    holds(maps[0], &HEIGHTS, 1e-8);
+    for scan in maps {
+        assert_eq!(scan.metadata().size.map(|size| size.map(Quantity::value)), Some([2e-6, 1.5e-6]));
+    }
+    refused(name, "2 channels of the file have heights");
+    refused("volume.h5", "the data sets are line (3), stack (2 x 3 x 4)");
+}
+
+#[test]
 fn damaged_containers_do_not_panic() {
     let directory = format!("{}/tests/files/containers", env!("CARGO_MANIFEST_DIR"));
     for entry in std::fs::read_dir(directory).unwrap() {

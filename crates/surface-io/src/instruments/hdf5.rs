@@ -21,7 +21,9 @@
 //! Programs that write attributes of their own:
 //!
 //! - **JPK.** `encoder.scaling.multiplier`, `.offset` and `.unit.unit` of the group that holds a data set:
-//!   height = multiplier x number + offset. The conversion sets are not applied.
+//!   height = multiplier x number + offset. The conversion sets are not applied. In a measurement with a grid
+//!   of points (`position-pattern.grid`) a data set has a line for each point and a column for each frame, and
+//!   each frame is a channel; data sets without a unit of their own (thumbnails, indices) are no heights.
 //! - **MATLAB 7.3.** A matrix of rows and columns stands as columns and rows. Text and scalars are passed.
 //! - **Zygo's DATX** (`Data/Surface/...`, after prysm's `read_zygo_datx` and `IO/DATX.py` of
 //!   SurfaceTopography). Height = number in `Unit`, of `Fringes` number x `Wavelength` x
@@ -47,18 +49,20 @@ pub use write::hdf5;
 
 use super::prelude::*;
 use crate::array::{Array, Dimension, Numbers};
-use crate::channel::{FileAxes, undefined_heights};
+use crate::channel::{FileAxes, check_number, undefined_heights};
 use crate::inflate::RATIO;
 use crate::options::Axes;
 use crate::source::Budget;
-use attributes::{Attributes, LABELS, SIZE, SIZE_UNIT, UNIT, describe, text};
+use attributes::{Attributes, LABELS, SIZE, SIZE_UNIT, UNIT, describe, text, written};
 use flate2::read::ZlibDecoder;
 use hdf5_pure::{
-    Chunk, Dataset, Datatype, DatatypeByteOrder, File, FloatingPointLayout, Group, Layout, ReadSeekSource,
+    Chunk, Dataset, Datatype, DatatypeByteOrder, File, FloatingPointLayout, Layout, ReadSeekSource,
 };
 use scales::Scale;
 use std::collections::{HashSet, VecDeque};
 use std::io::Read as _;
+use std::sync::Arc;
+use vendor::Grid;
 
 /// Groups inside groups, and objects, that are looked at: links may form loops.
 const DEEPEST: usize = 8;
@@ -67,6 +71,8 @@ const MOST: usize = 1000;
 /// strings of many attributes may be the same string of a heap.
 const REREAD: u64 = 4;
 const LEAST: u64 = 16 << 20;
+/// Data sets that are named in an error.
+const NAMED: usize = 20;
 const DEFLATE: u16 = 1;
 const SHUFFLE: u16 = 2;
 const FLETCHER32: u16 = 3;
@@ -80,12 +86,13 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
     let file = File::from_source(input).map_err(|e| unreadable(source, &e))?;
     let mut channels = Vec::new();
     let mut taken = HashSet::new();
-    let mut scales = Vec::new();
+    let (mut scales, mut others) = (Vec::new(), Vec::new());
     let mut seen = 0;
     // Level by level, so that what has two names gets its shorter one.
-    let mut waiting: VecDeque<(String, Group, usize)> = [(String::new(), file.root(), 0)].into();
-    while let Some((path, group, depth)) = waiting.pop_front() {
+    let mut waiting: VecDeque<_> = [(String::new(), file.root(), 0, None)].into();
+    while let Some((path, group, depth, grid)) = waiting.pop_front() {
         let beside = group.attrs().unwrap_or_default();
+        let grid = Grid::of(&beside).or(grid);
         let datasets = group.iter_datasets().map_err(|e| unreadable(source, &e))?;
         let datasets: Vec<_> = datasets.take(MOST).collect();
         for (name, dataset) in &datasets {
@@ -94,10 +101,13 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
         for (name, dataset) in datasets {
             seen += 1;
             let name = join(&path, &name);
-            let beside = Beside { path: &path, attributes: &beside, scales: &scales };
-            if let Some(channel) = channel(source, &dataset, &beside, &name, &mut taken).transpose() {
-                channels.push(StoredChannel::listed(Some(name), channel)?);
+            let beside = Beside { path: &path, attributes: &beside, scales: &scales, grid };
+            match of_dataset(source, &dataset, &beside, &name, &mut taken) {
+                Ok(found) if found.is_empty() && others.len() < NAMED => others.push(shown(&dataset, &name)),
+                Ok(found) => channels.extend(found),
+                Err(error) => channels.push(StoredChannel::listed(Some(name), Err(error))?),
             }
+            check_number(source, 0, channels.len())?;
             if budget.is_spent() {
                 let expected = "metadata that do not name the same bytes again and again";
                 return Err(source.wrong(0, expected));
@@ -106,7 +116,7 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
         if depth < DEEPEST {
             for (name, inner) in group.iter_groups().map_err(|e| unreadable(source, &e))? {
                 seen += 1;
-                waiting.push_back((join(&path, &name), inner, depth + 1));
+                waiting.push_back((join(&path, &name), inner, depth + 1, grid));
             }
         }
         if seen > MOST {
@@ -115,9 +125,17 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
     }
     channels.sort_by(|a, b| a.name.cmp(&b.name));
     if channels.is_empty() {
-        return Err(source.wrong(0, "a data set of numbers of two dimensions"));
+        let found = if others.is_empty() { "none".to_owned() } else { others.join(", ") };
+        let expected = format!("a data set of numbers of two dimensions, the data sets are {found}");
+        return Err(source.wrong(0, expected));
     }
     Ok(channels)
+}
+
+/// Name and shape of a data set, for people.
+fn shown(dataset: &Dataset, name: &str) -> String {
+    let shape: Vec<String> = dataset.shape().unwrap_or_default().iter().map(u64::to_string).collect();
+    format!("{name} ({})", shape.join(" x ")).chars().take(80).collect()
 }
 
 fn join(path: &str, name: &str) -> String {
@@ -138,27 +156,29 @@ struct Beside<'a> {
     attributes: &'a Attributes,
     /// Those of its group and of the groups before.
     scales: &'a [Scale],
+    /// JPK's, of its group or of one before.
+    grid: Option<Grid>,
 }
 
-/// The channel of a data set; `None` for those that are no map.
-fn channel(
+/// The channels of a data set: none for those that are no map, several of a video.
+fn of_dataset(
     source: &Source<'_>,
     dataset: &Dataset,
     beside: &Beside<'_>,
     name: &str,
     taken: &mut HashSet<u64>,
-) -> Result<Option<StoredChannel>> {
+) -> Result<Vec<StoredChannel>> {
     let shape = dataset.shape().map_err(|e| unreadable(source, &e))?;
-    let [first, second] = shape[..] else { return Ok(None) };
+    let [first, second] = shape[..] else { return Ok(Vec::new()) };
     let datatype = dataset.datatype().map_err(|e| unreadable(source, &e))?;
-    let Some(number) = number_type(&datatype) else { return Ok(None) };
+    let Some(number) = number_type(&datatype) else { return Ok(Vec::new()) };
     if first == 0 || second == 0 {
-        return Ok(None);
+        return Ok(Vec::new());
     }
     let attributes = dataset.attrs().map_err(|e| unreadable(source, &e))?;
     let matlab = text(&attributes, "MATLAB_class");
     if matlab == Some("char") || (matlab.is_some() && (first, second) == (1, 1)) {
-        return Ok(None);
+        return Ok(Vec::new());
     }
     let dimensions = [first, second].map(|length| Dimension::of_length(length as usize));
     let custom = "as SurfaceTopography and MATLAB write it, no label says it";
@@ -168,10 +188,17 @@ fn channel(
     described.map_err(|expected| source.wrong(0, expected))?;
     scales::name(&mut array, beside.scales, beside.path, dataset, &attributes);
     let Some((address, found)) = layout(source, dataset, name, number, [first, second])? else {
-        return Ok(None);
+        return Ok(Vec::new());
     };
     if address.is_some_and(|address| !taken.insert(address)) {
-        return Ok(None);
+        return Ok(Vec::new());
+    }
+    if let Some(grid) = beside.grid {
+        if written(&attributes).is_none() {
+            array.unit = StoredUnit::NoHeights(None);
+        } else if grid.columns.checked_mul(grid.rows) == Some(array.dimensions[0].length) {
+            return frames(source, &array, found, grid);
+        }
     }
     let numbers = match found {
         Found::Stored(bytes) => Numbers::Stored(bytes),
@@ -183,7 +210,36 @@ fn channel(
             Numbers::Decoded("", Box::new(move |_, source| Err(unreadable(source, &said))))
         }
     };
-    array.channel(source, numbers).map(Some)
+    Ok(vec![array.channel(source, numbers)?])
+}
+
+/// A channel of each frame of a scan, whose points stand one below the other.
+fn frames(source: &Source<'_>, array: &Array, found: Found, grid: Grid) -> Result<Vec<StoredChannel>> {
+    let Grid { columns, rows, extent, turned } = grid;
+    let found = Arc::new(found);
+    let [points, count] = [0, 1].map(|i| array.dimensions[i].length);
+    check_number(source, 0, count)?;
+    let dimension =
+        |(name, length): (&str, usize)| Dimension { name: name.to_owned(), ..Dimension::of_length(length) };
+    let frame = |frame: usize| {
+        let name = if count > 1 { format!("{} frame {frame}", array.name) } else { array.name.clone() };
+        let dimensions = [("y", rows), ("x", columns)].map(dimension);
+        let mut notes = array.notes.clone();
+        if turned {
+            notes.push("the grid of the scan is turned or reflected, which is not used".into());
+        }
+        let (unit, undefined) = (array.unit.clone(), array.undefined);
+        let Array { number, custom, scale, shift, unsigned, .. } = *array;
+        let plain = Array::new(&name, dimensions, number, custom);
+        let one = Array { unsigned, unit, scale, shift, undefined, extent, notes, ..plain };
+        let found = Arc::clone(&found);
+        let read = move |raw: &RawHeights, source: &mut Source<'_>| {
+            let all = found.read(raw, source, [points, count])?;
+            Ok(all.into_iter().skip(frame).step_by(count).collect())
+        };
+        one.channel(source, Numbers::Decoded(", of points of frames", Box::new(read)))
+    };
+    (0..count).map(frame).collect()
 }
 
 /// Where the numbers of a data set are.

@@ -3,11 +3,42 @@
 use super::attributes::{Attributes, number, text};
 use crate::array::Array;
 use crate::channel::{FileAxes, StoredUnit, Undefined};
+use crate::extent::Extent;
 use crate::options::Axes;
 use hdf5_pure::Dataset;
 
 /// JPK's scaling, in the attributes of the group that holds a data set.
 const JPK: &str = "encoder.scaling";
+
+/// JPK's grid of points, in the attributes of a measurement. A data set in it has a line for each point and a
+/// column for each frame of a video.
+#[derive(Clone, Copy)]
+pub(super) struct Grid {
+    pub(super) columns: usize,
+    pub(super) rows: usize,
+    pub(super) extent: [Option<Extent>; 2],
+    /// Whether the grid is turned or mirrored, which is not used.
+    pub(super) turned: bool,
+}
+
+impl Grid {
+    /// `None` where a group has none.
+    pub(super) fn of(attributes: &Attributes) -> Option<Self> {
+        let key = |key: &str| format!("position-pattern.grid.{key}");
+        let of = |name: &str| number(attributes, &key(name)).ok().flatten();
+        let count =
+            |name: &str| of(name).filter(|count| (1.0..1e9).contains(count)).map(|count| count as usize);
+        let unit = text(attributes, &key("unit.unit")).unwrap_or_default();
+        let side = |name: &str| Extent::of_side(of(name)?, unit);
+        Some(Self {
+            columns: count("ilength")?,
+            rows: count("jlength")?,
+            extent: [side("ulength"), side("vlength")],
+            turned: of("theta").is_some_and(|angle| angle.abs() > 0.0)
+                || text(attributes, &key("reflect")) == Some("true"),
+        })
+    }
+}
 
 /// Adds what a program states beside its data set to the description of an array.
 pub(super) fn describe(
