@@ -87,6 +87,8 @@ pub(crate) struct TextTable {
     end: u8,
     /// Whether every line so far ended with a delimiter: the habit of some programs, or an empty last place.
     open: bool,
+    /// Whether every line so far began with a delimiter: the habit of others, and no column of undefined points.
+    led: bool,
     /// Whether there is an empty line behind every line.
     spaced: bool,
 }
@@ -224,6 +226,7 @@ impl TextTable {
         let Some(map) = maps.last_mut() else { return Err(ContentError::Empty) };
         heading.into_iter().try_for_each(|(line, text)| map.heading.read(&text, line))?;
         for map in &mut maps {
+            map.without_first_places();
             map.heading.finish()?;
             map.scale = map.heading.scale;
             if let Some(mark) = map.heading.missing {
@@ -267,6 +270,7 @@ impl TextTable {
             found_commas: false,
             end,
             open: true,
+            led: true,
             spaced: false,
         }
     }
@@ -307,6 +311,7 @@ impl TextTable {
             // Tabs at the ends are delimiters there, so only the line break and spaces go.
             let end = data.iter().rposition(|&b| b != b'\r').map_or(0, |at| at + 1);
             let data = if byte == b'\t' { &data[..end] } else { data.trim_ascii() };
+            self.led &= data.first() == Some(&byte);
             // One delimiter behind the last number is the habit of some programs; with a number less than in
             // other lines, the last place is empty.
             let (data, open) = data.strip_suffix(&[byte]).map_or((data, false), |data| (data, true));
@@ -336,6 +341,19 @@ impl TextTable {
         }
         values.extend(last);
         (self.values, self.columns, self.open) = (values, columns, false);
+    }
+
+    /// Drops the empty places before the first delimiters of all lines.
+    fn without_first_places(&mut self) {
+        if self.led && self.delimiter != Delimiter::Whitespace && self.columns > 1 {
+            let columns = self.columns;
+            let mut place = 0;
+            self.values.retain(|_| {
+                place += 1;
+                (place - 1) % columns > 0
+            });
+            self.columns -= 1;
+        }
     }
 
     /// Where the second and the third line agree with each other, the first one is the one to look at.
@@ -382,12 +400,16 @@ fn without_comment(line: &[u8]) -> (&[u8], Option<&[u8]>) {
     let begins = |&at: &usize| {
         matches!(line[at], b'#' | b'%')
             && (at == 0 || line[at - 1].is_ascii_whitespace())
-            && !line[at..].starts_with(b"#N/A")
+            && !number::ERRORS.iter().any(|word| starts_with(&line[at..], word))
     };
     match (0..line.len()).find(begins) {
         Some(at) => (line[..at].trim_ascii(), Some(&line[at + 1..])),
         None => (line, None),
     }
+}
+
+fn starts_with(line: &[u8], word: &str) -> bool {
+    line.get(..word.len()).is_some_and(|first| first.eq_ignore_ascii_case(word.as_bytes()))
 }
 
 /// What ends the lines: a carriage return where there is no line feed at all, as on old Macintoshes.

@@ -4,8 +4,12 @@ use crate::error::{ContentError, NumberKind, Place};
 use crate::options::Decimal;
 
 /// Words for a missing height, besides an empty place between two delimiters and `nan`; in lower case.
-const MISSING: [&str; 12] =
-    ["na", "n/a", "#n/a", "no data", "null", "none", "bad", "nodata", "-", "--", "---", "***"];
+const MISSING: [&str; 11] =
+    ["na", "n/a", "no data", "null", "none", "bad", "nodata", "-", "--", "---", "***"];
+
+/// Words of spreadsheets for a place without a value, which begin with the mark of a comment.
+pub(super) const ERRORS: [&str; 9] =
+    ["#N/A", "#DIV/0!", "#NAME?", "#NULL!", "#NUM!", "#REF!", "#VALUE!", "#SPILL!", "#CALC!"];
 
 /// Longest text that an error quotes, in characters.
 const QUOTED: usize = 32;
@@ -90,7 +94,8 @@ fn missing(text: &str) -> bool {
         (known && digits.bytes().all(|b| b.is_ascii_digit())).then_some(())
     };
     let with_brackets = lower.trim_start_matches(['+', '-']).starts_with("nan(") && lower.ends_with(')');
-    with_brackets || of_library().is_some() || MISSING.contains(&&*lower)
+    let of_spreadsheet = || ERRORS.iter().any(|word| word.eq_ignore_ascii_case(text));
+    with_brackets || of_library().is_some() || MISSING.contains(&&*lower) || of_spreadsheet()
 }
 
 fn wrong(token: &[u8], place: Place, kind: NumberKind) -> ContentError {

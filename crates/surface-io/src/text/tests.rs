@@ -59,6 +59,14 @@ fn undefined_points_are_counted() {
         ("1,2,\n4,5,\n7,8,9\n", &[None, None, Some(9.0)]),
         ("1;2;\n4;5;6", &[None, Some(6.0)]),
         ("1\t2\t3\n4\t5\t\r\n", &[Some(3.0), None]),
+        // Before the first number of every line a delimiter is none; before that of some it is an empty place.
+        ("\t1\t2\t3\n\t4\t5\t6\n", &[Some(3.0), Some(6.0)]),
+        (",1,2,3\n,4,5,6\n", &[Some(3.0), Some(6.0)]),
+        ("\t2\t3\n4\t5\t6\n", &[Some(3.0), Some(6.0)]),
+        // Words of spreadsheets, which begin as a comment does.
+        ("1\t2\t#DIV/0!\n4\t5\t6\n", &[None, Some(6.0)]),
+        ("1 #REF! 3\n4 5 #value!\n", &[Some(3.0), None]),
+        ("1 2 3 # a comment\n4 5 #N/A # another\n", &[Some(3.0), None]),
     ] {
         let scan = read(text.as_bytes()).unwrap();
         assert_eq!((scan.metadata().rows, scan.metadata().columns), (expected.len(), 3), "{text:?}");
