@@ -85,10 +85,9 @@ pub(crate) struct TextTable {
     found_commas: bool,
     /// What ends a line: a line feed, or a carriage return alone.
     end: u8,
-    /// Whether every line so far ended with a delimiter: the habit of some programs, or an empty last place.
-    open: bool,
-    /// Whether every line so far began with a delimiter: the habit of others, and no column of undefined points.
-    led: bool,
+    /// Whether every line so far began, and ended, with a delimiter. The one is the habit of some programs; the
+    /// other is one too, or an empty last place.
+    outer: [bool; 2],
     /// Whether there is an empty line behind every line.
     spaced: bool,
 }
@@ -269,8 +268,7 @@ impl TextTable {
             scale: None,
             found_commas: false,
             end,
-            open: true,
-            led: true,
+            outer: [true; 2],
             spaced: false,
         }
     }
@@ -311,7 +309,7 @@ impl TextTable {
             // Tabs at the ends are delimiters there, so only the line break and spaces go.
             let end = data.iter().rposition(|&b| b != b'\r').map_or(0, |at| at + 1);
             let data = if byte == b'\t' { &data[..end] } else { data.trim_ascii() };
-            self.led &= data.first() == Some(&byte);
+            self.outer[0] &= data.first() == Some(&byte);
             // One delimiter behind the last number is the habit of some programs; with a number less than in
             // other lines, the last place is empty.
             let (data, open) = data.strip_suffix(&[byte]).map_or((data, false), |data| (data, true));
@@ -321,11 +319,11 @@ impl TextTable {
             let found = self.values.len() - before;
             if open && found + 1 == self.columns {
                 self.values.push(f64::NAN);
-            } else if self.open && !open && self.columns > 0 && found == self.columns + 1 {
+            } else if self.outer[1] && !open && self.columns > 0 && found == self.columns + 1 {
                 self.close(found);
                 return self.finish_line(line, self.values.len() - found, all);
             }
-            self.open &= open;
+            self.outer[1] &= open;
         }
         self.finish_line(line, before, all)
     }
@@ -340,12 +338,12 @@ impl TextTable {
             values.push(f64::NAN);
         }
         values.extend(last);
-        (self.values, self.columns, self.open) = (values, columns, false);
+        (self.values, self.columns, self.outer[1]) = (values, columns, false);
     }
 
     /// Drops the empty places before the first delimiters of all lines.
     fn without_first_places(&mut self) {
-        if self.led && self.delimiter != Delimiter::Whitespace && self.columns > 1 {
+        if self.outer[0] && self.delimiter != Delimiter::Whitespace && self.columns > 1 {
             let columns = self.columns;
             let mut place = 0;
             self.values.retain(|_| {

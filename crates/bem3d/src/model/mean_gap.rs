@@ -138,9 +138,9 @@ impl PreparedSurface {
             }
             let d = far + step;
             if miss(d) > 0.0 {
-                far = d
+                far = d;
             } else {
-                near = d
+                near = d;
             }
             step *= 2.0;
         }

@@ -305,8 +305,8 @@ fn write_vti(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scenes::{LoadKind, LoadList, SceneSurface};
-    use contact_model::{Fields, HeightMap, Output, SolveReport, Step};
+    use crate::scenes::{LoadKind, SceneSurface};
+    use contact_model::{ContactState, Fields, HeightMap, Output, SolveReport, Step};
     use std::sync::Arc;
 
     /// Fields of 2 rows x 3 columns with oblong cells; the second point of the second row is undefined.

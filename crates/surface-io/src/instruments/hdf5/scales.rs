@@ -6,7 +6,7 @@
 //! tells it.
 
 use super::attributes::{Attributes, LABELS, describe, numbers, text, written};
-use super::{layout, number_type};
+use super::storage::{layout, number_type};
 use crate::array::{Array, Coordinates, Dimension};
 use crate::channel::{Bytes, FileAxes, RawHeights};
 use crate::error::Result;

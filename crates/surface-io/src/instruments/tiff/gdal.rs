@@ -1,4 +1,4 @@
-//! What GDAL and `GeoTIFF` state of an image: scale, offset and unit of its numbers, and the side of a pixel.
+//! What GDAL and the geographic tags of TIFF state of an image: scale, offset and unit of its numbers, and the side of a pixel.
 
 use crate::instruments::prelude::*;
 use quick_xml::events::Event;
