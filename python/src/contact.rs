@@ -394,14 +394,14 @@ impl Contact {
         Ok(())
     }
 
-    /// The memory of the path, as bytes: together with the next load it determines the next state. `recall` of a
-    /// contact of the same model, scene and seed continues from it with identical bits, also in another process
-    /// of the same version on the same kind of processor.
+    /// The memory of the loads so far, of a path or each by itself, as bytes: together with the next load it
+    /// determines the next state. `recall` of a contact of the same model, scene and seed continues from it with
+    /// identical bits, also in another process of the same version on the same kind of processor.
     ///
     /// Returns
     /// -------
     /// bytes or None
-    ///     None where no path has begun, and for models without such a memory, whose paths must be followed anew.
+    ///     None for models without such a memory, whose paths must be followed anew.
     fn memory<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyBytes>>> {
         let mut inner = self.inner.take(py)?;
         // Exclusive, for another thread.
@@ -414,8 +414,8 @@ impl Contact {
         Ok(kept.map(|kept| PyBytes::new(py, kept.bytes())))
     }
 
-    /// Restores the place on its path of a contact of the same model, scene and seed, from its `memory`. The
-    /// states before that are not in the memory: `last` is None.
+    /// Restores a contact of the same model, scene and seed to where it gave its `memory`. The states before that
+    /// are not in the memory: `last` is None.
     ///
     /// Parameters
     /// ----------

@@ -182,7 +182,7 @@ def test_a_path_that_ctrl_c_stops_goes_on_to_the_same_states(effect):
     run(
         f"effect = {effect!r}"
         + """
-body = fc.Elastic(young=0.75, poisson=0.5)
+body = fc.Body(young=0.75, poisson=0.5)
 law = {"work": 4e-5, "range": 3e-3, "law": "exponential"}
 forces, approaches = [1e-3, 4e-3, 8e-3, 2e-3, 6e-3], [0.004, 0.012, 0.02, 0.008, 0.0]
 effects, outputs, cells, key, loads = {
