@@ -220,7 +220,7 @@ for trial in range(6):
             if state is None:
                 stops += 1
                 state = path.advance(**step)
-        assert state == wanted, (trial, step, state, wanted)
+        assert state.to_dict() == wanted.to_dict(), (trial, step, state, wanted)
 assert stops > 2, stops
 """
     )

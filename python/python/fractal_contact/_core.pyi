@@ -695,19 +695,18 @@ class Contact:
     def restart(self) -> None:
         """Forgets the loads and the path before: back to no contact at time 0."""
     def memory(self) -> bytes | None:
-        """The memory of the path, as bytes: together with the next load it determines the next state. `recall` of a
-        contact of the same model, scene and seed continues from it with identical bits, also in another process
-        of the same version on the same kind of processor.
+        """The memory of the loads so far, of a path or each by itself, as bytes: together with the next load it
+        determines the next state. `recall` of a contact of the same model, scene and seed continues from it with
+        identical bits, also in another process of the same version on the same kind of processor.
 
         Returns
         -------
         bytes or None
-                None where no path has begun, and for models without such a memory, whose paths must be followed
-            anew.
+                None for models without such a memory, whose paths must be followed anew.
         """
     def recall(self, memory: bytes) -> None:
-        """Restores the place on its path of a contact of the same model, scene and seed, from its `memory`. The
-        states before that are not in the memory: `last` is None.
+        """Restores a contact of the same model, scene and seed to where it gave its `memory`. The states before that
+        are not in the memory: `last` is None.
 
         Parameters
         ----------
