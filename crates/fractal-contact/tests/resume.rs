@@ -389,7 +389,7 @@ fn a_path_whose_checkpoint_is_not_whole_begins_anew_and_says_so() {
     let options = Options { out: out.clone(), threads: 1, fresh: true };
     let outcome = run(&scene, &Plan::new(&scene).unwrap(), &options, &Silent, &|| false).unwrap();
     assert!(outcome.kept == 0 && outcome.notes.iter().all(|note| !note.contains("anew")), "{outcome:?}");
-    // A checkpoint that cannot be written is told of, and the run goes on.
+    // A checkpoint that cannot be written is reported, and the run goes on.
     let _ = std::fs::remove_dir_all(&out);
     std::fs::create_dir_all(checkpoint(&out)).unwrap();
     let outcome = run_until(&scene, &out, &|| field(&out, 2).exists()).unwrap();

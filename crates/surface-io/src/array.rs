@@ -1,4 +1,4 @@
-//! Arrays as containers describe them (HDF5, NetCDF, MAT, TIFF), and the map that an array is.
+//! Arrays as containers describe them (HDF5, NetCDF, TIFF), and the map that an array is.
 //!
 //! A container hands over what it states: names of the dimensions, coordinates along them, unit, scale,
 //! marks of undefined points, signedness, a mask. [`Array::channel`] alone decides what these statements
@@ -162,8 +162,8 @@ impl Array {
         }
     }
 
-    /// What the coordinates of one axis mean: its direction, and the side of a cell where the file states no
-    /// other and where its axis is known.
+    /// Takes the direction of one axis from its coordinates, and the side of a cell where the file states no
+    /// other and where it is known which axis this is.
     fn place(&mut self, source: &Source<'_>, index: usize, axis: usize, said: bool) -> Result<()> {
         let dimension = &self.dimensions[index];
         let (name, length) = (&dimension.name, dimension.length);

@@ -276,8 +276,9 @@ impl TextTable {
     /// Delimiter and what else was found, for people.
     pub(crate) fn details(&self) -> String {
         let commas = if self.found_commas { ", decimal commas" } else { "" };
+        let first = if self.begins_with_delimiters() { ", one before every line" } else { "" };
         let scale = self.scale.map(|scale| format!(", times {}", number(scale))).unwrap_or_default();
-        format!("{}{commas}{scale}", self.delimiter)
+        format!("{}{first}{commas}{scale}", self.delimiter)
     }
 
     /// A line before the numbers that is half of numbers, as many as there are columns, is a line of data
@@ -341,9 +342,14 @@ impl TextTable {
         (self.values, self.columns, self.outer[1]) = (values, columns, false);
     }
 
+    /// Whether every line begins with a delimiter, before which there is no place then.
+    fn begins_with_delimiters(&self) -> bool {
+        self.outer[0] && self.delimiter != Delimiter::Whitespace
+    }
+
     /// Drops the empty places before the first delimiters of all lines.
     fn without_first_places(&mut self) {
-        if self.outer[0] && self.delimiter != Delimiter::Whitespace && self.columns > 1 {
+        if self.begins_with_delimiters() && self.columns > 1 {
             let columns = self.columns;
             let mut place = 0;
             self.values.retain(|_| {

@@ -137,7 +137,7 @@ fn join(path: &str, name: &str) -> String {
     joined.chars().take(200).collect()
 }
 
-/// What stands beside a data set.
+/// The statements of the file outside of a data set that concern it.
 struct Beside<'a> {
     /// Path and attributes of its group.
     path: &'a str,

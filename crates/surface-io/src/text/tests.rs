@@ -73,6 +73,8 @@ fn undefined_points_are_counted() {
         let last: Vec<Option<f64>> = (0..expected.len()).map(|row| scan.height(row, 2)).collect();
         assert_eq!(last, expected, "{text:?}");
     }
+    let shown = read(b"\t1\t2\n\t4\t5\n").unwrap().metadata().to_string();
+    assert!(shown.contains("tabs between numbers, one before every line"), "{shown}");
     let declared = ReadOptions { missing: Some(-9999.0), ..ReadOptions::default() };
     let scan = Scan::from_bytes("a.txt", b"1 -9999\n3 4\n", &declared).unwrap();
     assert_eq!((scan.metadata().undefined, scan.height(0, 1), scan.height(0, 0)), (1, None, Some(1.0)));

@@ -94,8 +94,8 @@ impl Job for SceneJob<'_> {
 }
 
 impl SceneJob<'_> {
-    /// What the store holds of a job that a stopped run has not begun: its result, or the states of the newest
-    /// part of it.
+    /// The stored result of a job that a stopped run has not begun, or the states of its newest part. They
+    /// belong to the tables of that run, and their fields are not to be removed.
     pub fn stored(&self, store: &Store) -> Option<ModelResult> {
         let key = self.stored_key();
         let stored = || store.texts(&key).filter_map(|text| Self::KIND.decode(&text));

@@ -213,7 +213,7 @@ fn channel(
     }
     let mut preprocessing = preprocessing.clone();
     if preprocessing.fill.is_none() {
-        // Their share is told.
+        // The share of undefined points is part of the answer.
         preprocessing.undefined.get_or_insert(Undefined::NoContact);
     }
     let known = metadata.size.is_some();

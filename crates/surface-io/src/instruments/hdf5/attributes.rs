@@ -57,7 +57,7 @@ pub(super) fn number(attributes: &Attributes, key: &str) -> std::result::Result<
     }
 }
 
-/// What the attributes of every program state: unit, size, packing and marks as NetCDF defines them.
+/// Takes the attributes that every program may write: unit, size, packing and marks as NetCDF defines them.
 pub(super) fn describe(array: &mut Array, attributes: &Attributes) -> std::result::Result<(), String> {
     let of = |key: &str| number(attributes, key);
     array.undefined = Undefined::either(of("_FillValue")?, of("missing_value")?);

@@ -11,7 +11,7 @@ const DEFLATE: u16 = 1;
 const SHUFFLE: u16 = 2;
 const FLETCHER32: u16 = 3;
 
-/// What the other crate says about the file.
+/// The error for a file in which hdf5-pure found a fault.
 pub(super) fn unreadable(source: &Source<'_>, error: &dyn std::fmt::Display) -> crate::error::Error {
     let said: String = error.to_string().chars().take(200).collect();
     source.wrong(0, format!("a file as its specification has it ({said})"))
@@ -21,7 +21,7 @@ pub(super) fn unreadable(source: &Source<'_>, error: &dyn std::fmt::Display) -> 
 pub(super) enum Found {
     Stored(Bytes),
     Chunked(Pieces),
-    /// What the other crate says about them.
+    /// The reason why hdf5-pure does not give them.
     Unread(String),
 }
 
