@@ -86,7 +86,7 @@ impl Study {
     }
 
     /// Mean curves of resampled surfaces, level by level, by Knuth's linear congruential generator.
-    fn drawn_again(&self, draws: usize) -> Vec<Vec<f64>> {
+    pub(crate) fn drawn_again(&self, draws: usize) -> Vec<Vec<f64>> {
         let mut state = 1_u64;
         let mut below = |n: usize| {
             state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);

@@ -158,7 +158,7 @@ fn exponents_and_their_scatter_are_those_of_the_samples() {
 }
 
 #[test]
-fn the_slope_of_line_over_surface_and_its_p_value_are_those_of_the_samples() {
+fn the_slope_of_line_over_surface_is_that_of_the_samples() {
     let page = text("book/src/exponent.md");
     let table = rows("data/exponent/exponent-factor.csv");
     for (d, rejected) in [(2.0, true), (2.2, true), (2.4, true), (2.6, false)] {
@@ -184,9 +184,22 @@ fn the_slope_of_line_over_surface_and_its_p_value_are_those_of_the_samples() {
     }
 }
 
-/// alpha of the law zeta F^alpha (1 + c F^omega) that fits best, by a search of omega and c that is refined six
-/// times.
+/// alpha and omega of the law zeta F^alpha (1 + c F^omega) that fits best.
 pub(crate) fn towards_zero(x: &[f64], y: &[f64], weights: &[f64], held: Option<f64>) -> (f64, f64) {
+    let Law { alpha, omega, .. } = law(x, y, weights, held);
+    (alpha, omega)
+}
+
+/// A law zeta F^alpha (1 + c F^omega), c in powers of the largest force, and its misfit.
+struct Law {
+    misfit: f64,
+    alpha: f64,
+    omega: f64,
+    c: f64,
+}
+
+/// The law that fits best, by a search of omega and c that is refined fourteen times.
+fn law(x: &[f64], y: &[f64], weights: &[f64], held: Option<f64>) -> Law {
     let top = x[x.len() - 1];
     let all: f64 = weights.iter().sum();
     let line = |omega: f64, c: f64| {
@@ -219,7 +232,8 @@ pub(crate) fn towards_zero(x: &[f64], y: &[f64], weights: &[f64], held: Option<f
         wide *= 0.6;
         deep *= 0.6;
     }
-    (best.1, best.2)
+    let (misfit, alpha, omega, c) = best;
+    Law { misfit, alpha, omega, c }
 }
 
 #[test]
@@ -266,6 +280,84 @@ fn exponents_towards_zero_force_are_those_of_the_samples() {
         let stated = 0.5 * (number(row, "alpha_high") - number(row, "alpha_low")) - number(row, "grid");
         // The bounds of omega cut the bootstrap of the surfaces, and not a derivative.
         assert!((0.5..2.5).contains(&(half / stated)), "{model}, D_f {d}: {half}, stated {stated}");
+    }
+}
+
+/// Which of the fits describe their curves: the share of curves about the law with a larger misfit, from fewer
+/// draws of another generator and by another search.
+#[test]
+fn the_goodness_of_a_fit_is_that_of_curves_about_its_law() {
+    let table = rows("data/exponent/exponent-limit.csv");
+    for (d, draws) in [(2.0, 100), (2.4, 60)] {
+        let study = study("--samples", "bem3d", d);
+        let row = table.iter().find(|row| {
+            row["model"] == "bem3d"
+                && row["convention"] == "measured_rms"
+                && row["variant"] == "free"
+                && (number(row, "fractal_dimension") - d).abs() < 1e-9
+        });
+        let row = row.unwrap();
+        let window = study.window(number(row, "force_bar_min"), number(row, "force_bar_max"));
+        let mean = study.mean(study.levels.len());
+        let x: Vec<f64> = window.iter().map(|&j| study.forces[j].ln()).collect();
+        let logarithms = |mean: &[f64]| -> Vec<f64> { window.iter().map(|&j| mean[j].ln()).collect() };
+        let weights: Vec<f64> =
+            (window.iter()).map(|&j| 1.0 / study.variance(&BTreeMap::from([(j, 1.0 / mean[j])])).0).collect();
+        let y = logarithms(&mean);
+        let found = law(&x, &y, &weights, None);
+        assert!((found.misfit / number(row, "misfit") - 1.0).abs() < 0.02, "D_f {d}: {}", found.misfit);
+        // Residuals of the law: what is left of it, up to its factor, which the fit finds again.
+        let top = x[x.len() - 1];
+        let of_law: Vec<f64> = x
+            .iter()
+            .map(|x| found.alpha * x + (1.0 + found.c * (found.omega * (x - top)).exp()).ln())
+            .collect();
+        let larger = (study.drawn_again(draws).iter())
+            .filter(|drawn| {
+                let moved: Vec<f64> =
+                    logarithms(drawn).iter().zip(&y).zip(&of_law).map(|((k, y), law)| law + k - y).collect();
+                law(&x, &moved, &weights, None).misfit >= found.misfit
+            })
+            .count();
+        let (share, stated) = (larger as f64 / draws as f64, number(row, "goodness"));
+        // Four standard errors of a share.
+        let error = 4.0 * (stated.max(0.01) * (1.0 - stated) / draws as f64).sqrt();
+        assert!((share - stated).abs() <= error, "D_f {d}: {share}, stated {stated}");
+        let fits = !row["conclusion"].starts_with("none");
+        assert_eq!(fits, stated >= 0.05, "{row:?}");
+    }
+}
+
+/// At H = 1 a logarithm of the structure function would give k ~ F^(1/2) ln(c/F)^(-1/4): the exponents of decades that
+/// the page quotes for it, and those found.
+#[test]
+fn a_logarithm_at_h_1_has_other_exponents_than_the_decades() {
+    let page = text("book/src/exponent.md").split_whitespace().collect::<Vec<_>>().join(" ");
+    let table = rows("data/exponent/exponent-laws.csv");
+    for (window, from, quoted) in
+        [("2e-4..2e-3", 2e-4, "between 0.526 and 0.541"), ("2e-5..2e-4", 2e-5, "between 0.521 and 0.530")]
+    {
+        let with = |c: f64| {
+            let points: Vec<(f64, f64)> = (0..7)
+                .map(|i| from * 10_f64.powf(f64::from(i) / 6.0))
+                .map(|force| (force.ln(), 0.5 * force.ln() - 0.25 * (c / force).ln().ln()))
+                .collect();
+            slope(&points)
+        };
+        let [low, high] = [with(10.0), with(0.3)];
+        assert_eq!(quoted, format!("between {low:.3} and {high:.3}"));
+        assert!(page.contains(quoted), "{quoted}");
+        for model in ["mdr1d", "bem3d"] {
+            let row = table.iter().find(|row| {
+                row["model"] == model
+                    && row["convention"] == "measured_rms"
+                    && row["window"] == window
+                    && row["fractal_dimension"] == "2.0"
+            });
+            let row = row.unwrap();
+            let highest = number(row, "alpha") + number(row, "scatter") + number(row, "grid");
+            assert!(highest < low, "{model}, {window}: {highest}");
+        }
     }
 }
 

@@ -12,6 +12,9 @@ pub const OMEGA: [f64; 2] = [0.25, 2.0];
 const SCAN: usize = 9;
 /// Golden sections: omega to a thousandth of the spacing of the scan.
 const SECTIONS: usize = 14;
+/// Relative distance from an end of the range within which omega counts as lying there: golden sections stop
+/// that far from it.
+const AT_END: f64 = 1e-3;
 /// Steps of Gauss and Newton, which converge within five or so.
 const STEPS: usize = 40;
 /// A step below this ends the iteration; it is far below every error of c.
@@ -30,6 +33,18 @@ pub struct Correction {
     pub omega: f64,
     /// Weighted sum of the squared residuals of ln k.
     pub misfit: f64,
+}
+
+impl Correction {
+    /// ln k of the law at ln F.
+    pub fn ln_stiffness(&self, ln_force: f64) -> f64 {
+        self.zeta.ln() + self.alpha * ln_force + (self.c * (self.omega * ln_force).exp()).ln_1p()
+    }
+
+    /// Whether omega lies at an end of its range, so that the fit asks for a law that it may not have.
+    pub fn is_at_end(&self) -> bool {
+        OMEGA.iter().any(|end| (self.omega / end - 1.0).abs() < AT_END)
+    }
 }
 
 /// Points (ln F, ln k) with their weights, F increasing.
@@ -178,6 +193,7 @@ mod tests {
             let free = points(law).fit(None).unwrap();
             let close = |a: f64, b: f64, by: f64| (a - b).abs() < by;
             assert!(close(free.alpha, alpha, 2e-4) && close(free.omega, omega, 2e-3), "{law:?}: {free:?}");
+            assert!(!free.is_at_end() && close(free.ln_stiffness(points(law).x[7]), points(law).y[7], 1e-4));
             let fixed = points(law).fit(Some(omega)).unwrap();
             assert!(close(fixed.alpha, alpha, 1e-9) && close(fixed.c, c, 1e-7), "{law:?}: {fixed:?}");
             assert!(close(fixed.zeta, zeta, 1e-8) && fixed.misfit < 1e-18, "{law:?}: {fixed:?}");

@@ -34,7 +34,7 @@ fn solved(rungs: &[Rungs]) -> String {
 
 /// The exponents towards zero force that are judged.
 fn towards_zero(limits: &[Limit]) -> String {
-    let head = "| | D_f | F_bar from | alpha towards 0, 95 % | omega | alpha, omega = 0.5 | alpha, to 0.06 | 0.266 D_f | 1/(1 + H) | inside | resolved |\n|---|---|---|---|---|---|---|---|---|---|---|";
+    let head = "| | D_f | F_bar from | alpha towards 0, 95 % | omega | alpha, omega = 0.5 | alpha, to 0.06 | 0.266 D_f | 1/(1 + H) | fit | inside | |\n|---|---|---|---|---|---|---|---|---|---|---|---|";
     let measured: Vec<&Limit> = limits.iter().filter(|l| l.convention == Convention::Measured).collect();
     let range = |l: &Limit| format!("{:.4} [{:.4}, {:.4}]", l.law.alpha, l.interval[0], l.interval[1]);
     let rows = measured.iter().filter(|l| l.variant == super::laws::FREE).map(|l| {
@@ -57,8 +57,9 @@ fn towards_zero(limits: &[Limit]) -> String {
             other(super::laws::SHORT),
             format!("{:.3}", eq6(d)),
             format!("{:.3}", eq24(d)),
-            l.inside().to_owned(),
-            if l.resolved { "yes" } else { "no" }.to_owned(),
+            format!("{:.2}", l.goodness),
+            l.conclusion().to_owned(),
+            if l.was_planned() { "planned" } else { "exploration" }.to_owned(),
         ]
     });
     markdown_table(head, rows)
@@ -85,7 +86,7 @@ fn decades(laws: &[LawRow]) -> String {
 
 /// Line over surface.
 fn over(factors: &[Factor]) -> String {
-    let head = "| D_f | F_bar | k_1D/k_3D, measured rms | one spectrum | slope of its logarithm over ln F, measured rms | by chance |\n|---|---|---|---|---|---|";
+    let head = "| D_f | F_bar | k_1D/k_3D, measured rms | one spectrum | slope of its logarithm over ln F, measured rms |\n|---|---|---|---|---|";
     let text = |f: &Factor| {
         let (value, half) = raised(&f.logarithm);
         with_error(value, half)
@@ -104,7 +105,6 @@ fn over(factors: &[Factor]) -> String {
             text(f),
             factors.iter().find(same).map_or_else(String::new, text),
             with_error(f.slope.value(), f.slope.half_width()),
-            chance(f.slope.chance_of(0.0)),
         ]
     });
     markdown_table(head, rows)
@@ -137,7 +137,7 @@ pub fn report(
     (limits, laws, factors, tests): (&[Limit], &[LawRow], &[Factor], &[Test]),
 ) -> String {
     format!(
-        "`{command}`\n\n{}\nAlpha towards zero force, F_bar by the measured rms height of each grid:\n\n{}\nDecade by decade, where all of it is resolved:\n\n{}\nLine over surface, where both are resolved:\n\n{}\nHypotheses, A to D:\n\n{}",
+        "`{command}`\n\n{}\nAlpha towards zero force, F_bar by the measured rms height of each grid. The column \"fit\" is the share of curves that scatter about the fitted law as the surfaces do and have a larger misfit:\n\n{}\nDecade by decade, where all of it is resolved:\n\n{}\nLine over surface, where both are resolved:\n\n{}\nHypotheses, A to D:\n\n{}",
         solved(rungs),
         towards_zero(limits),
         decades(laws),

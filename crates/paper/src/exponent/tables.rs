@@ -24,7 +24,10 @@ const WIDEST: &str = "size of the level that adds most to the scatter";
 const INSIDE: &str = "which of them lies within the 95 % interval of this row";
 const RATIO_SLOPE: &str = "of ln(k_1D/k_3D) over ln F: 0 where the factor depends on D_f alone";
 const BOTH_HALF: &str = "95 %, scatter and grid of both";
-const CHANCE: &str = "probability of a slope so far from 0, beyond what the grids leave, if it is 0";
+const GOODNESS: &str =
+    "share of curves that scatter about the law as the surfaces do and have a larger misfit";
+const PLANNED: &str = "whether this fit was to be tested before the second run was drawn; else exploration";
+const CONCLUSION: &str = "which of them lies within the 95 % interval of alpha, or why the fit says nothing";
 const VARIANT: &str = "free: the fit that is judged; omega 0.5: omega held; to 0.06: a lower upper end";
 const FAMILY: &str =
     "A: line over surface; B: a decade against Eq. 24; C: against Eq. 6; D: towards zero force";
@@ -129,9 +132,11 @@ pub fn limits(rows: &[Limit]) -> Result<Table> {
         .column("omega_low", "1", "lower end of its 95 % interval from the scatter", |r| r.omega[0])
         .column("omega_high", "1", "upper end", |r| r.omega[1])
         .column("misfit", "1", "weighted sum of squares", |r| r.law.misfit)
+        .column("goodness", "1", GOODNESS, |r| r.goodness)
+        .column("planned", "-", PLANNED, Limit::was_planned)
         .column("eq6", "1", "0.266 D_f", |r| eq6(r.fractal_dimension))
         .column("eq24", "1", "1/(1 + H) = 1/(4 - D_f)", |r| eq24(r.fractal_dimension))
-        .column("inside", "-", INSIDE, Limit::inside)
+        .column("conclusion", "-", CONCLUSION, Limit::conclusion)
         .table()
 }
 
@@ -158,7 +163,6 @@ pub fn factors(rows: &[Factor]) -> Result<Table> {
         .column("slope", "1", RATIO_SLOPE, |r| r.slope.value())
         .column("slope_scatter", "1", SCATTER, |r| r.slope.scatter.half_width())
         .column("slope_grid", "1", "what the grids leave", |r| r.slope.grid)
-        .column("chance", "1", CHANCE, |r| r.slope.chance_of(0.0))
         .table()
 }
 
