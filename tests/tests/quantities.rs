@@ -883,6 +883,13 @@ fn quantities_of_friction_cell_by_cell() {
     none(&of_kind("friction, cell by cell", 150, sheared).1);
 }
 
+/// A step of nothing near gross slip: its stiffness wants tractions beyond what the arithmetic gives, and the
+/// increment stagnates. It is none all the same.
+#[test]
+fn a_step_of_nothing_that_stagnates_leaves_the_state() {
+    none(&sheared(1425).unwrap());
+}
+
 #[test]
 fn quantities_of_rheology() {
     none(&of_kind("rheology", 100, rheology).1);
