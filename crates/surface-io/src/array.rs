@@ -76,9 +76,26 @@ type Decode = dyn Fn(&RawHeights, &mut Source<'_>) -> Result<Vec<f64>> + Send + 
 
 /// Names of dimensions along x and along y, in lower case.
 const NAMES: [&[&str]; 2] = [
-    &["x", "lon", "longitude", "easting", "column", "columns", "projection_x_coordinate"],
+    &[
+        "x",
+        "lon",
+        "long",
+        "lng",
+        "longitude",
+        "easting",
+        "col",
+        "column",
+        "columns",
+        "projection_x_coordinate",
+    ],
     &["y", "lat", "latitude", "northing", "row", "rows", "projection_y_coordinate"],
 ];
+
+/// The axis that a name says: 0 for x, 1 for y.
+pub(crate) fn axis_of(name: &str) -> Option<usize> {
+    let name = name.trim().to_lowercase();
+    NAMES.iter().position(|names| names.contains(&name.as_str()))
+}
 
 impl Coordinates {
     /// Coordinates of a type of numbers, where there are any.
@@ -110,11 +127,7 @@ impl Dimension {
 
     /// The axis that its name says: 0 for x, 1 for y.
     fn axis(&self) -> Option<usize> {
-        let of = |name: &str| {
-            let name = name.trim().to_lowercase();
-            NAMES.iter().position(|names| names.contains(&name.as_str()))
-        };
-        of(&self.role).or_else(|| of(&self.name))
+        axis_of(&self.role).or_else(|| axis_of(&self.name))
     }
 }
 

@@ -1,10 +1,12 @@
 //! Numbers as text: lines, delimiters, comments and headers.
 
+mod columns;
 mod heading;
 mod matrix;
 mod number;
 mod statement;
 
+pub(crate) use columns::{AxisColumn, Layout, PointColumns, layout};
 pub(crate) use heading::Heading;
 pub(crate) use matrix::matrix;
 
@@ -81,6 +83,8 @@ pub(crate) struct TextTable {
     pub(crate) lines: Vec<u32>,
     /// Height of one unit of a number, where the header says it.
     pub(crate) scale: Option<f64>,
+    /// The last line of words before the numbers.
+    title: Option<String>,
     /// Whether decimal commas were found without a request for them.
     found_commas: bool,
     /// What ends a line: a line feed, or a carriage return alone.
@@ -197,6 +201,7 @@ impl TextTable {
                     return Err(ContentError::TooManyMaps { most: MOST_MAPS, line: i + 1 });
                 }
                 let mut map = Self::new(data, decimal, end);
+                map.title = last.map(|(_, header)| decoded(header));
                 heading.drain(..).try_for_each(|(line, text)| map.heading.read(&text, line))?;
                 maps.push(map);
             }
@@ -225,6 +230,7 @@ impl TextTable {
         let Some(map) = maps.last_mut() else { return Err(ContentError::Empty) };
         heading.into_iter().try_for_each(|(line, text)| map.heading.read(&text, line))?;
         for map in &mut maps {
+            map.name_columns();
             map.without_first_places();
             map.heading.finish()?;
             map.scale = map.heading.scale;
@@ -235,6 +241,12 @@ impl TextTable {
             }
         }
         Ok(maps)
+    }
+
+    /// Finds the columns that the heading names.
+    fn name_columns(&mut self) {
+        let (title, lines) = (self.title.take(), std::mem::take(&mut self.heading.lines));
+        self.heading.columns = columns::named(&lines, title.as_deref(), self.delimiter, self.columns);
     }
 
     /// Whether the map ends before the next numbers, with a heading or an empty line between.
@@ -266,6 +278,7 @@ impl TextTable {
             heading: Heading::default(),
             lines: Vec::new(),
             scale: None,
+            title: None,
             found_commas: false,
             end,
             outer: [true; 2],
@@ -357,6 +370,7 @@ impl TextTable {
                 (place - 1) % columns > 0
             });
             self.columns -= 1;
+            self.heading.columns.drain(..self.heading.columns.len().min(1));
         }
     }
 
