@@ -474,7 +474,12 @@ fn archives_are_told_by_their_members() {
     assert_eq!(error("a", &npz), expected);
     assert!(error("a", &other).starts_with("a: an archive of main.xml: take"));
     assert!(error("a.npy", &npz).starts_with("a.npy: looks like an archive (NPZ"));
-    for (member, expected) in [("header.properties", "a JPK file"), ("index.xml", "a PLUX file")] {
+    for (member, expected) in [
+        ("header.properties", "a JPK file"),
+        ("index.xml", "a PLUX file"),
+        ("xl/workbook.xml", "a workbook of Excel (XLSX): save the sheet as CSV"),
+        ("content.xml", "a document of LibreOffice (ODS): save the sheet as CSV"),
+    ] {
         let message = error("a", &files::x3p::zip(&[(member, vec![1])], false));
         assert!(message.contains(expected), "{message}");
     }
