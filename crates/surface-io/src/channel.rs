@@ -125,6 +125,8 @@ pub(crate) struct RawHeights {
     pub(crate) shift: f64,
     /// Which numbers stand for undefined points, besides NaN.
     pub(crate) undefined: Undefined,
+    /// The lowest and the highest number that is a height; all others are undefined.
+    pub(crate) valid: [f64; 2],
 }
 
 /// Where numbers are.
@@ -235,6 +237,7 @@ impl RawHeights {
             scale: 1.0,
             shift: 0.0,
             undefined: Undefined::None,
+            valid: [f64::NEG_INFINITY, f64::INFINITY],
         }
     }
 
@@ -367,7 +370,11 @@ impl RawHeights {
     }
 
     fn height(&self, number: f64) -> f64 {
-        if self.undefined.holds(self.number, number) {
+        // An end of the range is inside, as it is stored.
+        let [low, high] = self.valid;
+        let outside = (number < low && !self.number.same(number, low))
+            || (number > high && !self.number.same(number, high));
+        if outside || self.undefined.holds(self.number, number) {
             return f64::NAN;
         }
         // Adding nothing would still lose the sign of -0.
