@@ -1,7 +1,7 @@
-//! Prints the channels of files, one a line, with tabs between: path, name, rows, columns, unit of the heights,
-//! sides of a cell in metres or plain numbers, and the heights row by row, `nan` where undefined. A file or a
-//! channel that is not read is a line of its path, `error` and the reason. For comparisons with other readers:
-//! `cargo run -p surface-io --example channels -- FILE...`.
+//! Prints the channels of files, one a line, with tabs between: path, name, rows, columns, unit of the
+//! heights, sides of a cell in metres or plain numbers, and the heights row by row, `nan` where undefined. A
+//! file or a channel that is not read is a line of its path, `error` and the reason. For comparisons with
+//! other readers: `cargo run -p surface-io --example channels -- FILE...`.
 
 use surface_io::{Quantity, ReadOptions, Scan, SurfaceFile};
 

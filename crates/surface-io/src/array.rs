@@ -122,8 +122,8 @@ impl Coordinates {
     }
 }
 
-/// What a container states by `_Unsigned`: `true` or `false`, with any case of the letters; nothing where the text
-/// is empty.
+/// What a container states by `_Unsigned`: `true` or `false`, with any case of the letters; nothing where the
+/// text is empty.
 ///
 /// # Errors
 /// What was expected, for other texts.

@@ -127,9 +127,9 @@ fn unmarked(path: &Path, start: &[u8], length: u64) -> Option<ContentError> {
     Some(ContentError::Foreign { what, remedy })
 }
 
-/// Whether a file begins with the header of a matrix of MATLAB 4: type (four decimals: order of bytes, 0, type
-/// of numbers, kind of matrix), rows, columns, whether it is complex, length of the name, and the name with a
-/// zero.
+/// Whether a file begins with the header of a matrix of MATLAB 4: type (four decimals: order of bytes, 0,
+/// type of numbers, kind of matrix), rows, columns, whether it is complex, length of the name, and the name
+/// with a zero.
 fn is_matlab_4(start: &[u8], length: u64) -> bool {
     let header = |big: bool| {
         let number = |i: usize| {

@@ -150,8 +150,8 @@ pub(crate) fn is_full_grid(table: &TextTable) -> bool {
     table.values.chunks_exact(3).all(once)
 }
 
-/// Checks the units of coordinates: heights with a unit beside coordinates without one are not guessed at, and
-/// neither is the unit of one coordinate beside that of the other.
+/// Checks the units of coordinates: heights with a unit beside coordinates without one are not guessed at,
+/// and neither is the unit of one coordinate beside that of the other.
 fn check_units(
     table: &TextTable,
     columns: &PointColumns,

@@ -2,12 +2,13 @@
 
 mod columns;
 mod heading;
+mod layout;
 mod matrix;
 mod number;
 mod statement;
 
-pub(crate) use columns::{AxisColumn, Layout, PointColumns, layout};
 pub(crate) use heading::Heading;
+pub(crate) use layout::{AxisColumn, Layout, PointColumns, layout};
 pub(crate) use matrix::matrix;
 
 use crate::error::{ContentError, NumberKind, Place};
@@ -89,8 +90,8 @@ pub(crate) struct TextTable {
     found_commas: bool,
     /// What ends a line: a line feed, or a carriage return alone.
     end: u8,
-    /// Whether every line so far began, and ended, with a delimiter. The one is the habit of some programs; the
-    /// other is one too, or an empty last place.
+    /// Whether every line so far began, and ended, with a delimiter. The one is the habit of some programs;
+    /// the other is one too, or an empty last place.
     outer: [bool; 2],
     /// Whether there is an empty line behind every line.
     spaced: bool,

@@ -9,8 +9,8 @@
 //! `y` is the side, their attribute `unit` (or `units`) its unit; variables without it are coordinates.
 //! Undefined points are NaN, the values of the attributes `_FillValue` and `missing_value`, the library's own
 //! fill value in floats without the former, and points of `heights` where a variable `mask` is not 0.
-//! `scale_factor` and `add_offset` are applied after that, and `_Unsigned` before, as the conventions say. Numbers
-//! outside of `valid_range` (or `valid_min` and `valid_max`) are undefined.
+//! `scale_factor` and `add_offset` are applied after that, and `_Unsigned` before, as the conventions say.
+//! Numbers outside of `valid_range` (or `valid_min` and `valid_max`) are undefined.
 //!
 //! Own code: `netcdf3` 0.6 reserves memory for as many dimensions as a file claims, reads whole variables and
 //! no CDF-5. Not read: line scans, a dimension without a limit, NetCDF-4 (an HDF5 file).

@@ -74,8 +74,8 @@ pub(super) fn key_and_value(text: &str) -> Option<(Statement, String, String)> {
     Some((statement, words, value))
 }
 
-/// Cells of a line of a table as a key and its value: `"XY Calibration","7.4","um"`, also with semicolons, tabs
-/// or without quotes; `None` for other lines.
+/// Cells of a line of a table as a key and its value: `"XY Calibration","7.4","um"`, also with semicolons,
+/// tabs or without quotes; `None` for other lines.
 fn joined(text: &str) -> Option<String> {
     let quoted = text.strip_prefix('"');
     let delimiter = [';', ',', '\t'].into_iter().find(|&delimiter| match quoted {
