@@ -29,6 +29,8 @@ pub(crate) struct Array {
     pub(crate) number: NumberType,
     /// Whether integers count as unsigned ones, whatever their type: NetCDF-3 has no unsigned types.
     pub(crate) unsigned: Option<bool>,
+    /// The lowest and the highest number that is a height, before the scale.
+    pub(crate) valid: [Option<f64>; 2],
     pub(crate) unit: StoredUnit,
     pub(crate) scale: Option<f64>,
     pub(crate) shift: Option<f64>,
@@ -76,9 +78,26 @@ type Decode = dyn Fn(&RawHeights, &mut Source<'_>) -> Result<Vec<f64>> + Send + 
 
 /// Names of dimensions along x and along y, in lower case.
 const NAMES: [&[&str]; 2] = [
-    &["x", "lon", "longitude", "easting", "column", "columns", "projection_x_coordinate"],
+    &[
+        "x",
+        "lon",
+        "long",
+        "lng",
+        "longitude",
+        "easting",
+        "col",
+        "column",
+        "columns",
+        "projection_x_coordinate",
+    ],
     &["y", "lat", "latitude", "northing", "row", "rows", "projection_y_coordinate"],
 ];
+
+/// The axis that a name says: 0 for x, 1 for y.
+pub(crate) fn axis_of(name: &str) -> Option<usize> {
+    let name = name.trim().to_lowercase();
+    NAMES.iter().position(|names| names.contains(&name.as_str()))
+}
 
 impl Coordinates {
     /// Coordinates of a type of numbers, where there are any.
@@ -103,6 +122,39 @@ impl Coordinates {
     }
 }
 
+/// What a container states by `_Unsigned`: `true` or `false`, with any case of the letters; nothing where the
+/// text is empty.
+///
+/// # Errors
+/// What was expected, for other texts.
+pub(crate) fn unsigned(text: &str) -> std::result::Result<Option<bool>, String> {
+    match text.trim().to_lowercase().as_str() {
+        "" => Ok(None),
+        "true" => Ok(Some(true)),
+        "false" => Ok(Some(false)),
+        _ => {
+            Err(format!("true or false as _Unsigned, found {:?}", text.chars().take(32).collect::<String>()))
+        }
+    }
+}
+
+/// The lowest and the highest number that is a height, by the attributes `valid_range`, `valid_min` and
+/// `valid_max`.
+///
+/// # Errors
+/// What was expected, where a range has not two numbers or stands beside one of its ends.
+pub(crate) fn valid(
+    range: Option<&[f64]>,
+    ends: [Option<f64>; 2],
+) -> std::result::Result<[Option<f64>; 2], String> {
+    match (range, ends) {
+        (None, ends) => Ok(ends),
+        (Some(&[low, high]), [None, None]) => Ok([Some(low), Some(high)]),
+        (Some([_, _]), _) => Err("valid_range, or valid_min and valid_max, not both".to_owned()),
+        (Some(other), _) => Err(format!("two numbers as valid_range, found {}", other.len())),
+    }
+}
+
 impl Dimension {
     pub(crate) fn of_length(length: usize) -> Self {
         Self { length, ..Self::default() }
@@ -110,11 +162,7 @@ impl Dimension {
 
     /// The axis that its name says: 0 for x, 1 for y.
     fn axis(&self) -> Option<usize> {
-        let of = |name: &str| {
-            let name = name.trim().to_lowercase();
-            NAMES.iter().position(|names| names.contains(&name.as_str()))
-        };
-        of(&self.role).or_else(|| of(&self.name))
+        axis_of(&self.role).or_else(|| axis_of(&self.name))
     }
 }
 
@@ -132,6 +180,7 @@ impl Array {
             custom,
             number,
             unsigned: None,
+            valid: [None; 2],
             unit: StoredUnit::Unknown,
             scale: None,
             shift: None,
@@ -216,6 +265,7 @@ impl Array {
             self.notes.push(format!("the file says that its {} are {}", self.number.name(), number.name()));
             // A mark is a number of the type that it had.
             self.undefined = self.undefined.map(|mark| number.wrapped(mark));
+            self.valid = self.valid.map(|end| end.map(|end| number.wrapped(end)));
             self.number = number;
         }
     }
@@ -235,10 +285,18 @@ impl Array {
         self.take_sign();
         let shape = order.shape([self.dimensions[0].length, self.dimensions[1].length]);
         source.check_cells(shape)?;
-        let Self { reversed, undefined, extent, unit, number, .. } = self;
+        let Self { reversed, undefined, extent, unit, number, valid, .. } = self;
+        let valid = [valid[0].unwrap_or(f64::NEG_INFINITY), valid[1].unwrap_or(f64::INFINITY)];
         let (scale, shift) = (self.scale.unwrap_or(1.0), self.shift.unwrap_or(0.0));
-        let raw =
-            |bytes| RawHeights { order, reversed, scale, shift, undefined, ..RawHeights::new(bytes, number) };
+        let raw = |bytes| RawHeights {
+            order,
+            reversed,
+            scale,
+            shift,
+            undefined,
+            valid,
+            ..RawHeights::new(bytes, number)
+        };
         let mut channel = match (numbers, self.mask) {
             (Numbers::Stored(bytes), None) => StoredChannel::new(source, raw(bytes), shape, unit, extent)?,
             (Numbers::Stored(bytes), Some(mask)) => {

@@ -22,11 +22,6 @@ pub(crate) enum StoredUnit {
 }
 
 impl StoredUnit {
-    /// The unit of the heights of a text.
-    pub(crate) fn heights(unit: Option<Unit>) -> Self {
-        unit.map_or(Self::Unknown, Self::Heights)
-    }
-
     /// The unit as a file writes it: a length makes heights, nothing is unknown, all else no heights.
     pub(crate) fn written(text: &str) -> Self {
         let text = text.trim();
@@ -130,6 +125,8 @@ pub(crate) struct RawHeights {
     pub(crate) shift: f64,
     /// Which numbers stand for undefined points, besides NaN.
     pub(crate) undefined: Undefined,
+    /// The lowest and the highest number that is a height; all others are undefined.
+    pub(crate) valid: [f64; 2],
 }
 
 /// Where numbers are.
@@ -240,6 +237,7 @@ impl RawHeights {
             scale: 1.0,
             shift: 0.0,
             undefined: Undefined::None,
+            valid: [f64::NEG_INFINITY, f64::INFINITY],
         }
     }
 
@@ -372,7 +370,11 @@ impl RawHeights {
     }
 
     fn height(&self, number: f64) -> f64 {
-        if self.undefined.holds(self.number, number) {
+        // An end of the range is inside, as it is stored.
+        let [low, high] = self.valid;
+        let outside = (number < low && !self.number.same(number, low))
+            || (number > high && !self.number.same(number, high));
+        if outside || self.undefined.holds(self.number, number) {
             return f64::NAN;
         }
         // Adding nothing would still lose the sign of -0.
@@ -449,11 +451,15 @@ impl StoredChannel {
         Ok(Self { compared, ..Self::deferred(details, [rows, columns], unit, extent, read) })
     }
 
-    /// Notes sides in a unit that is no length, which are not used.
-    pub(crate) fn note_sides(&mut self, sides: [Option<f64>; 2], unit: &str) {
+    /// Notes sides, or those of cells, in a unit that is no length, which are not used.
+    pub(crate) fn note_sides(&mut self, what: &str, sides: [Option<f64>; 2], unit: &str) {
         if let ([None, None], [Some(x), Some(y)]) = (self.extent, sides) {
             let unit = if unit.is_empty() { "without a unit" } else { unit };
-            self.note(format!("the file has sides {} x {} {unit}, which is no length", number(x), number(y)));
+            self.note(format!(
+                "the file has {what} {} x {} {unit}, which is no length",
+                number(x),
+                number(y)
+            ));
         }
     }
 
@@ -620,7 +626,7 @@ pub(crate) fn chosen(
         return Ok(one);
     }
     if let (None, [one], []) = (choice, channels, &matching[..]) {
-        return Err(ContentError::NoHeights { what: one.line(0) });
+        return Err(ContentError::no_heights(one.line(0), &one.notes));
     }
     let list: Vec<String> = channels.iter().enumerate().map(|(i, c)| c.line(i)).collect();
     Err(ContentError::Channel {
@@ -631,15 +637,15 @@ pub(crate) fn chosen(
 }
 
 /// Largest number of channels in one file; files of probe microscopes have dozens at most.
-const MOST: usize = 256;
+pub(crate) const MOST_CHANNELS: usize = 256;
 
 /// An error where a header lists more channels than files have: each takes more memory than its line in the
 /// header.
 pub(crate) fn check_number(source: &Source<'_>, offset: u64, channels: usize) -> Result<()> {
-    if channels <= MOST {
+    if channels <= MOST_CHANNELS {
         return Ok(());
     }
-    Err(source.wrong(offset, format!("at most {MOST} channels, found {channels}")))
+    Err(source.wrong(offset, format!("at most {MOST_CHANNELS} channels, found {channels}")))
 }
 
 /// An error where a line of numbers or more stands behind the last numbers that a header lists: its counts or

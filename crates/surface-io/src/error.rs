@@ -204,10 +204,20 @@ pub enum ContentError {
         channel: String,
     },
     /// A channel whose values are no heights.
-    #[error("channel {what}: its values are no heights")]
+    #[error("channel {what}: its values are no heights{notes}")]
     NoHeights {
         /// Number, name and unit.
         what: String,
+        /// Notes of the file about it in brackets; empty for none.
+        notes: String,
+    },
+    /// The heading of a text names columns that are no map.
+    #[error("the heading names the columns {columns}: {problem}")]
+    Columns {
+        /// The columns as the heading has them.
+        columns: String,
+        /// What is wrong with them, and what was expected.
+        problem: String,
     },
     /// The header of an NPY file is not one.
     #[error("header of an NPY file, offset {offset}: expected {expected}")]
@@ -290,7 +300,7 @@ pub enum ContentError {
     },
     /// The first line and the first value of each line may be coordinates.
     #[error(
-        "the {what} numbers that ascend in equal steps: coordinates or heights? say border = \"axes\" or border = \"heights\""
+        "the {what} numbers in equal steps: coordinates or heights? say border = \"axes\" or border = \"heights\""
     )]
     Border {
         /// What they are of.
@@ -570,6 +580,12 @@ impl ContentError {
     pub(crate) fn no_unit(seen: &[String]) -> Self {
         let remedy = "say unit, such as nm";
         Self::unspecified("the unit of the heights", seen.to_vec(), remedy)
+    }
+
+    /// A channel whose values are no heights, of a file with these notes.
+    pub(crate) fn no_heights(what: String, notes: &[String]) -> Self {
+        let notes = if notes.is_empty() { String::new() } else { format!(" ({})", notes.join("; ")) };
+        Self::NoHeights { what, notes }
     }
 
     /// Two statements that differ.

@@ -40,6 +40,11 @@
 //!   are undefined points. A heading or an empty line between numbers ends a map, and several maps are
 //!   channels. Where the first line or the first column may be coordinates, the caller must decide
 //!   ([`ReadOptions::border`]).
+//! * **Headings of columns.** A line above the numbers with a name for each column (`x [um]`, `Y_mm`, `z/nm`,
+//!   `row`, `lat`) says what the columns are, in any order. x, y and heights are points, x and heights a
+//!   profile; other columns are noted where there are heights, and else each is a channel. Numbers of rows
+//!   and columns need [`ReadOptions::cell`]. Degrees, and columns without a coordinate, are an error
+//!   ([`ContentError::Columns`]).
 //! * **Notes.** Statements of a file that are not used, and a value far from all others, stand in
 //!   [`Metadata::notes`] and in the error about missing information.
 //! * **Size.** The size is given by two sides of the map or of a cell. One value means a square map or square

@@ -260,7 +260,7 @@ impl Scan {
         if let Some(unit) = &self.metadata().no_heights {
             let name = self.metadata().name.as_deref().unwrap_or_default();
             let what = format!("{} {name} {unit}", self.metadata().number).trim().to_owned();
-            return Err(ContentError::NoHeights { what });
+            return Err(ContentError::no_heights(what, &self.metadata().notes));
         }
         if self.metadata().profile {
             of_profile(preprocessing)?;

@@ -77,12 +77,7 @@ impl<'a> SurfaceFile<'a> {
         if channels.is_empty() {
             return Err(source.wrong(0, "one map at least"));
         }
-        // Where none can be read, the first says why.
-        if let [StoredChannel { heights: StoredHeights::Unread(problem), .. }, rest @ ..] = &channels[..]
-            && rest.iter().all(|channel| matches!(channel.heights, StoredHeights::Unread(_)))
-        {
-            return Err(source.content(problem.clone()));
-        }
+        check_readable(&channels).map_err(|e| source.content(e))?;
         channels.iter_mut().for_each(StoredChannel::escape);
         Ok(Self { source, format, channels, declared: declared.clone() })
     }
@@ -119,6 +114,18 @@ impl<'a> SurfaceFile<'a> {
     pub fn scans(self) -> impl Iterator<Item = Result<Scan>> {
         let Self { mut source, format, channels, declared } = self;
         channels.into_iter().enumerate().map(move |channel| scan(&mut source, format, channel, &declared))
+    }
+}
+
+/// Where no channel can be read, the first says why.
+pub(crate) fn check_readable(channels: &[StoredChannel]) -> Result<(), ContentError> {
+    match channels {
+        [StoredChannel { heights: StoredHeights::Unread(problem), .. }, rest @ ..]
+            if rest.iter().all(|channel| matches!(channel.heights, StoredHeights::Unread(_))) =>
+        {
+            Err(problem.clone())
+        }
+        _ => Ok(()),
     }
 }
 
@@ -213,48 +220,39 @@ pub(crate) fn scan(
     Scan::new(source.path(), format, (number, channel), heights, declared).map_err(|e| source.content(e))
 }
 
-/// Matrices, points or profiles.
-fn of_text(
+/// The channels of a text: matrices, points or profiles, as their headings name the columns.
+pub(crate) fn of_text(
     source: &mut Source<'_>,
-    format: Option<Format>,
+    requested: Option<Format>,
     declared: &ReadOptions,
 ) -> Result<(Format, Vec<StoredChannel>)> {
     let length = source.length();
     let bytes = source.start(length)?;
-    let maps = text::TextTable::read(&bytes, declared).map_err(|e| source.content(e))?;
+    let tables = text::TextTable::read(&bytes, declared).map_err(|e| source.content(e))?;
     drop(bytes);
-    let channel = |table: text::TextTable| {
-        let format = format.map_or_else(|| of_table(&table), Ok)?;
-        let channel = match format {
-            Format::Xyz => points::grid(&table, declared),
-            Format::Profile => points::row(&table, declared),
-            _ => text::matrix(table, declared),
-        };
-        Ok((format, channel?))
-    };
     let mut channels = Vec::new();
     let mut first = None;
-    for table in maps {
+    for table in tables {
+        let layout = text::layout(&table, requested, declared);
         let name = table.heading.name.clone();
-        let read = channel(table).map_err(|e| source.content(e));
-        first = first.or(read.as_ref().ok().map(|(format, _)| *format));
-        channels.push(StoredChannel::listed(name, read.map(|(_, channel)| channel))?);
+        let mut list = |name, channel: Result<StoredChannel, ContentError>| {
+            let channel = channel.map_err(|e| source.content(e));
+            channels.push(StoredChannel::listed(name, channel)?);
+            Ok(())
+        };
+        first = first.or(layout.as_ref().ok().map(text::Layout::format));
+        match layout {
+            Err(problem) => list(name, Err(problem))?,
+            Ok(text::Layout::Matrix) => list(name, text::matrix(table, declared))?,
+            Ok(text::Layout::Points(maps)) => maps.iter().try_for_each(|columns| {
+                list(columns.name.clone().or(name.clone()), points::grid(&table, columns, declared))
+            })?,
+            Ok(text::Layout::Profiles(maps)) => maps.iter().try_for_each(|columns| {
+                list(columns.name.clone().or(name.clone()), points::row(&table, columns, declared))
+            })?,
+        }
     }
     Ok((first.unwrap_or(Format::Text), channels))
-}
-
-/// Whether numbers are a matrix, points or a profile.
-fn of_table(table: &text::TextTable) -> Result<Format, ContentError> {
-    if table.columns == 3 && table.rows() > 3 {
-        // Numbers whose first two columns are all places of a grid, each once, are no heights.
-        let places = || points::is_full_grid(table).then_some(Format::Xyz);
-        let ambiguous = ContentError::Ambiguous { lines: table.rows() };
-        return table.heading.format().or_else(places).ok_or(ambiguous);
-    }
-    if table.is_profile() {
-        return Ok(Format::Profile);
-    }
-    Ok(Format::Text)
 }
 
 /// Fails for options that only text has a use for.

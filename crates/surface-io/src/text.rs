@@ -1,11 +1,14 @@
 //! Numbers as text: lines, delimiters, comments and headers.
 
+mod columns;
 mod heading;
+mod layout;
 mod matrix;
 mod number;
 mod statement;
 
 pub(crate) use heading::Heading;
+pub(crate) use layout::{AxisColumn, Layout, PointColumns, layout};
 pub(crate) use matrix::matrix;
 
 use crate::error::{ContentError, NumberKind, Place};
@@ -81,12 +84,14 @@ pub(crate) struct TextTable {
     pub(crate) lines: Vec<u32>,
     /// Height of one unit of a number, where the header says it.
     pub(crate) scale: Option<f64>,
+    /// The last line of words before the numbers.
+    title: Option<String>,
     /// Whether decimal commas were found without a request for them.
     found_commas: bool,
     /// What ends a line: a line feed, or a carriage return alone.
     end: u8,
-    /// Whether every line so far began, and ended, with a delimiter. The one is the habit of some programs; the
-    /// other is one too, or an empty last place.
+    /// Whether every line so far began, and ended, with a delimiter. The one is the habit of some programs;
+    /// the other is one too, or an empty last place.
     outer: [bool; 2],
     /// Whether there is an empty line behind every line.
     spaced: bool,
@@ -197,6 +202,7 @@ impl TextTable {
                     return Err(ContentError::TooManyMaps { most: MOST_MAPS, line: i + 1 });
                 }
                 let mut map = Self::new(data, decimal, end);
+                map.title = last.map(|(_, header)| decoded(header));
                 heading.drain(..).try_for_each(|(line, text)| map.heading.read(&text, line))?;
                 maps.push(map);
             }
@@ -225,6 +231,7 @@ impl TextTable {
         let Some(map) = maps.last_mut() else { return Err(ContentError::Empty) };
         heading.into_iter().try_for_each(|(line, text)| map.heading.read(&text, line))?;
         for map in &mut maps {
+            map.name_columns();
             map.without_first_places();
             map.heading.finish()?;
             map.scale = map.heading.scale;
@@ -235,6 +242,12 @@ impl TextTable {
             }
         }
         Ok(maps)
+    }
+
+    /// Finds the columns that the heading names.
+    fn name_columns(&mut self) {
+        let (title, lines) = (self.title.take(), std::mem::take(&mut self.heading.lines));
+        self.heading.columns = columns::named(&lines, title.as_deref(), self.delimiter, self.columns);
     }
 
     /// Whether the map ends before the next numbers, with a heading or an empty line between.
@@ -266,6 +279,7 @@ impl TextTable {
             heading: Heading::default(),
             lines: Vec::new(),
             scale: None,
+            title: None,
             found_commas: false,
             end,
             outer: [true; 2],
@@ -357,6 +371,7 @@ impl TextTable {
                 (place - 1) % columns > 0
             });
             self.columns -= 1;
+            self.heading.columns.drain(..self.heading.columns.len().min(1));
         }
     }
 

@@ -151,11 +151,16 @@ fn text_in_place(mut bytes: Vec<u8>) -> String {
 /// The error for an archive without a file of heights that is known.
 pub(crate) fn refused(members: &[Member]) -> ContentError {
     const SHOWN: usize = 8;
-    for (member, what) in
-        [("header.properties", "a JPK file (in an archive)"), ("index.xml", "a PLUX file of Sensofar")]
-    {
+    const SHEET: &str = "save the sheet as CSV";
+    for (member, what, remedy) in [
+        ("header.properties", "a JPK file (in an archive)", EXPORT),
+        ("index.xml", "a PLUX file of Sensofar", EXPORT),
+        ("xl/workbook.xml", "a workbook of Excel (XLSX)", SHEET),
+        ("content.xml", "a document of LibreOffice (ODS)", SHEET),
+        ("word/document.xml", "a document of Word", "save the numbers as text"),
+    ] {
         if members.iter().any(|m| m.name == member) {
-            return ContentError::Foreign { what, remedy: EXPORT };
+            return ContentError::Foreign { what, remedy };
         }
     }
     let mut names: Vec<String> = members.iter().take(SHOWN).map(|m| shortened(&m.name, 64)).collect();

@@ -152,6 +152,20 @@ fn integers_are_unsigned_where_the_file_says_so() {
 }
 
 #[test]
+fn numbers_outside_of_the_valid_range_are_undefined() {
+    let valid = [1.0, 2.0, 3.0, 4.0, f64::NAN, 6.0, f64::NAN, 8.0, 9.0, 10.0, 11.0, 100.0];
+    for name in ["valid-range.nc", "valid-ends-3.nc"] {
+        holds(&read(name), &valid, 0.5);
+    }
+    for name in ["valid-three.nc", "valid-three-3.nc"] {
+        refused(name, "two numbers as valid_range");
+    }
+    for name in ["unsigned-word.nc", "unsigned-word-3.nc"] {
+        refused(name, "true or false as _Unsigned, found \"yes\"");
+    }
+}
+
+#[test]
 fn variables_of_netcdf_3_have_any_name() {
     holds(&read("nc3-z.nc"), &HEIGHTS, 1.0);
     refused("line.nc", "its variables are profile (x)");
@@ -196,7 +210,10 @@ fn frames_of_a_scan_are_channels_and_indices_are_none() {
         assert_eq!(scan.metadata().size.map(|size| size.map(Quantity::value)), Some([2e-6, 1.5e-6]));
     }
     refused(name, "2 channels of the file have heights");
-    refused("volume.h5", "the data sets are line (3), stack (2 x 3 x 4)");
+    refused(
+        "volume.h5",
+        "the data sets are line (3), stack (2 x 3 x 4); of three dimensions write one map alone",
+    );
 }
 
 #[test]

@@ -204,6 +204,10 @@ fn valid(which: usize) -> Vec<u8> {
         12 => b"# Channel: a\n1 1.#QNAN\n3 4\n\n# Channel: b\n5 6\n\n7 8\n9 0\n".to_vec(),
         13 => b"Zygo XYZ Data File - Format 1\n0\n0\n0 0 2 2\n\n\n\n0 0 6e-7 0.5 1 0 5e-5 17\n3\n0\n#\n0 0 0.1\n1 0 No Data\n#\n".to_vec(),
         14 => b"numCols\tnumRows\tpixelSize (um)\n2\t2\t1.7\nZ-data (um)\n1\t2\n3\t4\n".to_vec(),
+        15 => b"Y (um),X (mm),Z (nm)\n0,0,1.3\n0,5,2.9\n1,0,2.2\n1,5,nan\n".to_vec(),
+        16 => b"x;p 1;p 2;phase (deg)\num;nm;nm;\n0;1;2;3\n1;4;5;6\n2;3;2;1\n".to_vec(),
+        17 => b",row,col,height_nm,Nx\n0,0,0,1.5,7\n1,0,1,2.5,7\n2,1,0,3.5,7\n3,1,1,4.5,7\n".to_vec(),
+        18 => "# Canal : a\n# Largeur : 2,0 \u{b5}m\n# Hauteur\u{ff1a} 1 um\n# Unit\u{e9}s : deg\n1 2\n3 4\n".as_bytes().to_vec(),
         _ => b"\t0\t0.5\t1\n0\t0.1\t0.2\t0.3\n1\t0.2\t0.3\t0.5\n2\t0.3\t0.4\t0.6\n".to_vec(),
     }
 }
@@ -327,6 +331,24 @@ proptest! {
     }
 
     #[test]
+    fn almost_named_columns(
+        columns in prop::collection::vec(
+            ("(x|y|z|row|col|lat|X|Height|N|x position|Points:0|\"|)", "( ?[(\\[]|_| |/|)", "(um|nm|px|deg|V|\u{b5}m|microns|)", "[)\\]\"]?"),
+            1..6,
+        ),
+        delimiter in "(,|;|\t| )",
+        mark in "(# ?|//|)",
+        units in "(|um,nm,mm\n|\\[um\\];\\[nm\\]\n)",
+        rows in prop::collection::vec(prop::collection::vec("(0|1|2|0.5|nan|)", 1..6), 1..9),
+    ) {
+        let names: Vec<String> = columns.iter().map(|(a, b, c, d)| format!("{a}{b}{c}{d}")).collect();
+        // As many numbers as names, mostly.
+        let line = |row: &Vec<String>| row.iter().cycle().take(names.len()).cloned().collect::<Vec<_>>().join(&delimiter);
+        let rows: Vec<String> = rows.iter().map(line).collect();
+        torture(format!("{mark}{}\n{units}{}\n", names.join(&delimiter), rows.join("\n")).as_bytes())?;
+    }
+
+    #[test]
     fn almost_a_header(shape in "[0-9,() L]{0,24}", kind in "[<>|=]?[fiuc]?[0-9]{0,2}", order in "(True|False|1)") {
         let text = format!("{{'descr': '{kind}', 'fortran_order': {order}, 'shape': ({shape}), }}");
         let length = (text.len() as u16).to_le_bytes();
@@ -335,7 +357,7 @@ proptest! {
 
     #[test]
     fn valid_files_with_bytes_changed_lost_and_doubled(
-        which in 0..16_usize,
+        which in 0..20_usize,
         changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>(), 0..4_u8), 1..6),
     ) {
         let mut bytes = valid(which);
@@ -463,6 +485,30 @@ fn small_files_of_instruments_hold_what_was_written() {
     }
 }
 
+/// A heading of so many columns that each would be a channel.
+#[test]
+fn columns_are_no_channels_without_end() {
+    let text = |count: usize| {
+        let line = |cell: &dyn Fn(usize) -> String| (0..count).map(cell).collect::<Vec<_>>().join(",");
+        let rows: Vec<String> = (0..20).map(|row| line(&|_| row.to_string())).collect();
+        format!(
+            "x,{}\n{}\n",
+            line(&|i| format!("p{i}")),
+            rows.iter().map(|row| format!("{row},1")).collect::<Vec<_>>().join("\n")
+        )
+    };
+    let error = |count: usize| {
+        let text = text(count);
+        let (read, held) =
+            most_held(|| SurfaceFile::from_bytes("a.csv", text.as_bytes(), &ReadOptions::default()));
+        assert!(held <= MULTIPLE * text.len() + CONSTANT, "{held} bytes for {}", text.len());
+        read.map(|file| file.len()).map_err(|e| e.to_string())
+    };
+    assert_eq!(error(256), Ok(256));
+    assert!(error(257).unwrap_err().contains("at most 256 columns of heights, found 257"));
+    assert!(error(5000).is_err());
+}
+
 #[test]
 fn archives_are_told_by_their_members() {
     let npz = files::x3p::zip(&[("b/heights.npy", vec![0]), ("x.npy", vec![1])], true);
@@ -474,7 +520,12 @@ fn archives_are_told_by_their_members() {
     assert_eq!(error("a", &npz), expected);
     assert!(error("a", &other).starts_with("a: an archive of main.xml: take"));
     assert!(error("a.npy", &npz).starts_with("a.npy: looks like an archive (NPZ"));
-    for (member, expected) in [("header.properties", "a JPK file"), ("index.xml", "a PLUX file")] {
+    for (member, expected) in [
+        ("header.properties", "a JPK file"),
+        ("index.xml", "a PLUX file"),
+        ("xl/workbook.xml", "a workbook of Excel (XLSX): save the sheet as CSV"),
+        ("content.xml", "a document of LibreOffice (ODS): save the sheet as CSV"),
+    ] {
         let message = error("a", &files::x3p::zip(&[(member, vec![1])], false));
         assert!(message.contains(expected), "{message}");
     }

@@ -224,8 +224,55 @@ fn other_programs_are_named() {
         (b"Zygo ASCII Data File - Format 2\n", "Zygo's text of phases"),
         (b"S\0T\0i\0M\0a\0g\0e\0\0\0", "an RHK SM4 file"),
         (b"%PDF-1.7\n", "a PDF page"),
+        (b"VK6\0\0", "a VK6 file"),
+        (b"VK7\0\0", "a VK7 file"),
+        (b"KPK0\0\0", "a ZON file"),
+        (b"\x10\x01S\0T\0i\0M\0a\0g\0e\0 \0", "an RHK SM4 file"),
+        (b":NANONIS_VERSION:\n2\n", "a Nanonis SXM file"),
+        (b";\r\n; Omicron SPM Control.\r\n", "the header (PAR) of Omicron"),
+        (b"WIT_PR06\0", "a WITec project"),
+        (b"\x70\0\0\0\x04\0\0\0\x2a", "a LIF file of Leica"),
+        (b"\x28\xb5\x2f\xfd\x24", "a Zstandard archive: unpack it first"),
+        (b"7z\xbc\xaf\x27\x1c\0", "a 7z archive"),
+        (b"Rar!\x1a\x07", "a RAR archive"),
+        (b"BZh91AY", "a bzip2 archive"),
+        (b"\xfd7zXZ\0", "an xz archive"),
+        (b"\x89PNG\r\n", "a PNG picture"),
+        (b"\xff\xd8\xff\xe0", "a JPEG picture"),
+        (b"PAR1\x15", "a Parquet table: export NPY or CSV"),
+        (b"ARROW1\0\0", "a Feather (Arrow) table"),
+        (b"ply\r\nformat", "a mesh (PLY)"),
+        (b"solid cube\n facet normal 0 0 1\n", "a mesh (STL)"),
+        (b"\x80\x04\x95\x01", "a pickle of Python"),
     ] {
         let message = problem(bytes).to_string();
         assert!(message.contains(expected), "{message}");
     }
+    // A mesh of one facet, a matrix of MATLAB 4 in either order of bytes, and a tile by its name and length.
+    let mut mesh = vec![0; 134];
+    mesh[80] = 1;
+    assert!(problem(&mesh).to_string().contains("a mesh (STL)"));
+    let numbers = [0_u32, 2, 1, 0, 2].map(u32::to_le_bytes).concat();
+    let other = [1000_u32, 2, 1, 0, 2].map(u32::to_be_bytes).concat();
+    for header in [numbers, other] {
+        let message = problem([&header[..], b"z\0", &[0; 16]].concat()).to_string();
+        assert!(message.contains("a MATLAB file of version 4: save it with -v7"), "{message}");
+    }
+    let tile = Scan::from_bytes("N47E008.hgt", &vec![1; 2_884_802], &ReadOptions::default()).unwrap_err();
+    assert!(tile.to_string().contains("a tile of the Shuttle radar (HGT)"), "{tile}");
+}
+
+#[test]
+fn sizes_that_are_not_enough_are_said() {
+    let reason = |text: &str| read(text).map(&Preprocessing::default()).unwrap_err().to_string();
+    for (text, expected) in [
+        ("# Width: 512\n1 2\n3 4\n", "the heading says \"Width: 512\", which does not give the size"),
+        ("x-pixels = 3\ny-pixels = 2\n1 2 3\n4 5 6\n", "\"x-pixels = 3\", which does not give"),
+        ("X Size: 3\nY Size: 2\n1 2 3\n4 5 6\n", "\"Y Size: 2\""),
+        ("Scan Size: 3 um\n1 2 3\n4 5 6\n", "\"Scan Size: 3 um\""),
+    ] {
+        let found = reason(text);
+        assert!(found.contains(expected) && !found.contains("neither in the file"), "{found}");
+    }
+    assert!(reason("1 2\n3 4\n").contains("neither in the file nor given"));
 }

@@ -90,12 +90,11 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
     let number = if little { number } else { number.big_endian() };
     let raw = RawHeights { scale: scale.unwrap_or(1.0), undefined, ..RawHeights::at(begin, number) };
     let unit = |key: &str| header.text(key).filter(|unit| !unit.is_empty()).unwrap_or("nm");
-    let mut extent = [None; 2];
-    for (side, (length, key)) in extent.iter_mut().zip([("xlength", "xunit"), ("ylength", "yunit")]) {
-        *side = header.number(length)?.and_then(|length| Extent::of_side(length, unit(key)));
-    }
+    let lengths = [header.number("xlength")?, header.number("ylength")?];
+    let extent = [0, 1].map(|i| Extent::of_side(lengths[i]?, unit(["xunit", "yunit"][i])));
     let heights = StoredUnit::written(unit("zunit"));
-    let channel = StoredChannel::new(source, raw, [rows, columns], heights, extent)?;
+    let mut channel = StoredChannel::new(source, raw, [rows, columns], heights, extent)?;
+    channel.note_sides("sides", lengths, unit("xunit"));
     source.ends(begin, number.bytes() as u64 * rows as u64 * columns as u64)?;
     Ok(vec![channel])
 }

@@ -32,6 +32,6 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
     let raw = RawHeights::at(begin, NumberType::F32);
     let mut channel = StoredChannel::new(source, raw, [rows, columns], unit, extent)?;
     source.ends(begin, 4 * rows as u64 * columns as u64)?;
-    channel.note_sides(sides, lateral);
+    channel.note_sides("sides", sides, lateral);
     Ok(vec![channel.named(header.text("title").unwrap_or_default())])
 }

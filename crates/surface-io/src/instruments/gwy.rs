@@ -154,7 +154,7 @@ fn channel(source: &Source<'_>, field: &DataField, mask: Option<&DataField>) -> 
     } else {
         StoredChannel::new(source, raw, shape, unit, extent)?
     };
-    channel.note_sides(field.size, &field.lateral_unit);
+    channel.note_sides("sides", field.size, &field.lateral_unit);
     Ok(channel)
 }
 

@@ -14,8 +14,8 @@
 //!   [`crate::ReadOptions::height_scale`] says it.
 //! - **Size.** The attribute `size` of two numbers, along x and y, beside `size_unit`, which this crate
 //!   writes, or the coordinates in dimension scales.
-//! - **Values.** `scale_factor`, `add_offset`, `_FillValue`, `missing_value` and `_Unsigned` count as NetCDF
-//!   defines them.
+//! - **Values.** `scale_factor`, `add_offset`, `_FillValue`, `missing_value`, `_Unsigned` and `valid_range`
+//!   (`valid_min`, `valid_max`) count as NetCDF defines them.
 //! - **Undefined points.** NaN, fill values, chunks that were never written.
 //!
 //! Programs that write attributes of their own:
@@ -120,7 +120,9 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
     channels.sort_by(|a, b| a.name.cmp(&b.name));
     if channels.is_empty() {
         let found = if others.is_empty() { "none".to_owned() } else { others.join(", ") };
-        let expected = format!("a data set of numbers of two dimensions, the data sets are {found}");
+        let deep = others.iter().any(|shown| shown.matches(" x ").count() > 1);
+        let remedy = if deep { "; of three dimensions write one map alone, such as data[0]" } else { "" };
+        let expected = format!("a data set of numbers of two dimensions, the data sets are {found}{remedy}");
         return Err(source.wrong(0, expected));
     }
     Ok(channels)
@@ -217,9 +219,9 @@ fn frames(source: &Source<'_>, array: &Array, found: Found, grid: Grid) -> Resul
             notes.push("the grid of the scan is turned or reflected, which is not used".into());
         }
         let (unit, undefined) = (array.unit.clone(), array.undefined);
-        let Array { number, custom, scale, shift, unsigned, .. } = *array;
+        let Array { number, custom, scale, shift, unsigned, valid, .. } = *array;
         let plain = Array::new(&name, dimensions, number, custom);
-        let one = Array { unsigned, unit, scale, shift, undefined, extent, notes, ..plain };
+        let one = Array { unsigned, valid, unit, scale, shift, undefined, extent, notes, ..plain };
         let found = Arc::clone(&found);
         let read = move |raw: &RawHeights, source: &mut Source<'_>| {
             let all = found.read(raw, source, [points, count])?;

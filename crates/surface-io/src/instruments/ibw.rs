@@ -141,7 +141,11 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
         let extent = [0, 1].map(|axis| Extent::of_cell(header.step[axis], &units[axis + 1]));
         let name = if label.is_empty() && layers == 1 { header.name.to_string() } else { label };
         let channel = StoredChannel::new(source, raw, [rows as usize, columns as usize], unit, extent);
-        found.push(StoredChannel::listed(Some(name.clone()), channel.map(|channel| channel.named(&name)))?);
+        let channel = channel.map(|mut channel| {
+            channel.note_sides("cells of", [0, 1].map(|axis| Some(header.step[axis])), &units[1]);
+            channel.named(&name)
+        });
+        found.push(StoredChannel::listed(Some(name.clone()), channel)?);
     }
     Ok(found)
 }

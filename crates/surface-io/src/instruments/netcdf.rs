@@ -10,6 +10,7 @@
 //! Undefined points are NaN, the values of the attributes `_FillValue` and `missing_value`, the library's own
 //! fill value in floats without the former, and points of `heights` where a variable `mask` is not 0.
 //! `scale_factor` and `add_offset` are applied after that, and `_Unsigned` before, as the conventions say.
+//! Numbers outside of `valid_range` (or `valid_min` and `valid_max`) are undefined.
 //!
 //! Own code: `netcdf3` 0.6 reserves memory for as many dimensions as a file claims, reads whole variables and
 //! no CDF-5. Not read: line scans, a dimension without a limit, NetCDF-4 (an HDF5 file).
@@ -19,7 +20,7 @@ mod write;
 pub use write::netcdf;
 
 use super::prelude::*;
-use crate::array::{Array, Coordinates, Dimension, Numbers};
+use crate::array::{Array, Coordinates, Dimension, Numbers, unsigned, valid};
 use crate::channel::FileAxes;
 use crate::options::Axes;
 
@@ -59,6 +60,8 @@ struct Attributes {
     length: Option<f64>,
     fill: Option<f64>,
     missing: Option<f64>,
+    valid: [Option<f64>; 2],
+    valid_range: Option<[f64; 2]>,
     scale: Option<f64>,
     shift: Option<f64>,
 }
@@ -77,7 +80,10 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
         let named = variables.iter().take(NAMED).map(|variable| variable.shown(&dimensions));
         let found = if variables.is_empty() { vec!["none".to_owned()] } else { named.collect() };
         let expected = "a variable called heights, or one of numbers over two dimensions";
-        return Err(source.wrong(0, format!("{expected}, its variables are {}", found.join(", "))));
+        let deep = variables.iter().any(|variable| variable.rank > 2);
+        let remedy =
+            if deep { "; of three dimensions write one map alone, such as isel(time=0)" } else { "" };
+        return Err(source.wrong(0, format!("{expected}, its variables are {}{remedy}", found.join(", "))));
     }
     for dimension in &mut dimensions {
         let of = |v: &&Variable| v.rank == 1 && v.name == dimension.name;
@@ -132,11 +138,16 @@ impl Variable {
         let number = self.number.ok_or_else(|| wrong("that are numbers"))?;
         let custom = "as the conventions have it, the dimensions have other names than x and y";
         let mut array = Array::new(&self.name, of, number, (FileAxes::Assumed(Axes::Yx), custom));
-        let Attributes { unit, unsigned, fill, missing, scale, shift, .. } = &self.attributes;
+        let Attributes { unit, fill, missing, scale, shift, .. } = &self.attributes;
         let own = if number.is_float() { Some(FILL) } else { None };
         array.undefined = Undefined::either(fill.or(own), *missing);
         (array.scale, array.shift, array.unit) = (*scale, *shift, StoredUnit::written(unit));
-        array.unsigned = unsigned.parse().ok();
+        let said =
+            unsigned(&self.attributes.unsigned).map_err(|expected| wrong(&format!("with {expected}")))?;
+        array.unsigned = said;
+        let range = self.attributes.valid_range;
+        let ends = valid(range.as_ref().map(|range| &range[..]), self.attributes.valid);
+        array.valid = ends.map_err(|expected| wrong(&format!("with {expected}")))?;
         let variable = |name: &str| variables.iter().find(|variable| variable.name == name);
         array.extent = ["x", "y"].map(|name| {
             let Attributes { unit, length, .. } = &variable(name)?.attributes;
@@ -237,10 +248,21 @@ impl<'s, 'a> Header<'s, 'a> {
                 continue;
             }
             let at = self.file.at;
+            if name == "valid_range" {
+                let (Some(number), 2) = (number(kind), count) else {
+                    return Err(self.file.wrong("two numbers as valid_range"));
+                };
+                let decode = |bytes: &[u8]| number.big_endian().decode(bytes).unwrap_or(f64::NAN);
+                let bytes = self.file.take(length)?;
+                keep.valid_range = Some([decode(&bytes[..number.bytes()]), decode(&bytes[number.bytes()..])]);
+                self.file.at = at;
+            }
             let target = match name.as_str() {
                 "length" => Some(&mut keep.length),
                 "_FillValue" => Some(&mut keep.fill),
                 "missing_value" => Some(&mut keep.missing),
+                "valid_min" => Some(&mut keep.valid[0]),
+                "valid_max" => Some(&mut keep.valid[1]),
                 "scale_factor" => Some(&mut keep.scale),
                 "add_offset" => Some(&mut keep.shift),
                 _ => None,

@@ -132,7 +132,7 @@ fn object(source: &mut Source<'_>, at: u64, header: &Header, image: bool) -> Res
     let extent = [Extent::of_cell(x, &header.unit[0]), Extent::of_cell(y, &header.unit[1])];
     let shape = [rows, columns];
     let length = u64::from(header.total) * number.bytes() as u64;
-    let (channel, end) = if header.magic == *COMPRESSED {
+    let (mut channel, end) = if header.magic == *COMPRESSED {
         let details = format!("{}, compressed", plain.details());
         let (streams, end) = streams(source, data, length)?;
         let read = move |source: &mut Source<'_>| {
@@ -146,6 +146,7 @@ fn object(source: &mut Source<'_>, at: u64, header: &Header, image: bool) -> Res
     } else {
         (StoredChannel::new(source, plain, shape, unit, extent)?, data + length)
     };
+    channel.note_sides("cells of", [Some(x), Some(y)], &header.unit[0]);
     Ok((channel.named(name), end))
 }
 

@@ -64,14 +64,13 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
     };
     let name = general.text("acquisition channel").unwrap_or_default();
     let unit = amplitude.map_or(StoredUnit::Unknown, |(_, unit)| StoredUnit::of_signal(name, unit));
-    let side = |key: &str| {
-        let (side, unit) = number_and_text(control.text(key)?)?;
-        Extent::of_side(side, unit)
-    };
+    let sides = ["x amplitude", "y amplitude"].map(|key| number_and_text(control.text(key)?));
     let raw = RawHeights { reversed: [true; 2], scale, ..RawHeights::at(header.end, number) };
     let shape @ [rows, columns] = [general.whole("number of rows")?, general.whole("number of columns")?];
-    let extent = [side("x amplitude"), side("y amplitude")];
-    let channel = StoredChannel::new(source, raw, shape, unit, extent)?;
+    let extent = sides.map(|side| side.and_then(|(side, unit)| Extent::of_side(side, unit)));
+    let mut channel = StoredChannel::new(source, raw, shape, unit, extent)?;
+    let written = sides[0].map_or("", |(_, unit)| unit);
+    channel.note_sides("sides", sides.map(|side| side.map(|(side, _)| side)), written);
     let mut channels = [channel.named(name)];
     if amplitude.is_none() {
         channels[0].note("no Z Amplitude with a number: the numbers of the file as they stand");

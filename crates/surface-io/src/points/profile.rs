@@ -1,13 +1,12 @@
 //! Points x, z along a line.
 
-use super::row;
+use crate::channel::{StoredChannel, chosen};
 use crate::error::{ContentError, Result};
 use crate::format::Format;
 use crate::options::ReadOptions;
 use crate::preprocessing::Preprocessing;
 use crate::source::Input;
-use crate::surface_file::{opened, scan, told};
-use crate::text::TextTable;
+use crate::surface_file::{check_readable, of_text, opened, scan, told};
 use contact_model::Line;
 use std::io::Cursor;
 use std::path::Path;
@@ -55,17 +54,13 @@ fn read(path: &Path, input: impl Input, length: u64, declared: &ReadOptions) -> 
         let reason = "x says how long a profile is; cell says its steps";
         return Err(source.content(ContentError::Useless { what: "size", reason }));
     }
-    let bytes = source.start(length)?;
-    let several =
-        ContentError::Useless { what: "a profile", reason: "the text has several blocks of numbers" };
-    let channel = TextTable::read(&bytes, declared).and_then(|tables| match &tables[..] {
-        [table] => row(table, declared),
-        _ => Err(several),
-    });
-    let channel = channel.map_err(|e| source.content(e))?;
-    drop(bytes);
+    let (_, mut channels) = of_text(&mut source, Some(Format::Profile), declared)?;
+    check_readable(&channels).map_err(|e| source.content(e))?;
+    channels.iter_mut().for_each(StoredChannel::escape);
+    let number = chosen(&channels, declared.channel.as_ref()).map_err(|e| source.content(e))?;
+    let channel = channels.swap_remove(number);
     let points = channel.columns;
-    let scan = scan(&mut source, Format::Profile, (0, channel), declared)?;
+    let scan = scan(&mut source, Format::Profile, (number, channel), declared)?;
     let undefined = scan.metadata().undefined;
     if undefined > 0 {
         return Err(source.content(ContentError::Gaps { undefined, points }));

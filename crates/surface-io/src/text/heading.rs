@@ -5,7 +5,9 @@
 //! (`IO/Text.py`) and Gwyddion (`spip-asc.c`), and their usual variants. A length counts where it has a unit;
 //! a number of pixels has none and is compared with the lines.
 
+use super::columns::{Column, names_axes};
 use super::statement::{Side, Statement, key_and_value, lengths};
+use crate::channel::StoredUnit;
 use crate::error::ContentError;
 use crate::extent::{Extent, agree};
 use crate::fields::decoded;
@@ -33,8 +35,8 @@ pub(crate) struct Heading {
     pub(crate) scale: Option<f64>,
     /// Nanometres of one count, where the unit of the heights is not said.
     bit_to_nm: Option<f64>,
-    /// A unit of the numbers that is none of heights, and what is wrong with it.
-    other_unit: Option<ContentError>,
+    /// A unit of the values that is none of heights.
+    other_unit: Option<OtherUnit>,
     /// The file of SPIP says lengths in nanometres without saying so.
     spip: bool,
     /// Whether it is that of an ESRI grid, whose lengths are numbers.
@@ -45,26 +47,54 @@ pub(crate) struct Heading {
     pub(super) missing: Option<f64>,
     /// Lines that speak of units or sizes in words that are not known, the first few.
     unused: Vec<String>,
+    /// Lines about sides, cells and numbers of pixels, the first few.
+    sizes: Vec<String>,
+    /// Lines that may name the columns, the last few.
+    pub(super) lines: Vec<String>,
+    /// The columns as such a line names them; empty for none.
+    pub(super) columns: Vec<Column>,
+}
+
+/// A unit that is none of heights.
+#[derive(Debug, Clone, PartialEq)]
+struct OtherUnit {
+    /// As written.
+    written: String,
+    /// Whether a factor may still convert the numbers to heights.
+    convertible: bool,
+    /// What is wrong with it.
+    problem: ContentError,
 }
 
 /// What a header says of each axis: the length of the map, and that of a cell.
 type SidesAndCells = ([Option<Side>; 2], [Option<Extent>; 2]);
 
 /// Words of units and sizes.
-const ABOUT: [&str; 7] = ["unit", "size", "pixel", "scale", "length", "resolution", "spacing"];
+const ABOUT: [&str; 8] = ["unit", "size", "pixel", "scale", "length", "resolution", "spacing", "calibration"];
 
-/// Longest line that is looked at, in bytes.
+/// Longest line that is looked at for statements, in bytes.
 const LONGEST: usize = 200;
+
+/// Lines that are kept until the number of columns is known.
+const LINES: usize = 8;
+
+/// Most lines that are noted.
+const NOTED: usize = 8;
 
 impl Heading {
     /// Takes what a line of a header says; another statement of the same kind is an error.
     ///
     /// Width and height are words of everyday and count where they are lengths; units count or are an error.
     pub(super) fn read(&mut self, line: &[u8], number: usize) -> Result<(), ContentError> {
-        if line.len() > LONGEST {
+        let text = decoded(line);
+        let names = names_axes(&text);
+        if self.lines.len() == LINES {
+            self.lines.remove(0);
+        }
+        self.lines.push(text.trim_end().to_owned());
+        if names || line.len() > LONGEST {
             return Ok(());
         }
-        let text = decoded(line);
         self.spip |= text.trim() == "File Format = ASCII";
         let several: Vec<&str> = text.split_whitespace().collect();
         if several.len() > 1
@@ -73,60 +103,56 @@ impl Heading {
             // h=305 w=75
             return several.into_iter().try_for_each(|part| self.statement(part, number));
         }
-        if self.columns(&text) { Ok(()) } else { self.statement(&text, number) }
+        self.statement(&text, number)
     }
 
     /// Whether a line says anything that counts.
     pub(super) fn says(line: &[u8]) -> bool {
         let mut alone = Self::default();
         let read = alone.read(line, 0);
+        let names = alone.lines.iter().any(|line| names_axes(line));
         alone.unused.clear();
-        read.is_err() || alone != Self::default()
+        alone.lines.clear();
+        alone.sizes.clear();
+        read.is_err() || names || alone != Self::default()
     }
 
     /// What is said and not used, for people, where a unit or a size is not known.
     pub(crate) fn notes(&self, extent: [Option<Extent>; 2]) -> Vec<String> {
         let known = self.unit.is_some() && extent.iter().all(Option::is_some);
         let lines = self.unused.iter().filter(|_| !known);
-        lines.map(|line| format!("the heading says {line:?}, which is not used")).collect()
-    }
-
-    /// The units of two or three headed columns, `x [um]` and `z [nm]`; whether the line is such a one.
-    fn columns(&mut self, text: &str) -> bool {
-        let text = text.trim();
-        let Some(delimiter) = ['\t', ';', ',', ' '].into_iter().find(|&d| text.contains(d)) else {
-            return false;
-        };
-        let unit = |name: &str| -> Option<(char, Unit)> {
-            let name = name.trim().trim_matches('"');
-            let bracketed = name.strip_suffix([']', ')']).and_then(|name| name.rsplit_once(['[', '(']));
-            let (word, unit) = bracketed.or_else(|| name.split_once('/'))?;
-            let unit: Unit = unit.parse().ok().filter(|u: &Unit| u.dimension() == Dimension::LENGTH)?;
-            let word = word.trim().trim_end_matches('_').to_lowercase();
-            matches!(word.as_str(), "x" | "y" | "z").then(|| (word.chars().next().unwrap_or('x'), unit))
-        };
-        let units: Option<Vec<(char, Unit)>> = text.trim_end().split(delimiter).map(unit).collect();
-        match units.as_deref() {
-            Some([('x', x), ('z', z)]) => (self.lateral_unit, self.unit) = (Some(x.clone()), Some(z.clone())),
-            Some([('x', x), ('y', y), ('z', z)]) if x.same(y) => {
-                (self.lateral_unit, self.unit) = (Some(x.clone()), Some(z.clone()));
-            }
-            _ => return false,
-        }
-        true
+        let unused = lines.map(|line| format!("the heading says {line:?}, which is not used"));
+        let other = self.other_unit.as_ref().filter(|_| self.unit.is_none());
+        // What the heading says of the size may still be less than a length along each axis.
+        let sizes = self.sizes.iter().filter(|_| extent.iter().any(Option::is_none));
+        let sizes = sizes.map(|line| format!("the heading says {line:?}, which does not give the size"));
+        unused.chain(sizes).chain(other.map(|other| other.problem.to_string())).collect()
     }
 
     fn statement(&mut self, text: &str, line: usize) -> Result<(), ContentError> {
         let Some((statement, key, value)) = key_and_value(text) else {
             let lower = text.to_lowercase();
-            if text.contains([':', '=', '\t', ','])
-                && ABOUT.iter().any(|word| lower.contains(word))
-                && self.unused.len() < 3
+            let between = [':', '=', '\t', ',', ';', '\u{ff1a}'];
+            let value = text.split_once(between).map(|(_, value)| value.trim());
+            let of_length = |value: &str| {
+                let sides = lengths(value).unwrap_or_default();
+                sides.iter().any(|side| side.quantity.dimension() == Dimension::LENGTH)
+                    || unit(value).is_ok_and(|unit| unit.dimension() == Dimension::LENGTH)
+            };
+            if value.is_some_and(|value| ABOUT.iter().any(|word| lower.contains(word)) || of_length(value))
+                && self.unused.len() < NOTED
             {
                 self.unused.push(text.trim().chars().take(80).collect());
             }
             return Ok(());
         };
+        let about_size = matches!(
+            statement,
+            Statement::Side(..) | Statement::Size | Statement::Cell(_) | Statement::Count(_)
+        );
+        if about_size && value.contains(|c: char| c.is_ascii_digit()) && self.sizes.len() < NOTED {
+            self.sizes.push(text.trim().chars().take(80).collect());
+        }
         match statement {
             Statement::Channel => {
                 self.name = self.name.take().or_else(|| (!value.is_empty()).then(|| value.clone()));
@@ -138,7 +164,7 @@ impl Heading {
                 _ => {}
             },
             Statement::Cell(axis) => {
-                let said = lengths(&value).unwrap_or_default();
+                let said = lengths(&without_pixels(&value)).unwrap_or_default();
                 let of_length = |side: &Side| side.quantity.dimension() == Dimension::LENGTH;
                 self.grid |= key == "cellsize";
                 match (axis, said.as_slice()) {
@@ -151,13 +177,20 @@ impl Heading {
             }
             Statement::Count(axis) => self.count(axis, &value, &key)?,
             Statement::HeightUnit | Statement::LateralUnit if !value.is_empty() => {
-                let unit = unit(&value).map_err(|source| ContentError::Heading {
-                    line,
-                    key: key.clone(),
-                    source,
-                })?;
-                let field =
-                    if statement == Statement::HeightUnit { &mut self.unit } else { &mut self.lateral_unit };
+                let of_heights = statement == Statement::HeightUnit;
+                let unit = match unit(&value) {
+                    Ok(unit) => unit,
+                    Err(source) => {
+                        let problem = ContentError::Heading { line, key, source };
+                        if of_heights {
+                            let other = OtherUnit { written: value, convertible: false, problem };
+                            self.other_unit = self.other_unit.take().or(Some(other));
+                            return Ok(());
+                        }
+                        return Err(problem);
+                    }
+                };
+                let field = if of_heights { &mut self.unit } else { &mut self.lateral_unit };
                 if let Some(first) = field.as_ref().filter(|first| !first.same(&unit)) {
                     return Err(two_lines(&key, first, &unit));
                 }
@@ -165,7 +198,11 @@ impl Heading {
             }
             Statement::DataUnit => match unit(&value) {
                 Ok(unit) => self.unit = self.unit.take().or(Some(unit)),
-                Err(source) => self.other_unit = Some(ContentError::Heading { line, key, source }),
+                Err(source) => {
+                    let problem = ContentError::Heading { line, key, source };
+                    let other = OtherUnit { written: value, convertible: true, problem };
+                    self.other_unit = self.other_unit.take().or(Some(other));
+                }
             },
             Statement::Factor(of) => {
                 if let (Some(factor), Ok(unit)) = (positive(&value), unit(&of)) {
@@ -225,9 +262,24 @@ impl Heading {
                 once(&mut self.sides[axis], Some(Side { quantity, ..side }), ["x length", "y length"][axis])?;
             }
         }
-        match self.other_unit.take() {
-            Some(error) if self.unit.is_none() => Err(error),
+        match &self.other_unit {
+            Some(other) if self.unit.is_some() && !other.convertible => Err(other.problem.clone()),
             _ => Ok(()),
+        }
+    }
+
+    /// The columns that the heading names, in words, where it names any.
+    pub(crate) fn named(&self) -> Option<String> {
+        let names: Vec<String> = self.columns.iter().map(ToString::to_string).collect();
+        (!names.is_empty()).then(|| format!("the heading names the columns {}", names.join(", ")))
+    }
+
+    /// The unit of the values: a length, or one of no heights.
+    pub(crate) fn stored_unit(&self) -> StoredUnit {
+        match (&self.unit, &self.other_unit) {
+            (Some(unit), _) => StoredUnit::Heights(unit.clone()),
+            (None, Some(other)) => StoredUnit::NoHeights(Some(other.written.chars().take(32).collect())),
+            (None, None) => StoredUnit::Unknown,
         }
     }
 
@@ -309,6 +361,15 @@ fn once(field: &mut Option<Side>, side: Option<Side>, key: &str) -> Result<(), C
 fn two_lines(key: &str, first: &dyn std::fmt::Display, second: &dyn std::fmt::Display) -> ContentError {
     let (first, second) = (format!("{key}: {first}"), format!("{key}: {second}"));
     ContentError::Contradiction { what: "two lines of the header", first, second }
+}
+
+/// A length for each pixel, `7413 nm/pixel`, as a length.
+fn without_pixels(value: &str) -> String {
+    let mut value = value.replace(" / ", "/");
+    for pixel in ["/pixel", "/pix", "/px"] {
+        value = value.replace(pixel, "");
+    }
+    value
 }
 
 fn positive(value: &str) -> Option<f64> {

@@ -2,11 +2,14 @@
 
 use super::TextTable;
 use super::statement::Side;
-use crate::channel::{StoredChannel, StoredHeights, StoredUnit};
+use crate::channel::{StoredChannel, StoredHeights};
 use crate::error::ContentError;
 use crate::extent::Extent;
 use crate::options::{Border, ReadOptions};
 use crate::quantity::{Quantity, Unit};
+
+/// Part of a step by which printed coordinates may be off equal steps.
+const EVEN: f64 = 0.02;
 
 /// Rounding of a quotient of two lengths.
 const EXACT: f64 = 4.0 * f64::EPSILON;
@@ -27,10 +30,10 @@ pub(crate) fn matrix(mut table: TextTable, declared: &ReadOptions) -> Result<Sto
     if let Some(scale) = table.scale {
         table.values.iter_mut().for_each(|h| *h *= scale);
     }
-    let (heights, unit) =
-        (StoredHeights::Read(table.values), StoredUnit::heights(table.heading.unit.clone()));
+    let (heights, unit) = (StoredHeights::Read(table.values), table.heading.stored_unit());
     let channel = StoredChannel::of(heights, details, [rows, columns], unit);
-    let notes = table.heading.notes(extent);
+    let mut notes = table.heading.notes(extent);
+    notes.extend(table.heading.named().map(|names| format!("{names}, which are all taken for heights")));
     Ok(StoredChannel { name: table.heading.name, extent, notes, ..channel })
 }
 
@@ -62,8 +65,18 @@ fn border(table: &mut TextTable, declared: &ReadOptions) -> Result<[Option<Exten
     let [line_counts, column_counts] = [counts(Box::new(first_line())), counts(Box::new(first_column()))]
         .map(|counts| counts && !whole && columns > 3);
     let both = axes.iter().all(Option::is_some);
+    // A plane of heights is in equal steps too, and they are those of all its lines.
+    let plane = || {
+        let (line, column): (Vec<f64>, Vec<f64>) = (first_line().collect(), first_column().collect());
+        let allowed = EVEN * axes.iter().flatten().map(|step| step.abs()).sum::<f64>();
+        table.values.iter().enumerate().all(|(i, value)| {
+            let expected = line[i % columns] + column[i / columns] - line[0];
+            value.is_nan() || (value - expected).abs() <= allowed
+        })
+    };
     let what = match declared.border {
         None if both && corner => "first line and the first column have no corner, but",
+        None if both && !plane() => "first line and the first column have, behind their corner,",
         None if line_counts => "first line has",
         None if column_counts => "first column has",
         None => return Ok([None; 2]),
@@ -82,21 +95,30 @@ fn border(table: &mut TextTable, declared: &ReadOptions) -> Result<[Option<Exten
     table.values = heights.copied().collect();
     table.lines.drain(..lines);
     table.columns -= places;
+    // x and y ascend in a map.
+    if both && axes[0].is_some_and(|step| step < 0.0) {
+        table.values.chunks_exact_mut(table.columns).for_each(<[f64]>::reverse);
+    }
+    if both && axes[1].is_some_and(|step| step < 0.0) {
+        table.values = table.values.rchunks(table.columns).flatten().copied().collect();
+        table.lines.reverse();
+    }
     if !both {
         return Ok([None; 2]);
     }
     let unit = table.heading.lateral_unit.clone().or_else(|| declared.lateral_unit.clone());
     let unit = unit.unwrap_or_else(Unit::none);
-    Ok(axes.map(|step| Quantity::of(step?, &unit).ok().map(Extent::Cell)))
+    Ok(axes.map(|step| Quantity::of(step?.abs(), &unit).ok().map(Extent::Cell)))
 }
 
-/// The step of `least` ascending numbers or more in equal steps, within the digits that are printed.
+/// The step of `least` numbers or more in equal steps up or down, within the digits that are printed.
 fn equal_steps(mut values: impl Iterator<Item = f64>, least: usize) -> Option<f64> {
     let first = values.next()?;
     let all: Vec<f64> = values.collect();
     let step = (all.last()? - first) / all.len() as f64;
-    let equal = all.iter().enumerate().all(|(i, v)| (v - first - (i + 1) as f64 * step).abs() <= 0.02 * step);
-    (step > 0.0 && equal && all.len() + 1 >= least).then_some(step)
+    let equal =
+        all.iter().enumerate().all(|(i, v)| (v - first - (i + 1) as f64 * step).abs() <= EVEN * step.abs());
+    (step.abs() > 0.0 && equal && all.len() + 1 >= least).then_some(step)
 }
 
 /// Both sides by the comments. A file that says one of them only has square cells, and so has one whose cells

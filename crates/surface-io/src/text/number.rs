@@ -39,16 +39,17 @@ impl Decimal {
     }
 
     /// Whether a line is one of a header: it begins with none of the characters of numbers, and has a word
-    /// that is none.
+    /// that is none. Empty places before the first word do not count: the first column of a data frame has no
+    /// name.
     pub(super) fn is_header(self, line: &[u8]) -> bool {
         let line = line.trim_ascii();
-        let first = line.iter().copied().find(|&b| b != b'"').unwrap_or_default();
+        let first = line.iter().copied().find(|b| !matches!(b, b'"' | b',' | b';')).unwrap_or_default();
         let place = Place::Line { line: 0, value: 0 };
         let number = |token: &[u8]| match self.number(token, place) {
             Err(ContentError::Infinite { .. }) => true,
             read => read.is_ok(),
         };
-        let begins = first.is_ascii_digit() || matches!(first, b'+' | b'-' | b'.' | b',' | b';');
+        let begins = first.is_ascii_digit() || matches!(first, b'+' | b'-' | b'.');
         let mut tokens = line.split(|b| matches!(b, b' ' | b'\t' | b';' | b',' | b'\r'));
         !begins && tokens.any(|token| !number(token))
     }

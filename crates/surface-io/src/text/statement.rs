@@ -39,15 +39,17 @@ pub(super) enum Statement {
 /// nothing here.
 pub(super) fn key_and_value(text: &str) -> Option<(Statement, String, String)> {
     let text = text.trim().trim_start_matches(['\\', '@', '*']);
-    let quoted = text.starts_with('"');
-    let text = &joined(text);
-    let between = text.find([':', '=']).or_else(|| text.find('\t')).or_else(|| grid(text));
+    let joined = joined(text);
+    let of_table = joined.is_some();
+    let text = &joined.unwrap_or_else(|| text.to_owned());
+    // The second colon is that of Japanese.
+    let between = text.find([':', '=', '\u{ff1a}']).or_else(|| text.find('\t')).or_else(|| grid(text));
     let (key, value) = match between {
         Some(between) => text.split_at(between),
         // `Z-data (um)`: the line above numbers.
         None => (text.as_str(), " "),
     };
-    let value = unquoted(value.get(1..)?);
+    let value = unquoted(value.trim_start_matches([':', '=', '\u{ff1a}', '\t', ' ']));
     let key = unquoted(key);
     let lower = key.to_lowercase();
     if let Some(of) = lower.strip_prefix("height conversion factor") {
@@ -64,7 +66,7 @@ pub(super) fn key_and_value(text: &str) -> Option<(Statement, String, String)> {
     let words: Vec<&str> = words.split_whitespace().collect();
     let words = words.join(" ");
     // Of Keyence's tables the unit is that of the numbers; elsewhere it may be that of anything.
-    let statement = if words == "unit" && quoted { Statement::DataUnit } else { known(&words)? };
+    let statement = if words == "unit" && of_table { Statement::DataUnit } else { known(&words)? };
     if between.is_none() && statement != Statement::HeightUnit {
         return None;
     }
@@ -72,12 +74,18 @@ pub(super) fn key_and_value(text: &str) -> Option<(Statement, String, String)> {
     Some((statement, words, value))
 }
 
-/// Cells of a line in quotes as a key and its value: `"XY Calibration","7.4","um"`.
-fn joined(text: &str) -> String {
-    match text.strip_prefix('"').and_then(|rest| rest.split_once("\",\"")) {
-        Some((key, value)) => format!("{key}: {}", value.trim_end_matches('"').replace("\",\"", " ")),
-        None => text.to_owned(),
-    }
+/// Cells of a line of a table as a key and its value: `"XY Calibration","7.4","um"`, also with semicolons,
+/// tabs or without quotes; `None` for other lines.
+fn joined(text: &str) -> Option<String> {
+    let quoted = text.strip_prefix('"');
+    let delimiter = [';', ',', '\t'].into_iter().find(|&delimiter| match quoted {
+        Some(_) => text.contains(&['"', delimiter, '"'].iter().collect::<String>()),
+        None => delimiter != '\t' && text.contains(delimiter) && !text.contains([':', '=', '\t']),
+    })?;
+    let between = if quoted.is_some() { format!("\"{delimiter}\"") } else { delimiter.to_string() };
+    let (key, value) = quoted.unwrap_or(text).split_once(&between)?;
+    let value = value.trim_end_matches('"').replace(&between, " ");
+    Some(format!("{}: {}", key.trim(), value.trim()))
 }
 
 /// Where the key of a line of an ESRI grid ends: `ncols 4`.
@@ -93,9 +101,9 @@ fn unquoted(text: &str) -> &str {
 
 fn known(words: &str) -> Option<Statement> {
     Some(match words {
-        "channel" | "channel name" | "kanal" => Statement::Channel,
-        "width" | "breite" => Statement::Side(0, false),
-        "height" | "h\u{f6}he" => Statement::Side(1, false),
+        "channel" | "channel name" => Statement::Channel,
+        "width" => Statement::Side(0, false),
+        "height" => Statement::Side(1, false),
         "x length" | "xlength" | "x size" | "size x" | "x range" | "x amplitude" | "scan size x"
         | "x scan size" | "scan range x" | "x scan range" | "length x" => Statement::Side(0, true),
         "y length" | "ylength" | "y size" | "size y" | "y range" | "y amplitude" | "scan size y"
@@ -126,12 +134,52 @@ fn known(words: &str) -> Option<Statement> {
         "data unit" => Statement::DataUnit,
         "nodata value" => Statement::Missing,
         "bit2nm" => Statement::BitToNm,
-        _ => return None,
+        _ => return translated(words),
     })
 }
 
+/// The labels of Gwyddion's exports in the languages that it speaks besides English, as its own catalogues
+/// (version 2.62) have them: Czech, German, Spanish, French, Italian, Japanese, Korean, Brazilian Portuguese
+/// and Russian.
+const TRANSLATED: [(Statement, &[&str]); 5] = [
+    (Statement::Channel, &["kanál", "kanal", "canal", "canale", "チャネル", "채널", "канал"]),
+    (
+        Statement::Side(0, false),
+        &["šířka", "breite", "anchura", "largeur", "larghezza", "幅", "폭", "largura", "ширина"],
+    ),
+    (Statement::Side(1, false), &["výška", "höhe", "altura", "hauteur", "altezza", "高さ", "높이", "высота"]),
+    (
+        Statement::HeightUnit,
+        &[
+            "jednotky hodnot",
+            "einheiten",
+            "unités",
+            "unità valore",
+            "値の単位",
+            "값 단위",
+            "unidades de valor",
+            "единицы измерения",
+        ],
+    ),
+    (
+        Statement::LateralUnit,
+        &[
+            "jednotky rozměrů",
+            "unités latérales",
+            "unità laterali",
+            "水平単位",
+            "unidades de laterais",
+            "единицы горизонтальных размеров",
+        ],
+    ),
+];
+
+fn translated(words: &str) -> Option<Statement> {
+    TRANSLATED.iter().find(|(_, labels)| labels.contains(&words)).map(|(statement, _)| statement.clone())
+}
+
 /// Words of units that programs print.
-const WORDS: [(&str, &str); 12] = [
+pub(super) const WORDS: [(&str, &str); 12] = [
     ("microns", "um"),
     ("micron", "um"),
     ("micrometers", "um"),

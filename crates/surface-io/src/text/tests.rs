@@ -112,7 +112,7 @@ fn what_a_heading_says_counts() {
     for (text, expected) in [
         (
             "# c\n# Value units: V\n1\n",
-            "a.txt: line 2, value units: V is a quantity in m^2 kg s^-3 A^-1: expected a length, such as \"1 mm\"; skip_lines leaves out a header",
+            "a.txt: channel 0 without a name (1 x 1, no heights: V): its values are no heights (line 2, value units: V is a quantity in m^2 kg s^-3 A^-1: expected a length, such as \"1 mm\"; skip_lines leaves out a header)",
         ),
         (
             "# Lateral units: Nm\n1\n",

@@ -1,6 +1,6 @@
 //! Attributes of HDF5, which define the meaning of the numbers in a data set.
 
-use crate::array::Array;
+use crate::array::{Array, unsigned, valid};
 use crate::channel::{StoredUnit, Undefined};
 use crate::extent::Extent;
 use crate::quantity::{Dimension, Quantity, Unit};
@@ -62,7 +62,12 @@ pub(super) fn describe(array: &mut Array, attributes: &Attributes) -> std::resul
     let of = |key: &str| number(attributes, key);
     array.undefined = Undefined::either(of("_FillValue")?, of("missing_value")?);
     (array.scale, array.shift) = (of("scale_factor")?, of("add_offset")?);
-    array.unsigned = text(attributes, "_Unsigned").and_then(|text| text.parse().ok());
+    array.unsigned = unsigned(text(attributes, "_Unsigned").unwrap_or_default())?;
+    let range = match (attributes.contains_key("valid_range"), numbers(attributes, "valid_range")) {
+        (true, None) => return Err("two numbers as valid_range".to_owned()),
+        (_, range) => range,
+    };
+    array.valid = valid(range.as_deref(), [of("valid_min")?, of("valid_max")?])?;
     array.unit = unit(attributes);
     array.extent = extent(attributes);
     Ok(())

@@ -33,8 +33,8 @@ impl Found {
         source: &mut Source<'_>,
         [lines, along]: [usize; 2],
     ) -> Result<Vec<f64>> {
-        let RawHeights { number, scale, shift, undefined, .. } = *by;
-        let raw = |bytes| RawHeights { scale, shift, undefined, ..RawHeights::new(bytes, number) };
+        let RawHeights { number, scale, shift, undefined, valid, .. } = *by;
+        let raw = |bytes| RawHeights { scale, shift, undefined, valid, ..RawHeights::new(bytes, number) };
         match self {
             Self::Stored(bytes) => raw(bytes.clone()).read(source, lines, along),
             Self::Chunked(pieces) => pieces.read(&raw(Bytes::Held(Vec::new())), source),

@@ -61,6 +61,15 @@ nc("time.nc", [("time", up, "s"), ("x", [0, 1, 2, 3], "m")])
 nc("unsigned-3.nc", [("y", up, "um"), ("x", [0, 1, 2, 3], "um")], kind="NETCDF3_CLASSIC",
    z=np.array([[100, 200, 300, 400], [-25536, -15536, -5536, -1], [32767, -32768, 7, 9]], "i2"),
    _Unsigned="true", scale_factor=0.1, missing_value=np.int16(-1))
+# Numbers outside of a range are undefined: the ends of the range are heights, as they are stored.
+counts = np.array([[1, 2, 3, 4], [-1, 6, 999, 8], [9, 10, 11, 100]], "i2")
+flat = [("y", up, "um"), ("x", [0, 1, 2, 3], "um")]
+nc("valid-range.nc", flat, z=counts, valid_range=np.array([1, 100], "i2"), scale_factor=0.5)
+nc("valid-ends-3.nc", flat, kind="NETCDF3_CLASSIC", z=counts, valid_min=np.int16(1), valid_max=np.int16(100), scale_factor=0.5)
+nc("unsigned-word.nc", flat, z=counts, _Unsigned="yes", scale_factor=0.5)
+nc("unsigned-word-3.nc", flat, kind="NETCDF3_CLASSIC", z=counts, _Unsigned="yes", scale_factor=0.5)
+nc("valid-three.nc", flat, z=counts, valid_range=np.array([1, 2, 3], "i2"), scale_factor=0.5)
+nc("valid-three-3.nc", flat, kind="NETCDF3_CLASSIC", z=counts, valid_range=np.array([1, 2, 3], "i2"), scale_factor=0.5)
 for name, values in ("scales.h5", Z), ("scales-square.h5", Z[:, :3]):
     with h5py.File(name, "w") as f:
         g = f.create_group("a")
