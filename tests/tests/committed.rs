@@ -91,10 +91,12 @@ fn table(text: &str, heading: &str) -> Vec<Vec<String>> {
     body.map(|line| line.trim_matches('|').split('|').map(|cell| cell.trim().to_owned()).collect()).collect()
 }
 
-/// k_bar of one fractal dimension: surface, load.
+/// k_bar of one fractal dimension on the finest grid: surface, load.
 fn samples(figure: &str, d: f64) -> Vec<Vec<Option<f64>>> {
     let rows = of_dimension(rows(&format!("data/figures/paper/{figure}-compact.csv")), d);
-    rows.iter().map(|row| list(row, "stiffness_bar")).collect()
+    let finest = rows.iter().map(|row| number(row, "size")).fold(0.0, f64::max);
+    let finest = rows.iter().filter(|row| number(row, "size") >= finest);
+    finest.map(|row| list(row, "stiffness_bar")).collect()
 }
 
 /// ln F_bar and number of the loads up to 0.086 at which every surface has ten cells in contact.
@@ -143,13 +145,23 @@ fn means_and_errors_follow_from_the_samples() {
 
 #[test]
 fn exponents_of_the_page_follow_from_the_samples() {
-    let page = table(&text("book/src/results.md"), "| D_f | alpha 3D | alpha 1D | Eq. 6 | Eq. 24 |");
+    let heading = "| D_f | alpha 3D | alpha 1D, same forces | alpha 1D, own forces | Eq. 6 | Eq. 24 |";
+    let page = table(&text("book/src/results.md"), heading);
     assert!(page.len() >= 4);
     let fitted = rows("data/figures/paper/fig3.csv");
     for row in &page {
         let d: f64 = row[0].parse().unwrap();
-        for (figure, model, cell) in [("fig2", "bem3d", &row[1]), ("fig6", "mdr1d", &row[2])] {
-            let (samples, loads) = (samples(figure, d), resolved(figure, d));
+        let of_surfaces = resolved("fig2", d);
+        let ends = [of_surfaces[0].1 - 1e-9, of_surfaces[of_surfaces.len() - 1].1 + 1e-9];
+        let same_forces = |loads: Vec<(usize, f64)>| -> Vec<(usize, f64)> {
+            loads.into_iter().filter(|load| (ends[0]..=ends[1]).contains(&load.1)).collect()
+        };
+        for (figure, model, column, loads, cell) in [
+            ("fig2", "bem3d", "half_width", of_surfaces.clone(), &row[1]),
+            ("fig6", "mdr1d", "same_forces_half_width", same_forces(resolved("fig6", d)), &row[2]),
+            ("fig6", "mdr1d", "half_width", resolved("fig6", d), &row[3]),
+        ] {
+            let samples = samples(figure, d);
             let alpha = exponent(&samples, &loads, None);
             let (value, half_width, unit) = stated(cell);
             assert!((alpha - value).abs() <= 0.501 * unit, "{figure}, D_f {d}: {alpha}, page {cell}");
@@ -162,16 +174,37 @@ fn exponents_of_the_page_follow_from_the_samples() {
             let of_table = fitted
                 .iter()
                 .find(|r| r["model"] == model && (number(r, "fractal_dimension") - d).abs() < 1e-9);
-            let of_table = number(of_table.unwrap(), "half_width");
+            let of_table = number(of_table.unwrap(), column);
             assert!(
                 (half_width - of_table).abs() <= 0.501 * unit,
                 "{figure}, D_f {d}: {of_table}, page {cell}"
             );
         }
         let h = 3.0 - d;
-        assert!((row[3].parse::<f64>().unwrap() - 0.266 * d).abs() < 6e-4);
-        assert!((row[4].parse::<f64>().unwrap() - 1.0 / (1.0 + h)).abs() < 6e-4);
+        assert!((row[4].parse::<f64>().unwrap() - 0.266 * d).abs() < 6e-4);
+        assert!((row[5].parse::<f64>().unwrap() - 1.0 / (1.0 + h)).abs() < 6e-4);
     }
+}
+
+/// The page names each statement of the table once, with the verdict of the table.
+#[test]
+fn verdicts_of_the_page_are_those_of_the_table() {
+    let heading = "| statement | where | rows | verdict |";
+    let mut statements: BTreeMap<String, String> =
+        table(&text("data/figures/paper/verify-table.md"), heading)
+            .into_iter()
+            .map(|mut cells| (cells.remove(0), cells.remove(2)))
+            .collect();
+    for line in text("book/src/results.md").lines() {
+        let Some((name, _)) = line.strip_prefix("| **").and_then(|line| line.split_once(".** ")) else {
+            continue;
+        };
+        let verdict = line.trim_matches('|').rsplit('|').next().unwrap().trim();
+        let of_table =
+            statements.remove(name).unwrap_or_else(|| panic!("{name} is no statement, or stands twice"));
+        assert_eq!(verdict, of_table, "{name}");
+    }
+    assert!(statements.is_empty(), "the page has no {:?}", statements.keys());
 }
 
 #[test]
@@ -204,7 +237,7 @@ fn verdicts_in_readme_and_book_are_counted_in_the_table() {
         count(&worst, 0)
     );
     let page = "book/src/results.md";
-    for (file, sentence) in [("README.md", short), (page, sentence), (page, detail)] {
+    for (file, sentence) in [("README.md", short.clone()), (page, short), (page, sentence), (page, detail)] {
         let words = text(file).split_whitespace().collect::<Vec<_>>().join(" ");
         assert!(words.contains(&sentence), "{file} does not say: {sentence}");
     }
@@ -315,6 +348,27 @@ fn exponents_of_the_two_problems_are_those_of_their_table() {
             assert_eq!(stated, format!("{alpha:.decimals$}"), "{case} {roll_off}, D_f {d}");
         }
     }
+}
+
+/// kappa from areas that are extrapolated to small cells, from the means of the table.
+#[test]
+fn kappa_of_the_page_is_that_of_extrapolated_areas() {
+    let page = text("book/src/results.md").split_whitespace().collect::<Vec<_>>().join(" ");
+    let mut cases: BTreeMap<[String; 3], Vec<f64>> = BTreeMap::new();
+    for row in rows("data/figures/two-cases/2048/two-cases.csv") {
+        if row["model"] != "bem3d" || !(0.005..=0.1).contains(&number(&row, "area")) {
+            continue;
+        }
+        let [area, coarser, kappa] = ["area", "area_coarser", "kappa"].map(|column| number(&row, column));
+        let case = ["case", "fractal_dimension", "roll_off"].map(|column| row[column].clone());
+        cases.entry(case).or_default().push(kappa * (2.0 * area - coarser) / area);
+    }
+    assert_eq!(cases.len(), 18);
+    let all = || cases.values().flatten().copied();
+    let (least, most) = (all().fold(f64::INFINITY, f64::min), all().fold(0.0, f64::max));
+    let sentence = format!("kappa lies between {least:.2} and {most:.2} in all 18 cases");
+    assert!(page.contains(&sentence), "{sentence}");
+    assert!(least > (8.0 / std::f64::consts::PI).sqrt() && most < (2.0 * std::f64::consts::PI).sqrt());
 }
 
 /// ln F_bar and ln k_bar of a curve, at the loads at which every surface has ten cells or elements in contact.

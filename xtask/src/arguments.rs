@@ -249,6 +249,7 @@ mod tests {
             out: Some("d".into()),
             fresh: true,
             over: None,
+            samples: None,
         };
         assert_eq!(request, expected);
         assert!(matches!(arguments.command, Command::Verify(_)));
@@ -257,6 +258,8 @@ mod tests {
     #[test]
     fn flags_that_do_not_apply_are_refused() {
         for line in [
+            "verify --samples d --fresh",
+            "verify --samples d --accuracy 2%",
             "reproduce-fig1 --surfaces 2",
             "reproduce-fig1 --threads 2",
             "reproduce-fig2 --elements 64",

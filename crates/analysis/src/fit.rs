@@ -22,6 +22,12 @@ impl FitWindow {
     /// The paper's upper limit of its power law, `F_bar <= 0.086`. The limit of at least 10 contact cells is
     /// our own choice.
     pub const PAPER: Self = Self { min_force_bar: 0.0, max_force_bar: 0.086, min_contact_cells: 10 };
+
+    /// All forces in a range, whatever the number of cells in contact, with a small tolerance for their
+    /// rounding.
+    pub fn between(min: f64, max: f64) -> Self {
+        Self { min_force_bar: min * (1.0 - 1e-9), max_force_bar: max * (1.0 + 1e-9), min_contact_cells: 0 }
+    }
 }
 
 impl fmt::Display for FitWindow {

@@ -33,19 +33,52 @@ pub struct WindowedLaw {
     pub grid: Option<(f64, f64)>,
 }
 
+/// [`FitWindow::PAPER`], and the windows with which its law is compared.
+fn windows() -> impl Iterator<Item = FitWindow> {
+    let with = |min_contact_cells| {
+        LARGEST.map(|max_force_bar| FitWindow { max_force_bar, min_contact_cells, ..FitWindow::PAPER })
+    };
+    FLOORS.into_iter().flat_map(with)
+}
+
 /// The law of a series, or the reason why there is none.
 ///
 /// # Errors
 /// The reason in words: too few loads, or a window of less than a decade.
 pub fn windowed_law(measured: &Measured, series: &Series) -> Result<WindowedLaw, String> {
-    let law = |floor: usize, largest: f64| {
-        let window = FitWindow { max_force_bar: largest, min_contact_cells: floor, ..FitWindow::PAPER };
+    law_over(measured, series, windows().map(Ok))
+}
+
+/// The law of a series of lines over the forces over which surfaces of the same D_f are fitted, in each of the
+/// windows: exponents that are compared have the same forces.
+///
+/// # Errors
+/// As [`windowed_law`], of the lines or of the surfaces.
+pub fn law_over_forces_of(
+    surfaces: &Series,
+    measured: &Measured,
+    series: &Series,
+) -> Result<WindowedLaw, String> {
+    let forces = |window: FitWindow| {
         let once = Bootstrap { resamples: 0, ..Bootstrap::default() };
-        let errors = if (floor, largest) == (FLOORS[0], LARGEST[0]) { Bootstrap::default() } else { once };
-        fit_power_law(&series.curves, &window, &errors).map_err(|e| e.to_string())
+        let fit = fit_power_law(&surfaces.curves, &window, &once).map_err(|e| e.to_string())?;
+        Ok(FitWindow::between(fit.force_bar_min, fit.force_bar_max))
+    };
+    law_over(measured, series, windows().map(forces))
+}
+
+/// The law over the first of these windows, and how it changes with the others that exist.
+fn law_over(
+    measured: &Measured,
+    series: &Series,
+    mut windows: impl Iterator<Item = Result<FitWindow, String>>,
+) -> Result<WindowedLaw, String> {
+    let law = |window: &FitWindow, errors: &Bootstrap| {
+        fit_power_law(&series.curves, window, errors).map_err(|e| e.to_string())
     };
     let decades = |fit: &FittedPowerLaw| (fit.force_bar_max / fit.force_bar_min).log10();
-    let fit = law(FLOORS[0], LARGEST[0])?;
+    let window = windows.next().ok_or("no window")??;
+    let fit = law(&window, &Bootstrap::default())?;
     if decades(&fit) < LEAST_DECADES {
         return Err(format!(
             "the window {:.1e} to {:.1e} spans {:.2} decades, at least {LEAST_DECADES} is needed: finer grids widen it",
@@ -54,14 +87,16 @@ pub fn windowed_law(measured: &Measured, series: &Series) -> Result<WindowedLaw,
             decades(&fit)
         ));
     }
-    let others = FLOORS.iter().flat_map(|&floor| LARGEST.map(|largest| law(floor, largest)));
-    let windows = others.filter_map(Result::ok).filter(|other| decades(other) >= 0.5 * LEAST_DECADES).fold(
+    let once = Bootstrap { resamples: 0, ..Bootstrap::default() };
+    let others = windows.filter_map(|window| law(&window.ok()?, &once).ok());
+    let windows = others.filter(|other| decades(other) >= 0.5 * LEAST_DECADES).fold(
         (0.0, 0.0),
         |(alpha, zeta), other| {
             (f64::max(alpha, (other.alpha - fit.alpha).abs()), f64::max(zeta, (other.zeta - fit.zeta).abs()))
         },
     );
-    let grid = measured.coarser_at(series.fractal_dimension).and_then(|coarser| law_error(series, coarser));
+    let coarser = measured.coarser_at(series.fractal_dimension);
+    let grid = coarser.and_then(|coarser| law_error(series, coarser, &window));
     Ok(WindowedLaw { fit, windows, grid })
 }
 
@@ -73,11 +108,10 @@ pub fn dense_dimensions(given: &[f64]) -> Vec<f64> {
 
 /// 95 % half-widths of alpha and of ln zeta from the coarser grids, over the forces that the finest resolves.
 /// Where a coarser one does not, its difference is too large, and so is the half-width.
-fn law_error(series: &Series, [half, quarter]: [&Series; 2]) -> Option<(f64, f64)> {
-    let window = FitWindow::PAPER;
+fn law_error(series: &Series, [half, quarter]: [&Series; 2], window: &FitWindow) -> Option<(f64, f64)> {
     let all = [series, half, quarter];
     let resolved = |p: &EnsemblePoint| {
-        p.force_bar <= window.max_force_bar
+        (window.min_force_bar..=window.max_force_bar).contains(&p.force_bar)
             && p.min_contact_cells.is_none_or(|c| c >= window.min_contact_cells)
     };
     let inside: Vec<usize> = (0..series.points.len()).filter(|&j| resolved(&series.points[j])).collect();

@@ -1,5 +1,6 @@
 //! An ensemble of one model over all fractal dimensions.
 
+use crate::compact::ReadSurfaces;
 use crate::realisation::{Discretisation, Model, Models, RealisationJob, RealisationResult};
 use crate::realisation_jobs::{is_solved, solve_in_order};
 use crate::run::Run;
@@ -63,6 +64,9 @@ pub fn measure_showing(
 ) -> Result<Measured> {
     let ensembles: Vec<Vec<RealisationJob>> =
         grids(model, run).map(|(grid, surfaces)| jobs(grid, surfaces, run)).collect();
+    if let Some(directory) = &run.samples {
+        return read(&ReadSurfaces::open(directory, model, run)?, ensembles, run);
+    }
     let all: Vec<RealisationJob> = ensembles.iter().rev().flatten().cloned().collect();
     let mut order: Vec<usize> = (0..all.len()).collect();
     for of_surface in order.chunks_mut(run.dimensions().len().max(1)) {
@@ -79,9 +83,25 @@ pub fn measure_showing(
         let results = results.by_ref().take(jobs.len()).collect();
         measured.push(Measured::new(jobs, results, run)?);
     }
-    let measured_on = measured.pop().ok_or_else(|| Error::parameter("model", model.name(), "a grid"))?;
+    with_coarser(measured, model)
+}
+
+/// The ensembles whose surfaces a table has.
+fn read(table: &ReadSurfaces, ensembles: Vec<Vec<RealisationJob>>, run: &Run) -> Result<Measured> {
+    let model =
+        ensembles.first().and_then(|jobs| jobs.first()).map_or(Model::Bem3d, |job| job.discretisation.of());
+    let of = |jobs: Vec<RealisationJob>| {
+        let results = jobs.iter().map(|job| table.of(job)).collect::<Result<_>>()?;
+        Measured::new(jobs, results, run)
+    };
+    with_coarser(ensembles.into_iter().rev().map(of).collect::<Result<_>>()?, model)
+}
+
+/// The last ensemble, which is on the finest grid, with those before it as its coarser ones.
+fn with_coarser(mut measured: Vec<Measured>, model: Model) -> Result<Measured> {
+    let finest = measured.pop().ok_or_else(|| Error::parameter("model", model.name(), "a grid"))?;
     let coarser = measured.pop().zip(measured.pop()).map(|(half, quarter)| Box::new([half, quarter]));
-    Ok(Measured { coarser, ..measured_on })
+    Ok(Measured { coarser, ..finest })
 }
 
 /// A description of the solves, with their predicted time.

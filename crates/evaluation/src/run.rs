@@ -109,6 +109,8 @@ pub struct Request {
     pub fresh: bool,
     /// A `fig2.csv` or `fig6.csv` of another run, drawn below the curves.
     pub over: Option<PathBuf>,
+    /// The directory of another run whose compact tables have the surfaces; nothing is solved.
+    pub samples: Option<PathBuf>,
 }
 
 /// Everything that determines the content of a figure and, at the end, the parameters that do not: threads,
@@ -145,6 +147,8 @@ pub struct Run {
     pub fresh: bool,
     /// A table of another run that is drawn below the curves.
     pub over: Option<PathBuf>,
+    /// Directory of `fig2-compact.csv` and `fig6-compact.csv`, from which surfaces are read instead of solved.
+    pub samples: Option<PathBuf>,
 }
 
 /// The paper's six fractal dimensions.
@@ -198,6 +202,7 @@ impl Run {
             out: request.out.clone().unwrap_or_else(|| PathBuf::from("out")),
             fresh: request.fresh,
             over: request.over.clone(),
+            samples: request.samples.clone(),
         })
     }
 
@@ -265,8 +270,11 @@ impl Flag {
     pub const TOLERANCE: Self = Self::new("tolerance", |run| Some(format!("{:?}", run.tolerance)));
     /// `--seed`
     pub const SEED: Self = Self::new("seed", |run| Some(run.seed.to_string()));
+    /// `--samples`
+    pub const SAMPLES: Self =
+        Self::new("samples", |run| run.samples.as_ref().map(|path| path.display().to_string()));
     /// All of them, in the order of a command.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::CELLS,
         Self::SURFACES,
         Self::ELEMENTS,
@@ -275,6 +283,7 @@ impl Flag {
         Self::FORCES,
         Self::TOLERANCE,
         Self::SEED,
+        Self::SAMPLES,
     ];
 
     const fn new(name: &'static str, value: fn(&Run) -> Option<String>) -> Self {

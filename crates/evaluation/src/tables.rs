@@ -1,8 +1,7 @@
 //! Tables that several figures share: the curves and their samples.
 
 use crate::measured::Measured;
-use crate::realisation::RealisationResult;
-use crate::sample::{FLOOR_CELLS, Sample};
+use crate::sample::FLOOR_CELLS;
 use crate::table_of::TableOf;
 use analysis::Table;
 use runs::Result;
@@ -13,7 +12,7 @@ pub const MODEL: &str = "bem3d: 3D boundary elements; mdr1d: 1D reduction";
 pub const FRACTAL_DIMENSION: &str = "D_f = 3 - H of the 3D surface";
 /// Meaning of a column `force_bar`.
 pub const FORCE_BAR: &str = "F/(E* h L), h the measured rms height of each surface (Eq. 10)";
-const CELLS: &str = "cells a side (bem3d) or elements (mdr1d)";
+pub(crate) const CELLS: &str = "cells a side (bem3d) or elements (mdr1d)";
 
 /// Mean curves: the table of Figs. 2 and 6.
 ///
@@ -52,33 +51,6 @@ pub fn curves_table(title: &str, measured: &Measured) -> Result<Table> {
         .column("approach_over_h", "1", "mean d/h, d from first touch of the highest point", |(s, p)| {
             s.approach_over_h(p.0)
         })
-        .table()
-}
-
-fn seven_digits(value: f64) -> String {
-    format!("{value:.6e}")
-}
-
-/// One row for each surface, with seven digits, from which means and their errors can be computed again.
-///
-/// # Errors
-/// As [`TableOf::table`].
-pub fn compact_table(title: &str, measured: &Measured) -> Result<Table> {
-    const LOADS: &str =
-        "at the loads of the curves' table, from the smallest up, separated by blanks; - where there is none";
-    let realisations: Vec<_> = measured.series.iter().flat_map(|s| &s.realisations).collect();
-    let values = |result: &RealisationResult, of: fn(&Sample) -> Option<String>| {
-        let each =
-            result.samples.iter().map(|s| of(s).filter(|_| s.converged()).unwrap_or_else(|| "-".to_owned()));
-        each.collect::<Vec<_>>().join(" ")
-    };
-    TableOf::new(title, &realisations)
-        .column("fractal_dimension", "1", FRACTAL_DIMENSION, |(u, _)| u.fractal_dimension)
-        .column("surface", "1", "number of the surface in its ensemble", |(u, _)| u.index)
-        .column("seed", "1", "seed of this surface", |(u, _)| u.seed)
-        .column("stiffness_bar", "1", LOADS, |(_, r)| values(r, |s| s.stiffness_bar.map(seven_digits)))
-        .column("approach_over_h", "1", LOADS, |(_, r)| values(r, |s| s.approach_over_h.map(seven_digits)))
-        .column("contact_cells", "1", LOADS, |(_, r)| values(r, |s| s.contact_cells.map(|c| c.to_string())))
         .table()
 }
 

@@ -25,6 +25,11 @@ impl CurveFigure {
     /// The figure and its ensemble, which is solved where it is not stored.
     pub fn reproduce(&self, run: &Run, progress: &dyn Progress) -> Result<(Judged, Measured)> {
         check(run.over.as_deref())?;
+        if let Some(directory) = &run.samples {
+            // Its table has certificates and work, which compact tables have not.
+            let expected = "no flag for a table of solved surfaces: Figs. 3, 4, 7 and verify have it";
+            return Err(Error::parameter("samples", directory.display(), expected));
+        }
         let session = Session::open(&run.out, run.fresh)?;
         let so_far = SoFar { figure: self, run, progress, told: AtomicBool::new(false) };
         let measured = measure_showing(self.model, run, &session.store, progress, &|seen| so_far.draw(seen))?;

@@ -6,8 +6,8 @@ use crate::judged::Judged;
 use crate::{curves, words};
 use analysis::{Bootstrap, Curves, FitWindow, FittedPowerLaw, StiffnessSample, fit_power_law};
 use evaluation::{
-    FRACTAL_DIMENSION, Flag, Measured, Model, Outcome, Run, Session, TableOf, dense_dimensions, describe,
-    header, laws, measure, read_rows,
+    FRACTAL_DIMENSION, Flag, Measured, Model, Outcome, Run, Series, Session, TableOf, dense_dimensions,
+    describe, header, laws, measure, read_rows,
 };
 use plots::{Axis, Key, LineStyle, Mark, MarkShape, Picture, REFERENCE, number};
 use runs::{CsvFile, Error, Progress, Result, Store};
@@ -63,6 +63,8 @@ struct FittedRow {
     /// The parameter over the window that all fractal dimensions of the model resolve, and its standard
     /// error.
     common: Option<(f64, Option<f64>)>,
+    /// The parameter of lines over the forces over which surfaces of the same D_f are fitted.
+    same_forces: Option<Estimate>,
     fit: Option<FittedPowerLaw>,
     note: Option<String>,
 }
@@ -82,6 +84,8 @@ impl FittedFigure {
         const ERROR: &str = "standard error over surfaces; empty for formulas and for one surface";
         const HALF: &str = "95 % half-width: scatter, and in quadrature the largest change with other windows and what the grid leaves; empty for a window below a decade";
         const COMMON: &str = "the same over the window that every fractal dimension of the model resolves";
+        const SAME: &str =
+            "of lines: the same over the forces over which surfaces of the same D_f are fitted";
         let rows = self.rows(run, solid, line);
         let fit = |pick: fn(&FittedPowerLaw) -> f64| move |r: &FittedRow| r.fit.as_ref().map(pick);
         let count = |pick: fn(&FittedPowerLaw) -> usize| move |r: &FittedRow| r.fit.as_ref().map(pick);
@@ -93,6 +97,10 @@ impl FittedFigure {
             .column("half_width", "1", HALF, |r| r.half_width)
             .column("common", "1", COMMON, |r| r.common.map(|c| c.0))
             .column("common_se", "1", "its standard error over surfaces", |r| r.common.and_then(|c| c.1))
+            .column("same_forces", "1", SAME, |r| r.same_forces.map(|e| e.value))
+            .column("same_forces_half_width", "1", "its 95 % half-width, of the same sources", |r| {
+                r.same_forces.map(|e| e.half_width)
+            })
             .column("force_bar_min", "1", "smallest F_bar of the fit", fit(|l| l.force_bar_min))
             .column("force_bar_max", "1", "largest F_bar of the fit", fit(|l| l.force_bar_max))
             .column("points", "1", "loads in the fit", count(|l| l.points))
@@ -114,7 +122,16 @@ impl FittedFigure {
     }
 
     fn rows(&self, run: &Run, solid: &Measured, line: &Measured) -> Vec<FittedRow> {
+        let same_forces = |series: &Series| {
+            let surfaces = solid
+                .series
+                .iter()
+                .find(|s| s.fractal_dimension.total_cmp(&series.fractal_dimension).is_eq())?;
+            let law = Law::over_forces_of(surfaces, line, series).ok()?;
+            Some((self.estimate)(&law))
+        };
         let of = |measured: &Measured| -> Vec<FittedRow> {
+            let lines = measured.discretisation.of() == Model::Mdr1d;
             let own = laws(measured, &FitWindow::PAPER);
             let lowest = own.iter().filter_map(|fit| fit.as_ref().ok());
             let lowest = lowest.map(|fit| fit.force_bar_min).fold(0.0, f64::max);
@@ -132,6 +149,7 @@ impl FittedFigure {
                         error: error.flatten(),
                         half_width: law.map(|law| (self.estimate)(&law).half_width),
                         common: common.as_ref().ok().map(self.value),
+                        same_forces: if lines { same_forces(series) } else { None },
                         fit,
                         note,
                     }

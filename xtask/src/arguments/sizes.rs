@@ -67,6 +67,10 @@ pub struct SolveSizes {
     /// Longest predicted time of one thread that --accuracy may choose, such as 90s, 10min, 2h.
     #[arg(long, value_name = "TIME", value_parser = runs::amounts::seconds, default_value = "10min", requires = "accuracy", allow_hyphen_values = true)]
     budget: f64,
+    /// Read the surfaces from fig2-compact.csv and fig6-compact.csv in this directory, which an earlier run of
+    /// the same sizes wrote, and solve none of them (Figs. 3, 4 and 7, verify).
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["accuracy", "fresh"])]
+    samples: Option<PathBuf>,
     /// Draw the curves of the fig2.csv or fig6.csv of another run below those of this one (Figs. 2 and 6).
     #[arg(long, value_name = "FILE.csv")]
     over: Option<PathBuf>,
@@ -84,6 +88,7 @@ impl SolveSizes {
         request.threads = Some(self.threads);
         request.fresh = self.fresh;
         request.over.clone_from(&self.over);
+        request.samples.clone_from(&self.samples);
     }
 }
 

@@ -1,14 +1,16 @@
 //! Numbers of the curves themselves: the crossing, saturation, the collapse, lines over surfaces, finer
 //! grids.
 
-use super::ensemble::{Ensemble, resampled, stiffness_at};
-use super::table::{Found, Row};
+use super::ensemble::{Ensemble, ONE_SURFACE, resampled, stiffness_at};
+use super::table::{Reason, Row};
 use crate::claim::Estimate;
 use analysis::{
-    Bootstrap, CollapsePoint, FitWindow, Residual, collapse as residual, decades_within, interpolate, sum,
+    Bootstrap, CollapsePoint, Curves, FitWindow, Residual, collapse as residual, decades_within, interpolate,
+    sum,
 };
 use contact_model::PAPER_STIFFNESS_FACTOR;
 use evaluation::{Measured, Series, transformed};
+use runs::Result;
 use std::ops::RangeInclusive;
 
 pub(super) const NO_LOAD: &str = "outside the loads of this run";
@@ -100,46 +102,62 @@ pub(super) fn area_at_share(solid: &Ensemble<'_>, share: f64) -> Vec<Row> {
 }
 
 /// The force of a share of the plateau, lines over surfaces.
-pub(super) fn sooner(solid: &Ensemble<'_>, line: &Ensemble<'_>, share: f64) -> Vec<Row> {
-    compared(solid, line, |of_solid, of_line| {
+pub(super) fn sooner(solid: &Ensemble<'_>, line: &Ensemble<'_>, share: f64) -> Result<Vec<Row>> {
+    compared(solid, line, |of_solid, of_line, heights| {
         let forces = force_of(line.measured, of_line, share).zip(force_of(solid.measured, of_solid, share));
         let (line, solid) = forces.ok_or(NO_LOAD)?;
-        Ok((line.over(solid), "each of its own plateau".to_owned()))
+        let ratio = line.over(solid);
+        Ok((ratio, "each of its own plateau".to_owned(), Some(ratio.value * heights)))
     })
 }
 
-/// A row for each D_f from the series of both models.
+/// A number with its conditions and, where it has one, its value where line and surface have one spectrum.
+type FoundInBoth = std::result::Result<(Estimate, String, Option<f64>), Reason>;
+
+/// A row for each D_f from the series of both models and the ratio of their rms heights in one spectrum.
 fn compared(
     solid: &Ensemble<'_>,
     line: &Ensemble<'_>,
-    found: impl Fn(&Series, &Series) -> Found,
-) -> Vec<Row> {
-    let row = |(solid, line): (&Series, &Series)| Row::at(solid.fractal_dimension, found(solid, line));
+    found: impl Fn(&Series, &Series, f64) -> FoundInBoth,
+) -> Result<Vec<Row>> {
+    let row = |(of_solid, of_line): (&Series, &Series)| {
+        let d = of_solid.fractal_dimension;
+        Ok(match found(of_solid, of_line, line.height_ratio(solid, d)?) {
+            Ok((value, remark, in_convention)) => Row { in_convention, ..Row::at(d, Ok((value, remark))) },
+            Err(reason) => Row::at(d, Err(reason)),
+        })
+    };
     solid.beside(line).map(row).collect()
 }
 
-/// k_1D/k_3D at a load.
-fn ratio_at(solid: &Series, line: &Series, load: f64) -> Option<Estimate> {
-    Some(stiffness_at(line, load)?.over(stiffness_at(solid, load)?))
+/// k_1D/k_3D at a load of the surface, where that of the line is `over` times smaller: 1 where each has the force of
+/// its own rms height, and the ratio of the heights where both have one spectrum.
+fn ratio_at(solid: &Series, line: &Series, load: f64, over: f64) -> Option<Estimate> {
+    Some(stiffness_at(line, load / over)?.over(stiffness_at(solid, load)?))
 }
 
 pub(super) fn largest_ratio(
     solid: &Ensemble<'_>,
     line: &Ensemble<'_>,
     loads: RangeInclusive<f64>,
-) -> Vec<Row> {
-    let mut largest: Option<(Estimate, String)> = None;
-    for (solid, line) in solid.beside(line) {
-        for &load in solid.curves.force_bar().iter().filter(|load| loads.contains(*load)) {
-            let Some(ratio) = ratio_at(solid, line, load) else { continue };
-            if largest.as_ref().is_none_or(|(most, _)| ratio.value > most.value) {
-                let d = solid.fractal_dimension;
-                largest = Some((ratio, format!("at F_bar = {load:.3}, D_f = {d:?}")));
+) -> Result<Vec<Row>> {
+    let mut largest: [Option<(Estimate, String)>; 2] = [None, None];
+    for (of_solid, of_line) in solid.beside(line) {
+        let d = of_solid.fractal_dimension;
+        let heights = line.height_ratio(solid, d)?;
+        for &load in of_solid.curves.force_bar().iter().filter(|load| loads.contains(*load)) {
+            for (over, largest) in [1.0, heights].into_iter().zip(&mut largest) {
+                let Some(ratio) = ratio_at(of_solid, of_line, load, over) else { continue };
+                if largest.as_ref().is_none_or(|(most, _)| ratio.value > most.value) {
+                    *largest = Some((ratio, format!("at F_bar = {load:.3}, D_f = {d:?}")));
+                }
             }
         }
     }
+    let [own, in_one_spectrum] = largest;
     let none = || format!("no load of the two models in common above {}", loads.start()).into();
-    Row::only(largest.ok_or_else(none))
+    let in_convention = in_one_spectrum.map(|(ratio, _)| ratio.value);
+    Ok(vec![Row { in_convention, ..Row::of("", own.ok_or_else(none)) }])
 }
 
 /// Number of cells in contact on every surface from which on k_3D counts as resolved in a ratio.
@@ -153,29 +171,53 @@ fn resolved(solid: &Series) -> impl Iterator<Item = f64> {
         .map(|p| p.force_bar)
 }
 
-pub(super) fn ratio_at_smallest_load(solid: &Ensemble<'_>, line: &Ensemble<'_>) -> Vec<Row> {
-    compared(solid, line, |solid, line| {
-        let load = resolved(solid).find(|load| *load >= 1e-3 * (1.0 - 1e-9)).filter(|load| *load <= 0.086);
-        let ratio = load.and_then(|load| Some((load, ratio_at(solid, line, load)?)));
-        let (load, ratio) = ratio.ok_or_else(|| {
-            format!("no common load up to 0.086 with {RESOLVED} contact cells on every surface: finer grids have one")
+/// k_1D/k_3D at the smallest resolved load over that at the end of the power law.
+pub(super) fn change_of_ratio(solid: &Ensemble<'_>, line: &Ensemble<'_>) -> Result<Vec<Row>> {
+    let largest = FitWindow::PAPER.max_force_bar;
+    // Half a decade below, at least.
+    let below = largest / 10_f64.sqrt();
+    compared(solid, line, |of_solid, of_line, heights| {
+        let smallest = resolved(of_solid).next().filter(|load| *load <= below).ok_or_else(|| {
+            format!("no load up to {below:.3} with {RESOLVED} contact cells on every surface: finer grids have one")
         })?;
+        // Both loads of the same surfaces and lines: their scatter goes together.
+        let change = |over: f64, of_line: &Curves, of_solid: &Curves| {
+            let at = |curves: &Curves, load: f64| {
+                interpolate(curves.force_bar(), &curves.mean_of(&curves.all()), load)
+            };
+            let ratio = |load: f64| Some(at(of_line, load / over)? / at(of_solid, load)?);
+            Some(ratio(smallest)? / ratio(largest)?)
+        };
+        let value = change(1.0, &of_line.curves, &of_solid.curves).ok_or(NO_LOAD)?;
+        let scatter = |surfaces: usize, number: &dyn Fn(&[usize]) -> Option<f64>| {
+            Bootstrap::default().standard_error(surfaces, number)
+        };
+        let of_lines = scatter(of_line.realisations.len(), &|draw| {
+            change(1.0, &of_line.curves.resampled(draw), &of_solid.curves)
+        });
+        let of_surfaces = scatter(of_solid.realisations.len(), &|draw| {
+            change(1.0, &of_line.curves, &of_solid.curves.resampled(draw))
+        });
+        let error = of_lines.zip(of_surfaces).map(|(a, b)| a.hypot(b));
+        let found = Estimate::normal(value, error).ok_or(ONE_SURFACE)?;
         let remark = format!(
-            "at F_bar = {load:.2e}, the smallest load from 1e-3 on at which every surface has {RESOLVED} cells in contact"
+            "from F_bar = {smallest:.2e}, the smallest load at which every surface has {RESOLVED} cells in contact, to {largest}"
         );
-        Ok((ratio, remark))
+        Ok((found, remark, change(heights, &of_line.curves, &of_solid.curves)))
     })
 }
 
-pub(super) fn farthest_ratio(solid: &Ensemble<'_>, line: &Ensemble<'_>) -> Vec<Row> {
-    compared(solid, line, |solid, line| {
-        let ratios = resolved(solid).filter_map(|load| Some((load, ratio_at(solid, line, load)?)));
-        let farthest = ratios.max_by(|a, b| a.1.distance_from_one().total_cmp(&b.1.distance_from_one()));
-        let (load, ratio) = farthest
+pub(super) fn farthest_ratio(solid: &Ensemble<'_>, line: &Ensemble<'_>) -> Result<Vec<Row>> {
+    compared(solid, line, |solid, line, heights| {
+        let farthest = |over: f64| {
+            let ratios = resolved(solid).filter_map(|load| Some((load, ratio_at(solid, line, load, over)?)));
+            ratios.max_by(|a, b| a.1.distance_from_one().total_cmp(&b.1.distance_from_one()))
+        };
+        let (load, ratio) = farthest(1.0)
             .ok_or_else(|| format!("no common load with {RESOLVED} contact cells on every surface"))?;
         let remark =
             format!("at F_bar = {load:.2e}; loads at which every surface has {RESOLVED} cells in contact");
-        Ok((ratio, remark))
+        Ok((ratio, remark, farthest(heights).map(|(_, ratio)| ratio.value)))
     })
 }
 
@@ -289,7 +331,9 @@ pub(super) fn run_times(solid: &Ensemble<'_>, line: &Ensemble<'_>) -> Vec<Row> {
         count(line)
     );
     let ratio = t3 / t1;
-    Row::only(if cells < 2049 || elements < 1 << 20 {
+    Row::only(if t1 <= 0.0 {
+        Err("surfaces that are read from a table have no times".into())
+    } else if cells < 2049 || elements < 1 << 20 {
         Err(format!("here {ratio:.3e}: {sizes}; the statement is about 2049 cells and 2^20 elements").into())
     } else {
         Ok((Estimate::exact(ratio), sizes))

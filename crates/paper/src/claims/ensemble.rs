@@ -1,9 +1,10 @@
 //! The ensembles of a command with their fitted laws, and functions that several claims use.
 
+use super::solved::height_ratio;
 use super::table::{Found, Reason, Row};
 use crate::claim::Estimate;
 use analysis::{Bootstrap, Curves, FitWindow, FittedPowerLaw, fit_power_law, interpolate};
-use evaluation::{Measured, Model, Series, WindowedLaw, windowed_law};
+use evaluation::{Measured, Model, Series, WindowedLaw, law_over_forces_of, windowed_law};
 use runs::{Error, Result};
 
 /// The ensembles that a command has solved.
@@ -73,6 +74,19 @@ impl Ensemble<'_> {
         self.measured.series.iter().zip(&line.measured.series)
     }
 
+    /// The laws of these lines over the forces over which surfaces of the same D_f are fitted.
+    pub fn laws_over_forces_of(&self, solid: &Self) -> Vec<std::result::Result<Law, Reason>> {
+        let law = |(solid, line)| Law::over_forces_of(solid, self.measured, line);
+        solid.beside(self).map(law).collect()
+    }
+
+    /// rms height of these lines over that of surfaces of the same D_f, where both have one spectrum: a force
+    /// that is F_bar by the height of the surface is F_bar over this ratio by that of the line.
+    pub fn height_ratio(&self, solid: &Self, fractal_dimension: f64) -> Result<f64> {
+        let [elements, cells] = [self, solid].map(|e| e.measured.discretisation.size());
+        height_ratio(fractal_dimension, elements, cells)
+    }
+
     /// Surfaces of each D_f.
     pub fn surfaces(&self) -> usize {
         self.measured.series.first().map_or(0, |series| series.realisations.len())
@@ -82,7 +96,20 @@ impl Ensemble<'_> {
 impl Law {
     /// The law of a series, or the reason why there is none.
     pub fn new(measured: &Measured, series: &Series) -> std::result::Result<Self, Reason> {
-        let WindowedLaw { fit, windows, grid } = windowed_law(measured, series)?;
+        Self::of(series, windowed_law(measured, series)?)
+    }
+
+    /// The law of lines over the forces over which surfaces are fitted, or the reason why there is none.
+    pub fn over_forces_of(
+        surfaces: &Series,
+        lines: &Measured,
+        series: &Series,
+    ) -> std::result::Result<Self, Reason> {
+        Self::of(series, law_over_forces_of(surfaces, lines, series)?)
+    }
+
+    fn of(series: &Series, windowed: WindowedLaw) -> std::result::Result<Self, Reason> {
+        let WindowedLaw { fit, windows, grid } = windowed;
         let grid = grid.ok_or("no coarser grid says what this one leaves")?;
         let estimate = |value: f64, error: Option<f64>, window: f64, grid: f64| {
             let scatter = Estimate::normal(value, error).ok_or(ONE_SURFACE)?;
@@ -105,17 +132,12 @@ impl Law {
 
     /// The loads of the fit, regardless of the number of cells in contact.
     pub fn loads(&self) -> FitWindow {
-        between(self.fit.force_bar_min, self.fit.force_bar_max)
+        FitWindow::between(self.fit.force_bar_min, self.fit.force_bar_max)
     }
 }
 
 /// The reason why a scatter is missing.
 pub(super) const ONE_SURFACE: &str = "one surface has no scatter";
-
-/// All loads in a range, with a small tolerance for their rounding.
-pub(super) fn between(min: f64, max: f64) -> FitWindow {
-    FitWindow { min_force_bar: min * (1.0 - 1e-9), max_force_bar: max * (1.0 + 1e-9), min_contact_cells: 0 }
-}
 
 /// The law fitted to the surfaces `draw`, without an error.
 pub(super) fn law_of(curves: &Curves, window: &FitWindow, draw: &[usize]) -> Option<FittedPowerLaw> {

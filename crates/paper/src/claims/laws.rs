@@ -1,6 +1,6 @@
 //! Numbers of the fitted power laws: alpha, zeta, where the laws meet, how straight the curves are.
 
-use super::ensemble::{Ensemble, Law, ONE_SURFACE, between, law_of, resampled};
+use super::ensemble::{Ensemble, Law, ONE_SURFACE, law_of, resampled};
 use super::table::{Found, Reason, Row};
 use crate::claim::Estimate;
 use analysis::{Bootstrap, Crossing, FitWindow, crossing, interpolate, sum};
@@ -18,13 +18,33 @@ pub(super) fn factors(ensemble: &Ensemble<'_>) -> Vec<Row> {
     ensemble.each_law(|_, law| Ok((law.zeta, format!("{}; {conditions}", law.window()))))
 }
 
-/// alpha of lines minus alpha of surfaces.
+/// alpha of lines over the forces of surfaces, with alpha over the lines' own forces in the remark.
+pub(super) fn exponents_over_same_forces(solid: &Ensemble<'_>, line: &Ensemble<'_>) -> Vec<Row> {
+    (line.measured.series.iter().zip(&line.laws).zip(line.laws_over_forces_of(solid)))
+        .map(|((series, own), law)| {
+            let remark = |law: &Law| {
+                let own = own.as_ref().map(|own| {
+                    let Estimate { value, half_width } = own.alpha;
+                    format!("; {value:.3} +- {half_width:.3} over {}", own.window())
+                });
+                format!("{}: the forces of surfaces; {INTERVAL}{}", law.window(), own.unwrap_or_default())
+            };
+            Row::at(series.fractal_dimension, law.map(|law| (law.alpha, remark(&law))))
+        })
+        .collect()
+}
+
+/// alpha of lines minus alpha of surfaces, both over the same forces.
 pub(super) fn differences(solid: &Ensemble<'_>, line: &Ensemble<'_>) -> Vec<Row> {
-    (solid.measured.series.iter().zip(&solid.laws).zip(&line.laws))
+    (solid.measured.series.iter().zip(&solid.laws).zip(&line.laws_over_forces_of(solid)))
         .map(|((series, solid), line)| {
             let both = || {
                 let (solid, line) = (solid.as_ref()?, line.as_ref()?);
-                let remark = format!("3D: {}; 1D: {}; {INTERVAL}", solid.window(), line.window());
+                let remark = format!(
+                    "both over the same forces, 3D {}; 1D {}; {INTERVAL}",
+                    solid.window(),
+                    line.window()
+                );
                 Ok((line.alpha.minus(solid.alpha), remark))
             };
             Row::at(series.fractal_dimension, both().map_err(Reason::clone))
@@ -56,11 +76,15 @@ pub(super) fn over_dimension(ensemble: &Ensemble<'_>) -> Vec<Row> {
     let everywhere = |window: FitWindow| vec![window; own.len()];
     let floor = |min_contact_cells| everywhere(FitWindow { min_contact_cells, ..FitWindow::PAPER });
     let each = own.iter().map(|l| l.loads()).collect();
-    let lower = own.iter().map(|l| between(l.fit.force_bar_min, 0.03)).collect();
-    let common = everywhere(between(lowest, FitWindow::PAPER.max_force_bar));
+    let lower = own.iter().map(|l| FitWindow::between(l.fit.force_bar_min, 0.03)).collect();
+    let common = everywhere(FitWindow::between(lowest, FitWindow::PAPER.max_force_bar));
     let ways = [
         (", each D_f's own window".to_owned(), each, vec![floor(30), floor(100), lower]),
-        (format!(", F_bar from {lowest:.1e} to 0.086"), common, vec![everywhere(between(lowest, 0.03))]),
+        (
+            format!(", F_bar from {lowest:.1e} to 0.086"),
+            common,
+            vec![everywhere(FitWindow::between(lowest, 0.03))],
+        ),
     ];
     let all: Vec<usize> = (0..ensemble.surfaces()).collect();
     let row = |(words, windows, others): (String, Vec<FitWindow>, Vec<Vec<FitWindow>>)| {
@@ -79,8 +103,8 @@ pub(super) fn halves(ensemble: &Ensemble<'_>) -> Vec<Row> {
         let middle = (law.fit.force_bar_min * law.fit.force_bar_max).sqrt();
         let above_floor =
             |window| FitWindow { min_contact_cells: FitWindow::PAPER.min_contact_cells, ..window };
-        let upper = above_floor(between(middle, law.fit.force_bar_max));
-        let lower = above_floor(between(law.fit.force_bar_min, middle));
+        let upper = above_floor(FitWindow::between(middle, law.fit.force_bar_max));
+        let lower = above_floor(FitWindow::between(law.fit.force_bar_min, middle));
         let found = resampled(series.realisations.len(), |draw| {
             let alpha = |window| Some(law_of(&series.curves, window, draw)?.alpha);
             Some(alpha(&upper)? - alpha(&lower)?)
@@ -141,9 +165,10 @@ pub(super) fn stiffness_over_law(ensemble: &Ensemble<'_>, load: f64) -> Vec<Row>
     })
 }
 
-/// zeta of lines over zeta of surfaces, at the D_f where the two differ most.
+/// zeta of lines over zeta of surfaces, both over the same forces, at the D_f where the two differ most.
 fn farthest_factors(solid: &Ensemble<'_>, line: &Ensemble<'_>) -> Option<(Estimate, String)> {
-    let ratios = solid.laws.iter().zip(&line.laws).filter_map(|(solid, line)| {
+    let lines = line.laws_over_forces_of(solid);
+    let ratios = solid.laws.iter().zip(&lines).filter_map(|(solid, line)| {
         let (solid, line) = (solid.as_ref().ok()?, line.as_ref().ok()?);
         Some((line.zeta.over(solid.zeta), solid.fractal_dimension))
     });

@@ -70,18 +70,20 @@ pub(super) fn ratio_of_heights(dimensions: &[f64]) -> Result<Vec<Row>> {
         "{elements} elements, {cells} cells a side, each to the ends of its own spectrum; F_bar counts the measured rms height of each"
     );
     let row = |&d: &f64| {
-        // One spectrum for both, not one rms height.
-        let surface = SelfAffine { amplitude: Amplitude::Spectrum(1.0), ..self_affine(d)? };
-        let height = || {
-            Ok((
-                LineGenerator::new(&surface, elements)?.rms_height(),
-                MapGenerator::new(&surface, cells)?.rms_height(),
-            ))
-        };
-        let (line, map) = height().map_err(Error::model(format!("rms heights at D_f = {d:?}")))?;
-        Ok(Row { in_convention: Some(1.0), ..Row::at(d, Ok((Estimate::exact(line / map), remark.clone()))) })
+        let ratio = height_ratio(d, elements, cells)?;
+        Ok(Row { in_convention: Some(1.0), ..Row::at(d, Ok((Estimate::exact(ratio), remark.clone()))) })
     };
     dimensions.iter().map(row).collect()
+}
+
+/// rms height of the line over that of the surface where both have one spectrum, and not one rms height.
+pub(super) fn height_ratio(d: f64, elements: usize, cells: usize) -> Result<f64> {
+    let surface = SelfAffine { amplitude: Amplitude::Spectrum(1.0), ..self_affine(d)? };
+    let ratio = || {
+        let line = LineGenerator::new(&surface, elements)?.rms_height();
+        Ok(line / MapGenerator::new(&surface, cells)?.rms_height())
+    };
+    ratio().map_err(Error::model(format!("rms heights at D_f = {d:?}")))
 }
 
 /// Number of cells along a side and of surfaces; they take seconds, independent of the size of the run.

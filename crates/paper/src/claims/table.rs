@@ -39,7 +39,9 @@ pub(crate) enum Data {
     Exponent(Model),
     /// Slope of the straight line through the origin that fits alpha over D_f best.
     ExponentOverDimension(Model),
-    /// alpha of lines minus alpha of surfaces.
+    /// alpha of lines over the forces over which surfaces of the same D_f are fitted.
+    ExponentOverForcesOfSurfaces,
+    /// alpha of lines minus alpha of surfaces, both over the same forces.
     ExponentDifference,
     /// alpha of the upper half of the window minus that of the lower half.
     ExponentOfHalves(Model),
@@ -81,8 +83,8 @@ pub(crate) enum Data {
     ChangeOverScatter(f64),
     /// Largest k_1D/k_3D between two loads.
     LargestRatio(f64, f64),
-    /// k_1D/k_3D at the smallest load at which the surface resolves its contact.
-    RatioAtSmallestLoad,
+    /// k_1D/k_3D at the smallest load at which the surface resolves its contact, over that at F_bar = 0.086.
+    ChangeOfRatio,
     /// k_1D/k_3D at the load where it is farthest from 1, of those at which the surface resolves its contact.
     FarthestRatio,
     /// k/(E* L) of the square in full contact.

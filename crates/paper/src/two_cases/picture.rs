@@ -42,7 +42,11 @@ pub(super) fn table(curves: &[CaseCurve]) -> Result<Table> {
     })
     .column("area", "1", "mean share of the square in contact", |(_, p, _)| p.area)
     .column("area_coarser", "1", "the same with cells twice as large", |(_, p, _)| p.area_coarser)
-    .column("kappa", "1", "A E* |grad h|/F, |grad h| of the spectrum", |(_, p, _)| p.kappa)
+    .column("kappa", "1", "A E* |grad h|/F, |grad h| of the spectrum, A as counted", |(_, p, _)| p.kappa)
+    .column("kappa_extrapolated", "1", "the same of 2 A(a) - A(2a): area and area_coarser", |(_, p, _)| {
+        let (area, coarser) = (p.area?, p.area_coarser?);
+        p.kappa.map(|kappa| kappa * (2.0 - coarser / area))
+    })
     .column("surfaces", "1", "surfaces in the mean (0: a theory)", |(_, p, _)| p.surfaces)
     .column("left_out", "1", LEFT_OUT, |(_, p, _)| p.left_out)
     .column("min_contact_cells", "1", FEWEST, |(_, p, _)| p.min_contact_cells)
