@@ -18,6 +18,7 @@ mod friction_exact;
 mod friction_properties;
 mod grid_error;
 mod hard;
+mod mindlin_bound;
 mod modules;
 mod oracle;
 mod partial_slip;
