@@ -42,7 +42,7 @@ fn any_body() -> impl Strategy<Value = [f64; 2]> {
 }
 
 proptest! {
-    #![proptest_config(config(150))]
+    #![proptest_config(config(80))]
 
     /// Random sets of cells of any size short of all, connected or not, by elimination alone: also the trace of
     /// the influence coefficients, from which the bound follows.
@@ -87,6 +87,11 @@ proptest! {
         prop_assert!(over >= 1.0 - DENSE, "{over} of {} cells", contact.len());
     }
 
+}
+
+proptest! {
+    #![proptest_config(config(150))]
+
     /// The same of contacts that bem3d solves, bodies alike or not (normal and tangential contact uncoupled).
     #[test]
     fn every_contact_is_at_least_as_stiff(
@@ -111,7 +116,7 @@ proptest! {
         let state = model.prepare(&scene, 0).unwrap().advance(Step::normal(0.0, Load::Force(force)));
         let state = match state {
             // Ties and stiffnesses that jump are refused by name; friction_properties.rs has them.
-            Err(Error::NotConverged { .. }) => return Ok(()),
+            Err(Error::NotConverged { .. }) => return Err(TestCaseError::reject("not converged")),
             state => state.unwrap(),
         };
         let stuck = state.tangential.and_then(|t| t.stiffness_stuck);
