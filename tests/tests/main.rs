@@ -22,6 +22,7 @@ mod mindlin_bound;
 mod modules;
 mod oracle;
 mod partial_slip;
+mod partial_slip_study;
 mod peers;
 mod periodic;
 mod properties;
