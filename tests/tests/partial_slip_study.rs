@@ -236,6 +236,17 @@ fn the_page_has_the_ratios_of_stiffnesses_of_the_samples() {
         let said = format!("{low:.2} to {high:.2} with {boundary} boundaries");
         assert!(page.contains(&said), "{said}");
     }
+    let contacts: Vec<f64> = rows("data/partial-slip/partial-slip-stiffness.csv")
+        .iter()
+        .map(|row| {
+            let at = ["fractal_dimension", "force_bar", "poisson"].map(|column| number(row, column));
+            let surfaces = first_study(&all, "bem3d", &row["boundary"], at);
+            mean_and_error(&surfaces.iter().map(|s| number(s, "contact")).collect::<Vec<_>>()).0
+        })
+        .collect();
+    let [low, high] = [f64::min, f64::max].map(|f| 100.0 * contacts.iter().copied().reduce(f).unwrap());
+    let said = format!("In the mean {low:.1} to {high:.0} % of the square are in contact");
+    assert!(page.contains(&said), "{said}");
     let said = format!("half-widths are at most {:.2} %", 100.0 * largest);
     assert!(page.contains(&said), "{said}");
     let anisotropy = |force| {
@@ -324,6 +335,9 @@ fn the_page_has_the_limits_of_small_cells_of_the_samples() {
                 plain(&stiffness)
             );
             assert!(page.contains(&row), "{row}");
+            for at in SHARES {
+                excess = excess.max(limit(&of("stick", at)).mean - (1.0 - at));
+            }
             over.push(
                 mean_and_error(&of("stick", 0.9).iter().map(|v| v[0]).collect::<Vec<_>>()).0 - most.mean,
             );
@@ -338,8 +352,10 @@ fn the_page_has_the_limits_of_small_cells_of_the_samples() {
             }
         }
     }
+    let cells = all.iter().map(|row| number(row, "contact_cells") as usize).min().unwrap();
     let [low, high] = [f64::min, f64::max].map(|f| over.iter().copied().reduce(f).unwrap());
     for said in [
+        format!("the lightest contacts have {cells} cells in all"),
         format!("1 - Q/(mu F) or up to {excess:.2} more"),
         format!("is too large by {low:.3} to {high:.3}."),
         format!("have the same limit within {correction:.4}."),

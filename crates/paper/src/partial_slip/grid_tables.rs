@@ -53,14 +53,17 @@ pub(super) fn tests(tests: &[Test]) -> Result<Table> {
         .column("surfaces", "1", "surfaces in the mean", |t| t.found.map(|f| f.surfaces))
         .column("expected", "1", "value under the hypothesis", |t| t.expected)
         .column("found", "1", "mean over surfaces", |t| t.found.map(|f| f.mean.value))
-        .column("scatter", "1", "half-width by Student's distribution, simultaneous with the family", |t| {
-            t.scatter()
-        })
+        .column(
+            "scatter",
+            "1",
+            "half-width by Student's distribution, simultaneous with the family",
+            Test::scatter,
+        )
         .column("grid", "1", "half-width of the discretisation error, to be added", |t| {
             t.found.map(|f| f.grid)
         })
-        .column("chance", "1", "p-value of this test alone, the difference reduced by grid", |t| t.chance())
-        .column("verdict", "-", "whether the hypothesis is rejected", |t| t.verdict())
+        .column("chance", "1", "p-value of this test alone, the difference reduced by grid", Test::chance)
+        .column("verdict", "-", "whether the hypothesis is rejected", Test::verdict)
         .table()
 }
 
