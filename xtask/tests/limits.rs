@@ -50,7 +50,7 @@ fn refused(words: &[&str], flag: &str) -> Option<String> {
 /// The command, its flag, and the values of the lists that this flag accepts.
 type Case = (&'static [&'static str], &'static str, &'static [&'static str]);
 
-const WITH_COUNTS: [Case; 28] = [
+const WITH_COUNTS: [Case; 29] = [
     (&["reproduce-fig1"], "--cells", &[]),
     (&["reproduce-fig2"], "--cells", &[]),
     (&["reproduce-fig2"], "--surfaces", &[]),
@@ -69,6 +69,7 @@ const WITH_COUNTS: [Case; 28] = [
     (&["exponent", "--surfaces", "2", "--grids", "33", "--elements", "64"], "--lines", &[]),
     (&["partial-slip"], "--cells", &[]),
     (&["partial-slip"], "--cells-per-wave", &[]),
+    (&["partial-slip"], "--grids", &[]),
     (&["partial-slip"], "--surfaces", &[]),
     (&["partial-slip"], "--increments", &[]),
     (&["budget-check"], "--cases", &[]),

@@ -47,6 +47,9 @@ pub fn redraw(directory: &Path, beside: &Beside) -> Result<Vec<PathBuf>> {
     if directory.join(partial_slip::SLIPS).exists() {
         files.extend(partial_slip::draw_partial_slip(directory)?);
     }
+    if directory.join(partial_slip::GRIDS).exists() {
+        files.extend(partial_slip::draw_partial_slip_grids(directory)?);
+    }
     if files.is_empty() {
         return Err(Error::content(directory, "no table that a picture is drawn from"));
     }

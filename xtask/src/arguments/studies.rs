@@ -268,6 +268,10 @@ pub struct PartialSlipArguments {
     /// Number of cells in the shortest wavelength.
     #[arg(long, allow_hyphen_values = true)]
     cells_per_wave: Option<usize>,
+    /// Grids of the same surfaces, in cells along a side, each twice the one before: the limit of small cells
+    /// instead of the tables of one grid.
+    #[arg(long, value_name = "LIST", value_delimiter = ',', allow_hyphen_values = true)]
+    grids: Option<Vec<usize>>,
     /// Number of surfaces of each boundary and fractal dimension.
     #[arg(long, allow_hyphen_values = true)]
     surfaces: Option<usize>,
@@ -316,6 +320,7 @@ impl PartialSlipArguments {
         Ok(PartialSlip {
             cells: self.cells.unwrap_or(sizes.cells),
             cells_per_wave: self.cells_per_wave.unwrap_or(sizes.cells_per_wave),
+            grids: self.grids.clone().unwrap_or(sizes.grids),
             surfaces: self.surfaces.unwrap_or(sizes.surfaces),
             fractal_dimensions: self.fractal_dimensions.clone().unwrap_or(sizes.fractal_dimensions),
             poissons: self.poissons.clone().unwrap_or(sizes.poissons),

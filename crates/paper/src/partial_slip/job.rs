@@ -31,17 +31,17 @@ type Tractions = [Vec<[Vec<f64>; 2]>; 2];
 
 /// Directions of the force, along x and along y: in the mean of both, the anisotropy of a surface enters only
 /// with its square.
-const DIRECTIONS: [[f64; 2]; 2] = [[1.0, 0.0], [0.0, 1.0]];
+pub(super) const DIRECTIONS: [[f64; 2]; 2] = [[1.0, 0.0], [0.0, 1.0]];
 
 /// The normal load of a surface, and the unit of its displacements.
 #[derive(Clone, Copy)]
-struct Pressed {
-    force: f64,
-    displacement: f64,
+pub(super) struct Pressed {
+    pub(super) force: f64,
+    pub(super) displacement: f64,
 }
 
 impl Pressed {
-    fn step(self, share: f64, direction: [f64; 2]) -> Step {
+    pub(super) fn step(self, share: f64, direction: [f64; 2]) -> Step {
         let tangential = Tangential::Force(direction.map(|e| share * COEFFICIENT * self.force * e));
         Step { time: 0.0, normal: Load::Force(self.force), tangential }
     }
@@ -213,7 +213,7 @@ fn rms(a: &[Vec<f64>; 2], b: &[Vec<f64>; 2], cells: usize) -> f64 {
 }
 
 /// `None` for a state that missed its tolerance.
-fn converged<T>(solved: Result<T, ModelError>) -> Result<Option<T>, ModelError> {
+pub(super) fn converged<T>(solved: Result<T, ModelError>) -> Result<Option<T>, ModelError> {
     match solved {
         Ok(solved) => Ok(Some(solved)),
         Err(ModelError::NotConverged { .. }) => Ok(None),

@@ -61,7 +61,7 @@ pub(super) struct LoopRow {
 }
 
 /// Mean and half-width by Student's distribution; `None` for fewer than two values.
-fn mean(values: impl Iterator<Item = f64>) -> Option<Estimate> {
+pub(super) fn mean(values: impl Iterator<Item = f64>) -> Option<Estimate> {
     let curves = values.map(|value| vec![value]).collect();
     let of = Multilevel::new(vec![curves]).ok()?;
     let value = of.means(1)[0];

@@ -6,6 +6,12 @@
 //! Poisson's ratio of 0, in units of its tractions and of `mu (E*/G*) d(F)`, is that approximation for every
 //! other ratio, and the difference of the two is its error. `equivalent` is compared in the same units.
 
+mod grid_job;
+mod grid_means;
+mod grid_picture;
+mod grid_tables;
+mod grid_tests;
+mod grids;
 mod job;
 mod means;
 mod picture;
@@ -20,6 +26,7 @@ use crate::judged::Judged;
 use bem3d::Bem3d;
 use contact_model::{ContactModel as _, never};
 use evaluation::{Outcome, Session, header, list};
+pub(crate) use grid_picture::{GRIDS, draw as draw_partial_slip_grids};
 use job::SlipJob;
 use means::SolvedCase;
 pub(crate) use picture::SLIPS;
@@ -33,12 +40,16 @@ const NAME: &str = "partial-slip";
 
 /// Solves the contacts and writes `partial-slip.csv` (first loading), `partial-slip-stiffness.csv`,
 /// `partial-slip-loops.csv`, `partial-slip-samples.csv`, pictures and `partial-slip.md` into the directory of
-/// the study. Stored results are not solved again.
+/// the study. Stored results are not solved again. With a list of grids it solves the same surfaces on each of
+/// them instead, and writes `partial-slip-grids.csv` and others.
 ///
 /// # Errors
 /// [`runs::Error::Parameter`] for invalid parameters, errors of a model, and files that cannot be written.
 pub fn partial_slip(study: &PartialSlip, progress: &dyn Progress) -> Result<Judged> {
     study.check()?;
+    if !study.grids.is_empty() {
+        return grids::grids(study, progress);
+    }
     let session = Session::open(&study.out, study.fresh)?;
     let shared = Arc::new(study.clone());
     let seeds = || (0..study.surfaces).map(|i| surface_gen::surface_seed(study.seed, i as u64));
@@ -186,6 +197,9 @@ mod tests {
             (PartialSlip { poissons: vec![0.0, 0.6], ..small() }, "poisson"),
             (PartialSlip { poissons: vec![0.0, f64::NAN], ..small() }, "poisson"),
             (PartialSlip { fractal_dimensions: vec![3.5], ..small() }, "df"),
+            (PartialSlip { grids: vec![32, 64, 96], ..small() }, "grids"),
+            (PartialSlip { grids: vec![32, 64], ..small() }, "grids"),
+            (PartialSlip { grids: vec![16, 32, 64], ..small() }, "grids"),
         ] {
             let error = partial_slip(&study, &Silent).unwrap_err().to_string();
             assert!(error.contains(name), "{error}");

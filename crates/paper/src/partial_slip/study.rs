@@ -29,6 +29,10 @@ pub struct PartialSlip {
     pub cells: usize,
     /// Cells of the shortest wave.
     pub cells_per_wave: usize,
+    /// Cells a side of the grids on which the same surfaces are solved, each twice the one before, for the
+    /// limit of small cells; empty for the study on `cells` alone. The shortest wave is that of `cells` and
+    /// `cells_per_wave` on all of them.
+    pub grids: Vec<usize>,
     /// Surfaces of each boundary and fractal dimension.
     pub surfaces: usize,
     /// D_f.
@@ -120,6 +124,7 @@ impl PartialSlip {
         Ok(Self {
             cells,
             cells_per_wave: 4,
+            grids: Vec::new(),
             surfaces,
             fractal_dimensions: if quick { vec![2.2] } else { vec![2.2, 2.8] },
             poissons: if quick { vec![0.0, 0.3, 0.5] } else { vec![0.0, 0.15, 0.3, 0.45, 0.5] },
@@ -147,9 +152,17 @@ impl PartialSlip {
         [Boundary::Free, Boundary::Periodic].into_iter().flat_map(of).collect()
     }
 
+    fn listed_grids(&self) -> String {
+        self.grids.iter().map(usize::to_string).collect::<Vec<_>>().join(",")
+    }
+
     pub(super) fn command(&self) -> String {
+        let grids = match self.grids.as_slice() {
+            [] => String::new(),
+            _ => format!(" --grids {}", self.listed_grids()),
+        };
         format!(
-            "cargo xtask partial-slip --cells {} --cells-per-wave {} --surfaces {} --df {} --poisson {} --forces {} --increments {} --tolerance {:?} --seed {}",
+            "cargo xtask partial-slip --cells {} --cells-per-wave {}{grids} --surfaces {} --df {} --poisson {} --forces {} --increments {} --tolerance {:?} --seed {}",
             self.cells,
             self.cells_per_wave,
             self.surfaces,
@@ -179,7 +192,13 @@ impl PartialSlip {
         require(self.poissons.len() <= 100, "poisson", self.poissons.len(), "at most 100 numbers")?;
         let (per_wave, most) = (self.cells_per_wave, self.cells / 8);
         let expected = format!("a whole number from 2 to {most}: an eighth of the cells a side");
-        require((2..=most).contains(&per_wave), "cells-per-wave", per_wave, expected)
+        require((2..=most).contains(&per_wave), "cells-per-wave", per_wave, expected)?;
+        let doubled = self.grids.first().is_none_or(|first| *first >= self.cells)
+            && self.grids.windows(2).all(|pair| pair[1] == 2 * pair[0])
+            && self.grids.iter().all(|cells| limits::CELLS.contains(cells))
+            && [0, 3, 4, 5].contains(&self.grids.len());
+        let expected = "three to five numbers from `cells` on, each twice the one before";
+        require(doubled, "grids", self.listed_grids(), expected)
     }
 }
 

@@ -8,17 +8,17 @@ use analysis::Table;
 use evaluation::{FRACTAL_DIMENSION, TableOf};
 use runs::Result;
 
-const FORCE: &str = "F/(E* h L), h the measured rms height of each surface";
-const POISSON: &str = "Poisson's ratio of both bodies";
-const SHARE: &str = "Q/(mu F)";
-const HALF: &str = "half-width of its 95 % interval, by Student's distribution over the surfaces";
-const SURFACES: &str = "surfaces in the means";
+pub(super) const FORCE: &str = "F/(E* h L), h the measured rms height of each surface";
+pub(super) const POISSON: &str = "Poisson's ratio of both bodies";
+pub(super) const SHARE: &str = "Q/(mu F)";
+pub(super) const HALF: &str = "half-width of its 95 % interval, by Student's distribution over the surfaces";
+pub(super) const SURFACES: &str = "surfaces in the means";
 
-fn value(of: Option<Estimate>) -> Option<f64> {
+pub(super) fn value(of: Option<Estimate>) -> Option<f64> {
     of.map(|estimate| estimate.value)
 }
 
-fn half(of: Option<Estimate>) -> Option<f64> {
+pub(super) fn half(of: Option<Estimate>) -> Option<f64> {
     of.map(|estimate| estimate.half_width)
 }
 
