@@ -214,4 +214,10 @@ fn channels_are_told_and_chosen() {
     assert!(code == Some(0) && text.contains("then       turned by 90 degrees"), "{text}");
     assert!(info(&["upper.x3p", "--rotate", "45"]).2.contains("possible values: 0, 90, 180, 270"));
     assert!(info(&["nowhere.x3p", "--json"]).2.contains("nowhere.x3p"));
+    // A single channel without heights is described all the same.
+    let phase = "# Channel: Phase\n# Width: 2 um\n# Height: 1 um\n# Value units: deg\n1 2 3 4\n5 6 7 8\n";
+    std::fs::write(dir.path().join("phase.txt"), phase).unwrap();
+    let (code, text, said) = info(&["phase.txt"]);
+    assert!(code == Some(0) && text.contains("1 channel, whose values are no heights"), "{text}{said}");
+    assert!(text.contains("Phase"), "{text}");
 }

@@ -93,6 +93,11 @@ impl<'a> SurfaceFile<'a> {
         self.channels.len()
     }
 
+    /// Whether the file says of each channel that its values are no heights, but phases or currents, for instance.
+    pub fn has_no_heights(&self) -> bool {
+        self.channels.iter().all(|channel| matches!(channel.unit, StoredUnit::NoHeights(_)))
+    }
+
     /// The scan of the channel that was chosen ([`ReadOptions::channel`]), or of the only one that can be
     /// heights.
     ///

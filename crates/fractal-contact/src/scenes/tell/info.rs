@@ -71,6 +71,9 @@ fn surface(path: &Path, declared: &ReadOptions, preprocessing: &Preprocessing) -
     if file.len() > 1 && declared.channel.is_none() {
         return each(file);
     }
+    if file.has_no_heights() {
+        return each(file);
+    }
     let scan = file.scan()?;
     Ok(match scan.preprocessed(preprocessing) {
         Ok(found) => {
@@ -161,7 +164,10 @@ fn described(scan: &Scan, found: &Preprocessed, description: &Description) -> St
 
 /// A description of each channel of a file with several.
 fn each(file: SurfaceFile<'_>) -> Result<String> {
-    let mut text = format!("{} channels; --channel NUMBER or NAME describes one\n", file.len());
+    let mut text = match file.len() {
+        1 => "1 channel, whose values are no heights\n".to_owned(),
+        count => format!("{count} channels; --channel NUMBER or NAME describes one\n"),
+    };
     for scan in file.scans() {
         match scan {
             Ok(scan) => text += &format!("\n{}\n", scan.metadata()),
