@@ -1,6 +1,6 @@
 //! An ensemble of one model over all fractal dimensions.
 
-use crate::compact::ReadSurfaces;
+use crate::read_surfaces::ReadSurfaces;
 use crate::realisation::{Discretisation, Model, Models, RealisationJob, RealisationResult};
 use crate::realisation_jobs::{is_solved, solve_in_order};
 use crate::run::Run;

@@ -135,6 +135,7 @@ mod format;
 mod inflate;
 mod instruments;
 mod keyword;
+mod layout;
 mod lines;
 mod npy;
 mod number_type;

@@ -13,8 +13,29 @@ use crate::extent::Extent;
 use crate::options::ReadOptions;
 use crate::quantity::{Dimension, Quantity, Unit};
 use crate::sides::Sides;
-use crate::text::{AxisColumn, PointColumns, TextTable};
+use crate::text::TextTable;
 use axis::GridAxis;
+
+/// One map of the points of a table: which columns are their coordinates, and which their values.
+#[derive(Debug)]
+pub(crate) struct PointColumns {
+    /// Along x and y, or along a profile.
+    pub(crate) axes: Vec<AxisColumn>,
+    pub(crate) value: usize,
+    /// Name of the channel, where several columns are channels.
+    pub(crate) name: Option<String>,
+    pub(crate) unit: StoredUnit,
+    pub(crate) notes: Vec<String>,
+}
+
+/// A column of coordinates.
+#[derive(Debug)]
+pub(crate) struct AxisColumn {
+    pub(crate) at: usize,
+    pub(crate) unit: Option<Unit>,
+    /// Whether these are numbers of rows or columns, in steps of 1 without a length.
+    pub(crate) index: bool,
+}
 
 /// Share of the places of a grid that must have a height: a wrong spacing leaves most of them empty.
 const FULL: f64 = 0.5;

@@ -5,6 +5,7 @@ use crate::detect::detect;
 use crate::error::{ContentError, Error, Result};
 use crate::format::Format;
 use crate::instruments::READERS;
+use crate::layout::{self, Layout};
 use crate::options::ReadOptions;
 use crate::reader::SNIFF;
 use crate::scan::Scan;
@@ -238,21 +239,21 @@ pub(crate) fn of_text(
     let mut channels = Vec::new();
     let mut first = None;
     for table in tables {
-        let layout = text::layout(&table, requested, declared);
+        let layout = layout::layout(&table, requested, declared);
         let name = table.heading.name.clone();
         let mut list = |name, channel: Result<StoredChannel, ContentError>| {
             let channel = channel.map_err(|e| source.content(e));
             channels.push(StoredChannel::listed(name, channel)?);
             Ok(())
         };
-        first = first.or(layout.as_ref().ok().map(text::Layout::format));
+        first = first.or(layout.as_ref().ok().map(Layout::format));
         match layout {
             Err(problem) => list(name, Err(problem))?,
-            Ok(text::Layout::Matrix) => list(name, text::matrix(table, declared))?,
-            Ok(text::Layout::Points(maps)) => maps.iter().try_for_each(|columns| {
+            Ok(Layout::Matrix) => list(name, text::matrix(table, declared))?,
+            Ok(Layout::Points(maps)) => maps.iter().try_for_each(|columns| {
                 list(columns.name.clone().or(name.clone()), points::grid(&table, columns, declared))
             })?,
-            Ok(text::Layout::Profiles(maps)) => maps.iter().try_for_each(|columns| {
+            Ok(Layout::Profiles(maps)) => maps.iter().try_for_each(|columns| {
                 list(columns.name.clone().or(name.clone()), points::row(&table, columns, declared))
             })?,
         }

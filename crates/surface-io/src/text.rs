@@ -1,14 +1,15 @@
 //! Numbers as text: lines, delimiters, comments and headers.
 
 mod columns;
+mod delimiter;
 mod heading;
-mod layout;
 mod matrix;
 mod number;
 mod statement;
 
+pub(crate) use columns::{Column, Kind, symbol};
+pub(crate) use delimiter::Delimiter;
 pub(crate) use heading::Heading;
-pub(crate) use layout::{AxisColumn, Layout, PointColumns, layout};
 pub(crate) use matrix::matrix;
 
 use crate::error::{ContentError, NumberKind, Place};
@@ -19,59 +20,6 @@ use crate::options::{Decimal, ReadOptions};
 use contact_model::units::number;
 use number::unquoted;
 use std::borrow::Cow;
-use std::fmt;
-
-/// Delimiter between two numbers.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Delimiter {
-    Whitespace,
-    Tab,
-    Comma,
-    Semicolon,
-}
-
-impl Delimiter {
-    /// The delimiter of a line of data: a semicolon if there is one, else a tab, else a comma, else
-    /// whitespace.
-    fn of(line: &[u8], decimal: Decimal) -> Self {
-        if line.contains(&b';') {
-            Self::Semicolon
-        } else if line.contains(&b'\t') {
-            Self::Tab
-        } else if line.contains(&b',') && decimal == Decimal::Point {
-            Self::Comma
-        } else {
-            Self::Whitespace
-        }
-    }
-
-    /// What stands between the delimiters of a line, each without spaces around it.
-    fn tokens(self, data: &[u8]) -> impl Iterator<Item = &[u8]> {
-        let (spaces, byte) = (self == Self::Whitespace, self.byte());
-        let between = move |b: &u8| if spaces { b.is_ascii_whitespace() } else { *b == byte };
-        data.split(between).map(<[u8]>::trim_ascii).filter(move |token| !(spaces && token.is_empty()))
-    }
-
-    fn byte(self) -> u8 {
-        match self {
-            Self::Whitespace => b' ',
-            Self::Tab => b'\t',
-            Self::Comma => b',',
-            Self::Semicolon => b';',
-        }
-    }
-}
-
-impl fmt::Display for Delimiter {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Whitespace => "spaces between numbers",
-            Self::Tab => "tabs between numbers",
-            Self::Comma => "commas between numbers",
-            Self::Semicolon => "semicolons between numbers",
-        })
-    }
-}
 
 /// Lines of equally many numbers; NaN is an undefined point.
 #[derive(Debug)]

@@ -1,12 +1,12 @@
 //! Points x, z along a line as a map of one row.
 
-use super::{Placed, axis, channel, check_units, placed};
+use super::{Placed, PointColumns, axis, channel, check_units, placed};
 use crate::channel::StoredChannel;
 use crate::error::ContentError;
 use crate::extent::Extent;
 use crate::options::ReadOptions;
 use crate::quantity::{Quantity, Unit};
-use crate::text::{PointColumns, TextTable};
+use crate::text::TextTable;
 
 /// The points of these columns of a table as a map of one row: column i at `x_min + i * spacing`; places
 /// without a point are undefined. The extent along y stays open: the file says nothing of it.

@@ -3,7 +3,7 @@
 //! A heading has a cell for each column: the name of a quantity, and often its unit, as `x [um]`, `z (nm)`,
 //! `X_um` or `y/mm`. Units may also stand in a line of their own below the names.
 
-use super::Delimiter;
+use super::delimiter::Delimiter;
 use super::statement::{WORDS, key_and_value};
 use crate::array::axis_of;
 use crate::channel::MOST_CHANNELS;
@@ -12,7 +12,7 @@ use std::fmt;
 
 /// What the values of a column are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Kind {
+pub(crate) enum Kind {
     /// Coordinates along x (0) or y (1).
     Coordinate(usize),
     /// Numbers of columns (0) or rows (1).
@@ -27,13 +27,13 @@ pub(super) enum Kind {
 
 /// A column as its heading names it.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Column {
+pub(crate) struct Column {
     /// As written.
-    pub(super) cell: String,
-    pub(super) name: String,
-    pub(super) kind: Kind,
+    pub(crate) cell: String,
+    pub(crate) name: String,
+    pub(crate) kind: Kind,
     /// As written, empty for none.
-    pub(super) unit: String,
+    pub(crate) unit: String,
 }
 
 impl fmt::Display for Column {
@@ -65,7 +65,7 @@ fn length_or_other(text: &str) -> Option<Unit> {
 }
 
 /// The symbol of a unit in words.
-pub(super) fn symbol(text: &str) -> &str {
+pub(crate) fn symbol(text: &str) -> &str {
     WORDS.iter().find(|(word, _)| word.eq_ignore_ascii_case(text)).map_or(text, |(_, unit)| unit)
 }
 
@@ -127,12 +127,12 @@ impl Column {
         }
     }
 
-    pub(super) fn length(&self) -> Option<Unit> {
+    pub(crate) fn length(&self) -> Option<Unit> {
         length_or_other(&self.unit).filter(|unit| unit.dimension() == Dimension::LENGTH)
     }
 
     /// Whether the cell is more than a word.
-    pub(super) fn tells(&self) -> bool {
+    pub(crate) fn tells(&self) -> bool {
         self.kind != Kind::Other || !self.unit.is_empty()
     }
 
@@ -143,7 +143,7 @@ impl Column {
     }
 
     /// The axis that these are places along: 0 for x, 1 for y.
-    pub(super) fn axis(&self) -> Option<usize> {
+    pub(crate) fn axis(&self) -> Option<usize> {
         match self.kind {
             Kind::Coordinate(axis) | Kind::Index(axis) | Kind::Degrees(axis) => Some(axis),
             _ => None,

@@ -52,7 +52,7 @@ pub(crate) struct Heading {
     /// Lines that may name the columns, the last few.
     pub(super) lines: Vec<String>,
     /// The columns as such a line names them; empty for none.
-    pub(super) columns: Vec<Column>,
+    pub(crate) columns: Vec<Column>,
 }
 
 /// A unit that is none of heights.

@@ -9,36 +9,14 @@
 //! - Degrees are no lengths, and columns without a coordinate are no map: both are refused.
 //! - Without a heading the numbers decide, or the format that was requested.
 
-use super::TextTable;
-use super::columns::{Column, Kind, symbol};
 use crate::channel::{MOST_CHANNELS, StoredUnit};
 use crate::error::ContentError;
 use crate::format::Format;
 use crate::options::ReadOptions;
-use crate::points::is_full_grid;
+use crate::points::{AxisColumn, PointColumns, is_full_grid};
 use crate::provenance::contradiction;
 use crate::quantity::Unit;
-
-/// One map of the points of a table: which columns are their coordinates, and which their values.
-#[derive(Debug)]
-pub(crate) struct PointColumns {
-    /// Along x and y, or along a profile.
-    pub(crate) axes: Vec<AxisColumn>,
-    pub(crate) value: usize,
-    /// Name of the channel, where several columns are channels.
-    pub(crate) name: Option<String>,
-    pub(crate) unit: StoredUnit,
-    pub(crate) notes: Vec<String>,
-}
-
-/// A column of coordinates.
-#[derive(Debug)]
-pub(crate) struct AxisColumn {
-    pub(crate) at: usize,
-    pub(crate) unit: Option<Unit>,
-    /// Whether these are numbers of rows or columns, in steps of 1 without a length.
-    pub(crate) index: bool,
-}
+use crate::text::{Column, Kind, TextTable, symbol};
 
 /// What a table of numbers is.
 #[derive(Debug)]
