@@ -68,7 +68,7 @@ class Made:
     def coordinates(self):
         """Coordinates along each dimension with their unit, or None."""
         found = {}
-        for name, count in zip(self.names, self.shape):
+        for name, count in zip(self.names, self.shape, strict=True):
             if self.rng.random() < 0.6 and name != "a" and name != "b":
                 step = float(self.rng.choice([0.5, -0.25, 2.0, -1.0]))
                 unit = str(self.rng.choice([*LENGTHS, "degrees", ""]))
@@ -88,13 +88,14 @@ def hdf5(path, rng):
         for key, value in made.attributes.items():
             data.attrs[key] = value
         coordinates = made.coordinates()
-        for i, (name, count) in enumerate(zip(made.names, made.shape)):
+        for i, (name, count) in enumerate(zip(made.names, made.shape, strict=True)):
             values, unit = coordinates.get(name, (None, ""))
             scale = file.create_dataset(name, data=np.zeros(count, "f4") if values is None else values)
             if unit:
                 scale.attrs["units"] = unit
             # A dimension without coordinates, as the NetCDF library has it.
-            scale.make_scale(name if values is not None else f"This is a netCDF dimension but not a netCDF variable.{count:10}")
+            nameless = f"This is a netCDF dimension but not a netCDF variable.{count:10}"
+            scale.make_scale(name if values is not None else nameless)
             data.dims[i].attach_scale(scale)
         made.valid = None
     return "netcdf4", made, coordinates
@@ -112,7 +113,7 @@ def netcdf(path, rng, three):
         file = scipy.io.netcdf_file(path, "w", version=int(rng.choice([1, 2])))
     else:
         file = netCDF4.Dataset(path, "w", format="NETCDF4")
-    for name, count in zip(made.names, made.shape):
+    for name, count in zip(made.names, made.shape, strict=True):
         file.createDimension(name, count)
     if three:
         data = file.createVariable("z", made.dtype, made.names)
@@ -196,7 +197,7 @@ def compare(line, path, engine, made, coordinates):
     parts = line.split("\t")
     if parts[1] == "error":
         return parts[2]
-    _, name, rows, columns, unit, cell, heights = parts
+    _, _, rows, columns, _, cell, heights = parts
     found = np.array(heights.split(), "f8").reshape(int(rows), int(columns))
     wanted = expected(path, engine, made)
     if found.shape != wanted.shape:
