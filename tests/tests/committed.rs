@@ -384,6 +384,77 @@ fn interpolated(curve: &[(f64, f64)], x: f64) -> f64 {
     pair[0].1 + (x - pair[0].0) * (pair[1].1 - pair[0].1) / (pair[1].0 - pair[0].0)
 }
 
+/// k_bar at F_bar = 0.086 from the samples of the study of the exponent, along a straight line in logarithms between
+/// two of its loads.
+#[test]
+fn stiffness_at_the_crossing_is_that_of_the_larger_samples() {
+    let page = text("book/src/results.md").split_whitespace().collect::<Vec<_>>().join(" ");
+    let all = rows("data/exponent/exponent.csv");
+    for d in [2.0, 2.2, 2.4, 2.6, 2.8] {
+        let own = of_dimension(all.clone(), d);
+        let own: Vec<&Row> = own
+            .iter()
+            .filter(|row| row["model"] == "bem3d" && row["convention"] == "measured_rms")
+            .filter(|row| row["resolved"] == "true")
+            .collect();
+        let x = 0.086_f64.ln();
+        let at = own.iter().position(|row| number(row, "force_bar").ln() > x).unwrap();
+        let [below, above] = [own[at - 1], own[at]];
+        let ln = |row: &Row, column: &str| number(row, column).ln();
+        let share = (x - ln(below, "force_bar")) / (ln(above, "force_bar") - ln(below, "force_bar"));
+        let k = (ln(below, "stiffness_bar")
+            + share * (ln(above, "stiffness_bar") - ln(below, "stiffness_bar")))
+        .exp();
+        let half = |row: &Row| number(row, "stiffness_scatter") + number(row, "stiffness_grid");
+        let stated = format!("{k:.4} ± {:.4} for", half(below).max(half(above)));
+        assert!(page.contains(&stated), "D_f = {d}: {stated}");
+    }
+}
+
+/// How k_1D/k_3D changes below F_bar = 0.086, and where it is farthest from 1, as the page says it, from the mean
+/// curves at the loads at which every surface has a hundred cells in contact.
+#[test]
+fn ratios_of_line_and_surface_of_the_page_are_those_of_the_curves() {
+    let page = text("book/src/results.md").split_whitespace().collect::<Vec<_>>().join(" ");
+    let mut changes = Vec::new();
+    let mut farthest = Vec::new();
+    for d in DIMENSIONS {
+        let [surfaces, lines] = ["fig2", "fig6"].map(|figure| curve(figure, d));
+        let ratio = |x: f64| interpolated(&lines, x) - interpolated(&surfaces, x);
+        let rows = of_dimension(rows("data/figures/paper/fig2.csv"), d);
+        let enough = rows.iter().filter(|row| number(row, "min_contact_cells") >= 100.0);
+        let loads: Vec<f64> = enough.map(|row| number(row, "force_bar").ln()).collect();
+        changes.push((ratio(loads[0]) - ratio(0.086_f64.ln())).exp());
+        let distance = |x: &f64| ratio(*x).abs();
+        let most = loads.iter().max_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap();
+        farthest.push(ratio(*most).exp());
+    }
+    // Numbers of the page in their order, without the half-widths, which are those of verify.csv.
+    let after = |words: &str| -> Vec<f64> {
+        let at = page.find(words).unwrap_or_else(|| panic!("{words}")) + words.len();
+        let sentence = &page[at..at + page[at..].find(" for D_f").unwrap()];
+        sentence
+            .split([',', 'd'])
+            .filter_map(|part| part.trim_start_matches("an").trim().split(' ').next()?.parse().ok())
+            .collect()
+    };
+    let stated = after("changes by a factor of ");
+    assert_eq!(stated.len(), 6, "{stated:?}");
+    for (stated, found) in stated.iter().zip(&changes) {
+        assert!((stated - found).abs() < 0.0051, "{stated}: {changes:?}");
+    }
+    for stated in
+        ["1.26 ± 0.07 (D_f = 2.0)", "1.18 to 1.20 (2.2 to 2.6)", "0.81 ± 0.05 (2.8)", "0.71 ± 0.02 (3.0)"]
+    {
+        assert!(page.contains(stated), "{stated}");
+    }
+    let wanted =
+        [[1.255, 1.265], [1.175, 1.205], [1.175, 1.205], [1.175, 1.205], [0.805, 0.815], [0.705, 0.715]];
+    for (found, [low, high]) in farthest.iter().zip(wanted) {
+        assert!((low..=high).contains(found), "{farthest:?}");
+    }
+}
+
 /// What the one-dimensional reduction makes of rough surfaces, in the table of the book and in every text
 /// that says it.
 #[test]

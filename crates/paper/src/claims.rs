@@ -64,7 +64,7 @@ fn rows(ensembles: &Ensembles<'_>, entry: &'static Entry) -> Result<Vec<Row>> {
         Data::ScatterOfCollapse(top) => curves::collapse(solid()?, *top, |residual| residual.scatter),
         Data::DistanceFromCollapse(top) => curves::collapse(solid()?, *top, |residual| Some(residual.rms)),
         Data::DecadesOfCollapse(factor) => curves::decades(solid()?, *factor),
-        Data::StiffnessAt(load) => curves::stiffnesses(solid()?, *load),
+        Data::StiffnessAt(load) => curves::stiffnesses(solid()?, *load)?,
         Data::Spread(load, other) => curves::spread(solid()?, *load, *other),
         Data::StiffnessOverLaw(load) => laws::stiffness_over_law(solid()?, *load),
         Data::ConductanceAt(load) => curves::conductance(solid()?, *load),

@@ -2,6 +2,7 @@
 //! grids.
 
 use super::ensemble::{Ensemble, ONE_SURFACE, resampled, stiffness_at};
+use super::solved::height_over_continuous;
 use super::table::{Reason, Row};
 use crate::claim::Estimate;
 use analysis::{
@@ -15,15 +16,21 @@ use std::ops::RangeInclusive;
 
 pub(super) const NO_LOAD: &str = "outside the loads of this run";
 
-/// k_bar at a load, and its logarithmic mean.
-pub(super) fn stiffnesses(solid: &Ensemble<'_>, load: f64) -> Vec<Row> {
+/// k_bar at a load, and at the same load where F_bar is counted by the rms height of the continuous spectrum.
+pub(super) fn stiffnesses(solid: &Ensemble<'_>, load: f64) -> Result<Vec<Row>> {
     let row = |series: &Series| {
-        let conditions = "arithmetic mean, F_bar by the measured rms height".to_owned();
-        let found = stiffness_at(series, load).map(|k| (k, conditions)).ok_or(NO_LOAD.into());
+        let d = series.fractal_dimension;
         let log_means: Vec<Option<f64>> =
             series.points.iter().map(|p| p.stiffness_bar.map(|k| k.log_mean)).collect();
-        let log_mean = interpolate(series.curves.force_bar(), &log_means, load).filter(|_| found.is_ok());
-        Row { in_convention: log_mean, ..Row::at(series.fractal_dimension, found) }
+        let log_mean = interpolate(series.curves.force_bar(), &log_means, load);
+        let conditions = format!(
+            "arithmetic mean, F_bar by the measured rms height; the logarithmic mean is {:.4}",
+            log_mean.unwrap_or_default()
+        );
+        let found = stiffness_at(series, load).map(|k| (k, conditions)).ok_or(NO_LOAD.into());
+        let ratio = height_over_continuous(d, solid.measured.discretisation.size())?;
+        let continuous = stiffness_at(series, load / ratio).filter(|_| found.is_ok());
+        Ok(Row { in_convention: continuous.map(|k| k.value), ..Row::at(d, found) })
     };
     solid.measured.series.iter().map(row).collect()
 }

@@ -3,6 +3,7 @@
 
 use super::table::{Found, Row};
 use crate::claim::Estimate;
+use analytic::spectrum::Spectrum;
 use bem3d::Bem3d;
 use contact_model::{Amplitude, ContactModel, ContactState, Field, Load, Scene, SelfAffine, Surface};
 use evaluation::SEED;
@@ -74,6 +75,17 @@ pub(super) fn ratio_of_heights(dimensions: &[f64]) -> Result<Vec<Row>> {
         Ok(Row { in_convention: Some(1.0), ..Row::at(d, Ok((Estimate::exact(ratio), remark.clone()))) })
     };
     dimensions.iter().map(row).collect()
+}
+
+/// rms height of a surface over that of its spectrum as a continuous function, from the wave of the side to the end
+/// of the grid: the few longest waves, which carry most of the height, are a sum and no integral.
+pub(super) fn height_over_continuous(d: f64, cells: usize) -> Result<f64> {
+    let surface = SelfAffine { amplitude: Amplitude::Spectrum(1.0), ..self_affine(d)? };
+    let ratio = || {
+        let continuous = SelfAffine { short_cutoff: Some(TAU * (cells / 2) as f64), ..surface };
+        Ok(MapGenerator::new(&surface, cells)?.rms_height() / Spectrum::new(&continuous)?.rms_height())
+    };
+    ratio().map_err(Error::model(format!("rms heights at D_f = {d:?}")))
 }
 
 /// rms height of the line over that of the surface where both have one spectrum, and not one rms height.
