@@ -260,6 +260,7 @@ mod tests {
         for line in [
             "verify --samples d --fresh",
             "verify --samples d --accuracy 2%",
+            "verify --samples d --shard 0/2",
             "reproduce-fig1 --surfaces 2",
             "reproduce-fig1 --threads 2",
             "reproduce-fig2 --elements 64",

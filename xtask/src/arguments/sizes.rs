@@ -69,7 +69,7 @@ pub struct SolveSizes {
     budget: f64,
     /// Read the surfaces from fig2-compact.csv and fig6-compact.csv in this directory, which an earlier run of
     /// the same sizes wrote, and solve none of them (Figs. 3, 4 and 7, verify).
-    #[arg(long, value_name = "DIR", conflicts_with_all = ["accuracy", "fresh"])]
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["accuracy", "fresh", "shard"])]
     samples: Option<PathBuf>,
     /// Draw the curves of the fig2.csv or fig6.csv of another run below those of this one (Figs. 2 and 6).
     #[arg(long, value_name = "FILE.csv")]
