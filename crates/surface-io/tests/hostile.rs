@@ -284,9 +284,14 @@ fn long_descriptions_are_refused_or_held_once() {
     }
 }
 
+/// Multiple of the default number of cases: `HOSTILE=10 cargo test -p surface-io --test hostile`.
+fn times() -> u32 {
+    std::env::var("HOSTILE").ok().and_then(|times| times.parse().ok()).unwrap_or(1)
+}
+
 proptest! {
     #![proptest_config(ProptestConfig {
-        cases: 1000,
+        cases: 1000 * times(),
         failure_persistence: Some(Box::new(FileFailurePersistence::Direct("tests/hostile.proptest-regressions"))),
         ..ProptestConfig::default()
     })]
@@ -418,7 +423,7 @@ fn mutated(mut bytes: Vec<u8>, changes: &[(prop::sample::Index, u8, u8)]) -> Vec
 
 proptest! {
     #![proptest_config(ProptestConfig {
-        cases: 3000,
+        cases: 3000 * times(),
         failure_persistence: Some(Box::new(FileFailurePersistence::Direct("tests/hostile.proptest-regressions"))),
         ..ProptestConfig::default()
     })]
