@@ -65,7 +65,7 @@ pub fn measure_showing(
     let ensembles: Vec<Vec<RealisationJob>> =
         grids(model, run).map(|(grid, surfaces)| jobs(grid, surfaces, run)).collect();
     if let Some(directory) = &run.samples {
-        return read(&ReadSurfaces::open(directory, model, run)?, ensembles, run);
+        return read(&ReadSurfaces::open(directory, model, run)?, ensembles, (model, run));
     }
     let all: Vec<RealisationJob> = ensembles.iter().rev().flatten().cloned().collect();
     let mut order: Vec<usize> = (0..all.len()).collect();
@@ -87,9 +87,11 @@ pub fn measure_showing(
 }
 
 /// The ensembles whose surfaces a table has.
-fn read(table: &ReadSurfaces, ensembles: Vec<Vec<RealisationJob>>, run: &Run) -> Result<Measured> {
-    let model =
-        ensembles.first().and_then(|jobs| jobs.first()).map_or(Model::Bem3d, |job| job.discretisation.of());
+fn read(
+    table: &ReadSurfaces,
+    ensembles: Vec<Vec<RealisationJob>>,
+    (model, run): (Model, &Run),
+) -> Result<Measured> {
     let of = |jobs: Vec<RealisationJob>| {
         let results = jobs.iter().map(|job| table.of(job)).collect::<Result<_>>()?;
         Measured::new(jobs, results, run)

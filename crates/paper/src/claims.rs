@@ -52,7 +52,7 @@ fn rows(ensembles: &Ensembles<'_>, entry: &'static Entry) -> Result<Vec<Row>> {
     Ok(match &entry.data {
         Data::Exponent(model) => laws::exponents(ensembles.of(*model)?),
         Data::ExponentOverDimension(model) => laws::over_dimension(ensembles.of(*model)?),
-        Data::ExponentOverForcesOfSurfaces => laws::exponents_over_same_forces(solid()?, line()?),
+        Data::ExponentOverForcesOfSurfaces => laws::exponents_over_same_forces(line()?),
         Data::ExponentDifference => laws::differences(solid()?, line()?),
         Data::ExponentOfHalves(model) => laws::halves(ensembles.of(*model)?),
         Data::ExponentBelowMinusAbove(from, middle) => laws::below_minus_above(line()?, *from, *middle),

@@ -14,6 +14,8 @@ pub(crate) struct Ensembles<'a>(Vec<Ensemble<'a>>);
 pub(super) struct Ensemble<'a> {
     pub measured: &'a Measured,
     pub laws: Vec<std::result::Result<Law, Reason>>,
+    /// Of lines beside surfaces: the laws over the forces over which surfaces of the same D_f are fitted.
+    pub same_forces: Vec<std::result::Result<Law, Reason>>,
 }
 
 /// A power law of one series, with the uncertainty of its window.
@@ -35,9 +37,15 @@ pub(crate) struct Law {
 impl<'a> Ensembles<'a> {
     /// The ensembles with their laws.
     pub fn new(measured: &[&'a Measured]) -> Self {
+        let of_model = |model| measured.iter().copied().find(|m| m.discretisation.of() == model);
+        let solid = of_model(Model::Bem3d);
         let of = |&measured: &&'a Measured| {
             let laws = measured.series.iter().map(|series| Law::new(measured, series)).collect();
-            Ensemble { measured, laws }
+            let lines = solid.filter(|_| measured.discretisation.of() == Model::Mdr1d);
+            let beside = lines.into_iter().flat_map(|solid| solid.series.iter().zip(&measured.series));
+            let same_forces =
+                beside.map(|(solid, line)| Law::over_forces_of(solid, measured, line)).collect();
+            Ensemble { measured, laws, same_forces }
         };
         Self(measured.iter().map(of).collect())
     }
@@ -72,12 +80,6 @@ impl Ensemble<'_> {
     /// Series of both models at each D_f.
     pub fn beside<'b>(&'b self, line: &'b Self) -> impl Iterator<Item = (&'b Series, &'b Series)> {
         self.measured.series.iter().zip(&line.measured.series)
-    }
-
-    /// The laws of these lines over the forces over which surfaces of the same D_f are fitted.
-    pub fn laws_over_forces_of(&self, solid: &Self) -> Vec<std::result::Result<Law, Reason>> {
-        let law = |(solid, line)| Law::over_forces_of(solid, self.measured, line);
-        solid.beside(self).map(law).collect()
     }
 
     /// rms height of these lines over that of surfaces of the same D_f, where both have one spectrum: a force

@@ -19,8 +19,8 @@ pub(super) fn factors(ensemble: &Ensemble<'_>) -> Vec<Row> {
 }
 
 /// alpha of lines over the forces of surfaces, with alpha over the lines' own forces in the remark.
-pub(super) fn exponents_over_same_forces(solid: &Ensemble<'_>, line: &Ensemble<'_>) -> Vec<Row> {
-    (line.measured.series.iter().zip(&line.laws).zip(line.laws_over_forces_of(solid)))
+pub(super) fn exponents_over_same_forces(line: &Ensemble<'_>) -> Vec<Row> {
+    (line.measured.series.iter().zip(&line.laws).zip(&line.same_forces))
         .map(|((series, own), law)| {
             let remark = |law: &Law| {
                 let own = own.as_ref().map(|own| {
@@ -29,14 +29,15 @@ pub(super) fn exponents_over_same_forces(solid: &Ensemble<'_>, line: &Ensemble<'
                 });
                 format!("{}: the forces of surfaces; {INTERVAL}{}", law.window(), own.unwrap_or_default())
             };
-            Row::at(series.fractal_dimension, law.map(|law| (law.alpha, remark(&law))))
+            let law = law.as_ref().map_err(Reason::clone);
+            Row::at(series.fractal_dimension, law.map(|law| (law.alpha, remark(law))))
         })
         .collect()
 }
 
 /// alpha of lines minus alpha of surfaces, both over the same forces.
 pub(super) fn differences(solid: &Ensemble<'_>, line: &Ensemble<'_>) -> Vec<Row> {
-    (solid.measured.series.iter().zip(&solid.laws).zip(&line.laws_over_forces_of(solid)))
+    (solid.measured.series.iter().zip(&solid.laws).zip(&line.same_forces))
         .map(|((series, solid), line)| {
             let both = || {
                 let (solid, line) = (solid.as_ref()?, line.as_ref()?);
@@ -167,8 +168,7 @@ pub(super) fn stiffness_over_law(ensemble: &Ensemble<'_>, load: f64) -> Vec<Row>
 
 /// zeta of lines over zeta of surfaces, both over the same forces, at the D_f where the two differ most.
 fn farthest_factors(solid: &Ensemble<'_>, line: &Ensemble<'_>) -> Option<(Estimate, String)> {
-    let lines = line.laws_over_forces_of(solid);
-    let ratios = solid.laws.iter().zip(&lines).filter_map(|(solid, line)| {
+    let ratios = solid.laws.iter().zip(&line.same_forces).filter_map(|(solid, line)| {
         let (solid, line) = (solid.as_ref().ok()?, line.as_ref().ok()?);
         Some((line.zeta.over(solid.zeta), solid.fractal_dimension))
     });
