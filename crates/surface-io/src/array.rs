@@ -122,11 +122,11 @@ impl Coordinates {
     }
 }
 
-/// What a container states by `_Unsigned`: `true` or `false`, with any case of the letters; nothing where the
-/// text is empty.
+/// The attribute `_Unsigned` of a container, `true` or `false` in any case of the letters; `None` for an empty
+/// text.
 ///
 /// # Errors
-/// What was expected, for other texts.
+/// A message that says what was expected, for other texts.
 pub(crate) fn unsigned(text: &str) -> std::result::Result<Option<bool>, String> {
     match text.trim().to_lowercase().as_str() {
         "" => Ok(None),
@@ -142,7 +142,7 @@ pub(crate) fn unsigned(text: &str) -> std::result::Result<Option<bool>, String> 
 /// `valid_max`.
 ///
 /// # Errors
-/// What was expected, where a range has not two numbers or stands beside one of its ends.
+/// A message that says what was expected, where a range has not two numbers or stands beside one of its ends.
 pub(crate) fn valid(
     range: Option<&[f64]>,
     ends: [Option<f64>; 2],

@@ -216,7 +216,7 @@ pub enum ContentError {
     Columns {
         /// The columns as the heading has them.
         columns: String,
-        /// What is wrong with them, and what was expected.
+        /// The problem with them, and what was expected.
         problem: String,
     },
     /// The header of an NPY file is not one.

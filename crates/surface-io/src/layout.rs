@@ -18,7 +18,7 @@ use crate::provenance::contradiction;
 use crate::quantity::Unit;
 use crate::text::{Column, Kind, TextTable, symbol};
 
-/// What a table of numbers is.
+/// The kind of map that a table of numbers is.
 #[derive(Debug)]
 pub(crate) enum Layout {
     Matrix,

@@ -56,7 +56,7 @@ pub(super) struct SurfaceOnGrid {
     pub(super) loads: Vec<Option<LoadOnGrid>>,
 }
 
-/// What a normal contact gives.
+/// Numbers of a state of the normal contact.
 #[derive(Clone, Copy)]
 struct Normal {
     area: f64,

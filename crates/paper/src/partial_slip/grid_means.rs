@@ -82,7 +82,7 @@ fn extrapolated(fine: f64, half: f64) -> f64 {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Found {
     pub(super) mean: Uncertain,
-    /// What remains of the discretisation error: a half-width that is added to that of the scatter.
+    /// The remaining discretisation error, a half-width that is added to that of the scatter.
     pub(super) grid: f64,
     pub(super) surfaces: usize,
 }

@@ -1,4 +1,5 @@
-//! What GDAL and the geographic tags of TIFF state of an image: scale, offset and unit of its numbers, and the side of a pixel.
+//! Statements of GDAL and of the geographic tags of TIFF about an image: scale, offset and unit of its numbers, and
+//! the side of a pixel.
 
 use crate::instruments::prelude::*;
 use quick_xml::events::Event;
