@@ -5,6 +5,7 @@
 mod constants;
 mod crates;
 mod names;
+mod phrases;
 mod readmes;
 mod sources;
 
@@ -84,7 +85,7 @@ fn quantities_page() -> String {
             ]
         };
         let heads =
-            ["column", "symbol", "unit", "meaning", "asked for by", "models", "over surfaces", "grid error"];
+            ["column", "symbol", "unit", "meaning", "requested by", "models", "over surfaces", "grid error"];
         table(&heads, QUANTITIES.iter().filter(|quantity| wanted(quantity.role)).map(cells))
     };
     let mut sources = String::new();
@@ -93,14 +94,16 @@ fn quantities_page() -> String {
     }
     format!(
         "# Quantities of a state\n\n\
-         This page lists every quantity that a scene or a model can tell of a state, from one table\n\
-         (`contact_model::quantities`). `models` are those that tell it of some state, each tried. Units are SI; with\n\
-         `units = \"none\"` a dimensional number is in the scene's own.\n\n\
-         Each row of `results.csv` begins with `model`, `surface`, `state` and, under loads, `prescribed`, and ends\n\
-         with `note`. `ensemble.csv` has the means, `_se` their standard errors, `_sd` the standard deviation of one\n\
-         surface. With `grid_error = true` a quantity whose grid error is estimated has `_grid_error` and `_grid_order`\n\
-         too.\n\n\
-         ## Answers\n\n{}\n## Residuals\n\nSmall numbers prove that the equations were solved ([certificates](certificates.md)):\n\n{}\n\
+         What does a column of `results.csv` mean, in which unit is it, and which models report it? The tables of this\n\
+         page list every quantity of a contact state. They are made from the table of the program itself\n\
+         (`contact_model::quantities`), and the column `models` was found by trying each model.\n\n\
+         Units are SI. In a scene with `units = \"none\"` the numbers are in the units of the scene.\n\n\
+         Each row of `results.csv` begins with `model`, `surface` and `state`, under loads also with `prescribed`, and\n\
+         ends with `note`. In `ensemble.csv` a column has the mean over the surfaces. The columns that end in `_se` have\n\
+         the standard error of this mean, and those that end in `_sd` the standard deviation of one surface. With\n\
+         `grid_error = true` a quantity whose discretisation error is estimated also has the columns `_grid_error` and\n\
+         `_grid_order`.\n\n\
+         ## Answers\n\n{}\n## Residuals\n\nThese numbers are small where the equations were solved well ([certificates](certificates.md)):\n\n{}\n\
          ## How it was found, and what it cost\n\n{}\n## Sources\n\n{sources}",
         rows(&|role| matches!(role, Role::Answer | Role::Normalised | Role::OfPath)),
         rows(&|role| matches!(role, Role::Residual(_))),
@@ -119,10 +122,12 @@ fn models_page() -> String {
     };
     format!(
         "# What each model can do\n\n\
-         This page lists the abilities that each model declares as data (`ContactModel::abilities`): what a scene may\n\
-         ask of it. A scene that asks for more is refused before anything is computed, with the models that can.\n\
-         A model takes one effect beside the boundary at a time: a hardness, adhesion and friction are refused together,\n\
-         and so are friction and rheology. Python has the same as `model.supports`.\n\n{}\n## What they are\n\n{}",
+         Which surfaces, boundaries, effects, loads and outputs does each model take? The first table has one row for\n\
+         each model. Each model declares these abilities as data (`ContactModel::abilities`), and in Python they are\n\
+         `model.supports`. A scene that needs more is refused before anything is computed. The error names the models\n\
+         that can answer it.\n\n\
+         A model takes one effect beside the boundary at a time. So a hardness, adhesion and friction are refused\n\
+         together, and so are friction and a rheology.\n\n{}\n## What they are\n\n{}",
         table(
             &["model", "surfaces", "boundaries", "effects", "needs", "loads", "paths", "outputs"],
             MODELS.iter().map(cells)

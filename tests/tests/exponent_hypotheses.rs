@@ -136,7 +136,7 @@ fn check(row: &Row, found: &Found) {
     for (end, own) in [(low, value - half), (high, value + half)] {
         assert!((end - own).abs() < ROUNDING + OF_STUDENT * half, "{own}: {row:?}");
     }
-    // The chance knows the scatter and what the grid leaves in another proportion than the interval.
+    // The chance knows the scatter and the remaining discretisation error in another proportion than the interval.
     let away = ((value - expected).abs() - grid).max(0.0) / variance.sqrt();
     let own = student_beyond(away, freedom);
     assert!((own / chance - 1.0).abs() < OF_STUDENT, "{own}: {row:?}");

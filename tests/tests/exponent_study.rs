@@ -262,7 +262,7 @@ fn exponents_towards_zero_force_are_those_of_the_samples() {
         let stated = number(row, "alpha");
         assert!((alpha - stated).abs() < 2e-3, "{model}, D_f {d}: {alpha}, stated {stated}");
         assert!((omega / number(row, "omega") - 1.0).abs() < 0.1, "{model}, D_f {d}: omega {omega}");
-        // The bootstrap's interval without what the grid leaves, beside delta's method by refitting a curve
+        // The bootstrap's interval without the remaining discretisation error, beside delta's method by refitting a curve
         // that is moved at one load.
         let by = 1e-3;
         let gradient: BTreeMap<usize, f64> = (window.iter())

@@ -127,7 +127,7 @@ fn plans_surfaces_results_and_completions_are_told() {
         "adhesion   off",
         "33 x 33 cells",
         "a line of 1024 elements",
-        "not asked for",
+        "not requested",
         "estimate",
         "of memory",
     ] {

@@ -82,7 +82,7 @@ impl FittedFigure {
     pub fn write(&self, run: &Run, solid: &Measured, line: &Measured) -> Result<Outcome> {
         const VALUE: &str = "of k_bar = zeta F_bar^alpha; empty where there is no fit";
         const ERROR: &str = "standard error over surfaces; empty for formulas and for one surface";
-        const HALF: &str = "95 % half-width: scatter, and in quadrature the largest change with other windows and what the grid leaves; empty for a window below a decade";
+        const HALF: &str = "95 % half-width: scatter, and in quadrature the largest change with other windows and the remaining discretisation error; empty for a window below a decade";
         const COMMON: &str = "the same over the window that every fractal dimension of the model resolves";
         const SAME: &str =
             "of lines: the same over the forces over which surfaces of the same D_f are fitted";

@@ -149,7 +149,7 @@ pub fn largest(field: &[f64]) -> f64 {
 }
 
 pub(crate) fn known<T>(name: &'static str, value: Option<T>) -> Result<T> {
-    value.ok_or(Error::Shape { name: name.into(), found: 0, expected: "what was asked for".into() })
+    value.ok_or(Error::Shape { name: name.into(), found: 0, expected: "what was requested".into() })
 }
 
 #[cfg(test)]

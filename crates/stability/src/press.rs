@@ -138,7 +138,7 @@ pub(crate) fn witness(
         Load::Force(force) => force,
         _ => state.force,
     };
-    for (name, force) in [("force", state.force), ("force asked for", asked)] {
+    for (name, force) in [("force", state.force), ("requested force", asked)] {
         let off = (sum / force - 1.0).abs();
         ledger.must(off <= tolerance.max(ROUNDING), || {
             format!("{load:?}: {name} {force}, sum of pressures {sum}")

@@ -242,7 +242,7 @@ class Certificate:
 
 @final
 class ContactState:
-    """One contact state, alone or at the end of a step of a path. What was not asked for, or what the model does
+    """One contact state, alone or at the end of a step of a path. What was not requested, or what the model does
     not claim, is None.
 
     Its numbers and words are those of `quantities`. Units in brackets are those of SI; a scene in other units

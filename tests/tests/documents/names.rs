@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// Documents with names of this repository. The change log also has names that no longer exist.
-fn documents() -> Vec<PathBuf> {
+pub(super) fn documents() -> Vec<PathBuf> {
     let mut found = files(&root().join("book/src"), ".md");
     found.retain(|page| !page.ends_with("SUMMARY.md"));
     found.extend(

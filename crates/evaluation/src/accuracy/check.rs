@@ -189,7 +189,7 @@ fn table(cases: &[RandomCase]) -> Result<Table> {
         .column("seed", "1", "seed of this surface", |c| c.seed)
         .column("force_bar", "1", FORCE_BAR, |c| c.force_bar)
         .column("cells", "1", "cells a side", |c| c.cells)
-        .column("tolerance", "1", "asked for", |c| c.tolerance)
+        .column("tolerance", "1", "requested", |c| c.tolerance)
         .column("contact_cells", "1", "cells in contact", |c| c.contact_cells)
         .column("stiffness_bar", "1", "k/(1.1419 E* L) (Eq. 8)", |c| c.stiffness_bar)
         .column("reference", "1", "the same to 1e-10 on cells four times smaller", |c| c.reference)

@@ -7,7 +7,7 @@ use analysis::{Bootstrap, Crossing, FitWindow, crossing, interpolate, sum};
 use evaluation::{FLOOR_CELLS, Series, laws};
 
 /// The sources of error in the intervals of exponents, in words.
-const INTERVAL: &str = "the interval holds scatter, floors of 10, 30 and 100 cells, upper ends of 0.086 and 0.03, and what the grid leaves";
+const INTERVAL: &str = "the interval holds scatter, floors of 10, 30 and 100 cells, upper ends of 0.086 and 0.03, and the remaining discretisation error";
 
 pub(super) fn exponents(ensemble: &Ensemble<'_>) -> Vec<Row> {
     ensemble.each_law(|_, law| Ok((law.alpha, format!("{}; {INTERVAL}", law.window()))))
@@ -71,7 +71,7 @@ pub(super) fn over_dimension(ensemble: &Ensemble<'_>) -> Vec<Row> {
         let alphas: Option<Vec<f64>> = ensemble.measured.series.iter().zip(windows).map(alpha).collect();
         Some(through(&alphas?))
     };
-    // What the grid leaves has one sign for all D_f: it adds up.
+    // The remaining discretisation error has one sign for all D_f: it adds up.
     let grid = through(&own.iter().map(|l| l.grid).collect::<Vec<_>>());
     let lowest = own.iter().map(|l| l.fit.force_bar_min).fold(0.0, f64::max);
     let everywhere = |window: FitWindow| vec![window; own.len()];

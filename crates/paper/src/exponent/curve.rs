@@ -100,7 +100,7 @@ pub struct MeanCurve {
     pub levels: Multilevel,
     /// Pairs left out because a solve did not meet its tolerance.
     pub left_out: usize,
-    /// Points, from the top of the loads down to where the grid leaves more than the stated error.
+    /// Points, from the top of the loads down to where the discretisation error exceeds the stated one.
     pub resolved: Range<usize>,
     /// Factor on the scatter of each local slope with which all of them together are covered with 95 %.
     pub band: f64,

@@ -300,7 +300,7 @@ fn evaluate(
     let left_out: usize =
         curves.iter().filter(|c| c.convention == Convention::Measured).map(|c| c.left_out).sum();
     let header = header.clone().with_note(format!(
-        "a curve is resolved where the finest grid leaves at most {error:?} of k_bar; {left_out} pairs left out for a solve that did not converge"
+        "a curve is resolved where the discretisation error of its finest grid is at most {error:?} of k_bar; {left_out} pairs left out for a solve that did not converge"
     ));
     let tables: [(&str, Result<Table>); 7] = [
         (picture::CURVES, tables::curves(&curves)),

@@ -85,7 +85,7 @@ fn slopes(directory: &Path) -> Result<Vec<PathBuf>> {
     legend.push("$0.266 D_{\\rm{f}}$ (Eq. 6)", "#000000", Key::Line(LineStyle::Dashed));
     legend.push("$1/(1 + H)$ (Eq. 24)", "#000000", Key::Line(LineStyle::Dotted));
     legend.push(
-        "bands: 95 % for all of a curve together, and what the grid leaves; curves end where it leaves too much",
+        "bands: 95 % for the whole curve, and the discretisation error; curves end where it is too large",
         "#000000",
         Key::Words,
     );

@@ -112,7 +112,7 @@ fn over(factors: &[Factor]) -> String {
 
 /// The tests of the hypotheses.
 fn hypotheses(tests: &[Test]) -> String {
-    let head = "| | | D_f | F_bar | hypothesis | found | together with its family | this test alone, by chance | |\n|---|---|---|---|---|---|---|---|---|";
+    let head = "| | | D_f | F_bar | hypothesis | found | together with its family | p of this test alone | |\n|---|---|---|---|---|---|---|---|---|";
     let rows = tests.iter().map(|t| {
         [
             t.family.to_owned(),

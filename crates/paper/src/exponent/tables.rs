@@ -12,13 +12,13 @@ const MODEL: &str = "bem3d: 3D boundary elements; mdr1d: 1D reduction";
 const CONVENTION: &str = "rms height in which F_bar is counted: measured_rms, of each grid; fixed_spectrum, of the spectrum on 2049 x 2049 cells";
 
 const SCATTER: &str = "95 % half-width from the scatter of the surfaces";
-const GRID: &str = "what the grid leaves, from the three finest";
+const GRID: &str = "remaining discretisation error, estimated from the three finest grids";
 const FINEST: &str = "cells a side (bem3d) or elements (mdr1d) of the finest grid at this load";
 const LOCAL_SLOPE: &str = "d ln k/d ln F through five loads; empty where one is not resolved";
-const RESOLVED: &str = "whether here and at all larger loads the grid leaves less than the stated error";
+const RESOLVED: &str = "whether the discretisation error is below the stated error here and at all larger loads";
 const BAND: &str = "95 % half-width from the scatter, of all local slopes of the curve together";
 const WINDOW: &str = "one decade of F_bar, the same for every curve";
-const ALL_RESOLVED: &str = "whether the grid leaves less than the stated error at all loads of it";
+const ALL_RESOLVED: &str = "whether the discretisation error is below the stated error at all loads of the window";
 const EXPONENT: &str = "slope of ln k over ln F by least squares, loads with equal weight";
 const WIDEST: &str = "size of the level that adds most to the scatter";
 const INSIDE: &str = "which of them lies within the 95 % interval of this row";
@@ -101,7 +101,7 @@ pub fn laws(rows: &[LawRow]) -> Result<Table> {
         .column("resolved", "-", ALL_RESOLVED, |r| r.resolved)
         .column("alpha", "1", EXPONENT, |r| r.alpha.value())
         .column("scatter", "1", SCATTER, |r| r.alpha.scatter.half_width())
-        .column("grid", "1", "what the grid leaves", |r| r.alpha.grid)
+        .column("grid", "1", "the remaining discretisation error", |r| r.alpha.grid)
         .column("widest_level", "1", WIDEST, |r| r.widest.map(|w| w.0))
         .column("widest_share", "1", "its share of the variance", |r| r.widest.map(|w| w.1))
         .column("eq6", "1", "0.266 D_f", |r| eq6(r.fractal_dimension))
@@ -125,7 +125,7 @@ pub fn limits(rows: &[Limit]) -> Result<Table> {
         .column("alpha", "1", "exponent towards zero force", |r| r.law.alpha)
         .column("alpha_low", "1", "lower end of its 95 % interval, grid included", |r| r.interval[0])
         .column("alpha_high", "1", "upper end", |r| r.interval[1])
-        .column("grid", "1", "what the grid leaves of alpha, omega held", |r| r.grid)
+        .column("grid", "1", "remaining discretisation error of alpha, with omega fixed", |r| r.grid)
         .column("zeta", "1", "factor", |r| r.law.zeta)
         .column("c", "1", "factor of the correction", |r| r.law.c)
         .column("omega", "1", "power of the correction, 0.25 to 2", |r| r.law.omega)

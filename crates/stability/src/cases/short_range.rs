@@ -20,7 +20,7 @@ pub(super) const CASES: [Case; 2] = [
     },
     Case {
         name: "a map that snaps in at the first touch",
-        why: "what touches pulls in what does not, over the whole period: the first load passes all partial contacts in one avalanche",
+        why: "cells in contact pull in the others over the whole period: the first load passes all partial contacts in one avalanche",
         asserted: "traction and gap of every cell by plain sums; 0.85 of the area and more at F = 0, under a push \
                    that closes less than half without adhesion; what a push has closed stays; a pull is held",
         bound: 1e-6,

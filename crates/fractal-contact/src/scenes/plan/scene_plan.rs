@@ -88,8 +88,8 @@ pub struct Plan {
 /// [`crate::scenes::Error::Scene`] at the name of the first model that cannot, with those that can.
 pub fn check(scene: &SceneFile) -> Result<()> {
     if scene.requested.outputs.mean_gap && scene.effects.boundary != contact_model::Boundary::Periodic {
-        let diagnostic = Diagnostic::new("a mean gap is asked for, but the boundary is free")
-            .with_help("add `boundary = \"periodic\"` to [effects], or ask for the `gap` field");
+        let diagnostic = Diagnostic::new("a mean gap is requested, but the boundary is free")
+            .with_help("add `boundary = \"periodic\"` to [effects], or request the `gap` field");
         return Err(scene.at_output("mean_gap", diagnostic).into());
     }
     for model in 0..scene.models.len() {
@@ -450,7 +450,7 @@ impl fmt::Display for Plan {
             "\noutputs\n  computed   force, approach or gap prescribed with it, certificate; {}",
             names(true)
         )?;
-        writeln!(f, "  not asked for, so not computed or stored: {}", names(false))?;
+        writeln!(f, "  not requested, so not computed or stored: {}", names(false))?;
         writeln!(f, "\nmodels")?;
         for model in &self.models {
             writeln!(

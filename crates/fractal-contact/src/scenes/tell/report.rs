@@ -200,7 +200,7 @@ impl Report<'_> {
                 tr { th scope="col" { "effect" } th scope="col" { "" } th scope="col" { "why" } }
                 @for e in &self.plan.effects { tr { td { (e.name) } td { @if e.on { "on" } @else { "off" } } td { (page::words(&e.reason)) } } }
             } }
-            p { "Computed: " (names(true)) ". Not asked for, so neither computed nor stored: " (names(false)) "." }
+            p { "Computed: " (names(true)) ". Not requested, so neither computed nor stored: " (names(false)) "." }
         }
     }
 
@@ -295,7 +295,7 @@ impl Report<'_> {
             if self.scene.is_history() { "spread over the path" } else { "those of the largest loads" };
         Ok(html! {
             @if drawn.is_empty() {
-                p { "No field was asked for: name " code { "pressure" } ", " code { "gap" } " or " code { "heights" } " in [outputs]." }
+                p { "No field was requested: name " code { "pressure" } ", " code { "gap" } " or " code { "heights" } " in [outputs]." }
             } @else {
                 p {
                     @if !self.scene.surface.is_profile() { (page::READING) }
