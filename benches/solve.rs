@@ -47,7 +47,7 @@ fn solves(c: &mut Criterion) {
             group.bench_with_input(BenchmarkId::new(format!("{method:?}"), force), &force, |b, &force| {
                 b.iter(|| {
                     let contact = Bem3d { method, ..Bem3d::default() }.prepare(&scene, 1);
-                    contact.and_then(|mut contact| contact.solve(Load::Force(black_box(force))))
+                    contact.and_then(|mut contact| contact.solve(Load::force(black_box(force))))
                 });
             });
         }
@@ -59,7 +59,7 @@ fn solves(c: &mut Criterion) {
 fn sweep(c: &mut Criterion) {
     let Ok(surface) = SelfAffine::new(2.4, 1.0, 1.0) else { return };
     let scene = Scene::new(Surface::SelfAffine(surface), 1.0);
-    let loads: Vec<Load> = (0..12).map(|i| Load::Force(1e-4 * 2e5_f64.powf(f64::from(i) / 11.0))).collect();
+    let loads: Vec<Load> = (0..12).map(|i| Load::force(1e-4 * 2e5_f64.powf(f64::from(i) / 11.0))).collect();
     let mut group = c.benchmark_group("sweep with stiffness, N = 257, D_f = 2.4, 1e-6");
     group.sample_size(10);
     group.bench_function("F = 1e-4 .. 20 in 12 loads", |b| {
@@ -79,7 +79,7 @@ fn adhesive_step(c: &mut Criterion) {
     let mut scene = Scene::new(Surface::SelfAffine(surface), 1.0);
     scene.effects.boundary = Boundary::Periodic;
     scene.effects.adhesion = Adhesion::FiniteRange { work: 5e-6, range: 1e-3, law: AdhesionLaw::Exponential };
-    let step = |force| Step::normal(0.0, Load::Force(force));
+    let step = |force| Step::new(0.0, Load::force(force));
     let Ok(mut contact) = Bem3d { cells: 128, ..Bem3d::default() }.prepare(&scene, 1) else { return };
     for force in [0.01, 0.012, 0.01] {
         let state = contact.advance(step(force));

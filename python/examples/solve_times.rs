@@ -12,7 +12,7 @@ fn main() -> Result<(), Error> {
     for _ in std::io::stdin().lines() {
         let start = Instant::now();
         let mut contact = Bem3d { tolerance: 1e-8, ..Bem3d::default() }.prepare(&scene, 0)?;
-        let state = contact.solve(Load::Force(0.01))?;
+        let state = contact.solve(Load::force(0.01))?;
         println!("{} {}", start.elapsed().as_secs_f64(), state.stiffness.unwrap_or(f64::NAN));
         let _ = std::io::stdout().flush();
     }

@@ -9,7 +9,7 @@ fn main() -> Result<(), Error> {
     scene.outputs.pressure = true;
     let mut contact = Bem3d { tolerance: 1e-8, ..Bem3d::default() }.prepare(&scene, 0)?;
     for i in 0..20 {
-        let state = contact.solve(Load::Force(1e-4 * 1.5_f64.powi(i)))?;
+        let state = contact.solve(Load::force(1e-4 * 1.5_f64.powi(i)))?;
         let pressure = state.pressure().map_or(f64::NAN, |field| field.values().iter().sum());
         let found =
             [state.force, state.approach.unwrap_or(f64::NAN), state.stiffness.unwrap_or(f64::NAN), pressure];

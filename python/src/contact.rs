@@ -145,17 +145,17 @@ impl Contact {
         if token.is_set(py)? {
             return Err(stopped(py));
         }
-        let normal = match asked {
+        let load = match asked {
             Asked::Load(load) => *load,
-            Asked::Step(step) => step.normal,
+            Asked::Step(step) => step.load,
         };
         let mut inner = self.inner.take_unless(py, token)?;
         let Inner { contact, highest, largest } = &mut *inner;
-        if let (Asked::Load(load), Some(highest)) = (asked, &highest) {
-            highest.check(py, *load, area)?;
+        if let (Asked::Load(_), Some(highest)) = (asked, &highest) {
+            highest.check(py, load.normal, area)?;
         }
         if self.large {
-            memory::check_solve(py, contact, |contact| contact.required_memory(normal))?;
+            memory::check_solve(py, contact, |contact| contact.required_memory(load))?;
         }
         let mut work = |stop: &(dyn Fn() -> bool + Sync)| match asked {
             Asked::Load(load) => contact.solve_until(*load, &|| stop()),
@@ -167,11 +167,11 @@ impl Contact {
             (py.detach(|| work(&fractal_contact::never)), None)
         };
         let result = match (asked, result) {
-            (Asked::Step(_), Ok(state)) => Ok(largest.enter(normal, state)),
+            (Asked::Step(_), Ok(state)) => Ok(largest.enter(load.normal, state)),
             (Asked::Step(_), Err(Error::NotConverged { best }))
                 if best.report.status == Status::PulledOff =>
             {
-                Err(Error::NotConverged { best: Box::new(largest.enter(normal, *best)) })
+                Err(Error::NotConverged { best: Box::new(largest.enter(load.normal, *best)) })
             }
             (Asked::Step(_), failed) => failed,
             (Asked::Load(_), result) => {
@@ -180,7 +180,7 @@ impl Contact {
             }
         };
         if let (Ok(state), true) = (&result, self.yields) {
-            *highest = Some(Highest::of(highest.take(), normal, state));
+            *highest = Some(Highest::of(highest.take(), load.normal, state));
         }
         let of = |state: RustState| state::of(py, state, &self.origin);
         let mut ended = Vec::new();
@@ -340,7 +340,7 @@ impl Contact {
         let token = StopToken::new(py, stop.as_ref())?;
         let normal = load(self.normalisation(), force, approach, mean_pressure, mean_gap)?;
         let tangential = tangential(tangential_force.as_ref(), tangential_displacement.as_ref())?;
-        self.answer(py, &Asked::Step(Step { time: time.0, normal, tangential }), None, token)
+        self.answer(py, &Asked::Step(Step::new(time.0, normal.with_tangential(tangential))), None, token)
     }
 
     /// Follows a path: an iterator that yields the state at the end of each step as soon as it is known.
@@ -452,7 +452,7 @@ impl Contact {
         let loads: Vec<Load> =
             values.iter().map(|value| load_of(self.normalisation(), kind, *value)).collect();
         if let (Some(highest), Some(first)) = (&self.inner.take(py)?.highest, loads.first()) {
-            highest.check(py, *first, area)?;
+            highest.check(py, first.normal, area)?;
         }
         check_rising(py, &loads, area)
     }

@@ -65,9 +65,9 @@ pub fn ensemble(
         let values: Vec<Load> = loads
             .iter()
             .map(|(kind, value)| match kind.as_str() {
-                "approach" => Load::Approach(*value),
-                "mean_gap" => Load::MeanGap(*value),
-                _ => Load::Force(*value),
+                "approach" => Load::approach(*value),
+                "mean_gap" => Load::mean_gap(*value),
+                _ => Load::force(*value),
             })
             .collect();
         let pressures = loads.first().is_some_and(|(kind, _)| kind == "mean_pressure");
@@ -81,7 +81,7 @@ pub fn ensemble(
         let origin = Origin::new(&scene, contact.normalisation());
         let unit = &origin.normalisation;
         let given = |(kind, value): &(String, f64)| match kind.as_str() {
-            "force_bar" => Ok(Load::Force(unit.force(*value)?)),
+            "force_bar" => Ok(Load::force(unit.force(*value)?)),
             kind => Ok(load_of(unit, kind, *value)),
         };
         let loads = loads.iter().map(given).collect::<Result<Vec<Load>>>()?;

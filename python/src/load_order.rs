@@ -4,11 +4,11 @@
 //! that one without a word, so it is refused.
 
 use crate::errors::of_model;
-use fractal_contact::{ContactState, Error, Load};
+use fractal_contact::{ContactState, Error, Load, NormalLoad};
 use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
 
-/// How far a load may lie below a state that was solved for a load of another kind: what was not asked for is
+/// How far a load may lie below a state that was solved for a load of another kind: what was not prescribed is
 /// known within the tolerance of a solve.
 const WITHIN_TOLERANCE: f64 = 1e-2;
 
@@ -18,7 +18,7 @@ const REMEDY: &str = "with a hardness each load is solved from the virgin surfac
 /// The highest load of a contact, and what it led to.
 #[derive(Clone, Copy, Serialize, Deserialize)]
 pub struct Highest {
-    load: Load,
+    load: NormalLoad,
     force: f64,
     approach: Option<f64>,
     mean_gap: Option<f64>,
@@ -26,18 +26,18 @@ pub struct Highest {
 
 impl Highest {
     /// The higher of one before and a load that led to this state. Of equal ones the later.
-    pub fn of(before: Option<Self>, load: Load, state: &ContactState) -> Self {
+    pub fn of(before: Option<Self>, load: NormalLoad, state: &ContactState) -> Self {
         let found = Self { load, force: state.force, approach: state.approach, mean_gap: state.mean_gap };
         before.filter(|before| before.force > found.force).unwrap_or(found)
     }
 
     /// An error where `load` is smaller; `area` where it was given as a mean pressure.
-    pub fn check(&self, py: Python<'_>, load: Load, area: Option<f64>) -> PyResult<()> {
+    pub fn check(&self, py: Python<'_>, load: NormalLoad, area: Option<f64>) -> PyResult<()> {
         let same = std::mem::discriminant(&load) == std::mem::discriminant(&self.load);
         let reached = match load {
-            Load::Force(_) => Some(Load::Force(self.force)),
-            Load::Approach(_) => self.approach.map(Load::Approach),
-            Load::MeanGap(_) => self.mean_gap.map(Load::MeanGap),
+            NormalLoad::Force(_) => Some(NormalLoad::Force(self.force)),
+            NormalLoad::Approach(_) => self.approach.map(NormalLoad::Approach),
+            NormalLoad::MeanGap(_) => self.mean_gap.map(NormalLoad::MeanGap),
             _ => None,
         };
         match (same, reached) {
@@ -51,16 +51,16 @@ impl Highest {
 /// An error where one of the loads is smaller than that before it; `area` where they were given as mean
 /// pressures.
 pub fn check_rising(py: Python<'_>, loads: &[Load], area: Option<f64>) -> PyResult<()> {
-    loads.windows(2).try_for_each(|pair| check(py, [pair[0], pair[1]], area, 0.0))
+    loads.windows(2).try_for_each(|pair| check(py, [pair[0].normal, pair[1].normal], area, 0.0))
 }
 
 /// An error where the second load is smaller than the first, which is of its kind, by more than a share of
 /// it.
-fn check(py: Python<'_>, loads: [Load; 2], area: Option<f64>, slack: f64) -> PyResult<()> {
+fn check(py: Python<'_>, loads: [NormalLoad; 2], area: Option<f64>, slack: f64) -> PyResult<()> {
     let (name, before, value, sign) = match loads {
-        [Load::Force(before), Load::Force(value)] => ("force", before, value, 1.0),
-        [Load::Approach(before), Load::Approach(value)] => ("approach", before, value, 1.0),
-        [Load::MeanGap(before), Load::MeanGap(value)] => ("mean_gap", before, value, -1.0),
+        [NormalLoad::Force(before), NormalLoad::Force(value)] => ("force", before, value, 1.0),
+        [NormalLoad::Approach(before), NormalLoad::Approach(value)] => ("approach", before, value, 1.0),
+        [NormalLoad::MeanGap(before), NormalLoad::MeanGap(value)] => ("mean_gap", before, value, -1.0),
         _ => return Ok(()),
     };
     if sign * (before - value) > slack * before.abs() {

@@ -9,10 +9,10 @@ use pyo3::types::PyString;
 /// The load of a kind.
 pub fn load_of(normalisation: &Normalisation, kind: &str, value: f64) -> Load {
     match kind {
-        "mean_pressure" => Load::Force(value * normalisation.length.powi(2)),
-        "approach" => Load::Approach(value),
-        "mean_gap" => Load::MeanGap(value),
-        _ => Load::Force(value),
+        "mean_pressure" => Load::force(value * normalisation.length.powi(2)),
+        "approach" => Load::approach(value),
+        "mean_gap" => Load::mean_gap(value),
+        _ => Load::force(value),
     }
 }
 

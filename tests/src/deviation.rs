@@ -38,8 +38,8 @@ pub fn deviation(
     for case in &problem.cases {
         let exact = problem.exact(case)?;
         let load = match prescribed {
-            Prescribed::Force => Load::Force(exact.force),
-            Prescribed::Approach => Load::Approach(case.approach),
+            Prescribed::Force => Load::force(exact.force),
+            Prescribed::Approach => Load::approach(case.approach),
         };
         let found = match model.prepare(&case.scene, 0) {
             Ok(mut contact) => contact.solve(load)?,

@@ -31,7 +31,7 @@ impl Problem {
     /// # Errors
     /// Those of the theory.
     pub fn exact(&self, case: &Case) -> Result<ContactState> {
-        self.theory.prepare(&case.scene, 0)?.solve(Load::Approach(case.approach))
+        self.theory.prepare(&case.scene, 0)?.solve(Load::approach(case.approach))
     }
 }
 

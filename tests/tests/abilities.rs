@@ -96,15 +96,15 @@ fn prepared(model: &dyn ContactModel, scene: &Scene) -> Result<Box<dyn PreparedC
 
 /// A state under a light load.
 fn pressed(contact: &mut dyn PreparedContact, scene: &Scene) -> Result<ContactState, Error> {
-    let normal = Load::Force(0.001);
+    let normal = Load::force(0.001);
     let needs_path = scene.effects.named().any(|effect| ["friction", "rheology"].contains(&effect.key()));
     if !needs_path {
         return contact.solve(normal);
     }
-    contact.advance(Step::normal(0.0, normal))?;
+    contact.advance(Step::new(0.0, normal))?;
     let friction = scene.effects.friction != Friction::Off;
     let tangential = if friction { Tangential::force_along_x(1e-4) } else { Tangential::default() };
-    contact.advance(Step { time: 1.0, normal, tangential })
+    contact.advance(Step::new(1.0, normal.with_tangential(tangential)))
 }
 
 /// Every scene that its abilities name, with one surface, boundary and effect each.
@@ -141,7 +141,7 @@ pub fn told(model: &dyn ContactModel) -> BTreeSet<&'static str> {
         let has = |quantity: &&Quantity| (quantity.value)(&state, &normalisation) != Value::Empty;
         told.extend(QUANTITIES.iter().filter(has).map(|quantity| quantity.name));
         if model.abilities().paths != Paths::Forgotten {
-            let step = Step::normal(2.0, Load::Force(0.001));
+            let step = Step::new(2.0, Load::force(0.001));
             let state = contact.advance(step);
             told.extend(state.is_ok_and(|state| state.time.is_some()).then_some("time"));
         }
@@ -150,9 +150,9 @@ pub fn told(model: &dyn ContactModel) -> BTreeSet<&'static str> {
             contact.restart();
             let mut largest = LargestPull::default();
             for force in [1e-3, -1e-9, -1e3] {
-                let load = Load::Force(force);
-                let reached = contact.advance(Step::normal(0.0, load)).or_else(Error::into_best);
-                let Ok(state) = reached.map(|state| largest.enter(load, state)) else { break };
+                let load = Load::force(force);
+                let reached = contact.advance(Step::new(0.0, load)).or_else(Error::into_best);
+                let Ok(state) = reached.map(|state| largest.enter(load.normal, state)) else { break };
                 let has = |quantity: &&Quantity| {
                     quantity.role == Role::OfPath && (quantity.value)(&state, &normalisation) != Value::Empty
                 };
@@ -161,7 +161,7 @@ pub fn told(model: &dyn ContactModel) -> BTreeSet<&'static str> {
         }
         // An error of the force is known where a distance is prescribed.
         if contact
-            .solve(Load::Approach(1e-4))
+            .solve(Load::approach(1e-4))
             .is_ok_and(|state| state.report.certificate.force_error.is_some())
         {
             told.insert("force_error");
@@ -309,9 +309,9 @@ fn only_declared_kinds_of_loads_are_taken() {
         let gap = pressed(contact.as_mut(), &scene).ok().and_then(|state| state.mean_gap).unwrap_or(0.01);
         for &kind in LoadKind::ALL {
             let load = match kind {
-                LoadKind::Force => Load::Force(0.001),
-                LoadKind::Approach => Load::Approach(1e-4),
-                LoadKind::MeanGap => Load::MeanGap(gap),
+                LoadKind::Force => Load::force(0.001),
+                LoadKind::Approach => Load::approach(1e-4),
+                LoadKind::MeanGap => Load::mean_gap(gap),
                 other => panic!("a load of the kind {other:?}"),
             };
             // Of the two distances the boundary decides which there is.
@@ -322,7 +322,7 @@ fn only_declared_kinds_of_loads_are_taken() {
             // Of what relaxes a jump may have no answer.
             let answered = if abilities.paths == Paths::Needed {
                 contact.restart();
-                contact.advance(Step::normal(1.0, load))
+                contact.advance(Step::new(1.0, load))
             } else {
                 contact.solve(load)
             };

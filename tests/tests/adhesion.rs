@@ -27,7 +27,7 @@ fn mdr_is_jkr_for_a_sphere() {
         let pull_off = 1.5 * std::f64::consts::PI * work * 1.3;
         for force in [-0.9 * pull_off, 0.0, 0.1 * pull_off, 1e-6, 0.05] {
             let (one, other) =
-                (press(&Jkr, work, Load::Force(force)), press(&Mdr1d::default(), work, Load::Force(force)));
+                (press(&Jkr, work, Load::force(force)), press(&Mdr1d::default(), work, Load::force(force)));
             assert_relative_eq!(one.area.unwrap(), other.area.unwrap(), max_relative = EXACT);
             for pick in [|s: &ContactState| s.stiffness, |s: &ContactState| s.stiffness_fixed_area] {
                 assert_relative_eq!(pick(&one).unwrap(), pick(&other).unwrap(), max_relative = EXACT);
@@ -40,7 +40,7 @@ fn mdr_is_jkr_for_a_sphere() {
                 epsilon = EXACT * one.area.unwrap()
             );
             let (one, other) =
-                (press(&Jkr, work, Load::Approach(d)), press(&Mdr1d::default(), work, Load::Approach(d)));
+                (press(&Jkr, work, Load::approach(d)), press(&Mdr1d::default(), work, Load::approach(d)));
             assert_relative_eq!(one.force, other.force, max_relative = EXACT, epsilon = EXACT * pull_off);
         }
     }
@@ -66,11 +66,11 @@ fn force_is_the_slope_of_elastic_and_surface_energy() {
     let work = 1e-3;
     for (model, name) in models() {
         let energy = |d: f64| {
-            let area = press(model, work, Load::Approach(d)).area.unwrap();
+            let area = press(model, work, Load::approach(d)).area.unwrap();
             elastic_energy(d, (area / std::f64::consts::PI).sqrt()) - work * area
         };
         for d in [-0.005, 0.0, 0.01, 0.1] {
-            let force = press(model, work, Load::Approach(d)).force;
+            let force = press(model, work, Load::approach(d)).force;
             let slope = |step: f64| (energy(d + step) - energy(d - step)) / (2.0 * step);
             let (coarse, fine) = (slope(4e-4) - force, slope(1e-4) - force);
             let scale = force.abs().max(work);
@@ -87,10 +87,10 @@ fn without_work_of_adhesion_it_is_hertz() {
     // stationary: there it is w dA/dF, of first order; and so is the difference of the stiffness along the
     // branch, its inverse derivative.
     let force = 0.01;
-    let elastic = press(&Jkr, 0.0, Load::Force(force));
+    let elastic = press(&Jkr, 0.0, Load::force(force));
     for (model, name) in models() {
         let difference = |work: f64| {
-            let state = press(model, work, Load::Force(force));
+            let state = press(model, work, Load::force(force));
             [
                 state.area.unwrap() / elastic.area.unwrap() - 1.0,
                 state.stiffness_fixed_area.unwrap() / elastic.stiffness.unwrap() - 1.0,
@@ -107,7 +107,7 @@ fn without_work_of_adhesion_it_is_hertz() {
                 assert!(pair[1][which] > 0.0 && (ratio / fall - 1.0).abs() < 0.01, "{name} {which}: {ratio}");
             }
         }
-        let off = press(model, 0.0, Load::Force(force));
+        let off = press(model, 0.0, Load::force(force));
         assert_relative_eq!(off.area.unwrap(), elastic.area.unwrap(), max_relative = EXACT);
         assert_relative_eq!(off.approach.unwrap(), elastic.approach.unwrap(), max_relative = EXACT);
     }
@@ -116,11 +116,11 @@ fn without_work_of_adhesion_it_is_hertz() {
 #[test]
 fn a_stronger_adhesion_has_a_larger_contact_and_a_larger_pull_off_force() {
     for (model, name) in models() {
-        let states = [0.0, 1e-6, 1e-4, 1e-2].map(|work| press(model, work, Load::Force(0.01)));
+        let states = [0.0, 1e-6, 1e-4, 1e-2].map(|work| press(model, work, Load::force(0.01)));
         for pair in states.windows(2) {
             assert!(pair[1].area > pair[0].area && pair[1].approach > pair[0].approach, "{name}");
         }
-        let states = [0.0, 1e-6, 1e-4, 1e-2].map(|work| press(model, work, Load::Approach(0.01)));
+        let states = [0.0, 1e-6, 1e-4, 1e-2].map(|work| press(model, work, Load::approach(0.01)));
         assert!(states.windows(2).all(|pair| pair[1].force < pair[0].force), "{name}");
     }
 }
@@ -156,8 +156,8 @@ impl OnCells {
 
     /// Force over pi w R and contact radius in units at an approach in units, the next one of a path.
     fn at(&mut self, approach: f64) -> (f64, f64) {
-        let load = Load::Approach(approach * self.unit * self.unit);
-        let state = self.path.advance(Step::normal(0.0, load)).unwrap();
+        let load = Load::approach(approach * self.unit * self.unit);
+        let state = self.path.advance(Step::new(0.0, load)).unwrap();
         (state.force / self.force, (state.area.unwrap() / PI).sqrt() / self.unit)
     }
 

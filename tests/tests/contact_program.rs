@@ -78,10 +78,10 @@ fn cattaneos_sphere_cell_by_cell() {
     let polyethylene = body(200.0, 0.42);
     let pair = Pair { first: polyethylene, second: polyethylene };
     let mut contact = prepared(ball, pair, Friction::coulomb(mu));
-    let pressed = contact.advance(Step::normal(0.0, Load::Force(force))).unwrap();
+    let pressed = contact.advance(Step::new(0.0, Load::force(force))).unwrap();
     assert_printed("elastic energy, pressed", energy(&pressed), "7.350E-05");
     let tangential = Tangential::force_along_x(-0.875 * mu * force);
-    let state = contact.advance(Step { time: 0.0, normal: Load::Force(force), tangential }).unwrap();
+    let state = contact.advance(Step::new(0.0, Load::force(force).with_tangential(tangential))).unwrap();
 
     assert_eq!(counts(&state), [177, 45, 132]);
     assert_printed("approach", state.approach.unwrap(), "1.998E-02");
@@ -154,7 +154,7 @@ fn the_sphere_before_it_rolls() {
         let ball = paraboloid(0.002_963, [columns, 33], [-4.125; 2], 0.25);
         let mut contact = prepared(ball, Pair { first: alike, second: alike }, Friction::coulomb(mu));
         let tangential = Tangential::force_along_x(-0.657 * mu * force);
-        let state = contact.advance(Step { time: 0.0, normal: Load::Force(force), tangential }).unwrap();
+        let state = contact.advance(Step::new(0.0, Load::force(force).with_tangential(tangential))).unwrap();
         assert_eq!(counts(&state), [621, 305, 316]);
         assert_printed("approach", state.approach.unwrap(), "7.258E-02");
         assert_printed("largest pressure", largest(state.pressure().unwrap()), "1.834E-02");
@@ -180,7 +180,7 @@ fn spences_compression_in_35_increments() {
     for row in &increments {
         let force = number(row, "force");
         let tangential = Tangential::Displacement([0.0; 2]);
-        let state = contact.advance(Step { time: 0.0, normal: Load::Force(force), tangential }).unwrap();
+        let state = contact.advance(Step::new(0.0, Load::force(force).with_tangential(tangential))).unwrap();
         assert_printed("approach", state.approach.unwrap(), &row["approach"]);
         assert_printed("largest pressure", largest(state.pressure().unwrap()), &row["largest_pressure"]);
         let found = state.tangential.unwrap();
@@ -214,7 +214,7 @@ fn spences_compression_in_35_increments() {
 
     // Without friction and on a rigid body, by an independent program.
     let pair = Pair { second: Body::Rigid, ..pair };
-    let smooth = prepared(map, pair, Friction::Off).solve(Load::Force(0.470_508)).unwrap();
+    let smooth = prepared(map, pair, Friction::Off).solve(Load::force(0.470_508)).unwrap();
     assert_eq!(smooth.report.contact_cells, Some(973));
     assert_printed("approach", smooth.approach.unwrap(), "0.1008115");
     assert_printed("largest pressure", largest(smooth.pressure().unwrap()), "0.0183430");

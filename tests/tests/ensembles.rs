@@ -25,7 +25,7 @@ fn curves(model: &dyn ContactModel, fractal_dimension: f64) -> Curves {
         let mut contact = model.prepare(&scene, surface_seed(5, index)).unwrap();
         let normalisation = contact.normalisation();
         let sample = |force_bar: f64| {
-            let state = contact.solve(Load::Force(normalisation.force(force_bar).unwrap())).unwrap();
+            let state = contact.solve(Load::force(normalisation.force(force_bar).unwrap())).unwrap();
             let stiffness_bar = normalisation.stiffness_bar(state.stiffness.unwrap());
             Some(StiffnessSample { stiffness_bar, contact_cells: state.report.contact_cells })
         };
@@ -65,7 +65,7 @@ fn the_line_ends_at_its_own_plateau() {
     for fractal_dimension in [2.0, 2.6, 3.0] {
         let scene = Scene::new(Surface::SelfAffine(rough(fractal_dimension).unwrap()), 1.0);
         let mut contact = Mdr1d { elements: 4096 }.prepare(&scene, 1).unwrap();
-        let state = contact.solve(Load::Force(1e3)).unwrap();
+        let state = contact.solve(Load::force(1e3)).unwrap();
         let plateau = contact.normalisation().stiffness_bar(state.stiffness.unwrap());
         // (2/sqrt(pi))/1.1419, four digits.
         approx::assert_relative_eq!(plateau, 0.9882, max_relative = 1e-4);

@@ -47,10 +47,8 @@ fn fractal() -> Surface {
 fn sheared(model: &dyn ContactModel) -> Vec<ContactState> {
     let force = 4.0 / 3.0 * 4.0 * 0.008;
     let mut history = model.prepare(&sliding(sphere()), 0).unwrap();
-    let path = [0.0, 0.25, 0.5, 0.9, -0.4, 0.6].map(|share| Step {
-        time: 0.0,
-        normal: Load::Force(force),
-        tangential: Tangential::force_along_x(share * MU * force),
+    let path = [0.0, 0.25, 0.5, 0.9, -0.4, 0.6].map(|share| {
+        Step::new(0.0, Load::force(force).with_tangential(Tangential::force_along_x(share * MU * force)))
     });
     history.follow(&path).unwrap()
 }
@@ -109,19 +107,18 @@ fn beside_a_difference_of_normal_contacts(model: &dyn ContactModel, depth: f64, 
     let shear = pair().shear_modulus().unwrap() / pair().contact_modulus().unwrap();
     let d = depth * height;
     let mut history = Equivalent { per_decade, ..Equivalent::new(model) }.prepare(scene, 2).unwrap();
-    let top = direct.solve(Load::Approach(d)).unwrap();
+    let top = direct.solve(Load::approach(d)).unwrap();
     let mut worst = [0.0_f64; 2];
     for share in [0.05, 0.3, 0.6, 0.9] {
         history.restart();
-        history.advance(Step::normal(0.0, Load::Approach(d))).unwrap();
+        history.advance(Step::new(0.0, Load::approach(d))).unwrap();
         let u = share * d * MU / shear;
-        let step =
-            Step { time: 0.0, normal: Load::Approach(d), tangential: Tangential::displacement_along_x(u) };
+        let step = Step::new(0.0, Load::approach(d).with_tangential(Tangential::displacement_along_x(u)));
         let state = history.advance(step).unwrap();
         // The normal part is the model's own, to its tolerance: a warm start may differ.
         assert_relative_eq!(state.force, top.force, max_relative = 1e-6);
         let tangential = state.tangential.unwrap();
-        let below = direct.solve(Load::Approach((1.0 - share) * d)).unwrap();
+        let below = direct.solve(Load::approach((1.0 - share) * d)).unwrap();
         let force = (tangential.force[0] - MU * (top.force - below.force)) / (MU * top.force);
         let held = 2.0 * scene.contact_modulus * tangential.stick_radius.unwrap();
         let stiffness = (held - below.stiffness.unwrap()) / top.stiffness.unwrap();
@@ -171,7 +168,7 @@ fn cycle(
             } else {
                 t - 4.0
             };
-        let step = Step { time: 0.0, normal, tangential: Tangential::displacement_along_x(u) };
+        let step = Step::new(0.0, normal.with_tangential(Tangential::displacement_along_x(u)));
         let tangential = history.advance(step)?.tangential.unwrap();
         if t > 1.0 {
             work += 0.5 * (tangential.force[0] + last.1) * (u - last.0);
@@ -192,8 +189,8 @@ fn the_work_of_a_cycle_is_dissipated_and_the_loop_closes() {
     let model = Bem3d { cells: 33, ..Bem3d::default() };
     let mut history = Equivalent::new(model).prepare(&sliding(fractal()), 2).unwrap();
     let height = history.normalisation().height.unwrap();
-    let normal = Load::Approach(height);
-    history.advance(Step::normal(0.0, normal)).unwrap();
+    let normal = Load::approach(height);
+    history.advance(Step::new(0.0, normal)).unwrap();
     let segments = 60;
     let (forces, ratio) = cycle(&mut *history, normal, 0.2 * height, segments).unwrap();
     // Trapezia over 60 segments: second order.
@@ -215,9 +212,9 @@ fn a_step_of_a_rough_viscoelastic_body_relaxes_to_the_models_own_force() {
     let mut history = Equivalent::new(model).prepare(&scene, 2).unwrap();
     let mut direct = model.prepare(&elastic(&scene), 2).unwrap();
     let d = history.normalisation().height.unwrap();
-    let own = direct.solve(Load::Approach(d)).unwrap();
+    let own = direct.solve(Load::approach(d)).unwrap();
     for time in [0.0, 0.1, 2.0, 1e6] {
-        let state = history.advance(Step::normal(time, Load::Approach(d))).unwrap();
+        let state = history.advance(Step::new(time, Load::approach(d))).unwrap();
         // F(t) = E*(t)/E* F.
         let contact_modulus = 1.0 + 3.0 * (-time / 2.0_f64).exp();
         assert_relative_eq!(state.force, contact_modulus * own.force, max_relative = 1e-9);
@@ -226,8 +223,8 @@ fn a_step_of_a_rough_viscoelastic_body_relaxes_to_the_models_own_force() {
     history.restart();
     let force = own.force;
     for (time, share) in [(0.0, 0.25), (1e6, 1.0)] {
-        let state = history.advance(Step::normal(time, Load::Force(force))).unwrap();
-        let there = direct.solve(Load::Force(share * force)).unwrap();
+        let state = history.advance(Step::new(time, Load::force(force))).unwrap();
+        let there = direct.solve(Load::force(share * force)).unwrap();
         let scale = history.normalisation().height.unwrap();
         assert_relative_eq!(
             state.approach.unwrap(),
@@ -242,7 +239,7 @@ fn a_step_of_a_rough_viscoelastic_body_relaxes_to_the_models_own_force() {
 fn a_table_of_hertz_relaxes_as_the_body() {
     let scene = creeping(sphere());
     let path = [(0.5, 0.01), (3.0, 0.012), (3.5, 0.03), (9.0, 0.031)]
-        .map(|(time, d)| Step::normal(time, Load::Approach(d)));
+        .map(|(time, d)| Step::new(time, Load::approach(d)));
     let exact = Viscoelastic.prepare(&scene, 0).unwrap().follow(&path).unwrap();
     let error = |per_decade: u32| {
         let model = Equivalent { per_decade, ..Equivalent::new(Hertz) };
@@ -259,16 +256,16 @@ fn a_flat_square_slips_as_a_whole_and_sticks_as_mindlin_says() {
     let model = Bem3d { cells: 16, ..Bem3d::default() };
     let scene = sliding(Surface::Flat { size: 1.0.into() });
     let mut history = Equivalent::new(model).prepare(&scene, 0).unwrap();
-    let state = history.advance(Step::normal(0.0, Load::Force(1e-3))).unwrap();
+    let state = history.advance(Step::new(0.0, Load::force(1e-3))).unwrap();
     let shear = pair().shear_modulus().unwrap() / pair().contact_modulus().unwrap();
     // k_x/k_z = (2 - 2 nu)/(2 - nu) = 2/3, until mu F.
     assert_relative_eq!(shear, 2.0 / 3.0, max_relative = 1e-14);
     let reach = MU * 1e-3 / (shear * state.stiffness.unwrap());
     for (share, force) in [(0.5, 0.5), (0.99, 0.99), (1.5, 1.0)] {
         history.restart();
-        history.advance(Step::normal(0.0, Load::Force(1e-3))).unwrap();
+        history.advance(Step::new(0.0, Load::force(1e-3))).unwrap();
         let tangential = Tangential::displacement_along_x(share * reach);
-        let step = Step { time: 0.0, normal: Load::Force(1e-3), tangential };
+        let step = Step::new(0.0, Load::force(1e-3).with_tangential(tangential));
         let found = history.advance(step).unwrap().tangential.unwrap();
         // The table's face has the solves' own accuracy.
         assert_relative_eq!(found.force[0], force * MU * 1e-3, max_relative = 1e-5);
@@ -295,12 +292,12 @@ fn history_in_time_and_in_load_give_the_same_rough_contact() {
         let mut last = 0.0;
         for i in 0..=segments {
             let time = 4.0 * f64::from(i) / f64::from(segments);
-            let d = by_force.advance(Step::normal(time, Load::Force(force))).unwrap().approach.unwrap();
-            last = by_approach.advance(Step::normal(time, Load::Approach(d))).unwrap().force;
+            let d = by_force.advance(Step::new(time, Load::force(force))).unwrap().approach.unwrap();
+            last = by_approach.advance(Step::new(time, Load::approach(d))).unwrap().force;
         }
         (last / force - 1.0).abs()
     };
-    assert!(by_force.advance(Step::normal(0.0, Load::Force(force))).is_ok());
+    assert!(by_force.advance(Step::new(0.0, Load::force(force))).is_ok());
     let (coarse, fine) = (error(10), error(40));
     assert!(fine < 0.1 * coarse && fine < 1e-3, "{coarse:e} {fine:e}");
 }
@@ -328,11 +325,11 @@ fn hard_surfaces_have_profiles() {
         for force in [1e-6, 1e-3, 0.1] {
             let mut slides = model.prepare(&sliding(surface.clone()), 0).unwrap();
             for (normal, share) in [(1.0, 0.5), (3.0, -0.9), (2.0, 1.0), (0.0, 0.0), (1.0, 0.3)] {
-                let step = Step {
-                    time: 0.0,
-                    normal: Load::Force(normal * force),
-                    tangential: Tangential::force_along_x(share * MU * normal * force),
-                };
+                let step = Step::new(
+                    0.0,
+                    Load::force(normal * force)
+                        .with_tangential(Tangential::force_along_x(share * MU * normal * force)),
+                );
                 let state =
                     slides.advance(step).unwrap_or_else(|error| panic!("{which} {force} {normal}: {error}"));
                 assert!(state.tangential.unwrap().displacement[0].is_finite());
@@ -340,7 +337,7 @@ fn hard_surfaces_have_profiles() {
             let mut creeps = model.prepare(&creeping(surface.clone()), 0).unwrap();
             let mut last = 0.0;
             for (time, share) in [(0.0, 1.0), (1.0, 1.0), (10.0, 2.0), (1e3, 2.0)] {
-                let state = creeps.advance(Step::normal(time, Load::Force(share * force))).unwrap();
+                let state = creeps.advance(Step::new(time, Load::force(share * force))).unwrap();
                 let d = state.approach.unwrap();
                 assert!(d >= last, "{which} {force} {time}");
                 last = d;

@@ -123,7 +123,7 @@ fn hertz_has_its_printed_numbers() {
     let scene = Scene::new(Surface::Sphere { radius: 1.0, size: 0.25.into() }, 1.0);
     // Second and first order at 92 cells across the contact (see TABLE).
     let model = Bem3d { cells: 127, tolerance: 1e-8, ..Bem3d::default() };
-    let state = model.prepare(&scene, 0).unwrap().solve(Load::Force(1e-3)).unwrap();
+    let state = model.prepare(&scene, 0).unwrap().solve(Load::force(1e-3)).unwrap();
     approx::assert_relative_eq!(state.approach.unwrap(), 0.008_254_818_122, max_relative = 5e-5);
     approx::assert_relative_eq!(state.stiffness.unwrap(), 2.0 * 0.090_856_029_642, max_relative = 3e-3);
 }

@@ -16,7 +16,7 @@ fn exponent(model: &dyn ContactModel, n: f64, least: f64) -> f64 {
     let row = force
         .iter()
         .map(|&f| {
-            let state = contact.solve(Load::Force(f)).unwrap();
+            let state = contact.solve(Load::force(f)).unwrap();
             Some(StiffnessSample {
                 stiffness_bar: normalisation.stiffness_bar(state.stiffness.unwrap()),
                 contact_cells: state.report.contact_cells,

@@ -23,13 +23,13 @@ fn springs_are_cattaneo_and_mindlin_and_deresiewicz() {
         scene.effects.friction = Friction::coulomb(0.35);
         let models: [&dyn ContactModel; 2] = [&CattaneoMindlin, &PartialSlip];
         let [mut closed, mut springs] = models.map(|model| model.prepare(&scene, 0).unwrap());
-        let normal = Load::Approach(0.01);
-        let limit = 0.35 * closed.advance(Step::normal(0.0, normal)).unwrap().force;
-        springs.advance(Step::normal(0.0, normal)).unwrap();
+        let normal = Load::approach(0.01);
+        let limit = 0.35 * closed.advance(Step::new(0.0, normal)).unwrap().force;
+        springs.advance(Step::new(0.0, normal)).unwrap();
         // Turns inside turns, loops that close, gross slip and back.
         let shares = [0.5, 0.8, -0.2, 0.3, -0.1, 0.9, -0.9, 0.0, 0.95, -1.0, 0.4, 1.0, 0.0];
         for (i, share) in shares.into_iter().enumerate() {
-            let step = Step { time: i as f64, normal, tangential: Tangential::force_along_x(share * limit) };
+            let step = Step::new(i as f64, normal.with_tangential(Tangential::force_along_x(share * limit)));
             let [one, other] = [&mut closed, &mut springs].map(|history| history.advance(step).unwrap());
             assert_relative_eq!(
                 one.contact_radius.unwrap(),
@@ -80,7 +80,7 @@ const SHEAR: f64 = 1.4 / 1.7;
 const D: f64 = 0.01;
 
 fn shear(history: &mut dyn PreparedContact, tangential: Tangential) -> ContactState {
-    history.advance(Step { time: 0.0, normal: Load::Approach(D), tangential }).unwrap()
+    history.advance(Step::new(0.0, Load::approach(D).with_tangential(tangential))).unwrap()
 }
 
 #[test]

@@ -58,7 +58,7 @@ fn errors(cells: usize, axes: [f64; 2], pair: Pair) -> [f64; 4] {
     scene.effects.friction = Friction::coulomb(1e3);
     scene.outputs = Outputs { stiffness: true, tangential_stiffness_stuck: true, ..Outputs::default() };
     let mut contact = Bem3d { tolerance: 1e-8, ..Bem3d::default() }.prepare(&scene, 0).unwrap();
-    let state = contact.advance(Step::normal(0.0, Load::Force(1e-3))).unwrap();
+    let state = contact.advance(Step::new(0.0, Load::force(1e-3))).unwrap();
     let normal = state.stiffness.unwrap();
     let k = state.tangential.unwrap().stiffness_stuck.unwrap();
     assert!(k[0][1].abs() < 1e-7 * k[0][0], "{k:?}");
@@ -123,7 +123,8 @@ fn the_radius_that_sticks_is_cattaneos() {
         let mut contact = Bem3d { cells, tolerance: 1e-8, ..Bem3d::default() }.prepare(&scene, 0).unwrap();
         for share in [0.25, 0.5, 0.75, 0.9] {
             let tangential = Tangential::force_along_x(share * 0.3 * force);
-            let state = contact.advance(Step { time: 0.0, normal: Load::Force(force), tangential }).unwrap();
+            let state =
+                contact.advance(Step::new(0.0, Load::force(force).with_tangential(tangential))).unwrap();
             let found = state.tangential.unwrap();
             let (stick, slip) = (found.stick_area.unwrap(), found.slip_area.unwrap());
             assert!(((stick + slip) / state.area.unwrap() - 1.0).abs() < 1e-12);
@@ -146,7 +147,7 @@ fn punch() -> Surface {
 
 /// The contact is loaded by a normal load alone, without a tangential displacement.
 fn pressed(normal: Load) -> Step {
-    Step { time: 0.0, normal, tangential: Tangential::Displacement([0.0; 2]) }
+    Step::new(0.0, normal.with_tangential(Tangential::Displacement([0.0; 2])))
 }
 
 /// Radius of stick over that of contact, by areas.
@@ -164,7 +165,7 @@ fn a_punch_without_slip_is_spences() {
         let found = [32, 64, 128].map(|cells| {
             let scene = coupled(punch(), on_rigid(nu), 1e3);
             let model = Bem3d { cells, tolerance: 1e-7, ..Bem3d::default() };
-            let load = Load::Approach(1e-3);
+            let load = Load::approach(1e-3);
             let mut smooth = scene.clone();
             (smooth.effects, smooth.outputs) = (Effects::default(), Outputs::default());
             let without = model.prepare(&smooth, 0).unwrap().solve(load).unwrap().force;
@@ -217,7 +218,7 @@ fn a_punch_that_slips_at_its_edge_tends_to_goodmans_radius() {
         let model = Bem3d { cells, tolerance: 1e-7, ..Bem3d::default() };
         let found = [1e-3, 0.1].map(|force| {
             let mut contact = model.prepare(&coupled(punch(), pair, share * beta), 0).unwrap();
-            stick_share(&contact.advance(pressed(Load::Force(force))).unwrap())
+            stick_share(&contact.advance(pressed(Load::force(force))).unwrap())
         });
         println!("nu {nu}: {found:?}, {exact}");
         assert!((found[0] - found[1]).abs() < 1e-12, "{found:?}");
@@ -235,7 +236,7 @@ fn the_radius_that_sticks_depends_on_neither_profile_nor_load() {
     let (pair, mu) = (on_rigid(0.3), 0.15);
     let model = Bem3d { cells: 64, tolerance: 1e-6, ..Bem3d::default() };
     let mut contact = model.prepare(&coupled(punch(), pair, mu), 0).unwrap();
-    let flat = stick_share(&contact.advance(pressed(Load::Force(1e-3))).unwrap());
+    let flat = stick_share(&contact.advance(pressed(Load::force(1e-3))).unwrap());
     let contact_modulus = pair.contact_modulus().unwrap();
     // The force at a radius of 0.4, and its power of the radius.
     let cone = (Surface::Cone { slope: 0.1, size: 1.0.into() }, 0.05 * PI * contact_modulus * 0.16, 2.0);
@@ -247,7 +248,7 @@ fn the_radius_that_sticks_depends_on_neither_profile_nor_load() {
             let mut contact = model.prepare(&scene, 0).unwrap();
             let shares = (1..=steps).map(|i| {
                 let radius = f64::from(i) / f64::from(steps);
-                let state = contact.advance(pressed(Load::Force(most * radius.powf(power)))).unwrap();
+                let state = contact.advance(pressed(Load::force(most * radius.powf(power)))).unwrap();
                 stick_share(&state)
             });
             // The last quarter, of radii from 19 cells on.
@@ -274,7 +275,7 @@ fn a_coupled_loop_never_gains_energy() {
             let mut at = |[d, x, y]: [f64; 3]| {
                 let tangential = Tangential::Displacement([x, y]);
                 let state =
-                    contact.advance(Step { time: 0.0, normal: Load::Approach(d), tangential }).unwrap();
+                    contact.advance(Step::new(0.0, Load::approach(d).with_tangential(tangential))).unwrap();
                 let found = state.tangential.unwrap();
                 ([state.force, found.force[0], found.force[1]], found.dissipated)
             };

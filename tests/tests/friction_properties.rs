@@ -90,7 +90,7 @@ impl Drawn {
         } else {
             Tangential::Displacement([cos, sin].map(|e| e * share * 2.0 * self.reach()))
         };
-        Step { time: 0.0, normal: Load::Force(force), tangential }
+        Step::new(0.0, Load::force(force).with_tangential(tangential))
     }
 }
 
@@ -284,12 +284,12 @@ proptest! {
         let (mut here, mut there) = (drawn.prepare(), turned.prepare());
         for leg in legs {
             let step = drawn.step(leg);
-            let tangential = match step.tangential {
+            let tangential = match step.load.tangential {
                 Tangential::Force(force) => Tangential::Force(turn(force)),
                 other => Tangential::Displacement(turn(other.components())),
             };
             let one = here.advance(step).unwrap();
-            let other = there.advance(Step { tangential, ..step }).unwrap();
+            let other = there.advance(Step { load: step.load.with_tangential(tangential), ..step }).unwrap();
             let (a, b) = (one.tangential.unwrap(), other.tangential.unwrap());
             let most = a.sliding_force.unwrap();
             let off = |a: [f64; 2], b: [f64; 2]| {
@@ -319,7 +319,7 @@ fn hostile() -> (Drawn, Box<dyn PreparedContact>) {
 }
 
 fn advance(contact: &mut dyn PreparedContact, tangential: Tangential) -> Result<ContactState, Error> {
-    contact.advance(Step { time: 0.0, normal: Load::Force(0.3), tangential })
+    contact.advance(Step::new(0.0, Load::force(0.3).with_tangential(tangential)))
 }
 
 /// Errors name the value, and the path continues as if the step had not been requested.
@@ -353,7 +353,7 @@ fn invalid_tangential_loads_are_named() {
         }
     }
     for normal in [f64::NAN, -1.0, f64::INFINITY] {
-        let step = Step { time: 0.0, normal: Load::Force(normal), tangential: good };
+        let step = Step::new(0.0, Load::force(normal).with_tangential(good));
         let refused = contact.advance(step).unwrap_err().to_string();
         assert!(refused.contains(&normal.to_string()), "{refused}");
     }

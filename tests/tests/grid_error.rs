@@ -17,7 +17,7 @@ fn states(surface: &Surface, boundary: Boundary, cells: usize, seed: u64, forces
     };
     let mut contact = Bem3d { cells, tolerance: 1e-8, ..Bem3d::default() }.prepare(&scene, seed).unwrap();
     let state = |&force: &f64| {
-        let state = contact.solve(Load::Force(force)).unwrap();
+        let state = contact.solve(Load::force(force)).unwrap();
         let resolution = state.resolution.unwrap();
         let area = resolution.corrected_area.unwrap();
         let cells = state.report.contact_cells.unwrap() as f64;
@@ -181,7 +181,7 @@ fn extrapolated_areas_miss_half_of_the_difference_at_most() {
         for seed in 1..=4 {
             let mut contact = model.prepare(&scene, seed).unwrap();
             all += [0.3, 1.0]
-                .map(|load| contact.solve(Load::Force(0.01 * load)).unwrap().area.unwrap() / load)
+                .map(|load| contact.solve(Load::force(0.01 * load)).unwrap().area.unwrap() / load)
                 .iter()
                 .sum::<f64>();
         }

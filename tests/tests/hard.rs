@@ -33,7 +33,7 @@ fn press(map: &HeightMap, load: Load) -> ContactState {
 fn full(cells: usize) -> f64 {
     let flat = Scene::new(Surface::Flat { size: 1.0.into() }, 1.0);
     let model = Bem3d { cells, tolerance: TOLERANCE, ..Bem3d::default() };
-    model.prepare(&flat, 0).unwrap().solve(Load::Approach(1.0)).unwrap().stiffness.unwrap()
+    model.prepare(&flat, 0).unwrap().solve(Load::approach(1.0)).unwrap().stiffness.unwrap()
 }
 
 /// With equal heights the contact is the flat punch under any load. The rms height is 0, so that F_bar does
@@ -44,14 +44,14 @@ fn flat_maps_of_any_size() {
         for height in [0.0, -3.5, 1e9] {
             let flat = map(cells, 1.0, |_, _| height).unwrap();
             for load in [
-                Load::Force(0.3),
-                Load::Approach(0.2),
-                Load::Force(1e-12),
-                Load::Approach(1e12),
-                Load::Force(1e-200),
-                Load::Approach(1e-200),
-                Load::Force(1e160),
-                Load::Approach(1e200),
+                Load::force(0.3),
+                Load::approach(0.2),
+                Load::force(1e-12),
+                Load::approach(1e12),
+                Load::force(1e-200),
+                Load::approach(1e-200),
+                Load::force(1e160),
+                Load::approach(1e200),
             ] {
                 let state = press(&flat, load);
                 assert_eq!(state.report.contact_cells, Some(cells * cells));
@@ -72,7 +72,7 @@ fn small_and_prime_grids() {
         let rough = rough_map(2.5, cells, 2).unwrap();
         let mut before = 0.0;
         for force in [1e-8, 1e-3, 0.1, 1.0, 10.0, 300.0] {
-            let state = press(&rough, Load::Force(force));
+            let state = press(&rough, Load::force(force));
             let k = state.stiffness.unwrap();
             assert!(k >= before * (1.0 - SAME) && k <= full(cells) * (1.0 + SAME));
             before = k;
@@ -87,11 +87,11 @@ fn a_checkerboard() {
     for cells in [2, 3, 8, 17, 32] {
         let board = map(cells, 1.0, |x, y| if (x + y) % 2 == 0 { 0.0 } else { -1.0 }).unwrap();
         let black = (cells * cells).div_ceil(2);
-        let light = press(&board, Load::Approach(1e-3));
+        let light = press(&board, Load::approach(1e-3));
         assert_eq!(light.report.contact_cells, Some(black));
         assert!(light.stiffness.unwrap() < full(cells));
         assert_relative_eq!(light.force, light.stiffness.unwrap() * 1e-3, max_relative = SAME);
-        let heavy = press(&board, Load::Force(1e3));
+        let heavy = press(&board, Load::force(1e3));
         assert_eq!(heavy.report.contact_cells, Some(cells * cells));
         assert_relative_eq!(heavy.stiffness.unwrap(), full(cells), max_relative = SAME);
     }
@@ -104,13 +104,13 @@ fn a_single_spike_and_two_distant_ones() {
         let cell = 1.0 / cells as f64;
         let spike = map(cells, 1.0, |x, y| if (x, y) == (2, 5) { 1.0 } else { 0.0 }).unwrap();
         for d in [1e-12, 1e-3, 0.9] {
-            let state = press(&spike, Load::Approach(d));
+            let state = press(&spike, Load::approach(d));
             assert_eq!(state.report.contact_cells, Some(1));
             assert_relative_eq!(state.stiffness.unwrap(), one_cell * cell, max_relative = 1e-9);
         }
         let corners = [(0, 0), (cells - 1, cells - 1)];
         let two = map(cells, 1.0, |x, y| if corners.contains(&(x, y)) { 1.0 } else { 0.0 }).unwrap();
-        let state = press(&two, Load::Force(1e-3 * cell));
+        let state = press(&two, Load::force(1e-3 * cell));
         assert_eq!(state.report.contact_cells, Some(2));
         // Each feels the other: k = 2 pi h_c/(I(0, 0) + I(N - 1, N - 1)).
         let pair = bem3d::love::influence(0, 0) + bem3d::love::influence(cells - 1, cells - 1);
@@ -124,8 +124,8 @@ fn a_single_spike_and_two_distant_ones() {
             _ => 0.0,
         })
         .unwrap();
-        assert_eq!(press(&uneven, Load::Approach(0.000_9)).report.contact_cells, Some(1));
-        assert_eq!(press(&uneven, Load::Approach(0.002)).report.contact_cells, Some(2));
+        assert_eq!(press(&uneven, Load::approach(0.000_9)).report.contact_cells, Some(1));
+        assert_eq!(press(&uneven, Load::approach(0.002)).report.contact_cells, Some(2));
     }
 }
 
@@ -136,8 +136,8 @@ fn from_1e_minus_200_to_1e4_in_one_sweep() {
     let model = Bem3d { tolerance: TOLERANCE, ..Bem3d::default() };
     let mut contact = model.prepare(&scene(map.clone()), 0).unwrap();
     for force in [1e-200, 1e-12, 1e4, 1e-12, 1e-9, 1e-6, 1e-3, 1.0, 1e2, 1e4, 20.0, 1e-8, 0.1] {
-        let swept = contact.solve(Load::Force(force)).unwrap();
-        let alone = press(&map, Load::Force(force));
+        let swept = contact.solve(Load::force(force)).unwrap();
+        let alone = press(&map, Load::force(force));
         assert_relative_eq!(swept.force, force, max_relative = TOLERANCE);
         assert_relative_eq!(swept.approach.unwrap(), alone.approach.unwrap(), max_relative = SAME);
         assert_relative_eq!(swept.stiffness.unwrap(), alone.stiffness.unwrap(), max_relative = SAME);
@@ -150,11 +150,11 @@ fn heights_and_moduli_at_the_ends_of_f64() {
     for vertical in [1e-150, 1e150] {
         for contact_modulus in [1e-12, 1.0, 1e12] {
             for force in [1e-6, 0.1, 20.0] {
-                let there = press(&original, Load::Force(force));
+                let there = press(&original, Load::force(force));
                 let mut scaled = scene(original.scaled(1.0, vertical).unwrap());
                 scaled.contact_modulus = contact_modulus;
                 let model = Bem3d { tolerance: TOLERANCE, ..Bem3d::default() };
-                let load = Load::Force(force * vertical * contact_modulus);
+                let load = Load::force(force * vertical * contact_modulus);
                 let here = model.prepare(&scaled, 0).unwrap().solve(load).unwrap();
                 let approach = here.approach.unwrap() / vertical;
                 assert_relative_eq!(approach, there.approach.unwrap(), max_relative = SAME);
@@ -175,20 +175,20 @@ fn no_load_is_no_contact() {
     for (model, scene) in models {
         let mut contact = model.prepare(&scene, 0).unwrap();
         let small = contact.normalisation().contact_modulus * 1e-3;
-        for load in [Load::Force(0.0), Load::Approach(0.0), Load::Force(-0.0)] {
+        for load in [Load::force(0.0), Load::approach(0.0), Load::force(-0.0)] {
             let state = contact.solve(load).unwrap();
             let numbers = [state.force, state.approach.unwrap(), state.stiffness.unwrap()];
             assert!(numbers.iter().all(|x| *x == 0.0), "{}: {state:?}", model.name());
             // And the next one is none the worse.
-            assert!(contact.solve(Load::Force(small)).unwrap().stiffness.unwrap() > 0.0);
+            assert!(contact.solve(Load::force(small)).unwrap().stiffness.unwrap() > 0.0);
         }
         for value in [-1.0, f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
-            for load in [Load::Force(value), Load::Approach(value)] {
+            for load in [Load::force(value), Load::approach(value)] {
                 let error = contact.solve(load).unwrap_err();
                 assert!(matches!(error, Error::Domain { .. }), "{} {load:?}: {error}", model.name());
             }
         }
-        assert!(contact.solve(Load::Force(small)).is_ok());
+        assert!(contact.solve(Load::force(small)).is_ok());
     }
 }
 
@@ -199,7 +199,7 @@ fn an_unattainable_tolerance_is_an_error() {
     for method in METHODS {
         let model = Bem3d { tolerance: 1e-17, method, ..Bem3d::default() };
         for force in [0.1, 1.0, 20.0] {
-            match model.prepare(&rough, 0).unwrap().solve(Load::Force(force)) {
+            match model.prepare(&rough, 0).unwrap().solve(Load::force(force)) {
                 Err(Error::NotConverged { best }) => {
                     assert_ne!(best.report.status, Status::Converged);
                     assert!(!best.report.certificate.meets(1e-17));
@@ -220,10 +220,10 @@ fn an_unattainable_tolerance_is_an_error() {
 #[test]
 fn too_few_rounds_are_an_error_or_enough() {
     let rough = scene(rough_map(2.2, 65, 4).unwrap());
-    let exact = press(&rough_map(2.2, 65, 4).unwrap(), Load::Force(1.0));
+    let exact = press(&rough_map(2.2, 65, 4).unwrap(), Load::force(1.0));
     for rounds in 0..12 {
         let model = Bem3d { tolerance: TOLERANCE, max_outer_iterations: rounds, ..Bem3d::default() };
-        match model.prepare(&rough, 0).unwrap().solve(Load::Force(1.0)) {
+        match model.prepare(&rough, 0).unwrap().solve(Load::force(1.0)) {
             Ok(state) => {
                 assert_relative_eq!(state.stiffness.unwrap(), exact.stiffness.unwrap(), max_relative = SAME);
             }
@@ -237,7 +237,7 @@ fn too_few_rounds_are_an_error_or_enough() {
 #[test]
 fn a_stopped_solve_is_an_error_and_does_not_affect_the_next() {
     let rough = scene(rough_map(2.2, 65, 4).unwrap());
-    let exact = press(&rough_map(2.2, 65, 4).unwrap(), Load::Force(1.0));
+    let exact = press(&rough_map(2.2, 65, 4).unwrap(), Load::force(1.0));
     let model = Bem3d { tolerance: TOLERANCE, ..Bem3d::default() };
     let mut contact = model.prepare(&rough, 0).unwrap();
     for patience in (0..20).chain((20..400).step_by(20)) {
@@ -246,7 +246,7 @@ fn a_stopped_solve_is_an_error_and_does_not_affect_the_next() {
             asked.set(asked.get() + 1);
             asked.get() > patience
         };
-        match contact.solve_until(Load::Force(1.0), &stop) {
+        match contact.solve_until(Load::force(1.0), &stop) {
             Err(Error::Stopped { best }) => {
                 assert!(best.is_none_or(|b| b.report.status == Status::Stopped));
             }
@@ -256,16 +256,16 @@ fn a_stopped_solve_is_an_error_and_does_not_affect_the_next() {
             Err(other) => panic!("patience {patience}: {other}"),
         }
         if patience % 7 == 0 {
-            let state = contact.solve(Load::Force(1.0)).unwrap();
+            let state = contact.solve(Load::force(1.0)).unwrap();
             assert_relative_eq!(state.stiffness.unwrap(), exact.stiffness.unwrap(), max_relative = SAME);
         }
     }
     for model in [&Mdr1d::default() as &dyn ContactModel, &analytic::PowerLaw] {
         let scene = Scene::new(Surface::SelfAffine(rough_surface()), 1.0);
-        let stopped = model.prepare(&scene, 0).unwrap().solve_until(Load::Force(1e-3), &|| true);
+        let stopped = model.prepare(&scene, 0).unwrap().solve_until(Load::force(1e-3), &|| true);
         assert!(matches!(stopped, Err(Error::Stopped { .. })));
     }
-    let stopped = model.prepare(&rough, 0).unwrap().solve_until(Load::Force(1.0), &|| true);
+    let stopped = model.prepare(&rough, 0).unwrap().solve_until(Load::force(1.0), &|| true);
     assert!(matches!(stopped, Err(Error::Stopped { .. })));
 }
 

@@ -113,7 +113,7 @@ proptest! {
         scene.effects.friction = Friction::Coulomb { coefficient: 0.3, coupling: Some(Coupling::Neglected) };
         scene.outputs = Outputs { stiffness: true, tangential_stiffness_stuck: true, ..Outputs::default() };
         let model = Bem3d { tolerance: TOLERANCE, ..Bem3d::default() };
-        let state = model.prepare(&scene, 0).unwrap().advance(Step::normal(0.0, Load::Force(force)));
+        let state = model.prepare(&scene, 0).unwrap().advance(Step::new(0.0, Load::force(force)));
         let state = match state {
             // Ties and stiffnesses that jump are refused by name; friction_properties.rs has them.
             Err(Error::NotConverged { .. }) => return Err(TestCaseError::reject("not converged")),

@@ -33,7 +33,7 @@ fn model(cells: usize) -> Bem3d {
 }
 
 fn step(time: f64, force: f64, tangential: [f64; 2]) -> Step {
-    Step { time, normal: Load::Force(force), tangential: Tangential::Force(tangential) }
+    Step::new(time, Load::force(force).with_tangential(Tangential::Force(tangential)))
 }
 
 fn advance(contact: &mut dyn PreparedContact, step: Step) -> ContactState {
@@ -53,7 +53,7 @@ fn without_poissons_ratio_tractions_are_differences_of_pressures() {
         ..scene.clone()
     };
     let mut normal = model(48).prepare(&frictionless, 3).unwrap();
-    let [whole, rest] = [force, force * (1.0 - share)].map(|f| normal.solve(Load::Force(f)).unwrap());
+    let [whole, rest] = [force, force * (1.0 - share)].map(|f| normal.solve(Load::force(f)).unwrap());
     for steps in [1, 3] {
         let mut contact = model(48).prepare(&scene, 3).unwrap();
         advance(&mut *contact, step(0.0, force, [0.0; 2]));
@@ -133,7 +133,7 @@ fn a_disc_that_sticks_has_mindlins_stiffness() {
         let mut contact = model(cells).prepare(&scene, 0).unwrap();
         let delta = 1e-4;
         let tangential = Tangential::Displacement([delta, 0.0]);
-        let state = contact.advance(Step { time: 0.0, normal: Load::Force(1.0), tangential }).unwrap();
+        let state = contact.advance(Step::new(0.0, Load::force(1.0).with_tangential(tangential))).unwrap();
         let found = state.tangential.unwrap();
         let k = found.stiffness_stuck.unwrap();
         assert_relative_eq!(found.force[0] / delta, k[0][0], max_relative = 1e-6);
@@ -155,7 +155,7 @@ fn a_sphere_follows_cattaneo_mindlin_and_deresiewicz() {
         let sphere = Surface::Sphere { radius: 1.0, size: 0.25.into() };
         let mut contact = model.prepare(&scene(sphere, alike(0.0), Outputs::default()), 0).unwrap();
         let force = 1e-3;
-        contact.advance(Step::normal(0.0, Load::Force(force))).unwrap();
+        contact.advance(Step::new(0.0, Load::force(force))).unwrap();
         let along = |share: f64| {
             let state = contact.advance(step(0.0, force, [share * MU * force, 0.0])).unwrap();
             let tangential = state.tangential.unwrap();
@@ -196,7 +196,7 @@ fn a_force_beyond_friction_is_an_error_and_a_displacement_gross_slip() {
     let [one, other] = [&before, &again].map(|state| state.tangential.unwrap());
     assert_relative_eq!(one.displacement[0], other.displacement[0], max_relative = 1e-7);
     let far = Tangential::Displacement([0.5, 0.0]);
-    let state = contact.advance(Step { time: 2.0, normal: Load::Force(force), tangential: far }).unwrap();
+    let state = contact.advance(Step::new(2.0, Load::force(force).with_tangential(far))).unwrap();
     let sliding = state.tangential.unwrap();
     // Elastic displacements across turn the slip of single cells by some 1e-4.
     assert_relative_eq!(sliding.force[0], MU * force, max_relative = 1e-6);
@@ -279,7 +279,7 @@ fn a_reversal_forgets_how_far_the_contact_has_slid() {
         let mut found = None;
         for (time, delta) in [(0.0, 0.0), (1.0, slid), (2.0, slid - 40e-9)] {
             let tangential = Tangential::Displacement([delta, 0.0]);
-            let state = advance(&mut *contact, Step { time, normal: Load::Force(1.0), tangential });
+            let state = advance(&mut *contact, Step::new(time, Load::force(1.0).with_tangential(tangential)));
             found = Some(state.tangential.unwrap().force[0]);
         }
         found.unwrap()

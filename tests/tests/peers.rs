@@ -48,7 +48,7 @@ fn prepared() -> Box<dyn PreparedContact> {
 
 fn press(contact: &mut dyn PreparedContact, row: &Row) -> ContactState {
     let force = contact.normalisation().force(row.force_bar).unwrap();
-    contact.solve(Load::Force(force)).unwrap()
+    contact.solve(Load::force(force)).unwrap()
 }
 
 fn agree(contact: &dyn PreparedContact, state: &ContactState, row: &Row) {
@@ -95,7 +95,7 @@ fn a_periodic_map_under_two_pressures() {
     scene.effects.boundary = Boundary::Periodic;
     let mut contact = Bem3d { tolerance: 1e-8, ..Bem3d::default() }.prepare(&scene, 0).unwrap();
     for (mean_pressure, cells, of_the_source) in [(2.0, 607, 612.0), (16.0, 4605, 4645.0)] {
-        let state = contact.solve(Load::Force(mean_pressure)).unwrap();
+        let state = contact.solve(Load::force(mean_pressure)).unwrap();
         assert_eq!(state.report.contact_cells, Some(cells));
         assert_relative_eq!(cells as f64, of_the_source, max_relative = 0.01);
     }

@@ -48,7 +48,7 @@ fn rough(roll_off: Option<f64>) -> Surface {
 #[test]
 fn westergaard_with_an_order_of_convergence() {
     for ratio in [0.05, 0.3, 0.8] {
-        let load = Load::Force(ratio * PI * AMPLITUDE);
+        let load = Load::force(ratio * PI * AMPLITUDE);
         let mut theory = Westergaard.prepare(&wave(), 0).unwrap();
         let exact =
             (theory.solve(load).unwrap().stiffness.unwrap(), theory.solve(load).unwrap().mean_gap.unwrap());
@@ -77,17 +77,17 @@ fn johnson_greenwood_higginson() {
     let cells = 192;
     let mut contact = model(cells, 1e-9).prepare(&product(cells), 0).unwrap();
     let area = |r: f64, contact: &mut Box<dyn PreparedContact>| {
-        contact.solve(Load::Force(r * full)).unwrap().area.unwrap()
+        contact.solve(Load::force(r * full)).unwrap().area.unwrap()
     };
     assert_relative_eq!(area(1.001, &mut contact), 1.0, max_relative = 1e-12);
-    assert!(contact.solve(Load::Force(1.001 * full)).unwrap().stiffness.is_none());
-    assert!(contact.solve(Load::Force(1.001 * full)).unwrap().mean_gap.unwrap() < 1e-12);
+    assert!(contact.solve(Load::force(1.001 * full)).unwrap().stiffness.is_none());
+    assert!(contact.solve(Load::force(1.001 * full)).unwrap().mean_gap.unwrap() < 1e-12);
     let open = 1.0 - area(0.99, &mut contact);
     assert_relative_eq!(open, westergaard::product_open_fraction(0.99).unwrap(), max_relative = 0.25);
     // Small contacts: Hertz on each crest, up to their mutual displacement of order r^(1/3).
     let r = 1e-3;
     let cells = 256;
-    let state = model(cells, 1e-8).prepare(&product(cells), 0).unwrap().solve(Load::Force(r * full)).unwrap();
+    let state = model(cells, 1e-8).prepare(&product(cells), 0).unwrap().solve(Load::force(r * full)).unwrap();
     let stiffness = westergaard::product_small_stiffness(r).unwrap();
     assert_relative_eq!(state.stiffness.unwrap(), stiffness, max_relative = 0.15);
 }
@@ -105,7 +105,7 @@ fn a_small_contact_feels_its_images_as_points() {
     };
     let mut misses = Vec::new();
     for cells in [64, 128] {
-        let force = Load::Force(1e-3);
+        let force = Load::force(1e-3);
         let alone =
             model(cells, 1e-10).prepare(&Scene::new(flat(cells, 4), 1.0), 0).unwrap().solve(force).unwrap();
         let images = model(cells, 1e-10).prepare(&periodic(flat(cells, 4)), 0).unwrap().solve(force).unwrap();
@@ -127,11 +127,11 @@ fn moving_the_square_changes_nothing() {
     for force in [0.01, 1.0, 20.0] {
         let solve = |scene: &Scene| {
             let mut contact = model(cells, 1e-10).prepare(scene, 0).unwrap();
-            let state = contact.solve(Load::Force(force)).unwrap();
+            let state = contact.solve(Load::force(force)).unwrap();
             (
                 state.stiffness.unwrap(),
                 state.area.unwrap(),
-                contact.solve(Load::Force(force)).unwrap().mean_gap.unwrap(),
+                contact.solve(Load::force(force)).unwrap().mean_gap.unwrap(),
             )
         };
         let (here, there) = (solve(&shifted(0, 0)), solve(&shifted(17, 29)));
@@ -149,11 +149,11 @@ fn stiffness_is_the_slope_of_the_mean_gap_in_every_way_of_solving() {
         let mut values = Vec::new();
         for method in [Method::Auto, Method::Iterative, Method::SingleLevel] {
             let mut contact = Bem3d { method, ..model(cells, 1e-10) }.prepare(&scene, 1).unwrap();
-            let state = contact.solve(Load::Force(force)).unwrap();
+            let state = contact.solve(Load::force(force)).unwrap();
             let k = state.stiffness.unwrap();
             let step = 1e-6 * force;
             let gap = |f: f64, contact: &mut Box<dyn PreparedContact>| {
-                contact.solve(Load::Force(f)).unwrap().mean_gap.unwrap()
+                contact.solve(Load::force(f)).unwrap().mean_gap.unwrap()
             };
             let (above, below) = (gap(force + step, &mut contact), gap(force - step, &mut contact));
             assert_relative_eq!(2.0 * step / (below - above), k, max_relative = 2e-3);
@@ -173,10 +173,10 @@ fn a_mean_gap_is_a_load() {
     let bare = Scene { outputs: Outputs::default(), ..scene.clone() };
     for force in [0.01, 0.5, 5.0] {
         let mut contact = model(48, 1e-9).prepare(&scene, 2).unwrap();
-        let gap = contact.solve(Load::Force(force)).unwrap().mean_gap.unwrap();
+        let gap = contact.solve(Load::force(force)).unwrap().mean_gap.unwrap();
         for scene in [&scene, &bare] {
             let mut again = model(48, 1e-9).prepare(scene, 2).unwrap();
-            let state = again.solve(Load::MeanGap(gap)).unwrap();
+            let state = again.solve(Load::mean_gap(gap)).unwrap();
             assert_relative_eq!(state.force, force, max_relative = 1e-6);
             assert_eq!(state.mean_gap.is_some(), scene.outputs.mean_gap);
             // Within the tolerance, in rms heights.
@@ -190,7 +190,7 @@ fn fields_obey_the_contact_conditions_everywhere() {
     let mut scene = periodic(rough(None));
     scene.outputs = Outputs { pressure: true, gap: true, displacement: true, ..scene.outputs };
     let mut contact = model(36, 1e-9).prepare(&scene, 5).unwrap();
-    let load = Load::Force(0.7);
+    let load = Load::force(0.7);
     let fields = contact.solve(load).unwrap().fields.unwrap();
     let [p, gap, u] = [fields.pressure, fields.gap, fields.displacement].map(|f| f.unwrap().into_values());
     assert!(gap.iter().all(|&g| g > -1e-8), "no cell penetrates, near or far");
@@ -208,9 +208,9 @@ fn a_mean_gap_beyond_first_touch_is_a_state_apart() {
     let mut scene = periodic(rough(None));
     scene.outputs.gap = true;
     let mut contact = model(16, 1e-8).prepare(&scene, 0).unwrap();
-    let first = contact.solve(Load::Force(0.0)).unwrap().mean_gap.unwrap();
+    let first = contact.solve(Load::force(0.0)).unwrap().mean_gap.unwrap();
     for beyond in [1.0, 1.5, 1e3, 1e150] {
-        let state = contact.solve(Load::MeanGap(beyond * first)).unwrap();
+        let state = contact.solve(Load::mean_gap(beyond * first)).unwrap();
         assert_eq!((state.force, state.area, state.stiffness), (0.0, Some(0.0), Some(0.0)), "{beyond}");
         assert!(state.approach.is_none());
         assert_relative_eq!(state.mean_gap.unwrap(), beyond * first, max_relative = ROUNDING);
@@ -220,27 +220,27 @@ fn a_mean_gap_beyond_first_touch_is_a_state_apart() {
         let least = gap.iter().copied().fold(f64::INFINITY, f64::min);
         assert_relative_eq!(least, (beyond - 1.0) * first, epsilon = ROUNDING * beyond * first);
     }
-    assert!(contact.solve(Load::MeanGap(0.99 * first)).unwrap().force > 0.0);
+    assert!(contact.solve(Load::mean_gap(0.99 * first)).unwrap().force > 0.0);
 }
 
 #[test]
 fn loads_that_a_periodic_square_takes_and_refuses() {
     let mut contact = model(16, 1e-8).prepare(&periodic(rough(None)), 0).unwrap();
-    assert!(matches!(contact.solve(Load::Approach(0.1)), Err(Error::Unsupported { .. })));
-    assert!(matches!(contact.solve(Load::MeanGap(0.0)), Err(Error::Domain { .. })));
-    let first = contact.solve(Load::Force(0.0)).unwrap().mean_gap.unwrap();
+    assert!(matches!(contact.solve(Load::approach(0.1)), Err(Error::Unsupported { .. })));
+    assert!(matches!(contact.solve(Load::mean_gap(0.0)), Err(Error::Domain { .. })));
+    let first = contact.solve(Load::force(0.0)).unwrap().mean_gap.unwrap();
     assert!(first > 1.0, "the mean depth below the highest point, in rms heights: {first}");
     let mut free = Scene::new(rough(None), 1.0);
-    assert_eq!(model(16, 1e-8).prepare(&free, 0).unwrap().solve(Load::Force(1.0)).unwrap().mean_gap, None);
+    assert_eq!(model(16, 1e-8).prepare(&free, 0).unwrap().solve(Load::force(1.0)).unwrap().mean_gap, None);
     free.outputs.mean_gap = true;
     assert!(matches!(model(16, 1e-8).prepare(&free, 0), Err(Error::Unsupported { .. })));
     free.outputs.mean_gap = false;
     let mut free = model(16, 1e-8).prepare(&free, 0).unwrap();
-    assert!(matches!(free.solve(Load::MeanGap(1.0)), Err(Error::Unsupported { .. })));
+    assert!(matches!(free.solve(Load::mean_gap(1.0)), Err(Error::Unsupported { .. })));
     // Flat: full contact at once, and no stiffness to speak of.
     let flat = periodic(Surface::Flat { size: 1.0.into() });
     for cells in [1, 2, 7] {
-        let state = model(cells, 1e-8).prepare(&flat, 0).unwrap().solve(Load::Force(1.0)).unwrap();
+        let state = model(cells, 1e-8).prepare(&flat, 0).unwrap().solve(Load::force(1.0)).unwrap();
         assert!(state.stiffness.is_none() && state.report.certificate.stiffness_error.is_none());
         assert_relative_eq!(state.area.unwrap(), 1.0, max_relative = 1e-14);
     }
@@ -258,7 +258,7 @@ fn the_corrected_area_converges_faster() {
         scene.effects.boundary = Boundary::Periodic;
         scene.outputs.area = true;
         let model = Bem3d { cells, tolerance: 1e-6, ..Bem3d::default() };
-        let state = model.prepare(&scene, 3).unwrap().solve(Load::Force(force)).unwrap();
+        let state = model.prepare(&scene, 3).unwrap().solve(Load::force(force)).unwrap();
         (state.area.unwrap(), state.resolution.unwrap().corrected_area.unwrap())
     };
     for force in [0.01, 0.03] {

@@ -57,7 +57,7 @@ fn solve(map: &HeightMap, load: Load) -> ContactState {
 /// Force and approach of either kind, from first touch to full contact.
 fn any_load(map: &HeightMap, exponent: f64, is_force: bool) -> Load {
     let size = 10_f64.powf(exponent) * unit(map);
-    if is_force { Load::Force(size) } else { Load::Approach(size) }
+    if is_force { Load::force(size) } else { Load::approach(size) }
 }
 
 /// Force per cell and displacement.
@@ -139,7 +139,7 @@ proptest! {
         let mut d = 10_f64.powf(start) * unit(&drawn);
         let mut before: Option<(ContactState, Vec<f64>, f64)> = None;
         for ratio in ratios {
-            let state = press.solve(Load::Approach(d)).unwrap();
+            let state = press.solve(Load::approach(d)).unwrap();
             let (forces, u) = fields(&drawn, &state);
             let (f1, k1) = (state.force, state.stiffness.unwrap());
             prop_assert!((forces.iter().sum::<f64>() / f1 - 1.0).abs() <= ROUNDING);
@@ -194,10 +194,10 @@ proptest! {
             if r < 0.33 { h + r * (highest - h) } else { h }
         }).unwrap();
         let d = 10_f64.powf(exponent) * unit(&drawn);
-        let (low, high) = (solve(&drawn, Load::Approach(d)), solve(&higher, Load::Approach(d)));
+        let (low, high) = (solve(&drawn, Load::approach(d)), solve(&higher, Load::approach(d)));
         let slack = SAME * unit(&drawn) * high.stiffness.unwrap() + SAME * high.force;
         prop_assert!(high.force >= low.force - slack, "{} above {}", low.force, high.force);
-        let back = solve(&higher, Load::Force(low.force)).approach.unwrap();
+        let back = solve(&higher, Load::force(low.force)).approach.unwrap();
         prop_assert!(back <= d * (1.0 + SAME) + SAME * unit(&drawn), "{} beyond {}", back, d);
     }
 

@@ -206,7 +206,7 @@ fn punch(scene: &Scene, state: &ContactState) -> Option<f64> {
     let punch = HeightMap::with_undefined(map.cells(), map.size(), heights).ok()?;
     let mut flat = Scene::new(Surface::Heights(Arc::new(punch)), scene.contact_modulus);
     flat.effects.boundary = scene.effects.boundary;
-    model(1e-9).prepare(&flat, 0).ok()?.solve(Load::Force(1.0)).ok()?.stiffness
+    model(1e-9).prepare(&flat, 0).ok()?.solve(Load::force(1.0)).ok()?.stiffness
 }
 
 /// Whether a stiffness lies between the quotients on both sides of a state, or is one of them.
@@ -225,7 +225,7 @@ fn plane(state: &ContactState) -> f64 {
 }
 
 fn load_at(scene: &Scene, plane: f64) -> Load {
-    if is_periodic(scene) { Load::MeanGap(-plane) } else { Load::Approach(plane) }
+    if is_periodic(scene) { Load::mean_gap(-plane) } else { Load::approach(plane) }
 }
 
 /// A state of an elastic contact, by force, approach or mean gap.
@@ -238,7 +238,7 @@ fn elastic(seed: u64) -> Result<Faults, Error> {
     let area = map_of(&scene).size();
     let force = scene.contact_modulus * area.x * area.y * 10f64.powf(draw.between(-3.5, -1.0));
     let mut contact = model(TOLERANCE).prepare(&scene, 0)?;
-    let state = contact.solve(Load::Force(force))?;
+    let state = contact.solve(Load::force(force))?;
     fields(&scene, &state, None, &mut faults);
     let Some(k) = state.stiffness else {
         // Complete contact.
@@ -249,7 +249,7 @@ fn elastic(seed: u64) -> Result<Faults, Error> {
     };
     let mut quotients = Vec::new();
     for change in [-1e-5, 1e-5] {
-        let other = contact.solve(Load::Force(force * (1.0 + change)))?;
+        let other = contact.solve(Load::force(force * (1.0 + change)))?;
         quotients.push((other.force - state.force) / (plane(&other) - plane(&state)));
     }
     between(&mut faults, "stiffness", k, &quotients, state.report.certificate.stiffness_error.unwrap());
@@ -287,7 +287,7 @@ fn walked(model: Bem3d, scene: &Scene, loads: &[Load]) -> Result<ContactState, E
     let mut history = model.prepare(scene, 0)?;
     let mut last = None;
     for (i, &load) in loads.iter().enumerate() {
-        last = Some(history.advance(Step::normal(i as f64, load))?);
+        last = Some(history.advance(Step::new(i as f64, load))?);
     }
     Ok(last.unwrap())
 }
@@ -301,7 +301,7 @@ fn plastic(seed: u64) -> Result<Faults, Error> {
     let mut faults = Vec::new();
     let area = map_of(&scene).size();
     let most = scene.contact_modulus * area.x * area.y * 10f64.powf(draw.between(-3.0, -1.5));
-    let elastic = model(1e-6).prepare(&scene, 0)?.solve(Load::Force(most))?;
+    let elastic = model(1e-6).prepare(&scene, 0)?.solve(Load::force(most))?;
     let pressure = draw.between(0.2, 0.9) * elastic.resolution.unwrap().largest_pressure;
     scene.effects.hardness = Hardness::Limit { pressure };
     scene.outputs.plastic_depth = true;
@@ -316,7 +316,7 @@ fn plastic(seed: u64) -> Result<Faults, Error> {
     if draw.chance(0.2) {
         forces.insert(1, 0.0);
     }
-    let loads = |forces: &[f64]| forces.iter().map(|&f| Load::Force(f)).collect::<Vec<_>>();
+    let loads = |forces: &[f64]| forces.iter().map(|&f| Load::force(f)).collect::<Vec<_>>();
     let tight = model(1e-9);
     let state = walked(tight, &scene, &loads(&forces))?;
     let depth = state.fields.as_ref().unwrap().plastic_depth.clone().unwrap().into_values();
@@ -381,7 +381,7 @@ fn plastic_loop(seed: u64) -> Result<Faults, Error> {
     scene.outputs = contact_model::Outputs { mean_gap: is_periodic(&scene), ..Default::default() };
     let area = map_of(&scene).size();
     let most = scene.contact_modulus * area.x * area.y * 10f64.powf(draw.between(-2.5, -1.5));
-    let elastic = model(1e-6).prepare(&scene, 0)?.solve(Load::Force(most))?;
+    let elastic = model(1e-6).prepare(&scene, 0)?.solve(Load::force(most))?;
     let pressure = 0.5 * elastic.resolution.unwrap().largest_pressure;
     scene.effects.hardness = Hardness::Limit { pressure };
     let capacity =
@@ -389,11 +389,11 @@ fn plastic_loop(seed: u64) -> Result<Faults, Error> {
     let most = most.min(0.7 * capacity);
     let mut history = model(1e-8).prepare(&scene, 0)?;
     // First touch of the virgin surface, and that of the indented one, have no force.
-    let mut last = history.advance(Step::normal(0.0, Load::Force(0.0)))?;
+    let mut last = history.advance(Step::new(0.0, Load::force(0.0)))?;
     let (mut work, mut state) = (0.0, last.clone());
     for i in 1..=2 * STEPS {
         let share = 1.0 - (i as f64 / STEPS as f64 - 1.0).abs();
-        state = history.advance(Step::normal(i as f64, Load::Force(most * share * share)))?;
+        state = history.advance(Step::new(i as f64, Load::force(most * share * share)))?;
         work += 0.5 * (state.force + last.force) * (plane(&state) - plane(&last));
         last = state.clone();
     }
@@ -535,14 +535,14 @@ fn moving_front(seed: u64, law: Option<AdhesionLaw>) -> Result<(Faults, Option<b
     };
     let mut history = model(1e-7).prepare(&bare, 0)?;
     for (i, load) in loads(&planes).into_iter().enumerate() {
-        history.advance(Step::normal(i as f64, load))?;
+        history.advance(Step::new(i as f64, load))?;
     }
     let (mut points, mut way, mut step) = (vec![(0.0, 0.0)], 0.0, 2e-4);
     let mut area = state.area.unwrap();
     let mut advanced = 0.0;
     while points.len() < 40 && advanced < 1.2 {
         way += direction * step;
-        let Ok(next) = history.advance(Step::normal(1e3, load_at(&scene, last + way))) else {
+        let Ok(next) = history.advance(Step::new(1e3, load_at(&scene, last + way))) else {
             return Ok((faults, None));
         };
         let moved = (next.area.unwrap() - area).abs() / (0.12 * state.area.unwrap());
@@ -606,12 +606,12 @@ fn friction(seed: u64) -> Result<Faults, Error> {
     let mut scene = Scene::of_pair(Surface::Sphere { radius: 2.0, size: 3.0.into() }, pair)?;
     let coefficient = draw.between(0.1, 0.8);
     scene.effects.friction = Friction::coulomb(coefficient);
-    let normal = Load::Approach(draw.between(1e-3, 2e-2));
+    let normal = Load::approach(draw.between(1e-3, 2e-2));
     let models: [&dyn ContactModel; 2] = [&analytic::CattaneoMindlin, &mdr1d::PartialSlip];
     let mut faults = Vec::new();
     for model in models {
         let mut history = model.prepare(&scene, 0)?;
-        let force = history.advance(Step::normal(0.0, normal))?.force;
+        let force = history.advance(Step::new(0.0, normal))?.force;
         let share = draw.between(0.3, 0.95);
         let loop_work = |history: &mut dyn contact_model::PreparedContact| -> Result<(f64, f64), Error> {
             let mut last: Option<contact_model::TangentialState> = None;
@@ -619,7 +619,8 @@ fn friction(seed: u64) -> Result<Faults, Error> {
             for i in 0..=STEPS {
                 let phase = 2.0 * PI * i as f64 / STEPS as f64;
                 let tangential = Tangential::force_along_x(coefficient * force * share * phase.cos());
-                let state = history.advance(Step { time: 1.0, normal, tangential })?.tangential.unwrap();
+                let state =
+                    history.advance(Step::new(1.0, normal.with_tangential(tangential)))?.tangential.unwrap();
                 if let Some(last) = last {
                     work += 0.5
                         * (state.force[0] + last.force[0])
@@ -688,8 +689,16 @@ fn slope_after(scene: &Scene, steps: &[Step], state: &ContactState, sign: f64) -
         for step in steps {
             at = Some(contact.advance(*step).ok()?);
         }
-        let normal = Load::Force(state.force * (1.0 + sign * growth));
-        let (at, next) = (at?, contact.advance(Step { normal, ..*steps.last()? }).ok()?);
+        let normal = Load::force(state.force * (1.0 + sign * growth));
+        let (at, next) = (
+            at?,
+            contact
+                .advance(Step {
+                    load: normal.with_tangential(steps.last()?.load.tangential),
+                    ..*steps.last()?
+                })
+                .ok()?,
+        );
         let way = match (at.approach, next.approach) {
             (Some(at), Some(next)) => next - at,
             _ => at.mean_gap? - next.mean_gap?,
@@ -729,7 +738,7 @@ fn sheared(seed: u64) -> Result<Faults, Error> {
                     2.0 * size * coefficient * normal / (scene.contact_modulus * side),
                 ))
             };
-            Step { time: 0.0, normal: Load::Force(normal), tangential }
+            Step::new(0.0, Load::force(normal).with_tangential(tangential))
         };
         let state = contact.advance(step)?;
         if let Some(before) = again {
@@ -793,7 +802,7 @@ fn rheology(seed: u64) -> Result<Faults, Error> {
             }
         }
         (time, d) = (time + lasts, d + grows);
-        let state = history.advance(Step::normal(time, Load::Approach(d)))?;
+        let state = history.advance(Step::new(time, Load::approach(d)))?;
         let expected = elastic(d) + held.iter().sum::<f64>();
         check(&mut faults, "force", state.force, expected, 1e-5 * expected);
         let a = state.contact_radius.unwrap();

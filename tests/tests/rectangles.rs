@@ -62,7 +62,7 @@ fn against_plain_sums(map: &HeightMap, approach: f64) {
     let slow = relaxed(map, approach);
     let cell = map.dx() * map.dy();
     for method in [Method::Auto, Method::Iterative] {
-        let state = prepared(map, Boundary::Free, method).solve(Load::Approach(approach)).unwrap();
+        let state = prepared(map, Boundary::Free, method).solve(Load::approach(approach)).unwrap();
         let found: Vec<usize> = (0..map.heights().len()).filter(|&i| pressure(&state)[i] > 0.0).collect();
         assert_eq!(found, slow.contact, "{method:?}");
         assert_relative_eq!(state.force, slow.force, max_relative = SAME);
@@ -101,7 +101,7 @@ fn against_periodic_sums(map: &HeightMap, approaches: &[f64]) {
     for &approach in approaches {
         let slow = relaxed_by(&sum, map, approach);
         for contact in &mut contacts {
-            let load = Load::Force(slow.force);
+            let load = Load::force(slow.force);
             let state = contact.solve(load).unwrap();
             let largest = slow.forces.iter().copied().fold(0.0, f64::max);
             let mut expected = vec![0.0; map.heights().len()];
@@ -151,7 +151,7 @@ fn odd_prime_and_smooth_sizes_converge_from_first_contact_to_full_contact() {
         let model = Bem3d { cells, tolerance: 1e-6, ..Bem3d::default() };
         let mut contact = model.prepare(&scene, 1).unwrap();
         let forces = [1e-4, 1e-3, 1e-2, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 300.0, 3000.0];
-        forces.iter().map(|&f| contact.solve(Load::Force(f)).unwrap().report.applications).sum()
+        forces.iter().map(|&f| contact.solve(Load::force(f)).unwrap().report.applications).sum()
     };
     for (even, others) in [(64, &[65, 63][..]), (96, &[97, 98, 105]), (128, &[127, 130])] {
         let expected = work(even) as f64;
@@ -177,7 +177,7 @@ fn pits_spikes_and_steps_converge_on_a_periodic_square_of_odd_side() {
         let map = map([n, n], [1.0, 1.0], shape);
         let mut contact = prepared(&map, Boundary::Periodic, Method::Auto);
         for force in [1e-4, 1e-2, 0.3, 1.0, 3.0, 10.0, 100.0] {
-            let state = contact.solve(Load::Force(force));
+            let state = contact.solve(Load::force(force));
             assert!(state.is_ok_and(|s| s.report.certificate.meets(TOLERANCE)), "{name} at {force}");
         }
     }
@@ -190,7 +190,7 @@ fn a_turned_map_has_the_same_numbers() {
         let turned = here.transposed();
         for force in [1e-4, 0.02, 0.3] {
             let solve =
-                |map: &HeightMap| prepared(map, boundary, Method::Auto).solve(Load::Force(force)).unwrap();
+                |map: &HeightMap| prepared(map, boundary, Method::Auto).solve(Load::force(force)).unwrap();
             let (a, b) = (solve(&here), solve(&turned));
             assert_relative_eq!(a.stiffness.unwrap(), b.stiffness.unwrap(), max_relative = SAME);
             assert_eq!(a.report.contact_cells, b.report.contact_cells);
@@ -207,7 +207,7 @@ fn hertz_on_oblong_cells() {
     // The edge of contact falls anywhere within a cell: first order, with scatter.
     let sphere = Surface::Sphere { radius: 2.0, size: [1.2, 0.8].into() };
     let scene = Scene::new(sphere, 1.5);
-    let load = Load::Approach(0.03);
+    let load = Load::approach(0.03);
     let exact = Hertz.prepare(&scene, 0).unwrap().solve(load).unwrap();
     for (cells, rows) in [(60, 120), (180, 60), (256, 170)] {
         let model = Bem3d { cells, rows: Some(rows), tolerance: 1e-8, ..Bem3d::default() };
@@ -225,7 +225,7 @@ fn oblong_cells_converge_to_the_square_cell_solution_with_first_order() {
     let scene = Scene::new(Surface::Flat { size: 1.0.into() }, 1.0);
     let error = |cells: usize, rows: usize| {
         let model = Bem3d { cells, rows: Some(rows), tolerance: 1e-9, ..Bem3d::default() };
-        let state = model.prepare(&scene, 0).unwrap().solve(Load::Approach(1.0)).unwrap();
+        let state = model.prepare(&scene, 0).unwrap().solve(Load::approach(1.0)).unwrap();
         1.152_298_5 - state.stiffness.unwrap()
     };
     for aspect in [2, 4] {
@@ -241,7 +241,7 @@ fn oblong_cells_converge_to_the_square_cell_solution_with_first_order() {
         let k = |cells: usize| {
             let scene = Scene::new(Surface::Flat { size: size.into() }, 1.0);
             let model = Bem3d { cells, tolerance: 1e-9, ..Bem3d::default() };
-            let state = model.prepare(&scene, 0).unwrap().solve(Load::Approach(1.0)).unwrap();
+            let state = model.prepare(&scene, 0).unwrap().solve(Load::approach(1.0)).unwrap();
             state.stiffness.unwrap() / f64::sqrt(size[0] * size[1])
         };
         let (coarse, fine) = (k(40), k(80));
@@ -262,7 +262,7 @@ fn a_periodic_rectangle_carries_a_wave_along_either_side() {
     let wave = |i: usize, n: usize| amplitude * (2.0 * PI * (i as f64 + 0.5) / n as f64).cos();
     for ratio in [0.3, 0.8] {
         let force = ratio * PI * amplitude;
-        let exact = theory.solve(Load::Force(force)).unwrap().stiffness.unwrap();
+        let exact = theory.solve(Load::force(force)).unwrap().stiffness.unwrap();
         for (cells, size, along_x) in
             [([250, 9], [1.0, 0.3], true), ([7, 250], [0.2, 1.0], false), ([250, 1], [1.0, 2.0], true)]
         {
@@ -270,7 +270,7 @@ fn a_periodic_rectangle_carries_a_wave_along_either_side() {
             // Force and stiffness grow with the area.
             let area = size[0] * size[1];
             let state =
-                prepared(&map, Boundary::Periodic, Method::Auto).solve(Load::Force(force * area)).unwrap();
+                prepared(&map, Boundary::Periodic, Method::Auto).solve(Load::force(force * area)).unwrap();
             assert_relative_eq!(state.stiffness.unwrap(), exact * area, max_relative = 6.0 / 250.0);
         }
     }
@@ -291,7 +291,7 @@ fn undefined_points_do_not_touch_and_change_nothing_else() {
     for boundary in [Boundary::Free, Boundary::Periodic] {
         let mut contacts = [&whole, &masked].map(|map| prepared(map, boundary, Method::Auto));
         for force in [1e-5, 1e-3, 0.01] {
-            let states = contacts.each_mut().map(|c| c.solve(Load::Force(force)).unwrap());
+            let states = contacts.each_mut().map(|c| c.solve(Load::force(force)).unwrap());
             let [a, b] = &states;
             assert!(a.report.contact_cells.unwrap() < 100);
             assert_relative_eq!(a.stiffness.unwrap(), b.stiffness.unwrap(), max_relative = SAME);
@@ -301,7 +301,7 @@ fn undefined_points_do_not_touch_and_change_nothing_else() {
             }
         }
         // Heavy loads press on the defined points alone.
-        let state = contacts[1].solve(Load::Force(100.0)).unwrap();
+        let state = contacts[1].solve(Load::force(100.0)).unwrap();
         assert_eq!(state.report.contact_cells, Some(120));
         assert_relative_eq!(state.area.unwrap(), 0.75, max_relative = 1e-12);
     }
@@ -313,7 +313,7 @@ fn time_follows_the_number_of_cells_not_the_longer_side() {
     let work = |cells: [usize; 2], size: [f64; 2]| -> usize {
         let map = map(cells, size, noise(2));
         let mut contact = prepared(&map, Boundary::Free, Method::Auto);
-        [0.01, 1.0, 30.0].iter().map(|&f| contact.solve(Load::Force(f)).unwrap().report.applications).sum()
+        [0.01, 1.0, 30.0].iter().map(|&f| contact.solve(Load::force(f)).unwrap().report.applications).sum()
     };
     let (square, strip) = (work([64, 64], [1.0, 1.0]), work([512, 8], [8.0, 0.125]));
     assert!(strip as f64 <= 1.5 * square as f64, "{strip} {square}");
@@ -335,7 +335,7 @@ proptest! {
             if (x, y) != (columns / 2, rows / 2) && mask(x, y) < undefined { f64::NAN } else { rough(x, y) }
         });
         let slow = relaxed(&drawn, approach);
-        let state = prepared(&drawn, Boundary::Free, Method::Iterative).solve(Load::Approach(approach)).unwrap();
+        let state = prepared(&drawn, Boundary::Free, Method::Iterative).solve(Load::approach(approach)).unwrap();
         prop_assert!((state.force / slow.force - 1.0).abs() < 1e-7, "{} {}", state.force, slow.force);
         let undefined_pressed = pressure(&state).iter().zip(drawn.heights()).any(|(p, h)| *p > 0.0 && !h.is_finite());
         prop_assert!(!undefined_pressed);
@@ -349,7 +349,7 @@ fn resolution_of_a_full_rectangle() {
     (scene.outputs.area, scene.outputs.pressure) = (true, true);
     let solve = |scene: &Scene| {
         let model = Bem3d { cells: 5, rows: Some(3), ..Bem3d::default() };
-        model.prepare(scene, 0).unwrap().solve(Load::Force(1.0)).unwrap()
+        model.prepare(scene, 0).unwrap().solve(Load::force(1.0)).unwrap()
     };
     let state = solve(&scene);
     let (found, pressure) = (state.resolution.unwrap(), state.pressure().unwrap());

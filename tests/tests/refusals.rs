@@ -72,7 +72,7 @@ fn surfaces_are_taken_or_refused() {
             let scene = Scene::new(surface, 1.0);
             if taken == 'x' {
                 let mut contact = model.prepare(&scene, 0).unwrap();
-                let state = contact.solve(Load::Force(1e-3)).unwrap();
+                let state = contact.solve(Load::force(1e-3)).unwrap();
                 assert!(state.approach.unwrap() > 0.0, "{} {scene:?}", model.name());
                 assert!(state.stiffness.unwrap() > 0.0);
                 assert!(!model.sources().is_empty());
@@ -189,12 +189,12 @@ fn periodic_theories() {
             unsupported(model, &scene);
         }
         let mut contact = model.prepare(&scene, 0).unwrap();
-        let state = contact.solve(Load::Force(1e-3)).unwrap();
+        let state = contact.solve(Load::force(1e-3)).unwrap();
         assert!(state.approach.is_none() && state.area.is_none() && state.stiffness.unwrap() > 0.0);
         let gap = state.mean_gap.unwrap();
-        let back = contact.solve(Load::MeanGap(gap)).unwrap().force;
+        let back = contact.solve(Load::mean_gap(gap)).unwrap().force;
         assert!((back / 1e-3 - 1.0).abs() < 1e-9, "{}", model.name());
-        assert!(matches!(contact.solve(Load::Approach(1e-3)), Err(Error::Unsupported { .. })));
+        assert!(matches!(contact.solve(Load::approach(1e-3)), Err(Error::Unsupported { .. })));
     }
     // Where there is an approach there is no mean gap.
     for (model, scenes) in accepted() {
@@ -203,7 +203,7 @@ fn periodic_theories() {
             gap.outputs.mean_gap = true;
             assert!(matches!(model.prepare(&gap, 0), Err(Error::Unsupported { .. })));
             let mut contact = model.prepare(&scene, 0).unwrap();
-            assert!(matches!(contact.solve(Load::MeanGap(1e-3)), Err(Error::Unsupported { .. })));
+            assert!(matches!(contact.solve(Load::mean_gap(1e-3)), Err(Error::Unsupported { .. })));
         }
     }
 }
@@ -238,7 +238,7 @@ fn histories() {
                 both.effects.boundary = Boundary::Periodic;
                 assert!(refused(&both));
                 let mut contact = model.prepare(&scene, 0).unwrap();
-                let state = contact.advance(Step::normal(1.0, Load::Force(1e-3))).unwrap();
+                let state = contact.advance(Step::new(1.0, Load::force(1e-3))).unwrap();
                 assert!(state.stiffness.is_none() && state.area.is_none());
                 assert!(state.contact_radius.unwrap() > 0.0 && !model.sources().is_empty());
                 assert_eq!(state.tangential.is_some(), name == "friction");
@@ -281,7 +281,7 @@ fn only_requested_outputs_are_computed() {
                     }
                     Err(other) => panic!("{place}: {other}"),
                 };
-                for load in [Load::Force(1e-3), Load::Force(0.0)] {
+                for load in [Load::force(1e-3), Load::force(0.0)] {
                     let state = contact.solve(load).unwrap();
                     let normalisation = contact.normalisation();
                     let told = |output: &Output| {

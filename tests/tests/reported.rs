@@ -14,7 +14,7 @@ fn walked(model: Bem3d, scene: &Scene, loads: &[Load]) -> Vec<ContactState> {
     let mut time = 0.0;
     let mut step = |&load: &Load| {
         time += 1.0;
-        history.advance(Step::normal(time, load)).unwrap()
+        history.advance(Step::new(time, load)).unwrap()
     };
     loads.iter().map(&mut step).collect()
 }
@@ -31,7 +31,7 @@ fn stiffness_of_a_sphere_with_short_range_is_the_slope_of_its_branch() {
     outputs.conductance = Conductance::Electrical { first: 1.0, second: 1.0 };
     let sphere = AdhesiveSphere::new(1.0, 1.0, work).unwrap();
     let approaches: Vec<f64> = (0..8).map(|i| 1.333e-3 - 1.2e-4 * f64::from(i)).collect();
-    let loads: Vec<Load> = approaches.iter().map(|&d| Load::Approach(d)).collect();
+    let loads: Vec<Load> = approaches.iter().map(|&d| Load::approach(d)).collect();
     for (state, d) in walked(Bem3d { cells: 52, ..Bem3d::default() }, &scene, &loads).iter().zip(approaches) {
         let (state, a) = (&state, sphere.radius_at_approach(d).unwrap());
         let (k, error) = (state.stiffness.unwrap(), state.report.certificate.quotient_error.unwrap());
@@ -52,7 +52,7 @@ fn an_attraction_across_gaps_conducts_nothing() {
         scene.outputs.area = true;
         scene.outputs.conductance = Conductance::Electrical { first: 1.0, second: 1.0 };
         let state = ContactModel::prepare(&Bem3d { cells: 96, ..Bem3d::default() }, &scene, 0).unwrap();
-        let state = { state }.solve(Load::Approach(0.03)).unwrap();
+        let state = { state }.solve(Load::approach(0.03)).unwrap();
         let radius = (state.area.unwrap() / std::f64::consts::PI).sqrt();
         // The counted area of a round contact of some ten cells in the radius.
         assert_relative_eq!(state.conductance.unwrap(), 2.0 * radius, max_relative = 0.03);
@@ -70,7 +70,7 @@ fn conductance_grows_with_a_contact_that_flows() {
     let mut contact = Bem3d { cells: 65, ..Bem3d::default() }.prepare(&scene, 3).unwrap();
     let mut last = 0.0;
     for share in [0.05, 0.2, 0.5, 0.8, 0.95] {
-        let found = contact.solve(Load::Force(share * 0.02)).unwrap().conductance.unwrap();
+        let found = contact.solve(Load::force(share * 0.02)).unwrap().conductance.unwrap();
         assert!(found > last, "{share}: {found} after {last}");
         last = found;
     }
@@ -86,7 +86,7 @@ fn a_reload_to_an_old_load_is_as_the_first_time() {
     let mut scene = Scene::new(surface, 1.0);
     scene.effects.hardness = Hardness::Limit { pressure: 0.01 };
     let load = 0.0016;
-    let loads = [load, 0.0, load, load, 0.5 * load, load, load * 1.01, load].map(Load::Force);
+    let loads = [load, 0.0, load, load, 0.5 * load, load, load * 1.01, load].map(Load::force);
     for tolerance in [1e-5, 1e-6, 1e-8] {
         let model = Bem3d { cells: 65, tolerance, ..Bem3d::default() };
         let states: Vec<_> = walked(model, &scene, &loads).into_iter().collect();
@@ -111,7 +111,7 @@ fn the_mean_gap_of_a_map_with_undefined_points_goes_below_zero() {
     (scene.outputs.mean_gap, scene.outputs.gap, scene.outputs.displacement) = (true, true, true);
     let mut contact = Bem3d { tolerance: 1e-10, ..Bem3d::default() }.prepare(&scene, 0).unwrap();
     let mut gap = |force: f64| {
-        let state = contact.solve(Load::Force(force)).unwrap();
+        let state = contact.solve(Load::force(force)).unwrap();
         // The planes from one cell: its gap less its displacement and its height under the mean.
         let (g, u) = (state.gap().unwrap().at(0, 0), state.displacement().unwrap().at(0, 0));
         let expected = g - u - 2.5e-3;
@@ -123,7 +123,7 @@ fn the_mean_gap_of_a_map_with_undefined_points_goes_below_zero() {
     assert_relative_eq!(first, -1.086e-3, max_relative = 1e-3);
     let (next, _) = gap(0.004 * (1.0 + 1e-6));
     assert_relative_eq!(k, 4e-9 / (first - next), max_relative = 1e-4);
-    let by_gap = contact.solve(Load::MeanGap(first)).unwrap();
+    let by_gap = contact.solve(Load::mean_gap(first)).unwrap();
     assert_relative_eq!(by_gap.force, 0.004, max_relative = 1e-6);
 }
 
@@ -141,7 +141,7 @@ fn complete_contact_with_adhesion_has_no_stiffness() {
         Adhesion::FiniteRange { work: 0.01, range: 0.1, law: AdhesionLaw::Dugdale },
     ] {
         scene.effects.adhesion = adhesion;
-        let state = &walked(Bem3d { cells: 32, ..Bem3d::default() }, &scene, &[Load::Force(0.2)])[0];
+        let state = &walked(Bem3d { cells: 32, ..Bem3d::default() }, &scene, &[Load::force(0.2)])[0];
         assert_eq!((state.stiffness, state.stiffness_fixed_area), (None, None), "{adhesion:?}");
         assert_eq!(state.mean_gap, Some(0.0), "{adhesion:?}");
         // Of a short range the shares of closed cells, to the tolerance.
@@ -160,7 +160,7 @@ fn every_mean_gap_of_a_periodic_contact_with_adhesion_has_a_state() {
     let gaps = [0.03, 0.02, 0.015, 0.01, 0.005, 0.002, 0.004, 0.008, 0.012, 0.018, 0.024, 0.05];
     for law in [AdhesionLaw::Exponential, AdhesionLaw::Dugdale] {
         scene.effects.adhesion = Adhesion::FiniteRange { work: 1e-3, range: 0.01, law };
-        let loads = gaps.map(Load::MeanGap);
+        let loads = gaps.map(Load::mean_gap);
         let states = walked(Bem3d { cells: 64, ..Bem3d::default() }, &scene, &loads);
         for (state, gap) in states.iter().zip(gaps) {
             assert_relative_eq!(state.mean_gap.unwrap(), gap, max_relative = 1e-9);
@@ -176,7 +176,7 @@ fn any_tolerance_below_one_is_taken_with_adhesion() {
     scene.effects.adhesion = Adhesion::ShortRange { work: 8.842e-6 };
     for tolerance in [0.05, 0.11, 0.2, 0.5, 0.99] {
         let model = Bem3d { cells: 32, tolerance, ..Bem3d::default() };
-        let found = ContactModel::prepare(&model, &scene, 0).unwrap().solve(Load::Approach(1e-3));
+        let found = ContactModel::prepare(&model, &scene, 0).unwrap().solve(Load::approach(1e-3));
         // So loose a state may be no minimum of the energy, which is told.
         assert!(matches!(found, Ok(_) | Err(Error::NotConverged { .. })), "{tolerance}: {found:?}");
     }
@@ -196,7 +196,7 @@ fn a_mean_gap_at_which_every_cell_in_contact_flows_has_a_state() {
     let (mut last, mut flowing) = (0.0, 0);
     for i in 0..9 {
         let gap = 0.02 - 0.002 * f64::from(i);
-        let state = contact.solve(Load::MeanGap(gap)).unwrap();
+        let state = contact.solve(Load::mean_gap(gap)).unwrap();
         assert!((state.mean_gap.unwrap() - gap).abs() < 1e-6 * 0.01, "{gap}: {state:?}");
         assert!(state.force >= last, "{gap}: {} after {last}", state.force);
         last = state.force;
@@ -220,7 +220,7 @@ fn a_step_of_nothing_keeps_stick_and_slip() {
         (scene.outputs.stick_area, scene.outputs.tangential_stiffness) = (true, true);
         let mut contact = Bem3d { cells: 33, ..Bem3d::default() }.prepare(&scene, 0).unwrap();
         let mut at = |tangential| {
-            let step = Step { time: 0.0, normal: Load::Force(0.02), tangential };
+            let step = Step::new(0.0, Load::force(0.02).with_tangential(tangential));
             contact.advance(step).unwrap().tangential.unwrap()
         };
         at(Tangential::Force([0.0; 2]));

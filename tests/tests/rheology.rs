@@ -42,7 +42,7 @@ fn models() -> [(Box<dyn ContactModel>, f64); 2] {
 /// Forces along a path of (time, approach).
 fn forces(model: &dyn ContactModel, scene: &Scene, path: &[(f64, f64)]) -> Vec<f64> {
     let mut history = model.prepare(scene, 0).unwrap();
-    let step = |&(time, d): &(f64, f64)| history.advance(Step::normal(time, Load::Approach(d))).unwrap();
+    let step = |&(time, d): &(f64, f64)| history.advance(Step::new(time, Load::approach(d))).unwrap();
     path.iter().map(step).map(|state| state.force).collect()
 }
 

@@ -34,11 +34,11 @@ fn no_state_exceeds_the_plateau_of_its_grid() {
     let flat = Scene::new(Surface::Flat { size: 1.0.into() }, 1.0);
     for cells in [33, 65] {
         let plateau =
-            model(cells).prepare(&flat, 0).unwrap().solve(Load::Force(1.0)).unwrap().stiffness.unwrap();
+            model(cells).prepare(&flat, 0).unwrap().solve(Load::force(1.0)).unwrap().stiffness.unwrap();
         for fractal_dimension in [2.0, 2.8] {
             let mut contact = prepared(fractal_dimension, cells, 3);
             let forces = [1e-3, 0.1, 1.0, 5.0, 20.0, 1e2, 1e3, 1e4];
-            let states = sweep(&mut *contact, forces.map(Load::Force));
+            let states = sweep(&mut *contact, forces.map(Load::force));
             for state in &states {
                 assert!(state.stiffness.unwrap() <= plateau * (1.0 + SAME), "{state:?}");
             }
@@ -58,7 +58,7 @@ fn loads_a_million_times_that_of_full_contact() {
         let scene = Scene::new(Surface::SelfAffine(rough(fractal_dimension).unwrap()), 1.0);
         let mut contact = model.prepare(&scene, 3).unwrap();
         for force in [1e5, 1e6, 1e3] {
-            let state = contact.solve(Load::Force(force)).unwrap();
+            let state = contact.solve(Load::force(force)).unwrap();
             assert_eq!(state.report.contact_cells, Some(cells * cells), "{force}");
         }
     }
@@ -70,7 +70,7 @@ fn loads_a_million_times_that_of_full_contact() {
 fn the_force_is_the_integral_of_the_stiffness() {
     let mut contact = prepared(2.4, 65, 5);
     let approaches = logarithmic(0.01, 6.0, 400);
-    let states = sweep(&mut *contact, approaches.into_iter().map(Load::Approach));
+    let states = sweep(&mut *contact, approaches.into_iter().map(Load::approach));
     let (mut trapezoid, mut unchanged) = (0.0, 0);
     for pair in states.windows(2) {
         let [(d0, f0, k0), (d1, f1, k1)] =
@@ -98,7 +98,7 @@ fn one_cell_is_the_floor() {
     for cells in [3, 16, 33, 65] {
         let mut contact = prepared(2.6, cells, 8);
         let normalisation = contact.normalisation();
-        let state = contact.solve(Load::Force(1e-12)).unwrap();
+        let state = contact.solve(Load::force(1e-12)).unwrap();
         assert_eq!(state.report.contact_cells, Some(1));
         // 0.891106989/1.1419, six digits.
         let floor = normalisation.stiffness_bar(state.stiffness.unwrap()) * cells as f64;
@@ -122,7 +122,7 @@ fn contact_sets_are_nested() {
         let mut before = vec![0.0; 33 * 33];
         for d in logarithmic(0.05, 20.0, 12) {
             let now =
-                with_fields(map.clone(), Load::Approach(d)).fields.unwrap().pressure.unwrap().into_values();
+                with_fields(map.clone(), Load::approach(d)).fields.unwrap().pressure.unwrap().into_values();
             // A cell may leave only if it was never surely in.
             assert!(before.iter().zip(&now).all(|(b, n)| *b < SAME || *n > 0.0), "a cell left at d = {d}");
             before = now;
@@ -134,7 +134,7 @@ fn contact_sets_are_nested() {
 fn the_fields_satisfy_the_contact_conditions() {
     let map = rough_map(2.3, 33, 4).unwrap();
     for force in [1e-3, 0.1, 1.0, 20.0] {
-        let state = with_fields(map.clone(), Load::Force(force));
+        let state = with_fields(map.clone(), Load::force(force));
         let fields = state.fields.unwrap();
         let [p, u, g] = [fields.pressure, fields.displacement, fields.gap].map(|f| f.unwrap().into_values());
         let d = state.approach.unwrap();
@@ -164,7 +164,7 @@ fn the_work_is_the_elastic_energy() {
     let map = rough_map(2.4, 33, 4).unwrap();
     let mut contact = model(1).prepare(&scene(map.clone()), 0).unwrap();
     let approaches = logarithmic(1e-3, 5.0, 1000);
-    let states = sweep(&mut *contact, approaches.into_iter().map(Load::Approach));
+    let states = sweep(&mut *contact, approaches.into_iter().map(Load::approach));
     // Before the first state one cell: a triangle.
     let mut work = 0.5 * states[0].force * states[0].approach.unwrap();
     for pair in states.windows(2) {
@@ -172,7 +172,7 @@ fn the_work_is_the_elastic_energy() {
         let bend = pair[1].stiffness.unwrap() - pair[0].stiffness.unwrap();
         work += step * 0.5 * (pair[0].force + pair[1].force) - step * step * bend / 12.0;
     }
-    let last = with_fields(map.clone(), Load::Approach(5.0));
+    let last = with_fields(map.clone(), Load::approach(5.0));
     let fields = last.fields.unwrap();
     let [p, u] = [fields.pressure, fields.displacement].map(|f| f.unwrap().into_values());
     let area = map.dx() * map.dx();
@@ -189,9 +189,9 @@ fn the_work_is_the_elastic_energy() {
 fn force_to_approach_and_back() {
     for fractal_dimension in [2.0, 2.4, 2.8] {
         for force in [1e-5, 1e-2, 0.5, 20.0] {
-            let there = prepared(fractal_dimension, 65, 1).solve(Load::Force(force)).unwrap();
+            let there = prepared(fractal_dimension, 65, 1).solve(Load::force(force)).unwrap();
             let back =
-                prepared(fractal_dimension, 65, 1).solve(Load::Approach(there.approach.unwrap())).unwrap();
+                prepared(fractal_dimension, 65, 1).solve(Load::approach(there.approach.unwrap())).unwrap();
             assert_relative_eq!(back.force, force, max_relative = SAME);
             assert_relative_eq!(back.stiffness.unwrap(), there.stiffness.unwrap(), max_relative = SAME);
         }
@@ -203,10 +203,10 @@ fn loading_and_unloading_meet_the_same_states() {
     for fractal_dimension in [2.0, 2.8] {
         let forces = logarithmic(1e-4, 50.0, 12);
         let mut contact = prepared(fractal_dimension, 65, 6);
-        let up = sweep(&mut *contact, forces.iter().map(|&f| Load::Force(f)));
-        let down = sweep(&mut *contact, forces.iter().rev().map(|&f| Load::Force(f)));
+        let up = sweep(&mut *contact, forces.iter().map(|&f| Load::force(f)));
+        let down = sweep(&mut *contact, forces.iter().rev().map(|&f| Load::force(f)));
         for (up, down) in up.iter().zip(down.iter().rev()) {
-            let alone = prepared(fractal_dimension, 65, 6).solve(Load::Force(up.force)).unwrap();
+            let alone = prepared(fractal_dimension, 65, 6).solve(Load::force(up.force)).unwrap();
             for other in [down, &alone] {
                 assert_relative_eq!(up.approach.unwrap(), other.approach.unwrap(), max_relative = SAME);
                 assert_relative_eq!(up.stiffness.unwrap(), other.stiffness.unwrap(), max_relative = SAME);
@@ -218,7 +218,7 @@ fn loading_and_unloading_meet_the_same_states() {
 
 #[test]
 fn randomness_comes_from_the_seed_alone() {
-    let solve = |seed: u64| sweep(&mut *prepared(2.4, 65, seed), [1e-2, 1.0, 20.0].map(Load::Force));
+    let solve = |seed: u64| sweep(&mut *prepared(2.4, 65, seed), [1e-2, 1.0, 20.0].map(Load::force));
     let in_pool = |threads: usize, seed: u64| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| solve(seed))
@@ -240,7 +240,7 @@ fn the_zero_of_heights_is_arbitrary() {
         map(33, 1.0, |x, y| (heights[y * 33 + x] * 1_048_576.0).round() / 1_048_576.0 + offset).unwrap()
     };
     for force in [1e-3, 0.3, 20.0] {
-        let at = |offset: f64| with_fields(exact(offset), Load::Force(force));
+        let at = |offset: f64| with_fields(exact(offset), Load::force(force));
         for offset in [1024.0, -4096.0, 65_536.0] {
             assert_eq!(at(0.0), at(offset));
         }

@@ -31,7 +31,7 @@ proptest! {
         let mut remembering = model(Method::Auto).prepare(&scene, 0).unwrap();
         for (exponent, is_force) in loads {
             let size = 10_f64.powf(exponent) * unit;
-            let load = if is_force { Load::Force(size) } else { Load::Approach(size) };
+            let load = if is_force { Load::force(size) } else { Load::approach(size) };
             let one = remembering.solve(load).unwrap();
             let other = model(Method::Iterative).prepare(&scene, 0).unwrap().solve(load).unwrap();
             let stiffness = other.stiffness.unwrap();

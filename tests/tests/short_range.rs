@@ -26,7 +26,7 @@ fn path(scene: &Scene) -> Box<dyn PreparedContact> {
 }
 
 fn at(history: &mut dyn PreparedContact, load: Load) -> Result<ContactState, Error> {
-    history.advance(Step::normal(0.0, load))
+    history.advance(Step::new(0.0, load))
 }
 
 /// Contact radius of a sphere R = E* = 1 without load.
@@ -59,10 +59,10 @@ fn pull_off(scene: &Scene) -> f64 {
     let exact = AdhesiveSphere::new(1.0, 1.0, WORK).unwrap().pull_off_at_force().unwrap();
     let mut history = path(scene);
     let unloaded = unloaded_radius().powi(2) / 3.0;
-    at(&mut *history, Load::Approach(unloaded)).unwrap();
+    at(&mut *history, Load::approach(unloaded)).unwrap();
     (0..16)
         .map(|i| exact.approach * (0.4 + 0.08 * f64::from(i)))
-        .map(|d| at(&mut *history, Load::Approach(d)).unwrap().force / exact.force)
+        .map(|d| at(&mut *history, Load::approach(d)).unwrap().force / exact.force)
         .fold(0.0, f64::max)
 }
 
@@ -106,22 +106,22 @@ fn both_branches_of_a_sphere_are_jkr() {
         adhesive.branch
     };
     // It snaps in at first touch, and goes along the same curve both ways but for that.
-    let apart = at(&mut *history, Load::Approach(-0.9 * unloaded)).unwrap();
+    let apart = at(&mut *history, Load::approach(-0.9 * unloaded)).unwrap();
     assert!(apart.force.abs() < 1e-12 * unit && apart.area == Some(0.0));
     for d in [0.1, 0.5, 1.0, 2.0] {
-        let state = at(&mut *history, Load::Approach(d * unloaded)).unwrap();
+        let state = at(&mut *history, Load::approach(d * unloaded)).unwrap();
         assert_eq!(compare(&state, d * unloaded), Branch::Approach);
     }
     let mut loss = 0.0;
     for d in [1.5, 1.0, 0.5, 0.1, -0.2, -0.4, -0.6] {
-        let state = at(&mut *history, Load::Approach(d * unloaded)).unwrap();
+        let state = at(&mut *history, Load::approach(d * unloaded)).unwrap();
         assert_eq!(compare(&state, d * unloaded), Branch::Withdrawal);
         loss = state.force;
     }
     // Where it hung apart on the way in it holds on the way out.
     assert!(loss < -0.5 * unit);
     let off =
-        at(&mut *history, Load::Approach(1.2 * exact.pull_off_at_approach().unwrap().approach)).unwrap();
+        at(&mut *history, Load::approach(1.2 * exact.pull_off_at_approach().unwrap().approach)).unwrap();
     assert!(off.force.abs() < 1e-12 * unit && off.area == Some(0.0));
 }
 
@@ -132,20 +132,20 @@ fn a_force_beyond_the_pull_off_is_an_error_with_the_last_state() {
     let mut history = path(&sphere(16.0, 1, PLACES[0]));
     let held: Vec<ContactState> = [-1.0, 0.0, 0.5, 0.9, 0.96]
         .iter()
-        .map(|f| at(&mut *history, Load::Force(f * unit)).unwrap())
+        .map(|f| at(&mut *history, Load::force(f * unit)).unwrap())
         .collect();
     for (state, f) in held.iter().zip([-1.0, 0.0, 0.5, 0.9, 0.96]) {
         let radius = exact.radius_at_force(f * unit).unwrap();
         // Near the pull-off the radius falls with the root of what is left of the force.
         approx::assert_relative_eq!((state.area.unwrap() / PI).sqrt(), radius, max_relative = 0.03);
     }
-    let Err(Error::NotConverged { best }) = at(&mut *history, Load::Force(1.03 * unit)) else {
+    let Err(Error::NotConverged { best }) = at(&mut *history, Load::force(1.03 * unit)) else {
         panic!("a force that nothing holds")
     };
     assert_eq!(best.force.to_bits(), held[4].force.to_bits());
     assert!(best.report.strategy.contains("pull-off"), "{}", best.report.strategy);
     // The path stands where it stood.
-    let again = at(&mut *history, Load::Force(0.9 * unit)).unwrap();
+    let again = at(&mut *history, Load::force(0.9 * unit)).unwrap();
     assert!((again.area.unwrap() / held[3].area.unwrap() - 1.0).abs() < 0.03);
 }
 
@@ -215,14 +215,14 @@ fn a_wavy_sphere_sticks_and_comes_off_ring_by_ring() {
     let step = 0.08 * unloaded_radius().powi(2) / 3.0;
     let radius = |state: &ContactState| (state.area.unwrap() / PI).sqrt();
     // It has snapped in at a smaller approach, to the ring that the closed form is followed from.
-    let state = at(&mut *history, Load::Approach(0.0)).unwrap();
+    let state = at(&mut *history, Load::approach(0.0)).unwrap();
     let mut edge = circles.iter().position(|c| c.radius > radius(&state) - 0.5 * length);
     let mut last: Option<(f64, f64, f64)> = None;
     let (mut pull, mut loss) = ((0.0f64, 0.0f64), (0.0, 0.0));
     // The next ring is within reach at 14.56 steps; it snaps in by half a step too early.
     for (i, inwards) in (0..=13).map(|i| (i, true)).chain((-14..13).rev().map(|i| (i, false))) {
         let d = step * f64::from(i);
-        let state = at(&mut *history, Load::Approach(d)).unwrap();
+        let state = at(&mut *history, Load::approach(d)).unwrap();
         // The edge advances to the first circle with so large an approach, and recedes to the first with so
         // small a one.
         edge = edge.and_then(|edge| {
@@ -261,11 +261,11 @@ fn punch(cells: usize) -> f64 {
     let a = (count / PI).sqrt() / cells as f64;
     let kendall = (8.0 * PI * WORK * a.powi(3)).sqrt();
     let mut history = path(&scene(map));
-    at(&mut *history, Load::Approach(0.0)).unwrap();
+    at(&mut *history, Load::approach(0.0)).unwrap();
     let mut largest = 0.0f64;
     for i in 0..60 {
         let d = -kendall / (2.0 * a) * (0.7 + 0.006 * f64::from(i));
-        let state = at(&mut *history, Load::Approach(d)).unwrap();
+        let state = at(&mut *history, Load::approach(d)).unwrap();
         // It holds on with nearly all of its area, or not at all.
         let area = state.area.unwrap() / (PI * a * a);
         assert!(area > 0.8 || area == 0.0, "{cells} {i}: {area}");
@@ -308,7 +308,7 @@ fn limits(cells: usize, direction: (u32, u32), place: f64) -> [f64; 2] {
     let (_, pull) = wave.pull_off().unwrap().unwrap();
     let (_, snap) = wave.snap_in().unwrap().unwrap();
     let (scene, size) = oblique_wave(cells, direction, place);
-    let force = |pressure: f64| Load::Force(pressure * size.x * size.y);
+    let force = |pressure: f64| Load::force(pressure * size.x * size.y);
     let mut history = path(&scene);
     at(&mut *history, force(0.0)).unwrap();
     at(&mut *history, force(0.7 * pull)).unwrap();
@@ -401,7 +401,7 @@ fn a_wave_pulls_off_and_snaps_in_as_johnson_says() {
     });
     let mut scene = scene(map.unwrap());
     scene.effects.boundary = Boundary::Periodic;
-    let force = |p: f64| Load::Force(p * side);
+    let force = |p: f64| Load::force(p * side);
     let mut history = path(&scene);
     assert!(at(&mut *history, force(0.0)).unwrap().area.unwrap() < 0.5 * side);
     at(&mut *history, force(0.99 * pull)).unwrap();

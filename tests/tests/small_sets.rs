@@ -11,7 +11,7 @@ const PRINTED: f64 = 6e-10;
 const FORMULA: f64 = 1e-6;
 
 fn stiffness(model: &Bem3d, scene: &Scene, approach: f64) -> f64 {
-    model.prepare(scene, 0).unwrap().solve(Load::Approach(approach)).unwrap().stiffness.unwrap()
+    model.prepare(scene, 0).unwrap().solve(Load::approach(approach)).unwrap().stiffness.unwrap()
 }
 
 fn square(cells: usize, method: Method) -> f64 {

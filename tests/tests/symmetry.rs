@@ -47,7 +47,7 @@ fn turned_mirrored_transposed() {
         scene.outputs.pressure = true;
         solve(&scene, load)
     };
-    for load in [Load::Force(1e-2), Load::Force(0.5), Load::Force(20.0), Load::Approach(1.0)] {
+    for load in [Load::force(1e-2), Load::force(0.5), Load::force(20.0), Load::approach(1.0)] {
         let there = pressed(original.clone(), load);
         let p = |state: &ContactState| state.pressure().unwrap().values().to_vec();
         let p_there = HeightMap::new(CELLS, 1.0, p(&there)).unwrap();
@@ -75,12 +75,12 @@ proptest! {
         let original = rough_map(2.4, CELLS, seed).unwrap();
         let mut scaled = scene(original.scaled(l, h).unwrap());
         scaled.contact_modulus = e;
-        let there = solve(&scene(original.clone()), Load::Force(f));
-        let here = solve(&scaled, Load::Force(f * e * l * h));
+        let there = solve(&scene(original.clone()), Load::force(f));
+        let here = solve(&scaled, Load::force(f * e * l * h));
         assert_same(&there, &divided(&here, e * l * h, h, e * l));
 
         let press = |surface: Surface, contact_modulus: f64, force: f64| {
-            Mdr1d::default().prepare(&Scene::new(surface, contact_modulus), 0).unwrap().solve(Load::Force(force)).unwrap()
+            Mdr1d::default().prepare(&Scene::new(surface, contact_modulus), 0).unwrap().solve(Load::force(force)).unwrap()
         };
         let there = press(line(&original, 1.0, 1.0), 1.0, f);
         let here = press(line(&original, l, h), e, f * e * l * h);
@@ -103,7 +103,7 @@ fn delta_is_minus_half_of_alpha() {
     let original = rough_map(2.4, CELLS, 3).unwrap();
     let k = |vertical: f64, force: f64| {
         let scene = scene(original.scaled(1.0, vertical).unwrap());
-        solve(&scene, Load::Force(force)).stiffness.unwrap()
+        solve(&scene, Load::force(force)).stiffness.unwrap()
     };
     let (force, factor) = (0.05, 1.7);
     assert_relative_eq!(k(factor, factor * force), k(1.0, force), max_relative = SAME);
@@ -120,12 +120,12 @@ fn lateral_lengths_alone() {
     let original = rough_map(2.2, CELLS, 5).unwrap();
     for factor in [0.01, 3.0, 4096.0] {
         for d in [0.3, 2.0, 20.0] {
-            let there = solve(&scene(original.clone()), Load::Approach(d));
-            let here = solve(&scene(original.scaled(factor, 1.0).unwrap()), Load::Approach(d));
+            let there = solve(&scene(original.clone()), Load::approach(d));
+            let here = solve(&scene(original.scaled(factor, 1.0).unwrap()), Load::approach(d));
             assert_same(&there, &divided(&here, factor, 1.0, factor));
             let press = |lateral| {
                 let scene = Scene::new(line(&original, lateral, 1.0), 1.0);
-                Mdr1d::default().prepare(&scene, 0).unwrap().solve(Load::Approach(d)).unwrap()
+                Mdr1d::default().prepare(&scene, 0).unwrap().solve(Load::approach(d)).unwrap()
             };
             assert_same(&press(1.0), &divided(&press(factor), factor, 1.0, factor));
         }
@@ -148,7 +148,7 @@ fn the_size_of_the_frame_does_not_matter() {
         let (small, large) = (scene(inner.clone()), scene(outer.clone()));
         let model = Bem3d { tolerance: TOLERANCE, ..Bem3d::default() };
         let (mut small, mut large) = (model.prepare(&small, 0).unwrap(), model.prepare(&large, 0).unwrap());
-        let (a, b) = (small.solve(Load::Approach(d)).unwrap(), large.solve(Load::Approach(d)).unwrap());
+        let (a, b) = (small.solve(Load::approach(d)).unwrap(), large.solve(Load::approach(d)).unwrap());
         assert_same(&a, &b);
         let (at, bt) = (small.normalisation(), large.normalisation());
         let heights = bt.height.unwrap() / at.height.unwrap();
@@ -183,7 +183,7 @@ fn the_zoom_argument() {
         let models: [&dyn ContactModel; 2] = [&bem, &Mdr1d::default()];
         for model in models {
             let press = |zoom: f64| {
-                let load = Load::Approach(0.1 * 0.3_f64.powf(n) * zoom.powf(n));
+                let load = Load::approach(0.1 * 0.3_f64.powf(n) * zoom.powf(n));
                 model.prepare(&body(zoom), 0).unwrap().solve(load).unwrap()
             };
             let (here, there) = (press(1.0), press(5.0));

@@ -26,7 +26,7 @@ fn scene(outputs: Outputs) -> Scene {
 fn press(model: &dyn ContactModel, scene: &Scene) -> ContactState {
     let mut contact = model.prepare(scene, 3).unwrap();
     let force = contact.normalisation().force(0.3).unwrap();
-    contact.solve(Load::Force(force)).unwrap()
+    contact.solve(Load::force(force)).unwrap()
 }
 
 /// Iterations, applications, and the rest.
@@ -78,7 +78,7 @@ fn each_output_adds_its_own_work_and_no_other() {
     }
     // Without contact there is nothing to solve, but fields are fields.
     let mut contact = model(Method::Auto).prepare(&scene(Outputs { gap: true, ..none }), 3).unwrap();
-    let state = contact.solve(Load::Force(0.0)).unwrap();
+    let state = contact.solve(Load::force(0.0)).unwrap();
     assert_eq!(counts(&state), (0, 0, Work { linear_solves: 0, fields: 1, bytes: FIELD }));
 }
 
@@ -92,7 +92,7 @@ fn formulas_and_lines_count_no_such_work() {
         (&Mdr1d { elements: 512 }, scene(outputs)),
     ] {
         let mut contact = model.prepare(&scene, 3).unwrap();
-        let state = contact.solve(Load::Force(1e-3)).unwrap();
+        let state = contact.solve(Load::force(1e-3)).unwrap();
         assert_eq!(counts(&state), (0, 0, Work::default()));
         assert!(state.conductance.unwrap() > 0.0);
     }
@@ -126,7 +126,7 @@ fn a_summit_cut_by_the_edges_is_one_patch_where_they_are_one() {
     for (boundary, count) in [(Boundary::Free, 4), (Boundary::Periodic, 1)] {
         let mut scene = Scene { outputs, ..Scene::new(Surface::Heights(Arc::new(map.clone())), 1.0) };
         scene.effects.boundary = boundary;
-        let state = Bem3d::default().prepare(&scene, 0).unwrap().solve(Load::Force(0.01)).unwrap();
+        let state = Bem3d::default().prepare(&scene, 0).unwrap().solve(Load::force(0.01)).unwrap();
         let patches = state.patches.unwrap();
         assert_eq!(patches.count(), count, "{boundary:?}");
         let cells_in_contact = state.report.contact_cells.unwrap() as f64 / (cells * cells) as f64;
@@ -151,7 +151,7 @@ fn a_path_computes_its_table_once() {
     let run = |outputs: Outputs| {
         let mut contact = model.prepare(&Scene { outputs, ..scene.clone() }, 3).unwrap();
         let force = contact.normalisation().force(0.3).unwrap();
-        let step = Step::normal(0.0, Load::Force(force));
+        let step = Step::new(0.0, Load::force(force));
         [contact.advance(step).unwrap(), contact.advance(step).unwrap()].map(|state| counts(&state))
     };
     let [first, second] = run(Outputs::default());

@@ -29,7 +29,7 @@ fn main() -> Result<()> {
     println!("{:>8} {:>9} {:>8} {:>9}", "F in mN", "d in um", "a in mm", "k in N/mm");
     let pull_off = -1.5 * PI * work * radius;
     for force in [5e-3, 2e-3, 0.0, -1e-3, -2e-3, 0.9999 * pull_off] {
-        let state = contact.solve(Load::Force(force))?;
+        let state = contact.solve(Load::force(force))?;
         let a = (state.area.unwrap_or(0.0) / PI).sqrt();
         let (d, k) = (state.approach.unwrap_or(0.0), state.stiffness.unwrap_or(0.0));
         println!("{:>8.4} {:>9.4} {:>8.4} {:>9.4}", force * 1e3, d * 1e6, a * 1e3, k * 1e-3);
@@ -38,7 +38,7 @@ fn main() -> Result<()> {
             - (8.0 * PI * work * contact_modulus * a.powi(3)).sqrt();
         assert!((force - exact).abs() < 1e-9 * pull_off.abs());
     }
-    if let Err(Error::OutOfRange { min, .. }) = contact.solve(Load::Force(1.0001 * pull_off)) {
+    if let Err(Error::OutOfRange { min, .. }) = contact.solve(Load::force(1.0001 * pull_off)) {
         println!("refused: the smallest force is {:.4} mN", min * 1e3);
         assert!((min / pull_off - 1.0).abs() < 1e-12);
     }

@@ -36,7 +36,7 @@ fn main() -> Result<()> {
     for model in models {
         for pressure in [0.01e6, 0.1e6, 1e6] {
             let mut contact = model.prepare(&scene, 0)?;
-            let state = contact.solve(Load::Force(pressure * 1e-6))?;
+            let state = contact.solve(Load::force(pressure * 1e-6))?;
             let fraction = contact.normalisation().contact_fraction(state.area.unwrap_or(0.0));
             let kappa = fraction * 1e9 * slope / pressure;
             let gap = state.mean_gap.unwrap_or(0.0) * 1e6;

@@ -6,7 +6,7 @@ use crate::closed::{self, Law};
 use crate::periodic;
 use crate::westergaard::whole_waves;
 use contact_model::{
-    Abilities, ContactModel, ContactState, Effect, Error, Load, LoadKind, Nondimensionalisation,
+    Abilities, ContactModel, ContactState, Effect, Error, LoadKind, Nondimensionalisation, NormalLoad,
     PreparedContact, Result, ScaledState, Scaling, Scene, SolveReport, Source,
 };
 use std::f64::consts::{FRAC_PI_2, PI, SQRT_2};
@@ -297,14 +297,14 @@ impl WaveLaw {
     fn pulled_off(&self, force: f64, nondimensional: Nondimensionalisation) -> Error {
         let least = self.wave.limits.map_or(0.0, |[first, _]| first.pressure(self.wave.alpha));
         let smallest = nondimensional.force(least * self.full);
-        smallest.map_or_else(|error| error, |smallest| Load::Force(force).pull_off(smallest))
+        smallest.map_or_else(|error| error, |smallest| NormalLoad::Force(force).pull_off(smallest))
     }
 }
 
 impl Law for WaveLaw {
-    fn state(&self, load: Load, scaling: &Scaling) -> Result<ContactState> {
+    fn state(&self, load: NormalLoad, scaling: &Scaling) -> Result<ContactState> {
         let force = match load.validated_with_adhesion()? {
-            Load::Force(force) => force,
+            NormalLoad::Force(force) => force,
             other => return Err(Error::unsupported(NAME, format!("{other}: it takes a force"))),
         };
         let Scaling { nondimensional, outputs, .. } = *scaling;
@@ -339,7 +339,7 @@ mod tests {
     use super::*;
     use crate::Westergaard;
     use approx::{assert_abs_diff_eq, assert_relative_eq};
-    use contact_model::{Adhesion, Boundary, Conductance, Size, Surface};
+    use contact_model::{Adhesion, Boundary, Conductance, Load, Size, Surface};
 
     /// Step of differences.
     const STEP: f64 = 1e-5;
@@ -379,7 +379,7 @@ mod tests {
         let mut found = AdhesiveWave.prepare(&scene(0.0), 0).unwrap();
         let full = 2.0 * PI * 3.0 * 0.02;
         for share in [1e-300, 1e-6, 0.1, 0.5, 0.99] {
-            let load = Load::Force(share * full);
+            let load = Load::force(share * full);
             let (a, b) = (found.solve(load).unwrap(), expected.solve(load).unwrap());
             assert_relative_eq!(
                 a.stiffness.unwrap(),
@@ -390,17 +390,17 @@ mod tests {
                 assert_relative_eq!(a.unwrap(), b.unwrap(), max_relative = ROUNDING, epsilon = 0.0);
             }
         }
-        let apart = found.solve(Load::Force(0.0)).unwrap();
+        let apart = found.solve(Load::force(0.0)).unwrap();
         assert_eq!((apart.area, apart.mean_gap, apart.stiffness), (Some(0.0), Some(0.01), Some(0.0)));
         // p* itself is full contact, whose gap stays 0.
         for contact in [&mut found, &mut expected] {
-            let state = contact.solve(Load::Force(full)).unwrap();
+            let state = contact.solve(Load::force(full)).unwrap();
             assert_relative_eq!(state.area.unwrap(), 2.0, max_relative = ROUNDING);
             assert_eq!(state.mean_gap, Some(0.0));
             assert_eq!((state.stiffness, state.stiffness_fixed_area), (None, None));
         }
         // Nothing holds the surfaces.
-        let error = found.solve(Load::Force(-1e-300)).unwrap_err();
+        let error = found.solve(Load::force(-1e-300)).unwrap_err();
         assert!(matches!(error, Error::OutOfRange { min: 0.0, .. }), "{error}");
     }
 
@@ -477,7 +477,7 @@ mod tests {
     #[test]
     fn states_are_those_of_long_arithmetic() {
         for (work, force, [area, gap, stiffness]) in STATES {
-            let state = AdhesiveWave.prepare(&scene(work), 0).unwrap().solve(Load::Force(force)).unwrap();
+            let state = AdhesiveWave.prepare(&scene(work), 0).unwrap().solve(Load::force(force)).unwrap();
             assert_relative_eq!(state.area.unwrap(), area, max_relative = CONDITIONED);
             assert_relative_eq!(state.mean_gap.unwrap(), gap, max_relative = CONDITIONED);
             assert_relative_eq!(state.stiffness_fixed_area.unwrap(), stiffness, max_relative = CONDITIONED);
@@ -491,7 +491,7 @@ mod tests {
         let work = 0.5 * (PI * 1e-6_f64).powi(2);
         let mut contact = AdhesiveWave.prepare(&wave_scene(1.0, 1.0, 1.0.into(), (1.0, work)), 0).unwrap();
         let snap_in = with_alpha(1e-6).snap_in().unwrap().unwrap().1;
-        let state = contact.solve(Load::Force(snap_in)).unwrap();
+        let state = contact.solve(Load::force(snap_in)).unwrap();
         assert_relative_eq!(state.mean_gap.unwrap(), gap, max_relative = ROUNDING, epsilon = 0.0);
         let held = state.stiffness_fixed_area.unwrap();
         assert_relative_eq!(held, stiffness, max_relative = ROUNDING, epsilon = 0.0);
@@ -511,9 +511,9 @@ mod tests {
         assert!(matches!(wave.stable(1.01 * first.1), Err(Error::OutOfRange { min, .. })
             if min.to_bits() == first.1.to_bits()));
         let mut contact = AdhesiveWave.prepare(&scene(1e-4), 0).unwrap();
-        let pulled = contact.solve(Load::Force(0.9 * 2.0 * first.1)).unwrap();
+        let pulled = contact.solve(Load::force(0.9 * 2.0 * first.1)).unwrap();
         assert!(pulled.area.unwrap() > 0.0 && pulled.stiffness.unwrap() > 0.0);
-        assert!(contact.solve(Load::MeanGap(0.005)).is_err());
+        assert!(contact.solve(Load::mean_gap(0.005)).is_err());
     }
 
     /// Waves of all kinds of roundings, of alpha from 0.02 to 0.7.
@@ -544,7 +544,7 @@ mod tests {
                     assert_relative_eq!(found, psi, max_relative = AT_EXTREMUM);
                 }
                 for force in around(pressure * (size.x * size.y)) {
-                    let state = contact.solve(Load::Force(force)).unwrap();
+                    let state = contact.solve(Load::force(force)).unwrap();
                     let fraction = state.area.unwrap() / (size.x * size.y);
                     assert_relative_eq!(fraction * FRAC_PI_2, psi, max_relative = AT_EXTREMUM);
                     assert_eq!(state.force.to_bits(), force.to_bits());
@@ -560,7 +560,7 @@ mod tests {
             let Surface::Sine { amplitude, wavelength, .. } = scene.surface else { panic!("no wave") };
             let mut contact = AdhesiveWave.prepare(&scene, 0).unwrap();
             for force in around(PI * scene.contact_modulus * amplitude / wavelength * (size.x * size.y)) {
-                let state = contact.solve(Load::Force(force)).unwrap();
+                let state = contact.solve(Load::force(force)).unwrap();
                 assert_eq!((state.mean_gap, state.stiffness), (Some(0.0), None));
             }
         }
@@ -573,16 +573,16 @@ mod tests {
             let [first, last] =
                 [wave.pull_off(), wave.snap_in()].map(|limit| limit.unwrap().unwrap().1 * (size.x * size.y));
             let beyond = first * (1.0 + BEYOND);
-            let error = contact.solve(Load::Force(beyond)).unwrap_err();
+            let error = contact.solve(Load::force(beyond)).unwrap_err();
             assert!(error.to_string().starts_with("force (the contact pulls off"), "{error}");
             let Error::OutOfRange { value, min, max, .. } = error else { panic!("{error}") };
             assert_eq!((value.to_bits(), max), (beyond.to_bits(), f64::INFINITY));
             assert_relative_eq!(min, first, max_relative = ROUNDING);
             // The smallest force that the error names is one.
-            assert!(contact.solve(Load::Force(min)).is_ok());
+            assert!(contact.solve(Load::force(min)).is_ok());
             // Beyond the snap-in the contact is full.
             let beyond = last + BEYOND * last.abs();
-            let state = contact.solve(Load::Force(beyond)).unwrap();
+            let state = contact.solve(Load::force(beyond)).unwrap();
             assert_eq!(
                 (state.mean_gap, state.stiffness, state.stiffness_fixed_area),
                 (Some(0.0), None, None)
@@ -604,7 +604,7 @@ mod tests {
             for share in [0.1, 0.4, 0.8, 0.97] {
                 let pressure = first.1 + share * (last.1 - first.1);
                 let step = STEP * (last.1 - first.1);
-                let mut at = |pressure: f64| contact.solve(Load::Force(pressure * size.x * size.y)).unwrap();
+                let mut at = |pressure: f64| contact.solve(Load::force(pressure * size.x * size.y)).unwrap();
                 let (low, here, high) = (at(pressure - step), at(pressure), at(pressure + step));
                 let slope = (high.force - low.force) / (low.mean_gap.unwrap() - high.mean_gap.unwrap());
                 // The curve bends most near the snap-in.
@@ -620,7 +620,7 @@ mod tests {
                 assert_relative_eq!(here.conductance.unwrap(), through, max_relative = ROUNDING);
             }
             for (_, pressure) in [first, last] {
-                let state = contact.solve(Load::Force(pressure * size.x * size.y)).unwrap();
+                let state = contact.solve(Load::force(pressure * size.x * size.y)).unwrap();
                 let ratio = state.stiffness.unwrap() / state.stiffness_fixed_area.unwrap();
                 assert_abs_diff_eq!(ratio, 0.0, epsilon = AT_EXTREMUM);
             }
@@ -663,9 +663,9 @@ mod tests {
         assert!(matches!(wave.stable(f64::MIN), Err(Error::OutOfRange { .. })));
         let mut contact = AdhesiveWave.prepare(&scene(1e-4), 0).unwrap();
         for force in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
-            assert!(matches!(contact.solve(Load::Force(force)), Err(Error::Domain { .. })));
+            assert!(matches!(contact.solve(Load::force(force)), Err(Error::Domain { .. })));
         }
-        assert!(matches!(contact.solve(Load::Force(f64::MIN)), Err(Error::OutOfRange { .. })));
+        assert!(matches!(contact.solve(Load::force(f64::MIN)), Err(Error::OutOfRange { .. })));
     }
 
     /// In units of any length the same contact, where an `f64` holds what is asked.
@@ -676,7 +676,7 @@ mod tests {
             let work = 1e-4 * (contact_modulus * length);
             let mut scene = wave_scene(0.01 * length, 0.5 * length, size, (contact_modulus, work));
             scene.outputs.area = area;
-            AdhesiveWave.prepare(&scene, 0).unwrap().solve(Load::Force(force))
+            AdhesiveWave.prepare(&scene, 0).unwrap().solve(Load::force(force))
         };
         let one = solved(1.0, (1.0, true), 0.0).unwrap();
         let pulled = solved(1.0, (1.0, true), -0.01).unwrap();
@@ -699,7 +699,7 @@ mod tests {
         // Sides whose product is a number, though not their ratio's square.
         let size = Size { x: 1e-160, y: 1e160 };
         let mut thin = AdhesiveWave.prepare(&wave_scene(1e-162, 0.5e-160, size, (1.0, 1e-164)), 0).unwrap();
-        let state = thin.solve(Load::Force(0.0)).unwrap();
+        let state = thin.solve(Load::force(0.0)).unwrap();
         assert_relative_eq!(state.area.unwrap(), 0.5 * one.area.unwrap(), max_relative = ROUNDING);
         // Parts of alpha that are no numbers: work over E* is 1e-400, and E* D is 1e350.
         let wave = WavyContact::new(1e-150, 1e-150, 1e200, 1e-200).unwrap();
@@ -724,7 +724,7 @@ mod tests {
                             (scene.outputs.area, scene.outputs.stiffness) = (area, stiffness);
                             let Ok(mut contact) = AdhesiveWave.prepare(&scene, 0) else { continue };
                             for force in [0.0, -1e-300, 1e-300, 1e-20, 1.0, -1.0, 1e300] {
-                                match contact.solve(Load::Force(force)) {
+                                match contact.solve(Load::force(force)) {
                                     Ok(state) => {
                                         let values = [
                                             state.area,

@@ -5,8 +5,9 @@ use crate::closed::{self, ROUNDED_UP};
 use crate::hertz::Hertz;
 use crate::memory::{SlipCurve, SlipLoad, held, lost, reached};
 use contact_model::{
-    Abilities, ContactModel, ContactState, Effect, Effects, Error, Friction, Load, Normalisation, Outputs,
-    Paths, PreparedContact, Result, Scene, Source, Step, Stop, Tangential, TangentialState, check_stop,
+    Abilities, ContactModel, ContactState, Effect, Effects, Error, Friction, Load, NormalLoad, Normalisation,
+    Outputs, Paths, PreparedContact, Result, Scene, Source, Step, Stop, Tangential, TangentialState,
+    check_stop,
 };
 
 const NAME: &str = "cattaneo_mindlin";
@@ -34,7 +35,7 @@ const NAME: &str = "cattaneo_mindlin";
 /// scene.effects.friction = Friction::coulomb(0.5);
 /// let mut contact = CattaneoMindlin.prepare(&scene, 0)?;
 /// // Half of mu F: c/a = 0.5^(1/3) = 0.7937005260.
-/// let state = contact.advance(Step { time: 0.0, normal: Load::Force(0.01), tangential: Tangential::force_along_x(0.0025) })?;
+/// let state = contact.advance(Step::new(0.0, Load::force(0.01).with_tangential(Tangential::force_along_x(0.0025))))?;
 /// let (Some(a), Some(tangential)) = (state.contact_radius, state.tangential) else { panic!("a round contact with friction") };
 /// assert!((tangential.stick_radius.unwrap_or(0.0) / a - 0.7937005260).abs() < 1e-10);
 /// # Ok::<(), contact_model::Error>(())
@@ -218,8 +219,8 @@ struct PreparedCattaneoMindlin {
 
 impl PreparedCattaneoMindlin {
     /// The state under the normal load, with its contact radius.
-    fn press(&mut self, step: &Step) -> Result<(ContactState, Option<SlidingSphere>)> {
-        let mut state = self.normal.solve(step.normal)?;
+    fn press(&mut self, load: NormalLoad) -> Result<(ContactState, Option<SlidingSphere>)> {
+        let mut state = self.normal.solve(load.into())?;
         // k = 2 E* a of the round area.
         let radius =
             0.5 * state.stiffness_fixed_area.unwrap_or(0.0) / self.normal.normalisation().contact_modulus;
@@ -250,9 +251,10 @@ impl PreparedContact for PreparedCattaneoMindlin {
 
     fn advance_until(&mut self, step: Step, stop: Stop<'_>) -> Result<ContactState> {
         check_stop(stop)?;
-        let step = step.validated(self.at.time)?;
-        step.tangential.refuse_y(NAME)?;
-        let (state, sphere) = self.press(&step)?;
+        let Step { time, load: Load { normal, tangential: tangential_load } } =
+            step.validated(self.at.time)?;
+        tangential_load.refuse_y(NAME)?;
+        let (state, sphere) = self.press(normal)?;
         let unloaded = self.at.curve == SlipCurve::default();
         if let (Some((last, _)), false) = (&self.at.pressed, unloaded)
             && (state.force - last.force).abs() > SAME * last.force
@@ -267,12 +269,12 @@ impl PreparedContact for PreparedCattaneoMindlin {
         };
         let mut curve = self.at.curve.clone();
         let tangential = if let Some(sphere) = sphere {
-            curve.go(match step.tangential {
+            curve.go(match tangential_load {
                 Tangential::Force([force, _]) => SlipLoad::Force(sphere.share(force)?),
                 Tangential::Displacement([u, _]) => SlipLoad::Displacement(u / sphere.reach),
                 other => return Err(Error::unsupported_load(NAME, other)),
             });
-            let (force, displacement) = match step.tangential {
+            let (force, displacement) = match tangential_load {
                 Tangential::Force([force, _]) => (force, curve.now.u * sphere.reach),
                 Tangential::Displacement([u, _]) => (curve.now.t * sphere.limit, u),
                 other => return Err(Error::unsupported_load(NAME, other)),
@@ -282,15 +284,15 @@ impl PreparedContact for PreparedCattaneoMindlin {
                 .with_stick_radius(curve.stick() * sphere.contact_radius)
                 .with_dissipated(curve.dissipated * sphere.limit * sphere.reach)
         } else {
-            if !step.tangential.is_zero() {
+            if !tangential_load.is_zero() {
                 let what = "a tangential load without a normal one";
                 return Err(Error::unsupported(NAME, what));
             }
             TangentialState::new([0.0; 2], [0.0; 2]).with_sliding_force(0.0).with_stick_radius(0.0)
         };
-        self.at = SlipPathEnd { time: step.time, pressed: Some((state.clone(), sphere)), curve };
+        self.at = SlipPathEnd { time, pressed: Some((state.clone(), sphere)), curve };
         let radius = sphere.map_or(0.0, |sphere| sphere.contact_radius);
-        Ok(state.with_time(step.time).with_contact_radius(radius).with_tangential(tangential))
+        Ok(state.with_time(time).with_contact_radius(radius).with_tangential(tangential))
     }
 
     fn restart(&mut self) {
@@ -318,7 +320,7 @@ mod tests {
     }
 
     fn at(tangential: Tangential) -> Step {
-        Step { time: 0.0, normal: Load::Force(FORCE), tangential }
+        Step::new(0.0, Load::force(FORCE).with_tangential(tangential))
     }
 
     fn tangential(contact: &mut dyn PreparedContact, load: Tangential) -> TangentialState {
@@ -411,15 +413,14 @@ mod tests {
     #[test]
     fn what_the_theory_does_not_cover_is_refused() {
         let mut contact = CattaneoMindlin.prepare(&scene(MU), 0).unwrap();
-        let alone = Step { time: 0.0, normal: Load::Force(0.0), tangential: Tangential::force_along_x(1.0) };
+        let alone = Step::new(0.0, Load::force(0.0).with_tangential(Tangential::force_along_x(1.0)));
         assert!(matches!(contact.advance(alone), Err(Error::Unsupported { .. })));
         // The normal load may change while there is nothing tangential.
         for force in [0.0, 0.02, FORCE] {
-            contact.advance(Step::normal(0.0, Load::Force(force))).unwrap();
+            contact.advance(Step::new(0.0, Load::force(force))).unwrap();
         }
         tangential(&mut *contact, Tangential::force_along_x(1e-4));
-        let heavier =
-            Step { time: 0.0, normal: Load::Force(0.02), tangential: Tangential::force_along_x(1e-4) };
+        let heavier = Step::new(0.0, Load::force(0.02).with_tangential(Tangential::force_along_x(1e-4)));
         assert!(matches!(contact.advance(heavier), Err(Error::Unsupported { .. })));
         let early = Step { time: -1.0, ..at(Tangential::force_along_x(0.0)) };
         assert!(matches!(contact.advance(early), Err(Error::Domain { .. })));

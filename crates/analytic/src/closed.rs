@@ -1,15 +1,16 @@
 //! Common code of all closed forms: a law in units of its own becomes a [`PreparedContact`].
 
 use contact_model::{
-    Abilities, Adhesion, ContactModel, ContactState, Error, Load, Normalisation, Output, PreparedContact,
-    Result, ScaledState, Scaling, Scene, Size, SolveReport, Stop, Surface, SurfaceKind, check_stop,
+    Abilities, Adhesion, ContactModel, ContactState, Error, Load, NormalLoad, Normalisation, Output,
+    PreparedContact, Result, ScaledState, Scaling, Scene, Size, SolveReport, Stop, Surface, SurfaceKind,
+    check_stop,
 };
 use std::f64::consts::PI;
 
 /// A theory that relates a load to a state.
 pub(crate) trait Law: Send {
     /// The state under a load, with the requested outputs.
-    fn state(&self, load: Load, scaling: &Scaling) -> Result<ContactState>;
+    fn state(&self, load: NormalLoad, scaling: &Scaling) -> Result<ContactState>;
 }
 
 /// A law made ready for its scene.
@@ -25,7 +26,7 @@ impl<L: Law> PreparedContact for Prepared<L> {
 
     fn solve_until(&mut self, load: Load, stop: Stop<'_>) -> Result<ContactState> {
         check_stop(stop)?;
-        self.law.state(load, &self.scaling)
+        self.law.state(load.without_tangential("of frictionless contact")?, &self.scaling)
     }
 }
 
@@ -77,18 +78,18 @@ impl ClosedState {
 }
 
 impl<L: ClosedLaw> Law for Closed<L> {
-    fn state(&self, load: Load, scaling: &Scaling) -> Result<ContactState> {
+    fn state(&self, load: NormalLoad, scaling: &Scaling) -> Result<ContactState> {
         let nondimensional = scaling.nondimensional;
         let (asked, value) = match load.validated()? {
-            Load::Force(force) => (force, nondimensional.force_in(force)),
-            Load::Approach(approach) => (approach, nondimensional.approach_in(approach)),
+            NormalLoad::Force(force) => (force, nondimensional.force_in(force)),
+            NormalLoad::Approach(approach) => (approach, nondimensional.approach_in(approach)),
             _ => return Err(Error::unsupported_load(self.model, load)),
         };
         let point = if asked <= 0.0 {
             ClosedState { force: 0.0, approach: 0.0, stiffness: 0.0, area: Some(0.0) }
         } else if value.is_finite() && value > 0.0 {
             match load {
-                Load::Force(_) => self.law.at_force(value)?,
+                NormalLoad::Force(_) => self.law.at_force(value)?,
                 _ => self.law.at_approach(value)?,
             }
         } else {

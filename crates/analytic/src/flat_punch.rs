@@ -28,7 +28,7 @@ pub const SQUARE_STIFFNESS_UNCERTAINTY: f64 = 1e-6;
 /// use analytic::FlatPunch;
 /// use contact_model::{ContactModel, Load, Scene, Surface};
 /// let scene = Scene::new(Surface::FlatCircle { radius: 0.25, size: 1.0.into() }, 2.0);
-/// let state = FlatPunch.prepare(&scene, 0)?.solve(Load::Force(0.5))?;
+/// let state = FlatPunch.prepare(&scene, 0)?.solve(Load::force(0.5))?;
 /// assert_eq!((state.stiffness, state.approach), (Some(1.0), Some(0.5)));
 /// # Ok::<(), contact_model::Error>(())
 /// ```
@@ -137,7 +137,7 @@ mod tests {
     fn square() {
         let surface = |side: f64| Surface::Flat { size: side.into() };
         let scene = Scene::new(surface(3.0), 2.0);
-        let s = pressed(&FlatPunch, &scene, Load::Approach(0.1)).unwrap();
+        let s = pressed(&FlatPunch, &scene, Load::approach(0.1)).unwrap();
         assert_relative_eq!(s.stiffness.unwrap(), 1.152_298 * 6.0, max_relative = ROUNDING);
         assert_relative_eq!(s.area.unwrap(), 9.0, max_relative = ROUNDING);
         assert!(s.report.certificate.stiffness_error.unwrap() > 8e-7);
@@ -153,7 +153,7 @@ mod tests {
     fn circle() {
         let surface = |side: f64| Surface::FlatCircle { radius: 0.3 * side, size: side.into() };
         let scene = Scene::new(surface(1.0), 2.0);
-        let s = pressed(&FlatPunch, &scene, Load::Force(0.6)).unwrap();
+        let s = pressed(&FlatPunch, &scene, Load::force(0.6)).unwrap();
         assert_relative_eq!(s.approach.unwrap(), 0.5, max_relative = ROUNDING);
         assert_relative_eq!(s.area.unwrap(), PI * 0.09, max_relative = ROUNDING);
         check_curve(&FlatPunch, &scene, 0.1);

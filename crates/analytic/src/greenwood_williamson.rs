@@ -45,7 +45,7 @@ const SUMMIT_SCATTER: f64 = 0.8968;
 /// scene.effects.boundary = Boundary::Periodic;
 /// // With exponential heights k = F/s exactly.
 /// let model = GreenwoodWilliamson { heights: SummitHeights::Exponential };
-/// let state = model.prepare(&scene, 0)?.solve(Load::Force(1e-5))?;
+/// let state = model.prepare(&scene, 0)?.solve(Load::force(1e-5))?;
 /// assert!((state.stiffness.unwrap_or(0.0) * summits.scatter / 1e-5 - 1.0).abs() < 1e-12);
 /// # Ok::<(), contact_model::Error>(())
 /// ```
@@ -339,7 +339,7 @@ mod tests {
             scene.effects.boundary = Boundary::Periodic;
             (scene.outputs.area, scene.outputs.mean_gap) = (true, true);
             let state =
-                GreenwoodWilliamson::default().prepare(&scene, 0).unwrap().solve(Load::Force(0.5)).unwrap();
+                GreenwoodWilliamson::default().prepare(&scene, 0).unwrap().solve(Load::force(0.5)).unwrap();
             [state.area, state.stiffness, state.mean_gap].map(Option::unwrap)
         });
         for (of_surface, of_map) in states[0].into_iter().zip(states[1]) {
@@ -397,11 +397,11 @@ mod tests {
         let scene = scene(surface(0.8, None, 100.0));
         let mut contact = GreenwoodWilliamson::default().prepare(&scene, 0).unwrap();
         let elevation = Summits::new(&Spectrum::new(&surface(0.8, None, 100.0)).unwrap()).elevation;
-        let heaviest = contact.solve(Load::MeanGap(elevation)).unwrap().force;
-        assert!(contact.solve(Load::Force(heaviest)).is_ok());
-        assert!(matches!(contact.solve(Load::Force(1.01 * heaviest)), Err(Error::OutOfRange { .. })));
-        assert!(matches!(contact.solve(Load::MeanGap(0.5 * elevation)), Err(Error::OutOfRange { .. })));
-        assert_eq!(contact.solve(Load::Force(0.0)).unwrap().mean_gap, None);
+        let heaviest = contact.solve(Load::mean_gap(elevation)).unwrap().force;
+        assert!(contact.solve(Load::force(heaviest)).is_ok());
+        assert!(matches!(contact.solve(Load::force(1.01 * heaviest)), Err(Error::OutOfRange { .. })));
+        assert!(matches!(contact.solve(Load::mean_gap(0.5 * elevation)), Err(Error::OutOfRange { .. })));
+        assert_eq!(contact.solve(Load::force(0.0)).unwrap().mean_gap, None);
         let free = Scene::new(Surface::SelfAffine(surface(0.8, None, 100.0)), 1.0);
         assert!(matches!(GreenwoodWilliamson::default().prepare(&free, 0), Err(Error::Unsupported { .. })));
     }
@@ -413,7 +413,7 @@ mod tests {
         let model = GreenwoodWilliamson { heights: SummitHeights::Exponential };
         let mut contact = model.prepare(&scene(surface), 0).unwrap();
         for force in [1e-30, 1e-8, 1e-3] {
-            let s = contact.solve(Load::Force(force)).unwrap();
+            let s = contact.solve(Load::force(force)).unwrap();
             assert_relative_eq!(s.stiffness.unwrap(), force / summits.scatter, max_relative = 1e-12);
             // A = F sqrt(pi R/s)/E*.
             let area = force * (PI * summits.radius / summits.scatter).sqrt();
@@ -431,7 +431,7 @@ mod tests {
             for heights in [SummitHeights::Gaussian, SummitHeights::Exponential] {
                 let model = GreenwoodWilliamson { heights };
                 let mut contact = model.prepare(&scene(surface), 0).unwrap();
-                let gap = Load::MeanGap(summits.elevation + t * summits.scatter);
+                let gap = Load::mean_gap(summits.elevation + t * summits.scatter);
                 let force = contact.solve(gap).unwrap().force;
                 check_periodic(&model, &scene(surface), force, 1e-10);
             }

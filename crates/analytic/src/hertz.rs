@@ -15,7 +15,7 @@ const NAME: &str = "hertz";
 /// use contact_model::{ContactModel, Load, Scene, Surface};
 /// let scene = Scene::new(Surface::Sphere { radius: 1.0, size: 1.0.into() }, 3.0);
 /// // d = 0.01: a = 0.1, F = (4/3) E* a^3 = 0.004.
-/// let state = Hertz.prepare(&scene, 0)?.solve(Load::Approach(0.01))?;
+/// let state = Hertz.prepare(&scene, 0)?.solve(Load::approach(0.01))?;
 /// assert!((state.force - 0.004).abs() < 1e-15);
 /// # Ok::<(), contact_model::Error>(())
 /// ```
@@ -97,12 +97,12 @@ mod tests {
     #[test]
     fn reference_numbers() {
         let scene = Scene::new(Surface::Sphere { radius: 1.0, size: 4.0.into() }, 1.0);
-        let one = pressed(&Hertz, &scene, Load::Force(1.0)).unwrap();
+        let one = pressed(&Hertz, &scene, Load::force(1.0)).unwrap();
         let a = one.stiffness.unwrap() / 2.0;
         assert_relative_eq!(a, 0.908_560_296_416, max_relative = PRINTED);
         assert_relative_eq!(one.approach.unwrap(), 0.825_481_812_224, max_relative = PRINTED);
         assert_relative_eq!(pressure(1.0, a, 0.0).unwrap(), 0.578_407_449_087, max_relative = PRINTED);
-        let small = pressed(&Hertz, &scene, Load::Force(1e-3)).unwrap();
+        let small = pressed(&Hertz, &scene, Load::force(1e-3)).unwrap();
         assert_relative_eq!(small.stiffness.unwrap(), 2.0 * 0.090_856_029_642, max_relative = PRINTED);
         assert_relative_eq!(small.approach.unwrap(), 0.008_254_818_122, max_relative = PRINTED);
     }
@@ -125,8 +125,8 @@ mod tests {
     #[test]
     fn the_square_is_the_limit() {
         let scene = Scene::new(Surface::Sphere { radius: 1.0, size: 1.0.into() }, 1.0);
-        assert!(pressed(&Hertz, &scene, Load::Approach(0.25)).is_ok());
-        assert!(matches!(pressed(&Hertz, &scene, Load::Approach(0.26)), Err(Error::OutOfRange { .. })));
+        assert!(pressed(&Hertz, &scene, Load::approach(0.25)).is_ok());
+        assert!(matches!(pressed(&Hertz, &scene, Load::approach(0.26)), Err(Error::OutOfRange { .. })));
         let cone = Scene::new(Surface::Cone { slope: 1.0, size: 1.0.into() }, 1.0);
         assert!(matches!(Hertz.prepare(&cone, 0), Err(Error::Unsupported { .. })));
     }

@@ -2,7 +2,7 @@
 
 use crate::closed::{self, Law};
 use contact_model::{
-    Abilities, ContactModel, ContactState, Effect, Error, Load, Nondimensionalisation, PreparedContact,
+    Abilities, ContactModel, ContactState, Effect, Error, Nondimensionalisation, NormalLoad, PreparedContact,
     Result, ScaledState, Scaling, Scene, Size, SolveReport, Source,
 };
 use numerics::root;
@@ -32,12 +32,12 @@ const NAME: &str = "jkr";
 /// scene.effects.adhesion = Adhesion::ShortRange { work: 0.01 };
 /// let mut contact = Jkr.prepare(&scene, 0)?;
 /// // At no load a^3 = 9 pi w R^2 / (2 E*): a = 0.5209397, d = a^2/(3 R).
-/// let state = contact.solve(Load::Force(0.0))?;
+/// let state = contact.solve(Load::force(0.0))?;
 /// assert!((state.approach.unwrap_or(0.0) - 0.5209397_f64.powi(2) / 3.0).abs() < 1e-7);
 /// // The stiffness is 3/5 of 2 E* a, that at fixed contact area.
 /// assert!((state.stiffness.unwrap_or(0.0) - 1.2 * 0.5209397).abs() < 1e-7);
 /// // 3/2 pi w R = 0.0471239.
-/// assert!(contact.solve(Load::Force(-0.0471)).is_ok() && contact.solve(Load::Force(-0.0472)).is_err());
+/// assert!(contact.solve(Load::force(-0.0471)).is_ok() && contact.solve(Load::force(-0.0472)).is_err());
 /// # Ok::<(), contact_model::Error>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -242,7 +242,7 @@ impl AdhesiveSphere {
         let pull_off = 1.5 * PI * self.work;
         let scaled = self.nondimensional.force_in(force);
         if scaled < -pull_off * closed::ROUNDED_UP {
-            return Err(Load::Force(force).pull_off(self.pull_off_at_force()?.force));
+            return Err(NormalLoad::Force(force).pull_off(self.pull_off_at_force()?.force));
         }
         let root = (scaled + pull_off).max(0.0).sqrt() + pull_off.sqrt();
         Ok((0.75 * root * root).cbrt())
@@ -258,7 +258,7 @@ impl AdhesiveSphere {
         let fold = self.smallest_radius();
         let least = -0.75 * c * fold.sqrt();
         if d < least * closed::ROUNDED_UP {
-            return Err(Load::Approach(approach).pull_off(self.pull_off_at_approach()?.approach));
+            return Err(NormalLoad::Approach(approach).pull_off(self.pull_off_at_approach()?.approach));
         }
         if d <= least {
             return Ok(fold);
@@ -285,11 +285,11 @@ struct JkrLaw {
 }
 
 impl Law for JkrLaw {
-    fn state(&self, load: Load, scaling: &Scaling) -> Result<ContactState> {
+    fn state(&self, load: NormalLoad, scaling: &Scaling) -> Result<ContactState> {
         let sphere = &self.sphere;
         let (a, asked) = match load.validated_with_adhesion()? {
-            Load::Force(force) => (sphere.at_force(force)?, force),
-            Load::Approach(approach) => (sphere.at_approach(approach)?, approach),
+            NormalLoad::Force(force) => (sphere.at_force(force)?, force),
+            NormalLoad::Approach(approach) => (sphere.at_approach(approach)?, approach),
             _ => return Err(Error::unsupported_load(NAME, load)),
         };
         if !a.is_finite() || (a <= 0.0 && (asked.abs() > 0.0 || sphere.work > 0.0)) {
@@ -311,7 +311,7 @@ mod tests {
     use super::*;
     use crate::testing::{PRINTED, ROUNDING, check_slope, pressed};
     use approx::{assert_abs_diff_eq, assert_relative_eq};
-    use contact_model::{Adhesion, Surface};
+    use contact_model::{Adhesion, Load, Surface};
     use proptest::prelude::*;
     use proptest::test_runner::RngSeed;
 
@@ -349,14 +349,14 @@ mod tests {
         let sphere = AdhesiveSphere::new(1.0, 1.0, 0.01).unwrap();
         let (force, approach) =
             (sphere.pull_off_at_force().unwrap().force, sphere.pull_off_at_approach().unwrap().approach);
-        assert!(pressed(&Jkr, &scene, Load::Force(force)).is_ok());
-        assert!(pressed(&Jkr, &scene, Load::Approach(approach)).is_ok());
-        for load in [Load::Force(1.001 * force), Load::Approach(1.001 * approach)] {
+        assert!(pressed(&Jkr, &scene, Load::force(force)).is_ok());
+        assert!(pressed(&Jkr, &scene, Load::approach(approach)).is_ok());
+        for load in [Load::force(1.001 * force), Load::approach(1.001 * approach)] {
             let error = pressed(&Jkr, &scene, load).unwrap_err();
             assert!(matches!(error, Error::OutOfRange { .. }) && error.to_string().contains("pulls off"));
         }
-        assert!(matches!(pressed(&Jkr, &scene, Load::Approach(4.0)), Err(Error::OutOfRange { .. })));
-        assert!(pressed(&Jkr, &scene, Load::Force(f64::NAN)).is_err());
+        assert!(matches!(pressed(&Jkr, &scene, Load::approach(4.0)), Err(Error::OutOfRange { .. })));
+        assert!(pressed(&Jkr, &scene, Load::force(f64::NAN)).is_err());
         assert!(
             AdhesiveSphere::new(1.0, 1.0, -1.0).is_err() && AdhesiveSphere::new(1.0, 1.0, f64::NAN).is_err()
         );
@@ -375,7 +375,7 @@ mod tests {
     #[test]
     fn without_adhesion_it_is_hertz() {
         let bare = Scene::new(Surface::Sphere { radius: 1.3, size: 1.0.into() }, 2.0);
-        for load in [Load::Force(1e-3), Load::Approach(0.01), Load::Force(0.0), Load::Approach(0.0)] {
+        for load in [Load::force(1e-3), Load::approach(0.01), Load::force(0.0), Load::approach(0.0)] {
             let hertz = pressed(&crate::Hertz, &bare, load).unwrap();
             let here = pressed(&Jkr, &scene(1.0, 2.0, 1.3, 0.0), load).unwrap();
             assert_relative_eq!(here.force, hertz.force, max_relative = ROUNDING);
@@ -384,7 +384,7 @@ mod tests {
         }
         // And towards it as the root of the work: a^(3/2) = a_H^(3/2) + sqrt(9 pi w R^2/(8 E*)) + O(w).
         let gap = |work: f64| {
-            let a = pressed(&Jkr, &scene(1.0, 1.0, 1.0, work), Load::Force(1e-3)).unwrap();
+            let a = pressed(&Jkr, &scene(1.0, 1.0, 1.0, work), Load::force(1e-3)).unwrap();
             a.stiffness_fixed_area.unwrap() / (2.0 * 0.090_856_029_642) - 1.0
         };
         assert_relative_eq!(gap(1e-10) / gap(1e-12), 10.0, max_relative = 1e-2);
@@ -398,20 +398,20 @@ mod tests {
             let [by_force, by_approach] =
                 [sphere.pull_off_at_force(), sphere.pull_off_at_approach()].map(Result::unwrap);
             for share in [-0.9, -0.5, -0.1, 0.1, 1.0, 30.0] {
-                check_slope(&Jkr, &scene, Load::Force(share * by_force.force.abs()));
+                check_slope(&Jkr, &scene, Load::force(share * by_force.force.abs()));
             }
             for share in [-0.9, -0.5, -0.1, 0.3, 5.0] {
-                check_slope(&Jkr, &scene, Load::Approach(share * by_approach.approach.abs()));
+                check_slope(&Jkr, &scene, Load::approach(share * by_approach.approach.abs()));
             }
             // Where an approach alone holds the contact, the force rises as the bodies are drawn apart.
-            let state = pressed(&Jkr, &scene, Load::Approach(0.9 * by_approach.approach)).unwrap();
+            let state = pressed(&Jkr, &scene, Load::approach(0.9 * by_approach.approach)).unwrap();
             assert!(state.stiffness.unwrap() < 0.0);
             // Without load a^3 = 9 pi w R^2/(2 E*), b = 1/2 and the slope 3/5 of 2 E* a.
-            let state = pressed(&Jkr, &scene, Load::Force(0.0)).unwrap();
+            let state = pressed(&Jkr, &scene, Load::force(0.0)).unwrap();
             let ratio = state.stiffness.unwrap() / state.stiffness_fixed_area.unwrap();
             assert_relative_eq!(ratio, 0.6, max_relative = 1e-13);
             // The folds: no slope, and one without bound.
-            let state = pressed(&Jkr, &scene, Load::Force(by_force.force)).unwrap();
+            let state = pressed(&Jkr, &scene, Load::force(by_force.force)).unwrap();
             assert_abs_diff_eq!(
                 state.stiffness.unwrap() / state.stiffness_fixed_area.unwrap(),
                 0.0,
@@ -420,7 +420,7 @@ mod tests {
             for approach in
                 [by_approach.approach, by_approach.approach.next_down(), by_approach.approach.next_up()]
             {
-                let state = pressed(&Jkr, &scene, Load::Approach(approach)).unwrap();
+                let state = pressed(&Jkr, &scene, Load::approach(approach)).unwrap();
                 assert_eq!((state.stiffness, state.report.certificate.stiffness_error), (None, Some(0.0)));
                 assert!(state.stiffness_fixed_area.unwrap() > 0.0);
             }
@@ -429,11 +429,11 @@ mod tests {
 
     #[test]
     fn one_contact_in_any_units() {
-        let one = pressed(&Jkr, &scene(4.0, 1.0, 1.0, 0.01), Load::Force(-0.04)).unwrap();
+        let one = pressed(&Jkr, &scene(4.0, 1.0, 1.0, 0.01), Load::force(-0.04)).unwrap();
         for (contact_modulus, length) in [(1e150, 1e-150), (1e-150, 1e150), (1e11, 1e-3)] {
             let nondimensional = Nondimensionalisation::new(contact_modulus, length, length).unwrap();
             let scene = scene(4.0 * length, contact_modulus, length, 0.01 * (contact_modulus * length));
-            let here = pressed(&Jkr, &scene, Load::Force(-nondimensional.force(0.04).unwrap())).unwrap();
+            let here = pressed(&Jkr, &scene, Load::force(-nondimensional.force(0.04).unwrap())).unwrap();
             assert_relative_eq!(
                 here.approach.unwrap() / length,
                 one.approach.unwrap(),

@@ -29,7 +29,7 @@
 //! alone.
 //!
 //! Periodic contacts have a mean gap and no approach: [`contact_model::ContactState::mean_gap`],
-//! [`contact_model::Load::MeanGap`].
+//! [`contact_model::Load::mean_gap`].
 //!
 //! # Accuracy and speed
 //!

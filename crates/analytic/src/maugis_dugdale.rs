@@ -6,8 +6,9 @@ use crate::Hertz;
 use crate::closed::{self, Law};
 use crate::jkr::PullOff;
 use contact_model::{
-    Abilities, Adhesion, AdhesionLaw, ContactModel, ContactState, Effect, Effects, Error, Load,
-    Nondimensionalisation, PreparedContact, Result, ScaledState, Scaling, Scene, Size, SolveReport, Source,
+    Abilities, Adhesion, AdhesionLaw, ContactModel, ContactState, Effect, Effects, Error,
+    Nondimensionalisation, NormalLoad, PreparedContact, Result, ScaledState, Scaling, Scene, Size,
+    SolveReport, Source,
 };
 use curve::{Curve, Point};
 use numerics::root;
@@ -40,7 +41,7 @@ const NAME: &str = "maugis_dugdale";
 /// scene.effects.adhesion = Adhesion::FiniteRange { work: 1e-3, range: 0.01, law: AdhesionLaw::Dugdale };
 /// let mut contact = MaugisDugdale.prepare(&scene, 0)?;
 /// // The pull-off force is 1.5854 pi w R = 0.0049807.
-/// assert!(contact.solve(Load::Force(-0.00498)).is_ok() && contact.solve(Load::Force(-0.00499)).is_err());
+/// assert!(contact.solve(Load::force(-0.00498)).is_ok() && contact.solve(Load::force(-0.00499)).is_err());
 /// # Ok::<(), contact_model::Error>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -290,7 +291,7 @@ impl MaugisSphere {
         let least = fold.force(lambda);
         if wanted < least * closed::ROUNDED_UP {
             let smallest = self.nondimensional.force(self.force_of(&fold))?;
-            return Err(Load::Force(force).pull_off(smallest));
+            return Err(NormalLoad::Force(force).pull_off(smallest));
         }
         if wanted <= least {
             return Ok(fold);
@@ -311,7 +312,7 @@ impl MaugisSphere {
         if wanted < least * closed::ROUNDED_UP {
             let min = self.nondimensional.approach(self.approach_of(&end))?;
             if self.approach_fold.is_some() {
-                return Err(Load::Approach(approach).pull_off(min));
+                return Err(NormalLoad::Approach(approach).pull_off(min));
             }
             let name =
                 "approach (the contact radius is 0; attraction without contact is not part of the model)";
@@ -335,11 +336,11 @@ struct MaugisLaw {
 }
 
 impl Law for MaugisLaw {
-    fn state(&self, load: Load, scaling: &Scaling) -> Result<ContactState> {
+    fn state(&self, load: NormalLoad, scaling: &Scaling) -> Result<ContactState> {
         let sphere = &self.sphere;
         let point = match load.validated_with_adhesion()? {
-            Load::Force(force) => sphere.at_force(force)?,
-            Load::Approach(approach) => sphere.at_approach(approach)?,
+            NormalLoad::Force(force) => sphere.at_force(force)?,
+            NormalLoad::Approach(approach) => sphere.at_approach(approach)?,
             _ => return Err(Error::unsupported_load(NAME, load)),
         };
         let outer = scaling.nondimensional.approach(sphere.unit * point.c)?;
@@ -360,7 +361,7 @@ mod tests {
     use crate::jkr::AdhesiveSphere;
     use crate::testing::{check_slope, pressed};
     use approx::{assert_abs_diff_eq, assert_relative_eq};
-    use contact_model::Surface;
+    use contact_model::{Load, Surface};
 
     /// Roots in ln s, |ln s| < 20, and the cancellation of a^3 with the attraction.
     const ROOTS: f64 = 1e-12;
@@ -598,7 +599,7 @@ mod tests {
     fn states_are_points_of_the_curve() {
         let scene = scene(4.0, (1.0, 1.0), 1e-3, 0.01);
         let sphere = MaugisSphere::new(1.0, 1.0, 1e-3, 0.01).unwrap();
-        for load in [Load::Force(-0.004), Load::Force(0.0), Load::Force(0.1), Load::Approach(0.0)] {
+        for load in [Load::force(-0.004), Load::force(0.0), Load::force(0.1), Load::approach(0.0)] {
             let state = pressed(&MaugisDugdale, &scene, load).unwrap();
             let a = (state.area.unwrap() / PI).sqrt();
             assert_abs_diff_eq!(sphere.force(a).unwrap(), state.force, epsilon = ROOTS);
@@ -618,17 +619,17 @@ mod tests {
             let [by_force, by_approach] =
                 [sphere.pull_off_at_force(), sphere.pull_off_at_approach()].map(Result::unwrap);
             for share in [-0.9, -0.5, 0.1, 1.0, 30.0] {
-                check_slope(&MaugisDugdale, &scene, Load::Force(share * by_force.force.abs()));
+                check_slope(&MaugisDugdale, &scene, Load::force(share * by_force.force.abs()));
             }
             let start = by_approach.approach;
             for share in [0.05, 0.3, 0.9, 5.0] {
-                check_slope(&MaugisDugdale, &scene, Load::Approach(start + share * start.abs()));
+                check_slope(&MaugisDugdale, &scene, Load::approach(start + share * start.abs()));
             }
-            let fold = pressed(&MaugisDugdale, &scene, Load::Force(by_force.force)).unwrap();
+            let fold = pressed(&MaugisDugdale, &scene, Load::force(by_force.force)).unwrap();
             // Of hard spheres the radius there is a small part of the unit.
             assert_abs_diff_eq!(fold.stiffness.unwrap(), 0.0, epsilon = 1e-5 * sphere.unit);
             // A soft sphere pulls off at a slope without bound, a hard one comes down to its cohesive zone.
-            let end = pressed(&MaugisDugdale, &scene, Load::Approach(start)).unwrap();
+            let end = pressed(&MaugisDugdale, &scene, Load::approach(start)).unwrap();
             if sphere.approach_fold.is_some() {
                 assert_eq!(end.stiffness, None);
                 assert!(end.stiffness_fixed_area.unwrap() > 0.0);
@@ -636,7 +637,7 @@ mod tests {
                 assert_eq!((end.area, end.stiffness_fixed_area), (Some(0.0), Some(0.0)));
                 // To the first order in the radius, which grows with the root of the approach.
                 let quotient = |by: f64| {
-                    let load = Load::Approach(start + by * start.abs());
+                    let load = Load::approach(start + by * start.abs());
                     let next = pressed(&MaugisDugdale, &scene, load).unwrap();
                     (next.force - end.force) / (by * start.abs())
                 };
@@ -654,21 +655,21 @@ mod tests {
             let sphere = MaugisSphere::new(1.0, 1.0, 1e-3, range).unwrap();
             let (by_force, by_approach) =
                 (sphere.pull_off_at_force().unwrap(), sphere.pull_off_at_approach().unwrap());
-            assert!(pressed(&MaugisDugdale, &scene, Load::Force(by_force.force)).is_ok());
-            let end = pressed(&MaugisDugdale, &scene, Load::Approach(by_approach.approach)).unwrap();
+            assert!(pressed(&MaugisDugdale, &scene, Load::force(by_force.force)).is_ok());
+            let end = pressed(&MaugisDugdale, &scene, Load::approach(by_approach.approach)).unwrap();
             assert_relative_eq!(end.force, by_approach.force, max_relative = ROOTS);
             let error =
-                pressed(&MaugisDugdale, &scene, Load::Approach(by_approach.approach * 1.001)).unwrap_err();
+                pressed(&MaugisDugdale, &scene, Load::approach(by_approach.approach * 1.001)).unwrap_err();
             assert!(matches!(error, Error::OutOfRange { .. }) && error.to_string().contains(said), "{error}");
-            let error = pressed(&MaugisDugdale, &scene, Load::Force(by_force.force * 1.001)).unwrap_err();
+            let error = pressed(&MaugisDugdale, &scene, Load::force(by_force.force * 1.001)).unwrap_err();
             assert!(matches!(error, Error::OutOfRange { .. }) && error.to_string().contains("pulls off"));
-            for load in [Load::Force(f64::NAN), Load::Approach(f64::INFINITY), Load::MeanGap(1.0)] {
+            for load in [Load::force(f64::NAN), Load::approach(f64::INFINITY), Load::mean_gap(1.0)] {
                 assert!(pressed(&MaugisDugdale, &scene, load).is_err());
             }
         }
         // The cohesive zone leaves the rectangle.
         let narrow = scene(0.4, (1.0, 1.0), 1e-3, 0.01);
-        let error = pressed(&MaugisDugdale, &narrow, Load::Approach(0.1)).unwrap_err();
+        let error = pressed(&MaugisDugdale, &narrow, Load::approach(0.1)).unwrap_err();
         assert!(matches!(error, Error::OutOfRange { .. }) && error.to_string().contains("cohesive"));
         let sphere = with_lambda(1e-3, 3.0);
         assert!(sphere.slope(0.0).is_err() && sphere.force(-1.0).is_err() && sphere.force(f64::NAN).is_err());
@@ -700,7 +701,7 @@ mod tests {
     #[test]
     fn without_work_it_is_hertz() {
         let bare = Scene::new(Surface::Sphere { radius: 1.3, size: 1.0.into() }, 2.0);
-        for load in [Load::Force(1e-3), Load::Approach(0.01)] {
+        for load in [Load::force(1e-3), Load::approach(0.01)] {
             let hertz = pressed(&Hertz, &bare, load).unwrap();
             let idle = scene(1.0, (2.0, 1.3), 0.0, 0.01);
             assert_eq!(pressed(&MaugisDugdale, &idle, load).unwrap(), hertz);
@@ -719,7 +720,7 @@ mod tests {
             );
             let force =
                 Nondimensionalisation::new(contact_modulus, length, length).unwrap().force(0.004).unwrap();
-            pressed(&MaugisDugdale, &scene, Load::Force(-force)).unwrap()
+            pressed(&MaugisDugdale, &scene, Load::force(-force)).unwrap()
         };
         let one = at(1.0, 1.0);
         for (contact_modulus, length) in [(1e150, 1e-150), (1e-150, 1e150), (1e11, 1e-3)] {
@@ -755,19 +756,19 @@ mod tests {
             for force in around(by_force.force) {
                 let found = sphere.radius_at_force(force).unwrap();
                 assert_abs_diff_eq!(found, by_force.radius, epsilon = near);
-                assert!(pressed(&MaugisDugdale, &scene, Load::Force(force)).is_ok());
+                assert!(pressed(&MaugisDugdale, &scene, Load::force(force)).is_ok());
             }
             for approach in around(by_approach.approach) {
                 let found = sphere.radius_at_approach(approach).unwrap();
                 assert_abs_diff_eq!(found, by_approach.radius, epsilon = near);
-                assert!(pressed(&MaugisDugdale, &scene, Load::Approach(approach)).is_ok());
+                assert!(pressed(&MaugisDugdale, &scene, Load::approach(approach)).is_ok());
             }
             let beyond = by_force.force * (1.0 + BEYOND);
-            let error = pressed(&MaugisDugdale, &scene, Load::Force(beyond)).unwrap_err();
+            let error = pressed(&MaugisDugdale, &scene, Load::force(beyond)).unwrap_err();
             assert!(matches!(error, Error::OutOfRange { value, min, .. }
                 if value.to_bits() == beyond.to_bits() && min.to_bits() == by_force.force.to_bits()));
             let beyond = by_approach.approach * (1.0 + BEYOND);
-            let error = pressed(&MaugisDugdale, &scene, Load::Approach(beyond)).unwrap_err();
+            let error = pressed(&MaugisDugdale, &scene, Load::approach(beyond)).unwrap_err();
             assert!(matches!(error, Error::OutOfRange { value, min, .. }
                 if value.to_bits() == beyond.to_bits() && min.to_bits() == by_approach.approach.to_bits()));
         }
@@ -858,7 +859,7 @@ mod tests {
                             for area in [true, false] {
                                 (scene.outputs.area, scene.outputs.stiffness_fixed_area) = (area, area);
                                 let Ok(mut contact) = MaugisDugdale.prepare(&scene, 0) else { continue };
-                                for load in [Load::Force(value), Load::Approach(value)] {
+                                for load in [Load::force(value), Load::approach(value)] {
                                     match contact.solve(load) {
                                         Ok(state) => {
                                             solved += 1;

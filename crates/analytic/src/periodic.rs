@@ -2,7 +2,7 @@
 
 use crate::closed::Law;
 use contact_model::{
-    Abilities, Boundary, ContactState, Error, Load, LoadKind, Output, Result, ScaledState, Scaling,
+    Abilities, Boundary, ContactState, Error, LoadKind, NormalLoad, Output, Result, ScaledState, Scaling,
     SolveReport, SurfaceKind,
 };
 
@@ -36,11 +36,11 @@ pub(crate) struct Periodic<L> {
 
 impl<L: PeriodicLaw> Periodic<L> {
     /// The mean pressure under a load, in units.
-    fn press(&self, load: Load, scaling: &Scaling) -> Result<f64> {
+    fn press(&self, load: NormalLoad, scaling: &Scaling) -> Result<f64> {
         let (asked, pressure) = match load.validated()? {
-            Load::Force(force) => (force > 0.0, scaling.nondimensional.force_in(force)),
-            Load::MeanGap(gap) => (false, self.law.pressure(scaling.nondimensional.approach_in(gap))?),
-            Load::Approach(_) => {
+            NormalLoad::Force(force) => (force > 0.0, scaling.nondimensional.force_in(force)),
+            NormalLoad::MeanGap(gap) => (false, self.law.pressure(scaling.nondimensional.approach_in(gap))?),
+            NormalLoad::Approach(_) => {
                 let what = "an approach: a periodic contact has a mean gap in its place";
                 return Err(Error::unsupported(self.model, what));
             }
@@ -57,7 +57,7 @@ impl<L: PeriodicLaw> Periodic<L> {
 }
 
 impl<L: PeriodicLaw> Law for Periodic<L> {
-    fn state(&self, load: Load, scaling: &Scaling) -> Result<ContactState> {
+    fn state(&self, load: NormalLoad, scaling: &Scaling) -> Result<ContactState> {
         let pressure = self.press(load, scaling)?;
         let outputs = scaling.outputs;
         let stiffness = match outputs.needs_stiffness() {
@@ -76,7 +76,7 @@ impl<L: PeriodicLaw> Law for Periodic<L> {
         let gap = |p: f64| self.law.gap(p).and_then(|gap| scaling.nondimensional.approach(gap));
         Ok(state.with_mean_gap(match load {
             _ if !outputs.mean_gap => None,
-            Load::MeanGap(gap) => Some(gap),
+            NormalLoad::MeanGap(gap) => Some(gap),
             // Some theories have none without load.
             _ => gap(pressure).ok(),
         }))

@@ -46,7 +46,7 @@ const NAME: &str = "persson";
 /// scene.outputs.area = true;
 /// let mut contact = Persson::default().prepare(&scene, 0)?;
 /// // sqrt(2) p/(E* g) = 1: erf(1).
-/// let state = contact.solve(Load::Force(slope / 2.0_f64.sqrt()))?;
+/// let state = contact.solve(Load::force(slope / 2.0_f64.sqrt()))?;
 /// assert!((state.area.unwrap_or(0.0) - 0.8427007929).abs() < 1e-10);
 /// # Ok::<(), contact_model::Error>(())
 /// ```
@@ -336,7 +336,7 @@ mod tests {
         let state = Persson::default()
             .prepare(&scene(surface(0.8, None, 100.0)), 0)
             .unwrap()
-            .solve(Load::Force(p * slope))
+            .solve(Load::force(p * slope))
             .unwrap();
         assert_relative_eq!(state.area.unwrap(), SMALL_AREA_FACTOR * p, max_relative = 1e-10);
     }
@@ -384,7 +384,7 @@ mod tests {
             (model.prepare(&scene(drawn), 0).unwrap(), model.prepare(&on_map, 0).unwrap());
         assert_relative_eq!(other.normalisation().height.unwrap(), 1.0, max_relative = 1e-12);
         for pressure in [1e-9, 1e-4, 1e-2, 0.1, 1.0] {
-            let load = Load::Force(4.0 * pressure * slope);
+            let load = Load::force(4.0 * pressure * slope);
             let (of_surface, of_map) = (one.solve(load).unwrap(), other.solve(load).unwrap());
             let values =
                 |s: &contact_model::ContactState| [s.area, s.stiffness, s.mean_gap].map(Option::unwrap);
@@ -396,8 +396,8 @@ mod tests {
             assert_relative_eq!(of_map.area.unwrap(), exact, max_relative = 1e-11);
         }
         // A load and its mean gap belong together.
-        let state = other.solve(Load::Force(0.01 * slope)).unwrap();
-        let back = other.solve(Load::MeanGap(state.mean_gap.unwrap())).unwrap();
+        let state = other.solve(Load::force(0.01 * slope)).unwrap();
+        let back = other.solve(Load::mean_gap(state.mean_gap.unwrap())).unwrap();
         assert_relative_eq!(back.force, state.force, max_relative = 1e-9);
     }
 
@@ -414,14 +414,14 @@ mod tests {
             let mut contact = Persson { gamma: 1.0 }.prepare(&on_map, 0).unwrap();
             let normal = contact.normalisation();
             for pressure in [1e-8, 1e-3, 1.0, 10.0] {
-                let state = contact.solve(Load::Force(pressure)).unwrap();
+                let state = contact.solve(Load::force(pressure)).unwrap();
                 let [area, k, gap] = [state.area, state.stiffness, state.mean_gap].map(Option::unwrap);
                 assert!(area > 0.0 && area <= 1.0 && k > 0.0 && gap.is_finite() && gap >= 0.0);
             }
             if low.total_cmp(&high).is_eq() {
                 // u_0 = gamma (2/sqrt(pi)) y/q for one wavenumber, and its ring from 4.5 to 5.5 of the
                 // longest.
-                let light = contact.solve(Load::Force(1e-9)).unwrap();
+                let light = contact.solve(Load::force(1e-9)).unwrap();
                 let (u_0, q) = (1e-9 / light.stiffness.unwrap(), TAU * low);
                 let y = 0.51 * q / SQRT_2;
                 assert_relative_eq!(u_0, FRAC_2_SQRT_PI * y / q, max_relative = 0.04);
@@ -520,12 +520,12 @@ mod tests {
     #[test]
     fn ends_of_the_range() {
         let mut contact = Persson::default().prepare(&scene(surface(0.8, None, 100.0)), 0).unwrap();
-        assert_eq!(contact.solve(Load::Force(0.0)).unwrap().mean_gap, None);
+        assert_eq!(contact.solve(Load::force(0.0)).unwrap().mean_gap, None);
         let slope = Spectrum::new(&surface(0.8, None, 100.0)).unwrap().rms_slope().unwrap();
-        assert!(contact.solve(Load::Force(15.0 * slope)).is_ok());
-        assert!(matches!(contact.solve(Load::Force(50.0 * slope)), Err(Error::OutOfRange { .. })));
-        assert!(matches!(contact.solve(Load::MeanGap(0.0)), Err(Error::OutOfRange { .. })));
-        assert!(matches!(contact.solve(Load::MeanGap(1e4)), Err(Error::OutOfRange { .. })));
+        assert!(contact.solve(Load::force(15.0 * slope)).is_ok());
+        assert!(matches!(contact.solve(Load::force(50.0 * slope)), Err(Error::OutOfRange { .. })));
+        assert!(matches!(contact.solve(Load::mean_gap(0.0)), Err(Error::OutOfRange { .. })));
+        assert!(matches!(contact.solve(Load::mean_gap(1e4)), Err(Error::OutOfRange { .. })));
         for gamma in [0.0, 1.1, f64::NAN] {
             assert!(Persson { gamma }.prepare(&scene(surface(0.8, None, 100.0)), 0).is_err());
         }

@@ -120,7 +120,7 @@ pub fn conductance_fit(force_bar: f64, fractal_dimension: f64, side: f64, resist
 /// use analytic::PowerLaw;
 /// use contact_model::{ContactModel, Load, Scene, SelfAffine, Surface};
 /// let scene = Scene::new(Surface::SelfAffine(SelfAffine::new(2.5, 1.0, 1.0)?), 1.0);
-/// let state = PowerLaw.prepare(&scene, 0)?.solve(Load::Force(0.086))?;
+/// let state = PowerLaw.prepare(&scene, 0)?.solve(Load::force(0.086))?;
 /// // k = 0.18 x 1.1419 at the crossing point.
 /// assert!((state.stiffness.unwrap_or(0.0) - 0.205542).abs() < 1e-12);
 /// # Ok::<(), contact_model::Error>(())
@@ -269,9 +269,9 @@ mod tests {
         let scene = Scene::new(surface(2.3, 1.0), 1.0);
         let mut contact = PowerLaw.prepare(&scene, 0).unwrap();
         let end = contact.normalisation().force(F_BAR_UL).unwrap();
-        assert!(contact.solve(Load::Force(end)).is_ok());
-        assert!(matches!(contact.solve(Load::Force(1.01 * end)), Err(Error::OutOfRange { .. })));
-        assert!(matches!(contact.solve(Load::Approach(1.0)), Err(Error::OutOfRange { .. })));
+        assert!(contact.solve(Load::force(end)).is_ok());
+        assert!(matches!(contact.solve(Load::force(1.01 * end)), Err(Error::OutOfRange { .. })));
+        assert!(matches!(contact.solve(Load::approach(1.0)), Err(Error::OutOfRange { .. })));
         assert!(force_tilde(-1.0, 2.0).is_err() && force_tilde(0.1, 1.9).is_err());
         assert!(conductance_fit(0.01, 2.0, 1.0, 0.0).is_err());
         assert!(matches!(conductance_fit(1.0, 2.0, 1.0, 1.0), Err(Error::OutOfRange { .. })));
@@ -299,7 +299,7 @@ mod tests {
             let of = |surface: Surface| {
                 let mut contact = PowerLaw.prepare(&Scene::new(surface, 3.0), 0).unwrap();
                 let force = contact.normalisation().force(0.1 * F_BAR_UL).unwrap();
-                (contact.normalisation(), contact.solve(Load::Force(force)).unwrap().stiffness.unwrap())
+                (contact.normalisation(), contact.solve(Load::force(force)).unwrap().stiffness.unwrap())
             };
             let (drawn, measured) = (of(Surface::SelfAffine(drawn)), of(Surface::Heights(map.into())));
             assert_relative_eq!(measured.0.length, drawn.0.length, max_relative = ROUNDING);
@@ -332,7 +332,7 @@ mod tests {
         fn curve_and_collapse(df in 2.0_f64..3.0, force_bar in 1e-7_f64..0.08) {
             let scene = Scene::new(surface(df, 1.0), 1.0);
             let normalisation = PowerLaw.prepare(&scene, 0).unwrap().normalisation();
-            let s = pressed(&PowerLaw, &scene, Load::Force(normalisation.force(force_bar).unwrap())).unwrap();
+            let s = pressed(&PowerLaw, &scene, Load::force(normalisation.force(force_bar).unwrap())).unwrap();
             check_curve(&PowerLaw, &scene, s.approach.unwrap());
             scale_invariant(&PowerLaw, |length| surface(df, length), s.approach.unwrap(), 1e-13);
             // Fig. 4 of Eq. 12 is the identity.

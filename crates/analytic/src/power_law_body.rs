@@ -20,7 +20,7 @@ const NAME: &str = "power_law_body";
 /// use contact_model::{ContactModel, Load, Scene, Surface};
 /// // A cone of slope 0.1 pressed by d = 0.1: a = 2 / pi, F = d a = 0.0636619772.
 /// let scene = Scene::new(Surface::Cone { slope: 0.1, size: 2.0.into() }, 1.0);
-/// let state = PowerLawBody.prepare(&scene, 0)?.solve(Load::Approach(0.1))?;
+/// let state = PowerLawBody.prepare(&scene, 0)?.solve(Load::approach(0.1))?;
 /// assert!((state.force - 0.0636619772).abs() < 1e-10);
 /// # Ok::<(), contact_model::Error>(())
 /// ```
@@ -151,12 +151,12 @@ mod tests {
     #[test]
     fn cone_and_sphere() {
         let cone = Scene::new(Surface::Cone { slope: 0.1, size: 2.0.into() }, 1.0);
-        let s = pressed(&PowerLawBody, &cone, Load::Approach(0.1)).unwrap();
+        let s = pressed(&PowerLawBody, &cone, Load::approach(0.1)).unwrap();
         assert_relative_eq!(s.stiffness.unwrap(), 4.0 / PI, max_relative = POWER_ROUNDING);
         assert_relative_eq!(s.force, 0.063_661_977_2, max_relative = 1e-9);
         let sphere = Scene::new(Surface::Sphere { radius: 1.3, size: 1.0.into() }, 2.0);
-        let here = pressed(&PowerLawBody, &sphere, Load::Force(0.01)).unwrap();
-        let hertz = pressed(&crate::Hertz, &sphere, Load::Force(0.01)).unwrap();
+        let here = pressed(&PowerLawBody, &sphere, Load::force(0.01)).unwrap();
+        let hertz = pressed(&crate::Hertz, &sphere, Load::force(0.01)).unwrap();
         assert_relative_eq!(here.approach.unwrap(), hertz.approach.unwrap(), max_relative = POWER_ROUNDING);
         assert_relative_eq!(here.area.unwrap(), hertz.area.unwrap(), max_relative = POWER_ROUNDING);
     }
@@ -183,8 +183,8 @@ mod tests {
             if n < 2.5 {
                 scale_invariant(&PowerLawBody, surface, d, 1e-11);
             }
-            let force = pressed(&PowerLawBody, &scene, Load::Approach(d)).unwrap().force;
-            let stiffness = |f| pressed(&PowerLawBody, &scene, Load::Force(f)).unwrap().stiffness.unwrap();
+            let force = pressed(&PowerLawBody, &scene, Load::approach(d)).unwrap().force;
+            let stiffness = |f| pressed(&PowerLawBody, &scene, Load::force(f)).unwrap().stiffness.unwrap();
             let alpha = (stiffness(force) / stiffness(force / 64.0)).ln() / 64.0_f64.ln();
             assert_relative_eq!(alpha, 1.0 / (n + 1.0), max_relative = 1e-12);
         }

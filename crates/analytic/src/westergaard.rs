@@ -35,7 +35,7 @@ const WHOLE_WAVES: f64 = 1e-9;
 /// (scene.outputs.area, scene.outputs.mean_gap) = (true, true);
 /// let mut contact = Westergaard.prepare(&scene, 0)?;
 /// // Half of p* = 0.01 pi: half the square, as asin sqrt(1/2) = pi/4; mean gap 0.01 (1 - 1/2 - ln(2)/2).
-/// let load = Load::Force(0.005 * std::f64::consts::PI);
+/// let load = Load::force(0.005 * std::f64::consts::PI);
 /// assert!((contact.solve(load)?.area.unwrap_or(0.0) - 0.5).abs() < 1e-15);
 /// assert!((contact.solve(load)?.mean_gap.unwrap() - 0.005 * (1.0 - 2.0_f64.ln())).abs() < 1e-15);
 /// # Ok::<(), contact_model::Error>(())
@@ -278,18 +278,20 @@ mod tests {
         let scene = scene(0.01, 0.5, 1.0, 2.0);
         let mut contact = Westergaard.prepare(&scene, 0).unwrap();
         let full = PI * 2.0 * 0.01 / 0.5;
-        let state = contact.solve(Load::Force(1.1 * full)).unwrap();
+        let state = contact.solve(Load::force(1.1 * full)).unwrap();
         assert_relative_eq!(state.area.unwrap(), 1.0, max_relative = ROUNDING);
         assert_eq!((state.mean_gap, state.stiffness), (Some(0.0), None));
         assert_eq!(state.report.certificate.stiffness_error, None);
-        let apart = contact.solve(Load::MeanGap(0.02)).unwrap();
+        let apart = contact.solve(Load::mean_gap(0.02)).unwrap();
         assert!(apart.force <= 0.0 && apart.area.unwrap() <= 0.0 && apart.stiffness.unwrap() <= 0.0);
         assert_relative_eq!(
-            contact.solve(Load::Force(0.0)).unwrap().mean_gap.unwrap(),
+            contact.solve(Load::force(0.0)).unwrap().mean_gap.unwrap(),
             0.01,
             max_relative = ROUNDING
         );
-        assert!(contact.solve(Load::Approach(0.001)).is_err() && contact.solve(Load::MeanGap(-1.0)).is_err());
+        assert!(
+            contact.solve(Load::approach(0.001)).is_err() && contact.solve(Load::mean_gap(-1.0)).is_err()
+        );
     }
 
     #[test]
@@ -307,7 +309,7 @@ mod tests {
         // Line contact (Johnson Eq. 4.43): a^2 = 4 P R/(pi E*) with P = p w and 1/R = D (2 pi/w)^2; half
         // width a of w.
         let (d, w, p) = (0.01, 1.0, 1e-9);
-        let state = Westergaard.prepare(&scene(d, w, 1.0, 1.0), 0).unwrap().solve(Load::Force(p)).unwrap();
+        let state = Westergaard.prepare(&scene(d, w, 1.0, 1.0), 0).unwrap().solve(Load::force(p)).unwrap();
         let half = (4.0 * p * w * w * w / (PI * 4.0 * PI * PI * d)).sqrt();
         assert_relative_eq!(state.area.unwrap(), 2.0 * half / w, max_relative = 1e-7);
     }
@@ -343,7 +345,7 @@ mod tests {
             // In other units the same contact.
             for length in [1e-150, 1e150] {
                 let scene = self::scene(d * length, length / f64::from(waves), length, contact_modulus / length);
-                let one = Westergaard.prepare(&scene, 0).unwrap().solve(Load::Force(p * length)).unwrap();
+                let one = Westergaard.prepare(&scene, 0).unwrap().solve(Load::force(p * length)).unwrap();
                 assert_relative_eq!(one.area.unwrap() / length / length, (2.0 / PI) * r.sqrt().asin(), max_relative = 1e-12);
             }
         }

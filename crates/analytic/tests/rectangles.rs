@@ -39,7 +39,7 @@ fn same(model: &dyn ContactModel, scene: impl Fn(Size) -> Scene, load: Load) {
 
 fn out_of_range(model: &dyn ContactModel, surface: Surface, approach: f64) {
     let outcome =
-        model.prepare(&Scene::new(surface, 1.0), 0).and_then(|mut it| it.solve(Load::Approach(approach)));
+        model.prepare(&Scene::new(surface, 1.0), 0).and_then(|mut it| it.solve(Load::approach(approach)));
     match outcome {
         Err(Error::OutOfRange { max, .. }) => assert_relative_eq!(max, 0.5, max_relative = ROUNDING),
         other => panic!("{other:?}"),
@@ -52,18 +52,18 @@ fn round_bodies_do_not_see_the_rectangle_until_they_leave_it() {
     let cone = |size| Surface::Cone { slope: 0.1, size };
     let punch = |radius| move |size| Surface::FlatCircle { radius, size };
     for model in [&Hertz as &dyn ContactModel, &PowerLawBody, &Jkr] {
-        same(model, |size| Scene::new(sphere(size), 2.0), Load::Approach(0.2));
+        same(model, |size| Scene::new(sphere(size), 2.0), Load::approach(0.2));
         // a = 0.6 for R = 1: less than half the square's side, more than half the shorter one.
         let square = Scene::new(sphere(SIZES[1]), 1.0);
-        assert!(model.prepare(&square, 0).unwrap().solve(Load::Approach(0.36)).is_ok());
+        assert!(model.prepare(&square, 0).unwrap().solve(Load::approach(0.36)).is_ok());
         out_of_range(model, sphere(SIZES[0]), 0.36);
         // Exactly half the shorter side is still inside.
         let edge = Scene::new(sphere(SIZES[0]), 1.0);
-        assert!(model.prepare(&edge, 0).unwrap().solve(Load::Approach(0.25)).is_ok());
+        assert!(model.prepare(&edge, 0).unwrap().solve(Load::approach(0.25)).is_ok());
     }
-    same(&PowerLawBody, |size| Scene::new(cone(size), 2.0), Load::Force(0.01));
+    same(&PowerLawBody, |size| Scene::new(cone(size), 2.0), Load::force(0.01));
     out_of_range(&PowerLawBody, cone(SIZES[0]), 0.1);
-    same(&FlatPunch, |size| Scene::new(punch(0.4)(size), 2.0), Load::Force(0.01));
+    same(&FlatPunch, |size| Scene::new(punch(0.4)(size), 2.0), Load::force(0.01));
     out_of_range(&FlatPunch, punch(0.6)(SIZES[0]), 0.1);
     same(
         &Jkr,
@@ -72,7 +72,7 @@ fn round_bodies_do_not_see_the_rectangle_until_they_leave_it() {
             scene.effects.adhesion = Adhesion::ShortRange { work: 1e-3 };
             scene
         },
-        Load::Force(-1e-3),
+        Load::force(-1e-3),
     );
 }
 
@@ -88,7 +88,7 @@ fn friction_leaves_the_shorter_side_too() {
     let pair = Pair { first: Body::Rigid, second: Body::Elastic { young: 1.0, poisson: 0.3 } };
     let mut scene = Scene::of_pair(Surface::Sphere { radius: 1.0, size: SIZES[0] }, pair).unwrap();
     scene.effects.friction = Friction::coulomb(0.3);
-    let step = |d| Step { time: 0.0, normal: Load::Approach(d), tangential: Tangential::force_along_x(0.0) };
+    let step = |d| Step::new(0.0, Load::approach(d).with_tangential(Tangential::force_along_x(0.0)));
     let mut history = CattaneoMindlin.prepare(&scene, 0).unwrap();
     assert_relative_eq!(history.normalisation().length, 2.0);
     assert!(history.advance(step(0.2)).is_ok());
@@ -104,10 +104,10 @@ fn a_wave_counts_along_x() {
         scene.outputs.mean_gap = true;
         scene
     };
-    same(&Westergaard, scene, Load::Force(0.1));
-    same(&Westergaard, scene, Load::MeanGap(0.003));
+    same(&Westergaard, scene, Load::force(0.1));
+    same(&Westergaard, scene, Load::mean_gap(0.003));
     let gap = |size| {
-        Westergaard.prepare(&scene(size), 0).unwrap().solve(Load::Force(0.1)).unwrap().mean_gap.unwrap()
+        Westergaard.prepare(&scene(size), 0).unwrap().solve(Load::force(0.1)).unwrap().mean_gap.unwrap()
     };
     assert_relative_eq!(gap(SIZES[0]), gap(SIZES[1]), max_relative = ROUNDING);
     // Eight and a half waves along x, whole ones along y.
@@ -124,8 +124,8 @@ fn theories_of_rough_surfaces_know_the_area_alone() {
         scene.effects.boundary = Boundary::Periodic;
         scene
     };
-    same(&Persson::default(), rough, Load::Force(1e-3));
-    same(&GreenwoodWilliamson::default(), rough, Load::Force(1e-3));
+    same(&Persson::default(), rough, Load::force(1e-3));
+    same(&GreenwoodWilliamson::default(), rough, Load::force(1e-3));
     let free = |size: Size| Scene::new(Surface::SelfAffine(SelfAffine::new(2.2, size, 0.01).unwrap()), 2.0);
-    same(&PowerLaw, free, Load::Force(1e-3));
+    same(&PowerLaw, free, Load::force(1e-3));
 }

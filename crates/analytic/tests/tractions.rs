@@ -108,7 +108,7 @@ fn a_state_is_what_its_tractions_do() {
         scene.outputs.area = true;
         let mut model = MaugisDugdale.prepare(&scene, 0).unwrap();
         let pulled = sphere.pull_off_at_force().unwrap().force;
-        for load in [0.95 * pulled, 0.5 * pulled, 0.0, 0.1].map(Load::Force) {
+        for load in [0.95 * pulled, 0.5 * pulled, 0.0, 0.1].map(Load::force) {
             let state = model.solve(load).unwrap();
             let contact = (state.area.unwrap() / PI).sqrt();
             let cohesive = sphere.cohesive_radius(contact).unwrap();
@@ -211,7 +211,7 @@ fn a_state_is_what_its_pressure_does() {
         let [first, last] = [contact.pull_off(), contact.snap_in()].map(|limit| limit.unwrap().unwrap().1);
         for share in [0.0, 0.1, 0.5, 0.9, 1.0] {
             let force = (first + share * (last - first)) * size.x * size.y;
-            let state = model.solve(Load::Force(force)).unwrap();
+            let state = model.solve(Load::force(force)).unwrap();
             let psi = FRAC_PI_2 * state.area.unwrap() / (size.x * size.y);
             let pressure = force / (size.x * size.y);
             let wave = Wave {

@@ -80,7 +80,7 @@ fn jkr(cells: f64, off: f64, steps: u32) -> Result<(), Box<dyn StdError>> {
     for i in 0..=steps {
         let clock = Instant::now();
         let approach = first + (1.05 * last - first) * f64::from(i) / f64::from(steps);
-        let state = history.advance(Step::normal(0.0, Load::Approach(approach)))?;
+        let state = history.advance(Step::new(0.0, Load::approach(approach)))?;
         let force = state.force / (1.5 * PI * work);
         let in_radius = (state.area.unwrap_or(0.0) / PI).sqrt() / cell;
         lowest = lowest.min(force);
@@ -139,7 +139,7 @@ fn cycle(law: AdhesionLaw, mu: f64, cells: usize, half: f64, steps: usize) -> Re
     let path = there.iter().rev().copied().chain(way.skip(1));
     let (mut before, mut lost, mut jumped) = (None, 0.0, 0.0);
     for (i, approach) in path.enumerate() {
-        let state = history.advance(Step::normal(i as f64, Load::Approach(approach * approach_unit)))?;
+        let state = history.advance(Step::new(i as f64, Load::approach(approach * approach_unit)))?;
         let energy = state.adhesive.map_or(0.0, |adhesive| adhesive.energy);
         let now = (approach * approach_unit, state.force, energy, state.area.unwrap_or(0.0) > 0.0);
         if let Some((d, force, stored, touched)) = before {
@@ -171,7 +171,7 @@ fn sphere(law: AdhesionLaw, mu: f64, cells: usize, half: f64, steps: usize) -> R
     for i in 0..=steps {
         let approach = 1.0 - 3.5 * i as f64 / steps as f64;
         let start = Instant::now();
-        let state = match history.advance(Step::normal(i as f64, Load::Approach(approach * approach_unit))) {
+        let state = match history.advance(Step::new(i as f64, Load::approach(approach * approach_unit))) {
             Ok(state) => state,
             Err(Error::NotConverged { best }) => {
                 println!("NOT CONVERGED {}", best.report.certificate);
@@ -210,7 +210,7 @@ fn map(
     println!("force stiffness branch stability energy cells steps applications seconds");
     for (i, &force) in forces.iter().enumerate() {
         let start = Instant::now();
-        match history.advance(Step::normal(i as f64, Load::Force(force))) {
+        match history.advance(Step::new(i as f64, Load::force(force))) {
             Ok(state) => println!("{force} {}", line(&state, start)),
             Err(error) => println!("{force} {error}"),
         }
@@ -250,7 +250,7 @@ fn challenge(
     let mut elastic = ContactModel::prepare(&model, &scene, seed)?;
     for &pressure in pressures {
         let start = Instant::now();
-        let state = elastic.solve(Load::Force(pressure * contact_modulus * side * side))?;
+        let state = elastic.solve(Load::force(pressure * contact_modulus * side * side))?;
         row("elastic", pressure, &state, &scene, start);
     }
     drop(elastic);
@@ -259,7 +259,7 @@ fn challenge(
     let mut adhesive = ContactModel::prepare(&model, &scene, seed)?;
     for &pressure in pressures {
         let start = Instant::now();
-        match adhesive.solve(Load::Force(pressure * contact_modulus * side * side)) {
+        match adhesive.solve(Load::force(pressure * contact_modulus * side * side)) {
             Ok(state) => row("adhesive", pressure, &state, &scene, start),
             Err(Error::NotConverged { best }) => row("NOT CONVERGED", pressure, &best, &scene, start),
             Err(error) => return Err(error.into()),

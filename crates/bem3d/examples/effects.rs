@@ -69,7 +69,7 @@ fn model() -> Bem3d {
 }
 
 fn solve(map: &Arc<HeightMap>, effects: &Effects) -> Result<ContactState, Error> {
-    model().prepare(&scene(map, effects), 0)?.solve(Load::Force(PRESSURE))
+    model().prepare(&scene(map, effects), 0)?.solve(Load::force(PRESSURE))
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -81,7 +81,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let recorder = Recorder::new(clock);
         let start = Instant::now();
         let state = pool.install(|| {
-            prepare_recorded(&model(), &scene(&map, &effects), 0, &recorder)?.solve(Load::Force(PRESSURE))
+            prepare_recorded(&model(), &scene(&map, &effects), 0, &recorder)?.solve(Load::force(PRESSURE))
         })?;
         let seconds = start.elapsed().as_secs_f64();
         let (area, report) = (state.area.unwrap_or(f64::NAN), state.report);

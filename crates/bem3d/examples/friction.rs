@@ -38,7 +38,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let mut prepared = prepare_recorded(&model, &scene, seed, &recorder)?;
         let force = prepared.normalisation().force(force_bar)?;
         let start = Instant::now();
-        let normal = prepared.solve(Load::Force(force))?;
+        let normal = prepared.solve(Load::force(force))?;
         let seconds = start.elapsed().as_secs_f64();
         println!(
             "F_bar {force_bar}: normal {} applications {seconds:.3} s, {} cells",
@@ -46,7 +46,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             normal.report.contact_cells.unwrap_or(0)
         );
         let pressure = normal.pressure().ok_or("no pressure")?;
-        let less = prepared.solve(Load::Force(force * (1.0 - share)))?;
+        let less = prepared.solve(Load::force(force * (1.0 - share)))?;
         let less = less.pressure().ok_or("no pressure")?.values();
         let start_from: Vec<f64> =
             pressure.values().iter().zip(less).map(|(p, less)| mu * (p - less)).collect();

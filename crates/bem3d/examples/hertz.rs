@@ -21,7 +21,7 @@ fn main() -> Result<()> {
     let mut errors = [0.0; 2];
     for cells in [33, 65, 129, 257] {
         let model = Bem3d { cells, tolerance: 1e-8, ..Bem3d::default() };
-        let state = model.prepare(&scene, 0)?.solve(Load::Approach(approach))?;
+        let state = model.prepare(&scene, 0)?.solve(Load::approach(approach))?;
         errors = [state.force / force - 1.0, state.stiffness.unwrap_or(0.0) / (2.0 * a) - 1.0];
         let count = state.report.contact_cells.unwrap_or(0);
         println!("{cells:>6} {count:>10} {:>12.1e} {:>12.1e}", errors[0], errors[1]);

@@ -30,7 +30,7 @@ fn main() -> Result<(), Box<dyn StdError>> {
     for force in forces.split(',') {
         let force_bar: f64 = force.parse()?;
         let start = Instant::now();
-        let state = match prepared.solve(Load::Force(normalisation.force(force_bar)?)) {
+        let state = match prepared.solve(Load::force(normalisation.force(force_bar)?)) {
             Ok(state) => state,
             Err(Error::NotConverged { best }) => *best,
             Err(error) => return Err(error.into()),

@@ -21,7 +21,7 @@
 //! let model = Bem3d { cells: 90, tolerance: 1e-6, ..Bem3d::default() }; // 90 x 45 cells
 //! let mut contact = model.prepare(&Scene::new(surface, 1.0), 7)?;
 //! let normalisation = contact.normalisation();
-//! let state = contact.solve(Load::Force(normalisation.force(1.0)?))?;
+//! let state = contact.solve(Load::force(normalisation.force(1.0)?))?;
 //! let k_bar = normalisation.stiffness_bar(state.stiffness.unwrap());
 //! assert!(k_bar > 0.4 && k_bar < 1.0);
 //! assert!(state.report.certificate.meets(1e-6));

@@ -28,7 +28,7 @@ fn history(model: Bem3d, scene: &Scene) -> Box<dyn PreparedContact> {
 }
 
 fn at(history: &mut dyn PreparedContact, load: Load) -> Result<ContactState, Error> {
-    history.advance(Step::normal(0.0, load))
+    history.advance(Step::new(0.0, load))
 }
 
 /// A sphere with R = E* = 1 and the range 1e-4 under Tabor's parameter mu = (R w^2/(E*^2 range^3))^(1/3).
@@ -49,7 +49,7 @@ fn pull_off(mu: f64, (cells, half): (usize, f64), approaches: impl Iterator<Item
     let (scene, unit, force) = sphere(mu, half);
     let mut history = history(Bem3d { cells, tolerance: 1e-5, ..Bem3d::default() }, &scene);
     approaches
-        .map(|d| at(&mut *history, Load::Approach(d * unit)).unwrap().force / force)
+        .map(|d| at(&mut *history, Load::approach(d * unit)).unwrap().force / force)
         .fold(f64::INFINITY, f64::min)
 }
 
@@ -71,13 +71,13 @@ fn nothing_attracts_without_work() {
     let mut short = without.clone();
     short.effects.adhesion = Adhesion::ShortRange { work: 0.0 };
     let model = Bem3d { cells: 32, ..Bem3d::default() };
-    let load = Load::Force(0.5);
+    let load = Load::force(0.5);
     let expected = ContactModel::prepare(&model, &elastic, 3).unwrap().solve(load).unwrap();
     for without in [without, short] {
         assert_eq!(ContactModel::prepare(&model, &without, 3).unwrap().solve(load).unwrap(), expected);
         let mut history = ContactModel::prepare(&model, &without, 3).unwrap();
         assert_eq!(at(&mut *history, load).unwrap(), expected.clone().with_time(0.0));
-        assert!(at(&mut *history, Load::Force(-0.1)).is_err());
+        assert!(at(&mut *history, Load::force(-0.1)).is_err());
     }
 }
 
@@ -88,13 +88,13 @@ fn a_single_load_is_on_the_branch_of_approach() {
     let scene = with(surface, 0.3, 0.3, EXPONENTIAL);
     let model = Bem3d { cells: 32, tolerance: 1e-7, ..Bem3d::default() };
     let mut contact = ContactModel::prepare(&model, &scene, 3).unwrap();
-    let first = contact.solve(Load::Approach(0.2)).unwrap();
-    contact.solve(Load::Approach(2.0)).unwrap();
-    let again = contact.solve(Load::Approach(0.2)).unwrap();
+    let first = contact.solve(Load::approach(0.2)).unwrap();
+    contact.solve(Load::approach(2.0)).unwrap();
+    let again = contact.solve(Load::approach(0.2)).unwrap();
     assert_eq!((again.force, again.adhesive.unwrap().branch), (first.force, Branch::Approach));
     let mut history = ContactModel::prepare(&model, &scene, 3).unwrap();
-    at(&mut *history, Load::Approach(2.0)).unwrap();
-    let withdrawn = at(&mut *history, Load::Approach(0.2)).unwrap();
+    at(&mut *history, Load::approach(2.0)).unwrap();
+    let withdrawn = at(&mut *history, Load::approach(0.2)).unwrap();
     assert_eq!(withdrawn.adhesive.unwrap().branch, Branch::Withdrawal);
 }
 
@@ -118,8 +118,8 @@ fn increasing_loads_continue_from_the_last_state() {
         scene.outputs =
             Outputs { area: true, mean_gap: boundary == Boundary::Periodic, ..Outputs::default() };
         let prepared = || ContactModel::prepare(&model, &scene, 3).unwrap();
-        let forces = [0, 1, 2, 3, 4, 5, 6].map(|i| Load::Force(2e-3 * 1.2f64.powi(i)));
-        let approaches = [-0.02, 0.02, 0.03, 0.04, 0.05, 0.06, 0.07].map(Load::Approach);
+        let forces = [0, 1, 2, 3, 4, 5, 6].map(|i| Load::force(2e-3 * 1.2f64.powi(i)));
+        let approaches = [-0.02, 0.02, 0.03, 0.04, 0.05, 0.06, 0.07].map(Load::approach);
         for loads in if boundary == Boundary::Free { vec![forces, approaches] } else { vec![forces] } {
             let mut contact = prepared();
             let sweep = loads.map(|load| contact.solve(load).unwrap());
@@ -158,7 +158,7 @@ fn stiffness_of_a_periodic_contact_is_the_slope_of_its_force() {
     scene.outputs.mean_gap = true;
     let model = Bem3d { cells: 32, tolerance: 1e-9, ..Bem3d::default() };
     let mut history = ContactModel::prepare(&model, &scene, 3).unwrap();
-    let [low, middle, high] = [0.999, 1.0, 1.001].map(|f| at(&mut *history, Load::Force(0.5 * f)).unwrap());
+    let [low, middle, high] = [0.999, 1.0, 1.001].map(|f| at(&mut *history, Load::force(0.5 * f)).unwrap());
     let slope = (high.force - low.force) / (low.mean_gap.unwrap() - high.mean_gap.unwrap());
     let k = middle.stiffness.unwrap();
     assert!((k / slope - 1.0).abs() < 5e-3, "{k} {slope}");
@@ -195,7 +195,7 @@ fn ranges_beyond_the_scales_of_the_surface_are_refused() {
 fn a_small_work_of_adhesion_changes_little() {
     let surface = Surface::SelfAffine(SelfAffine::new(2.4, 1.0, 1.0).unwrap());
     let model = Bem3d { cells: 32, tolerance: 1e-8, ..Bem3d::default() };
-    let load = Load::Force(0.5);
+    let load = Load::force(0.5);
     let solve = |scene: &Scene| ContactModel::prepare(&model, scene, 3).unwrap().solve(load).unwrap();
     let elastic = solve(&Scene::new(surface.clone(), 1.0)).approach.unwrap();
     let shifts =
@@ -208,18 +208,18 @@ fn a_flat_holds_its_area_times_the_largest_traction_at_most() {
     let (work, range) = (1e-3, 0.1);
     let scene = with(Surface::Flat { size: 1.0.into() }, work, range, EXPONENTIAL);
     let mut history = history(Bem3d { cells: 12, ..Bem3d::default() }, &scene);
-    let touching = at(&mut *history, Load::Force(1e-3)).unwrap();
+    let touching = at(&mut *history, Load::force(1e-3)).unwrap();
     assert_eq!(touching.report.contact_cells, Some(144));
     let adhesive = touching.adhesive.unwrap();
     assert!((adhesive.energy + work).abs() < 0.02 * work, "{adhesive:?}");
-    let pulled = at(&mut *history, Load::Force(-0.9 * work / range)).unwrap();
+    let pulled = at(&mut *history, Load::force(-0.9 * work / range)).unwrap();
     assert_eq!(pulled.adhesive.unwrap().branch, Branch::Withdrawal);
     // The history stays where it was.
-    let Err(Error::NotConverged { best }) = at(&mut *history, Load::Force(-1.1 * work / range)) else {
+    let Err(Error::NotConverged { best }) = at(&mut *history, Load::force(-1.1 * work / range)) else {
         panic!()
     };
     assert_eq!(best.force, pulled.force);
-    let again = at(&mut *history, Load::Force(pulled.force)).unwrap();
+    let again = at(&mut *history, Load::force(pulled.force)).unwrap();
     assert!((again.approach.unwrap() / pulled.approach.unwrap() - 1.0).abs() < 1e-6);
 }
 
@@ -233,7 +233,7 @@ fn a_plateau_snaps_in_and_off_and_loses_energy() {
         (0..=n).map(|i| low + (high - low) * i as f64 / n as f64).collect()
     };
     let states = |history: &mut dyn PreparedContact, path: &[f64]| -> Vec<ContactState> {
-        path.iter().map(|&d| at(history, Load::Approach(d)).unwrap()).collect()
+        path.iter().map(|&d| at(history, Load::approach(d)).unwrap()).collect()
     };
     let (up, back) = (path(-0.8, 0.1, 90), path(0.1, -0.8, 90));
     let (rising, falling) = (states(&mut *history, &up), states(&mut *history, &back));
@@ -265,12 +265,12 @@ fn a_plateau_snaps_in_and_off_and_loses_energy() {
 fn a_single_summit_and_a_strong_attraction() {
     let summit = map(21, 1.0, |x, y| if (x, y) == (10, 10) { 0.0 } else { -10.0 });
     let scene = with(summit, 0.01, 0.1, EXPONENTIAL);
-    let state = ContactModel::prepare(&Bem3d::default(), &scene, 0).unwrap().solve(Load::Force(0.0)).unwrap();
+    let state = ContactModel::prepare(&Bem3d::default(), &scene, 0).unwrap().solve(Load::force(0.0)).unwrap();
     assert_eq!(state.report.contact_cells, Some(1));
     // All of a gentle surface jumps in.
     let gentle = map(24, 1.0, |x, y| 1e-3 * ((x as f64).sin() + (y as f64).cos()));
     let scene = with(gentle, 0.02, 0.1, EXPONENTIAL);
-    let state = ContactModel::prepare(&Bem3d::default(), &scene, 0).unwrap().solve(Load::Force(0.0)).unwrap();
+    let state = ContactModel::prepare(&Bem3d::default(), &scene, 0).unwrap().solve(Load::force(0.0)).unwrap();
     assert_eq!(state.report.contact_cells, Some(24 * 24));
 }
 
@@ -281,8 +281,8 @@ fn a_periodic_surface_in_full_contact_carries_tension() {
     scene.effects.boundary = Boundary::Periodic;
     (scene.outputs.stiffness, scene.outputs.pressure, scene.outputs.mean_gap) = (false, true, true);
     let mut history = history(Bem3d::default(), &scene);
-    assert_eq!(at(&mut *history, Load::Force(0.1)).unwrap().report.contact_cells, Some(576));
-    let state = at(&mut *history, Load::Force(-0.05)).unwrap();
+    assert_eq!(at(&mut *history, Load::force(0.1)).unwrap().report.contact_cells, Some(576));
+    let state = at(&mut *history, Load::force(-0.05)).unwrap();
     assert_eq!(state.report.contact_cells, Some(576));
     // The pressure of a flat wave: mean -0.05 and pi E* h/lambda cos.
     let p = state.pressure().unwrap().values();
@@ -301,7 +301,7 @@ fn a_mean_gap_is_met_along_a_path() {
     (scene.outputs.stiffness, scene.outputs.mean_gap) = (false, true);
     let mut history = history(Bem3d { cells: 32, ..Bem3d::default() }, &scene);
     for gap in [0.3, 0.15, 0.1, 0.05, 0.1, 0.15, 0.3] {
-        let state = at(&mut *history, Load::MeanGap(gap)).unwrap();
+        let state = at(&mut *history, Load::mean_gap(gap)).unwrap();
         assert!((state.mean_gap.unwrap() - gap).abs() < 1e-6, "{gap} {:?}", state.mean_gap);
     }
 }
@@ -313,7 +313,7 @@ fn oblong_cells_agree_with_square_ones() {
         scene.outputs.stiffness = false;
         let model = Bem3d { cells, rows: Some(rows), ..Bem3d::default() };
         let mut history = history(model, &scene);
-        at(&mut *history, Load::Approach(0.2 * unit)).unwrap().force / force
+        at(&mut *history, Load::approach(0.2 * unit)).unwrap().force / force
     };
     let (square, oblong) = (force(96, 96), force(96, 72));
     assert!((square / oblong - 1.0).abs() < 0.01, "{square} {oblong}");
@@ -324,12 +324,12 @@ fn a_single_pull_begins_in_contact() {
     let (scene, _, force) = sphere(0.3, 6.0);
     let model = Bem3d { cells: 96, ..Bem3d::default() };
     let mut contact = ContactModel::prepare(&model, &scene, 0).unwrap();
-    let state = contact.solve(Load::Force(-force)).unwrap();
+    let state = contact.solve(Load::force(-force)).unwrap();
     assert!((state.force / force + 1.0).abs() < 1e-6);
     assert_eq!(state.adhesive.unwrap().branch, Branch::Withdrawal);
-    assert!(matches!(contact.solve(Load::Force(-2.1 * force)), Err(Error::NotConverged { .. })));
+    assert!(matches!(contact.solve(Load::force(-2.1 * force)), Err(Error::NotConverged { .. })));
     // Nothing is remembered.
-    assert_eq!(contact.solve(Load::Force(0.0)).unwrap().adhesive.unwrap().branch, Branch::Approach);
+    assert_eq!(contact.solve(Load::force(0.0)).unwrap().adhesive.unwrap().branch, Branch::Approach);
 }
 
 #[test]
@@ -357,9 +357,9 @@ fn invalid_parameters_are_refused() {
     assert!(matches!(prepared(&scene), Err(Error::Unsupported { .. })));
     assert!(matches!(ContactModel::prepare(&Bem3d::default(), &scene, 0), Err(Error::Unsupported { .. })));
     let mut history = prepared(&with(flat(), 0.01, 0.1, EXPONENTIAL)).unwrap();
-    for load in [Load::Force(f64::NAN), Load::Approach(f64::INFINITY), Load::MeanGap(0.1)] {
+    for load in [Load::force(f64::NAN), Load::approach(f64::INFINITY), Load::mean_gap(0.1)] {
         assert!(at(&mut *history, load).is_err(), "{load:?}");
     }
-    let twisted = Step { tangential: Tangential::force_along_x(1.0), ..Step::normal(0.0, Load::Force(0.0)) };
+    let twisted = Step::new(0.0, Load::force(0.0).with_tangential(Tangential::force_along_x(1.0)));
     assert!(matches!(history.advance(twisted), Err(Error::Unsupported { .. })));
 }

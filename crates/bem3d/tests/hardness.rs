@@ -32,8 +32,8 @@ fn solved(model: Bem3d, scene: &Scene, load: Load) -> ContactState {
 fn a_large_hardness_gives_the_elastic_bits() {
     for boundary in [Boundary::Free, Boundary::Periodic] {
         for load in [0.1, 2.0, 30.0] {
-            let elastic = solved(TIGHT, &rough(None, boundary), Load::Force(load));
-            let hard = solved(TIGHT, &rough(Some(1e6), boundary), Load::Force(load));
+            let elastic = solved(TIGHT, &rough(None, boundary), Load::force(load));
+            let hard = solved(TIGHT, &rough(Some(1e6), boundary), Load::force(load));
             assert_eq!(hard.plastic, Some(PlasticState::default()));
             assert!(hard.fields.as_ref().unwrap().plastic_depth.as_ref().unwrap().integral() == 0.0);
             let bare = |state: ContactState| {
@@ -55,7 +55,7 @@ fn a_small_hardness_gives_the_bearing_area() {
         let (hardness, fraction) = (1e-6, 0.3);
         let scene = rough(Some(hardness), boundary);
         let force = hardness * fraction;
-        let state = solved(TIGHT, &scene, Load::Force(force));
+        let state = solved(TIGHT, &scene, Load::force(force));
         let cells = 64.0 * 64.0;
         assert!((state.area.unwrap() - fraction).abs() <= 1.0 / cells, "{:?}", state.area);
         let map = surface_gen::height_map(&scene.surface, TIGHT.grid(1.0.into()), 5).unwrap();
@@ -88,7 +88,7 @@ fn a_sphere_first_yields_at_the_load_of_hertz() {
     // a = 0.1: p_0 = 2 E* a / (pi R), F = 4 E* a^3 / (3 R).
     let a = 0.1_f64;
     let (p0, force) = (2.0 * a / std::f64::consts::PI, 4.0 * a.powi(3) / 3.0);
-    let at = |hardness: f64| solved(model, &scene(Some(hardness)), Load::Force(force));
+    let at = |hardness: f64| solved(model, &scene(Some(hardness)), Load::force(force));
     // The largest pressure of a cell is that of Hertz to the square of the cell.
     assert!(at(1.001 * p0).plastic.unwrap().area <= 0.0);
     assert!(at(0.99 * p0).plastic.unwrap().area > 0.0);
@@ -130,13 +130,13 @@ fn a_path_remembers_its_indentation() {
         let mut time = 0.0;
         let mut go = |path: &mut dyn PreparedContact, force: f64| {
             time += 1.0;
-            path.advance(Step::normal(time, Load::Force(force))).unwrap()
+            path.advance(Step::new(time, Load::force(force))).unwrap()
         };
         let mut steps = Vec::new();
         for load in loads {
             steps.push(go(path.as_mut(), load));
         }
-        let at_once = solved(TIGHT, &scene, Load::Force(loads[2]));
+        let at_once = solved(TIGHT, &scene, Load::force(loads[2]));
         let loaded = steps.last().unwrap();
         check(loaded, hardness);
         let close = |a: f64, b: f64, what: &str| assert!((a / b - 1.0).abs() < 1e-6, "{what} {a} {b}");
@@ -150,7 +150,7 @@ fn a_path_remembers_its_indentation() {
             check(&state, hardness);
             let plastic = state.plastic.unwrap();
             close(plastic.volume, stepped.volume, "volume on the way down");
-            assert!(state.area > solved(TIGHT, &scene, Load::Force(share * loads[2])).area);
+            assert!(state.area > solved(TIGHT, &scene, Load::force(share * loads[2])).area);
         }
         let again = go(path.as_mut(), loads[2]);
         close(again.area.unwrap(), loaded.area.unwrap(), "area again");
@@ -161,7 +161,7 @@ fn a_path_remembers_its_indentation() {
         let more = go(path.as_mut(), 1.2 * loads[2]);
         assert!(more.plastic.unwrap().volume > stepped.volume && more.stiffness.is_some());
         path.restart();
-        let anew = path.advance(Step::normal(0.0, Load::Force(loads[0]))).unwrap();
+        let anew = path.advance(Step::new(0.0, Load::force(loads[0]))).unwrap();
         close(anew.plastic.unwrap().volume, steps[0].plastic.unwrap().volume, "after a restart");
     }
 }
@@ -173,14 +173,14 @@ fn a_body_is_withdrawn_from_its_indentation() {
     let mut scene = rough(Some(4.0), Boundary::Periodic);
     scene.outputs.mean_gap = true;
     let mut path = Bem3d { cells: 32, ..TIGHT }.prepare(&scene, 5).unwrap();
-    let mut go = |load: Load| path.advance(Step::normal(0.0, load)).unwrap();
-    let virgin = go(Load::Force(0.0)).mean_gap.unwrap();
-    let pressed = go(Load::Force(2.0)).plastic.unwrap();
-    let touching = go(Load::Force(0.0)).mean_gap.unwrap();
+    let mut go = |load: Load| path.advance(Step::new(0.0, load)).unwrap();
+    let virgin = go(Load::force(0.0)).mean_gap.unwrap();
+    let pressed = go(Load::force(2.0)).plastic.unwrap();
+    let touching = go(Load::force(0.0)).mean_gap.unwrap();
     assert!(touching < virgin, "{touching} {virgin}");
     // The second lies beyond the first touch of the indented surface but not of the virgin one.
     for gap in [touching, 0.5 * (touching + virgin), 3.0 * virgin] {
-        let state = go(Load::MeanGap(gap));
+        let state = go(Load::mean_gap(gap));
         assert!(state.force <= 0.0 && state.area == Some(0.0), "{gap}: {state:?}");
         // A gap goes into the units of the surface and back.
         assert!((state.mean_gap.unwrap() / gap - 1.0).abs() < 1e-13, "{gap}: {:?}", state.mean_gap);
@@ -188,7 +188,7 @@ fn a_body_is_withdrawn_from_its_indentation() {
         let least = state.gap().unwrap().values().iter().copied().fold(f64::INFINITY, f64::min);
         assert!((least - (gap - touching)).abs() < 1e-12 * virgin, "{gap}: {least}");
     }
-    assert!(go(Load::MeanGap(0.99 * touching)).force > 0.0);
+    assert!(go(Load::mean_gap(0.99 * touching)).force > 0.0);
 }
 
 /// Mean gaps at which nearly every cell in contact flows: the force of a state hardly changes with its gap, and
@@ -209,11 +209,11 @@ fn mean_gaps_of_soft_bodies_are_found() {
         let mut force = 0.0;
         for i in 0..12 {
             let gap = 0.024 - 0.002 * f64::from(i);
-            let state = contact.solve(Load::MeanGap(gap)).unwrap();
+            let state = contact.solve(Load::mean_gap(gap)).unwrap();
             assert!((state.mean_gap.unwrap() - gap).abs() <= 1e-6 * 0.01, "{gap}: {:?}", state.mean_gap);
             assert!(state.force > force, "{gap}: {} after {force}", state.force);
             force = state.force;
-            let alone = model.prepare(&scene, 1).unwrap().solve(Load::MeanGap(gap)).unwrap();
+            let alone = model.prepare(&scene, 1).unwrap().solve(Load::mean_gap(gap)).unwrap();
             assert!((alone.force / force - 1.0).abs() < 1e-3, "{gap}: {} {force}", alone.force);
         }
     }
@@ -232,7 +232,7 @@ fn a_loop_balances_its_energy() {
     let (mut work, mut last, mut unloaded) = (0.0, (0.0, 0.0), 0.0);
     for i in 1..=2 * STEPS {
         let d = deepest * (if i <= STEPS { i } else { 2 * STEPS - i }) as f64 / STEPS as f64;
-        let state = path.advance(Step::normal(i as f64, Load::Approach(d))).unwrap();
+        let state = path.advance(Step::new(i as f64, Load::approach(d))).unwrap();
         work += 0.5 * (state.force + last.0) * (d - last.1);
         last = (state.force, d);
         unloaded = state.plastic.unwrap().dissipated;
@@ -245,7 +245,7 @@ fn a_loop_balances_its_energy() {
 fn unsupported_combinations_are_refused() {
     let scene = rough(Some(2.0), Boundary::Free);
     // All cells at the hardness carry 2.
-    let refused = ContactModel::prepare(&TIGHT, &scene, 5).unwrap().solve(Load::Force(2.0));
+    let refused = ContactModel::prepare(&TIGHT, &scene, 5).unwrap().solve(Load::force(2.0));
     assert!(
         matches!(refused, Err(Error::OutOfRange { max, .. }) if (max - 2.0).abs() < 1e-12),
         "{refused:?}"
@@ -266,17 +266,17 @@ fn unsupported_combinations_are_refused() {
         assert!(matches!(TIGHT.prepare(&both, 5), Err(Error::Unsupported { .. })));
     }
     let mut path = TIGHT.prepare(&scene, 5).unwrap();
-    path.advance(Step::normal(1.0, Load::Force(0.5))).unwrap();
+    path.advance(Step::new(1.0, Load::force(0.5))).unwrap();
     for step in [
-        Step { tangential: Tangential::force_along_x(0.1), ..Step::normal(2.0, Load::Force(0.5)) },
-        Step::normal(0.5, Load::Force(0.5)),
-        Step::normal(2.0, Load::Force(-0.5)),
-        Step::normal(2.0, Load::Force(3.0)),
-        Step::normal(2.0, Load::MeanGap(0.5)),
+        Step::new(2.0, Load::force(0.5).with_tangential(Tangential::force_along_x(0.1))),
+        Step::new(0.5, Load::force(0.5)),
+        Step::new(2.0, Load::force(-0.5)),
+        Step::new(2.0, Load::force(3.0)),
+        Step::new(2.0, Load::mean_gap(0.5)),
     ] {
         assert!(path.advance(step).is_err(), "{step:?}");
     }
-    assert!(path.advance(Step::normal(1.0, Load::Force(0.6))).is_ok());
+    assert!(path.advance(Step::new(1.0, Load::force(0.6))).is_ok());
 }
 
 /// ContactMechanics #68: hardness 0.1 E*, rms slope 0.08, mean pressures up to 0.0999 E*.
@@ -299,7 +299,7 @@ fn nearly_full_plasticity_converges() {
     let mut contact = ContactModel::prepare(&TIGHT, &scene, 0).unwrap();
     let mut last = 0.0;
     for pressure in [1e-4, 1e-3, 1e-2, 0.03, 0.06, 0.09, 0.099, 0.0999] {
-        let state = contact.solve(Load::Force(pressure)).unwrap();
+        let state = contact.solve(Load::force(pressure)).unwrap();
         let area = state.area.unwrap();
         assert!(area >= last && area >= pressure / 0.1 && area <= 1.0 + 1e-12, "{pressure} {area}");
         last = area;
@@ -325,7 +325,7 @@ fn a_state_that_jams_the_outer_iteration_is_solved() {
     scene.effects.hardness = Hardness::Limit { pressure };
     (scene.outputs.pressure, scene.outputs.gap, scene.outputs.plastic_depth) = (true, true, true);
     for method in [Method::Auto, Method::Iterative, Method::SingleLevel] {
-        let state = solved(Bem3d { method, ..TIGHT }, &scene, Load::Force(force));
+        let state = solved(Bem3d { method, ..TIGHT }, &scene, Load::force(force));
         let depth = state.fields.as_ref().unwrap().plastic_depth.as_ref().unwrap().values();
         let (p, g) = (state.pressure().unwrap().values(), state.gap().unwrap().values());
         assert!((p.iter().sum::<f64>() * area / force - 1.0).abs() < 1e-9);
@@ -347,9 +347,9 @@ fn a_path_goes_on_from_a_load_that_was_solved() {
     scene.effects.hardness = Hardness::Limit { pressure: 0.1 };
     let model = Bem3d { cells: 32, ..TIGHT };
     let (mut single, mut path) = (model.prepare(&scene, 0).unwrap(), model.prepare(&scene, 0).unwrap());
-    let solved = single.solve(Load::Force(0.02)).unwrap();
-    path.advance(Step::normal(0.0, Load::Force(0.02))).unwrap();
-    let unload = Step::normal(1.0, Load::Force(0.005));
+    let solved = single.solve(Load::force(0.02)).unwrap();
+    path.advance(Step::new(0.0, Load::force(0.02))).unwrap();
+    let unload = Step::new(1.0, Load::force(0.005));
     let (after, expected) = (single.advance(unload).unwrap(), path.advance(unload).unwrap());
     assert_eq!(after, expected);
     assert!(solved.time.is_none() && after.plastic.unwrap().volume > 0.0);

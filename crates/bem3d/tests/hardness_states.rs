@@ -104,12 +104,12 @@ fn state(number: u64, tolerances: [f64; 2]) -> (Bem3d, Scene, Load) {
         _ => draw.between(0.0, 1.0),
     };
     let load = match (draw.index(0, 2), boundary) {
-        (0, Boundary::Free) => Load::Approach(range * draw.between(0.01, 1.2)),
+        (0, Boundary::Free) => Load::approach(range * draw.between(0.01, 1.2)),
         (0, Boundary::Periodic) => {
             let mean = map.defined().sum::<f64>() / (map.heights().len() - map.undefined()) as f64;
-            Load::MeanGap((map.highest() - mean) * draw.between(0.2, 0.95))
+            Load::mean_gap((map.highest() - mean) * draw.between(0.2, 0.95))
         }
-        _ => Load::Force(capacity * share.clamp(1e-4, 0.999)),
+        _ => Load::force(capacity * share.clamp(1e-4, 0.999)),
     };
     let mut scene = Scene::new(Surface::Heights(Arc::new(map)), 1.0);
     scene.effects.boundary = boundary;
@@ -142,7 +142,9 @@ fn solved(first: u64, count: u64, tolerances: [f64; 2]) -> (BTreeMap<&'static st
                 }
                 // Near full plasticity, and where whole cells carry the force, a range of gaps has forces
                 // that differ by rounding.
-                Err(Error::OutOfRange { .. }) if matches!(load, Load::MeanGap(_)) => "no such gap",
+                Err(Error::OutOfRange { .. }) if matches!(load.normal, NormalLoad::MeanGap(_)) => {
+                    "no such gap"
+                }
                 Err(error) => {
                     failed.push(format!("{number}: {load:?} to {}: {error}", model.tolerance));
                     "not converged"
@@ -224,8 +226,8 @@ fn degenerate_states_converge() {
                 let whole = (1..=cells).step_by(1 + cells / 5).map(|n| n as f64 / cells as f64);
                 let shares = [1e-12, 1e-6, 0.01, 0.3, 0.7, 0.999, 1.0 - 1e-9, 1.0 - 3e-12];
                 let forces = shares.into_iter().chain(whole.filter(|&share| share < 0.9999));
-                let loads = forces.map(|share| Load::Force(share * capacity));
-                let approaches = [1e-9, 0.1, 1.0, 20.0].map(Load::Approach);
+                let loads = forces.map(|share| Load::force(share * capacity));
+                let approaches = [1e-9, 0.1, 1.0, 20.0].map(Load::approach);
                 let free = boundary == Boundary::Free;
                 for load in loads.chain(approaches.into_iter().filter(|_| free)) {
                     let mut scene = Scene::new(Surface::Heights(Arc::new(map.clone())), 1.0);

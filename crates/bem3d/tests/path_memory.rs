@@ -31,7 +31,7 @@ fn check(name: &str, scene: &Scene, cells: usize, path: &[Step]) {
         let kept = PathMemory::from_bytes(memory.bytes().to_vec());
         let mut other = prepare(scene, cells);
         // What was solved before leaves no trace.
-        other.solve(path[0].normal).unwrap();
+        other.solve(path[0].load).unwrap();
         other.recall(&kept).unwrap();
         assert_eq!(other.memory().unwrap().as_ref(), Some(memory), "{name}, step {done}");
         for (i, step) in path.iter().enumerate().skip(done + 1) {
@@ -50,7 +50,7 @@ fn check_loads(name: &str, scene: &Scene, cells: usize, loads: &[Load]) {
     for (done, (_, memory)) in whole.iter().enumerate() {
         let mut other = prepare(scene, cells);
         // What was solved before leaves no trace.
-        other.advance(Step::normal(0.0, loads[0])).unwrap();
+        other.advance(Step::new(0.0, loads[0])).unwrap();
         other.recall(memory).unwrap();
         for (i, load) in loads.iter().enumerate().skip(done + 1) {
             assert_eq!(other.solve(*load).unwrap(), whole[i].0, "{name}: load {i} after load {done}");
@@ -61,14 +61,14 @@ fn check_loads(name: &str, scene: &Scene, cells: usize, loads: &[Load]) {
 
 #[test]
 fn loads_without_a_path() {
-    let forces = [1e-4, 4e-3, 2e-2, 1e-3, 8e-3].map(Load::Force);
+    let forces = [1e-4, 4e-3, 2e-2, 1e-3, 8e-3].map(Load::force);
     let mut scene = Scene::new(rough(0.7, 0.01), 1.0);
     (scene.outputs.stiffness, scene.outputs.area) = (true, true);
     check_loads("elastic", &scene, 129, &forces);
     scene.effects.hardness = Hardness::Limit { pressure: 0.05 };
     check_loads("hardness", &scene, 65, &forces);
     scene.effects.hardness = Hardness::Off;
-    let approaches = [0.004, 0.008, 0.012, 0.006].map(Load::Approach);
+    let approaches = [0.004, 0.008, 0.012, 0.006].map(Load::approach);
     for adhesion in [
         Adhesion::ShortRange { work: 1e-5 },
         Adhesion::FiniteRange { work: 4e-5, range: 3e-3, law: AdhesionLaw::Exponential },
@@ -79,7 +79,7 @@ fn loads_without_a_path() {
     scene.effects.adhesion = Adhesion::Off;
     scene.effects.boundary = Boundary::Periodic;
     scene.outputs.mean_gap = true;
-    check_loads("mean gaps", &scene, 64, &[0.02, 0.012, 0.008, 0.016].map(Load::MeanGap));
+    check_loads("mean gaps", &scene, 64, &[0.02, 0.012, 0.008, 0.016].map(Load::mean_gap));
 }
 
 /// Follows a path that is asked to stop at some poll, for polls from the first to the last one, each later than
@@ -138,20 +138,20 @@ fn stop_anywhere(name: &str, scene: &Scene, (cells, finer): (usize, usize), path
 }
 
 fn normal(loads: impl IntoIterator<Item = Load>) -> Vec<Step> {
-    loads.into_iter().enumerate().map(|(i, load)| Step::normal(i as f64, load)).collect()
+    loads.into_iter().enumerate().map(|(i, load)| Step::new(i as f64, load)).collect()
 }
 
 #[test]
 fn elastic() {
     let scene = Scene::new(rough(0.6, 0.01), 1.0);
-    let forces = [1e-4, 1e-3, 2e-3, 4e-3, 2e-2, 1e-2, 1e-3, 3e-3].map(Load::Force);
+    let forces = [1e-4, 1e-3, 2e-3, 4e-3, 2e-2, 1e-2, 1e-3, 3e-3].map(Load::force);
     check("elastic", &scene, 129, &normal(forces));
-    let approaches = [0.002, 0.004, 0.02, 0.03, 0.01, 0.0, 0.02].map(Load::Approach);
+    let approaches = [0.002, 0.004, 0.02, 0.03, 0.01, 0.0, 0.02].map(Load::approach);
     check("elastic by approach", &scene, 65, &normal(approaches));
     let mut periodic = scene;
     periodic.effects.boundary = Boundary::Periodic;
     (periodic.outputs.mean_gap, periodic.outputs.area) = (true, true);
-    let gaps = [0.02, 0.015, 0.01, 0.012, 0.03, 0.01].map(Load::MeanGap);
+    let gaps = [0.02, 0.015, 0.01, 0.012, 0.03, 0.01].map(Load::mean_gap);
     check("elastic by mean gap", &periodic, 64, &normal(gaps));
     periodic.outputs.stiffness = true;
     stop_anywhere("elastic by mean gap", &periodic, (24, 8), &normal(gaps));
@@ -162,7 +162,7 @@ fn hardness() {
     let mut scene = Scene::new(rough(0.7, 0.01), 1.0);
     scene.effects.hardness = Hardness::Limit { pressure: 0.05 };
     scene.outputs.plastic_depth = true;
-    let forces = [1e-3, 4e-3, 8e-3, 2e-3, 0.0, 5e-3, 8e-3, 1.2e-2, 6e-3].map(Load::Force);
+    let forces = [1e-3, 4e-3, 8e-3, 2e-3, 0.0, 5e-3, 8e-3, 1.2e-2, 6e-3].map(Load::force);
     check("hardness", &scene, 129, &normal(forces));
     scene.outputs.stiffness = true;
     stop_anywhere("hardness", &scene, (33, 8), &normal(forces));
@@ -180,10 +180,8 @@ fn friction() {
     ]
     .iter()
     .enumerate()
-    .map(|(i, &(force, tangential))| Step {
-        time: i as f64,
-        normal: Load::Force(force),
-        tangential: Tangential::Force(tangential),
+    .map(|(i, &(force, tangential))| {
+        Step::new(i as f64, Load::force(force).with_tangential(Tangential::Force(tangential)))
     })
     .collect();
     for (full, cells) in [(false, 129), (true, 49)] {
@@ -207,9 +205,9 @@ fn friction() {
 
 #[test]
 fn adhesion() {
-    let approaches = [0.004, 0.012, 0.02, 0.012, 0.004, -0.002, -0.01].map(Load::Approach);
-    let forces = [1e-3, 5e-3, 1e-3, 0.0, -2e-5, 1e-3].map(Load::Force);
-    let gaps = [0.03, 0.02, 0.015, 0.02, 0.03, 0.05].map(Load::MeanGap);
+    let approaches = [0.004, 0.012, 0.02, 0.012, 0.004, -0.002, -0.01].map(Load::approach);
+    let forces = [1e-3, 5e-3, 1e-3, 0.0, -2e-5, 1e-3].map(Load::force);
+    let gaps = [0.03, 0.02, 0.015, 0.02, 0.03, 0.05].map(Load::mean_gap);
     let (work, range) = (4e-5, 2e-3);
     for (name, adhesion) in [
         ("short range", Adhesion::ShortRange { work }),
@@ -232,7 +230,7 @@ fn adhesion() {
 #[test]
 fn memories_that_are_not_of_the_surface_are_refused() {
     let mut scene = Scene::new(rough(0.7, 0.01), 1.0);
-    let path = normal([1e-3, 4e-3].map(Load::Force));
+    let path = normal([1e-3, 4e-3].map(Load::force));
     let memory = |scene: &Scene, cells: usize| {
         let mut contact = prepare(scene, cells);
         contact.follow(&path).unwrap();

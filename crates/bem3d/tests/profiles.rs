@@ -23,7 +23,7 @@ fn scene(n: usize, width: f64, boundary: Boundary, height: impl Fn(f64) -> f64) 
 
 fn solved(scene: &Scene, force: f64) -> ContactState {
     let model = Bem3d { tolerance: 1e-9, ..Bem3d::default() };
-    model.prepare(scene, 0).unwrap().solve(Load::Force(force)).unwrap()
+    model.prepare(scene, 0).unwrap().solve(Load::force(force)).unwrap()
 }
 
 fn pressure(state: &ContactState) -> &[f64] {
@@ -220,7 +220,7 @@ fn every_method_and_a_long_line_agree() {
         for mean in [1e-4, 0.01, 0.05] {
             let by = |method| {
                 let model = Bem3d { tolerance: 1e-9, method, ..Bem3d::default() };
-                model.prepare(&body, 0).unwrap().solve(Load::Force(mean)).unwrap()
+                model.prepare(&body, 0).unwrap().solve(Load::force(mean)).unwrap()
             };
             let (auto, single, iterative) =
                 (by(Method::Auto), by(Method::SingleLevel), by(Method::Iterative));
@@ -240,7 +240,7 @@ fn a_warm_start_is_a_cold_one() {
     let model = Bem3d { tolerance: 1e-9, ..Bem3d::default() };
     let mut warm = model.prepare(&body, 0).unwrap();
     for force in [1e-4, 3e-4, 1e-3, 1e-2, 5e-2, 1e-3] {
-        let state = warm.solve(Load::Force(force)).unwrap();
+        let state = warm.solve(Load::force(force)).unwrap();
         assert_eq!(state.area, solved(&body, force).area, "{force}");
         assert!(state.report.certificate.meets(1e-9));
     }
@@ -251,9 +251,9 @@ fn outputs_that_a_half_plane_lacks_are_refused_with_the_reason() {
     let body = scene(32, 1.0, Boundary::Free, rough);
     let refused = |scene: &Scene| Bem3d::default().prepare(scene, 0).map(|_| ()).unwrap_err().to_string();
     let mut contact = Bem3d::default().prepare(&body, 0).unwrap();
-    let error = contact.solve(Load::Approach(0.01)).unwrap_err().to_string();
+    let error = contact.solve(Load::approach(0.01)).unwrap_err().to_string();
     assert!(error.contains("no zero at infinity"), "{error}");
-    assert!(contact.solve(Load::MeanGap(0.01)).is_err());
+    assert!(contact.solve(Load::mean_gap(0.01)).is_err());
     let mut displaced = body.clone();
     displaced.outputs.displacement = true;
     assert!(refused(&displaced).contains("no zero at infinity"));
@@ -276,8 +276,8 @@ fn a_path_with_hardness_keeps_its_indentation() {
     let mut body = scene(200, 1.0, Boundary::Free, |x| -(x - 0.5).powi(2));
     body.effects.hardness = Hardness::Limit { pressure: 0.1 };
     let mut path = Bem3d::default().prepare(&body, 0).unwrap();
-    let loaded = path.advance(Step::normal(1.0, Load::Force(0.02))).unwrap();
-    let unloaded = path.advance(Step::normal(2.0, Load::Force(0.0))).unwrap();
+    let loaded = path.advance(Step::new(1.0, Load::force(0.02))).unwrap();
+    let unloaded = path.advance(Step::new(2.0, Load::force(0.0))).unwrap();
     assert!(loaded.plastic.unwrap().area > 0.0 && loaded.approach.is_none());
     assert!((unloaded.plastic.unwrap().volume / loaded.plastic.unwrap().volume - 1.0).abs() < 1e-12);
 }

@@ -145,7 +145,7 @@ proptest! {
         map in any_map(), boundary in boundary(), exponent in -2.0_f64..1.0, shares in (0.02_f64..0.5, 0.5_f64..0.98),
     ) {
         let scene = elastic(&map, boundary);
-        let (load, cell) = (Load::Force(10_f64.powf(exponent)), map.dx() * map.dx());
+        let (load, cell) = (Load::force(10_f64.powf(exponent)), map.dx() * map.dx());
         let never_flows = solved(&scene, load);
         prop_assume!(highest(&never_flows) > 1.01 * never_flows.force);
         let mut harder = never_flows.clone();
@@ -169,16 +169,16 @@ proptest! {
     ) {
         let (scene, cell) = (elastic(&map, boundary), map.dx() * map.dx());
         let mut force = 10_f64.powf(exponent);
-        let first = solved(&scene, Load::Force(force));
+        let first = solved(&scene, Load::force(force));
         // The largest of the loads is carried too.
         let hardness = hardness_between(&first, share).max(1.01 * force * ratios.iter().product::<f64>());
         let scene = with_hardness(&scene, hardness);
         let mut contact = ContactModel::prepare(&model(), &scene, 0).unwrap();
-        let mut before = contact.solve(Load::Force(force)).unwrap();
+        let mut before = contact.solve(Load::force(force)).unwrap();
         sound(&before, hardness, cell)?;
         for ratio in ratios {
             force *= ratio;
-            let state = contact.solve(Load::Force(force)).unwrap();
+            let state = contact.solve(Load::force(force)).unwrap();
             sound(&state, hardness, cell)?;
             prop_assert!(nested(&before, &state) && lowered(&state) >= lowered(&before) - SAME);
             let (now, old) = (state.plastic.unwrap(), before.plastic.unwrap());
@@ -194,7 +194,7 @@ proptest! {
         map in any_map(), boundary in boundary(), exponent in -3.0_f64..1.5, above in 1e-6_f64..1.0,
     ) {
         let scene = elastic(&map, boundary);
-        let load = Load::Force(10_f64.powf(exponent));
+        let load = Load::force(10_f64.powf(exponent));
         let expected = solved(&scene, load);
         let same_bits = solved(&with_hardness(&scene, 1e3 * highest(&expected)), load);
         prop_assert_eq!(same_bits.plastic, Some(PlasticState::default()));
@@ -213,13 +213,13 @@ proptest! {
     #[test]
     fn a_loop_stores_and_dissipates_the_work(map in any_map(), deepest in 0.1_f64..1.5, share in 0.05_f64..0.9) {
         let (scene, cell) = (elastic(&map, Boundary::Free), map.dx() * map.dx());
-        let hardness = share * highest(&solved(&scene, Load::Approach(deepest)));
+        let hardness = share * highest(&solved(&scene, Load::approach(deepest)));
         let mut path = model().prepare(&with_hardness(&scene, hardness), 0).unwrap();
         let depths: Vec<f64> = (0..=3 * STEPS)
             .map(|i| deepest * (if i <= STEPS { i } else { i.abs_diff(2 * STEPS) }) as f64 / STEPS as f64)
             .collect();
         let states: Vec<ContactState> = depths[1..].iter().enumerate()
-            .map(|(i, d)| path.advance(Step::normal(i as f64, Load::Approach(*d))).unwrap())
+            .map(|(i, d)| path.advance(Step::new(i as f64, Load::approach(*d))).unwrap())
             .collect();
         let (mut force, mut energy, mut dissipated) = (0.0, 0.0, 0.0);
         for (state, d) in states.iter().zip(depths.windows(2)) {
@@ -249,7 +249,7 @@ proptest! {
     fn a_turned_map_flows_as_the_map_does(
         map in any_map(), symmetry in symmetry(), boundary in boundary(), exponent in -2.0_f64..1.0, share in 0.05_f64..0.95,
     ) {
-        let (scene, load) = (elastic(&map, boundary), Load::Force(10_f64.powf(exponent)));
+        let (scene, load) = (elastic(&map, boundary), Load::force(10_f64.powf(exponent)));
         let hardness = hardness_between(&solved(&scene, load), share);
         let here = solved(&with_hardness(&scene, hardness), load);
         let there = solved(&with_hardness(&elastic(&turned(&map, symmetry), boundary), hardness), load);
@@ -288,7 +288,7 @@ fn path(scene: &Scene) -> Box<dyn PreparedContact> {
 }
 
 fn at(path: &mut dyn PreparedContact, d: f64) -> ContactState {
-    path.advance(Step::normal(0.0, Load::Approach(d))).unwrap()
+    path.advance(Step::new(0.0, Load::approach(d))).unwrap()
 }
 
 proptest! {
@@ -329,7 +329,7 @@ proptest! {
     ) {
         let scene = elastic(&map, Boundary::Free);
         let work = 10_f64.powf(exponent) * strongest(&map, range);
-        let (without, attracted) = (solved(&scene, Load::Approach(d)), solved(&with_adhesion(&scene, work, range), Load::Approach(d)));
+        let (without, attracted) = (solved(&scene, Load::approach(d)), solved(&with_adhesion(&scene, work, range), Load::approach(d)));
         let less = without.force - attracted.force;
         let slack = SAME * without.force;
         prop_assert!(less >= -slack && less <= work / range + slack, "{} {}", less, work / range);
@@ -337,7 +337,7 @@ proptest! {
         // The attraction raises no cell by more than the same traction on the whole square does in its
         // middle.
         let raised = 4.0 * (1.0 + 2_f64.sqrt()).ln() / std::f64::consts::PI * work / range;
-        let closer = solved(&scene, Load::Approach(d + raised * (1.0 + SAME)));
+        let closer = solved(&scene, Load::approach(d + raised * (1.0 + SAME)));
         prop_assert!(attracted.report.contact_cells <= closer.report.contact_cells);
     }
 

@@ -20,7 +20,7 @@ fn the_estimated_error_of_k_covers_the_true_one() {
         let sweep = |model: Bem3d| -> Vec<(f64, f64)> {
             let mut contact = model.prepare(&scene, seed).unwrap();
             let solve = |&f: &f64| {
-                let state = contact.solve(Load::Force(f)).unwrap();
+                let state = contact.solve(Load::force(f)).unwrap();
                 (state.stiffness.unwrap(), state.report.certificate.stiffness_error.unwrap())
             };
             forces.iter().map(solve).collect()
@@ -51,8 +51,8 @@ fn the_stiffness_under_full_coupling_meets_its_tolerance() {
     let model = Bem3d { cells: 73, ..Bem3d::default() };
     let mut contact = model.prepare(&scene, 0).unwrap();
     for step in 1..=40 {
-        let load = Load::Force(0.05 / 40.0 * f64::from(step));
-        let state = contact.advance(Step::normal(f64::from(step), load)).unwrap();
+        let load = Load::force(0.05 / 40.0 * f64::from(step));
+        let state = contact.advance(Step::new(f64::from(step), load)).unwrap();
         assert!(state.report.certificate.meets(model.tolerance), "{}", state.report.certificate);
     }
 }
@@ -69,7 +69,7 @@ fn of_a_prescribed_mean_gap() {
             let mut contact =
                 Bem3d { cells: 96, tolerance, ..Bem3d::default() }.prepare(&scene, seed).unwrap();
             let gaps = [0.018, 0.015, 0.01, 0.006, 0.004, 0.002];
-            gaps.map(|gap| contact.solve(Load::MeanGap(gap)).unwrap())
+            gaps.map(|gap| contact.solve(Load::mean_gap(gap)).unwrap())
         };
         for (rough, tight) in solved(1e-3).iter().zip(&solved(1e-9)) {
             let (k, exact) = (rough.stiffness.unwrap(), tight.stiffness.unwrap());

@@ -33,7 +33,7 @@ fn bits(states: &[ContactState]) -> Vec<u64> {
 fn path(model: Bem3d, scene: &Scene, forces: &[f64]) -> Result<Vec<ContactState>> {
     let mut contact = model.prepare(scene, 5)?;
     let normalisation = contact.normalisation();
-    forces.iter().map(|&f| contact.solve(Load::Force(normalisation.force(f)?))).collect()
+    forces.iter().map(|&f| contact.solve(Load::force(normalisation.force(f)?))).collect()
 }
 
 fn scene(fractal_dimension: f64, boundary: Boundary) -> Result<Scene> {

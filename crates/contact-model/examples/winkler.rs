@@ -13,8 +13,8 @@
 //! ```
 
 use contact_model::{
-    Abilities, ContactModel, ContactState, Error, HeightMap, Load, Normalisation, Output, Outputs,
-    PreparedContact, Result, Scene, Size, SolveReport, Source, Stop, Surface, SurfaceKind,
+    Abilities, ContactModel, ContactState, Error, HeightMap, Load, NormalLoad, Normalisation, Output,
+    Outputs, PreparedContact, Result, Scene, Size, SolveReport, Source, Stop, Surface, SurfaceKind,
 };
 use std::f64::consts::PI;
 
@@ -70,7 +70,7 @@ impl PreparedContact for Layer {
     }
 
     fn solve_until(&mut self, load: Load, _stop: Stop<'_>) -> Result<ContactState> {
-        let Load::Approach(approach) = load.validated()? else {
+        let NormalLoad::Approach(approach) = load.validated()?.without_tangential("winkler")? else {
             return Err(Error::unsupported("winkler", format!("the load {load:?}")));
         };
         let touching = &self.depths[..self.depths.partition_point(|z| *z < approach)];
@@ -96,14 +96,14 @@ fn main() -> Result<()> {
     let mut contact = model.prepare(&scene, 0)?;
     println!("{:>9} {:>12} {:>12} {:>10} {:>10}", "approach", "force", "closed form", "k", "area");
     for approach in [0.005, 0.01, 0.02, 0.04] {
-        let state = contact.solve(Load::Approach(approach))?;
+        let state = contact.solve(Load::approach(approach))?;
         let exact = PI * contact_modulus / thickness * radius * approach * approach;
         let (stiffness, area) = (state.stiffness.unwrap_or(0.0), state.area.unwrap_or(0.0));
         println!("{approach:>9} {:>12.6} {exact:>12.6} {stiffness:>10.4} {area:>10.6}", state.force);
         // The sum over cells differs from the integral by their share of the contact.
         assert!((state.force / exact - 1.0).abs() < 1e-3);
     }
-    let refused = contact.solve(Load::Force(1.0));
+    let refused = contact.solve(Load::force(1.0));
     println!("{}", refused.err().map_or_else(String::new, |e| e.to_string()));
     Ok(())
 }

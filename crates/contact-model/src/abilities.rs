@@ -2,10 +2,9 @@
 
 use crate::effects::{Boundary, Effect};
 use crate::error::{Error, Result};
-use crate::load::Load;
+use crate::load::{Directions, NormalLoad};
 use crate::quantities::Output;
 use crate::scene::{Scene, Surface};
-use crate::step::Directions;
 
 /// A kind of surface, without its numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -85,11 +84,11 @@ impl SurfaceKind {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum LoadKind {
-    /// [`Load::Force`].
+    /// [`NormalLoad::Force`].
     Force,
-    /// [`Load::Approach`].
+    /// [`NormalLoad::Approach`].
     Approach,
-    /// [`Load::MeanGap`].
+    /// [`NormalLoad::MeanGap`].
     MeanGap,
 }
 
@@ -98,11 +97,11 @@ impl LoadKind {
     pub const ALL: &'static [Self] = &[Self::Force, Self::Approach, Self::MeanGap];
 
     /// The kind of a load.
-    pub fn of(load: Load) -> Self {
+    pub fn of(load: NormalLoad) -> Self {
         match load {
-            Load::Force(_) => Self::Force,
-            Load::Approach(_) => Self::Approach,
-            Load::MeanGap(_) => Self::MeanGap,
+            NormalLoad::Force(_) => Self::Force,
+            NormalLoad::Approach(_) => Self::Approach,
+            NormalLoad::MeanGap(_) => Self::MeanGap,
         }
     }
 
@@ -222,7 +221,7 @@ impl Abilities {
     ///
     /// # Errors
     /// [`Error::Unsupported`] naming the model and the load.
-    pub fn refuse_load(&self, model: &'static str, load: Load) -> Result<()> {
+    pub fn refuse_load(&self, model: &'static str, load: NormalLoad) -> Result<()> {
         if self.loads.contains(&LoadKind::of(load)) {
             Ok(())
         } else {

@@ -34,7 +34,7 @@
 //! // A force of 0.01 on a square of side 1, modulus 1, rms height 0.5 is F_bar = 0.02 (Eq. 10).
 //! let normalisation = Normalisation { contact_modulus: 1.0, length: 1.0, height: Some(0.5) };
 //! assert_eq!(normalisation.force_bar(0.01)?, 0.02);
-//! assert!(Load::Force(-1.0).validated().is_err());
+//! assert!(Load::force(-1.0).validated().is_err());
 //! # Ok::<(), contact_model::Error>(())
 //! ```
 
@@ -74,7 +74,7 @@ pub use error::{Error, Result};
 pub use fields::{FIELDS, Field, FieldQuantity, Fields, StickSlip};
 pub use height_map::HeightMap;
 pub use line::Line;
-pub use load::Load;
+pub use load::{Directions, Load, NormalLoad, Tangential};
 pub use memory::PathMemory;
 pub use model::{ContactModel, PreparedContact, RequiredMemory, Source, Stop, Watch, check_stop, never};
 pub use nondimensionalisation::Nondimensionalisation;
@@ -90,6 +90,6 @@ pub use state::{
     AdhesiveState, Branch, Certificate, ContactResolution, ContactState, PlasticState, PullOff, SolveReport,
     Status, TangentialState,
 };
-pub use step::{Directions, Step, Tangential};
+pub use step::Step;
 pub use value::Value;
 pub use work::Work;

@@ -9,7 +9,7 @@ use crate::normalisation::Normalisation;
 use crate::pull_off::LargestPull;
 use crate::scene::Scene;
 use crate::state::ContactState;
-use crate::step::{Step, Tangential};
+use crate::step::Step;
 use std::borrow::Cow;
 
 /// A publication that a model is built on. It goes into the header of every CSV file.
@@ -162,7 +162,8 @@ pub trait PreparedContact: Send {
     ///
     /// # Errors
     /// [`crate::Error::Domain`] for a negative or non-finite load, [`crate::Error::OutOfRange`] where the
-    /// model does not hold, [`crate::Error::NotConverged`] and [`crate::Error::Stopped`] with the best state.
+    /// model does not hold, [`crate::Error::Unsupported`] for a tangential load without friction,
+    /// [`crate::Error::NotConverged`] and [`crate::Error::Stopped`] with the best state.
     fn solve_until(&mut self, load: Load, stop: Stop<'_>) -> Result<ContactState>;
 
     /// Solves for one load as a step from no contact: [`PreparedContact::solve_until`] for models whose
@@ -172,7 +173,7 @@ pub trait PreparedContact: Send {
     /// As [`PreparedContact::advance_until`].
     fn solve_as_step(&mut self, load: Load, stop: Stop<'_>) -> Result<ContactState> {
         self.restart();
-        let mut state = self.advance_until(Step::normal(0.0, load), stop)?;
+        let mut state = self.advance_until(Step::new(0.0, load), stop)?;
         // A load alone has no time.
         state.time = None;
         Ok(state)
@@ -189,18 +190,14 @@ pub trait PreparedContact: Send {
     /// Advances to the end of the next step of a path; `stop` is polled between iterations. **A step that
     /// fails leaves the contact as it was before.**
     ///
-    /// A contact without a memory solves for the normal load of the step, whatever came before.
+    /// A contact without a memory solves for the load of the step, whatever came before.
     ///
     /// # Errors
     /// As [`PreparedContact::solve_until`], and [`Step::validated`]; [`Error::OutOfRange`] for steps beyond
-    /// what the model holds for (gross slip, a time from which the contact would shrink),
-    /// [`Error::Unsupported`] for a tangential load without friction.
+    /// what the model holds for (gross slip, a time from which the contact would shrink).
     fn advance_until(&mut self, step: Step, stop: Stop<'_>) -> Result<ContactState> {
-        if step.tangential != Tangential::default() {
-            return Err(Error::unsupported("of frictionless contact", "a tangential load"));
-        }
-        let Step { time, normal, .. } = step.validated_with_adhesion(f64::NEG_INFINITY)?;
-        Ok(self.solve_until(normal, stop)?.with_time(time))
+        let Step { time, load } = step.validated_with_adhesion(f64::NEG_INFINITY)?;
+        Ok(self.solve_until(load, stop)?.with_time(time))
     }
 
     /// Advances to the end of the next step of a path.
@@ -218,7 +215,7 @@ pub trait PreparedContact: Send {
     /// end of the step before it.
     fn follow(&mut self, path: &[Step]) -> Result<Vec<ContactState>> {
         let mut largest = LargestPull::default();
-        path.iter().map(|step| Ok(largest.enter(step.normal, self.advance(*step)?))).collect()
+        path.iter().map(|step| Ok(largest.enter(step.load.normal, self.advance(*step)?))).collect()
     }
 
     /// The memory of the loads so far, of a path or each by itself, which together with the next load
@@ -269,7 +266,7 @@ pub trait PreparedContact: Send {
     /// use contact_model::{Load, PreparedContact, Result, never};
     /// /// Stiffness under each force; `None` where the model refuses it.
     /// fn stiffnesses(contact: &mut dyn PreparedContact, forces: &[f64]) -> Result<Vec<Option<f64>>> {
-    ///     let loads: Vec<Load> = forces.iter().map(|&f| Load::Force(f)).collect();
+    ///     let loads: Vec<Load> = forces.iter().map(|&f| Load::force(f)).collect();
     ///     let mut found = Vec::new();
     ///     contact.sweep(&loads, &never, &mut |_, state| {
     ///         found.push(state.ok().and_then(|s| s.stiffness));

@@ -44,7 +44,7 @@ impl Normalisation {
     /// # Errors
     /// As [`Normalisation::force_bar`].
     pub fn loads(&self, force_bar: &[f64]) -> Result<Vec<Load>> {
-        force_bar.iter().map(|&f| self.force(f).map(Load::Force)).collect()
+        force_bar.iter().map(|&f| self.force(f).map(Load::force)).collect()
     }
 
     /// `k_bar = k / (1.1419 E* L)` (Eq. 8), dimensionless.

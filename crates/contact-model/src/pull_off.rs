@@ -15,7 +15,7 @@
 //! Elsewhere (the loads turn, or end, at the largest pull) no load is beyond pull-off, and the path gives no
 //! upper bound.
 
-use crate::load::Load;
+use crate::load::NormalLoad;
 use crate::state::{ContactState, PullOff, Status};
 
 /// Follows a path and reports the largest pull so far.
@@ -24,12 +24,12 @@ use crate::state::{ContactState, PullOff, Status};
 /// use contact_model::{ContactState, LargestPull, Load, SolveReport, Status};
 /// let state = |force: f64| ContactState::new(force, SolveReport::exact("test"));
 /// let mut largest = LargestPull::default();
-/// assert_eq!(largest.enter(Load::Force(1.0), state(1.0)).pull_off, None);
-/// assert_eq!(largest.enter(Load::Force(-2.0), state(-2.0)).pull_off.unwrap().force, 2.0);
+/// assert_eq!(largest.enter(NormalLoad::Force(1.0), state(1.0)).pull_off, None);
+/// assert_eq!(largest.enter(NormalLoad::Force(-2.0), state(-2.0)).pull_off.unwrap().force, 2.0);
 /// // A force of -3 is not held: the state is the last stable one.
 /// let mut last = state(-2.0);
 /// last.report.status = Status::PulledOff;
-/// assert_eq!(largest.enter(Load::Force(-3.0), last).pull_off.unwrap().error, Some(1.0));
+/// assert_eq!(largest.enter(NormalLoad::Force(-3.0), last).pull_off.unwrap().error, Some(1.0));
 /// ```
 #[derive(Debug, Clone, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -58,33 +58,33 @@ impl LargestPull {
     ///
     /// Cost: O(1).
     #[must_use]
-    pub fn enter(&mut self, load: Load, state: ContactState) -> ContactState {
+    pub fn enter(&mut self, load: NormalLoad, state: ContactState) -> ContactState {
         let mut beyond = None;
         if state.report.status == Status::PulledOff {
             beyond = Some(load);
         } else {
             let ContactState { approach, mean_gap, .. } = state;
             // A force that presses, or none, pulls nothing, whatever the rounding of its sum.
-            let pressed = matches!(load, Load::Force(asked) if asked >= 0.0);
+            let pressed = matches!(load, NormalLoad::Force(asked) if asked >= 0.0);
             let force = if pressed { state.force.max(0.0) } else { state.force };
             if self.held.get(self.largest).is_some_and(|largest| force < largest.force) {
                 self.largest = self.held.len();
             }
             let distance = match load {
-                Load::Approach(approach) => Some(approach),
-                Load::MeanGap(gap) => Some(-gap),
-                Load::Force(_) => None,
+                NormalLoad::Approach(approach) => Some(approach),
+                NormalLoad::MeanGap(gap) => Some(-gap),
+                NormalLoad::Force(_) => None,
             };
             self.held.push(Point { distance, force, approach, mean_gap });
         }
         ContactState { pull_off: self.pull_off(beyond), ..state }
     }
 
-    fn pull_off(&self, beyond: Option<Load>) -> Option<PullOff> {
+    fn pull_off(&self, beyond: Option<NormalLoad>) -> Option<PullOff> {
         let Point { force, approach, mean_gap, .. } =
             *self.held.get(self.largest).filter(|largest| largest.force < 0.0)?;
         let error = match beyond {
-            Some(Load::Force(asked)) => Some((force - asked).max(0.0)),
+            Some(NormalLoad::Force(asked)) => Some((force - asked).max(0.0)),
             _ => self.left_by_steps(),
         };
         Some(PullOff { force: -force, error, approach, mean_gap })
@@ -128,10 +128,10 @@ mod tests {
     use super::*;
     use crate::state::SolveReport;
 
-    fn follow(path: &[(Load, f64)]) -> Option<PullOff> {
+    fn follow(path: &[(NormalLoad, f64)]) -> Option<PullOff> {
         let mut largest = LargestPull::default();
         let states = path.iter().map(|&(load, force)| {
-            let approach = if let Load::Approach(d) = load { Some(d) } else { None };
+            let approach = if let NormalLoad::Approach(d) = load { Some(d) } else { None };
             let state = ContactState::new(force, SolveReport::exact("test")).with_approach(approach);
             largest.enter(load, state).pull_off
         });
@@ -139,7 +139,7 @@ mod tests {
     }
 
     fn withdrawal(force: impl Fn(f64) -> f64, loads: &[f64]) -> Option<PullOff> {
-        follow(&loads.iter().map(|&d| (Load::Approach(d), force(d))).collect::<Vec<_>>())
+        follow(&loads.iter().map(|&d| (NormalLoad::Approach(d), force(d))).collect::<Vec<_>>())
     }
 
     #[test]
@@ -174,21 +174,33 @@ mod tests {
         assert_eq!(error(&[1.0, 0.0, -1.0]), None, "the path ends");
         assert_eq!(error(&[1.0, 0.0, -1.0, 0.0, 1.0]), None, "the path turns");
         assert_eq!(error(&[-1.0]), None);
-        let snap = [(2.0, 0.0), (1.0, -0.5), (0.0, 1.0)].map(|(gap, force)| (Load::MeanGap(gap), force));
+        let snap =
+            [(2.0, 0.0), (1.0, -0.5), (0.0, 1.0)].map(|(gap, force)| (NormalLoad::MeanGap(gap), force));
         assert_eq!(follow(&snap).map(|p| (p.force, p.error)), Some((0.5, None)), "on approach");
-        let forces = [1.0, -1.0, 1.0].map(|force| (Load::Force(force), force));
+        let forces = [1.0, -1.0, 1.0].map(|force| (NormalLoad::Force(force), force));
         assert_eq!(follow(&forces).map(|p| (p.force, p.error)), Some((1.0, None)), "as prescribed");
-        let mixed = [(Load::Approach(1.0), 1.0), (Load::Force(-1.0), -1.0), (Load::Approach(-2.0), 0.0)];
+        let mixed = [
+            (NormalLoad::Approach(1.0), 1.0),
+            (NormalLoad::Force(-1.0), -1.0),
+            (NormalLoad::Approach(-2.0), 0.0),
+        ];
         assert_eq!(follow(&mixed).unwrap().error, None);
     }
 
     #[test]
     fn later_smaller_pulls_change_nothing() {
-        let mut path =
-            vec![(Load::MeanGap(-1.0), 1.0), (Load::MeanGap(0.0), -1.0), (Load::MeanGap(1.0), 0.0)];
+        let mut path = vec![
+            (NormalLoad::MeanGap(-1.0), 1.0),
+            (NormalLoad::MeanGap(0.0), -1.0),
+            (NormalLoad::MeanGap(1.0), 0.0),
+        ];
         let first = follow(&path);
         assert_eq!(first.unwrap().error, Some(2.0));
-        path.extend([(Load::MeanGap(-1.0), 1.0), (Load::MeanGap(0.0), -0.5), (Load::MeanGap(1.0), 0.0)]);
+        path.extend([
+            (NormalLoad::MeanGap(-1.0), 1.0),
+            (NormalLoad::MeanGap(0.0), -0.5),
+            (NormalLoad::MeanGap(1.0), 0.0),
+        ]);
         assert_eq!(follow(&path), first);
     }
 }

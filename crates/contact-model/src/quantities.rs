@@ -9,9 +9,9 @@
 use crate::conductance::Conductance;
 use crate::effects::{Boundary, Effects, Friction};
 use crate::error::Result;
+use crate::load::Directions;
 use crate::normalisation::Normalisation;
 use crate::state::ContactState;
-use crate::step::Directions;
 use crate::value::Value;
 
 macro_rules! outputs {

@@ -1,7 +1,7 @@
 //! From the dimensionless numbers of a formula to a state: its units and its requested outputs.
 
 use crate::error::Result;
-use crate::load::Load;
+use crate::load::NormalLoad;
 use crate::nondimensionalisation::Nondimensionalisation;
 use crate::normalisation::Normalisation;
 use crate::quantities::Outputs;
@@ -28,8 +28,8 @@ pub struct Scaling {
 /// scene.outputs.area = true;
 /// // A flat of stiffness 1.15 E* L that is pressed by 0.01 L.
 /// let scaled = ScaledState { force: 0.0115, approach: Some(0.01), area: Some(1.0), ..ScaledState::default() };
-/// let report = SolveReport::formula("a constant", Load::Approach(0.02));
-/// let state = Scaling::of_body(&scene)?.state(scaled.with_elastic_stiffness(1.15), Load::Approach(0.02), report)?;
+/// let report = SolveReport::formula("a constant", Load::approach(0.02));
+/// let state = Scaling::of_body(&scene)?.state(scaled.with_elastic_stiffness(1.15), Load::approach(0.02), report)?;
 /// assert!((state.force - 0.0115 * 12.0).abs() < 1e-15);
 /// assert_eq!((state.approach, state.stiffness, state.area), (Some(0.02), Some(1.15 * 6.0), Some(4.0)));
 /// # Ok::<(), contact_model::Error>(())
@@ -103,14 +103,19 @@ impl Scaling {
     ///
     /// # Errors
     /// [`crate::Error::Domain`] for a number that no `f64` holds.
-    pub fn state(&self, scaled: ScaledState, load: Load, mut report: SolveReport) -> Result<ContactState> {
+    pub fn state(
+        &self,
+        scaled: ScaledState,
+        load: NormalLoad,
+        mut report: SolveReport,
+    ) -> Result<ContactState> {
         let Self { nondimensional, normalisation, outputs } = self;
         let force = match load {
-            Load::Force(force) => force,
+            NormalLoad::Force(force) => force,
             _ => nondimensional.force(scaled.force)?,
         };
         let approach = match load {
-            Load::Approach(approach) => Some(approach),
+            NormalLoad::Approach(approach) => Some(approach),
             _ => scaled.approach.map(|approach| nondimensional.approach(approach)).transpose()?,
         };
         let asked = |value: Option<f64>, asked: bool, convert: &dyn Fn(f64) -> Result<f64>| {
@@ -133,9 +138,9 @@ impl Scaling {
 impl SolveReport {
     /// [`SolveReport::exact`] of a formula that also accepts an approach: the force that follows from it is
     /// exact.
-    pub fn formula(strategy: impl Into<String>, load: Load) -> Self {
+    pub fn formula(strategy: impl Into<String>, load: NormalLoad) -> Self {
         let mut report = Self::exact(strategy);
-        report.certificate.force_error = matches!(load, Load::Approach(_)).then_some(0.0);
+        report.certificate.force_error = matches!(load, NormalLoad::Approach(_)).then_some(0.0);
         report
     }
 }

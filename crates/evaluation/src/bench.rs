@@ -305,7 +305,7 @@ impl BenchSeries {
             };
             let normalisation = prepared.normalisation();
             let what = || format!("bem3d on {} at F_bar = {force_bar:?}", self.surface);
-            let load = Load::Force(normalisation.force(force_bar).map_err(Error::model(what()))?);
+            let load = Load::force(normalisation.force(force_bar).map_err(Error::model(what()))?);
             let state = prepared.solve_until(load, stop).or_else(contact_model::Error::into_best);
             let state = state.map_err(Error::model(what()))?;
             let seconds = start.elapsed().as_secs_f64();

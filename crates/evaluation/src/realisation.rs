@@ -353,8 +353,8 @@ mod tests {
     use analysis::mean_grid_error;
     use approx::assert_relative_eq;
     use contact_model::{
-        Certificate, ContactState, Load, Normalisation, PreparedContact, Result as ModelResult, SolveReport,
-        Source, Status,
+        Certificate, ContactState, Load, NormalLoad, Normalisation, PreparedContact, Result as ModelResult,
+        SolveReport, Source, Status,
     };
 
     /// k = sqrt(F); gives up above F = 1.
@@ -381,7 +381,7 @@ mod tests {
             Normalisation { contact_modulus: 1.0, length: 1.0, height: Some(2.0) }
         }
         fn solve_until(&mut self, load: Load, _: Stop<'_>) -> ModelResult<ContactState> {
-            let Load::Force(force) = load else { panic!("jobs prescribe forces") };
+            let NormalLoad::Force(force) = load.normal else { panic!("jobs prescribe forces") };
             let mut report = SolveReport::exact("closed form");
             report.certificate = Certificate { duality_gap: 0.5, ..Default::default() };
             let stiffness = Some(force.sqrt());

@@ -146,7 +146,7 @@ fn run((name, multiply): Constant, factor: f64, longest: f64) -> Result<PathsCos
         for &force_bar in loads {
             let force = contact.normalisation().force(force_bar).map_err(failed)?;
             let state =
-                contact.solve_until(Load::Force(force), &stop).or_else(contact_model::Error::into_best);
+                contact.solve_until(Load::force(force), &stop).or_else(contact_model::Error::into_best);
             match state {
                 Ok(state) => {
                     cost.applications += state.report.applications;

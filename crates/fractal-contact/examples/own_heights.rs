@@ -37,7 +37,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut contact = Bem3d { tolerance: 1e-5, ..Bem3d::default() }.prepare(&scene, 0)?;
     println!("{:>6} {:>11} {:>10} {:>10} {:>10}", "F in N", "A in mm^2", "of Hertz", "k in N/um", "of Hertz");
     for force in [20.0, 50.0, 100.0] {
-        let state = contact.solve(Load::Force(force))?;
+        let state = contact.solve(Load::force(force))?;
         let a = (0.75 * radius * force / scene.contact_modulus).cbrt();
         let (area, k) = (state.area.unwrap_or(0.0), state.stiffness.unwrap_or(0.0));
         let (area_ratio, k_ratio) = (area / (PI * a * a), k / (2.0 * scene.contact_modulus * a));

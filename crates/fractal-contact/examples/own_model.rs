@@ -8,8 +8,8 @@
 
 use fractal_contact::scenes::{Options, Plan, Registry, Result, SceneFile, run};
 use fractal_contact::{
-    Abilities, ContactModel, ContactState, Error, Load, Normalisation, Output, Outputs, PreparedContact,
-    Scene, SolveReport, Source, Stop, SurfaceKind, never,
+    Abilities, ContactModel, ContactState, Error, Load, NormalLoad, Normalisation, Output, Outputs,
+    PreparedContact, Scene, SolveReport, Source, Stop, SurfaceKind, never,
 };
 use runs::{CsvFile, Silent};
 use std::path::{Path, PathBuf};
@@ -68,7 +68,7 @@ impl PreparedContact for Springs {
     }
 
     fn solve_until(&mut self, load: Load, _stop: Stop<'_>) -> fractal_contact::Result<ContactState> {
-        let Load::Approach(approach) = load.validated()? else {
+        let NormalLoad::Approach(approach) = load.validated()?.without_tangential(NAME)? else {
             return Err(Error::unsupported(NAME, format!("the load {load:?}")));
         };
         let touching = &self.depths[..self.depths.partition_point(|z| *z < approach)];

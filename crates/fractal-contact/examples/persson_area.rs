@@ -34,7 +34,7 @@ fn main() -> Result<()> {
     println!("rms slope {slope:.4}");
     println!("{:>9} {:>8} {:>8} {:>6}", "p/(E* g)", "solved", "Persson", "ratio");
     for pressure in [0.02, 0.05, 0.1, 0.2, 0.5, 1.0] {
-        let load = Load::Force(pressure * slope); // E* = L = 1
+        let load = Load::force(pressure * slope); // E* = L = 1
         let fraction = |area: Option<f64>| area.unwrap_or(0.0);
         let (here, persson) = (fraction(solved.solve(load)?.area), fraction(theory.solve(load)?.area));
         println!("{pressure:>9} {here:>8.4} {persson:>8.4} {:>6.3}", here / persson);

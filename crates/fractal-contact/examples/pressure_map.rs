@@ -22,7 +22,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     scene.outputs.pressure = true;
     scene.outputs.gap = true;
     let model = Bem3d { cells: 128, tolerance: 1e-5, ..Bem3d::default() };
-    let state = model.prepare(&scene, 4)?.solve(Load::Force(50.0))?;
+    let state = model.prepare(&scene, 4)?.solve(Load::force(50.0))?;
     let (pressure, gap) = (state.pressure().ok_or("no pressure")?, state.gap().ok_or("no gap")?);
 
     let highest = pressure.values().iter().copied().fold(0.0, f64::max);

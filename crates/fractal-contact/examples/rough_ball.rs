@@ -31,7 +31,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("{:>7} {:>14} {:>14} {:>15}", "F in N", "k/k of Hertz", "A/A of Hertz", "contact cells");
     let mut ratio = 0.0;
     for force in [1e-3, 1e-2, 0.1, 1.0] {
-        let state = contact.solve(Load::Force(force))?;
+        let state = contact.solve(Load::force(force))?;
         let a = (0.75 * radius * force / contact_modulus).cbrt();
         let k = state.stiffness.unwrap_or(0.0) / (2.0 * contact_modulus * a);
         let area = state.area.unwrap_or(0.0) / (PI * a * a);

@@ -45,7 +45,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     for force in [0.1, 1.0, 10.0] {
         let stiffness = |map: &HeightMap| -> Result<f64, Box<dyn Error>> {
             let scene = Scene::new(Surface::Heights(map.clone().into()), 50e9);
-            let state = Bem3d::default().prepare(&scene, 0)?.solve(Load::Force(force))?;
+            let state = Bem3d::default().prepare(&scene, 0)?.solve(Load::force(force))?;
             Ok(1e-6 * state.stiffness.ok_or("no stiffness")?)
         };
         let [a, b, c] = [stiffness(&complete)?, stiffness(&kept)?, stiffness(&filled)?];

@@ -24,7 +24,7 @@
 //! let map = HeightMap::from_fn([64, 32], [2.0, 1.0], |ix, iy| 0.01 * (wave(ix, 64) + wave(iy, 32)))?;
 //! let scene = Scene::new(Surface::Heights(map.into()), 1.0);
 //! let mut contact = Bem3d::default().prepare(&scene, 0)?;
-//! let state = contact.solve(Load::Force(0.01))?;
+//! let state = contact.solve(Load::force(0.01))?;
 //! println!("k = {:?}, certificate: {}", state.stiffness, state.report.certificate);
 //! # Ok::<(), fractal_contact::Error>(())
 //! ```

@@ -2,8 +2,8 @@
 
 use contact_model::{
     Abilities, Boundary, ContactModel, ContactState, Coupling, Directions, Effect, Error, Field, Fields,
-    Friction, Load, LoadKind, Normalisation, Output, Paths, PreparedContact, Result, Scene, SolveReport,
-    Source, Step, StickSlip, Stop, Surface, SurfaceKind, Tangential, TangentialState,
+    Friction, Load, LoadKind, NormalLoad, Normalisation, Output, Paths, PreparedContact, Result, Scene,
+    SolveReport, Source, Step, StickSlip, Stop, Surface, SurfaceKind, Tangential, TangentialState,
 };
 use fractal_contact::scenes::{Options, Plan, Registry, SceneFile, run};
 use runs::{CsvFile, Silent};
@@ -103,12 +103,13 @@ impl PreparedContact for PreparedBlock {
 
     fn advance_until(&mut self, step: Step, _stop: Stop<'_>) -> Result<ContactState> {
         let step = step.validated(f64::NEG_INFINITY)?;
-        let Load::Force(force) = step.normal else { return Err(Error::unsupported_load(NAME, step.normal)) };
+        let Load { normal, tangential } = step.load;
+        let NormalLoad::Force(force) = normal else { return Err(Error::unsupported_load(NAME, normal)) };
         let limit = self.coefficient * force;
         let size = self.scene.surface.size();
         let area = size.x * size.y;
         let [slip_x, slip_y] = self.slip;
-        let (traction, displacement, slips) = match step.tangential {
+        let (traction, displacement, slips) = match tangential {
             Tangential::Force([x, y]) => {
                 if x.hypot(y) > limit {
                     return Err(Error::gross_slip(x.hypot(y), limit));

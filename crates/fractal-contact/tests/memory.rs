@@ -13,7 +13,7 @@ fn solve(count: usize) {
     for seed in 0..count as u64 / 100 {
         let mut contact = model.prepare(&scene, seed).unwrap();
         for i in 0..100 {
-            contact.solve(Load::Force(1e-4 * 1.1_f64.powi(i % 60))).unwrap();
+            contact.solve(Load::force(1e-4 * 1.1_f64.powi(i % 60))).unwrap();
         }
     }
 }

@@ -129,14 +129,16 @@ fn friction_goes_on_from_the_displacement_and_from_the_force_reached() {
     let solved = ball(&MODELS, path);
     let mut reached = Vec::new();
     for (model, name) in MODELS.into_iter().enumerate() {
-        let states = solved.assert_is(model, 0, &|i, before| Step {
-            tangential: match i {
-                0 => Tangential::default(),
-                1..=4 => Tangential::force_along_x(part(0.0, 0.005, i, 4)),
-                5..=8 => shifted(&before[4], -0.002, i - 4, 4),
-                _ => pushed(&before[8], 0.001, i - 8, 3),
-            },
-            ..Step::normal(0.0, Load::Force(0.02))
+        let states = solved.assert_is(model, 0, &|i, before| {
+            Step::new(
+                0.0,
+                Load::force(0.02).with_tangential(match i {
+                    0 => Tangential::default(),
+                    1..=4 => Tangential::force_along_x(part(0.0, 0.005, i, 4)),
+                    5..=8 => shifted(&before[4], -0.002, i - 4, 4),
+                    _ => pushed(&before[8], 0.001, i - 8, 3),
+                }),
+            )
         });
         // No two rows are the same, and the prescribed ends are met exactly.
         assert!(states.windows(2).all(|pair| (shift(&pair[0]) - shift(&pair[1])).abs() > 0.0), "{name}");
@@ -162,13 +164,13 @@ fn an_elastic_contact_goes_on_from_the_approach_and_from_the_force_reached() {
     let solved = ball(&MODELS, path);
     for (model, name) in MODELS.into_iter().enumerate() {
         let states = solved.assert_is(model, 0, &|i, before| {
-            Step::normal(
+            Step::new(
                 0.0,
                 match i {
-                    0 => Load::Force(0.02),
-                    1..=3 => Load::Approach(part(before[0].approach.unwrap(), 0.01, i, 3)),
-                    4..=7 => Load::Force(part(before[3].force, 0.03, i - 3, 4)),
-                    _ => Load::Approach(part(before[7].approach.unwrap(), 0.0, i - 7, 2)),
+                    0 => Load::force(0.02),
+                    1..=3 => Load::approach(part(before[0].approach.unwrap(), 0.01, i, 3)),
+                    4..=7 => Load::force(part(before[3].force, 0.03, i - 3, 4)),
+                    _ => Load::approach(part(before[7].approach.unwrap(), 0.0, i - 7, 2)),
                 },
             )
         });
@@ -193,18 +195,18 @@ fn normal_and_tangential_load_may_change_together() {
         solved.assert_is(model, 0, &|i, before| match i {
             0..=2 => {
                 let tangential = Tangential::force_along_x(part(0.0, 0.005, i, 2));
-                Step { tangential, ..Step::normal(0.0, Load::Force(0.02)) }
+                Step::new(0.0, Load::force(0.02).with_tangential(tangential))
             }
             3..=5 => {
                 let (from, i) = (&before[2], i - 2);
                 let tangential = shifted(from, 0.001, i, 3);
                 let approach = part(from.approach.unwrap(), 0.06, i, 3);
-                Step { tangential, ..Step::normal(0.0, Load::Approach(approach)) }
+                Step::new(0.0, Load::approach(approach).with_tangential(tangential))
             }
             _ => {
                 let (from, i) = (&before[5], i - 5);
                 let tangential = pushed(from, -0.004, i, 3);
-                Step { tangential, ..Step::normal(0.0, Load::Force(part(from.force, 0.03, i, 3))) }
+                Step::new(0.0, Load::force(part(from.force, 0.03, i, 3)).with_tangential(tangential))
             }
         });
     }
@@ -222,12 +224,12 @@ fn a_plastic_contact_is_drawn_off_from_the_approach_reached() {
     let solved = Solved::of(&format!("{ROUGH}[effects]\nhardness = 0.05\n[outputs]\narea = true\n{path}"));
     let starts = [0, 1].map(|surface| {
         let states = solved.assert_is(0, surface, &|i, before| {
-            Step::normal(
+            Step::new(
                 0.0,
                 match i {
-                    0 | 1 => Load::Force(part(0.0, 0.005, i + 1, 2)),
-                    2..=4 => Load::Approach(part(before[1].approach.unwrap(), 0.03, i - 1, 3)),
-                    _ => Load::Force(part(before[4].force, 0.008, i - 4, 3)),
+                    0 | 1 => Load::force(part(0.0, 0.005, i + 1, 2)),
+                    2..=4 => Load::approach(part(before[1].approach.unwrap(), 0.03, i - 1, 3)),
+                    _ => Load::force(part(before[4].force, 0.008, i - 4, 3)),
                 },
             )
         });
@@ -252,12 +254,12 @@ fn an_adhesive_contact_is_drawn_off_from_the_approach_reached() {
         );
         let solved = Solved::of(&text);
         let states = solved.assert_is(0, 0, &|i, before| {
-            Step::normal(
+            Step::new(
                 0.0,
                 match i {
-                    0 => Load::Force(0.003),
-                    1..=6 => Load::Approach(part(before[0].approach.unwrap(), 0.0, i, 6)),
-                    _ => Load::Force(part(before[6].force, 0.001, i - 6, 2)),
+                    0 => Load::force(0.003),
+                    1..=6 => Load::approach(part(before[0].approach.unwrap(), 0.0, i, 6)),
+                    _ => Load::force(part(before[6].force, 0.001, i - 6, 2)),
                 },
             )
         });
@@ -283,12 +285,12 @@ fn a_periodic_contact_goes_on_from_the_mean_gap_reached() {
         };
         let solved = Solved::of(&text("mean_gap = true\n"));
         let states = solved.assert_is(0, 1, &|i, before| {
-            Step::normal(
+            Step::new(
                 0.0,
                 match i {
-                    0 => Load::Force(0.002),
-                    1..=4 => Load::MeanGap(part(before[0].mean_gap.unwrap(), 0.03, i, 4)),
-                    _ => Load::Force(part(before[4].force, 0.01, i - 4, 3)),
+                    0 => Load::force(0.002),
+                    1..=4 => Load::mean_gap(part(before[0].mean_gap.unwrap(), 0.03, i, 4)),
+                    _ => Load::force(part(before[4].force, 0.01, i - 4, 3)),
                 },
             )
         });
@@ -320,11 +322,11 @@ fn a_relaxing_contact_ends_where_an_undivided_piece_does() {
     for (model, name, tolerance) in [(0, "mdr1d_viscoelastic", 1e-9), (1, "equivalent", 1e-3)] {
         let states = divided.assert_is(model, 0, &|i, before| {
             let normal = match i {
-                0 => Load::Force(0.01),
-                1..=4 => Load::Approach(part(before[0].approach.unwrap(), 0.06, i, 4)),
-                _ => Load::Force(part(before[4].force, 0.08, i - 4, 4)),
+                0 => Load::force(0.01),
+                1..=4 => Load::approach(part(before[0].approach.unwrap(), 0.06, i, 4)),
+                _ => Load::force(part(before[4].force, 0.08, i - 4, 4)),
             };
-            Step::normal(1.0 + 0.25 * i as f64, normal)
+            Step::new(1.0 + 0.25 * i as f64, normal)
         });
         let force = once.column(name, 0, "force");
         let approach = once.column(name, 0, "approach");
@@ -355,7 +357,7 @@ fn a_path_of_forces_crosses_zero() {
     let solved = Solved::of(&text("[[scene.path]]\nforce = 0.3\n[[scene.path]]\nforce = -0.1\nstates = 4\n"));
     let states = solved.assert_is(0, 0, &|i, _| {
         let forces = [0.3, 0.3 - 0.4 * 0.25, 0.3 - 0.4 * 0.5, 0.0, -0.1];
-        Step::normal(0.0, Load::Force(forces[i]))
+        Step::new(0.0, Load::force(forces[i]))
     });
     assert!(states[3].force.abs() < 1e-6, "{:e}", states[3].force);
     // Far below the rounding of both forces, at it, and far below their tolerance.
@@ -396,7 +398,7 @@ fn a_coupled_contact_is_displaced_from_where_pressing_has_left_it() {
     );
     let states = Solved::of(&text).assert_is(0, 0, &|i, before| {
         let tangential = if i == 0 { Tangential::default() } else { shifted(&before[0], 0.004, i, 4) };
-        Step { tangential, ..Step::normal(0.0, Load::Force(0.01)) }
+        Step::new(0.0, Load::force(0.01).with_tangential(tangential))
     });
     assert!(shift(&states[0]).abs() > 1e-5 && sheared(&states[0]).abs() <= 0.0, "{:?}", states[0].tangential);
 }

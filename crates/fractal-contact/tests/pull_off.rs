@@ -3,7 +3,8 @@
 use fractal_contact::analytic::MaugisDugdale;
 use fractal_contact::scenes::{Options, Plan, SceneFile, run};
 use fractal_contact::{
-    Adhesion, AdhesionLaw, Bem3d, ContactModel, Error, LargestPull, Load, PullOff, Scene, Step, Surface,
+    Adhesion, AdhesionLaw, Bem3d, ContactModel, Error, LargestPull, Load, NormalLoad, PullOff, Scene, Step,
+    Surface,
 };
 use runs::{CsvFile, Silent};
 use std::f64::consts::PI;
@@ -28,11 +29,11 @@ fn pulled(scene: &Scene, cells: usize, loads: impl IntoIterator<Item = Load>) ->
     let mut largest = LargestPull::default();
     let mut pull = None;
     for (i, load) in loads.into_iter().enumerate() {
-        let state = match contact.advance(Step::normal(i as f64, load)) {
+        let state = match contact.advance(Step::new(i as f64, load)) {
             Err(Error::NotConverged { best }) => *best,
             found => found.unwrap(),
         };
-        pull = largest.enter(load, state).pull_off;
+        pull = largest.enter(load.normal, state).pull_off;
     }
     pull.unwrap()
 }
@@ -40,7 +41,7 @@ fn pulled(scene: &Scene, cells: usize, loads: impl IntoIterator<Item = Load>) ->
 /// Drawn from contact to beyond pull-off.
 fn drawn(steps: u32, offset: f64) -> impl Iterator<Item = Load> {
     let unit = (PI * PI * WORK * WORK).cbrt();
-    (0..=steps).map(move |i| Load::Approach(unit * (0.8 - 2.2 * (f64::from(i) + offset) / f64::from(steps))))
+    (0..=steps).map(move |i| Load::approach(unit * (0.8 - 2.2 * (f64::from(i) + offset) / f64::from(steps))))
 }
 
 #[test]
@@ -48,7 +49,7 @@ fn the_interval_of_a_path_by_approach_holds_the_pull_off_force() {
     let dugdale = Adhesion::FiniteRange { work: WORK, range: 2.5e-3, law: AdhesionLaw::Dugdale };
     let maugis = {
         let mut contact = MaugisDugdale.prepare(&sphere(dugdale), 0).unwrap();
-        match contact.solve(Load::Force(-1.0)) {
+        match contact.solve(Load::force(-1.0)) {
             Err(Error::OutOfRange { min, .. }) => -min,
             other => panic!("{other:?}"),
         }
@@ -93,11 +94,11 @@ fn the_interval_under_a_force_lies_between_what_was_held_and_what_was_not() {
     let scene = sphere(Adhesion::ShortRange { work: WORK });
     let exact = 1.5 * PI * WORK;
     let forces =
-        |steps: u32| (0..=steps).map(move |i| Load::Force(-1.3 * exact * f64::from(i) / f64::from(steps)));
+        |steps: u32| (0..=steps).map(move |i| Load::force(-1.3 * exact * f64::from(i) / f64::from(steps)));
     for steps in [5, 20] {
         // The path ends at the first force that is not held.
-        let loads = forces(steps).take_while(|load| match load {
-            Load::Force(force) => -force < exact * (1.0 + CELLS) + 1.3 * exact / f64::from(steps),
+        let loads = forces(steps).take_while(|load| match load.normal {
+            NormalLoad::Force(force) => -force < exact * (1.0 + CELLS) + 1.3 * exact / f64::from(steps),
             _ => false,
         });
         let found = pulled(&scene, 64, loads);

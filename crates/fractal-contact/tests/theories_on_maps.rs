@@ -133,7 +133,7 @@ fn theories_answer_for_the_twin_of_each_seed() {
     let (_, file) = solved(&map, &text);
     let waves = WaveGenerator::twin(&map, TwinSpectrum::EachWave).unwrap();
     let heights = HeightDistribution::Of(std::sync::Arc::new(map));
-    let loads = [Load::Force(0.002), Load::Force(0.01)];
+    let loads = [Load::force(0.002), Load::force(0.01)];
     let models: [&dyn ContactModel; 2] =
         [&analytic::Persson::default(), &analytic::GreenwoodWilliamson::default()];
     for model in models {

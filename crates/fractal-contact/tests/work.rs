@@ -83,7 +83,7 @@ fn with_everything_off_a_scene_does_the_work_of_the_bare_solver() {
         let mut contact = model.prepare(&physics, seed).unwrap();
         let normalisation = contact.normalisation();
         for force_bar in LOADS {
-            let state = contact.solve(Load::Force(normalisation.force(force_bar).unwrap())).unwrap();
+            let state = contact.solve(Load::force(normalisation.force(force_bar).unwrap())).unwrap();
             bare[0] += state.report.applications;
             bare[1] += state.report.work.linear_solves;
         }

@@ -23,17 +23,17 @@ fn main() -> Result<()> {
     let body = Body::Elastic { young: 2.0, poisson: 0.3 };
     let pair = Pair { first: body, second: body };
     let mut scene = Scene::of_pair(Surface::Sphere { radius: 1.0, size: 2.0.into() }, pair)?;
-    let (coefficient, normal, share) = (0.5, Load::Force(0.01), 0.8);
+    let (coefficient, normal, share) = (0.5, Load::force(0.01), 0.8);
     scene.effects.friction = Friction::coulomb(coefficient);
     let mut contact = PartialSlip.prepare(&scene, 0)?;
     let limit = coefficient * 0.01; // mu F
 
-    let mut state = contact.advance(Step::normal(0.0, normal))?;
+    let mut state = contact.advance(Step::new(0.0, normal))?;
     let mut dissipated = Vec::new();
     println!("{:>6} {:>12} {:>8} {:>12}", "Q/mu F", "delta_x", "c/a", "dissipated");
     for (i, part) in [share, 0.0, -share, 0.0, share, -share, share].into_iter().enumerate() {
         let tangential = Tangential::force_along_x(part * limit);
-        state = contact.advance(Step { time: (i + 1) as f64, normal, tangential })?;
+        state = contact.advance(Step::new((i + 1) as f64, normal.with_tangential(tangential)))?;
         let (Some(a), Some(t)) = (state.contact_radius, state.tangential) else { continue };
         let stick = t.stick_radius.unwrap_or(0.0) / a;
         println!("{part:>6} {:>12.4e} {stick:>8.4} {:>12.4e}", t.displacement[0], t.dissipated);

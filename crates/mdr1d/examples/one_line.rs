@@ -23,7 +23,7 @@ fn main() -> Result<()> {
     println!("{:>10} {:>12} {:>12} {:>10}", "F/(E*hL)", "d/h", "k/(1.14E*L)", "elements");
     for exponent in -5..=1 {
         let force_bar = 10_f64.powi(exponent);
-        let state = contact.solve(Load::Force(normalisation.force(force_bar)?))?;
+        let state = contact.solve(Load::force(normalisation.force(force_bar)?))?;
         println!(
             "{force_bar:>10.0e} {:>12.6} {:>12.6} {:>10}",
             normalisation.approach_over_h(state.approach.unwrap_or_default())?,
@@ -32,7 +32,7 @@ fn main() -> Result<()> {
         );
     }
     // In full contact the line is as stiff as a rigid circle of the square's area.
-    let full = contact.solve(Load::Force(normalisation.force(100.0)?))?.stiffness.unwrap_or_default();
+    let full = contact.solve(Load::force(normalisation.force(100.0)?))?.stiffness.unwrap_or_default();
     assert!((full / rule::full_contact_stiffness(1.0, 1.0) - 1.0).abs() < 1e-12);
     Ok(())
 }

@@ -26,7 +26,7 @@ fn main() -> Result<()> {
     let mut contact = Viscoelastic.prepare(&scene, 0)?;
     println!("{:>6} {:>10} {:>10} {:>10} {:>12}", "t/tau", "d", "a", "area", "closed form");
     for time in [0.0, 1.0, 3.0, 10.0, 30.0, 100.0] {
-        let state = contact.advance(Step::normal(time, Load::Force(force)))?;
+        let state = contact.advance(Step::new(time, Load::force(force)))?;
         // Lee and Radok (1960): a^3 = (3/4) R F J(t), J the creep function of E*.
         let w = arm.weight;
         let creep = (1.0 - w / (1.0 + w) * (-time / (arm.time * (1.0 + w))).exp()) / contact_modulus;
@@ -36,7 +36,7 @@ fn main() -> Result<()> {
         assert!((a / exact - 1.0).abs() < 1e-10);
     }
     // The theory holds while the contact grows: unloading is refused, and the history stays where it was.
-    if let Err(Error::OutOfRange { max, .. }) = contact.advance(Step::normal(101.0, Load::Force(0.0))) {
+    if let Err(Error::OutOfRange { max, .. }) = contact.advance(Step::new(101.0, Load::force(0.0))) {
         println!("refused: the contact would shrink from t = {max} tau on");
     }
     Ok(())

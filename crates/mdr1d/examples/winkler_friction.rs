@@ -18,8 +18,9 @@
 //! ```
 
 use mdr1d::{
-    Abilities, Body, ContactModel, ContactState, Equivalent, Error, Friction, Load, Normalisation, Pair,
-    PreparedContact, Result, Scene, SolveReport, Source, Step, Stop, Surface, SurfaceKind, Tangential,
+    Abilities, Body, ContactModel, ContactState, Equivalent, Error, Friction, Load, NormalLoad,
+    Normalisation, Pair, PreparedContact, Result, Scene, SolveReport, Source, Step, Stop, Surface,
+    SurfaceKind, Tangential,
 };
 use std::f64::consts::PI;
 
@@ -60,9 +61,9 @@ impl PreparedContact for Layer {
     }
 
     fn solve_until(&mut self, load: Load, _stop: Stop<'_>) -> Result<ContactState> {
-        let d = match load.validated()? {
-            Load::Approach(approach) => approach,
-            Load::Force(force) => (force / self.0).sqrt(),
+        let d = match load.validated()?.without_tangential("winkler")? {
+            NormalLoad::Approach(approach) => approach,
+            NormalLoad::Force(force) => (force / self.0).sqrt(),
             other => return Err(Error::unsupported("winkler", format!("the load {other:?}"))),
         };
         let state = ContactState::new(self.0 * d * d, SolveReport::exact("closed form"));
@@ -75,14 +76,14 @@ fn main() -> Result<()> {
     let mut scene = Scene::of_pair(Surface::Sphere { radius: 1.0, size: 1.0.into() }, pair)?;
     scene.effects.friction = Friction::coulomb(0.3);
     let mut contact = Equivalent::new(Winkler { thickness: 0.05 }).prepare(&scene, 0)?;
-    let normal = Load::Approach(0.02);
-    let force = contact.advance(Step::normal(0.0, normal))?.force;
+    let normal = Load::approach(0.02);
+    let force = contact.advance(Step::new(0.0, normal))?.force;
     // Full slip from this displacement on.
     let largest = 0.3 * 0.02 * scene.contact_modulus / pair.shear_modulus()?;
     println!("{:>7} {:>10} {:>12} {:>12}", "u/u_max", "Q/mu F", "closed form", "dissipated");
     for share in [0.1, 0.3, 0.6, 0.9] {
         let tangential = Tangential::displacement_along_x(share * largest);
-        let state = contact.advance(Step { time: 0.0, normal, tangential })?;
+        let state = contact.advance(Step::new(0.0, normal.with_tangential(tangential)))?;
         let Some(found) = state.tangential else { continue };
         let (ratio, exact) = (found.force[0] / (0.3 * force), 1.0 - (1.0_f64 - share).powi(2));
         println!("{share:>7} {ratio:>10.6} {exact:>12.6} {:>12.4e}", found.dissipated);

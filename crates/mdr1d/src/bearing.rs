@@ -1,6 +1,6 @@
 //! A line on independent springs, with exact force, approach and stiffness at any load.
 
-use contact_model::{Error, Line, Load, Nondimensionalisation, Result};
+use contact_model::{Error, Line, Nondimensionalisation, NormalLoad, Result};
 use numerics::range::range;
 use numerics::sum::Sum;
 
@@ -135,23 +135,23 @@ impl Bearing {
     /// result that no `f64` holds.
     ///
     /// ```
-    /// use contact_model::{Line, Load};
+    /// use contact_model::{Line, NormalLoad};
     /// use mdr1d::Bearing;
     /// // Three springs of length 1 and modulus 2, at depths 0, 1 and 2. At d = 1.5 two of them carry 2 (1.5 + 0.5) = 4.
     /// let mut bearing = Bearing::new(&Line::new(3.0, vec![1.0, 2.0, 0.0])?);
-    /// let s = bearing.press(Load::Approach(1.5), 2.0)?;
+    /// let s = bearing.press(NormalLoad::Approach(1.5), 2.0)?;
     /// assert_eq!((s.force, s.stiffness, s.elements), (4.0, 4.0, 2));
-    /// assert_eq!(bearing.press(Load::Force(4.0), 2.0)?.approach, 1.5);
+    /// assert_eq!(bearing.press(NormalLoad::Force(4.0), 2.0)?.approach, 1.5);
     /// # Ok::<(), contact_model::Error>(())
     /// ```
-    pub fn press(&mut self, load: Load, contact_modulus: f64) -> Result<Support> {
+    pub fn press(&mut self, load: NormalLoad, contact_modulus: f64) -> Result<Support> {
         let nondimensional = Nondimensionalisation::new(contact_modulus, self.element, 1.0)?;
         let (force, approach, elements) = match load.validated()? {
-            Load::Approach(d) => {
+            NormalLoad::Approach(d) => {
                 let (sum, elements) = self.at_approach(d);
                 (nondimensional.force(sum)?, d, elements)
             }
-            Load::Force(force) => {
+            NormalLoad::Force(force) => {
                 let sum = nondimensional.force_in(force);
                 if force > 0.0 && sum <= 0.0 {
                     return Err(Error::not_representable("approach", 0.0));

@@ -2,7 +2,7 @@
 //! load without adhesion.
 
 use crate::axisymmetric::{Profile, RoundContact, check_radius};
-use contact_model::{Error, Load, Result, ScaledState, Scaling, Scene, Size};
+use contact_model::{Error, NormalLoad, Result, ScaledState, Scaling, Scene, Size};
 
 /// An axisymmetric body on its rectangle.
 #[derive(Debug, Clone, Copy)]
@@ -26,11 +26,11 @@ impl RoundBody {
     }
 
     /// The contact under a load >= 0.
-    pub fn press(&self, load: Load, model: &'static str) -> Result<RoundContact> {
+    pub fn press(&self, load: NormalLoad, model: &'static str) -> Result<RoundContact> {
         let nondimensional = self.scaling.nondimensional;
         let (contact, asked) = match load.validated()? {
-            Load::Force(force) => (self.profile.at_force(nondimensional.force_in(force)), force),
-            Load::Approach(approach) => {
+            NormalLoad::Force(force) => (self.profile.at_force(nondimensional.force_in(force)), force),
+            NormalLoad::Approach(approach) => {
                 (self.profile.at_approach(nondimensional.approach_in(approach)), approach)
             }
             _ => return Err(Error::unsupported_load(model, load)),

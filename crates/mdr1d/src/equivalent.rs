@@ -11,8 +11,8 @@ use crate::slip::Springs;
 use crate::tabulated::{Node, Tabulated};
 use contact_model::{
     Abilities, Adhesion, ContactModel, ContactState, Effect, Effects, Error, Friction, Hardness, Load,
-    Normalisation, Output, Outputs, Paths, PreparedContact, RequiredMemory, Result, Scene, Source, Step,
-    Stop, Surface, SurfaceKind, Tangential, never,
+    NormalLoad, Normalisation, Output, Outputs, Paths, PreparedContact, RequiredMemory, Result, Scene,
+    Source, Step, Stop, Surface, SurfaceKind, Tangential, never,
 };
 use std::sync::Arc;
 
@@ -56,8 +56,8 @@ use std::sync::Arc;
 /// scene.effects.friction = Friction::coulomb(0.5);
 /// let mut contact = Equivalent::new(Mdr1d::default()).prepare(&scene, 0)?;
 /// // Half of mu F: c/a = 0.5^(1/3) = 0.7937005260 (Cattaneo, Mindlin).
-/// contact.advance(Step::normal(0.0, Load::Force(0.01)))?;
-/// let state = contact.advance(Step { time: 0.0, normal: Load::Force(0.01), tangential: Tangential::force_along_x(0.0025) })?;
+/// contact.advance(Step::new(0.0, Load::force(0.01)))?;
+/// let state = contact.advance(Step::new(0.0, Load::force(0.01).with_tangential(Tangential::force_along_x(0.0025))))?;
 /// let (Some(a), Some(tangential)) = (state.contact_radius, state.tangential) else { panic!("a contact with friction") };
 /// assert!((tangential.stick_radius.unwrap_or(0.0) / a - 0.7937005260).abs() < 1e-4);
 /// # Ok::<(), contact_model::Error>(())
@@ -90,7 +90,7 @@ impl<M: ContactModel> Equivalent<M> {
         if !(approach.is_finite() && approach > 0.0) {
             return Err(Error::domain("approach", approach, "a finite number > 0"));
         }
-        let (_, node) = normal.solve(Load::Approach(approach), &never)?;
+        let (_, node) = normal.solve(NormalLoad::Approach(approach), &never)?;
         normal.reach(node, true, &never)?;
         Ok(Tabulated::clone(&normal.table))
     }
@@ -267,7 +267,7 @@ impl PreparedContact for PreparedEquivalent {
         match &mut self.memory {
             Memory::Slip { springs, coefficient, time } => {
                 let step = step.validated(*time)?;
-                step.tangential.refuse_y(NAME)?;
+                step.load.tangential.refuse_y(NAME)?;
                 let (next, state) = slip(normal, springs, *coefficient, step, stop)?;
                 (*springs, *time) = (next, step.time);
                 Ok(state)
@@ -295,14 +295,14 @@ fn slip(
     step: Step,
     stop: Stop<'_>,
 ) -> Result<(Springs<Arc<Tabulated>>, ContactState)> {
-    let (state, node) = normal.solve(step.normal, stop)?;
+    let (state, node) = normal.solve(step.load.normal, stop)?;
     normal.reach(node, springs.approach() <= 0.0, stop)?;
     let springs = springs.on(Arc::clone(&normal.table));
     let nondimensional = normal.nondimensional;
     // What the table makes of M's force: 1 at a node, and where it is not, forces follow M.
     let own = springs.normal_force(node.approach);
     let ratio = if own > 0.0 { node.force / own } else { 1.0 };
-    let next = match step.tangential {
+    let next = match step.load.tangential {
         Tangential::Force([force, _]) => {
             let scaled = nondimensional.force_in(force);
             let held = springs.held(node.approach, coefficient * own, scaled / ratio);
@@ -311,8 +311,9 @@ fn slip(
         Tangential::Displacement([u, _]) => springs.moved(node.approach, nondimensional.length_in(u)),
         other => return Err(Error::unsupported_load(NAME, other)),
     };
-    let tangential =
-        next.state(step.tangential, ratio, nondimensional)?.with_sliding_force(coefficient * state.force);
+    let tangential = next
+        .state(step.load.tangential, ratio, nondimensional)?
+        .with_sliding_force(coefficient * state.force);
     let state = normal
         .reported(state, node.approach)
         .with_time(step.time)
@@ -331,20 +332,22 @@ fn relax(
     let fresh = relaxation.at.contact.approach <= 0.0;
     let nondimensional = normal.nondimensional;
     let mut solved = None;
-    let mut press = |load: Load| {
+    let mut press = |load: NormalLoad| {
         let (state, node) = normal.solve(load, stop)?;
         solved = Some(state);
         normal.reach(node, fresh, stop)?;
         let Node { approach, force, radius, .. } = node;
         Ok((RoundContact { force, approach, radius }, Arc::clone(&normal.table)))
     };
-    let at = match step.normal {
-        Load::Force(force) => relaxation.by_force(step.time, nondimensional.force_in(force), |load| {
-            Ok(press(Load::Force(nondimensional.force(load)?))?.0)
-        })?,
-        Load::Approach(approach) => {
+    let at = match step.load.normal {
+        NormalLoad::Force(force) => {
+            relaxation.by_force(step.time, nondimensional.force_in(force), |load| {
+                Ok(press(NormalLoad::Force(nondimensional.force(load)?))?.0)
+            })?
+        }
+        NormalLoad::Approach(approach) => {
             relaxation.by_approach(step.time, nondimensional.approach_in(approach), |approach| {
-                press(Load::Approach(nondimensional.approach(approach)?))
+                press(NormalLoad::Approach(nondimensional.approach(approach)?))
             })?
         }
         other => return Err(Error::unsupported_load(NAME, other)),
@@ -353,12 +356,12 @@ fn relax(
         return Err(Error::unsupported(NAME, "a step without a contact"));
     };
     at.check()?;
-    state.force = match step.normal {
-        Load::Force(force) => force,
+    state.force = match step.load.normal {
+        NormalLoad::Force(force) => force,
         _ => nondimensional.force(at.memory.force)?,
     };
-    state.approach = Some(match step.normal {
-        Load::Approach(approach) => approach,
+    state.approach = Some(match step.load.normal {
+        NormalLoad::Approach(approach) => approach,
         _ => nondimensional.approach(at.contact.approach)?,
     });
     let certificate = &mut state.report.certificate;

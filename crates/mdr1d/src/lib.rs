@@ -54,7 +54,7 @@
 //! // A sphere of radius 1 on a square of side 1 at d = 0.01: a = 0.1, k = 2 E* a, F = (4/3) E* a^3.
 //! let scene = Scene::new(Surface::Sphere { radius: 1.0, size: 1.0.into() }, 3.0);
 //! let mut contact = mdr1d::Mdr1d::default().prepare(&scene, 0)?;
-//! let state = contact.solve(Load::Approach(0.01))?;
+//! let state = contact.solve(Load::approach(0.01))?;
 //! assert!((state.force - 0.004).abs() < 1e-15);
 //! assert!((state.stiffness.unwrap_or(0.0) - 0.6).abs() < 1e-14);
 //! # Ok::<(), contact_model::Error>(())

@@ -5,9 +5,9 @@ use crate::axisymmetric::{Profile, RoundContact};
 use crate::bearing::Bearing;
 use crate::body::{RoundBody, out_of_f64};
 use contact_model::{
-    Abilities, Adhesion, ContactModel, ContactState, Effect, Error, Line, Load, Normalisation, Output,
-    Outputs, PreparedContact, RequiredMemory, Result, ScaledState, Scene, SelfAffine, SolveReport, Source,
-    Stop, Surface, SurfaceKind, check_stop,
+    Abilities, Adhesion, ContactModel, ContactState, Effect, Error, Line, Load, NormalLoad, Normalisation,
+    Output, Outputs, PreparedContact, RequiredMemory, Result, ScaledState, Scene, SelfAffine, SolveReport,
+    Source, Stop, Surface, SurfaceKind, check_stop,
 };
 use std::sync::{Arc, Mutex};
 use surface_gen::LineGenerator;
@@ -156,8 +156,8 @@ impl ContactModel for Mdr1d {
 /// let surface = SelfAffine::new(2.4, 1.0, 1.0)?;
 /// let ensemble = mdr1d::Ensemble::new(&surface, 1024)?;
 /// let scene = Scene::new(Surface::SelfAffine(surface), 1.0);
-/// let one = ensemble.prepare(&scene, 7)?.solve(Load::Force(0.1))?;
-/// let other = mdr1d::Mdr1d { elements: 1024 }.prepare(&scene, 7)?.solve(Load::Force(0.1))?;
+/// let one = ensemble.prepare(&scene, 7)?.solve(Load::force(0.1))?;
+/// let other = mdr1d::Mdr1d { elements: 1024 }.prepare(&scene, 7)?.solve(Load::force(0.1))?;
 /// assert_eq!(one.stiffness, other.stiffness);
 /// # Ok::<(), contact_model::Error>(())
 /// ```
@@ -255,6 +255,7 @@ impl PreparedContact for RoughLine {
 
     fn solve_until(&mut self, load: Load, stop: Stop<'_>) -> Result<ContactState> {
         check_stop(stop)?;
+        let load = load.without_tangential(NAME)?;
         let support = self.bearing.press(load, self.normalisation.contact_modulus)?;
         let strategy = format!("order statistics of {} elements", self.bearing.elements());
         let mut report = SolveReport::formula(strategy, load);
@@ -291,11 +292,11 @@ struct RoundIndenter {
 
 impl RoundIndenter {
     /// The adhered contact under a load of either sign.
-    fn adhere(&self, adhesive: Adhesive, load: Load) -> Result<RoundContact> {
+    fn adhere(&self, adhesive: Adhesive, load: NormalLoad) -> Result<RoundContact> {
         let nondimensional = self.body.scaling.nondimensional;
         let (found, value) = match load.validated_with_adhesion()? {
-            Load::Force(force) => (adhesive.at_force(nondimensional.force_in(force)), force),
-            Load::Approach(approach) => {
+            NormalLoad::Force(force) => (adhesive.at_force(nondimensional.force_in(force)), force),
+            NormalLoad::Approach(approach) => {
                 (adhesive.at_approach(nondimensional.approach_in(approach)), approach)
             }
             _ => return Err(Error::unsupported_load(NAME, load)),
@@ -308,7 +309,7 @@ impl RoundIndenter {
             }
             Err(Failure::PullsOff { smallest }) => {
                 let smallest = match load {
-                    Load::Force(_) => nondimensional.force(smallest)?,
+                    NormalLoad::Force(_) => nondimensional.force(smallest)?,
                     _ => nondimensional.approach(smallest)?,
                 };
                 Err(load.pull_off(smallest))
@@ -325,6 +326,7 @@ impl PreparedContact for RoundIndenter {
 
     fn solve_until(&mut self, load: Load, stop: Stop<'_>) -> Result<ContactState> {
         check_stop(stop)?;
+        let load = load.without_tangential(NAME)?;
         // Along the branch the edge of an adhesive contact moves.
         let (contact, slope) = if let Some(adhesive) = self.adhesive {
             let contact = self.adhere(adhesive, load)?;

@@ -34,8 +34,8 @@ const NAME: &str = "mdr1d_partial_slip";
 /// scene.effects.friction = Friction::coulomb(0.5);
 /// let mut contact = mdr1d::PartialSlip.prepare(&scene, 0)?;
 /// // Half of mu F: c/a = 0.5^(1/3) = 0.7937005260 (Cattaneo, Mindlin).
-/// contact.advance(Step::normal(0.0, Load::Force(0.01)))?;
-/// let state = contact.advance(Step { time: 0.0, normal: Load::Force(0.01), tangential: Tangential::force_along_x(0.0025) })?;
+/// contact.advance(Step::new(0.0, Load::force(0.01)))?;
+/// let state = contact.advance(Step::new(0.0, Load::force(0.01).with_tangential(Tangential::force_along_x(0.0025))))?;
 /// let (Some(a), Some(tangential)) = (state.contact_radius, state.tangential) else { panic!("a round contact with friction") };
 /// assert!((tangential.stick_radius.unwrap_or(0.0) / a - 0.7937005260).abs() < 1e-10);
 /// # Ok::<(), contact_model::Error>(())
@@ -118,12 +118,12 @@ impl PreparedContact for PreparedPartialSlip {
 
     fn advance_until(&mut self, step: Step, stop: Stop<'_>) -> Result<ContactState> {
         check_stop(stop)?;
-        let step = step.validated(self.time)?;
-        step.tangential.refuse_y(NAME)?;
+        let Step { time, load } = step.validated(self.time)?;
+        load.tangential.refuse_y(NAME)?;
         let scaling = &self.body.scaling;
         let nondimensional = scaling.nondimensional;
-        let contact = self.body.press(step.normal, NAME)?;
-        let springs = match step.tangential {
+        let contact = self.body.press(load.normal, NAME)?;
+        let springs = match load.tangential {
             Tangential::Force([force, _]) => {
                 self.reach(contact.approach, contact.force, nondimensional.force_in(force))?
             }
@@ -135,11 +135,11 @@ impl PreparedContact for PreparedPartialSlip {
         let radius = nondimensional.approach(contact.radius)?;
         let report = SolveReport::exact("springs of the profile g(x), a polygon in g");
         let scaled = contact.scaled().with_elastic_stiffness(contact.stiffness());
-        let normal = scaling.state(scaled, step.normal, report)?;
-        let tangential = springs.state(step.tangential, 1.0, nondimensional)?;
-        (self.time, self.springs) = (step.time, springs);
+        let normal = scaling.state(scaled, load.normal, report)?;
+        let tangential = springs.state(load.tangential, 1.0, nondimensional)?;
+        (self.time, self.springs) = (time, springs);
         let tangential = tangential.with_sliding_force(self.coefficient * normal.force);
-        Ok(normal.with_time(step.time).with_contact_radius(radius).with_tangential(tangential))
+        Ok(normal.with_time(time).with_contact_radius(radius).with_tangential(tangential))
     }
 
     fn restart(&mut self) {

@@ -4,7 +4,7 @@
 use crate::axisymmetric::RoundContact;
 use crate::material::{Material, Memory};
 use crate::shape::Shape;
-use contact_model::{Body, Error, Pair, Result, Rheology, Step, Tangential};
+use contact_model::{Body, Error, Pair, Result, Rheology, Step};
 use numerics::gauss::Gauss;
 
 /// Current state of a history; lengths in L, forces in E* L^2.
@@ -50,11 +50,8 @@ impl Relaxation {
     /// A step that goes on from here, without a tangential load.
     pub fn validated(&self, step: Step) -> Result<Step> {
         let step = step.validated(self.at.time)?;
-        if step.tangential == Tangential::default() {
-            Ok(step)
-        } else {
-            Err(Error::unsupported_load(self.model, step.tangential))
-        }
+        step.load.without_tangential(self.model)?;
+        Ok(step)
     }
 
     /// Back to no contact at time 0.

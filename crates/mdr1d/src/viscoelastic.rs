@@ -5,7 +5,7 @@ use crate::body::RoundBody;
 use crate::material::Material;
 use crate::relaxation::{Relaxation, check_pair};
 use contact_model::{
-    Abilities, ContactModel, ContactState, Effect, Error, Load, Normalisation, Output, Paths,
+    Abilities, ContactModel, ContactState, Effect, Error, Load, NormalLoad, Normalisation, Output, Paths,
     PreparedContact, Result, ScaledState, Scene, SolveReport, Source, Step, Stop, check_stop,
 };
 
@@ -39,8 +39,8 @@ const NAME: &str = "mdr1d_viscoelastic";
 /// scene.effects.rheology = Rheology::KelvinVoigt { viscosity: 2.0 };
 /// scene.outputs.stiffness = false;
 /// let mut contact = Viscoelastic.prepare(&scene, 0)?;
-/// contact.advance(Step::normal(0.0, Load::Force(1.0)))?;
-/// let state = contact.advance(Step::normal(3.0, Load::Force(1.0)))?;
+/// contact.advance(Step::new(0.0, Load::force(1.0)))?;
+/// let state = contact.advance(Step::new(3.0, Load::force(1.0)))?;
 /// let exact = 0.25 * (1.0 - (-1.5_f64).exp());
 /// assert!((state.approach.unwrap_or(0.0) - exact).abs() < 1e-14);
 /// # Ok::<(), contact_model::Error>(())
@@ -116,12 +116,12 @@ impl PreparedContact for PreparedViscoelastic {
         check_stop(stop)?;
         let step = self.relaxation.validated(step)?;
         let RoundBody { profile, scaling, .. } = self.body;
-        let at = match step.normal {
-            Load::Force(force) => {
+        let at = match step.load.normal {
+            NormalLoad::Force(force) => {
                 let press = |force| Ok(profile.at_force(force));
                 self.relaxation.by_force(step.time, scaling.nondimensional.force_in(force), press)?
             }
-            Load::Approach(approach) => {
+            NormalLoad::Approach(approach) => {
                 let approach = scaling.nondimensional.approach_in(approach);
                 let press = |approach| Ok((profile.at_approach(approach), profile));
                 self.relaxation.by_approach(step.time, approach, press)?
@@ -134,7 +134,7 @@ impl PreparedContact for PreparedViscoelastic {
         let mut report = SolveReport::exact("Boltzmann's integral over the profile g(x)");
         report.certificate.load_error = at.residual;
         let scaled = ScaledState { force: at.memory.force, ..at.contact.scaled() };
-        let mut state = scaling.state(scaled, step.normal, report)?;
+        let mut state = scaling.state(scaled, step.load.normal, report)?;
         // The conductance follows from a stiffness that is not claimed.
         state.report.certificate.stiffness_error = None;
         self.relaxation.at = at;

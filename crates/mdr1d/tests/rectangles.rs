@@ -26,7 +26,7 @@ fn a_line_stands_for_the_area() {
         let mut contact = model.prepare(&Scene::new(surface, 3.0), 7).unwrap();
         (contact.normalisation(), contact.solve(load).unwrap())
     };
-    for load in [Load::Force(1e-3), Load::Approach(0.05)] {
+    for load in [Load::force(1e-3), Load::approach(0.05)] {
         let (scales, state) = solve(Surface::SelfAffine(surface(RECTANGLE)), load);
         let (of_square, square) = solve(Surface::SelfAffine(surface(SQUARE)), load);
         assert_eq!((scales, &state), (of_square, &square));
@@ -43,7 +43,7 @@ fn a_line_stands_for_the_area() {
 fn round_bodies_do_not_see_the_rectangle_until_they_leave_it() {
     let model = Mdr1d::default();
     let press = |surface: &Surface, d: f64| {
-        model.prepare(&Scene::new(surface.clone(), 3.0), 0).and_then(|mut it| it.solve(Load::Approach(d)))
+        model.prepare(&Scene::new(surface.clone(), 3.0), 0).and_then(|mut it| it.solve(Load::approach(d)))
     };
     let cone = |size| Surface::Cone { slope: 0.3, size };
     // The radius is sqrt(d) for the sphere, 2 d / (0.3 pi) for the cone: 0.45 and 0.55.
@@ -65,7 +65,7 @@ fn round_bodies_do_not_see_the_rectangle_until_they_leave_it() {
 
 #[test]
 fn histories_leave_the_shorter_side_too() {
-    let step = |d| Step { time: 0.0, normal: Load::Approach(d), tangential: Tangential::force_along_x(0.0) };
+    let step = |d| Step::new(0.0, Load::approach(d).with_tangential(Tangential::force_along_x(0.0)));
     let pair = Pair { first: Body::Rigid, second: Body::Elastic { young: 1.0, poisson: 0.3 } };
     let mut slides = Scene::of_pair(sphere(RECTANGLE), pair).unwrap();
     slides.effects.friction = Friction::coulomb(0.3);

@@ -10,7 +10,7 @@
 //! ```
 
 use bem3d::Bem3d;
-use contact_model::{ContactModel, Load};
+use contact_model::{ContactModel, Load, NormalLoad};
 use stability::{every_contact_set, rough_map, scene};
 use std::error::Error;
 
@@ -25,10 +25,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     );
     for force in [0.1, 1.0] {
         // All 65536 sets, by elimination: exactly one has p > 0 inside and g > 0 outside.
-        let [reference] = &every_contact_set(&map, &cells, Load::Force(force))[..] else {
+        let [reference] = &every_contact_set(&map, &cells, NormalLoad::Force(force))[..] else {
             return Err("not one contact set".into());
         };
-        let state = contact.solve(Load::Force(force))?;
+        let state = contact.solve(Load::force(force))?;
         let (d, k) = (state.approach.unwrap_or(0.0), state.stiffness.unwrap_or(0.0));
         let (error_d, error_k) =
             ((d / reference.approach - 1.0).abs(), (k / reference.stiffness - 1.0).abs());

@@ -1,7 +1,7 @@
 //! The slow and simple reference implementation: it tries every contact set.
 
 use crate::plain::{PlainSum, eliminate};
-use contact_model::{HeightMap, Load};
+use contact_model::{HeightMap, NormalLoad};
 
 /// A solution of the contact conditions on a small map with modulus 1.
 #[derive(Debug, Clone, PartialEq)]
@@ -29,7 +29,7 @@ pub struct SmallContact {
 ///
 /// # Panics
 /// For more than 16 cells.
-pub fn every_contact_set(map: &HeightMap, cells: &[usize], load: Load) -> Vec<SmallContact> {
+pub fn every_contact_set(map: &HeightMap, cells: &[usize], load: NormalLoad) -> Vec<SmallContact> {
     assert!(cells.len() <= 16, "every set of {} cells is too many", cells.len());
     (1..1_u32 << cells.len())
         .filter_map(|mask| {
@@ -40,7 +40,12 @@ pub fn every_contact_set(map: &HeightMap, cells: &[usize], load: Load) -> Vec<Sm
         .collect()
 }
 
-fn one_set(map: &HeightMap, contact: Vec<usize>, outside: &[usize], load: Load) -> Option<SmallContact> {
+fn one_set(
+    map: &HeightMap,
+    contact: Vec<usize>,
+    outside: &[usize],
+    load: NormalLoad,
+) -> Option<SmallContact> {
     let plain = PlainSum::of(map);
     let highest = map.highest();
     let z = |i: usize| highest - map.heights()[i];
@@ -51,8 +56,8 @@ fn one_set(map: &HeightMap, contact: Vec<usize>, outside: &[usize], load: Load) 
     let r = eliminate(matrix, contact.iter().map(|&i| z(i)).collect());
     let stiffness: f64 = q.iter().sum();
     let approach = match load {
-        Load::Force(force) => (force + r.iter().sum::<f64>()) / stiffness,
-        Load::Approach(d) => d,
+        NormalLoad::Force(force) => (force + r.iter().sum::<f64>()) / stiffness,
+        NormalLoad::Approach(d) => d,
         _ => return None,
     };
     let forces: Vec<f64> = q.iter().zip(&r).map(|(q, r)| approach * q - r).collect();
@@ -83,11 +88,11 @@ mod tests {
     #[test]
     fn two_cells_of_which_one_is_out_of_reach_until_it_is_not() {
         let map = HeightMap::new(2, 2.0, vec![0.0, -1.0, -1e3, -1e3]).unwrap();
-        let one = every_contact_set(&map, &[0, 1], Load::Approach(1.0));
+        let one = every_contact_set(&map, &[0, 1], NormalLoad::Approach(1.0));
         assert_eq!(one.len(), 1);
         assert_eq!(one[0].contact, [0]);
         assert_relative_eq!(one[0].stiffness, PI / influence(0, 0), max_relative = 1e-14);
-        let both = every_contact_set(&map, &[0, 1], Load::Approach(10.0));
+        let both = every_contact_set(&map, &[0, 1], NormalLoad::Approach(10.0));
         assert_eq!((both.len(), both[0].contact.len()), (1, 2));
         assert_relative_eq!(
             both[0].stiffness,

@@ -238,7 +238,7 @@ mod tests {
     use super::*;
     use crate::every_contact_set;
     use approx::assert_relative_eq;
-    use contact_model::Load;
+    use contact_model::NormalLoad;
 
     #[test]
     fn by_hand() {
@@ -280,7 +280,7 @@ mod tests {
         let map = crate::map(3, 3.0, |x, y| ((7 * x + 4 * y) as f64).sin()).unwrap();
         for d in [0.05, 0.4, 1.1, 5.0] {
             let slow = relaxed(&map, d);
-            let all = every_contact_set(&map, &(0..9).collect::<Vec<_>>(), Load::Approach(d));
+            let all = every_contact_set(&map, &(0..9).collect::<Vec<_>>(), NormalLoad::Approach(d));
             assert_eq!(slow.contact, all[0].contact);
             // Rounding of nine cells.
             assert_relative_eq!(slow.force, all[0].force, max_relative = 1e-12);

@@ -5,7 +5,7 @@ use crate::maps::scene;
 use crate::plain::{PlainSum, relaxed};
 use bem3d::{Bem3d, Method};
 use contact_model::{
-    Boundary, ContactModel, ContactState, HeightMap, Load, PreparedContact, Result, Scene, Status,
+    Boundary, ContactModel, ContactState, HeightMap, Load, NormalLoad, PreparedContact, Result, Scene, Status,
 };
 use std::cell::Cell;
 
@@ -134,8 +134,8 @@ pub(crate) fn witness(
         format!("{load:?}: {:?} contact cells, {} with pressure", report.contact_cells, forces.len())
     });
     let sum: f64 = forces.iter().map(|(_, f)| f).sum();
-    let asked = match load {
-        Load::Force(force) => force,
+    let asked = match load.normal {
+        NormalLoad::Force(force) => force,
         _ => state.force,
     };
     for (name, force) in [("force", state.force), ("requested force", asked)] {
@@ -172,7 +172,7 @@ pub(crate) fn witness(
 /// Compares a state at an approach with that of relaxation: the contact set has to be equal, and the
 /// deviations of force and stiffness are recorded.
 pub(crate) fn against_relaxation(ledger: &mut Ledger, map: &HeightMap, d: f64) -> Result<()> {
-    let state = press_both(ledger, map, Load::Approach(d))?;
+    let state = press_both(ledger, map, Load::approach(d))?;
     let slow = relaxed(map, d);
     let found = contact_set(&state)?;
     ledger.must(found == slow.contact, || {

@@ -117,7 +117,7 @@ impl<'a> Slide<'a> {
 
     /// One step, without a check.
     pub(crate) fn attempt(&mut self, normal: Load, tangential: Tangential) -> Result<ContactState> {
-        self.contact.advance(Step { time: 0.0, normal, tangential })
+        self.contact.advance(Step::new(0.0, normal.with_tangential(tangential)))
     }
 
     /// One step to a force, with the check.
@@ -306,7 +306,7 @@ pub(crate) fn against_dragging(
         let limits: Vec<(usize, f64)> =
             pressed.contact.iter().copied().zip(pressed.forces.iter().map(|f| mu * f)).collect();
         dragged.advance(&limits, delta);
-        let state = slide.displace(ledger, Load::Approach(d), delta)?;
+        let state = slide.displace(ledger, Load::approach(d), delta)?;
         let found = tangential(&state)?;
         let most = mu * pressed.force;
         ledger.near("normal force", state.force, pressed.force);

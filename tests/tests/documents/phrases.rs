@@ -106,12 +106,12 @@ fn documents_have_no_private_words() {
         let written_before = |page: &PathBuf| page.ends_with("hypotheses.md");
         pages.extend(files(&root().join(folder), ".md").into_iter().filter(|page| !written_before(page)));
     }
-    let mut faults = String::new();
+    let mut faults = Vec::new();
     for page in pages {
         let text = std::fs::read_to_string(&page).unwrap();
-        for (line, phrase, instead) in private(&text) {
-            faults += &format!("{}:{line}: \"{phrase}\" (write: {instead})\n", page.display());
-        }
+        let page = page.display();
+        let shown = |(line, phrase, instead)| format!("{page}:{line}: \"{phrase}\" (write: {instead})");
+        faults.extend(private(&text).into_iter().map(shown));
     }
-    assert!(faults.is_empty(), "{faults}");
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
 }

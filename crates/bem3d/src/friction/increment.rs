@@ -8,9 +8,10 @@ use crate::operator::{InfluenceOperator, TangentialOperators};
 use crate::parts::Part;
 use crate::real::{binary_unit, dot, each, largest, sum, update};
 use contact_model::{Status, Stop};
+use serde::{Deserialize, Serialize};
 
 /// What is prescribed, nondimensional; components along x and y.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum TangentialControl {
     /// Tangential displacement of the bodies; with periodic boundaries that of their mean planes.
     Displacement([f64; 2]),

@@ -42,7 +42,7 @@ fn pressed(n: usize, seed: u64, boundary: Boundary, forces: &[f64]) -> (Grid, Ve
     let mut contact = model.prepare(&scene, seed).unwrap();
     let grid = Grid::square(n, n);
     let states = forces.iter().map(|&force| {
-        let state = contact.solve(Load::Force(force)).unwrap();
+        let state = contact.solve(Load::force(force)).unwrap();
         let unit = 1.0 / (n as f64 * std::f64::consts::PI);
         let field: Vec<f64> = state.pressure().unwrap().values().iter().map(|p| p * unit).collect();
         let cells = CellSet::of_grid(grid, &field, |p| p > 0.0);

@@ -1,7 +1,7 @@
 //! Contacts with adhesion of finite range: a path of loads on one surface.
 
 use super::certificate::GROWTH;
-use super::load::{LoadSequence, ScaledLoad};
+use super::load::{LoadSequence, ScaledNormal};
 use super::options::NAME;
 use super::prepared::PreparedSurface;
 use super::state::{Assembly, returned};
@@ -70,14 +70,14 @@ impl AdhesiveContact {
     /// contact.
     pub(super) fn at(
         &mut self,
-        load: ScaledLoad,
+        load: ScaledNormal,
         loads: LoadSequence,
         stop: Stop<'_>,
     ) -> Result<ContactState> {
         let control = match load {
-            ScaledLoad::Force(force) => AdhesiveControl::Force(force),
-            ScaledLoad::Approach(d) => AdhesiveControl::Plane(d),
-            ScaledLoad::MeanGap(gap) => AdhesiveControl::Plane(self.surface.mean - gap),
+            ScaledNormal::Force(force) => AdhesiveControl::Force(force),
+            ScaledNormal::Approach(d) => AdhesiveControl::Plane(d),
+            ScaledNormal::MeanGap(gap) => AdhesiveControl::Plane(self.surface.mean - gap),
         };
         if loads == LoadSequence::Single && !self.continues(control) {
             self.forget();

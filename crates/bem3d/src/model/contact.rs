@@ -3,8 +3,8 @@
 
 use super::adhesive::{AdhesiveContact, attraction};
 use super::certificate::LoadError;
-use super::load::{LoadSequence, ScaledLoad};
-use super::options::{Bem3d, NAME, bytes_per_cell, friction_bytes_per_cell};
+use super::load::{LoadSequence, ScaledLoad, ScaledNormal, ScaledTangential};
+use super::options::{Bem3d, bytes_per_cell, friction_bytes_per_cell};
 use super::path_memory::{Place, Remembered};
 use super::prepared::{PreparedSurface, Tangent};
 use super::sliding::Sliding;
@@ -14,8 +14,8 @@ use crate::parts::{Part, Recorder};
 use crate::stiffness::{self, Responding, Stiffness};
 use crate::tuning::Tuning;
 use contact_model::{
-    ContactState, Error, Load, Normalisation, PathMemory, PreparedContact, RequiredMemory, Result, Scene,
-    Status, Step, Stop, Tangential,
+    ContactState, Error, Load, NormalLoad, Normalisation, PathMemory, PreparedContact, RequiredMemory,
+    Result, Scene, Status, Step, Stop,
 };
 use std::borrow::Cow;
 
@@ -69,35 +69,32 @@ impl PreparedBem3d {
 
     /// A load in the units of the surface; with adhesion it may pull.
     fn scaled_load(&self, load: Load) -> Result<ScaledLoad> {
-        let load = match (&self.contact, load) {
-            (Contact::WithAdhesion(_), load) => load.validated_with_adhesion()?,
+        let load = match (&self.contact, load.normal) {
+            (Contact::WithAdhesion(_), _) => load.validated_with_adhesion()?,
             // Undefined points let the planes pass each other.
-            (Contact::WithoutAdhesion(_), Load::MeanGap(gap)) if gap.is_finite() => load,
-            (Contact::WithoutAdhesion(_), load) => load.validated()?,
+            (Contact::WithoutAdhesion(_), NormalLoad::MeanGap(gap)) if gap.is_finite() => {
+                load.tangential.validated()?;
+                load
+            }
+            (Contact::WithoutAdhesion(_), _) => load.validated()?,
         };
         self.surface().scaled_load(load)
     }
 
     /// The state of a load, with the given relation to other loads.
-    fn at(
-        &mut self,
-        load: ScaledLoad,
-        tangential: Tangential,
-        loads: LoadSequence,
-        stop: Stop<'_>,
-    ) -> Result<ContactState> {
+    fn at(&mut self, load: ScaledLoad, loads: LoadSequence, stop: Stop<'_>) -> Result<ContactState> {
         if self.place.loads != loads {
             let solved = self.place.solved.take();
             self.begin(loads);
             if let (LoadSequence::Path, Some(solved)) = (loads, solved)
-                && let Err(error) = self.state_at(solved, Tangential::default(), loads, stop)
+                && let Err(error) = self.state_at(solved, loads, stop)
             {
                 self.begin(LoadSequence::Single);
                 self.place.solved = Some(solved);
                 return Err(error);
             }
         }
-        let state = match self.state_at(load, tangential, loads, stop) {
+        let state = match self.state_at(load, loads, stop) {
             // What a solve finds while it is being stopped, such as a pull-off, need not be so.
             Err(error) if stop.stops() && !matches!(error, Error::Stopped { .. }) => {
                 return Err(Error::Stopped { best: None });
@@ -108,21 +105,12 @@ impl PreparedBem3d {
         Ok(state)
     }
 
-    fn state_at(
-        &mut self,
-        load: ScaledLoad,
-        tangential: Tangential,
-        loads: LoadSequence,
-        stop: Stop<'_>,
-    ) -> Result<ContactState> {
+    fn state_at(&mut self, load: ScaledLoad, loads: LoadSequence, stop: Stop<'_>) -> Result<ContactState> {
         self.surface_mut().forget_plans();
         match &mut self.contact {
             Contact::WithoutAdhesion(surface) => {
-                if let Some(sliding) = &mut surface.sliding {
-                    if loads == LoadSequence::Single {
-                        sliding.begin();
-                    }
-                    sliding.ask(tangential);
+                if let (Some(sliding), LoadSequence::Single) = (&mut surface.sliding, loads) {
+                    sliding.begin();
                 }
                 // Loads that were stopped go on from where they were.
                 let last = surface.last.clone();
@@ -132,7 +120,7 @@ impl PreparedBem3d {
                 }
                 found
             }
-            Contact::WithAdhesion(contact) => contact.at(load, loads, stop),
+            Contact::WithAdhesion(contact) => contact.at(load.normal, loads, stop),
         }
     }
 
@@ -153,7 +141,7 @@ impl PreparedContact for PreparedBem3d {
 
     fn solve_until(&mut self, load: Load, stop: Stop<'_>) -> Result<ContactState> {
         let load = self.scaled_load(load)?;
-        self.at(load, Tangential::default(), LoadSequence::Single, stop)
+        self.at(load, LoadSequence::Single, stop)
     }
 
     /// Cost O(N).
@@ -164,7 +152,7 @@ impl PreparedContact for PreparedBem3d {
         }
         let surface = self.surface();
         let Grid { columns, rows, .. } = surface.problem.grid();
-        let contact = surface.expected_contact(load);
+        let contact = surface.expected_contact(load.normal);
         let friction = surface.sliding.as_ref().map_or(0.0, |_| friction_bytes_per_cell(contact));
         let bytes = (bytes_per_cell(contact) + friction) * columns as f64 * rows as f64;
         Some(RequiredMemory { what: format!("a solve on {columns} columns x {rows} rows").into(), bytes })
@@ -175,14 +163,11 @@ impl PreparedContact for PreparedBem3d {
             Contact::WithoutAdhesion(_) => step.validated(self.place.time)?,
             Contact::WithAdhesion(_) => step.validated_with_adhesion(self.place.time)?,
         };
-        if self.surface().sliding.is_none() {
-            without_tangential(step)?;
-        }
         if stop.stops() {
             return Err(Error::Stopped { best: None });
         }
-        let load = self.scaled_load(step.normal)?;
-        let state = match self.at(load, step.tangential, LoadSequence::Path, stop) {
+        let load = self.scaled_load(step.load)?;
+        let state = match self.at(load, LoadSequence::Path, stop) {
             Err(Error::NotConverged { best }) => {
                 // The last stable state is that of the step before.
                 let time = if best.report.status == Status::PulledOff { self.place.time } else { step.time };
@@ -228,26 +213,19 @@ impl PreparedContact for PreparedBem3d {
     }
 }
 
-/// A step without a tangential load, where there is no friction.
-///
-/// # Errors
-/// [`Error::Unsupported`] for any other.
-fn without_tangential(step: Step) -> Result<()> {
-    if step.tangential.is_zero() { Ok(()) } else { Err(Error::unsupported(NAME, "a tangential load")) }
-}
-
 impl PreparedSurface {
     /// The state of a load without adhesion.
     fn at(&mut self, load: ScaledLoad, stop: Stop<'_>) -> Result<ContactState> {
         self.undeform();
         // 0 but for an indented surface.
         let first = self.problem.candidates.range().first;
-        let state = match load {
-            ScaledLoad::Force(force) if force <= 0.0 => self.no_contact(first),
-            ScaledLoad::Approach(d) if d <= first => self.no_contact(d),
-            ScaledLoad::MeanGap(gap) => self.at_mean_gap(gap, stop),
-            ScaledLoad::Force(force) => self.at_target(Control::Force(force), stop),
-            ScaledLoad::Approach(d) => self.at_target(Control::Approach(d), stop),
+        let ScaledLoad { normal, tangential } = load;
+        let state = match normal {
+            ScaledNormal::Force(force) if force <= 0.0 => self.no_contact(first, tangential),
+            ScaledNormal::Approach(d) if d <= first => self.no_contact(d, tangential),
+            ScaledNormal::MeanGap(gap) => self.at_mean_gap(gap, tangential, stop),
+            ScaledNormal::Force(force) => self.at_target(Control::Force(force), tangential, stop),
+            ScaledNormal::Approach(d) => self.at_target(Control::Approach(d), tangential, stop),
         }?;
         if let Some(memory) = self.memory.as_mut().filter(|_| state.force <= 0.0) {
             memory.advance(0.0, 0.0);
@@ -255,14 +233,19 @@ impl PreparedSurface {
         Ok(state)
     }
 
-    fn at_target(&mut self, target: Control, stop: Stop<'_>) -> Result<ContactState> {
+    fn at_target(
+        &mut self,
+        target: Control,
+        tangential: ScaledTangential,
+        stop: Stop<'_>,
+    ) -> Result<ContactState> {
         self.begin_count();
         if self.sliding.as_ref().is_some_and(Sliding::is_coupled) {
-            return self.at_coupled(target, stop);
+            return self.at_coupled(target, tangential, stop);
         }
         let (solved, tangent) = self.settle(target, self.limits(), stop);
         let error = self.load_error(target, &solved, tangent.as_ref());
-        let slid = self.slide(&solved, stop)?;
+        let slid = self.slide(&solved, tangential, stop)?;
         let recorder = self.problem.operators.recorder().clone();
         recorder.timed(Part::Results, || self.state(solved, tangent, error, slid, stop))
     }
@@ -281,16 +264,16 @@ impl PreparedSurface {
     }
 
     /// An estimate of the share of the cells that a load brings into contact.
-    fn expected_contact(&self, load: Load) -> f64 {
+    fn expected_contact(&self, load: NormalLoad) -> f64 {
         let z = self.problem.candidates.z();
         match load {
             // Contact lies within the bearing area.
-            Load::Approach(d) => {
+            NormalLoad::Approach(d) => {
                 let d = self.nondimensional.approach_in(d);
                 z.iter().filter(|z| **z < d).count() as f64 / z.len() as f64
             }
             // Rough contact has an area of about 2 F/(E* g), g the rms gradient.
-            Load::Force(force) => {
+            NormalLoad::Force(force) => {
                 let squares = z.chunks_exact(self.problem.grid().columns).flat_map(|row| row.windows(2));
                 let squares =
                     squares.map(|pair| (pair[1] - pair[0]).powi(2)).filter(|square| square.is_finite());

@@ -6,11 +6,14 @@
 //! quotient: two small steps of the approach go on from the state.
 
 use super::increment::{TIGHTENINGS, branch_error, further};
+use super::load::ScaledTangential;
 use super::options::NAME;
 use super::prepared::{PreparedSurface, Tangent};
 use super::sliding::{Slid, Sliding};
 use crate::active_set::{Candidates, Control, Guess, Limits, Solved};
-use crate::friction::{CoupledLoad, CoupledState, FrictionLimits, FrictionLoad, SlipMemory, advance_coupled};
+use crate::friction::{
+    CoupledLoad, CoupledState, FrictionLimits, FrictionLoad, SlipMemory, TangentialControl, advance_coupled,
+};
 use contact_model::{ContactState, Error, Result, Status, Stop};
 
 /// The step of a difference quotient, over the elastic approach of a circle around the contact.
@@ -28,13 +31,26 @@ struct CoupledLimits {
     tangential: FrictionLimits,
 }
 
+/// A step of both loads, from the state before it to what is prescribed at its end.
+#[derive(Debug, Clone, Copy)]
+struct CoupledStep<'a> {
+    before: &'a SlipMemory,
+    normal: Control,
+    tangential: TangentialControl,
+}
+
 impl PreparedSurface {
     /// The state of a load with coupled normal and tangential displacements.
-    pub(super) fn at_coupled(&mut self, target: Control, stop: Stop<'_>) -> Result<ContactState> {
+    pub(super) fn at_coupled(
+        &mut self,
+        target: Control,
+        tangential: ScaledTangential,
+        stop: Stop<'_>,
+    ) -> Result<ContactState> {
         let Some(mut sliding) = self.sliding.take() else {
             return Err(Error::unsupported(NAME, "coupling without friction"));
         };
-        let found = self.solve_coupled(&mut sliding, target, stop);
+        let found = self.solve_coupled(&mut sliding, target, tangential, stop);
         self.sliding = Some(sliding);
         let (solved, tangent, slid) = found?;
         let error = self.load_error(target, &solved, None);
@@ -46,16 +62,18 @@ impl PreparedSurface {
         &mut self,
         sliding: &mut Sliding,
         target: Control,
+        ScaledTangential { control, prescribed }: ScaledTangential,
         stop: Stop<'_>,
     ) -> Result<(Solved, Option<Tangent>, Slid)> {
         let work = sliding.friction.work();
         let mut limits = self.coupled_limits();
         let before = sliding.before.clone();
+        let step = CoupledStep { before: &before, normal: target, tangential: control };
         let tuning = *self.problem.operators.tuning();
         let guess =
             self.last.as_ref().filter(|last| (tuning.near.0..=tuning.near.1).contains(&last.ratio(target)));
         let guess = guess.and_then(|last| last.extrapolated(target, &tuning));
-        let mut state = self.advance_both(sliding, (&before, target), limits, (guess, None), stop)?;
+        let mut state = self.advance_both(sliding, step, limits, (guess, None), stop)?;
         let quotient = self.outputs.stiffness && !self.is_complete(&state.normal);
         if quotient {
             let tight = CoupledLimits {
@@ -65,7 +83,7 @@ impl PreparedSurface {
                     ..limits.tangential
                 },
             };
-            self.tighten(sliding, (&before, target), tight, &mut state, stop)?;
+            self.tighten(sliding, step, tight, &mut state, stop)?;
             limits = tight;
         }
         let mut tangent = None;
@@ -79,7 +97,7 @@ impl PreparedSurface {
                 }
                 limits.normal.tolerance = tuning.tightened(self.options.tolerance / error)
                     * limits.normal.tolerance.min(before_error);
-                if !self.tighten(sliding, (&before, target), limits, &mut state, stop)? {
+                if !self.tighten(sliding, step, limits, &mut state, stop)? {
                     break;
                 }
                 state.normal.steps += found.steps();
@@ -95,14 +113,14 @@ impl PreparedSurface {
             }
             limits.tangential.tolerance = limits.tangential.tolerance.min(state.tangential.duality_gap)
                 * further(self.options.tolerance / error);
-            if !self.tighten(sliding, (&before, target), limits, &mut state, stop)? {
+            if !self.tighten(sliding, step, limits, &mut state, stop)? {
                 break;
             }
             stiffness = self.tangential_stiffness(&mut sliding.friction, &state.tangential, stop);
         }
         let normal_stiffness = if quotient && state.status() == Status::Converged {
             let deformed = self.problem.candidates.shared();
-            let quotient = self.quotient(sliding, &state, limits, stop);
+            let quotient = self.quotient(sliding, &state, control, limits, stop);
             self.problem.candidates = Candidates::new(self.problem.grid(), deformed);
             quotient?
         } else {
@@ -110,7 +128,7 @@ impl PreparedSurface {
         };
         self.count(work, sliding.friction.work());
         let (status, rounds) = (state.status(), Some((state.rounds, state.contraction)));
-        let slid = Slid { state: state.tangential, stiffness, normal_stiffness, rounds };
+        let slid = Slid { prescribed, state: state.tangential, stiffness, normal_stiffness, rounds };
         Ok((Solved { status, ..state.normal }, tangent, slid))
     }
 
@@ -125,15 +143,15 @@ impl PreparedSurface {
     fn advance_both(
         &mut self,
         sliding: &mut Sliding,
-        (before, target): (&SlipMemory, Control),
+        step: CoupledStep<'_>,
         limits: CoupledLimits,
         near: (Option<Guess>, Option<SlipMemory>),
         stop: Stop<'_>,
     ) -> Result<CoupledState> {
-        let Sliding { friction, coefficient, load, undeformed, .. } = sliding;
-        let control = self.tangential_control(*load)?;
+        let Sliding { friction, coefficient, undeformed, .. } = sliding;
+        let CoupledStep { before, normal, tangential: control } = step;
         let load = CoupledLoad {
-            normal: target,
+            normal,
             tangential: FrictionLoad { coefficient: *coefficient, control },
             normal_limits: limits.normal,
             tangential_limits: limits.tangential,
@@ -148,7 +166,7 @@ impl PreparedSurface {
     fn tighten(
         &mut self,
         sliding: &mut Sliding,
-        step: (&SlipMemory, Control),
+        step: CoupledStep<'_>,
         limits: CoupledLimits,
         state: &mut CoupledState,
         stop: Stop<'_>,
@@ -186,6 +204,7 @@ impl PreparedSurface {
         &mut self,
         sliding: &mut Sliding,
         state: &CoupledState,
+        tangential: TangentialControl,
         limits: CoupledLimits,
         stop: Stop<'_>,
     ) -> Result<Option<(f64, f64)>> {
@@ -199,9 +218,13 @@ impl PreparedSurface {
         let mut slopes = [0.0_f64; 2];
         let mut noise = 0.0_f64;
         for (slope, steps) in slopes.iter_mut().zip([1.0, 2.0]) {
-            let target = Control::Approach(normal.d + steps * step);
+            let next = CoupledStep {
+                before: &state.tangential.memory,
+                normal: Control::Approach(normal.d + steps * step),
+                tangential,
+            };
             let near = (Some(guess_of(normal)), Some(state.tangential.memory.clone()));
-            let found = self.advance_both(sliding, (&state.tangential.memory, target), limits, near, stop);
+            let found = self.advance_both(sliding, next, limits, near, stop);
             let next = match found {
                 Ok(next) => next,
                 // The tangential force would be more than friction holds.

@@ -1,7 +1,7 @@
 //! Friction of a surface on its path: from the tangential load of a step to an increment, and from its tractions
 //! to the tangential part of a state.
 
-use super::load::held;
+use super::load::ScaledTangential;
 use super::options::{Bem3d, NAME};
 use super::prepared::PreparedSurface;
 use super::sliding::{Slid, Sliding};
@@ -21,24 +21,6 @@ const UNRESOLVED: f64 = 10.0;
 pub(super) const TIGHTENINGS: usize = 4;
 
 impl PreparedSurface {
-    pub(super) fn tangential_control(&self, load: Tangential) -> Result<TangentialControl> {
-        let units = self.nondimensional;
-        let each = |values: [f64; 2], name, of: &dyn Fn(f64) -> f64| -> Result<[f64; 2]> {
-            let [x, y] = values.map(|value| held(name, value, of(value.abs()).copysign(value)));
-            Ok([x?, y?])
-        };
-        match load {
-            Tangential::Force(force) => {
-                each(force, "tangential force", &|f| units.force_in(f) / PI).map(TangentialControl::Force)
-            }
-            Tangential::Displacement(delta) => {
-                let displacement = each(delta, "tangential displacement", &|d| units.approach_in(d));
-                displacement.map(TangentialControl::Displacement)
-            }
-            other => Err(Error::unsupported_load(NAME, other)),
-        }
-    }
-
     /// Resets to the surface without displacements under tractions, where the problems are coupled.
     pub(super) fn undeform(&mut self) {
         if let Some(sliding) = self.sliding.as_ref().filter(|sliding| sliding.is_coupled()) {
@@ -56,16 +38,26 @@ impl PreparedSurface {
     ///
     /// # Errors
     /// [`Error::OutOfRange`] for a tangential force beyond the limit of friction.
-    pub(super) fn slide(&mut self, solved: &Solved, stop: Stop<'_>) -> Result<Option<Slid>> {
+    pub(super) fn slide(
+        &mut self,
+        solved: &Solved,
+        load: ScaledTangential,
+        stop: Stop<'_>,
+    ) -> Result<Option<Slid>> {
         let Some(mut sliding) = self.sliding.take() else { return Ok(None) };
-        let slid = self.slide_by(&mut sliding, solved, stop);
+        let slid = self.slide_by(&mut sliding, solved, load, stop);
         self.sliding = Some(sliding);
         slid.map(Some)
     }
 
-    fn slide_by(&mut self, sliding: &mut Sliding, solved: &Solved, stop: Stop<'_>) -> Result<Slid> {
-        let Sliding { friction, coefficient, before, load, .. } = sliding;
-        let control = self.tangential_control(*load)?;
+    fn slide_by(
+        &mut self,
+        sliding: &mut Sliding,
+        solved: &Solved,
+        ScaledTangential { control, prescribed }: ScaledTangential,
+        stop: Stop<'_>,
+    ) -> Result<Slid> {
+        let Sliding { friction, coefficient, before, .. } = sliding;
         let (mut limits, tolerance) = (self.friction_limits(), self.options.tolerance);
         let work = friction.work();
         let contact = PressedCells { cells: &solved.contact, pressure: &solved.p };
@@ -89,7 +81,7 @@ impl PreparedSurface {
             stiffness = self.tangential_stiffness(friction, &state, stop);
         }
         self.count(work, friction.work());
-        Ok(Slid { state, stiffness, normal_stiffness: None, rounds: None })
+        Ok(Slid { prescribed, state, stiffness, normal_stiffness: None, rounds: None })
     }
 
     /// The requested tangential stiffnesses; there is none for a periodic surface in full stick, which no
@@ -130,9 +122,9 @@ impl PreparedSurface {
     ///
     /// # Errors
     /// [`Error::OutOfRange`] for a tangential force, which no contact can carry.
-    pub(super) fn slide_apart(&mut self) -> Result<Option<Slid>> {
+    pub(super) fn slide_apart(&self, load: ScaledTangential) -> Result<Option<Slid>> {
         let Some(sliding) = &self.sliding else { return Ok(None) };
-        let displacement = match self.tangential_control(sliding.load)? {
+        let displacement = match load.control {
             TangentialControl::Displacement(displacement) => displacement,
             force @ TangentialControl::Force([x, y]) => {
                 if x.hypot(y) > 0.0 {
@@ -156,7 +148,7 @@ impl PreparedSurface {
         let nothing = |asked: bool| asked.then(TangentialStiffness::default);
         let stiffness =
             [self.outputs.tangential_stiffness, self.outputs.tangential_stiffness_stuck].map(nothing);
-        Ok(Some(Slid { state, stiffness, normal_stiffness: None, rounds: None }))
+        Ok(Some(Slid { prescribed: load.prescribed, state, stiffness, normal_stiffness: None, rounds: None }))
     }
 
     /// Keeps an increment as the start of the next one.
@@ -178,7 +170,7 @@ impl PreparedSurface {
         let force = |value: f64| units.force(PI * value);
         let length = |value: f64| units.approach(value);
         // What is prescribed is given back as it was.
-        let (asked_force, asked_displacement) = match sliding.load {
+        let (asked_force, asked_displacement) = match slid.prescribed {
             Tangential::Force(asked) => (Some(asked), None),
             Tangential::Displacement(asked) => (None, Some(asked)),
             _ => (None, None),

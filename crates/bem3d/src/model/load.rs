@@ -2,16 +2,31 @@
 
 use super::options::NAME;
 use super::prepared::PreparedSurface;
-use contact_model::{Error, Load, Result};
+use crate::friction::TangentialControl;
+use contact_model::{Error, Load, NormalLoad, Result, Tangential};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
 /// Largest rounding of the force of all cells at the hardness in the conversion of units.
 const CAPACITY_ROUNDING: f64 = 1e-12;
 
-/// A load in the units of the surface, of either sign; a force over pi.
+/// A load in the units of the surface; forces over pi.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub(super) enum ScaledLoad {
+pub(super) struct ScaledLoad {
+    pub normal: ScaledNormal,
+    pub tangential: ScaledTangential,
+}
+
+/// A tangential load in the units of the surface. States give it back as it was prescribed.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub(super) struct ScaledTangential {
+    pub control: TangentialControl,
+    pub prescribed: Tangential,
+}
+
+/// A normal load in the units of the surface, of either sign.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub(super) enum ScaledNormal {
     /// Sum of the net pressure.
     Force(f64),
     /// Approach from first touch of the virgin surface.
@@ -34,31 +49,59 @@ impl PreparedSurface {
     ///
     /// # Errors
     /// [`Error::Domain`] where it overflows, [`Error::Unsupported`] for a kind of load that the surface does
-    /// not have, [`Error::OutOfRange`] for a force that all cells at the hardness do not carry.
+    /// not have and for a tangential load without friction, [`Error::OutOfRange`] for a force that all cells
+    /// at the hardness do not carry.
     pub(super) fn scaled_load(&self, load: Load) -> Result<ScaledLoad> {
+        if self.sliding.is_none() {
+            load.without_tangential(NAME)?;
+        }
+        let Load { normal, tangential: prescribed } = load;
+        let tangential = ScaledTangential { control: self.scaled_tangential(prescribed)?, prescribed };
+        Ok(ScaledLoad { normal: self.scaled_normal(normal)?, tangential })
+    }
+
+    fn scaled_normal(&self, load: NormalLoad) -> Result<ScaledNormal> {
         let units = self.nondimensional;
         Ok(match load {
-            Load::Force(asked) => {
+            NormalLoad::Force(asked) => {
                 let force = held("force", asked, (units.force_in(asked.abs()) / PI).copysign(asked))?;
                 self.refuse_beyond_hardness(force, asked)?;
-                ScaledLoad::Force(force)
+                ScaledNormal::Force(force)
             }
-            Load::Approach(d) if self.has_approach() => {
-                ScaledLoad::Approach(held("approach", d, units.approach_in(d))?)
+            NormalLoad::Approach(d) if self.has_approach() => {
+                ScaledNormal::Approach(held("approach", d, units.approach_in(d))?)
             }
-            Load::MeanGap(gap) if self.is_periodic() => {
-                ScaledLoad::MeanGap(held("mean gap", gap, units.approach_in(gap))?)
+            NormalLoad::MeanGap(gap) if self.is_periodic() => {
+                ScaledNormal::MeanGap(held("mean gap", gap, units.approach_in(gap))?)
             }
-            Load::Approach(_) if !self.is_periodic() => {
+            NormalLoad::Approach(_) if !self.is_periodic() => {
                 let what = "an approach of a profile with free boundaries: displacements of a half-plane have no zero at infinity; give a force or a pressure";
                 return Err(Error::unsupported(NAME, what));
             }
-            Load::Approach(_) => {
+            NormalLoad::Approach(_) => {
                 let what = "an approach: a periodic contact has a mean gap in its place";
                 return Err(Error::unsupported(NAME, what));
             }
             other => return Err(Error::unsupported(NAME, format!("{other} with free boundaries"))),
         })
+    }
+
+    fn scaled_tangential(&self, load: Tangential) -> Result<TangentialControl> {
+        let units = self.nondimensional;
+        let each = |values: [f64; 2], name, of: &dyn Fn(f64) -> f64| -> Result<[f64; 2]> {
+            let [x, y] = values.map(|value| held(name, value, of(value.abs()).copysign(value)));
+            Ok([x?, y?])
+        };
+        match load {
+            Tangential::Force(force) => {
+                each(force, "tangential force", &|f| units.force_in(f) / PI).map(TangentialControl::Force)
+            }
+            Tangential::Displacement(delta) => {
+                let displacement = each(delta, "tangential displacement", &|d| units.approach_in(d));
+                displacement.map(TangentialControl::Displacement)
+            }
+            other => Err(Error::unsupported_load(NAME, other)),
+        }
     }
 
     /// Errors for a force that all cells at the hardness do not carry.

@@ -2,6 +2,7 @@
 //! constant.
 
 use super::certificate::LoadError;
+use super::load::ScaledTangential;
 use super::options::NAME;
 use super::prepared::{PreparedSurface, Tangent};
 use super::sliding::Sliding;
@@ -21,15 +22,20 @@ impl PreparedSurface {
         self.problem.bounds == Bounds::Unlimited && self.defined == self.problem.grid().count()
     }
 
-    /// The state at a nondimensional mean gap, by Newton's method in ln F where the stiffness is known and
+    /// The state at a nondimensional mean gap and a tangential load, by Newton's method in ln F where the stiffness is known and
     /// secants where it is not: the gap falls about linearly with ln F. It is met to the tolerance, in rms
     /// heights. Where cells at the hardness carry nearly all of the force, one force belongs to a range of gaps,
     /// and the search goes on in the approach.
-    pub(super) fn at_mean_gap(&mut self, asked: f64, stop: Stop<'_>) -> Result<ContactState> {
+    pub(super) fn at_mean_gap(
+        &mut self,
+        asked: f64,
+        load: ScaledTangential,
+        stop: Stop<'_>,
+    ) -> Result<ContactState> {
         let first = self.problem.candidates.range().first;
         if asked >= self.mean - first {
             // Apart, or touching: the gap is the one asked for.
-            return self.no_contact(self.mean - asked);
+            return self.no_contact(self.mean - asked, load);
         }
         if asked <= 0.0 && self.has_complete_contact() {
             let expected = "a number above 0, where every force from that of full contact on would do";
@@ -56,11 +62,11 @@ impl PreparedSurface {
         let mut steps = 0;
         // Loads that meet the gap and are followed by another one.
         let mut polish = POLISHING_LOADS;
-        for load in 0..GAP_LOADS {
+        for tries in 0..GAP_LOADS {
             let tried = self.try_gap(asked, Control::Force(x.exp()), &mut polish, stop);
             steps += tried.solved.steps;
             if tried.ends {
-                return self.at_gap(tried, steps, stop);
+                return self.at_gap(tried, load, steps, stop);
             }
             let GapTried { solved, tangent, miss, .. } = tried;
             let (force, d): (f64, f64) = (solved.p.iter().sum(), solved.d);
@@ -89,11 +95,11 @@ impl PreparedSurface {
             let in_approach = flows
                 && (self.responding(&solved).cells.is_empty()
                     || bracketed && !within
-                    || load >= FLOWING_GAP_LOADS);
+                    || tries >= FLOWING_GAP_LOADS);
             before = (!complete).then_some((x, miss));
             self.remember(solved, tangent);
             if in_approach {
-                return self.at_gap_by_approach(asked, approaches, steps, stop);
+                return self.at_gap_by_approach((asked, load), approaches, steps, stop);
             }
             x = if within {
                 next
@@ -110,7 +116,7 @@ impl PreparedSurface {
     /// that is known.
     fn at_gap_by_approach(
         &mut self,
-        asked: f64,
+        (asked, load): (f64, ScaledTangential),
         [mut far, mut near]: [f64; 2],
         mut steps: usize,
         stop: Stop<'_>,
@@ -146,7 +152,7 @@ impl PreparedSurface {
         }
         numerics::root::between(far, near, miss);
         match last {
-            Some(tried) => self.at_gap(tried, steps, stop),
+            Some(tried) => self.at_gap(tried, load, steps, stop),
             None => Err(self.no_such_gap(asked)?),
         }
     }
@@ -169,7 +175,13 @@ impl PreparedSurface {
     }
 
     /// The state of the load that ended the search, after a number of steps.
-    fn at_gap(&mut self, tried: GapTried, steps: usize, stop: Stop<'_>) -> Result<ContactState> {
+    fn at_gap(
+        &mut self,
+        tried: GapTried,
+        load: ScaledTangential,
+        steps: usize,
+        stop: Stop<'_>,
+    ) -> Result<ContactState> {
         let GapTried { mut solved, tangent, miss, .. } = tried;
         solved.steps = steps;
         let k = match &tangent {
@@ -179,7 +191,7 @@ impl PreparedSurface {
         };
         let error = self.force_error(&solved, k, miss.abs());
         let error = LoadError { load: miss.abs() / self.limits().height.unwrap_or(self.mean), ..error };
-        let slid = self.slide(&solved, stop)?;
+        let slid = self.slide(&solved, load, stop)?;
         self.state(solved, tangent, error, slid, stop)
     }
 

@@ -182,7 +182,7 @@ mod tests {
         let (mut with, mut without) = (model.prepare(&scene, 1).unwrap(), model.prepare(&bare, 1).unwrap());
         for force in [0.01, 0.1, 0.5, 2.0, 10.0, 1.0] {
             let (a, b) =
-                (with.solve(Load::Force(force)).unwrap(), without.solve(Load::Force(force)).unwrap());
+                (with.solve(Load::force(force)).unwrap(), without.solve(Load::force(force)).unwrap());
             approx::assert_relative_eq!(a.approach.unwrap(), b.approach.unwrap(), max_relative = 1e-7);
             assert!(a.stiffness.is_some() && b.stiffness.is_none());
             assert!(b.report.applications < a.report.applications, "what is not asked for costs nothing");
@@ -196,7 +196,7 @@ mod tests {
             let surface = SelfAffine::new(2.4, 1.0, 1.0).map(Surface::SelfAffine).unwrap();
             let model = Bem3d { cells: 8, ..Bem3d::default() };
             let solved =
-                model.prepare(&Scene::new(surface, contact_modulus), 1).unwrap().solve(Load::Force(force));
+                model.prepare(&Scene::new(surface, contact_modulus), 1).unwrap().solve(Load::force(force));
             assert!(matches!(solved, Err(Error::Domain { .. })), "{solved:?}");
         }
     }
@@ -230,7 +230,7 @@ mod tests {
         (scene.outputs.gap, scene.outputs.displacement) = (true, true);
         let mut contact = Bem3d { tolerance: 1e-9, ..Bem3d::default() }.prepare(&scene, 0).unwrap();
         let mut gaps = |force| {
-            let state = contact.solve(Load::Force(force)).unwrap();
+            let state = contact.solve(Load::force(force)).unwrap();
             let (u, g) = (state.displacement().unwrap().values(), state.gap().unwrap().values());
             let gap = |(h, u): (&f64, &f64)| u + map.highest() - h - state.approach.unwrap();
             for (found, expected) in g.iter().zip(map.heights().iter().zip(u).map(gap)) {
@@ -259,14 +259,14 @@ mod tests {
         // The bearing area: r^2 < 2 R d, up to the cells at its edge.
         let area = std::f64::consts::PI * 2.0 * 0.005;
         approx::assert_relative_eq!(
-            bytes(Load::Approach(0.005)),
+            bytes(Load::approach(0.005)),
             bytes_per_cell(area) * cells,
             max_relative = 0.05
         );
-        assert!(bytes(Load::Force(1e-6)) < 1e-4 * bytes(Load::Force(1.0)));
-        approx::assert_relative_eq!(bytes(Load::Force(1.0)), bytes_per_cell(1.0) * cells);
+        assert!(bytes(Load::force(1e-6)) < 1e-4 * bytes(Load::force(1.0)));
+        approx::assert_relative_eq!(bytes(Load::force(1.0)), bytes_per_cell(1.0) * cells);
         let flat = Scene::new(Surface::Flat { size: 1.0.into() }, 1.0);
-        let all = model.prepare(&flat, 0).unwrap().required_memory(Load::Force(1e-6)).unwrap();
+        let all = model.prepare(&flat, 0).unwrap().required_memory(Load::force(1e-6)).unwrap();
         approx::assert_relative_eq!(all.bytes, bytes_per_cell(1.0) * cells);
     }
 
@@ -276,7 +276,7 @@ mod tests {
         let with = Scene { outputs: Outputs { gap: true, ..scene.outputs }, ..scene.clone() };
         let model = Bem3d { cells: 8, ..Bem3d::default() };
         let work =
-            |scene| model.prepare(scene, 0).unwrap().solve(Load::Force(1.0)).unwrap().report.applications;
+            |scene| model.prepare(scene, 0).unwrap().solve(Load::force(1.0)).unwrap().report.applications;
         assert_eq!(work(&with), work(&scene) + 1);
     }
 }

@@ -36,7 +36,7 @@ pub(super) fn friction_bytes_per_cell(contact: f64) -> f64 {
 /// // Two cells a side, all four in contact: k = 0.993186221 E* L (data/paper/VALUES.md).
 /// let model = Bem3d { cells: 2, ..Bem3d::default() };
 /// let scene = Scene::new(Surface::Flat { size: 1.0.into() }, 1.0);
-/// let state = model.prepare(&scene, 0)?.solve(Load::Force(1.0))?;
+/// let state = model.prepare(&scene, 0)?.solve(Load::force(1.0))?;
 /// assert!((state.stiffness.unwrap() - 0.993186221).abs() < 1e-9);
 /// # Ok::<(), contact_model::Error>(())
 /// ```
@@ -49,8 +49,8 @@ pub(super) fn friction_bytes_per_cell(contact: f64) -> f64 {
 /// let mut scene = Scene::new(Surface::Sphere { radius: 1.0, size: 1.0.into() }, 1.0);
 /// scene.effects.hardness = Hardness::Limit { pressure: 0.1 };
 /// let mut contact = Bem3d { cells: 32, ..Bem3d::default() }.prepare(&scene, 0)?;
-/// let loaded = contact.advance(Step::normal(1.0, Load::Force(0.02)))?.plastic.unwrap();
-/// let unloaded = contact.advance(Step::normal(2.0, Load::Force(0.0)))?.plastic.unwrap();
+/// let loaded = contact.advance(Step::new(1.0, Load::force(0.02)))?.plastic.unwrap();
+/// let unloaded = contact.advance(Step::new(2.0, Load::force(0.0)))?.plastic.unwrap();
 /// assert!(loaded.area > 0.0 && unloaded.area == 0.0 && unloaded.volume == loaded.volume);
 /// # Ok::<(), bem3d::Error>(())
 /// ```

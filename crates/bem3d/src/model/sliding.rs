@@ -19,13 +19,13 @@ pub(super) struct Sliding {
     pub(super) before: SlipMemory,
     /// Nondimensional energy that friction dissipated since the first step.
     pub(super) dissipated: f64,
-    /// The tangential load at the end of the present step.
-    pub(super) load: Tangential,
 }
 
 /// The tangential part of a state, nondimensional.
 #[derive(Debug)]
 pub(super) struct Slid {
+    /// The tangential load, as it was prescribed.
+    pub(super) prescribed: Tangential,
     pub(super) state: FrictionState,
     /// The stiffness along the branch, and that of the whole contact in full stick.
     pub(super) stiffness: [Option<TangentialStiffness>; 2],
@@ -88,18 +88,12 @@ impl Sliding {
             undeformed: problem.candidates.shared(),
             before: SlipMemory::default(),
             dissipated: 0.0,
-            load: Tangential::default(),
         }))
     }
 
     /// Resets the surface to its state before any load.
     pub(super) fn begin(&mut self) {
-        (self.before, self.dissipated, self.load) = (SlipMemory::default(), 0.0, Tangential::default());
-    }
-
-    /// The tangential load at the end of the step that comes next.
-    pub(super) fn ask(&mut self, load: Tangential) {
-        self.load = load;
+        (self.before, self.dissipated) = (SlipMemory::default(), 0.0);
     }
 
     /// Whether the normal and the tangential problem are coupled.

@@ -1,6 +1,7 @@
 //! Assembles the returned state from a solution, in the same way for all effects.
 
 use super::certificate::LoadError;
+use super::load::ScaledTangential;
 use super::prepared::{PreparedSurface, Tangent};
 use super::sliding::Slid;
 use crate::active_set::{Bounds, Solved};
@@ -104,11 +105,11 @@ impl PreparedSurface {
     }
 
     /// The state before first touch, and at it, at a nondimensional approach.
-    pub(super) fn no_contact(&mut self, d: f64) -> Result<ContactState> {
+    pub(super) fn no_contact(&mut self, d: f64, load: ScaledTangential) -> Result<ContactState> {
         self.begin_count();
         let nothing = CellSet::default();
         let stiffness = self.outputs.needs_stiffness().then_some(0.0);
-        let slid = self.slide_apart()?;
+        let slid = self.slide_apart(load)?;
         let mut certificate = Certificate::default();
         if let Some(slid) = &slid {
             slid.certify(&mut certificate);

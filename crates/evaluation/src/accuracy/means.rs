@@ -173,7 +173,7 @@ pub(crate) fn closed_forms(d: f64, stop: Stop<'_>) -> Result<Vec<ClosedForm>> {
     let mut all = Vec::new();
     for (load, force_bar) in LOADS.into_iter().enumerate() {
         unless_stopped(stop)?;
-        let answer = measure(&PowerLaw, &scene, Load::Force(force_bar), 0)?;
+        let answer = measure(&PowerLaw, &scene, Load::force(force_bar), 0)?;
         all.extend(answer.map(|answer| ClosedForm { load, way: law, answer }));
         if force_bar > 1.0 {
             let status = Status::Converged.as_str().to_owned();

@@ -92,7 +92,7 @@ impl StudyProblem {
                 all.extend(LOADS.map(|force_bar| Self {
                     key: ProblemKey::rough(family, d, force_bar),
                     scene: scene.clone(),
-                    load: Load::Force(force_bar),
+                    load: Load::force(force_bar),
                 }));
             }
         }
@@ -107,14 +107,14 @@ impl StudyProblem {
     fn sphere() -> Self {
         let surface = Surface::Sphere { radius: 1.0, size: 1.0.into() };
         // F = (4/3) E* a^3 / R.
-        let load = Load::Force(4.0 / 3.0 * RADIUS.powi(3));
+        let load = Load::force(4.0 / 3.0 * RADIUS.powi(3));
         let scene = Scene::new(surface, 1.0);
         Self { key: ProblemKey::body(Family::Sphere), scene, load }
     }
 
     fn square() -> Self {
         let scene = Scene::new(Surface::Flat { size: 1.0.into() }, 1.0);
-        Self { key: ProblemKey::body(Family::Square), scene, load: Load::Force(1.0) }
+        Self { key: ProblemKey::body(Family::Square), scene, load: Load::force(1.0) }
     }
 
     /// Stiffness, approach and area from formulas: `a = RADIUS`, `d = a^2 / R`, `k = 2 E* a`; `d = F/k` of

@@ -1,7 +1,7 @@
 use super::*;
 use crate::Bearing;
 use approx::assert_relative_eq;
-use contact_model::Load;
+use contact_model::NormalLoad;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use std::f64::consts::FRAC_PI_2;
@@ -96,7 +96,7 @@ fn the_discretised_profile_converges_with_its_order() {
             .iter()
             .map(|&elements| {
                 let mut bearing = Bearing::new(&body.line(0.3, elements).unwrap());
-                let s = bearing.press(Load::Approach(exact.approach), 1.0).unwrap();
+                let s = bearing.press(NormalLoad::Approach(exact.approach), 1.0).unwrap();
                 assert_relative_eq!(s.stiffness, exact.stiffness(), max_relative = 1e-12);
                 (s.force / exact.force - 1.0).abs()
             })
@@ -108,12 +108,16 @@ fn the_discretised_profile_converges_with_its_order() {
         // Anywhere else the stiffness is off by at most two elements: order 1.
         for elements in [101, 1001, 10_001] {
             let mut bearing = Bearing::new(&body.line(0.3, elements).unwrap());
-            let s = bearing.press(Load::Force(exact.force), 1.0).unwrap();
+            let s = bearing.press(NormalLoad::Force(exact.force), 1.0).unwrap();
             assert!((s.stiffness - exact.stiffness()).abs() <= 2.0 * 0.6 / elements as f64);
         }
     }
     let mut punch = Bearing::new(&Profile::Flat { radius: 0.2 }.line(0.2, 9).unwrap());
-    assert_relative_eq!(punch.press(Load::Force(1.0), 1.0).unwrap().approach, 2.5, max_relative = ROUNDING);
+    assert_relative_eq!(
+        punch.press(NormalLoad::Force(1.0), 1.0).unwrap().approach,
+        2.5,
+        max_relative = ROUNDING
+    );
 }
 
 #[test]

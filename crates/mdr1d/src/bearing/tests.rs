@@ -65,7 +65,7 @@ fn three_springs_by_hand() {
     let line = Line::new(3.0, vec![-1.0, 5.0, 2.0]).unwrap(); // z = 6, 0, 3
     let mut bearing = Bearing::new(&line);
     for (d, force, elements) in [(0.0, 0.0, 0), (3.0, 3.0, 1), (4.0, 5.0, 2), (6.0, 9.0, 2), (7.0, 12.0, 3)] {
-        for load in [Load::Approach(d), Load::Force(force)] {
+        for load in [NormalLoad::Approach(d), NormalLoad::Force(force)] {
             let s = bearing.press(load, 1.0).unwrap();
             assert_relative_eq!(s.force, force);
             assert_relative_eq!(s.approach, d);
@@ -78,10 +78,10 @@ fn three_springs_by_hand() {
 #[test]
 fn flat_lines_and_ties() {
     let mut flat = Bearing::new(&Line::new(2.0, vec![3.0; 5000]).unwrap());
-    let s = flat.press(Load::Force(0.5), 10.0).unwrap();
+    let s = flat.press(NormalLoad::Force(0.5), 10.0).unwrap();
     assert_relative_eq!(s.approach, 0.5 / 20.0, max_relative = ROUNDING);
     assert_relative_eq!(s.stiffness, 20.0, max_relative = ROUNDING);
-    assert_eq!(flat.press(Load::Force(0.0), 10.0).unwrap().elements, 0);
+    assert_eq!(flat.press(NormalLoad::Force(0.0), 10.0).unwrap().elements, 0);
     // One pit, a million times deeper: everything else crowds into one bin.
     let mut heights = vec![1.0; 5000];
     heights[17] = -1e6;
@@ -89,10 +89,10 @@ fn flat_lines_and_ties() {
     let line = Line::new(1.0, heights).unwrap();
     let (mut bearing, reference) = (Bearing::new(&line), Reference::new(&line));
     for d in [0.1, 0.5, 0.6, 1e5, 1e6 + 1.0, 1e6 + 2.0] {
-        let s = bearing.press(Load::Approach(d), 1.0).unwrap();
+        let s = bearing.press(NormalLoad::Approach(d), 1.0).unwrap();
         assert_relative_eq!(s.force, reference.force(d, 1.0), max_relative = ROUNDING);
         assert_eq!(s.elements, reference.elements(d));
-        let back = bearing.press(Load::Force(s.force), 1.0).unwrap();
+        let back = bearing.press(NormalLoad::Force(s.force), 1.0).unwrap();
         assert_relative_eq!(back.approach, d, max_relative = ROUNDING);
     }
 }
@@ -105,10 +105,10 @@ fn a_long_line_equals_the_sums() {
     let height = line.highest() - range(line.heights()).0;
     for i in 0..60 {
         let d = height * 1.3 * 10_f64.powf(-f64::from(i) / 10.0);
-        let s = bearing.press(Load::Approach(d), 3.0).unwrap();
+        let s = bearing.press(NormalLoad::Approach(d), 3.0).unwrap();
         assert_relative_eq!(s.force, reference.force(d, 3.0), max_relative = ROUNDING);
         assert_eq!(s.elements, reference.elements(d));
-        let by_force = bearing.press(Load::Force(s.force), 3.0).unwrap();
+        let by_force = bearing.press(NormalLoad::Force(s.force), 3.0).unwrap();
         assert_relative_eq!(by_force.approach, reference.approach(s.force, 3.0), max_relative = ROUNDING);
         assert_eq!(by_force.elements, s.elements);
     }
@@ -123,8 +123,8 @@ fn bins_change_nothing() {
     depths.sort_unstable_by(f64::total_cmp);
     let mut full = Bearing { element: line.element(), bins: bins(&depths, &[depths.len()]), depths };
     for force in [1e-9, 1e-6, 1e-3, 0.1, 1.0, 30.0, 1e3] {
-        let a = binned.press(Load::Force(force), 1.0).unwrap();
-        let b = full.press(Load::Force(force), 1.0).unwrap();
+        let a = binned.press(NormalLoad::Force(force), 1.0).unwrap();
+        let b = full.press(NormalLoad::Force(force), 1.0).unwrap();
         assert_relative_eq!(a.approach, b.approach, max_relative = ROUNDING);
         assert_eq!(a.elements, b.elements);
     }
@@ -159,8 +159,8 @@ fn a_kink_between_two_bins_is_one_state_by_force_and_by_approach() {
     for &i in &firsts {
         let (d, force) = (i as f64 / 8.0, (i * (i + 1)) as f64 / 64.0);
         let expected = Support { force, approach: d, stiffness: 0.25 * i as f64, elements: i };
-        assert_eq!(bearing.press(Load::Approach(d), 1.0).unwrap(), expected);
-        assert_eq!(bearing.press(Load::Force(force), 1.0).unwrap(), expected);
+        assert_eq!(bearing.press(NormalLoad::Approach(d), 1.0).unwrap(), expected);
+        assert_eq!(bearing.press(NormalLoad::Force(force), 1.0).unwrap(), expected);
     }
 }
 
@@ -168,7 +168,8 @@ fn a_kink_between_two_bins_is_one_state_by_force_and_by_approach() {
 fn earlier_loads_change_no_bit() {
     let line = long_line(20_000);
     let mut used = Bearing::new(&line);
-    let loads: Vec<Load> = (0..30).map(|i| Load::Force(1e4 * 10_f64.powf(-f64::from(i) / 4.0))).collect();
+    let loads: Vec<NormalLoad> =
+        (0..30).map(|i| NormalLoad::Force(1e4 * 10_f64.powf(-f64::from(i) / 4.0))).collect();
     let forward: Vec<Support> = loads.iter().map(|&l| used.press(l, 1.0).unwrap()).collect();
     for (&load, first) in loads.iter().zip(&forward).rev() {
         assert_eq!(&used.press(load, 1.0).unwrap(), first);
@@ -181,10 +182,10 @@ fn a_rebuilt_bearing_is_a_new_one() {
     let mut used = Bearing::new(&long_line(20_000));
     for elements in [3_000, 1, 30_000, 20_000] {
         let line = long_line(elements);
-        used.press(Load::Force(1.0), 1.0).unwrap();
+        used.press(NormalLoad::Force(1.0), 1.0).unwrap();
         used.rebuild(&line);
         for force in [1e-6, 1e-2, 1e2, 1e5] {
-            let load = Load::Force(force);
+            let load = NormalLoad::Force(force);
             assert_eq!(used.press(load, 1.0).unwrap(), Bearing::new(&line).press(load, 1.0).unwrap());
         }
     }
@@ -193,14 +194,14 @@ fn a_rebuilt_bearing_is_a_new_one() {
 #[test]
 fn extreme_units() {
     let base = long_line(3000);
-    let reference = Bearing::new(&base).press(Load::Approach(0.3), 1.0).unwrap();
+    let reference = Bearing::new(&base).press(NormalLoad::Approach(0.3), 1.0).unwrap();
     for (contact_modulus, horizontal, vertical) in
         [(1e150, 1e-150, 1e-150), (1e-150, 1e150, 1e150), (1e-150, 1e150, 1e-150), (1e150, 1e150, 1e-170)]
     {
         let heights = base.heights().iter().map(|h| h * vertical).collect();
         let line = Line::new(base.length() * horizontal, heights).unwrap();
         let mut bearing = Bearing::new(&line);
-        let s = bearing.press(Load::Approach(0.3 * vertical), contact_modulus).unwrap();
+        let s = bearing.press(NormalLoad::Approach(0.3 * vertical), contact_modulus).unwrap();
         // Scaling by a power of ten rounds every height: a few units in the last place of the height, over d.
         let expected = Nondimensionalisation::new(contact_modulus, horizontal, vertical)
             .unwrap()
@@ -208,16 +209,16 @@ fn extreme_units() {
             .unwrap();
         assert_relative_eq!(s.force, expected, max_relative = 1e-13);
         assert_eq!(s.elements, reference.elements);
-        let back = bearing.press(Load::Force(s.force), contact_modulus).unwrap();
+        let back = bearing.press(NormalLoad::Force(s.force), contact_modulus).unwrap();
         assert_relative_eq!(back.approach, s.approach, max_relative = ROUNDING);
     }
     let mut bearing = Bearing::new(&line(vec![1e200, 0.0]));
-    assert!(matches!(bearing.press(Load::Approach(1e200), 1e150), Err(Error::Domain { .. })));
-    assert!(matches!(bearing.press(Load::Force(1e300), 1e-300), Err(Error::Domain { .. })));
-    assert!(matches!(bearing.press(Load::Force(1e-300), 1e300), Err(Error::Domain { .. })));
-    assert!(bearing.press(Load::Force(-1.0), 1.0).is_err());
-    assert!(bearing.press(Load::Approach(f64::NAN), 1.0).is_err());
-    assert!(bearing.press(Load::Force(1.0), 0.0).is_err());
+    assert!(matches!(bearing.press(NormalLoad::Approach(1e200), 1e150), Err(Error::Domain { .. })));
+    assert!(matches!(bearing.press(NormalLoad::Force(1e300), 1e-300), Err(Error::Domain { .. })));
+    assert!(matches!(bearing.press(NormalLoad::Force(1e-300), 1e300), Err(Error::Domain { .. })));
+    assert!(bearing.press(NormalLoad::Force(-1.0), 1.0).is_err());
+    assert!(bearing.press(NormalLoad::Approach(f64::NAN), 1.0).is_err());
+    assert!(bearing.press(NormalLoad::Force(1.0), 0.0).is_err());
 }
 
 /// Heights on a grid of 1/8, so that ties, kinks and offsets by integers are exact.
@@ -232,10 +233,10 @@ proptest! {
     fn equals_the_sums(heights in prop::collection::vec(-1.0_f64..1.0, 1..300), d in 1e-6_f64..3.0) {
         let line = line(heights);
         let (mut bearing, reference) = (Bearing::new(&line), Reference::new(&line));
-        let s = bearing.press(Load::Approach(d), 2.0).unwrap();
+        let s = bearing.press(NormalLoad::Approach(d), 2.0).unwrap();
         assert_relative_eq!(s.force, reference.force(d, 2.0), max_relative = ROUNDING);
         prop_assert_eq!(s.elements, reference.elements(d));
-        let back = bearing.press(Load::Force(s.force), 2.0).unwrap();
+        let back = bearing.press(NormalLoad::Force(s.force), 2.0).unwrap();
         assert_relative_eq!(back.approach, reference.approach(s.force, 2.0), max_relative = ROUNDING);
         assert_relative_eq!(back.approach, d, max_relative = ROUNDING);
     }
@@ -247,8 +248,8 @@ proptest! {
         let reference = Reference::new(&line);
         let d = reference.depths[i % reference.depths.len()];
         let mut bearing = Bearing::new(&line);
-        let by_approach = bearing.press(Load::Approach(d), 1.0).unwrap();
-        let by_force = bearing.press(Load::Force(reference.force(d, 1.0)), 1.0).unwrap();
+        let by_approach = bearing.press(NormalLoad::Approach(d), 1.0).unwrap();
+        let by_force = bearing.press(NormalLoad::Force(reference.force(d, 1.0)), 1.0).unwrap();
         prop_assert_eq!(by_approach.elements, reference.elements(d));
         prop_assert_eq!(by_force, by_approach);
     }
@@ -259,16 +260,16 @@ proptest! {
         moved.reverse();
         let middle = moved.len() / 2;
         moved.rotate_left(middle);
-        let a = Bearing::new(&line(heights)).press(Load::Force(force), 1.0).unwrap();
-        let b = Bearing::new(&line(moved)).press(Load::Force(force), 1.0).unwrap();
+        let a = Bearing::new(&line(heights)).press(NormalLoad::Force(force), 1.0).unwrap();
+        let b = Bearing::new(&line(moved)).press(NormalLoad::Force(force), 1.0).unwrap();
         prop_assert_eq!(a, b);
     }
 
     #[test]
     fn a_line_twice_carries_twice(heights in grid_heights(), d in 0.0_f64..20.0) {
         let twice: Vec<f64> = heights.iter().chain(&heights).copied().collect();
-        let a = Bearing::new(&line(heights)).press(Load::Approach(d), 1.0).unwrap();
-        let b = Bearing::new(&line(twice)).press(Load::Approach(d), 1.0).unwrap();
+        let a = Bearing::new(&line(heights)).press(NormalLoad::Approach(d), 1.0).unwrap();
+        let b = Bearing::new(&line(twice)).press(NormalLoad::Approach(d), 1.0).unwrap();
         assert_relative_eq!(b.force, 2.0 * a.force, max_relative = ROUNDING);
         prop_assert_eq!(b.elements, 2 * a.elements);
     }
@@ -277,7 +278,7 @@ proptest! {
     fn convex_and_its_slope_is_k(heights in prop::collection::vec(-1.0_f64..1.0, 1..300), d in 0.01_f64..3.0) {
         // F(d +- e) lie on or above the tangent, and on it where no element touches in between.
         let mut bearing = Bearing::new(&line(heights));
-        let mut at = |d| bearing.press(Load::Approach(d), 1.0).unwrap();
+        let mut at = |d| bearing.press(NormalLoad::Approach(d), 1.0).unwrap();
         let (below, here, above) = (at(d * 0.99), at(d), at(d * 1.01));
         prop_assert!(below.stiffness <= here.stiffness && here.stiffness <= above.stiffness);
         let slack = ROUNDING * above.force;

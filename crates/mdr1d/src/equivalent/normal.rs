@@ -2,8 +2,8 @@
 
 use crate::tabulated::{Node, Tabulated};
 use contact_model::{
-    ContactState, Error, Load, Nondimensionalisation, Normalisation, Outputs, PreparedContact, Result, Stop,
-    Work,
+    ContactState, Error, Nondimensionalisation, NormalLoad, Normalisation, Outputs, PreparedContact, Result,
+    Stop, Work,
 };
 use std::sync::Arc;
 
@@ -85,9 +85,9 @@ impl Normal {
     }
 
     /// M's state under a load, and the same as a node.
-    pub fn solve(&mut self, load: Load, stop: Stop<'_>) -> Result<(ContactState, Node)> {
+    pub fn solve(&mut self, load: NormalLoad, stop: Stop<'_>) -> Result<(ContactState, Node)> {
         let contact = self.full.as_mut().unwrap_or(&mut self.contact);
-        let state = contact.solve_until(load, stop)?;
+        let state = contact.solve_until(load.into(), stop)?;
         self.spent.add(&state);
         let node = self.node(&state)?;
         Ok((state, node))
@@ -157,8 +157,8 @@ impl Normal {
         let mut nodes = Vec::new();
         for place in from..=to {
             let approach = unit * 10.0_f64.powf(f64::from(place) / self.per_decade);
-            let load = Load::Approach(self.nondimensional.approach(approach)?);
-            let state = self.contact.solve_until(load, stop)?;
+            let load = NormalLoad::Approach(self.nondimensional.approach(approach)?);
+            let state = self.contact.solve_until(load.into(), stop)?;
             self.spent.add(&state);
             let node = self.node(&state)?;
             if node.force <= 0.0 {

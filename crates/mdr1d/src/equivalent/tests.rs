@@ -2,8 +2,9 @@ use super::*;
 use crate::{Mdr1d, PartialSlip, Viscoelastic};
 use approx::assert_relative_eq;
 use contact_model::{
-    Abilities, Adhesion, Body, Conductance, ContactModel, ContactState, Load, Output, Pair, PreparedContact,
-    PronySeries, Relaxing, Rheology, SelfAffine, SolveReport, Step, Stop, Surface, SurfaceKind,
+    Abilities, Adhesion, Body, Conductance, ContactModel, ContactState, Load, NormalLoad, Output, Pair,
+    PreparedContact, PronySeries, Relaxing, Rheology, SelfAffine, SolveReport, Step, Stop, Surface,
+    SurfaceKind,
 };
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -40,7 +41,7 @@ fn equivalent(per_decade: u32) -> Equivalent<Mdr1d> {
 }
 
 fn step(normal: f64, tangential: Tangential) -> Step {
-    Step { time: 0.0, normal: Load::Force(normal), tangential }
+    Step::new(0.0, Load::force(normal).with_tangential(tangential))
 }
 
 const SOLID: Rheology = Rheology::StandardSolid { arm: Relaxing { weight: 3.0, time: 2.0 } };
@@ -108,14 +109,14 @@ fn a_step_of_a_viscoelastic_sphere_is_the_models_own_force_times_the_modulus() {
     let mut contact = equivalent(8).prepare(&scene, 0).unwrap();
     let elastic = 4.0 / 3.0 * 0.01_f64.powf(1.5);
     for time in [0.0, 0.3, 4.0, 1e5] {
-        let state = contact.advance(Step::normal(time, Load::Approach(0.01))).unwrap();
+        let state = contact.advance(Step::new(time, Load::approach(0.01))).unwrap();
         let contact_modulus = 1.0 + 3.0 * (-time / 2.0_f64).exp();
         assert_relative_eq!(state.force, contact_modulus * elastic, max_relative = 1e-12);
     }
     // A ramp needs the profile: the difference from exact springs falls with the nodes.
     let arms = [Relaxing { weight: 2.0, time: 0.1 }, Relaxing { weight: 1.0, time: 3.0 }];
     let scene = creeping(sphere(), Rheology::Prony(PronySeries::new(&arms).unwrap()));
-    let path = [(0.5, 0.01), (3.0, 0.012), (3.5, 0.03)].map(|(t, d)| Step::normal(t, Load::Approach(d)));
+    let path = [(0.5, 0.01), (3.0, 0.012), (3.5, 0.03)].map(|(t, d)| Step::new(t, Load::approach(d)));
     let exact = Viscoelastic.prepare(&scene, 0).unwrap().follow(&path).unwrap();
     let error = |per_decade: u32| {
         let found = equivalent(per_decade).prepare(&scene, 0).unwrap().follow(&path).unwrap();
@@ -124,7 +125,7 @@ fn a_step_of_a_viscoelastic_sphere_is_the_models_own_force_times_the_modulus() {
     let (coarse, fine) = (error(4), error(16));
     assert!(coarse / fine > 30.0 && fine < 1e-6, "{coarse:e} {fine:e}");
     // By force: Phi in closed form, and d from the model itself.
-    let path = [(0.5, 0.001), (3.0, 0.002), (9.0, 0.0019)].map(|(t, f)| Step::normal(t, Load::Force(f)));
+    let path = [(0.5, 0.001), (3.0, 0.002), (9.0, 0.0019)].map(|(t, f)| Step::new(t, Load::force(f)));
     let exact = Viscoelastic.prepare(&scene, 0).unwrap().follow(&path).unwrap();
     let found = equivalent(4).prepare(&scene, 0).unwrap().follow(&path).unwrap();
     for (a, b) in found.iter().zip(&exact) {
@@ -145,7 +146,7 @@ fn the_normal_part_is_the_models_own() {
     for normal in [1e-3, 4e-3, 2e-3, 0.0, 1e-2] {
         let normal = contact.normalisation().force(normal).unwrap();
         let state = contact.advance(step(normal, Tangential::force_along_x(0.3 * MU * normal))).unwrap();
-        let there = own.solve(Load::Force(normal)).unwrap();
+        let there = own.solve(Load::force(normal)).unwrap();
         assert_eq!(
             (state.force, state.approach, state.stiffness),
             (there.force, there.approach, there.stiffness)
@@ -163,7 +164,7 @@ fn limits_of_friction_on_a_rough_surface() {
         let mut contact = equivalent(16).prepare(&scene, 5).unwrap();
         let normal = contact.normalisation().force(0.05).unwrap();
         let first = contact.advance(step(normal, Tangential::force_along_x(0.0))).unwrap();
-        let then = contact.advance(Step { time: 0.0, normal: Load::Force(normal), tangential });
+        let then = contact.advance(Step::new(0.0, Load::force(normal).with_tangential(tangential)));
         (first, then)
     };
     let shear = rubber().shear_modulus().unwrap() / rubber().contact_modulus().unwrap();
@@ -227,9 +228,9 @@ impl PreparedContact for ScriptedContact {
             return Err(Error::Stopped { best: None });
         }
         self.solves.fetch_add(1, Ordering::Relaxed);
-        let d = match load {
-            Load::Approach(d) => d,
-            Load::Force(f) => (0.75 * f).powf(2.0 / 3.0),
+        let d = match load.normal {
+            NormalLoad::Approach(d) => d,
+            NormalLoad::Force(f) => (0.75 * f).powf(2.0 / 3.0),
             other => return Err(Error::unsupported("told", format!("{other:?}"))),
         };
         Ok(ContactState::new(4.0 / 3.0 * d.powf(1.5), SolveReport::exact("told"))
@@ -243,10 +244,11 @@ fn contacts_that_do_not_grow_are_refused_and_leave_no_trace() {
     static SOLVES: AtomicUsize = AtomicUsize::new(0);
     let model = Equivalent::new(Scripted { factor: |d| if d > 0.005 { 0.8 } else { 1.0 }, solves: &SOLVES });
     let mut contact = model.prepare(&sliding(sphere()), 0).unwrap();
-    let held =
-        Step { time: 0.0, normal: Load::Approach(0.003), tangential: Tangential::displacement_along_x(1e-4) };
+    let held = Step::new(0.0, Load::approach(0.003).with_tangential(Tangential::displacement_along_x(1e-4)));
     let before = contact.advance(held).unwrap().tangential.unwrap();
-    let error = contact.advance(Step { normal: Load::Approach(0.008), ..held }).unwrap_err();
+    let error = contact
+        .advance(Step { load: Load::approach(0.008).with_tangential(held.load.tangential), ..held })
+        .unwrap_err();
     assert!(matches!(error, Error::OutOfRange { .. }) && error.to_string().contains("grows"), "{error}");
     assert_eq!(contact.advance(held).unwrap().tangential.unwrap(), before);
 }
@@ -256,7 +258,7 @@ fn a_stop_between_nodes_leaves_no_trace() {
     static SOLVES: AtomicUsize = AtomicUsize::new(0);
     let model = Equivalent::new(Scripted { factor: |_| 1.0, solves: &SOLVES });
     let mut contact = model.prepare(&sliding(sphere()), 0).unwrap();
-    let step = Step::normal(1.0, Load::Approach(0.01));
+    let step = Step::new(1.0, Load::approach(0.01));
     let stop = || SOLVES.load(Ordering::Relaxed) >= 7;
     let error = contact.advance_until(step, &stop).unwrap_err();
     assert!(matches!(error, Error::Stopped { .. }));
@@ -296,7 +298,7 @@ fn nodes_are_solved_once() {
     };
     let mut contact = model.prepare(&sliding(sphere()), 0).unwrap();
     assert_eq!(solves(), 0, "nothing before the first step");
-    let mut press = |d: f64| contact.advance(Step::normal(0.0, Load::Approach(d))).map(|_| ());
+    let mut press = |d: f64| contact.advance(Step::new(0.0, Load::approach(d))).map(|_| ());
     press(0.01).unwrap();
     assert_eq!(solves(), 1 + 21);
     press(0.01).unwrap();
@@ -306,7 +308,7 @@ fn nodes_are_solved_once() {
     assert_eq!(solves(), 1 + 10);
     press(0.0).unwrap();
     contact.restart();
-    assert!(contact.advance(Step::normal(0.0, Load::Approach(0.1))).is_ok());
+    assert!(contact.advance(Step::new(0.0, Load::approach(0.1))).is_ok());
     assert_eq!(solves(), 2, "a restart keeps the table");
 }
 
@@ -314,13 +316,13 @@ fn nodes_are_solved_once() {
 fn growth_in_time_is_checked() {
     let mut contact = equivalent(8).prepare(&creeping(rough(), SOLID), 3).unwrap();
     let unit = contact.normalisation().height.unwrap();
-    let state = contact.advance(Step::normal(1.0, Load::Approach(unit))).unwrap();
-    let error = contact.advance(Step::normal(2.0, Load::Approach(0.9 * unit))).unwrap_err();
+    let state = contact.advance(Step::new(1.0, Load::approach(unit))).unwrap();
+    let error = contact.advance(Step::new(2.0, Load::approach(0.9 * unit))).unwrap_err();
     assert!(matches!(error, Error::OutOfRange { max, .. } if (max - 1.0).abs() < 1e-12), "{error}");
     // Relaxed: what M carries, at the same approach.
-    let late = contact.advance(Step::normal(1e6, Load::Approach(unit))).unwrap();
+    let late = contact.advance(Step::new(1e6, Load::approach(unit))).unwrap();
     let elastic = Scene { effects: Effects::default(), ..creeping(rough(), SOLID) };
-    let own = Mdr1d { elements: 1 << 12 }.prepare(&elastic, 3).unwrap().solve(Load::Approach(unit)).unwrap();
+    let own = Mdr1d { elements: 1 << 12 }.prepare(&elastic, 3).unwrap().solve(Load::approach(unit)).unwrap();
     assert_relative_eq!(late.force, own.force, max_relative = 1e-12);
     assert!(state.force > late.force);
     // Creep of a fluid goes on beyond every table that was there before.
@@ -328,7 +330,7 @@ fn growth_in_time_is_checked() {
         equivalent(8).prepare(&creeping(rough(), Rheology::Maxwell { viscosity: 1.0 }), 3).unwrap();
     let force = contact.normalisation().force(1e-3).unwrap();
     let depths = [0.0, 1.0, 100.0, 1e4]
-        .map(|t| contact.advance(Step::normal(t, Load::Force(force))).unwrap().approach.unwrap());
+        .map(|t| contact.advance(Step::new(t, Load::force(force))).unwrap().approach.unwrap());
     assert!(depths.windows(2).all(|d| d[1] > d[0]), "{depths:?}");
 }
 
@@ -370,12 +372,14 @@ fn a_straight_piece_is_the_sum_of_its_parts() {
             for cut in cuts.iter().chain(&[1.0]) {
                 let [d, u] = [0, 1].map(|i| from[i] + cut * (corner[i] - from[i]));
                 let tangential = Tangential::displacement_along_x(u * unit);
-                contact.advance(Step { time: 0.0, normal: Load::Approach(d * unit), tangential }).unwrap();
+                contact
+                    .advance(Step::new(0.0, Load::approach(d * unit).with_tangential(tangential)))
+                    .unwrap();
             }
             from = corner;
         }
         let last = Tangential::displacement_along_x(from[1] * unit);
-        let step = Step { time: 0.0, normal: Load::Approach(from[0] * unit), tangential: last };
+        let step = Step::new(0.0, Load::approach(from[0] * unit).with_tangential(last));
         let tangential = contact.advance(step).unwrap().tangential.unwrap();
         [tangential.force[0], tangential.dissipated]
     };

@@ -1,8 +1,8 @@
 use super::*;
 use approx::assert_relative_eq;
 use contact_model::{
-    Adhesion, Boundary, Conductance, Effects, HeightMap, Load, Nondimensionalisation, PreparedContact,
-    SelfAffine, line_length,
+    Adhesion, Boundary, Conductance, Effects, HeightMap, Load, Nondimensionalisation, NormalLoad,
+    PreparedContact, SelfAffine, line_length,
 };
 use std::sync::Arc;
 
@@ -32,7 +32,7 @@ fn a_rough_line_claims_force_approach_and_stiffness() {
     let mut contact = prepare(&scene(rough(2.4)), 1);
     let normalisation = contact.normalisation();
     assert_relative_eq!(normalisation.rms_height().unwrap(), 0.1, max_relative = 1e-12);
-    let s = contact.solve(Load::Force(normalisation.force(0.086).unwrap())).unwrap();
+    let s = contact.solve(Load::force(normalisation.force(0.086).unwrap())).unwrap();
     assert!(s.area.is_none() && s.fields.is_none() && s.approach.is_some());
     let cells = s.report.contact_cells.unwrap();
     assert!(cells > 10 && cells < 1 << 12);
@@ -42,7 +42,7 @@ fn a_rough_line_claims_force_approach_and_stiffness() {
         max_relative = ROUNDING
     );
     // The plateau of the paper's Eq. 18: k_bar = 1.128379 / 1.1419.
-    let s = contact.solve(Load::Force(normalisation.force(1e3).unwrap())).unwrap();
+    let s = contact.solve(Load::force(normalisation.force(1e3).unwrap())).unwrap();
     assert_relative_eq!(normalisation.stiffness_bar(s.stiffness.unwrap()), 0.988_159, max_relative = 1e-6);
 }
 
@@ -50,7 +50,7 @@ fn a_rough_line_claims_force_approach_and_stiffness() {
 fn seeds_matter_and_a_given_line_is_the_same() {
     let surface = SelfAffine::new(2.2, 1.0, 1.0).unwrap();
     let drawn = scene(Surface::SelfAffine(surface));
-    let load = Load::Force(0.01);
+    let load = Load::force(0.01);
     let first = prepare(&drawn, 1).solve(load).unwrap();
     assert_eq!(first, prepare(&drawn, 1).solve(load).unwrap());
     assert_ne!(first, prepare(&drawn, 2).solve(load).unwrap());
@@ -63,9 +63,9 @@ fn seeds_matter_and_a_given_line_is_the_same() {
 fn what_is_not_asked_is_not_there() {
     let mut silent = scene(rough(2.0));
     silent.outputs.stiffness = false;
-    assert!(prepare(&silent, 0).solve(Load::Force(1.0)).unwrap().stiffness.is_none());
+    assert!(prepare(&silent, 0).solve(Load::force(1.0)).unwrap().stiffness.is_none());
     let sphere = scene(Surface::Sphere { radius: 1.0, size: 1.0.into() });
-    assert!(prepare(&sphere, 0).solve(Load::Force(1e-3)).unwrap().area.is_none());
+    assert!(prepare(&sphere, 0).solve(Load::force(1e-3)).unwrap().area.is_none());
 }
 
 #[test]
@@ -79,12 +79,12 @@ fn bodies_in_three_dimensions() {
     ] {
         let mut contact = prepare(&asking_for_area(surface), 0);
         assert!(contact.normalisation().height.is_none());
-        let s = contact.solve(Load::Force(1e-3)).unwrap();
+        let s = contact.solve(Load::force(1e-3)).unwrap();
         let radius = s.stiffness.unwrap() / (2.0 * contact_modulus);
         assert_relative_eq!(s.area.unwrap(), std::f64::consts::PI * radius * radius, max_relative = ROUNDING);
-        let back = contact.solve(Load::Approach(s.approach.unwrap())).unwrap();
+        let back = contact.solve(Load::approach(s.approach.unwrap())).unwrap();
         assert_relative_eq!(back.force, 1e-3, max_relative = ROUNDING);
-        let zero = contact.solve(Load::Approach(0.0)).unwrap();
+        let zero = contact.solve(Load::approach(0.0)).unwrap();
         assert!(zero.force <= 0.0 && zero.stiffness.unwrap() <= 0.0 && zero.area.unwrap() <= 0.0);
     }
 }
@@ -95,7 +95,7 @@ fn hertz_in_any_units() {
     for (contact_modulus, radius) in [(1.0, 1.0), (1e150, 1e-150), (1e-150, 1e150), (1e11, 1e-3)] {
         let scene = Scene::new(Surface::Sphere { radius, size: radius.into() }, contact_modulus);
         let force = Nondimensionalisation::new(contact_modulus, radius, radius).unwrap().force(1e-3).unwrap();
-        let s = prepare(&scene, 0).solve(Load::Force(force)).unwrap();
+        let s = prepare(&scene, 0).solve(Load::force(force)).unwrap();
         assert_relative_eq!(
             s.stiffness.unwrap() / contact_modulus / radius,
             2.0 * 0.090_856_029_642,
@@ -108,11 +108,11 @@ fn hertz_in_any_units() {
 #[test]
 fn a_contact_that_leaves_the_square_is_refused() {
     let mut contact = prepare(&scene(Surface::Sphere { radius: 1.0, size: 1.0.into() }), 0);
-    assert!(contact.solve(Load::Approach(0.25)).is_ok());
-    let e = contact.solve(Load::Approach(0.36)).unwrap_err();
+    assert!(contact.solve(Load::approach(0.25)).is_ok());
+    let e = contact.solve(Load::approach(0.36)).unwrap_err();
     assert!(matches!(e, Error::OutOfRange { value, max, .. } if value > 0.59 && max < 0.51), "{e}");
-    assert!(contact.solve(Load::Approach(-1.0)).is_err());
-    assert!(contact.solve(Load::Force(f64::INFINITY)).is_err());
+    assert!(contact.solve(Load::approach(-1.0)).is_err());
+    assert!(contact.solve(Load::force(f64::INFINITY)).is_err());
 }
 
 #[test]
@@ -142,7 +142,7 @@ fn what_the_model_lacks_is_refused() {
     }
     assert!(Mdr1d { elements: 0 }.prepare(&scene(rough(2.0)), 0).is_err());
     let mut stopped = prepare(&scene(rough(2.0)), 0);
-    assert!(matches!(stopped.solve_until(Load::Force(1.0), &|| true), Err(Error::Stopped { best: None })));
+    assert!(matches!(stopped.solve_until(Load::force(1.0), &|| true), Err(Error::Stopped { best: None })));
 }
 
 #[test]
@@ -154,7 +154,7 @@ fn an_ensemble_gives_the_same_bits_with_memory_used_before() {
         let mut kept = ensemble.prepare(&scene, seed).unwrap();
         let mut fresh = Mdr1d { elements: 4097 }.prepare(&scene, seed).unwrap();
         for force in [1e-6, 1e-2, 3.0] {
-            let [a, b] = [&mut kept, &mut fresh].map(|c| c.solve(Load::Force(force)).unwrap());
+            let [a, b] = [&mut kept, &mut fresh].map(|c| c.solve(Load::force(force)).unwrap());
             assert_eq!((a.approach, a.stiffness), (b.approach, b.stiffness));
         }
         assert_eq!(kept.normalisation(), fresh.normalisation());
@@ -176,7 +176,7 @@ fn adhesion_of_a_sphere_behind_the_trait() {
         scene.effects.adhesion = Adhesion::ShortRange { work: 0.01 * (contact_modulus * length) };
         scene.outputs.stiffness_fixed_area = true;
         let mut contact = prepare(&scene, 0);
-        let s = contact.solve(Load::Force(0.0)).unwrap();
+        let s = contact.solve(Load::force(0.0)).unwrap();
         // Of the held area 2 E* a, along the branch 3/5 of it.
         let [held, along] =
             [s.stiffness_fixed_area, s.stiffness].map(|k| k.unwrap() / contact_modulus / length);
@@ -184,12 +184,12 @@ fn adhesion_of_a_sphere_behind_the_trait() {
         assert_relative_eq!(along, 1.2 * 0.520_939_707_9, max_relative = 1e-9);
         let nondimensional = Nondimensionalisation::new(contact_modulus, length, length).unwrap();
         let pull_off = -nondimensional.force(0.015 * std::f64::consts::PI).unwrap();
-        assert!(contact.solve(Load::Force(0.999 * pull_off)).is_ok());
-        let e = contact.solve(Load::Force(1.001 * pull_off)).unwrap_err();
+        assert!(contact.solve(Load::force(0.999 * pull_off)).is_ok());
+        let e = contact.solve(Load::force(1.001 * pull_off)).unwrap_err();
         let Error::OutOfRange { min, ref name, .. } = e else { panic!("{e}") };
         assert!(name.contains("pulls off"));
         assert_relative_eq!(min, pull_off, max_relative = 1e-13);
-        assert!(contact.solve(Load::Approach(-length)).is_err());
+        assert!(contact.solve(Load::approach(-length)).is_err());
     }
 }
 
@@ -217,16 +217,16 @@ fn the_stiffness_of_an_adhesive_body_is_the_slope_of_its_branch() {
             Err(Error::OutOfRange { min, .. }) => min,
             other => panic!("{other:?}"),
         };
-        let by_force = pull_off(Load::Force(-1e3));
-        let by_approach = pull_off(Load::Approach(-1e3));
+        let by_force = pull_off(Load::force(-1e3));
+        let by_approach = pull_off(Load::approach(-1e3));
         let shares = [-0.95, -0.5, -0.1, 0.2, 3.0];
-        let forces = shares.map(|share| Load::Force(share * by_force.abs()));
-        let approaches = shares.map(|share| Load::Approach(share * by_approach.abs()));
+        let forces = shares.map(|share| Load::force(share * by_force.abs()));
+        let approaches = shares.map(|share| Load::approach(share * by_approach.abs()));
         for load in forces.into_iter().chain(approaches) {
             let here = contact.solve(load).unwrap();
-            let mut at = |by: f64| match load {
-                Load::Force(force) => contact.solve(Load::Force(by * force)).unwrap(),
-                Load::Approach(approach) => contact.solve(Load::Approach(by * approach)).unwrap(),
+            let mut at = |by: f64| match load.normal {
+                NormalLoad::Force(force) => contact.solve(Load::force(by * force)).unwrap(),
+                NormalLoad::Approach(approach) => contact.solve(Load::approach(by * approach)).unwrap(),
                 other => panic!("{other:?}"),
             };
             let (low, high) = (at(1.0 - STEP), at(1.0 + STEP));
@@ -238,20 +238,20 @@ fn the_stiffness_of_an_adhesive_body_is_the_slope_of_its_branch() {
             let conductance = scene.outputs.conductance.of(held, scene.contact_modulus).unwrap().unwrap();
             assert_relative_eq!(here.conductance.unwrap(), conductance, max_relative = ROUNDING);
         }
-        let fold = contact.solve(Load::Force(by_force)).unwrap();
+        let fold = contact.solve(Load::force(by_force)).unwrap();
         let ratio = fold.stiffness.unwrap() / fold.stiffness_fixed_area.unwrap();
         assert!(ratio.abs() < 1e-6, "{surface:?} {ratio}");
-        let fold = contact.solve(Load::Approach(by_approach)).unwrap();
+        let fold = contact.solve(Load::approach(by_approach)).unwrap();
         assert!(fold.stiffness.is_none() && fold.stiffness_fixed_area.unwrap() > 0.0, "{surface:?}");
         // Between the two pull-offs the force falls with the approach.
-        let drawn = contact.solve(Load::Approach(0.99 * by_approach)).unwrap();
+        let drawn = contact.solve(Load::approach(0.99 * by_approach)).unwrap();
         assert!(drawn.stiffness.unwrap() < 0.0, "{surface:?}");
     }
     // The edge of a punch stays where it is.
     let mut scene = scene(Surface::FlatCircle { radius: 0.1, size: 1.0.into() });
     scene.effects.adhesion = Adhesion::ShortRange { work: 1e-3 };
     scene.outputs.stiffness_fixed_area = true;
-    for load in [Load::Force(-1e-4), Load::Force(1e-3), Load::Approach(-1e-4)] {
+    for load in [Load::force(-1e-4), Load::force(1e-3), Load::approach(-1e-4)] {
         let state = prepare(&scene, 0).solve(load).unwrap();
         assert_relative_eq!(state.stiffness.unwrap(), 0.4, max_relative = ROUNDING);
         assert_eq!(state.stiffness, state.stiffness_fixed_area);
@@ -290,9 +290,9 @@ fn a_map_is_pressed_through_its_line() {
     assert_relative_eq!(normalisation.length, 2.0_f64.sqrt());
     let force = normalisation.force(0.01).unwrap();
     let [one, same, other] =
-        contacts.each_mut().map(|c| c.solve(Load::Force(force)).unwrap().stiffness.unwrap());
+        contacts.each_mut().map(|c| c.solve(Load::force(force)).unwrap().stiffness.unwrap());
     assert!(one.to_bits() == same.to_bits() && one.to_bits() != other.to_bits());
-    let full = contacts[0].solve(Load::Force(normalisation.force(1e3).unwrap())).unwrap();
+    let full = contacts[0].solve(Load::force(normalisation.force(1e3).unwrap())).unwrap();
     let plateau = crate::rule::full_contact_stiffness(on_map.contact_modulus, normalisation.length);
     assert_relative_eq!(full.stiffness.unwrap(), plateau, max_relative = 1e-12);
 }

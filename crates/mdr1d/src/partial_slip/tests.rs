@@ -17,7 +17,7 @@ fn sphere(length: f64) -> Surface {
 }
 
 fn step(normal: f64, tangential: Tangential) -> Step {
-    Step { time: 0.0, normal: Load::Force(normal), tangential }
+    Step::new(0.0, Load::force(normal).with_tangential(tangential))
 }
 
 #[test]
@@ -30,7 +30,7 @@ fn reference_numbers_in_any_units() {
         let force = 0.01 * length * length;
         for (share, ratio) in [(0.25, 0.908_560_296_4), (0.5, 0.793_700_526_0), (0.9, 0.464_158_883_4)] {
             contact.restart();
-            contact.advance(Step::normal(0.0, Load::Force(force))).unwrap();
+            contact.advance(Step::new(0.0, Load::force(force))).unwrap();
             let state = contact.advance(step(force, Tangential::force_along_x(share * 0.4 * force))).unwrap();
             let (a, tangential) = (state.contact_radius.unwrap(), state.tangential.unwrap());
             assert_relative_eq!(tangential.stick_radius.unwrap() / a, ratio, max_relative = 1e-9);

@@ -28,11 +28,11 @@ fn prepare(surface: Surface, rheology: Rheology) -> Box<dyn PreparedContact> {
 }
 
 fn force(contact: &mut dyn PreparedContact, time: f64, approach: f64) -> f64 {
-    contact.advance(Step::normal(time, Load::Approach(approach))).unwrap().force
+    contact.advance(Step::new(time, Load::approach(approach))).unwrap().force
 }
 
 fn approach(contact: &mut dyn PreparedContact, time: f64, force: f64) -> f64 {
-    let state = contact.advance(Step::normal(time, Load::Force(force))).unwrap();
+    let state = contact.advance(Step::new(time, Load::force(force))).unwrap();
     assert!(state.report.certificate.load_error < 1e-11);
     state.approach.unwrap()
 }
@@ -111,7 +111,7 @@ fn ramps_in_closed_form() {
     // And at rest: elastic at once.
     let held = force(&mut *contact, 4.0, 3.0 * v);
     assert_relative_eq!(held, factor * 4.0 * (3.0 * v) * (3.0 * v), max_relative = ROUNDING);
-    assert!(contact.advance(Step::normal(4.0, Load::Approach(0.1))).is_err());
+    assert!(contact.advance(Step::new(4.0, Load::approach(0.1))).is_err());
 }
 
 #[test]
@@ -124,7 +124,7 @@ fn in_any_units() {
         let mut contact = Viscoelastic.prepare(&scene, 0).unwrap();
         let nondimensional = Nondimensionalisation::new(contact_modulus, length, length).unwrap();
         let force = nondimensional.force(1e-3).unwrap();
-        contact.advance(Step::normal(1.0, Load::Force(force))).unwrap().approach.unwrap() / length
+        contact.advance(Step::new(1.0, Load::force(force))).unwrap().approach.unwrap() / length
     };
     for (length, contact_modulus) in [(1e-150, 1e150), (1e150, 1e-150), (1e-3, 1e6)] {
         assert_relative_eq!(run(length, contact_modulus), run(1.0, 1.0), max_relative = ROUNDING);
@@ -138,24 +138,24 @@ fn the_time_of_shrinking_is_named() {
     let mut contact = prepare(sphere(), Rheology::KelvinVoigt { viscosity: 2.0 });
     approach(&mut *contact, 0.0, 0.01);
     approach(&mut *contact, 1.0, 0.01);
-    let error = contact.advance(Step::normal(11.0, Load::Force(0.0))).unwrap_err();
+    let error = contact.advance(Step::new(11.0, Load::force(0.0))).unwrap_err();
     let Error::OutOfRange { max, value, ref name, .. } = error else { panic!("{error}") };
     assert!(max > 1.0 && max < 11.0 && value > 10.9 && name.contains("shrink"));
     // Up to there it can be followed; there the speed is 0: Phi' = (F - E* Phi)/(4 eta).
     let force = 0.01 * (11.0 - max) / 10.0;
-    let state = contact.advance(Step::normal(max, Load::Force(force))).unwrap();
+    let state = contact.advance(Step::new(max, Load::force(force))).unwrap();
     let d = state.approach.unwrap();
     assert_relative_eq!(16.0 / 3.0 * d.powf(1.5), force, max_relative = 1e-9);
-    assert!(contact.advance(Step::normal(max + 0.01, Load::Force(force - 1e-5))).is_err());
+    assert!(contact.advance(Step::new(max + 0.01, Load::force(force - 1e-5))).is_err());
 
     let mut contact = prepare(sphere(), SOLID);
     super::tests::force(&mut *contact, 1.0, 0.01);
-    let error = contact.advance(Step::normal(2.0, Load::Approach(0.009))).unwrap_err();
+    let error = contact.advance(Step::new(2.0, Load::approach(0.009))).unwrap_err();
     assert!(matches!(error, Error::OutOfRange { max, .. } if (max - 1.0).abs() < 1e-12));
-    assert!(contact.advance(Step::normal(1.0, Load::Force(0.0))).is_err());
+    assert!(contact.advance(Step::new(1.0, Load::force(0.0))).is_err());
     // Nothing has happened: it can go on.
     super::tests::force(&mut *contact, 2.0, 0.01);
-    assert!(matches!(contact.advance(Step::normal(3.0, Load::Approach(1.5))), Err(Error::OutOfRange { .. })));
+    assert!(matches!(contact.advance(Step::new(3.0, Load::approach(1.5))), Err(Error::OutOfRange { .. })));
 }
 
 /// Springs one by one, each with its own arm, in short steps: the reference implementation.
@@ -223,9 +223,9 @@ fn what_the_model_lacks_is_refused() {
     let compressible = Body::Elastic { young: 3.0, poisson: 0.3 };
     assert!(matches!(Viscoelastic.prepare(&pair(compressible, Body::Rigid), 0), Err(Error::Domain { .. })));
     let mut contact = prepare(sphere(), SOLID);
-    let sheared = Step { time: 0.0, normal: Load::Force(0.0), tangential: Tangential::force_along_x(1.0) };
+    let sheared = Step::new(0.0, Load::force(0.0).with_tangential(Tangential::force_along_x(1.0)));
     assert!(contact.advance(sheared).is_err());
-    assert!(contact.advance(Step::normal(-1.0, Load::Force(0.0))).is_err());
+    assert!(contact.advance(Step::new(-1.0, Load::force(0.0))).is_err());
 }
 
 fn series() -> impl Strategy<Value = Vec<Relaxing>> {

@@ -18,7 +18,7 @@ const GRIDS: [usize; 2] = [64, 128];
 
 /// k/(E* L) of a scene under a load that presses all of it flat.
 fn full_contact(what: &str, model: &dyn ContactModel, scene: &Scene, force: f64) -> Result<f64> {
-    let solved = model.prepare(scene, 0).and_then(|mut contact| contact.solve(Load::Force(force)));
+    let solved = model.prepare(scene, 0).and_then(|mut contact| contact.solve(Load::force(force)));
     let no_stiffness = || Error::parameter("model", model.name(), "one that gives a stiffness");
     solved.map_err(Error::model(format!("full contact of {what}")))?.stiffness.ok_or_else(no_stiffness)
 }
@@ -147,7 +147,7 @@ fn mean_of(
     let solve = |index: u64| {
         let mut contact = model.prepare(&scene, surface_gen::surface_seed(SEED, index))?;
         let force = contact.normalisation().force(force_bar)?;
-        Ok(read(&contact.solve(Load::Force(force))?))
+        Ok(read(&contact.solve(Load::force(force))?))
     };
     let each: contact_model::Result<Vec<Option<f64>>> = (0..SURFACES).map(solve).collect();
     let each: Vec<f64> = each.map_err(Error::model("contact regions"))?.into_iter().flatten().collect();

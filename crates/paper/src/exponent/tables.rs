@@ -15,10 +15,12 @@ const SCATTER: &str = "95 % half-width from the scatter of the surfaces";
 const GRID: &str = "remaining discretisation error, estimated from the three finest grids";
 const FINEST: &str = "cells a side (bem3d) or elements (mdr1d) of the finest grid at this load";
 const LOCAL_SLOPE: &str = "d ln k/d ln F through five loads; empty where one is not resolved";
-const RESOLVED: &str = "whether the discretisation error is below the stated error here and at all larger loads";
+const RESOLVED: &str =
+    "whether the discretisation error is below the stated error here and at all larger loads";
 const BAND: &str = "95 % half-width from the scatter, of all local slopes of the curve together";
 const WINDOW: &str = "one decade of F_bar, the same for every curve";
-const ALL_RESOLVED: &str = "whether the discretisation error is below the stated error at all loads of the window";
+const ALL_RESOLVED: &str =
+    "whether the discretisation error is below the stated error at all loads of the window";
 const EXPONENT: &str = "slope of ln k over ln F by least squares, loads with equal weight";
 const WIDEST: &str = "size of the level that adds most to the scatter";
 const INSIDE: &str = "which of them lies within the 95 % interval of this row";

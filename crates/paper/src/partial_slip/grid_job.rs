@@ -104,7 +104,7 @@ impl GridJob {
         stop: Stop<'_>,
     ) -> Result<(Normal, FirstLoading), ModelError> {
         let mut at = |share: f64| {
-            let state = normal.solve_until(Load::Force(force * (1.0 - share)), stop)?;
+            let state = normal.solve_until(Load::force(force * (1.0 - share)), stop)?;
             Normal::of(&state).ok_or_else(|| ModelError::unsupported("bem3d", "a contact without an area"))
         };
         let whole = at(0.0)?;

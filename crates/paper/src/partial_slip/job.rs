@@ -43,7 +43,7 @@ pub(super) struct Pressed {
 impl Pressed {
     pub(super) fn step(self, share: f64, direction: [f64; 2]) -> Step {
         let tangential = Tangential::Force(direction.map(|e| share * COEFFICIENT * self.force * e));
-        Step { time: 0.0, normal: Load::Force(self.force), tangential }
+        Step::new(0.0, Load::force(self.force).with_tangential(tangential))
     }
 
     /// The energy of a cycle between both ends, after the first loading.
@@ -101,7 +101,7 @@ impl SlipJob {
         stop: Stop<'_>,
     ) -> Result<Slipped, ModelError> {
         pressed.restart();
-        let start = pressed.advance_until(Step::normal(0.0, Load::Force(force)), stop)?;
+        let start = pressed.advance_until(Step::new(0.0, Load::force(force)), stop)?;
         let stuck = start.tangential.and_then(|t| t.stiffness_stuck);
         let (Some(normal), Some(stuck), Some(area)) = (start.stiffness, stuck, start.area) else {
             return Err(ModelError::unsupported(self.model().name(), "a contact without a stiffness"));
@@ -161,7 +161,7 @@ impl SlipJob {
         stop: Stop<'_>,
     ) -> Result<(Vec<SlipPoint>, Vec<f64>), ModelError> {
         contact.restart();
-        let start = contact.advance_until(Step::normal(0.0, Load::Force(force)), stop)?;
+        let start = contact.advance_until(Step::new(0.0, Load::force(force)), stop)?;
         let (Some(approach), Some(radius)) = (start.approach, start.contact_radius) else {
             return Err(ModelError::unsupported("equivalent", "a contact without a radius"));
         };

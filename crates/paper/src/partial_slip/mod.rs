@@ -163,7 +163,7 @@ mod tests {
         let mut normal = model.prepare(&scene, 5).unwrap();
         let force = normal.normalisation().force(study.forces.values()[0]).unwrap();
         let mut at = |share: f64| {
-            let state = normal.solve(contact_model::Load::Force(force * (1.0 - share))).unwrap();
+            let state = normal.solve(contact_model::Load::force(force * (1.0 - share))).unwrap();
             (state.approach.unwrap(), state.area.unwrap())
         };
         let (whole, area) = at(0.0);

@@ -76,7 +76,7 @@ pub(super) fn path(scene: &Scene) -> Result<Box<dyn PreparedContact>> {
 }
 
 pub(super) fn go(history: &mut dyn PreparedContact, load: Load) -> Result<ContactState> {
-    history.advance(Step::normal(0.0, load))
+    history.advance(Step::new(0.0, load))
 }
 
 /// The residual of a state with free boundaries, by plain sums: for open cells the difference between the
@@ -113,7 +113,7 @@ fn plateau(ledger: &mut Ledger, effort: Effort) -> Result<()> {
     let steps: Vec<f64> = (0..=24).map(|i| -0.24 + 0.01 * f64::from(i)).collect();
     let mut states = Vec::new();
     for &d in steps.iter().chain(steps.iter().rev().skip(1)) {
-        let state = go(history.as_mut(), Load::Approach(d))?;
+        let state = go(history.as_mut(), Load::approach(d))?;
         conditions(ledger, &map, (work, range), &state)?;
         states.push(state);
     }
@@ -134,7 +134,7 @@ fn summit(ledger: &mut Ledger, effort: Effort) -> Result<()> {
     let (work, range) = (0.02, 0.2);
     let mut history = path(&attracted(&map, work, range))?;
     for d in [0.0, 0.02, 0.05, 0.1, 0.05, 0.0] {
-        let state = go(history.as_mut(), Load::Approach(d))?;
+        let state = go(history.as_mut(), Load::approach(d))?;
         conditions(ledger, &map, (work, range), &state)?;
         if d > 0.0 {
             ledger.contact_cells(&state, 1);
@@ -149,7 +149,7 @@ fn everything(ledger: &mut Ledger, effort: Effort) -> Result<()> {
     let (work, range) = (0.5, 0.5);
     let mut history = path(&attracted(&map, work, range))?;
     for force in [0.0, 0.1, 0.0] {
-        let state = go(history.as_mut(), Load::Force(force))?;
+        let state = go(history.as_mut(), Load::force(force))?;
         conditions(ledger, &map, (work, range), &state)?;
         ledger.contact_cells(&state, cells * cells);
     }
@@ -187,7 +187,7 @@ fn tension(ledger: &mut Ledger, effort: Effort) -> Result<()> {
     let mut history = path(&scene)?;
     let mut last: Option<(f64, Vec<f64>)> = None;
     for force in [0.5, 0.2, -0.1, -0.3] {
-        let state = go(history.as_mut(), Load::Force(force))?;
+        let state = go(history.as_mut(), Load::force(force))?;
         ledger.meets(&state, TOLERANCE);
         ledger.contact_cells(&state, cells * cells);
         let p = pressure(&state)?.to_vec();

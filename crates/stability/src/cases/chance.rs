@@ -28,7 +28,7 @@ pub(super) const CASES: [Case; 2] = [
 
 fn repeated(ledger: &mut Ledger, effort: Effort) -> Result<()> {
     let map = rough_map(2.4, effort.pick(65, 257), 1)?;
-    let loads = [1e-4, 1e-2, 1.0, 20.0].map(Load::Force);
+    let loads = [1e-4, 1e-2, 1.0, 20.0].map(Load::force);
     let sweep = || -> Result<Vec<ContactState>> {
         let mut contact = tight().prepare(&watched(&map), 0)?;
         loads.iter().map(|&load| contact.solve(load)).collect()
@@ -57,10 +57,10 @@ fn threads(ledger: &mut Ledger, effort: Effort) -> Result<()> {
             scene.outputs.pressure = true;
             let mut contact = bem.prepare(&scene, seed)?;
             let mut states: Vec<ContactState> =
-                [1e-2, 1.0, 20.0].iter().map(|&f| contact.solve(Load::Force(f))).collect::<Result<_>>()?;
+                [1e-2, 1.0, 20.0].iter().map(|&f| contact.solve(Load::force(f))).collect::<Result<_>>()?;
             scene.outputs.pressure = false;
             let mut line = mdr.prepare(&scene, seed)?;
-            states.push(line.solve(Load::Force(0.1))?);
+            states.push(line.solve(Load::force(0.1))?);
             Ok(states)
         };
         let all: Result<Vec<Vec<ContactState>>> =

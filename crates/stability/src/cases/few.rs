@@ -65,14 +65,14 @@ pub(super) fn faces(cells: usize, face: impl Fn(usize, usize) -> bool) -> Result
 fn one_cell(ledger: &mut Ledger, _: Effort) -> Result<()> {
     let exact = PI / (4.0 * (1.0 + 2_f64.sqrt()).ln());
     let flat = map(1, 1.0, |_, _| -3.5)?;
-    for load in [Load::Force(0.3), Load::Force(1e-200), Load::Force(1e150), Load::Approach(1e-12)] {
+    for load in [Load::force(0.3), Load::force(1e-200), Load::force(1e150), Load::approach(1e-12)] {
         let state = press_both(ledger, &flat, load)?;
         ledger.near("k", stiffness(&state)?, exact);
         ledger.near("F/d", state.force / approach(&state)?, exact);
     }
     for cells in [16, 33, 65] {
         let map = rough_map(2.6, cells, 8)?;
-        let state = press_both(ledger, &map, Load::Force(1e-12))?;
+        let state = press_both(ledger, &map, Load::force(1e-12))?;
         ledger.contact(&state, 1, exact * map.dx())?;
         ledger.near("F/d", state.force / approach(&state)?, exact * map.dx());
     }
@@ -83,7 +83,7 @@ fn two_cells(ledger: &mut Ledger, (dx, dy): (usize, usize), printed: f64) -> Res
     for (cells, (x0, y0)) in [(2, (0, 0)), (3, (1, 1)), (7, (2, 4)), (64, (62, 0))] {
         let pair = [(x0, y0), (x0 + dx, y0 + dy)];
         let map = faces(cells, |x, y| pair.contains(&(x, y)))?;
-        for load in [Load::Approach(1e-3), Load::Force(1e-6), Load::Force(1e-150)] {
+        for load in [Load::approach(1e-3), Load::force(1e-6), Load::force(1e-150)] {
             let state = press_both(ledger, &map, load)?;
             ledger.contact(&state, 2, 2.0 * PI * map.dx() / (influence(0, 0) + influence(dx, dy)))?;
             ledger.near("k as printed", stiffness(&state)?, printed * map.dx());
@@ -100,7 +100,7 @@ fn two_summits(ledger: &mut Ledger, effort: Effort) -> Result<()> {
         let even = map(cells, 1.0, |x, y| if x == y && (x == 0 || x == last) { 1.0 } else { 0.0 })?;
         let cell = even.dx();
         let one = PI * cell / influence(0, 0);
-        let state = press_both(ledger, &even, Load::Force(1e-3 * cell))?;
+        let state = press_both(ledger, &even, Load::force(1e-3 * cell))?;
         ledger.contact(&state, 2, 2.0 * one / (1.0 + far))?;
         // The lower one, z below, is lowered by far x d while the first alone carries.
         let z = 1e-3;
@@ -111,7 +111,7 @@ fn two_summits(ledger: &mut Ledger, effort: Effort) -> Result<()> {
         })?;
         let joins = z / (1.0 - far);
         for (factor, count, k) in [(0.999_9, 1, one), (1.000_1, 2, 2.0 * one / (1.0 + far))] {
-            let state = press_both(ledger, &uneven, Load::Approach(factor * joins))?;
+            let state = press_both(ledger, &uneven, Load::approach(factor * joins))?;
             ledger.contact(&state, count, k)?;
         }
     }
@@ -126,10 +126,10 @@ fn spike(ledger: &mut Ledger, _: Effort) -> Result<()> {
         let corner = (4_usize.max(cells - 1 - 4), 5_usize.max(cells - 1 - 5));
         let joins = 1.0 / (1.0 - influence(corner.0, corner.1) / influence(0, 0));
         for d in [1e-12, 1e-3, 0.9, 0.999_9 * joins] {
-            let state = press_both(ledger, &map, Load::Approach(d))?;
+            let state = press_both(ledger, &map, Load::approach(d))?;
             ledger.contact(&state, 1, one)?;
         }
-        let state = press(ledger, &map, Load::Approach(1.000_1 * joins))?;
+        let state = press(ledger, &map, Load::approach(1.000_1 * joins))?;
         let count = state.report.contact_cells;
         ledger.must(count.is_some_and(|c| c > 1), || format!("{count:?} cells beyond the kink"));
     }
@@ -145,10 +145,10 @@ fn smallest_grids(ledger: &mut Ledger, _: Effort) -> Result<()> {
         let flat = map(cells, 1.0, |_, _| 0.0)?;
         let uneven = map(cells, 1.0, |x, y| 0.1 * ((3 * x + 7 * y) as f64).sin())?;
         for (map, load) in [
-            (&flat, Load::Force(1.0)),
-            (&flat, Load::Approach(1e-100)),
-            (&uneven, Load::Force(1e3)),
-            (&uneven, Load::Approach(1e4)),
+            (&flat, Load::force(1.0)),
+            (&flat, Load::approach(1e-100)),
+            (&uneven, Load::force(1e3)),
+            (&uneven, Load::approach(1e4)),
         ] {
             let state = press_both(ledger, map, load)?;
             ledger.contact(&state, all.len(), exact)?;

@@ -91,7 +91,7 @@ fn along(size: f64) -> [f64; 2] {
 
 fn gross_slip(ledger: &mut Ledger, effort: Effort) -> Result<()> {
     let (map, force) = (rough_map(2.4, effort.pick(20, 48), 7)?, 0.4);
-    let (normal, most) = (Load::Force(force), MU * force);
+    let (normal, most) = (Load::force(force), MU * force);
     for nu in [0.0, 0.3, 0.5] {
         let mut slide = Slide::new(&map, alike(nu), MU)?;
         let mut last = 0.0;
@@ -155,7 +155,7 @@ fn one_cell(ledger: &mut Ledger, _: Effort) -> Result<()> {
             (1.0, [0.3, 5.0]),
         ] {
             let to = to.map(|to| to * unit);
-            let found = tangential(&slide.displace(ledger, Load::Force(force), to)?)?;
+            let found = tangential(&slide.displace(ledger, Load::force(force), to)?)?;
             let trial = [0, 1].map(|i| q[i] + k * (to[i] - delta[i]));
             let (length, most) = (trial[0].hypot(trial[1]), MU * force);
             q = if length > most { trial.map(|t| t * most / length) } else { trial };
@@ -197,7 +197,7 @@ fn two_cells(ledger: &mut Ledger, _: Effort) -> Result<()> {
                 (slide.sum().between(at[0], at[0]), slide.sum().between(at[1], at[0]));
             let (a, b) = (0.5 * (own + xx), 0.5 * (own + yy));
             let xy = 0.5 * xy;
-            let (normal, most) = (Load::Force(1e-3), 1e-3 * MU);
+            let (normal, most) = (Load::force(1e-3), 1e-3 * MU);
             for share in [[0.4, 0.0], [0.1, 0.7], [-0.5, 0.2]] {
                 let q = share.map(|share| share * most);
                 let found = tangential(&slide.force(ledger, normal, q)?)?;
@@ -220,7 +220,7 @@ fn two_cells(ledger: &mut Ledger, _: Effort) -> Result<()> {
 fn frictionless(ledger: &mut Ledger, effort: Effort) -> Result<()> {
     let map = rough_map(2.3, effort.pick(16, 48), 3)?;
     let mut slide = Slide::new(&map, alike(0.3), 0.0)?;
-    let normal = Load::Force(0.3);
+    let normal = Load::force(0.3);
     for delta in [[0.5, 0.0], [-1.0, 2.0], [1e12, -1e-12], [0.0, 0.0]] {
         let state = slide.attempt(normal, Tangential::Displacement(delta))?;
         let found = tangential(&state)?;
@@ -255,7 +255,7 @@ fn stuck(ledger: &mut Ledger, effort: Effort) -> Result<()> {
         let mut slide = Slide::new(&punch, alike(nu), 1e3)?;
         let k = slide.sum().stiffness(&cells);
         for delta in [[1e-3, 0.0], [-0.3, 0.1], [0.0, -1.0]] {
-            let found = tangential(&slide.displace(ledger, Load::Force(1.0), delta)?)?;
+            let found = tangential(&slide.displace(ledger, Load::force(1.0), delta)?)?;
             let exact = [0, 1].map(|i| k[i][0] * delta[0] + k[i][1] * delta[1]);
             compare(ledger, &[found.force], &[exact], longest(&[exact]));
             ledger.must(found.dissipated.abs() <= 1e-9 * longest(&[exact]), || format!("{found:?}"));
@@ -266,7 +266,7 @@ fn stuck(ledger: &mut Ledger, effort: Effort) -> Result<()> {
         scene.outputs.tangential_stiffness_stuck = true;
         let mut slide = Slide::of(&rough, &scene, 1e3)?;
         for force in [0.01, 0.3, 3.0] {
-            let state = slide.displace(ledger, Load::Force(force), along(0.1))?;
+            let state = slide.displace(ledger, Load::force(force), along(0.1))?;
             let cells: Vec<usize> =
                 pressure(&state)?.iter().enumerate().filter(|(_, p)| **p > 0.0).map(|(i, _)| i).collect();
             let k = slide.sum().stiffness(&cells);
@@ -302,7 +302,7 @@ fn islands(ledger: &mut Ledger, effort: Effort) -> Result<()> {
                 (0.05, [-0.02, 0.0]),
             ],
         )?;
-        let state = slide.displace(ledger, Load::Approach(0.05), [0.0; 2])?;
+        let state = slide.displace(ledger, Load::approach(0.05), [0.0; 2])?;
         let cells: Vec<usize> =
             pressure(&state)?.iter().enumerate().filter(|(_, p)| **p > 0.0).map(|(i, _)| i).collect();
         let k = slide.sum().stiffness(&cells);
@@ -318,7 +318,7 @@ fn plateau(ledger: &mut Ledger, effort: Effort) -> Result<()> {
     let flat = map(n, 1.0, |_, _| 0.0)?;
     let mut slide = Slide::new(&flat, alike(0.5), MU)?;
     for share in [0.3, 0.9, -0.5] {
-        let state = slide.force(ledger, Load::Force(1.0), [share * MU, 0.0])?;
+        let state = slide.force(ledger, Load::force(1.0), [share * MU, 0.0])?;
         let q = vectors(&state, Fields::Traction)?;
         let most = longest(&q);
         // Even along both axes in q_x, odd along both in q_y.
@@ -382,7 +382,7 @@ fn units(ledger: &mut Ledger, effort: Effort) -> Result<()> {
         ]
         .into_iter()
         .map(|(force, load)| {
-            let [f, q_x, q_y, x, y, lost, kxx, kxy] = numbers(&slide.attempt(Load::Force(force), load)?)?;
+            let [f, q_x, q_y, x, y, lost, kxx, kxy] = numbers(&slide.attempt(Load::force(force), load)?)?;
             let (energy, k) = (unit * vertical, contact_modulus * lateral);
             Ok([
                 f / unit,
@@ -434,7 +434,7 @@ fn threads(ledger: &mut Ledger, effort: Effort) -> Result<()> {
             let mut bits = Vec::new();
             for share in [along(0.6), [0.5, -0.5]] {
                 let state =
-                    slide.attempt(Load::Force(20.0), Tangential::Force(share.map(|s| s * MU * 20.0)))?;
+                    slide.attempt(Load::force(20.0), Tangential::Force(share.map(|s| s * MU * 20.0)))?;
                 let t = tangential(&state)?;
                 let fields = [Fields::Traction, Fields::Slip].map(|of| vectors(&state, of));
                 let k = [t.stiffness, t.stiffness_stuck].into_iter().flatten().flatten();

@@ -97,7 +97,7 @@ fn paths(ledger: &mut Ledger, effort: Effort) -> Result<()> {
         let mut slide = Slide::periodic(&map, alike(nu), MU)?;
         for (force, share) in [(0.3, [0.6, 0.0]), (0.3, [-0.2, 0.5]), (0.5, [-0.2, 0.2]), (0.1, [0.3, -0.9])]
         {
-            slide.force(ledger, Load::Force(force), share.map(|share| share * MU * force))?;
+            slide.force(ledger, Load::force(force), share.map(|share| share * MU * force))?;
         }
     }
     Ok(())
@@ -110,13 +110,13 @@ fn falling(ledger: &mut Ledger, effort: Effort) -> Result<()> {
         let (force, q) = (0.5, [0.3 * MU * 0.5, 0.4 * MU * 0.5]);
         let mut lost = 0.0;
         for share in [1.0, 0.9, 0.7, 0.6, 0.51, 0.5 * (1.0 + 1e-4), 0.5 * (1.0 + 1e-6)] {
-            let found = tangential(&slide.force(ledger, Load::Force(share * force), q)?)?;
+            let found = tangential(&slide.force(ledger, Load::force(share * force), q)?)?;
             ledger.must(found.dissipated >= lost, || format!("{} after {lost}", found.dissipated));
             lost = found.dissipated;
         }
         ledger.must(lost > 0.0, || "nothing slipped".to_owned());
         for share in [0.499, 0.1, 1e-6] {
-            match slide.attempt(Load::Force(share * force), Tangential::Force(q)) {
+            match slide.attempt(Load::force(share * force), Tangential::Force(q)) {
                 Err(Error::OutOfRange { max, .. }) => {
                     ledger.near("the largest force", max, MU * share * force);
                 }
@@ -124,11 +124,11 @@ fn falling(ledger: &mut Ledger, effort: Effort) -> Result<()> {
             }
         }
         // The path is where it was: pressed again, nothing has been lost meanwhile.
-        let found = tangential(&slide.force(ledger, Load::Force(0.5 * (1.0 + 1e-6) * force), q)?)?;
+        let found = tangential(&slide.force(ledger, Load::force(0.5 * (1.0 + 1e-6) * force), q)?)?;
         ledger.enter((found.dissipated - lost).abs() / lost);
         // Lifted off and touched again: no slip, no traction remembered.
-        slide.force(ledger, Load::Force(0.0), [0.0; 2])?;
-        let state = slide.force(ledger, Load::Force(force), [0.0; 2])?;
+        slide.force(ledger, Load::force(0.0), [0.0; 2])?;
+        let state = slide.force(ledger, Load::force(force), [0.0; 2])?;
         ledger.enter(longest(&vectors(&state, Fields::Traction)?) / (MU * largest(pressure(&state)?)));
     }
     Ok(())
@@ -141,7 +141,7 @@ fn pressed(scene: &Scene, forces: &[f64]) -> Result<Vec<(Vec<f64>, f64)>> {
         if force <= 0.0 {
             return Ok((vec![0.0; 0], 0.0));
         }
-        let state = contact.solve(Load::Force(force))?;
+        let state = contact.solve(Load::force(force))?;
         let d =
             if scene.effects.boundary == Boundary::Periodic { -mean_gap(&state)? } else { approach(&state)? };
         Ok((pressure(&state)?.to_vec(), d))
@@ -164,8 +164,8 @@ fn reversed(ledger: &mut Ledger, effort: Effort) -> Result<()> {
     for (q, (half, d_half)) in then.iter().zip(&states[2..]) {
         let mut slide = Slide::new(&map, alike(0.0), MU)?;
         let at = |share: f64| along.map(|a| a * share * MU * force);
-        slide.force(ledger, Load::Force(force), at(first))?;
-        let state = slide.force(ledger, Load::Force(force), at(*q))?;
+        slide.force(ledger, Load::force(force), at(first))?;
+        let state = slide.force(ledger, Load::force(force), at(*q))?;
         let exact: Vec<[f64; 2]> = (0..all.len())
             .map(|i| MU * ((all[i] - rest[i]) - 2.0 * (all[i] - half[i])))
             .map(|q| along.map(|a| 0.1 * a * q))
@@ -177,7 +177,7 @@ fn reversed(ledger: &mut Ledger, effort: Effort) -> Result<()> {
         let found = tangential(&state)?;
         compare(ledger, &[found.displacement], &[along.map(|a| a * delta)], unit);
         // Up again: the loop closes.
-        let closed = tangential(&slide.force(ledger, Load::Force(force), at(first))?)?;
+        let closed = tangential(&slide.force(ledger, Load::force(force), at(first))?)?;
         if *q > -first {
             compare(ledger, &[closed.displacement], &[along.map(|a| a * unit)], unit);
         }
@@ -195,12 +195,12 @@ fn range(ledger: &mut Ledger, effort: Effort) -> Result<()> {
     for (force, states) in forces.iter().zip(states.chunks_exact(2)) {
         let expected = MU * (states[0].1 - states[1].1);
         slide.restart();
-        let state = slide.force(ledger, Load::Force(*force), [0.0, share * MU * force])?;
+        let state = slide.force(ledger, Load::force(*force), [0.0, share * MU * force])?;
         ledger.enter((tangential(&state)?.displacement[1] / expected - 1.0).abs() * 1e-1);
     }
     let mut slide = Slide::new(&map, alike(0.5), MU)?;
     for force in forces.iter().chain(forces.iter().rev()) {
-        slide.force(ledger, Load::Force(*force), [share * MU * force, 0.1 * MU * force])?;
+        slide.force(ledger, Load::force(*force), [share * MU * force, 0.1 * MU * force])?;
     }
     Ok(())
 }
@@ -223,8 +223,8 @@ fn oblong(ledger: &mut Ledger, effort: Effort) -> Result<()> {
         let turned = map.rotated();
         let (mut here, mut there) = (Slide::new(&map, alike(0.5), MU)?, Slide::new(&turned, alike(0.5), MU)?);
         for (d, [x, y]) in path {
-            let one = tangential(&here.displace(ledger, Load::Approach(d), [x, y])?)?;
-            let other = tangential(&there.displace(ledger, Load::Approach(d), [-y, x])?)?;
+            let one = tangential(&here.displace(ledger, Load::approach(d), [x, y])?)?;
+            let other = tangential(&there.displace(ledger, Load::approach(d), [-y, x])?)?;
             let most = one.sliding_force.unwrap_or(f64::NAN);
             compare(ledger, &[other.force], &[[-one.force[1], one.force[0]]], most);
         }
@@ -241,7 +241,7 @@ fn full_contact(ledger: &mut Ledger, effort: Effort) -> Result<()> {
         scene.effects.boundary = Boundary::Periodic;
         (scene.outputs.tangential_stiffness, scene.outputs.tangential_stiffness_stuck) = (true, true);
         let mut slide = Slide::of(&map, &scene, MU)?;
-        let state = slide.force(ledger, Load::Force(force), [0.0; 2])?;
+        let state = slide.force(ledger, Load::force(force), [0.0; 2])?;
         let p = pressure(&state)?.to_vec();
         let least = p.iter().copied().fold(f64::INFINITY, f64::min);
         ledger.must(least > 0.0, || format!("no full contact: {least}"));
@@ -249,7 +249,7 @@ fn full_contact(ledger: &mut Ledger, effort: Effort) -> Result<()> {
         for share in [0.5, 0.999, -0.999] {
             // The sides are 1: forces are mean tractions.
             let q = share * MU * least;
-            let state = slide.force(ledger, Load::Force(force), [0.6 * q, 0.8 * q])?;
+            let state = slide.force(ledger, Load::force(force), [0.6 * q, 0.8 * q])?;
             let exact = vec![[0.6 * q, 0.8 * q]; p.len()];
             compare(ledger, &vectors(&state, Fields::Traction)?, &exact, MU * least);
             let found = tangential(&state)?;
@@ -261,7 +261,7 @@ fn full_contact(ledger: &mut Ledger, effort: Effort) -> Result<()> {
         }
         // Some cells slip: what resists is friction alone.
         for share in [0.95, -0.8] {
-            let found = tangential(&slide.force(ledger, Load::Force(force), [share * MU * force, 0.0])?)?;
+            let found = tangential(&slide.force(ledger, Load::force(force), [share * MU * force, 0.0])?)?;
             let slips = found.stiffness.is_some_and(|k| k[0][0] > 0.0) && found.stiffness_stuck.is_none();
             ledger.must(slips, || format!("{found:?}"));
         }
@@ -290,11 +290,8 @@ fn wave(ledger: &mut Ledger, effort: Effort) -> Result<()> {
             scene.effects.boundary = Boundary::Periodic;
             let mut contact = tight().prepare(&scene, 0)?;
             let tangential_load = Tangential::Force(along.map(|a| a * share * MU * force));
-            let state = contact.advance(Step {
-                time: 0.0,
-                normal: Load::Force(force),
-                tangential: tangential_load,
-            })?;
+            let state =
+                contact.advance(Step::new(0.0, Load::force(force).with_tangential(tangential_load)))?;
             ledger.meets(&state, tight().tolerance);
             let exact: Vec<[f64; 2]> =
                 all.iter().zip(rest).map(|(p, rest)| along.map(|a| 0.1 * a * MU * (p - rest))).collect();

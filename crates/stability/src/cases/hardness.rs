@@ -79,12 +79,12 @@ fn pressed(ledger: &mut Ledger, map: &HeightMap, hardness: f64, shares: &[f64]) 
     let mut contact = tight().prepare(&scene, 0)?;
     let mut states = Vec::new();
     for share in shares {
-        let state = contact.solve(Load::Force(share * capacity))?;
+        let state = contact.solve(Load::force(share * capacity))?;
         conditions(ledger, map, hardness, &state)?;
         states.push(state);
     }
     for beyond in [1.0, 1.5] {
-        let refused = contact.solve(Load::Force(beyond * capacity));
+        let refused = contact.solve(Load::force(beyond * capacity));
         let told = |max: f64| (max / capacity - 1.0).abs() < 1e-12;
         ledger.must(matches!(&refused, Err(Error::OutOfRange { max, .. }) if told(*max)), || {
             format!("a force of {beyond} of all cells is not refused: {}", refused.is_ok())

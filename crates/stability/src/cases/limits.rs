@@ -97,7 +97,7 @@ fn sizes(ledger: &mut Ledger, effort: Effort) -> Result<()> {
             scene.outputs.displacement = true;
             for method in [Method::Auto, Method::SingleLevel] {
                 let model = Bem3d { method, ..tight() };
-                let state = model.prepare(&scene, 0)?.solve(Load::Force(force))?;
+                let state = model.prepare(&scene, 0)?.solve(Load::force(force))?;
                 let exact = PlainSum::of(&rough).displacement(&forces(&state, &rough)?);
                 let found = state.displacement().map_or(&[][..], Field::values);
                 ledger.must(found.len() == exact.len(), || format!("{} displacements", found.len()));
@@ -106,7 +106,7 @@ fn sizes(ledger: &mut Ledger, effort: Effort) -> Result<()> {
                 }
             }
         }
-        let flat = press_both(ledger, &map(cells, 1.0, |_, _| 0.0)?, Load::Force(1.0))?;
+        let flat = press_both(ledger, &map(cells, 1.0, |_, _| 0.0)?, Load::force(1.0))?;
         let n = cells as f64;
         let formula = 1.152_298_5 - 0.402_5 / n + 0.12 / n.powf(1.59);
         let off = (stiffness(&flat)? / formula - 1.0).abs();
@@ -164,7 +164,7 @@ fn long_sums(ledger: &mut Ledger, effort: Effort) -> Result<()> {
         Mdr1d::default().prepare(&Scene::new(Surface::Line { line, size: 1.0.into() }, 1.0), 0)?;
     let n = count as f64;
     for d in [0.25, 1.0, 3.0] {
-        let state = contact.solve(Load::Approach(d))?;
+        let state = contact.solve(Load::approach(d))?;
         let m = (d * n).min(n);
         let exact = m / n * d - m * (m - 1.0) / (2.0 * n * n);
         ledger.near("force of a ramp", state.force, exact);
@@ -178,7 +178,7 @@ fn noise_floor(ledger: &mut Ledger, effort: Effort) -> Result<()> {
     for (fractal_dimension, force) in [(2.0, 1.0), (2.0, 20.0), (2.6, 20.0), (2.0, 300.0)] {
         let map = rough_map(fractal_dimension, cells, 4)?;
         for method in [Method::SingleLevel, Method::Iterative] {
-            let state = press_by(ledger, &Bem3d { method, ..tight() }, &map, Load::Force(force))?;
+            let state = press_by(ledger, &Bem3d { method, ..tight() }, &map, Load::force(force))?;
             let forces = forces(&state, &map)?;
             let u = PlainSum::of(&map).displacement(&forces);
             let (highest, d) = (map.highest(), approach(&state)?);
@@ -199,13 +199,13 @@ fn loose(ledger: &mut Ledger, effort: Effort) -> Result<()> {
             let model = Bem3d { tolerance: LOOSE, method, ..tight() };
             let mut contact = model.prepare(&watched(&map), 0)?;
             for force in [0.01, 0.03, 0.1, 0.3, 1.0] {
-                let state = contact.solve(Load::Force(force))?;
+                let state = contact.solve(Load::force(force))?;
                 ledger.meets(&state, LOOSE);
                 let set = contact_set(&state)?;
                 if set.len() <= 700 {
                     ledger.near("k of its own set", stiffness(&state)?, PlainSum::of(&map).stiffness(&set));
                 }
-                let exact = press(ledger, &map, Load::Force(force))?;
+                let exact = press(ledger, &map, Load::force(force))?;
                 ledger.near("k of a tight solve", stiffness(&state)?, stiffness(&exact)?);
             }
         }
@@ -218,7 +218,7 @@ fn unattainable(ledger: &mut Ledger, effort: Effort) -> Result<()> {
     for method in [Method::Auto, Method::Iterative, Method::SingleLevel] {
         let model = Bem3d { tolerance: 1e-17, method, ..tight() };
         for force in [0.1, 1.0, 20.0] {
-            match model.prepare(&watched(&map), 0)?.solve(Load::Force(force)) {
+            match model.prepare(&watched(&map), 0)?.solve(Load::force(force)) {
                 Err(Error::NotConverged { best }) => {
                     let report = &best.report;
                     ledger.must(report.status != Status::Converged, || format!("{report:?}"));
@@ -236,11 +236,11 @@ fn unattainable(ledger: &mut Ledger, effort: Effort) -> Result<()> {
 
 fn few_rounds(ledger: &mut Ledger, _: Effort) -> Result<()> {
     let map = rough_map(2.2, 65, 4)?;
-    let exact = press(ledger, &map, Load::Force(1.0))?;
+    let exact = press(ledger, &map, Load::force(1.0))?;
     let mut refused = 0;
     for rounds in 0..12 {
         let model = Bem3d { max_outer_iterations: rounds, ..tight() };
-        match model.prepare(&watched(&map), 0)?.solve(Load::Force(1.0)) {
+        match model.prepare(&watched(&map), 0)?.solve(Load::force(1.0)) {
             Ok(state) => {
                 ledger.meets(&state, model.tolerance);
                 ledger.near("k", stiffness(&state)?, stiffness(&exact)?);
@@ -263,11 +263,11 @@ fn few_rounds(ledger: &mut Ledger, _: Effort) -> Result<()> {
 
 fn deadline(ledger: &mut Ledger, effort: Effort) -> Result<()> {
     let map = rough_map(2.2, effort.pick(65, 129), 4)?;
-    let exact = press(ledger, &map, Load::Force(1.0))?;
+    let exact = press(ledger, &map, Load::force(1.0))?;
     let mut contact = tight().prepare(&watched(&map), 0)?;
     let (mut stopped, mut with_state) = (0, 0);
     for patience in (0..20).chain((20..400).step_by(20)) {
-        match contact.solve_until(Load::Force(1.0), &stop_after(patience)) {
+        match contact.solve_until(Load::force(1.0), &stop_after(patience)) {
             Err(Error::Stopped { best }) => {
                 stopped += 1;
                 if let Some(best) = best {
@@ -280,7 +280,7 @@ fn deadline(ledger: &mut Ledger, effort: Effort) -> Result<()> {
             Err(other) => return Err(other),
         }
         if patience % 7 == 0 {
-            let state = contact.solve(Load::Force(1.0))?;
+            let state = contact.solve(Load::force(1.0))?;
             ledger.near("k of the next solve", stiffness(&state)?, stiffness(&exact)?);
         }
     }
@@ -297,16 +297,16 @@ fn no_load(ledger: &mut Ledger, _: Effort) -> Result<()> {
         [(&bem, rough()?), (&mdr, rough()?), (&analytic::Hertz, sphere)];
     for (model, scene) in models {
         let mut contact = model.prepare(&scene, 0)?;
-        for load in [Load::Force(0.0), Load::Approach(0.0), Load::Force(-0.0)] {
+        for load in [Load::force(0.0), Load::approach(0.0), Load::force(-0.0)] {
             let state = contact.solve(load)?;
             let numbers = [Some(state.force), state.approach, state.stiffness];
             ledger.count(numbers.iter().filter(|v| !v.is_some_and(|v| v.abs() <= 0.0)).count());
-            let next = contact.solve(Load::Force(1e-3))?;
+            let next = contact.solve(Load::force(1e-3))?;
             ledger
                 .must(next.stiffness.is_some_and(|k| k > 0.0), || format!("{} after {load:?}", model.name()));
         }
         for value in [-1.0, f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
-            for load in [Load::Force(value), Load::Approach(value)] {
+            for load in [Load::force(value), Load::approach(value)] {
                 let refused = matches!(contact.solve(load), Err(Error::Domain { .. }));
                 ledger.count(usize::from(!refused));
                 ledger.must(refused, || format!("{} takes {load:?}", model.name()));

@@ -37,13 +37,13 @@ fn any_origin(ledger: &mut Ledger, effort: Effort) -> Result<()> {
         };
         let mut contact = prepare(&here)?;
         for force in [1e-4, 0.03, 0.3, 1.5] {
-            let state = contact.solve(Load::Force(force))?;
+            let state = contact.solve(Load::force(force))?;
             ledger.meets(&state, tight().tolerance);
             let gap = mean_gap(&state)?;
             let largest = largest(pressure(&state)?);
             for (dx, dy) in [(1, 0), (7, 13), (cells / 2, cells / 2)] {
                 let mut other = prepare(&rolled(here.heights(), dx, dy)?)?;
-                let there = other.solve(Load::Force(force))?;
+                let there = other.solve(Load::force(force))?;
                 ledger.near("k", stiffness(&there)?, stiffness(&state)?);
                 ledger.enter((mean_gap(&there)? - gap).abs());
                 let expected = rolled(pressure(&state)?, dx, dy)?;
@@ -60,7 +60,7 @@ fn full(ledger: &mut Ledger, effort: Effort) -> Result<()> {
         let mut contact = prepare(&map)?;
         let [light, heavy] = [3e3, 5e3];
         let mut press = |force: f64| -> Result<Vec<f64>> {
-            let state = contact.solve(Load::Force(force))?;
+            let state = contact.solve(Load::force(force))?;
             ledger.meets(&state, tight().tolerance);
             ledger.contact_cells(&state, cells * cells);
             ledger.must(state.stiffness.is_none(), || format!("k {:?} in full contact", state.stiffness));

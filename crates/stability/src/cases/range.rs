@@ -53,7 +53,7 @@ fn fractions(ledger: &mut Ledger, effort: Effort) -> Result<()> {
         let map = rough_map(fractal_dimension, cells, 2)?;
         let mut contact = tight().prepare(&watched(&map), 0)?;
         let mut high = 1.0;
-        while count(&contact.solve(Load::Approach(high))?) < all {
+        while count(&contact.solve(Load::approach(high))?) < all {
             high *= 2.0;
         }
         // The approach of a number of cells, by bisection: the number never falls.
@@ -66,19 +66,19 @@ fn fractions(ledger: &mut Ledger, effort: Effort) -> Result<()> {
         for &cells_wanted in &wanted {
             let near = if cells_wanted < all - 1 { all / 200 } else { 0 };
             let (mut low, mut above) = (0.0, high);
-            let mut found = contact.solve(Load::Approach(high))?;
+            let mut found = contact.solve(Load::approach(high))?;
             for _ in 0..40 {
                 if count(&found).abs_diff(cells_wanted) <= near {
                     break;
                 }
                 let middle = f64::midpoint(low, above);
-                found = contact.solve(Load::Approach(middle))?;
+                found = contact.solve(Load::approach(middle))?;
                 if count(&found) < cells_wanted { low = middle } else { above = middle }
             }
             ledger.must(count(&found).abs_diff(cells_wanted) <= near, || {
                 format!("D_f {fractal_dimension}: {} cells where {cells_wanted} were wanted", count(&found))
             });
-            let load = Load::Approach(approach(&found)?);
+            let load = Load::approach(approach(&found)?);
             let state = press(ledger, &map, load)?;
             ledger.must(count(&state) == count(&found), || format!("{load:?}: {} cells", count(&state)));
             points.push((approach(&state)?, state.force, stiffness(&state)?));
@@ -95,14 +95,14 @@ fn fractions(ledger: &mut Ledger, effort: Effort) -> Result<()> {
 
 fn full(ledger: &mut Ledger, effort: Effort) -> Result<()> {
     let cells = effort.pick(33, 129);
-    let flat = press(ledger, &map(cells, 1.0, |_, _| 0.0)?, Load::Force(1.0))?;
+    let flat = press(ledger, &map(cells, 1.0, |_, _| 0.0)?, Load::force(1.0))?;
     let punch = pressure(&flat)?.to_vec();
     for fractal_dimension in [2.0, 3.0] {
         let map = rough_map(fractal_dimension, cells, 6)?;
         // Roughest: h_c/h waves of the grid need about 1e3 E* h/L.
         let (light, heavy) = (4e3, 5e3);
-        let one = press(ledger, &map, Load::Force(light))?;
-        let other = press(ledger, &map, Load::Force(heavy))?;
+        let one = press(ledger, &map, Load::force(light))?;
+        let other = press(ledger, &map, Load::force(heavy))?;
         for state in [&one, &other] {
             ledger.contact(state, cells * cells, stiffness(&flat)?)?;
         }
@@ -121,7 +121,7 @@ fn sweep(ledger: &mut Ledger, effort: Effort) -> Result<()> {
         let mut contact = tight().prepare(&watched(&map), 0)?;
         let forces: Vec<f64> = (-12..=4).map(|e| 10_f64.powi(e)).collect();
         let mut solve = |ledger: &mut Ledger, force: f64| {
-            press_again(ledger, &mut *contact, tight().tolerance, &map, Load::Force(force))
+            press_again(ledger, &mut *contact, tight().tolerance, &map, Load::force(force))
         };
         let mut up = Vec::new();
         for &force in &forces {
@@ -129,7 +129,7 @@ fn sweep(ledger: &mut Ledger, effort: Effort) -> Result<()> {
         }
         for (up, &force) in up.iter().zip(&forces).rev() {
             let down = solve(ledger, force)?;
-            let alone = press(ledger, &map, Load::Force(force))?;
+            let alone = press(ledger, &map, Load::force(force))?;
             ledger.same("loading beside a fresh solve", up, &alone)?;
             ledger.same("unloading beside a fresh solve", &down, &alone)?;
         }
@@ -141,13 +141,13 @@ fn far_beyond(ledger: &mut Ledger, effort: Effort) -> Result<()> {
     let cells = effort.pick(33, 129);
     for fractal_dimension in [2.0, 2.8] {
         let map = rough_map(fractal_dimension, cells, 3)?;
-        let square = stiffness(&press(ledger, &crate::map(cells, 1.0, |_, _| 0.0)?, Load::Force(1.0))?)?;
+        let square = stiffness(&press(ledger, &crate::map(cells, 1.0, |_, _| 0.0)?, Load::force(1.0))?)?;
         // F/k at d and at its constant: by a load that only just fills the square.
-        let near = press(ledger, &map, Load::Force(3e3))?;
+        let near = press(ledger, &map, Load::force(3e3))?;
         let constant = approach(&near)? - 3e3 / square;
         for force in [1e5, 1e6] {
             let model = bem3d::Bem3d { tolerance: 1e-4, ..tight() };
-            let state = model.prepare(&watched(&map), 0)?.solve(Load::Force(force))?;
+            let state = model.prepare(&watched(&map), 0)?.solve(Load::force(force))?;
             ledger.contact(&state, cells * cells, square)?;
             // In rms heights: the approach itself is a million of them, and its last digit 1e-10.
             let excess = approach(&state)? - force / square - constant;
@@ -173,7 +173,7 @@ fn warm(ledger: &mut Ledger, effort: Effort) -> Result<()> {
     ];
     for map in &maps {
         let mut contact = tight().prepare(&watched(map), 0)?;
-        let [light, middle, heavy] = [1e-10, 0.3, 3e3].map(Load::Force);
+        let [light, middle, heavy] = [1e-10, 0.3, 3e3].map(Load::force);
         let fresh = |ledger: &mut Ledger, load| press_both(ledger, map, load);
         let exact = [fresh(ledger, light)?, fresh(ledger, middle)?, fresh(ledger, heavy)?];
         for (before, load, exact) in [

@@ -85,7 +85,7 @@ fn against_images(ledger: &mut Ledger, map: &HeightMap, approaches: &[f64]) -> R
     let cell = map.dx() * map.dy();
     for &d in approaches {
         let slow = relaxed_by(&sum, map, d);
-        let state = contact.solve(Load::Force(slow.force))?;
+        let state = contact.solve(Load::force(slow.force))?;
         ledger.meets(&state, tight().tolerance);
         let mut expected = vec![0.0; map.heights().len()];
         for (&i, force) in slow.contact.iter().zip(&slow.forces) {
@@ -103,7 +103,7 @@ fn row(ledger: &mut Ledger, effort: Effort) -> Result<()> {
     for d in [0.05, 0.4, 3.0] {
         against_relaxation(ledger, &row, d)?;
         against_relaxation(ledger, &column, d)?;
-        let [a, b] = [&row, &column].map(|map| press(ledger, map, Load::Approach(d)));
+        let [a, b] = [&row, &column].map(|map| press(ledger, map, Load::approach(d)));
         ledger.near("k of the column", stiffness(&b?)?, stiffness(&a?)?);
     }
     Ok(())
@@ -123,8 +123,8 @@ fn oblong_cells(ledger: &mut Ledger, effort: Effort) -> Result<()> {
     let map = waves([n, n], [100.0, 1.0], 3)?;
     for d in [0.2, 1.0, 3.0] {
         against_relaxation(ledger, &map, d)?;
-        let k = stiffness(&press_both(ledger, &map, Load::Approach(d))?)?;
-        let turned = stiffness(&press(ledger, &map.transposed(), Load::Approach(d))?)?;
+        let k = stiffness(&press_both(ledger, &map, Load::approach(d))?)?;
+        let turned = stiffness(&press(ledger, &map.transposed(), Load::approach(d))?)?;
         ledger.near("k of the turned map", turned, k);
     }
     Ok(())
@@ -134,8 +134,8 @@ fn long_map(ledger: &mut Ledger, effort: Effort) -> Result<()> {
     let rows = effort.pick(8, 24);
     let map = waves([100 * rows, rows], [100.0, 1.0], 4)?;
     for force in [1e-3, 1.0, 50.0] {
-        let one = press(ledger, &map, Load::Force(force))?;
-        let turned = press(ledger, &map.transposed(), Load::Force(force))?;
+        let one = press(ledger, &map, Load::force(force))?;
+        let turned = press(ledger, &map.transposed(), Load::force(force))?;
         ledger.near("k of the turned map", stiffness(&turned)?, stiffness(&one)?);
         ledger.must(one.report.contact_cells == turned.report.contact_cells, || {
             format!("contact cells {:?} and {:?}", one.report.contact_cells, turned.report.contact_cells)
@@ -154,7 +154,7 @@ fn frame(ledger: &mut Ledger, effort: Effort) -> Result<()> {
     });
     let size = [inner.dx() * columns as f64, inner.dy() * rows as f64];
     let framed = HeightMap::with_undefined([columns, rows], size, heights.collect())?;
-    for load in [Load::Force(1e-3), Load::Force(0.3), Load::Approach(0.5), Load::Force(30.0)] {
+    for load in [Load::force(1e-3), Load::force(0.3), Load::approach(0.5), Load::force(30.0)] {
         let (one, other) = (press_both(ledger, &inner, load)?, press_both(ledger, &framed, load)?);
         ledger.near("k", stiffness(&other)?, stiffness(&one)?);
         ledger.near("force", other.force, one.force);
@@ -172,7 +172,7 @@ fn checkerboard(ledger: &mut Ledger, effort: Effort) -> Result<()> {
     };
     let flat = masked(&|_| 0.0)?;
     let black: Vec<usize> = (0..n * n).filter(|i| (i % n + i / n).is_multiple_of(2)).collect();
-    let state = press_both(ledger, &flat, Load::Approach(1.0))?;
+    let state = press_both(ledger, &flat, Load::approach(1.0))?;
     ledger.near("k of a flat board", stiffness(&state)?, PlainSum::of(&flat).stiffness(&black));
     let waves = waves([n, n], [1.0, 1.0], 6)?;
     let rough = masked(&|i| waves.heights()[i])?;
@@ -187,12 +187,12 @@ fn one_point(ledger: &mut Ledger, _: Effort) -> Result<()> {
     for at in [0, 7, 12, 24] {
         let heights = (0..25).map(|i| if i == at { 0.3 } else { f64::NAN });
         let map = HeightMap::with_undefined(5, 1.0, heights.collect())?;
-        let state = press_both(ledger, &map, Load::Force(2.0))?;
+        let state = press_both(ledger, &map, Load::force(2.0))?;
         ledger.near("k of one cell", stiffness(&state)?, k);
         ledger.near("approach of one cell", approach(&state)?, 2.0 / k);
-        let state = press_both(ledger, &map, Load::Approach(0.1))?;
+        let state = press_both(ledger, &map, Load::approach(0.1))?;
         ledger.near("force of one cell", state.force, 0.1 * k);
-        let state = tight().prepare(&watched_periodic(&map), 0)?.solve(Load::Force(2.0))?;
+        let state = tight().prepare(&watched_periodic(&map), 0)?.solve(Load::force(2.0))?;
         ledger.contact_cells(&state, 1);
         ledger.enter((pressure(&state)?[at] / 50.0 - 1.0).abs());
     }
@@ -208,7 +208,7 @@ fn any_size(ledger: &mut Ledger, effort: Effort) -> Result<()> {
         let map = crate::maps::rough_map(2.2, n, 3)?;
         let mut contact = tight().prepare(&watched_periodic(&map), 0)?;
         for force in [1e-4, 0.01, 0.3, 1.0, 3.0, 10.0, 100.0, 1e4] {
-            let state = contact.solve(Load::Force(force))?;
+            let state = contact.solve(Load::force(force))?;
             ledger.meets(&state, tight().tolerance);
         }
     }

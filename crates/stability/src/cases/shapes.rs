@@ -55,7 +55,7 @@ fn saw_tooth(ledger: &mut Ledger, _: Effort) -> Result<()> {
     for d in [0.01, 0.2, 0.7, 1.5] {
         against_relaxation(ledger, &teeth, d)?;
     }
-    let [one, other] = [Load::Approach(60.0), Load::Approach(90.0)];
+    let [one, other] = [Load::approach(60.0), Load::approach(90.0)];
     let (one, other) = (press_both(ledger, &teeth, one)?, press_both(ledger, &teeth, other)?);
     let all: Vec<usize> = (0..cells * cells).collect();
     for state in [&one, &other] {
@@ -88,7 +88,7 @@ fn rectangles(ledger: &mut Ledger, effort: Effort) -> Result<()> {
             let length = aspect * width;
             let inside = |along: usize, across: usize| along < length && across < width;
             let map = faces(length, |x, y| if turned { inside(y, x) } else { inside(x, y) })?;
-            let state = press(ledger, &map, Load::Approach(1e-3))?;
+            let state = press(ledger, &map, Load::approach(1e-3))?;
             let area = (length * width) as f64 * map.dx() * map.dx();
             Ok(stiffness(&state)? / area.sqrt())
         };
@@ -137,7 +137,7 @@ fn moat(ledger: &mut Ledger, effort: Effort) -> Result<()> {
     }
     // What the rim shields: the island alone touches at its depth, within the rim later.
     let low = ring(-0.05)?;
-    let shielded = press(ledger, &low, Load::Approach(0.051))?;
+    let shielded = press(ledger, &low, Load::approach(0.051))?;
     let rim: Vec<usize> = (0..cells * cells).filter(|&i| low.heights()[i] >= 0.0).collect();
     ledger.near("k of the rim alone", stiffness(&shielded)?, PlainSum::of(&low).stiffness(&rim));
     Ok(())

@@ -115,7 +115,7 @@ fn pinned(ledger: &mut Ledger, effort: Effort) -> Result<()> {
     let sum = PlainSum::of(&map);
     let mut history = path(&attracted_by(&map, Adhesion::ShortRange { work }))?;
     let mut drawn = |ledger: &mut Ledger, share: f64| -> Result<ContactState> {
-        let state = go(history.as_mut(), Load::Force(share * unit))?;
+        let state = go(history.as_mut(), Load::force(share * unit))?;
         conditions(ledger, &sum, &map, (work, Boundary::Free), &state)?;
         let (area, radius) =
             (state.area.unwrap_or(f64::NAN), exact.radius_at_force((share * unit).max(unit))?);
@@ -161,13 +161,13 @@ fn avalanche(ledger: &mut Ledger, effort: Effort) -> Result<()> {
     scene.effects.boundary = Boundary::Periodic;
     let area = |state: &ContactState| state.area.unwrap_or(f64::NAN);
     let elastic = Scene { effects: Effects { adhesion: Adhesion::Off, ..scene.effects }, ..scene.clone() };
-    let without = area(&path(&elastic)?.solve(Load::Force(pushed))?);
+    let without = area(&path(&elastic)?.solve(Load::force(pushed))?);
     ledger.must(without < 0.5, || format!("area {without} without adhesion"));
     let mut history = path(&scene)?;
     let mut areas = Vec::new();
     // A pull opens the hollows further and is held.
     for (force, least) in [(0.0, NEARLY), (pushed, NEARLY), (0.0, NEARLY), (-0.05, 0.5)] {
-        let state = go(history.as_mut(), Load::Force(force))?;
+        let state = go(history.as_mut(), Load::force(force))?;
         conditions(ledger, &sum, &map, (work, Boundary::Periodic), &state)?;
         let area = area(&state);
         ledger.must(area > least, || format!("F {force}: area {area}"));

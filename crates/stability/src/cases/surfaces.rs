@@ -40,7 +40,7 @@ fn ends(ledger: &mut Ledger, effort: Effort, fractal_dimension: f64) -> Result<(
     }
     let map = rough_map(fractal_dimension, effort.pick(65, 129), 7)?;
     for force in [1e-9, 1e-4, 0.086, 1.0, 20.0] {
-        press(ledger, &map, Load::Force(force))?;
+        press(ledger, &map, Load::force(force))?;
     }
     Ok(())
 }
@@ -55,8 +55,8 @@ fn beside_the_ends(ledger: &mut Ledger, effort: Effort) -> Result<()> {
     for (end, beside) in [(0.0, 1e-13), (1.0, 1.0 - 1e-13)] {
         let (end, beside) = (surface(end)?, surface(beside)?);
         for force in [1e-3, 0.1, 1.0, 20.0] {
-            let a = press(ledger, &end, Load::Force(force))?;
-            let b = press(ledger, &beside, Load::Force(force))?;
+            let a = press(ledger, &end, Load::force(force))?;
+            let b = press(ledger, &beside, Load::force(force))?;
             ledger.near("d", approach(&b)?, approach(&a)?);
             ledger.near("k", stiffness(&b)?, stiffness(&a)?);
         }

@@ -53,7 +53,7 @@ fn flat_top(ledger: &mut Ledger, _: Effort) -> Result<()> {
         let contact: Vec<usize> = (0..cells * cells).filter(|i| inside(i % cells, i / cells)).collect();
         let exact = PlainSum::of(&map).stiffness(&contact);
         ledger.near("printed k", exact, 1.106_498_258 * 8.0 * map.dx());
-        for load in [Load::Approach(1e-6), Load::Force(1e-12), Load::Force(1e-3)] {
+        for load in [Load::approach(1e-6), Load::force(1e-12), Load::force(1e-3)] {
             let state = press_both(ledger, &map, load)?;
             ledger.contact(&state, 64, exact)?;
         }
@@ -68,7 +68,7 @@ fn flat_maps(ledger: &mut Ledger, _: Effort) -> Result<()> {
         for height in [0.0, 1e9] {
             let flat = map(cells, 1.0, |_, _| height)?;
             for size in [1e-200, 1e-12, 0.3, 1e12, 1e200] {
-                for load in [Load::Force(size), Load::Approach(size)] {
+                for load in [Load::force(size), Load::approach(size)] {
                     let state = press(ledger, &flat, load)?;
                     ledger.contact(&state, all.len(), exact)?;
                     ledger.near("F/d", state.force / approach(&state)?, exact);
@@ -94,8 +94,8 @@ fn quantised(ledger: &mut Ledger, effort: Effort) -> Result<()> {
             steps.heights()[y * cells + x] + e * ((13 * x + 29 * y * y) as f64).sin()
         })?;
         for force in [1e-4, 1e-2, 0.3, 20.0] {
-            let d = approach(&press_both(ledger, &steps, Load::Force(force))?)?;
-            let other = approach(&press(ledger, &moved, Load::Force(force))?)?;
+            let d = approach(&press_both(ledger, &steps, Load::force(force))?)?;
+            let other = approach(&press(ledger, &moved, Load::force(force))?)?;
             ledger.enter(((other - d).abs() / e - 2.0).max(0.0));
         }
         for d in [1e-3, 0.3, 1.5] {
@@ -125,7 +125,7 @@ fn symmetric(ledger: &mut Ledger, effort: Effort) -> Result<()> {
             let at = |i: usize| (i as f64 - centre) / cells as f64;
             let map = map(cells, 1.0, |x, y| body(at(x), at(y)))?;
             for force in [1e-9, 1e-4, 1e-2, 1.0] {
-                let state = press_both(ledger, &map, Load::Force(force))?;
+                let state = press_both(ledger, &map, Load::force(force))?;
                 let p = HeightMap::new(cells, 1.0, pressure(&state)?.to_vec())?;
                 for turned in [p.mirrored(), p.transposed()] {
                     ledger.field(p.heights(), turned.heights(), p.highest());
@@ -140,13 +140,13 @@ fn checkerboard(ledger: &mut Ledger, _: Effort) -> Result<()> {
     for cells in [3, 8, 17, 20] {
         let board = map(cells, 1.0, |x, y| if (x + y) % 2 == 0 { 0.0 } else { -1.0 })?;
         let black = (cells * cells).div_ceil(2);
-        let light = press_both(ledger, &board, Load::Approach(1e-3))?;
+        let light = press_both(ledger, &board, Load::approach(1e-3))?;
         ledger.contact_cells(&light, black);
         against_relaxation(ledger, &board, 1e-3)?;
         ledger.near("F = k d", light.force, stiffness(&light)? * 1e-3);
         let all: Vec<usize> = (0..cells * cells).collect();
         let full = PlainSum::of(&board).stiffness(&all);
-        let heavy = press_both(ledger, &board, Load::Force(1e3))?;
+        let heavy = press_both(ledger, &board, Load::force(1e3))?;
         ledger.contact(&heavy, all.len(), full)?;
     }
     Ok(())

@@ -66,7 +66,7 @@ fn moved(ledger: &mut Ledger, effort: Effort) -> Result<()> {
     let here = shifted(0.0)?;
     for offset in [1_048_576.0, -1_099_511_627_776.0] {
         let there = shifted(offset)?;
-        for load in [Load::Force(1e-9), Load::Force(0.3), Load::Force(20.0), Load::Approach(1.0)] {
+        for load in [Load::force(1e-9), Load::force(0.3), Load::force(20.0), Load::approach(1.0)] {
             let (a, b) = (solve(&here, 1.0, load)?, solve(&there, 1.0, load)?);
             ledger.same_bits("moved", &a, &b);
         }
@@ -83,8 +83,8 @@ fn powers_of_two(ledger: &mut Ledger, effort: Effort) -> Result<()> {
         let there = here.scaled(1.0, factor)?;
         for size in [1e-6, 0.3, 20.0] {
             for (here_load, there_load) in [
-                (Load::Force(size), Load::Force(size * factor)),
-                (Load::Approach(size), Load::Approach(size * factor)),
+                (Load::force(size), Load::force(size * factor)),
+                (Load::approach(size), Load::approach(size * factor)),
             ] {
                 let (a, b) = (solve(&here, 1.0, here_load)?, solve(&there, 1.0, there_load)?);
                 ledger.same_bits("in other units", &a, &divided(b, factor, factor, 1.0, factor));
@@ -101,8 +101,8 @@ fn neutral(ledger: &mut Ledger, effort: Effort, normalisation: &[(f64, f64, f64)
         for size in [1e-6, 0.1, 20.0] {
             let force = contact_modulus * lateral * vertical;
             for (here_load, there_load) in [
-                (Load::Force(size), Load::Force(size * force)),
-                (Load::Approach(size), Load::Approach(size * vertical)),
+                (Load::force(size), Load::force(size * force)),
+                (Load::approach(size), Load::approach(size * vertical)),
             ] {
                 let a = solve(&here, 1.0, here_load)?;
                 let b = solve(&there, contact_modulus, there_load)?;
@@ -144,7 +144,7 @@ fn beyond(ledger: &mut Ledger, _: Effort) -> Result<()> {
         [(1e150, 1e150, 1e150), (1e-150, 1e-150, 1e-150), (1e160, 1e160, 1e-160), (1e300, 1e20, 1.0)]
     {
         let there = map.scaled(lateral, vertical)?;
-        let found = solve(&there, contact_modulus, Load::Approach(vertical));
+        let found = solve(&there, contact_modulus, Load::approach(vertical));
         let honest = match &found {
             Err(Error::Domain { value, .. }) => !value.is_finite() || value.abs() <= 0.0,
             _ => false,
@@ -154,8 +154,8 @@ fn beyond(ledger: &mut Ledger, _: Effort) -> Result<()> {
     }
     // The force alone is beyond f64 where the stiffness is not asked for; d and k of a light one are fine.
     let there = map.scaled(1e100, 1e100)?;
-    let state = solve(&there, 1e100, Load::Force(1e295))?;
-    let here = solve(&map, 1.0, Load::Force(1e-5))?;
+    let state = solve(&there, 1e100, Load::force(1e295))?;
+    let here = solve(&map, 1.0, Load::force(1e-5))?;
     let same = (approach(&state)? / 1e100 / approach(&here)? - 1.0).abs() < NEUTRAL
         && (stiffness(&state)? / 1e200 / stiffness(&here)? - 1.0).abs() < NEUTRAL;
     ledger.must(same, || "a light load in units of 1e100".to_owned());

@@ -7,7 +7,7 @@ use crate::scenes::read::{
 };
 use bem3d::UNRESOLVED_RANGE;
 use contact_model::units::ascii;
-use contact_model::{Boundary, Cells, Hardness, Load, Step};
+use contact_model::{Boundary, Cells, Hardness, NormalLoad, Step};
 use runs::amounts::{duration, memory, time};
 use std::fmt;
 
@@ -331,8 +331,8 @@ fn beyond_hardness(scene: &SceneFile) -> Option<Diagnostic> {
             (loads.values.iter().map(|value| value / area).collect(), "The other loads are solved.")
         }
         LoadRequest::Path(_) => {
-            let mean = |step: &Step| match step.normal {
-                Load::Force(force) => Some(force / area),
+            let mean = |step: &Step| match step.load.normal {
+                NormalLoad::Force(force) => Some(force / area),
                 _ => None,
             };
             (scene.request.ends().filter_map(mean).collect(), "The path ends before this step.")

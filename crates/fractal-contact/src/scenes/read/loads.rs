@@ -2,7 +2,7 @@
 
 use crate::scenes::read::path::{MOST, PathPiece, read_path, zero_if_rounded};
 use crate::scenes::read::{Entries, Entry, Read, System};
-use contact_model::{Load, Normalisation, Size, Step};
+use contact_model::{Load, NormalLoad, Normalisation, Size, Step};
 use surface_io::Dimension;
 
 /// What a list of loads prescribes.
@@ -72,11 +72,11 @@ impl LoadList {
     /// [`contact_model::Error::Domain`] for a normalised force of a surface without rms height.
     pub fn load(&self, value: f64, normalisation: &Normalisation) -> contact_model::Result<Load> {
         Ok(match self.kind {
-            LoadKind::Force => Load::Force(value),
-            LoadKind::ForceBar => Load::Force(normalisation.force(value)?),
-            LoadKind::MeanPressure => Load::Force(value * normalisation.length * normalisation.length),
-            LoadKind::Approach => Load::Approach(value),
-            LoadKind::MeanGap => Load::MeanGap(value),
+            LoadKind::Force => Load::force(value),
+            LoadKind::ForceBar => Load::force(normalisation.force(value)?),
+            LoadKind::MeanPressure => Load::force(value * normalisation.length * normalisation.length),
+            LoadKind::Approach => Load::approach(value),
+            LoadKind::MeanGap => Load::mean_gap(value),
         })
     }
 }
@@ -118,13 +118,13 @@ impl LoadRequest {
 
     /// Whether tangential loads along x, and along y, are prescribed.
     pub(crate) fn shears(&self) -> [bool; 2] {
-        [0, 1].map(|along| self.ends().any(|step| step.tangential.components()[along].abs() > 0.0))
+        [0, 1].map(|along| self.ends().any(|step| step.load.tangential.components()[along].abs() > 0.0))
     }
 
     /// Whether a piece of a path begins at the mean gap that the state before it has.
     pub(crate) fn begins_at_mean_gap(&self) -> bool {
         let Self::Path(pieces) = self else { return false };
-        let is_gap = |piece: &PathPiece| matches!(piece.end.normal, Load::MeanGap(_));
+        let is_gap = |piece: &PathPiece| matches!(piece.end.load.normal, NormalLoad::MeanGap(_));
         pieces
             .iter()
             .zip(pieces.iter().skip(1))
@@ -135,9 +135,9 @@ impl LoadRequest {
     pub(crate) fn prescribes_distance(&self) -> bool {
         match self {
             Self::Loads(loads) => matches!(loads.kind, LoadKind::Approach | LoadKind::MeanGap),
-            Self::Path(_) => {
-                self.ends().any(|step| matches!(step.normal, Load::Approach(_) | Load::MeanGap(_)))
-            }
+            Self::Path(_) => self
+                .ends()
+                .any(|step| matches!(step.load.normal, NormalLoad::Approach(_) | NormalLoad::MeanGap(_))),
         }
     }
 }

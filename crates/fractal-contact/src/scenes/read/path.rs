@@ -1,7 +1,7 @@
 //! A path of loads: straight pieces, each divided into steps while the path is followed.
 
 use crate::scenes::read::{Entry, Read, System};
-use contact_model::{ContactState, Error, Load, Result, Size, Step, Tangential};
+use contact_model::{ContactState, Error, Load, NormalLoad, Result, Size, Step, Tangential};
 use surface_io::Dimension;
 
 /// Largest number of loads or states; more are taken for a typing error.
@@ -61,12 +61,11 @@ pub(crate) fn step_to<'a>(
                         );
                         Error::unsupported(model, what)
                     };
-                    Step {
-                        normal: normal_start(before.normal, end.normal, stands).map_err(lacks)?,
-                        tangential: tangential_start(before.tangential, end.tangential, stands)
-                            .map_err(lacks)?,
-                        ..before
-                    }
+                    let normal = normal_start(before.load.normal, end.load.normal, stands);
+                    let tangential = tangential_start(before.load.tangential, end.load.tangential, stands);
+                    let load =
+                        Load { normal: normal.map_err(lacks)?, tangential: tangential.map_err(lacks)? };
+                    Step { load, ..before }
                 }
             };
             return Ok(between(from, end, part as f64 / states as f64));
@@ -79,36 +78,36 @@ pub(crate) fn step_to<'a>(
 
 /// The state without contact and load, with the quantities that the first step prescribes.
 fn beginning(first: Step) -> Step {
-    let normal = match first.normal {
-        Load::Approach(_) => Load::Approach(0.0),
+    let normal = match first.load.normal {
+        NormalLoad::Approach(_) => NormalLoad::Approach(0.0),
         // The distance at first touch is not known here.
-        Load::MeanGap(gap) => Load::MeanGap(gap),
-        _ => Load::Force(0.0),
+        NormalLoad::MeanGap(gap) => NormalLoad::MeanGap(gap),
+        _ => NormalLoad::Force(0.0),
     };
-    let tangential = match first.tangential {
+    let tangential = match first.load.tangential {
         Tangential::Displacement(_) => Tangential::Displacement([0.0; 2]),
         _ => Tangential::default(),
     };
-    Step { time: 0.0, normal, tangential }
+    Step::new(0.0, Load { normal, tangential })
 }
 
 /// The normal load at which a piece begins; the name of the quantity that the reached state lacks otherwise.
 fn normal_start(
-    before: Load,
-    end: Load,
+    before: NormalLoad,
+    end: NormalLoad,
     reached: Option<&ContactState>,
-) -> std::result::Result<Load, &'static str> {
+) -> std::result::Result<NormalLoad, &'static str> {
     match (before, end) {
-        (Load::Force(_), Load::Force(_))
-        | (Load::Approach(_), Load::Approach(_))
-        | (Load::MeanGap(_), Load::MeanGap(_)) => Ok(before),
-        (_, Load::Approach(_)) => {
-            reached.and_then(|state| state.approach).map(Load::Approach).ok_or("an approach")
+        (NormalLoad::Force(_), NormalLoad::Force(_))
+        | (NormalLoad::Approach(_), NormalLoad::Approach(_))
+        | (NormalLoad::MeanGap(_), NormalLoad::MeanGap(_)) => Ok(before),
+        (_, NormalLoad::Approach(_)) => {
+            reached.and_then(|state| state.approach).map(NormalLoad::Approach).ok_or("an approach")
         }
-        (_, Load::MeanGap(_)) => {
-            reached.and_then(|state| state.mean_gap).map(Load::MeanGap).ok_or("a mean gap")
+        (_, NormalLoad::MeanGap(_)) => {
+            reached.and_then(|state| state.mean_gap).map(NormalLoad::MeanGap).ok_or("a mean gap")
         }
-        _ => reached.map(|state| Load::Force(state.force)).ok_or("a force"),
+        _ => reached.map(|state| NormalLoad::Force(state.force)).ok_or("a force"),
     }
 }
 
@@ -133,18 +132,18 @@ fn tangential_start(
 fn between(from: Step, to: Step, t: f64) -> Step {
     let mix = |a: f64, b: f64| zero_if_rounded(a + (b - a) * t, [a, b]);
     let both = |a: [f64; 2], b: [f64; 2]| [mix(a[0], b[0]), mix(a[1], b[1])];
-    let normal = match (from.normal, to.normal) {
-        (Load::Force(a), Load::Force(b)) => Load::Force(mix(a, b)),
-        (Load::Approach(a), Load::Approach(b)) => Load::Approach(mix(a, b)),
-        (Load::MeanGap(a), Load::MeanGap(b)) => Load::MeanGap(mix(a, b)),
+    let normal = match (from.load.normal, to.load.normal) {
+        (NormalLoad::Force(a), NormalLoad::Force(b)) => NormalLoad::Force(mix(a, b)),
+        (NormalLoad::Approach(a), NormalLoad::Approach(b)) => NormalLoad::Approach(mix(a, b)),
+        (NormalLoad::MeanGap(a), NormalLoad::MeanGap(b)) => NormalLoad::MeanGap(mix(a, b)),
         (_, other) => other,
     };
-    let tangential = match (from.tangential, to.tangential) {
+    let tangential = match (from.load.tangential, to.load.tangential) {
         (Tangential::Force(a), Tangential::Force(b)) => Tangential::Force(both(a, b)),
         (Tangential::Displacement(a), Tangential::Displacement(b)) => Tangential::Displacement(both(a, b)),
         (_, other) => other,
     };
-    Step { time: mix(from.time, to.time), normal, tangential }
+    Step::new(mix(from.time, to.time), Load { normal, tangential })
 }
 
 /// A value between two ends: exactly zero where it differs from that by the rounding of the ends alone, so
@@ -163,33 +162,33 @@ pub(crate) fn read_path(entry: &Entry<'_>, system: System, pulls: bool, size: Si
             .with_help("write [[scene.path]] once for each step"));
     }
     let mut pieces: Vec<PathPiece> = Vec::new();
-    let mut last = Step::normal(0.0, Load::Force(0.0));
+    let mut last = Step::new(0.0, Load::force(0.0));
     let mut total = 0_u64;
     for item in entry.list() {
         let table = item.table()?;
         let mut time = last.time;
         table.set(&mut time, "time", |e| e.quantity(Dimension::TIME, system))?;
         let normal = match table.one_of(&["force", "approach", "mean_pressure", "mean_gap"])? {
-            Some(("force", e)) => Load::Force(e.quantity(Dimension::FORCE, system)?),
+            Some(("force", e)) => NormalLoad::Force(e.quantity(Dimension::FORCE, system)?),
             // The mean pressure times the nominal contact area, as for a list of mean pressures.
             Some(("mean_pressure", e)) => {
-                Load::Force(e.quantity(Dimension::PRESSURE, system)? * size.length() * size.length())
+                NormalLoad::Force(e.quantity(Dimension::PRESSURE, system)? * size.length() * size.length())
             }
-            Some(("mean_gap", e)) => Load::MeanGap(e.quantity(Dimension::LENGTH, system)?),
-            Some((_, e)) => Load::Approach(e.quantity(Dimension::LENGTH, system)?),
+            Some(("mean_gap", e)) => NormalLoad::MeanGap(e.quantity(Dimension::LENGTH, system)?),
+            Some((_, e)) => NormalLoad::Approach(e.quantity(Dimension::LENGTH, system)?),
             None if pieces.is_empty() => {
                 return Err(item
                     .diagnostic("the first step of the path has no normal load")
                     .with_help("give `force`, `mean_pressure`, `approach` or (periodic) `mean_gap`"));
             }
-            None => last.normal,
+            None => last.load.normal,
         };
         let tangential = match table.one_of(&["tangential_force", "tangential_displacement"])? {
             Some(("tangential_force", e)) => {
                 Tangential::Force(read_tangential(&e, Dimension::FORCE, system)?)
             }
             Some((_, e)) => Tangential::Displacement(read_tangential(&e, Dimension::LENGTH, system)?),
-            None => last.tangential,
+            None => last.load.tangential,
         };
         let states = table.find("states");
         let count = states.as_ref().map_or(Ok(1), |e| e.count(1))?;
@@ -203,7 +202,7 @@ pub(crate) fn read_path(entry: &Entry<'_>, system: System, pulls: bool, size: Si
                 ));
         }
         table.finish()?;
-        let end = Step { time, normal, tangential };
+        let end = Step::new(time, Load { normal, tangential });
         let checked = if pulls { end.validated_with_adhesion(last.time) } else { end.validated(last.time) };
         checked.map_err(|e| {
             let help = match &e {
@@ -275,15 +274,15 @@ mod tests {
         )
         .unwrap();
         let steps = steps(&pieces, None).unwrap();
-        let tangential: Vec<Tangential> = steps.iter().map(|step| step.tangential).collect();
+        let tangential: Vec<Tangential> = steps.iter().map(|step| step.load.tangential).collect();
         let forces = [[0.0, 0.0], [1.0, -2.0], [2.0, -4.0], [1.0, 0.0]].map(Tangential::Force);
         assert_eq!(tangential[..4], forces);
         assert_eq!(tangential[4], Tangential::Displacement([0.5, 0.25]));
         // The mean pressure of a path is the force over the nominal area, and stays as it was.
-        assert!(steps.iter().all(|step| step.normal == Load::Force(12.0)));
+        assert!(steps.iter().all(|step| step.load.normal == NormalLoad::Force(12.0)));
         assert_eq!(LoadRequest::Path(pieces).shears(), [true, true]);
         let along_x = path("[[path]]\nmean_gap = 1\ntangential_displacement = 2").unwrap();
-        assert_eq!(along_x[0].end.normal, Load::MeanGap(1.0));
+        assert_eq!(along_x[0].end.load.normal, NormalLoad::MeanGap(1.0));
         assert_eq!(LoadRequest::Path(along_x).shears(), [true, false]);
         for wrong in ["[]", "[1]", "[1, 2, 3]", "[1, \"2 N\"]", "[1, nan]", "\"1 N\"", "{ x = 1 }"] {
             assert!(path(&format!("[[path]]\nforce = 1\ntangential_force = {wrong}")).is_err(), "{wrong}");
@@ -308,18 +307,18 @@ mod tests {
         let approaches = [0.5 + (0.1 - 0.5) * 0.25, 0.3, 0.5 + (0.1 - 0.5) * 0.75, 0.1];
         let shifts = [[0.3, 0.75], [0.1, 0.5], [-0.1, 0.25], [-0.3, 0.0]];
         for (i, (step, (d, u))) in steps[1..5].iter().zip(approaches.into_iter().zip(shifts)).enumerate() {
-            assert_eq!(step.normal, Load::Approach(d), "{i}");
-            let Tangential::Displacement([x, y]) = step.tangential else { panic!("{step:?}") };
+            assert_eq!(step.load.normal, NormalLoad::Approach(d), "{i}");
+            let Tangential::Displacement([x, y]) = step.load.tangential else { panic!("{step:?}") };
             assert!((x - u[0]).abs() < 1e-15 && (y - u[1]).abs() < 1e-15, "{i}: {step:?}");
             assert!((step.time - (1.5 + 0.5 * i as f64)).abs() < 1e-15, "{step:?}");
         }
         assert_eq!(steps[4], pieces[1].end);
-        let normal: Vec<Load> = steps[5..].iter().map(|step| step.normal).collect();
-        assert_eq!(normal[..2], [0.75 + (0.1 - 0.75) * 0.5, 0.1].map(Load::Force));
-        assert_eq!(normal[2..], [6.0, 8.0, 8.0, 8.0].map(Load::MeanGap));
-        assert!(steps[4..9].iter().all(|step| step.tangential == Tangential::Displacement([-0.3, 0.0])));
-        assert_eq!(steps[9].tangential, Tangential::Force([0.125, 0.0]));
-        assert_eq!(steps[10].tangential, Tangential::Force([0.0, 1.0]));
+        let normal: Vec<NormalLoad> = steps[5..].iter().map(|step| step.load.normal).collect();
+        assert_eq!(normal[..2], [0.75 + (0.1 - 0.75) * 0.5, 0.1].map(NormalLoad::Force));
+        assert_eq!(normal[2..], [6.0, 8.0, 8.0, 8.0].map(NormalLoad::MeanGap));
+        assert!(steps[4..9].iter().all(|step| step.load.tangential == Tangential::Displacement([-0.3, 0.0])));
+        assert_eq!(steps[9].load.tangential, Tangential::Force([0.125, 0.0]));
+        assert_eq!(steps[10].load.tangential, Tangential::Force([0.0, 1.0]));
         let request = LoadRequest::Path(pieces);
         assert!(request.begins_at_mean_gap() && request.prescribes_distance());
         let continued = path("[[path]]\nmean_gap = 1\n[[path]]\nmean_gap = 2\nstates = 2").unwrap();
@@ -335,15 +334,17 @@ mod tests {
         )
         .unwrap();
         let steps = steps(&pieces, None).unwrap();
-        let normal: Vec<Load> = steps.iter().map(|step| step.normal).collect();
+        let normal: Vec<NormalLoad> = steps.iter().map(|step| step.load.normal).collect();
         let last = [0.3 + (-0.1 - 0.3) * 0.25, 0.3 + (-0.1 - 0.3) * 0.5, 0.0, -0.1];
-        assert_eq!(normal[..4], [0.1, 0.2, 0.2 + (0.3 - 0.2) * 0.5, 0.3].map(Load::Approach));
-        assert_eq!(normal[4..], last.map(Load::Approach));
-        assert_eq!(steps[0].tangential, Tangential::Displacement([0.2, 0.0]));
-        assert_eq!(steps[3].tangential, Tangential::Displacement([0.4, 0.0]));
-        assert_eq!(steps[5].tangential, Tangential::Displacement([0.2, 0.0]));
+        assert_eq!(normal[..4], [0.1, 0.2, 0.2 + (0.3 - 0.2) * 0.5, 0.3].map(NormalLoad::Approach));
+        assert_eq!(normal[4..], last.map(NormalLoad::Approach));
+        assert_eq!(steps[0].load.tangential, Tangential::Displacement([0.2, 0.0]));
+        assert_eq!(steps[3].load.tangential, Tangential::Displacement([0.4, 0.0]));
+        assert_eq!(steps[5].load.tangential, Tangential::Displacement([0.2, 0.0]));
         let gap = path("[[path]]\nmean_gap = 2\nstates = 3").unwrap();
-        assert!(self::steps(&gap, None).unwrap().iter().all(|step| step.normal == Load::MeanGap(2.0)));
+        assert!(
+            self::steps(&gap, None).unwrap().iter().all(|step| step.load.normal == NormalLoad::MeanGap(2.0))
+        );
         assert!(step_to(3, &gap, "mine", |_| None).unwrap_err().to_string().contains("below 3"));
     }
 
@@ -355,7 +356,7 @@ mod tests {
         {
             let text = format!("[[path]]\nforce = {from}\n[[path]]\nforce = {to}\nstates = {states}");
             let steps = steps(&path(&text).unwrap(), None).unwrap();
-            let Load::Force(force) = steps[1 + zero].normal else { panic!("{steps:?}") };
+            let NormalLoad::Force(force) = steps[1 + zero].load.normal else { panic!("{steps:?}") };
             assert_eq!(force.to_bits(), 0, "from {from} to {to}: {force:e}");
         }
         // What is small and no rounding stays.

@@ -7,8 +7,8 @@ use crate::scenes::read::{
     read_effects, read_models, read_outputs, read_request, read_surface, short,
 };
 use contact_model::{
-    Adhesion, Body, Boundary, Cells, Directions, Effect, Effects, Friction, Hardness, Load, Output, Pair,
-    Paths, Rheology, Scene,
+    Adhesion, Body, Boundary, Cells, Directions, Effect, Effects, Friction, Hardness, NormalLoad, Output,
+    Pair, Paths, Rheology, Scene,
 };
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -518,18 +518,18 @@ fn check_request(
     effects: &Effects,
 ) -> Read<()> {
     let periodic = effects.boundary == Boundary::Periodic;
-    let prescribes = |kind: LoadKind, of_step: fn(&Load) -> bool| match request {
+    let prescribes = |kind: LoadKind, of_step: fn(&NormalLoad) -> bool| match request {
         LoadRequest::Loads(loads) => loads.kind == kind,
-        LoadRequest::Path(_) => request.ends().any(|step| of_step(&step.normal)),
+        LoadRequest::Path(_) => request.ends().any(|step| of_step(&step.load.normal)),
     };
-    if periodic && prescribes(LoadKind::Approach, |load| matches!(load, Load::Approach(_))) {
+    if periodic && prescribes(LoadKind::Approach, |load| matches!(load, NormalLoad::Approach(_))) {
         return Err(entry
             .diagnostic_at_key("an approach with periodic boundaries: there is no first touch to count from")
             .with_help(
                 "prescribe `force`, `mean_pressure` or `mean_gap`, or remove `boundary = \"periodic\"`",
             ));
     }
-    if !periodic && prescribes(LoadKind::MeanGap, |load| matches!(load, Load::MeanGap(_))) {
+    if !periodic && prescribes(LoadKind::MeanGap, |load| matches!(load, NormalLoad::MeanGap(_))) {
         return Err(entry
             .diagnostic_at_key("a mean gap with free boundaries")
             .with_help("prescribe `force` or `approach`, or add `boundary = \"periodic\"` to [effects]"));
@@ -566,7 +566,9 @@ fn check_half_plane(
                 gap and its stiffness have a meaning";
     let by_approach = match request {
         LoadRequest::Loads(loads) => loads.kind == LoadKind::Approach,
-        LoadRequest::Path(_) => request.ends().any(|step| matches!(step.normal, Load::Approach(_))),
+        LoadRequest::Path(_) => {
+            request.ends().any(|step| matches!(step.load.normal, NormalLoad::Approach(_)))
+        }
     };
     if by_approach {
         let message = format!("an approach of a profile with free boundaries: {why}");

@@ -147,7 +147,7 @@ impl ModelOnSurface {
         };
         for (index, record) in result.states.iter().enumerate() {
             if let (Some(solved), Ok(step)) = (record.solved(), step_of(index, &result.states)) {
-                let _ = largest.enter(step.normal, solved.state.clone());
+                let _ = largest.enter(step.load.normal, solved.state.clone());
             }
         }
         for index in result.states.len()..scene.request.count() {
@@ -161,7 +161,7 @@ impl ModelOnSurface {
             };
             let record = match contact.advance_until(step, stop) {
                 Ok(state) => {
-                    let state = largest.enter(step.normal, state);
+                    let state = largest.enter(step.load.normal, state);
                     let warnings = Warning::of(scene, &state, None);
                     self.recorded(scene, Solved { state, normalisation, warnings, grid: None }, out, index)?
                 }
@@ -173,7 +173,8 @@ impl ModelOnSurface {
                     Ok(best) => {
                         // The best state of a solve that missed its tolerance or, beyond the pull-off force,
                         // the last stable state.
-                        let state = largest.enter(step.normal, best.with_fields(None).with_patches(None));
+                        let state =
+                            largest.enter(step.load.normal, best.with_fields(None).with_patches(None));
                         let solved = Solved { state, normalisation, warnings: Vec::new(), grid: None };
                         StateRecord::new(index, Answer::State(Box::new(solved)))
                     }
@@ -364,7 +365,7 @@ mod tests {
     #[test]
     fn fields_of_two_components_are_whole_in_every_format() {
         let surface = SceneSurface::Plain(contact_model::Surface::Flat { size: [6.0, 1.0].into() });
-        let steps = LoadRequest::Path(vec![Step::normal(0.0, Load::Force(1.0)).into()]);
+        let steps = LoadRequest::Path(vec![Step::new(0.0, Load::force(1.0)).into()]);
         let mut scene = SceneFile::new(vec![Numerics::Bem3d(bem3d::Bem3d::default())], surface, 1.0, steps);
         if let Numerics::Bem3d(elements) = &mut scene.models[0] {
             (elements.cells, elements.rows) = (3, Some(2));

@@ -221,7 +221,7 @@ impl Circumstances {
 /// ```
 /// use contact_model::{ContactModel, Load, Scene, Surface};
 /// let scene = Scene::new(Surface::Sphere { radius: 1.0, size: 1.0.into() }, 1.0);
-/// let state = bem3d::Bem3d { cells: 17, ..Default::default() }.prepare(&scene, 0)?.solve(Load::Force(1e-4))?;
+/// let state = bem3d::Bem3d { cells: 17, ..Default::default() }.prepare(&scene, 0)?.solve(Load::force(1e-4))?;
 /// let notes = fractal_contact::scenes::StateNotes::new(&scene).of(&state);
 /// assert!(notes[0].starts_with("fewer than 10 contact cells: "));
 /// # Ok::<(), contact_model::Error>(())

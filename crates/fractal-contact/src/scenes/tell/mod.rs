@@ -74,7 +74,7 @@ mod tests {
             AskedBy::FrictionInPlane => {
                 effects.friction = Friction::coulomb(0.3);
                 let tangential = Tangential::Force([0.1, 0.1]);
-                let step = Step { tangential, ..Step::normal(0.0, Load::Force(1.0)) };
+                let step = Step::new(0.0, Load::force(1.0).with_tangential(tangential));
                 scene.request = LoadRequest::Path(vec![step.into(); 2]);
             }
             AskedBy::Effect("hardness") => effects.hardness = Hardness::Limit { pressure: 1.0 },
@@ -83,7 +83,7 @@ mod tests {
             AskedBy::Effect("rheology") => effects.rheology = Rheology::Maxwell { viscosity: 1.0 },
             AskedBy::Effect(key) => assert!(Effect::ALL.iter().any(|effect| effect.key() == key), "{key}"),
             AskedBy::Path => {
-                scene.request = LoadRequest::Path(vec![Step::normal(0.0, Load::Force(1.0)).into(); 2]);
+                scene.request = LoadRequest::Path(vec![Step::new(0.0, Load::force(1.0)).into(); 2]);
             }
             AskedBy::All(each) => each.iter().for_each(|asked| ask(scene, *asked)),
             AskedBy::Always | AskedBy::RoughSurface | AskedBy::FreeBoundary | AskedBy::PrescribedDistance => {
