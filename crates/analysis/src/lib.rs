@@ -1,33 +1,27 @@
 //! Ensembles, power-law fits, collapse and conductance: from contact states to the numbers of the paper.
 //!
-//! Everything here is a pure function of computed numbers, without files, clocks, or random state other than
-//! a seed. All functions use the dimensionless pair of Pohrt, Popov and Filippov (Phys. Rev. E 86, 026710
-//! (2012)): `F_bar = F/(E* h L)` (Eq. 10) and `k_bar = k/(1.1419 E* L)` (Eq. 8).
+//! How does one get from many contact states to one number with an error? This crate has the functions for
+//! it. Each of them is a pure function of numbers: it reads no file and no clock, and a seed is the only
+//! source of chance.
 //!
-//! * [`Curves`]: k_bar of many surfaces at common forces; [`ensemble`]: their means and errors.
-//! * [`fit_power_law`]: `k_bar = zeta F_bar^alpha` over a stated [`FitWindow`], errors by [`Bootstrap`] over
-//!   surfaces.
-//! * [`crossing`], [`least_spread`]: the point where the laws, or the curves, of several fractal dimensions
-//!   come closest.
-//! * [`collapse`]: the master curve of Fig. 4 and the residuals about it.
-//! * [`conductance`] (Eq. 13) and [`kappa`] (`A = kappa F/(E* |grad h|)`).
-//! * [`grid_error`], [`mean_grid_error`]: discretisation errors, estimated from coarser grids;
-//!   [`first_grid`]: the grid for a requested accuracy.
-//! * [`Multilevel`]: means on the finest of several grids from differences between grids, with bands.
-//! * [`binomial_test`]: whether intervals contain the true value as often as they should.
-//! * [`Table`]: named columns with units that hold no NaN; `paper` writes them.
+//! All functions use the two dimensionless quantities of Pohrt, Popov and Filippov (Phys. Rev. E 86, 026710
+//! (2012)): the force `F_bar = F/(E* h L)` (Eq. 10) and the stiffness `k_bar = k/(1.1419 E* L)` (Eq. 8). Here
+//! F is the normal force, k the stiffness, E* the contact modulus, h the rms height and L the side of the
+//! square.
 //!
-//! # Conventions and accuracy
-//!
-//! Sums are compensated ([`sum`]), so a mean of 1e7 terms keeps its digits. A number that does not exist is
-//! `None` with a reason, never NaN. Errors come from resampling whole surfaces: curves of different fractal
-//! dimension share their random phases, and [`Bootstrap::draws`] gives every curve of a run the same
-//! surfaces. Cost is linear in the number of samples (times the number of resamples for an error).
-//!
-//! # What it does not do
-//!
-//! It does not solve contacts. The caller must leave out samples that did not converge (a `None` in
-//! [`Curves`]); fits leave out forces at which a sample is missing.
+//! | item | what it gives |
+//! |---|---|
+//! | [`Curves`], [`ensemble`] | k_bar of many surfaces at common forces; their means and errors |
+//! | [`fit_power_law`] | the law `k_bar = zeta F_bar^alpha` over a stated [`FitWindow`], with errors by a [`Bootstrap`] over surfaces |
+//! | [`crossing`], [`least_spread`] | the point at which the laws, or the curves, of several fractal dimensions come closest to each other |
+//! | [`collapse`] | the master curve of Fig. 4, and the residuals about it |
+//! | [`conductance`] | the conductance by Eq. 13 |
+//! | [`kappa`] | the factor kappa of `A = kappa F/(E* h')`, with the contact area A and the rms gradient h' |
+//! | [`grid_error`], [`mean_grid_error`] | discretisation errors, estimated from coarser grids |
+//! | [`first_grid`] | the grid for a requested accuracy |
+//! | [`Multilevel`] | means on the finest of several grids, from differences between grids, with bands |
+//! | [`binomial_test`] | whether intervals contain the true value as often as they should |
+//! | [`Table`] | named columns with units, which hold no NaN; `paper` writes them |
 //!
 //! ```
 //! use analysis::{Bootstrap, Curves, FitWindow, StiffnessSample, fit_power_law};
@@ -39,6 +33,20 @@
 //! assert_eq!(law.alpha_se, None); // one surface has no scatter to resample
 //! # Ok::<(), contact_model::Error>(())
 //! ```
+//!
+//! # Conventions and accuracy
+//!
+//! Sums are compensated ([`sum`]), so that a mean of 1e7 terms keeps its digits. A number that does not exist
+//! is `None` with a reason, and never NaN.
+//!
+//! Errors come from resampling whole surfaces. Curves of different fractal dimension share their random
+//! phases, so that [`Bootstrap::draws`] gives every curve of a run the same surfaces. The cost is linear in
+//! the number of samples, and for an error also in the number of resamples.
+//!
+//! # What it does not do
+//!
+//! It solves no contacts. The caller must leave out samples that did not converge, as a `None` in [`Curves`].
+//! A fit leaves out each force at which a sample is missing.
 
 mod binomial;
 mod bootstrap;

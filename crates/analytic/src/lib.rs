@@ -1,6 +1,10 @@
 //! Closed forms, one theory per file, each a [`contact_model::ContactModel`] that names its sources.
 //!
-//! | model | surfaces | claims |
+//! Is there a formula for your contact? These models evaluate the formulas and theories of the literature.
+//! They take the same scenes and loads as the numerical models, so that the results can stand in one table.
+//! In the last column F is the normal force, d the approach and k the stiffness.
+//!
+//! | model | surfaces | what it computes |
 //! |---|---|---|
 //! | [`Hertz`] | sphere | F, d, k, area |
 //! | [`PowerLawBody`] | power law, cone, sphere | F, d, k, area |
@@ -14,36 +18,45 @@
 //! | [`CattaneoMindlin`] (a history) | sphere, [`contact_model::Friction::Coulomb`] | tangential force and displacement, stick radius, dissipated energy |
 //! | [`PowerLaw`] | self-affine or map, `k_bar <= 0.18` | k of F (Eq. 12 of Pohrt, Popov, Filippov 2012), d by integration |
 //!
-//! The paper's other fits are plain functions: [`exponent_fit`] (Eq. 6), [`zeta_fit`] (Eq. 11),
+//! The other fits of that paper are plain functions: [`exponent_fit`] (Eq. 6), [`zeta_fit`] (Eq. 11),
 //! [`conductance_fit`] (Eq. 13), [`exponent_scaling`] (Eq. 24) and [`force_tilde`] (Fig. 4). The product of
-//! two waves has no closed form; its limits for small and nearly full contact are functions of
-//! [`westergaard`]. The statistics that theories use are in [`spectrum`] for a random surface, and in
-//! [`surface_gen::MapStatistics`] and [`surface_gen::SelfAffineFit`] for a given map.
+//! two waves has no closed form. Its limits for small and for nearly full contact are functions of
+//! [`westergaard`].
+//!
+//! Theories of rough surfaces need statistics of the surface. They are in [`spectrum`] for a random surface.
+//! For a given map they are in [`surface_gen::MapStatistics`] and [`surface_gen::SelfAffineFit`].
 //!
 //! # Conventions
 //!
 //! The conventions are those of [`contact_model`]: `d` is measured from first touch, pressure is compressive,
-//! and units are the caller's own. Round contacts are at the centre of the rectangle; once their radius
-//! exceeds half its shorter side they are out of range, because the half-space outside carries no pressure.
-//! `L = sqrt(Lx Ly)` is the side of a square; theories of rough surfaces depend on the nominal area `L^2`
-//! alone.
+//! and the caller chooses the units.
 //!
-//! Periodic contacts have a mean gap and no approach: [`contact_model::ContactState::mean_gap`],
-//! [`contact_model::Load::mean_gap`].
+//! * Round contacts are at the centre of the rectangle. If the radius of the contact exceeds half of the
+//!   shorter side, the load is out of range, because the half-space outside of the rectangle carries no
+//!   pressure.
+//! * `L = sqrt(Lx Ly)` is the side of a square. Theories of rough surfaces depend on the nominal area `L^2`
+//!   alone.
+//! * Periodic contacts have a mean gap ([`contact_model::ContactState::mean_gap`],
+//!   [`contact_model::Load::mean_gap`]) and no approach.
 //!
 //! # Accuracy and speed
 //!
-//! Exact formulas are evaluated to about 1e-14 (1e-13 for small exponents), in any units from 1e-150 to
-//! 1e150. The constant of the flat square is known to 1e-6, and its report states this. A state costs well
-//! under a microsecond; one of [`MaugisDugdale`] (a root) costs one or two. Those of [`GreenwoodWilliamson`]
-//! and [`Persson`] cost tens of microseconds (quadratures to 1e-11), and a few hundred with the mean gap.
-//! These numbers concern the evaluation: theories of rough surfaces are approximations, and [`PowerLaw`] is a
-//! fit.
+//! These numbers are for the evaluation of a formula. How well the formula describes a contact is another
+//! question: theories of rough surfaces are approximations, and [`PowerLaw`] is a fit.
+//!
+//! Exact formulas are evaluated to about 1e-14, and to 1e-13 for small exponents, in any units from 1e-150 to
+//! 1e150. The constant of the flat square is known to 1e-6, and its report says so.
+//!
+//! | model | time of a state |
+//! |---|---|
+//! | most models | well below 1 us |
+//! | [`MaugisDugdale`], which needs a root | 1 to 2 us |
+//! | [`GreenwoodWilliamson`] and [`Persson`], which need quadratures to 1e-11 | tens of us; a few hundred with the mean gap |
 //!
 //! # What it does not do
 //!
 //! It has no fields, because a closed form has no cells. Pressures that are known as formulas are functions
-//! of r ([`hertz::pressure`], [`flat_punch::pressure`]). Effects that the table does not name are refused.
+//! of r ([`hertz::pressure`], [`flat_punch::pressure`]). Effects that are not in the table are refused.
 
 pub mod adhesive_wave;
 pub mod cattaneo_mindlin;

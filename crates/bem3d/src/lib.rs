@@ -2,17 +2,21 @@
 //!
 //! # What it computes
 //!
-//! A rigid flat presses on an elastic half-space of contact modulus E* whose surface carries heights on a
-//! rectangle of columns x rows cells of sides dx and dy (any number of cells, square or oblong). Pressure
-//! acts inside the rectangle only; the half-space outside is unloaded. Undefined points of a map cannot
-//! touch. With `z = h_max - h` and the approach d from first touch, the model finds the pressure p and the
-//! gap g of
+//! A rigid flat presses on a rough elastic body. Where do they touch, and with which pressure? The body is an
+//! elastic half-space of contact modulus E*. Its surface carries heights h on a rectangle of columns x rows
+//! cells with the sides dx and dy. Any number of cells is possible, square or oblong. Pressure acts inside
+//! the rectangle only, and the half-space outside is unloaded. Undefined points of a map are never in
+//! contact.
+//!
+//! With the depth `z = h_max - h` below the highest point and the approach d from first touch, the model
+//! finds the pressure p and the gap g of
 //!
 //! `g = u + z - d >= 0,   p >= 0,   p g = 0,   u = G p`
 //!
-//! and the incremental stiffness `k = dF/dd = 1' G_CC^-1 1` on the contact set C, which is exact: F(d) is
-//! piecewise linear. G are Love's influence coefficients for uniform pressure on rectangular cells
-//! ([`love`]); there is no other approximation. `L = sqrt(Lx Ly)` in `F_bar` and `k_bar`.
+//! Here u is the elastic displacement. G has Love's influence coefficients for uniform pressure on
+//! rectangular cells ([`love`]); there is no other approximation. The incremental stiffness is
+//! `k = dF/dd = 1' G_CC^-1 1` on the contact set C. It is exact, because F(d) is piecewise linear. The length
+//! in `F_bar` and `k_bar` is `L = sqrt(Lx Ly)`.
 //!
 //! ```
 //! use bem3d::{Bem3d, ContactModel, Load, Scene, SelfAffine, Surface};
@@ -28,65 +32,93 @@
 //! # Ok::<(), bem3d::Error>(())
 //! ```
 //!
+//! ## Periodic boundaries
+//!
 //! With [`contact_model::Boundary::Periodic`] the rectangle repeats itself. G is then the exact periodic
-//! kernel of zero mean (the same pressure on the same cells, summed over all images); states have no approach
+//! kernel of zero mean: the same pressure on the same cells, summed over all images. States have no approach
 //! but a mean gap ([`contact_model::ContactState::mean_gap`]), which can also be prescribed, and
-//! `k = -dF/d(mean gap)`. Full contact has no finite stiffness: it stays `None` there. Every number of cells
-//! is solved on its own period.
+//! `k = -dF/d(mean gap)`. Full contact has no finite stiffness, so that it is `None` there. Every number of
+//! cells is solved on its own period.
 //!
-//! A [`Surface::Profile`] is a body that is uniform along y, in plane strain, as a map of one row; a force is
-//! that on the side of the row along y. With periodic boundaries the kernel of one row is that of plane
-//! strain by itself. With free ones G is that of a half-plane, `u = -(2/(pi E*)) int p ln(|x - s|/D) ds` over
-//! strips: pressure, contact and gap do not depend on the distance D, from which displacements are counted,
-//! and states have neither an approach nor a stiffness, which do. Hardness works as for maps; adhesion is
-//! refused, and of a half-plane a displacement field and a conductance too.
+//! ## Profiles
 //!
-//! With [`Adhesion::ShortRange`], JKR's limit, the work of adhesion is put into the last cells of a contact,
-//! by a law of the cell's own gap whose range is a share of the cell and by a factor of its neighbours that
-//! takes the line tension of fronts out (`adhesion`): pull-off forces of smooth bodies have an error of
-//! second order in the cell over the radius of the contact, and one of 0.2 % (round contacts) to 0.9 %
-//! (straight fronts) because fronts are trapped between cells; a contact that ends at a vertical edge is
-//! pulled off at a force of first order. The area is that of the attached shares of all cells, the stiffness
-//! that of the cells that hold more than half of their work, where fronts stay (`2 E* a` of a round contact).
-//! A cell that touches nothing attracts over `g0 = 3.2 sqrt(w a/E*)`, a the longer side of a cell, which is
-//! how far from touch a contact snaps in.
+//! A [`Surface::Profile`] is a body that is uniform along y, in plane strain. It is a map of one row, and a
+//! force is that on the side of the row along y.
 //!
-//! With [`Adhesion::FiniteRange`] an attractive traction s(g) acts across open gaps: the net pressure is
-//! `p - s(g)`, p >= 0 still with p g = 0. Approach and withdrawal differ, so that such a scene is a path
-//! ([`PreparedContact::advance`]); a single load is the path from no contact to it, and continues from the
-//! last one where that lies on this path. Each state says on which branch it lies, its energy, and how stable
-//! it is ([`AdhesiveState::stability`]: `1 - r` for the exponential law, see `adhesion`; for Dugdale's law,
-//! whose states are stable between the jumps of single cells, the smallest distance of the gap of a cell from
-//! the range, in ranges). Forces that nothing holds end the path with an error that has the last stable
-//! state. Cells too large for the range are refused with the side that would do; results with Dugdale's law
-//! are of first order in the cell.
+//! With periodic boundaries the kernel of one row is that of plane strain by itself. With free boundaries G
+//! is that of a half-plane, `u = -(2/(pi E*)) int p ln(|x - s|/D) ds` over strips. Displacements are measured
+//! from the distance D. Pressure, contact and gap do not depend on D. Approach and stiffness would depend on
+//! it, and states have neither.
+//!
+//! A hardness works as for maps. Adhesion is refused. A half-plane also refuses a displacement field and a
+//! conductance.
+//!
+//! ## Adhesion of short range
+//!
+//! [`Adhesion::ShortRange`] is the limit of JKR. The work of adhesion w is put into the last cells of a
+//! contact. It follows a law of the gap of each cell, whose range is a share of the cell. A factor from the
+//! neighbours of the cell removes the line tension of fronts (`adhesion`).
+//!
+//! Pull-off forces have these errors:
+//!
+//! | body | error |
+//! |---|---|
+//! | smooth bodies | second order in the cell over the radius of the contact |
+//! | round contacts, beside this | 0.2 %, because fronts are trapped between cells |
+//! | straight fronts, beside this | 0.9 %, for the same reason |
+//! | a contact that ends at a vertical edge | first order |
+//!
+//! The area is that of the attached shares of all cells. The stiffness belongs to the cells that hold more
+//! than half of their work, and fronts stay where they are (`2 E* a` of a round contact with the radius a). A
+//! cell that is not in contact attracts over `g0 = 3.2 sqrt(w a/E*)`, where a is now the longer side of a
+//! cell. This is the distance at which a contact snaps in.
+//!
+//! ## Adhesion of finite range
+//!
+//! With [`Adhesion::FiniteRange`] an attractive traction s(g) acts across open gaps. The net pressure is
+//! `p - s(g)`; p >= 0 and p g = 0 hold as before. Approach and withdrawal differ, so that such a scene is a
+//! path ([`PreparedContact::advance`]). A single load is the path from no contact to it. It continues from
+//! the last load where that lies on this path.
+//!
+//! Each state says on which branch it is, its energy, and how stable it is ([`AdhesiveState::stability`]):
+//!
+//! * For the exponential law the stability is `1 - r`, where r is a spectral radius (see `adhesion`).
+//! * For Dugdale's law states are stable between the jumps of single cells. The stability is the smallest
+//!   distance of the gap of a cell from the range, in ranges.
+//!
+//! If no state holds a force, the path ends with an error, which has the last stable state. Cells that are
+//! too large for the range are refused, and the error has the side that would be small enough. Results with
+//! Dugdale's law are of first order in the cell.
 //!
 //! # How it solves a load
 //!
-//! On a known contact set the problem is linear. The unknown is the set, and an outer iteration over contact sets
-//! finds it (`active_set`):
+//! On a known contact set the problem is linear. The unknown is the set, and an outer iteration over contact
+//! sets finds it (`active_set`):
 //!
-//! 1. An initial guess gives a superset of the contact set. After another load it is the tangent `p + Dd q` of
-//!    the last state. Without one, the same surface is solved on coarser grids first (nested iteration).
+//! 1. An initial guess gives a superset of the contact set. After another load it is the tangent `p + Dd q`
+//!    of the last state, with q = dp/dd and the change Dd of the approach. Without another load, the same
+//!    surface is solved on coarser grids first (nested iteration).
 //! 2. The linear system is solved on this set, and the cells in tension are removed.
 //! 3. The exact gap is evaluated on all candidates, which are the cells with `z < d`; elsewhere the gap is
 //!    positive. The cells that penetrate are added.
 //! 4. Steps 2 and 3 repeat until the residuals meet the tolerance.
 //!
-//! Removing the cells in tension never removes a true contact cell where G, restricted to the set, is an inverse
-//! M-matrix. It was one on every set tried, with kernels whose entries are all positive. The periodic kernel of
-//! zero mean and the kernel of a half-plane get a constant for this reason. Rounding, an early stop of the linear
-//! solve or a hardness can break the property; step 3 then returns the cell. Where the residuals have not fallen
-//! for many iterations, a fall-back takes over that lowers the energy with every step (`active_set::descent`).
-//! Coarse grids give initial guesses and never restrict the candidates, because the summits of a fractal vanish
-//! on them.
+//! Why is it safe to remove the cells in tension? A true contact cell is never removed where G, restricted to
+//! the set, is an inverse M-matrix. It was one on every set tried, with kernels whose entries are all
+//! positive. The periodic kernel of zero mean and the kernel of a half-plane get a constant for this reason.
+//! Rounding, an early stop of the linear solve or a hardness can break the property. Step 3 then returns the
+//! cell. If the residuals have not fallen for many iterations, a fall-back takes over that lowers the energy
+//! with every step (`active_set::descent`).
 //!
-//! A cell at its hardness is at the other bound of the pressure and leaves the linear system as a cell without
-//! contact does, so that the same iteration serves both. With adhesion the iteration is another one
+//! Coarse grids give initial guesses. They never restrict the candidates, because the summits of a fractal
+//! vanish on them.
+//!
+//! A cell at its hardness is at the other bound of the pressure. It leaves the linear system as a cell
+//! without contact does, so that the same iteration serves both. With adhesion the iteration is another one
 //! (`adhesion::equilibrium`), and it solves its linear systems in the same way.
 //!
-//! **The linear system** is solved as its `Recipe` says (`operator`). A recipe is a pure function of sizes and of
-//! the constants in `tuning`, and the report of a state prints it.
+//! **The linear system** is solved as its `Recipe` says (`operator`). A recipe is a pure function of sizes
+//! and of the constants in `tuning`, and the report of a state prints it.
 //!
 //! | part | choices |
 //! |---|---|
@@ -97,10 +129,10 @@
 //! | preconditioner | none, or the inverse of G on a torus around the contact; the residual is extended by zeros or through the gaps between contacts, and `E' B E >= (G_CC)^-1` holds for every extension E |
 //! | certificate | always the exact sums, or transforms in double precision |
 //!
-//! The energy `r' G^-1 r` that the preconditioner bounds also bounds the error of k (`stiffness`). The two-level
-//! operator is for square cells with free boundaries; oblong cells and periodic maps take transforms instead. The
-//! tuned constants of a solve are in `tuning`, with meaning and unit. Those of adhesion stand beside their
-//! iterations.
+//! The preconditioner bounds the energy `r' G^-1 r` of a residual r, and this bounds the error of k too
+//! (`stiffness`). The two-level operator is for square cells with free boundaries. Oblong cells and periodic
+//! maps take transforms instead. The tuned constants of a solve are in `tuning`, with meaning and unit. Those
+//! of adhesion stand beside their iterations.
 //!
 //! **From the load to the transform** a solve crosses five files:
 //!
@@ -113,25 +145,27 @@
 //! | `operator/fft.rs` | `FftConvolution::apply` | convolve |
 //!
 //! Corrections of the pressure go through `linear/pcg.rs`. Residuals go from the solver straight to
-//! `Operators::exact`, in double precision. Beside these files `model/load.rs` brings a load into the units of
-//! the surface, `model/state.rs` assembles every state, and `active_set/bounds.rs` says what an upper bound of
-//! the pressure changes. With adhesion, `at` leads to `model/adhesive.rs` and `adhesion/equilibrium.rs`.
+//! `Operators::exact`, in double precision. Three more files belong to this: `model/load.rs` brings a load
+//! into the units of the surface, `model/state.rs` assembles every state, and `active_set/bounds.rs` has what
+//! an upper bound of the pressure changes. With adhesion, `at` leads to `model/adhesive.rs` and
+//! `adhesion/equilibrium.rs`.
 //!
-//! **Between loads** the prepared contact keeps its plans, its buffers and the coarser grids. The next load gets
-//! the tangent of the last state (`LastState`). A load that is solved again to a tighter tolerance goes on with
-//! the gap of its state (`Continuation`).
+//! **Between loads** the prepared contact keeps its plans, its buffers and the coarser grids. The next load
+//! gets the tangent of the last state (`LastState`). A load that is solved again to a tighter tolerance goes
+//! on with the gap of its state (`Continuation`).
 //!
 //! **Three kinds of state depend on the path.** `model/memory.rs` adds the indentation of a hardness to the
-//! heights, `model/adhesive.rs` goes from equilibrium to equilibrium, and `model/increment.rs` takes one
-//! increment of friction a step. `model/path_memory.rs` holds all that the next step follows from, and an effect
-//! that remembers more must add it there. Everything else that a contact keeps between loads is forgotten before
-//! each step of a path. A path that was interrupted therefore goes on to the same bits.
+//! heights. `model/adhesive.rs` goes from equilibrium to equilibrium. `model/increment.rs` takes one
+//! increment of friction a step. `model/path_memory.rs` holds all that the next step follows from, and an
+//! effect that remembers more must add it there. Everything else that a contact keeps between loads is
+//! forgotten before each step of a path. A path that was interrupted therefore goes on to the same bits.
 //!
 //! # Parts
 //!
-//! Modules use each other in one direction: each uses those behind it in `model`, `adhesion`, `friction`,
-//! `stiffness`, `active_set`, `linear`, `operator`, `kernel`, `geometry`. Each part that is fast or intricate
-//! stands beside a reference implementation that is slow and right, and tests compare the two.
+//! Modules use each other in one direction. In the list `model`, `adhesion`, `friction`, `stiffness`,
+//! `active_set`, `linear`, `operator`, `kernel`, `geometry` each module uses only those behind it. Each part
+//! that is fast or intricate stands beside a reference implementation that is slow and right, and tests
+//! compare the two.
 //!
 //! | part | what it does | reference implementation in the tests |
 //! |---|---|---|
@@ -161,39 +195,51 @@
 //!
 //! # How accurate
 //!
-//! Every state carries its certificate, evaluated with the exact operator in double precision: penetration,
-//! complementarity, duality gap, load error and an estimate of the relative error of k that counts both the
-//! linear solve and the undecided cells of the contact set. A state that misses the tolerance is an error
-//! ([`contact_model::Error::NotConverged`]), never a quiet value. Tolerances down to 1e-12 are met; the
-//! discretisation itself is of first order in the cell for bodies with edges.
+//! Every state carries its certificate, evaluated with the exact operator in double precision. It has
+//! penetration, complementarity, duality gap, load error, and an estimate of the relative error of k. This
+//! estimate counts both the linear solve and the undecided cells of the contact set. A state that misses the
+//! tolerance is an error ([`contact_model::Error::NotConverged`]), and is never returned silently.
+//!
+//! Tolerances down to 1e-12 are met. The discretisation itself is of first order in the cell for bodies with
+//! edges.
 //!
 //! # How fast
 //!
-//! Work follows the contact: a few hundred cells take milliseconds on any grid. A dense load takes 30 to 60
-//! applications of G for three digits and 60 to 110 for eight, k included, nearly independent of the number
-//! of cells and of the load; one application cost about 2 ms at N = 512 and 45 ms at N = 2049 (single
-//! precision, one thread of an AMD EPYC of 2024, first engine; sweeps with this one are 3 to 10 % faster on
-//! the machine on which both were run). `cargo xtask bench` prints the work of each load on any surface; the
-//! book has tables.
+//! Work follows the contact: a few hundred cells take milliseconds on any grid. For contact on most cells, k
+//! included, the number of applications of G depends little on the number of cells and on the load:
+//!
+//! | accuracy | applications of G |
+//! |---|---|
+//! | three digits | 30 to 60 |
+//! | eight digits | 60 to 110 |
+//!
+//! One application cost about 2 ms at N = 512 and 45 ms at N = 2049. This was measured in single precision
+//! with an earlier version, on one thread of an AMD EPYC of 2024. Sweeps with the present version are 3 to 10
+//! % faster, on a machine on which both were run. `cargo xtask bench` prints the work of each load on any
+//! surface, and the book has tables.
 //!
 //! # Threads and bits
 //!
 //! A solve shares transforms, vectors, sums and factors among the threads of the `rayon` pool in which it is
-//! called (without one, the global pool: all cores), where they are large enough. Work is cut into tasks by
-//! sizes alone: no bit of a state depends on the number of threads. Each thread needs room for a few rows and
-//! columns. Ensembles run one surface a thread in one pool; threads that have run out of surfaces help inside
-//! the last ones. In a parallel iterator over surfaces, a thread that waits for its helpers may begin another
+//! called, if they are large enough. Outside of any pool it takes the global one, with all cores. Work is cut
+//! into tasks by sizes alone, so that no bit of a state depends on the number of threads. Each thread needs
+//! room for a few rows and columns.
+//!
+//! Ensembles run one surface on each thread of one pool. Threads that have no surface left help inside the
+//! last ones. In a parallel iterator over surfaces, a thread that waits for its helpers may begin another
 //! surface, which then runs on it alone.
 //!
-//! Transforms and factors choose the widest vector instructions that the processor has, so that results are
-//! the same bits on processors with the same instructions, and the same to rounding elsewhere. Without the
-//! features `simd` and `faer` they take none beyond those of the architecture.
+//! Transforms and factors choose the widest vector instructions of the processor. Results have the same bits
+//! on processors with the same instructions, and agree to rounding on others. Without the features `simd` and
+//! `faer` they use no instructions beyond those of the architecture.
 //!
 //! # What it does not do
 //!
-//! Two of hardness, adhesion and friction together, and rheology, are refused at `prepare`; adhesion and friction
-//! of profiles are refused too, and of profiles with free boundaries displacement fields, conductances and loads
-//! by approach.
+//! These are refused at `prepare`:
+//!
+//! * any two of hardness, adhesion and friction together, and rheology;
+//! * adhesion and friction of profiles;
+//! * displacement fields, conductances and loads by approach, for profiles with free boundaries.
 
 mod active_set;
 mod adhesion;

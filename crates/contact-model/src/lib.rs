@@ -1,33 +1,12 @@
 //! The types that the crates of fractal-contact share.
 //!
-//! Three ideas organise everything: **physics** ([`Scene`]), **numerics** (each model's own options) and
-//! **chance** (the `seed` of [`ContactModel::prepare`]). This crate defines the physics, the trait that joins
-//! the three, and the result of a solve: a [`ContactState`] that always carries its evidence in a
-//! [`SolveReport`]. It has no numerics, no input or output, and no dependency besides `std` (with the feature
-//! `serde`, states and memories of paths can be stored).
+//! What is a contact problem, and what is its answer? Three ideas organise everything: **physics**
+//! ([`Scene`]), **numerics** (the options of each model) and **chance** (the `seed` of
+//! [`ContactModel::prepare`]). This crate defines the physics, and the trait that joins the three. It also
+//! defines the result of a solve: a [`ContactState`], which always carries its evidence in a [`SolveReport`].
 //!
-//! # Conventions
-//!
-//! * The body is an elastic half-space of contact modulus E* whose surface carries heights `h`; a rigid
-//!   flat presses on it. With `z = h_max - h >= 0` the contact conditions are `g = u + z - d >= 0`, `p >= 0`,
-//!   `p g = 0`.
-//! * The approach `d` is counted **from first touch of the highest point**, not from the mean plane. At
-//!   `F = 0`, `d = 0` and `k = 0`.
-//! * Pressure is compressive and non-negative; stiffness is `k = dF/dd`.
-//! * Units are the caller's own and only need to be consistent: lengths in one unit, modulus in force per
-//!   length squared. Names that end in `_bar` are normalised ([`Normalisation`] is the only place that does
-//!   it).
-//! * With periodic boundaries there is no approach but a mean gap; the stiffness is then the negative
-//!   derivative of the force in it.
-//! * What depends on the path of the loads (friction, rheology, indentation, adhesion) is followed [`Step`]
-//!   by step.
-//! * Tangential quantities have two components: along x, the columns of a map, and along y, its rows.
-//! * The quantities that are reported of a state stand in one table ([`quantities::QUANTITIES`]), the
-//!   abilities of a model in another ([`Abilities`]).
-//! * Fields, patches and what follows from the stiffness (conductance) are [`Outputs`]: they are computed
-//!   only on request, and the [`Work`] in the report shows it.
-//! * `None` means that the model does not claim the quantity or that it was not requested. An absent quantity
-//!   is never NaN and never a silent 0.
+//! The crate has no numerics, and no input or output. It depends on nothing but `std`. With the feature
+//! `serde`, states and memories of paths can be stored.
 //!
 //! ```
 //! use contact_model::{Load, Normalisation};
@@ -37,6 +16,29 @@
 //! assert!(Load::force(-1.0).validated().is_err());
 //! # Ok::<(), contact_model::Error>(())
 //! ```
+//!
+//! # Conventions
+//!
+//! * **Problem.** The body is an elastic half-space of contact modulus E*. Its surface carries heights `h`,
+//!   and a rigid flat presses on it. With the depth `z = h_max - h >= 0`, the elastic displacement u, the gap
+//!   g and the pressure p the contact conditions are `g = u + z - d >= 0`, `p >= 0`, `p g = 0`.
+//! * **Approach.** `d` is measured **from first touch of the highest point**, not from the mean plane. At
+//!   `F = 0`, `d = 0` and `k = 0`.
+//! * **Signs.** Pressure is compressive and not negative. The stiffness is `k = dF/dd`.
+//! * **Units.** The caller chooses them. They only need to fit together: lengths in one unit, the modulus in
+//!   force per length squared. Names that end in `_bar` are normalised, and [`Normalisation`] is the only
+//!   place that does this.
+//! * **Periodic boundaries.** There is no approach, but a mean gap. The stiffness is then the negative
+//!   derivative of the force with respect to the mean gap.
+//! * **Paths.** With friction, rheology, a hardness or adhesion a state depends on the loads before it. Such
+//!   a path is followed [`Step`] by step.
+//! * **Tangential quantities** have two components: along x, the columns of a map, and along y, its rows.
+//! * **Tables.** All quantities that are reported of a state are in one table ([`quantities::QUANTITIES`]).
+//!   The abilities of a model are in another one ([`Abilities`]).
+//! * **Outputs.** Fields, patches and what follows from the stiffness (conductance) are [`Outputs`]. They are
+//!   computed only if they are requested, and the [`Work`] in the report shows this.
+//! * **Absence.** `None` means that the model does not give the quantity, or that it was not requested. An
+//!   absent quantity is never NaN and never 0.
 
 mod abilities;
 mod cells;

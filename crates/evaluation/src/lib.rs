@@ -1,31 +1,39 @@
 //! Ensembles of rough surfaces and their accuracy: error budgets, accuracy targets, benchmarks, audits, hard
 //! cases.
 //!
-//! A [`Run`] holds the plain parameters of one command: a [`Preset`], overridden by a [`Request`] and
-//! checked. [`measure`] solves the ensemble of a [`Model`], [`state_budgets`] writes the error budgets of its
-//! means, and [`plan`] and [`settle`] choose the sizes that meet an accuracy target. [`accuracy_cost`]
-//! measures the time that accuracy costs, and [`budget_check`] tests whether the budgets hold. [`audit`]
-//! solves stored states again, [`bench()`] measures time, and [`hard_cases`] writes the table of the registry
-//! `stability`.
+//! How accurate is a mean over random surfaces? It has errors of the solver, of the grid and of the number of
+//! surfaces. This crate solves ensembles and states these errors.
+//!
+//! | item | what it does |
+//! |---|---|
+//! | [`Run`] | has the parameters of one command: those of a [`Preset`], overridden by a [`Request`] and checked |
+//! | [`measure`] | solves the ensemble of a [`Model`] |
+//! | [`state_budgets`] | writes the error budgets of the means |
+//! | [`plan`], [`settle`] | choose the sizes that meet an accuracy target |
+//! | [`accuracy_cost`] | measures the time that accuracy costs |
+//! | [`budget_check`] | tests whether the budgets hold |
+//! | [`audit`] | solves stored states again |
+//! | [`bench()`] | measures time |
+//! | [`hard_cases`] | writes the table of the registry `stability` |
 //!
 //! # Conventions
 //!
-//! * `F_bar = F/(E* h L)` with the **measured** rms height h of each surface; `k_bar = k/(1.1419 E* L)` (Eqs.
-//!   8, 10).
-//! * Means are arithmetic over the surfaces whose solve converged; the logarithmic mean is given as well. A
+//! * The normalised force is `F_bar = F/(E* h L)`, with the **measured** rms height h of each surface (Eq. 10
+//!   of the paper). The normalised stiffness is `k_bar = k/(1.1419 E* L)` (Eq. 8).
+//! * Means are arithmetic, over the surfaces whose solve converged. The logarithmic mean is given as well. A
 //!   solve that does not converge is kept in the samples with its status, but left out of the means.
-//! * States with fewer than 10 contact cells depend on the grid (the one-cell floor): they are marked in
-//!   every CSV and left out of lines and fits.
+//! * A state with fewer than 10 contact cells depends on the grid. Such states are marked in every CSV, and
+//!   left out of lines and fits.
 //!
 //! # Jobs
 //!
-//! A job is one surface under all its loads ([`RealisationJob`]), solved from the smallest load upwards with
-//! one prepared contact and kept in the result store of the run (`runs::Store`) under a key of everything
-//! that determines its results. Other commands reuse it.
+//! A job is one surface under all its loads ([`RealisationJob`]). It is solved from the smallest load upwards
+//! with one prepared contact. The result store of the run (`runs::Store`) keeps it under a key of everything
+//! that determines its results, and other commands use it again.
 //!
 //! # What it does not do
 //!
-//! It has no mechanics of its own, no figure of the paper (see `paper`) and no argument parsing (see
+//! It has no mechanics of its own, no figure of the paper (see `paper`) and no parsing of arguments (see
 //! `xtask`).
 
 #![allow(clippy::format_push_string, clippy::format_collect)] // Text is built once per file: clear beats one allocation less.

@@ -1,20 +1,8 @@
 //! Contact of elastic bodies with rough surfaces: this crate re-exports the solvers, the theories and the
 //! tools around them.
 //!
-//! # Modules
-//!
-//! | module | contents |
-//! |---|---|
-//! | the root | scenes, loads, states, height maps and the traits of all models (`contact-model`), and the two solvers |
-//! | [`bem3d`] | exact contact in three dimensions by boundary elements, free or periodic |
-//! | [`mdr1d`] | the one-dimensional reduction; friction and rheology on top of any model ([`Equivalent`]) |
-//! | [`analytic`] | closed forms and theories: Hertz, JKR, Westergaard, Persson, Greenwood and Williamson, ... |
-//! | [`surface_gen`] | self-affine surfaces from a seed, and measurements on surfaces |
-//! | [`analysis`] | means, fits with errors, tables |
-//! | [`surface_statistics`] | parameters of ISO 25178, spectra with bands, fits with intervals |
-//! | [`surface_io`] | reads measured surfaces from files and writes fields |
-//! | `scenes` | scene files, which describe a contact problem and the requested results, and the program `fractal-contact` |
-//! | `runs`, `plots` | jobs with a result store, CSV and manifest; charts and pictures of maps (feature `scenes`) |
+//! How large is the contact of two rough bodies under a load, and how stiff is it? A program that depends on
+//! this crate has everything to answer that. The example presses your own heights against a flat:
 //!
 //! ```
 //! use fractal_contact::{Bem3d, ContactModel, HeightMap, Load, Scene, Surface};
@@ -29,15 +17,37 @@
 //! # Ok::<(), fractal_contact::Error>(())
 //! ```
 //!
+//! # Modules
+//!
+//! | module | contents |
+//! |---|---|
+//! | the root | scenes, loads, states, height maps and the traits of all models (`contact-model`), and the two solvers |
+//! | [`bem3d`] | exact contact in three dimensions by boundary elements, free or periodic |
+//! | [`mdr1d`] | the one-dimensional reduction; friction and rheology on top of any model ([`Equivalent`]) |
+//! | [`analytic`] | closed forms and theories: Hertz, JKR, Westergaard, Persson, Greenwood and Williamson, ... |
+//! | [`surface_gen`] | self-affine surfaces from a seed, and measurements on surfaces |
+//! | [`analysis`] | means, fits with errors, tables |
+//! | [`surface_statistics`] | parameters of ISO 25178, spectra with bands, fits with intervals |
+//! | [`surface_io`] | measured surfaces from files, and fields into files |
+//! | `scenes` | scene files, which describe a contact problem and the requested results, and the program `fractal-contact` |
+//! | `runs`, `plots` | jobs with a result store, CSV and manifest; charts and pictures of maps (feature `scenes`) |
+//!
 //! # Features
 //!
-//! `scenes` (default): scenes and their files, pictures and result store. `program` (default): the program
-//! `fractal-contact`. `rayon` (default): surfaces are generated and large systems solved on the threads of
-//! the current pool. `faer` (default): small contact sets are solved by a Cholesky factor. `simd` (default):
-//! transforms use the widest vector instructions of the processor. Without `simd` and `faer` the results are
-//! the same bytes on every processor of one architecture, provided that its mathematical functions are the
-//! same. `hdf5`, `tiff` and `x3p` (default): support for these formats of maps, with the crates that they
-//! need. Without default features the solvers, theories and other formats remain.
+//! All features are on by default. Without them the solvers, the theories and the other formats of files
+//! remain.
+//!
+//! | feature | what it brings |
+//! |---|---|
+//! | `scenes` | scenes and their files, pictures and result store |
+//! | `program` | the program `fractal-contact` |
+//! | `rayon` | threads of the current pool, on which surfaces are generated and large systems solved |
+//! | `faer` | a Cholesky factor for small contact sets |
+//! | `simd` | the widest vector instructions of the processor, for transforms |
+//! | `hdf5`, `tiff`, `x3p` | these formats of maps, with the crates that they need |
+//!
+//! Without `simd` and `faer` the results have the same bytes on every processor of one architecture, provided
+//! that its mathematical functions are the same.
 
 #![allow(clippy::format_push_string, clippy::format_collect)] // Text is built once per file: clear beats one allocation less.
 

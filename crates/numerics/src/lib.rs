@@ -22,8 +22,8 @@
 //!
 //! # What it does not do
 //!
-//! No linear algebra: `faer` has it. Transforms and distribution functions are those of `rustfft`, `realfft`
-//! and `statrs`.
+//! It has no linear algebra, because `faer` has it. Transforms and distribution functions are those of
+//! `rustfft`, `realfft` and `statrs`.
 
 pub mod fourier;
 pub mod gauss;

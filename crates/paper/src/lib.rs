@@ -1,18 +1,10 @@
 //! The figures of Pohrt, Popov and Filippov, Phys. Rev. E 86, 026710 (2012) as code: runs, tables, pictures,
 //! comparison.
 //!
-//! [`fig1`] .. [`fig7`] take the parameters of one command ([`evaluation::Run`]), compute, write their CSV,
-//! draw their picture from that CSV, and return an [`evaluation::Outcome`] with the paper's own claims
-//! compared with the numbers ([`Judged`], [`Claim`]). [`verify`] judges all claims, [`reproduce_all`] makes
-//! all figures and judges the claims, [`check_reference`] compares a small run with stored numbers, and
-//! [`redraw`] draws pictures again from their tables.
-//!
-//! Normalisation, means, jobs and the store are those of `evaluation`; CSV files those of `runs`.
-//!
-//! # What it does not do
-//!
-//! It has no mechanics of its own, no argument parsing (see `xtask`), and no figures beyond those of the
-//! paper except [`two_cases`], [`exponent()`] and its sequel for friction, [`partial_slip()`].
+//! How does one repeat a figure of the paper and judge it? [`fig1`] to [`fig7`] do this for one figure each.
+//! Such a function takes the parameters of one command ([`evaluation::Run`]), computes, and writes a CSV. It
+//! draws the picture from that CSV. It returns an [`evaluation::Outcome`], in which the claims of the paper
+//! are compared with the numbers ([`Judged`], [`Claim`]).
 //!
 //! ```no_run
 //! use evaluation::{Preset, Request, Run};
@@ -22,6 +14,20 @@
 //! println!("{}", paper::plain(&outcome.claims));
 //! # Ok::<(), runs::Error>(())
 //! ```
+//!
+//! | item | what it does |
+//! |---|---|
+//! | [`verify`] | judges all claims |
+//! | [`reproduce_all`] | makes all figures and judges the claims |
+//! | [`check_reference`] | compares a small run with stored numbers |
+//! | [`redraw`] | draws pictures again from their tables |
+//!
+//! Normalisation, means, jobs and the store are those of `evaluation`. CSV files are those of `runs`.
+//!
+//! # What it does not do
+//!
+//! It has no mechanics of its own and no parsing of arguments (see `xtask`). Beyond the figures of the paper
+//! it has only [`two_cases`], the study [`exponent()`] and its sequel for friction, [`partial_slip()`].
 
 #![allow(clippy::format_push_string, clippy::format_collect)] // Text is built once per file: clear beats one allocation less.
 

@@ -1,18 +1,26 @@
 //! Charts and map pictures of one style, as SVG and PNG.
 //!
-//! [`Chart`] draws a few named curves. [`Picture`] serves the paper's figures and the benchmarks, and
-//! [`Panels`] puts several pictures into one file. [`save_maps`] puts maps side by side, and [`write_grey`]
-//! writes a map of one value per cell.
+//! | item | what it draws |
+//! |---|---|
+//! | [`Chart`] | a few named curves |
+//! | [`Picture`] | the figures of the paper and the benchmarks |
+//! | [`Panels`] | several pictures in one file |
+//! | [`save_maps`] | maps side by side |
+//! | [`write_grey`] | a map of one value per cell |
 //!
 //! # Conventions
 //!
-//! Symbols are set as symbols: a label is `$\\bar{F} = F/(E^* h L)$` between dollar signs, upright words
-//! outside. Frames have ticks inwards on four sides; logarithmic axes have powers of ten and ticks at 2 to 9.
-//! Letters are outlines of the fonts in `fonts/`, so that an SVG needs nothing from the machine that shows
-//! it; its labels are in `aria-label` as well. Both files come from one drawing of paths.
-//!
-//! Colours can be distinguished in grey as well; the same fractal dimension has the same colour in every
-//! picture ([`color`]). Maps have row 0 at the bottom. Files are written whole or not at all.
+//! * **Labels.** Symbols stand between dollar signs, such as `$\\bar{F} = F/(E^* h L)$`, and are set as
+//!   formulas. Other words are upright.
+//! * **Axes.** Frames have ticks inwards on four sides. Logarithmic axes have powers of ten, and ticks at 2
+//!   to 9.
+//! * **Letters** are outlines of the fonts in `fonts/`, so that an SVG needs nothing from the machine that
+//!   shows it. Its labels are in `aria-label` as well.
+//! * **SVG and PNG** come from one drawing of paths.
+//! * **Colours** can be distinguished in grey as well. The same fractal dimension has the same colour in
+//!   every picture ([`color`]).
+//! * **Maps** have row 0 at the bottom.
+//! * **Files** are written whole or not at all.
 
 #![allow(clippy::format_push_string)] // Text is built once per file: clear beats one allocation less.
 

@@ -2,26 +2,26 @@
 //!
 //! # Jobs
 //!
-//! A [`Job`] is one independent piece of work with a key (everything that decides its numbers) and a cost.
-//! [`run_stored`] does a list of them, one per thread, the most expensive first. Each finished job is kept in
-//! the [`Store`] at once, whole or not at all, and checked on reading: a damaged or foreign result is
-//! computed again. Results have the same bytes for any number of threads. They are stored as JSON that names
-//! their [`ResultKind`] and keeps every bit of their numbers. A job whose parts depend on each other keeps a
-//! [`Checkpoint`] beside its stored part.
+//! A [`Job`] is one independent piece of work. It has a cost, and a key of everything that decides its
+//! numbers. [`run_stored`] does a list of jobs, one per thread, the most expensive first.
+//!
+//! The [`Store`] keeps each finished job at once, whole or not at all. It checks a result when it reads it: a
+//! damaged or foreign result is computed again. Results are stored as JSON that names their [`ResultKind`]
+//! and keeps every bit of their numbers. They have the same bytes for any number of threads. A job whose
+//! parts depend on each other keeps a [`Checkpoint`] beside its stored part.
 //!
 //! # Files
 //!
-//! * [`files`]: written whole or not at all.
-//! * CSV ([`write_csv`], [`CsvFile`]): `#` lines with title, columns and units, sources, parameters, version
-//!   and the command that makes the same bytes; shortest decimals that read back to the same bits; absent is
-//!   empty, never NaN. No times and no machine: those are in `manifest.json` ([`machine`]).
+//! * [`files`] writes files whole or not at all.
+//! * A CSV ([`write_csv`], [`CsvFile`]) begins with `#` lines: title, columns and units, sources, parameters,
+//!   version, and the command that makes the same bytes. Numbers are the shortest decimals that read back to
+//!   the same bits. What is absent is empty, and never NaN.
+//! * Times and the machine are not in a CSV. They are in `manifest.json` ([`machine`]).
 //!
 //! # Terminal
 //!
-//! [`Reporter`] reports the progress of a run. [`out!`] and [`err!`] write lines, and a closed pipe or a full
-//! device does not cause a panic.
-//!
-//! [`amounts`] writes times and memory in words.
+//! [`Reporter`] reports the progress of a run. [`out!`] and [`err!`] write lines, and do not panic when a
+//! pipe is closed or a device is full. [`amounts`] writes times and memory in words.
 //!
 //! # What it does not do
 //!

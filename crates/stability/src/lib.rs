@@ -2,37 +2,13 @@
 //!
 //! # What it computes
 //!
-//! [`cases`] is the registry of problems on which solvers of this field fail (one cell, ties, full contact,
-//! loads over sixteen decades, units at the ends of f64, misleading warm starts, limits). A [`Case`] says why
-//! it is hard and what is asserted; [`Case::run`] solves it and returns a [`CaseResult`]: the largest
-//! deviation found ([`CaseResult::figure`]), the bound of this deviation, and the assertions that do not
-//! hold. It is not enough that a solver returns: each case compares its result with a closed form, a
-//! symmetry, a bound of mechanics or a reference implementation.
+//! On which problems do solvers of this field fail? [`cases`] is a registry of such problems: one cell, ties,
+//! full contact, loads over sixteen decades, units at the ends of f64, misleading warm starts, limits.
 //!
-//! # Conventions
-//!
-//! * Figures are relative deviations or, where bits are compared, the number of differing values (bound 0).
-//! * In addition to its certificate a state is checked by a reference implementation that shares only Love's
-//!   kernel with the solver: the contact conditions and the force from plain sums over pairs (free
-//!   boundaries, modulus 1, up to 129 cells a side), the stiffness by Gauss's elimination (up to 220 cells).
-//! * A step of friction is checked by a reference implementation that shares nothing with the solver:
-//!   Coulomb's conditions, forces, slip and dissipated energy from plain sums of a tangential kernel that is
-//!   integrated by Gauss's rule.
-//! * A case that fails, with an error or a panic, also has a row, and the other cases still run.
-//!
-//! # How accurate
-//!
-//! The reference implementations are [`every_contact_set`] (all sets of up to 16 cells), [`relaxed`]
-//! (projected Gauss-Seidel, to rounding), [`Dragged`] (the same for friction), [`PlainSum`] and [`PlainShear`]. Bounds are stated beside each case with their reason.
-//!
-//! # How fast
-//!
-//! All cases take well under a minute of processor time ([`Effort::Quick`]); [`Effort::Thorough`] has larger
-//! grids and takes minutes.
-//!
-//! # What it does not do
-//!
-//! It neither prints nor writes (that is `paper` and `xtask`), and measures no time.
+//! A [`Case`] says why it is hard and what is asserted. [`Case::run`] solves it and returns a [`CaseResult`].
+//! This has the largest deviation found ([`CaseResult::figure`]), the bound of this deviation, and the
+//! assertions that do not hold. It is not enough that a solver returns a result. Each case compares this
+//! result with a closed form, a symmetry, a bound of mechanics or a reference implementation.
 //!
 //! ```
 //! use stability::{Effort, cases};
@@ -40,6 +16,35 @@
 //! let verdict = one_cell.run(Effort::Quick);
 //! assert!(verdict.passed() && verdict.figure.unwrap() <= one_cell.bound);
 //! ```
+//!
+//! # Conventions
+//!
+//! * Figures are relative deviations. Where bits are compared, the figure is the number of values that
+//!   differ, and its bound is 0.
+//! * In addition to its certificate a state is checked by a reference implementation that shares only Love's
+//!   kernel with the solver. The contact conditions and the force come from plain sums over pairs (free
+//!   boundaries, modulus 1, up to 129 cells a side). The stiffness comes from Gauss's elimination (up to 220
+//!   cells).
+//! * A step of friction is checked by a reference implementation that shares nothing with the solver. It
+//!   computes Coulomb's conditions, forces, slip and dissipated energy from plain sums of a tangential kernel
+//!   that is integrated by Gauss's rule.
+//! * A case that fails, with an error or a panic, also has a line in the table, and the other cases still
+//!   run.
+//!
+//! # How accurate
+//!
+//! The reference implementations are [`every_contact_set`] (all sets of up to 16 cells), [`relaxed`]
+//! (projected Gauss-Seidel, to rounding), [`Dragged`] (the same for friction), [`PlainSum`] and
+//! [`PlainShear`]. Bounds are stated beside each case with their reason.
+//!
+//! # How fast
+//!
+//! All cases together take well under a minute of processor time ([`Effort::Quick`]). [`Effort::Thorough`]
+//! has larger grids and takes minutes.
+//!
+//! # What it does not do
+//!
+//! It neither prints nor writes files (`paper` and `xtask` do), and it measures no time.
 
 mod case;
 mod cases;

@@ -1,9 +1,9 @@
 //! Self-affine rough surfaces and lines, deterministic indenters, and measures of them. Maps are rectangles
 //! of equal cells, which need not be squares.
 //!
-//! [`height_map`] and [`line`](line()) turn a description ([`contact_model::Surface`]) and a seed into
-//! samples. Random surfaces follow Pohrt, Popov, Filippov, Phys. Rev. E 86, 026710 (2012), Eqs. 2-5 (maps)
-//! and 14-18 (lines).
+//! How do you get a random rough surface that others can generate again? [`height_map`] and [`line()`] turn a
+//! description ([`contact_model::Surface`]) and a seed into samples. Random surfaces follow Pohrt, Popov,
+//! Filippov, Phys. Rev. E 86, 026710 (2012): Eqs. 2 to 5 for maps, and Eqs. 14 to 18 for lines.
 //!
 //! ```
 //! use contact_model::SelfAffine;
@@ -16,49 +16,55 @@
 //!
 //! # Conventions
 //!
-//! * **Spectrum.** `C_2D(q)` is two-sided: its integral over the whole plane of q is the variance of the
-//!   heights. The field is the sum over *all* wave vectors, `h(x) = sum B cos(q x + phi)`, with `B_2D = (2 pi
-//!   / L) sqrt(C_2D)`, `L = sqrt(Lx Ly)`, and `phi(-q) = -phi(q)`. The waves q and -q are then one and the
-//!   same cosine and add to the amplitude 2 B, of variance 2 B^2: exactly the variance of the two cells of
-//!   area `(2 pi)^2 / (Lx Ly)` that they represent. When all wave vectors are summed, Eqs. 4 and 5 need no
-//!   further factor; a sum over half of them needs `2 B`.
-//! * **Line.** `C_1D = pi |q| C_2D` is two-sided as well, `B_1D = sqrt((2 pi / L_1D) C_1D)` (Eq. 15 as
-//!   printed has the root over the first factor only, which has the wrong dimension), `L_1D = (2 / sqrt(pi))
-//!   L`.
-//! * **Amplitudes are fixed**, phases are random: with `Amplitude::RmsHeight(h)` every surface has the rms h
-//!   to rounding. With `Amplitude::Spectrum(c)`, c is `C_2D(2 pi / L)`, on the map and on the line that
-//!   stands for it. Then a line and a map have *different* rms heights (ratios 1.08 to 1.37 for 2^20 elements
-//!   and N = 2048), because their limits and lattices differ.
-//! * **Waves.** `q = 2 pi (i/Lx, j/Ly)` in the circle `0 < |q| <= pi / max(dx, dy)` (pi / dx on a line), or
-//!   the shorter `short_cutoff`. Exponent, roll-off and cut-off act on |q|: surfaces are isotropic on any
-//!   rectangle. Nyquist waves of even grids are left out, because they cannot have a random phase. Below
-//!   `roll_off` the spectrum is constant. An axis of 1 or 2 cells carries no wave; where neither axis carries
-//!   one that is an error.
-//! * **Sampling.** Samples are row-major, with x along a row, at the cells' centres; the origin of the phases
-//!   is the corner of the rectangle. The same seed therefore gives the same surface on any grid, with more or
-//!   fewer short waves (and another factor where the rms is prescribed).
+//! * **Spectrum.** `C_2D(q)` is two-sided: its integral over the whole plane of wave vectors q is the
+//!   variance of the heights. The field is the sum over *all* wave vectors, `h(x) = sum B cos(q x + phi)`,
+//!   with the phases `phi(-q) = -phi(q)`. The amplitude is `B_2D = (2 pi / L) sqrt(C_2D)`, with
+//!   `L = sqrt(Lx Ly)`.
+//! * **Factor of 2.** The waves q and -q are one and the same cosine. They add to the amplitude 2 B, whose
+//!   variance is 2 B^2. This is exactly the variance of the two cells of area `(2 pi)^2 / (Lx Ly)` that they
+//!   represent. If all wave vectors are summed, Eqs. 4 and 5 therefore need no further factor. A sum over
+//!   half of them needs `2 B`.
+//! * **Line.** `C_1D = pi |q| C_2D` is two-sided as well. The length is `L_1D = (2 / sqrt(pi)) L`, and the
+//!   amplitude is `B_1D = sqrt((2 pi / L_1D) C_1D)`. Eq. 15 as printed has the root over the first factor
+//!   only, which has the wrong dimension.
+//! * **Amplitudes are fixed**, and phases are random. With `Amplitude::RmsHeight(h)` every surface has the
+//!   rms height h to rounding. With `Amplitude::Spectrum(c)`, c is `C_2D(2 pi / L)`, on the map and on the
+//!   line that stands for it. A line and a map then have *different* rms heights, because their limits and
+//!   lattices differ. Their ratio is 1.08 to 1.37 for 2^20 elements and N = 2048.
+//! * **Waves.** The wave vectors are `q = 2 pi (i/Lx, j/Ly)` in the circle `0 < |q| <= pi / max(dx, dy)`, or
+//!   up to the shorter `short_cutoff`. On a line the limit is pi / dx. Exponent, roll-off and cut-off act on
+//!   |q|, so that surfaces are isotropic on any rectangle. Below `roll_off` the spectrum is constant. Nyquist
+//!   waves of even grids are left out, because they cannot have a random phase. An axis of 1 or 2 cells
+//!   carries no wave. If neither axis carries one, this is an error.
+//! * **Sampling.** Samples are row-major, with x along a row. They are taken at the centres of the cells, and
+//!   the phases have their origin in the corner of the rectangle. The same seed therefore gives the same
+//!   surface on any grid, with more or fewer short waves. If the rms height is prescribed, the common factor
+//!   changes too.
 //! * **Given maps.** [`MapStatistics`] has the statistics that theories of rough contact need, and shows how
-//!   well the map meets their assumptions; [`SelfAffineFit`] finds its Hurst exponent, or the reason why it
-//!   has none; [`LineGenerator::of_map`] draws the line that stands for it. A map whose opposite edges differ
-//!   is measured under Hann's window ([`windowed`]).
+//!   well the map meets their assumptions. [`SelfAffineFit`] finds the Hurst exponent of a map, or the reason
+//!   why it has none. [`LineGenerator::of_map`] draws the line that stands for a map. A map whose opposite
+//!   edges differ is measured under Hann's window ([`windowed`]).
 //! * **Other maps.** [`WaveGenerator`] draws maps with the amplitudes of any spectrum: artificial twins of a
-//!   given map and anisotropic self-affine surfaces; [`PrescribedMap`] gives them a distribution of heights
+//!   given map and anisotropic self-affine surfaces. [`PrescribedMap`] gives them a distribution of heights
 //!   too.
-//! * **Chance.** The phase of a wave is a function of (seed, i, j) alone; the random stream is specified in
+//! * **Chance.** The phase of a wave is a function of (seed, i, j) alone. The random stream is specified in
 //!   the source of [`map_phase`] and fixed by tests. It does not depend on the fractal dimension: surfaces of
 //!   one seed and different D_f have the same phases.
-//! * **Undefined points** (minus infinity in a given map) are left out of rms height and slope; spectra need
-//!   every point.
-//! * The field is periodic: a summit that an edge cuts continues at the opposite edge. This is not corrected.
+//! * **Undefined points** are minus infinity in a given map. Rms height and slope leave them out. Spectra
+//!   need every point.
+//! * **Edges.** The field is periodic: a summit that an edge cuts continues at the opposite edge. This is not
+//!   corrected.
 //!
 //! # Accuracy and speed
 //!
-//! The synthesis agrees with the direct sum over waves to 1e-12 of the rms, and the rms has the prescribed
-//! value to 1e-12. The bits do not depend on the number of threads; another processor or another version of
-//! the transform library may change the last digits. A map is drawn on the threads of the `rayon` pool in
-//! which it is called (without one, the global pool). On one core of a 2020s machine a map of 2049 x 2049
-//! cells takes about 0.15 s and a line of 2^20 elements about 6 ms; memory is twice that of the map. To draw
-//! many surfaces, keep a [`MapGenerator`] or a [`LineGenerator`].
+//! The synthesis agrees with the direct sum over waves to 1e-12 of the rms height. The rms height has the
+//! prescribed value to 1e-12. The bits do not depend on the number of threads. Another processor or another
+//! version of the transform library may change the last digits.
+//!
+//! A map is drawn on the threads of the `rayon` pool in which it is called, or of the global pool outside of
+//! any. On one core of a 2020s machine a map of 2049 x 2049 cells takes about 0.15 s, and a line of 2^20
+//! elements about 6 ms. The memory is twice that of the map. To draw many surfaces, keep a [`MapGenerator`]
+//! or a [`LineGenerator`].
 //!
 //! # What it does not do
 //!

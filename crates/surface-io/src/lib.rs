@@ -1,9 +1,9 @@
 //! Reading and writing of surfaces, and quantities with units.
 //!
-//! Reading has two steps, so that a person can check the data between them. A [`Scan`] has the content of a
-//! file, with its undefined points and in its own unit, and its [`Metadata`] report what was read.
-//! [`Scan::map`] then makes a [`contact_model::HeightMap`] of it, with only the steps that a
-//! [`Preprocessing`] names.
+//! How do you get heights in metres out of a file of an instrument, without a silent mistake? Reading has two
+//! steps, so that a person can check the data between them. A [`Scan`] has the content of a file, with its
+//! undefined points and in its own unit. Its [`Metadata`] report what was read. [`Scan::map`] then makes a
+//! [`contact_model::HeightMap`] of it, with only the steps that a [`Preprocessing`] names.
 //!
 //! ```
 //! use surface_io::{ReadOptions, Fill, Scan, Preprocessing, Undefined, describe};
@@ -24,93 +24,117 @@
 //!
 //! # Nothing is guessed silently
 //!
-//! * **Format.** Binary formats are recognised by their first bytes, XYZ by the name's ending or
-//!   [`ReadOptions::format`]; everything else is a text matrix. Three columns without either are points or a
-//!   matrix according to their comments; without such comments they are points if the first two columns are
-//!   all places of a grid, and otherwise an error. Two columns of more than eight lines are a profile if the
-//!   numbers in the first ascend or descend. Errors name other files that people try (archives, pictures).
-//! * **Text.** The first line of data sets the delimiter: semicolon, else tab, else comma, else whitespace.
-//!   Comments begin with `#` or `%` at the beginning of a line or behind white space; lines before the
-//!   numbers that begin with a word are a header like them. The keys `Width`, `Height`, `Value units` and
-//!   `Lateral units` are used in both, as Gwyddion's exports and this crate write them, and so are the keys
-//!   of SPIP, Nanoscope and profilers (`x-length`, `Scan Size`, `Pixel size`, `Z unit`, ...). Two statements
-//!   that differ are an error, and so is a stated number of columns or rows that is not the actual one.
-//!   Decimal commas are read on request ([`Decimal::Comma`]), or where every comma can be nothing else. An
-//!   empty place between two delimiters, `nan`, words such as `---` or `BAD` and the C library's `1.#QNAN`
-//!   are undefined points. A heading or an empty line between numbers ends a map, and several maps are
-//!   channels. Where the first line or the first column may be coordinates, the caller must decide
-//!   ([`ReadOptions::border`]).
+//! ## Formats
+//!
+//! * **Recognition.** Binary formats are recognised by their first bytes. XYZ is recognised by the ending of
+//!   the name or by [`ReadOptions::format`]. Everything else is a text matrix. Errors name other files that
+//!   people try (archives, pictures).
+//! * **Three columns** without either are points or a matrix according to their comments. Without such
+//!   comments they are points if the first two columns are all places of a grid, and otherwise an error.
+//!   **Two columns** of more than eight lines are a profile if the numbers in the first ascend or descend.
+//! * **NPY.** An array has two axes of float64, float32, float16 or integers, in either byte order, row by
+//!   row or column by column. An integer that no double holds is an error.
+//! * **Channels** that cannot be read are listed, with the reason, beside those that can.
+//!
+//! ## Text
+//!
+//! * **Delimiter.** The first line of data sets it: semicolon, else tab, else comma, else whitespace.
+//! * **Header.** Comments begin with `#` or `%` at the beginning of a line or behind white space. Lines
+//!   before the numbers that begin with a word are a header like them. The keys `Width`, `Height`,
+//!   `Value units` and `Lateral units` are used in both, as Gwyddion's exports and this crate write them. So
+//!   are the keys of SPIP, Nanoscope and profilers (`x-length`, `Scan Size`, `Pixel size`, `Z unit`, ...).
+//! * **Contradictions.** Two statements that differ are an error. So is a stated number of columns or rows
+//!   that is not the actual one.
+//! * **Decimal commas** are read on request ([`Decimal::Comma`]), or where every comma can be nothing else.
+//! * **Undefined points** are an empty place between two delimiters, `nan`, words such as `---` or `BAD`, and
+//!   the C library's `1.#QNAN`.
+//! * **Several maps.** A heading or an empty line between numbers ends a map. Several maps are channels.
+//! * **Coordinates at the border.** Where the first line or the first column may be coordinates, the caller
+//!   must decide ([`ReadOptions::border`]).
 //! * **Headings of columns.** A line above the numbers with a name for each column (`x [um]`, `Y_mm`, `z/nm`,
-//!   `row`, `lat`) says what the columns are, in any order. x, y and heights are points, x and heights a
-//!   profile; other columns are noted where there are heights, and else each is a channel. Numbers of rows
-//!   and columns need [`ReadOptions::cell`]. Degrees, and columns without a coordinate, are an error
+//!   `row`, `lat`) says what the columns are, in any order. x, y and heights are points; x and heights are a
+//!   profile. Other columns are noted if there are heights, and otherwise each of them is a channel. Numbers
+//!   of rows and columns need [`ReadOptions::cell`]. Degrees, and columns without a coordinate, are an error
 //!   ([`ContentError::Columns`]).
-//! * **Notes.** Statements of a file that are not used, and a value far from all others, stand in
-//!   [`Metadata::notes`] and in the error about missing information.
-//! * **Size.** The size is given by two sides of the map or of a cell. One value means a square map or square
+//!
+//! ## Size and axes
+//!
+//! * **Size.** It is given by two sides of the map or of a cell. One value means a square map or square
 //!   cells. Cells are also square where a header has only a width or only a height, and where both make
 //!   square cells within their printed decimals. Cells whose sides differ by a factor of more than 1e4 are an
 //!   error.
-//! * **Profiles.** Points x, z with equal steps become a map of one row, as does a row of an instrument whose
-//!   file says its length along x alone ([`Metadata::profile`]): a body that is uniform along y, on square
-//!   cells.
-//! * **Points.** Points may have any order. The spacing along each axis is the smallest step, refined over
-//!   the whole range; both axes get the same spacing where the two differ by no more than the scatter of the
-//!   points. A point may deviate from its place by a tenth of a spacing that was found or a quarter of a
-//!   given one, and the largest deviation is reported. Two points at one place are an error, and so is a grid
-//!   that is more than half empty.
-//! * **NPY.** Two axes of float64, float32, float16 or integers, either byte order, row by row or column by
-//!   column. An integer that no double holds is an error.
-//! * **Units.** Heights with a unit come out in metres, and the sides must then have one too; without any
-//!   unit both stay as they are. A value that is given in addition to that of the file must agree with it
-//!   within the digits of a header (0.5 %).
-//! * **Channels** that cannot be read are listed with the reason beside those that can.
-//! * **Counts.** Grey levels and other numbers without a unit become heights by [`ReadOptions::height_scale`]
-//!   only. Integers of an HDF5 file that have a unit of length and no scale are counts too.
+//! * **Profiles.** Points x, z with equal steps become a map of one row. So does a row of an instrument whose
+//!   file says its length along x alone ([`Metadata::profile`]). It is a body that is uniform along y, on
+//!   square cells.
+//! * **Points** may have any order. The spacing along each axis is the smallest step, refined over the whole
+//!   range. Both axes get the same spacing where the two differ by no more than the scatter of the points. A
+//!   point may deviate from its place by a tenth of a spacing that was found, or by a quarter of a given one.
+//!   The largest deviation is reported. Two points at one place are an error, and so is a grid that is more
+//!   than half empty.
 //! * **Axes.** Names of dimensions decide the order of an array (`x`, `lon`, `easting`, ... and `y`, `lat`,
 //!   `northing`, ...). Arrays without such names (HDF5, MATLAB, NetCDF) are read by the custom of the format,
-//!   which is noted; [`ReadOptions::axes`] says which index is x, and is an error where the file or the format
-//!   defines it.
+//!   and this is noted. [`ReadOptions::axes`] says which index is x. It is an error where the file or the
+//!   format defines it.
 //! * **Coordinates** of named dimensions in equal steps and in a unit of length give the size, and turn an
-//!   axis on which they descend; other units are noted and the size is asked for. Unequal steps are an error.
+//!   axis on which they descend. Other units are noted, and the caller must give the size. Unequal steps are
+//!   an error.
+//! * **Order.** Row j is y, column i is x, and the first row is y = 0: `heights[j * columns + i]`. NPY arrays
+//!   are `[row, column]`.
+//!
+//! ## Heights
+//!
+//! * **Units.** Heights with a unit become metres, and the sides must then have a unit too. Without any unit
+//!   both stay as they are. A value that is given in addition to that of the file must agree with it within
+//!   the digits of a header (0.5 %).
+//! * **Counts.** Grey levels and other numbers without a unit become heights only by
+//!   [`ReadOptions::height_scale`]. Integers of an HDF5 file that have a unit of length and no scale are
+//!   counts too.
 //! * **Marks** of undefined points are compared as the numbers are stored: -9999.9 is that number in float32.
-//! * **Undefined points** are refused without a [`Fill`] or [`Undefined::NoContact`] (and with both).
-//!   Infinite heights are always refused.
-//! * Row j is y, column i is x, the first row is y = 0: `heights[j * columns + i]`, NPY arrays are `[row,
-//!   column]`.
+//! * **Undefined points** are refused without a [`Fill`] or [`Undefined::NoContact`], and with both. Infinite
+//!   heights are always refused.
+//! * **Notes.** Statements of a file that are not used are in [`Metadata::notes`], and so is a value far from
+//!   all others. Both are also in the error about missing information.
 //!
 //! # Accuracy
 //!
 //! Numbers are the doubles nearest to the written ones, also with a unit of a power of ten behind them
-//! ([`Quantity`]); heights of a scan are converted with one rounding. Heights that this crate writes are read
-//! again with identical bits ([`text()`], [`xyz`], [`npy`], [`hdf5`], [`x3p`], [`gwy`], [`netcdf`]). So are
-//! the sides, except in NPY, which has none, and in X3P, where the last bit may differ. Trends are exact to
-//! 1e-13 of the range of the heights, filled points to 1e-10.
+//! ([`Quantity`]). Heights of a scan are converted with one rounding.
+//!
+//! Heights that this crate writes are read again with identical bits ([`text()`], [`xyz`], [`npy`], [`hdf5`],
+//! [`x3p`], [`gwy`], [`netcdf`]). So are the sides, except in NPY, which has none, and in X3P, where the last
+//! bit may differ. Trends are exact to 1e-13 of the range of the heights, and filled points to 1e-10.
 //!
 //! # Hostile files
 //!
-//! Readers never panic. They need at most 24 bytes of memory for each byte of the file, and 100 kB; the worst
-//! case is a half-empty grid of points whose numbers have one digit. NPY needs 1 byte and text about 2. Sizes
-//! that a header claims are compared with the length of the file before anything is allocated, and files
+//! Readers never panic. They need at most 24 bytes of memory for each byte of the file, and 100 kB. The worst
+//! case is a half-empty grid of points whose numbers have one digit. NPY needs 1 byte, and text about 2.
+//! Sizes that a header claims are compared with the length of the file before anything is allocated. Files
 //! beyond [`ReadOptions::largest_bytes`] are not read. `tests/hostile.rs` measures the memory.
 //!
 //! # Speed
 //!
-//! On one core of a busy machine of the 2020s a map of 1024 x 1024 cells is read from NPY in 0.02 s, from
-//! text in 0.12 s and from points in 0.45 s, written in 0.02, 0.2 and 0.5 s (VTI 0.07 s), and described in
-//! 0.03 s. [`Fill::Neighbours`] takes as many sweeps over the undefined points as the largest patch of them
-//! is wide.
+//! On one core of a busy machine of the 2020s a map of 1024 x 1024 cells takes these times:
+//!
+//! | format | read | written |
+//! |---|---|---|
+//! | NPY | 0.02 s | 0.02 s |
+//! | text | 0.12 s | 0.2 s |
+//! | points | 0.45 s | 0.5 s |
+//! | VTI | | 0.07 s |
+//!
+//! It is described in 0.03 s. [`Fill::Neighbours`] takes as many sweeps over the undefined points as the
+//! largest patch of them is wide.
 //!
 //! # Writing
 //!
 //! [`write_map`] writes a map in the format of the name's ending. [`npy`], [`hdf5`], [`text()`], [`xyz`],
 //! [`x3p`], [`gwy`], [`netcdf`] and [`vti`] (for ParaView) return bytes, and [`files::write_whole`] puts them
-//! into a file whole or not at all; [`write_npy`] does both for an array.
+//! into a file whole or not at all. [`write_npy`] does both for an array.
 //!
 //! # Features
 //!
-//! `hdf5`, `tiff` and `x3p`, all on by default, bring the crates that these formats need (12 packages).
-//! Reading a file of a format that the build leaves out is an error that names the feature
+//! `hdf5`, `tiff` and `x3p`, all on by default, bring the crates that these formats need (12 packages). If a
+//! build leaves a format out, reading such a file is an error that names the feature
 //! ([`ContentError::LeftOut`]).
 //!
 //! # What it does not do

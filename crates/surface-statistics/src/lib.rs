@@ -2,8 +2,9 @@
 //! correlations with confidence bands, slopes and curvatures by scale, and the fit of a self-affine spectrum
 //! with intervals.
 //!
-//! Every function takes a [`contact_model::HeightMap`]: a rectangle of equal cells, which need not be
-//! squares, in one length unit.
+//! How rough is a surface, at which scale, and how well is this known from one map? Every function takes a
+//! [`contact_model::HeightMap`]. This is a rectangle of equal cells, which need not be squares, in one length
+//! unit.
 //!
 //! ```
 //! use contact_model::{Boundary, SelfAffine};
@@ -26,6 +27,8 @@
 //!
 //! # What is where
 //!
+//! The last column says how undefined points are treated.
+//!
 //! | quantity | item | undefined points |
 //! |---|---|---|
 //! | Sa, Sq, Ssk, Sku, Sp, Sv, Sz | [`HeightParameters`] | left out |
@@ -35,30 +38,31 @@
 //! | Spd, Spc | [`FeatureParameters`] | like an edge |
 //! | spectra along x, along y, over rings | [`PowerSpectrum`] | error |
 //! | structure function, autocorrelation | [`DifferenceMap`], [`HeightDifference`] | left out |
-//! | their bands, those of slopes and curvatures by distance | [`DifferenceBands`] | error |
+//! | bands of these, and of slopes and curvatures by distance | [`DifferenceBands`] | error |
 //! | rms gradient and curvature by differences | [`Derivatives`] | left out |
 //! | slope and curvature over a distance | [`ScaleDependence`] | left out |
 //! | Nayak's parameter | [`nayak_parameter`] | error |
 //! | Hurst exponent, roll-off, cut-off, noise | [`SpectrumFit`] | error |
 //! | Hurst exponent of a profile | [`ProfileFit`] | error |
-//! | wavelengths to be trusted | [`ReliableWavelengths`] | |
+//! | wavelengths that can be trusted | [`ReliableWavelengths`] | |
 //!
 //! # Conventions
 //!
-//! * **Fourier.** The conventions are those of [`surface_gen`]: wavenumbers q = 2 pi/wavelength, `H(q) = 1/N
-//!   sum h exp(-i q x)`, densities two-sided, `C_2D = Lx Ly/(2 pi)^2 |H|^2` and `C_1D = L/(2 pi) |H|^2`, so
-//!   that their integrals over all q are the variance. SurfaceTopography and Jacobs, Junge, Pastewka (2017)
-//!   leave `1/(2 pi)^2` and `1/(2 pi)` out: their densities are 39.5 and 6.28 times these.
+//! * **Fourier.** The conventions are those of [`surface_gen`], with the wavenumber q = 2 pi/wavelength and
+//!   `H(q) = 1/N sum h exp(-i q x)`. Densities are two-sided: `C_2D = Lx Ly/(2 pi)^2 |H|^2` and
+//!   `C_1D = L/(2 pi) |H|^2`. Their integrals over all q are the variance. SurfaceTopography and Jacobs,
+//!   Junge, Pastewka (2017) leave `1/(2 pi)^2` and `1/(2 pi)` out, so that their densities are 39.5 and 6.28
+//!   times these.
 //! * **Boundary.** [`contact_model::Boundary::Periodic`] takes neighbours across the edges, and
-//!   [`contact_model::Boundary::Free`] only those inside. Spectra of a free map need a window ([`Taper`]),
-//!   whose factors have the mean square 1 and multiply the heights about their mean; subtract a tilt first.
+//!   [`contact_model::Boundary::Free`] only those inside. Spectra of a free map need a window ([`Taper`]).
+//!   Its factors have the mean square 1 and multiply the heights about their mean. Subtract a tilt before.
 //!   The fit does both by itself.
-//! * **Height differences.** `A(r) = <[h(x + r) - h(x)]^2>/2` over all pairs of points and all directions,
-//!   each pair with the same weight. SurfaceTopography gives each vector the same weight; for free maps it
-//!   uses only vectors whose components are both positive.
-//! * **Curvature** is half the Laplacian; along an axis it is the second derivative.
+//! * **Height differences.** `A(r) = <[h(x + r) - h(x)]^2>/2` is a mean over all pairs of points at the
+//!   distance r in all directions, each pair with the same weight. SurfaceTopography gives each vector the
+//!   same weight. For free maps it uses only vectors whose components are both positive.
+//! * **Curvature** is half the Laplacian. Along an axis it is the second derivative.
 //! * **Standard.** ISO 25178-2 defines its parameters for a scale-limited surface: levelling and filters are
-//!   the caller's. Ratios are not in per cent, angles run from x towards y.
+//!   up to the caller. Ratios are not in per cent, and angles run from x towards y.
 //!
 //! # Accuracy
 //!
@@ -67,9 +71,9 @@
 //! surfalize 0.19.2 as stated in `data/iso25178/README.md`. The 95 % bands of spectra, height differences,
 //! slopes and curvatures contain 93 to 96 % of the true values (`tests/bands.rs`).
 //!
-//! The table gives the number of surfaces, of 100 each, whose intervals and bounds contain the true exponent,
-//! roll-off and cut-off. Their seeds were not used in the development of the fit (`tests/coverage.rs`, about
-//! 40 s):
+//! Do the intervals of the fit contain the true values? The table counts the surfaces, of 100 each, whose
+//! intervals and bounds contain the true exponent, roll-off and cut-off. Their seeds were not used in the
+//! development of the fit (`tests/coverage.rs`, about 40 s):
 //!
 //! ```text
 //! cargo test -p surface-statistics --test coverage -- --ignored --nocapture
@@ -89,21 +93,30 @@
 //! Cut-offs are covered more often than in 95 of 100 cases: their edge is sharp, and the interval is never
 //! narrower than one wave of the map.
 //!
-//! A free map of 128 cells a side without roll-off and cut-off determines the exponent to +-0.08, one of 512
-//! cells to +-0.02. Two limitations remain. The intervals of a surface with prescribed amplitudes are too
-//! wide, because the fit cannot see that it is not Gaussian. The intervals of a surface that is not
-//! self-affine are meaningless; a small [`SpectrumFit::goodness`] shows it.
+//! A free map of 128 cells a side without roll-off and cut-off determines the exponent to +-0.08. One of 512
+//! cells determines it to +-0.02. Two limitations remain. The intervals of a surface with prescribed
+//! amplitudes are too wide, because the fit cannot see that it is not Gaussian. The intervals of a surface
+//! that is not self-affine have no meaning; a small [`SpectrumFit::goodness`] shows it.
 //!
 //! # Speed
 //!
-//! On one core of a 2020s machine a map of 512 x 512 points is fitted in 0.6 s, its correlation takes 0.2 s,
-//! its hills 0.1 s; all but the fit is O(N log N) without a large factor.
+//! On one core of a 2020s machine a map of 512 x 512 points takes these times. All but the fit is O(N log N)
+//! without a large factor.
+//!
+//! | what | time |
+//! |---|---|
+//! | fit | 0.6 s |
+//! | correlation | 0.2 s |
+//! | hills | 0.1 s |
 //!
 //! # What it does not do
 //!
-//! It has no filters (Gaussian, spline) and no levelling, no functional and volume parameters (Sk, Vmp, ...),
-//! no roll-off and cut-off of profiles, no fits of anisotropic spectra, and no dales. A profile is a map of
-//! one row: height parameters of such a map are those of its primary profile (Pa, Pq, ... of ISO 21920-2).
+//! * It has no filters (Gaussian, spline) and no levelling.
+//! * It has no functional and volume parameters (Sk, Vmp, ...), and no dales.
+//! * It finds no roll-off and cut-off of profiles, and fits no anisotropic spectra.
+//!
+//! A profile is a map of one row. The height parameters of such a map are those of its primary profile (Pa,
+//! Pq, ... of ISO 21920-2).
 
 mod areal;
 mod bins;

@@ -10,7 +10,16 @@ use std::path::Path;
 const FOLDER: &str = "book/src/pictures";
 const SCRIPT: &str = "book/pictures.sh";
 /// Pictures that are drawn by hand.
-const BY_HAND: [&str; 1] = ["conventions.svg"];
+const BY_HAND: [&str; 8] = [
+    "adhesion-laws.svg",
+    "cluster.svg",
+    "conventions.svg",
+    "free-and-periodic.svg",
+    "jumps.svg",
+    "relaxation.svg",
+    "spectrum.svg",
+    "stick-and-slip.svg",
+];
 /// Pictures taken with a browser, which depend on its version and on the fonts of the machine.
 const OF_BROWSER: [&str; 1] = ["report.png"];
 
