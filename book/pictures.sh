@@ -30,6 +30,8 @@ scene rough-plastic plastic_depth-bem3d-0-002.png
 scene plastic-path curve-force.svg
 scene sticky-ball curve-force.svg
 scene rough-sticky-ball curve-force.svg pressure-bem3d-0-042.png
+scene rough-tip curve-force.svg
+scene rough-sphere-friction stick_slip-bem3d-0-005.png
 
 fractal-contact info data/measured/uncd-afm.001 --channel 0 --detrend plane --tip-radius "26 nm" --out out/uncd
 for picture in spectrum.svg slope.svg; do

@@ -21,7 +21,7 @@ fn states(surface: &Surface, boundary: Boundary, cells: usize, seed: u64, forces
         let resolution = state.resolution.unwrap();
         let area = resolution.corrected_area.unwrap();
         let cells = state.report.contact_cells.unwrap() as f64;
-        [state.stiffness.unwrap(), area, resolution.largest_pressure, cells]
+        [state.stiffness.unwrap(), area, resolution.largest_pressure.unwrap(), cells]
     };
     forces.iter().map(state).collect()
 }

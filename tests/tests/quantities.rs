@@ -167,7 +167,7 @@ fn fields(scene: &Scene, state: &ContactState, depth: Option<&[f64]>, faults: &m
     if scene.effects.adhesion == Adhesion::Off {
         let contact = p.iter().filter(|p| **p > 0.0).count() as f64;
         check(faults, "area", state.area.unwrap(), cell * contact, ROUNDING * cell * contact);
-        let found = state.resolution.map_or(0.0, |r| r.largest_pressure);
+        let found = state.resolution.and_then(|r| r.largest_pressure).unwrap_or(0.0);
         check(faults, "largest pressure", found, largest, ROUNDING * largest);
     }
     if let (Some(k), Some(found)) = (state.stiffness_fixed_area, state.conductance) {
@@ -302,7 +302,7 @@ fn plastic(seed: u64) -> Result<Faults, Error> {
     let area = map_of(&scene).size();
     let most = scene.contact_modulus * area.x * area.y * 10f64.powf(draw.between(-3.0, -1.5));
     let elastic = model(1e-6).prepare(&scene, 0)?.solve(Load::force(most))?;
-    let pressure = draw.between(0.2, 0.9) * elastic.resolution.unwrap().largest_pressure;
+    let pressure = draw.between(0.2, 0.9) * elastic.resolution.unwrap().largest_pressure.unwrap();
     scene.effects.hardness = Hardness::Limit { pressure };
     scene.outputs.plastic_depth = true;
     let capacity =
@@ -382,7 +382,7 @@ fn plastic_loop(seed: u64) -> Result<Faults, Error> {
     let area = map_of(&scene).size();
     let most = scene.contact_modulus * area.x * area.y * 10f64.powf(draw.between(-2.5, -1.5));
     let elastic = model(1e-6).prepare(&scene, 0)?.solve(Load::force(most))?;
-    let pressure = 0.5 * elastic.resolution.unwrap().largest_pressure;
+    let pressure = 0.5 * elastic.resolution.unwrap().largest_pressure.unwrap();
     scene.effects.hardness = Hardness::Limit { pressure };
     let capacity =
         pressure * map_of(&scene).heights().len() as f64 * map_of(&scene).dx() * map_of(&scene).dy();

@@ -536,7 +536,7 @@ pub static QUANTITIES: &[Quantity] = &quantities! {
         { compared: Compared::Yes }
         => |s, _| s.area.into();
     "area_corrected" "corrected area" "A" Si("m^2"); AskedBy::Output(Output::Area);
-        "area corrected for the cells at its boundary (Yastrebov et al. 2017)"
+        "area corrected for the cells at its boundary (Yastrebov et al. 2017); with a hardness at least the force over the hardness"
         { compared: Compared::Yes, source: "Yastrebov, Anciaux, Molinari, Tribol. Int. 114, 161 (2017)", drawn: false }
         => |s, _| s.resolution.and_then(|r| r.corrected_area).into();
     "contact_fraction" "contact fraction" "A/A_0" One; AskedBy::Output(Output::Area); "A/(Lx Ly), undefined points included"
@@ -553,7 +553,7 @@ pub static QUANTITIES: &[Quantity] = &quantities! {
     "largest_pressure" "largest pressure" "p_{\\rm{max}}" Si("Pa"); Always;
         "of a cell; grows with smaller cells until they resolve the shortest wave, at an edge of the rectangle or a spike without limit"
         { compared: Compared::Periodic }
-        => |s, _| s.resolution.map(|r| r.largest_pressure).into();
+        => |s, _| s.resolution.and_then(|r| r.largest_pressure).into();
     "status" "status" "" Word; Always; "how the solve ended"
         { role: Role::Work, average: Average::No, drawn: false }
         => |s, _| s.report.status.as_str().into();

@@ -363,8 +363,9 @@ impl Branch {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ContactResolution {
     /// Largest pressure of a cell: the mean over that cell, which grows as cells get smaller until they
-    /// resolve the shortest wave.
-    pub largest_pressure: f64,
+    /// resolve the shortest wave. `None` where the contact is known and its pressures are not (a viscoelastic
+    /// one by its equivalent elastic contact).
+    pub largest_pressure: Option<f64>,
     /// Largest share of the force that a single cell carries, in [0, 1].
     pub largest_share: f64,
     /// Cells in contact at an edge of a free rectangle; 0 with periodic boundaries.
@@ -386,7 +387,7 @@ impl ContactResolution {
     /// The resolution of a contact whose cells carry at most this pressure and this share of the force, of
     /// which `edge_cells` are at an edge of the rectangle.
     pub fn new(largest_pressure: f64, largest_share: f64, edge_cells: usize) -> Self {
-        Self { largest_pressure, largest_share, edge_cells, corrected_area: None }
+        Self { largest_pressure: Some(largest_pressure), largest_share, edge_cells, corrected_area: None }
     }
 
     /// With the corrected area, >= 0, of a contact of `cells` cells whose boundary consists of `edges` edges

@@ -215,8 +215,10 @@ fn written(folder: &Path, files: &[PathBuf]) -> String {
             _ => named.push(name.into_owned()),
         }
     }
-    let counts = [(pictures, "pictures"), (fields, "fields")];
-    named.extend(counts.iter().filter(|(count, _)| *count > 0).map(|(count, of)| format!("{count} {of}")));
+    for (count, one) in [(pictures, "picture"), (fields, "field")] {
+        let ending = if count == 1 { "" } else { "s" };
+        named.extend((count > 0).then(|| format!("{count} {one}{ending}")));
+    }
     format!("{}, and beside it {}\n", folder.join(REPORT).display(), named.join(", "))
 }
 

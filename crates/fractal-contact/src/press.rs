@@ -335,7 +335,7 @@ fn text(asked: &PressArguments, keys: &SurfaceKeys, at: &Path) -> String {
         scene.line("curves", "true", "");
     } else {
         scene.line("distributions", "[\"pressure\", \"gap\"]", "");
-        if asked.accuracy.is_none() && asked.hardness.is_none() {
+        if asked.accuracy.is_none() {
             scene.line(
                 "grid_error",
                 "true",

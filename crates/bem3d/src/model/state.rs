@@ -330,7 +330,12 @@ impl PreparedSurface {
         }
         let (cells, index, boundary) = self.indexed(contact);
         let edges = surface_gen::boundary_edges(cells, &index, boundary);
-        Ok(resolution.with_boundary(contact.len(), edges, self.nondimensional.area(1.0)?))
+        let mut resolution = resolution.with_boundary(contact.len(), edges, self.nondimensional.area(1.0)?);
+        // No contact under this force is smaller than the one whose pressure is the hardness everywhere.
+        let least = solved.p.iter().sum::<f64>() / self.problem.bounds.upper();
+        let least = if least > 0.0 { self.nondimensional.area(least)? } else { 0.0 };
+        resolution.corrected_area = resolution.corrected_area.map(|area| area.max(least));
+        Ok(resolution)
     }
 
     /// A contact set as indices on its grid.

@@ -165,6 +165,7 @@ impl Plan {
                 .chain(assumptions.iter().flat_map(|a| a.notes(scene)))
                 .chain(of_slopes)
                 .chain(beyond_hardness(scene))
+                .chain(without_grid_error(scene))
                 .collect(),
             contact_modulus: words::contact_modulus(scene),
             boundary: scene.effects.boundary,
@@ -345,6 +346,22 @@ fn beyond_hardness(scene: &SceneFile) -> Option<Diagnostic> {
         "a mean pressure of {largest} cannot be reached: at the hardness of {hardness} every cell flows"
     );
     Some(Diagnostic::note(message).with_help(format!("Use a smaller load or a larger `hardness`. {rest}")))
+}
+
+/// An error of the grid that is requested where none is estimated.
+fn without_grid_error(scene: &SceneFile) -> Option<Diagnostic> {
+    let estimated = |numerics: &Numerics| matches!(numerics, Numerics::Bem3d(_));
+    let (why, help) = match scene.request {
+        _ if !scene.requested.grid_error => return None,
+        LoadRequest::Path(_) => ("along a path", "Compare with a run on smaller cells."),
+        LoadRequest::Loads(_) if scene.models.iter().any(estimated) => return None,
+        LoadRequest::Loads(_) => {
+            ("without the model `bem3d`", "Add `bem3d` to the models, or compare with a run on another grid.")
+        }
+    };
+    let message =
+        format!("the error of the grid is not estimated {why}: the columns `_grid_error` stay empty");
+    Some(scene.at_output("grid_error", Diagnostic::note(message).with_help(help)))
 }
 
 /// Pictures of the fields of all states and of distributions.

@@ -170,7 +170,7 @@ pub(crate) fn read_request<'a>(
 
 fn read_loads(kind: LoadKind, entry: &Entry<'_>, system: System, pulls: bool) -> Read<LoadList> {
     let (key, dimension, ..) = kind.record();
-    let signed = pulls && matches!(kind, LoadKind::Force | LoadKind::Approach);
+    let signed = pulls && !matches!(kind, LoadKind::MeanGap);
     let number = |item: &Entry<'_>| {
         let value = match dimension {
             Dimension::NONE => item.number()?,
@@ -179,7 +179,10 @@ fn read_loads(kind: LoadKind, entry: &Entry<'_>, system: System, pulls: bool) ->
         if value >= 0.0 || signed {
             return Ok(value);
         }
-        let help = "press with a value >= 0; only adhesion (`adhesion` in [effects]) holds against a pull";
+        let help = match kind {
+            LoadKind::MeanGap => "a mean gap is a distance >= 0",
+            _ => "press with a value >= 0; only adhesion (`adhesion` in [effects]) holds against a pull",
+        };
         Err(item.diagnostic(format!("the load `{key}` = {} is negative", item.shown())).with_help(help))
     };
     let values = if entry.is_table() {

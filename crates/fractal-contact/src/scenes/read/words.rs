@@ -3,7 +3,7 @@
 use crate::models::ModelRecord;
 use crate::scenes::read::{LoadKind, LoadRequest, SceneFile, System, amount, short};
 use contact_model::units::{ascii, to_digits};
-use contact_model::{Body, Error, Hardness};
+use contact_model::{Body, Error, Hardness, Rheology};
 use std::path::Path;
 
 /// The scene's name in a title: that of its file or, for `NAME/scene.toml`, that of its folder.
@@ -42,6 +42,11 @@ pub(crate) fn contact_modulus(scene: &SceneFile) -> String {
     match (&scene.pair, scene.system) {
         (Some(pair), _) => format!("E* = {modulus}: {} on {}", body(pair.first), body(pair.second)),
         (None, System::None) => format!("E* = {modulus}"),
+        // Viscosities are those of an incompressible body.
+        (None, System::Si) if scene.effects.rheology != Rheology::Elastic => {
+            let young = ascii(&to_digits(0.75 * scene.contact_modulus, unit, 3));
+            format!("E* = {modulus}: an incompressible body with E = {young} on a rigid one")
+        }
         (None, System::Si) => {
             let plane_strain = 1.0 - EXAMPLE_POISSON * EXAMPLE_POISSON;
             let [alike, on_rigid] = [2.0, 1.0]

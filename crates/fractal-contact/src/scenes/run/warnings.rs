@@ -117,7 +117,7 @@ impl Warning {
             Self::OneCell => format!("{states} one cell carries most of the load."),
             Self::Edge => format!("{states} cells at the edge of the rectangle are in contact."),
             Self::Yield => {
-                let largest = worst(&|(state, _)| Some(state.resolution?.largest_pressure));
+                let largest = worst(&|(state, _)| state.resolution?.largest_pressure);
                 let largest =
                     largest.map_or_else(String::new, |value| format!(" (it reaches {})", pressure(value)));
                 if let Some(hardness) = scene.hardness {
@@ -125,7 +125,7 @@ impl Warning {
                 } else {
                     let limit = pressure(YIELD * scene.contact_modulus);
                     format!(
-                        "{states} the pressure is above a tenth of E*, {limit}{largest}. No hardness is given, and metals flow at less."
+                        "{states} the pressure is above a tenth of E*, {limit}{largest}. No hardness is given; many materials yield at less."
                     )
                 }
             }
@@ -207,7 +207,7 @@ impl Circumstances {
             (Warning::Accuracy, _) => missed,
             (Warning::OneCell, Some(r)) => r.largest_share > ALONE,
             (Warning::Edge, Some(r)) => r.edge_cells > 0 && !self.flat,
-            (Warning::Yield, Some(r)) => r.largest_pressure > self.hardness,
+            (Warning::Yield, Some(r)) => r.largest_pressure.is_some_and(|largest| largest > self.hardness),
             (Warning::Area, Some(r)) => {
                 state.area.zip(r.corrected_area).is_some_and(|(a, corrected)| a - corrected > UNRESOLVED * a)
             }

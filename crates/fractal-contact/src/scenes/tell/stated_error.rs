@@ -13,7 +13,7 @@ pub(crate) const PLUS_MINUS: &str = "±";
 pub(crate) const OF_GRID: &str = "The number behind ± is the estimated error of the grid and of the solver. Without ± \
                                  no error is estimated, or it does not change the digits shown.";
 pub(crate) const OF_SOLVER: &str = "The number behind ± is the estimated error of the solver on these cells. It does not \
-                                   contain the error of the grid, which `grid_error = true` in [outputs] estimates.";
+                                   contain the error of the grid, which `grid_error = true` in [outputs] estimates for loads that do not form a path.";
 
 /// Quantities whose relative error on the cells that were solved is another quantity.
 const SOLVER_ERRORS: [(&str, &str); 6] = [

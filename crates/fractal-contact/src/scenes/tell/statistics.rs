@@ -169,8 +169,7 @@ impl MapStatisticsTables {
             self.push("Str", s.str, 0, "that over the longest one: 1 for an isotropic surface");
         }
         if let Some(std) = self.known("texture direction", texture_direction(map)) {
-            let meaning =
-                "direction of the waves that have most of the variance, from x towards y; the lay is across";
+            let meaning = "direction of the waves that have most of the variance, from x towards y; the lay is perpendicular to it";
             let (value, ends) = (Some(std), [None; 2]);
             self.parameters.push(Parameter { symbol: "Std", value, ends, power: None, meaning });
         }
@@ -233,7 +232,7 @@ impl MapStatisticsTables {
         if fit.goodness < DOUBTFUL && (fit.hurst.low > 1.0 || fit.hurst.high < 0.0) {
             self.notes.push(format!(
                 "fit of a self-affine spectrum: the spectrum falls as q^-{}, that of a self-affine surface as q^-4 to \
-                 q^-2; filled points change short waves: `crop` = \"defined\" has none",
+                 q^-2. Points that were filled change short waves; a map with `crop` = \"defined\" has none of them",
                 number(rounded(2.0 * (fit.hurst.value + 1.0), 2))
             ));
             return;
