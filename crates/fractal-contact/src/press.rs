@@ -85,7 +85,7 @@ pub fn scene(asked: &PressArguments, keys: &SurfaceKeys, at: &Path) -> Result<Sc
     if let Some(folder) = folder {
         runs::files::create_directory(folder)?;
     }
-    let scene = SceneFile::parse(at, text(asked, keys, at)).map_err(|error| match error {
+    let scene = SceneFile::parse(at, text(asked, keys, at, known.metadata().profile)).map_err(|error| match error {
         // There is no such file yet.
         Error::Scene(mistake) => Error::from(mistake.told_of("the scene of these flags")),
         other => other,
@@ -177,7 +177,7 @@ fn mistake(lacking: &[Lacking]) -> Option<String> {
         Ok((Command::Press { asked, .. } | Command::New { asked, .. }, matches)) => {
             // Nothing is written, and this folder exists.
             let at = Path::new("scene.toml");
-            match SceneFile::parse(at, text(&asked, &SurfaceKeys::given(&matches), at)) {
+            match SceneFile::parse(at, text(&asked, &SurfaceKeys::given(&matches), at, false)) {
                 Err(Error::Scene(mistake)) => {
                     mistake.told_of("the scene of these flags, with examples of what is missing").to_string()
                 }
@@ -244,8 +244,8 @@ pub fn check_place(path: &Path) -> Result<()> {
     }
 }
 
-/// The scene as TOML with comments.
-fn text(asked: &PressArguments, keys: &SurfaceKeys, at: &Path) -> String {
+/// The scene as TOML with comments, of a map or of a profile.
+fn text(asked: &PressArguments, keys: &SurfaceKeys, at: &Path, profile: bool) -> String {
     let mut scene = Lines::default();
     let _ = writeln!(
         scene.text,
@@ -326,7 +326,14 @@ fn text(asked: &PressArguments, keys: &SurfaceKeys, at: &Path) -> String {
     }
     scene.table("outputs");
     scene.line("area", "true", "only named outputs are computed");
-    scene.line("stiffness", "true", "");
+    let periodic = asked.boundary == "periodic";
+    // A half-plane has no approach and no stiffness, because its displacements have no zero at infinity.
+    if periodic || !profile {
+        scene.line("stiffness", "true", "");
+    }
+    if periodic {
+        scene.line("mean_gap", "true", "distance between the mean planes, in the place of an approach");
+    }
     scene.line("contact_patches", "true", "");
     scene.line("pressure", "[\"npy\", \"png\"]", "field of each load");
     scene.line("gap", "[\"png\"]", "");
@@ -471,7 +478,7 @@ mod tests {
             other => panic!("{other:?}"),
         };
         let at = Path::new("scene.toml");
-        SceneFile::parse(at, text(&asked, &SurfaceKeys::given(&matches), at))
+        SceneFile::parse(at, text(&asked, &SurfaceKeys::given(&matches), at, false))
     }
 
     /// Whether two scenes solve the same, whatever their texts are.

@@ -73,7 +73,7 @@ pub(crate) fn read_map(table: &Entries<'_>, system: System, directory: &Path) ->
         notes.push(Diagnostic::note(remark.message).at(entry.span()).with_help(remark.help));
     }
     let profile = metadata.profile;
-    notes.extend(profile.then(|| uniform(&file, &map)));
+    notes.extend(profile.then(|| uniform(&file, &map, system)));
     let mut metadata = metadata.to_string();
     for step in steps {
         metadata += &format!("\nthen       {step}");
@@ -163,10 +163,10 @@ pub(crate) fn read_second(
 }
 
 /// A note on how a profile is used.
-fn uniform(file: &Entry<'_>, map: &HeightMap) -> Diagnostic {
+fn uniform(file: &Entry<'_>, map: &HeightMap, system: System) -> Diagnostic {
     let help = "The contact is one of plane strain, and `bem3d` solves it. Pressures do not depend on that width, and the force over the width is \
                 the force per length. Theories of isotropic surfaces and `mdr1d` are refused.";
-    let width = number(map.size().y);
+    let width = ascii(&amount(map.size().y, system.shown("m")));
     let message = format!(
         "a profile: the body is taken as uniform along y, and forces are those on a width of {width}"
     );
