@@ -91,9 +91,9 @@ fn table(text: &str, heading: &str) -> Vec<Vec<String>> {
     body.map(|line| line.trim_matches('|').split('|').map(|cell| cell.trim().to_owned()).collect()).collect()
 }
 
-/// k_bar of one fractal dimension on the finest grid: surface, load.
+/// k_bar of one fractal dimension on the finest grid, from a table such as `paper/fig2`: surface, load.
 fn samples(figure: &str, d: f64) -> Vec<Vec<Option<f64>>> {
-    let rows = of_dimension(rows(&format!("data/figures/paper/{figure}-compact.csv")), d);
+    let rows = of_dimension(rows(&format!("data/figures/{figure}-compact.csv")), d);
     let finest = rows.iter().map(|row| number(row, "size")).fold(0.0, f64::max);
     let finest = rows.iter().filter(|row| number(row, "size") >= finest);
     finest.map(|row| list(row, "stiffness_bar")).collect()
@@ -101,7 +101,7 @@ fn samples(figure: &str, d: f64) -> Vec<Vec<Option<f64>>> {
 
 /// ln F_bar and number of the loads up to 0.086 at which every surface has ten cells in contact.
 fn resolved(figure: &str, d: f64) -> Vec<(usize, f64)> {
-    let curve = of_dimension(rows(&format!("data/figures/paper/{figure}.csv")), d);
+    let curve = of_dimension(rows(&format!("data/figures/{figure}.csv")), d);
     let is_in = |row: &Row| number(row, "force_bar") <= 0.086 && number(row, "min_contact_cells") >= 10.0;
     let all = curve.iter().enumerate().filter(|(_, row)| is_in(row));
     all.map(|(j, row)| (j, number(row, "force_bar").ln())).collect()
@@ -124,10 +124,10 @@ fn exponent(samples: &[Vec<Option<f64>>], loads: &[(usize, f64)], without: Optio
 fn means_and_errors_follow_from_the_samples() {
     // Seven digits in the compact tables; a standard error loses some of them where surfaces are nearly
     // equal.
-    for figure in ["fig2", "fig6"] {
+    for figure in ["paper/fig2", "paper/fig6"] {
         for d in DIMENSIONS {
             let samples = samples(figure, d);
-            let curve = of_dimension(rows(&format!("data/figures/paper/{figure}.csv")), d);
+            let curve = of_dimension(rows(&format!("data/figures/{figure}.csv")), d);
             for (j, row) in curve.iter().enumerate() {
                 let values: Vec<f64> = samples.iter().filter_map(|s| s[j]).collect();
                 let (mean, error) = mean_and_error(&values);
@@ -151,15 +151,21 @@ fn exponents_of_the_page_follow_from_the_samples() {
     let fitted = rows("data/figures/paper/fig3.csv");
     for row in &page {
         let d: f64 = row[0].parse().unwrap();
-        let of_surfaces = resolved("fig2", d);
+        let of_surfaces = resolved("paper/fig2", d);
         let ends = [of_surfaces[0].1 - 1e-9, of_surfaces[of_surfaces.len() - 1].1 + 1e-9];
         let same_forces = |loads: Vec<(usize, f64)>| -> Vec<(usize, f64)> {
             loads.into_iter().filter(|load| (ends[0]..=ends[1]).contains(&load.1)).collect()
         };
         for (figure, model, column, loads, cell) in [
-            ("fig2", "bem3d", "half_width", of_surfaces.clone(), &row[1]),
-            ("fig6", "mdr1d", "same_forces_half_width", same_forces(resolved("fig6", d)), &row[2]),
-            ("fig6", "mdr1d", "half_width", resolved("fig6", d), &row[3]),
+            ("paper/fig2", "bem3d", "half_width", of_surfaces.clone(), &row[1]),
+            (
+                "paper/fig6",
+                "mdr1d",
+                "same_forces_half_width",
+                same_forces(resolved("paper/fig6", d)),
+                &row[2],
+            ),
+            ("paper/fig6", "mdr1d", "half_width", resolved("paper/fig6", d), &row[3]),
         ] {
             let samples = samples(figure, d);
             let alpha = exponent(&samples, &loads, None);
@@ -184,6 +190,47 @@ fn exponents_of_the_page_follow_from_the_samples() {
         assert!((row[4].parse::<f64>().unwrap() - 0.266 * d).abs() < 6e-4);
         assert!((row[5].parse::<f64>().unwrap() - 1.0 / (1.0 + h)).abs() < 6e-4);
     }
+}
+
+/// "From 0.50 to 0.85" on the new surfaces: the four numbers of hypotheses.md from the samples, their half-widths
+/// widened so that all hold together with 95 %, and the verdicts.
+#[test]
+fn exponents_of_new_surfaces_are_judged_as_it_was_written_down() {
+    // Quantiles of the normal distribution: 1 - 0.05/8 for four numbers together, 1 - 0.05/2 for one.
+    const TOGETHER: f64 = 2.4977 / 1.9600;
+    let heading = "| new surfaces | alpha | allowed | verdict |";
+    let page = table(&text("book/src/results.md"), heading);
+    let fitted = rows("data/figures/new-surfaces/fig3.csv");
+    let mut found = Vec::new();
+    for d in [2.0, 3.0] {
+        let of_surfaces = resolved("new-surfaces/fig2", d);
+        let (first, last) = (of_surfaces[0].1 - 1e-9, of_surfaces[of_surfaces.len() - 1].1 + 1e-9);
+        let mut of_lines = resolved("new-surfaces/fig6", d);
+        of_lines.retain(|load| (first..=last).contains(&load.1));
+        for (words, figure, model, column, loads) in [
+            ("surfaces", "fig2", "bem3d", "half_width", of_surfaces),
+            ("lines", "fig6", "mdr1d", "same_forces_half_width", of_lines),
+        ] {
+            let alpha = exponent(&samples(&format!("new-surfaces/{figure}"), d), &loads, None);
+            let row = of_dimension(fitted.clone(), d).into_iter().find(|row| row["model"] == model).unwrap();
+            let half_width = TOGETHER * number(&row, column);
+            let [low, high] = if d < 2.5 { [0.47, 0.53] } else { [0.82, 0.88] };
+            let verdict = if alpha - half_width >= low && alpha + half_width <= high {
+                "confirmed"
+            } else if alpha + half_width < low || alpha - half_width > high {
+                "contradicted"
+            } else {
+                "not resolved"
+            };
+            found.push([
+                format!("{words} with D_f = {d:?}"),
+                format!("{alpha:.3} ± {half_width:.3}"),
+                format!("{low} to {high}"),
+                verdict.to_owned(),
+            ]);
+        }
+    }
+    assert_eq!(page, found);
 }
 
 /// The page names each statement of the table once, with the verdict of the table.

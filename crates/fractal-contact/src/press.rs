@@ -85,11 +85,12 @@ pub fn scene(asked: &PressArguments, keys: &SurfaceKeys, at: &Path) -> Result<Sc
     if let Some(folder) = folder {
         runs::files::create_directory(folder)?;
     }
-    let scene = SceneFile::parse(at, text(asked, keys, at, known.metadata().profile)).map_err(|error| match error {
-        // There is no such file yet.
-        Error::Scene(mistake) => Error::from(mistake.told_of("the scene of these flags")),
-        other => other,
-    });
+    let scene =
+        SceneFile::parse(at, text(asked, keys, at, known.metadata().profile)).map_err(|error| match error {
+            // There is no such file yet.
+            Error::Scene(mistake) => Error::from(mistake.told_of("the scene of these flags")),
+            other => other,
+        });
     if let (Err(_), Some(folder)) = (&scene, folder) {
         std::fs::remove_dir(folder).ok();
     }
