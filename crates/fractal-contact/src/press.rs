@@ -325,6 +325,12 @@ fn text(asked: &PressArguments, keys: &SurfaceKeys, at: &Path, profile: bool) ->
             scene.line(key, &value, "");
         }
     }
+    outputs(&mut scene, asked, profile);
+    scene.text
+}
+
+/// The table [outputs] of a map or of a profile.
+fn outputs(scene: &mut Lines, asked: &PressArguments, profile: bool) {
     scene.table("outputs");
     scene.line("area", "true", "only named outputs are computed");
     let periodic = asked.boundary == "periodic";
@@ -351,7 +357,6 @@ fn text(asked: &PressArguments, keys: &SurfaceKeys, at: &Path, profile: bool) ->
             );
         }
     }
-    scene.text
 }
 
 /// Lines of TOML.

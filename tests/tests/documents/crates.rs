@@ -17,7 +17,7 @@ pub fn crates() -> String {
 pub fn modules_page() -> String {
     let mut text = String::from(
         "# Crates and modules\n\n\
-         This page answers where a piece of the code is: every crate of `crates/`, each after those that it uses, with\n\
+         Where is a piece of the code? This page lists every crate of `crates/`, each after those that it uses, with\n\
          its modules and the first sentence of each. It is written from the sources, and a test compares it with\n\
          them. \
          [ARCHITECTURE.md](../..) has the rules that hold between crates.\n",

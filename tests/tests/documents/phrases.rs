@@ -33,7 +33,7 @@ const PRIVATE: [(&str, &str); 30] = [
     ("without a positive one", "whose stability is zero or negative"),
     ("a factor from the attached share", "scaled by the share of attached cells"),
     ("comes nearer by", "multiplies the error by"),
-    ("by its square", "of second order"),
+    ("to a minimum, by its square", "of second order"),
     ("do not lower that of", "do not reduce the error of"),
     ("lets heights be seen", "the lateral resolution of the tip"),
     ("until the jump has gone on", "until the contact has jumped"),

@@ -1,4 +1,4 @@
-//! From a scene to its files: planned, solved, told.
+//! From a scene to its files: planned, solved, reported.
 
 use crate::scenes::plan::{Cost, ModelOnSurface, ModelPlan, Plan, calibration};
 use crate::scenes::read::{Result, SceneFile, System, effect_lines, number, words};
