@@ -145,7 +145,7 @@ pub static MODELS: &[ModelRecord] = &[
             ("Persson", "Persson"),
             "Persson's theory of rough contact.",
             "a theory of an infinite random surface: beside the solved one of data/scenes/periodic-theories.toml its stiffness is up to a \
-             third low, its area 38 to 44 % below the counted one and 29 to 35 % below the corrected one",
+             third low, its area 38 to 44 % below that of the cells in contact and 29 to 35 % below the corrected one",
         )
     },
     ModelRecord {
@@ -156,7 +156,7 @@ pub static MODELS: &[ModelRecord] = &[
             ("Greenwood and Williamson", "GreenwoodWilliamson"),
             "Greenwood and Williamson's theory of rough contact.",
             "a theory of independent summits, for light loads: beside the solved surface of data/scenes/periodic-theories.toml its \
-             stiffness is off by up to 25 %, its area by up to 23 % of the counted one and 13 % of the corrected one",
+             stiffness is off by up to 25 %, its area by up to 23 % of that of the cells in contact and 13 % of the corrected one",
         )
     },
     formula(
