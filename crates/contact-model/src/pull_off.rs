@@ -21,7 +21,7 @@ use crate::state::{ContactState, PullOff, Status};
 /// Follows a path and reports the largest pull so far.
 ///
 /// ```
-/// use contact_model::{ContactState, LargestPull, Load, SolveReport, Status};
+/// use contact_model::{ContactState, LargestPull, NormalLoad, SolveReport, Status};
 /// let state = |force: f64| ContactState::new(force, SolveReport::exact("test"));
 /// let mut largest = LargestPull::default();
 /// assert_eq!(largest.enter(NormalLoad::Force(1.0), state(1.0)).pull_off, None);

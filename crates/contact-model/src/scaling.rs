@@ -23,13 +23,14 @@ pub struct Scaling {
 /// A state in the units of a [`Scaling`]. A quantity that a theory does not claim is `None`.
 ///
 /// ```
-/// use contact_model::{Load, ScaledState, Scaling, Scene, SolveReport, Surface};
+/// use contact_model::{NormalLoad, ScaledState, Scaling, Scene, SolveReport, Surface};
 /// let mut scene = Scene::new(Surface::Flat { size: 2.0.into() }, 3.0);
 /// scene.outputs.area = true;
 /// // A flat of stiffness 1.15 E* L that is pressed by 0.01 L.
 /// let scaled = ScaledState { force: 0.0115, approach: Some(0.01), area: Some(1.0), ..ScaledState::default() };
-/// let report = SolveReport::formula("a constant", Load::approach(0.02));
-/// let state = Scaling::of_body(&scene)?.state(scaled.with_elastic_stiffness(1.15), Load::approach(0.02), report)?;
+/// let load = NormalLoad::Approach(0.02);
+/// let report = SolveReport::formula("a constant", load);
+/// let state = Scaling::of_body(&scene)?.state(scaled.with_elastic_stiffness(1.15), load, report)?;
 /// assert!((state.force - 0.0115 * 12.0).abs() < 1e-15);
 /// assert_eq!((state.approach, state.stiffness, state.area), (Some(0.02), Some(1.15 * 6.0), Some(4.0)));
 /// # Ok::<(), contact_model::Error>(())
