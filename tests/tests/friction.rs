@@ -1,9 +1,11 @@
 //! Friction: the reduction to one dimension (springs) compared with the closed form of the sphere.
 
-use analytic::CattaneoMindlin;
+use analytic::{CattaneoMindlin, Hertz};
 use approx::assert_relative_eq;
+use bem3d::Bem3d;
 use contact_model::{
-    Body, ContactModel, ContactState, Friction, Load, Pair, PreparedContact, Scene, Step, Surface, Tangential,
+    Body, ContactModel, ContactState, Error, Friction, Load, Pair, PreparedContact, Scene, Step, Surface,
+    Tangential,
 };
 use mdr1d::PartialSlip;
 
@@ -163,5 +165,32 @@ fn work_along_any_path_is_stored_or_lost() {
         // From 0.9 to 0.9: a closed loop. Trapezia of 200 segments, second order.
         let [one, other] = [loops[2], loops[4]];
         assert_relative_eq!(other[0] - one[0], other[1] - one[1], max_relative = 1e-4);
+    }
+}
+
+/// A single load may have a tangential part: it is the first step of a path, and refused without friction.
+#[test]
+fn a_single_load_is_one_step_of_both_loads() {
+    let steel = Body::Elastic { young: 210.0, poisson: 0.3 };
+    let pair = Pair { first: steel, second: steel };
+    let mut scene = Scene::of_pair(Surface::Sphere { radius: 2.0, size: 1.0.into() }, pair).unwrap();
+    let load = Load::approach(0.01).with_tangential(Tangential::displacement_along_x(1e-3));
+    let cells = Bem3d { cells: 17, ..Bem3d::default() };
+    let models: [&dyn ContactModel; 3] = [&cells, &CattaneoMindlin, &PartialSlip];
+    for model in models.into_iter().take(1).chain([&Hertz as &dyn ContactModel]) {
+        let refused = model.prepare(&scene, 0).unwrap().solve(load).unwrap_err();
+        assert!(matches!(refused, Error::Unsupported { .. }), "{refused}");
+    }
+    scene.effects.friction = Friction::coulomb(0.35);
+    for model in models {
+        let mut contact = model.prepare(&scene, 0).unwrap();
+        let step = contact.advance(Step::new(0.0, load)).unwrap();
+        let single = contact.solve(load).unwrap();
+        assert_eq!(single.tangential, step.tangential, "{}", model.name());
+        assert_eq!((single.force, single.time), (step.force, None), "{}", model.name());
+        // The path goes on from the single load.
+        let again = contact.advance(Step::new(1.0, load)).unwrap().tangential.unwrap();
+        assert_relative_eq!(again.force[0], step.tangential.unwrap().force[0], max_relative = 1e-5);
+        assert!(single.tangential.unwrap().force[0] > 0.0);
     }
 }
