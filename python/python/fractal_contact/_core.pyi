@@ -383,7 +383,9 @@ class ContactState:
         """float or None: real contact area [m^2]."""
     @property
     def area_corrected(self) -> float | None:
-        """float or None: corrected area, area corrected for the cells at its boundary (Yastrebov et al. 2017) [m^2]."""
+        """float or None: corrected area, area corrected for the cells at its boundary (Yastrebov et al. 2017); with
+        a hardness at least the force over the hardness [m^2].
+        """
     @property
     def contact_fraction(self) -> float | None:
         """float or None: contact fraction, A/(Lx Ly), undefined points included."""
