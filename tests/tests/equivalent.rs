@@ -208,9 +208,11 @@ fn the_work_of_a_cycle_is_dissipated_and_the_loop_closes() {
 #[test]
 fn a_step_of_a_rough_viscoelastic_body_relaxes_to_the_models_own_force() {
     let model = Bem3d { cells: 33, ..Bem3d::default() };
-    let scene = creeping(fractal());
+    let mut scene = creeping(fractal());
+    scene.outputs.area = true;
     let mut history = Equivalent::new(model).prepare(&scene, 2).unwrap();
-    let mut direct = model.prepare(&elastic(&scene), 2).unwrap();
+    let elastic = Scene { outputs: scene.outputs, ..elastic(&scene) };
+    let mut direct = model.prepare(&elastic, 2).unwrap();
     let d = history.normalisation().height.unwrap();
     let own = direct.solve(Load::approach(d)).unwrap();
     for time in [0.0, 0.1, 2.0, 1e6] {
@@ -218,6 +220,10 @@ fn a_step_of_a_rough_viscoelastic_body_relaxes_to_the_models_own_force() {
         // F(t) = E*(t)/E* F.
         let contact_modulus = 1.0 + 3.0 * (-time / 2.0_f64).exp();
         assert_relative_eq!(state.force, contact_modulus * own.force, max_relative = 1e-9);
+        // The area is that of the elastic contact; its pressures are not those of the viscoelastic one.
+        let (found, of_model) = (state.resolution.unwrap(), own.resolution.unwrap());
+        assert_eq!((found.largest_pressure, state.area), (None, own.area));
+        assert_eq!(found.corrected_area, of_model.corrected_area);
     }
     // Under a force: glassy at once, relaxed in the end; both are elastic states of the model.
     history.restart();

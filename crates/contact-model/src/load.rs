@@ -1,9 +1,9 @@
-//! What is prescribed in one solve: a normal and a tangential load.
+//! The load of one solve, normal and tangential.
 
 use crate::error::{Error, Result, non_negative};
 use std::fmt;
 
-/// What is prescribed in one solve or at the end of a step.
+/// The load that is prescribed in one solve or at the end of a step.
 ///
 /// ```
 /// use contact_model::{Load, NormalLoad, Tangential};
@@ -228,7 +228,7 @@ impl Tangential {
         Err(Error::unsupported(model, what))
     }
 
-    /// What is prescribed.
+    /// The name of the prescribed quantity.
     fn words(self) -> &'static str {
         match self {
             Self::Force(_) => "tangential force",

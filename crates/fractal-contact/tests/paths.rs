@@ -402,3 +402,24 @@ fn a_coupled_contact_is_displaced_from_where_pressing_has_left_it() {
     });
     assert!(shift(&states[0]).abs() > 1e-5 && sheared(&states[0]).abs() <= 0.0, "{:?}", states[0].tangential);
 }
+
+/// No error of the grid is estimated along a path, and a note says so; under loads one by one there is none.
+#[test]
+fn an_error_of_the_grid_that_is_not_estimated_is_a_note() {
+    let notes = |load: &str, path: &str| {
+        let text = format!(
+            "[scene]\nunits = \"none\"\nmodels = [\"bem3d\"]\ncontact_modulus = 1\n{load}\n{path}\n[scene.body]\n\
+             kind = \"sphere\"\nradius = 1\nside = 0.5\n[models.bem3d]\ncells = 33\n[effects]\n\
+             adhesion = {{ work = 1e-4 }}\n[outputs]\narea = true\ngrid_error = true\n"
+        );
+        let scene = SceneFile::parse("scene.toml".as_ref(), text).unwrap_or_else(|e| panic!("{e}"));
+        let plan = Plan::new(&scene).unwrap();
+        plan.notes.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n")
+    };
+    let of_path = notes("", "[[scene.path]]\nforce = 1e-3");
+    assert!(of_path.contains("the error of the grid is not estimated along a path"), "{of_path}");
+    // A pull as a mean pressure is a load as one by its force is.
+    for load in ["force = -1e-5", "mean_pressure = -1e-5"] {
+        assert!(!notes(load, "").contains("is not estimated"), "{load}");
+    }
+}

@@ -395,3 +395,29 @@ fn press_overwrites_nothing_of_others() {
     };
     assert_eq!(rows("linked/map"), rows("plain"));
 }
+
+/// The outputs that `press` requests are those that the contact has: an error of the grid with a hardness, the mean
+/// gap of a periodic map, and no stiffness of a profile with free boundaries.
+#[test]
+fn requested_outputs_are_those_that_the_contact_has() {
+    let dir = folder();
+    let map = ["press", "map.txt", "--contact-modulus", "1 GPa", "--force", "1 uN"];
+    let pressed = |more: &[&str]| {
+        let (code, table, said) = program(dir.path(), &[&map, &FLAGS[..], more].concat());
+        assert_eq!(code, Some(0), "{said}");
+        (table, std::fs::read_to_string(dir.path().join("out/map/scene.toml")).unwrap())
+    };
+    let (table, scene) = pressed(&["--hardness", "1 GPa"]);
+    assert!(scene.contains("grid_error = true") && !scene.contains("mean_gap"), "{scene}");
+    assert!(table.contains("1 field\n"), "one field and no plural: {table}");
+    let (table, _) = pressed(&["--boundary", "periodic"]);
+    assert!(table.contains("mean_gap") && table.contains("stiffness"), "{table}");
+
+    let points: String = (0..64).map(|i: i32| format!("{i} {}\n", -(i - 32).pow(2))).collect();
+    std::fs::write(dir.path().join("line.txt"), format!("# x [um]\tz [nm]\n{points}")).unwrap();
+    let line =
+        ["press", "line.txt", "--contact-modulus", "1 GPa", "--pressure", "1 MPa", "--detrend", "none"];
+    let (code, table, said) = program(dir.path(), &line);
+    assert!(code == Some(0) && !table.contains("stiffness"), "{code:?} {table}{said}");
+    assert!(said.contains("a profile: the body is taken as uniform along y"), "{said}");
+}

@@ -22,9 +22,9 @@ impl PreparedSurface {
         self.problem.bounds == Bounds::Unlimited && self.defined == self.problem.grid().count()
     }
 
-    /// The state at a nondimensional mean gap and a tangential load, by Newton's method in ln F where the stiffness is known and
-    /// secants where it is not: the gap falls about linearly with ln F. It is met to the tolerance, in rms
-    /// heights. Where cells at the hardness carry nearly all of the force, one force belongs to a range of gaps,
+    /// The state at a nondimensional mean gap and a tangential load, by Newton's method in ln F where the
+    /// stiffness is known and secants where it is not: the gap falls about linearly with ln F. It is met to the
+    /// tolerance, in rms heights. Where cells at the hardness carry nearly all of the force, one force belongs to a range of gaps,
     /// and the search goes on in the approach.
     pub(super) fn at_mean_gap(
         &mut self,

@@ -172,7 +172,7 @@ pub(crate) fn is_short(columns: usize, states: usize) -> bool {
     states <= 5 && states + 1 < columns
 }
 
-/// What is shown of a state: an answer, or the remaining discretisation error in it.
+/// A number of a state in the summary: a quantity, or its estimated discretisation error.
 #[derive(Clone, Copy)]
 enum Shown {
     Answer(&'static Quantity),
