@@ -413,8 +413,9 @@ fn requested_outputs_are_those_that_the_contact_has() {
     let (table, _) = pressed(&["--boundary", "periodic"]);
     assert!(table.contains("mean_gap") && table.contains("stiffness"), "{table}");
 
-    let points: String = (0..64).map(|i: i32| format!("{i} {}\n", -(i - 32).pow(2))).collect();
-    std::fs::write(dir.path().join("line.txt"), format!("# x [um]\tz [nm]\n{points}")).unwrap();
+    let points: Vec<String> = (0..64).map(|i: i32| format!("{i} {}", -(i - 32).pow(2))).collect();
+    let text = format!("# x [um]\tz [nm]\n{}\n", points.join("\n"));
+    std::fs::write(dir.path().join("line.txt"), text).unwrap();
     let line =
         ["press", "line.txt", "--contact-modulus", "1 GPa", "--pressure", "1 MPa", "--detrend", "none"];
     let (code, table, said) = program(dir.path(), &line);
