@@ -109,6 +109,25 @@ fn states_are_kept_one_by_one() {
     assert!(!checkpoint(&out).exists());
 }
 
+/// A run that is killed while it draws the pictures of an interrupted one in a new range has lost no state.
+#[test]
+fn pictures_of_an_interrupted_run_are_drawn_again() {
+    let dir = tempfile::tempdir().unwrap();
+    let (out, whole) = (dir.path().join("out"), dir.path().join("whole"));
+    let text = SCENE.replace("LOADS", "0.02, 0.05, 0.1, 0.2").replace("[\"npy\"]", "[\"npy\", \"png\"]");
+    let scene = SceneFile::parse("scene.toml".as_ref(), text).unwrap();
+    run_whole(&scene, &whole);
+    run_until(&scene, &out, &|| field(&out, 2).exists()).unwrap();
+    let picture = out.join("pressure-bem3d-0-000.png");
+    std::fs::write(&picture, [&std::fs::read(&picture).unwrap()[..], b"x"].concat()).unwrap();
+    assert_eq!(run_whole(&scene, &out).kept, 3);
+    assert_eq!(
+        std::fs::read(&picture).unwrap(),
+        std::fs::read(whole.join("pressure-bem3d-0-000.png")).unwrap()
+    );
+    assert!(bytes_of(&out) == bytes_of(&whole));
+}
+
 /// A name in the store that leads elsewhere is replaced, never followed; a lock that is none is refused.
 #[cfg(unix)]
 #[test]

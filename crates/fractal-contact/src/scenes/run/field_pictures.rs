@@ -140,6 +140,22 @@ pub(crate) fn draw(
     Ok(drawn)
 }
 
+/// The states of a stored result whose files are all there and unchanged. A picture of an interrupted run does
+/// not count among them: it is drawn again from the values kept for it, and a later run that was killed may
+/// have drawn some of the pictures anew, in another range.
+pub(crate) fn keep_whole_states(result: &mut ModelResult, out: &Path) {
+    if !result.complete {
+        for state in &mut result.states {
+            let waiting: Vec<String> = (state.files.iter())
+                .filter_map(|file| file.name.strip_prefix(WAITING)?.strip_suffix(EXTENSION))
+                .flat_map(|stem| [format!("{stem}png"), format!("{stem}svg")])
+                .collect();
+            state.files.retain(|file| !waiting.contains(&file.name) || file.is_whole(out));
+        }
+    }
+    result.states.retain(|state| state.is_whole(out));
+}
+
 /// Removes the values that a killed run kept for drawing.
 pub(crate) fn sweep(out: &Path) {
     let entries = std::fs::read_dir(out.join(WAITING)).into_iter().flatten().flatten();

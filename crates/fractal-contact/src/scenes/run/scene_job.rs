@@ -61,7 +61,7 @@ impl Job for SceneJob<'_> {
         stop: Stop<'_>,
     ) -> Result<ModelResult> {
         let mut begun = stored.unwrap_or_default();
-        begun.states.retain(|state| state.is_whole(self.out));
+        field_pictures::keep_whole_states(&mut begun, self.out);
         begun.kept = begun.states.len();
         let (model, surface) = (self.unit.numerics(self.scene).name(), self.unit.surface);
         let checkpoint = Checkpoint::new(self.out, &format!("{model}-{surface}"), &self.stored_key());
@@ -100,7 +100,7 @@ impl SceneJob<'_> {
         let key = self.stored_key();
         let stored = || store.texts(&key).filter_map(|text| Self::KIND.decode(&text));
         let mut found = stored().find(|result| self.is_whole(result)).or_else(|| stored().next())?;
-        found.states.retain(|state| state.is_whole(self.out));
+        field_pictures::keep_whole_states(&mut found, self.out);
         found.complete &= found.states.len() == self.scene.request.count();
         found.kept = found.states.len();
         Some(found)
