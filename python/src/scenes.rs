@@ -4,8 +4,9 @@ use crate::errors::{of_scene, of_values, plain, stopped};
 use crate::pool::{self, StopToken};
 use crate::quantities::is_count;
 use crate::state;
+use crate::toml_text::{toml_text, toml_value};
 use fractal_contact::runs::{CsvFile, Progress};
-use fractal_contact::scenes::{Options, Plan, SceneFile as RustSceneFile, SceneOutcome, run};
+use fractal_contact::scenes::{Options, Plan, Question, SceneFile as RustSceneFile, SceneOutcome, run};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
@@ -15,6 +16,14 @@ use std::sync::atomic::{AtomicU64, Ordering};
 /// A scene file: the surface, the material, the effects, the loads and the requested outputs.
 #[pyclass(frozen, module = "fractal_contact")]
 pub struct SceneFile(RustSceneFile);
+
+impl SceneFile {
+    /// The scene of a question, whose files are looked up from the folder of `path`.
+    fn of(py: Python<'_>, question: Question, path: PathBuf) -> PyResult<Self> {
+        let scene = pool::call(py, move || RustSceneFile::of(question, &path))?;
+        scene.map(Self).map_err(|error| of_scene(py, &error))
+    }
+}
 
 #[pymethods]
 impl SceneFile {
@@ -32,6 +41,32 @@ impl SceneFile {
         pool::call(py, move || RustSceneFile::parse(&path, text))?
             .map(Self)
             .map_err(|error| of_scene(py, &error))
+    }
+
+    /// A scene from its tables, with the keys and values of a text: ``{"scene": {"models": ["hertz"], ...}, ...}``;
+    /// relative paths in it count from `directory`.
+    #[staticmethod]
+    #[pyo3(signature = (tables, *, directory=PathBuf::new(), name="scene".to_owned()))]
+    fn from_dict(
+        py: Python<'_>,
+        tables: &Bound<'_, PyDict>,
+        directory: PathBuf,
+        name: String,
+    ) -> PyResult<Self> {
+        let text = toml_text(tables, "the scene")?;
+        let question = Question::parse(&text).map_err(|error| of_values(py, &error))?;
+        Self::of(py, question, directory.join(format!("{name}.toml")))
+    }
+
+    /// The same scene with other values of some keys, each by its table and its name:
+    /// ``scene.replaced({"scene.surface.cells": 64})``.
+    fn replaced(&self, py: Python<'_>, keys: &Bound<'_, PyDict>) -> PyResult<Self> {
+        let mut question = Question::parse(&self.0.text).map_err(|error| of_values(py, &error))?;
+        for (key, value) in keys {
+            let key: String = key.extract()?;
+            question.set(&key, &toml_value(&value, &key)?).map_err(|error| of_values(py, &error))?;
+        }
+        Self::of(py, question, self.0.path.clone())
     }
 
     /// str: the file itself.

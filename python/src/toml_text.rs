@@ -13,6 +13,14 @@ pub fn toml_text(of: &Bound<'_, PyDict>, path: &str) -> PyResult<String> {
     Ok(table(of.as_mapping(), path, 0)?.to_string())
 }
 
+/// The text of one value.
+///
+/// # Errors
+/// As [`toml_text`].
+pub fn toml_value(of: &Bound<'_, PyAny>, path: &str) -> PyResult<String> {
+    Ok(value(of, path, 0)?.to_string())
+}
+
 /// Tables and lists in each other; no scene has more, and one that holds itself has no end.
 const DEEPEST: usize = 8;
 

@@ -1,8 +1,10 @@
 """Surfaces and scenes from files, statistics."""
 
 import os
+import re
 import subprocess
 import threading
+import tomllib
 from pathlib import Path
 
 import numpy as np
@@ -154,6 +156,28 @@ def test_generators_are_those_of_rust():
     assert abs(fc.statistics.parameters(lay)["Std"] - 120.0) < 20.0
     skewed = fc.surface_gen.self_affine_map(surface, 64, 3, weibull=1.5)
     assert fc.statistics.parameters(skewed)["Ssk"] == pytest.approx(1.07, abs=0.03)
+
+
+def test_a_scene_of_tables_is_that_of_its_text(tmp_path):
+    tables = tomllib.loads(SCENE)
+    read, asked = fc.Scene.from_toml(SCENE), fc.Scene.from_dict(tables)
+    first, second = (fc.run_scene(scene, tmp_path / name) for scene, name in ((read, "read"), (asked, "asked")))
+    assert (first.results["stiffness"] == second.results["stiffness"]).all()
+    # Its text is that of a scene.
+    assert fc.Scene.from_toml(asked.text).text == asked.text
+    coarse = read.replaced({"models.bem3d.cells": 33, "effects.hardness": {"pressure": "2 GPa"}, "scene.force_bar": [0.1]})
+    assert "cells = 33" in coarse.text and 'pressure = "2 GPa"' in coarse.text and "force_bar = 0.1" in coarse.text
+    assert read.replaced({}).text == asked.text
+    for wrong, message in [
+        ({"models.bem3d.cells": 0}, "models.bem3d.cells` = 0"),
+        ({"models.bem3d.cell": 3}, "there is no key `models.bem3d.cell`"),
+        ({"scene.approach": "1 nm"}, "`force_bar` and `approach` are both given"),
+        ({"effects.hardness": 3}, "has no unit"),
+    ]:
+        with pytest.raises(fc.Error, match=re.escape(message)):
+            read.replaced(wrong)
+    with pytest.raises(fc.Error, match="nothing is pressed"):
+        fc.Scene.from_dict({**tables, "scene": {"models": ["hertz"], "contact_modulus": "1 GPa"}})
 
 
 def test_scenes_are_run_as_by_the_program(tmp_path):

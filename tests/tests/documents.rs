@@ -13,7 +13,7 @@ use crate::abilities::told;
 use contact_model::Output;
 use contact_model::quantities::{Average, Compared, QUANTITIES, Quantity, Role};
 use fractal_contact::models::{MODELS, ModelRecord, abilities};
-use fractal_contact::scenes::{EFFECT_KEYS, EffectKey, SCENE_KEYS, SceneKeys};
+use fractal_contact::scenes::{EFFECT_KEYS, EffectKey, SceneKey, scene_keys};
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 
@@ -144,28 +144,45 @@ fn effects() -> String {
     table(&["key", "takes", "what it is", "where it is not named"], EFFECT_KEYS.iter().map(cells))
 }
 
+/// A row for each key of a table of a scene.
+fn key_rows(keys: &[SceneKey]) -> String {
+    let cells = |key: &SceneKey| {
+        let others: Vec<String> = key.instead_of.iter().map(|other| format!("`{other}`")).collect();
+        let default = match (key.default, others.join(" or ")) {
+            ("", others) if others.is_empty() => "it has to be given".to_owned(),
+            ("", others) => format!("{others} is given"),
+            (default, _) => default.to_owned(),
+        };
+        vec![format!("`{}`", key.name), key.takes.to_owned(), key.about.to_owned(), default]
+    };
+    table(&["key", "takes", "what it is", "where it is not given"], keys.iter().map(cells))
+}
+
 /// The keys of all tables except `[effects]` and `[outputs]`, with one table of the page for each table of a
 /// scene.
-fn scene_keys() -> String {
-    let cells = |keys: &&SceneKeys| vec![keys.words(), keys.about.to_owned(), keys.default.to_owned()];
-    let part = |part: &[&SceneKeys]| {
+fn keys_of_scenes() -> String {
+    let part = |part: &[SceneKey]| {
         let title = match (part[0].table, part[0].kind) {
             ("scene.path", _) => "`[[scene.path]]`".to_owned(),
             (table, "") => format!("`[{table}]`"),
             (table, kind) => format!("`[{table}]`, `{kind}`"),
         };
-        let keys = table(&["key", "what it is", "where it is not given"], part.iter().map(cells));
-        format!("### {title}\n\n{keys}\n")
+        let more = match part[0].table {
+            "scene.second_surface" => {
+                "It takes the keys of a file too: it is the surface of the second body, [added to the first](bodies.md#two-rough-bodies).\n\n"
+            }
+            _ => "",
+        };
+        format!("### {title}\n\n{more}{}\n", key_rows(part))
     };
-    let shown: Vec<&SceneKeys> = SCENE_KEYS.iter().filter(|keys| keys.table != "outputs").collect();
+    let shown: Vec<SceneKey> = scene_keys().into_iter().filter(|key| key.table != "outputs").collect();
     shown.chunk_by(|a, b| (a.table, a.kind) == (b.table, b.kind)).map(part).collect()
 }
 
 /// The keys of `[outputs]` that the program itself computes.
 fn own_outputs() -> String {
-    let cells = |keys: &SceneKeys| vec![keys.words(), keys.about.to_owned(), keys.default.to_owned()];
-    let shown = SCENE_KEYS.iter().filter(|keys| keys.table == "outputs");
-    table(&["key", "what it is", "where it is not given"], shown.map(cells))
+    let shown: Vec<SceneKey> = scene_keys().into_iter().filter(|key| key.table == "outputs").collect();
+    key_rows(&shown)
 }
 
 /// The keys of `[outputs]` that models compute.
@@ -231,7 +248,7 @@ fn documents_follow_from_the_tables() {
         parts(
             "book/src/scene-file.md",
             &[
-                ("scene keys", scene_keys()),
+                ("scene keys", keys_of_scenes()),
                 ("effects", effects()),
                 ("outputs", outputs()),
                 ("own outputs", own_outputs()),

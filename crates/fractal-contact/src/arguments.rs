@@ -1,17 +1,16 @@
 //! The command line.
 
-use clap::builder::{PossibleValue, PossibleValuesParser, StringValueParser, TypedValueParser};
+use crate::press::flag_of;
+use clap::builder::{PossibleValuesParser, TypedValueParser as _};
+use clap::parser::ValueSource;
 use clap::{CommandFactory as _, Parser, Subcommand};
+use fractal_contact::scenes::{AskedFile, SceneKey, scene_keys};
 use fractal_contact::{Body, Coupling, Friction, Pair};
 use runs::ShardChoice;
 use runs::cluster::{Division, Submission};
 use std::any::TypeId;
-use std::error::Error;
-use std::ffi::OsStr;
-use std::marker::PhantomData;
 use std::path::PathBuf;
-use std::str::FromStr;
-use surface_io::{Preprocessing, ReadOptions};
+use surface_io::{Preprocessing, ReadOptions, Undefined};
 
 /// Computes the contact of rough and smooth elastic bodies. `press` answers the commonest question about a
 /// measured map. For everything else a short text file, the scene, names the bodies, the loads, the effects
@@ -214,7 +213,7 @@ pub enum Command {
         #[arg(long, value_name = "DIR", conflicts_with = "json")]
         out: Option<PathBuf>,
         #[command(flatten)]
-        more: Box<MapArguments>,
+        more: Box<MapFlags>,
     },
     /// Generates a random self-affine surface. The ending of the file chooses its format: .npy, .txt (text
     /// matrix), .xyz, .vti, .h5, .x3p, .gwy or .nc.
@@ -237,7 +236,7 @@ pub enum Command {
         #[arg(long)]
         keep_heights: bool,
         #[command(flatten)]
-        more: Box<MapArguments>,
+        more: Box<MapFlags>,
     },
     /// Prints a script with which a shell completes the arguments of this program.
     Completions {
@@ -251,50 +250,8 @@ pub enum Command {
     },
 }
 
-/// The words of a kind, listed by help and completed by shells.
-macro_rules! words {
-    ($kind:ty) => {
-        PossibleValuesParser::new(<$kind>::ALL.map(<$kind>::word)).try_map(|word| word.parse::<$kind>())
-    };
-}
-
-/// Values with some words among them, which shells complete.
-struct Open<T>(&'static [&'static str], PhantomData<fn() -> T>);
-
-impl<T> Open<T> {
-    fn new(words: &'static [&'static str]) -> Self {
-        Self(words, PhantomData)
-    }
-}
-
-impl<T> Clone for Open<T> {
-    fn clone(&self) -> Self {
-        Self::new(self.0)
-    }
-}
-
-impl<T> TypedValueParser for Open<T>
-where
-    T: FromStr<Err: Error + Send + Sync + 'static> + Clone + Send + Sync + 'static,
-{
-    type Value = T;
-
-    fn parse_ref(
-        &self,
-        command: &clap::Command,
-        arg: Option<&clap::Arg>,
-        value: &OsStr,
-    ) -> Result<T, clap::Error> {
-        StringValueParser::new().try_map(|text| text.parse::<T>()).parse_ref(command, arg, value)
-    }
-
-    fn possible_values(&self) -> Option<Box<dyn Iterator<Item = PossibleValue> + '_>> {
-        Some(Box::new(self.0.iter().map(|word| PossibleValue::new(*word))))
-    }
-}
-
 /// What is pressed and how.
-#[derive(Debug, clap::Args)]
+#[derive(Debug, Clone, clap::Args)]
 pub struct PressArguments {
     /// The measured map: a file of an instrument or program, NPY or text.
     pub map: PathBuf,
@@ -304,13 +261,13 @@ pub struct PressArguments {
     pub bodies: Option<Bodies>,
     /// Contact modulus E* of the pair, such as "115 GPa", instead of --bodies. It is not a Young's modulus.
     #[arg(long, value_name = "MODULUS", conflicts_with = "bodies")]
-    contact_modulus: Option<String>,
+    pub contact_modulus: Option<String>,
     /// The name of --contact-modulus before the first release.
     #[arg(long = "modulus", value_name = "MODULUS", hide = true, conflicts_with_all = ["bodies", "contact_modulus"])]
     former_modulus: Option<String>,
     /// Mean pressures over the area of the map, such as "1 MPa,10 MPa".
     #[arg(long, value_name = "LIST", conflicts_with_all = ["force", "approach"])]
-    pressure: Option<String>,
+    pub pressure: Option<String>,
     /// Normal forces, such as "1 N,10 N".
     #[arg(long, value_name = "LIST", conflicts_with = "approach")]
     force: Option<String>,
@@ -341,26 +298,16 @@ pub struct PressArguments {
     pub accuracy: Option<String>,
     /// Number of columns, if the map is averaged over larger cells [default: those of the map].
     #[arg(long, value_name = "N")]
-    cells: Option<usize>,
-    /// How points without a height are treated: with no_contact they cannot touch. Or give them heights with
-    /// --fill.
-    #[arg(long, conflicts_with = "fill", value_parser = words!(surface_io::Undefined))]
-    pub undefined: Option<surface_io::Undefined>,
+    pub cells: Option<usize>,
+    /// Any other key of a scene, such as scene.surface.rows=128 or outputs.displacement=npy. It may be given
+    /// several times. The book lists the keys in "What a scene may say".
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub set: Vec<String>,
     #[command(flatten)]
-    more: MapArguments,
+    pub file: MapFlags,
 }
 
 impl PressArguments {
-    /// How the file is read, and what is done to its map.
-    pub fn map_options(&self) -> (ReadOptions, Preprocessing) {
-        self.more.clone().options()
-    }
-
-    /// The fit that is subtracted from the map, in the word of a scene.
-    pub fn detrend(&self) -> &'static str {
-        self.more.detrend.word()
-    }
-
     /// E* as it was written, under the flag's name or its former one.
     pub fn contact_modulus(&self) -> Option<&str> {
         self.contact_modulus.as_deref().or(self.former_modulus.as_deref())
@@ -489,122 +436,123 @@ pub struct ShardsArguments {
     pub plan: Option<String>,
 }
 
-/// The keys of [scene.surface] in a scene: how a file is meant, and what is done to the map before it is
-/// described.
-#[derive(Debug, Default, Clone, clap::Args)]
-pub struct MapArguments {
-    /// Channel of a file with several channels: its number, counted from 0, or its name.
-    #[arg(long)]
-    channel: Option<surface_io::ChannelChoice>,
-    /// Format of the file, if its name and its content do not show it.
-    #[arg(long, value_parser = words!(surface_io::Format))]
-    format: Option<surface_io::Format>,
-    /// Unit of the heights, such as nm.
-    #[arg(long)]
-    unit: Option<surface_io::Unit>,
-    /// Side of a square map, such as "1 mm", or both sides of a rectangular one, such as "2 mm x 1 mm".
-    #[arg(long, conflicts_with = "cell")]
-    size: Option<surface_io::Sides>,
-    /// Side of one cell of the map, such as "0.5 um", or both sides, such as "0.5 um x 0.25 um".
-    #[arg(long)]
-    cell: Option<surface_io::Sides>,
-    /// Unit of x and y in a file of points, such as um.
-    #[arg(long)]
-    lateral_unit: Option<surface_io::Unit>,
-    /// Height of one count, such as "0.25 nm", in a file whose heights are counts.
-    #[arg(long, value_name = "LENGTH")]
-    height_scale: Option<surface_io::Quantity>,
-    /// Decimal separator of a text file.
-    #[arg(long, default_value = "point", value_parser = words!(surface_io::Decimal))]
-    decimal: surface_io::Decimal,
-    /// Order of the two indices of an array, if the file does not hold it: xy (the first index is x) or yx.
-    #[arg(long, value_parser = words!(surface_io::Axes))]
-    axes: Option<surface_io::Axes>,
-    /// Meaning of the first line and the first column of a text matrix, if they may be coordinates: axes or
-    /// heights.
-    #[arg(long, value_parser = words!(surface_io::Border))]
-    border: Option<surface_io::Border>,
-    /// Number that marks an undefined point in the file, such as -9999.
-    #[arg(long)]
-    missing: Option<f64>,
-    /// Number of lines to skip at the beginning of a text file.
-    #[arg(long, default_value_t = 0)]
-    skip_lines: usize,
-    /// Part of the map that is used: centre, defined (the largest rectangle without undefined points), or
-    /// "row,column,rows,columns".
-    #[arg(long, value_parser = Open::<surface_io::Crop>::new(&["centre", "defined"]), hide_possible_values = true)]
-    crop: Option<surface_io::Crop>,
-    /// Shifts scan lines (rows) to a common height: median_difference (relative to the line before) or
-    /// median.
-    #[arg(long, value_name = "HOW", value_parser = words!(surface_io::AlignLines))]
-    align_lines: Option<surface_io::AlignLines>,
-    /// Removes scars (streaks along x, at most four rows high): points become undefined if they differ from
-    /// the rows beside them by more than TIMES robust standard deviations.
-    #[arg(long, value_name = "TIMES")]
-    scars: Option<f64>,
-    /// Removes outliers: points become undefined if they differ from their neighbours by more than TIMES
-    /// robust standard deviations.
-    #[arg(long, value_name = "TIMES")]
-    outliers: Option<f64>,
-    /// Radius of the tip of the instrument, such as "10 nm". From it follows the wavelength below which the
-    /// heights are not reliable.
-    #[arg(long, value_name = "LENGTH")]
-    tip_radius: Option<surface_io::Quantity>,
-    /// Gives undefined points a height: that of their neighbours, that of the mean plane, or one height such
-    /// as "3 nm".
-    #[arg(long, value_name = "HEIGHTS", value_parser = Open::<surface_io::Fill>::new(&["neighbours", "plane"]), hide_possible_values = true)]
-    fill: Option<surface_io::Fill>,
-    /// Trend that is subtracted from the heights.
-    #[arg(long, default_value = "none", value_parser = words!(surface_io::Detrend))]
-    detrend: surface_io::Detrend,
-    /// Cut-off wavelength of a Gaussian low-pass filter along y, across the scan lines, such as "2 nm".
-    #[arg(long, value_name = "LENGTH")]
-    filter_across: Option<surface_io::Quantity>,
-    /// Axis whose direction is reversed.
-    #[arg(long, value_parser = words!(surface_io::Mirror))]
-    mirror: Option<surface_io::Mirror>,
-    /// Angle in degrees by which the map is turned, from x towards y.
-    #[arg(long, default_value = "0", value_parser = ["0", "90", "180", "270"])]
-    rotate: String,
-    /// Window by which the heights taper to zero towards the edges.
-    #[arg(long, value_parser = words!(surface_io::Window))]
-    window: Option<surface_io::Window>,
+/// How the file of a map is read, and what is done to the map: the keys of [scene.surface] that are flags, as they
+/// were written.
+#[derive(Debug, Default, Clone)]
+pub struct MapFlags(Vec<(&'static str, String)>);
+
+impl MapFlags {
+    /// The flags that were given, by the names of their keys.
+    pub fn given(&self) -> impl Iterator<Item = (&'static str, &str)> {
+        self.0.iter().map(|(key, text)| (*key, text.as_str()))
+    }
+
+    /// Adds a flag that was not given.
+    pub fn add(&mut self, key: &'static str, text: &str) {
+        self.0.push((key, text.to_owned()));
+    }
+
+    /// The value of a flag.
+    pub fn value(&self, key: &str) -> Option<&str> {
+        self.given().find(|(name, _)| *name == key).map(|(_, text)| text)
+    }
+
+    /// How the file is read, and what is done to its map. Points without a height stay undefined, unless they are
+    /// given one.
+    ///
+    /// # Errors
+    /// The first flag whose value is wrong.
+    pub fn options(&self) -> fractal_contact::scenes::Result<(ReadOptions, Preprocessing)> {
+        let mut file = AskedFile::default();
+        for (key, text) in self.given() {
+            file.set(key, text).map_err(|mistake| mistake.of_flag(key, &flag_of(key)))?;
+        }
+        let mut preprocessing = file.preprocessing();
+        if preprocessing.fill.is_none() {
+            preprocessing.undefined = Some(Undefined::NoContact);
+        }
+        Ok((file.declared, preprocessing))
+    }
 }
 
-impl MapArguments {
-    /// How the file is read, and what is done to its map.
-    pub fn options(self) -> (ReadOptions, Preprocessing) {
-        let preprocessing = Preprocessing {
-            crop: self.crop,
-            align_lines: self.align_lines,
-            scars: self.scars,
-            outliers: self.outliers,
-            tip_radius: self.tip_radius,
-            undefined: self.fill.is_none().then_some(surface_io::Undefined::NoContact),
-            fill: self.fill,
-            detrend: self.detrend,
-            filter_across: self.filter_across,
-            mirror: self.mirror,
-            // One of four words.
-            quarter_turns: self.rotate.parse::<u16>().map_or(0, |degrees| (degrees / 90) as u8),
-            window: self.window,
-            ..Preprocessing::default()
-        };
-        let declared = ReadOptions {
-            format: self.format,
-            channel: self.channel,
-            unit: self.unit,
-            height_scale: self.height_scale,
-            lateral_unit: self.lateral_unit,
-            size: self.size,
-            cell: self.cell,
-            decimal: self.decimal,
-            axes: self.axes,
-            border: self.border,
-            missing: self.missing,
-            skip_lines: self.skip_lines,
-            ..ReadOptions::default()
-        };
-        (declared, preprocessing)
+impl clap::Args for MapFlags {
+    fn augment_args(command: clap::Command) -> clap::Command {
+        file_keys().fold(command, |command, key| command.arg(flag(&key)))
     }
+
+    fn augment_args_for_update(command: clap::Command) -> clap::Command {
+        Self::augment_args(command)
+    }
+}
+
+impl clap::FromArgMatches for MapFlags {
+    fn from_arg_matches(matches: &clap::ArgMatches) -> Result<Self, clap::Error> {
+        let typed = |key: &SceneKey| matches.value_source(key.name) == Some(ValueSource::CommandLine);
+        let given = file_keys().filter(typed).filter_map(|key| {
+            let value = matches.get_raw(key.name)?.next()?.to_string_lossy().into_owned();
+            Some((key.name, value))
+        });
+        Ok(Self(given.collect()))
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &clap::ArgMatches) -> Result<(), clap::Error> {
+        *self = Self::from_arg_matches(matches)?;
+        Ok(())
+    }
+}
+
+/// The keys of a measured map that are flags.
+fn file_keys() -> impl Iterator<Item = SceneKey> {
+    scene_keys().into_iter().filter(|key| key.table == "scene.surface" && key.everyday)
+}
+
+/// A flag for a key, with its words and its default.
+fn flag(key: &SceneKey) -> clap::Arg {
+    let codes: Vec<&str> = key.takes.split('`').skip(1).step_by(2).collect();
+    let quoted: Vec<&str> =
+        codes.iter().filter_map(|code| code.strip_prefix('"')?.strip_suffix('"')).collect();
+    // Values are words alone where nothing else stands in the table.
+    let rest: String = key.takes.split('`').step_by(2).collect();
+    let alone = rest.split([',', ' ']).all(|word| ["", "or"].contains(&word));
+    let words = !quoted.is_empty() && quoted.len() == codes.len() && alone;
+    // Kinds of values are shown by their names, and all others in full.
+    let kinds = [("length", "LENGTH"), ("whole number", "N"), ("number", "NUMBER"), ("unit", "UNIT")];
+    let kind =
+        kinds.into_iter().find(|(words, _)| key.takes.starts_with(words)).map_or("VALUE", |(_, name)| name);
+    let takes =
+        if quoted.is_empty() || words { String::new() } else { format!(" [values: {}]", plain(key.takes)) };
+    let mut help = format!("{}{takes}", plain(key.about));
+    help[..1].make_ascii_uppercase();
+    let code = key.default.strip_prefix('`').and_then(|rest| rest.strip_suffix('`'));
+    let default = code
+        .map(|code| code.trim_matches('"'))
+        .or_else(|| Some(key.default).filter(|d| d.parse::<f64>().is_ok()));
+    let argument = clap::Arg::new(key.name).long(key.name.replace('_', "-")).value_name(kind).help(help);
+    let argument = match default {
+        Some(default) => argument.default_value(default.to_owned()),
+        None => argument,
+    };
+    let argument = argument.conflicts_with_all(key.instead_of.iter().copied().filter(|other| is_flag(other)));
+    if words {
+        argument.value_parser(PossibleValuesParser::new(quoted.into_iter().map(str::to_owned)))
+    } else {
+        argument
+    }
+}
+
+fn is_flag(name: &str) -> bool {
+    file_keys().any(|key| key.name == name)
+}
+
+/// Markdown as plain text: without quotation marks of code, and with the words of a link alone.
+fn plain(markdown: &str) -> String {
+    let mut text = String::new();
+    let mut rest = markdown;
+    while let Some((before, after)) = rest.split_once("](") {
+        let (before, words) = before.rsplit_once('[').unwrap_or((before, ""));
+        text += before;
+        text += words;
+        rest = after.split_once(')').map_or("", |(_, rest)| rest);
+    }
+    (text + rest).replace(['`', '$'], "")
 }

@@ -6,14 +6,13 @@ mod press;
 mod start;
 
 use arguments::{Arguments, Command, PressArguments};
-use clap::{ArgMatches, FromArgMatches as _};
+use clap::FromArgMatches as _;
 use fractal_contact::models::{MODELS, ModelRecord};
 use fractal_contact::scenes::{
     Error, GeneratedSurface, Options, Plan, Result, SceneFile, SceneOutcome, System, info, info_json,
     info_statistics, run, write_twin,
 };
 use fractal_contact::surface_gen::{Anisotropy, HeightDistribution, TwinSpectrum};
-use press::SurfaceKeys;
 use start::{stopped_by_signals, with_grid};
 use std::io::IsTerminal as _;
 use std::path::{Path, PathBuf};
@@ -24,7 +23,7 @@ fn main() -> ExitCode {
     let matches = arguments::command().get_matches();
     let arguments = Arguments::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
     let asked = std::env::var_os(runs::THREADS_VARIABLE);
-    let done = runs::with_threads(asked.as_deref(), || execute(arguments, &matches));
+    let done = runs::with_threads(asked.as_deref(), || execute(arguments));
     match done.map_err(Error::from).and_then(|done| done) {
         Ok(code) => code,
         Err(error) => {
@@ -35,12 +34,10 @@ fn main() -> ExitCode {
     }
 }
 
-fn execute(arguments: Arguments, matches: &ArgMatches) -> Result<ExitCode> {
+fn execute(arguments: Arguments) -> Result<ExitCode> {
     match arguments.command {
-        Command::Press { asked, out, threads, verbose } => {
-            press_map((&asked, &SurfaceKeys::given(matches)), out, threads, verbose)
-        }
-        Command::New { asked, scene } => write_scene((&asked, &SurfaceKeys::given(matches)), scene),
+        Command::Press { asked, out, threads, verbose } => press_map(&asked, out, threads, verbose),
+        Command::New { asked, scene } => write_scene(&asked, scene),
         Command::Plan { scene, out, nodes, node_cores, division } => {
             let out = out.unwrap_or_else(|| default_directory(&scene));
             let Some(scene) = read_to_plan(&scene, out)? else { return Ok(STOPPED.into()) };
@@ -76,7 +73,7 @@ fn execute(arguments: Arguments, matches: &ArgMatches) -> Result<ExitCode> {
             run_scene(&scene, &Options { out: options.out, threads: all_threads(), fresh: false }, verbose)
         }
         Command::Info { file, json, out, more } => {
-            let (declared, preprocessing) = more.options();
+            let (declared, preprocessing) = more.options()?;
             let text = match out {
                 None if json => info_json(&file, &declared, &preprocessing)?,
                 None => info(&file, &declared, &preprocessing)?,
@@ -106,7 +103,7 @@ fn execute(arguments: Arguments, matches: &ArgMatches) -> Result<ExitCode> {
             Ok(ExitCode::SUCCESS)
         }
         Command::Twin { file, twin, seed, rings, keep_heights, more } => {
-            let (declared, preprocessing) = more.options();
+            let (declared, preprocessing) = more.options()?;
             let like = if rings { TwinSpectrum::Rings } else { TwinSpectrum::EachWave };
             let text = write_twin(&file, (&declared, &preprocessing), (like, keep_heights), seed, &twin)?;
             runs::print(format_args!("{text}"));
@@ -134,7 +131,7 @@ fn execute(arguments: Arguments, matches: &ArgMatches) -> Result<ExitCode> {
 
 /// Writes the scene that flags describe beside its results, and runs it.
 fn press_map(
-    (asked, keys): (&PressArguments, &SurfaceKeys),
+    asked: &PressArguments,
     out: Option<PathBuf>,
     threads: Option<usize>,
     verbose: bool,
@@ -142,7 +139,7 @@ fn press_map(
     let out = out.unwrap_or_else(|| default_directory(&asked.map));
     let path = out.join("scene.toml");
     press::check_place(&path)?;
-    let scene = press::scene(asked, keys, &path)?;
+    let scene = press::scene(asked, &path)?;
     runs::files::write_whole(&path, scene.text.as_bytes())?;
     if let Some(note) = asked.note() {
         runs::err!("{note}");
@@ -154,13 +151,13 @@ fn press_map(
 }
 
 /// Writes the scene that flags describe.
-fn write_scene((asked, keys): (&PressArguments, &SurfaceKeys), scene: Option<PathBuf>) -> Result<ExitCode> {
+fn write_scene(asked: &PressArguments, scene: Option<PathBuf>) -> Result<ExitCode> {
     let path = scene.unwrap_or_else(|| default_scene(&asked.map));
     if path.exists() {
         let reason = format!("{} exists: move it away, or give another name with --scene", path.display());
         return Err(Error::Argument { name: "scene", reason });
     }
-    let scene = press::scene(asked, keys, &path)?;
+    let scene = press::scene(asked, &path)?;
     runs::files::write_whole(&path, scene.text.as_bytes())?;
     if let Some(note) = asked.note() {
         runs::err!("{note}");

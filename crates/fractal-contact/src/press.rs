@@ -1,46 +1,16 @@
-//! `press` and `new`: from flags to the scene of the commonest question, how large the contact of a measured
+//! `press` and `new`: from flags to the question that is asked most often, how large the contact of a measured
 //! map is.
 
-use crate::arguments::{Arguments, Bodies, Command, MapArguments, PressArguments, command};
-use clap::parser::ValueSource;
-use clap::{ArgMatches, Args as _, FromArgMatches as _};
-use fractal_contact::scenes::{Error, Result, SceneFile};
+use crate::arguments::{Bodies, PRESS_DETREND, PressArguments};
+use fractal_contact::scenes::{
+    AskedFile, AskedSurface, Diagnostic, Distributed, Error, FieldFormat, Numerics, Question, Result,
+    SceneFile,
+};
+use fractal_contact::{Boundary, Output};
 use runs::cluster::{quoted, toml};
-use std::ffi::OsString;
 use std::fmt::Write as _;
 use std::path::{Component, Path, PathBuf};
 use surface_io::{ContentError, Metadata, SurfaceFile};
-
-/// Flags whose values are numbers in a scene.
-const NUMBERS: [&str; 6] = ["missing", "skip_lines", "scars", "outliers", "rotate", "cells"];
-/// A line of the scene begins its comment in this column.
-const COMMENT: usize = 40;
-
-/// Flags of a map as they were written, by the names of their keys in [scene.surface].
-pub struct SurfaceKeys(Vec<(String, String)>);
-
-impl SurfaceKeys {
-    /// Those of the command that was called.
-    pub fn given(matches: &ArgMatches) -> Self {
-        let matches = matches.subcommand().map_or(matches, |(_, own)| own);
-        let flags = MapArguments::augment_args(clap::Command::default());
-        let names = flags.get_arguments().map(|flag| flag.get_id().to_string()).chain(["cells".to_owned()]);
-        let given = names.filter(|name| matches.value_source(name) == Some(ValueSource::CommandLine));
-        let raw = |name: String| {
-            let value = matches.get_raw(&name)?.next()?.to_string_lossy().into_owned();
-            Some((name, value))
-        };
-        Self(given.filter_map(raw).collect())
-    }
-
-    fn has(&self, keys: &[&str]) -> bool {
-        keys.iter().any(|key| self.value(key).is_some())
-    }
-
-    fn value(&self, key: &str) -> Option<&str> {
-        self.0.iter().find(|(name, _)| name == key).map(|(_, value)| value.as_str())
-    }
-}
 
 /// A flag that a command lacks.
 struct Lacking {
@@ -58,13 +28,13 @@ struct Lacking {
 /// [`Error::Argument`] with all flags that are missing and the whole command with an example of each. Where a
 /// flag that is given is wrong, the message begins with that and repeats no command. Other errors are those of
 /// the file and of the scene.
-pub fn scene(asked: &PressArguments, keys: &SurfaceKeys, at: &Path) -> Result<SceneFile> {
+pub fn scene(asked: &PressArguments, at: &Path) -> Result<SceneFile> {
     if asked.map.extension().is_some_and(|ending| ending == "toml") {
         let reason =
             format!("{} is a scene and not a map: `fractal-contact run` takes it", asked.map.display());
         return Err(Error::Argument { name: "map", reason });
     }
-    let (declared, _) = asked.map_options();
+    let (declared, _) = asked.file.options()?;
     let known = SurfaceFile::open(&asked.map, &declared).and_then(SurfaceFile::scan);
     let known = known.map_err(|error| match error.problem() {
         Some(ContentError::Channel { choice: None, matching: 2.., list }) => {
@@ -76,28 +46,38 @@ pub fn scene(asked: &PressArguments, keys: &SurfaceKeys, at: &Path) -> Result<Sc
         }
         _ => error.into(),
     })?;
-    let lacking = lacking(asked, keys, known.metadata());
+    let lacking = lacking(asked, known.metadata());
     if !lacking.is_empty() {
-        return Err(Error::Argument { name: "command", reason: question(&asked.map, &lacking) });
+        return Err(Error::Argument { name: "command", reason: missing_flags(asked, &lacking) });
     }
     // The path of the map counts from a folder that has to exist.
     let folder = at.parent().filter(|folder| !folder.as_os_str().is_empty() && !folder.exists());
     if let Some(folder) = folder {
         runs::files::create_directory(folder)?;
     }
-    let scene =
-        SceneFile::parse(at, text(asked, keys, at, known.metadata().profile)).map_err(|error| match error {
-            // There is no such file yet.
-            Error::Scene(mistake) => Error::from(mistake.told_of("the scene of these flags")),
-            other => other,
-        });
+    let scene = scene_of(asked, at, known.metadata().profile, "the scene of these flags");
     if let (Err(_), Some(folder)) = (&scene, folder) {
         std::fs::remove_dir(folder).ok();
     }
     scene
 }
 
-fn lacking(asked: &PressArguments, keys: &SurfaceKeys, map: &Metadata) -> Vec<Lacking> {
+/// The scene of flags that are complete; in messages it is called `words`, because there is no such file yet.
+fn scene_of(asked: &PressArguments, at: &Path, profile: bool, words: &str) -> Result<SceneFile> {
+    let question = question(asked, at, profile)?;
+    let heading = format!(
+        "{HEADING}{}. `fractal-contact run` takes this file; \"What a scene may say\" in the book has every key.\n",
+        asked.map.file_name().unwrap_or_default().to_string_lossy().escape_default()
+    );
+    let text = question.printed(&heading, comment);
+    SceneFile::of_printed(question, at, text).map_err(|error| match error {
+        Error::Scene(mistake) => Error::from(mistake.told_of(words)),
+        other => other,
+    })
+}
+
+fn lacking(asked: &PressArguments, map: &Metadata) -> Vec<Lacking> {
+    let has = |key: &str| asked.file.value(key).is_some();
     let mut lacking = Vec::new();
     let mut add = |missing: bool, flag, example: &str, why: String, instead| {
         if missing {
@@ -105,24 +85,21 @@ fn lacking(asked: &PressArguments, keys: &SurfaceKeys, map: &Metadata) -> Vec<La
         }
     };
     add(
-        map.unit.is_none() && !keys.has(&["unit", "height_scale"]),
+        map.unit.is_none() && !has("unit") && !has("height_scale"),
         "--unit",
         "nm",
         format!("unit of the heights, which this file ({}) does not hold", map.format),
         None,
     );
     add(
-        map.size.is_none() && !keys.has(&["size", "cell"]),
+        map.size.is_none() && !has("size") && !has("cell"),
         "--cell",
         "0.5 um",
         format!("side of one of the {} x {} cells of the map", map.columns, map.rows),
         Some(("--size", "side of the whole map, instead of --cell")),
     );
     add(
-        map.undefined > 0
-            && asked.undefined.is_none()
-            && !keys.has(&["fill"])
-            && keys.value("crop") != Some("defined"),
+        map.undefined > 0 && !has("undefined") && !has("fill") && asked.file.value("crop") != Some("defined"),
         "--undefined",
         "no_contact",
         format!("{} points have no height: with no_contact they cannot touch", map.undefined),
@@ -168,36 +145,38 @@ fn lacking(asked: &PressArguments, keys: &SurfaceKeys, map: &Metadata) -> Vec<La
     lacking
 }
 
-/// What is wrong with the flags that are given: with them and the examples the scene is read.
-fn mistake(lacking: &[Lacking]) -> Option<String> {
-    let examples = lacking.iter().flat_map(|lacking| [lacking.flag, &lacking.example]).map(OsString::from);
-    let parsed = command()
-        .try_get_matches_from(std::env::args_os().chain(examples))
-        .and_then(|matches| Ok((Arguments::from_arg_matches(&matches)?.command, matches)));
-    let told = match parsed {
-        Ok((Command::Press { asked, .. } | Command::New { asked, .. }, matches)) => {
-            // Nothing is written, and this folder exists.
-            let at = Path::new("scene.toml");
-            match SceneFile::parse(at, text(&asked, &SurfaceKeys::given(&matches), at, false)) {
-                Err(Error::Scene(mistake)) => {
-                    mistake.told_of("the scene of these flags, with examples of what is missing").to_string()
-                }
-                _ => return None,
+/// What is wrong with the flags that are given: with examples of those that are missing the scene is complete.
+fn mistake(asked: &PressArguments, lacking: &[Lacking]) -> Option<String> {
+    let mut filled = asked.clone();
+    for Lacking { flag, example, .. } in lacking {
+        let text = Some(example.clone());
+        match *flag {
+            "--unit" => filled.file.add("unit", example),
+            "--cell" => filled.file.add("cell", example),
+            "--undefined" => filled.file.add("undefined", example),
+            "--bodies" if asked.contact_modulus().is_some() => {
+                return Some("--friction needs --bodies in the place of --contact-modulus".to_owned());
             }
+            "--bodies" => filled.bodies = example.parse::<Bodies>().ok(),
+            "--coupling" => filled.coupling = text,
+            "--pressure" => filled.pressure = text,
+            _ => filled.tangential_force = text,
         }
-        Ok(_) => return None,
-        // Flags that exclude each other; its usage is left out.
-        Err(error) => error.to_string().split("\n\n").next()?.to_owned(),
-    };
-    Some(told.trim_start_matches("error: ").to_owned())
+    }
+    // Nothing is written, and this folder exists.
+    let words = "the scene of these flags, with examples of what is missing";
+    match scene_of(&filled, Path::new("scene.toml"), false, words) {
+        Err(Error::Scene(mistake)) => Some(mistake.to_string().trim_start_matches("error: ").to_owned()),
+        _ => None,
+    }
 }
 
 /// One message with everything that is missing and the command with an example of each. A command with a mistake
 /// is not repeated: the mistake comes first.
-fn question(map: &Path, lacking: &[Lacking]) -> String {
-    let mistake = mistake(lacking);
+fn missing_flags(asked: &PressArguments, lacking: &[Lacking]) -> String {
+    let mistake = mistake(asked, lacking);
     let mut text = mistake.as_ref().map_or_else(String::new, |mistake| format!("{mistake}\n"));
-    let _ = write!(text, "some flags are missing for the contact of {}:", map.display());
+    let _ = write!(text, "some flags are missing for the contact of {}:", asked.map.display());
     for Lacking { flag, why, instead, .. } in lacking {
         for (flag, why) in std::iter::once((*flag, why.as_str())).chain(*instead) {
             let _ = write!(text, "\n  {flag:<19} {why}");
@@ -245,176 +224,133 @@ pub fn check_place(path: &Path) -> Result<()> {
     }
 }
 
-/// The scene as TOML with comments, of a map or of a profile.
-fn text(asked: &PressArguments, keys: &SurfaceKeys, at: &Path, profile: bool) -> String {
-    let mut scene = Lines::default();
-    let _ = writeln!(
-        scene.text,
-        "{HEADING}{}. `fractal-contact run` takes this file; \"What a scene may say\" in the book has every key.",
-        asked.map.file_name().unwrap_or_default().to_string_lossy().escape_default()
-    );
-    scene.table("scene");
-    scene.line("models", "[\"bem3d\"]", "boundary elements: every cell of the map");
+/// The question that flags ask, of a map or of a profile.
+fn question(asked: &PressArguments, at: &Path, profile: bool) -> Result<Question, Diagnostic> {
+    let mut question = Question::default();
+    question.models = Numerics::named("bem3d").into_iter().collect();
+    question.surface = Some(AskedSurface::File(Box::new(file(asked, at)?)));
+    let mut set = |key: &str, text: &str| {
+        question.set(key, text).map_err(|mistake| mistake.of_flag(key, &flag_of(key)))
+    };
     match (&asked.bodies, asked.contact_modulus()) {
-        (Some(bodies), _) => scene.line("bodies", &bodies.toml(), "Young's modulus, Poisson's ratio"),
-        (None, Some(contact_modulus)) => {
-            scene.line(
-                "contact_modulus",
-                &toml(contact_modulus),
-                "E*: 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2",
-            );
-        }
+        (Some(bodies), _) => set("scene.bodies", &bodies.toml())?,
+        (None, Some(modulus)) => set("scene.contact_modulus", modulus)?,
         (None, None) => {}
     }
     if let Some(accuracy) = &asked.accuracy {
-        scene.line(
-            "accuracy",
-            &toml(accuracy),
-            "accepted error of the grid, which decides the number of cells",
-        );
+        set("scene.accuracy", accuracy)?;
     }
-    if let Some((key, values)) = asked.load() {
-        let comment = match key {
-            "mean_pressure" => "force over the area of the map",
-            "approach" => "from first touch",
-            _ => "",
+    match asked.load() {
+        Some((key, values)) if asked.friction.is_some() => {
+            set(&format!("scene.path.0.{key}"), values)?;
+            set("scene.path.1.tangential_force", asked.tangential_force.as_deref().unwrap_or_default())?;
+            set("scene.path.1.states", "8")?;
+        }
+        Some((key, values)) => set(&format!("scene.{key}"), &value_or_list(values))?,
+        None => {}
+    }
+    set("effects.boundary", &asked.boundary)?;
+    if let Some(hardness) = &asked.hardness {
+        set("effects.hardness", hardness)?;
+    }
+    if let Some(coefficient) = asked.friction {
+        let coupling =
+            asked.coupling.as_ref().map_or_else(String::new, |word| format!(", coupling = {}", toml(word)));
+        set("effects.friction", &format!("{{ coefficient = {coefficient}{coupling} }}"))?;
+    }
+    outputs(&mut question, asked, profile);
+    for assignment in &asked.set {
+        let Some((key, value)) = assignment.split_once('=') else {
+            let message = format!("`--set {assignment}` has no equals sign");
+            return Err(Diagnostic::new(message).with_help("write --set scene.surface.cells=512"));
         };
-        match asked.friction {
-            Some(_) => {
-                scene.array_of_tables("scene.path");
-                scene.line(key, &value_or_list(values), comment);
-                scene.array_of_tables("scene.path");
-                let force = asked.tangential_force.as_deref().unwrap_or_default();
-                scene.line("tangential_force", &toml(force), "along x, in equal parts");
-                scene.line("states", "8", "");
-            }
-            None => scene.line(key, &value_or_list(values), comment),
-        }
+        question.set(key.trim(), value.trim())?;
     }
-    scene.table("scene.surface");
-    scene.line("kind", "\"file\"", "");
-    scene.line("path", &toml(&seen_from(&asked.map, at)), "from the folder of this file");
-    for (key, value) in &keys.0 {
-        scene.line(key, &surface_value(key, value), "");
-    }
-    if let Some(undefined) = &asked.undefined {
-        scene.line("undefined", &toml(undefined.word()), "points without a height cannot touch");
-    }
-    if !keys.has(&["detrend"]) {
-        scene.line("detrend", &toml(asked.detrend()), "subtracts a tilt; \"none\" keeps it");
-    }
-    scene.table("effects");
-    scene.comment("\"free\": pressed by itself, nothing outside of the map carries load.");
-    scene.comment("\"periodic\": one tile of an endless surface, as many other programs assume.");
-    scene.line("boundary", &toml(&asked.boundary), "");
-    let effects = [
-        (
-            "hardness",
-            asked.hardness.as_deref().map(|pressure| format!("{{ pressure = {} }}", toml(pressure))),
-        ),
-        (
-            "friction",
-            asked.friction.map(|coefficient| match &asked.coupling {
-                Some(coupling) => format!("{{ coefficient = {coefficient}, coupling = {} }}", toml(coupling)),
-                None => format!("{{ coefficient = {coefficient} }}"),
-            }),
-        ),
-    ];
-    for (key, value) in effects {
-        if let Some(value) = value {
-            scene.line(key, &value, "");
-        }
-    }
-    outputs(&mut scene, asked, profile);
-    scene.text
+    Ok(question)
 }
 
-/// The table [outputs] of a map or of a profile.
-fn outputs(scene: &mut Lines, asked: &PressArguments, profile: bool) {
-    scene.table("outputs");
-    scene.line("area", "true", "only named outputs are computed");
-    let periodic = asked.boundary == "periodic";
+/// The flag that sets a key.
+pub fn flag_of(key: &str) -> String {
+    match key.rsplit('.').next().unwrap_or(key) {
+        "mean_pressure" => "--pressure".to_owned(),
+        name => format!("--{}", name.replace('_', "-")),
+    }
+}
+
+/// The map with what the flags say of it.
+fn file(asked: &PressArguments, at: &Path) -> Result<AskedFile, Diagnostic> {
+    // A question of its own, in SI units: a length without a unit is a mistake.
+    let mut question = Question::default();
+    let mut file = AskedFile::default();
+    file.path = Some(seen_from(&asked.map, at).into());
+    file.detrend = Some(PRESS_DETREND);
+    question.surface = Some(AskedSurface::File(Box::new(file)));
+    let cells = asked.cells.map(|cells| ("cells", cells.to_string()));
+    let flags = asked.file.given().map(|(key, text)| (key, text.to_owned()));
+    for (key, text) in flags.chain(cells) {
+        let path = format!("scene.surface.{key}");
+        question.set(&path, &text).map_err(|mistake| mistake.of_flag(&path, &flag_of(key)))?;
+    }
+    match question.surface {
+        Some(AskedSurface::File(file)) => Ok(*file),
+        _ => Ok(AskedFile::default()),
+    }
+}
+
+/// What is computed of a map or of a profile.
+fn outputs(question: &mut Question, asked: &PressArguments, profile: bool) {
+    let periodic = question.effects.boundary == Boundary::Periodic;
+    let requested = &mut question.outputs;
+    requested.outputs.area = true;
     // A half-plane has no approach and no stiffness, because its displacements have no zero at infinity.
-    if periodic || !profile {
-        scene.line("stiffness", "true", "");
-    }
-    if periodic {
-        scene.line("mean_gap", "true", "distance between the mean planes, in the place of an approach");
-    }
-    scene.line("contact_patches", "true", "");
-    scene.line("pressure", "[\"npy\", \"png\"]", "field of each load");
-    scene.line("gap", "[\"png\"]", "");
+    requested.outputs.stiffness = periodic || !profile;
+    requested.outputs.mean_gap = periodic;
+    requested.outputs.contact_patches = true;
+    requested.files = vec![
+        (Output::Pressure, vec![FieldFormat::Npy, FieldFormat::Png]),
+        (Output::Gap, vec![FieldFormat::Png]),
+    ];
     if asked.friction.is_some() {
-        scene.line("stick_area", "true", "");
-        scene.line("curves", "true", "");
+        requested.outputs.stick_area = true;
+        requested.curves = true;
     } else {
-        scene.line("distributions", "[\"pressure\", \"gap\"]", "");
-        if asked.accuracy.is_none() {
-            scene.line(
-                "grid_error",
-                "true",
-                "the error of the grid, from cells twice and four times as large",
-            );
+        requested.distributions = vec![Distributed::Pressure, Distributed::Gap];
+        requested.grid_error = asked.accuracy.is_none();
+    }
+}
+
+/// The comment on a key in the scene of a map.
+fn comment(key: &str) -> &'static str {
+    match key {
+        "scene.models" => "boundary elements: every cell of the map",
+        "scene.bodies" => "Young's modulus, Poisson's ratio",
+        "scene.contact_modulus" => "E*: 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2",
+        "scene.accuracy" => "accepted error of the grid, which decides the number of cells",
+        "scene.mean_pressure" | "scene.path.mean_pressure" => "force over the area of the map",
+        "scene.approach" | "scene.path.approach" => "from first touch",
+        "scene.path.tangential_force" => "along x, in equal parts",
+        "scene.surface.path" => "from the folder of this file",
+        "scene.surface.undefined" => "points without a height cannot touch",
+        "scene.surface.detrend" => "\"plane\" subtracts a tilt; \"none\" keeps it",
+        "effects.boundary" => {
+            "\"free\": pressed by itself, nothing outside of the map carries load.\n\
+             \"periodic\": one tile of an endless surface, as many other programs assume."
         }
-    }
-}
-
-/// Lines of TOML.
-#[derive(Default)]
-struct Lines {
-    text: String,
-}
-
-impl Lines {
-    fn table(&mut self, name: &str) {
-        let _ = write!(self.text, "\n[{name}]\n");
-    }
-
-    fn array_of_tables(&mut self, name: &str) {
-        let _ = write!(self.text, "\n[[{name}]]\n");
-    }
-
-    fn comment(&mut self, text: &str) {
-        let _ = writeln!(self.text, "# {text}");
-    }
-
-    fn line(&mut self, key: &str, value: &str, comment: &str) {
-        let line = format!("{key} = {value}");
-        let _ = match comment {
-            "" => writeln!(self.text, "{line}"),
-            comment => writeln!(self.text, "{line:COMMENT$} # {comment}"),
-        };
+        "outputs.area" => "only named outputs are computed",
+        "outputs.mean_gap" => "distance between the mean planes, in the place of an approach",
+        "outputs.pressure" => "field of each load",
+        "outputs.grid_error" => "the error of the grid, from cells twice and four times as large",
+        _ => "",
     }
 }
 
 /// One value or, with commas, a list.
 fn value_or_list(text: &str) -> String {
+    if !text.contains(',') {
+        return text.to_owned();
+    }
     let values: Vec<String> = text.split(',').map(|value| toml(value.trim())).collect();
-    match &values[..] {
-        [value] => value.clone(),
-        _ => format!("[{}]", values.join(", ")),
-    }
-}
-
-/// The value of a key of [scene.surface], from the flag of the same name.
-fn surface_value(key: &str, value: &str) -> String {
-    let is_number = value.parse::<f64>().is_ok();
-    match (key, value.split_once('x')) {
-        ("size" | "cell", Some((x, y))) => format!("[{}, {}]", toml(x.trim()), toml(y.trim())),
-        ("crop", _) if value.contains(',') => {
-            let numbers: Vec<&str> = value.split(',').map(str::trim).collect();
-            match numbers[..] {
-                [row, column, rows, columns] => {
-                    format!("{{ row = {row}, column = {column}, rows = {rows}, columns = {columns} }}")
-                }
-                [row, column, cells] => format!("{{ row = {row}, column = {column}, cells = {cells} }}"),
-                _ => toml(value),
-            }
-        }
-        ("channel", _) if value.parse::<u32>().is_ok() => value.to_owned(),
-        _ if NUMBERS.contains(&key) && is_number => value.to_owned(),
-        _ => toml(value),
-    }
+    format!("[{}]", values.join(", "))
 }
 
 /// The path of a map as the scene at `at` has to say it. Where a folder of the scene is a symbolic link, `..` leads
@@ -438,6 +374,8 @@ fn seen_from(map: &Path, at: &Path) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::arguments::{Arguments, Command, command};
+    use clap::FromArgMatches as _;
 
     #[test]
     fn a_path_is_seen_from_the_folder_of_the_scene() {
@@ -450,18 +388,9 @@ mod tests {
     }
 
     #[test]
-    fn values_are_those_of_a_scene() {
-        assert_eq!(surface_value("size", "2 mm x 1 mm"), "[\"2 mm\", \"1 mm\"]");
-        assert_eq!(surface_value("cell", "0.5 um"), "\"0.5 um\"");
-        assert_eq!(surface_value("crop", "1,2,30,40"), "{ row = 1, column = 2, rows = 30, columns = 40 }");
-        assert_eq!(surface_value("crop", "1,2,30"), "{ row = 1, column = 2, cells = 30 }");
-        assert_eq!(surface_value("crop", "centre"), "\"centre\"");
-        assert_eq!(surface_value("channel", "2"), "2");
-        assert_eq!(surface_value("channel", "Height \"up\""), "\"Height \\\"up\\\"\"");
-        assert_eq!(surface_value("missing", "-9999"), "-9999");
-        assert_eq!(surface_value("fill", "3 nm"), "\"3 nm\"");
+    fn values_between_commas_are_a_list() {
         assert_eq!(value_or_list("1 MPa, 10 MPa"), "[\"1 MPa\", \"10 MPa\"]");
-        assert_eq!(value_or_list("1 MPa"), "\"1 MPa\"");
+        assert_eq!(value_or_list("1 MPa"), "1 MPa");
     }
 
     /// A tilted map of 8 x 8 heights that has decimals.
@@ -484,7 +413,7 @@ mod tests {
             other => panic!("{other:?}"),
         };
         let at = Path::new("scene.toml");
-        SceneFile::parse(at, text(&asked, &SurfaceKeys::given(&matches), at, false))
+        super::scene_of(&asked, at, false, "")
     }
 
     /// Whether two scenes solve the same, whatever their texts are.

@@ -103,7 +103,7 @@ fn what_is_done_to_a_map_is_in_its_manifest() {
         assert!(plan.to_string().contains(step), "{step}\n{plan}");
     }
     let error = folder("rotate = 45").1.unwrap_err().to_string();
-    assert!(error.contains("`rotate` is 45") && error.contains("0, 90, 180 or 270"), "{error}");
+    assert!(error.contains("`scene.surface.rotate` = 45: expected 0, 90, 180 or 270"), "{error}");
 }
 
 /// A map of 20 lines of 40 points with offsets of the lines and a streak: through scene, manifest and command
@@ -212,7 +212,7 @@ fn channels_are_told_and_chosen() {
     assert!(code == Some(1) && said.contains("channel 3 is not in the file: the channels are 0"), "{said}");
     let (code, text, _) = info(&["upper.x3p", "--channel", "0", "--rotate", "90"]);
     assert!(code == Some(0) && text.contains("then       turned by 90 degrees"), "{text}");
-    assert!(info(&["upper.x3p", "--rotate", "45"]).2.contains("possible values: 0, 90, 180, 270"));
+    assert!(info(&["upper.x3p", "--rotate", "45"]).2.contains("`--rotate` = 45: expected 0, 90, 180 or 270"));
     assert!(info(&["nowhere.x3p", "--json"]).2.contains("nowhere.x3p"));
     // A single channel without heights is described all the same.
     let phase = "# Channel: Phase\n# Width: 2 um\n# Height: 1 um\n# Value units: deg\n1 2 3 4\n5 6 7 8\n";

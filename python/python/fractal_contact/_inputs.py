@@ -311,3 +311,8 @@ class Scene:
     def from_toml(text: str, *, directory: str | PathLike[str] = ".") -> SceneFile:
         """A scene file from its text, with the same keys as for the program; relative paths start at `directory`."""
         return SceneFile.from_toml(text, directory=Path(directory))
+
+    @staticmethod
+    def from_dict(tables: Mapping[str, Any], *, directory: str | PathLike[str] = ".") -> SceneFile:
+        """A scene file from its tables, with the same keys as its text; relative paths start at `directory`."""
+        return SceneFile.from_dict(dict(tables), directory=Path(directory))

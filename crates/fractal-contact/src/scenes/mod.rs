@@ -3,8 +3,9 @@
 //!
 //! # What it computes
 //!
-//! A [`SceneFile`] is read from TOML: `[scene]` (models, material, surface, loads or a path), `[effects]`,
-//! `[outputs]`, `[models.NAME]` (numerics) and `[sampling]`. [`Plan`] says what will be computed, what will
+//! A scene asks a [`Question`]: `[scene]` (models, material, surface, loads or a path), `[effects]`, `[outputs]`,
+//! `[models.NAME]` (numerics) and `[sampling]`. It is read from TOML, set key by key, or written in Rust. With the
+//! files that it names it is a [`SceneFile`]. [`Plan`] says what will be computed, what will
 //! not and why, and what it will cost. [`run`] solves the scene with every model that it names and writes
 //! `results.csv`, `manifest.json` and the files that the scene requests. [`info`] describes the contents of a
 //! file, and [`GeneratedSurface`] writes a random surface into one. A [`Registry`] adds the user's own models
@@ -84,17 +85,19 @@ pub use answer::{run, run_scene_shard};
 pub use plan::cost::Cost;
 pub use plan::scene_plan::{ModelPlan, Plan, PredictedFrom, check};
 pub use read::accuracy_target::RequestedAccuracy;
+pub use read::asked_surface::{AskedBody, AskedFile, AskedSecond, AskedSelfAffine, AskedSurface};
 pub use read::diagnostic::Diagnostic;
 pub use read::distributed::Distributed;
 pub use read::effects::{EFFECT_KEYS, EffectKey, EffectLine, effect_lines, parse_effects};
 pub use read::entries::System;
 pub use read::error::{Error, Result};
 pub use read::generated_surface::{GeneratedSurface, write_twin};
-pub use read::keys::{SCENE_KEYS, SceneKeys};
-pub use read::loads::{LoadKind, LoadList, LoadRequest};
+pub use read::key::SceneKey;
+pub use read::loads::{AskedLoads, LoadKind, LoadList, LoadRequest};
 pub use read::numerics::Numerics;
 pub use read::outputs::{FieldFormat, RequestedOutputs};
-pub use read::path::PathPiece;
+pub use read::path::{AskedStep, PathPiece};
+pub use read::question::{AskedSampling, Material, Question, scene_keys};
 pub use read::random_surface::{RandomSpectrum, RandomSurface};
 pub use read::registered_model::RegisteredModel;
 pub use read::registry::Registry;

@@ -1,6 +1,7 @@
 //! `accuracy`, `budget` and `memory` of `[scene]`.
 
-use crate::scenes::read::{Entries, Entry, Read, System};
+use crate::scenes::read::key::Key;
+use crate::scenes::read::{Diagnostic, Entry, Question, Read, System, printed};
 use analysis::AccuracyTarget;
 use surface_io::Dimension;
 
@@ -27,19 +28,62 @@ impl From<AccuracyTarget> for RequestedAccuracy {
     }
 }
 
-/// Reads `accuracy`, `budget` and `memory`, with the place of the first.
-pub(crate) fn read_accuracy<'a>(scene: &Entries<'a>) -> Read<Option<(RequestedAccuracy, Entry<'a>)>> {
-    let accuracy = scene.find("accuracy");
-    let help = "it limits the time that `accuracy = \"1 %\"` may take: add that, or remove it";
-    let budget = scene.beside("budget", "accuracy", help)?;
-    let help = "it limits the memory that `accuracy = \"1 %\"` may take: add that, or remove it";
-    let memory = scene.beside("memory", "accuracy", help)?;
-    let Some(entry) = accuracy else { return Ok(None) };
-    let share = if entry.as_word() == Some("best") { 0.0 } else { read_share(&entry)? };
-    // The budget is a waiting time: it has a unit in every scene.
-    let seconds = budget.map_or(Ok(BUDGET), |entry| entry.positive(Dimension::TIME, System::Si))?;
-    let memory = memory.as_ref().map_or(Ok(MEMORY), read_memory)?;
-    Ok(Some((RequestedAccuracy { target: AccuracyTarget { share, seconds }, memory }, entry)))
+pub(crate) const ACCURACY: Key<Question> = Key {
+    name: "accuracy",
+    takes: "share, or `\"best\"`",
+    about: "share (`\"1 %\"` or 0.01) that the error of the grid may have, instead of `cells` and `tolerance`; or as small as `budget` and `memory` allow",
+    default: "the grid that is given",
+    read: |question, entry, _| {
+        let share = if entry.as_word() == Some("best") { 0.0 } else { read_share(entry)? };
+        question.accuracy = Some(AccuracyTarget { share, seconds: BUDGET }.into());
+        Ok(())
+    },
+    print: |question, _| {
+        let share = question.accuracy?.target.share;
+        Some(if share > 0.0 { printed::number(share) } else { printed::text("best") })
+    },
+};
+
+pub(crate) const BUDGET_KEY: Key<Question> = Key {
+    name: "budget",
+    takes: "time > 0",
+    about: "time that `accuracy` may take, as predicted from the sizes for one thread of a [reference \
+            machine](scene-results.md#the-grid-for-an-accuracy); it chooses the same grid on every machine",
+    default: "`\"10 min\"`",
+    read: |question, entry, _| {
+        let help = "it limits the time that `accuracy = \"1 %\"` may take: add that, or remove it";
+        let accuracy = question.accuracy.as_mut().ok_or_else(|| alone(entry, help))?;
+        // A waiting time has a unit in every scene.
+        accuracy.target.seconds = entry.positive(Dimension::TIME, System::Si)?;
+        Ok(())
+    },
+    print: |question, _| {
+        let seconds = question.accuracy?.target.seconds;
+        (seconds.to_bits() != BUDGET.to_bits())
+            .then(|| printed::quantity(seconds, Dimension::TIME, System::Si))
+    },
+};
+
+pub(crate) const MEMORY_KEY: Key<Question> = Key {
+    name: "memory",
+    takes: "amount in MB, GB or TB",
+    about: "memory of one surface that `accuracy` may take; a machine that has less than the grid needs refuses",
+    default: "`\"4 GB\"`",
+    read: |question, entry, _| {
+        let help = "it limits the memory that `accuracy = \"1 %\"` may take: add that, or remove it";
+        let accuracy = question.accuracy.as_mut().ok_or_else(|| alone(entry, help))?;
+        accuracy.memory = read_memory(entry)?;
+        Ok(())
+    },
+    print: |question, _| {
+        let bytes = question.accuracy?.memory;
+        (bytes.to_bits() != MEMORY.to_bits()).then(|| print_memory(bytes))
+    },
+};
+
+fn alone(entry: &Entry<'_>, help: &str) -> Diagnostic {
+    let message = format!("`{}` is given, but no `accuracy`", entry.name());
+    entry.diagnostic_at_key(message).with_help(help)
 }
 
 fn read_share(entry: &Entry<'_>) -> Read<f64> {
@@ -64,4 +108,14 @@ fn read_memory(entry: &Entry<'_>) -> Read<f64> {
             .diagnostic(format!("`memory` = {}: expected an amount of memory above 0", entry.shown()))
             .with_help("write it with its unit, MB, GB or TB, such as \"4 GB\"")
     })
+}
+
+/// In the largest unit in which it is read as the same number.
+fn print_memory(bytes: f64) -> String {
+    let [(least, million), larger @ ..] = MEMORY_UNITS;
+    let same = |unit: &f64| (bytes / unit) * unit;
+    let found =
+        larger.into_iter().rev().find(|(_, unit)| bytes >= *unit && same(unit).to_bits() == bytes.to_bits());
+    let (word, unit) = found.unwrap_or((least, million));
+    printed::text(&format!("{} {word}", bytes / unit))
 }

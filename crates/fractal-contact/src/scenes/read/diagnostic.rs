@@ -88,6 +88,12 @@ impl Diagnostic {
         self
     }
 
+    /// Forgets the place.
+    #[must_use]
+    pub(crate) fn without_span(self) -> Self {
+        Self { span: None, ..self }
+    }
+
     /// Adds a remedy.
     #[must_use]
     pub fn with_help(mut self, help: impl Into<String>) -> Self {
@@ -100,6 +106,13 @@ impl Diagnostic {
     pub fn placed(mut self, path: &Path, text: &str) -> Self {
         let line = self.span.clone().map(|span| excerpt(text, &span));
         self.place.get_or_insert(Box::new(SourceSpan { path: path.to_owned(), line }));
+        self
+    }
+
+    /// The same for the value of a flag of the program that sets this key.
+    #[must_use]
+    pub fn of_flag(mut self, key: &str, flag: &str) -> Self {
+        self.message = self.message.replace(&format!("`{key}`"), &format!("`{flag}`"));
         self
     }
 

@@ -1,6 +1,6 @@
 //! `[effects]`: an effect is off unless the scene names it.
 
-use crate::scenes::read::{Diagnostic, Entries, Entry, Read, System, amount, number};
+use crate::scenes::read::{Diagnostic, Entries, Entry, Read, System, amount, number, printed};
 use contact_model::{
     Adhesion, AdhesionLaw, Boundary, Coupling, Effects, Friction, Hardness, PronySeries, Relaxing, Rheology,
 };
@@ -18,7 +18,9 @@ pub struct EffectKey {
     pub about: &'static str,
     /// The behaviour where it is not named.
     pub off: &'static str,
-    read: fn(&Entry<'_>, System, &mut Effects) -> Read<()>,
+    pub(crate) read: fn(&Entry<'_>, System, &mut Effects) -> Read<()>,
+    /// Its value as TOML; `None` where it is off.
+    pub(crate) print: fn(&Effects, System) -> Option<String>,
     /// Its numbers, where it is on.
     words: fn(&Effects, System) -> Option<String>,
 }
@@ -33,6 +35,9 @@ pub static EFFECT_KEYS: &[EffectKey] = &[
         read: |entry, _, effects| {
             let words = [("free", Boundary::Free), ("periodic", Boundary::Periodic)];
             entry.choice(&words).map(|boundary| effects.boundary = boundary)
+        },
+        print: |effects, _| {
+            Some(printed::text(if effects.boundary == Boundary::Periodic { "periodic" } else { "free" }))
         },
         words: |effects, _| {
             (effects.boundary == Boundary::Periodic).then(|| "periodic copies of the rectangle".into())
@@ -49,6 +54,12 @@ pub static EFFECT_KEYS: &[EffectKey] = &[
             effects.hardness = Hardness::Limit { pressure };
             table.finish()
         },
+        print: |effects, system| match effects.hardness {
+            Hardness::Limit { pressure } => {
+                Some(format!("{{ pressure = {} }}", printed::quantity(pressure, Dimension::PRESSURE, system)))
+            }
+            _ => None,
+        },
         words: |effects, system| match effects.hardness {
             Hardness::Limit { pressure } => {
                 Some(format!("no pressure above {}", amount(pressure, system.shown("Pa"))))
@@ -64,6 +75,19 @@ pub static EFFECT_KEYS: &[EffectKey] = &[
         off: "no attraction",
         read: |entry, system, effects| {
             read_adhesion(&entry.table_or("work")?, system).map(|adhesion| effects.adhesion = adhesion)
+        },
+        print: |effects, system| {
+            let work = |work| printed::quantity(work, Dimension::ENERGY_PER_AREA, system);
+            match effects.adhesion {
+                Adhesion::ShortRange { work: of } => Some(format!("{{ work = {} }}", work(of))),
+                Adhesion::FiniteRange { work: of, range, law } => {
+                    let range = printed::quantity(range, Dimension::LENGTH, system);
+                    let word =
+                        LAWS.iter().find(|(_, known)| *known == law).map_or("exponential", |(word, _)| word);
+                    Some(format!("{{ work = {}, range = {range}, law = {} }}", work(of), printed::text(word)))
+                }
+                _ => None,
+            }
         },
         words: |effects, system| match effects.adhesion {
             Adhesion::Off => None,
@@ -90,10 +114,19 @@ pub static EFFECT_KEYS: &[EffectKey] = &[
         read: |entry, _, effects| {
             let table = entry.table_or("coefficient")?;
             let coefficient = table.require("coefficient", "0.3")?.not_negative_number()?;
-            let words = [("none", Coupling::Neglected), ("full", Coupling::Full)];
-            let coupling = table.optional("coupling", |entry| entry.choice(&words))?;
+            let coupling = table.optional("coupling", |entry| entry.choice(&COUPLINGS))?;
             effects.friction = Friction::Coulomb { coefficient, coupling };
             table.finish()
+        },
+        print: |effects, _| match effects.friction {
+            Friction::Coulomb { coefficient, coupling } => {
+                let word =
+                    coupling.and_then(|coupling| COUPLINGS.iter().find(|(_, known)| *known == coupling));
+                let coupling =
+                    word.map_or(String::new(), |(word, _)| format!(", coupling = {}", printed::text(word)));
+                Some(format!("{{ coefficient = {}{coupling} }}", printed::number(coefficient)))
+            }
+            _ => None,
         },
         words: |effects, _| match effects.friction {
             Friction::Coulomb { coefficient, coupling } => {
@@ -116,11 +149,16 @@ pub static EFFECT_KEYS: &[EffectKey] = &[
         read: |entry, system, effects| {
             read_rheology(entry, system).map(|rheology| effects.rheology = rheology)
         },
+        print: |effects, system| print_rheology(&effects.rheology, system),
         words: |effects, system| {
             (effects.rheology != Rheology::Elastic).then(|| rheology_words(&effects.rheology, system))
         },
     },
 ];
+
+const COUPLINGS: [(&str, Coupling); 2] = [("none", Coupling::Neglected), ("full", Coupling::Full)];
+const LAWS: [(&str, AdhesionLaw); 2] =
+    [("exponential", AdhesionLaw::Exponential), ("dugdale", AdhesionLaw::Dugdale)];
 
 /// An effect of a scene and why it is on or off.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -175,8 +213,7 @@ pub fn parse_effects(text: &str) -> Result<Effects, Diagnostic> {
 
 fn read_adhesion(table: &Entries<'_>, system: System) -> Read<Adhesion> {
     let work = table.require("work", "\"50 mJ/m^2\"")?.not_negative(Dimension::ENERGY_PER_AREA, system)?;
-    let words = [("exponential", AdhesionLaw::Exponential), ("dugdale", AdhesionLaw::Dugdale)];
-    let law = table.find("law").map(|e| Ok((e.choice(&words)?, e))).transpose()?;
+    let law = table.find("law").map(|e| Ok((e.choice(&LAWS)?, e))).transpose()?;
     let adhesion = match (table.find("range"), law) {
         (None, None) => Adhesion::ShortRange { work },
         (Some(range), law) => {
@@ -213,6 +250,30 @@ fn rheology_words(rheology: &Rheology, system: System) -> String {
         Rheology::Prony(series) => format!("Prony series, {}", arms(series.arms())),
         other => format!("{other:?}"),
     }
+}
+
+fn print_rheology(rheology: &Rheology, system: System) -> Option<String> {
+    let viscosity = |value| printed::quantity(value, Dimension::VISCOSITY, system);
+    let time = |arm: &Relaxing| printed::quantity(arm.time, Dimension::TIME, system);
+    let list = |values: Vec<String>| format!("[{}]", values.join(", "));
+    Some(match rheology {
+        Rheology::KelvinVoigt { viscosity: of } => {
+            format!("{{ kind = \"kelvin_voigt\", viscosity = {} }}", viscosity(*of))
+        }
+        Rheology::Maxwell { viscosity: of } => {
+            format!("{{ kind = \"maxwell\", viscosity = {} }}", viscosity(*of))
+        }
+        Rheology::StandardSolid { arm } => {
+            let weight = printed::number(arm.weight);
+            format!("{{ kind = \"standard_solid\", weight = {weight}, time = {} }}", time(arm))
+        }
+        Rheology::Prony(series) => {
+            let weights = series.arms().iter().map(|arm| printed::number(arm.weight)).collect();
+            let times = series.arms().iter().map(time).collect();
+            format!("{{ kind = \"prony\", weights = {}, times = {} }}", list(weights), list(times))
+        }
+        _ => return None,
+    })
 }
 
 /// How the parameters of a rheology are read.

@@ -1,12 +1,12 @@
 //! Reads a table of a scene key by key; a key that is never read is an error.
 
-use crate::scenes::read::Diagnostic;
+use crate::scenes::read::{Diagnostic, Places};
 use contact_model::Error;
 use std::borrow::Cow;
 use std::cell::RefCell;
 use std::f64::consts::PI;
 use std::ops::Range;
-use surface_io::{Dimension, Quantity};
+use surface_io::{Dimension, Quantity, Sides};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
@@ -67,6 +67,26 @@ impl<'a> Entries<'a> {
         read(Entries::named(name, document.get_ref()))
     }
 
+    /// Reads the value of one key as a flag has it: a value of TOML such as `512` or `["1 N", "2 N"]`, or else a
+    /// text such as `0.5 um`.
+    pub fn of_word<T>(path: &str, word: &str, read: impl FnOnce(&Entry<'_>) -> Read<T>) -> Read<T> {
+        let text = || Spanned::new(0..word.len(), DeValue::String(Cow::Borrowed(word)));
+        let value = match DeValue::parse(word) {
+            Ok(value) if !value.get_ref().is_datetime() => value,
+            _ => text(),
+        };
+        // A flag has no place in a text.
+        read(&Entry { path: path.to_owned(), key: None, value: &value }).map_err(Diagnostic::without_span)
+    }
+
+    /// Where all keys and values stand.
+    pub fn places(&self) -> Places {
+        match &self.content {
+            Content::Table(table) => Places::of(table),
+            Content::Only(..) => Places::default(),
+        }
+    }
+
     /// Name of the table, `[scene.surface]`.
     pub fn title(&self) -> String {
         if self.name.is_empty() { "the file".into() } else { format!("[{}]", self.name) }
@@ -95,9 +115,10 @@ impl<'a> Entries<'a> {
 
     /// The value of a key, if it is there.
     pub fn find(&self, key: &'static str) -> Option<Entry<'a>> {
-        #[cfg(test)]
-        crate::scenes::read::keys::tests::record(&self.name, key);
-        self.known.borrow_mut().push(key);
+        let mut known = self.known.borrow_mut();
+        if !known.contains(&key) {
+            known.push(key);
+        }
         self.entry(key)
     }
 
@@ -118,18 +139,6 @@ impl<'a> Entries<'a> {
         read: impl FnOnce(&Entry<'a>) -> Read<T>,
     ) -> Read<()> {
         self.optional(key, read).map(|given| given.into_iter().for_each(|given| *value = given))
-    }
-
-    /// The value of a key that has no meaning without another one.
-    pub fn beside(&self, key: &'static str, other: &str, help: &str) -> Read<Option<Entry<'a>>> {
-        let entry = self.find(key);
-        match &entry {
-            Some(entry) if self.entry(other).is_none() => {
-                let message = format!("`{key}` is given, but no `{other}`");
-                Err(entry.diagnostic_at_key(message).with_help(help))
-            }
-            _ => Ok(entry),
-        }
     }
 
     /// The value of any key, which does not count as read by this.
@@ -156,19 +165,6 @@ impl<'a> Entries<'a> {
             let missing = Diagnostic::of_type(format!("`{key}` is missing in {}", self.title()));
             missing.at(self.span.clone()).with_help(format!("add `{key} = {example}`"))
         })
-    }
-
-    /// The mistake of an unknown key that is probably a misspelling of one of these; otherwise the mistake
-    /// `otherwise`.
-    pub fn misspelt_or(&self, keys: &[&str], otherwise: Diagnostic) -> Diagnostic {
-        let known = self.known.borrow();
-        let near = |name: &str| keys.iter().find(|key| distance(name, key) <= 1 + key.len() / 4);
-        let mut unknown = self.keys().filter(|name| !known.contains(name));
-        let Some((name, key)) = unknown.find_map(|name| Some((name, near(name)?))) else { return otherwise };
-        let unknown = self
-            .entry(name)
-            .map(|entry| entry.diagnostic_at_key(format!("unknown key `{name}` in {}", self.title())));
-        unknown.map_or(otherwise, |unknown| unknown.with_help(format!("did you mean `{key}`?")))
     }
 
     /// A table, if it is there.
@@ -265,6 +261,18 @@ pub(crate) struct Entry<'a> {
 }
 
 impl<'a> Entry<'a> {
+    /// Name of its key.
+    pub fn name(&self) -> &str {
+        self.path.rsplit('.').next().unwrap_or(&self.path)
+    }
+
+    /// The mistake of a key that there is not.
+    pub fn unknown(&self) -> Diagnostic {
+        let help =
+            "`fractal-contact models` lists the models, and \"What a scene may say\" in the book every key";
+        self.diagnostic_at_key(format!("there is no key `{}`", self.path)).with_help(help)
+    }
+
     /// Where the value stands.
     pub fn span(&self) -> Range<usize> {
         self.value.span()
@@ -488,15 +496,19 @@ impl<'a> Entry<'a> {
     /// One length > 0, or two in a list.
     pub fn lengths(&self, system: System) -> Read<LengthOrPair> {
         // As on the command line: "2 mm x 1 mm".
-        if let (Some((x, y)), System::Si) = (self.as_word().and_then(|text| text.split_once(" x ")), system) {
-            let side = |text: &str| {
-                let value = Quantity::parse_as(text.trim(), Dimension::LENGTH).map_err(|reason| {
-                    self.diagnostic(format!("`{}`: {reason}", self.path))
-                        .with_help("two lengths with their units: [\"2 mm\", \"1 mm\"] or \"2 mm x 1 mm\"")
-                })?;
-                self.above_zero(value)
-            };
-            return Ok(LengthOrPair::Two([side(x)?, side(y)?]));
+        let both = self.as_word().map(|text| (text.contains(" x "), text.parse::<Sides>()));
+        let dimension = if system == System::Si { Dimension::LENGTH } else { Dimension::NONE };
+        let wrong = |reason: surface_io::QuantityError| {
+            self.diagnostic(format!("`{}`: {reason}", self.path))
+                .with_help("two lengths with their units: [\"2 mm\", \"1 mm\"] or \"2 mm x 1 mm\"")
+        };
+        match both {
+            Some((_, Ok(Sides::Two(both)))) => {
+                let side = |side: Quantity| self.above_zero(side.expect(dimension).map_err(wrong)?);
+                return Ok(LengthOrPair::Two([side(both[0])?, side(both[1])?]));
+            }
+            Some((true, Err(reason))) => return Err(wrong(reason)),
+            _ => {}
         }
         if !self.is_list() {
             return self.positive(Dimension::LENGTH, system).map(LengthOrPair::One);

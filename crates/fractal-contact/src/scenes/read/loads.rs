@@ -1,8 +1,9 @@
 //! The prescribed loads: independent loads, or a path.
 
-use crate::scenes::read::path::{MOST, PathPiece, read_path, zero_if_rounded};
-use crate::scenes::read::{Entries, Entry, Read, System};
-use contact_model::{Load, NormalLoad, Normalisation, Size, Step};
+use crate::scenes::read::key::Context;
+use crate::scenes::read::path::{AskedStep, MOST, PathPiece, zero_if_rounded};
+use crate::scenes::read::{Diagnostic, Entry, Places, Read, System, printed};
+use contact_model::{Load, NormalLoad, Normalisation, Step};
 use surface_io::Dimension;
 
 /// What a list of loads prescribes.
@@ -21,8 +22,6 @@ pub enum LoadKind {
 }
 
 impl LoadKind {
-    const ALL: [Self; 5] = [Self::Force, Self::ForceBar, Self::MeanPressure, Self::Approach, Self::MeanGap];
-
     /// Its key in the file, its dimension and unit in SI, and its description in tables.
     fn record(self) -> (&'static str, Dimension, &'static str, &'static str) {
         match self {
@@ -142,48 +141,21 @@ impl LoadRequest {
     }
 }
 
-/// Reads the loads or the path of `[scene]`. `pulls` allows negative loads (adhesion). `size` is that of the
-/// nominal contact area, for mean pressures along a path.
-pub(crate) fn read_request<'a>(
-    scene: &Entries<'a>,
-    system: System,
-    pulls: bool,
-    size: Size,
-) -> Read<(LoadRequest, Entry<'a>)> {
-    let keys = LoadKind::ALL.map(LoadKind::key);
-    let loads = scene.one_of(&keys)?;
-    let path = scene.find("path");
-    match (loads, path) {
-        (Some((key, _)), Some(path)) => Err(path
-            .diagnostic_at_key(format!("`{key}` and `path` are both given in [scene]"))
-            .with_help(format!("loads one by one are `{key}`; a history (friction, rheology, indentation, adhesion) is `path`: keep one of them"))),
-        (None, None) => Err(scene.misspelt_or(&keys, scene
-            .diagnostic("nothing is pressed: [scene] has no load")
-            .with_help("add `force = \"1 N\"`, `approach = [...]`, `force_bar = { from = 1e-4, to = 1, count = 9 }`, or [[scene.path]] for a history"))),
-        (Some((key, entry)), None) => {
-            let kind = LoadKind::ALL.into_iter().find(|kind| kind.key() == key).unwrap_or(LoadKind::Force);
-            Ok((LoadRequest::Loads(read_loads(kind, &entry, system, pulls)?), entry))
-        }
-        (None, Some(entry)) => Ok((LoadRequest::Path(read_path(&entry, system, pulls, size)?), entry)),
-    }
+/// Loads or a path as they are asked for.
+#[derive(Debug, Clone, PartialEq)]
+pub enum AskedLoads {
+    /// Loads, solved one by one.
+    Loads(LoadList),
+    /// The steps of a path, each with the quantities that it names.
+    Path(Vec<AskedStep>),
 }
 
-fn read_loads(kind: LoadKind, entry: &Entry<'_>, system: System, pulls: bool) -> Read<LoadList> {
+/// Reads one load, a list or a range.
+pub(crate) fn read_loads(kind: LoadKind, entry: &Entry<'_>, context: Context<'_>) -> Read<AskedLoads> {
     let (key, dimension, ..) = kind.record();
-    let signed = pulls && !matches!(kind, LoadKind::MeanGap);
-    let number = |item: &Entry<'_>| {
-        let value = match dimension {
-            Dimension::NONE => item.number()?,
-            dimension => item.quantity(dimension, system)?,
-        };
-        if value >= 0.0 || signed {
-            return Ok(value);
-        }
-        let help = match kind {
-            LoadKind::MeanGap => "a mean gap is a distance >= 0",
-            _ => "press with a value >= 0; only adhesion (`adhesion` in [effects]) holds against a pull",
-        };
-        Err(item.diagnostic(format!("the load `{key}` = {} is negative", item.shown())).with_help(help))
+    let number = |item: &Entry<'_>| match dimension {
+        Dimension::NONE => item.number(),
+        dimension => item.quantity(dimension, context.system),
     };
     let values = if entry.is_table() {
         let range = entry.table()?;
@@ -218,7 +190,38 @@ fn read_loads(kind: LoadKind, entry: &Entry<'_>, system: System, pulls: bool) ->
             .diagnostic(format!("`{key}` is an empty list"))
             .with_help("name at least one load"));
     }
-    Ok(LoadList { kind, values })
+    Ok(AskedLoads::Loads(LoadList { kind, values }))
+}
+
+/// The loads as TOML, where they are of this kind.
+pub(crate) fn print_loads(loads: &AskedLoads, kind: LoadKind, system: System) -> Option<String> {
+    let AskedLoads::Loads(loads) = loads else { return None };
+    let dimension = kind.record().1;
+    let number = |value: &f64| match dimension {
+        Dimension::NONE => printed::number(*value),
+        dimension => printed::quantity(*value, dimension, system),
+    };
+    (loads.kind == kind).then(|| printed::list(&loads.values.iter().map(number).collect::<Vec<_>>()))
+}
+
+/// Checks that no load pulls, where nothing holds against a pull; `pulls` allows it (adhesion).
+pub(crate) fn check_signs(loads: &LoadList, system: System, pulls: bool, places: &Places) -> Read<()> {
+    let signed = pulls && loads.kind != LoadKind::MeanGap;
+    let wrong = loads.values.iter().position(|value| !(*value >= 0.0 || signed));
+    let Some(wrong) = wrong else { return Ok(()) };
+    let (key, dimension, ..) = loads.kind.record();
+    let value = match dimension {
+        Dimension::NONE => printed::number(loads.values[wrong]),
+        dimension => printed::quantity(loads.values[wrong], dimension, system),
+    };
+    let help = match loads.kind {
+        LoadKind::MeanGap => "a mean gap is a distance >= 0",
+        _ => "press with a value >= 0; only adhesion (`adhesion` in [effects]) holds against a pull",
+    };
+    let path = format!("scene.{key}");
+    let item = places.value(&format!("{path}.{wrong}")).or_else(|| places.value(&path));
+    let message = format!("the load `{key}` = {} is negative", value.trim_matches('"'));
+    Err(Diagnostic::new(message).at(item).with_help(help))
 }
 
 /// `count` >= 2 numbers with both ends exactly as given.

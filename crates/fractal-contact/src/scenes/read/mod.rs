@@ -1,17 +1,21 @@
 //! Reads a scene from TOML into typed values, and reports each mistake with its place.
 
 pub(crate) mod accuracy_target;
+pub(crate) mod asked_surface;
 pub(crate) mod diagnostic;
 pub(crate) mod distributed;
 pub(crate) mod effects;
 pub(crate) mod entries;
 pub(crate) mod error;
 pub(crate) mod generated_surface;
-pub(crate) mod keys;
+pub(crate) mod key;
 pub(crate) mod loads;
 pub(crate) mod numerics;
 pub(crate) mod outputs;
 pub(crate) mod path;
+pub(crate) mod places;
+pub(crate) mod printed;
+pub(crate) mod question;
 pub(crate) mod random_surface;
 pub(crate) mod registered_model;
 pub(crate) mod registry;
@@ -21,17 +25,19 @@ pub(crate) mod scene_file;
 pub(crate) mod scene_surface;
 pub(crate) mod words;
 
-pub(crate) use accuracy_target::{RequestedAccuracy, read_accuracy};
+pub(crate) use accuracy_target::RequestedAccuracy;
 pub(crate) use contact_model::units::{amount, multiple, number, short};
 pub(crate) use diagnostic::Diagnostic;
 pub(crate) use distributed::{Bin, Distributed};
-pub(crate) use effects::{EffectLine, effect_lines, read_effects};
+pub(crate) use effects::{EFFECT_KEYS, EffectLine, effect_lines, read_effects};
 pub(crate) use entries::{Entries, Entry, LengthOrPair, Read, System, suggestion};
 pub(crate) use error::{Error, Result};
-pub(crate) use loads::{LoadKind, LoadList, LoadRequest, read_request};
-pub(crate) use numerics::{MOST_CELLS, Numerics, read_models};
+pub(crate) use loads::{LoadKind, LoadList, LoadRequest};
+pub(crate) use numerics::{MOST_CELLS, Numerics};
 pub(crate) use outputs::{FieldFormat, HEIGHTS, RequestedOutputs, read_outputs};
 pub(crate) use path::{PathPiece, step_to};
+pub(crate) use places::Places;
+pub(crate) use question::Question;
 pub(crate) use random_surface::{
     Drawn, RandomSpectrum, RandomSurface, describe_self_affine, describe_sides, map_key,
 };
@@ -40,4 +46,4 @@ pub(crate) use registry::Registry;
 pub(crate) use sampled::{sampled, sampled_cells};
 pub(crate) use scan::{Remark, description, exchanged_sides, remarks, spike};
 pub(crate) use scene_file::{SceneFile, cells, depends_on_path};
-pub(crate) use scene_surface::{SceneSurface, SurfaceEntry, read_surface};
+pub(crate) use scene_surface::SceneSurface;

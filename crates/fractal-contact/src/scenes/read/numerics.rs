@@ -1,7 +1,8 @@
 //! The models by name, and their numerical options in `[models.NAME]`.
 
 use crate::models::{MODELS, ModelRecord};
-use crate::scenes::read::{Diagnostic, Entries, Entry, Read, RegisteredModel, suggestion};
+use crate::scenes::read::key::{Context, Key, KeyTable, SceneKey};
+use crate::scenes::read::{Diagnostic, Entries, Entry, Read, RegisteredModel, System, printed, suggestion};
 use analytic::greenwood_williamson::SummitHeights;
 use analytic::{GreenwoodWilliamson, Persson};
 use bem3d::{Bem3d, Method};
@@ -183,17 +184,10 @@ impl Numerics {
     }
 }
 
-/// The models of a scene in the order named, with the place of each name.
-pub(crate) fn read_models<'a>(
-    scene: &Entries<'a>,
-    options: Option<&Entries<'a>>,
-    registered: &[RegisteredModel],
-) -> Read<Vec<(Numerics, Entry<'a>)>> {
-    let entry = scene.require("models", "[\"bem3d\"]")?;
-    let own = registered.iter().cloned().map(Numerics::Registered);
-    let known: Vec<Numerics> = Numerics::all().chain(own).collect();
+/// Reads the names of the models, in their order.
+pub(crate) fn read_models(entry: &Entry<'_>, known: &[Numerics]) -> Read<Vec<Numerics>> {
     let names: Vec<&str> = known.iter().map(Numerics::name).collect();
-    let mut models: Vec<(Numerics, Entry<'a>)> = Vec::new();
+    let mut models: Vec<Numerics> = Vec::new();
     for item in entry.list() {
         let name = item.text()?;
         let Some(default) = known.iter().find(|m| m.name() == name) else {
@@ -201,23 +195,27 @@ pub(crate) fn read_models<'a>(
                 .diagnostic(format!("there is no model \"{name}\""))
                 .with_help(suggestion(name, &names)));
         };
-        if models.iter().any(|(m, _)| m.name() == name) {
+        if models.iter().any(|m| m.name() == name) {
             return Err(item
                 .diagnostic(format!("the model \"{name}\" is named twice"))
                 .with_help("name it once"));
         }
-        models.push((default.clone(), item));
+        models.push(default.clone());
     }
     if models.is_empty() {
         return Err(entry.diagnostic("`models` is empty").with_help(format!("known: {}", names.join(", "))));
     }
-    let Some(options) = options else { return Ok(models) };
-    for (numerics, _) in &mut models {
+    Ok(models)
+}
+
+/// Reads `[models.NAME]` of the models that are named.
+pub(crate) fn read_options(models: &mut [Numerics], options: &Entries<'_>) -> Read<()> {
+    for numerics in models.iter_mut() {
         if let Some(table) = options.table(numerics.name())? {
             *numerics = configured(numerics.clone(), table)?;
         }
     }
-    let used: Vec<&str> = models.iter().map(|(m, _)| m.name()).collect();
+    let used: Vec<&str> = models.iter().map(Numerics::name).collect();
     for key in options.keys() {
         if !used.contains(&key)
             && let Some(stray) = options.entry(key)
@@ -232,55 +230,245 @@ pub(crate) fn read_models<'a>(
                 )));
         }
     }
-    Ok(models)
+    Ok(())
 }
 
-fn bem3d_options(mut model: Bem3d, table: &Entries<'_>) -> Read<Bem3d> {
-    table.set(&mut model.cells, "cells", |e| e.size(1))?;
-    table.set(&mut model.rows, "rows", |e| e.size(1).map(Some))?;
-    table.set(&mut model.tolerance, "tolerance", |e| match e.positive_number()? {
-        below if below < 1.0 => Ok(below),
-        large => Err(e.outside(large, "a number < 1").with_help("1e-6 gives six digits")),
-    })?;
-    table.set(&mut model.max_outer_iterations, "max_outer_iterations", |e| e.size(1))?;
-    table.set(&mut model.method, "method", |e| e.choice(&Method::ALL.map(|m| (m.as_str(), m))))?;
-    Ok(model)
+/// Keys of the boundary elements.
+static BEM3D_KEYS: KeyTable<Bem3d> = KeyTable {
+    name: "models.bem3d",
+    kind: "",
+    alternatives: &[],
+    everyday: &[],
+    keys: &[
+        Key {
+            name: "cells",
+            takes: "whole number >= 1",
+            about: "number of columns of the grid",
+            default: "257",
+            read: |model, entry, _| entry.size(1).map(|cells| model.cells = cells),
+            print: |model, _| (model.cells != Bem3d::default().cells).then(|| model.cells.to_string()),
+        },
+        Key {
+            name: "rows",
+            takes: "whole number >= 1",
+            about: "number of rows of the grid",
+            default: "as many as make cells nearly square",
+            read: |model, entry, _| entry.size(1).map(|rows| model.rows = Some(rows)),
+            print: |model, _| model.rows.map(|rows| rows.to_string()),
+        },
+        Key {
+            name: "tolerance",
+            takes: "number > 0 and < 1",
+            about: "tolerance of the solver: relative errors of a state on its grid",
+            default: "1e-6",
+            read: |model, entry, _| match entry.positive_number()? {
+                below if below < 1.0 => {
+                    model.tolerance = below;
+                    Ok(())
+                }
+                large => Err(entry.outside(large, "a number < 1").with_help("1e-6 gives six digits")),
+            },
+            print: |model, _| {
+                let is_default = model.tolerance.to_bits() == Bem3d::default().tolerance.to_bits();
+                (!is_default).then(|| printed::number(model.tolerance))
+            },
+        },
+        Key {
+            name: "max_outer_iterations",
+            takes: "whole number >= 1",
+            about: "largest number of outer iterations of the solver",
+            default: "200",
+            read: |model, entry, _| entry.size(1).map(|most| model.max_outer_iterations = most),
+            print: |model, _| {
+                let most = model.max_outer_iterations;
+                (most != Bem3d::default().max_outer_iterations).then(|| most.to_string())
+            },
+        },
+        Key {
+            name: "method",
+            takes: "`\"auto\"`, `\"iterative\"` or `\"single_level\"`",
+            about: "method of solution",
+            default: "`\"auto\"`",
+            read: |model, entry, _| {
+                entry
+                    .choice(&Method::ALL.map(|method| (method.as_str(), method)))
+                    .map(|method| model.method = method)
+            },
+            print: |model, _| (model.method != Method::Auto).then(|| printed::text(model.method.as_str())),
+        },
+    ],
+};
+
+/// Keys of the equivalent profile, besides those of the boundary elements.
+static EQUIVALENT_KEYS: KeyTable<Equivalent<Bem3d>> = KeyTable {
+    name: "models.equivalent",
+    kind: "",
+    alternatives: &[],
+    everyday: &[],
+    keys: &[
+        Key {
+            name: "per_decade",
+            takes: "whole number, 1 to 1000",
+            about: "number of approaches per decade in the table of k(d); the keys of `bem3d` are those of this model too",
+            default: "16",
+            read: |model, entry, _| read_up_to(entry, 1000).map(|count| model.per_decade = count),
+            print: |model, _| {
+                let default = Equivalent::new(Bem3d::default()).per_decade;
+                (model.per_decade != default).then(|| model.per_decade.to_string())
+            },
+        },
+        Key {
+            name: "decades",
+            takes: "whole number, 1 to 12",
+            about: "number of decades of the approach in the table",
+            default: "3",
+            read: |model, entry, _| read_up_to(entry, 12).map(|count| model.decades = count),
+            print: |model, _| {
+                let default = Equivalent::new(Bem3d::default()).decades;
+                (model.decades != default).then(|| model.decades.to_string())
+            },
+        },
+    ],
+};
+
+/// Keys of the reduction to one dimension.
+static MDR1D_KEYS: KeyTable<Mdr1d> = KeyTable {
+    name: "models.mdr1d",
+    kind: "",
+    alternatives: &[],
+    everyday: &[],
+    keys: &[Key {
+        name: "elements",
+        takes: "whole number >= 1",
+        about: "number of elements of a rough line",
+        default: "65536",
+        read: |model, entry, _| entry.size(1).map(|elements| model.elements = elements),
+        print: |model, _| (model.elements != Mdr1d::default().elements).then(|| model.elements.to_string()),
+    }],
+};
+
+/// Keys of Persson's theory.
+static PERSSON_KEYS: KeyTable<Persson> = KeyTable {
+    name: "models.persson",
+    kind: "",
+    alternatives: &[],
+    everyday: &[],
+    keys: &[Key {
+        name: "gamma",
+        takes: "number > 0",
+        about: "elastic energy over that of full contact",
+        default: "0.45",
+        read: |model, entry, _| entry.positive_number().map(|gamma| model.gamma = gamma),
+        print: |model, _| {
+            let is_default = model.gamma.to_bits() == Persson::default().gamma.to_bits();
+            (!is_default).then(|| printed::number(model.gamma))
+        },
+    }],
+};
+
+/// Keys of Greenwood and Williamson's theory.
+static GREENWOOD_WILLIAMSON_KEYS: KeyTable<GreenwoodWilliamson> = KeyTable {
+    name: "models.greenwood_williamson",
+    kind: "",
+    alternatives: &[],
+    everyday: &[],
+    keys: &[Key {
+        name: "heights",
+        takes: "`\"gaussian\"` or `\"exponential\"`",
+        about: "distribution of the heights of summits",
+        default: "`\"gaussian\"`",
+        read: |model, entry, _| entry.choice(&SUMMITS).map(|heights| model.heights = heights),
+        print: |model, _| {
+            let word = SUMMITS.iter().find(|(_, heights)| *heights == model.heights);
+            word.filter(|_| model.heights != SummitHeights::Gaussian).map(|(word, _)| printed::text(word))
+        },
+    }],
+};
+
+const SUMMITS: [(&str, SummitHeights); 2] =
+    [("gaussian", SummitHeights::Gaussian), ("exponential", SummitHeights::Exponential)];
+
+fn read_up_to(entry: &Entry<'_>, most: u64) -> Read<u32> {
+    match entry.count(1)? {
+        count if count <= most => Ok(count as u32),
+        count => {
+            let outside = entry.outside(count as f64, format!("at most {most}"));
+            Err(outside.with_help("16 and 3 by default"))
+        }
+    }
 }
 
 fn configured(numerics: Numerics, table: Entries<'_>) -> Read<Numerics> {
+    // No key of numerics has a unit or names a model.
+    let context = Context { system: System::None, models: &[] };
     let result = match numerics {
-        Numerics::Bem3d(model) => Numerics::Bem3d(bem3d_options(model, &table)?),
+        Numerics::Bem3d(mut model) => {
+            BEM3D_KEYS.read(&mut model, &table, context)?;
+            Numerics::Bem3d(model)
+        }
         Numerics::Equivalent(mut outer) => {
-            outer.model = bem3d_options(outer.model, &table)?;
-            for (key, most, value) in
-                [("per_decade", 1000, &mut outer.per_decade), ("decades", 12, &mut outer.decades)]
-            {
-                table.set(value, key, |e| match e.count(1)? {
-                    count if count <= most => Ok(count as u32),
-                    count => Err(e
-                        .outside(count as f64, format!("at most {most}"))
-                        .with_help("16 and 3 by default")),
-                })?;
-            }
+            BEM3D_KEYS.read(&mut outer.model, &table, context)?;
+            EQUIVALENT_KEYS.read(&mut outer, &table, context)?;
             Numerics::Equivalent(outer)
         }
         Numerics::Mdr1d(mut model) => {
-            table.set(&mut model.elements, "elements", |e| e.size(1))?;
+            MDR1D_KEYS.read(&mut model, &table, context)?;
             Numerics::Mdr1d(model)
         }
         Numerics::Persson(mut model) => {
-            table.set(&mut model.gamma, "gamma", Entry::positive_number)?;
+            PERSSON_KEYS.read(&mut model, &table, context)?;
             Numerics::Persson(model)
         }
         Numerics::GreenwoodWilliamson(mut model) => {
-            let words = [("gaussian", SummitHeights::Gaussian), ("exponential", SummitHeights::Exponential)];
-            table.set(&mut model.heights, "heights", |e| e.choice(&words))?;
+            GREENWOOD_WILLIAMSON_KEYS.read(&mut model, &table, context)?;
             Numerics::GreenwoodWilliamson(model)
         }
         other => other,
     };
     table.finish()?;
     Ok(result)
+}
+
+/// Sets an option of a model; `None` where it has none of this name.
+pub(crate) fn set_option(numerics: &mut Numerics, entry: &Entry<'_>) -> Option<Read<()>> {
+    let context = Context { system: System::None, models: &[] };
+    match numerics {
+        Numerics::Bem3d(model) => BEM3D_KEYS.set(model, entry, context),
+        Numerics::Equivalent(outer) => BEM3D_KEYS
+            .set(&mut outer.model, entry, context)
+            .or_else(|| EQUIVALENT_KEYS.set(outer, entry, context)),
+        Numerics::Mdr1d(model) => MDR1D_KEYS.set(model, entry, context),
+        Numerics::Persson(model) => PERSSON_KEYS.set(model, entry, context),
+        Numerics::GreenwoodWilliamson(model) => GREENWOOD_WILLIAMSON_KEYS.set(model, entry, context),
+        Numerics::Formula(_) | Numerics::Registered(_) => None,
+    }
+}
+
+/// The keys of a model that differ from their defaults, with their values as TOML.
+pub(crate) fn print_options(numerics: &Numerics) -> Vec<(&'static str, String)> {
+    let system = System::None;
+    match numerics {
+        Numerics::Bem3d(model) => BEM3D_KEYS.print(model, system),
+        Numerics::Equivalent(outer) => {
+            let mut keys = BEM3D_KEYS.print(&outer.model, system);
+            keys.extend(EQUIVALENT_KEYS.print(outer, system));
+            keys
+        }
+        Numerics::Mdr1d(model) => MDR1D_KEYS.print(model, system),
+        Numerics::Persson(model) => PERSSON_KEYS.print(model, system),
+        Numerics::GreenwoodWilliamson(model) => GREENWOOD_WILLIAMSON_KEYS.print(model, system),
+        Numerics::Formula(_) | Numerics::Registered(_) => Vec::new(),
+    }
+}
+
+/// The keys of all models.
+pub(crate) fn describe() -> Vec<SceneKey> {
+    let mut keys: Vec<SceneKey> = BEM3D_KEYS.describe().collect();
+    keys.extend(MDR1D_KEYS.describe());
+    keys.extend(EQUIVALENT_KEYS.describe());
+    keys.extend(PERSSON_KEYS.describe());
+    keys.extend(GREENWOOD_WILLIAMSON_KEYS.describe());
+    keys
 }
 
 #[cfg(test)]

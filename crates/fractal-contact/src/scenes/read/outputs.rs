@@ -1,6 +1,7 @@
 //! `[outputs]`: only requested outputs are computed and stored.
 
-use crate::scenes::read::{Distributed, Entries, Entry, Read, System};
+use crate::scenes::read::key::{Context, Key, KeyTable};
+use crate::scenes::read::{Distributed, Entries, Entry, Read, System, printed};
 use contact_model::{Conductance, FIELDS, FieldQuantity, Output, Outputs};
 use surface_io::Dimension;
 
@@ -86,6 +87,19 @@ impl RequestedOutputs {
         asked.map_or(&[], |(_, formats)| formats)
     }
 
+    /// Requests what files and distributions need of the models: pictures outline the contact, and the gap in
+    /// contact is only rounding.
+    pub(crate) fn request_what_files_need(&mut self) {
+        let counts = |of: Distributed| self.distributions.contains(&of);
+        let outlined = self.files.iter().any(|(_, formats)| formats.contains(&FieldFormat::Png));
+        self.outputs.pressure |= outlined || counts(Distributed::Pressure) || counts(Distributed::Gap);
+        self.outputs.gap |= counts(Distributed::Gap);
+        self.outputs.contact_patches |= counts(Distributed::Patches);
+        for (field, _) in &self.files {
+            self.outputs.ask(*field, true);
+        }
+    }
+
     /// Every output, with whether it is requested.
     pub fn lines(&self) -> Vec<(&'static str, bool)> {
         let of_models = Output::ALL.iter().map(|&output| (output.name(), self.outputs.asks(output)));
@@ -103,63 +117,173 @@ impl RequestedOutputs {
 /// The key that says which states are drawn.
 pub(crate) const DRAWN_STATES: &str = "drawn_states";
 
-/// The keys of `[outputs]`.
-pub(crate) fn names() -> impl Iterator<Item = &'static str> {
-    RequestedOutputs::default().lines().into_iter().map(|(name, _)| name).chain([DRAWN_STATES])
-}
+/// Keys of `[outputs]` that the program itself computes; those of the models are [`Output::ALL`].
+pub(crate) static OUTPUT_KEYS: KeyTable<RequestedOutputs> = KeyTable {
+    name: "outputs",
+    kind: "",
+    alternatives: &[],
+    everyday: &[],
+    keys: &[
+        Key {
+            name: DRAWN_STATES,
+            takes: "list of whole numbers",
+            about: "numbers of the loads or steps (from 0) whose fields are drawn, in files and in the report",
+            default: "all",
+            read: |requested, entry, _| {
+                let states = entry.list().iter().map(|state| state.size(0)).collect::<Read<_>>()?;
+                requested.drawn_states = Some(states);
+                Ok(())
+            },
+            print: |requested, _| requested.drawn_states.as_ref().map(|states| format!("{states:?}")),
+        },
+        Key {
+            name: "heights",
+            takes: "formats",
+            about: "the map as `bem3d` solved it, after crop, fill and detrend",
+            default: "none",
+            read: |requested, entry, _| read_formats(entry).map(|formats| requested.heights = formats),
+            print: |requested, _| print_formats(&requested.heights),
+        },
+        Key {
+            name: "curves",
+            takes: "`true` or `false`",
+            about: "curves over the load as SVG and PNG",
+            default: "`false`",
+            read: |requested, entry, _| entry.flag().map(|curves| requested.curves = curves),
+            print: |requested, _| requested.curves.then(|| "true".to_owned()),
+        },
+        Key {
+            name: "distributions",
+            takes: "of `\"pressure\"`, `\"gap\"`, `\"patches\"`",
+            about: "distributions of these, as CSV and picture; `patches` are areas of connected contacts",
+            default: "none",
+            read: |requested, entry, _| {
+                for item in entry.list() {
+                    let of = item.choice(&Distributed::ALL)?;
+                    if !requested.distributions.contains(&of) {
+                        requested.distributions.push(of);
+                    }
+                }
+                Ok(())
+            },
+            print: |requested, _| {
+                let names = requested.distributions.iter().map(|of| printed::text(of.name()));
+                let names: Vec<String> = names.collect();
+                (!names.is_empty()).then(|| format!("[{}]", names.join(", ")))
+            },
+        },
+        Key {
+            name: "grid_error",
+            takes: "`true` or `false`",
+            about: "`bem3d` compares each state with cells twice and four times as large",
+            default: "`false`",
+            read: |requested, entry, _| entry.flag().map(|compared| requested.grid_error = compared),
+            print: |requested, _| requested.grid_error.then(|| "true".to_owned()),
+        },
+        Key {
+            name: "statistics",
+            takes: "`true` or `false`",
+            about: "parameters of ISO 25178, spectra, height differences, fit of the surface: [tables and pictures](surfaces.md)",
+            default: "`false`",
+            read: |requested, entry, _| entry.flag().map(|computed| requested.statistics = computed),
+            print: |requested, _| requested.statistics.then(|| "true".to_owned()),
+        },
+    ],
+};
 
 /// Reads `[outputs]`.
-pub(crate) fn read_outputs(table: Option<Entries<'_>>, system: System) -> Read<RequestedOutputs> {
+pub(crate) fn read_outputs(table: Option<Entries<'_>>, context: Context<'_>) -> Read<RequestedOutputs> {
     let mut requested = RequestedOutputs::default();
     let Some(table) = table else { return Ok(requested) };
-    let flag = |key: &'static str| table.find(key).map_or(Ok(false), |e| e.flag());
-    let formats = |key: &'static str| table.find(key).map_or(Ok(Vec::new()), |e| read_formats(&e));
     for &output in Output::ALL {
-        match output {
-            Output::Conductance => {
-                if let Some(entry) = table.find("conductance") {
-                    requested.outputs.conductance = read_conductance(&entry, system)?;
-                }
-            }
-            field if field.is_field() => {
-                let formats = formats(field.name())?;
-                if !formats.is_empty() {
-                    requested.files.push((field, formats));
-                }
-            }
-            number => requested.outputs.ask(number, flag(number.name())?),
+        if let Some(entry) = table.find(output.name()) {
+            read_output(&mut requested, output, &entry, context.system)?;
         }
     }
-    requested.grid_error = flag("grid_error")?;
-    requested.curves = flag("curves")?;
-    requested.statistics = flag("statistics")?;
-    requested.heights = formats(HEIGHTS.name)?;
-    if let Some(entry) = table.find(DRAWN_STATES) {
-        let states = entry.list().iter().map(|state| state.size(0)).collect::<Read<_>>()?;
-        requested.drawn_states = Some(states);
-    }
-    if let Some(entry) = table.find("distributions") {
-        for item in entry.list() {
-            let of = item.choice(&Distributed::ALL)?;
-            if !requested.distributions.contains(&of) {
-                requested.distributions.push(of);
-            }
-        }
-    }
-    let counted = |of: Distributed| requested.distributions.contains(&of);
-    // Pictures outline the contact; the gap in contact is only rounding.
-    let outlined = requested.files.iter().any(|(_, formats)| formats.contains(&FieldFormat::Png));
-    let pressure = outlined || counted(Distributed::Pressure) || counted(Distributed::Gap);
-    let gap = counted(Distributed::Gap);
-    let patches = counted(Distributed::Patches);
-    for (field, _) in &requested.files {
-        requested.outputs.ask(*field, true);
-    }
-    requested.outputs.pressure |= pressure;
-    requested.outputs.gap |= gap;
-    requested.outputs.contact_patches |= patches;
+    OUTPUT_KEYS.read(&mut requested, &table, context)?;
     table.finish()?;
+    requested.request_what_files_need();
     Ok(requested)
+}
+
+/// Sets an output; `None` where there is none of this name.
+pub(crate) fn set_output(
+    requested: &mut RequestedOutputs,
+    entry: &Entry<'_>,
+    context: Context<'_>,
+) -> Option<Read<()>> {
+    match Output::ALL.iter().find(|output| output.name() == entry.name()) {
+        Some(output) => Some(read_output(requested, *output, entry, context.system)),
+        None => OUTPUT_KEYS.set(requested, entry, context),
+    }
+}
+
+fn read_output(
+    requested: &mut RequestedOutputs,
+    output: Output,
+    entry: &Entry<'_>,
+    system: System,
+) -> Read<()> {
+    match output {
+        Output::Conductance => requested.outputs.conductance = read_conductance(entry, system)?,
+        field if field.is_field() => {
+            let formats = read_formats(entry)?;
+            requested.files.retain(|(other, _)| *other != field);
+            if !formats.is_empty() {
+                requested.files.push((field, formats));
+            }
+        }
+        number => requested.outputs.ask(number, entry.flag()?),
+    }
+    Ok(())
+}
+
+/// The keys of `[outputs]` that are requested, with their values as TOML.
+pub(crate) fn print_outputs(requested: &RequestedOutputs, system: System) -> Vec<(&'static str, String)> {
+    let of_model = |output: &Output| {
+        let value = match output {
+            Output::Conductance => print_conductance(requested.outputs.conductance, system),
+            field if field.is_field() => {
+                let files = requested.files.iter().find(|(of, _)| of == field);
+                files.and_then(|(_, formats)| print_formats(formats))
+            }
+            number => requested.outputs.asks(*number).then(|| "true".to_owned()),
+        };
+        Some((output.name(), value?))
+    };
+    let mut keys: Vec<(&'static str, String)> = Output::ALL.iter().filter_map(of_model).collect();
+    keys.extend(OUTPUT_KEYS.print(requested, system));
+    keys
+}
+
+const FORMATS: [(&str, FieldFormat); 4] = [
+    ("npy", FieldFormat::Npy),
+    ("png", FieldFormat::Png),
+    ("pixels", FieldFormat::Pixels),
+    ("vti", FieldFormat::Vti),
+];
+
+fn print_formats(formats: &[FieldFormat]) -> Option<String> {
+    let word =
+        |format| FORMATS.iter().find(|(_, known)| *known == format).map(|(word, _)| printed::text(word));
+    let words: Vec<String> = formats.iter().filter_map(|format| word(*format)).collect();
+    (!words.is_empty()).then(|| format!("[{}]", words.join(", ")))
+}
+
+fn print_conductance(conductance: Conductance, system: System) -> Option<String> {
+    let print = |kind: &str, key: &str, values: [f64; 2], dimension| {
+        let [first, second] = values.map(|value| printed::quantity(value, dimension, system));
+        Some(format!("{{ kind = \"{kind}\", {key} = [{first}, {second}] }}"))
+    };
+    match conductance {
+        Conductance::Electrical { first, second } => {
+            print("electrical", "resistivities", [first, second], Dimension::RESISTIVITY)
+        }
+        Conductance::Thermal { first, second } => {
+            print("thermal", "conductivities", [first, second], Dimension::THERMAL_CONDUCTIVITY)
+        }
+        _ => None,
+    }
 }
 
 /// `["npy", "png"]`, one of them, or `false`.
@@ -175,12 +299,7 @@ fn read_formats(entry: &Entry<'_>) -> Read<Vec<FieldFormat>> {
     }
     let mut formats = Vec::new();
     for item in entry.list() {
-        let format = item.choice(&[
-            ("npy", FieldFormat::Npy),
-            ("png", FieldFormat::Png),
-            ("pixels", FieldFormat::Pixels),
-            ("vti", FieldFormat::Vti),
-        ])?;
+        let format = item.choice(&FORMATS)?;
         if !formats.contains(&format) {
             formats.push(format);
         }

@@ -1,6 +1,7 @@
 //! A path of loads: straight pieces, each divided into steps while the path is followed.
 
-use crate::scenes::read::{Entry, Read, System};
+use crate::scenes::read::key::{Context, Key, KeyTable};
+use crate::scenes::read::{Entry, LoadKind, Places, Read, System, printed};
 use contact_model::{ContactState, Error, Load, NormalLoad, Result, Size, Step, Tangential};
 use surface_io::Dimension;
 
@@ -153,72 +154,210 @@ pub(crate) fn zero_if_rounded(value: f64, ends: [f64; 2]) -> f64 {
     if value.abs() <= ROUNDINGS * f64::EPSILON * largest { 0.0 } else { value }
 }
 
-/// Reads `[[scene.path]]`. `pulls` allows negative loads (adhesion). `size` is that of the nominal contact
-/// area, for mean pressures.
-pub(crate) fn read_path(entry: &Entry<'_>, system: System, pulls: bool, size: Size) -> Read<Vec<PathPiece>> {
+/// A step of `[[scene.path]]`, by the keys that are given.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[non_exhaustive]
+pub struct AskedStep {
+    /// End of a straight piece of the path.
+    pub time: Option<f64>,
+    /// Normal load there.
+    pub normal: Option<(LoadKind, f64)>,
+    /// Tangential load there.
+    pub tangential: Option<Tangential>,
+    /// Number of equal parts of the piece.
+    pub states: Option<u64>,
+}
+
+/// Keys of a step.
+pub(crate) static PATH_KEYS: KeyTable<AskedStep> = KeyTable {
+    name: "scene.path",
+    kind: "",
+    alternatives: &[
+        &["force", "approach", "mean_pressure", "mean_gap"],
+        &["tangential_force", "tangential_displacement"],
+    ],
+    everyday: &[],
+    keys: &[
+        Key {
+            name: "time",
+            takes: "time",
+            about: "time at the end of this straight piece of the path",
+            default: "that of the step before",
+            read: |step, entry, context| {
+                entry.quantity(Dimension::TIME, context.system).map(|time| step.time = Some(time))
+            },
+            print: |step, system| step.time.map(|time| printed::quantity(time, Dimension::TIME, system)),
+        },
+        Key {
+            name: "force",
+            takes: "force",
+            about: "normal force at the end of the piece",
+            default: "that of the step before",
+            read: |step, entry, context| read_normal(step, LoadKind::Force, entry, context),
+            print: |step, system| print_normal(step, LoadKind::Force, system),
+        },
+        Key {
+            name: "mean_pressure",
+            takes: "pressure",
+            about: "force over the nominal contact area",
+            default: "that of the step before",
+            read: |step, entry, context| read_normal(step, LoadKind::MeanPressure, entry, context),
+            print: |step, system| print_normal(step, LoadKind::MeanPressure, system),
+        },
+        Key {
+            name: "approach",
+            takes: "length",
+            about: "approach of the bodies; free boundaries",
+            default: "that of the step before",
+            read: |step, entry, context| read_normal(step, LoadKind::Approach, entry, context),
+            print: |step, system| print_normal(step, LoadKind::Approach, system),
+        },
+        Key {
+            name: "mean_gap",
+            takes: "length",
+            about: "distance between the mean planes; periodic boundaries",
+            default: "that of the step before",
+            read: |step, entry, context| read_normal(step, LoadKind::MeanGap, entry, context),
+            print: |step, system| print_normal(step, LoadKind::MeanGap, system),
+        },
+        Key {
+            name: "tangential_force",
+            takes: "force, or `[x, y]`",
+            about: "tangential force along x, or along x and y; at most [mu F](friction.md#one-step-is-one-increment)",
+            default: "that of the step before",
+            read: |step, entry, context| {
+                let force = read_tangential(entry, Dimension::FORCE, context.system)?;
+                step.tangential = Some(Tangential::Force(force));
+                Ok(())
+            },
+            print: |step, system| match step.tangential {
+                Some(Tangential::Force(force)) => Some(print_pair(force, Dimension::FORCE, system)),
+                _ => None,
+            },
+        },
+        Key {
+            name: "tangential_displacement",
+            takes: "length, or `[x, y]`",
+            about: "tangential displacement along x, or along x and y",
+            default: "that of the step before",
+            read: |step, entry, context| {
+                let displacement = read_tangential(entry, Dimension::LENGTH, context.system)?;
+                step.tangential = Some(Tangential::Displacement(displacement));
+                Ok(())
+            },
+            print: |step, system| match step.tangential {
+                Some(Tangential::Displacement(displacement)) => {
+                    Some(print_pair(displacement, Dimension::LENGTH, system))
+                }
+                _ => None,
+            },
+        },
+        Key {
+            name: "states",
+            takes: "whole number >= 1",
+            about: "number of equal parts of the piece, each with a state at its end; a quantity prescribed anew begins at its value in the state reached",
+            default: "1",
+            read: |step, entry, _| entry.count(1).map(|states| step.states = Some(states)),
+            print: |step, _| step.states.map(|states| states.to_string()),
+        },
+    ],
+};
+
+fn dimension_of(kind: LoadKind) -> Dimension {
+    match kind {
+        LoadKind::Force => Dimension::FORCE,
+        LoadKind::MeanPressure => Dimension::PRESSURE,
+        LoadKind::ForceBar => Dimension::NONE,
+        LoadKind::Approach | LoadKind::MeanGap => Dimension::LENGTH,
+    }
+}
+
+fn read_normal(step: &mut AskedStep, kind: LoadKind, entry: &Entry<'_>, context: Context<'_>) -> Read<()> {
+    step.normal = Some((kind, entry.quantity(dimension_of(kind), context.system)?));
+    Ok(())
+}
+
+fn print_normal(step: &AskedStep, kind: LoadKind, system: System) -> Option<String> {
+    let (_, value) = step.normal.filter(|(of, _)| *of == kind)?;
+    Some(printed::quantity(value, dimension_of(kind), system))
+}
+
+fn print_pair(components: [f64; 2], dimension: Dimension, system: System) -> String {
+    let component = |value| printed::quantity(value, dimension, system);
+    match components {
+        [x, y] if y.to_bits() == 0 => component(x),
+        both => printed::list(&both.map(component)),
+    }
+}
+
+/// Reads `[[scene.path]]`.
+pub(crate) fn read_steps(entry: &Entry<'_>, context: Context<'_>) -> Read<Vec<AskedStep>> {
     if !entry.is_list() {
         return Err(entry
             .diagnostic_at_key("`path` is no list of steps")
             .with_help("write [[scene.path]] once for each step"));
     }
+    let step = |item: &Entry<'_>| -> Read<AskedStep> {
+        let (table, mut step) = (item.table()?, AskedStep::default());
+        PATH_KEYS.read(&mut step, &table, context)?;
+        table.finish()?;
+        Ok(step)
+    };
+    entry.list().iter().map(step).collect()
+}
+
+/// The pieces of a path. `pulls` allows negative loads (adhesion). `size` is that of the nominal contact area,
+/// for mean pressures.
+pub(crate) fn pieces(steps: &[AskedStep], pulls: bool, size: Size, places: &Places) -> Read<Vec<PathPiece>> {
     let mut pieces: Vec<PathPiece> = Vec::new();
     let mut last = Step::new(0.0, Load::force(0.0));
     let mut total = 0_u64;
-    for item in entry.list() {
-        let table = item.table()?;
-        let mut time = last.time;
-        table.set(&mut time, "time", |e| e.quantity(Dimension::TIME, system))?;
-        let normal = match table.one_of(&["force", "approach", "mean_pressure", "mean_gap"])? {
-            Some(("force", e)) => NormalLoad::Force(e.quantity(Dimension::FORCE, system)?),
+    for (index, step) in steps.iter().enumerate() {
+        let place = format!("scene.path.{index}");
+        let normal = match step.normal {
+            Some((LoadKind::Force | LoadKind::ForceBar, force)) => NormalLoad::Force(force),
             // The mean pressure times the nominal contact area, as for a list of mean pressures.
-            Some(("mean_pressure", e)) => {
-                NormalLoad::Force(e.quantity(Dimension::PRESSURE, system)? * size.length() * size.length())
+            Some((LoadKind::MeanPressure, pressure)) => {
+                NormalLoad::Force(pressure * size.length() * size.length())
             }
-            Some(("mean_gap", e)) => NormalLoad::MeanGap(e.quantity(Dimension::LENGTH, system)?),
-            Some((_, e)) => NormalLoad::Approach(e.quantity(Dimension::LENGTH, system)?),
+            Some((LoadKind::MeanGap, gap)) => NormalLoad::MeanGap(gap),
+            Some((LoadKind::Approach, approach)) => NormalLoad::Approach(approach),
             None if pieces.is_empty() => {
-                return Err(item
-                    .diagnostic("the first step of the path has no normal load")
+                return Err(places
+                    .at_value(&place, "the first step of the path has no normal load")
                     .with_help("give `force`, `mean_pressure`, `approach` or (periodic) `mean_gap`"));
             }
             None => last.load.normal,
         };
-        let tangential = match table.one_of(&["tangential_force", "tangential_displacement"])? {
-            Some(("tangential_force", e)) => {
-                Tangential::Force(read_tangential(&e, Dimension::FORCE, system)?)
-            }
-            Some((_, e)) => Tangential::Displacement(read_tangential(&e, Dimension::LENGTH, system)?),
-            None => last.load.tangential,
-        };
-        let states = table.find("states");
-        let count = states.as_ref().map_or(Ok(1), |e| e.count(1))?;
-        if let Some(entry) = states
-            && count.saturating_add(total) > MOST
-        {
-            return Err(entry
-                .diagnostic(format!("{count} states: expected at most {MOST} along the whole path"))
+        let tangential = step.tangential.unwrap_or(last.load.tangential);
+        let count = step.states.unwrap_or(1);
+        if step.states.is_some() && count.saturating_add(total) > MOST {
+            return Err(places
+                .at_value(
+                    &format!("{place}.states"),
+                    format!("{count} states: expected at most {MOST} along the whole path"),
+                )
                 .with_help(
                     "states in between are increments of friction, and otherwise only shown: request fewer",
                 ));
         }
-        table.finish()?;
-        let end = Step::new(time, Load { normal, tangential });
+        let end = Step::new(step.time.unwrap_or(last.time), Load { normal, tangential });
         let checked = if pulls { end.validated_with_adhesion(last.time) } else { end.validated(last.time) };
-        checked.map_err(|e| {
-            let help = match &e {
+        checked.map_err(|error| {
+            let help = match &error {
                 Error::Domain { name, .. } if name == "time" => "times never decrease along a path",
                 _ if pulls => "loads are finite numbers",
                 _ => "loads are finite, and normal loads at least 0: only `adhesion` in [effects] lets a contact pull",
             };
-            item.diagnostic(e.to_string()).with_help(help)
+            places.at_value(&place, error.to_string()).with_help(help)
         })?;
         total = total.saturating_add(count);
         pieces.push(PathPiece { end, states: count as usize });
         last = end;
     }
     if pieces.is_empty() {
-        return Err(entry
-            .diagnostic("the path has no step")
+        return Err(places
+            .at_value("scene.path", "the path has no step")
             .with_help("write [[scene.path]] once for each step"));
     }
     Ok(pieces)
@@ -252,7 +391,9 @@ mod tests {
     fn path(text: &str) -> Read<Vec<PathPiece>> {
         let size = Size { x: 4.0, y: 1.0 };
         Entries::of_text("scene", text, |scene| {
-            read_path(&scene.require("path", "")?, System::None, true, size)
+            let context = Context { system: System::None, models: &[] };
+            let steps = read_steps(&scene.require("path", "")?, context)?;
+            pieces(&steps, true, size, &Places::default())
         })
     }
 

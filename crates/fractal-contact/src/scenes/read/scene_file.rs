@@ -1,18 +1,22 @@
 //! A scene as it is read from a file.
 
-use crate::scenes::EFFECT_KEYS;
+use crate::scenes::read::key::missing;
+use crate::scenes::read::loads::{AskedLoads, check_signs};
+use crate::scenes::read::numerics::print_options;
+use crate::scenes::read::outputs::DRAWN_STATES;
+use crate::scenes::read::path::pieces;
+use crate::scenes::read::question::{AskedSampling, Material, read_question};
+use crate::scenes::read::scene_surface::{FoundSurface, find_surface};
 use crate::scenes::read::{
-    Diagnostic, Entries, Entry, LoadKind, LoadRequest, MOST_CELLS, Numerics, Read, Registry,
-    RequestedAccuracy, RequestedOutputs, Result, SceneSurface, SurfaceEntry, System, outputs, read_accuracy,
-    read_effects, read_models, read_outputs, read_request, read_surface, short,
+    Diagnostic, Entries, LoadKind, LoadRequest, MOST_CELLS, Numerics, Places, Question, Read, Registry,
+    RequestedAccuracy, RequestedOutputs, Result, SceneSurface, System, short,
 };
 use contact_model::{
-    Adhesion, Body, Boundary, Cells, Directions, Effect, Effects, Friction, Hardness, NormalLoad, Output,
-    Pair, Paths, Rheology, Scene,
+    Adhesion, Boundary, Cells, Directions, Effect, Effects, Friction, Hardness, NormalLoad, Output, Pair,
+    Paths, Rheology, Scene, Size,
 };
 use std::ops::Range;
 use std::path::{Path, PathBuf};
-use surface_io::Dimension;
 
 /// Largest size of a scene file in bytes; a longer file is not a scene.
 const LONGEST: u64 = 1 << 20;
@@ -66,25 +70,6 @@ pub struct Sampling {
     pub seed: u64,
     /// Number of surfaces drawn from it.
     pub surfaces: usize,
-}
-
-/// Places in the text, for messages.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
-struct Places {
-    models: Vec<Range<usize>>,
-    outputs: Vec<(&'static str, Range<usize>)>,
-    effects: Vec<(&'static str, Range<usize>)>,
-    accuracy: Option<Range<usize>>,
-}
-
-impl Places {
-    fn of_output(&self, name: &str) -> Option<Range<usize>> {
-        self.outputs.iter().find(|(key, _)| *key == name).map(|(_, span)| span.clone())
-    }
-
-    fn of_effect(&self, name: &str) -> Option<Range<usize>> {
-        self.effects.iter().find(|(key, _)| *key == name).map(|(_, span)| span.clone())
-    }
 }
 
 impl SceneFile {
@@ -193,17 +178,49 @@ impl SceneFile {
     /// # Errors
     /// As [`SceneFile::parse`].
     pub fn parse_with(path: &Path, text: String, registry: &Registry) -> Result<Self> {
+        let own = registry.models().iter().cloned().map(Numerics::Registered);
+        let models: Vec<Numerics> = Numerics::all().chain(own).collect();
         let read = |root: Entries<'_>| {
-            let scene = read_scene(&root, path.parent().unwrap_or(Path::new("")), registry)?;
-            root.finish()?;
-            Ok(scene)
+            let (question, mut notes) = read_question(&root, &models)?;
+            let scene = Self::answered(question, path, root.places())?;
+            notes.extend(scene.notes);
+            Ok(Self { notes, ..scene })
         };
         let scene = Entries::of_text("", &text, read);
-        let mut scene = scene.map_err(|diagnostic| diagnostic.placed(path, &text))?;
-        path.clone_into(&mut scene.path);
-        scene.notes = scene.notes.into_iter().map(|note| note.placed(path, &text)).collect();
-        scene.text = text;
-        Ok(scene)
+        scene
+            .map_err(|diagnostic| diagnostic.placed(path, &text).into())
+            .map(|scene| scene.of_text(path, text))
+    }
+
+    /// The scene of a question; files that it names are looked up from the folder of `path`, where the scene is
+    /// said to stand. Its text is that of [`Question::to_toml`].
+    ///
+    /// # Errors
+    /// As [`SceneFile::parse`].
+    pub fn of(question: Question, path: &Path) -> Result<Self> {
+        let text = question.to_toml();
+        Self::of_printed(question, path, text)
+    }
+
+    /// The same of a question that was printed with comments ([`Question::printed`]).
+    ///
+    /// # Errors
+    /// As [`SceneFile::parse`].
+    pub fn of_printed(question: Question, path: &Path, text: String) -> Result<Self> {
+        // The places of its keys in this text, for messages.
+        let places = Entries::of_text("", &text, |root| Ok(root.places())).unwrap_or_default();
+        let scene = Self::answered(question, path, places);
+        scene
+            .map_err(|diagnostic| diagnostic.placed(path, &text).into())
+            .map(|scene| scene.of_text(path, text))
+    }
+
+    /// With its file and the text of that.
+    fn of_text(mut self, path: &Path, text: String) -> Self {
+        path.clone_into(&mut self.path);
+        self.notes = self.notes.into_iter().map(|note| note.placed(path, &text)).collect();
+        self.text = text;
+        self
     }
 
     /// The physical problem for one model and one surface.
@@ -231,22 +248,23 @@ impl SceneFile {
 
     /// A mistake at the name of a model.
     pub(crate) fn at_model(&self, index: usize, diagnostic: Diagnostic) -> Diagnostic {
-        self.placed(diagnostic, self.places.models.get(index).cloned())
+        let place = self.places.value(&format!("scene.models.{index}"));
+        self.placed(diagnostic, place.or_else(|| self.places.value("scene.models")))
     }
 
     /// A mistake of an output.
     pub(crate) fn at_output(&self, name: &str, diagnostic: Diagnostic) -> Diagnostic {
-        self.placed(diagnostic, self.places.of_output(name))
+        self.placed(diagnostic, self.places.key(&format!("outputs.{name}")))
     }
 
     /// A mistake of an effect.
     pub(crate) fn at_effect(&self, name: &str, diagnostic: Diagnostic) -> Diagnostic {
-        self.placed(diagnostic, self.places.of_effect(name))
+        self.placed(diagnostic, self.places.key(&format!("effects.{name}")))
     }
 
     /// A mistake of the requested accuracy.
     pub(crate) fn at_accuracy(&self, diagnostic: Diagnostic) -> Diagnostic {
-        self.placed(diagnostic, self.places.accuracy.clone())
+        self.placed(diagnostic, self.places.key("scene.accuracy"))
     }
 
     fn placed(&self, diagnostic: Diagnostic, span: Option<Range<usize>>) -> Diagnostic {
@@ -277,214 +295,175 @@ impl SceneFile {
     }
 }
 
-fn read_scene(root: &Entries<'_>, directory: &Path, registry: &Registry) -> Read<SceneFile> {
-    let Some(scene) = root.table("scene")? else {
-        return Err(Diagnostic::new("there is no [scene]")
-            .with_help("a scene begins with [scene]: `models`, `contact_modulus` and a load"));
-    };
-    let mut system = System::Si;
-    scene.set(&mut system, "units", |e| e.choice(&[("none", System::None), ("si", System::Si)]))?;
-    let (contact_modulus, pair, renamed) = read_material(&scene, system)?;
-    let options = root.table("models")?;
-    let models = read_models(&scene, options.as_ref(), registry.models())?;
-    let effects_table = root.table("effects")?;
-    let effect_places = places(effects_table.as_ref(), EFFECT_KEYS.iter().map(|key| key.name));
-    let effects = read_effects(effects_table, system)?;
-    let outputs_table = root.table("outputs")?;
-    let output_places = places(outputs_table.as_ref(), outputs::names());
-    let requested = read_outputs(outputs_table, system)?;
-    let hardness_entry = scene.find("hardness");
-    let hardness = hardness_entry.as_ref().map(|e| e.positive(Dimension::PRESSURE, system)).transpose()?;
-    if let Some(entry) = &hardness_entry
-        && effects.hardness != Hardness::Off
-    {
-        return Err(entry.diagnostic_at_key("`hardness` is given in [scene] and in [effects]").with_help(
-            "keep that of [effects], which limits the pressure; that of [scene] only marks states",
-        ));
-    }
-    let accuracy = read_accuracy(&scene)?;
-    let SurfaceEntry { surface, metadata, reliable_from, mut notes } =
-        read_surface(&scene, system, directory)?;
-    notes.splice(0..0, renamed);
-    check_cells(options.as_ref(), &models, &surface)?;
-    if accuracy.is_some() {
-        check_no_grid(options.as_ref())?;
-    }
-    check_homogeneous(&scene, &models, &surface)?;
-    let pulls = effects.adhesion != Adhesion::Off;
-    let (request, request_entry) = read_request(&scene, system, pulls, surface.size())?;
-    let sampling = read_sampling(root, &scene, &models, &surface, &mut notes)?;
-    scene.finish()?;
-    let places = Places {
-        models: models.iter().map(|(_, entry)| entry.span()).collect(),
-        outputs: output_places,
-        effects: effect_places,
-        accuracy: accuracy.as_ref().map(|(_, entry)| entry.key_span()),
-    };
-    check_request(&request, &request_entry, &surface, &effects)?;
-    check_half_plane(&request, &request_entry, &surface, (&effects, &requested), &places)?;
-    check_drawn_states(&requested, &request)
-        .map_err(|error| error.at(places.of_output(outputs::DRAWN_STATES)))?;
-    check_histories(&models, &request, &request_entry, &effects)?;
-    check_tangential(&models, &request, &effects)?;
-    check_coupling(&models, pair.as_ref(), effects.friction, places.of_effect("friction"))?;
-    let models = models.into_iter().map(|(numerics, _)| numerics).collect();
-    Ok(SceneFile {
-        system,
-        hardness,
-        accuracy: accuracy.map(|(requested, _)| requested),
-        pair,
-        effects,
-        requested,
-        sampling,
-        metadata,
-        reliable_from,
-        notes,
-        places,
-        ..SceneFile::new(models, surface, contact_modulus, request)
-    })
-}
-
-fn places(
-    table: Option<&Entries<'_>>,
-    names: impl Iterator<Item = &'static str>,
-) -> Vec<(&'static str, Range<usize>)> {
-    let Some(table) = table else { return Vec::new() };
-    names.filter_map(|name| Some((name, table.entry(name)?.key_span()))).collect()
-}
-
-/// E*, given directly or by both bodies, and a note where it has its former name.
-fn read_material(scene: &Entries<'_>, system: System) -> Read<(f64, Option<Pair>, Option<Diagnostic>)> {
-    match scene.one_of(&["contact_modulus", "modulus", "bodies"])? {
-        Some(("contact_modulus", entry)) => Ok((entry.positive(Dimension::PRESSURE, system)?, None, None)),
-        Some(("modulus", entry)) => {
-            let note = Diagnostic::note("`modulus` is read as `contact_modulus`, which is E* of the pair")
-                .at(entry.key_span())
-                .with_help("To give Young's modulus and Poisson's ratio, write `bodies`.");
-            Ok((entry.positive(Dimension::PRESSURE, system)?, None, Some(note)))
+impl SceneFile {
+    /// The scene of a question, checked as far as that is possible without a model.
+    fn answered(question: Question, path: &Path, places: Places) -> Read<Self> {
+        let Question { units: system, material, accuracy, effects, hardness, .. } = question;
+        if question.models.is_empty() {
+            return Err(missing("scene", "models", "[\"bem3d\"]", &places));
         }
-        Some((_, entry)) => {
-            let values = entry.list();
-            let [first, second] = &values[..] else {
-                return Err(entry
-                    .diagnostic(format!("`bodies` names {}", values.len()))
-                    .with_help("two: `bodies = [\"rigid\", { young = \"70 GPa\", poisson = 0.33 }]`"));
-            };
-            let pair = Pair { first: read_body(first, system)?, second: read_body(second, system)? };
-            let contact_modulus = pair.contact_modulus().map_err(|e| entry.diagnostic(e.to_string()))?;
-            Ok((contact_modulus, Some(pair), None))
+        let (contact_modulus, pair) = match material {
+            Some(Material::ContactModulus(modulus)) => (modulus, None),
+            Some(Material::Bodies(pair)) => {
+                let wrong = |error: contact_model::Error| places.at_value("scene.bodies", error.to_string());
+                (pair.contact_modulus().map_err(wrong)?, Some(pair))
+            }
+            None => {
+                return Err(places.at_key("scene", "[scene] has no material").with_help(
+                    "add `contact_modulus = \"70 GPa\"` (E* of the pair), or `bodies = [\"rigid\", { young = \"70 GPa\", poisson = 0.33 }]`",
+                ));
+            }
+        };
+        if hardness.is_some() && effects.hardness != Hardness::Off {
+            return Err(places
+                .at_key("scene.hardness", "`hardness` is given in [scene] and in [effects]")
+                .with_help(
+                    "keep that of [effects], which limits the pressure; that of [scene] only marks states",
+                ));
         }
-        None => Err(scene.misspelt_or(&["contact_modulus", "bodies"], scene.diagnostic("[scene] has no material").with_help(
-            "add `contact_modulus = \"70 GPa\"` (E* of the pair), or `bodies = [\"rigid\", { young = \"70 GPa\", poisson = 0.33 }]`",
-        ))),
+        let directory = path.parent().unwrap_or(Path::new(""));
+        let FoundSurface { surface, metadata, reliable_from, notes } =
+            find_surface(&question, directory, &places)?;
+        check_cells(&question, &surface, &places)?;
+        if accuracy.is_some() {
+            check_no_grid(&question, &places)?;
+        }
+        check_homogeneous(&question, &surface, &places)?;
+        let request = request(&question, surface.size(), &places)?;
+        let sampling = sampling(&question, &surface, &places)?;
+        let mut requested = question.outputs;
+        requested.request_what_files_need();
+        let mut scene = Self {
+            system,
+            hardness,
+            accuracy,
+            pair,
+            effects,
+            requested,
+            sampling,
+            metadata,
+            reliable_from,
+            notes,
+            ..Self::new(question.models, surface, contact_modulus, request)
+        };
+        check_request(&scene, &places)?;
+        check_half_plane(&scene, &places)?;
+        check_drawn_states(&scene.requested, &scene.request)
+            .map_err(|error| error.at(places.key(&format!("outputs.{DRAWN_STATES}"))))?;
+        check_histories(&scene, &places)?;
+        check_tangential(&scene, &places)?;
+        check_coupling(&scene, &places)?;
+        scene.places = places;
+        Ok(scene)
     }
 }
 
-fn read_body(entry: &Entry<'_>, system: System) -> Read<Body> {
-    if entry.is_text() {
-        return entry.choice(&[("rigid", Body::Rigid)]);
+/// The loads or the path.
+fn request(question: &Question, size: Size, places: &Places) -> Read<LoadRequest> {
+    let pulls = question.effects.adhesion != Adhesion::Off;
+    match &question.loads {
+        Some(AskedLoads::Loads(loads)) => {
+            check_signs(loads, question.units, pulls, places)?;
+            Ok(LoadRequest::Loads(loads.clone()))
+        }
+        Some(AskedLoads::Path(steps)) => Ok(LoadRequest::Path(pieces(steps, pulls, size, places)?)),
+        None => Err(places
+            .at_key("scene", "nothing is pressed: [scene] has no load")
+            .with_help("add `force = \"1 N\"`, `approach = [...]`, `force_bar = { from = 1e-4, to = 1, count = 9 }`, or [[scene.path]] for a history")),
     }
-    let table = entry.table()?;
-    let young = table.require("young", "\"70 GPa\"")?.positive(Dimension::PRESSURE, system)?;
-    let ratio = table.require("poisson", "0.33")?;
-    let poisson = ratio.number()?;
-    table.finish()?;
-    if !(0.0..=0.5).contains(&poisson) {
-        return Err(ratio
-            .diagnostic(format!("`poisson` = {poisson}: expected a number in [0, 0.5]"))
-            .with_help("0.5 is incompressible"));
-    }
-    Ok(Body::Elastic { young, poisson })
 }
 
-fn read_sampling(
-    root: &Entries<'_>,
-    scene: &Entries<'_>,
-    models: &[(Numerics, Entry<'_>)],
-    surface: &SceneSurface,
-    notes: &mut Vec<Diagnostic>,
-) -> Read<Sampling> {
-    let line = models.iter().find(|(m, _)| surface.given_map().is_some() && surface.is_random_for(m));
+/// The key of the loads or of the path.
+fn request_key(request: &LoadRequest) -> String {
+    match request {
+        LoadRequest::Loads(loads) => format!("scene.{}", loads.kind.key()),
+        LoadRequest::Path(_) => "scene.path".to_owned(),
+    }
+}
+
+/// A mistake at the name of a model.
+fn at_model(places: &Places, index: usize, message: String) -> Diagnostic {
+    let item = places.value(&format!("scene.models.{index}"));
+    Diagnostic::new(message).at(item.or_else(|| places.value("scene.models")))
+}
+
+fn sampling(question: &Question, surface: &SceneSurface, places: &Places) -> Read<Sampling> {
+    const SURFACES: &str = "sampling.surfaces";
+    let is_line = |model: &Numerics| surface.given_map().is_some() && surface.is_random_for(model);
+    let line = question.models.iter().position(is_line);
     let is_random = surface.is_random() || line.is_some();
-    let Some((name, entry)) = root.one_of(&["sampling", "chance"])? else {
-        if let Some((_, model)) = line {
-            return Err(model
-                .diagnostic("the line that stands for the map is random and no seed is given")
+    let Some(AskedSampling { seed, surfaces }) = question.sampling else {
+        if let Some(model) = line {
+            let message = "the line that stands for the map is random and no seed is given".to_owned();
+            return Err(at_model(places, model, message)
                 .with_help("add [sampling] with `seed = 1`; with `surfaces = 60` there are as many lines"));
         }
         if is_random {
-            return Err(scene
-                .diagnostic("the surface is random and no seed is given")
+            return Err(places
+                .at_key("scene", "the surface is random and no seed is given")
                 .with_help("add [sampling] with `seed = 1`: the same seed is the same surface"));
         }
         return Ok(Sampling { seed: 0, surfaces: 1 });
     };
-    let table = entry.table()?;
-    if name == "chance" {
-        let note = Diagnostic::note("`[chance]` is now `[sampling]`").at(entry.key_span());
-        notes.push(note.with_help("rename the table; its keys are the same"));
-    }
-    let seed = table.require("seed", "1")?.count(0)?;
-    let surfaces = table.find("surfaces");
-    if let (Some(entry), false) = (&surfaces, is_random) {
-        return Err(entry
-            .diagnostic_at_key("`surfaces` is given, but nothing here is random")
+    let seed = seed.ok_or_else(|| missing("sampling", "seed", "1", places))?;
+    if surfaces.is_some() && !is_random {
+        return Err(places
+            .at_key(SURFACES, "`surfaces` is given, but nothing here is random")
             .with_help("remove it: there is one surface"));
     }
-    let count = surfaces.as_ref().map_or(Ok(1), |e| e.count(1))?;
-    if let (Some(entry), true) = (&surfaces, count > MOST_SURFACES) {
-        return Err(entry
-            .diagnostic(format!("{count} surfaces: expected at most {MOST_SURFACES}"))
+    let count = surfaces.unwrap_or(1);
+    if count > MOST_SURFACES {
+        return Err(places
+            .at_value(SURFACES, format!("{count} surfaces: expected at most {MOST_SURFACES}"))
             .with_help("the mean of 1000 surfaces is good to a per cent"));
     }
-    table.finish()?;
     Ok(Sampling { seed, surfaces: count as usize })
 }
 
+/// Whether a key of the numerics of a model is given: in the text, or with another value than its default.
+fn is_given(model: &Numerics, key: &str, places: &Places) -> bool {
+    places.has(&format!("models.{}.{key}", model.name()))
+        || print_options(model).iter().any(|(name, _)| *name == key)
+}
+
 /// Checks that the grid is not given where an accuracy chooses it.
-fn check_no_grid(options: Option<&Entries<'_>>) -> Read<()> {
-    let Some(entry) = options.and_then(|options| options.entry("bem3d")) else { return Ok(()) };
-    let table = entry.table()?;
-    for key in ["cells", "rows", "tolerance"] {
-        if let Some(given) = table.entry(key) {
-            return Err(given
-                .diagnostic_at_key(format!("`{key}` is given together with `accuracy`, which chooses it"))
-                .with_help("keep one of them"));
+fn check_no_grid(question: &Question, places: &Places) -> Read<()> {
+    let Some(model) = question.models.iter().find(|model| matches!(model, Numerics::Bem3d(_))) else {
+        return Ok(());
+    };
+    match ["cells", "rows", "tolerance"].into_iter().find(|key| is_given(model, key, places)) {
+        Some(key) => {
+            let message = format!("`{key}` is given together with `accuracy`, which chooses it");
+            Err(places.at_key(&format!("models.bem3d.{key}"), message).with_help("keep one of them"))
         }
+        None => Ok(()),
     }
-    Ok(())
 }
 
 /// Checks that no cells are given for a map, which has its own, and that a generated surface has not too
 /// many.
-fn check_cells(
-    options: Option<&Entries<'_>>,
-    models: &[(Numerics, Entry<'_>)],
-    surface: &SceneSurface,
-) -> Read<()> {
-    let Some(own) = surface.own_cells() else {
-        for (numerics, name) in models {
-            let Some(elements) = numerics.boundary_elements() else { continue };
+fn check_cells(question: &Question, surface: &SceneSurface, places: &Places) -> Read<()> {
+    for (index, numerics) in question.models.iter().enumerate() {
+        let Some(elements) = numerics.boundary_elements() else { continue };
+        let name = numerics.name();
+        let Some(own) = surface.own_cells() else {
             let cells = elements.grid(surface.size());
             if cells.checked_count().is_none_or(|count| count > MOST_CELLS * MOST_CELLS) {
                 let (columns, rows, most) = (cells.columns, cells.rows, MOST_CELLS);
-                return Err(name
-                    .diagnostic(format!("{columns} x {rows} cells: expected at most {most} x {most}"))
-                    .with_help(format!(
-                        "give fewer `cells` (columns) or `rows` in [models.{}]; without `rows` cells are nearly square",
-                        numerics.name()
-                    )));
+                let message = format!("{columns} x {rows} cells: expected at most {most} x {most}");
+                return Err(at_model(places, index, message).with_help(format!(
+                    "give fewer `cells` (columns) or `rows` in [models.{name}]; without `rows` cells are nearly square"
+                )));
             }
-        }
-        return Ok(());
-    };
-    let Some(options) = options else { return Ok(()) };
-    for model in ["bem3d", "equivalent"] {
-        let Some(table) = options.entry(model) else { continue };
+            continue;
+        };
         for (key, own) in [("cells", own.columns), ("rows", own.rows)] {
-            if let Some(cells) = table.table()?.entry(key) {
-                return Err(cells
-                    .diagnostic_at_key(format!("`{key}` is given, but the map brings its own {own}"))
+            if is_given(numerics, key, places) {
+                return Err(places
+                    .at_key(
+                        &format!("models.{name}.{key}"),
+                        format!("`{key}` is given, but the map brings its own {own}"),
+                    )
                     .with_help(
                         "remove it here; `cells` in [scene.surface] averages the map over larger cells",
                     ));
@@ -496,42 +475,35 @@ fn check_cells(
 
 /// Checks that theories of rough surfaces have no body added to a map: its heights are not part of the
 /// statistics.
-fn check_homogeneous(
-    scene: &Entries<'_>,
-    models: &[(Numerics, Entry<'_>)],
-    surface: &SceneSurface,
-) -> Read<()> {
-    if surface.own_cells().is_none() || scene.entry("body").is_none() {
+fn check_homogeneous(question: &Question, surface: &SceneSurface, places: &Places) -> Read<()> {
+    if surface.own_cells().is_none() || question.body.is_none() {
         return Ok(());
     }
-    let Some((numerics, name)) = models.iter().find(|(m, _)| m.is_statistical()) else { return Ok(()) };
-    let message =
-        format!("the model {} does not support a map on a body (it takes one or the other)", numerics.name());
-    Err(name.diagnostic(message).with_help("remove [scene.body], or the model from `models`"))
+    let Some(model) = question.models.iter().position(Numerics::is_statistical) else { return Ok(()) };
+    let name = question.models[model].name();
+    let message = format!("the model {name} does not support a map on a body (it takes one or the other)");
+    Err(at_model(places, model, message).with_help("remove [scene.body], or the model from `models`"))
 }
 
 /// Checks that the loads do not contradict the boundary or the surface.
-fn check_request(
-    request: &LoadRequest,
-    entry: &Entry<'_>,
-    surface: &SceneSurface,
-    effects: &Effects,
-) -> Read<()> {
+fn check_request(scene: &SceneFile, places: &Places) -> Read<()> {
+    let SceneFile { request, surface, effects, .. } = scene;
+    let key = request_key(request);
     let periodic = effects.boundary == Boundary::Periodic;
     let prescribes = |kind: LoadKind, of_step: fn(&NormalLoad) -> bool| match request {
         LoadRequest::Loads(loads) => loads.kind == kind,
         LoadRequest::Path(_) => request.ends().any(|step| of_step(&step.load.normal)),
     };
     if periodic && prescribes(LoadKind::Approach, |load| matches!(load, NormalLoad::Approach(_))) {
-        return Err(entry
-            .diagnostic_at_key("an approach with periodic boundaries: there is no first touch to count from")
+        return Err(places
+            .at_key(&key, "an approach with periodic boundaries: there is no first touch to count from")
             .with_help(
                 "prescribe `force`, `mean_pressure` or `mean_gap`, or remove `boundary = \"periodic\"`",
             ));
     }
     if !periodic && prescribes(LoadKind::MeanGap, |load| matches!(load, NormalLoad::MeanGap(_))) {
-        return Err(entry
-            .diagnostic_at_key("a mean gap with free boundaries")
+        return Err(places
+            .at_key(&key, "a mean gap with free boundaries")
             .with_help("prescribe `force` or `approach`, or add `boundary = \"periodic\"` to [effects]"));
     }
     let LoadRequest::Loads(loads) = request else { return Ok(()) };
@@ -539,8 +511,9 @@ fn check_request(
         LoadKind::ForceBar
             if !surface.is_rough() || matches!(surface, SceneSurface::Drawn { body: Some(_), .. }) =>
         {
-            Err(entry
-                .diagnostic_at_key(
+            Err(places
+                .at_key(
+                    &key,
                     "`force_bar` is normalised by the rms height of a rough surface, which this body does not have",
                 )
                 .with_help("prescribe `force` or `approach`"))
@@ -551,13 +524,8 @@ fn check_request(
 
 /// Checks that nothing is requested of a profile with free boundaries that depends on the zero of the
 /// displacements of a half-plane.
-fn check_half_plane(
-    request: &LoadRequest,
-    entry: &Entry<'_>,
-    surface: &SceneSurface,
-    (effects, requested): (&Effects, &RequestedOutputs),
-    places: &Places,
-) -> Read<()> {
+fn check_half_plane(scene: &SceneFile, places: &Places) -> Read<()> {
+    let SceneFile { request, surface, effects, requested, .. } = scene;
     if !surface.is_profile() || effects.boundary == Boundary::Periodic {
         return Ok(());
     }
@@ -572,7 +540,7 @@ fn check_half_plane(
     };
     if by_approach {
         let message = format!("an approach of a profile with free boundaries: {why}");
-        return Err(entry.diagnostic_at_key(message).with_help(help));
+        return Err(places.at_key(&request_key(request), message).with_help(help));
     }
     let outputs = &requested.outputs;
     let asked = [
@@ -582,7 +550,7 @@ fn check_half_plane(
     ];
     let Some((name, _)) = asked.iter().find(|(_, asked)| *asked) else { return Ok(()) };
     let message = format!("{name} of a profile with free boundaries: {why}");
-    Err(Diagnostic::new(message).at(places.of_output(name)).with_help(help))
+    Err(places.at_key(&format!("outputs.{name}"), message).with_help(help))
 }
 
 /// Checks that the states to be drawn exist in the scene.
@@ -601,30 +569,28 @@ pub(crate) fn depends_on_path(effects: &Effects) -> bool {
 }
 
 /// Checks that effects with a memory have a path and models that can follow one.
-fn check_histories(
-    models: &[(Numerics, Entry<'_>)],
-    request: &LoadRequest,
-    entry: &Entry<'_>,
-    effects: &Effects,
-) -> Read<()> {
+fn check_histories(scene: &SceneFile, places: &Places) -> Read<()> {
+    let SceneFile { models, request, effects, .. } = scene;
+    let key = request_key(request);
     let remembers = effects.friction != Friction::Off
         || effects.rheology != Rheology::Elastic
         || depends_on_path(effects);
     let path = matches!(request, LoadRequest::Path(_));
     if path && !remembers {
-        return Err(entry
-            .diagnostic_at_key("a path, but no effect that depends on it")
+        return Err(places
+            .at_key(&key, "a path, but no effect that depends on it")
             .with_help(
                 "add `hardness`, `adhesion`, `friction` or `rheology` to [effects], or prescribe `force` or `approach`",
             ));
     }
     // Time and tangential loads are part of a path only.
     let needs_path = effects.friction != Friction::Off || effects.rheology != Rheology::Elastic;
-    for (numerics, model) in models {
+    for (index, numerics) in models.iter().enumerate() {
         let follows = |numerics: &Numerics| numerics.model().abilities().paths != Paths::Forgotten;
         if follows(numerics) && needs_path && !path {
-            return Err(entry
-                .diagnostic_at_key(format!("\"{}\" follows a path, and here are loads one by one", numerics.name()))
+            let message = format!("\"{}\" follows a path, and here are loads one by one", numerics.name());
+            return Err(places
+                .at_key(&key, message)
                 .with_help("write [[scene.path]] with `time`, `force` (or `approach`) and `tangential_force` for each step"));
         }
         if !follows(numerics) && path {
@@ -634,8 +600,8 @@ fn check_histories(
             };
             let known: Vec<&str> =
                 Numerics::all().filter(|m| follows(m) && has_effects(m)).map(|m| m.name()).collect();
-            return Err(model
-                .diagnostic(format!("\"{}\" answers loads one by one and follows no path", numerics.name()))
+            let message = format!("\"{}\" answers loads one by one and follows no path", numerics.name());
+            return Err(at_model(places, index, message)
                 .with_help(format!("models that follow a path with these effects: {}", known.join(", "))));
         }
     }
@@ -643,9 +609,10 @@ fn check_histories(
 }
 
 /// Checks that a tangential load along y is given only to models that take both directions.
-fn check_tangential(models: &[(Numerics, Entry<'_>)], request: &LoadRequest, effects: &Effects) -> Read<()> {
+fn check_tangential(scene: &SceneFile, places: &Places) -> Read<()> {
+    let SceneFile { models, request, effects, .. } = scene;
     let both = |numerics: &Numerics| numerics.model().abilities().directions == Directions::Plane;
-    let Some((numerics, model)) = models.iter().find(|(numerics, _)| !both(numerics)) else { return Ok(()) };
+    let Some(model) = models.iter().position(|numerics| !both(numerics)) else { return Ok(()) };
     let [_, along_y] = request.shears();
     if !along_y {
         return Ok(());
@@ -659,31 +626,24 @@ fn check_tangential(models: &[(Numerics, Entry<'_>)], request: &LoadRequest, eff
         [] => "give one value along x: no model has both components with these effects".to_owned(),
         known => format!("give one value along x; models with both components: {}", known.join(", ")),
     };
-    Err(model
-        .diagnostic(format!("\"{}\" takes tangential loads along x alone", numerics.name()))
-        .with_help(help))
+    let message = format!("\"{}\" takes tangential loads along x alone", models[model].name());
+    Err(at_model(places, model, message).with_help(help))
 }
 
 /// Checks that the coupling of normal and tangential tractions is given, where these bodies couple and a
 /// model can either neglect or solve it.
-fn check_coupling(
-    models: &[(Numerics, Entry<'_>)],
-    pair: Option<&Pair>,
-    friction: Friction,
-    place: Option<Range<usize>>,
-) -> Read<()> {
-    let asks = |(numerics, _): &&(Numerics, Entry<'_>)| {
-        numerics.model().abilities().effects.contains(&Effect::FullCoupling)
-    };
-    let (Some(pair), Some((numerics, _))) = (pair, models.iter().find(asks)) else { return Ok(()) };
-    match friction.coupling_of(pair) {
+fn check_coupling(scene: &SceneFile, places: &Places) -> Read<()> {
+    let SceneFile { models, pair, effects, .. } = scene;
+    let asks = |numerics: &&Numerics| numerics.model().abilities().effects.contains(&Effect::FullCoupling);
+    let (Some(pair), Some(numerics)) = (pair, models.iter().find(asks)) else { return Ok(()) };
+    match effects.friction.coupling_of(pair) {
         Err(contact_model::Error::Domain { value, .. }) => {
             let message = format!(
                 "normal and tangential tractions of these bodies act on each other (second Dundurs constant {}), and {} can neglect it or solve it",
                 short(value),
                 numerics.name()
             );
-            Err(Diagnostic::new(message).at(place).with_help(
+            Err(places.at_key("effects.friction", message).with_help(
                 "`coupling = \"none\"` in `friction` neglects it, `coupling = \"full\"` solves both together",
             ))
         }

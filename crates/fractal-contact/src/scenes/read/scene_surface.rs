@@ -1,15 +1,16 @@
 //! The surface of a scene: `[scene.surface]`, and `[scene.body]` added to it.
 
+use crate::scenes::read::asked_surface::{AskedBody, AskedFile, AskedSelfAffine, AskedSurface, BODIES};
+use crate::scenes::read::key::missing;
 use crate::scenes::read::{
-    Diagnostic, Entries, Entry, LengthOrPair, Numerics, RandomSpectrum, RandomSurface, Read, System, amount,
+    Diagnostic, Numerics, Places, Question, RandomSpectrum, RandomSurface, Read, System, amount,
     describe_self_affine, describe_sides, map_key, sampled, scan,
 };
 use contact_model::{Amplitude, Cells, Error, HeightMap, Result, SelfAffine, Size, Surface};
 use std::f64::consts::PI;
 use std::path::Path;
 use std::sync::Arc;
-use surface_gen::{Anisotropy, HeightDistribution, TwinSpectrum, WaveGenerator};
-use surface_io::Dimension;
+use surface_gen::{Anisotropy, HeightDistribution, WaveGenerator};
 
 /// The surface of the contact: a given one, or a random one, alone or on a body.
 #[derive(Debug, Clone, PartialEq)]
@@ -195,8 +196,8 @@ pub(crate) fn add(map: &HeightMap, body: &Surface) -> Result<HeightMap> {
     }
 }
 
-/// `[scene.surface]` and `[scene.body]` as they were read.
-pub(crate) struct SurfaceEntry {
+/// The surface of a question, read and drawn.
+pub(crate) struct FoundSurface {
     pub surface: SceneSurface,
     /// Metadata of its file.
     pub metadata: Option<String>,
@@ -206,79 +207,32 @@ pub(crate) struct SurfaceEntry {
     pub notes: Vec<Diagnostic>,
 }
 
-impl From<SceneSurface> for SurfaceEntry {
+impl From<SceneSurface> for FoundSurface {
     fn from(surface: SceneSurface) -> Self {
         Self { surface, metadata: None, reliable_from: None, notes: Vec::new() }
     }
 }
 
-/// Reads `[scene.surface]`, `[scene.second_surface]` and `[scene.body]`.
-pub(crate) fn read_surface(scene: &Entries<'_>, system: System, directory: &Path) -> Read<SurfaceEntry> {
-    let surface = scene.table("surface")?;
-    let second = scene.table("second_surface")?;
-    let body = scene.table("body")?;
-    let of_file = |table: &Entries<'_>| -> Read<bool> {
-        table.require("kind", "\"self_affine\"")?.choice(&[("self_affine", false), ("file", true)])
-    };
-    if let Some(second) = &second
-        && !(of_file(second)? && surface.as_ref().map_or(Ok(false), &of_file)?)
-    {
-        return Err(second.diagnostic("[scene.second_surface] is added to a measured [scene.surface]").with_help(
-            "say `kind = \"file\"` in both; two independent random surfaces are one of the rms height sqrt(h1^2 + h2^2)",
-        ));
-    }
-    let Some(surface) = surface else {
-        let Some(body) = body else {
-            return Err(scene
-                .diagnostic("nothing is pressed: there is neither [scene.surface] nor [scene.body]")
+/// The surface that a question asks for; files are looked up from `directory`.
+pub(crate) fn find_surface(question: &Question, directory: &Path, places: &Places) -> Read<FoundSurface> {
+    let Some(surface) = &question.surface else {
+        let Some(body) = &question.body else {
+            return Err(places
+                .at_key("scene", "nothing is pressed: there is neither [scene.surface] nor [scene.body]")
                 .with_help(
                     "describe one: [scene.surface] with `kind = \"self_affine\"` or \"file\", or [scene.body] with `kind = \"sphere\"`",
                 ));
         };
-        return Ok(SceneSurface::Plain(read_body(&body, None, system)?).into());
+        return Ok(SceneSurface::Plain(body_of(body, None, places)?).into());
     };
-    if of_file(&surface)? {
-        let twin = read_twin(&surface, second.is_some())?;
-        let scan::FileMap { mut map, mut metadata, mut reliable_from, mut notes, profile } =
-            scan::read_map(&surface, system, directory)?;
-        if profile {
-            let twin = twin.map(|(entry, ..)| entry);
-            refuse_for_profile(scene, twin.as_ref(), second.is_some(), body.is_some())?;
-            let plain = SceneSurface::Plain(Surface::Profile(Arc::new(map)));
-            return Ok(SurfaceEntry { surface: plain, metadata: Some(metadata), reliable_from, notes });
-        }
-        if let Some(second) = second {
-            let other = scan::read_second(&second, &map, system, directory)?;
-            map = other.map;
-            reliable_from = [reliable_from, other.reliable_from].into_iter().flatten().reduce(f64::max);
-            metadata += &format!("\nsecond surface\n{}", other.metadata);
-            notes.extend(other.notes);
-        }
-        let body = body.map(|body| read_body(&body, Some(map.size()), system)).transpose()?;
-        if let Some((entry, like, keep_heights)) = twin {
-            let of = Arc::new(map);
-            // Obstacles to a twin are found before anything is solved.
-            WaveGenerator::twin(&of, like).map_err(|e| {
-                entry.diagnostic(format!("no twin of this map: {e}")).with_help(
-                    "undefined points need `fill`; a map that is not periodic `detrend` and `window = \"hann\"`",
-                )
-            })?;
-            let heights = keep_heights.then(|| HeightDistribution::Of(Arc::clone(&of)));
-            let rough = RandomSurface::new(RandomSpectrum::Twin { of, like }, heights);
-            let surface = SceneSurface::Drawn { rough, body };
-            return Ok(SurfaceEntry { surface, metadata: Some(metadata), reliable_from, notes });
-        }
-        let map = match body {
-            None => map,
-            Some(body) => add(&map, &body).map_err(|e| scene.diagnostic(e.to_string()))?,
-        };
-        let plain = SceneSurface::Plain(Surface::Heights(Arc::new(map)));
-        return Ok(SurfaceEntry { surface: plain, metadata: Some(metadata), reliable_from, notes });
-    }
-    let rough = read_self_affine(&surface, system)?;
-    let (anisotropy, heights) = (read_anisotropy(&surface)?, read_heights(&surface)?);
-    surface.known_only()?;
-    let body = body.map(|body| read_body(&body, Some(rough.size), system)).transpose()?;
+    let asked = match surface {
+        AskedSurface::File(file) => return find_map(question, file, directory, places),
+        AskedSurface::SelfAffine(asked) => asked,
+    };
+    let rough = self_affine(asked, places)?;
+    let (anisotropy, heights) = (anisotropy(asked, places)?, asked.weibull);
+    let heights = heights.map(|shape| HeightDistribution::Weibull { shape });
+    let body = question.body.as_ref().map(|body| body_of(body, Some(rough.size), places)).transpose()?;
     if anisotropy.is_none() && heights.is_none() && body.is_none() {
         return Ok(SceneSurface::Plain(Surface::SelfAffine(rough)).into());
     }
@@ -286,77 +240,103 @@ pub(crate) fn read_surface(scene: &Entries<'_>, system: System, directory: &Path
     Ok(SceneSurface::Drawn { rough: RandomSurface::new(spectrum, heights), body }.into())
 }
 
-/// Refuses keys that cannot be combined with a profile.
-fn refuse_for_profile(
-    scene: &Entries<'_>,
-    twin: Option<&Entry<'_>>,
-    has_second: bool,
-    has_body: bool,
-) -> Read<()> {
-    let help = "remove it, or measure an area; a tilt or a bow of the profile goes with `detrend`";
-    if let Some(entry) = twin {
-        let message = "`twin` of a profile: a twin has the spectrum of a map in all directions";
-        return Err(entry.diagnostic_at_key(message).with_help(help));
+/// The map of a file, with the surface of the second body and a body added to it, or its twin.
+fn find_map(question: &Question, file: &AskedFile, directory: &Path, places: &Places) -> Read<FoundSurface> {
+    const TWIN: &str = "scene.surface.twin";
+    let (system, second) = (question.units, question.second_surface.as_ref());
+    if file.keep_heights.is_some() && file.twin.is_none() {
+        return Err(places
+            .at_key("scene.surface.keep_heights", "`keep_heights` is given, but no `twin`")
+            .with_help("add `twin = \"waves\"`, or remove it: the map itself has its heights"));
     }
-    for (name, given) in [("second_surface", has_second), ("body", has_body)] {
-        if let (true, Some(entry)) = (given, scene.entry(name)) {
+    if file.twin.is_some() && second.is_some() {
+        return Err(places
+            .at_key(TWIN, "`twin` beside [scene.second_surface]")
+            .with_help("draw the twin into a file with `fractal-contact twin`, and read that file here"));
+    }
+    let scan::FileMap { mut map, mut metadata, mut reliable_from, mut notes, profile } =
+        scan::read_map(file, "scene.surface", system, directory, places)?;
+    if profile {
+        refuse_for_profile(question, places)?;
+        let plain = SceneSurface::Plain(Surface::Profile(Arc::new(map)));
+        return Ok(FoundSurface { surface: plain, metadata: Some(metadata), reliable_from, notes });
+    }
+    if let Some(second) = second {
+        let other = scan::read_second(second, &map, system, directory, places)?;
+        map = other.map;
+        reliable_from = [reliable_from, other.reliable_from].into_iter().flatten().reduce(f64::max);
+        metadata += &format!("\nsecond surface\n{}", other.metadata);
+        notes.extend(other.notes);
+    }
+    let body = question.body.as_ref().map(|body| body_of(body, Some(map.size()), places)).transpose()?;
+    if let Some(like) = file.twin {
+        let of = Arc::new(map);
+        // Obstacles to a twin are found before anything is solved.
+        WaveGenerator::twin(&of, like).map_err(|e| {
+            places.at_value(TWIN, format!("no twin of this map: {e}")).with_help(
+                "undefined points need `fill`; a map that is not periodic `detrend` and `window = \"hann\"`",
+            )
+        })?;
+        let keep_heights = file.keep_heights == Some(true);
+        let heights = keep_heights.then(|| HeightDistribution::Of(Arc::clone(&of)));
+        let rough = RandomSurface::new(RandomSpectrum::Twin { of, like }, heights);
+        let surface = SceneSurface::Drawn { rough, body };
+        return Ok(FoundSurface { surface, metadata: Some(metadata), reliable_from, notes });
+    }
+    let map = match body {
+        None => map,
+        Some(body) => add(&map, &body).map_err(|e| places.at_key("scene", e.to_string()))?,
+    };
+    let plain = SceneSurface::Plain(Surface::Heights(Arc::new(map)));
+    Ok(FoundSurface { surface: plain, metadata: Some(metadata), reliable_from, notes })
+}
+
+/// Refuses keys that cannot be combined with a profile.
+fn refuse_for_profile(question: &Question, places: &Places) -> Read<()> {
+    let help = "remove it, or measure an area; a tilt or a bow of the profile goes with `detrend`";
+    let twin = matches!(&question.surface, Some(AskedSurface::File(file)) if file.twin.is_some());
+    if twin {
+        let message = "`twin` of a profile: a twin has the spectrum of a map in all directions";
+        return Err(places.at_key("scene.surface.twin", message).with_help(help));
+    }
+    for (name, given) in
+        [("second_surface", question.second_surface.is_some()), ("body", question.body.is_some())]
+    {
+        if given {
             let message = format!("[scene.{name}] beside a profile, which is a body uniform along y");
-            return Err(entry.diagnostic_at_key(message).with_help(help));
+            return Err(places.at_key(&format!("scene.{name}"), message).with_help(help));
         }
     }
     Ok(())
 }
 
-/// `twin` and `keep_heights`.
-fn read_twin<'a>(table: &Entries<'a>, is_second: bool) -> Read<Option<(Entry<'a>, TwinSpectrum, bool)>> {
-    let help = "add `twin = \"waves\"`, or remove it: the map itself has its heights";
-    let keep = table.beside("keep_heights", "twin", help)?;
-    let Some(entry) = table.find("twin") else { return Ok(None) };
-    let like = entry.choice(&[("waves", TwinSpectrum::EachWave), ("rings", TwinSpectrum::Rings)])?;
-    if is_second {
-        return Err(entry
-            .diagnostic_at_key("`twin` beside [scene.second_surface]")
-            .with_help("draw the twin into a file with `fractal-contact twin`, and read that file here"));
-    }
-    let keep_heights = keep.map_or(Ok(false), |keep| keep.flag())?;
-    Ok(Some((entry, like, keep_heights)))
-}
-
-/// `anisotropy` and `lay`.
-fn read_anisotropy(table: &Entries<'_>) -> Read<Option<Anisotropy>> {
-    let help = "add `anisotropy = 4`: waves along the lay are then four times as long as across it";
-    let lay = table.beside("lay", "anisotropy", help)?;
-    let Some(ratio) = table.find("anisotropy") else { return Ok(None) };
-    let lay = lay.map_or(Ok(0.0), |lay| lay.angle())?;
-    Ok(Some(Anisotropy { ratio: ratio.positive_number()?, lay }))
-}
-
-/// `weibull`.
-fn read_heights(table: &Entries<'_>) -> Read<Option<HeightDistribution>> {
-    let shape = table.optional("weibull", Entry::positive_number)?;
-    Ok(shape.map(|shape| HeightDistribution::Weibull { shape }))
-}
-
-fn read_self_affine(table: &Entries<'_>, system: System) -> Read<SelfAffine> {
-    let length = |key: &'static str| table.optional(key, |e| e.positive(Dimension::LENGTH, system));
-    let size = read_size(table, system)?;
-    let hurst = match table.one_of(&["fractal_dimension", "hurst"])? {
-        Some(("hurst", e)) => within(&e, e.number()?, 0.0, 1.0)?,
-        Some((_, e)) => 3.0 - within(&e, e.number()?, 2.0, 3.0)?,
-        None => {
-            return Err(table
-                .diagnostic("`fractal_dimension` is missing in [scene.surface]")
-                .with_help("add `fractal_dimension = 2.4`, or `hurst = 0.6`"));
+fn anisotropy(asked: &AskedSelfAffine, places: &Places) -> Read<Option<Anisotropy>> {
+    match (asked.anisotropy, asked.lay) {
+        (Some(ratio), lay) => Ok(Some(Anisotropy { ratio, lay: lay.unwrap_or(0.0) })),
+        (None, None) => Ok(None),
+        (None, Some(_)) => {
+            let message = "`lay` is given, but no `anisotropy`";
+            let help = "add `anisotropy = 4`: waves along the lay are then four times as long as across it";
+            Err(places.at_key("scene.surface.lay", message).with_help(help))
         }
-    };
-    let rms = table.require("rms_height", "\"1 um\"")?.positive(Dimension::LENGTH, system)?;
-    let short = length("shortest_wavelength")?;
-    let roll_off = length("roll_off_wavelength")?;
-    if let (Some(entry), Some(long), Some(short)) = (table.entry("roll_off_wavelength"), roll_off, short)
+    }
+}
+
+fn self_affine(asked: &AskedSelfAffine, places: &Places) -> Read<SelfAffine> {
+    const TABLE: &str = "scene.surface";
+    let size = asked.size.ok_or_else(|| missing(TABLE, "side", "\"1 mm\"", places))?;
+    let hurst = asked.hurst.ok_or_else(|| {
+        places
+            .at_key(TABLE, "`fractal_dimension` is missing in [scene.surface]")
+            .with_help("add `fractal_dimension = 2.4`, or `hurst = 0.6`")
+    })?;
+    let rms = asked.rms_height.ok_or_else(|| missing(TABLE, "rms_height", "\"1 um\"", places))?;
+    if let (Some(long), Some(short)) = (asked.roll_off_wavelength, asked.shortest_wavelength)
         && long < short
     {
-        return Err(entry
-            .diagnostic("`roll_off_wavelength` is below `shortest_wavelength`")
+        let place = "scene.surface.roll_off_wavelength";
+        return Err(places
+            .at_value(place, "`roll_off_wavelength` is below `shortest_wavelength`")
             .with_help("the roll-off is the longest wave of the fractal range"));
     }
     let wavenumber = |wavelength: f64| 2.0 * PI / wavelength;
@@ -364,79 +344,63 @@ fn read_self_affine(table: &Entries<'_>, system: System) -> Read<SelfAffine> {
         size,
         hurst,
         amplitude: Amplitude::RmsHeight(rms),
-        roll_off: roll_off.map(wavenumber),
-        short_cutoff: short.map(wavenumber),
+        roll_off: asked.roll_off_wavelength.map(wavenumber),
+        short_cutoff: asked.shortest_wavelength.map(wavenumber),
     })
 }
 
-/// `side = s` or `size = [Lx, Ly]`.
-fn read_size(table: &Entries<'_>, system: System) -> Read<Size> {
-    match table.one_of(&["side", "size"])? {
-        Some(("size", entry)) => Ok(match entry.lengths(system)? {
-            LengthOrPair::One(side) => side.into(),
-            LengthOrPair::Two(sides) => sides.into(),
-        }),
-        Some((_, entry)) if entry.is_list() => Err(entry
-            .diagnostic(format!("`side` has {} values: it is the one of a square", entry.list().len()))
-            .with_help("both sides of a rectangle are `size = [Lx, Ly]`")),
-        Some((_, entry)) => entry.positive(Dimension::LENGTH, system).map(Size::from),
-        None => table.require("side", "\"1 mm\"")?.positive(Dimension::LENGTH, system).map(Size::from),
-    }
-}
-
-fn within(entry: &Entry<'_>, value: f64, low: f64, high: f64) -> Read<f64> {
-    if (low..=high).contains(&value) {
-        Ok(value)
-    } else {
-        Err(entry
-            .diagnostic(format!("{value} is outside [{low}, {high}]"))
-            .with_help("D_f = 3 - H lies in [2, 3], H in [0, 1]"))
-    }
-}
-
-/// How the parameters of a body are read.
-type ReadBody = fn(&Entries<'_>, Size, System) -> Read<Surface>;
-
-const BODIES: [(&str, ReadBody); 7] = [
-    ("sphere", |table, size, system| Ok(Surface::Sphere { radius: length(table, "radius", system)?, size })),
-    ("cone", |table, size, _| {
-        Ok(Surface::Cone { slope: table.require("slope", "0.1")?.positive_number()?, size })
-    }),
-    ("power_law", |table, size, system| {
-        // Two lengths instead of a coefficient whose unit depends on the exponent.
-        let exponent = table.require("exponent", "4")?.positive_number()?;
-        let (depth, radius) = (length(table, "depth", system)?, length(table, "radius", system)?);
-        Ok(Surface::PowerLaw { coefficient: depth / radius.powf(exponent), exponent, size })
-    }),
-    ("flat_circle", |table, size, system| {
-        Ok(Surface::FlatCircle { radius: length(table, "radius", system)?, size })
-    }),
-    ("flat", |_, size, _| Ok(Surface::Flat { size })),
-    ("flat_square", |_, size, _| Ok(Surface::Flat { size })),
-    ("sine", |table, size, system| {
-        let (amplitude, wavelength) =
-            (length(table, "amplitude", system)?, length(table, "wavelength", system)?);
-        Ok(Surface::Sine { amplitude, wavelength, size })
-    }),
-];
-
-fn length(table: &Entries<'_>, key: &'static str, system: System) -> Read<f64> {
-    table.require(key, "\"1 mm\"")?.positive(Dimension::LENGTH, system)
-}
-
 /// A body; on a rough surface it has that surface's size.
-fn read_body(table: &Entries<'_>, given: Option<Size>, system: System) -> Read<Surface> {
-    let read = table.require("kind", "\"sphere\"")?.choice(&BODIES)?;
-    let size = match (given, table.one_of(&["side", "size"])?) {
-        (Some(_), Some((key, entry))) => {
-            return Err(entry
-                .diagnostic_at_key(format!("`{key}` is given for the body, which has that of the surface"))
+fn body_of(asked: &AskedBody, given: Option<Size>, places: &Places) -> Read<Surface> {
+    const TABLE: &str = "scene.body";
+    let kind = asked.kind.ok_or_else(|| missing(TABLE, "kind", "\"sphere\"", places))?;
+    let size = match (given, asked.size) {
+        (Some(_), Some(_)) => {
+            let key = if places.has("scene.body.side") { "side" } else { "size" };
+            return Err(places
+                .at_key(
+                    &format!("scene.body.{key}"),
+                    format!("`{key}` is given for the body, which has that of the surface"),
+                )
                 .with_help("remove it in [scene.body]: the area is that of [scene.surface]"));
         }
-        (Some(size), None) => size,
-        (None, _) => read_size(table, system)?,
+        (Some(size), None) | (None, Some(size)) => size,
+        (None, None) => return Err(missing(TABLE, "side", "\"1 mm\"", places)),
     };
-    let surface = read(table, size, system)?;
-    table.known_only()?;
-    Ok(surface)
+    let needed = BODIES.iter().find(|(name, _)| *name == kind).map_or(&[][..], |(_, keys)| keys);
+    let parameters = [
+        ("radius", asked.radius, "\"1 mm\""),
+        ("slope", asked.slope, "0.1"),
+        ("exponent", asked.exponent, "4"),
+        ("depth", asked.depth, "\"1 mm\""),
+        ("amplitude", asked.amplitude, "\"1 mm\""),
+        ("wavelength", asked.wavelength, "\"1 mm\""),
+    ];
+    for (key, value, _) in parameters {
+        if value.is_some() && !needed.contains(&key) {
+            let place = format!("scene.body.{key}");
+            let known = needed.join(", ");
+            let takes =
+                if known.is_empty() { "takes no parameter".to_owned() } else { format!("takes {known}") };
+            return Err(places
+                .at_key(&place, format!("`{key}` is no key of the body \"{kind}\""))
+                .with_help(format!("this body {takes}")));
+        }
+    }
+    let take = |key: &str| {
+        let known = parameters.iter().find(|(name, ..)| *name == key);
+        let (value, example) = known.map_or((None, ""), |(_, value, example)| (*value, *example));
+        value.ok_or_else(|| missing(TABLE, key, example, places))
+    };
+    Ok(match kind {
+        "sphere" => Surface::Sphere { radius: take("radius")?, size },
+        "cone" => Surface::Cone { slope: take("slope")?, size },
+        "power_law" => {
+            // Two lengths instead of a coefficient whose unit depends on the exponent.
+            let (exponent, depth, radius) = (take("exponent")?, take("depth")?, take("radius")?);
+            Surface::PowerLaw { coefficient: depth / radius.powf(exponent), exponent, size }
+        }
+        "flat_circle" => Surface::FlatCircle { radius: take("radius")?, size },
+        "sine" => Surface::Sine { amplitude: take("amplitude")?, wavelength: take("wavelength")?, size },
+        _ => Surface::Flat { size },
+    })
 }
