@@ -1,11 +1,13 @@
 //! Scene files.
 
-use crate::errors::{of_scene, of_values, plain, stopped};
+use crate::errors::{of_scene, of_values, stopped};
 use crate::pool::{self, StopToken};
 use crate::quantities::is_count;
 use crate::state;
 use crate::toml_text::{toml_text, toml_value};
-use fractal_contact::runs::{CsvFile, Progress};
+use fractal_contact::Value;
+use fractal_contact::analysis::Table;
+use fractal_contact::runs::Progress;
 use fractal_contact::scenes::{Options, Plan, Question, SceneFile as RustSceneFile, SceneOutcome, run};
 use numpy::PyArray1;
 use pyo3::prelude::*;
@@ -123,18 +125,33 @@ const NUMBERS_OF: [&str; 2] = ["surface", "state"];
 
 /// The columns of a table: counts that all rows have as arrays of whole numbers, other numbers as arrays with NaN
 /// where there is none, texts as lists.
-fn columns<'py>(py: Python<'py>, table: &CsvFile) -> PyResult<Bound<'py, PyDict>> {
+fn columns<'py>(py: Python<'py>, table: &Table) -> PyResult<Bound<'py, PyDict>> {
     let dict = PyDict::new(py);
-    for name in &table.columns {
-        let texts = table.texts(name).map_err(|error| plain(py, "Error", &error.to_string()))?;
-        let whole = texts.iter().map(|text| text.parse::<i64>().ok()).collect::<Option<Vec<_>>>();
-        if let Some(whole) = whole.filter(|_| NUMBERS_OF.contains(&name.as_str()) || is_count(name)) {
-            dict.set_item(name, PyArray1::from_vec(py, whole))?;
-        } else if texts.iter().all(|text| text.is_empty() || text.parse::<f64>().is_ok()) {
-            let number = |text: &&str| text.parse().unwrap_or(f64::NAN);
-            dict.set_item(name, PyArray1::from_vec(py, texts.iter().map(number).collect()))?;
+    for (i, column) in table.columns().iter().enumerate() {
+        let values = || table.rows().iter().map(|row| &row[i]);
+        let count = |value: &Value| match value {
+            Value::Count(count) => i64::try_from(*count).ok(),
+            _ => None,
+        };
+        let whole = values().map(count).collect::<Option<Vec<_>>>();
+        if let Some(whole) = whole.filter(|_| NUMBERS_OF.contains(&column.name) || is_count(column.name)) {
+            dict.set_item(column.name, PyArray1::from_vec(py, whole))?;
+        } else if values().all(|value| matches!(value, Value::Number(_) | Value::Count(_) | Value::Empty)) {
+            let number = |value: &Value| match value {
+                Value::Number(number) => *number,
+                Value::Count(count) => *count as f64,
+                _ => f64::NAN,
+            };
+            dict.set_item(column.name, PyArray1::from_vec(py, values().map(number).collect()))?;
         } else {
-            dict.set_item(name, texts)?;
+            let text = |value: &Value| match value {
+                Value::Text(text) => text.clone(),
+                Value::Flag(flag) => flag.to_string(),
+                Value::Number(number) => fractal_contact::runs::number(*number),
+                Value::Count(count) => count.to_string(),
+                Value::Empty => String::new(),
+            };
+            dict.set_item(column.name, values().map(text).collect::<Vec<_>>())?;
         }
     }
     Ok(dict)
@@ -156,7 +173,7 @@ pub fn run_scene<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     let token = StopToken::new(py, stop.as_ref())?;
     let threads = threads.map_or_else(pool::threads, Ok)?.max(1);
-    let (counter, mut file, table) = (Counter::default(), scene.0.clone(), out.join("results.csv"));
+    let (counter, mut file) = (Counter::default(), scene.0.clone());
     if let Some(states) = drawn_states {
         file = file.drawing(states).map_err(|error| of_values(py, &error))?;
     }
@@ -186,8 +203,8 @@ pub fn run_scene<'py>(
     }
     let outcome: SceneOutcome = outcome.map_err(|error| of_scene(py, &error))?;
     let dict = PyDict::new(py);
-    let table = CsvFile::read(&table).map_err(|error| plain(py, "Error", &error.to_string()))?;
-    dict.set_item("results", columns(py, &table)?)?;
+    let results = outcome.results.as_ref().map_or_else(|| Ok(PyDict::new(py)), |table| columns(py, table))?;
+    dict.set_item("results", results)?;
     dict.set_item("files", &outcome.files)?;
     dict.set_item("summary", &outcome.summary)?;
     dict.set_item("notes", &outcome.notes)?;

@@ -79,6 +79,14 @@ impl Chart {
         self.picture().save(directory, name)
     }
 
+    /// The bytes of `NAME.svg` and `NAME.png`.
+    ///
+    /// # Errors
+    /// [`crate::Error::Content`] where the fonts cannot be read.
+    pub fn files(&self, name: &str) -> Result<[(String, Vec<u8>); 2]> {
+        Panels { columns: 1, pictures: vec![self.picture()], ..Panels::default() }.files(name)
+    }
+
     /// The SVG as text.
     ///
     /// # Errors

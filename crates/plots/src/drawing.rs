@@ -96,13 +96,22 @@ impl Drawing {
         self.items.push(Item::Image { place, rgb, columns });
     }
 
+    /// The bytes of `NAME.svg` and `NAME.png`.
+    pub fn files(&self, fonts: &Fonts, name: &str) -> Result<[(String, Vec<u8>); 2]> {
+        let [svg, png] = ["svg", "png"].map(|ending| format!("{name}.{ending}"));
+        let [drawn, pixels] =
+            [self.svg(fonts, Path::new(&svg))?.into_bytes(), self.png(fonts, Path::new(&png))?];
+        Ok([(svg, drawn), (png, pixels)])
+    }
+
     /// Writes `NAME.svg` and `NAME.png`.
     pub fn save(&self, fonts: &Fonts, directory: &Path, name: &str) -> Result<Vec<PathBuf>> {
-        let svg = directory.join(format!("{name}.svg"));
-        let png = directory.join(format!("{name}.png"));
-        files::write_whole(&svg, self.svg(fonts, &svg)?.as_bytes())?;
-        files::write_whole(&png, &self.png(fonts, &png)?)?;
-        Ok(vec![svg, png])
+        let write = |(name, bytes): (String, Vec<u8>)| {
+            let path = directory.join(name);
+            files::write_whole(&path, &bytes)?;
+            Ok(path)
+        };
+        self.files(fonts, name)?.into_iter().map(write).collect()
     }
 
     pub fn svg(&self, fonts: &Fonts, path: &Path) -> Result<String> {

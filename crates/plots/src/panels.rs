@@ -31,6 +31,15 @@ impl Panels {
         self.drawing(&fonts).save(&fonts, directory, name)
     }
 
+    /// The bytes of `NAME.svg` and `NAME.png`.
+    ///
+    /// # Errors
+    /// [`crate::Error::Content`] where an image in it cannot be encoded.
+    pub fn files(self, name: &str) -> Result<[(String, Vec<u8>); 2]> {
+        let fonts = Fonts::load()?;
+        self.drawing(&fonts).files(&fonts, name)
+    }
+
     /// The SVG as text.
     ///
     /// # Errors

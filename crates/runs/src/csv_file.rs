@@ -45,14 +45,19 @@ impl Header {
     }
 }
 
-/// Writes a table whole: `#` lines (title, columns with units, sources, parameters, version, command), column
-/// names, rows.
-///
-/// Numbers are the shortest decimals that read back to the same bits; absent entries are empty.
+/// Writes a table whole, as [`csv_bytes`] has it.
 ///
 /// # Errors
 /// [`Error::File`] when it cannot be written.
 pub fn write_csv(path: &Path, table: &Table, header: &Header) -> Result<()> {
+    Ok(files::write_whole(path, &csv_bytes(table, header))?)
+}
+
+/// A table as the bytes of a file: `#` lines (title, columns with units, sources, parameters, version, command),
+/// column names, rows.
+///
+/// Numbers are the shortest decimals that read back to the same bits; absent entries are empty.
+pub fn csv_bytes(table: &Table, header: &Header) -> Vec<u8> {
     let mut text = String::new();
     let mut line = |s: &str| {
         text.push_str("# ");
@@ -70,14 +75,16 @@ pub fn write_csv(path: &Path, table: &Table, header: &Header) -> Result<()> {
     line(&format!("command: {}", header.command));
     let mut bytes = text.into_bytes();
     let mut writer = csv::Writer::from_writer(&mut bytes);
-    let failed = |e: csv::Error| Error::content(path, e.to_string());
-    writer.write_record(table.columns().iter().map(|c| c.name)).map_err(failed)?;
-    for row in table.rows() {
-        writer.write_record(row.iter().map(value)).map_err(failed)?;
+    // A vector takes whatever is written, and every row has the length of the first.
+    let names = table.columns().iter().map(|c| c.name.to_owned()).collect();
+    let rows = table.rows().iter().map(|row| row.iter().map(value).collect());
+    for record in std::iter::once(names).chain(rows) {
+        let record: Vec<String> = record;
+        let _ = writer.write_record(record);
     }
-    writer.flush().map_err(Error::file("write", path))?;
+    let _ = writer.flush();
     drop(writer);
-    Ok(files::write_whole(path, &bytes)?)
+    bytes
 }
 
 /// Shortest decimal that reads back to the same bits.

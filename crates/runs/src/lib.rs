@@ -48,7 +48,7 @@ mod terminal;
 mod threads;
 
 pub use checkpoint::{Checkpoint, Unused};
-pub use csv_file::{CsvFile, Header, number, write_csv};
+pub use csv_file::{CsvFile, Header, csv_bytes, number, write_csv};
 pub use encoding::ResultKind;
 pub use error::{Error, Result};
 pub use files;

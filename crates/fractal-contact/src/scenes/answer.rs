@@ -1,18 +1,17 @@
 //! From a scene to its files: planned, solved, reported.
 
 use crate::scenes::plan::{Cost, ModelOnSurface, ModelPlan, Plan, calibration};
-use crate::scenes::read::{Result, SceneFile, System, effect_lines, number, words};
+use crate::scenes::read::{Result, SceneFile, System, effect_lines, number};
 use crate::scenes::run::{
-    Answer, Concerned, ModelResult, Options, SceneOutcome, SharedStop, SolvedUnit, Warning, field_pictures,
-    remove_trials, scene_jobs, take_trial, units,
+    Answer, Concerned, FieldFile, ModelResult, Options, SceneOutcome, SharedStop, SolvedUnit, Warning,
+    field_pictures, remove_trials, scene_jobs, take_trial, units,
 };
 use crate::scenes::tell::{
-    MapStatisticsTables, Report, ResultFolder, columns, distributions, ensemble, manifest, pictures, summary,
+    MapStatisticsTables, Report, ResultFolder, StateTable, columns, files, manifest, summary,
 };
-use analysis::Table;
 use contact_model::units::ascii;
 use runs::cluster::{ShardPlan, ShardReport, run_shard};
-use runs::{Checkpoint, Failure, Header, Progress, Shard, Store, Threads, run_stored, write_csv};
+use runs::{Checkpoint, Failure, Header, Progress, Shard, Store, Threads, run_stored};
 use std::time::Instant;
 
 /// Answers a scene: every model on every surface under every load, and writes what is asked for.
@@ -69,57 +68,34 @@ pub fn run(
         })
         .collect();
     count(scene, &units, &results, options, &mut outcome);
-    let table = states_table(scene, &solved)?;
-    let means = if scene.sampling.surfaces > 1 { ensemble::means(scene, &solved) } else { Vec::new() };
+    let states = StateTable::new(scene, solved, title(scene));
+    outcome.results = Some(states.results()?);
     let header = header(scene, plan);
-    let mut write = |name: &str, table: &Table| -> Result<()> {
-        let path = options.out.join(name);
-        write_csv(&path, table, &header)?;
-        outcome.files.push(path);
-        Ok(())
-    };
-    write("results.csv", &table)?;
-    if scene.requested.outputs.contact_patches {
-        write("patches.csv", &patches_table(scene, &solved)?)?;
-    }
-    if !means.is_empty() {
-        let title = format!("{}: means over surfaces", title(scene));
-        let means = ensemble::table(scene, title, &means);
-        write("ensemble.csv", &means.map_err(runs::Error::model("means over surfaces"))?)?;
-    }
-    for &of in &scene.requested.distributions {
-        let title = format!("{}: distribution of {}", title(scene), of.name());
-        write(&format!("distribution-{}.csv", of.name()), &distributions::table(scene, of, title, &solved)?)?;
-    }
-    for &of in &scene.requested.distributions {
-        if let Some(chart) = distributions::chart(scene, of, &solved) {
-            outcome.files.extend(chart.save(&options.out, &format!("distribution-{}", of.name()))?);
-        }
-    }
-    if scene.requested.curves {
-        outcome.files.extend(pictures::curves(scene, &solved, &means, &options.out)?);
-    }
     let statistics = scene.requested.statistics.then(|| MapStatisticsTables::of_scene(scene)).transpose()?;
     if let Some(statistics) = &statistics {
-        outcome.files.extend(statistics.write(&options.out, &header, &words::scene_name(scene))?);
         outcome.notes.extend(
             statistics.notes.iter().chain(&statistics.remarks).map(|note| format!("statistics: {note}")),
         );
     }
-    outcome.summary = summary::summary(scene, &solved, &means);
+    let mut written = Vec::new();
+    let mut write = |name: &str, bytes: Vec<u8>| -> Result<()> {
+        let path = options.out.join(name);
+        runs::files::write_whole(&path, &bytes)?;
+        written.push(path);
+        Ok(())
+    };
+    if let Some(results) = &outcome.results {
+        files::make(&states, results, statistics.as_ref(), &header, &mut write)?;
+    }
+    outcome.summary = summary::summary(&states);
     outcome.actual = actual(scene, &units, &results);
     outcome.peak_memory = runs::peak_memory();
     outcome.seconds = start.elapsed().as_secs_f64();
-    let report = Report {
-        scene,
-        plan,
-        outcome: &outcome,
-        means: &means,
-        units: &solved,
-        statistics: statistics.as_ref(),
-    }
-    .write(&options.out)?;
-    outcome.files.push(report);
+    let view = |file: FieldFile<'_>| field_pictures::view(&options.out, file);
+    let report =
+        Report { states: &states, plan, outcome: &outcome, statistics: statistics.as_ref(), view: &view };
+    write("report.html", report.html()?.into_bytes())?;
+    outcome.files.extend(written);
     outcome.files.push(options.out.join("manifest.json"));
     if !outcome.stopped {
         field_pictures::sweep(&options.out);
@@ -227,28 +203,6 @@ fn count(
     {
         outcome.notes.push(warning.sentence(scene, &concerned, counted));
     }
-}
-
-/// Rows of all states in their order.
-fn states_table(scene: &SceneFile, units: &[SolvedUnit<'_>]) -> Result<Table> {
-    let mut table = Table::new(title(scene), columns::columns(scene));
-    for (unit, record) in units.iter().flat_map(SolvedUnit::records) {
-        table.push(columns::row(scene, unit, record)).map_err(runs::Error::model("a row"))?;
-    }
-    Ok(table)
-}
-
-/// Rows of the connected contacts of all states.
-fn patches_table(scene: &SceneFile, units: &[SolvedUnit<'_>]) -> Result<Table> {
-    let area = ("area", scene.system.unit("m^2"), "of one connected contact, the largest first");
-    let title = format!("{}: connected contact areas", title(scene));
-    let rows = units.iter().flat_map(SolvedUnit::records).flat_map(|(unit, record)| {
-        let patches = record.solved().and_then(|solved| solved.state.patches.as_ref());
-        let areas = patches.map_or(&[][..], contact_model::Patches::areas);
-        areas.iter().map(|&area| [unit.model.into(), unit.surface.into(), record.index.into(), area.into()])
-    });
-    let columns = [columns::MODEL, columns::SURFACE, columns::LOAD, area];
-    Ok(columns::table(title, columns, rows, "a patch")?)
 }
 
 /// What the tables are called.

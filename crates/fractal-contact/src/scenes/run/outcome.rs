@@ -1,6 +1,7 @@
 //! Options and outcome of the run of a scene.
 
 use crate::scenes::plan::Cost;
+use analysis::Table;
 use std::path::PathBuf;
 
 /// Where and how a scene is run; these options do not change the results.
@@ -29,6 +30,8 @@ pub struct SceneOutcome {
     pub kept: usize,
     /// The reasons given, each once.
     pub notes: Vec<String>,
+    /// The quantities of all states, as in `results.csv`.
+    pub results: Option<Table>,
     /// The states as a short table for a terminal: means where there are several surfaces.
     pub summary: String,
     /// Whether it was stopped before all loads were answered.

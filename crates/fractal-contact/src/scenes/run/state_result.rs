@@ -152,13 +152,6 @@ pub(crate) struct SolvedUnit<'a> {
     pub states: &'a [StateRecord],
 }
 
-impl SolvedUnit<'_> {
-    /// Its states, each together with this value.
-    pub fn records(&self) -> impl Iterator<Item = (&Self, &StateRecord)> {
-        self.states.iter().map(move |record| (self, record))
-    }
-}
-
 /// A file that belongs to a state.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct StoredFile {

@@ -2,7 +2,7 @@
 
 use crate::scenes::read::{Bin, Distributed, Result, SceneFile, System, multiple, words};
 use crate::scenes::run::{SolvedUnit, StateRecord};
-use crate::scenes::tell::columns;
+use crate::scenes::tell::{StateTable, columns};
 use analysis::{Table, Value};
 use plots::{Chart, Curve};
 
@@ -16,12 +16,9 @@ pub(crate) fn files(scene: &SceneFile) -> Vec<String> {
 }
 
 /// The distribution of all states as a table.
-pub(crate) fn table(
-    scene: &SceneFile,
-    of: Distributed,
-    title: String,
-    units: &[SolvedUnit<'_>],
-) -> Result<Table> {
+pub(crate) fn table(states: &StateTable<'_>, of: Distributed) -> Result<Table> {
+    let scene = states.scene;
+    let title = format!("{}: distribution of {}", states.title, of.name());
     let (_, unit, per_unit) = of.words();
     let [unit, per_unit] = [unit, per_unit].map(|unit| scene.system.unit(unit));
     let density = match of {
@@ -36,7 +33,7 @@ pub(crate) fn table(
         ("upper", unit, "upper end of the bin"),
         ("density", per_unit, density),
     ];
-    let rows = units.iter().flat_map(SolvedUnit::records).flat_map(|(unit, record)| {
+    let rows = states.records().flat_map(|(unit, record)| {
         let bins = record.distributions.iter().filter(|d| d.0 == of).flat_map(|d| &d.1);
         bins.map(|bin| {
             let [lower, upper, density] = bin.map(Value::from);
@@ -47,9 +44,10 @@ pub(crate) fn table(
 }
 
 /// The distribution under a few loads on surface 0; `None` without any.
-pub(crate) fn chart(scene: &SceneFile, of: Distributed, units: &[SolvedUnit<'_>]) -> Option<Chart> {
+pub(crate) fn chart(states: &StateTable<'_>, of: Distributed) -> Option<Chart> {
+    let scene = states.scene;
     let mut curves = Vec::new();
-    for &SolvedUnit { model, states, .. } in units.iter().filter(|unit| unit.surface == 0) {
+    for &SolvedUnit { model, states, .. } in states.units.iter().filter(|unit| unit.surface == 0) {
         let with: Vec<(&StateRecord, &Vec<Bin>)> = states
             .iter()
             .filter_map(|s| Some((s, &s.distributions.iter().find(|d| d.0 == of)?.1)))

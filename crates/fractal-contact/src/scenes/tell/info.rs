@@ -135,7 +135,14 @@ pub fn info_statistics(
         header = header.with_note(step.clone());
     }
     runs::files::create_directory(out)?;
-    let mut files = statistics.write(out, &header, &name)?;
+    let mut files = Vec::new();
+    let mut write = |name: &str, bytes: Vec<u8>| -> Result<()> {
+        let path = out.join(name);
+        runs::files::write_whole(&path, &bytes)?;
+        files.push(path);
+        Ok(())
+    };
+    statistics.files(&header, &name, &mut write)?;
     let report = SurfaceReport {
         name: &name,
         metadata: scan.metadata(),
@@ -143,7 +150,7 @@ pub fn info_statistics(
         map: &found.map,
         statistics: &statistics,
     };
-    files.push(report.write(out)?);
+    write("report.html", report.html()?.into_bytes())?;
     let names: Vec<String> = runs::file_names(&files);
     // Only one exponent is shown: that of the statistics, which has an interval.
     let text = described(&scan, &found, &description(&found.map, system).without_fit());

@@ -3,6 +3,7 @@
 pub(crate) mod columns;
 pub(crate) mod distributions;
 pub(crate) mod ensemble;
+pub(crate) mod files;
 pub(crate) mod info;
 pub(crate) mod manifest;
 pub(crate) mod page;
@@ -11,6 +12,7 @@ pub(crate) mod profile_statistics;
 pub(crate) mod report;
 pub(crate) mod result_folder;
 pub(crate) mod smooth_ball;
+pub(crate) mod state_table;
 pub(crate) mod stated_error;
 pub(crate) mod statistics;
 pub(crate) mod statistics_files;
@@ -20,6 +22,7 @@ pub(crate) mod surface_report;
 pub(crate) use ensemble::Mean;
 pub(crate) use report::Report;
 pub(crate) use result_folder::ResultFolder;
+pub(crate) use state_table::StateTable;
 pub(crate) use statistics::{Bands, FILES, LEVEL, MapStatisticsTables, Parameter, Scale};
 pub(crate) use surface_report::SurfaceReport;
 

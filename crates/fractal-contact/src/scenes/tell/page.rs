@@ -8,7 +8,6 @@ use base64::engine::general_purpose::STANDARD;
 use contact_model::units::number;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use plots::{Chart, FieldPicture, Palette};
-use std::path::{Path, PathBuf};
 
 const STYLE: &str = include_str!("page/page.css");
 const SCRIPT: &str = include_str!("page/page.js");
@@ -16,14 +15,9 @@ const SCRIPT: &str = include_str!("page/page.js");
 /// How the values of a field are read on the page.
 pub(crate) const READING: &str = "A click, or the arrow keys, read the value of a cell; a double click, + and - zoom, and so does the wheel with shift or control.";
 
-/// Writes `report.html`: a heading, the content below it, and sections of (id, name in the list, heading,
+/// The text of `report.html`: a heading, the content below it, and sections of (id, name in the list, heading,
 /// content).
-pub(crate) fn write(
-    out: &Path,
-    title: &str,
-    head: &Markup,
-    sections: &[(&str, &str, &str, Markup)],
-) -> Result<PathBuf> {
+pub(crate) fn html(title: &str, head: &Markup, sections: &[(&str, &str, &str, Markup)]) -> String {
     let page = html! {
         (DOCTYPE)
         html lang="en" {
@@ -46,9 +40,7 @@ pub(crate) fn write(
             }
         }
     };
-    let path = out.join("report.html");
-    runs::files::write_whole(&path, page.into_string().as_bytes())?;
-    Ok(path)
+    page.into_string()
 }
 
 /// A sentence in which text between backticks becomes code.

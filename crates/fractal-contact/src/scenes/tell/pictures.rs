@@ -1,12 +1,11 @@
 //! Curves drawn from the states.
 
-use crate::scenes::read::{LoadKind, LoadRequest, Result, SceneFile, depends_on_path, words};
-use crate::scenes::run::{SolvedUnit, StateRecord, Warning, rests_on_few_cells};
-use crate::scenes::tell::{Mean, columns, ensemble, smooth_ball};
+use crate::scenes::read::{LoadKind, LoadRequest, SceneFile, depends_on_path, words};
+use crate::scenes::run::{StateRecord, Warning, rests_on_few_cells};
+use crate::scenes::tell::{Mean, StateTable, columns, ensemble, smooth_ball};
 use contact_model::quantities::Quantity;
 use contact_model::{Adhesion, Boundary, Hardness};
 use plots::{Chart, Curve};
-use std::path::{Path, PathBuf};
 
 /// The quantity along the horizontal axis.
 #[derive(Clone, Copy)]
@@ -16,26 +15,13 @@ enum Axis {
     Load,
 }
 
-/// `curve-Y.svg` and `.png` for every quantity that the scene requests, and `curve-Y-deviation` where the
-/// curves of several models coincide.
-pub(crate) fn curves(
-    scene: &SceneFile,
-    units: &[SolvedUnit<'_>],
-    means: &[Mean],
-    out: &Path,
-) -> Result<Vec<PathBuf>> {
-    let mut files = Vec::new();
-    for (y, chart) in charts(scene, units, means) {
-        files.extend(chart.save(out, &format!("curve-{y}"))?);
-    }
-    Ok(files)
-}
-
-/// A chart for every requested quantity that varies, with its name, followed by that of the deviations.
-pub(crate) fn charts(scene: &SceneFile, units: &[SolvedUnit<'_>], means: &[Mean]) -> Vec<(String, Chart)> {
+/// A chart for every requested quantity that varies, with its name, followed by that of the deviations, which
+/// there is where the curves of several models coincide. The files are `curve-NAME.svg` and `.png`.
+pub(crate) fn charts(states: &StateTable<'_>) -> Vec<(String, Chart)> {
+    let scene = states.scene;
     let mut charts = Vec::new();
     for (x, y) in pairs(scene) {
-        let chart = chart(scene, units, means, x, y);
+        let chart = chart(states, x, y);
         if chart.curves.iter().any(|c| varies(&c.points)) {
             let deviation = deviation(scene, &chart, y);
             charts.push((y.name.to_owned(), chart));
@@ -82,7 +68,7 @@ fn deviation(scene: &SceneFile, chart: &Chart, y: &'static Quantity) -> Option<C
     })
 }
 
-/// The names of all files that [`curves`] may write.
+/// The names of all files of [`charts`].
 pub(crate) fn curve_files(scene: &SceneFile) -> Vec<String> {
     let names = pairs(scene).into_iter().map(|(_, y)| y.name);
     let names = names.flat_map(|y| ["", DEVIATION].map(|kind| format!("curve-{y}{kind}")));
@@ -184,16 +170,12 @@ fn drawn_with(scene: &SceneFile, y: &'static Quantity) -> Vec<(&'static Quantity
 }
 
 /// The states of one model.
-fn curve(
-    scene: &SceneFile,
-    (units, means): (&[SolvedUnit<'_>], &[Mean]),
-    model: &'static str,
-    (x, y): (Axis, &'static Quantity),
-) -> Curve {
+fn curve(states: &StateTable<'_>, model: &'static str, (x, y): (Axis, &'static Quantity)) -> Curve {
+    let StateTable { scene, means, .. } = states;
     let shown = |(x, y): &(f64, f64)| scene.is_history() || (*x != 0.0 && *y != 0.0);
     let label = words::model_name(model).to_owned();
     if means.is_empty() {
-        let records = units.iter().filter(|unit| unit.model == model).flat_map(|unit| unit.states);
+        let records = states.of_model(model);
         let state = |record: &StateRecord| {
             let solved = record.solved()?;
             let number =
@@ -240,18 +222,11 @@ fn begins_at_zero(scene: &SceneFile, x: Axis) -> bool {
         && (over("time") || effects.hardness != Hardness::Off)
 }
 
-fn chart(
-    scene: &SceneFile,
-    units: &[SolvedUnit<'_>],
-    means: &[Mean],
-    x: Axis,
-    y: &'static Quantity,
-) -> Chart {
+fn chart(states: &StateTable<'_>, x: Axis, y: &'static Quantity) -> Chart {
+    let StateTable { scene, means, .. } = states;
     let quantities = drawn_with(scene, y);
     let of_model = |model: &'static str| {
-        let curve = |(y, suffix): &(&'static Quantity, &'static str)| {
-            (curve(scene, (units, means), model, (x, y)), *suffix)
-        };
+        let curve = |(y, suffix): &(&'static Quantity, &'static str)| (curve(states, model, (x, y)), *suffix);
         let mut curves: Vec<(Curve, &str)> =
             quantities.iter().map(curve).filter(|(curve, _)| !curve.points.is_empty()).collect();
         // A model without cells has no corrected area.

@@ -3,7 +3,7 @@
 use crate::scenes::plan::{Cost, Plan, PredictedFrom};
 use crate::scenes::read::{HEIGHTS, Result, SceneFile, number, short, words};
 use crate::scenes::run::{FieldFile, FieldView, SceneOutcome, SolvedUnit, StateRecord, field_pictures};
-use crate::scenes::tell::{MapStatisticsTables, Mean, columns, distributions, page, pictures, summary};
+use crate::scenes::tell::{MapStatisticsTables, StateTable, columns, distributions, page, pictures, summary};
 use analysis::Value;
 use contact_model::quantities::{Quantity, Role};
 use contact_model::{Boundary, FieldQuantity};
@@ -11,38 +11,37 @@ use maud::{Markup, PreEscaped, html};
 use plots::{Chart, Curve};
 use runs::amounts::{memory, time};
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
 
 /// Bytes that the fields of a page may take: five to thirty of 512 x 512 cells.
 const MOST_BYTES: usize = 12_000_000;
 
 /// What a page is made of.
 pub(crate) struct Report<'a> {
-    pub scene: &'a SceneFile,
+    pub states: &'a StateTable<'a>,
     pub plan: &'a Plan,
     pub outcome: &'a SceneOutcome,
-    pub means: &'a [Mean],
-    pub units: &'a [SolvedUnit<'a>],
     pub statistics: Option<&'a MapStatisticsTables>,
+    /// What is shown of a field, where it is known.
+    pub view: &'a dyn Fn(FieldFile<'_>) -> Option<FieldView>,
 }
 
 impl Report<'_> {
-    /// Writes the page.
+    /// The page.
     ///
     /// # Errors
-    /// Pictures that cannot be encoded, and a file that cannot be written.
-    pub fn write(&self, out: &Path) -> Result<PathBuf> {
-        let name = words::scene_name(self.scene);
-        let (curves, fields, distributions) = (self.curves()?, self.fields(out)?, self.distributions()?);
+    /// Pictures that cannot be encoded.
+    pub fn html(&self) -> Result<String> {
+        let name = words::scene_name(self.scene());
+        let (curves, fields, distributions) = (self.curves()?, self.fields()?, self.distributions()?);
         let spectrum = self.spectrum()?;
         let head = html! {
             p { (boundary(self.plan.boundary)) }
             @if !self.plan.shows.is_empty() { p.lead { (page::words(&self.plan.shows)) } }
             (self.verdict())
         };
-        let results = html! { (self.states()) (self.warnings()) div.charts { (curves) } (distributions) };
+        let results = html! { (self.tables()) (self.warnings()) div.charts { (curves) } (distributions) };
         let surface = html! { (self.surface()) (spectrum) };
-        let scene = html! { pre { (self.scene.text) } };
+        let scene = html! { pre { (self.scene().text) } };
         let sections = [
             ("results", "Results", "Results", results),
             ("fields", "Map, pressure and gap", "Map, pressure and gap", fields),
@@ -53,7 +52,11 @@ impl Report<'_> {
             ("cite", "Sources", "Sources to cite", self.sources()),
             ("scene", "Scene", "The scene", scene),
         ];
-        page::write(out, &name, &head, &sections)
+        Ok(page::html(&name, &head, &sections))
+    }
+
+    fn scene(&self) -> &SceneFile {
+        self.states.scene
     }
 
     fn verdict(&self) -> Markup {
@@ -87,9 +90,9 @@ impl Report<'_> {
         }
     }
 
-    fn states(&self) -> Markup {
+    fn tables(&self) -> Markup {
         html! {
-            @for model in summary::of_models(self.scene, self.units, self.means) {
+            @for model in summary::of_models(self.states) {
                 div.scroll tabindex="0" role="region" aria-label={ "States of " (words::model_name(model.name)) } {
                     @let short = summary::is_short(model.heads.len(), model.rows.len());
                     table.short[short] {
@@ -110,12 +113,12 @@ impl Report<'_> {
     }
 
     fn curves(&self) -> Result<Markup> {
-        page::figures(pictures::charts(self.scene, self.units, self.means).iter().map(|(_, chart)| chart))
+        page::figures(pictures::charts(self.states).iter().map(|(_, chart)| chart))
     }
 
     fn distributions(&self) -> Result<Markup> {
-        let asked = &self.scene.requested.distributions;
-        let charts = asked.iter().filter_map(|&of| distributions::chart(self.scene, of, self.units));
+        let asked = &self.scene().requested.distributions;
+        let charts = asked.iter().filter_map(|&of| distributions::chart(self.states, of));
         let charts: Vec<Chart> = charts.collect();
         let drawn = page::figures(&charts)?;
         Ok(html! { @if !charts.is_empty() { h3 { "Distributions" } div.charts { (drawn) } } })
@@ -123,7 +126,7 @@ impl Report<'_> {
 
     fn spectrum(&self) -> Result<Markup> {
         if let Some(statistics) = self.statistics {
-            let charts = statistics.charts(&words::scene_name(self.scene));
+            let charts = statistics.charts(&words::scene_name(self.scene()));
             let drawn = page::figures(charts.iter().map(|(_, chart)| chart))?;
             return Ok(html! { h3 { "Statistics" } (page::statistics(statistics)) div.charts { (drawn) } });
         }
@@ -143,7 +146,7 @@ impl Report<'_> {
             logarithmic: true,
             ..Chart::default()
         };
-        let spectrum = spectrum.in_units(["1/m", "m^4"].map(|unit| self.scene.system.shown(unit)));
+        let spectrum = spectrum.in_units(["1/m", "m^4"].map(|unit| self.scene().system.shown(unit)));
         Ok(html! { div.charts { (page::chart(&spectrum)?) } })
     }
 
@@ -159,7 +162,7 @@ impl Report<'_> {
     /// The largest of each residual over all states, with what it means.
     fn certificates(&self) -> Markup {
         let largest = |quantity: &Quantity| {
-            let records = self.units.iter().flat_map(|unit| unit.states);
+            let records = self.states.units.iter().flat_map(|unit| unit.states);
             let values = records.filter_map(|record| match columns::value(record, quantity) {
                 Value::Number(v) => Some(v),
                 _ => None,
@@ -170,7 +173,7 @@ impl Report<'_> {
             Role::Residual(proves) => Some((quantity.name, proves, largest(quantity)?)),
             _ => None,
         };
-        let found: Vec<(&str, &str, f64)> = residuals(self.scene).filter_map(proves).collect();
+        let found: Vec<(&str, &str, f64)> = residuals(self.scene()).filter_map(proves).collect();
         html! {
             @if found.is_empty() {
                 p { "No model here has a residual: the formulas are exact for what they assume." }
@@ -232,7 +235,7 @@ impl Report<'_> {
 
     fn sources(&self) -> Markup {
         html! { ul {
-            @for (_, by, source) in columns::sources(self.scene) {
+            @for (_, by, source) in columns::sources(self.scene()) {
                 li { (source.citation) ": " (source.what) " (" (words::model_name(by)) ")" }
             }
         } }
@@ -240,19 +243,19 @@ impl Report<'_> {
 
     /// The map and the fields of the first surface as long as there is room: of the largest loads first, or
     /// of steps spread over a path; shown in the order of the loads, each quantity in one scale.
-    fn fields(&self, out: &Path) -> Result<Markup> {
+    fn fields(&self) -> Result<Markup> {
         let mut views: Vec<View<'_>> = Vec::new();
-        for &SolvedUnit { model, surface, states } in self.units.iter().filter(|of| of.surface == 0) {
+        for &SolvedUnit { model, surface, states } in self.states.units.iter().filter(|of| of.surface == 0) {
             for state in self.by_importance(states) {
-                views.extend(self.scene.requested.fields().filter_map(|(field, _)| {
+                views.extend(self.scene().requested.fields().filter_map(|(field, _)| {
                     let file =
                         FieldFile { field: field.name, model, surface, state: state.index, extension: "" };
-                    Some(View { shown: field_pictures::view(out, file)?, field, model, state: Some(state) })
+                    Some(View { shown: (self.view)(file)?, field, model, state: Some(state) })
                 }));
             }
         }
-        if let (Some(map), false) = (self.scene.surface.given_map(), views.iter().any(View::is_surface)) {
-            let model = self.scene.models.first().map_or("", |model| model.name());
+        if let (Some(map), false) = (self.scene().surface.given_map(), views.iter().any(View::is_surface)) {
+            let model = self.scene().models.first().map_or("", |model| model.name());
             let shown = FieldView::new(map.cells(), map.heights());
             views.insert(0, View { shown, field: &HEIGHTS, model, state: None });
         }
@@ -269,11 +272,11 @@ impl Report<'_> {
             }
             let View { shown, field, model, state } = view;
             let mut picture =
-                field_pictures::picture(self.scene, field, model, (0, *state), shown.cells, &[]);
+                field_pictures::picture(self.scene(), field, model, (0, *state), shown.cells, &[]);
             picture.range = ranges.get(&(field.name, *model)).copied();
-            let figure = if self.scene.surface.is_profile() {
+            let figure = if self.scene().surface.is_profile() {
                 picture.subtitle += &shown.reduction().map_or_else(String::new, |said| format!("; {said}"));
-                page::chart(&field_pictures::row_chart(&picture, shown.row(self.scene.surface.size().x)))?
+                page::chart(&field_pictures::row_chart(&picture, shown.row(self.scene().surface.size().x)))?
             } else {
                 page::field(&picture, shown)?
             };
@@ -292,13 +295,13 @@ impl Report<'_> {
             a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
         });
         let which =
-            if self.scene.is_history() { "spread over the path" } else { "those of the largest loads" };
+            if self.scene().is_history() { "spread over the path" } else { "those of the largest loads" };
         Ok(html! {
             @if drawn.is_empty() {
                 p { "No field was requested: name " code { "pressure" } ", " code { "gap" } " or " code { "heights" } " in [outputs]." }
             } @else {
                 p {
-                    @if !self.scene.surface.is_profile() { (page::READING) }
+                    @if !self.scene().surface.is_profile() { (page::READING) }
                     @if count > 2 { " Each quantity has one scale." }
                     @if zeros > 0 { " Fields that are zero everywhere are not drawn." }
                     @if drawn.len() + zeros < count { " " (drawn.len()) " of " (count) " fields are shown, " (which) "; the others are files beside this page." }
@@ -310,12 +313,12 @@ impl Report<'_> {
 
     /// What states are sorted by: the load that is prescribed, along a path the step.
     fn load(&self, state: &StateRecord) -> f64 {
-        self.scene.request.prescribed(state.index).unwrap_or(state.index as f64)
+        self.scene().request.prescribed(state.index).unwrap_or(state.index as f64)
     }
 
     /// States in the order in which their fields are given room.
     fn by_importance<'b>(&self, states: &'b [StateRecord]) -> Vec<&'b StateRecord> {
-        if self.scene.is_history() {
+        if self.scene().is_history() {
             return spread(states.len()).into_iter().map(|i| &states[i]).collect();
         }
         let mut sorted: Vec<&StateRecord> = states.iter().collect();

@@ -1,13 +1,13 @@
-//! Writes the statistics of a map: tables as CSV, and pictures of the spectrum, of height differences and of
+//! The statistics of a map as files: tables as CSV, and pictures of the spectrum, of height differences and of
 //! slopes.
 
 use crate::scenes::read::Result;
+use crate::scenes::tell::files::{Receive, send};
 use crate::scenes::tell::{Bands, FILES, LEVEL, MapStatisticsTables, columns};
 use analysis::{Table, Value};
 use plots::{Chart, Curve};
-use runs::{Header, write_csv};
+use runs::{Header, csv_bytes};
 use std::f64::consts::TAU;
-use std::path::{Path, PathBuf};
 
 const LOWER_END: &str =
     "lower end of its 95 % band of Gaussian heights; empty beyond half the side of a free map";
@@ -34,23 +34,17 @@ fn points(x: &[f64], y: &[f64]) -> Vec<(f64, f64)> {
 }
 
 impl MapStatisticsTables {
-    /// Writes the tables, and pictures of spectra and height differences.
+    /// Makes the tables, and pictures of spectra and height differences.
     ///
     /// # Errors
-    /// Files that cannot be written.
-    pub(crate) fn write(&self, out: &Path, header: &Header, name: &str) -> Result<Vec<PathBuf>> {
+    /// Pictures that cannot be encoded, and those of `receive`.
+    pub(crate) fn files(&self, header: &Header, name: &str, receive: &mut Receive<'_>) -> Result<()> {
         let tables =
             [self.parameter_table()?, self.spectrum_table()?, self.difference_table()?, self.scale_table()?];
-        let mut files = Vec::new();
         for (file, table) in FILES.iter().zip(tables) {
-            let path = out.join(file);
-            write_csv(&path, &table, header)?;
-            files.push(path);
+            receive(file, csv_bytes(&table, header))?;
         }
-        for (file, chart) in self.charts(name) {
-            files.extend(chart.save(out, file)?);
-        }
-        Ok(files)
+        self.charts(name).into_iter().try_for_each(|(file, chart)| send(chart.files(file)?, receive))
     }
 
     fn parameter_table(&self) -> Result<Table> {

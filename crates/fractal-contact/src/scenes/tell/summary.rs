@@ -2,9 +2,9 @@
 //! that suits its numbers. Files have plain SI.
 
 use crate::scenes::read::{LoadList, LoadRequest, SceneFile, amount, multiple, number, short};
-use crate::scenes::run::{SolvedUnit, StateRecord};
+use crate::scenes::run::StateRecord;
 use crate::scenes::tell::stated_error::{OF_GRID, OF_SOLVER, PLUS_MINUS, relative_error, with_error};
-use crate::scenes::tell::{Mean, columns, ensemble};
+use crate::scenes::tell::{Mean, StateTable, columns, ensemble};
 use analysis::Value;
 use contact_model::quantities::{Quantity, Role, Unit};
 use contact_model::units::rounded;
@@ -74,11 +74,11 @@ impl Head {
 }
 
 /// The states of each model as aligned text of at most 80 characters a line where the words allow it.
-pub(crate) fn summary(scene: &SceneFile, units: &[SolvedUnit<'_>], means: &[Mean]) -> String {
+pub(crate) fn summary(states: &StateTable<'_>) -> String {
     let mut text = String::new();
     // Terminals and fonts without these are still in use, and scenes are written with `um`.
     let plain = |text: &str| text.replace('µ', "u").replace(PLUS_MINUS, "+-");
-    for mut model in of_models(scene, units, means) {
+    for mut model in of_models(states) {
         // A run that was stopped before its first state.
         if model.rows.is_empty() {
             continue;
@@ -305,7 +305,8 @@ fn percent(share: f64) -> String {
 }
 
 /// The answers of each model; of several surfaces their means with half of their intervals.
-pub(crate) fn of_models(scene: &SceneFile, units: &[SolvedUnit<'_>], means: &[Mean]) -> Vec<ModelStates> {
+pub(crate) fn of_models(table: &StateTable<'_>) -> Vec<ModelStates> {
+    let StateTable { scene, means, .. } = table;
     let prescribed = match &scene.request {
         LoadRequest::Loads(LoadList { kind, .. }) => Some((kind.key(), kind.unit())),
         LoadRequest::Path(_) => None,
@@ -314,7 +315,7 @@ pub(crate) fn of_models(scene: &SceneFile, units: &[SolvedUnit<'_>], means: &[Me
     let shown: Vec<Shown> =
         shown(scene).into_iter().filter(|of| Some(of.name()) != prescribed.map(|(key, _)| key)).collect();
     let of_model = |name: &'static str| {
-        let states = || units.iter().filter(move |unit| unit.model == name).flat_map(|unit| unit.states);
+        let states = || table.of_model(name);
         let means = || means.iter().filter(move |mean| mean.model == name);
         let averaged = means().next().is_some();
         let column =
@@ -373,14 +374,15 @@ pub(crate) fn of_models(scene: &SceneFile, units: &[SolvedUnit<'_>], means: &[Me
             left_out: count.saturating_sub(MOST),
             same,
             errors,
-            of_paths: of_paths(scene, name, units, means().next_back()),
+            of_paths: of_paths(table, name, means().next_back()),
         }
     };
     scene.models.iter().map(crate::scenes::Numerics::name).map(of_model).collect()
 }
 
 /// What a model's paths are as a whole: the quantities of paths at their ends, in words.
-fn of_paths(scene: &SceneFile, model: &str, units: &[SolvedUnit<'_>], mean: Option<&Mean>) -> Vec<String> {
+fn of_paths(table: &StateTable<'_>, model: &str, mean: Option<&Mean>) -> Vec<String> {
+    let StateTable { scene, units, .. } = table;
     let quantities: Vec<&'static Quantity> =
         columns::asked(scene).filter(|quantity| quantity.role == Role::OfPath).collect();
     let line = |of: &dyn Fn(Shown) -> Cell| {

@@ -7,7 +7,6 @@ use crate::scenes::tell::{MapStatisticsTables, page};
 use contact_model::HeightMap;
 use maud::{Markup, html};
 use plots::{Chart, Curve, FieldPicture};
-use std::path::{Path, PathBuf};
 use surface_io::Metadata;
 
 /// Bins of the distribution of heights.
@@ -25,11 +24,11 @@ pub(crate) struct SurfaceReport<'a> {
 }
 
 impl SurfaceReport<'_> {
-    /// Writes the page.
+    /// The page.
     ///
     /// # Errors
-    /// Pictures that cannot be encoded, and a file that cannot be written.
-    pub fn write(&self, out: &Path) -> Result<PathBuf> {
+    /// Pictures that cannot be encoded.
+    pub fn html(&self) -> Result<String> {
         let head = html! { p.lead { "A surface: its map, what its file says, and statistics with their intervals." } };
         let file = html! {
             pre { (self.metadata) }
@@ -54,7 +53,7 @@ impl SurfaceReport<'_> {
             ("file", "File", "What the file says", file),
             ("cite", "Sources", "Sources to cite", sources()),
         ];
-        page::write(out, self.name, &head, &sections)
+        Ok(page::html(self.name, &head, &sections))
     }
 
     fn field(&self) -> Result<Markup> {
