@@ -165,7 +165,9 @@ def test_a_scene_of_tables_is_that_of_its_text(tmp_path):
     assert (first.results["stiffness"] == second.results["stiffness"]).all()
     # Its text is that of a scene.
     assert fc.Scene.from_toml(asked.text).text == asked.text
-    coarse = read.replaced({"models.bem3d.cells": 33, "effects.hardness": {"pressure": "2 GPa"}, "scene.force_bar": [0.1]})
+    coarse = read.replaced(
+        {"models.bem3d.cells": 33, "effects.hardness": {"pressure": "2 GPa"}, "scene.force_bar": [0.1]}
+    )
     assert "cells = 33" in coarse.text and 'pressure = "2 GPa"' in coarse.text and "force_bar = 0.1" in coarse.text
     assert read.replaced({}).text == asked.text
     for wrong, message in [

@@ -1,4 +1,4 @@
-//! The surface of a scene as it is asked for: the keys of `[scene.surface]`, `[scene.second_surface]` and
+//! The surface of a scene as a question has it: the keys of `[scene.surface]`, `[scene.second_surface]` and
 //! `[scene.body]`.
 
 use crate::scenes::read::key::{Context, Key, KeyTable};

@@ -141,7 +141,7 @@ impl LoadRequest {
     }
 }
 
-/// Loads or a path as they are asked for.
+/// Loads or a path as a question has them.
 #[derive(Debug, Clone, PartialEq)]
 pub enum AskedLoads {
     /// Loads, solved one by one.
