@@ -45,8 +45,7 @@ impl SceneFile {
             .map_err(|error| of_scene(py, &error))
     }
 
-    /// A scene from its tables, with the keys and values of a text: ``{"scene": {"models": ["hertz"], ...}, ...}``;
-    /// relative paths in it count from `directory`.
+    /// A scene from its tables, with the keys and values of a text; relative paths count from `directory`.
     #[staticmethod]
     #[pyo3(signature = (tables, *, directory=PathBuf::new(), name="scene".to_owned()))]
     fn from_dict(
@@ -56,17 +55,18 @@ impl SceneFile {
         name: String,
     ) -> PyResult<Self> {
         let text = toml_text(tables, "the scene")?;
-        let question = Question::parse(&text).map_err(|error| of_values(py, &error))?;
+        let question = Question::parse(&text).map_err(|mistake| of_scene(py, &mistake.into()))?;
         Self::of(py, question, directory.join(format!("{name}.toml")))
     }
 
     /// The same scene with other values of some keys, each by its table and its name:
     /// ``scene.replaced({"scene.surface.cells": 64})``.
     fn replaced(&self, py: Python<'_>, keys: &Bound<'_, PyDict>) -> PyResult<Self> {
-        let mut question = Question::parse(&self.0.text).map_err(|error| of_values(py, &error))?;
+        let mut question = Question::parse(&self.0.text).map_err(|mistake| of_scene(py, &mistake.into()))?;
         for (key, value) in keys {
             let key: String = key.extract()?;
-            question.set(&key, &toml_value(&value, &key)?).map_err(|error| of_values(py, &error))?;
+            let set = question.set(&key, &toml_value(&value, &key)?);
+            set.map_err(|mistake| of_scene(py, &mistake.into()))?;
         }
         Self::of(py, question, self.0.path.clone())
     }

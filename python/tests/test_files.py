@@ -179,7 +179,7 @@ def test_a_scene_of_tables_is_that_of_its_text(tmp_path):
         with pytest.raises(fc.Error, match=re.escape(message)):
             read.replaced(wrong)
     with pytest.raises(fc.Error, match="nothing is pressed"):
-        fc.Scene.from_dict({**tables, "scene": {"models": ["hertz"], "contact_modulus": "1 GPa"}})
+        fc.Scene.from_dict({**tables, "scene": {"models": ["bem3d"], "contact_modulus": "1 GPa"}})
 
 
 def test_scenes_are_run_as_by_the_program(tmp_path):

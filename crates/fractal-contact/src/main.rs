@@ -59,7 +59,7 @@ fn execute(arguments: Arguments) -> Result<ExitCode> {
             let options = Options { out, threads: threads.unwrap_or_else(all_threads), fresh };
             match shard {
                 Some(choice) => cluster::shard(&scene, choice, &options, &reporter(verbose)),
-                None => run_scene(&scene, &options, verbose),
+                None => run_scene(SceneFile::read(&scene)?, &options, verbose, &|| Ok(())),
             }
         }
         Command::Submit { scene, out, submission, division } => {
@@ -70,7 +70,8 @@ fn execute(arguments: Arguments) -> Result<ExitCode> {
         Command::Status(options) => cluster::status(&options),
         Command::Merge { options, verbose } => {
             let scene = cluster::merged(&options)?;
-            run_scene(&scene, &Options { out: options.out, threads: all_threads(), fresh: false }, verbose)
+            let options = Options { out: options.out, threads: all_threads(), fresh: false };
+            run_scene(SceneFile::read(&scene)?, &options, verbose, &|| Ok(()))
         }
         Command::Info { file, json, out, more } => {
             let (declared, preprocessing) = more.options()?;
@@ -140,14 +141,24 @@ fn press_map(
     let path = out.join("scene.toml");
     press::check_place(&path)?;
     let scene = press::scene(asked, &path)?;
-    runs::files::write_whole(&path, scene.text.as_bytes())?;
-    if let Some(note) = asked.note() {
-        runs::err!("{note}");
+    let text = scene.text.clone();
+    let begin = || {
+        runs::files::write_whole(&path, text.as_bytes())?;
+        if let Some(note) = asked.note() {
+            runs::err!("{note}");
+        }
+        if verbose {
+            runs::err!("{}", path.display());
+        }
+        Ok(())
+    };
+    let options = Options { out, threads: threads.unwrap_or_else(all_threads), fresh: false };
+    let done = run_scene(scene, &options, verbose, &begin);
+    if done.is_err() {
+        // A folder that was made for this scene and is still empty.
+        std::fs::remove_dir(&options.out).ok();
     }
-    if verbose {
-        runs::err!("{}", path.display());
-    }
-    run_scene(&path, &Options { out, threads: threads.unwrap_or_else(all_threads), fresh: false }, verbose)
+    done
 }
 
 /// Writes the scene that flags describe.
@@ -244,12 +255,18 @@ fn read_to_plan(path: &Path, out: PathBuf) -> Result<Option<SceneFile>> {
 }
 
 /// Runs a scene and prints its answer: a line on what is solved, the states, what to beware of, and the
-/// report. `verbose` prints the whole plan before, and what the run took after.
-fn run_scene(path: &Path, options: &Options, verbose: bool) -> Result<ExitCode> {
-    let scene = SceneFile::read(path)?;
+/// report. `verbose` prints the whole plan before, and what the run took after. `begin` is called once the scene
+/// is planned, so that it has no effect where a model refuses the scene.
+fn run_scene(
+    scene: SceneFile,
+    options: &Options,
+    verbose: bool,
+    begin: &dyn Fn() -> Result<()>,
+) -> Result<ExitCode> {
     let (stopped, reporter) = (stopped_by_signals()?, reporter(verbose));
     let Some(scene) = with_grid(scene, options, &reporter, &stopped)? else { return Ok(STOPPED.into()) };
     let plan = Plan::for_run(&scene)?;
+    begin()?;
     if verbose {
         say(plan.to_string());
     } else {
@@ -265,7 +282,7 @@ fn run_scene(path: &Path, options: &Options, verbose: bool) -> Result<ExitCode> 
         say(format!("note: {note}"));
     }
     // The scene that `press` has written stands beside its results.
-    let own = Some(path.to_owned()).filter(|path| path.parent() == Some(&options.out));
+    let own = Some(scene.path.clone()).filter(|path| path.parent() == Some(&options.out));
     let files: Vec<PathBuf> = own.into_iter().chain(outcome.files.iter().cloned()).collect();
     runs::print(format_args!("{}", written(&options.out, &files)));
     if verbose {

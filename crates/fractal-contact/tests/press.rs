@@ -196,6 +196,31 @@ fn set_reaches_every_key() {
         assert!(code == Some(2) && said.contains(told), "{said}");
         assert!(!dir.path().join("no.toml").exists());
     }
+    for (wrong, near) in
+        [("effects.hardnes=1 GPa", "effects.hardness"), ("scene.surface.rotat=90", "scene.surface.rotate")]
+    {
+        let (_, _, said) =
+            program(dir.path(), &[&map[..], &FLAGS, &["--scene", "no.toml", "--set", wrong]].concat());
+        assert!(said.contains(&format!("did you mean `{near}`?")), "{said}");
+    }
+}
+
+/// A scene that a model refuses is not written, and the results of another one beside it stay.
+#[test]
+fn a_refused_scene_writes_nothing() {
+    let dir = folder();
+    let press = |more: &[&str]| {
+        let map = ["press", "map.txt", "--contact-modulus", "1 GPa", "--force", "1 uN"];
+        program(dir.path(), &[&map[..], &FLAGS, more].concat())
+    };
+    let (code, _, said) = press(&["--set", "scene.models=hertz"]);
+    assert!(code == Some(2) && said.contains("hertz does not support a height map"), "{said}");
+    assert!(!dir.path().join("out/map").exists());
+    assert_eq!(press(&[]).0, Some(0));
+    let scene = || std::fs::read(dir.path().join("out/map/scene.toml")).unwrap();
+    let first = scene();
+    assert_eq!(press(&["--set", "scene.models=hertz"]).0, Some(2));
+    assert_eq!(scene(), first);
 }
 
 #[test]

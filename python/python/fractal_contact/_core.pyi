@@ -768,11 +768,11 @@ class SceneFile:
         """Reads a text; relative paths in it count from `directory`."""
     @staticmethod
     def from_dict(tables: Mapping[str, Any], *, directory: str | PathLike[str] = ..., name: str = ...) -> SceneFile:
-        """A scene from its tables, with the keys and values of a text: ``{"scene": {"models": ["hertz"], ...}, ...}``;
-        relative paths in it count from `directory`."""
+        """A scene from its tables, with the keys and values of a text; relative paths count from `directory`."""
     def replaced(self, keys: Mapping[str, Any]) -> SceneFile:
         """The same scene with other values of some keys, each by its table and its name:
-        ``scene.replaced({"scene.surface.cells": 64})``."""
+        ``scene.replaced({"scene.surface.cells": 64})``.
+        """
     def __reduce__(self) -> tuple[Any, ...]: ...
     @property
     def text(self) -> str:

@@ -2,6 +2,7 @@
 //! `[scene.body]`.
 
 use crate::scenes::read::key::{Context, Key, KeyTable};
+use crate::scenes::read::question::no_such_key;
 use crate::scenes::read::{Diagnostic, Entries, Entry, LengthOrPair, Read, System, printed};
 use contact_model::Size;
 use std::path::PathBuf;
@@ -70,7 +71,7 @@ impl AskedFile {
         let plain = text.parse::<Sides>().is_ok_and(|sides| sides.both()[0].dimension() == Dimension::NONE);
         let context = Context { system: if plain { System::None } else { System::Si }, models: &[] };
         Entries::of_word(key, text, |entry| {
-            FILE_KEYS.set(self, entry, context).unwrap_or_else(|| Err(entry.unknown()))
+            FILE_KEYS.set(self, entry, context).unwrap_or_else(|| Err(no_such_key(key)))
         })
     }
 
@@ -796,10 +797,12 @@ fn positive_length(entry: &Entry<'_>, context: Context<'_>) -> Read<Quantity> {
 fn read_crop(entry: &Entry<'_>) -> Read<Crop> {
     if !entry.is_table() {
         // As a flag has it: row, column, rows, columns.
-        if let Some(crop) =
-            entry.as_word().filter(|word| word.contains(',')).and_then(|word| word.parse().ok())
-        {
-            return Ok(crop);
+        if let Some(word) = entry.as_word().filter(|word| word.contains(',')) {
+            return word.parse().map_err(|error: surface_io::KeywordError| {
+                entry.diagnostic(format!("`{}`: {error}", entry.name())).with_help(
+                    "row and column of the first cell, counted from 0, then the numbers of rows and of columns",
+                )
+            });
         }
         return entry.choice(&[("centre", Crop::Centre), ("defined", Crop::Defined)]);
     }

@@ -240,6 +240,12 @@ pub(crate) fn suggestion(name: &str, known: &[&str]) -> String {
     }
 }
 
+/// The name among these that was probably meant.
+pub(crate) fn nearest<'k>(name: &str, known: impl Iterator<Item = &'k str>) -> Option<&'k str> {
+    let near = known.map(|known| (distance(name, known), known)).min()?;
+    (near.0 <= 1 + name.len() / 4).then_some(near.1)
+}
+
 /// Levenshtein's distance; only the first 64 characters of a long name count.
 fn distance(a: &str, b: &str) -> usize {
     strsim::levenshtein(&a.chars().take(64).collect::<String>(), b)
@@ -264,13 +270,6 @@ impl<'a> Entry<'a> {
     /// Name of its key.
     pub fn name(&self) -> &str {
         self.path.rsplit('.').next().unwrap_or(&self.path)
-    }
-
-    /// The mistake of a key that there is not.
-    pub fn unknown(&self) -> Diagnostic {
-        let help =
-            "`fractal-contact models` lists the models, and \"What a scene may say\" in the book every key";
-        self.diagnostic_at_key(format!("there is no key `{}`", self.path)).with_help(help)
     }
 
     /// Where the value stands.

@@ -30,7 +30,7 @@ pub(crate) use contact_model::units::{amount, multiple, number, short};
 pub(crate) use diagnostic::Diagnostic;
 pub(crate) use distributed::{Bin, Distributed};
 pub(crate) use effects::{EFFECT_KEYS, EffectLine, effect_lines, read_effects};
-pub(crate) use entries::{Entries, Entry, LengthOrPair, Read, System, suggestion};
+pub(crate) use entries::{Entries, Entry, LengthOrPair, Read, System, nearest, suggestion};
 pub(crate) use error::{Error, Result};
 pub(crate) use loads::{LoadKind, LoadList, LoadRequest};
 pub(crate) use numerics::{MOST_CELLS, Numerics};

@@ -12,7 +12,7 @@ use crate::scenes::read::outputs::{OUTPUT_KEYS, print_outputs, set_output};
 use crate::scenes::read::path::{AskedStep, PATH_KEYS, read_steps};
 use crate::scenes::read::{
     Diagnostic, EFFECT_KEYS, Entries, Entry, Numerics, Read, RequestedAccuracy, RequestedOutputs, System,
-    printed, read_effects, read_outputs,
+    nearest, printed, read_effects, read_outputs,
 };
 use contact_model::{Body, Effects, Pair};
 use std::fmt::Write as _;
@@ -278,6 +278,21 @@ pub fn scene_keys() -> Vec<SceneKey> {
     keys
 }
 
+/// The mistake of a key that there is not.
+pub(crate) fn no_such_key(path: &str) -> Diagnostic {
+    let step = |table: &'static str| if table == "scene.path" { "scene.path.0" } else { table };
+    let mut known: Vec<String> =
+        scene_keys().iter().map(|key| format!("{}.{}", step(key.table), key.name)).collect();
+    known.extend(EFFECT_KEYS.iter().map(|key| format!("effects.{}", key.name)));
+    known.extend(contact_model::Output::ALL.iter().map(|output| format!("outputs.{}", output.name())));
+    let help = match nearest(path, known.iter().map(String::as_str)) {
+        Some(near) => format!("did you mean `{near}`?"),
+        None => "a key has the name of its table before it, such as `scene.surface.cells`; \"What a scene may say\" in the book lists all of them"
+            .to_owned(),
+    };
+    Diagnostic::new(format!("there is no key `{path}`")).with_help(help)
+}
+
 impl Question {
     /// Reads a text.
     ///
@@ -308,7 +323,7 @@ impl Question {
         let models: Vec<Numerics> = Numerics::all().collect();
         Entries::of_word(path, text, |entry| {
             let context = Context { system: self.units, models: &models };
-            self.set_entry(path, entry, context).unwrap_or_else(|| Err(entry.unknown()))
+            self.set_entry(path, entry, context).unwrap_or_else(|| Err(no_such_key(path)))
         })
     }
 
@@ -337,7 +352,7 @@ impl Question {
             }
             _ => {
                 if let Some(step) = table.strip_prefix("scene.path.") {
-                    return Some(self.set_step(step.parse().ok()?, entry, context));
+                    return self.set_step(step.parse().ok()?, entry, context);
                 }
                 let name = table.strip_prefix("models.")?;
                 let model = self.models.iter_mut().find(|model| model.name() == name)?;
@@ -355,24 +370,24 @@ impl Question {
         Ok(())
     }
 
-    /// Sets a key of a step of the path, which is the next one at most.
-    fn set_step(&mut self, index: usize, entry: &Entry<'_>, context: Context<'_>) -> Read<()> {
+    /// Sets a key of a step of the path, which is the next one at most; `None` where there is no such key.
+    fn set_step(&mut self, index: usize, entry: &Entry<'_>, context: Context<'_>) -> Option<Read<()>> {
         let loads = self.loads.get_or_insert_with(|| AskedLoads::Path(Vec::new()));
         let AskedLoads::Path(steps) = loads else {
-            return Err(entry
+            return Some(Err(entry
                 .diagnostic("loads one by one and a path are both given")
-                .with_help("keep one of them"));
+                .with_help("keep one of them")));
         };
         if index == steps.len() {
             steps.push(AskedStep::default());
         }
         let Some(step) = steps.get_mut(index) else {
             let message = format!("step {index} of a path of {} steps", steps.len());
-            return Err(entry
+            return Some(Err(entry
                 .diagnostic(message)
-                .with_help("steps are counted from 0 and set in their order"));
+                .with_help("steps are counted from 0 and set in their order")));
         };
-        PATH_KEYS.set(step, entry, context).unwrap_or_else(|| Err(entry.unknown()))
+        PATH_KEYS.set(step, entry, context)
     }
 
     /// As the text of a scene, which is read as the same question.
