@@ -5,7 +5,6 @@ use clap::builder::{PossibleValuesParser, TypedValueParser as _};
 use clap::parser::ValueSource;
 use clap::{CommandFactory as _, Parser, Subcommand};
 use fractal_contact::scenes::{AskedFile, SceneKey, scene_keys};
-use fractal_contact::{Body, Coupling, Friction, Pair};
 use runs::ShardChoice;
 use runs::cluster::{Division, Submission};
 use std::any::TypeId;
@@ -32,6 +31,11 @@ pub fn command() -> clap::Command {
             // is.
             let argument = if presses && argument.get_id() == "detrend" {
                 argument.default_value(PRESS_DETREND.word())
+            } else {
+                argument
+            };
+            let argument = if presses && argument.get_id() == "accuracy" {
+                argument.conflicts_with_all(["cells", "hardness", "friction"])
             } else {
                 argument
             };
@@ -255,25 +259,11 @@ pub enum Command {
 pub struct PressArguments {
     /// The measured map: a file of an instrument or program, NPY or text.
     pub map: PathBuf,
-    /// Young's modulus and Poisson's ratio of both bodies, such as "210 GPa 0.3, 70 GPa 0.33". A body may be
-    /// "rigid". If only one body is given, the other one is rigid.
-    #[arg(long)]
-    pub bodies: Option<Bodies>,
-    /// Contact modulus E* of the pair, such as "115 GPa", instead of --bodies. It is not a Young's modulus.
-    #[arg(long, value_name = "MODULUS", conflicts_with = "bodies")]
-    pub contact_modulus: Option<String>,
+    #[command(flatten)]
+    pub problem: ProblemFlags,
     /// The name of --contact-modulus before the first release.
     #[arg(long = "modulus", value_name = "MODULUS", hide = true, conflicts_with_all = ["bodies", "contact_modulus"])]
     former_modulus: Option<String>,
-    /// Mean pressures over the area of the map, such as "1 MPa,10 MPa".
-    #[arg(long, value_name = "LIST", conflicts_with_all = ["force", "approach"])]
-    pub pressure: Option<String>,
-    /// Normal forces, such as "1 N,10 N".
-    #[arg(long, value_name = "LIST", conflicts_with = "approach")]
-    force: Option<String>,
-    /// Approaches of the bodies, counted from first touch, such as "10 nm,100 nm".
-    #[arg(long, value_name = "LIST")]
-    approach: Option<String>,
     /// Boundary of the map. With a free boundary nothing outside the map carries load. With a periodic
     /// boundary the map is one tile of an endless surface.
     #[arg(long, default_value = "free", value_parser = ["free", "periodic"])]
@@ -292,13 +282,6 @@ pub struct PressArguments {
     /// together, none neglects the coupling.
     #[arg(long, value_parser = ["none", "full"], requires = "friction")]
     pub coupling: Option<String>,
-    /// Accepted error of the grid, such as "1 %", or "best". The program then chooses the smallest number of
-    /// cells that reaches it, the same on every machine, within the default `budget` and `memory` of a scene.
-    #[arg(long, value_name = "SHARE", conflicts_with_all = ["cells", "hardness", "friction"])]
-    pub accuracy: Option<String>,
-    /// Number of columns, if the map is averaged over larger cells [default: those of the map].
-    #[arg(long, value_name = "N")]
-    pub cells: Option<usize>,
     /// Any other key of a scene, such as scene.surface.rows=128 or outputs.displacement=npy. It may be given
     /// several times. The book lists the keys in "What a scene may say".
     #[arg(long, value_name = "KEY=VALUE")]
@@ -310,7 +293,7 @@ pub struct PressArguments {
 impl PressArguments {
     /// E* as it was written, under the flag's name or its former one.
     pub fn contact_modulus(&self) -> Option<&str> {
-        self.contact_modulus.as_deref().or(self.former_modulus.as_deref())
+        self.problem.value("contact_modulus").or(self.former_modulus.as_deref())
     }
 
     /// Said once where a flag was given under a former name.
@@ -322,64 +305,12 @@ impl PressArguments {
 
     /// Key and values of the loads.
     pub fn load(&self) -> Option<(&'static str, &str)> {
-        let Self { pressure, force, approach, .. } = self;
-        let loads = [("mean_pressure", pressure), ("force", force), ("approach", approach)];
-        loads.into_iter().find_map(|(key, values)| Some((key, values.as_deref()?)))
+        LOADS.into_iter().find_map(|key| Some((key, self.problem.value(key)?)))
     }
 }
 
-/// Two elastic bodies, or one on a rigid one: Young's modulus as it was written, and Poisson's ratio.
-#[derive(Debug, Clone)]
-pub struct Bodies([Option<(String, f64)>; 2]);
-
-impl Bodies {
-    /// Whether normal and tangential tractions of these bodies act on each other. What is no pressure is told by
-    /// the scene.
-    pub fn couple(&self) -> bool {
-        let body = |body: &Option<(String, f64)>| match body {
-            None => Some(Body::Rigid),
-            Some((young, poisson)) => {
-                let young = surface_io::Quantity::parse_as(young, surface_io::Dimension::PRESSURE).ok()?;
-                Some(Body::Elastic { young, poisson: *poisson })
-            }
-        };
-        let solved = Friction::Coulomb { coefficient: 0.0, coupling: Some(Coupling::Full) };
-        let coupling =
-            || solved.coupling_of(&Pair { first: body(&self.0[0])?, second: body(&self.0[1])? }).ok()?;
-        coupling().is_some()
-    }
-
-    /// As `bodies` in a scene.
-    pub fn toml(&self) -> String {
-        let one = |body: &Option<(String, f64)>| match body {
-            Some((young, poisson)) => {
-                format!("{{ young = {}, poisson = {poisson:?} }}", runs::cluster::toml(young))
-            }
-            None => "\"rigid\"".to_owned(),
-        };
-        format!("[{}, {}]", one(&self.0[0]), one(&self.0[1]))
-    }
-}
-
-impl std::str::FromStr for Bodies {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let expected = "expected Young's modulus and Poisson's ratio of both bodies, such as \"210 GPa 0.3, 70 GPa 0.33\" or \"rigid, 70 GPa 0.33\"";
-        let body = |text: &str| match text.trim() {
-            "rigid" => Ok(None),
-            other => other
-                .rsplit_once(char::is_whitespace)
-                .and_then(|(young, poisson)| Some(Some((young.trim().to_owned(), poisson.parse().ok()?))))
-                .ok_or_else(|| format!("`{other}`: {expected}")),
-        };
-        match text.split(',').collect::<Vec<_>>()[..] {
-            [one] => Ok(Self([None, body(one)?])),
-            [first, second] => Ok(Self([body(first)?, body(second)?])),
-            _ => Err(expected.to_owned()),
-        }
-    }
-}
+/// The loads that are flags.
+const LOADS: [&str; 3] = ["mean_pressure", "force", "approach"];
 
 /// Flags of a random surface.
 #[derive(Debug, clap::Args)]
@@ -436,12 +367,17 @@ pub struct ShardsArguments {
     pub plan: Option<String>,
 }
 
-/// How the file of a map is read, and what is done to the map: the keys of [scene.surface] that are flags, as they
-/// were written.
+/// Keys of a scene that are flags, as they were written.
 #[derive(Debug, Default, Clone)]
-pub struct MapFlags(Vec<(&'static str, String)>);
+pub struct KeyFlags<const OF_MAP: bool>(Vec<(&'static str, String)>);
 
-impl MapFlags {
+/// How the file of a map is read, and what is done to the map: everyday keys of `[scene.surface]`.
+pub type MapFlags = KeyFlags<true>;
+
+/// The material, the loads and the grid: everyday keys of `[scene]`, and the number of cells.
+pub type ProblemFlags = KeyFlags<false>;
+
+impl<const OF_MAP: bool> KeyFlags<OF_MAP> {
     /// The flags that were given, by the names of their keys.
     pub fn given(&self) -> impl Iterator<Item = (&'static str, &str)> {
         self.0.iter().map(|(key, text)| (*key, text.as_str()))
@@ -456,7 +392,34 @@ impl MapFlags {
     pub fn value(&self, key: &str) -> Option<&str> {
         self.given().find(|(name, _)| *name == key).map(|(_, text)| text)
     }
+}
 
+impl<const OF_MAP: bool> clap::Args for KeyFlags<OF_MAP> {
+    fn augment_args(command: clap::Command) -> clap::Command {
+        keys(OF_MAP).fold(command, |command, key| command.arg(flag(&key)))
+    }
+
+    fn augment_args_for_update(command: clap::Command) -> clap::Command {
+        Self::augment_args(command)
+    }
+}
+
+impl<const OF_MAP: bool> clap::FromArgMatches for KeyFlags<OF_MAP> {
+    fn from_arg_matches(matches: &clap::ArgMatches) -> Result<Self, clap::Error> {
+        let typed = |key: &SceneKey| matches.value_source(key.name) == Some(ValueSource::CommandLine);
+        let value = |key: SceneKey| {
+            Some((key.name, matches.get_raw(key.name)?.next()?.to_string_lossy().into_owned()))
+        };
+        Ok(Self(keys(OF_MAP).filter(typed).filter_map(value).collect()))
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &clap::ArgMatches) -> Result<(), clap::Error> {
+        *self = Self::from_arg_matches(matches)?;
+        Ok(())
+    }
+}
+
+impl MapFlags {
     /// How the file is read, and what is done to its map. Points without a height stay undefined, unless they are
     /// given one.
     ///
@@ -475,35 +438,14 @@ impl MapFlags {
     }
 }
 
-impl clap::Args for MapFlags {
-    fn augment_args(command: clap::Command) -> clap::Command {
-        file_keys().fold(command, |command, key| command.arg(flag(&key)))
-    }
-
-    fn augment_args_for_update(command: clap::Command) -> clap::Command {
-        Self::augment_args(command)
-    }
-}
-
-impl clap::FromArgMatches for MapFlags {
-    fn from_arg_matches(matches: &clap::ArgMatches) -> Result<Self, clap::Error> {
-        let typed = |key: &SceneKey| matches.value_source(key.name) == Some(ValueSource::CommandLine);
-        let given = file_keys().filter(typed).filter_map(|key| {
-            let value = matches.get_raw(key.name)?.next()?.to_string_lossy().into_owned();
-            Some((key.name, value))
-        });
-        Ok(Self(given.collect()))
-    }
-
-    fn update_from_arg_matches(&mut self, matches: &clap::ArgMatches) -> Result<(), clap::Error> {
-        *self = Self::from_arg_matches(matches)?;
-        Ok(())
-    }
-}
-
-/// The keys of a measured map that are flags.
-fn file_keys() -> impl Iterator<Item = SceneKey> {
-    scene_keys().into_iter().filter(|key| key.table == "scene.surface" && key.everyday)
+/// The keys of a measured map that are flags, or those of the material, the loads and the grid.
+fn keys(of_map: bool) -> impl Iterator<Item = SceneKey> {
+    let is = move |key: &SceneKey| match (of_map, key.table) {
+        (true, "scene.surface") | (false, "scene") => key.everyday,
+        (false, "scene.surface") => key.name == "cells",
+        _ => false,
+    };
+    scene_keys().into_iter().filter(is)
 }
 
 /// A flag for a key, with its words and its default.
@@ -516,18 +458,32 @@ fn flag(key: &SceneKey) -> clap::Arg {
     let alone = rest.split([',', ' ']).all(|word| ["", "or"].contains(&word));
     let words = !quoted.is_empty() && quoted.len() == codes.len() && alone;
     // Kinds of values are shown by their names, and all others in full.
-    let kinds = [("length", "LENGTH"), ("whole number", "N"), ("number", "NUMBER"), ("unit", "UNIT")];
+    let kinds = [
+        ("length(s)", "LENGTHS"),
+        ("length", "LENGTH"),
+        ("whole number", "N"),
+        ("number", "NUMBER"),
+        ("unit", "UNIT"),
+        ("pressure(s)", "PRESSURES"),
+        ("pressure", "PRESSURE"),
+        ("force(s)", "FORCES"),
+        ("share", "SHARE"),
+        ("two", "BODIES"),
+    ];
     let kind =
         kinds.into_iter().find(|(words, _)| key.takes.starts_with(words)).map_or("VALUE", |(_, name)| name);
-    let takes =
-        if quoted.is_empty() || words { String::new() } else { format!(" [values: {}]", plain(key.takes)) };
+    let is_clear = quoted.is_empty() || words || kind != "VALUE";
+    let takes = if is_clear { String::new() } else { format!(" [values: {}]", plain(key.takes)) };
     let mut help = format!("{}{takes}", plain(key.about));
     help[..1].make_ascii_uppercase();
     let code = key.default.strip_prefix('`').and_then(|rest| rest.strip_suffix('`'));
     let default = code
         .map(|code| code.trim_matches('"'))
         .or_else(|| Some(key.default).filter(|d| d.parse::<f64>().is_ok()));
-    let argument = clap::Arg::new(key.name).long(key.name.replace('_', "-")).value_name(kind).help(help);
+    let argument = clap::Arg::new(key.name)
+        .long(flag_of(key.name).trim_start_matches('-').to_owned())
+        .value_name(kind)
+        .help(help);
     let argument = match default {
         Some(default) => argument.default_value(default.to_owned()),
         None => argument,
@@ -541,7 +497,7 @@ fn flag(key: &SceneKey) -> clap::Arg {
 }
 
 fn is_flag(name: &str) -> bool {
-    file_keys().any(|key| key.name == name)
+    keys(true).chain(keys(false)).any(|key| key.name == name)
 }
 
 /// Markdown as plain text: without quotation marks of code, and with the words of a link alone.

@@ -1,12 +1,12 @@
 //! `press` and `new`: from flags to the question that is asked most often, how large the contact of a measured
 //! map is.
 
-use crate::arguments::{Bodies, PRESS_DETREND, PressArguments};
+use crate::arguments::{PRESS_DETREND, PressArguments};
 use fractal_contact::scenes::{
-    AskedFile, AskedSurface, Diagnostic, Distributed, Error, FieldFormat, Numerics, Question, Result,
-    SceneFile,
+    AskedFile, AskedSurface, Diagnostic, Distributed, Error, FieldFormat, Material, Numerics, Question,
+    Result, SceneFile,
 };
-use fractal_contact::{Boundary, Output};
+use fractal_contact::{Boundary, Coupling, Friction, Output};
 use runs::cluster::{quoted, toml};
 use std::fmt::Write as _;
 use std::path::{Component, Path, PathBuf};
@@ -78,6 +78,7 @@ fn scene_of(asked: &PressArguments, at: &Path, profile: bool, words: &str) -> Re
 
 fn lacking(asked: &PressArguments, map: &Metadata) -> Vec<Lacking> {
     let has = |key: &str| asked.file.value(key).is_some();
+    let bodies = asked.problem.value("bodies");
     let mut lacking = Vec::new();
     let mut add = |missing: bool, flag, example: &str, why: String, instead| {
         if missing {
@@ -106,20 +107,20 @@ fn lacking(asked: &PressArguments, map: &Metadata) -> Vec<Lacking> {
         Some(("--fill", "gives them a height, instead of --undefined: `--fill neighbours`")),
     );
     add(
-        asked.friction.is_some() && asked.bodies.is_none(),
+        asked.friction.is_some() && bodies.is_none(),
         "--bodies",
         "rigid, 210 GPa 0.3",
         "Young's modulus and Poisson's ratio of both bodies, which friction needs".to_owned(),
         None,
     );
     add(
-        asked.friction.is_none() && asked.contact_modulus().is_none() && asked.bodies.is_none(),
+        asked.friction.is_none() && asked.contact_modulus().is_none() && bodies.is_none(),
         "--bodies",
         "210 GPa 0.3, 210 GPa 0.3",
         "Young's modulus and Poisson's ratio of both bodies, here steel on steel".to_owned(),
         Some(("--contact-modulus", "E* of the pair, instead of --bodies: '115 GPa' is steel on steel")),
     );
-    let couple = asked.bodies.as_ref().is_none_or(Bodies::couple);
+    let couple = bodies.is_none_or(couple);
     add(
         asked.friction.is_some() && couple && asked.coupling.is_none(),
         "--coupling",
@@ -157,9 +158,9 @@ fn mistake(asked: &PressArguments, lacking: &[Lacking]) -> Option<String> {
             "--bodies" if asked.contact_modulus().is_some() => {
                 return Some("--friction needs --bodies in the place of --contact-modulus".to_owned());
             }
-            "--bodies" => filled.bodies = example.parse::<Bodies>().ok(),
+            "--bodies" => filled.problem.add("bodies", example),
             "--coupling" => filled.coupling = text,
-            "--pressure" => filled.pressure = text,
+            "--pressure" => filled.problem.add("mean_pressure", example),
             _ => filled.tangential_force = text,
         }
     }
@@ -232,13 +233,12 @@ fn question(asked: &PressArguments, at: &Path, profile: bool) -> Result<Question
     let mut set = |key: &str, text: &str| {
         question.set(key, text).map_err(|mistake| mistake.of_flag(key, &flag_of(key)))
     };
-    match (&asked.bodies, asked.contact_modulus()) {
-        (Some(bodies), _) => set("scene.bodies", &bodies.toml())?,
-        (None, Some(modulus)) => set("scene.contact_modulus", modulus)?,
-        (None, None) => {}
+    let of_material = ["contact_modulus", "bodies", "accuracy"];
+    for (key, text) in asked.problem.given().filter(|(key, _)| of_material.contains(key)) {
+        set(&format!("scene.{key}"), text)?;
     }
-    if let Some(accuracy) = &asked.accuracy {
-        set("scene.accuracy", accuracy)?;
+    if let (Some(modulus), None) = (asked.contact_modulus(), asked.problem.value("contact_modulus")) {
+        set("scene.contact_modulus", modulus)?;
     }
     match asked.load() {
         Some((key, values)) if asked.friction.is_some() => {
@@ -246,7 +246,7 @@ fn question(asked: &PressArguments, at: &Path, profile: bool) -> Result<Question
             set("scene.path.1.tangential_force", asked.tangential_force.as_deref().unwrap_or_default())?;
             set("scene.path.1.states", "8")?;
         }
-        Some((key, values)) => set(&format!("scene.{key}"), &value_or_list(values))?,
+        Some((key, values)) => set(&format!("scene.{key}"), values)?,
         None => {}
     }
     set("effects.boundary", &asked.boundary)?;
@@ -285,11 +285,10 @@ fn file(asked: &PressArguments, at: &Path) -> Result<AskedFile, Diagnostic> {
     file.path = Some(seen_from(&asked.map, at).into());
     file.detrend = Some(PRESS_DETREND);
     question.surface = Some(AskedSurface::File(Box::new(file)));
-    let cells = asked.cells.map(|cells| ("cells", cells.to_string()));
-    let flags = asked.file.given().map(|(key, text)| (key, text.to_owned()));
-    for (key, text) in flags.chain(cells) {
+    let cells = asked.problem.given().filter(|(key, _)| *key == "cells");
+    for (key, text) in asked.file.given().chain(cells) {
         let path = format!("scene.surface.{key}");
-        question.set(&path, &text).map_err(|mistake| mistake.of_flag(&path, &flag_of(key)))?;
+        question.set(&path, text).map_err(|mistake| mistake.of_flag(&path, &flag_of(key)))?;
     }
     match question.surface {
         Some(AskedSurface::File(file)) => Ok(*file),
@@ -315,7 +314,7 @@ fn outputs(question: &mut Question, asked: &PressArguments, profile: bool) {
         requested.curves = true;
     } else {
         requested.distributions = vec![Distributed::Pressure, Distributed::Gap];
-        requested.grid_error = asked.accuracy.is_none();
+        requested.grid_error = asked.problem.value("accuracy").is_none();
     }
 }
 
@@ -344,13 +343,16 @@ fn comment(key: &str) -> &'static str {
     }
 }
 
-/// One value or, with commas, a list.
-fn value_or_list(text: &str) -> String {
-    if !text.contains(',') {
-        return text.to_owned();
+/// Whether normal and tangential tractions of these bodies act on each other.
+fn couple(bodies: &str) -> bool {
+    let mut question = Question::default();
+    if question.set("scene.bodies", bodies).is_err() {
+        // The mistake is named when the scene is made.
+        return false;
     }
-    let values: Vec<String> = text.split(',').map(|value| toml(value.trim())).collect();
-    format!("[{}]", values.join(", "))
+    let Some(Material::Bodies(pair)) = question.material else { return false };
+    let solved = Friction::Coulomb { coefficient: 0.0, coupling: Some(Coupling::Full) };
+    solved.coupling_of(&pair).ok().flatten().is_some()
 }
 
 /// The path of a map as the scene at `at` has to say it. Where a folder of the scene is a symbolic link, `..` leads
@@ -385,12 +387,6 @@ mod tests {
         assert_eq!(seen("map.npy", "./out/scene.toml"), "../map.npy");
         assert_eq!(seen("/a/map.npy", "out/scene.toml"), "/a/map.npy");
         assert!(Path::new(&seen("map.npy", "/elsewhere/scene.toml")).is_absolute());
-    }
-
-    #[test]
-    fn values_between_commas_are_a_list() {
-        assert_eq!(value_or_list("1 MPa, 10 MPa"), "[\"1 MPa\", \"10 MPa\"]");
-        assert_eq!(value_or_list("1 MPa"), "1 MPa");
     }
 
     /// A tilted map of 8 x 8 heights that has decimals.
@@ -474,7 +470,6 @@ mod tests {
                     }
                     // `Options` has no default of its own.
                     ("threads", "all") => continue,
-                    ("cells", "those of the map") => "8",
                     (_, shown) => shown,
                 };
                 assert!(same(&scene(&flag(default)).unwrap(), &plain), "{name} --{id} {default}");
@@ -487,7 +482,7 @@ mod tests {
                 compared.push(id.to_owned());
             }
             compared.sort_unstable();
-            assert_eq!(compared, ["boundary", "cells", "decimal", "detrend", "rotate", "skip_lines"]);
+            assert_eq!(compared, ["boundary", "decimal", "detrend", "rotate", "skip_lines"]);
         }
         // Other commands leave a map as it is.
         for name in ["info", "twin"] {

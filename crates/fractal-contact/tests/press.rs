@@ -119,7 +119,7 @@ fn a_wrong_flag_is_told_before_what_is_missing_and_not_repeated() {
     let cases: [(&[&str], &str); 5] = [
         (&["--contact-modulus", "115 Gpaa"], "unknown unit \"Gpaa\""),
         (&["--contact-modulus", "115"], "`--contact-modulus` = 115 has no unit"),
-        (&["--pressure", "1 MPa,2 N"], "`--pressure`: 2 N is a force"),
+        (&["--pressure", "1 MPa,2 N"], "`--pressure` = 1 MPa,2 N: 2 N is a force"),
         (&["--bodies", "rigid, 70 GPa 0.9"], "0.9"),
         (
             &["--contact-modulus", "1 GPa", "--friction", "0.3"],

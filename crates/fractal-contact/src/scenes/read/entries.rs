@@ -267,6 +267,11 @@ pub(crate) struct Entry<'a> {
 }
 
 impl<'a> Entry<'a> {
+    /// Its key with the name of its table.
+    pub fn path(&self) -> &str {
+        &self.path
+    }
+
     /// Name of its key.
     pub fn name(&self) -> &str {
         self.path.rsplit('.').next().unwrap_or(&self.path)

@@ -4,7 +4,7 @@ use crate::scenes::read::key::Context;
 use crate::scenes::read::path::{AskedStep, MOST, PathPiece, zero_if_rounded};
 use crate::scenes::read::{Diagnostic, Entry, Places, Read, System, printed};
 use contact_model::{Load, NormalLoad, Normalisation, Step};
-use surface_io::Dimension;
+use surface_io::{Dimension, Quantity};
 
 /// What a list of loads prescribes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -182,6 +182,11 @@ pub(crate) fn read_loads(kind: LoadKind, entry: &Entry<'_>, context: Context<'_>
                 .with_help("both ends > 0, or `spacing = \"linear\"`"));
         }
         between(low, high, number_of as usize, even)
+    } else if let Some(words) = entry.as_word().filter(|words| words.contains(',')) {
+        let quantity = |part: &str| {
+            Quantity::parse_as(part.trim(), dimension).map_err(|reason| of_list(entry, words, &reason))
+        };
+        words.split(',').map(quantity).collect::<Read<Vec<f64>>>()?
     } else {
         entry.list().iter().map(number).collect::<Read<Vec<f64>>>()?
     };
@@ -191,6 +196,18 @@ pub(crate) fn read_loads(kind: LoadKind, entry: &Entry<'_>, context: Context<'_>
             .with_help("name at least one load"));
     }
     Ok(AskedLoads::Loads(LoadList { kind, values }))
+}
+
+/// The mistake of a list in one text, which may be a decimal comma.
+fn of_list(entry: &Entry<'_>, words: &str, reason: &surface_io::QuantityError) -> Diagnostic {
+    let point = words.replacen(',', ".", 1);
+    let of_decimals = words.matches(',').count() == 1 && point.parse::<Quantity>().is_ok();
+    let message = format!("`{}` = {words}: {reason}", entry.path());
+    entry.diagnostic(message).with_help(if of_decimals {
+        format!("a comma is between two values; write a decimal point: {point}")
+    } else {
+        "each value has its unit, such as \"1 MPa, 10 MPa\"".to_owned()
+    })
 }
 
 /// The loads as TOML, where they are of this kind.

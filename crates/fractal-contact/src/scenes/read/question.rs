@@ -16,7 +16,7 @@ use crate::scenes::read::{
 };
 use contact_model::{Body, Effects, Pair};
 use std::fmt::Write as _;
-use surface_io::Dimension;
+use surface_io::{Dimension, Quantity};
 
 /// Everything that a scene says. A part that a scene has to name is `None` until it is named.
 ///
@@ -105,7 +105,7 @@ static SCENE_KEYS: KeyTable<Question> = KeyTable {
         &["contact_modulus", "modulus", "bodies"],
         &["force", "force_bar", "mean_pressure", "approach", "mean_gap"],
     ],
-    everyday: &[],
+    everyday: &["contact_modulus", "bodies", "mean_pressure", "force", "approach", "accuracy"],
     keys: &[
         Key {
             name: "units",
@@ -132,7 +132,7 @@ static SCENE_KEYS: KeyTable<Question> = KeyTable {
         Key {
             name: "contact_modulus",
             takes: "pressure > 0",
-            about: "E* of the pair",
+            about: "contact modulus E* of the pair, such as `\"115 GPa\"`; it is no Young's modulus",
             default: "",
             read: read_contact_modulus,
             print: |question, system| match question.material {
@@ -152,8 +152,8 @@ static SCENE_KEYS: KeyTable<Question> = KeyTable {
         },
         Key {
             name: "bodies",
-            takes: "two of `\"rigid\"`, `{ young, poisson }`",
-            about: "Young's modulus and Poisson's ratio of both bodies, which friction needs",
+            takes: "two of `\"rigid\"`, `{ young, poisson }`; or a text",
+            about: "Young's modulus and Poisson's ratio of both bodies, such as `\"210 GPa 0.3, rigid\"`; if only one is given, the other one is rigid; friction needs them",
             default: "",
             read: |question, entry, context| {
                 read_pair(entry, context.system).map(|pair| question.material = Some(Material::Bodies(pair)))
@@ -168,7 +168,7 @@ static SCENE_KEYS: KeyTable<Question> = KeyTable {
         Key {
             name: "force",
             takes: "force(s)",
-            about: "normal force: one value, a list, or `{ from, to, count, spacing }` with the `spacing` `\"log\"`, which is the default, or `\"linear\"`; other loads take the same",
+            about: "normal force: one value, several such as `\"1 N, 10 N\"` or `[\"1 N\", \"10 N\"]`, or `{ from, to, count, spacing }` with the `spacing` `\"log\"`, which is the default, or `\"linear\"`; other loads take the same",
             default: "another load or a path is given",
             read: |question, entry, context| {
                 read_loads(LoadKind::Force, entry, context).map(|loads| question.loads = Some(loads))
@@ -188,7 +188,7 @@ static SCENE_KEYS: KeyTable<Question> = KeyTable {
         Key {
             name: "mean_pressure",
             takes: "pressure(s)",
-            about: "force over the nominal contact area",
+            about: "mean pressure over the nominal contact area, such as `\"1 MPa\"`, or several as in `\"1 MPa, 10 MPa\"`",
             default: "another load or a path is given",
             read: |question, entry, context| {
                 read_loads(LoadKind::MeanPressure, entry, context).map(|loads| question.loads = Some(loads))
@@ -198,7 +198,7 @@ static SCENE_KEYS: KeyTable<Question> = KeyTable {
         Key {
             name: "approach",
             takes: "length(s)",
-            about: "approach of the bodies, counted from first touch; free boundaries",
+            about: "approach of the bodies, counted from first touch, such as `\"10 nm, 100 nm\"`; free boundaries",
             default: "another load or a path is given",
             read: |question, entry, context| {
                 read_loads(LoadKind::Approach, entry, context).map(|loads| question.loads = Some(loads))
@@ -588,15 +588,58 @@ fn read_contact_modulus(question: &mut Question, entry: &Entry<'_>, context: Con
 }
 
 fn read_pair(entry: &Entry<'_>, system: System) -> Read<Pair> {
-    let values = entry.list();
-    let [first, second] = &values[..] else {
-        return Err(entry
-            .diagnostic(format!("`bodies` names {}", values.len()))
-            .with_help("two: `bodies = [\"rigid\", { young = \"70 GPa\", poisson = 0.33 }]`"));
+    let pair = if let Some(words) = entry.as_word() {
+        match words.split(',').collect::<Vec<_>>()[..] {
+            [one] => Pair { first: Body::Rigid, second: body_of_words(one, entry, system)? },
+            [first, second] => Pair {
+                first: body_of_words(first, entry, system)?,
+                second: body_of_words(second, entry, system)?,
+            },
+            _ => return Err(no_bodies(entry, words)),
+        }
+    } else {
+        let values = entry.list();
+        let [first, second] = &values[..] else {
+            return Err(entry
+                .diagnostic(format!("`bodies` names {}", values.len()))
+                .with_help("two: `bodies = [\"rigid\", { young = \"70 GPa\", poisson = 0.33 }]`"));
+        };
+        Pair { first: read_body(first, system)?, second: read_body(second, system)? }
     };
-    let pair = Pair { first: read_body(first, system)?, second: read_body(second, system)? };
     pair.contact_modulus().map_err(|error| entry.diagnostic(error.to_string()))?;
     Ok(pair)
+}
+
+/// A body as `210 GPa 0.3` or `rigid`.
+fn body_of_words(words: &str, entry: &Entry<'_>, system: System) -> Read<Body> {
+    let words = words.trim();
+    if words == "rigid" {
+        return Ok(Body::Rigid);
+    }
+    let (young, ratio) = words.rsplit_once(char::is_whitespace).ok_or_else(|| no_bodies(entry, words))?;
+    let dimension = if system == System::Si { Dimension::PRESSURE } else { Dimension::NONE };
+    let wrong = |reason: surface_io::QuantityError| {
+        entry.diagnostic(format!("`bodies`: {reason}")).with_help(BODIES_HELP)
+    };
+    let young = Quantity::parse_as(young, dimension).map_err(wrong)?;
+    let poisson = ratio.parse().map_err(|_| no_bodies(entry, words))?;
+    if young > 0.0 { checked_body(young, poisson, entry) } else { Err(no_bodies(entry, words)) }
+}
+
+const BODIES_HELP: &str = "Young's modulus and Poisson's ratio of both bodies, such as \"210 GPa 0.3, 70 GPa 0.33\" or \"rigid, 70 GPa 0.33\"; the \
+                           other one of a single body is rigid";
+
+fn no_bodies(entry: &Entry<'_>, words: &str) -> Diagnostic {
+    entry.diagnostic(format!("`bodies`: \"{words}\" is no body")).with_help(BODIES_HELP)
+}
+
+fn checked_body(young: f64, poisson: f64, ratio: &Entry<'_>) -> Read<Body> {
+    if (0.0..=0.5).contains(&poisson) {
+        return Ok(Body::Elastic { young, poisson });
+    }
+    Err(ratio
+        .diagnostic(format!("`poisson` = {poisson}: expected a number in [0, 0.5]"))
+        .with_help("0.5 is incompressible"))
 }
 
 fn read_body(entry: &Entry<'_>, system: System) -> Read<Body> {
@@ -608,12 +651,7 @@ fn read_body(entry: &Entry<'_>, system: System) -> Read<Body> {
     let ratio = table.require("poisson", "0.33")?;
     let poisson = ratio.number()?;
     table.finish()?;
-    if !(0.0..=0.5).contains(&poisson) {
-        return Err(ratio
-            .diagnostic(format!("`poisson` = {poisson}: expected a number in [0, 0.5]"))
-            .with_help("0.5 is incompressible"));
-    }
-    Ok(Body::Elastic { young, poisson })
+    checked_body(young, poisson, &ratio)
 }
 
 fn print_body(body: Body, system: System) -> String {
