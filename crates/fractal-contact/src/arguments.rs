@@ -310,7 +310,7 @@ impl PressArguments {
 }
 
 /// The loads that are flags.
-const LOADS: [&str; 3] = ["mean_pressure", "force", "approach"];
+pub const LOADS: [&str; 3] = ["mean_pressure", "force", "approach"];
 
 /// Flags of a random surface.
 #[derive(Debug, clap::Args)]

@@ -1,7 +1,7 @@
 //! `press` and `new`: from flags to the question that is asked most often, how large the contact of a measured
 //! map is.
 
-use crate::arguments::{PRESS_DETREND, PressArguments};
+use crate::arguments::{LOADS, PRESS_DETREND, PressArguments};
 use fractal_contact::scenes::{
     AskedFile, AskedSurface, Diagnostic, Distributed, Error, FieldFormat, Material, Numerics, Question,
     Result, SceneFile,
@@ -233,8 +233,9 @@ fn question(asked: &PressArguments, at: &Path, profile: bool) -> Result<Question
     let mut set = |key: &str, text: &str| {
         question.set(key, text).map_err(|mistake| mistake.of_flag(key, &flag_of(key)))
     };
-    let of_material = ["contact_modulus", "bodies", "accuracy"];
-    for (key, text) in asked.problem.given().filter(|(key, _)| of_material.contains(key)) {
+    // Loads may be those of a path, and the number of cells is that of the map.
+    let elsewhere = |key: &str| key == "cells" || LOADS.contains(&key);
+    for (key, text) in asked.problem.given().filter(|(key, _)| !elsewhere(key)) {
         set(&format!("scene.{key}"), text)?;
     }
     if let (Some(modulus), None) = (asked.contact_modulus(), asked.problem.value("contact_modulus")) {
