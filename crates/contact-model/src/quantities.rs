@@ -166,7 +166,7 @@ impl ContactState {
 
 /// The properties of a scene that decide whether a quantity is reported of its states.
 #[derive(Debug, Clone, Copy)]
-pub struct Question<'a> {
+pub struct SceneProperties<'a> {
     /// Effects that are on.
     pub effects: &'a Effects,
     /// Outputs that are requested.
@@ -210,23 +210,23 @@ pub enum AskedBy {
 
 impl AskedBy {
     /// Whether the condition holds for this scene.
-    pub fn holds(self, question: &Question<'_>) -> bool {
+    pub fn holds(self, scene: &SceneProperties<'_>) -> bool {
         match self {
             Self::Always => true,
-            Self::RoughSurface => question.rough,
-            Self::FreeBoundary => question.effects.boundary == Boundary::Free,
-            Self::Path => question.path,
-            Self::PrescribedDistance => question.prescribes_distance,
-            Self::Output(output) => question.outputs.asks(output),
-            Self::AnyStiffness => question.outputs.needs_stiffness(),
+            Self::RoughSurface => scene.rough,
+            Self::FreeBoundary => scene.effects.boundary == Boundary::Free,
+            Self::Path => scene.path,
+            Self::PrescribedDistance => scene.prescribes_distance,
+            Self::Output(output) => scene.outputs.asks(output),
+            Self::AnyStiffness => scene.outputs.needs_stiffness(),
             Self::AnyTangentialStiffness => {
-                question.outputs.tangential_stiffness || question.outputs.tangential_stiffness_stuck
+                scene.outputs.tangential_stiffness || scene.outputs.tangential_stiffness_stuck
             }
             Self::FrictionInPlane => {
-                question.directions == Directions::Plane && question.effects.friction != Friction::Off
+                scene.directions == Directions::Plane && scene.effects.friction != Friction::Off
             }
-            Self::Effect(key) => question.effects.named().any(|effect| effect.key() == key),
-            Self::All(each) => each.iter().all(|asked| asked.holds(question)),
+            Self::Effect(key) => scene.effects.named().any(|effect| effect.key() == key),
+            Self::All(each) => each.iter().all(|asked| asked.holds(scene)),
         }
     }
 

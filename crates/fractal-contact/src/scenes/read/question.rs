@@ -97,7 +97,7 @@ impl Default for Question {
     }
 }
 
-/// Keys of `[scene]`, without the loads.
+/// Keys of `[scene]`.
 static SCENE_KEYS: KeyTable<Question> = KeyTable {
     name: "scene",
     kind: "",

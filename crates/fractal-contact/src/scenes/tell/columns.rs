@@ -4,7 +4,7 @@ use crate::scenes::plan::RMS_SLOPE;
 use crate::scenes::read::{LoadList, LoadRequest, Numerics, SceneFile};
 use crate::scenes::run::{SolvedUnit, StateRecord};
 use analysis::{Column, Table, Value};
-use contact_model::quantities::{Compared, QUANTITIES, Quantity, Question};
+use contact_model::quantities::{Compared, QUANTITIES, Quantity, SceneProperties};
 use contact_model::{Directions, Source};
 
 /// The discretisation error of a quantity, and the order of convergence.
@@ -63,7 +63,7 @@ pub(crate) fn asked(scene: &SceneFile) -> impl Iterator<Item = &'static Quantity
     let answers_both = |model: &Numerics| model.model().abilities().directions == Directions::Plane;
     let [_, along_y] = scene.request.shears();
     let both = along_y || scene.models.iter().any(answers_both);
-    let question = Question {
+    let properties = SceneProperties {
         effects: &scene.effects,
         outputs: &scene.requested.outputs,
         rough: scene.surface.is_rough(),
@@ -71,7 +71,7 @@ pub(crate) fn asked(scene: &SceneFile) -> impl Iterator<Item = &'static Quantity
         prescribes_distance: scene.request.prescribes_distance(),
         directions: if both { Directions::Plane } else { Directions::AlongX },
     };
-    QUANTITIES.iter().filter(move |quantity| quantity.asked_by.holds(&question))
+    QUANTITIES.iter().filter(move |quantity| quantity.asked_by.holds(&properties))
 }
 
 /// Those of them whose discretisation error is reported.
