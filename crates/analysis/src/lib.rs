@@ -21,7 +21,6 @@
 //! | [`first_grid`] | the grid for a requested accuracy |
 //! | [`Multilevel`] | means on the finest of several grids, from differences between grids, with bands |
 //! | [`binomial_test`] | whether intervals contain the true value as often as they should |
-//! | [`Table`] | named columns with units, which hold no NaN; `paper` writes them |
 //!
 //! ```
 //! use analysis::{Bootstrap, Curves, FitWindow, StiffnessSample, fit_power_law};
@@ -60,13 +59,11 @@ mod grid_error;
 mod grid_search;
 mod kappa;
 mod multilevel;
-mod table;
 
 pub use binomial::binomial_test;
 pub use bootstrap::Bootstrap;
 pub use collapse::{CollapsePoint, Residual, collapse, decades_within};
 pub use conductance::conductance;
-pub use contact_model::Value;
 pub use crossing::{Crossing, crossing, least_spread};
 pub use curves::{Curves, StiffnessSample, interpolate};
 pub use ensemble::{EnsemblePoint, Statistics, ensemble, mean_and_deviation, statistics};
@@ -80,4 +77,3 @@ pub use multilevel::{Multilevel, Uncertain, slope_weights};
 pub use numerics::quantile::{student, student_at, student_beyond};
 pub use numerics::regression::{least_squares, observed_power};
 pub use numerics::sum::sum;
-pub use table::{Column, Table};

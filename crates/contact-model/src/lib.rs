@@ -34,7 +34,8 @@
 //!   a path is followed [`Step`] by step.
 //! * **Tangential quantities** have two components: along x, the columns of a map, and along y, its rows.
 //! * **Tables.** All quantities that are reported of a state are in one table ([`quantities::QUANTITIES`]).
-//!   The abilities of a model are in another one ([`Abilities`]).
+//!   The abilities of a model are in another one ([`Abilities`]). A [`Table`] of results has named columns with
+//!   units and holds no NaN.
 //! * **Outputs.** Fields, patches and what follows from the stiffness (conductance) are [`Outputs`]. They are
 //!   computed only if they are requested, and the [`Work`] in the report shows this.
 //! * **Absence.** `None` means that the model does not give the quantity, or that it was not requested. An
@@ -63,6 +64,7 @@ mod scaling;
 mod scene;
 mod state;
 mod step;
+mod table;
 pub mod units;
 mod validation;
 mod value;
@@ -93,5 +95,6 @@ pub use state::{
     Status, TangentialState,
 };
 pub use step::Step;
+pub use table::{Column, Table};
 pub use value::Value;
 pub use work::Work;

@@ -9,7 +9,7 @@ use crate::run::Run;
 use crate::session::Session;
 use crate::table_of::TableOf;
 use crate::tables::{FORCE_BAR, FRACTAL_DIMENSION};
-use analysis::Table;
+use contact_model::Table;
 use contact_model::{Stop, never};
 use runs::{Job as _, Progress, Result, Threads, collect, run_jobs, write_csv};
 

@@ -1,8 +1,8 @@
 //! The table of hard cases, with the assertions and the values reached.
 
 use crate::table_of::{TableOf, markdown_table};
-use analysis::Table;
 use contact_model::ContactModel as _;
+use contact_model::Table;
 use runs::files::{create_directory, write_whole};
 use runs::{Header, Progress, Result, write_csv};
 use stability::{Case, CaseResult, Effort};
@@ -78,7 +78,7 @@ fn short(v: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use analysis::Value;
+    use contact_model::Value;
     use runs::{CsvFile, Silent};
 
     #[test]

@@ -1,6 +1,6 @@
 //! Tables whose columns define their values, and reading rows back.
 
-use analysis::{Column, Table, Value};
+use contact_model::{Column, Table, Value};
 use csv::StringRecord;
 use runs::{CsvFile, Error, Result, number};
 use serde::de::DeserializeOwned;

@@ -4,7 +4,7 @@ use crate::measured::Measured;
 use crate::realisation::RealisationResult;
 use crate::sample::{FLOOR_CELLS, Sample};
 use crate::table_of::TableOf;
-use analysis::Table;
+use contact_model::Table;
 use runs::Result;
 
 /// Meaning of a column `model`.

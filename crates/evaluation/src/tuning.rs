@@ -117,7 +117,7 @@ fn paths() -> String {
     format!("one thread; seed 1; each a warm path: {}", PATHS.iter().map(one).collect::<Vec<_>>().join("; "))
 }
 
-fn table(rows: &[ConstantRow]) -> Result<analysis::Table> {
+fn table(rows: &[ConstantRow]) -> Result<contact_model::Table> {
     const TIME: &str = "time over that with the value shipped";
     const WORK: &str = "applications of the influence matrix over those with the value shipped";
     const MET: &str = "whether every load met its tolerance within four times the time";

@@ -1,6 +1,6 @@
 //! Statements of the paper, their fair reading, and the results here.
 
-use analysis::Table;
+use contact_model::Table;
 use evaluation::{TableOf, markdown_table};
 use runs::Result;
 use std::fmt;
@@ -510,7 +510,7 @@ mod tests {
                 .contains("| b | s | a \\| b (Sec. I) | so | 0.9 to 1.1 | 2 +- 0.05 | contradicted |  |")
         );
         let table = claims_table("t", &claims).unwrap();
-        assert_eq!(table.rows()[1][7], analysis::Value::Empty);
+        assert_eq!(table.rows()[1][7], contact_model::Value::Empty);
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use crate::claims;
 use crate::judged::Judged;
 use crate::words;
-use analysis::Table;
+use contact_model::Table;
 use evaluation::{
     Measured, Model, Outcome, Run, Session, compact_table, curves_table, describe, flags, header,
     measure_showing, samples_table, write_budget,

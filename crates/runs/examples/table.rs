@@ -19,8 +19,8 @@
 //! 1e-5,200000.0
 //! ```
 
-use analysis::{Column, Table};
 use contact_model::Source;
+use contact_model::{Column, Table};
 use runs::{CsvFile, Error, Header, Result, write_csv};
 use std::path::PathBuf;
 

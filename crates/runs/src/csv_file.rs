@@ -1,8 +1,8 @@
 //! CSV with a header that explains itself.
 
 use crate::error::{Error, Result};
-use analysis::{Table, Value};
 use contact_model::Source;
+use contact_model::{Table, Value};
 use flate2::read::GzDecoder;
 use std::io::Read as _;
 use std::path::Path;
@@ -176,7 +176,7 @@ impl CsvFile {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use analysis::Column;
+    use contact_model::Column;
 
     #[test]
     fn a_table_comes_back_bit_for_bit() {

@@ -4,7 +4,7 @@ use super::problem::ProblemKey;
 use super::study::Study;
 use crate::table_of::TableOf;
 use crate::tables::{FORCE_BAR, FRACTAL_DIMENSION};
-use analysis::Table;
+use contact_model::Table;
 use runs::Result;
 
 const FAMILY: &str = "sphere, square: exact answers known; band: one surface of resolved waves sampled ever finer; spectrum: waves to \

@@ -26,8 +26,8 @@ pub use picture::draw as draw_exponent;
 pub use samples::SAMPLES;
 
 use crate::judged::Judged;
-use analysis::Table;
 use contact_model::ContactModel as _;
+use contact_model::Table;
 use curve::{Convention, MeanCurve};
 use evaluation::limits::require;
 use evaluation::{

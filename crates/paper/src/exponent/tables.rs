@@ -4,7 +4,7 @@ use super::curve::{Banded, MeanCurve};
 use super::families::Test;
 use super::ladder::{Pair, Rungs, Solved};
 use super::laws::{Factor, LawRow, Limit, Ratio, eq6, eq24, raised};
-use analysis::Table;
+use contact_model::Table;
 use evaluation::{FRACTAL_DIMENSION, TableOf};
 use runs::Result;
 

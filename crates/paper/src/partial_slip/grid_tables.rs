@@ -5,7 +5,7 @@ use super::grid_means::{GridRow, SolvedGrids};
 use super::grid_tests::Test;
 use super::study::PartialSlip;
 use super::tables::{FORCE, HALF, POISSON, SHARE, SURFACES, half, value};
-use analysis::Table;
+use contact_model::Table;
 use evaluation::{FRACTAL_DIMENSION, TableOf, markdown_table};
 use runs::Result;
 

@@ -4,7 +4,7 @@ use super::means::{LoopRow, SlipRow, StiffnessRow};
 use super::study::{PartialSlip, SlipPoint, mindlin};
 use super::{SlipCase, SolvedCase};
 use crate::claim::Estimate;
-use analysis::Table;
+use contact_model::Table;
 use evaluation::{FRACTAL_DIMENSION, TableOf};
 use runs::Result;
 

@@ -1,7 +1,7 @@
 //! Options and outcome of the run of a scene.
 
 use crate::scenes::plan::Cost;
-use analysis::Table;
+use contact_model::Table;
 use std::path::PathBuf;
 
 /// Where and how a scene is run; these options do not change the results.

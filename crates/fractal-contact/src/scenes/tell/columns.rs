@@ -3,8 +3,8 @@
 use crate::scenes::plan::RMS_SLOPE;
 use crate::scenes::read::{LoadList, LoadRequest, Numerics, SceneFile};
 use crate::scenes::run::{SolvedUnit, StateRecord};
-use analysis::{Column, Table, Value};
 use contact_model::quantities::{Compared, QUANTITIES, Quantity, SceneProperties};
+use contact_model::{Column, Table, Value};
 use contact_model::{Directions, Source};
 
 /// The discretisation error of a quantity, and the order of convergence.

@@ -3,7 +3,7 @@
 use crate::scenes::read::{Bin, Distributed, Result, SceneFile, System, multiple, words};
 use crate::scenes::run::{SolvedUnit, StateRecord};
 use crate::scenes::tell::{StateTable, columns};
-use analysis::{Table, Value};
+use contact_model::{Table, Value};
 use plots::{Chart, Curve};
 
 /// Curves of a model in one picture.

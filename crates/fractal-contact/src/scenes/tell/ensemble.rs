@@ -3,8 +3,9 @@
 use crate::scenes::read::SceneFile;
 use crate::scenes::run::{Solved, SolvedUnit, StateRecord};
 use crate::scenes::tell::columns;
-use analysis::{Column, Table, Value, mean_and_deviation, student};
+use analysis::{mean_and_deviation, student};
 use contact_model::quantities::{Average, Quantity, Role};
+use contact_model::{Column, Table, Value};
 
 /// A mean, and the standard deviation of one number where there are two.
 type MeanAndDeviation = (f64, Option<f64>);

@@ -2,7 +2,7 @@
 
 use crate::scenes::read::{Result, words};
 use crate::scenes::tell::{MapStatisticsTables, StateTable, distributions, pictures};
-use analysis::Table;
+use contact_model::Table;
 use runs::{Header, csv_bytes};
 
 /// Receives the name and the bytes of a file.

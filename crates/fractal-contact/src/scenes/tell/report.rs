@@ -4,7 +4,7 @@ use crate::scenes::plan::{Cost, Plan, PredictedFrom};
 use crate::scenes::read::{HEIGHTS, Result, SceneFile, number, short, words};
 use crate::scenes::run::{FieldFile, FieldView, SceneOutcome, SolvedUnit, StateRecord, field_pictures};
 use crate::scenes::tell::{MapStatisticsTables, StateTable, columns, distributions, page, pictures, summary};
-use analysis::Value;
+use contact_model::Value;
 use contact_model::quantities::{Quantity, Role};
 use contact_model::{Boundary, FieldQuantity};
 use maud::{Markup, PreEscaped, html};

@@ -4,7 +4,7 @@
 use crate::scenes::read::{Result, SceneFile};
 use crate::scenes::run::{SolvedUnit, StateRecord};
 use crate::scenes::tell::{Mean, columns, ensemble};
-use analysis::Table;
+use contact_model::Table;
 
 /// The states of a scene.
 pub(crate) struct StateTable<'a> {

@@ -2,7 +2,7 @@
 
 use crate::scenes::run::StateRecord;
 use crate::scenes::tell::columns;
-use analysis::Value;
+use contact_model::Value;
 use contact_model::quantities::Quantity;
 use contact_model::units::{rounded, short};
 

@@ -4,7 +4,7 @@
 use crate::scenes::read::Result;
 use crate::scenes::tell::files::{Receive, send};
 use crate::scenes::tell::{Bands, FILES, LEVEL, MapStatisticsTables, columns};
-use analysis::{Table, Value};
+use contact_model::{Table, Value};
 use plots::{Chart, Curve};
 use runs::{Header, csv_bytes};
 use std::f64::consts::TAU;

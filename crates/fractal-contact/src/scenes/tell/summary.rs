@@ -5,7 +5,7 @@ use crate::scenes::read::{LoadList, LoadRequest, SceneFile, amount, multiple, nu
 use crate::scenes::run::StateRecord;
 use crate::scenes::tell::stated_error::{OF_GRID, OF_SOLVER, PLUS_MINUS, relative_error, with_error};
 use crate::scenes::tell::{Mean, StateTable, columns, ensemble};
-use analysis::Value;
+use contact_model::Value;
 use contact_model::quantities::{Quantity, Role, Unit};
 use contact_model::units::rounded;
 

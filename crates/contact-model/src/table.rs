@@ -1,6 +1,6 @@
 //! Named columns with units; no input or output.
 
-use contact_model::{Error, Result, Value};
+use crate::{Error, Result, Value};
 
 /// A column: its name, its unit and its meaning.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -16,7 +16,7 @@ pub struct Column {
 /// A table whose every number is finite and whose every row fits its columns.
 ///
 /// ```
-/// use analysis::{Column, Table};
+/// use contact_model::{Column, Table};
 /// let column = |name, unit| Column { name, unit, meaning: "" };
 /// let mut table = Table::new("Two numbers", vec![column("x", "L"), column("k", "1")]);
 /// table.push(vec![0.5.into(), None::<f64>.into()])?;
