@@ -103,6 +103,7 @@ pub use read::registered_model::RegisteredModel;
 pub use read::registry::Registry;
 pub use read::scene_file::{Sampling, SceneFile};
 pub use read::scene_surface::SceneSurface;
+pub use run::ensemble::{SurfaceStates, jobs_of_scenes, solve_scenes};
 pub use run::outcome::{Options, SceneOutcome};
 pub use run::pilot::SharedStop;
 pub use run::scene_job::jobs;

@@ -1,5 +1,6 @@
 //! Solves and stores the states of a scene, for each model on each surface.
 
+pub(crate) mod ensemble;
 pub(crate) mod field_pictures;
 pub(crate) mod field_view;
 pub(crate) mod outcome;

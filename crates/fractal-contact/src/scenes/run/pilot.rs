@@ -13,6 +13,7 @@ use contact_model::Cells;
 use runs::amounts::memory;
 use runs::{Error, Job as _, Progress, Store, Threads, run_stored};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// Polled from any thread, between iterations: `true` means stop now.
 pub type SharedStop<'a> = &'a (dyn Fn() -> bool + Sync);
@@ -126,7 +127,7 @@ fn check_memory(candidate: &Candidate) -> Result<()> {
 /// Whether a folder holds the states of all surfaces on a grid.
 fn is_solved(chosen: &Candidate, out: &Path) -> Result<bool> {
     let store = Store::view(out)?;
-    let solved = |job: &SceneJob<'_>| {
+    let solved = |job: &SceneJob| {
         let mut results = store.texts(&job.stored_key()).filter_map(|text| SceneJob::KIND.decode(&text));
         results.any(|result: ModelResult| result.complete)
     };
@@ -147,9 +148,9 @@ struct Trial<'a> {
 }
 
 impl Trial<'_> {
-    fn job<'b>(&'b self, folder: &'b Path) -> SceneJob<'b> {
+    fn job(&self, folder: &Path) -> SceneJob {
         let unit = ModelOnSurface { model: self.candidate.model, surface: 0 };
-        SceneJob { unit, scene: &self.candidate.scene, out: folder, draws: false }
+        SceneJob { unit, scene: Arc::new(self.candidate.scene.clone()), out: folder.into(), draws: false }
     }
 
     /// Its states, where all of them are stored. Their fields may be anywhere.
@@ -198,7 +199,8 @@ pub(crate) fn take_trial(scene: &SceneFile, out: &Path, store: &Store) {
         return;
     };
     let folder = trial_folder(out, cells(scene, &scene.models[model]));
-    let job = SceneJob { unit: ModelOnSurface { model, surface: 0 }, scene, out, draws: true };
+    let unit = ModelOnSurface { model, surface: 0 };
+    let job = SceneJob { unit, scene: Arc::new(scene.clone()), out: out.into(), draws: true };
     let results = store.texts(&job.stored_key()).filter_map(|text| SceneJob::KIND.decode(&text));
     for file in results.flat_map(|result: ModelResult| result.states).flat_map(|state| state.files) {
         // A file that cannot be moved is missing in the run, which then solves its state.

@@ -4,49 +4,51 @@ use crate::scenes::plan::{FORMAT, ModelOnSurface, calibration};
 use crate::scenes::read::{Error, Result, SceneFile, cells};
 use crate::scenes::run::{Keeper, ModelResult, field_pictures};
 use contact_model::Stop;
-use runs::{Checkpoint, Job, JobList, Progress, ResultKind, Silent, StatesInHand, Store};
+use runs::{Checkpoint, Job, JobList, Progress, ResultKind, Silent, StatesInHand, Store, fnv1a_128};
 use std::path::Path;
+use std::sync::Arc;
 use std::time::Instant;
 
 /// A model on a surface, with the data that all jobs of a run share.
-pub(crate) struct SceneJob<'a> {
+#[derive(Clone)]
+pub(crate) struct SceneJob {
     pub unit: ModelOnSurface,
-    pub scene: &'a SceneFile,
+    pub scene: Arc<SceneFile>,
     /// Directory of the results.
-    pub out: &'a Path,
+    pub out: Arc<Path>,
     /// Whether it draws pictures of its fields at the end; a job that does not is complete when it is done
     /// again by one that does.
     pub draws: bool,
 }
 
-impl Job for SceneJob<'_> {
+impl Job for SceneJob {
     type Output = ModelResult;
     type Error = Error;
 
     const KIND: ResultKind = ResultKind::new("scene", FORMAT);
 
     fn key(&self) -> String {
-        self.unit.key(self.scene)
+        self.unit.key(&self.scene)
     }
 
     fn name(&self) -> String {
-        format!("{}, surface {}", self.unit.numerics(self.scene).name(), self.unit.surface)
+        format!("{}, surface {}", self.unit.numerics(&self.scene).name(), self.unit.surface)
     }
 
     fn cost(&self) -> u64 {
-        self.unit.cost(self.scene)
+        self.unit.cost(&self.scene)
     }
 
     fn memory(&self) -> f64 {
-        calibration::least_memory(self.scene, self.unit.numerics(self.scene))
+        calibration::least_memory(&self.scene, self.unit.numerics(&self.scene))
     }
 
     fn stored_bytes(&self) -> u64 {
-        self.unit.stored_bytes(self.scene)
+        self.unit.stored_bytes(&self.scene)
     }
 
     fn is_stored(&self) -> bool {
-        self.unit.numerics(self.scene).is_stored()
+        self.unit.numerics(&self.scene).is_stored()
     }
 
     fn solve(&self, stop: Stop<'_>) -> Result<ModelResult> {
@@ -61,20 +63,23 @@ impl Job for SceneJob<'_> {
         stop: Stop<'_>,
     ) -> Result<ModelResult> {
         let mut begun = stored.unwrap_or_default();
-        field_pictures::keep_whole_states(&mut begun, self.out);
+        field_pictures::keep_whole_states(&mut begun, &self.out);
         begun.kept = begun.states.len();
-        let (model, surface) = (self.unit.numerics(self.scene).name(), self.unit.surface);
-        let checkpoint = Checkpoint::new(self.out, &format!("{model}-{surface}"), &self.stored_key());
+        let (model, surface) = (self.unit.numerics(&self.scene).name(), self.unit.surface);
+        // Jobs of several scenes may share a folder.
+        let key = self.stored_key();
+        let name = format!("{model}-{surface}-{:08x}", fnv1a_128(key.as_bytes()) as u32);
+        let checkpoint = Checkpoint::new(&self.out, &name, &key);
         let store = self.is_stored().then_some(store);
         let states = [begun.kept, self.scene.request.count()];
         let told = StatesInHand::new((self.name(), self.cost()), states, progress, stop);
         let mut keeper = Keeper::new(store, checkpoint, progress, self.name(), &told);
-        let mut result = self.unit.solve(self.scene, self.out, begun, &mut keeper, &told)?;
+        let mut result = self.unit.solve(&self.scene, &self.out, begun, &mut keeper, &told)?;
         let mut drawn = Vec::new();
         if self.draws {
-            let (start, numerics) = (Instant::now(), self.unit.numerics(self.scene));
-            let cells = cells(self.scene, numerics);
-            drawn = field_pictures::draw(self.scene, (model, surface), cells, self.out, &mut result)?;
+            let (start, numerics) = (Instant::now(), self.unit.numerics(&self.scene));
+            let cells = cells(&self.scene, numerics);
+            drawn = field_pictures::draw(&self.scene, (model, surface), cells, &self.out, &mut result)?;
             result.seconds += start.elapsed().as_secs_f64();
         } else {
             result.complete = false;
@@ -89,18 +94,18 @@ impl Job for SceneJob<'_> {
 
     /// A result counts as absent where a state or a file is missing or changed.
     fn is_whole(&self, result: &ModelResult) -> bool {
-        result.complete && result.states.iter().all(|state| state.is_whole(self.out))
+        result.complete && result.states.iter().all(|state| state.is_whole(&self.out))
     }
 }
 
-impl SceneJob<'_> {
+impl SceneJob {
     /// The stored result of a job that a stopped run has not begun, or the states of its newest part. They
     /// belong to the tables of that run, and their fields are not to be removed.
     pub fn stored(&self, store: &Store) -> Option<ModelResult> {
         let key = self.stored_key();
         let stored = || store.texts(&key).filter_map(|text| Self::KIND.decode(&text));
         let mut found = stored().find(|result| self.is_whole(result)).or_else(|| stored().next())?;
-        field_pictures::keep_whole_states(&mut found, self.out);
+        field_pictures::keep_whole_states(&mut found, &self.out);
         found.complete &= found.states.len() == self.scene.request.count();
         found.kept = found.states.len();
         Some(found)
@@ -117,12 +122,14 @@ pub(crate) fn units(scene: &SceneFile) -> Vec<ModelOnSurface> {
 }
 
 /// The same, as jobs that write their fields into `out`.
-pub(crate) fn scene_jobs<'a>(scene: &'a SceneFile, out: &'a Path) -> Vec<SceneJob<'a>> {
-    units(scene).into_iter().map(|unit| SceneJob { unit, scene, out, draws: true }).collect()
+pub(crate) fn scene_jobs(scene: &SceneFile, out: &Path) -> Vec<SceneJob> {
+    let (scene, out) = (Arc::new(scene.clone()), Arc::<Path>::from(out));
+    let of = |unit| SceneJob { unit, scene: Arc::clone(&scene), out: Arc::clone(&out), draws: true };
+    units(&scene).into_iter().map(of).collect()
 }
 
 /// The jobs of a scene whose results go to `out`: each model on each surface.
-pub fn jobs<'a>(scene: &'a SceneFile, out: &'a Path) -> Box<dyn JobList + 'a> {
+pub fn jobs(scene: &SceneFile, out: &Path) -> Box<dyn JobList> {
     Box::new(scene_jobs(scene, out))
 }
 
