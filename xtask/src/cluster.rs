@@ -26,7 +26,7 @@ pub fn jobs(command: &Command) -> Result<Box<dyn JobList>> {
         return Ok(Box::new(surfaces));
     }
     match command {
-        Command::ReproduceTwoCases(options) => paper::two_cases_jobs(&options.study()?),
+        Command::ReproduceTwoCases(options) => paper::two_cases_jobs(&options.study()?, &options.out),
         Command::AccuracyCost(options) => evaluation::accuracy_cost_jobs(options.depth, options.seed),
         Command::BudgetCheck(options) => evaluation::budget_check_jobs(options.cases, options.seed),
         _ => {

@@ -1,6 +1,5 @@
 //! Compares the two cases of Sec. II: a free fractal square, and a periodic one whose spectrum rolls off.
 
-mod job;
 mod picture;
 mod reading;
 mod study;
@@ -8,21 +7,17 @@ mod study;
 pub use study::TwoCases;
 
 use crate::judged::Judged;
-use analysis::{Curves, ensemble};
+use analysis::{Curves, StiffnessSample, ensemble};
 use analytic::{GreenwoodWilliamson, Persson};
 use bem3d::Bem3d;
-use contact_model::{Boundary, ContactModel, ContactState, never};
+use contact_model::{ContactModel as _, ContactState};
 use evaluation::{Outcome, Session, header};
-use job::CaseJob;
+use fractal_contact::scenes::{self, SceneFile, SurfaceStates, jobs_of_scenes, solve_scenes};
 pub(crate) use picture::draw;
 use picture::{names, pairs_table, table};
 use reading::{SolvedCase, judged, pairs, summary};
-use runs::{
-    Error, Job, JobList, Progress, Result, Store, Threads, collect, files, run_stored, threads_for_memory,
-    write_csv,
-};
+use runs::{Error, JobList, Progress, Result, Store, files, write_csv};
 use std::path::Path;
-use std::sync::Arc;
 pub(crate) use study::NAME;
 use study::{CaseCurve, CasePoint, CaseSolve, Solves, SurfaceCase};
 
@@ -35,8 +30,10 @@ use study::{CaseCurve, CasePoint, CaseSolve, Solves, SurfaceCase};
 pub fn two_cases(study: &TwoCases, out: &Path, progress: &dyn Progress) -> Result<Judged> {
     study.check()?;
     let session = Session::open(out, false)?;
-    let solved = solve(study, &session.store, progress)?;
-    let coarser = solve(&study.coarser(), &session.store, progress)?;
+    let states = solve(study, (out, &session.store), progress)?;
+    let of_coarser = solve(&study.coarser(), (out, &session.store), progress)?;
+    let [solved, coarser] =
+        [&states, &of_coarser].map(|all| all.iter().map(|states| solves(study, states)).collect::<Vec<_>>());
     let (mut outcome, mut claims) = (Outcome::new(NAME), Vec::new());
     let mut curves = Vec::new();
     let pairs = pairs(study, &solved)?;
@@ -57,9 +54,9 @@ pub fn two_cases(study: &TwoCases, out: &Path, progress: &dyn Progress) -> Resul
         claims.extend(judged(solved)?);
         curves.push(curve);
     }
-    for case in study.cases().into_iter().filter(|c| c.boundary == Boundary::Periodic) {
-        for model in [&Persson::default() as &dyn ContactModel, &GreenwoodWilliamson::default()] {
-            curves.push(theory(study, case, model)?);
+    for (case, states) in study.cases().into_iter().zip(&states) {
+        for states in states.iter().filter(|states| states.model != "bem3d") {
+            curves.push(theory(study, case, states)?);
         }
     }
     let header = header(study.command())
@@ -85,35 +82,56 @@ pub fn two_cases(study: &TwoCases, out: &Path, progress: &dyn Progress) -> Resul
     session.close(outcome).map(|outcome| Judged::new(outcome, claims))
 }
 
-/// The jobs of a study, the coarser grids included.
+/// The jobs of a study, the coarser grids included, whose results go to `out`.
 ///
 /// # Errors
 /// As [`two_cases`] before it solves.
-pub fn two_cases_jobs(study: &TwoCases) -> Result<Box<dyn JobList>> {
+pub fn two_cases_jobs(study: &TwoCases, out: &Path) -> Result<Box<dyn JobList>> {
     study.check()?;
-    let mut all = jobs(study);
-    all.extend(jobs(&study.coarser()));
-    Ok(Box::new(all))
+    let mut all = scenes_of(study, out)?;
+    all.extend(scenes_of(&study.coarser(), out)?);
+    Ok(jobs_of_scenes(&all, out))
 }
 
-fn jobs(study: &TwoCases) -> Vec<CaseJob> {
-    let shared = Arc::new(study.clone());
-    let seeds = (0..study.surfaces).map(|i| surface_gen::surface_seed(study.seed, i as u64));
-    let all = |case| seeds.clone().map(move |seed| (case, seed));
-    let all = study.cases().into_iter().flat_map(all);
-    all.map(|(case, seed)| CaseJob { study: Arc::clone(&shared), case, seed }).collect()
+/// The scene of each case.
+fn scenes_of(study: &TwoCases, out: &Path) -> Result<Vec<SceneFile>> {
+    let scene = |case: SurfaceCase| SceneFile::of(case.question(study), &out.join(NAME)).map_err(of_scene);
+    study.cases().into_iter().map(scene).collect()
 }
 
-/// Solves all surfaces of all cases, each under increasing loads. The results are in order for any number of
-/// threads.
-fn solve(study: &TwoCases, store: &Store, progress: &dyn Progress) -> Result<Vec<Vec<Solves>>> {
-    let jobs = jobs(study);
-    let memory = jobs.iter().map(Job::memory).fold(0.0, f64::max);
-    let in_flight = threads_for_memory(study.threads, memory, "cells", study.cells)?;
-    let threads = Threads { total: study.threads, jobs: in_flight };
-    let what = format!("{} surfaces of {} cells a side", jobs.len(), study.cells);
-    let solved = collect(run_stored(&what, &jobs, store, threads, progress, &never))?;
-    Ok(solved.chunks(study.surfaces).map(<[_]>::to_vec).collect())
+/// Solves all surfaces of all cases, each under increasing loads, and those of the theories. The results are in
+/// order for any number of threads.
+fn solve(
+    study: &TwoCases,
+    (out, store): (&Path, &Store),
+    progress: &dyn Progress,
+) -> Result<Vec<Vec<SurfaceStates>>> {
+    let scenes = scenes_of(study, out)?;
+    let what = format!("{} surfaces of {} cells a side", scenes.len() * study.surfaces, study.cells);
+    solve_scenes(&what, &scenes, (out, store), study.threads, progress).map_err(of_scene)
+}
+
+/// The states of the boundary elements on each surface, as they are read.
+fn solves(study: &TwoCases, states: &[SurfaceStates]) -> Vec<Solves> {
+    let of = |states: &SurfaceStates, load: usize| match (states.converged(load), states.state(load)) {
+        (Some((ContactState { stiffness: Some(k), area: Some(area), report, .. }, normalisation)), _) => {
+            let stiffness_bar = normalisation.stiffness_bar(*k);
+            let sample = StiffnessSample { stiffness_bar, contact_cells: report.contact_cells };
+            CaseSolve::StiffnessSample(sample, *area)
+        }
+        (Some(_), _) => CaseSolve::FullContact,
+        (None, _) => CaseSolve::NotConverged,
+    };
+    let loads = 0..study.forces.values().len();
+    let solved = states.iter().filter(|states| states.model == "bem3d");
+    solved.map(|states| loads.clone().map(|load| of(states, load)).collect()).collect()
+}
+
+fn of_scene(error: scenes::Error) -> Error {
+    match error {
+        scenes::Error::Run(error) => error,
+        other => Error::parameter("question", other, "one that its models answer"),
+    }
 }
 
 /// Means over the surfaces on the grid and on the coarser one.
@@ -150,38 +168,27 @@ fn mean_curve(
 }
 
 /// The results of a theory in its range of validity.
-fn theory(study: &TwoCases, case: SurfaceCase, model: &dyn ContactModel) -> Result<CaseCurve> {
-    let mut scene = case.scene(study)?;
-    scene.outputs.area = true;
+fn theory(study: &TwoCases, case: SurfaceCase, states: &SurfaceStates) -> Result<CaseCurve> {
     let slope = case.slope(study)?;
-    let mut points = Vec::new();
-    let mut solve = || {
-        let mut contact = model.prepare(&scene, 0)?;
-        let normalisation = contact.normalisation();
-        let forces = study.forces.values();
-        contact.sweep(&normalisation.loads(forces)?, &never, &mut |i, state| {
-            match state {
-                Ok(ContactState { stiffness: Some(k), area, .. }) => points.push(CasePoint {
-                    force_bar: forces[i],
-                    stiffness_bar: normalisation.stiffness_bar(k),
-                    area,
-                    kappa: area.and_then(|area| analysis::kappa(area, forces[i], 1.0, slope).ok()),
-                    ..CasePoint::default()
-                }),
-                Ok(_) | Err(contact_model::Error::OutOfRange { .. }) => {}
-                Err(error) => return Err(error),
-            }
-            Ok(())
+    let point = |(load, &force_bar): (usize, &f64)| {
+        let (state, normalisation) = states.converged(load)?;
+        Some(CasePoint {
+            force_bar,
+            stiffness_bar: normalisation.stiffness_bar(state.stiffness?),
+            area: state.area,
+            kappa: state.area.and_then(|area| analysis::kappa(area, force_bar, 1.0, slope).ok()),
+            ..CasePoint::default()
         })
     };
-    solve().map_err(Error::model(format!("{} ({})", model.name(), case.label())))?;
-    Ok(CaseCurve { case, model: model.name(), points })
+    let points = study.forces.values().iter().enumerate().filter_map(point).collect();
+    Ok(CaseCurve { case, model: states.model, points })
 }
 
 #[cfg(test)]
 mod tests {
     use super::reading::{difference, loads_between, proportional, slopes};
     use super::*;
+    use contact_model::Boundary;
     use evaluation::Forces;
     use runs::CsvFile;
     use runs::Silent;

@@ -2,11 +2,15 @@
 
 use crate::claim::Estimate;
 use analysis::StiffnessSample;
+use bem3d::Bem3d;
 use contact_model::{Boundary, Scene, SelfAffine, Surface};
 use evaluation::limits::{self, require, within};
 use evaluation::{Forces, list};
+use fractal_contact::scenes::{
+    AskedLoads, AskedSampling, AskedSelfAffine, AskedSurface, LoadKind, LoadList, Material, Numerics,
+    Question, System,
+};
 use runs::{Error, Result};
-use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
 pub(crate) const NAME: &str = "two-cases";
@@ -88,6 +92,35 @@ impl SurfaceCase {
 }
 
 impl SurfaceCase {
+    /// The question of all surfaces of the case under all loads; theories answer it where the boundary is
+    /// periodic.
+    pub(super) fn question(self, study: &TwoCases) -> Question {
+        let mut question = Question::default();
+        let bem3d = Bem3d { cells: study.cells, tolerance: study.tolerance, ..Bem3d::default() };
+        question.units = System::None;
+        question.models = vec![Numerics::Bem3d(bem3d)];
+        question.effects.boundary = self.boundary;
+        if self.boundary == Boundary::Periodic {
+            question
+                .models
+                .extend(["persson", "greenwood_williamson"].into_iter().filter_map(Numerics::named));
+        }
+        question.material = Some(Material::ContactModulus(1.0));
+        let values = study.forces.values().to_vec();
+        question.loads = Some(AskedLoads::Loads(LoadList { kind: LoadKind::ForceBar, values }));
+        let mut surface = AskedSelfAffine::default();
+        surface.size = Some(1.0.into());
+        surface.hurst = Some(3.0 - self.fractal_dimension);
+        surface.rms_height = Some(1.0);
+        surface.roll_off_wavelength = self.roll_off.map(|waves| 1.0 / waves);
+        surface.shortest_wavelength = Some(1.0 / study.shortest());
+        question.surface = Some(AskedSurface::SelfAffine(surface));
+        (question.outputs.outputs.stiffness, question.outputs.outputs.area) = (true, true);
+        question.sampling =
+            Some(AskedSampling { seed: Some(study.seed), surfaces: Some(study.surfaces as u64) });
+        question
+    }
+
     /// Rms slope of the spectrum, in h/L.
     pub(super) fn slope(self, study: &TwoCases) -> Result<f64> {
         let Surface::SelfAffine(surface) = self.scene(study)?.surface else { return Ok(0.0) };
@@ -174,7 +207,7 @@ impl TwoCases {
 }
 
 /// The result of one solve.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum CaseSolve {
     /// A stiffness and the share of the square in contact.
     StiffnessSample(StiffnessSample, f64),
