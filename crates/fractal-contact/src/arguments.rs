@@ -1,6 +1,5 @@
 //! The command line.
 
-use crate::press::flag_of;
 use clap::builder::{PossibleValuesParser, TypedValueParser as _};
 use clap::parser::ValueSource;
 use clap::{CommandFactory as _, Parser, Subcommand};
@@ -446,6 +445,14 @@ fn keys(of_map: bool) -> impl Iterator<Item = SceneKey> {
         _ => false,
     };
     scene_keys().into_iter().filter(is)
+}
+
+/// The flag that sets a key.
+pub fn flag_of(key: &str) -> String {
+    match key.rsplit('.').next().unwrap_or(key) {
+        "mean_pressure" => "--pressure".to_owned(),
+        name => format!("--{}", name.replace('_', "-")),
+    }
 }
 
 /// A flag for a key, with its words and its default.

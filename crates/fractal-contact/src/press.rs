@@ -1,7 +1,7 @@
 //! `press` and `new`: from flags to the question that is asked most often, how large the contact of a measured
 //! map is.
 
-use crate::arguments::{LOADS, PRESS_DETREND, PressArguments};
+use crate::arguments::{LOADS, PRESS_DETREND, PressArguments, flag_of};
 use fractal_contact::scenes::{
     AskedFile, AskedSurface, Diagnostic, Distributed, Error, FieldFormat, Material, Numerics, Question,
     Result, SceneFile,
@@ -268,14 +268,6 @@ fn question(asked: &PressArguments, at: &Path, profile: bool) -> Result<Question
         question.set(key.trim(), value.trim())?;
     }
     Ok(question)
-}
-
-/// The flag that sets a key.
-pub fn flag_of(key: &str) -> String {
-    match key.rsplit('.').next().unwrap_or(key) {
-        "mean_pressure" => "--pressure".to_owned(),
-        name => format!("--{}", name.replace('_', "-")),
-    }
 }
 
 /// The map with what the flags say of it.

@@ -1,7 +1,7 @@
 //! `accuracy`, `budget` and `memory` of `[scene]`.
 
-use crate::scenes::read::key::Key;
-use crate::scenes::read::{Diagnostic, Entry, Question, Read, System, printed};
+use crate::scenes::read::key::{Key, KeyTable};
+use crate::scenes::read::{Diagnostic, Entry, Read, System, printed};
 use analysis::AccuracyTarget;
 use surface_io::Dimension;
 
@@ -28,57 +28,64 @@ impl From<AccuracyTarget> for RequestedAccuracy {
     }
 }
 
-pub(crate) const ACCURACY: Key<Question> = Key {
-    name: "accuracy",
-    takes: "share, or `\"best\"`",
-    about: "share (`\"1 %\"` or 0.01) that the error of the grid may have, instead of `cells` and `tolerance`; or as small as `budget` and `memory` allow",
-    default: "the grid that is given",
-    read: |question, entry, _| {
-        let share = if entry.as_word() == Some("best") { 0.0 } else { read_share(entry)? };
-        question.accuracy = Some(AccuracyTarget { share, seconds: BUDGET }.into());
-        Ok(())
-    },
-    print: |question, _| {
-        let share = question.accuracy?.target.share;
-        Some(if share > 0.0 { printed::number(share) } else { printed::text("best") })
-    },
-};
-
-pub(crate) const BUDGET_KEY: Key<Question> = Key {
-    name: "budget",
-    takes: "time > 0",
-    about: "time that `accuracy` may take, as predicted from the sizes for one thread of a [reference \
+/// Keys of the accuracy.
+pub(crate) static ACCURACY_KEYS: KeyTable<Option<RequestedAccuracy>> = KeyTable {
+    name: "scene",
+    kind: "",
+    alternatives: &[],
+    everyday: &["accuracy"],
+    keys: &[
+        Key {
+            name: "accuracy",
+            takes: "share, or `\"best\"`",
+            about: "share (`\"1 %\"` or 0.01) that the error of the grid may have, instead of `cells` and `tolerance`; or as small as `budget` and `memory` allow",
+            default: "the grid that is given",
+            read: |accuracy, entry, _| {
+                let share = if entry.as_word() == Some("best") { 0.0 } else { read_share(entry)? };
+                *accuracy = Some(AccuracyTarget { share, seconds: BUDGET }.into());
+                Ok(())
+            },
+            print: |accuracy, _| {
+                let share = accuracy.as_ref()?.target.share;
+                Some(if share > 0.0 { printed::number(share) } else { printed::text("best") })
+            },
+        },
+        Key {
+            name: "budget",
+            takes: "time > 0",
+            about: "time that `accuracy` may take, as predicted from the sizes for one thread of a [reference \
             machine](scene-results.md#the-grid-for-an-accuracy); it chooses the same grid on every machine",
-    default: "`\"10 min\"`",
-    read: |question, entry, _| {
-        let help = "it limits the time that `accuracy = \"1 %\"` may take: add that, or remove it";
-        let accuracy = question.accuracy.as_mut().ok_or_else(|| alone(entry, help))?;
-        // A waiting time has a unit in every scene.
-        accuracy.target.seconds = entry.positive(Dimension::TIME, System::Si)?;
-        Ok(())
-    },
-    print: |question, _| {
-        let seconds = question.accuracy?.target.seconds;
-        (seconds.to_bits() != BUDGET.to_bits())
-            .then(|| printed::quantity(seconds, Dimension::TIME, System::Si))
-    },
-};
-
-pub(crate) const MEMORY_KEY: Key<Question> = Key {
-    name: "memory",
-    takes: "amount in MB, GB or TB",
-    about: "memory of one surface that `accuracy` may take; a machine that has less than the grid needs refuses",
-    default: "`\"4 GB\"`",
-    read: |question, entry, _| {
-        let help = "it limits the memory that `accuracy = \"1 %\"` may take: add that, or remove it";
-        let accuracy = question.accuracy.as_mut().ok_or_else(|| alone(entry, help))?;
-        accuracy.memory = read_memory(entry)?;
-        Ok(())
-    },
-    print: |question, _| {
-        let bytes = question.accuracy?.memory;
-        (bytes.to_bits() != MEMORY.to_bits()).then(|| print_memory(bytes))
-    },
+            default: "`\"10 min\"`",
+            read: |accuracy, entry, _| {
+                let help = "it limits the time that `accuracy = \"1 %\"` may take: add that, or remove it";
+                let accuracy = accuracy.as_mut().ok_or_else(|| alone(entry, help))?;
+                // A waiting time has a unit in every scene.
+                accuracy.target.seconds = entry.positive(Dimension::TIME, System::Si)?;
+                Ok(())
+            },
+            print: |accuracy, _| {
+                let seconds = accuracy.as_ref()?.target.seconds;
+                (seconds.to_bits() != BUDGET.to_bits())
+                    .then(|| printed::quantity(seconds, Dimension::TIME, System::Si))
+            },
+        },
+        Key {
+            name: "memory",
+            takes: "amount in MB, GB or TB",
+            about: "memory of one surface that `accuracy` may take; a machine that has less than the grid needs refuses",
+            default: "`\"4 GB\"`",
+            read: |accuracy, entry, _| {
+                let help = "it limits the memory that `accuracy = \"1 %\"` may take: add that, or remove it";
+                let accuracy = accuracy.as_mut().ok_or_else(|| alone(entry, help))?;
+                accuracy.memory = read_memory(entry)?;
+                Ok(())
+            },
+            print: |accuracy, _| {
+                let bytes = accuracy.as_ref()?.memory;
+                (bytes.to_bits() != MEMORY.to_bits()).then(|| print_memory(bytes))
+            },
+        },
+    ],
 };
 
 fn alone(entry: &Entry<'_>, help: &str) -> Diagnostic {

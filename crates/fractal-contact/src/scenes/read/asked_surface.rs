@@ -2,8 +2,7 @@
 //! `[scene.body]`.
 
 use crate::scenes::read::key::{Context, Key, KeyTable};
-use crate::scenes::read::question::no_such_key;
-use crate::scenes::read::{Diagnostic, Entries, Entry, LengthOrPair, Read, System, printed};
+use crate::scenes::read::{Diagnostic, Entries, Entry, LengthOrPair, Read, System, printed, suggestion};
 use contact_model::Size;
 use std::path::PathBuf;
 use surface_gen::TwinSpectrum;
@@ -69,9 +68,12 @@ impl AskedFile {
     /// What is wrong with the value, or that there is no such key.
     pub fn set(&mut self, key: &str, text: &str) -> Result<(), Diagnostic> {
         let plain = text.parse::<Sides>().is_ok_and(|sides| sides.both()[0].dimension() == Dimension::NONE);
-        let context = Context { system: if plain { System::None } else { System::Si }, models: &[] };
+        let context = Context { system: if plain { System::None } else { System::Si }, own: &[] };
         Entries::of_word(key, text, |entry| {
-            FILE_KEYS.set(self, entry, context).unwrap_or_else(|| Err(no_such_key(key)))
+            FILE_KEYS.set(self, entry, context).unwrap_or_else(|| {
+                let known: Vec<&str> = FILE_KEYS.keys.iter().map(|key| key.name).collect();
+                Err(Diagnostic::new(format!("there is no key `{key}`")).with_help(suggestion(key, &known)))
+            })
         })
     }
 

@@ -1,15 +1,15 @@
 //! The keys of a table of a scene. One entry says how a key is read from TOML, from a flag or from Python, how
 //! it is printed, and what the book says about it.
 
-use crate::scenes::read::{Diagnostic, Entries, Entry, Numerics, Places, Read, System};
+use crate::scenes::read::{Diagnostic, Entries, Entry, Places, Read, RegisteredModel, System};
 
 /// What the values of keys depend on besides themselves.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Context<'a> {
     /// Whether numbers carry units.
     pub system: System,
-    /// The models that can be named.
-    pub models: &'a [Numerics],
+    /// Models of the user's own, which can be named beside those of the library.
+    pub own: &'a [RegisteredModel],
 }
 
 /// A key that sets a part of a `T`.

@@ -185,7 +185,9 @@ impl Numerics {
 }
 
 /// Reads the names of the models, in their order.
-pub(crate) fn read_models(entry: &Entry<'_>, known: &[Numerics]) -> Read<Vec<Numerics>> {
+pub(crate) fn read_models(entry: &Entry<'_>, own: &[RegisteredModel]) -> Read<Vec<Numerics>> {
+    let own = own.iter().cloned().map(Numerics::Registered);
+    let known: Vec<Numerics> = Numerics::all().chain(own).collect();
     let names: Vec<&str> = known.iter().map(Numerics::name).collect();
     let mut models: Vec<Numerics> = Vec::new();
     for item in entry.list() {
@@ -400,7 +402,7 @@ fn read_up_to(entry: &Entry<'_>, most: u64) -> Read<u32> {
 
 fn configured(numerics: Numerics, table: Entries<'_>) -> Read<Numerics> {
     // No key of numerics has a unit or names a model.
-    let context = Context { system: System::None, models: &[] };
+    let context = Context { system: System::None, own: &[] };
     let result = match numerics {
         Numerics::Bem3d(mut model) => {
             BEM3D_KEYS.read(&mut model, &table, context)?;
@@ -431,7 +433,7 @@ fn configured(numerics: Numerics, table: Entries<'_>) -> Read<Numerics> {
 
 /// Sets an option of a model; `None` where it has none of this name.
 pub(crate) fn set_option(numerics: &mut Numerics, entry: &Entry<'_>) -> Option<Read<()>> {
-    let context = Context { system: System::None, models: &[] };
+    let context = Context { system: System::None, own: &[] };
     match numerics {
         Numerics::Bem3d(model) => BEM3D_KEYS.set(model, entry, context),
         Numerics::Equivalent(outer) => BEM3D_KEYS

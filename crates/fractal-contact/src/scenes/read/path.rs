@@ -263,23 +263,14 @@ pub(crate) static PATH_KEYS: KeyTable<AskedStep> = KeyTable {
     ],
 };
 
-fn dimension_of(kind: LoadKind) -> Dimension {
-    match kind {
-        LoadKind::Force => Dimension::FORCE,
-        LoadKind::MeanPressure => Dimension::PRESSURE,
-        LoadKind::ForceBar => Dimension::NONE,
-        LoadKind::Approach | LoadKind::MeanGap => Dimension::LENGTH,
-    }
-}
-
 fn read_normal(step: &mut AskedStep, kind: LoadKind, entry: &Entry<'_>, context: Context<'_>) -> Read<()> {
-    step.normal = Some((kind, entry.quantity(dimension_of(kind), context.system)?));
+    step.normal = Some((kind, entry.quantity(kind.record().1, context.system)?));
     Ok(())
 }
 
 fn print_normal(step: &AskedStep, kind: LoadKind, system: System) -> Option<String> {
     let (_, value) = step.normal.filter(|(of, _)| *of == kind)?;
-    Some(printed::quantity(value, dimension_of(kind), system))
+    Some(printed::quantity(value, kind.record().1, system))
 }
 
 fn print_pair(components: [f64; 2], dimension: Dimension, system: System) -> String {
@@ -391,7 +382,7 @@ mod tests {
     fn path(text: &str) -> Read<Vec<PathPiece>> {
         let size = Size { x: 4.0, y: 1.0 };
         Entries::of_text("scene", text, |scene| {
-            let context = Context { system: System::None, models: &[] };
+            let context = Context { system: System::None, own: &[] };
             let steps = read_steps(&scene.require("path", "")?, context)?;
             pieces(&steps, true, size, &Places::default())
         })

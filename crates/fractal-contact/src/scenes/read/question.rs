@@ -1,18 +1,20 @@
 //! A question: everything that a scene says, as typed values. TOML and the flags of `press` are two ways to
 //! write one; a [`crate::scenes::SceneFile`] is a question whose surface was read.
 
+use crate::scenes::read::accuracy_target::ACCURACY_KEYS;
 use crate::scenes::read::asked_surface::{
     AskedBody, AskedFile, AskedSecond, AskedSelfAffine, AskedSurface, BODY_KEYS, FILE_KEYS, SECOND_KEYS,
     SELF_AFFINE_KEYS,
 };
 use crate::scenes::read::key::{Context, Key, KeyTable, SceneKey};
-use crate::scenes::read::loads::{AskedLoads, LoadKind, print_loads, read_loads};
+use crate::scenes::read::load_kind::LoadKind;
+use crate::scenes::read::loads::{AskedLoads, print_loads, read_loads};
 use crate::scenes::read::numerics::{self, print_options, read_models};
 use crate::scenes::read::outputs::{OUTPUT_KEYS, print_outputs, set_output};
 use crate::scenes::read::path::{AskedStep, PATH_KEYS, read_steps};
 use crate::scenes::read::{
-    Diagnostic, EFFECT_KEYS, Entries, Entry, Numerics, Read, RequestedAccuracy, RequestedOutputs, System,
-    nearest, printed, read_effects, read_outputs,
+    Diagnostic, EFFECT_KEYS, Entries, Entry, Numerics, Read, RegisteredModel, RequestedAccuracy,
+    RequestedOutputs, System, nearest, printed, read_effects, read_outputs,
 };
 use contact_model::{Body, Effects, Pair};
 use std::fmt::Write as _;
@@ -105,7 +107,7 @@ static SCENE_KEYS: KeyTable<Question> = KeyTable {
         &["contact_modulus", "modulus", "bodies"],
         &["force", "force_bar", "mean_pressure", "approach", "mean_gap"],
     ],
-    everyday: &["contact_modulus", "bodies", "mean_pressure", "force", "approach", "accuracy"],
+    everyday: &["contact_modulus", "bodies", "mean_pressure", "force", "approach"],
     keys: &[
         Key {
             name: "units",
@@ -121,7 +123,7 @@ static SCENE_KEYS: KeyTable<Question> = KeyTable {
             about: "the [models](models.md), in the order of the results",
             default: "",
             read: |question, entry, context| {
-                read_models(entry, context.models).map(|models| question.models = models)
+                read_models(entry, context.own).map(|models| question.models = models)
             },
             print: |question, _| {
                 let names: Vec<String> =
@@ -229,9 +231,6 @@ static SCENE_KEYS: KeyTable<Question> = KeyTable {
                 question.hardness.map(|pressure| printed::quantity(pressure, Dimension::PRESSURE, system))
             },
         },
-        crate::scenes::read::accuracy_target::ACCURACY,
-        crate::scenes::read::accuracy_target::BUDGET_KEY,
-        crate::scenes::read::accuracy_target::MEMORY_KEY,
     ],
 };
 
@@ -267,6 +266,7 @@ const SYSTEMS: [(&str, System); 2] = [("none", System::None), ("si", System::Si)
 /// ([`contact_model::Output::ALL`]), in the order in which the book lists them.
 pub fn scene_keys() -> Vec<SceneKey> {
     let mut keys: Vec<SceneKey> = SCENE_KEYS.describe().collect();
+    keys.extend(ACCURACY_KEYS.describe());
     keys.extend(PATH_KEYS.describe());
     keys.extend(SELF_AFFINE_KEYS.describe());
     keys.extend(FILE_KEYS.describe());
@@ -279,7 +279,7 @@ pub fn scene_keys() -> Vec<SceneKey> {
 }
 
 /// The mistake of a key that there is not.
-pub(crate) fn no_such_key(path: &str) -> Diagnostic {
+fn no_such_key(path: &str) -> Diagnostic {
     let step = |table: &'static str| if table == "scene.path" { "scene.path.0" } else { table };
     let mut known: Vec<String> =
         scene_keys().iter().map(|key| format!("{}.{}", step(key.table), key.name)).collect();
@@ -299,8 +299,7 @@ impl Question {
     /// # Errors
     /// The first mistake.
     pub fn parse(text: &str) -> Result<Self, Diagnostic> {
-        let models: Vec<Numerics> = Numerics::all().collect();
-        Entries::of_text("", text, |root| Ok(read_question(&root, &models)?.0))
+        Entries::of_text("", text, |root| Ok(read_question(&root, &[])?.0))
     }
 
     /// Sets a key from a text, as the flag `--set` has it: a value of TOML such as `512`, `true` or
@@ -320,9 +319,8 @@ impl Question {
     /// # Ok::<(), fractal_contact::scenes::Diagnostic>(())
     /// ```
     pub fn set(&mut self, path: &str, text: &str) -> Result<(), Diagnostic> {
-        let models: Vec<Numerics> = Numerics::all().collect();
         Entries::of_word(path, text, |entry| {
-            let context = Context { system: self.units, models: &models };
+            let context = Context { system: self.units, own: &[] };
             self.set_entry(path, entry, context).unwrap_or_else(|| Err(no_such_key(path)))
         })
     }
@@ -331,7 +329,9 @@ impl Question {
     fn set_entry(&mut self, path: &str, entry: &Entry<'_>, context: Context<'_>) -> Option<Read<()>> {
         let (table, key) = path.rsplit_once('.')?;
         match table {
-            "scene" => SCENE_KEYS.set(self, entry, context),
+            "scene" => SCENE_KEYS
+                .set(self, entry, context)
+                .or_else(|| ACCURACY_KEYS.set(&mut self.accuracy, entry, context)),
             "scene.surface" if key == "kind" => Some(self.choose_surface(entry)),
             "scene.surface" => match self.surface.as_mut()? {
                 AskedSurface::SelfAffine(surface) => SELF_AFFINE_KEYS.set(surface, entry, context),
@@ -399,7 +399,9 @@ impl Question {
     pub fn printed<'c>(&self, heading: &str, comment: impl Fn(&str) -> &'c str) -> String {
         let mut lines = Lines { text: heading.to_owned(), comment };
         let system = self.units;
-        lines.table("scene", "[scene]", SCENE_KEYS.print(self, system));
+        let mut scene = SCENE_KEYS.print(self, system);
+        scene.extend(ACCURACY_KEYS.print(&self.accuracy, system));
+        lines.table("scene", "[scene]", scene);
         if let Some(AskedLoads::Path(steps)) = &self.loads {
             for step in steps {
                 lines.table("scene.path", "[[scene.path]]", PATH_KEYS.print(step, system));
@@ -472,7 +474,10 @@ impl<'c, F: Fn(&str) -> &'c str> Lines<F> {
 }
 
 /// Reads a whole scene, with remarks on former names.
-pub(crate) fn read_question(root: &Entries<'_>, models: &[Numerics]) -> Read<(Question, Vec<Diagnostic>)> {
+pub(crate) fn read_question(
+    root: &Entries<'_>,
+    own: &[RegisteredModel],
+) -> Read<(Question, Vec<Diagnostic>)> {
     let mut question = Question::default();
     let mut notes = Vec::new();
     let Some(scene) = root.table("scene")? else {
@@ -482,8 +487,9 @@ pub(crate) fn read_question(root: &Entries<'_>, models: &[Numerics]) -> Read<(Qu
     if let Some(units) = scene.entry("units") {
         question.units = units.choice(&SYSTEMS)?;
     }
-    let context = Context { system: question.units, models };
+    let context = Context { system: question.units, own };
     SCENE_KEYS.read(&mut question, &scene, context)?;
+    ACCURACY_KEYS.read(&mut question.accuracy, &scene, context)?;
     if let Some(entry) = scene.entry("modulus") {
         let note = Diagnostic::note("`modulus` is read as `contact_modulus`, which is E* of the pair");
         let help = "To give Young's modulus and Poisson's ratio, write `bodies`.";

@@ -178,10 +178,8 @@ impl SceneFile {
     /// # Errors
     /// As [`SceneFile::parse`].
     pub fn parse_with(path: &Path, text: String, registry: &Registry) -> Result<Self> {
-        let own = registry.models().iter().cloned().map(Numerics::Registered);
-        let models: Vec<Numerics> = Numerics::all().chain(own).collect();
         let read = |root: Entries<'_>| {
-            let (question, mut notes) = read_question(&root, &models)?;
+            let (question, mut notes) = read_question(&root, registry.models())?;
             let scene = Self::answered(question, path, root.places())?;
             notes.extend(scene.notes);
             Ok(Self { notes, ..scene })
