@@ -38,7 +38,11 @@ pub fn jobs_of_scenes(scenes: &[SceneFile], out: &Path) -> Box<dyn JobList> {
 }
 
 fn all_jobs(scenes: &[SceneFile], out: &Path) -> Vec<SceneJob> {
-    scenes.iter().flat_map(|scene| scene_jobs(scene, out)).collect()
+    let of = |(number, scene): (usize, &SceneFile)| {
+        let among = move |job: SceneJob| SceneJob { among: Some(number), ..job };
+        scene_jobs(scene, out).into_iter().map(among).collect::<Vec<_>>()
+    };
+    scenes.iter().enumerate().flat_map(of).collect()
 }
 
 /// Solves what the store of `out` does not hold of these scenes, the most expensive jobs first, and returns the

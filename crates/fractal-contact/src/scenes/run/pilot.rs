@@ -150,7 +150,8 @@ struct Trial<'a> {
 impl Trial<'_> {
     fn job(&self, folder: &Path) -> SceneJob {
         let unit = ModelOnSurface { model: self.candidate.model, surface: 0 };
-        SceneJob { unit, scene: Arc::new(self.candidate.scene.clone()), out: folder.into(), draws: false }
+        let scene = Arc::new(self.candidate.scene.clone());
+        SceneJob { unit, scene, among: None, out: folder.into(), draws: false }
     }
 
     /// Its states, where all of them are stored. Their fields may be anywhere.
@@ -200,7 +201,8 @@ pub(crate) fn take_trial(scene: &SceneFile, out: &Path, store: &Store) {
     };
     let folder = trial_folder(out, cells(scene, &scene.models[model]));
     let unit = ModelOnSurface { model, surface: 0 };
-    let job = SceneJob { unit, scene: Arc::new(scene.clone()), out: out.into(), draws: true };
+    let scene = Arc::new(scene.clone());
+    let job = SceneJob { unit, scene, among: None, out: out.into(), draws: true };
     let results = store.texts(&job.stored_key()).filter_map(|text| SceneJob::KIND.decode(&text));
     for file in results.flat_map(|result: ModelResult| result.states).flat_map(|state| state.files) {
         // A file that cannot be moved is missing in the run, which then solves its state.

@@ -4,7 +4,7 @@ use crate::scenes::plan::{FORMAT, ModelOnSurface, calibration};
 use crate::scenes::read::{Error, Result, SceneFile, cells};
 use crate::scenes::run::{Keeper, ModelResult, field_pictures};
 use contact_model::Stop;
-use runs::{Checkpoint, Job, JobList, Progress, ResultKind, Silent, StatesInHand, Store, fnv1a_128};
+use runs::{Checkpoint, Job, JobList, Progress, ResultKind, Silent, StatesInHand, Store};
 use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
@@ -14,6 +14,8 @@ use std::time::Instant;
 pub(crate) struct SceneJob {
     pub unit: ModelOnSurface,
     pub scene: Arc<SceneFile>,
+    /// Number of its scene, where several scenes share the directory.
+    pub among: Option<usize>,
     /// Directory of the results.
     pub out: Arc<Path>,
     /// Whether it draws pictures of its fields at the end; a job that does not is complete when it is done
@@ -66,10 +68,8 @@ impl Job for SceneJob {
         field_pictures::keep_whole_states(&mut begun, &self.out);
         begun.kept = begun.states.len();
         let (model, surface) = (self.unit.numerics(&self.scene).name(), self.unit.surface);
-        // Jobs of several scenes may share a folder.
-        let key = self.stored_key();
-        let name = format!("{model}-{surface}-{:08x}", fnv1a_128(key.as_bytes()) as u32);
-        let checkpoint = Checkpoint::new(&self.out, &name, &key);
+        let among = self.among.map_or_else(String::new, |scene| format!("{scene}-"));
+        let checkpoint = Checkpoint::new(&self.out, &format!("{among}{model}-{surface}"), &self.stored_key());
         let store = self.is_stored().then_some(store);
         let states = [begun.kept, self.scene.request.count()];
         let told = StatesInHand::new((self.name(), self.cost()), states, progress, stop);
@@ -124,7 +124,8 @@ pub(crate) fn units(scene: &SceneFile) -> Vec<ModelOnSurface> {
 /// The same, as jobs that write their fields into `out`.
 pub(crate) fn scene_jobs(scene: &SceneFile, out: &Path) -> Vec<SceneJob> {
     let (scene, out) = (Arc::new(scene.clone()), Arc::<Path>::from(out));
-    let of = |unit| SceneJob { unit, scene: Arc::clone(&scene), out: Arc::clone(&out), draws: true };
+    let of =
+        |unit| SceneJob { unit, scene: Arc::clone(&scene), among: None, out: Arc::clone(&out), draws: true };
     units(&scene).into_iter().map(of).collect()
 }
 
