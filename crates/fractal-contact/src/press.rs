@@ -146,7 +146,8 @@ fn lacking(asked: &PressArguments, map: &Metadata) -> Vec<Lacking> {
     lacking
 }
 
-/// What is wrong with the flags that are given: with examples of those that are missing the scene is complete.
+/// The first mistake in the flags that are given. Examples stand in for the missing ones, so that the scene can
+/// be read.
 fn mistake(asked: &PressArguments, lacking: &[Lacking]) -> Option<String> {
     let mut filled = asked.clone();
     for Lacking { flag, example, .. } in lacking {
@@ -289,7 +290,7 @@ fn file(asked: &PressArguments, at: &Path) -> Result<AskedFile, Diagnostic> {
     }
 }
 
-/// What is computed of a map or of a profile.
+/// Requests the quantities and pictures that `press` shows of a map or of a profile.
 fn outputs(question: &mut Question, asked: &PressArguments, profile: bool) {
     let periodic = question.effects.boundary == Boundary::Periodic;
     let requested = &mut question.outputs;

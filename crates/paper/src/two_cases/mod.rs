@@ -10,7 +10,7 @@ use crate::judged::Judged;
 use analysis::{Curves, StiffnessSample, ensemble};
 use analytic::{GreenwoodWilliamson, Persson};
 use bem3d::Bem3d;
-use contact_model::{ContactModel as _, ContactState};
+use contact_model::{ContactModel as _, ContactState, Status};
 use evaluation::{Outcome, Session, header};
 use fractal_contact::scenes::{self, SceneFile, SurfaceStates, jobs_of_scenes, solve_scenes};
 pub(crate) use picture::draw;
@@ -32,8 +32,8 @@ pub fn two_cases(study: &TwoCases, out: &Path, progress: &dyn Progress) -> Resul
     let session = Session::open(out, false)?;
     let states = solve(study, (out, &session.store), progress)?;
     let of_coarser = solve(&study.coarser(), (out, &session.store), progress)?;
-    let [solved, coarser] =
-        [&states, &of_coarser].map(|all| all.iter().map(|states| solves(study, states)).collect::<Vec<_>>());
+    let solved = states.iter().map(|states| solves(study, states)).collect::<Result<Vec<_>>>()?;
+    let coarser = of_coarser.iter().map(|states| solves(study, states)).collect::<Result<Vec<_>>>()?;
     let (mut outcome, mut claims) = (Outcome::new(NAME), Vec::new());
     let mut curves = Vec::new();
     let pairs = pairs(study, &solved)?;
@@ -112,19 +112,25 @@ fn solve(
 }
 
 /// The states of the boundary elements on each surface, as they are read.
-fn solves(study: &TwoCases, states: &[SurfaceStates]) -> Vec<Solves> {
-    let of = |states: &SurfaceStates, load: usize| match (states.converged(load), states.state(load)) {
-        (Some((ContactState { stiffness: Some(k), area: Some(area), report, .. }, normalisation)), _) => {
-            let stiffness_bar = normalisation.stiffness_bar(*k);
-            let sample = StiffnessSample { stiffness_bar, contact_cells: report.contact_cells };
-            CaseSolve::StiffnessSample(sample, *area)
-        }
-        (Some(_), _) => CaseSolve::FullContact,
-        (None, _) => CaseSolve::NotConverged,
+fn solves(study: &TwoCases, states: &[SurfaceStates]) -> Result<Vec<Solves>> {
+    let of = |states: &SurfaceStates, load: usize, force: f64| {
+        let (state, normalisation) = states.state(load).map_err(|reason| {
+            Error::parameter("forces", force, format!("loads that bem3d can solve ({reason})"))
+        })?;
+        Ok(match state {
+            ContactState { report, .. } if report.status != Status::Converged => CaseSolve::NotConverged,
+            ContactState { stiffness: Some(k), area: Some(area), report, .. } => {
+                let stiffness_bar = normalisation.stiffness_bar(*k);
+                let sample = StiffnessSample { stiffness_bar, contact_cells: report.contact_cells };
+                CaseSolve::StiffnessSample(sample, *area)
+            }
+            _ => CaseSolve::FullContact,
+        })
     };
-    let loads = 0..study.forces.values().len();
-    let solved = states.iter().filter(|states| states.model == "bem3d");
-    solved.map(|states| loads.clone().map(|load| of(states, load)).collect()).collect()
+    let of_surface = |states: &SurfaceStates| {
+        study.forces.values().iter().enumerate().map(|(load, &force)| of(states, load, force)).collect()
+    };
+    states.iter().filter(|states| states.model == "bem3d").map(of_surface).collect()
 }
 
 fn of_scene(error: scenes::Error) -> Error {
@@ -171,7 +177,8 @@ fn mean_curve(
 fn theory(study: &TwoCases, case: SurfaceCase, states: &SurfaceStates) -> Result<CaseCurve> {
     let slope = case.slope(study)?;
     let point = |(load, &force_bar): (usize, &f64)| {
-        let (state, normalisation) = states.converged(load)?;
+        // A theory refuses the loads beyond its range of validity.
+        let (state, normalisation) = states.state(load).ok()?;
         Some(CasePoint {
             force_bar,
             stiffness_bar: normalisation.stiffness_bar(state.stiffness?),
@@ -227,6 +234,14 @@ mod tests {
         // The largest loads of a periodic square are far stiffer than a free one can be.
         let k = file.numbers("stiffness_bar").unwrap();
         assert!(k[6].unwrap() < 1.1 && k[4 * 7 - 1].unwrap() > 3.0);
+    }
+
+    #[test]
+    fn a_load_that_the_boundary_elements_refuse_ends_the_study() {
+        let dir = tempfile::tempdir().unwrap();
+        let study = TwoCases { forces: Forces::parse("0.1,1e308").unwrap(), ..small() };
+        let error = two_cases(&study, dir.path(), &Silent).unwrap_err().to_string();
+        assert!(error.starts_with("forces = 1e308: expected loads that bem3d can solve ("), "{error}");
     }
 
     #[test]

@@ -50,7 +50,7 @@ pub struct AskedFile {
     pub path: Option<PathBuf>,
     /// How the file is read.
     pub declared: ReadOptions,
-    /// What is done to the map; its `detrend` is the one below.
+    /// Steps of preprocessing. The field `detrend` below replaces the one in it.
     pub preprocessing: Preprocessing,
     /// The trend that is subtracted, where one is named.
     pub detrend: Option<Detrend>,
@@ -65,7 +65,7 @@ impl AskedFile {
     /// without one is a plain number.
     ///
     /// # Errors
-    /// What is wrong with the value, or that there is no such key.
+    /// A value that the key does not take, or a key that does not exist.
     pub fn set(&mut self, key: &str, text: &str) -> Result<(), Diagnostic> {
         let plain = text.parse::<Sides>().is_ok_and(|sides| sides.both()[0].dimension() == Dimension::NONE);
         let context = Context { system: if plain { System::None } else { System::Si }, own: &[] };
@@ -77,7 +77,7 @@ impl AskedFile {
         })
     }
 
-    /// What is done to the map.
+    /// Steps of preprocessing, the detrending included.
     pub fn preprocessing(&self) -> Preprocessing {
         Preprocessing { detrend: self.detrend.unwrap_or_default(), ..self.preprocessing.clone() }
     }

@@ -3,7 +3,7 @@
 
 use crate::scenes::read::{Diagnostic, Entries, Entry, Places, Read, RegisteredModel, System};
 
-/// What the values of keys depend on besides themselves.
+/// The settings of the whole scene by which the values of its keys are read.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Context<'a> {
     /// Whether numbers carry units.
@@ -17,9 +17,10 @@ pub(crate) struct Key<T: 'static> {
     pub name: &'static str,
     /// Its values, in Markdown.
     pub takes: &'static str,
-    /// What it is, in a sentence, in Markdown; empty for a former name, which is read and not recommended.
+    /// The sentence with which the book explains the key, in Markdown. It is empty for a former name, which is
+    /// still read and no longer recommended.
     pub about: &'static str,
-    /// What holds where it is not given, in Markdown; empty where it has to be given.
+    /// The value that holds in a scene without the key, in Markdown. It is empty for a key that has to be given.
     pub default: &'static str,
     pub read: fn(&mut T, &Entry<'_>, Context<'_>) -> Read<()>,
     /// Its value as TOML; `None` where it is not given.
@@ -106,9 +107,9 @@ pub struct SceneKey {
     pub name: &'static str,
     /// Its values, in Markdown.
     pub takes: &'static str,
-    /// What it is, in Markdown.
+    /// The sentence that explains it, in Markdown.
     pub about: &'static str,
-    /// What holds where it is not given, in Markdown; empty where it has to be given.
+    /// The value that holds in a scene without the key, in Markdown. It is empty for a key that has to be given.
     pub default: &'static str,
     /// The keys in whose place it is given.
     pub instead_of: Vec<&'static str>,

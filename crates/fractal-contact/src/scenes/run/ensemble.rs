@@ -2,8 +2,8 @@
 
 use crate::scenes::plan::calibration;
 use crate::scenes::read::{Result, SceneFile};
-use crate::scenes::run::{ModelResult, SceneJob, Solved, StateRecord, scene_jobs};
-use contact_model::{ContactState, Normalisation, Status, never};
+use crate::scenes::run::{Answer, ModelResult, SceneJob, StateRecord, scene_jobs};
+use contact_model::{ContactState, Normalisation, never};
 use runs::{Job as _, JobList, Progress, Store, Threads, run_stored};
 use std::path::Path;
 
@@ -20,15 +20,17 @@ pub struct SurfaceStates {
 }
 
 impl SurfaceStates {
-    /// The state under a load, with the normalisation of its surface; `None` where the model refused the load.
-    pub fn state(&self, load: usize) -> Option<(&ContactState, &Normalisation)> {
-        let record = self.states.iter().find(|record| record.index == load)?;
-        record.solved().map(|Solved { state, normalisation, .. }| (state, normalisation))
-    }
-
-    /// The same, where the state reached its tolerance.
-    pub fn converged(&self, load: usize) -> Option<(&ContactState, &Normalisation)> {
-        self.state(load).filter(|(state, _)| state.report.status == Status::Converged)
+    /// The state under a load, with the normalisation of its surface. Its status says whether the solve reached
+    /// its tolerance.
+    ///
+    /// # Errors
+    /// Why the model refused the load.
+    pub fn state(&self, load: usize) -> std::result::Result<(&ContactState, &Normalisation), &str> {
+        match self.states.iter().find(|record| record.index == load).map(|record| &record.answer) {
+            Some(Answer::State(solved)) => Ok((&solved.state, &solved.normalisation)),
+            Some(Answer::Refused(reason)) => Err(reason),
+            None => Err("it is not among the loads of the scene"),
+        }
     }
 }
 
