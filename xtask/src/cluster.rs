@@ -2,7 +2,7 @@
 
 use crate::arguments::{Arguments, Command, PlanArguments, ShardsArguments, SubmitArguments};
 use clap::Parser as _;
-use evaluation::{RealisationJob, Run, ensemble_jobs};
+use evaluation::{Run, ensemble_jobs};
 use runs::cluster::{self, Division, Forecast, Status, check, quoted, run_shard, status, without_flags};
 use runs::{Error, JobList, Reporter, Result, ShardChoice};
 
@@ -22,10 +22,12 @@ pub fn jobs(command: &Command) -> Result<Box<dyn JobList>> {
     if request.fresh {
         return Err(Error::parameter("fresh", true, "no --fresh with --shard: choose another --out"));
     }
-    if let Some(surfaces) = surfaces(command)? {
-        return Ok(Box::new(surfaces));
+    let run = Run::new(&request)?;
+    if let Some(models) = command.models() {
+        return Ok(Box::new(ensemble_jobs(&run, models)?));
     }
     match command {
+        Command::Exponent(options) => Ok(Box::new(options.study(&run)?.jobs()?)),
         Command::ReproduceTwoCases(options) => paper::two_cases_jobs(&options.study()?, &options.out),
         Command::AccuracyCost(options) => evaluation::accuracy_cost_jobs(options.depth, options.seed),
         Command::BudgetCheck(options) => evaluation::budget_check_jobs(options.cases, options.seed),
@@ -49,15 +51,6 @@ pub fn shard(command: &Command, choice: ShardChoice, typed: &[String]) -> Result
     let report = run_shard(&plan, &*jobs, shard, (&out, run.threads), &Reporter::new(), &|| false)?;
     runs::out!("{report}");
     Ok(())
-}
-
-/// The surfaces and lines of a command that solves no others.
-fn surfaces(command: &Command) -> Result<Option<Vec<RealisationJob>>> {
-    let run = Run::new(&command.request())?;
-    match command {
-        Command::Exponent(options) => options.study(&run)?.jobs().map(Some),
-        figure => Ok(figure.models().map(|models| ensemble_jobs(&run, models))),
-    }
 }
 
 fn plan_of(typed: &[String], jobs: &dyn JobList) -> cluster::ShardPlan {

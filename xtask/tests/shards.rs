@@ -132,7 +132,7 @@ fn the_command_that_is_named_closes_the_gap() {
     assert_eq!(refused.status.code(), Some(1), "{text}");
     assert!(
         text.contains("jobs of `cargo xtask reproduce-fig2 --cells 33")
-            && text.contains("surface 1, 33 cells"),
+            && text.contains("33 cells a side: bem3d, surface 1"),
         "{text}"
     );
     assert_eq!(xtask("status", &out).status.code(), Some(3));

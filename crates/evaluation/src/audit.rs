@@ -4,14 +4,14 @@ use crate::header::{flags, header};
 use crate::limits::require;
 use crate::measured::measure;
 use crate::outcome::Outcome;
-use crate::realisation::{Discretisation, Model, RealisationJob, RealisationResult};
+use crate::realisation::{Discretisation, Model, Realisation, RealisationResult, solve_alone};
 use crate::run::Run;
 use crate::session::Session;
 use crate::table_of::TableOf;
 use crate::tables::{FORCE_BAR, FRACTAL_DIMENSION};
 use contact_model::Table;
 use contact_model::{Stop, never};
-use runs::{Job as _, Progress, Result, Threads, collect, run_jobs, write_csv};
+use runs::{Progress, Result, Threads, collect, run_jobs, write_csv};
 
 /// One solve and its repetition to a tight tolerance.
 struct SolvePair {
@@ -45,7 +45,7 @@ pub fn audit(run: &Run, share: f64, tolerance: f64, progress: &dyn Progress) -> 
     require((1e-12..run.tolerance).contains(&tolerance), "audit-tolerance", tolerance, expected)?;
     let session = Session::open(&run.out, run.fresh)?;
     let measured = measure(Model::Bem3d, run, &session.store, progress)?;
-    let realisations: Vec<&(RealisationJob, RealisationResult)> =
+    let realisations: Vec<&(Realisation, RealisationResult)> =
         measured.series.iter().flat_map(|s| &s.realisations).collect();
     let loads = measured.force_bar().len();
     let wanted = ((share * (realisations.len() * loads) as f64).ceil() as usize).max(1);
@@ -87,19 +87,16 @@ pub fn audit(run: &Run, share: f64, tolerance: f64, progress: &dyn Progress) -> 
 /// Solves one load of one surface from a cold start. `None` where the stored or the tight solve has no
 /// stiffness to compare.
 fn again(
-    (realisation, result): &(RealisationJob, RealisationResult),
+    (realisation, result): &(Realisation, RealisationResult),
     load: usize,
     tolerance: f64,
     stop: Stop<'_>,
 ) -> Result<Option<SolvePair>> {
     let stored = &result.samples[load];
-    let alone = RealisationJob {
-        discretisation: Discretisation::Bem3d { cells: realisation.discretisation.size(), tolerance },
-        forces: [stored.force_bar].into(),
-        ..realisation.clone()
-    };
-    let tight = alone.solve(stop)?;
-    let tight = tight.samples.first().filter(|s| s.converged()).and_then(|s| s.stiffness_bar);
+    let (d, seed) = (realisation.fractal_dimension, realisation.seed());
+    let grid = Discretisation::Bem3d { cells: realisation.discretisation.size(), tolerance };
+    let tight = solve_alone(grid, d, seed, stored.force_bar, stop)?;
+    let tight = tight.stiffness_bar.filter(|_| tight.converged());
     Ok(stored.stiffness_bar.zip(tight).filter(|_| stored.converged()).map(|(a, b)| SolvePair {
         fractal_dimension: realisation.fractal_dimension,
         index: realisation.index,

@@ -42,7 +42,7 @@ pub fn describe(mut header: Header, run: &Run, measured: &[&Measured]) -> Header
         };
         let (_, count, forces) = run.ensemble(m.discretisation.of());
         header = header
-            .with_sources(m.discretisation.model().sources())
+            .with_sources(m.discretisation.sources())
             .with_note(format!(
                 "{}: {size}, {count} surfaces per D_f, loads {}",
                 m.discretisation.name(),

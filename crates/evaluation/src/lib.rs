@@ -27,9 +27,11 @@
 //!
 //! # Jobs
 //!
-//! A job is one surface under all its loads ([`RealisationJob`]). It is solved from the smallest load upwards
-//! with one prepared contact. The result store of the run (`runs::Store`) keeps it under a key of everything
-//! that determines its results, and other commands use it again.
+//! An ensemble asks one question (`fractal_contact::scenes::Question`): surfaces of one fractal dimension on one
+//! grid under all loads. Its jobs are those of a scene, and the store of the run keeps their states under the
+//! same keys, so that other commands and scenes use them again. A [`Realisation`] is one surface of an ensemble.
+//! Its [`RealisationResult`] is what is read from the states of its job: a [`Sample`] for each load, with the
+//! normalised numbers of the paper.
 //!
 //! # What it does not do
 //!
@@ -81,7 +83,7 @@ pub use measured::{
     COARSER_SURFACES, Measured, Series, ensemble_jobs, measure, measure_showing, transformed,
 };
 pub use outcome::Outcome;
-pub use realisation::{Discretisation, FORMAT, Model, Models, RealisationJob, RealisationResult};
+pub use realisation::{Discretisation, Model, Realisation, RealisationResult, of_scene, realisation_jobs};
 pub use realisation_jobs::{is_solved, solve_realisations};
 pub use run::{FRACTAL_DIMENSIONS, Flag, Preset, Request, Run, SEED, TOLERANCE, distinct, list};
 pub use runs::{Error, Result};

@@ -60,7 +60,7 @@ fn entry(run: &Run, command: &str, outcomes: &[Outcome]) -> Value {
         "seed": run.seed,
         "versions": {
             "fractal-contact": env!("CARGO_PKG_VERSION"),
-            "unit_format": crate::FORMAT,
+            "unit_format": fractal_contact::scenes::FORMAT,
             "bem3d_format": bem3d::FORMAT,
         },
         "machine": runs::machine(),

@@ -1,12 +1,13 @@
 //! An ensemble of one model over all fractal dimensions.
 
 use crate::read_surfaces::ReadSurfaces;
-use crate::realisation::{Discretisation, Model, Models, RealisationJob, RealisationResult};
-use crate::realisation_jobs::{is_solved, solve_in_order};
+use crate::realisation::{Discretisation, Model, Realisation, RealisationResult, of_scene, realisation_jobs};
+use crate::realisation_jobs::is_solved;
 use crate::run::Run;
 use crate::sample::{FLOOR_CELLS, Sample};
 use crate::so_far::SoFar;
 use analysis::{CollapsePoint, Curves, EnsemblePoint, ensemble, relative_differences};
+use fractal_contact::scenes::{self, ModelResult, SceneJob, solve_jobs};
 use runs::amounts::duration;
 use runs::{Error, Job as _, Ordered, Progress, Result, Store};
 use std::sync::Arc;
@@ -21,7 +22,7 @@ pub struct Series {
     /// D_f.
     pub fractal_dimension: f64,
     /// Its surfaces and their results, in the order of their index.
-    pub realisations: Vec<(RealisationJob, RealisationResult)>,
+    pub realisations: Vec<(Realisation, RealisationResult)>,
     /// Converged stiffnesses on common forces.
     pub curves: Curves,
     /// Their means.
@@ -62,26 +63,31 @@ pub fn measure_showing(
     progress: &dyn Progress,
     show: &(dyn Fn(&Measured) -> Result<()> + Sync),
 ) -> Result<Measured> {
-    let ensembles: Vec<Vec<RealisationJob>> =
-        grids(model, run).map(|(grid, surfaces)| jobs(grid, surfaces, run)).collect();
+    let ensembles: Vec<Vec<Realisation>> =
+        grids(model, run).map(|(grid, surfaces)| realisations(grid, surfaces, run)).collect();
     if let Some(directory) = &run.samples {
         return read(&ReadSurfaces::open(directory, model, run)?, ensembles, (model, run));
     }
-    let all: Vec<RealisationJob> = ensembles.iter().rev().flatten().cloned().collect();
+    let all: Vec<Realisation> = ensembles.iter().rev().flatten().cloned().collect();
+    let jobs = realisation_jobs(&all, &run.out)?;
     let mut order: Vec<usize> = (0..all.len()).collect();
     for of_surface in order.chunks_mut(run.dimensions().len().max(1)) {
-        of_surface.sort_by_key(|&job| std::cmp::Reverse(all[job].cost()));
+        of_surface.sort_by_key(|&job| std::cmp::Reverse(jobs[job].cost()));
     }
-    let what = words(model, run, &ensembles, store);
-    let measured_so_far = |jobs, results| show(&Measured::new(jobs, results, run)?);
+    let what = words(model, run, &ensembles, (&jobs, store));
+    let measured_so_far = |realisations, results| show(&Measured::new(realisations, results, run)?);
     let so_far = SoFar::new(&ensembles, run, &measured_so_far);
-    let solved = |job: usize, result: &RealisationResult| so_far.add(job, result);
-    let ordered = Ordered { jobs: &all, order: &order, solved: &solved };
-    let mut results = solve_in_order(&what, &ordered, store, run.threads, progress)?.into_iter();
+    let solved = |job: usize, states: &ModelResult| -> scenes::Result<()> {
+        so_far.add(job, &all[job].read(states)?)?;
+        Ok(())
+    };
+    let ordered = Ordered { jobs: &jobs, order: &order, solved: &solved };
+    let states = solve_jobs(&what, &ordered, store, run.threads, progress).map_err(of_scene)?;
+    let mut results = all.iter().zip(&states).map(|(realisation, states)| realisation.read(states));
     let mut measured = Vec::new();
-    for jobs in ensembles.into_iter().rev() {
-        let results = results.by_ref().take(jobs.len()).collect();
-        measured.push(Measured::new(jobs, results, run)?);
+    for realisations in ensembles.into_iter().rev() {
+        let results = results.by_ref().take(realisations.len()).collect::<Result<_>>()?;
+        measured.push(Measured::new(realisations, results, run)?);
     }
     with_coarser(measured, model)
 }
@@ -89,12 +95,12 @@ pub fn measure_showing(
 /// The ensembles whose surfaces a table has.
 fn read(
     table: &ReadSurfaces,
-    ensembles: Vec<Vec<RealisationJob>>,
+    ensembles: Vec<Vec<Realisation>>,
     (model, run): (Model, &Run),
 ) -> Result<Measured> {
-    let of = |jobs: Vec<RealisationJob>| {
-        let results = jobs.iter().map(|job| table.of(job)).collect::<Result<_>>()?;
-        Measured::new(jobs, results, run)
+    let of = |realisations: Vec<Realisation>| {
+        let results = realisations.iter().map(|one| table.of(one)).collect::<Result<_>>()?;
+        Measured::new(realisations, results, run)
     };
     with_coarser(ensembles.into_iter().rev().map(of).collect::<Result<_>>()?, model)
 }
@@ -107,20 +113,25 @@ fn with_coarser(mut measured: Vec<Measured>, model: Model) -> Result<Measured> {
 }
 
 /// A description of the solves, with their predicted time.
-fn words(model: Model, run: &Run, ensembles: &[Vec<RealisationJob>], store: &Store) -> String {
+fn words(
+    model: Model,
+    run: &Run,
+    ensembles: &[Vec<Realisation>],
+    (jobs, store): (&[SceneJob], &Store),
+) -> String {
     let kind = match model {
         Model::Bem3d => "surfaces",
         Model::Mdr1d => "lines",
     };
-    let of = |jobs: &Vec<RealisationJob>| {
-        let size = match jobs.first()?.discretisation {
+    let of = |realisations: &Vec<Realisation>| {
+        let size = match realisations.first()?.discretisation {
             Discretisation::Bem3d { cells, .. } => format!("{cells} x {cells} cells"),
             Discretisation::Mdr1d { elements } => format!("{elements} elements"),
         };
-        Some(format!("{} {kind} of {size}", jobs.len()))
+        Some(format!("{} {kind} of {size}", realisations.len()))
     };
     let sizes: Vec<String> = ensembles.iter().filter_map(of).collect();
-    let missing = ensembles.iter().flatten().filter(|job| !is_solved(job, store));
+    let missing = jobs.iter().filter(|job| !is_solved(job, store));
     // Processor milliseconds.
     let seconds = missing.map(|job| 1e-3 * job.cost() as f64).sum::<f64>() / run.threads.max(1) as f64;
     let time = match seconds {
@@ -142,24 +153,26 @@ fn grids(model: Model, run: &Run) -> impl Iterator<Item = (Discretisation, usize
 }
 
 /// Everything that the ensembles of a run solve, coarser grids included.
-pub fn ensemble_jobs(run: &Run, models: &[Model]) -> Vec<RealisationJob> {
+///
+/// # Errors
+/// As [`realisation_jobs`].
+pub fn ensemble_jobs(run: &Run, models: &[Model]) -> Result<Vec<SceneJob>> {
     let all = models.iter().flat_map(|&model| grids(model, run));
-    all.flat_map(|(grid, surfaces)| jobs(grid, surfaces, run)).collect()
+    let all: Vec<Realisation> = all.flat_map(|(grid, surfaces)| realisations(grid, surfaces, run)).collect();
+    realisation_jobs(&all, &run.out)
 }
 
 /// Surface by surface, so that an interrupted run holds whole ensembles of fewer surfaces.
-fn jobs(discretisation: Discretisation, surfaces: usize, run: &Run) -> Vec<RealisationJob> {
+pub(crate) fn realisations(discretisation: Discretisation, surfaces: usize, run: &Run) -> Vec<Realisation> {
     let forces: Arc<[f64]> = run.ensemble(discretisation.of()).2.values().into();
-    let (dimensions, models) = (run.dimensions(), Arc::<Models>::default());
+    let dimensions = run.dimensions();
     let of_surface = |index: usize| {
-        let seed = surface_gen::surface_seed(run.seed, index as u64);
-        let of = |&fractal_dimension: &f64| RealisationJob {
+        let of = |&fractal_dimension: &f64| Realisation {
             discretisation,
             fractal_dimension,
+            master_seed: run.seed,
             index,
-            seed,
             forces: Arc::clone(&forces),
-            models: Arc::clone(&models),
         };
         dimensions.iter().map(of).collect::<Vec<_>>()
     };
@@ -167,14 +180,14 @@ fn jobs(discretisation: Discretisation, surfaces: usize, run: &Run) -> Vec<Reali
 }
 
 impl Measured {
-    /// An ensemble without coarser grids, from its jobs and their results.
-    fn new(jobs: Vec<RealisationJob>, results: Vec<RealisationResult>, run: &Run) -> Result<Self> {
+    /// An ensemble without coarser grids, from its surfaces and their results.
+    fn new(realisations: Vec<Realisation>, results: Vec<RealisationResult>, run: &Run) -> Result<Self> {
         let dimensions = run.dimensions();
-        let first = jobs.first().ok_or_else(|| Error::parameter("surfaces", 0, "at least 1"))?;
+        let first = realisations.first().ok_or_else(|| Error::parameter("surfaces", 0, "at least 1"))?;
         let (discretisation, forces) = (first.discretisation, Arc::clone(&first.forces));
-        let mut pairs: Vec<Vec<(RealisationJob, RealisationResult)>> =
+        let mut pairs: Vec<Vec<(Realisation, RealisationResult)>> =
             dimensions.iter().map(|_| Vec::new()).collect();
-        for (i, pair) in jobs.into_iter().zip(results).enumerate() {
+        for (i, pair) in realisations.into_iter().zip(results).enumerate() {
             pairs[i % dimensions.len()].push(pair);
         }
         let series = pairs
@@ -189,7 +202,7 @@ impl Measured {
 impl Series {
     fn new(
         fractal_dimension: f64,
-        realisations: Vec<(RealisationJob, RealisationResult)>,
+        realisations: Vec<(Realisation, RealisationResult)>,
         forces: &[f64],
     ) -> Result<Self> {
         let rows = realisations

@@ -1,6 +1,6 @@
 //! Surfaces of an ensemble that are read from a compact table, one row each, instead of solved.
 
-use crate::realisation::{Discretisation, Model, RealisationJob, RealisationResult};
+use crate::realisation::{Discretisation, Model, Realisation, RealisationResult};
 use crate::run::Run;
 use crate::sample::Sample;
 use crate::table_of::read_rows;
@@ -25,7 +25,7 @@ struct Row {
     contact_cells: String,
 }
 
-/// The results of jobs, read from the compact table of a model in a directory, `fig2-compact.csv` or
+/// The results of realisations, read from the compact table of a model in a directory, `fig2-compact.csv` or
 /// `fig6-compact.csv`.
 ///
 /// Numbers have seven digits; certificates, work and times are not in the table.
@@ -62,16 +62,17 @@ impl ReadSurfaces {
         Ok(Self { rows: read_rows(&path, &file)?, path })
     }
 
-    /// The result of a job.
+    /// The result of a realisation.
     ///
     /// # Errors
     /// [`Error::File`] for a surface that the table has not, or a row that does not fit the loads.
-    pub fn of(&self, job: &RealisationJob) -> Result<RealisationResult> {
+    pub fn of(&self, realisation: &Realisation) -> Result<RealisationResult> {
         let wrong = |reason: String| Error::content(&self.path, reason);
-        let (size, d, seed) = (job.discretisation.size(), job.fractal_dimension, job.seed);
+        let (size, d, seed) =
+            (realisation.discretisation.size(), realisation.fractal_dimension, realisation.seed());
         let same =
             |row: &&Row| row.size == size && row.seed == seed && row.fractal_dimension.total_cmp(&d).is_eq();
-        let name = || format!("surface {} (seed {seed}) of D_f = {d:?} with size {size}", job.index);
+        let name = || format!("surface {} (seed {seed}) of D_f = {d:?} with size {size}", realisation.index);
         let row = self.rows.iter().find(same).ok_or_else(|| wrong(format!("it has no {}", name())))?;
         let columns = [&row.stiffness_bar, &row.approach_over_h, &row.contact_cells];
         let [stiffness, approach, cells] = columns.map(|text| -> Result<Vec<Option<f64>>> {
@@ -81,15 +82,15 @@ impl ReadSurfaces {
                     .ok_or_else(|| wrong(format!("{word:?} is no number: {}", name()))),
             };
             let values: Vec<Option<f64>> = text.split(' ').map(number).collect::<Result<_>>()?;
-            if values.len() == job.forces.len() {
+            if values.len() == realisation.forces.len() {
                 Ok(values)
             } else {
-                let (found, loads) = (values.len(), job.forces.len());
+                let (found, loads) = (values.len(), realisation.forces.len());
                 Err(wrong(format!("{found} values for {loads} loads: {}", name())))
             }
         });
         let (stiffness, approach, cells) = (stiffness?, approach?, cells?);
-        let area = |cells: f64| match job.discretisation {
+        let area = |cells: f64| match realisation.discretisation {
             Discretisation::Bem3d { .. } => Some(cells / (size as f64).powi(2)),
             Discretisation::Mdr1d { .. } => None,
         };
@@ -112,7 +113,7 @@ impl ReadSurfaces {
             strategy: READ.to_owned(),
             certificate: Certificate::default(),
         };
-        let samples = job.forces.iter().enumerate().map(sample).collect();
+        let samples = realisation.forces.iter().enumerate().map(sample).collect();
         Ok(RealisationResult { rms_height: RMS_HEIGHT, seconds: 0.0, samples })
     }
 }

@@ -1,21 +1,22 @@
-//! One surface of an ensemble under all its loads, as a stored job.
+//! One surface of an ensemble under all its loads: the question that it belongs to, and its states as they are
+//! read.
 
 use crate::sample::Sample;
 use analysis::KnownPart;
 use analytic::flat_punch::SQUARE_STIFFNESS;
 use bem3d::Bem3d;
 use contact_model::{
-    ContactModel, Outputs, PAPER_STIFFNESS_FACTOR, Scene, SelfAffine, Stop, Surface, line_length,
+    Load, Outputs, PAPER_STIFFNESS_FACTOR, Scene, SelfAffine, Source, Stop, Surface, line_length,
 };
-use mdr1d::{Ensemble, Mdr1d};
-use runs::{Error, Job, Progress, Result, ResultKind, Silent, StatesInHand};
-use serde::{Deserialize, Serialize};
-use std::sync::{Arc, Mutex, PoisonError};
-use std::time::Instant;
-
-/// Number of the format of stored results. Raise it when the numbers of `surface-gen` or `mdr1d`, or the
-/// fields of a [`Sample`], change; `bem3d` has its own number, which enters the key too.
-pub const FORMAT: u32 = 3;
+use fractal_contact::scenes::{
+    self, AskedLoads, AskedSampling, AskedSelfAffine, AskedSurface, LoadKind, LoadList, Material,
+    ModelResult, Numerics, Question, SceneFile, SceneJob, System, jobs_of_scenes,
+};
+use mdr1d::Mdr1d;
+use runs::{Error, Result};
+use serde::Deserialize;
+use std::path::Path;
+use std::sync::Arc;
 
 /// The models of ensembles.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
@@ -149,12 +150,25 @@ impl Discretisation {
         }
     }
 
-    /// The model itself.
-    pub fn model(&self) -> Box<dyn ContactModel> {
+    /// The model with its options.
+    pub fn numerics(&self) -> Numerics {
         match *self {
-            Self::Bem3d { cells, tolerance } => Box::new(Bem3d { cells, tolerance, ..Bem3d::default() }),
-            Self::Mdr1d { elements } => Box::new(Mdr1d { elements }),
+            Self::Bem3d { cells, tolerance } => {
+                Numerics::Bem3d(Bem3d { cells, tolerance, ..Bem3d::default() })
+            }
+            Self::Mdr1d { elements } => Numerics::Mdr1d(Mdr1d { elements }),
         }
+    }
+
+    /// The sources of the model.
+    pub fn sources(&self) -> &'static [Source] {
+        self.numerics().model().sources()
+    }
+
+    /// What is computed of a state; a rough line has no area to claim.
+    fn outputs(&self) -> Outputs {
+        let area = matches!(self, Self::Bem3d { .. });
+        Outputs { stiffness: true, area, ..Outputs::default() }
     }
 }
 
@@ -164,53 +178,23 @@ const EDGE_POWER: i32 = 8;
 /// Coarsest grid and shortest line that are compared with a finer one.
 const COARSEST: (usize, usize) = (17, 1 << 9);
 
-/// Models that jobs share: the plan of an ensemble of lines is used for all its lines.
-#[derive(Debug, Default)]
-pub struct Models {
-    /// By D_f and number of elements.
-    lines: Mutex<Vec<(f64, usize, Arc<Ensemble>)>>,
-}
-
-impl Models {
-    /// The model of a job.
-    fn of(&self, job: &RealisationJob, surface: &SelfAffine) -> contact_model::Result<Arc<dyn ContactModel>> {
-        let Discretisation::Mdr1d { elements } = job.discretisation else {
-            return Ok(Arc::from(job.discretisation.model()));
-        };
-        let d = job.fractal_dimension;
-        // A poisoned lock means that another thread panicked while it only pushed.
-        let mut lines = self.lines.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some((.., ensemble)) =
-            lines.iter().find(|(of, n, _)| of.total_cmp(&d).is_eq() && *n == elements)
-        {
-            let ensemble: Arc<dyn ContactModel> = ensemble.clone();
-            return Ok(ensemble);
-        }
-        let ensemble = Arc::new(Ensemble::new(surface, elements)?);
-        lines.push((d, elements, Arc::clone(&ensemble)));
-        Ok(ensemble)
-    }
-}
-
-/// One surface and its loads.
+/// One surface of an ensemble under all its loads.
 #[derive(Debug, Clone)]
-pub struct RealisationJob {
+pub struct Realisation {
     /// Its discretisation.
     pub discretisation: Discretisation,
     /// D_f.
     pub fractal_dimension: f64,
+    /// Master seed of its ensemble.
+    pub master_seed: u64,
     /// Number of the surface in its ensemble.
     pub index: usize,
-    /// Its own seed.
-    pub seed: u64,
     /// Loads F_bar, increasing.
     pub forces: Arc<[f64]>,
-    /// Data that the jobs of an ensemble share; the results do not depend on it.
-    pub models: Arc<Models>,
 }
 
 /// The results of a realisation.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct RealisationResult {
     /// Measured rms height of this surface, by which F_bar is normalised.
     pub rms_height: f64,
@@ -221,130 +205,133 @@ pub struct RealisationResult {
     pub samples: Vec<Sample>,
 }
 
-impl Job for RealisationJob {
-    type Output = RealisationResult;
-    type Error = Error;
-
-    const KIND: ResultKind = ResultKind::new("realisation", FORMAT);
-
-    /// Physics, discretisation, seed, loads, formats; not the index, as the seed says which surface it is.
-    fn key(&self) -> String {
-        let discretisation = match self.discretisation {
-            Discretisation::Bem3d { cells, tolerance } => {
-                format!(
-                    "model bem3d\nmodel_format {}\ncells {cells}\ntolerance {tolerance:?}\n",
-                    bem3d::FORMAT
-                )
-            }
-            Discretisation::Mdr1d { elements } => format!("model mdr1d\nelements {elements}\n"),
-        };
-        let forces: Vec<String> = self.forces.iter().map(|f| format!("{f:?}")).collect();
-        format!(
-            "format {FORMAT}\n{discretisation}surface self-affine, no roll-off, spectrum to the end of the grid\n\
-             side 1.0\nrms_height 1.0\ncontact_modulus 1.0\nfractal_dimension {:?}\nseed {}\nforce_bar {}\n",
-            self.fractal_dimension,
-            self.seed,
-            forces.join(" "),
-        )
+impl Realisation {
+    /// The seed of its surface.
+    pub fn seed(&self) -> u64 {
+        surface_gen::surface_seed(self.master_seed, self.index as u64)
     }
 
-    fn name(&self) -> String {
-        let Self { discretisation, fractal_dimension, index, .. } = self;
-        let (model, size) = (discretisation.name(), discretisation.size());
-        let kind = match discretisation.of() {
-            Model::Bem3d => "cells a side",
-            Model::Mdr1d => "elements",
-        };
-        format!("{model}, D_f = {fractal_dimension:?}, surface {index}, {size} {kind}")
+    /// Whether another one is a surface of the same ensemble.
+    fn is_beside(&self, other: &Self) -> bool {
+        self.discretisation == other.discretisation
+            && self.fractal_dimension.total_cmp(&other.fractal_dimension).is_eq()
+            && self.master_seed == other.master_seed
+            && self.forces == other.forces
     }
 
-    /// On the machine of `data/bench`, within a factor of two of what was measured there.
-    fn cost(&self) -> u64 {
-        let n = self.discretisation.size() as f64;
-        let seconds = match self.discretisation {
-            // One load on a 512 x 512 grid takes a few ms where little is in contact and a second where much
-            // is (data/bench/single.csv); in a sweep each begins where the one before ended, which leaves a
-            // fifth of it at a tolerance of 1e-3.
-            Discretisation::Bem3d { tolerance, .. } => {
-                let filled = |force: &f64| force.powf(0.9) / (force.powf(0.9) + 0.5);
-                let loads: f64 = self.forces.iter().map(|force| 0.005 + 1.2 * filled(force)).sum();
-                let digits = 1.0 + 0.2 * (-tolerance.log10() - 3.0);
-                // Of one load the contact of a rougher surface has fewer cells.
-                let rough = 2_f64.powf(1.3 * (2.45 - self.fractal_dimension));
-                0.2 * digits * rough * (n / 512.0).powf(2.2) * loads
-            }
-            // One sort and one transform; the loads cost nothing beside them.
-            Discretisation::Mdr1d { .. } => 1e-9 * n * n.log2(),
-        };
-        // Costs are added up.
-        1 + (1e3 * seconds).min(1e15) as u64
+    /// The question of the first `surfaces` surfaces of its ensemble: each of them under all loads, without
+    /// units, with E* = L = h = 1.
+    pub fn question(&self, surfaces: usize) -> Question {
+        let mut question = Question::default();
+        question.units = System::None;
+        question.models = vec![self.discretisation.numerics()];
+        question.material = Some(Material::ContactModulus(1.0));
+        let values = self.forces.to_vec();
+        question.loads = Some(AskedLoads::Loads(LoadList { kind: LoadKind::ForceBar, values }));
+        let mut surface = AskedSelfAffine::default();
+        surface.size = Some(1.0.into());
+        surface.hurst = Some(3.0 - self.fractal_dimension);
+        surface.rms_height = Some(1.0);
+        question.surface = Some(AskedSurface::SelfAffine(surface));
+        question.outputs.outputs = self.discretisation.outputs();
+        let seed = Some(self.master_seed);
+        question.sampling = Some(AskedSampling { seed, surfaces: Some(surfaces as u64) });
+        question
     }
 
-    fn memory(&self) -> f64 {
-        self.discretisation.memory()
+    /// What its scene is called in messages.
+    fn words(&self) -> String {
+        let (d, size) = (self.fractal_dimension, self.discretisation.size());
+        match self.discretisation.of() {
+            Model::Bem3d => format!("D_f = {d:?}, {size} cells a side"),
+            Model::Mdr1d => format!("D_f = {d:?}, {size} elements"),
+        }
     }
 
-    fn stored_bytes(&self) -> u64 {
-        1000 + 500 * self.forces.len() as u64
-    }
-
-    fn solve(&self, stop: Stop<'_>) -> Result<RealisationResult> {
-        self.resume(None, &|_| Ok(()), &Silent, stop)
-    }
-
-    /// From the smallest load upwards with one prepared contact. A solve that does not converge is recorded
-    /// with its status. Nothing is stored before the end.
-    fn resume(
-        &self,
-        _: Option<RealisationResult>,
-        _: &dyn Fn(&RealisationResult) -> Result<()>,
-        progress: &dyn Progress,
-        stop: Stop<'_>,
-    ) -> Result<RealisationResult> {
-        let what = || format!("{} at D_f = {:?}", self.discretisation.name(), self.fractal_dimension);
-        let surface = self.surface().map_err(|e| Error::model(what())(e))?;
-        let model = self.models.of(self, &surface).map_err(|e| Error::model(what())(e))?;
-        let states = [0, self.forces.len()];
-        self.solve_with(&*model, &StatesInHand::new((self.name(), self.cost()), states, progress, stop))
-    }
-
-    /// The loads are part of the key; the samples must be of those loads.
-    fn is_whole(&self, result: &RealisationResult) -> bool {
-        let solved = result.samples.iter().map(|sample| sample.force_bar.to_bits());
-        solved.eq(self.forces.iter().map(|force| force.to_bits()))
+    /// Its results, from the states of its job.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for a load that the model refused.
+    pub(crate) fn read(&self, states: &ModelResult) -> Result<RealisationResult> {
+        let (mut rms_height, mut samples) = (0.0, Vec::with_capacity(self.forces.len()));
+        for (load, &force) in self.forces.iter().enumerate() {
+            let (state, normalisation) = states.state(load).map_err(|reason| {
+                let expected = format!("loads that {} can solve ({reason})", self.discretisation.name());
+                Error::parameter("forces", force, expected)
+            })?;
+            let what = || self.words();
+            rms_height = normalisation.rms_height().map_err(|e| Error::model(what())(e))?;
+            let sample = Sample::new(force, state, normalisation);
+            samples.push(sample.map_err(|e| Error::model(what())(e))?);
+        }
+        Ok(RealisationResult { rms_height, seconds: states.seconds(), samples })
     }
 }
 
-impl RealisationJob {
-    fn surface(&self) -> contact_model::Result<SelfAffine> {
-        SelfAffine::new(self.fractal_dimension, 1.0, 1.0)
+/// The jobs of these realisations, in their order. Those of one ensemble are jobs of one scene. Their states go
+/// to the store of `out`.
+///
+/// # Errors
+/// [`Error::Parameter`] for an ensemble that is no scene.
+pub fn realisation_jobs(realisations: &[Realisation], out: &Path) -> Result<Vec<SceneJob>> {
+    let mut ensembles: Vec<(&Realisation, usize)> = Vec::new();
+    let mut of = Vec::with_capacity(realisations.len());
+    for realisation in realisations {
+        let known = ensembles.iter().position(|(first, _)| first.is_beside(realisation));
+        let place = known.unwrap_or_else(|| {
+            ensembles.push((realisation, 0));
+            ensembles.len() - 1
+        });
+        let surfaces = &mut ensembles[place].1;
+        *surfaces = (*surfaces).max(realisation.index + 1);
+        of.push(place);
     }
+    let scene = |&(first, surfaces): &(&Realisation, usize)| {
+        SceneFile::of(first.question(surfaces), &out.join(first.words())).map_err(of_scene)
+    };
+    let scenes = ensembles.iter().map(scene).collect::<Result<Vec<_>>>()?;
+    let all = jobs_of_scenes(&scenes, out);
+    let begins: Vec<usize> = ensembles
+        .iter()
+        .scan(0, |begin, (_, surfaces)| {
+            *begin += surfaces;
+            Some(*begin - surfaces)
+        })
+        .collect();
+    Ok(realisations.iter().zip(of).map(|(r, place)| all[begins[place] + r.index].clone()).collect())
+}
 
-    fn solve_with(&self, model: &dyn ContactModel, told: &StatesInHand<'_>) -> Result<RealisationResult> {
-        let start = Instant::now();
-        let what =
-            || format!("{} at D_f = {:?}, surface {}", model.name(), self.fractal_dimension, self.index);
-        let surface = self.surface().map_err(|e| Error::model(what())(e))?;
-        let mut scene = Scene::new(Surface::SelfAffine(surface), 1.0);
-        // A rough line has no area to claim.
-        let area = matches!(self.discretisation, Discretisation::Bem3d { .. });
-        scene.outputs = Outputs { stiffness: true, area, ..Outputs::default() };
-        let solve = || {
-            let mut contact = model.prepare(&scene, self.seed)?;
-            let normalisation = contact.normalisation();
-            let loads = normalisation.loads(&self.forces)?;
-            let mut samples = Vec::with_capacity(loads.len());
-            contact.sweep(&loads, told, &mut |i, state| {
-                let state = state.or_else(contact_model::Error::into_best)?;
-                samples.push(Sample::new(self.forces[i], &state, &normalisation)?);
-                told.solved(samples.len());
-                Ok(())
-            })?;
-            Ok((normalisation.rms_height()?, samples))
-        };
-        let (rms_height, samples) = solve().map_err(|e| Error::model(what())(e))?;
-        Ok(RealisationResult { rms_height, seconds: start.elapsed().as_secs_f64(), samples })
+/// An error of scenes as one of a command.
+pub fn of_scene(error: scenes::Error) -> Error {
+    match error {
+        scenes::Error::Run(error) => error,
+        other => Error::parameter("question", other, "one that its models answer"),
     }
+}
+
+/// One load on one surface of this seed, from a cold start; nothing is stored.
+///
+/// # Errors
+/// Errors of the model; [`contact_model::Error::Stopped`].
+pub(crate) fn solve_alone(
+    discretisation: Discretisation,
+    fractal_dimension: f64,
+    seed: u64,
+    force_bar: f64,
+    stop: Stop<'_>,
+) -> Result<Sample> {
+    let solve = || {
+        let surface = SelfAffine::new(fractal_dimension, 1.0, 1.0)?;
+        let mut scene = Scene::new(Surface::SelfAffine(surface), 1.0);
+        scene.outputs = discretisation.outputs();
+        let mut contact = discretisation.numerics().model().prepare(&scene, seed)?;
+        let normalisation = contact.normalisation();
+        let load = Load::force(normalisation.force(force_bar)?);
+        let state = contact.solve_until(load, stop).or_else(contact_model::Error::into_best)?;
+        Sample::new(force_bar, &state, &normalisation)
+    };
+    let what = || format!("{} at D_f = {fractal_dimension:?}, seed {seed}", discretisation.name());
+    solve().map_err(|e| Error::model(what())(e))
 }
 
 #[cfg(test)]
@@ -353,9 +340,11 @@ mod tests {
     use analysis::mean_grid_error;
     use approx::assert_relative_eq;
     use contact_model::{
-        Certificate, ContactState, Load, NormalLoad, Normalisation, PreparedContact, Result as ModelResult,
-        SolveReport, Source, Status,
+        Certificate, ContactModel, ContactState, NormalLoad, Normalisation, PreparedContact,
+        Result as ModelAnswer, SolveReport, Status, never,
     };
+    use fractal_contact::scenes::Registry;
+    use runs::Job as _;
 
     /// k = sqrt(F); gives up above F = 1.
     struct Failing;
@@ -371,7 +360,7 @@ mod tests {
         fn abilities(&self) -> contact_model::Abilities {
             contact_model::Abilities::ELASTIC
         }
-        fn prepare(&self, _: &Scene, _: u64) -> ModelResult<Box<dyn PreparedContact>> {
+        fn prepare(&self, _: &Scene, _: u64) -> ModelAnswer<Box<dyn PreparedContact>> {
             Ok(Box::new(FailingContact))
         }
     }
@@ -380,8 +369,11 @@ mod tests {
         fn normalisation(&self) -> Normalisation {
             Normalisation { contact_modulus: 1.0, length: 1.0, height: Some(2.0) }
         }
-        fn solve_until(&mut self, load: Load, _: Stop<'_>) -> ModelResult<ContactState> {
-            let NormalLoad::Force(force) = load.normal else { panic!("jobs prescribe forces") };
+        fn solve_until(&mut self, load: Load, _: Stop<'_>) -> ModelAnswer<ContactState> {
+            let NormalLoad::Force(force) = load.normal else { panic!("realisations prescribe forces") };
+            if force > 10.0 {
+                return Err(contact_model::Error::domain("force", force, "at most 10"));
+            }
             let mut report = SolveReport::exact("closed form");
             report.certificate = Certificate { duality_gap: 0.5, ..Default::default() };
             let stiffness = Some(force.sqrt());
@@ -394,52 +386,68 @@ mod tests {
         }
     }
 
-    #[test]
-    fn a_solve_that_does_not_converge_is_recorded_with_its_status() {
-        let job = RealisationJob {
-            discretisation: Discretisation::Mdr1d { elements: 8 },
+    fn realisation(discretisation: Discretisation, forces: &[f64]) -> Realisation {
+        Realisation {
+            discretisation,
             fractal_dimension: 2.0,
+            master_seed: 1,
             index: 0,
-            seed: 1,
-            forces: [0.1, 1.0].into(),
-            models: Arc::default(),
-        };
-        let told = StatesInHand::new((job.name(), job.cost()), [0, 2], &Silent, &contact_model::never);
-        let result = job.solve_with(&Failing, &told).unwrap();
-        approx::assert_relative_eq!(result.samples[0].force, 0.2);
-        assert!(result.samples[0].converged() && !result.samples[1].converged());
-        assert_eq!(result.samples[1].status, "iteration_limit");
-        assert_eq!(result.samples[1].approach_over_h, None);
+            forces: forces.into(),
+        }
     }
 
     #[test]
-    fn every_parameter_is_in_the_key() {
-        let job = RealisationJob {
-            discretisation: Discretisation::Bem3d { cells: 8, tolerance: 1e-4 },
-            fractal_dimension: 2.0,
-            index: 0,
-            seed: 1,
-            forces: [0.1, 1.0].into(),
-            models: Arc::default(),
+    fn a_solve_that_does_not_converge_is_read_with_its_status_and_a_refused_load_is_an_error() {
+        let registry = Registry::new().with(Failing, "1").unwrap();
+        let read = |forces: &[f64]| {
+            let realisation = realisation(Discretisation::Mdr1d { elements: 8 }, forces);
+            let mut question = realisation.question(1);
+            question.models = registry.models().iter().cloned().map(Numerics::Registered).collect();
+            let scene = SceneFile::of(question, Path::new("failing")).unwrap();
+            let states = jobs_of_scenes(&[scene], Path::new("never-made"))[0].solve(&never).unwrap();
+            realisation.read(&states)
         };
+        let result = read(&[0.1, 1.0]).unwrap();
+        assert_relative_eq!(result.samples[0].force, 0.2);
+        assert_relative_eq!(result.rms_height, 2.0);
+        assert!(result.samples[0].converged() && !result.samples[1].converged());
+        assert_eq!(result.samples[1].status, "iteration_limit");
+        assert_eq!(result.samples[1].approach_over_h, None);
+        let refused = read(&[0.1, 10.0]).unwrap_err().to_string();
+        assert!(refused.starts_with("forces = 10: expected loads that mdr1d can solve (force"), "{refused}");
+    }
+
+    #[test]
+    fn every_parameter_is_in_the_key_and_surfaces_of_one_ensemble_share_a_scene() {
+        let grid = |cells, tolerance| Discretisation::Bem3d { cells, tolerance };
+        let first = realisation(grid(8, 1e-4), &[0.1, 1.0]);
         let others = [
-            RealisationJob {
-                discretisation: Discretisation::Bem3d { cells: 9, tolerance: 1e-4 },
-                ..job.clone()
-            },
-            RealisationJob {
-                discretisation: Discretisation::Bem3d { cells: 8, tolerance: 1e-5 },
-                ..job.clone()
-            },
-            RealisationJob { discretisation: Discretisation::Mdr1d { elements: 8 }, ..job.clone() },
-            RealisationJob { fractal_dimension: 2.2, ..job.clone() },
-            RealisationJob { seed: 2, ..job.clone() },
-            RealisationJob { forces: [0.1].into(), ..job.clone() },
+            Realisation { discretisation: grid(9, 1e-4), ..first.clone() },
+            Realisation { discretisation: grid(8, 1e-5), ..first.clone() },
+            Realisation { discretisation: Discretisation::Mdr1d { elements: 8 }, ..first.clone() },
+            Realisation { fractal_dimension: 2.2, ..first.clone() },
+            Realisation { master_seed: 2, ..first.clone() },
+            Realisation { forces: [0.1].into(), ..first.clone() },
+            Realisation { index: 3, ..first.clone() },
         ];
-        for other in &others {
-            assert_ne!(job.key(), other.key());
-            assert!(other.cost() > 0);
+        let all: Vec<Realisation> = std::iter::once(first).chain(others).collect();
+        let jobs = realisation_jobs(&all, Path::new("never-made")).unwrap();
+        for (i, job) in jobs.iter().enumerate().skip(1) {
+            assert_ne!(jobs[0].key(), job.key());
+            assert_eq!((job.scene(), job.surface()), if i == 7 { (0, 3) } else { (i, 0) });
+            assert!(job.cost() > 0);
         }
+        assert_eq!(jobs[4].name(), "D_f = 2.2, 8 cells a side: bem3d, surface 0");
+        assert_eq!(jobs[3].name(), "D_f = 2.0, 8 elements: mdr1d, surface 0");
+    }
+
+    #[test]
+    fn a_surface_alone_has_the_state_of_its_job() {
+        let grid = Discretisation::Bem3d { cells: 33, tolerance: 1e-6 };
+        let realisation = Realisation { index: 2, ..realisation(grid, &[0.3]) };
+        let job = &realisation_jobs(std::slice::from_ref(&realisation), Path::new("never-made")).unwrap()[0];
+        let read = realisation.read(&job.solve(&never).unwrap()).unwrap();
+        assert_eq!(read.samples[0], solve_alone(grid, 2.0, realisation.seed(), 0.3, &never).unwrap());
     }
 
     #[test]

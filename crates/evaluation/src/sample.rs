@@ -1,14 +1,13 @@
 //! The sample of a state: one surface under one load.
 
 use contact_model::{Certificate, ContactState, Normalisation, Result};
-use serde::{Deserialize, Serialize};
 
 /// States with fewer contact cells than this are on the one-cell floor of a grid: they are kept and marked,
 /// but left out of fits and lines.
 pub const FLOOR_CELLS: usize = 10;
 
-/// The stored numbers of one contact state, normalised as in the paper.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+/// The numbers of one contact state, normalised as in the paper.
+#[derive(Debug, Clone, PartialEq)]
 pub struct Sample {
     /// The requested F_bar (Eq. 10, with the surface's own measured rms height).
     pub force_bar: f64,

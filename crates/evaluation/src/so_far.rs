@@ -1,6 +1,6 @@
 //! The results of an ensemble that is still being solved.
 
-use crate::realisation::{RealisationJob, RealisationResult};
+use crate::realisation::{Realisation, RealisationResult};
 use crate::run::Run;
 use runs::Result;
 use std::sync::{Mutex, PoisonError};
@@ -13,12 +13,12 @@ const EVERY: Duration = Duration::from_secs(5);
 const FEWEST: usize = 3;
 
 /// Receives the jobs of a whole ensemble and their results.
-type Show<'a> = dyn Fn(Vec<RealisationJob>, Vec<RealisationResult>) -> Result<()> + Sync + 'a;
+type Show<'a> = dyn Fn(Vec<Realisation>, Vec<RealisationResult>) -> Result<()> + Sync + 'a;
 
 /// Collects results and shows whole ensembles of them now and then.
 pub(crate) struct SoFar<'a> {
     /// Jobs of each grid, the finest first.
-    ensembles: &'a [Vec<RealisationJob>],
+    ensembles: &'a [Vec<Realisation>],
     run: &'a Run,
     show: &'a Show<'a>,
     found: Mutex<Found>,
@@ -33,7 +33,7 @@ struct Found {
 }
 
 impl<'a> SoFar<'a> {
-    pub fn new(ensembles: &'a [Vec<RealisationJob>], run: &'a Run, show: &'a Show<'a>) -> Self {
+    pub fn new(ensembles: &'a [Vec<Realisation>], run: &'a Run, show: &'a Show<'a>) -> Self {
         let results = ensembles.iter().map(|jobs| vec![None; jobs.len()]).collect();
         Self { ensembles, run, show, found: Mutex::new(Found { results, last: Instant::now(), shown: None }) }
     }
@@ -52,7 +52,7 @@ impl<'a> SoFar<'a> {
         &self,
         job: usize,
         result: &RealisationResult,
-    ) -> Option<(Vec<RealisationJob>, Vec<RealisationResult>)> {
+    ) -> Option<(Vec<Realisation>, Vec<RealisationResult>)> {
         // A poisoned lock means that another thread panicked while it only wrote results.
         let mut found = self.found.lock().unwrap_or_else(PoisonError::into_inner);
         let mut place = job;
@@ -98,6 +98,7 @@ impl<'a> SoFar<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::measured::realisations;
     use crate::realisation::Model;
     use crate::run::{Preset, Request};
     use crate::sample::tests::sample;
@@ -128,8 +129,11 @@ mod tests {
     fn results_go_to_their_places() {
         let request = Request { preset: Preset::Quick, ..Request::default() };
         let run = Run::new(&request).unwrap();
-        let ensembles: Vec<Vec<RealisationJob>> = [2, 3]
-            .map(|surfaces| crate::ensemble_jobs(&run.with_sizes(Model::Bem3d, 9, surfaces), &[Model::Bem3d]))
+        let ensembles: Vec<Vec<Realisation>> = [2, 3]
+            .map(|surfaces| {
+                let run = run.with_sizes(Model::Bem3d, 9, surfaces);
+                realisations(run.ensemble(Model::Bem3d).0, surfaces, &run)
+            })
             .into();
         let so_far = SoFar::new(&ensembles, &run, &|_, _| Ok(()));
         let result = RealisationResult { rms_height: 1.0, seconds: 0.0, samples: Vec::new() };

@@ -78,7 +78,7 @@ pub fn compact_table(title: &str, measured: &Measured) -> Result<Table> {
         .column("size", "1", CELLS, |(u, _)| u.discretisation.size())
         .column("fractal_dimension", "1", FRACTAL_DIMENSION, |(u, _)| u.fractal_dimension)
         .column("surface", "1", "number of the surface in its ensemble", |(u, _)| u.index)
-        .column("seed", "1", "seed of this surface", |(u, _)| u.seed)
+        .column("seed", "1", "seed of this surface", |(u, _)| u.seed())
         .column("stiffness_bar", "1", LOADS, |(_, r)| values(r, |s| s.stiffness_bar.map(seven_digits)))
         .column("approach_over_h", "1", LOADS, |(_, r)| values(r, |s| s.approach_over_h.map(seven_digits)))
         .column("contact_cells", "1", LOADS, |(_, r)| values(r, |s| s.contact_cells.map(|c| c.to_string())))
@@ -100,7 +100,7 @@ pub fn samples_table(title: &str, measured: &Measured) -> Result<Table> {
         .column("model", "-", MODEL, |_| model)
         .column("fractal_dimension", "1", FRACTAL_DIMENSION, |(_, u, _)| u.fractal_dimension)
         .column("surface", "1", "number of the surface in its ensemble", |(_, u, _)| u.index)
-        .column("seed", "1", "seed of this surface", |(_, u, _)| u.seed)
+        .column("seed", "1", "seed of this surface", |(_, u, _)| u.seed())
         .column("force_bar", "1", FORCE_BAR, |(s, ..)| s.force_bar)
         .column("approach_over_h", "1", "d/h, d from first touch of the highest point", |(s, ..)| {
             s.approach_over_h

@@ -2,12 +2,13 @@
 
 use super::depth::Depth;
 use super::every_way::solve_problem;
-use super::means::{ClosedForm, EnsembleMeans, closed_forms, discretisations, ensemble, job};
+use super::means::{ClosedForm, EnsembleMeans, EnsembleSurfaces, closed_forms, discretisations};
 use super::problem::{CELLS_PER_WAVE, DIMENSIONS, LOADS, PAPER_CELLS, RADIUS, StudyProblem};
 use super::row::{Formula, StudyRow, Way};
 use super::sizes::{Order, StudySizes};
-use crate::realisation::{Discretisation, FORMAT, RealisationJob};
+use crate::realisation::Discretisation;
 use contact_model::Stop;
+use fractal_contact::scenes::{FORMAT, seconds_of_rough_sweep};
 use runs::{Error, Job, JobList, Result, ResultKind};
 use serde::{Deserialize, Serialize};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -19,12 +20,10 @@ const STORED: u32 = 2;
 /// Predicted processor milliseconds of one load on one grid from a cold start. The problems of
 /// `data/accuracy` took between 0.4 and 1.3 times this, cases of the check that are not drawn again between
 /// 0.8 and 2.2 times.
-pub(super) fn cold_cost(discretisation: Discretisation, force_bar: f64) -> u64 {
+pub(super) fn cold_cost(cells: usize, tolerance: f64, force_bar: f64) -> u64 {
     // Without a load before it, a rough surface takes as long as a smooth one: about what the prediction for
     // sweeps says in the middle of the fractal dimensions.
-    let (fractal_dimension, forces) = (2.45, [force_bar].into());
-    let models = Arc::default();
-    RealisationJob { discretisation, fractal_dimension, index: 0, seed: 0, forces, models }.cost()
+    1 + (1e3 * seconds_of_rough_sweep(cells as f64, tolerance, 2.45, &[force_bar])) as u64
 }
 
 /// A task, which is solved as a whole.
@@ -32,8 +31,8 @@ pub(super) fn cold_cost(discretisation: Discretisation, force_bar: f64) -> u64 {
 enum StudyTask {
     /// One problem, with every method.
     Problem(Box<StudyProblem>),
-    /// One ensemble of this fractal dimension.
-    Ensemble(f64, Discretisation),
+    /// One ensemble.
+    Ensemble(EnsembleSurfaces),
     /// The closed forms for the means of this fractal dimension.
     ClosedForms(f64),
 }
@@ -61,10 +60,11 @@ pub(super) struct StudyJob {
 /// forms of each.
 pub(super) fn jobs(sizes: &StudySizes, seed: u64) -> Result<Vec<StudyJob>> {
     let problems = StudyProblem::all(sizes.grids[0])?.into_iter().map(|p| StudyTask::Problem(Box::new(p)));
-    let of = |d| discretisations(sizes).into_iter().map(move |n| StudyTask::Ensemble(d, n));
+    let of = |(d, n)| EnsembleSurfaces::new(n, d, sizes.surfaces, seed).map(StudyTask::Ensemble);
+    let pairs = DIMENSIONS.into_iter().flat_map(|d| discretisations(sizes).into_iter().map(move |n| (d, n)));
+    let ensembles = pairs.map(of).collect::<Result<Vec<_>>>()?;
     let sizes = Arc::new(sizes.clone());
     let job = |task| StudyJob { sizes: Arc::clone(&sizes), seed, task };
-    let ensembles = DIMENSIONS.into_iter().flat_map(of);
     let forms = DIMENSIONS.into_iter().map(StudyTask::ClosedForms);
     Ok(problems.chain(ensembles).chain(forms).map(job).collect())
 }
@@ -111,12 +111,7 @@ impl Job for StudyJob {
                 problem.key,
                 self.ways(),
             ),
-            // The first surface stands for all of them: their seeds follow from the master seed.
-            StudyTask::Ensemble(d, discretisation) => format!(
-                "ensemble\nsurfaces {}\nmaster_seed {seed}\n{}",
-                sizes.surfaces,
-                job(*discretisation, *d, 0, *seed, &Arc::default()).key(),
-            ),
+            StudyTask::Ensemble(surfaces) => surfaces.key(),
             StudyTask::ClosedForms(d) => {
                 format!("closed forms\nfractal_dimension {d:?}\nforce_bar {LOADS:?}\n")
             }
@@ -132,7 +127,7 @@ impl Job for StudyJob {
                 let (d, force) = (number("D_f", key.fractal_dimension), number("F_bar", key.force_bar));
                 format!("accuracy: {}{d}{force}", key.family.as_str())
             }
-            StudyTask::Ensemble(d, n) => {
+            StudyTask::Ensemble(EnsembleSurfaces { fractal_dimension: d, discretisation: n, .. }) => {
                 let (surfaces, size) = (self.sizes.surfaces, n.size());
                 format!("accuracy: {surfaces} surfaces of D_f = {d:?}, {} {size}", n.name())
             }
@@ -145,16 +140,12 @@ impl Job for StudyJob {
             StudyTask::Problem(problem) => {
                 let force_bar = problem.key.force_bar.unwrap_or(1.0);
                 let cost = |way: &Way| match *way {
-                    Way::Solid { cells, tolerance, .. } => {
-                        cold_cost(Discretisation::Bem3d { cells, tolerance }, force_bar)
-                    }
+                    Way::Solid { cells, tolerance, .. } => cold_cost(cells, tolerance, force_bar),
                     _ => 1,
                 };
                 self.ways().iter().map(cost).sum()
             }
-            StudyTask::Ensemble(d, discretisation) => {
-                job(*discretisation, *d, 0, self.seed, &Arc::default()).cost() * self.sizes.surfaces as u64
-            }
+            StudyTask::Ensemble(surfaces) => surfaces.cost(),
             StudyTask::ClosedForms(_) => 1,
         }
     }
@@ -170,7 +161,7 @@ impl Job for StudyJob {
                 let cells: usize = solids.filter_map(|way| way.size()).map(|n| n * n).sum();
                 largest + (size_of::<f64>() * cells) as f64
             }
-            StudyTask::Ensemble(_, discretisation) => discretisation.memory(),
+            StudyTask::Ensemble(surfaces) => surfaces.discretisation.memory(),
             StudyTask::ClosedForms(_) => 0.0,
         }
     }
@@ -191,9 +182,7 @@ impl Job for StudyJob {
                 let (rows, orders) = solve_problem(problem, &self.sizes, self.seed, stop)?;
                 Ok(StudyPart::Problem(rows, orders))
             }
-            StudyTask::Ensemble(d, discretisation) => {
-                ensemble(*discretisation, *d, self.sizes.surfaces, self.seed, stop).map(StudyPart::Ensemble)
-            }
+            StudyTask::Ensemble(surfaces) => surfaces.solve(stop).map(StudyPart::Ensemble),
             StudyTask::ClosedForms(d) => closed_forms(*d, stop).map(StudyPart::ClosedForms),
         }
     }
@@ -205,8 +194,8 @@ impl Job for StudyJob {
                 rows.iter().all(|row| row.problem == problem.key && ways.contains(&row.way))
                     && orders.iter().all(|order| order.problem == problem.key)
             }
-            (StudyTask::Ensemble(_, discretisation), StudyPart::Ensemble(means)) => {
-                means.way == Way::of(*discretisation)
+            (StudyTask::Ensemble(surfaces), StudyPart::Ensemble(means)) => {
+                means.way == Way::of(surfaces.discretisation)
                     && means.surfaces == self.sizes.surfaces
                     && [means.stiffness.len(), means.approach.len()] == [LOADS.len(); 2]
             }

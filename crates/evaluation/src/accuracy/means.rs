@@ -5,13 +5,15 @@ use super::limit::limit;
 use super::problem::{DIMENSIONS, Family, LOADS, ProblemKey};
 use super::row::{Answer, Formula, Parts, StudyRow, Way, measure, unless_stopped};
 use super::sizes::{Order, Quantity, StudySizes};
-use crate::realisation::{Discretisation, Models, RealisationJob};
+use crate::realisation::{Discretisation, Realisation, of_scene, realisation_jobs};
 use analysis::{Statistics, statistics};
 use analytic::PowerLaw;
 use analytic::flat_punch::SQUARE_STIFFNESS;
 use contact_model::{Load, PAPER_STIFFNESS_FACTOR, Scene, SelfAffine, Status, Stop, Surface, never};
+use fractal_contact::scenes::SceneJob;
 use runs::{Error, Job as _, Result, cpu_seconds, on_one_thread};
 use serde::{Deserialize, Serialize};
+use std::path::Path;
 use std::sync::Arc;
 
 /// Tolerance of the ensembles: far below their scatter.
@@ -63,52 +65,84 @@ pub(crate) fn means(
     rows
 }
 
-pub(crate) fn job(
-    discretisation: Discretisation,
-    d: f64,
-    index: usize,
-    seed: u64,
-    models: &Arc<Models>,
-) -> RealisationJob {
-    let (seed, models) = (surface_gen::surface_seed(seed, index as u64), Arc::clone(models));
-    RealisationJob { discretisation, fractal_dimension: d, index, seed, forces: Arc::from(LOADS), models }
+/// The surfaces of an ensemble with their jobs, which are measured one after the other.
+#[derive(Debug, Clone)]
+pub(crate) struct EnsembleSurfaces {
+    pub discretisation: Discretisation,
+    pub fractal_dimension: f64,
+    realisations: Vec<Realisation>,
+    jobs: Vec<SceneJob>,
 }
 
-/// Solves an ensemble; polls `stop` between the surfaces.
-pub(crate) fn ensemble(
-    discretisation: Discretisation,
-    d: f64,
-    surfaces: usize,
-    seed: u64,
-    stop: Stop<'_>,
-) -> Result<EnsembleMeans> {
-    let models = Arc::default();
-    let mut answer = Answer { status: Status::Converged.as_str().to_owned(), ..Answer::default() };
-    let mut k: Vec<Vec<f64>> = vec![Vec::new(); LOADS.len()];
-    let mut approach = k.clone();
-    let mut seconds = Some(0.0);
-    for index in 0..surfaces {
-        unless_stopped(stop)?;
-        let (result, taken) = on_one_thread(|| {
-            let start = cpu_seconds();
-            let result = job(discretisation, d, index, seed, &models).solve(&never);
-            (result, cpu_seconds().zip(start).map(|(end, start)| end - start))
-        });
-        seconds = seconds.zip(taken).map(|(all, one)| all + one);
-        for (j, s) in result?.samples.iter().enumerate().filter(|(_, s)| s.converged()) {
-            k[j].extend(s.stiffness_bar.map(|k| k * PAPER_STIFFNESS_FACTOR));
-            approach[j].extend(s.approach_over_h);
-            answer.iterations += s.iterations;
-            answer.applications += s.applications;
-        }
+impl EnsembleSurfaces {
+    /// # Errors
+    /// As [`realisation_jobs`].
+    pub fn new(
+        discretisation: Discretisation,
+        fractal_dimension: f64,
+        surfaces: usize,
+        master_seed: u64,
+    ) -> Result<Self> {
+        let forces = Arc::from(LOADS);
+        let of = |index| Realisation {
+            discretisation,
+            fractal_dimension,
+            master_seed,
+            index,
+            forces: Arc::clone(&forces),
+        };
+        let realisations: Vec<Realisation> = (0..surfaces).map(of).collect();
+        // Nothing is stored besides the means.
+        let jobs = realisation_jobs(&realisations, Path::new(""))?;
+        Ok(Self { discretisation, fractal_dimension, realisations, jobs })
     }
-    // The loads of one surface are solved together: each has its share.
-    answer.cpu_seconds = seconds.map(|seconds| seconds / LOADS.len() as f64);
-    answer.iterations /= LOADS.len();
-    answer.applications /= LOADS.len();
-    let stiffness = k.iter().map(|k| statistics(k)).collect();
-    let approach = approach.iter().map(|d| statistics(d).map(|s| s.mean)).collect();
-    Ok(EnsembleMeans { way: Way::of(discretisation), stiffness, approach, answer, surfaces })
+
+    /// Everything that decides its numbers: the first surface stands for all, as their seeds follow from the
+    /// master seed.
+    pub fn key(&self) -> String {
+        let first = self.jobs.first().map_or_else(String::new, runs::Job::key);
+        format!("ensemble\nsurfaces {}\n{first}", self.jobs.len())
+    }
+
+    /// As [`runs::Job::cost`].
+    pub fn cost(&self) -> u64 {
+        self.jobs.iter().map(runs::Job::cost).sum()
+    }
+
+    /// Solves them; polls `stop` between the surfaces.
+    ///
+    /// # Errors
+    /// Errors of the model.
+    pub fn solve(&self, stop: Stop<'_>) -> Result<EnsembleMeans> {
+        let mut answer = Answer { status: Status::Converged.as_str().to_owned(), ..Answer::default() };
+        let mut k: Vec<Vec<f64>> = vec![Vec::new(); LOADS.len()];
+        let mut approach = k.clone();
+        let mut seconds = Some(0.0);
+        for (realisation, job) in self.realisations.iter().zip(&self.jobs) {
+            unless_stopped(stop)?;
+            let (states, taken) = on_one_thread(|| {
+                let start = cpu_seconds();
+                let states = job.solve(&never);
+                (states, cpu_seconds().zip(start).map(|(end, start)| end - start))
+            });
+            seconds = seconds.zip(taken).map(|(all, one)| all + one);
+            let result = realisation.read(&states.map_err(of_scene)?)?;
+            for (j, s) in result.samples.iter().enumerate().filter(|(_, s)| s.converged()) {
+                k[j].extend(s.stiffness_bar.map(|k| k * PAPER_STIFFNESS_FACTOR));
+                approach[j].extend(s.approach_over_h);
+                answer.iterations += s.iterations;
+                answer.applications += s.applications;
+            }
+        }
+        // The loads of one surface are solved together: each has its share.
+        answer.cpu_seconds = seconds.map(|seconds| seconds / LOADS.len() as f64);
+        answer.iterations /= LOADS.len();
+        answer.applications /= LOADS.len();
+        let stiffness = k.iter().map(|k| statistics(k)).collect();
+        let approach = approach.iter().map(|d| statistics(d).map(|s| s.mean)).collect();
+        let (way, surfaces) = (Way::of(self.discretisation), self.jobs.len());
+        Ok(EnsembleMeans { way, stiffness, approach, answer, surfaces })
+    }
 }
 
 fn at_load(

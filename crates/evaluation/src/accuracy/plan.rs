@@ -11,7 +11,7 @@ use crate::realisation::Model;
 use crate::run::{Request, Run};
 use analysis::{AccuracyTarget, GridTrial, first_grid};
 use runs::amounts::duration;
-use runs::{Error, Job as _, Progress, Result, Store, files};
+use runs::{Error, Job, Progress, Result, Store, files};
 
 /// Numbers of surfaces and of lines of a pilot: their scatter is known to a fifth and to a tenth.
 const PILOT_SURFACES: usize = 16;
@@ -19,7 +19,7 @@ const PILOT_LINES: usize = 64;
 /// Grids and lines to choose from.
 const GRIDS: [usize; 7] = [65, 129, 257, 513, 1025, 2049, 4097];
 const LINES: [usize; 6] = [1 << 12, 1 << 14, 1 << 16, 1 << 18, 1 << 20, 1 << 22];
-/// Cost over cells a side (`RealisationJob::cost`), and over elements.
+/// Cost over cells a side (`seconds_of_rough_sweep`), and over elements.
 const POWERS: (f64, f64) = (2.2, 1.1);
 /// Most surfaces that are planned for.
 const MOST_SURFACES: f64 = *crate::limits::COUNT.end() as f64;
@@ -99,7 +99,7 @@ pub fn settle(
             let all = budget::budgets(&measure(model, &plan.run, &store, progress)?);
             let (grid, count, _) = plan.run.ensemble(model);
             let wanted = surfaces_wanted(&all, target.share, count);
-            let seconds = (wanted - count as f64) * seconds_of_one(model, &plan.run);
+            let seconds = (wanted - count as f64) * seconds_of_one(model, &plan.run)?;
             if wanted <= count as f64 || wanted > MOST_SURFACES || plan.seconds + seconds > target.seconds {
                 break;
             }
@@ -156,7 +156,7 @@ fn choose(
     let trial = |size: usize| -> Result<GridTrial<Pilot>> {
         let run = plan.run.with_sizes(model, size, count);
         let mut all = budget::budgets(&measure(model, &run, store, progress)?);
-        let (seconds, each) = (seconds(model, &run), seconds_of_one(model, &run));
+        let (seconds, each) = (seconds(model, &run)?, seconds_of_one(model, &run)?);
         spent += seconds;
         let left_by_grid = |b: &Budgeted| {
             let relative = (b.budget.algebraic + b.budget.discretisation?) / b.value;
@@ -197,16 +197,16 @@ fn choose(
 }
 
 /// Predicted seconds of all surfaces of a model on one thread, coarser grids included.
-fn seconds(model: Model, run: &Run) -> f64 {
-    let jobs = ensemble_jobs(run, &[model]);
-    jobs.iter().map(|job| 1e-3 * job.cost() as f64).sum()
+fn seconds(model: Model, run: &Run) -> Result<f64> {
+    let jobs = ensemble_jobs(run, &[model])?;
+    Ok(jobs.iter().map(|job| 1e-3 * Job::cost(job) as f64).sum())
 }
 
 /// Predicted seconds of one more surface.
-fn seconds_of_one(model: Model, run: &Run) -> f64 {
+fn seconds_of_one(model: Model, run: &Run) -> Result<f64> {
     let size = run.ensemble(model).0.size();
     let [one, none] = [1, 0].map(|more| run.with_sizes(model, size, COARSER_SURFACES + more));
-    seconds(model, &one) - seconds(model, &none)
+    Ok(seconds(model, &one)? - seconds(model, &none)?)
 }
 
 fn words(model: Model, run: &Run) -> String {
@@ -230,7 +230,7 @@ mod tests {
         for model in Model::BOTH {
             let on = |threads| {
                 let request = Request { threads: Some(threads), ..Request::default() };
-                seconds_of_one(model, &Run::new(&request).unwrap())
+                seconds_of_one(model, &Run::new(&request).unwrap()).unwrap()
             };
             assert!(on(1) > 0.0);
             assert_relative_eq!(on(1), on(8), max_relative = 0.0);

@@ -3,14 +3,14 @@
 use super::job::cold_cost;
 use crate::budget::algebraic;
 use crate::measured::COARSER_SURFACES;
-use crate::realisation::{Discretisation, FORMAT, RealisationJob};
+use crate::realisation::{Discretisation, solve_alone};
 use crate::run::FRACTAL_DIMENSIONS;
 use crate::sample::{FLOOR_CELLS, Sample};
 use analysis::{mean_grid_error, relative_differences};
 use contact_model::Stop;
+use fractal_contact::scenes::FORMAT;
 use runs::{Error, Job, Result, ResultKind};
 use serde::{Deserialize, Serialize};
-use std::sync::Arc;
 use surface_gen::surface_seed;
 
 /// Number of the format of stored cases. Raise it when [`RandomCase`] changes, or how cases are drawn and
@@ -99,7 +99,7 @@ impl Job for CaseJob {
     // Of the first draw: few cases are drawn again.
     fn cost(&self) -> u64 {
         let (cells, force_bar, tolerance) = draw(self.seed, self.number, 0);
-        let on = |cells, tolerance| cold_cost(Discretisation::Bem3d { cells, tolerance }, force_bar);
+        let on = |cells, tolerance| cold_cost(cells, tolerance, force_bar);
         let budget: u64 = [cells, cells / 2, cells / 4].map(|cells| on(cells, tolerance)).iter().sum();
         let truth = on(cells, REFERENCE) + on(finer(cells), REFERENCE);
         on(cells, tolerance) + COARSER_SURFACES as u64 * budget + truth
@@ -161,7 +161,7 @@ fn finer(cells: usize) -> usize {
 fn case(seed: u64, number: u64, stop: Stop<'_>) -> Result<RandomCase> {
     let (d, _) = stratum(number as usize);
     let surface = surface(seed, number);
-    let solve = |discretisation, seed, force_bar| solve(discretisation, d, seed, force_bar, stop);
+    let solve = |discretisation, seed, force_bar| solve_alone(discretisation, d, seed, force_bar, stop);
     // The heaviest load of a range never lies on the floor of the finest grid; light ones do in a few draws
     // out of ten.
     for attempt in 0_u64.. {
@@ -212,19 +212,6 @@ fn case(seed: u64, number: u64, stop: Stop<'_>) -> Result<RandomCase> {
         });
     }
     Err(Error::parameter("cases", number, "a case above the floor"))
-}
-
-fn solve(
-    discretisation: Discretisation,
-    d: f64,
-    seed: u64,
-    force_bar: f64,
-    stop: Stop<'_>,
-) -> Result<Sample> {
-    let (forces, models) = ([force_bar].into(), Arc::default());
-    let job = RealisationJob { discretisation, fractal_dimension: d, index: 0, seed, forces, models };
-    let result = job.solve(stop)?;
-    result.samples.into_iter().next().ok_or_else(|| Error::parameter("cases", force_bar, "a load"))
 }
 
 #[cfg(test)]

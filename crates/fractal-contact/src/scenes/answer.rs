@@ -56,7 +56,7 @@ pub fn run(
     let mut results = done.into_iter().map(Option::transpose).collect::<Result<Vec<_>>>()?;
     for (result, job) in results.iter_mut().zip(&jobs) {
         if result.is_none() {
-            *result = job.stored(&store);
+            *result = job.stored_so_far(&store);
         }
     }
     let mut outcome =

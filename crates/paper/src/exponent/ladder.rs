@@ -2,10 +2,12 @@
 
 use evaluation::limits::{self, require, within};
 use evaluation::{
-    Discretisation, Forces, RealisationJob, RealisationResult, Sample, is_solved, solve_realisations,
+    Discretisation, Forces, Realisation, RealisationResult, Sample, is_solved, realisation_jobs,
+    solve_realisations,
 };
 use runs::{Progress, Result, Store};
 use std::collections::BTreeMap;
+use std::path::Path;
 use std::sync::Arc;
 use surface_gen::surface_seed;
 
@@ -67,7 +69,7 @@ struct Place {
     dimension: usize,
     level: usize,
     fine: bool,
-    job: RealisationJob,
+    realisation: Realisation,
 }
 
 impl Ladder {
@@ -118,14 +120,13 @@ impl Ladder {
                         dimension,
                         level,
                         fine: size == own,
-                        job: RealisationJob {
+                        realisation: Realisation {
                             discretisation: self.model.with_size(size),
                             fractal_dimension,
-                            index,
                             // Levels are independent: each has a master seed of its own.
-                            seed: surface_seed(surface_seed(seed, level as u64), index as u64),
+                            master_seed: surface_seed(seed, level as u64),
+                            index,
                             forces: Arc::clone(&forces),
-                            models: Arc::default(),
                         },
                     }));
                 }
@@ -134,18 +135,28 @@ impl Ladder {
         places
     }
 
-    /// Number of surfaces of the level of this size that the store holds completely, from the first on.
-    pub fn stored(&self, dimensions: &[f64], seed: u64, size: usize, store: &Store) -> usize {
+    /// Number of surfaces of the level of this size that the store of `out` holds completely, from the first on.
+    ///
+    /// # Errors
+    /// As [`realisation_jobs`].
+    pub fn stored(
+        &self,
+        dimensions: &[f64],
+        seed: u64,
+        size: usize,
+        (out, store): (&Path, &Store),
+    ) -> Result<usize> {
         let asked = self.sizes.iter().zip(&self.surfaces);
         let level: Vec<usize> = asked.map(|(&own, &count)| if own == size { count } else { 0 }).collect();
-        let places = self.places(dimensions, seed, &level);
-        let surfaces = places.chunk_by(|a, b| a.job.index == b.job.index);
-        surfaces.take_while(|places| places.iter().all(|place| is_solved(&place.job, store))).count()
+        let realisations = realisations(self.places(dimensions, seed, &level).iter());
+        let jobs = realisation_jobs(&realisations, out)?;
+        let surfaces = jobs.chunk_by(|a, b| a.surface() == b.surface());
+        Ok(surfaces.take_while(|jobs| jobs.iter().all(|job| is_solved(job, store))).count())
     }
 
-    /// All jobs of a study.
-    pub fn jobs(&self, dimensions: &[f64], seed: u64) -> Vec<RealisationJob> {
-        shared(self.places(dimensions, seed, &self.surfaces).iter())
+    /// All surfaces of a study on their grids.
+    pub fn realisations(&self, dimensions: &[f64], seed: u64) -> Vec<Realisation> {
+        realisations(self.places(dimensions, seed, &self.surfaces).iter())
     }
 
     /// Solves a number of surfaces of each level or reads them from the store, the largest grids first, each
@@ -158,21 +169,20 @@ impl Ladder {
         dimensions: &[f64],
         seed: u64,
         surfaces: &[usize],
-        (store, threads): (&Store, usize),
+        (kept, threads): ((&Path, &Store), usize),
         progress: &dyn Progress,
     ) -> Result<Vec<Rungs>> {
         let places = self.places(dimensions, seed, surfaces);
         let mut by_size: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
         for (i, place) in places.iter().enumerate() {
-            by_size.entry(place.job.discretisation.size()).or_default().push(i);
+            by_size.entry(place.realisation.discretisation.size()).or_default().push(i);
         }
         let mut results: Vec<Option<RealisationResult>> = places.iter().map(|_| None).collect();
         for (size, members) in by_size.into_iter().rev() {
-            let jobs = shared(members.iter().map(|&i| &places[i]));
-            let what = format!("{}: {} surfaces, size {size}", self.model.name(), jobs.len());
-            for (i, result) in
-                members.into_iter().zip(solve_realisations(&what, &jobs, store, threads, progress)?)
-            {
+            let of_size = realisations(members.iter().map(|&i| &places[i]));
+            let what = format!("{}: {} surfaces, size {size}", self.model.name(), of_size.len());
+            let solved = solve_realisations(&what, &of_size, kept, threads, progress)?;
+            for (i, result) in members.into_iter().zip(solved) {
                 results[i] = Some(result);
             }
         }
@@ -191,17 +201,15 @@ impl Ladder {
             match level.last_mut() {
                 // The coarse grid follows the fine one.
                 Some(pair) if !place.fine => pair.coarse = Some(result),
-                _ => level.push(Pair { index: place.job.index, fine: result, coarse: None }),
+                _ => level.push(Pair { index: place.realisation.index, fine: result, coarse: None }),
             }
         }
         Ok(rungs)
     }
 }
 
-/// The jobs of these places, which share plans.
-fn shared<'a>(places: impl Iterator<Item = &'a Place>) -> Vec<RealisationJob> {
-    let models = Arc::default();
-    places.map(|place| RealisationJob { models: Arc::clone(&models), ..place.job.clone() }).collect()
+fn realisations<'a>(places: impl Iterator<Item = &'a Place>) -> Vec<Realisation> {
+    places.map(|place| place.realisation.clone()).collect()
 }
 
 impl From<&RealisationResult> for Solved {

@@ -31,8 +31,10 @@ use contact_model::Table;
 use curve::{Convention, MeanCurve};
 use evaluation::limits::require;
 use evaluation::{
-    Discretisation, FRACTAL_DIMENSIONS, Forces, Outcome, RealisationJob, SEED, Session, header, list,
+    Discretisation, FRACTAL_DIMENSIONS, Forces, Outcome, Realisation, SEED, Session, header, list,
+    realisation_jobs,
 };
+use fractal_contact::scenes::SceneJob;
 use ladder::{Pair, Rungs};
 use runs::{Header, Progress, Result, Store, files, write_csv};
 use std::path::{Path, PathBuf};
@@ -138,13 +140,11 @@ impl Exponent {
     ///
     /// # Errors
     /// [`runs::Error::Parameter`] for invalid sizes.
-    pub fn jobs(&self) -> Result<Vec<RealisationJob>> {
+    pub fn jobs(&self) -> Result<Vec<SceneJob>> {
         self.validate()?;
-        Ok(self
-            .ladders()
-            .into_iter()
-            .flat_map(|(_, l)| l.jobs(&self.fractal_dimensions, self.seed))
-            .collect())
+        let of = |(_, ladder): (_, &Ladder)| ladder.realisations(&self.fractal_dimensions, self.seed);
+        let all: Vec<Realisation> = self.ladders().into_iter().flat_map(of).collect();
+        realisation_jobs(&all, &self.out)
     }
 
     fn command(&self) -> String {
@@ -185,13 +185,14 @@ pub fn exponent_plan(study: &Exponent, seconds: f64, progress: &dyn Progress) ->
         let largest = ladder.sizes.last().copied().unwrap_or(0);
         let pilot: Vec<usize> = (ladder.sizes.iter().zip(&ladder.surfaces))
             .map(|(&size, &count)| {
-                let stored = ladder.stored(&study.fractal_dimensions, study.seed, size, &store);
+                let (dimensions, kept) = (&study.fractal_dimensions, (study.out.as_path(), &store));
+                let stored = ladder.stored(dimensions, study.seed, size, kept)?;
                 let small = size <= (largest / 16).max(ladder.sizes[0]);
-                stored.max(if small { PILOT } else { 0 }).min(count)
+                Ok(stored.max(if small { PILOT } else { 0 }).min(count))
             })
-            .collect();
-        let rungs =
-            ladder.solve(&study.fractal_dimensions, study.seed, &pilot, (&store, study.threads), progress)?;
+            .collect::<Result<_>>()?;
+        let kept = ((study.out.as_path(), &store), study.threads);
+        let rungs = ladder.solve(&study.fractal_dimensions, study.seed, &pilot, kept, progress)?;
         let costs = plan::costs(ladder, &rungs, seconds * study.threads as f64);
         lines.extend(plan::lines(name, &ladder.forces, &costs, study.threads));
     }
@@ -213,7 +214,7 @@ pub fn exponent(study: &Exponent, progress: &dyn Progress) -> Result<Judged> {
             &study.fractal_dimensions,
             study.seed,
             &ladder.surfaces,
-            (&session.store, study.threads),
+            ((&study.out, &session.store), study.threads),
             progress,
         )?);
     }

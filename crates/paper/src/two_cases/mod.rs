@@ -11,12 +11,12 @@ use analysis::{Curves, StiffnessSample, ensemble};
 use analytic::{GreenwoodWilliamson, Persson};
 use bem3d::Bem3d;
 use contact_model::{ContactModel as _, ContactState, Status};
-use evaluation::{Outcome, Session, header};
-use fractal_contact::scenes::{self, SceneFile, SurfaceStates, jobs_of_scenes, solve_scenes};
+use evaluation::{Outcome, Session, header, of_scene};
+use fractal_contact::scenes::{ModelResult, SceneFile, SceneJob, jobs_of_scenes, solve_jobs};
 pub(crate) use picture::draw;
 use picture::{names, pairs_table, table};
 use reading::{SolvedCase, judged, pairs, summary};
-use runs::{Error, JobList, Progress, Result, Store, files, write_csv};
+use runs::{Error, Job as _, JobList, Ordered, Progress, Result, Store, files, largest_first, write_csv};
 use std::path::Path;
 pub(crate) use study::NAME;
 use study::{CaseCurve, CasePoint, CaseSolve, Solves, SurfaceCase};
@@ -55,8 +55,8 @@ pub fn two_cases(study: &TwoCases, out: &Path, progress: &dyn Progress) -> Resul
         curves.push(curve);
     }
     for (case, states) in study.cases().into_iter().zip(&states) {
-        for states in states.iter().filter(|states| states.model != "bem3d") {
-            curves.push(theory(study, case, states)?);
+        for (job, states) in states.iter().filter(|(job, _)| job.model() != "bem3d") {
+            curves.push(theory(study, case, (job.model(), states))?);
         }
     }
     let header = header(study.command())
@@ -90,30 +90,42 @@ pub fn two_cases_jobs(study: &TwoCases, out: &Path) -> Result<Box<dyn JobList>> 
     study.check()?;
     let mut all = scenes_of(study, out)?;
     all.extend(scenes_of(&study.coarser(), out)?);
-    Ok(jobs_of_scenes(&all, out))
+    Ok(Box::new(jobs_of_scenes(&all, out)))
 }
 
 /// The scene of each case.
 fn scenes_of(study: &TwoCases, out: &Path) -> Result<Vec<SceneFile>> {
-    let scene = |case: SurfaceCase| SceneFile::of(case.question(study), &out.join(NAME)).map_err(of_scene);
+    let scene =
+        |case: SurfaceCase| SceneFile::of(case.question(study), &out.join(case.label())).map_err(of_scene);
     study.cases().into_iter().map(scene).collect()
 }
 
-/// Solves all surfaces of all cases, each under increasing loads, and those of the theories. The results are in
-/// order for any number of threads.
+/// The states of a model on a surface, with the job that they are of.
+type CaseStates = (SceneJob, ModelResult);
+
+/// Solves all surfaces of all cases, each under increasing loads, and those of the theories. The states of each
+/// case are in order for any number of threads.
 fn solve(
     study: &TwoCases,
     (out, store): (&Path, &Store),
     progress: &dyn Progress,
-) -> Result<Vec<Vec<SurfaceStates>>> {
+) -> Result<Vec<Vec<CaseStates>>> {
     let scenes = scenes_of(study, out)?;
     let what = format!("{} surfaces of {} cells a side", scenes.len() * study.surfaces, study.cells);
-    solve_scenes(&what, &scenes, (out, store), study.threads, progress).map_err(of_scene)
+    let jobs = jobs_of_scenes(&scenes, out);
+    let order = largest_first(jobs.len(), |job| jobs[job].cost());
+    let ordered = Ordered { jobs: &jobs, order: &order, solved: &|_, _| Ok(()) };
+    let states = solve_jobs(&what, &ordered, store, study.threads, progress).map_err(of_scene)?;
+    let mut cases: Vec<Vec<CaseStates>> = scenes.iter().map(|_| Vec::new()).collect();
+    for (job, states) in jobs.into_iter().zip(states) {
+        cases[job.scene()].push((job, states));
+    }
+    Ok(cases)
 }
 
 /// The states of the boundary elements on each surface, as they are read.
-fn solves(study: &TwoCases, states: &[SurfaceStates]) -> Result<Vec<Solves>> {
-    let of = |states: &SurfaceStates, load: usize, force: f64| {
+fn solves(study: &TwoCases, states: &[CaseStates]) -> Result<Vec<Solves>> {
+    let of = |states: &ModelResult, load: usize, force: f64| {
         let (state, normalisation) = states.state(load).map_err(|reason| {
             Error::parameter("forces", force, format!("loads that bem3d can solve ({reason})"))
         })?;
@@ -127,17 +139,10 @@ fn solves(study: &TwoCases, states: &[SurfaceStates]) -> Result<Vec<Solves>> {
             _ => CaseSolve::FullContact,
         })
     };
-    let of_surface = |states: &SurfaceStates| {
+    let of_surface = |(_, states): &CaseStates| {
         study.forces.values().iter().enumerate().map(|(load, &force)| of(states, load, force)).collect()
     };
-    states.iter().filter(|states| states.model == "bem3d").map(of_surface).collect()
-}
-
-fn of_scene(error: scenes::Error) -> Error {
-    match error {
-        scenes::Error::Run(error) => error,
-        other => Error::parameter("question", other, "one that its models answer"),
-    }
+    states.iter().filter(|(job, _)| job.model() == "bem3d").map(of_surface).collect()
 }
 
 /// Means over the surfaces on the grid and on the coarser one.
@@ -174,7 +179,11 @@ fn mean_curve(
 }
 
 /// The results of a theory in its range of validity.
-fn theory(study: &TwoCases, case: SurfaceCase, states: &SurfaceStates) -> Result<CaseCurve> {
+fn theory(
+    study: &TwoCases,
+    case: SurfaceCase,
+    (model, states): (&'static str, &ModelResult),
+) -> Result<CaseCurve> {
     let slope = case.slope(study)?;
     let point = |(load, &force_bar): (usize, &f64)| {
         // A theory refuses the loads beyond its range of validity.
@@ -188,7 +197,7 @@ fn theory(study: &TwoCases, case: SurfaceCase, states: &SurfaceStates) -> Result
         })
     };
     let points = study.forces.values().iter().enumerate().filter_map(point).collect();
-    Ok(CaseCurve { case, model: states.model, points })
+    Ok(CaseCurve { case, model, points })
 }
 
 #[cfg(test)]

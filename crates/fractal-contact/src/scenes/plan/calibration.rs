@@ -3,8 +3,10 @@
 //! The choice of the grid for an accuracy rests on [`of_sizes`], in which no clock enters. Times
 //! that are measured here are printed and decide nothing.
 
-use crate::scenes::plan::{Cost, ModelOnSurface};
-use crate::scenes::read::{LoadRequest, Numerics, Result, SceneFile, cells, sampled, step_to};
+use crate::scenes::plan::Cost;
+use crate::scenes::read::{
+    LoadKind, LoadList, LoadRequest, Numerics, Result, SceneFile, SceneSurface, cells, sampled, step_to,
+};
 use bem3d::BYTES_PER_CELL;
 use contact_model::{Adhesion, Cells, ContactState, Coupling, Friction, Surface};
 use mdr1d::BYTES_PER_ELEMENT;
@@ -45,7 +47,7 @@ const FRONTS_TIME: f64 = 9.0;
 const RANGE_TIME: f64 = 3.0;
 
 /// Time of one model from the sizes of its solves and from times that were measured once
-/// ([`ModelOnSurface::cost`]), within a factor of ten. Operator applications and linear solves are not
+/// ([`milliseconds_of_sizes`]), within a factor of ten. Operator applications and linear solves are not
 /// predicted.
 ///
 /// `None` where no time is known: for models of the user's own, and for adhesion and coupled friction, whose
@@ -67,13 +69,12 @@ pub(crate) fn from_sizes(scene: &SceneFile, model: usize) -> Option<Cost> {
 pub(crate) fn of_sizes(scene: &SceneFile, model: usize) -> Cost {
     let numerics = &scene.models[model];
     let surfaces = scene.surfaces_of(numerics) as f64;
-    let milliseconds = ModelOnSurface { model, surface: 0 }.cost(scene) as f64;
+    let milliseconds = milliseconds_of_sizes(scene, numerics) as f64;
     let states = scene.request.count() as f64 * surfaces;
     let (fields, field_bytes, memory) = fields(scene, numerics, states);
     let has_cells = numerics.boundary_elements().is_some();
-    let growth = if has_cells { growth(scene, numerics) } else { 1.0 };
     Cost {
-        seconds: 1e-3 * milliseconds * growth * surfaces * with_coarser_grids(scene, numerics),
+        seconds: 1e-3 * milliseconds * surfaces * with_coarser_grids(scene, numerics),
         memory: if has_cells { memory + least_memory(scene, numerics) } else { 0.0 },
         fields,
         field_bytes,
@@ -86,17 +87,72 @@ pub(crate) fn time_exponent(scene: &SceneFile) -> f64 {
     if scene.effects.adhesion == Adhesion::Off { TIME_EXPONENT } else { FRONTS_TIME_EXPONENT }
 }
 
-/// The time of a state over a microsecond for each cell.
-fn growth(scene: &SceneFile, numerics: &Numerics) -> f64 {
-    let Cells { columns, rows } = cells(scene, numerics);
+/// Milliseconds of all states of a model on one surface, on a thread of the machine of `data/bench`, by the sizes
+/// alone; at least 1.
+pub(crate) fn milliseconds_of_sizes(scene: &SceneFile, numerics: &Numerics) -> u64 {
+    1 + (1e3 * seconds_of_sizes(scene, numerics)).min(1e15) as u64
+}
+
+fn seconds_of_sizes(scene: &SceneFile, numerics: &Numerics) -> f64 {
+    let states = scene.request.count() as f64;
+    match numerics {
+        Numerics::Bem3d(model) => match rough_sweep(scene, model) {
+            Some(seconds) => seconds,
+            None => states * seconds_of_dense(scene, numerics),
+        },
+        // The profile of 50 states is computed before the first load.
+        Numerics::Equivalent(_) => (states + 49.0) * seconds_of_dense(scene, numerics),
+        // One sort and one transform; the loads cost nothing beside them.
+        Numerics::Mdr1d(model) => {
+            let n = model.elements as f64;
+            1e-9 * n * n.log2()
+        }
+        _ => 0.0,
+    }
+}
+
+/// Seconds of all loads where [`seconds_of_rough_sweep`] says them; `None` for other loads and surfaces, and for
+/// other than elastic contact.
+fn rough_sweep(scene: &SceneFile, model: &bem3d::Bem3d) -> Option<f64> {
+    let SceneSurface::Plain(Surface::SelfAffine(surface)) = &scene.surface else { return None };
+    let LoadRequest::Loads(LoadList { kind: LoadKind::ForceBar, values }) = &scene.request else {
+        return None;
+    };
+    if scene.effects.named().next().is_some() {
+        return None;
+    }
+    let Cells { columns, rows } = model.grid(surface.size);
     let side = (columns as f64 * rows as f64).sqrt();
+    Some(seconds_of_rough_sweep(side, model.tolerance, surface.fractal_dimension(), values))
+}
+
+/// Seconds of boundary elements with `side` cells a side on a self-affine surface under all these normalised
+/// forces, within a factor of two of what was measured on the machine of `data/bench`.
+///
+/// One load on 512 x 512 cells takes a few ms where little is in contact and a second where much is
+/// (`data/bench/single.csv`). In a sweep each begins where the one before ended, which leaves a fifth of it at a
+/// tolerance of 1e-3.
+pub fn seconds_of_rough_sweep(side: f64, tolerance: f64, fractal_dimension: f64, force_bar: &[f64]) -> f64 {
+    let filled = |force: &f64| force.powf(0.9) / (force.powf(0.9) + 0.5);
+    let loads: f64 = force_bar.iter().map(|force| 0.005 + 1.2 * filled(force)).sum();
+    let digits = 1.0 + 0.2 * (-tolerance.log10() - 3.0);
+    // Under one load the contact of a rougher surface has fewer cells.
+    let rough = 2_f64.powf(1.3 * (2.45 - fractal_dimension));
+    0.2 * digits * rough * (side / 512.0).powf(2.2) * loads
+}
+
+/// Seconds of a state that fills its grid: a microsecond for each cell, more on large grids and with adhesion.
+fn seconds_of_dense(scene: &SceneFile, numerics: &Numerics) -> f64 {
+    let Cells { columns, rows } = cells(scene, numerics);
+    let count = columns as f64 * rows as f64;
+    let side = count.sqrt();
     let fronts = (side / FRONTS_CELLS).max(1.0).powf(FRONTS_TIME_EXPONENT - TIME_EXPONENT);
     let adhesion = match scene.effects.adhesion {
         Adhesion::Off => 1.0,
         Adhesion::FiniteRange { .. } => RANGE_TIME * fronts,
         _ => FRONTS_TIME * fronts,
     };
-    adhesion * (side / DENSE_CELLS).max(1.0).powf(TIME_EXPONENT - 2.0)
+    1e-6 * count * adhesion * (side / DENSE_CELLS).max(1.0).powf(TIME_EXPONENT - 2.0)
 }
 
 /// Memory of one surface of a model with cells in a contact that fills the grid, in bytes: the most that a

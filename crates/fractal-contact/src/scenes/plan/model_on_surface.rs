@@ -1,10 +1,12 @@
 //! One model and one surface: what is solved, stored and divided as a whole.
 
+use crate::scenes::plan::calibration;
 use crate::scenes::read::{Numerics, SceneFile, cells};
 use contact_model::{Cells, Scene};
 
-/// Number of the format of stored units; it changes with anything that changes a state.
-pub(crate) const FORMAT: u32 = 11;
+/// Number of the format of stored states. Raise it with anything that changes a state: the numbers of a model or of
+/// `surface-gen`, or what is stored of a state. `bem3d` has a number of its own, which enters the keys too.
+pub const FORMAT: u32 = 11;
 
 /// One model and one surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -37,22 +39,11 @@ impl ModelOnSurface {
         )
     }
 
-    /// Predicted processor milliseconds: they order the work, divide it into shards and move the progress
-    /// bar. A guess from the sizes alone, within a factor of ten; those of one model, which are what is
-    /// divided, have the same.
+    /// Predicted processor milliseconds: they order the work, divide it into shards, move the progress bar and
+    /// choose the grid for an accuracy. A guess from the sizes alone, within a factor of ten; those of one
+    /// model, which are what is divided, have the same.
     pub fn cost(&self, scene: &SceneFile) -> u64 {
-        let numerics = self.numerics(scene);
-        let n = numerics.size() as u64;
-        let Cells { columns, rows } = cells(scene, numerics);
-        let count = columns as u64 * rows as u64;
-        let states = scene.request.count() as u64;
-        match numerics {
-            // A microsecond for each cell and state.
-            Numerics::Bem3d(_) => 1 + count * states / 1000,
-            Numerics::Equivalent(_) => 1 + count * (states + 49) / 1000,
-            Numerics::Mdr1d(_) => 1 + n / 10_000,
-            _ => 1,
-        }
+        calibration::milliseconds_of_sizes(scene, self.numerics(scene))
     }
 
     /// Bytes of its states and of the fields that are asked for.

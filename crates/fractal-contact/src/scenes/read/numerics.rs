@@ -10,8 +10,8 @@ use contact_model::{Cells, ContactModel, Size};
 use mdr1d::{Equivalent, Mdr1d};
 use std::sync::Arc;
 
-/// Largest grid of a scene is the square of this many cells: 54 GB for a light load.
-pub(crate) const MOST_CELLS: usize = 1 << 15;
+/// Largest grid of a scene is the square of this many cells: 216 GB for a light load.
+pub(crate) const MOST_CELLS: usize = 1 << 16;
 
 /// Cells of the grid on which it is tested whether models can solve a scene.
 const PROBE_CELLS: usize = 33;

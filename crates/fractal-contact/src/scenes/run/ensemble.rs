@@ -1,25 +1,76 @@
-//! The states of several scenes in one store, for those who read states and not tables.
+//! The jobs of several scenes in one store, for those who read states and not tables.
 
 use crate::scenes::plan::calibration;
 use crate::scenes::read::{Result, SceneFile};
-use crate::scenes::run::{Answer, ModelResult, SceneJob, StateRecord, scene_jobs};
+use crate::scenes::run::{Answer, ModelResult, SceneJob, scene_jobs};
 use contact_model::{ContactState, Normalisation, never};
-use runs::{Job as _, JobList, Progress, Store, Threads, run_stored};
+use runs::{Job as _, Ordered, Progress, Store, Threads, run_in_order};
 use std::path::Path;
+use std::sync::Arc;
 
-/// The states of a model on a surface, one for each load.
-#[derive(Debug, Clone)]
-pub struct SurfaceStates {
-    /// Name of the model.
-    pub model: &'static str,
-    /// Number of the surface.
-    pub surface: usize,
-    /// Seconds that they took, in all runs together.
-    pub seconds: f64,
-    states: Vec<StateRecord>,
+/// The jobs of these scenes in their order: each model of a scene on each of its surfaces. Their states go to
+/// the store of `out`.
+pub fn jobs_of_scenes(scenes: &[SceneFile], out: &Path) -> Vec<SceneJob> {
+    let of = |(number, scene): (usize, &SceneFile)| {
+        let among = move |job: SceneJob| SceneJob { among: Some(number), ..job };
+        scene_jobs(scene, out).into_iter().map(among).collect::<Vec<_>>()
+    };
+    scenes.iter().enumerate().flat_map(of).collect()
 }
 
-impl SurfaceStates {
+/// Solves those of the jobs that the store does not hold, as many at the same time as fit into memory, and
+/// returns the states of all in the order of the jobs. No file is written besides the store.
+///
+/// # Errors
+/// The first error in the order of the jobs; a scene that does not fit into memory.
+pub fn solve_jobs(
+    what: &str,
+    ordered: &Ordered<'_, SceneJob>,
+    store: &Store,
+    threads: usize,
+    progress: &dyn Progress,
+) -> Result<Vec<ModelResult>> {
+    let (mut in_flight, mut seen) = (threads, Vec::new());
+    for SceneJob { scene, .. } in ordered.jobs {
+        if !seen.iter().any(|other| Arc::ptr_eq(other, scene)) {
+            seen.push(Arc::clone(scene));
+            in_flight = in_flight.min(calibration::jobs_in_memory(scene, threads)?);
+        }
+    }
+    let threads = Threads { total: threads, jobs: in_flight };
+    let done = run_in_order(what, ordered, store, threads, progress, &never);
+    let (mut results, mut not_begun) = (Vec::with_capacity(done.len()), None);
+    for (job, result) in ordered.jobs.iter().zip(done) {
+        match result {
+            Some(result) => results.push(result?),
+            // The reason is the error of another job.
+            None => not_begun = not_begun.or(Some(job)),
+        }
+    }
+    match not_begun {
+        Some(job) => Err(runs::Error::model(job.name())(contact_model::Error::Stopped { best: None }).into()),
+        None => Ok(results),
+    }
+}
+
+impl SceneJob {
+    /// Number of its scene among those of [`jobs_of_scenes`]; 0 for the job of a single scene.
+    pub fn scene(&self) -> usize {
+        self.among.unwrap_or(0)
+    }
+
+    /// Name of its model.
+    pub fn model(&self) -> &'static str {
+        self.unit.numerics(&self.scene).name()
+    }
+
+    /// Number of its surface.
+    pub fn surface(&self) -> usize {
+        self.unit.surface
+    }
+}
+
+impl ModelResult {
     /// The state under a load, with the normalisation of its surface. Its status says whether the solve reached
     /// its tolerance.
     ///
@@ -32,50 +83,9 @@ impl SurfaceStates {
             None => Err("it is not among the loads of the scene"),
         }
     }
-}
 
-/// The jobs of these scenes: each model on each surface.
-pub fn jobs_of_scenes(scenes: &[SceneFile], out: &Path) -> Box<dyn JobList> {
-    Box::new(all_jobs(scenes, out))
-}
-
-fn all_jobs(scenes: &[SceneFile], out: &Path) -> Vec<SceneJob> {
-    let of = |(number, scene): (usize, &SceneFile)| {
-        let among = move |job: SceneJob| SceneJob { among: Some(number), ..job };
-        scene_jobs(scene, out).into_iter().map(among).collect::<Vec<_>>()
-    };
-    scenes.iter().enumerate().flat_map(of).collect()
-}
-
-/// Solves what the store of `out` does not hold of these scenes, the most expensive jobs first, and returns the
-/// states of each scene in the order of its models and surfaces. No file is written besides the store.
-///
-/// # Errors
-/// Those of the models, in the order of the jobs; a scene that does not fit into memory.
-pub fn solve_scenes(
-    what: &str,
-    scenes: &[SceneFile],
-    (out, store): (&Path, &Store),
-    threads: usize,
-    progress: &dyn Progress,
-) -> Result<Vec<Vec<SurfaceStates>>> {
-    let mut in_flight = threads;
-    for scene in scenes {
-        in_flight = in_flight.min(calibration::jobs_in_memory(scene, threads)?);
+    /// Seconds that its states took, in all runs together.
+    pub fn seconds(&self) -> f64 {
+        self.seconds
     }
-    let jobs = all_jobs(scenes, out);
-    let threads = Threads { total: threads, jobs: in_flight };
-    let mut done = run_stored(what, &jobs, store, threads, progress, &never).into_iter().zip(jobs);
-    let mut states = |scene: &SceneFile| -> Result<Vec<SurfaceStates>> {
-        let count = crate::scenes::run::units(scene).len();
-        done.by_ref().take(count).map(|(result, job)| states_of(result, &job)).collect()
-    };
-    scenes.iter().map(&mut states).collect()
-}
-
-fn states_of(result: Option<Result<ModelResult>>, job: &SceneJob) -> Result<SurfaceStates> {
-    let not_begun = || runs::Error::model(job.name())(contact_model::Error::Stopped { best: None });
-    let ModelResult { seconds, states, .. } = result.ok_or_else(not_begun)??;
-    let model = job.unit.numerics(&job.scene).name();
-    Ok(SurfaceStates { model, surface: job.unit.surface, seconds, states })
 }

@@ -7,15 +7,17 @@ pub(crate) mod outcome;
 pub(crate) mod path_keeper;
 pub(crate) mod pilot;
 pub(crate) mod scene_job;
+pub(crate) mod shared_models;
 pub(crate) mod solve;
 pub(crate) mod state_result;
 pub(crate) mod warnings;
 
 pub(crate) use field_view::FieldView;
 pub(crate) use outcome::{Options, SceneOutcome};
-pub(crate) use path_keeper::Keeper;
+pub(crate) use path_keeper::{KeepResult, Keeper};
 pub(crate) use pilot::{SharedStop, remove_trials, take_trial};
 pub(crate) use scene_job::{SceneJob, scene_jobs, units};
+pub(crate) use shared_models::SharedModels;
 pub(crate) use state_result::{
     Answer, FieldFile, ModelResult, Solved, SolvedUnit, StateRecord, StoredFile, field_of_file,
 };

@@ -14,7 +14,7 @@ const KEEP_EVERY: Duration = Duration::from_secs(1);
 const SHARE: u32 = 20;
 
 /// Keeps a result in the store.
-type KeepResult<'a> = dyn Fn(&ModelResult) -> runs::Result<()> + 'a;
+pub(crate) type KeepResult<'a> = dyn Fn(&ModelResult) -> runs::Result<()> + 'a;
 
 /// Keeps the states of one model on one surface.
 pub(crate) struct Keeper<'a> {

@@ -151,7 +151,7 @@ impl Trial<'_> {
     fn job(&self, folder: &Path) -> SceneJob {
         let unit = ModelOnSurface { model: self.candidate.model, surface: 0 };
         let scene = Arc::new(self.candidate.scene.clone());
-        SceneJob { unit, scene, among: None, out: folder.into(), draws: false }
+        SceneJob { draws: false, ..SceneJob::new(scene, unit, folder.into()) }
     }
 
     /// Its states, where all of them are stored. Their fields may be anywhere.
@@ -202,7 +202,7 @@ pub(crate) fn take_trial(scene: &SceneFile, out: &Path, store: &Store) {
     let folder = trial_folder(out, cells(scene, &scene.models[model]));
     let unit = ModelOnSurface { model, surface: 0 };
     let scene = Arc::new(scene.clone());
-    let job = SceneJob { unit, scene, among: None, out: out.into(), draws: true };
+    let job = SceneJob::new(scene, unit, out.into());
     let results = store.texts(&job.stored_key()).filter_map(|text| SceneJob::KIND.decode(&text));
     for file in results.flat_map(|result: ModelResult| result.states).flat_map(|state| state.files) {
         // A file that cannot be moved is missing in the run, which then solves its state.

@@ -2,25 +2,28 @@
 
 use crate::scenes::plan::{FORMAT, ModelOnSurface, calibration};
 use crate::scenes::read::{Error, Result, SceneFile, cells};
-use crate::scenes::run::{Keeper, ModelResult, field_pictures};
+use crate::scenes::run::{KeepResult, Keeper, ModelResult, SharedModels, field_pictures};
 use contact_model::Stop;
 use runs::{Checkpoint, Job, JobList, Progress, ResultKind, Silent, StatesInHand, Store};
 use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
-/// A model on a surface, with the data that all jobs of a run share.
-#[derive(Clone)]
-pub(crate) struct SceneJob {
-    pub unit: ModelOnSurface,
-    pub scene: Arc<SceneFile>,
+/// A model of a scene on one of its surfaces under all loads, or along the whole path. It is solved, stored and
+/// given to a shard as a whole.
+#[derive(Debug, Clone)]
+pub struct SceneJob {
+    pub(crate) unit: ModelOnSurface,
+    pub(crate) scene: Arc<SceneFile>,
+    /// The models of the scene, which its jobs share.
+    pub(crate) models: Arc<SharedModels>,
     /// Number of its scene, where several scenes share the directory.
-    pub among: Option<usize>,
+    pub(crate) among: Option<usize>,
     /// Directory of the results.
-    pub out: Arc<Path>,
+    pub(crate) out: Arc<Path>,
     /// Whether it draws pictures of its fields at the end; a job that does not is complete when it is done
     /// again by one that does.
-    pub draws: bool,
+    pub(crate) draws: bool,
 }
 
 impl Job for SceneJob {
@@ -34,7 +37,11 @@ impl Job for SceneJob {
     }
 
     fn name(&self) -> String {
-        format!("{}, surface {}", self.unit.numerics(&self.scene).name(), self.unit.surface)
+        let name = format!("{}, surface {}", self.unit.numerics(&self.scene).name(), self.unit.surface);
+        match (self.among, self.scene.path.file_name()) {
+            (Some(_), Some(scene)) => format!("{}: {name}", scene.to_string_lossy()),
+            _ => name,
+        }
     }
 
     fn cost(&self) -> u64 {
@@ -53,8 +60,9 @@ impl Job for SceneJob {
         self.unit.numerics(&self.scene).is_stored()
     }
 
+    /// Keeps nothing, so that an interruption loses its states.
     fn solve(&self, stop: Stop<'_>) -> Result<ModelResult> {
-        self.resume(None, &|_| Ok(()), &Silent, stop)
+        self.go_on(ModelResult::default(), None, &Silent, stop)
     }
 
     fn resume(
@@ -66,15 +74,38 @@ impl Job for SceneJob {
     ) -> Result<ModelResult> {
         let mut begun = stored.unwrap_or_default();
         field_pictures::keep_whole_states(&mut begun, &self.out);
+        self.go_on(begun, self.is_stored().then_some(store), progress, stop)
+    }
+
+    /// A result counts as absent where a state or a file is missing or changed.
+    fn is_whole(&self, result: &ModelResult) -> bool {
+        result.complete && result.states.iter().all(|state| state.is_whole(&self.out))
+    }
+}
+
+impl SceneJob {
+    /// A job that draws its pictures and shares no models.
+    pub(crate) fn new(scene: Arc<SceneFile>, unit: ModelOnSurface, out: Arc<Path>) -> Self {
+        Self { unit, scene, models: Arc::default(), among: None, out, draws: true }
+    }
+
+    /// Solves the states that `begun` lacks.
+    fn go_on(
+        &self,
+        mut begun: ModelResult,
+        store: Option<&KeepResult<'_>>,
+        progress: &dyn Progress,
+        stop: Stop<'_>,
+    ) -> Result<ModelResult> {
         begun.kept = begun.states.len();
         let (model, surface) = (self.unit.numerics(&self.scene).name(), self.unit.surface);
         let among = self.among.map_or_else(String::new, |scene| format!("{scene}-"));
         let checkpoint = Checkpoint::new(&self.out, &format!("{among}{model}-{surface}"), &self.stored_key());
-        let store = self.is_stored().then_some(store);
         let states = [begun.kept, self.scene.request.count()];
         let told = StatesInHand::new((self.name(), self.cost()), states, progress, stop);
         let mut keeper = Keeper::new(store, checkpoint, progress, self.name(), &told);
-        let mut result = self.unit.solve(&self.scene, &self.out, begun, &mut keeper, &told)?;
+        let mut result =
+            self.unit.solve((&self.scene, &self.models), &self.out, begun, &mut keeper, &told)?;
         let mut drawn = Vec::new();
         if self.draws {
             let (start, numerics) = (Instant::now(), self.unit.numerics(&self.scene));
@@ -92,16 +123,9 @@ impl Job for SceneJob {
         Ok(result)
     }
 
-    /// A result counts as absent where a state or a file is missing or changed.
-    fn is_whole(&self, result: &ModelResult) -> bool {
-        result.complete && result.states.iter().all(|state| state.is_whole(&self.out))
-    }
-}
-
-impl SceneJob {
     /// The stored result of a job that a stopped run has not begun, or the states of its newest part. They
     /// belong to the tables of that run, and their fields are not to be removed.
-    pub fn stored(&self, store: &Store) -> Option<ModelResult> {
+    pub(crate) fn stored_so_far(&self, store: &Store) -> Option<ModelResult> {
         let key = self.stored_key();
         let stored = || store.texts(&key).filter_map(|text| Self::KIND.decode(&text));
         let mut found = stored().find(|result| self.is_whole(result)).or_else(|| stored().next())?;
@@ -124,8 +148,11 @@ pub(crate) fn units(scene: &SceneFile) -> Vec<ModelOnSurface> {
 /// The same, as jobs that write their fields into `out`.
 pub(crate) fn scene_jobs(scene: &SceneFile, out: &Path) -> Vec<SceneJob> {
     let (scene, out) = (Arc::new(scene.clone()), Arc::<Path>::from(out));
-    let of =
-        |unit| SceneJob { unit, scene: Arc::clone(&scene), among: None, out: Arc::clone(&out), draws: true };
+    let models = Arc::default();
+    let of = |unit| SceneJob {
+        models: Arc::clone(&models),
+        ..SceneJob::new(Arc::clone(&scene), unit, Arc::clone(&out))
+    };
     units(&scene).into_iter().map(of).collect()
 }
 

@@ -10,22 +10,22 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::path::Path;
 
-/// The results of one model on one surface.
+/// The states of one model on one surface, as the store holds them.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(from = "StoredResult")]
-pub(crate) struct ModelResult {
+pub struct ModelResult {
     /// Seconds of all runs that contributed to it.
-    pub seconds: f64,
+    pub(crate) seconds: f64,
     /// Whether all states are solved.
-    pub complete: bool,
+    pub(crate) complete: bool,
     /// States in the order of the loads.
-    pub states: Vec<StateRecord>,
+    pub(crate) states: Vec<StateRecord>,
     /// How many states an earlier run had kept: all of a result that is read back.
     #[serde(skip_serializing)]
-    pub kept: usize,
+    pub(crate) kept: usize,
     /// Notes for the user on this run.
     #[serde(skip_serializing)]
-    pub notes: Vec<String>,
+    pub(crate) notes: Vec<String>,
 }
 
 /// The part of a [`ModelResult`] that is read back.
