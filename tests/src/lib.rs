@@ -1,5 +1,6 @@
 //! Common parts of the physical tests: problems with their exact solutions, one checker for every model, and
-//! orders of convergence; from `stability` maps made by hand and an oracle that tries every contact set.
+//! orders of convergence; [`stability`], the registry of hard cases, with maps made by hand and reference
+//! implementations, one of which tries every contact set.
 //!
 //! The tests themselves are in the `tests/` folder beside this file, one topic a file. They follow four
 //! rules.
@@ -27,6 +28,7 @@
 mod deviation;
 mod order;
 mod problem;
+pub mod stability;
 
 pub use deviation::{Deviation, Prescribed, deviation};
 pub use order::order;

@@ -20,7 +20,7 @@ fn on_rigid(poisson: f64) -> Pair {
 
 /// `E* sum nu/(2 G)`.
 fn compliance(pair: &Pair) -> f64 {
-    stability::compliance(pair).unwrap()
+    tests::stability::compliance(pair).unwrap()
 }
 
 /// A flat punch of an elliptic face in the middle of a square of side 1, on cells of `1/cells`.
@@ -267,7 +267,7 @@ fn the_radius_that_sticks_depends_on_neither_profile_nor_load() {
 fn a_coupled_loop_never_gains_energy() {
     let corners = [[1.0, 0.0, 0.0], [1.5, 0.3, 0.0], [1.2, 0.3, 0.3], [0.8, -0.2, 0.0], [1.0, 0.0, 0.0]];
     for nu in [0.0, 0.3] {
-        let map = stability::rough_map(2.3, 16, 3).unwrap();
+        let map = tests::stability::rough_map(2.3, 16, 3).unwrap();
         let mut scene = coupled(Surface::Heights(Arc::new(map)), on_rigid(nu), 0.4);
         scene.outputs = Outputs::default();
         let excess = [4_u32, 12, 36].map(|steps| {

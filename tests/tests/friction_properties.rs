@@ -7,7 +7,7 @@ use contact_model::{
 };
 use proptest::prelude::*;
 use proptest::test_runner::{FileFailurePersistence, RngSeed};
-use stability::{PlainShear, compliance};
+use tests::stability::{PlainShear, compliance};
 use tests::{hard_map, rough_map, scene};
 
 const TOLERANCE: f64 = 1e-10;

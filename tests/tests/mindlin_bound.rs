@@ -7,8 +7,8 @@ use contact_model::{
 };
 use proptest::prelude::*;
 use proptest::test_runner::{FileFailurePersistence, RngSeed};
-use stability::{PlainShear, PlainSum, compliance};
 use std::sync::Arc;
+use tests::stability::{PlainShear, PlainSum, compliance};
 use tests::{hard_map, map, rough_map};
 
 const TOLERANCE: f64 = 1e-10;

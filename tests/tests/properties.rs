@@ -5,7 +5,7 @@ use bem3d::Bem3d;
 use contact_model::{ContactModel, ContactState, HeightMap, Load, PreparedContact};
 use proptest::prelude::*;
 use proptest::test_runner::{FileFailurePersistence, RngSeed};
-use stability::PlainSum;
+use tests::stability::PlainSum;
 use tests::{hard_map, map, rough_map, scene};
 
 const TOLERANCE: f64 = 1e-10;

@@ -9,9 +9,9 @@ use contact_model::{
 };
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
-use stability::{PlainSum, relaxed, relaxed_by};
 use std::f64::consts::PI;
 use tests::scene;
+use tests::stability::{PlainSum, relaxed, relaxed_by};
 
 /// Tolerance of the solves, and the largest relative difference of a solve from a reference.
 const TOLERANCE: f64 = 1e-11;

@@ -1,10 +1,10 @@
 //! Every hard case of the registry is solved, checked by the reference implementation and within its bound.
 
-use stability::{CaseResult, Effort};
+use tests::stability::{CaseResult, Effort};
 
 #[test]
 fn every_hard_case_holds() {
-    let verdicts = stability::run(&stability::cases(), Effort::Quick, &|_| ());
+    let verdicts = tests::stability::run(&tests::stability::cases(), Effort::Quick, &|_| ());
     for v in &verdicts {
         println!(
             "{:<42} {:>10.1e} of {:.0e} {}",

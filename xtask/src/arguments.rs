@@ -10,7 +10,7 @@ pub use bench::BenchArguments;
 pub use cluster::{PlanArguments, ShardsArguments, SubmitArguments};
 
 use clap::{Parser, Subcommand};
-use evaluation::{AccuracyTarget, Model, Request};
+use paper::evaluation::{AccuracyTarget, Model, Request};
 use runs::ShardChoice;
 use sizes::{Both, LineSizes, Maps, Reduced, Solid, SolveSizes};
 use std::path::PathBuf;
@@ -216,7 +216,7 @@ mod tests {
     use super::bench::{SCALING_CELLS, SCALING_CSV};
     use super::*;
     use clap::CommandFactory as _;
-    use evaluation::{Preset, Surfaces};
+    use paper::evaluation::{Preset, Surfaces};
 
     fn parse(line: &str) -> Result<Arguments, clap::Error> {
         Arguments::try_parse_from(std::iter::once("xtask").chain(line.split_whitespace()))

@@ -2,7 +2,7 @@
 
 use crate::arguments::{Arguments, Command, PlanArguments, ShardsArguments, SubmitArguments};
 use clap::Parser as _;
-use evaluation::{Run, ensemble_jobs};
+use paper::evaluation::{Run, ensemble_jobs};
 use runs::cluster::{self, Division, Forecast, Status, check, quoted, run_shard, status, without_flags};
 use runs::{Error, JobList, Reporter, Result, ShardChoice};
 
@@ -29,8 +29,8 @@ pub fn jobs(command: &Command) -> Result<Box<dyn JobList>> {
     match command {
         Command::Exponent(options) => Ok(Box::new(options.study(&run)?.jobs()?)),
         Command::ReproduceTwoCases(options) => paper::two_cases_jobs(&options.study()?, &options.out),
-        Command::AccuracyCost(options) => evaluation::accuracy_cost_jobs(options.depth, options.seed),
-        Command::BudgetCheck(options) => evaluation::budget_check_jobs(options.cases, options.seed),
+        Command::AccuracyCost(options) => paper::evaluation::accuracy_cost_jobs(options.depth, options.seed),
+        Command::BudgetCheck(options) => paper::evaluation::budget_check_jobs(options.cases, options.seed),
         _ => {
             let expected = "reproduce-fig2, -fig3, -fig4, -fig6, -fig7, reproduce-all, verify, reproduce-two-cases, exponent, accuracy-cost or budget-check";
             Err(Error::parameter("command", "a command without jobs to share", expected))

@@ -11,16 +11,18 @@
 mod arguments;
 mod book;
 mod cluster;
+mod hard_cases;
 
 use arguments::{Arguments, BenchArguments, Command, Redraw, TuningArguments};
 use clap::{CommandFactory as _, Parser as _};
-use evaluation::{BenchRow, Outcome, Run};
+use paper::evaluation::{BenchRow, Outcome, Run};
 use paper::{Claim, Judged};
 use runs::{Error, Failure, Reporter, Result, Store};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
+use tests::stability::Effort;
 
 fn main() -> ExitCode {
     // A path that is not valid UTF-8 is still a path.
@@ -83,10 +85,10 @@ fn solve(command: Command, typed: &[String]) -> Result<ExitCode> {
     let target = command.target();
     let run = match target {
         Some((models, target)) => {
-            let plan = evaluation::plan(&command.request(), models, target, &reporter)?;
+            let plan = paper::evaluation::plan(&command.request(), models, target, &reporter)?;
             plan.lines.iter().for_each(|line| runs::out!("{line}"));
             let told = plan.lines.len();
-            let settled = evaluation::settle(plan, models, target, &reporter)?;
+            let settled = paper::evaluation::settle(plan, models, target, &reporter)?;
             settled.lines.iter().skip(told).for_each(|line| runs::out!("{line}"));
             // The pilots have just been solved and are not solved again.
             Run { fresh: false, ..settled.run }
@@ -106,14 +108,19 @@ fn solve(command: Command, typed: &[String]) -> Result<ExitCode> {
         Command::ReproduceAll(_) => paper::reproduce_all(&run, &reporter)?,
         Command::AccuracyCost(options) => {
             let kept = (options.out.as_path(), options.fresh);
-            vec![evaluation::accuracy_cost(options.depth, options.seed, kept, &reporter)?.into()]
+            vec![paper::evaluation::accuracy_cost(options.depth, options.seed, kept, &reporter)?.into()]
         }
         Command::ReproduceTwoCases(options) => {
             vec![paper::two_cases(&options.study()?, &options.out, &reporter)?]
         }
         Command::BudgetCheck(options) => {
-            let (outcome, coverage) =
-                evaluation::budget_check(options.cases, options.seed, run.threads, &run.out, &reporter)?;
+            let (outcome, coverage) = paper::evaluation::budget_check(
+                options.cases,
+                options.seed,
+                run.threads,
+                &run.out,
+                &reporter,
+            )?;
             runs::out!("{coverage}");
             coverage_fails = !coverage.holds();
             vec![outcome.into()]
@@ -135,7 +142,7 @@ fn solve(command: Command, typed: &[String]) -> Result<ExitCode> {
         }
         Command::PartialSlip(options) => vec![paper::partial_slip(&options.study(&run)?, &reporter)?],
         Command::Audit(options) => {
-            let (outcome, summary) = evaluation::audit(&run, options.share, options.tight, &reporter)?;
+            let (outcome, summary) = paper::evaluation::audit(&run, options.share, options.tight, &reporter)?;
             runs::out!("{summary}");
             vec![outcome.into()]
         }
@@ -145,15 +152,19 @@ fn solve(command: Command, typed: &[String]) -> Result<ExitCode> {
     if let Some((models, _)) = target
         && outcomes.iter().all(|o| o.reached.is_empty())
     {
-        let budgets = evaluation::state_budgets(&run, models, &reporter)?;
+        let budgets = paper::evaluation::state_budgets(&run, models, &reporter)?;
         outcomes.push(budgets.into());
     }
     // The first word that was typed is the subcommand: no flag stands before it.
     let name = typed.first().map_or("", String::as_str);
     let claims = judged(&outcomes);
     let outcomes: Vec<Outcome> = outcomes.into_iter().map(Judged::into_outcome).collect();
-    let manifest =
-        evaluation::write_manifest(&run, name, &format!("cargo xtask {}", typed.join(" ")), &outcomes)?;
+    let manifest = paper::evaluation::write_manifest(
+        &run,
+        name,
+        &format!("cargo xtask {}", typed.join(" ")),
+        &outcomes,
+    )?;
     let code = report(&outcomes, &claims, &manifest);
     Ok(if coverage_fails { ExitCode::from(3) } else { code })
 }
@@ -229,9 +240,10 @@ fn bench(options: &BenchArguments) -> Result<ExitCode> {
     if let Some(directory) = csv.as_deref().and_then(Path::parent) {
         runs::files::create_directory(directory)?;
     }
-    let clock: Option<evaluation::Clock> = if options.parts { Some(evaluation::elapsed) } else { None };
+    let clock: Option<paper::evaluation::Clock> =
+        if options.parts { Some(paper::evaluation::elapsed) } else { None };
     let table = Mutex::new(BenchTable::default());
-    let rows = evaluation::bench(&options.bench()?, clock, &|row| {
+    let rows = paper::evaluation::bench(&options.bench()?, clock, &|row| {
         // A poisoned lock means that another thread panicked: that is reported elsewhere.
         let Ok(mut table) = table.lock() else { return Ok(()) };
         if table.rows.is_empty() {
@@ -242,16 +254,16 @@ fn bench(options: &BenchArguments) -> Result<ExitCode> {
         csv.as_deref().map_or(Ok(()), |path| table.write(path))
     })?;
     if let Some(path) = &csv {
-        evaluation::write_bench(path, &rows)?;
+        paper::evaluation::write_bench(path, &rows)?;
         runs::out!("{}", path.display());
         if let Some(picture) = &plot {
-            let drawn = evaluation::plot_bench(path, picture)?;
+            let drawn = paper::evaluation::plot_bench(path, picture)?;
             drawn.files.iter().for_each(|file| runs::out!("{}", file.display()));
             drawn.slopes.iter().for_each(|slope| runs::out!("{slope}"));
         }
     }
     if options.parts {
-        for line in evaluation::parts_table(&rows) {
+        for line in paper::evaluation::parts_table(&rows) {
             runs::out!("{line}");
         }
     }
@@ -279,7 +291,7 @@ impl BenchTable {
         if self.written.is_some_and(|(end, took)| start.duration_since(end) < 20 * took) {
             return Ok(());
         }
-        evaluation::write_bench(path, &self.rows)?;
+        paper::evaluation::write_bench(path, &self.rows)?;
         self.written = Some((Instant::now(), start.elapsed()));
         Ok(())
     }
@@ -316,8 +328,9 @@ fn printed(row: &BenchRow) -> [(&'static str, usize); PRINTED.len()] {
 
 fn line(row: &BenchRow) -> Result<String> {
     let fields = row.fields()?;
-    let field =
-        |name: &str| evaluation::BENCH_COLUMNS.iter().position(|c| *c == name).map_or("", |i| &fields[i]);
+    let field = |name: &str| {
+        paper::evaluation::BENCH_COLUMNS.iter().position(|c| *c == name).map_or("", |i| &fields[i])
+    };
     let short = |name: &str| match (name, field(name).parse::<f64>()) {
         ("approach_over_h" | "mean_gap_over_h" | "stiffness_bar", Ok(v)) => format!("{v:.10}"),
         ("duality_gap" | "stiffness_error" | "force_bar", Ok(v)) => format!("{v:.2e}"),
@@ -331,25 +344,26 @@ fn line(row: &BenchRow) -> Result<String> {
 fn tuning(options: &TuningArguments) -> Result<ExitCode> {
     let TuningArguments { only, repetitions, out } = options;
     let header = std::sync::Once::new();
-    let print = |row: &evaluation::ConstantRow| {
+    let print = |row: &paper::evaluation::ConstantRow| {
         header.call_once(|| {
             let (name, time, work) = ("constant", "time, half", "applications, half");
             runs::out!("{name:<22} {time:>10} {:>10} {work:>18} {:>18}", "twice", "twice");
         });
-        let evaluation::ConstantRow { name, half, twice } = *row;
+        let paper::evaluation::ConstantRow { name, half, twice } = *row;
         let missed = if half.converged && twice.converged { "" } else { "  not all loads converged" };
         let (a, b) = (half.applications, twice.applications);
         runs::out!("{name:<22} {:>10.2} {:>10.2} {a:>18.2} {b:>18.2}{missed}", half.time, twice.time);
     };
-    let path = evaluation::tuning(only, usize::from(*repetitions), out, &Reporter::new(), &print)?;
+    let path = paper::evaluation::tuning(only, usize::from(*repetitions), out, &Reporter::new(), &print)?;
     runs::out!("{}", path.display());
     Ok(ExitCode::SUCCESS)
 }
 
 /// Prints the table of hard cases; one that fails does not stop the others.
 fn stability(thorough: bool, out: &Path) -> Result<ExitCode> {
-    let effort = if thorough { stability::Effort::Thorough } else { stability::Effort::Quick };
-    let (verdicts, files) = evaluation::hard_cases(&stability::cases(), effort, out, &Reporter::new())?;
+    let effort = if thorough { Effort::Thorough } else { Effort::Quick };
+    let (verdicts, files) =
+        hard_cases::hard_cases(&tests::stability::cases(), effort, out, &Reporter::new())?;
     for v in &verdicts {
         let figure = v.figure.map_or_else(|| "no figure".to_owned(), |f| format!("{f:.1e}"));
         runs::out!("{:<6}  {:<38} {figure:>9} of {:.0e}", v.status(), v.case.name, v.case.bound);

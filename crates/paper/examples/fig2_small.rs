@@ -14,7 +14,7 @@
 //! ...
 //! ```
 
-use evaluation::{Request, Result, Run};
+use paper::evaluation::{Request, Result, Run};
 use paper::{Verdict, plain};
 use runs::Reporter;
 use std::path::PathBuf;

@@ -11,7 +11,7 @@
 //! 6000 rows
 //! ```
 
-use evaluation::{Request, Result, Run};
+use paper::evaluation::{Request, Result, Run};
 use runs::{CsvFile, Silent};
 use std::path::PathBuf;
 

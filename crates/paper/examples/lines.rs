@@ -12,7 +12,7 @@
 //! ```
 
 use analysis::FitWindow;
-use evaluation::{Model, Request, Result, Run, Session, laws, measure};
+use paper::evaluation::{Model, Request, Result, Run, Session, laws, measure};
 use paper::{Claim, Estimate, Statement, Verdict, plain};
 use runs::Silent;
 use std::path::PathBuf;

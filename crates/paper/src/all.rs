@@ -1,8 +1,8 @@
 //! All seven figures and the verification, each ensemble solved once.
 
+use crate::evaluation::{Outcome, Run, Session};
 use crate::judged::Judged;
 use crate::{fig1, fig2, fig3, fig4, fig5, fig6, fig7, verify};
-use evaluation::{Outcome, Run, Session};
 use runs::{Progress, Result};
 
 /// Makes Figs. 1 to 7 and the verification.

@@ -1,7 +1,7 @@
 //! Statements of the paper, their fair reading, and the results here.
 
+use crate::evaluation::{TableOf, markdown_table};
 use contact_model::Table;
-use evaluation::{TableOf, markdown_table};
 use runs::Result;
 use std::fmt;
 

@@ -13,7 +13,7 @@ mod solved;
 mod table;
 
 use crate::claim::Claim;
-use evaluation::{Measured, Model};
+use crate::evaluation::{Measured, Model};
 use runs::Result;
 use table::wrong;
 
@@ -100,8 +100,8 @@ pub(crate) fn of_figure(command: &str, measured: &[&Measured]) -> Result<Vec<Cla
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::evaluation::{Request, Run, Session};
     use crate::fitted::both;
-    use evaluation::{Request, Run, Session};
     use runs::Silent;
     use std::collections::BTreeSet;
 

@@ -1,13 +1,13 @@
 //! The common parts of Figs. 2 and 6: k_bar over F_bar, files and picture.
 
 use crate::claims;
-use crate::judged::Judged;
-use crate::words;
-use contact_model::Table;
-use evaluation::{
+use crate::evaluation::{
     Measured, Model, Outcome, Run, Session, compact_table, curves_table, describe, flags, header,
     measure_showing, samples_table, write_budget,
 };
+use crate::judged::Judged;
+use crate::words;
+use contact_model::Table;
 use plots::{Axis, Key, LineStyle, Mark, MarkShape, NEUTRAL, Picture, REFERENCE, color, logarithmic, shape};
 use runs::{CsvFile, Error, Header, Progress, Result, write_csv};
 use std::io::ErrorKind;
@@ -232,7 +232,7 @@ pub(crate) fn draw(name: &str, csv: &Path, over: Option<&Path>, out: &Path) -> R
         picture.legend("shaded: ± 2 standard errors", NEUTRAL, Key::Band);
     }
     if curves.iter().flat_map(|c| &c.1).any(|p| p.below_floor) {
-        let label = format!("fewer than {} contact {cells}", evaluation::FLOOR_CELLS);
+        let label = format!("fewer than {} contact {cells}", crate::evaluation::FLOOR_CELLS);
         picture.legend(&label, NEUTRAL, Key::Mark(Mark::Hollow(MarkShape::Circle)));
     }
     Ok(picture.save(out, name)?)

@@ -1,9 +1,9 @@
 //! Fig. 1: grey-scale maps of the surfaces.
 
+use crate::evaluation::{FRACTAL_DIMENSION, Flag, Outcome, Run, Session, TableOf, header, list, read_rows};
 use crate::judged::Judged;
 use crate::{curves, words};
 use contact_model::{HeightMap, SelfAffine};
-use evaluation::{FRACTAL_DIMENSION, Flag, Outcome, Run, Session, TableOf, header, list, read_rows};
 use plots::{GreyMap, GreyScale, encode_grey, grey, grey_between, most, save_maps};
 use runs::{CsvFile, Error, Progress, Result, files, threads_for_memory};
 use std::path::{Path, PathBuf};

@@ -1,12 +1,12 @@
 //! Fig. 4: the collapse of all curves.
 
 use crate::claims;
-use crate::judged::Judged;
-use crate::{curves, words};
-use evaluation::{
+use crate::evaluation::{
     FORCE_BAR, FRACTAL_DIMENSION, MODEL, Measured, Model, Outcome, Run, Session, TableOf, describe, flags,
     header, measure, read_rows, transformed,
 };
+use crate::judged::Judged;
+use crate::{curves, words};
 use plots::{Axis, Key, LineStyle, Mark, MarkShape, NEUTRAL, Picture, REFERENCE, logarithmic};
 use runs::{CsvFile, Progress, Result};
 use std::path::{Path, PathBuf};
@@ -73,7 +73,7 @@ pub(crate) fn draw(csv: &Path, out: &Path) -> Result<Vec<PathBuf>> {
     picture.legend("paper, Eq. 12", REFERENCE, Key::Line(LineStyle::Dashed));
     picture.legend("its upper limit $\\bar{F} = 0.086$", NEUTRAL, Key::Line(LineStyle::Dotted));
     if rows.iter().any(|r| r.3 && x.holds(r.1) && y.holds(r.2)) {
-        let label = format!("fewer than {} contact cells", evaluation::FLOOR_CELLS);
+        let label = format!("fewer than {} contact cells", crate::evaluation::FLOOR_CELLS);
         picture.legend(&label, NEUTRAL, Key::Mark(Mark::Hollow(MarkShape::Circle)));
     }
     Ok(picture.save(out, "fig4")?)

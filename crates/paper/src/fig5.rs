@@ -1,9 +1,9 @@
 //! Fig. 5: the equivalent lines.
 
+use crate::evaluation::{FRACTAL_DIMENSION, Flag, Outcome, Run, Session, TableOf, header, list, read_rows};
 use crate::judged::Judged;
 use crate::{curves, words};
 use contact_model::{Line, SelfAffine};
-use evaluation::{FRACTAL_DIMENSION, Flag, Outcome, Run, Session, TableOf, header, list, read_rows};
 use plots::{Axis, LineStyle, Panels, Picture, extent};
 use runs::{CsvFile, Error, Progress, Result, threads_for_memory};
 use std::path::{Path, PathBuf};

@@ -1,8 +1,8 @@
 //! Fig. 6: stiffness over force in one dimension.
 
 use crate::curves::CurveFigure;
+use crate::evaluation::{Model, Run};
 use crate::judged::Judged;
-use evaluation::{Model, Run};
 use runs::{Progress, Result};
 
 pub(crate) const FIGURE: CurveFigure =

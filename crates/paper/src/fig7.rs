@@ -1,8 +1,8 @@
 //! Fig. 7: the factor zeta over the fractal dimension.
 
+use crate::evaluation::Run;
 use crate::fitted::{FittedFigure, Formula};
 use crate::judged::Judged;
-use evaluation::Run;
 use plots::{Axis, LineStyle};
 use runs::{Progress, Result};
 

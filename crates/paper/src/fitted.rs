@@ -2,13 +2,13 @@
 
 use crate::claim::Estimate;
 use crate::claims::{self, Law};
-use crate::judged::Judged;
-use crate::{curves, words};
-use analysis::{Bootstrap, Curves, FitWindow, FittedPowerLaw, StiffnessSample, fit_power_law};
-use evaluation::{
+use crate::evaluation::{
     FRACTAL_DIMENSION, Flag, Measured, Model, Outcome, Run, Series, Session, TableOf, dense_dimensions,
     describe, header, laws, measure, read_rows,
 };
+use crate::judged::Judged;
+use crate::{curves, words};
+use analysis::{Bootstrap, Curves, FitWindow, FittedPowerLaw, StiffnessSample, fit_power_law};
 use plots::{Axis, Key, LineStyle, Mark, MarkShape, Picture, REFERENCE, number};
 use runs::{CsvFile, Error, Progress, Result, Store};
 use serde::Deserialize;

@@ -1,7 +1,7 @@
 //! The outcome of a command of the paper.
 
 use crate::claim::Claim;
-use evaluation::Outcome;
+use crate::evaluation::Outcome;
 use std::ops::Deref;
 
 /// The outcome of a command, with the statements of the paper that its numbers can judge.

@@ -7,7 +7,7 @@
 //! are compared with the numbers ([`Judged`], [`Claim`]).
 //!
 //! ```no_run
-//! use evaluation::{Preset, Request, Run};
+//! use paper::evaluation::{Preset, Request, Run};
 //! use runs::Silent;
 //! let run = Run::new(&Request { preset: Preset::Quick, ..Request::default() })?;
 //! let outcome = paper::fig2(&run, &Silent)?;
@@ -22,7 +22,9 @@
 //! | [`check_reference`] | compares a small run with stored numbers |
 //! | [`redraw`] | draws pictures again from their tables |
 //!
-//! Normalisation, means, jobs and the store are those of `evaluation`. CSV files are those of `runs`.
+//! Normalisation, means and error budgets are those of the module [`evaluation`]. Jobs and the store are those of
+//! scenes (`fractal_contact::scenes`): a figure asks questions and reads the states of their jobs. CSV files are
+//! those of `runs`.
 //!
 //! # What it does not do
 //!
@@ -35,6 +37,7 @@ mod all;
 mod claim;
 mod claims;
 mod curves;
+pub mod evaluation;
 mod exponent;
 mod fig1;
 mod fig2;

@@ -38,9 +38,9 @@ pub fn redraw(directory: &Path, beside: &Beside) -> Result<Vec<PathBuf>> {
         });
     }
     if directory.join("accuracy-cost.csv").exists() {
-        files.extend(evaluation::redraw_accuracy(directory)?);
+        files.extend(crate::evaluation::redraw_accuracy(directory)?);
     }
-    files.extend(evaluation::redraw_benches(directory)?);
+    files.extend(crate::evaluation::redraw_benches(directory)?);
     if directory.join("exponent.csv").exists() {
         files.extend(crate::draw_exponent(directory)?);
     }

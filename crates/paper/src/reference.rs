@@ -1,7 +1,7 @@
 //! Compares a small run with stored numbers, for continuous integration.
 
+use crate::evaluation::{Request, Run};
 use crate::{fig2, fig6};
-use evaluation::{Request, Run};
 use runs::{CsvFile, Error, Progress, Result};
 use std::fs;
 use std::path::{Path, PathBuf};

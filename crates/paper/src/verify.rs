@@ -2,9 +2,9 @@
 
 use crate::claim::{Claim, claims_table, markdown, short_table, sort, together};
 use crate::claims;
+use crate::evaluation::{Flag, Measured, Outcome, Run, Session, describe, header};
 use crate::fitted::both;
 use crate::judged::Judged;
-use evaluation::{Flag, Measured, Outcome, Run, Session, describe, header};
 use runs::{Progress, Result, files, write_csv};
 
 /// Judges every statement (solving what is not stored) and writes `verify.csv`, `verify.md` and the short

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used)] // Helpers outside #[test] functions.
 
-use evaluation::{AccuracyTarget, Model, Request, Run};
+use paper::evaluation::{AccuracyTarget, Model, Request, Run};
 use paper::{Verdict, counts, fig1, fig2, fig3, fig4, fig5, fig6, fig7, verify};
 use runs::{CsvFile, Error, Progress, Silent, Store};
 use std::fs;
@@ -223,12 +223,13 @@ fn an_accuracy_target_is_met_or_refused_with_its_cost() {
         ..Request::default()
     };
     let models = [Model::Bem3d];
-    let plan =
-        |share, seconds| evaluation::plan(&request, &models, AccuracyTarget { share, seconds }, &Silent);
+    let plan = |share, seconds| {
+        paper::evaluation::plan(&request, &models, AccuracyTarget { share, seconds }, &Silent)
+    };
     let planned = plan(0.1, 600.0).unwrap();
     assert!(planned.seconds <= 600.0 && planned.run.surfaces >= 2, "{:?}", planned.lines);
     let target = AccuracyTarget { share: 0.1, seconds: 600.0 };
-    let settled = evaluation::settle(planned, &models, target, &Silent).unwrap();
+    let settled = paper::evaluation::settle(planned, &models, target, &Silent).unwrap();
     let counter = Counter::default();
     fig2(&settled.run, &counter).unwrap();
     assert_eq!(counter.jobs.into_inner(), counter.reused.into_inner());
@@ -241,6 +242,7 @@ fn an_accuracy_target_is_met_or_refused_with_its_cost() {
     );
     let given = Request { cells: Some(65), ..request };
     let refused =
-        evaluation::plan(&given, &models, AccuracyTarget { share: 0.1, seconds: 1.0 }, &Silent).unwrap_err();
+        paper::evaluation::plan(&given, &models, AccuracyTarget { share: 0.1, seconds: 1.0 }, &Silent)
+            .unwrap_err();
     assert!(refused.to_string().starts_with("cells = 65"), "{refused}");
 }

@@ -211,7 +211,7 @@ fn counts_in_the_readme_are_right() {
     let scenes = std::fs::read_dir(root().join("data/scenes")).unwrap();
     let scenes =
         scenes.filter(|entry| entry.as_ref().unwrap().path().extension().is_some_and(|e| e == "toml"));
-    let cases = stability::cases().len();
+    let cases = tests::stability::cases().len();
     for words in [format!("has {} scenes", scenes.count()), format!("{cases} of {cases} pass")] {
         assert!(readme.contains(&words), "README.md does not say \"{words}\"");
     }

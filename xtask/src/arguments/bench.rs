@@ -4,7 +4,7 @@ use super::words::{Words, words};
 use bem3d::Method;
 use clap::Args;
 use contact_model::Boundary;
-use evaluation::{Bench, Forces, Surfaces};
+use paper::evaluation::{Bench, Forces, Surfaces};
 use std::path::PathBuf;
 
 pub(super) const HELP: &str = "\

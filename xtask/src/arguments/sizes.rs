@@ -3,7 +3,7 @@
 use super::cluster::Sharded;
 use super::words::{Words, words};
 use clap::Args;
-use evaluation::{AccuracyTarget, Preset, Request};
+use paper::evaluation::{AccuracyTarget, Preset, Request};
 use std::path::PathBuf;
 
 const PRESETS: Words<Preset> = &[

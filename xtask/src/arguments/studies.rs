@@ -4,8 +4,8 @@ use super::cluster::Sharded;
 use super::sizes::{Solid, share};
 use super::words::{Words, words};
 use clap::Args;
-use evaluation::{Depth, Forces, Request, Run};
 use paper::TwoCases;
+use paper::evaluation::{Depth, Forces, Request, Run};
 use paper::{Exponent, ExponentSizes, PartialSlip, PartialSlipSizes};
 use std::path::PathBuf;
 
@@ -36,7 +36,7 @@ pub struct AccuracyCost {
     #[arg(long = "preset", value_name = "PRESET", value_parser = words(DEPTHS), default_value = "default")]
     pub depth: Depth,
     /// Master seed.
-    #[arg(long, default_value_t = evaluation::SEED)]
+    #[arg(long, default_value_t = paper::evaluation::SEED)]
     pub seed: u64,
     /// Ignore stored results and measure everything again.
     #[arg(long)]
@@ -55,7 +55,7 @@ pub struct BudgetCheck {
     #[arg(long, value_name = "COUNT", default_value_t = 100)]
     pub cases: usize,
     /// Master seed.
-    #[arg(long, default_value_t = evaluation::SEED)]
+    #[arg(long, default_value_t = paper::evaluation::SEED)]
     pub seed: u64,
     /// Threads; 0 means one per core. The CSV file does not depend on it.
     #[arg(long, default_value_t = 0)]
@@ -105,7 +105,7 @@ pub struct TwoCasesArguments {
     #[arg(long, default_value_t = 1e-4, allow_hyphen_values = true)]
     tolerance: f64,
     /// Master seed.
-    #[arg(long, default_value_t = evaluation::SEED)]
+    #[arg(long, default_value_t = paper::evaluation::SEED)]
     seed: u64,
     /// Number of surfaces solved at the same time [default: all cores].
     #[arg(long, allow_hyphen_values = true)]
@@ -186,7 +186,7 @@ pub struct ExponentArguments {
     #[arg(long, value_name = "CSV", value_delimiter = ',', requires = "samples")]
     pub tested: Vec<PathBuf>,
     /// Master seed.
-    #[arg(long, default_value_t = evaluation::SEED)]
+    #[arg(long, default_value_t = paper::evaluation::SEED)]
     seed: u64,
     /// Threads; 0 means one per core. The CSV files do not depend on it.
     #[arg(long, default_value_t = 0)]
@@ -291,7 +291,7 @@ pub struct PartialSlipArguments {
     #[arg(long, allow_hyphen_values = true)]
     tolerance: Option<f64>,
     /// Master seed.
-    #[arg(long, default_value_t = evaluation::SEED)]
+    #[arg(long, default_value_t = paper::evaluation::SEED)]
     seed: u64,
     /// Threads; 0 means one per core. The CSV files do not depend on it.
     #[arg(long, default_value_t = 0)]

@@ -5,12 +5,12 @@ use super::ensemble::{Ensemble, ONE_SURFACE, resampled, stiffness_at};
 use super::solved::height_over_continuous;
 use super::table::{Reason, Row};
 use crate::claim::Estimate;
+use crate::evaluation::{Measured, Series, transformed};
 use analysis::{
     Bootstrap, CollapsePoint, Curves, FitWindow, Residual, collapse as residual, decades_within, interpolate,
     sum,
 };
 use contact_model::PAPER_STIFFNESS_FACTOR;
-use evaluation::{Measured, Series, transformed};
 use runs::Result;
 use std::ops::RangeInclusive;
 

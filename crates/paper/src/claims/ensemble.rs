@@ -3,8 +3,8 @@
 use super::solved::height_ratio;
 use super::table::{Found, Reason, Row};
 use crate::claim::Estimate;
+use crate::evaluation::{Measured, Model, Series, WindowedLaw, law_over_forces_of, windowed_law};
 use analysis::{Bootstrap, Curves, FitWindow, FittedPowerLaw, fit_power_law, interpolate};
-use evaluation::{Measured, Model, Series, WindowedLaw, law_over_forces_of, windowed_law};
 use runs::{Error, Result};
 
 /// The ensembles that a command has solved.

@@ -3,8 +3,8 @@
 use super::ensemble::{Ensemble, Law, ONE_SURFACE, law_of, resampled};
 use super::table::{Found, Reason, Row};
 use crate::claim::Estimate;
+use crate::evaluation::{FLOOR_CELLS, Series, laws};
 use analysis::{Bootstrap, Crossing, FitWindow, crossing, interpolate, sum};
-use evaluation::{FLOOR_CELLS, Series, laws};
 
 /// The sources of error in the intervals of exponents, in words.
 const INTERVAL: &str = "the interval holds scatter, floors of 10, 30 and 100 cells, upper ends of 0.086 and 0.03, and the remaining discretisation error";

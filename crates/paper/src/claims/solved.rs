@@ -3,10 +3,10 @@
 
 use super::table::{Found, Row};
 use crate::claim::Estimate;
+use crate::evaluation::SEED;
 use analytic::spectrum::Spectrum;
 use bem3d::Bem3d;
 use contact_model::{Amplitude, ContactModel, ContactState, Field, Load, Scene, SelfAffine, Surface};
-use evaluation::SEED;
 use mdr1d::Mdr1d;
 use runs::{Error, Result};
 use std::f64::consts::{PI, TAU};

@@ -1,7 +1,7 @@
 //! The table `claims.toml`: its entries, and the verdict of one on a number.
 
 use crate::claim::{Claim, Estimate, Statement};
-use evaluation::Model;
+use crate::evaluation::Model;
 use runs::{Error, Result};
 use serde::Deserialize;
 use std::borrow::Cow;

@@ -1,9 +1,9 @@
 //! Mean curves, local slopes and fits, each with its band.
 
 use super::ladder::{Pair, Rungs, Solved};
+use crate::evaluation::Discretisation;
 use analysis::{Multilevel, Uncertain, slope_weights};
 use contact_model::{Amplitude, SelfAffine};
-use evaluation::Discretisation;
 use runs::{Error, Result};
 use std::ops::Range;
 use surface_gen::{LineGenerator, MapGenerator};

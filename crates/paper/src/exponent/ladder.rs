@@ -1,7 +1,7 @@
 //! Grids from coarse to fine, and pairs of the same surface on neighbouring ones.
 
-use evaluation::limits::{self, require, within};
-use evaluation::{
+use crate::evaluation::limits::{self, require, within};
+use crate::evaluation::{
     Discretisation, Forces, Realisation, RealisationResult, Sample, is_solved, realisation_jobs,
     solve_realisations,
 };

@@ -25,15 +25,15 @@ pub use ladder::Ladder;
 pub use picture::draw as draw_exponent;
 pub use samples::SAMPLES;
 
+use crate::evaluation::limits::require;
+use crate::evaluation::{
+    Discretisation, FRACTAL_DIMENSIONS, Forces, Outcome, Realisation, SEED, Session, header, list,
+    realisation_jobs,
+};
 use crate::judged::Judged;
 use contact_model::ContactModel as _;
 use contact_model::Table;
 use curve::{Convention, MeanCurve};
-use evaluation::limits::require;
-use evaluation::{
-    Discretisation, FRACTAL_DIMENSIONS, Forces, Outcome, Realisation, SEED, Session, header, list,
-    realisation_jobs,
-};
 use fractal_contact::scenes::SceneJob;
 use ladder::{Pair, Rungs};
 use runs::{Header, Progress, Result, Store, files, write_csv};

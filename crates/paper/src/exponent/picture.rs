@@ -1,7 +1,7 @@
 //! The pictures: local slopes with bands and the laws, and the ratio of line to surface.
 
+use crate::evaluation::{distinct, read_rows};
 use crate::words;
-use evaluation::{distinct, read_rows};
 use plots::{Axis, Key, Legend, LineStyle, Mark, Panels, Picture, color, logarithmic, shape};
 use runs::{CsvFile, Result};
 use serde::Deserialize;

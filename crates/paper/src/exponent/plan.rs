@@ -1,7 +1,7 @@
 //! Predicts the cost of the study, and the number of surfaces for a given time.
 
 use super::ladder::{Ladder, Pair, Rungs};
-use evaluation::Forces;
+use crate::evaluation::Forces;
 
 /// Largest ratio of the variance of a level to that of the level before, for differences between grids that
 /// are not measured yet.
@@ -118,8 +118,8 @@ impl Ladder {
     /// Power of the size with which work grows.
     fn growth(&self) -> f64 {
         match self.model {
-            evaluation::Discretisation::Bem3d { .. } => 2.1,
-            evaluation::Discretisation::Mdr1d { .. } => 1.1,
+            crate::evaluation::Discretisation::Bem3d { .. } => 2.1,
+            crate::evaluation::Discretisation::Mdr1d { .. } => 1.1,
         }
     }
 }

@@ -4,7 +4,7 @@ use super::curve::Convention;
 use super::families::Test;
 use super::ladder::Rungs;
 use super::laws::{Factor, LawRow, Limit, eq6, eq24, raised};
-use evaluation::markdown_table;
+use crate::evaluation::markdown_table;
 
 /// `0.5123 +- 0.0045`: as many digits as the error allows.
 fn with_error(value: f64, half_width: f64) -> String {

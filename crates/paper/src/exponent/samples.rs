@@ -1,7 +1,7 @@
 //! Reads the table of samples, and combines several of them.
 
 use super::ladder::{Pair, Rungs, Solved};
-use evaluation::{Discretisation, Forces, read_rows};
+use crate::evaluation::{Discretisation, Forces, read_rows};
 use runs::{CsvFile, Error, Result};
 use serde::Deserialize;
 use std::path::Path;
@@ -147,7 +147,7 @@ impl Solved {
 mod tests {
     use super::super::tables;
     use super::*;
-    use evaluation::header;
+    use crate::evaluation::header;
     use runs::write_csv;
 
     fn solved(forces: &[f64], of: impl Fn(f64) -> f64) -> Solved {

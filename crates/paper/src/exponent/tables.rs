@@ -4,8 +4,8 @@ use super::curve::{Banded, MeanCurve};
 use super::families::Test;
 use super::ladder::{Pair, Rungs, Solved};
 use super::laws::{Factor, LawRow, Limit, Ratio, eq6, eq24, raised};
+use crate::evaluation::{FRACTAL_DIMENSION, TableOf};
 use contact_model::Table;
-use evaluation::{FRACTAL_DIMENSION, TableOf};
 use runs::Result;
 
 const MODEL: &str = "bem3d: 3D boundary elements; mdr1d: 1D reduction";

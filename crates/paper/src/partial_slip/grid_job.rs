@@ -3,12 +3,12 @@
 
 use super::job::{DIRECTIONS, Pressed, converged};
 use super::study::{COEFFICIENT, PartialSlip, SHARES, SlipCase, mindlin};
+use crate::evaluation::Discretisation;
 use bem3d::Bem3d;
 use contact_model::{
     Boundary, ContactModel as _, ContactState, Effects, Error as ModelError, Load, Outputs, PreparedContact,
     Stop,
 };
-use evaluation::Discretisation;
 use runs::{Error, Job, Result, ResultKind};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -161,8 +161,8 @@ impl Job for GridJob {
             bem3d::FORMAT,
             study.shortest(),
             study.tolerance,
-            evaluation::list(study.forces.values()),
-            evaluation::list(self.of_friction()),
+            crate::evaluation::list(study.forces.values()),
+            crate::evaluation::list(self.of_friction()),
         )
     }
 

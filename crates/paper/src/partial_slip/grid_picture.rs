@@ -1,7 +1,7 @@
 //! The picture of the grid study, drawn from its table.
 
+use crate::evaluation::{distinct, read_rows};
 use crate::words;
-use evaluation::{distinct, read_rows};
 use plots::{Axis, Key, Legend, LineStyle, Mark, Panels, Picture, REFERENCE, color, shape};
 use runs::{CsvFile, Result};
 use serde::Deserialize;

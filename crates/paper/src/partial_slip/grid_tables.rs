@@ -5,8 +5,8 @@ use super::grid_means::{GridRow, SolvedGrids};
 use super::grid_tests::Test;
 use super::study::PartialSlip;
 use super::tables::{FORCE, HALF, POISSON, SHARE, SURFACES, half, value};
+use crate::evaluation::{FRACTAL_DIMENSION, TableOf, markdown_table};
 use contact_model::Table;
-use evaluation::{FRACTAL_DIMENSION, TableOf, markdown_table};
 use runs::Result;
 
 const GRID: &str =

@@ -5,10 +5,10 @@ use super::grid_means::{self, SolvedGrids};
 use super::grid_picture::{self, GRIDS};
 use super::study::{PartialSlip, SHARES};
 use super::{grid_tables, grid_tests};
+use crate::evaluation::{Outcome, Session, header, list};
 use crate::judged::Judged;
 use bem3d::Bem3d;
 use contact_model::{ContactModel as _, never};
-use evaluation::{Outcome, Session, header, list};
 use runs::{Job, Progress, Result, Threads, collect, files, run_stored, threads_for_memory, write_csv};
 use std::sync::Arc;
 

@@ -3,11 +3,11 @@
 use super::study::{
     AMPLITUDES, COEFFICIENT, PartialSlip, SHARES, SlipCase, SlipPoint, Slipped, SurfaceSlips, mindlin,
 };
+use crate::evaluation::Discretisation;
 use bem3d::Bem3d;
 use contact_model::{
     ContactModel, ContactState, Error as ModelError, Load, Outputs, PreparedContact, Step, Stop, Tangential,
 };
-use evaluation::Discretisation;
 use mdr1d::Equivalent;
 use runs::{Error, Job, Result, ResultKind};
 use std::sync::Arc;
@@ -238,8 +238,8 @@ impl Job for SlipJob {
             study.tolerance,
             case.boundary,
             case.fractal_dimension,
-            evaluation::list(study.forces.values()),
-            evaluation::list(&study.poissons),
+            crate::evaluation::list(study.forces.values()),
+            crate::evaluation::list(&study.poissons),
             study.increments,
         )
     }

@@ -22,10 +22,10 @@ mod tables;
 pub use picture::draw as draw_partial_slip;
 pub use study::{PartialSlip, PartialSlipSizes};
 
+use crate::evaluation::{Outcome, Session, header, list};
 use crate::judged::Judged;
 use bem3d::Bem3d;
 use contact_model::{ContactModel as _, never};
-use evaluation::{Outcome, Session, header, list};
 pub(crate) use grid_picture::{GRIDS, draw as draw_partial_slip_grids};
 use job::SlipJob;
 use means::SolvedCase;

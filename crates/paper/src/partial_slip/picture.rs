@@ -1,7 +1,7 @@
 //! The pictures of the study of partial slip, drawn from its tables.
 
+use crate::evaluation::{distinct, read_rows};
 use crate::words;
-use evaluation::{distinct, read_rows};
 use plots::{Axis, COLORS, Key, Legend, LineStyle, Mark, Panels, Picture, REFERENCE, SHAPES, color, shape};
 use runs::{CsvFile, Result};
 use serde::Deserialize;

@@ -3,7 +3,7 @@
 use super::means::{LoopRow, SlipRow, StiffnessRow};
 use super::study::PartialSlip;
 use crate::claim::Estimate;
-use evaluation::markdown_table;
+use crate::evaluation::markdown_table;
 
 /// Shares of the sliding force in the table.
 const SHOWN: [f64; 3] = [0.3, 0.6, 0.9];

@@ -1,8 +1,8 @@
 //! The parameters of the study of partial slip, and the results of a surface.
 
+use crate::evaluation::limits::{self, require, within};
+use crate::evaluation::{Forces, SEED, list};
 use contact_model::{Body, Boundary, Effects, Friction, Outputs, Pair, Scene, SelfAffine, Surface};
-use evaluation::limits::{self, require, within};
-use evaluation::{Forces, SEED, list};
 use runs::{Error, Result};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;

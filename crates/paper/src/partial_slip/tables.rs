@@ -4,8 +4,8 @@ use super::means::{LoopRow, SlipRow, StiffnessRow};
 use super::study::{PartialSlip, SlipPoint, mindlin};
 use super::{SlipCase, SolvedCase};
 use crate::claim::Estimate;
+use crate::evaluation::{FRACTAL_DIMENSION, TableOf};
 use contact_model::Table;
-use evaluation::{FRACTAL_DIMENSION, TableOf};
 use runs::Result;
 
 pub(super) const FORCE: &str = "F/(E* h L), h the measured rms height of each surface";

@@ -6,12 +6,12 @@ mod study;
 
 pub use study::TwoCases;
 
+use crate::evaluation::{Outcome, Session, header, of_scene};
 use crate::judged::Judged;
 use analysis::{Curves, StiffnessSample, ensemble};
 use analytic::{GreenwoodWilliamson, Persson};
 use bem3d::Bem3d;
 use contact_model::{ContactModel as _, ContactState, Status};
-use evaluation::{Outcome, Session, header, of_scene};
 use fractal_contact::scenes::{ModelResult, SceneFile, SceneJob, jobs_of_scenes, solve_jobs};
 pub(crate) use picture::draw;
 use picture::{names, pairs_table, table};
@@ -204,8 +204,8 @@ fn theory(
 mod tests {
     use super::reading::{difference, loads_between, proportional, slopes};
     use super::*;
+    use crate::evaluation::Forces;
     use contact_model::Boundary;
-    use evaluation::Forces;
     use runs::CsvFile;
     use runs::Silent;
 

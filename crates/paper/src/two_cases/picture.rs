@@ -2,10 +2,10 @@
 
 use super::reading::slopes;
 use super::study::{CaseCurve, NAME, NAMES, PairRow};
+use crate::evaluation::{FLOOR_CELLS, FRACTAL_DIMENSION, TableOf, read_rows};
 use crate::words;
 use contact_model::PAPER_STIFFNESS_FACTOR;
 use contact_model::Table;
-use evaluation::{FLOOR_CELLS, FRACTAL_DIMENSION, TableOf, read_rows};
 use plots::{Key, LineStyle, Mark, MarkShape, NEUTRAL, Picture, logarithmic};
 use runs::{CsvFile, Result};
 use serde::Deserialize;

@@ -3,9 +3,9 @@
 use super::study::{CaseCurve, CasePoint, PairRow, Solves, SurfaceCase, TwoCases};
 use crate::claim::{Claim, Estimate, plain};
 use crate::claims::{self, CaseData, Cases, Data, Entry, Found, Row};
+use crate::evaluation::{FLOOR_CELLS, list, markdown_table};
 use analysis::{Bootstrap, Curves, FitWindow, Multilevel, fit_power_law, slope_weights};
 use contact_model::Boundary;
-use evaluation::{FLOOR_CELLS, list, markdown_table};
 use runs::{Error, Result};
 
 /// Shares of the square in contact between which the theories of random surfaces are compared: many summits,

@@ -1,11 +1,11 @@
 //! The two problems and their results.
 
 use crate::claim::Estimate;
+use crate::evaluation::limits::{self, require, within};
+use crate::evaluation::{Forces, list};
 use analysis::StiffnessSample;
 use bem3d::Bem3d;
 use contact_model::{Boundary, Scene, SelfAffine, Surface};
-use evaluation::limits::{self, require, within};
-use evaluation::{Forces, list};
 use fractal_contact::scenes::{
     AskedLoads, AskedSampling, AskedSelfAffine, AskedSurface, LoadKind, LoadList, Material, Numerics,
     Question, System,

@@ -1,0 +1,144 @@
+//! Cells that reach the hardness.
+
+use crate::stability::case::{Case, Effort};
+use crate::stability::ledger::{Ledger, approach, pressure};
+use crate::stability::maps::{hard_map, map, rough_map};
+use crate::stability::plain::PlainSum;
+use crate::stability::press::{forces, tight, watched};
+use contact_model::{ContactModel, ContactState, Error, Hardness, HeightMap, Load, Result};
+
+pub(super) const CASES: [Case; 4] = [
+    Case {
+        name: "a flat punch at the hardness",
+        why: "no cell ever opens: the edge saturates first, and the approach has no bound as the force reaches that of all cells",
+        asserted: "the conditions by plain sums; every cell in contact; forces of all cells and more are refused with that force",
+        bound: 1e-9,
+        solve: flat,
+    },
+    Case {
+        name: "hard maps with a hardness",
+        why: "noise, steps, spikes and heights over twenty decades: sets of elastic cells are single cells and rims one cell wide, and \
+              sets that follow from each other alternate",
+        asserted: "the conditions by plain sums, from a hardness that few cells reach to one that nearly all do",
+        bound: 1e-9,
+        solve: maps,
+    },
+    Case {
+        name: "two scales with a hardness",
+        why: "the fine scale flows under every load, the coarse one is elastic for long: saturated cells are sprinkled over an elastic contact",
+        asserted: "the conditions by plain sums; area at least F/p_s and increasing in the load",
+        bound: 1e-9,
+        solve: two_scales,
+    },
+    Case {
+        name: "near full plasticity",
+        why: "a hardness of 0.1 E*, a slope of 0.08, a mean pressure of 0.0999 E*: a few cells decide the approach, and solvers ran for ever",
+        asserted: "the conditions by plain sums up to all cells but a thousandth at the hardness",
+        bound: 1e-9,
+        solve: full,
+    },
+];
+
+/// The residual of the conditions of `0 <= p <= p_s`, by plain sums. Gaps are in rms heights, or in
+/// approaches where there is no rms height.
+fn conditions(ledger: &mut Ledger, map: &HeightMap, hardness: f64, state: &ContactState) -> Result<()> {
+    ledger.meets(state, tight().tolerance);
+    let (p, d) = (pressure(state)?, approach(state)?);
+    let cell = map.dx() * map.dy();
+    let u = PlainSum::of(map).displacement(&forces(state, map)?);
+    let rms = surface_gen::rms_height(map.heights());
+    let unit = if rms > 0.0 { rms } else { d };
+    let mut saturated = 0;
+    for (i, (&p, u)) in p.iter().zip(&u).enumerate() {
+        let gap = (u + map.highest() - map.heights()[i] - d) / unit;
+        // Pressures leave the solver in other units than they came.
+        let full = p >= hardness * (1.0 - 1e-12);
+        saturated += usize::from(full);
+        ledger.must(p >= 0.0 && p <= hardness * (1.0 + 1e-12), || format!("pressure {p} of {hardness}"));
+        ledger.enter(if full {
+            gap.max(0.0)
+        } else if p > 0.0 {
+            gap.abs() * p / hardness
+        } else {
+            (-gap).max(0.0)
+        });
+    }
+    let area = state.plastic.map_or(0.0, |plastic| plastic.area);
+    ledger.must((area / cell - saturated as f64).abs() < 0.5, || {
+        format!("{saturated} saturated cells, {area}")
+    });
+    Ok(())
+}
+
+/// Solves a map for forces, given as shares of the largest force that all cells carry.
+fn pressed(ledger: &mut Ledger, map: &HeightMap, hardness: f64, shares: &[f64]) -> Result<Vec<ContactState>> {
+    let mut scene = watched(map);
+    scene.outputs.stiffness = false;
+    scene.effects.hardness = Hardness::Limit { pressure: hardness };
+    let capacity = hardness * map.size().x * map.size().y;
+    let mut contact = tight().prepare(&scene, 0)?;
+    let mut states = Vec::new();
+    for share in shares {
+        let state = contact.solve(Load::force(share * capacity))?;
+        conditions(ledger, map, hardness, &state)?;
+        states.push(state);
+    }
+    for beyond in [1.0, 1.5] {
+        let refused = contact.solve(Load::force(beyond * capacity));
+        let told = |max: f64| (max / capacity - 1.0).abs() < 1e-12;
+        ledger.must(matches!(&refused, Err(Error::OutOfRange { max, .. }) if told(*max)), || {
+            format!("a force of {beyond} of all cells is not refused: {}", refused.is_ok())
+        });
+    }
+    Ok(states)
+}
+
+fn flat(ledger: &mut Ledger, effort: Effort) -> Result<()> {
+    let cells = effort.pick(32, 96);
+    let map = map(cells, 1.0, |_, _| 0.0)?;
+    let states = pressed(ledger, &map, 0.3, &[0.1, 0.5, 0.9, 0.99, 0.9999])?;
+    for state in &states {
+        ledger.contact_cells(state, cells * cells);
+    }
+    Ok(())
+}
+
+fn maps(ledger: &mut Ledger, effort: Effort) -> Result<()> {
+    let cells = effort.pick(24, 64);
+    let noise: Vec<f64> = (0..1000).map(|i| (f64::from(i) * 0.618_033_988_75).fract()).collect();
+    for kind in 0..7 {
+        let map = hard_map(kind, cells, &noise)?;
+        for hardness in [30.0, 1.0, 0.03, 1e-4] {
+            pressed(ledger, &map, hardness, &[1e-3, 0.03, 0.3, 0.7, 0.97])?;
+        }
+    }
+    Ok(())
+}
+
+fn two_scales(ledger: &mut Ledger, effort: Effort) -> Result<()> {
+    let cells = effort.pick(48, 128);
+    let fine = rough_map(2.6, cells, 4)?;
+    let round = |i: usize| (i as f64 + 0.5) / cells as f64 - 0.5;
+    let map = map(cells, 1.0, |x, y| {
+        0.003 * fine.heights()[y * cells + x] - 0.5 * (round(x).powi(2) + round(y).powi(2))
+    })?;
+    for hardness in [0.5, 0.1, 0.02] {
+        let shares = [1e-3, 0.01, 0.1, 0.5, 0.9];
+        let states = pressed(ledger, &map, hardness, &shares)?;
+        let mut last = 0.0;
+        for (state, share) in states.iter().zip(shares) {
+            let area = state.area.unwrap_or(f64::NAN);
+            ledger.must(area >= last && area >= share * (1.0 - 1e-9), || format!("area {area} at {share}"));
+            last = area;
+        }
+    }
+    Ok(())
+}
+
+fn full(ledger: &mut Ledger, effort: Effort) -> Result<()> {
+    let cells = effort.pick(64, 128);
+    let rough = rough_map(2.2, cells, 9)?;
+    let slope = surface_gen::rms_slope_differences(&rough);
+    pressed(ledger, &rough.scaled(1.0, 0.08 / slope)?, 0.1, &[1e-3, 0.01, 0.1, 0.3, 0.6, 0.9, 0.99, 0.999])?;
+    Ok(())
+}
