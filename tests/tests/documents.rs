@@ -268,7 +268,7 @@ fn documents_follow_from_the_tables() {
         parts("ARCHITECTURE.md", &[("crates", crates::crates())]),
     ];
     let packages = sources::packages();
-    let front = packages.iter().map(|p| page(&format!("crates/{}/README.md", p.name), readmes::readme(p)));
+    let front = packages.iter().map(|p| page(&format!("{}/README.md", p.folder), readmes::readme(p)));
     let documents = documents.into_iter().chain(front);
     for (file, expected, found) in documents {
         if update {

@@ -17,9 +17,9 @@ pub fn crates() -> String {
 pub fn modules_page() -> String {
     let mut text = String::from(
         "# Crates and modules\n\n\
-         Where is a piece of the code? This page lists every crate of `crates/`, each after those that it uses, with\n\
-         its modules and the first sentence of each. It is written from the sources, and a test compares it with\n\
-         them. \
+         Where is a piece of the code? This page lists every crate of `crates/` and `reproduction/`, each after those\n\
+         that it uses, with its modules and the first sentence of each. It is written from the sources, and a test\n\
+         compares it with them. \
          [ARCHITECTURE.md](../..) has the rules that hold between crates.\n",
     );
     for package in packages() {

@@ -12,9 +12,7 @@ pub(super) fn documents() -> Vec<PathBuf> {
     found.extend(
         ["ARCHITECTURE.md", "CONTRIBUTING.md", "README.md", "GLOSSARY.md"].map(|name| root().join(name)),
     );
-    found.extend(
-        super::sources::packages().iter().map(|p| root().join("crates").join(&p.name).join("README.md")),
-    );
+    found.extend(super::sources::packages().iter().map(|p| root().join(&p.folder).join("README.md")));
     found
 }
 
@@ -134,7 +132,7 @@ fn names_in_documents_exist() {
     let tree = tree();
     let top: BTreeSet<&str> = tree.iter().map(String::as_str).filter(|name| !name.contains('/')).collect();
     let mut sources = String::new();
-    for folder in ["crates", "xtask", "tests", "python"] {
+    for folder in ["crates", "reproduction", "xtask", "tests", "python"] {
         for file in files(&root().join(folder), ".rs") {
             let text = std::fs::read_to_string(file).unwrap();
             for line in text.lines().filter(|line| !line.trim_start().starts_with("//")) {
@@ -191,7 +189,7 @@ fn functions_are_in_the_files_that_front_pages_name() {
         let rows = package.front_page.lines().skip_while(|line| !line.starts_with("| file | functions |"));
         for row in rows.skip(2).take_while(|line| line.starts_with('|')) {
             let cells: Vec<&str> = row.split('|').map(str::trim).collect();
-            let file = root().join("crates").join(&package.name).join("src").join(cells[1].trim_matches('`'));
+            let file = root().join(&package.folder).join("src").join(cells[1].trim_matches('`'));
             let text = std::fs::read_to_string(&file).unwrap_or_else(|e| panic!("{}: {e}", file.display()));
             for name in cells[2].split('`').skip(1).step_by(2) {
                 let name = name.rsplit("::").next().unwrap();

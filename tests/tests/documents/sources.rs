@@ -5,15 +5,17 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use syn::{Attribute, Expr, ExprLit, Item, Lit, Meta};
 
-/// A crate of `crates/`.
+/// A crate of `crates/` or `reproduction/`.
 pub struct Package {
-    /// Its folder, by which the others depend on it.
+    /// Name of its folder, by which the others depend on it.
     pub name: String,
+    /// Its folder from the root on.
+    pub folder: String,
     /// `name` of its Cargo.toml.
     pub registered: String,
     /// `description` of its Cargo.toml.
     pub description: String,
-    /// Crates of `crates/` among its `[dependencies]`.
+    /// Crates of these folders among its `[dependencies]`.
     pub uses: BTreeSet<String>,
     /// Text of the `//!` lines of its library.
     pub front_page: String,
@@ -31,7 +33,8 @@ pub struct Module {
 
 /// The crates, each after those that it uses.
 pub fn packages() -> Vec<Package> {
-    let folders = std::fs::read_dir(root().join("crates")).unwrap().map(|entry| entry.unwrap().path());
+    let inside = |of: &str| std::fs::read_dir(root().join(of)).unwrap().map(|entry| entry.unwrap().path());
+    let folders = inside("crates").chain(inside("reproduction"));
     let folders: Vec<PathBuf> = folders.filter(|folder| folder.join("Cargo.toml").exists()).collect();
     let name = |folder: &PathBuf| folder.file_name().unwrap().to_string_lossy().into_owned();
     let names: BTreeSet<String> = folders.iter().map(name).collect();
@@ -92,6 +95,7 @@ fn package(folder: &Path, name: String, names: &BTreeSet<String>) -> Package {
             .filter(|file| file.exists())
             .flat_map(|file| modules(&parsed(file).items, &source))
             .collect(),
+        folder: folder.strip_prefix(root()).unwrap().display().to_string(),
         name,
     }
 }
