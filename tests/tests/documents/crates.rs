@@ -73,6 +73,15 @@ fn ci_lists_the_existing_dependencies() {
 }
 
 #[test]
+fn the_table_by_readers_has_every_crate() {
+    let text = std::fs::read_to_string(root().join(super::names::FOR_READERS)).unwrap();
+    for package in packages().iter().filter(|package| package.folder.starts_with("crates/")) {
+        let link = format!("({}/README.md)", package.name);
+        assert!(text.contains(&link), "{} has no {}", super::names::FOR_READERS, package.name);
+    }
+}
+
+#[test]
 fn models_are_used_together_only_where_the_architecture_says() {
     let all = packages();
     let models = |package| {

@@ -5,12 +5,23 @@ use super::{BEGIN, END, root};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
+/// The table of crates by their readers.
+pub(super) const FOR_READERS: &str = "crates/README.md";
+
 /// Documents with names of this repository. The change log also has names that no longer exist.
 pub(super) fn documents() -> Vec<PathBuf> {
     let mut found = files(&root().join("book/src"), ".md");
     found.retain(|page| !page.ends_with("SUMMARY.md"));
     found.extend(
-        ["ARCHITECTURE.md", "CONTRIBUTING.md", "README.md", "GLOSSARY.md"].map(|name| root().join(name)),
+        [
+            "ARCHITECTURE.md",
+            "CONTRIBUTING.md",
+            "README.md",
+            "GLOSSARY.md",
+            FOR_READERS,
+            "reproduction/README.md",
+        ]
+        .map(|name| root().join(name)),
     );
     found.extend(super::sources::packages().iter().map(|p| root().join(&p.folder).join("README.md")));
     found

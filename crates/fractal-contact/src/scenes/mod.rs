@@ -106,7 +106,7 @@ pub use read::registered_model::RegisteredModel;
 pub use read::registry::Registry;
 pub use read::scene_file::{Sampling, SceneFile};
 pub use read::scene_surface::SceneSurface;
-pub use run::ensemble::{jobs_of_scenes, solve_jobs};
+pub use run::ensemble::{jobs_of_scenes, solve_jobs, solve_jobs_in_order};
 pub use run::outcome::{Options, SceneOutcome};
 pub use run::pilot::SharedStop;
 pub use run::scene_job::{SceneJob, jobs};

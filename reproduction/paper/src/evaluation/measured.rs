@@ -9,7 +9,7 @@ use crate::evaluation::run::Run;
 use crate::evaluation::sample::{FLOOR_CELLS, Sample};
 use crate::evaluation::so_far::SoFar;
 use analysis::{CollapsePoint, Curves, EnsemblePoint, ensemble, relative_differences};
-use fractal_contact::scenes::{self, ModelResult, SceneJob, solve_jobs};
+use fractal_contact::scenes::{self, ModelResult, SceneJob, solve_jobs_in_order};
 use runs::amounts::duration;
 use runs::{Error, Job as _, Ordered, Progress, Result, Store};
 use std::sync::Arc;
@@ -84,7 +84,7 @@ pub fn measure_showing(
         Ok(())
     };
     let ordered = Ordered { jobs: &jobs, order: &order, solved: &solved };
-    let states = solve_jobs(&what, &ordered, store, run.threads, progress).map_err(of_scene)?;
+    let states = solve_jobs_in_order(&what, &ordered, store, run.threads, progress).map_err(of_scene)?;
     let mut results = all.iter().zip(&states).map(|(realisation, states)| realisation.read(states));
     let mut measured = Vec::new();
     for realisations in ensembles.into_iter().rev() {

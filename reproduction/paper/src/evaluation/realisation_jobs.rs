@@ -2,7 +2,7 @@
 
 use crate::evaluation::realisation::{Realisation, RealisationResult, of_scene, realisation_jobs};
 use fractal_contact::scenes::{SceneJob, solve_jobs};
-use runs::{Job as _, Ordered, Progress, Result, Store, largest_first};
+use runs::{Job as _, Progress, Result, Store};
 use std::path::Path;
 
 /// Solves the realisations that the store of `out` does not hold, the largest first, and returns the results in
@@ -22,9 +22,7 @@ pub fn solve_realisations(
     progress: &dyn Progress,
 ) -> Result<Vec<RealisationResult>> {
     let jobs = realisation_jobs(realisations, out)?;
-    let order = largest_first(jobs.len(), |i| jobs[i].cost());
-    let ordered = Ordered { jobs: &jobs, order: &order, solved: &|_, _| Ok(()) };
-    let states = solve_jobs(what, &ordered, store, threads, progress).map_err(of_scene)?;
+    let states = solve_jobs(what, &jobs, store, threads, progress).map_err(of_scene)?;
     realisations.iter().zip(&states).map(|(realisation, states)| realisation.read(states)).collect()
 }
 

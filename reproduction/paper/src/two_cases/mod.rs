@@ -16,7 +16,7 @@ use fractal_contact::scenes::{ModelResult, SceneFile, SceneJob, jobs_of_scenes, 
 pub(crate) use picture::draw;
 use picture::{names, pairs_table, table};
 use reading::{SolvedCase, judged, pairs, summary};
-use runs::{Error, Job as _, JobList, Ordered, Progress, Result, Store, files, largest_first, write_csv};
+use runs::{Error, JobList, Progress, Result, Store, files, write_csv};
 use std::path::Path;
 pub(crate) use study::NAME;
 use study::{CaseCurve, CasePoint, CaseSolve, Solves, SurfaceCase};
@@ -113,9 +113,7 @@ fn solve(
     let scenes = scenes_of(study, out)?;
     let what = format!("{} surfaces of {} cells a side", scenes.len() * study.surfaces, study.cells);
     let jobs = jobs_of_scenes(&scenes, out);
-    let order = largest_first(jobs.len(), |job| jobs[job].cost());
-    let ordered = Ordered { jobs: &jobs, order: &order, solved: &|_, _| Ok(()) };
-    let states = solve_jobs(&what, &ordered, store, study.threads, progress).map_err(of_scene)?;
+    let states = solve_jobs(&what, &jobs, store, study.threads, progress).map_err(of_scene)?;
     let mut cases: Vec<Vec<CaseStates>> = scenes.iter().map(|_| Vec::new()).collect();
     for (job, states) in jobs.into_iter().zip(states) {
         cases[job.scene()].push((job, states));

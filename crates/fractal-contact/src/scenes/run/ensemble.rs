@@ -4,7 +4,7 @@ use crate::scenes::plan::calibration;
 use crate::scenes::read::{Result, SceneFile};
 use crate::scenes::run::{Answer, ModelResult, SceneJob, scene_jobs};
 use contact_model::{ContactState, Normalisation, never};
-use runs::{Job as _, Ordered, Progress, Store, Threads, run_in_order};
+use runs::{Job as _, Ordered, Progress, Store, Threads, largest_first, run_in_order};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -18,12 +18,34 @@ pub fn jobs_of_scenes(scenes: &[SceneFile], out: &Path) -> Vec<SceneJob> {
     scenes.iter().enumerate().flat_map(of).collect()
 }
 
-/// Solves those of the jobs that the store does not hold, as many at the same time as fit into memory, and
-/// returns the states of all in the order of the jobs. No file is written besides the store.
+/// Solves those of the jobs that the store does not hold, the most expensive first and as many at the same time
+/// as fit into memory, and returns the states of all in the order of the jobs. No file is written besides the
+/// store.
 ///
 /// # Errors
 /// The first error in the order of the jobs; a scene that does not fit into memory.
 pub fn solve_jobs(
+    what: &str,
+    jobs: &[SceneJob],
+    store: &Store,
+    threads: usize,
+    progress: &dyn Progress,
+) -> Result<Vec<ModelResult>> {
+    let order = largest_first(jobs.len(), |job| jobs[job].cost());
+    solve_jobs_in_order(
+        what,
+        &Ordered { jobs, order: &order, solved: &|_, _| Ok(()) },
+        store,
+        threads,
+        progress,
+    )
+}
+
+/// As [`solve_jobs`], in another order than that of the costs.
+///
+/// # Errors
+/// As there; what [`Ordered::solved`] returns.
+pub fn solve_jobs_in_order(
     what: &str,
     ordered: &Ordered<'_, SceneJob>,
     store: &Store,
