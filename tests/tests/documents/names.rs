@@ -192,15 +192,18 @@ fn names_in_documents_exist() {
     assert!(wrong.is_empty(), "names that are not there:\n{}", wrong.join("\n"));
 }
 
-/// Tables `file, functions` on front pages of crates.
+/// Tables `file, functions` of ARCHITECTURE.md and on front pages of crates, whose files are in their `src`.
 #[test]
-fn functions_are_in_the_files_that_front_pages_name() {
+fn functions_are_in_the_files_that_tables_name() {
     let mut checked = 0;
-    for package in super::sources::packages() {
-        let rows = package.front_page.lines().skip_while(|line| !line.starts_with("| file | functions |"));
+    let architecture = std::fs::read_to_string(root().join("ARCHITECTURE.md")).unwrap();
+    let packages = super::sources::packages();
+    let front_pages = packages.iter().map(|p| (root().join(&p.folder).join("src"), &p.front_page));
+    for (folder, page) in std::iter::once((root(), &architecture)).chain(front_pages) {
+        let rows = page.lines().skip_while(|line| !line.starts_with("| file | functions |"));
         for row in rows.skip(2).take_while(|line| line.starts_with('|')) {
             let cells: Vec<&str> = row.split('|').map(str::trim).collect();
-            let file = root().join(&package.folder).join("src").join(cells[1].trim_matches('`'));
+            let file = folder.join(cells[1].trim_matches('`'));
             let text = std::fs::read_to_string(&file).unwrap_or_else(|e| panic!("{}: {e}", file.display()));
             for name in cells[2].split('`').skip(1).step_by(2) {
                 let name = name.rsplit("::").next().unwrap();

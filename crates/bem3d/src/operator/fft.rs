@@ -74,7 +74,7 @@ impl<T: Real> InfluenceOperator<T> for FftConvolution<T> {
     fn apply(&mut self, sources: &CellSet, p: &[T], targets: &CellSet, u: &mut [T]) {
         let Window { x: x0, y: y0, .. } = self.window();
         let held = |y: usize| targets.row(y + y0).is_some();
-        self.forward(
+        self.transform.forward(
             |y| sources.row(y + y0).is_some(),
             |y, line| {
                 if let Some(row) = sources.row(y + y0) {
