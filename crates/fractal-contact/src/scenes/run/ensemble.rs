@@ -52,12 +52,20 @@ pub fn solve_jobs_in_order(
     threads: usize,
     progress: &dyn Progress,
 ) -> Result<Vec<ModelResult>> {
-    let (mut in_flight, mut seen) = (threads, Vec::new());
+    let mut scenes: Vec<&Arc<SceneFile>> = Vec::new();
     for SceneJob { scene, .. } in ordered.jobs {
-        if !seen.iter().any(|other| Arc::ptr_eq(other, scene)) {
-            seen.push(Arc::clone(scene));
-            in_flight = in_flight.min(calibration::jobs_in_memory(scene, threads)?);
+        if !scenes.iter().any(|other| Arc::ptr_eq(other, scene)) {
+            scenes.push(scene);
         }
+    }
+    // The largest one first: its size is the one to name where it does not fit.
+    let memory = |scene: &SceneFile| {
+        scene.models.iter().map(|model| calibration::least_memory(scene, model)).fold(0.0, f64::max)
+    };
+    scenes.sort_by(|a, b| memory(b).total_cmp(&memory(a)));
+    let mut in_flight = threads;
+    for scene in scenes {
+        in_flight = in_flight.min(calibration::jobs_in_memory(scene, threads)?);
     }
     let threads = Threads { total: threads, jobs: in_flight };
     let done = run_in_order(what, ordered, store, threads, progress, &never);
