@@ -4,7 +4,7 @@ use crate::scenes::plan::{FORMAT, ModelOnSurface, calibration};
 use crate::scenes::read::{Error, Result, SceneFile, cells};
 use crate::scenes::run::{KeepResult, Keeper, ModelResult, SharedModels, field_pictures};
 use contact_model::Stop;
-use runs::{Checkpoint, Job, JobList, Progress, ResultKind, Silent, StatesInHand, Store};
+use runs::{Checkpoint, Job, JobList, Progress, ResultKind, Silent, StatesInHand, Store, fnv1a_128};
 use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
@@ -99,8 +99,13 @@ impl SceneJob {
     ) -> Result<ModelResult> {
         begun.kept = begun.states.len();
         let (model, surface) = (self.unit.numerics(&self.scene).name(), self.unit.surface);
-        let among = self.among.map_or_else(String::new, |scene| format!("{scene}-"));
-        let checkpoint = Checkpoint::new(&self.out, &format!("{among}{model}-{surface}"), &self.stored_key());
+        let key = self.stored_key();
+        // Other scenes may have left theirs in the directory, also those of another command.
+        let scene = match self.among {
+            Some(_) => format!("{:08x}-", fnv1a_128(key.as_bytes()) >> 96),
+            None => String::new(),
+        };
+        let checkpoint = Checkpoint::new(&self.out, &format!("{scene}{model}-{surface}"), &key);
         let states = [begun.kept, self.scene.request.count()];
         let told = StatesInHand::new((self.name(), self.cost()), states, progress, stop);
         let mut keeper = Keeper::new(store, checkpoint, progress, self.name(), &told);
