@@ -1,20 +1,17 @@
-//! Files that are written whole or not at all, and text out of files that is safe to show in a terminal.
+//! Files that are written whole or not at all.
 //!
 //! What is in a file if the program is killed while it writes? With [`write_whole`] either the old content or
 //! the new one. The content is first written to a temporary file in the same directory and flushed to the
 //! disk. The temporary file is then renamed. [`clean`] removes the temporary files of killed processes.
 //!
-//! [`read`] reads a file only if its length is known before memory is allocated. Names and texts that come
-//! out of files are shown through [`Escaping`], so that they cannot control the terminal.
+//! [`read`] reads a file only if its length is known before memory is allocated.
 //!
 //! # What it does not do
 //!
 //! It knows no format of any file.
 
 mod error;
-mod escape;
 mod whole;
 
 pub use error::{Error, Result};
-pub use escape::{Escaping, escaped};
 pub use whole::{clean, create_directory, read, write_whole};

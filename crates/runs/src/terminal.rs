@@ -1,7 +1,7 @@
 //! Text for standard output and standard error. Writing it never panics, and its control characters are
 //! escaped.
 
-use files::Escaping;
+use contact_model::Escaping;
 use std::fmt::{self, Arguments, Write as _};
 use std::io::{ErrorKind, Write};
 

@@ -7,8 +7,8 @@ use crate::number_type::NumberType;
 use crate::options::Axes;
 use crate::quantity::{Dimension, QuantityError, Unit};
 use crate::source::Source;
+use contact_model::escaped;
 use contact_model::units::number;
-use files::escaped;
 
 /// Unit of a channel's values as stated in the file.
 #[derive(Debug, Clone, PartialEq)]

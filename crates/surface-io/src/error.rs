@@ -2,8 +2,8 @@
 
 use crate::format::Format;
 use crate::quantity::{Quantity, QuantityError};
+use contact_model::Escaping;
 use contact_model::units::number;
-use files::Escaping;
 use std::fmt::{self, Write as _};
 use std::io;
 use std::path::{Path, PathBuf};

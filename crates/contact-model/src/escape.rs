@@ -8,7 +8,7 @@ use std::fmt::{self, Write};
 /// ```
 /// use std::fmt::Write as _;
 /// let mut shown = String::new();
-/// write!(files::Escaping::of_line(&mut shown), "{}", "Height\u{1b}[2J\n").unwrap();
+/// write!(contact_model::Escaping::of_line(&mut shown), "{}", "Height\u{1b}[2J\n").unwrap();
 /// assert_eq!(shown, "Height\\u{1b}[2J\\n");
 /// ```
 #[derive(Debug)]
