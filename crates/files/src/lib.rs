@@ -14,4 +14,4 @@ mod error;
 mod whole;
 
 pub use error::{Error, Result};
-pub use whole::{clean, create_directory, read, write_whole};
+pub use whole::{clean, create_directory, read, write_all, write_whole};

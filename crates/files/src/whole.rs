@@ -3,7 +3,7 @@
 use crate::error::{Error, Result};
 use std::fs;
 use std::io::{Read as _, Write as _};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
@@ -60,6 +60,23 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
         Err(_) => replace(path, bytes),
     };
     written.map_err(Error::system("write", path))
+}
+
+/// Writes files of these names and bytes into a directory, each as [`write_whole`] does, and returns their paths
+/// in order. Those before one that is refused stay.
+///
+/// # Errors
+/// [`Error::System`] where the system refuses.
+pub fn write_all(
+    directory: &Path,
+    files: impl IntoIterator<Item = (String, Vec<u8>)>,
+) -> Result<Vec<PathBuf>> {
+    let write = |(name, bytes): (String, Vec<u8>)| {
+        let path = directory.join(name);
+        write_whole(&path, &bytes)?;
+        Ok(path)
+    };
+    files.into_iter().map(write).collect()
 }
 
 fn replace(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
@@ -144,6 +161,17 @@ mod tests {
         write_whole(&dir.path().join("a/c.txt"), b"y").unwrap();
         assert_eq!(fs::read(dir.path().join("a/c.txt")).unwrap(), b"y");
         assert_eq!(fs::read_dir(dir.path().join("a")).unwrap().count(), 2);
+    }
+
+    #[test]
+    fn several_files_are_written_in_their_order() {
+        let dir = tempfile::tempdir().unwrap();
+        let files = ["b.svg", "a.png"].map(|name| (name.to_owned(), name.as_bytes().to_vec()));
+        let paths = write_all(dir.path(), files.clone()).unwrap();
+        assert_eq!(paths, ["b.svg", "a.png"].map(|name| dir.path().join(name)));
+        assert!(paths.iter().zip(&files).all(|(path, (_, bytes))| fs::read(path).unwrap() == *bytes));
+        let error = write_all(&dir.path().join("missing"), files).unwrap_err().to_string();
+        assert!(error.contains("cannot write") && error.contains("b.svg"), "{error}");
     }
 
     #[cfg(unix)]

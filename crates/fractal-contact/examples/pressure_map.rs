@@ -34,7 +34,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("force {:.6} N, integral of the pressure {:.6} N", state.force, pressure.integral());
     assert!((pressure.integral() / 50.0 - 1.0).abs() < 1e-5);
 
-    plots::write_grey(&out.join("pressure.png"), pressure.cells(), pressure.size(), pressure.values())?;
+    let png = plots::grey_png("pressure.png", pressure.cells(), pressure.size(), pressure.values())?;
+    files::write_whole(&out.join("pressure.png"), &png)?;
     let fields = [
         DataArray { name: "pressure", unit: "Pa", values: pressure.values() },
         DataArray { name: "gap", unit: "m", values: gap.values() },

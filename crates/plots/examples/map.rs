@@ -8,7 +8,7 @@
 //! ```
 
 use contact_model::SelfAffine;
-use plots::write_grey;
+use plots::grey_png;
 use std::error::Error;
 use std::path::PathBuf;
 use surface_gen::self_affine_map;
@@ -28,9 +28,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         .enumerate()
         .map(|(i, &h)| if inside(i % map.columns(), i / map.columns()) { f64::NAN } else { h })
         .collect();
-    let path = out.join("rough.png");
-    write_grey(&path, map.cells(), map.size(), &values)?;
-    let bytes = std::fs::read(&path)?;
+    let bytes = grey_png("rough.png", map.cells(), map.size(), &values)?;
+    std::fs::write(out.join("rough.png"), &bytes)?;
     // Width and height stand at bytes 16 to 23 of a PNG.
     let side = |at: usize| bytes[at..at + 4].iter().fold(0, |n, b| (n << 8) | u32::from(*b));
     println!(

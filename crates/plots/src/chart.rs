@@ -1,12 +1,10 @@
 //! A chart of a few curves.
 
 use crate::axis::{Axis, linear, logarithmic};
-use crate::panels::Panels;
+use crate::error::Result;
 use crate::plot::Picture;
 use crate::style::{COLORS, Key, LineStyle, Mark, MarkShape, NEUTRAL, SHAPES};
 use contact_model::units::multiple;
-use files::Result;
-use std::path::{Path, PathBuf};
 
 /// A named curve.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -71,28 +69,20 @@ impl Chart {
         self
     }
 
-    /// Writes `NAME.svg` and `NAME.png`.
-    ///
-    /// # Errors
-    /// [`crate::Error::System`] when they cannot be written.
-    pub fn save(&self, directory: &Path, name: &str) -> Result<Vec<PathBuf>> {
-        self.picture().save(directory, name)
-    }
-
     /// The bytes of `NAME.svg` and `NAME.png`.
     ///
     /// # Errors
-    /// [`crate::Error::Content`] where the fonts cannot be read.
+    /// [`crate::Error`] where the fonts cannot be read.
     pub fn files(&self, name: &str) -> Result<[(String, Vec<u8>); 2]> {
-        Panels { columns: 1, pictures: vec![self.picture()], ..Panels::default() }.files(name)
+        self.picture().files(name)
     }
 
     /// The SVG as text.
     ///
     /// # Errors
-    /// [`crate::Error::Content`] where the fonts cannot be read.
+    /// [`crate::Error`] where the fonts cannot be read.
     pub fn svg(&self) -> Result<String> {
-        Panels { columns: 1, pictures: vec![self.picture()], ..Panels::default() }.svg()
+        self.picture().svg()
     }
 
     fn picture(&self) -> Picture {
@@ -160,11 +150,11 @@ const CAREFUL: f64 = 10.0;
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::panels::Panels;
     use proptest::prelude::*;
 
     #[test]
     fn curves_become_a_picture_whatever_they_hold() {
-        let dir = tempfile::tempdir().unwrap();
         let curve = |points: &[(f64, f64)]| Curve {
             label: "a".into(),
             points: points.to_vec(),
@@ -176,8 +166,9 @@ mod tests {
             .enumerate()
         {
             let chart = Chart { curves: vec![curve(points)], logarithmic: true, ..Chart::default() };
-            let files = chart.save(dir.path(), &format!("c{i}")).unwrap();
-            assert!(std::fs::read_to_string(&files[0]).unwrap().contains("</svg>"));
+            let [(name, svg), _] = chart.files(&format!("c{i}")).unwrap();
+            assert_eq!(name, format!("c{i}.svg"));
+            assert!(String::from_utf8(svg).unwrap().contains("</svg>"));
         }
     }
 
@@ -214,11 +205,10 @@ mod tests {
             let mut picture = chart.picture();
             picture.errors(&errors, "#000000");
             let fonts = crate::text::Fonts::load().unwrap();
-            let path = Path::new("a picture");
             let drawing = Panels { columns: 1, pictures: vec![picture], ..Panels::default() }.drawing(&fonts);
-            let svg = drawing.svg(&fonts, path).unwrap();
+            let svg = drawing.svg(&fonts, "a picture").unwrap();
             prop_assert!(!svg.contains("NaN") && !svg.contains("inf"), "{svg}");
-            prop_assert!(drawing.png(&fonts, path).is_ok());
+            prop_assert!(drawing.png(&fonts, "a picture").is_ok());
         }
     }
 

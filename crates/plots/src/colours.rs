@@ -1,8 +1,7 @@
 //! Values as colours.
 
+use crate::error::Result;
 use crate::map::{encode_rgb, share};
-use files::Result;
-use std::path::Path;
 
 /// Colour of undefined points.
 pub(crate) const UNDEFINED: [u8; 3] = [205, 205, 205];
@@ -98,11 +97,11 @@ impl ColourScale {
     /// A PNG with a pixel for each value, the last row on top.
     ///
     /// # Errors
-    /// [`crate::Error::Content`] where the encoder refuses.
+    /// [`crate::Error`] where the encoder refuses.
     pub fn encode(self, columns: usize, values: &[f64]) -> Result<Vec<u8>> {
         let colour = |v: &f64| self.colour(*v);
         let pixels: Vec<[u8; 3]> = values.chunks(columns.max(1)).rev().flatten().map(colour).collect();
-        encode_rgb(Path::new("a picture"), columns, &pixels.into_flattened())
+        encode_rgb("a picture", columns, &pixels.into_flattened())
     }
 }
 
@@ -119,7 +118,7 @@ pub fn viridis() -> [[u8; 3]; 256] {
 /// range, undefined points grey, and white at 0 where `white_zero`.
 ///
 /// # Errors
-/// [`crate::Error::Content`] where the encoder refuses.
+/// [`crate::Error`] where the encoder refuses.
 pub fn encode_viridis(
     columns: usize,
     values: &[f64],

@@ -1,13 +1,12 @@
 //! A picture as paths and labels, which both files are written from.
 
+use crate::error::{Error, Result};
 use crate::map::encode_rgb;
 use crate::style::{INK, NEUTRAL};
 use crate::text::{Fonts, Piece, Typeset};
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
-use files::{Error, Result};
 use std::collections::BTreeSet;
-use std::path::{Path, PathBuf};
 use tiny_skia as skia;
 
 /// Pixels of a PNG per unit of the drawing.
@@ -99,22 +98,12 @@ impl Drawing {
     /// The bytes of `NAME.svg` and `NAME.png`.
     pub fn files(&self, fonts: &Fonts, name: &str) -> Result<[(String, Vec<u8>); 2]> {
         let [svg, png] = ["svg", "png"].map(|ending| format!("{name}.{ending}"));
-        let [drawn, pixels] =
-            [self.svg(fonts, Path::new(&svg))?.into_bytes(), self.png(fonts, Path::new(&png))?];
+        let [drawn, pixels] = [self.svg(fonts, &svg)?.into_bytes(), self.png(fonts, &png)?];
         Ok([(svg, drawn), (png, pixels)])
     }
 
-    /// Writes `NAME.svg` and `NAME.png`.
-    pub fn save(&self, fonts: &Fonts, directory: &Path, name: &str) -> Result<Vec<PathBuf>> {
-        let write = |(name, bytes): (String, Vec<u8>)| {
-            let path = directory.join(name);
-            files::write_whole(&path, &bytes)?;
-            Ok(path)
-        };
-        self.files(fonts, name)?.into_iter().map(write).collect()
-    }
-
-    pub fn svg(&self, fonts: &Fonts, path: &Path) -> Result<String> {
+    /// The picture as an SVG; `picture` is what messages call it.
+    pub fn svg(&self, fonts: &Fonts, picture: &str) -> Result<String> {
         let mut clips: Vec<Rectangle> = Vec::new();
         let mut glyphs: BTreeSet<(bool, u16)> = BTreeSet::new();
         let mut body = String::new();
@@ -160,7 +149,7 @@ impl Drawing {
                     body += "</g>\n";
                 }
                 Item::Image { place: [x, y, w, h], rgb, columns } => {
-                    let data = STANDARD.encode(encode_rgb(path, *columns, rgb)?);
+                    let data = STANDARD.encode(encode_rgb(picture, *columns, rgb)?);
                     body += &format!(
                         "<image x=\"{x}\" y=\"{y}\" width=\"{w}\" height=\"{h}\" style=\"image-rendering:pixelated\" \
                          href=\"data:image/png;base64,{data}\"/>\n"
@@ -187,11 +176,11 @@ impl Drawing {
         Ok(text)
     }
 
-    /// The picture as a PNG; `path` is where messages say that it stands.
-    pub fn png(&self, fonts: &Fonts, path: &Path) -> Result<Vec<u8>> {
+    /// The picture as a PNG; `picture` is what messages call it.
+    pub fn png(&self, fonts: &Fonts, picture: &str) -> Result<Vec<u8>> {
         let [width, height] = [self.width, self.height].map(|v| (v * SCALE).round() as u32);
         let mut pixels = skia::Pixmap::new(width, height)
-            .ok_or_else(|| Error::content(path, format!("no picture of {width} x {height} pixels")))?;
+            .ok_or_else(|| Error::new(picture, format!("no picture of {width} x {height} pixels")))?;
         pixels.fill(skia::Color::WHITE);
         let scale = skia::Transform::from_scale(SCALE as f32, SCALE as f32);
         // Neighbours in the order of drawing share their clip.
@@ -255,7 +244,7 @@ impl Drawing {
             }
         }
         let opaque: Vec<u8> = pixels.data().chunks(4).flat_map(|p| [p[0], p[1], p[2]]).collect();
-        encode_rgb(path, width as usize, &opaque)
+        encode_rgb(picture, width as usize, &opaque)
     }
 }
 

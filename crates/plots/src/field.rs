@@ -3,14 +3,13 @@
 use crate::axis::Axis;
 use crate::colours::ColourScale;
 use crate::drawing::{Anchor, Drawing, Paint, Rectangle, polygon, polyline};
+use crate::error::{Error, Result};
 use crate::frame::{Frame, Side, TICK, TickStyle};
 use crate::pixels::{Pixels, raster, reduction};
 use crate::style::{INK, NEUTRAL};
 use crate::text::Fonts;
 use contact_model::units::multiple;
 use contact_model::{Cells, Size};
-use files::{Error, Result};
-use std::path::Path;
 
 /// A field with its title and labels.
 #[derive(Debug, Clone, PartialEq)]
@@ -93,7 +92,7 @@ impl FieldPicture<'_> {
         ColourScale::new(range, self.white_zero, self.signed)
     }
 
-    /// Writes a PNG, y upwards. The colours are those of [`FieldPicture::scale`]; undefined points are grey,
+    /// The bytes of a PNG, y upwards. The colours are those of [`FieldPicture::scale`]; undefined points are grey,
     /// the contact has a white outline with a black edge, which lies outside of it. Arrows have one length;
     /// each shows the sum of the vectors of a block of cells, at their centre weighted by magnitude.
     ///
@@ -104,9 +103,9 @@ impl FieldPicture<'_> {
     /// Cost: linear in the number of cells.
     ///
     /// # Errors
-    /// [`crate::Error::Content`] for another number of values, components or cells in contact than cells, no
-    /// cells or a size that is not positive, [`crate::Error::System`] when it cannot be written.
-    pub fn save(&self, path: &Path) -> Result<()> {
+    /// [`Error`] with the name that the caller gives the picture, for another number of values, components or
+    /// cells in contact than cells, no cells or a size that is not positive.
+    pub fn png(&self, name: &str) -> Result<Vec<u8>> {
         let count = self.cells.checked_count().filter(|count| *count > 0);
         if count != Some(self.values.len()) || !self.contact.is_empty() && count != Some(self.contact.len()) {
             let (values, contact, Cells { columns, rows }) =
@@ -114,13 +113,13 @@ impl FieldPicture<'_> {
             let message = format!(
                 "{values} values and {contact} cells in contact are no field of {rows} rows x {columns} columns"
             );
-            return Err(Error::content(path, message));
+            return Err(Error::new(name, message));
         }
         if let Some(component) = self.arrows.into_iter().flatten().find(|c| c.len() != self.values.len()) {
             let message = format!("{} components of {} values", component.len(), self.values.len());
-            return Err(Error::content(path, message));
+            return Err(Error::new(name, message));
         }
-        self.cells.validate(self.size).map_err(|e| Error::content(path, e.to_string()))?;
+        self.cells.validate(self.size).map_err(|e| Error::new(name, e.to_string()))?;
         let fonts = Fonts::load()?;
         let size = self.size;
         let longer = size.x.max(size.y);
@@ -155,7 +154,7 @@ impl FieldPicture<'_> {
         if !self.classes.is_empty() {
             self.draw_classes(&mut drawing, &fonts, (beside, TOP), color);
             drawing.heading(&fonts, &self.title, (&self.subtitle, 15.0), LEFT);
-            return files::write_whole(path, &drawing.png(&fonts, path)?);
+            return drawing.png(&fonts, name);
         }
         // The bar is at least as high as its labels need.
         let bar = [beside, TOP, BAR, h.max(160.0)];
@@ -173,7 +172,7 @@ impl FieldPicture<'_> {
         let words = LEFT + w + RIGHT - 0.6 * TICK;
         beside.name_beside(&mut drawing, &with(&self.quantity, &unit), NAME, words);
         drawing.heading(&fonts, &self.title, (&self.subtitle, 15.0), LEFT);
-        files::write_whole(path, &drawing.png(&fonts, path)?)
+        drawing.png(&fonts, name)
     }
 
     /// A square of the colour of each class with its words, the last one on top.
@@ -305,10 +304,7 @@ mod tests {
 
     /// Colours of a PNG at points of the map, counted from its lower left corner in shares of its sides.
     fn colors(field: &Field, white_zero: bool, at: &[(f64, f64)]) -> Vec<[u8; 3]> {
-        let dir = tempfile::tempdir().unwrap();
-        let path = dir.path().join("f.png");
-        picture(field, white_zero).save(&path).unwrap();
-        let (pixels, map) = read_map(&path, field);
+        let (pixels, map) = read_map(picture(field, white_zero).png("f").unwrap(), field);
         let pixel = |&(x, y): &(f64, f64)| {
             let (x, y) = ((x * pixels.columns as f64) as usize, (y * pixels.rows as f64) as usize);
             map[y * pixels.columns + x]
@@ -317,9 +313,8 @@ mod tests {
     }
 
     /// The pixels inside the frame of a picture of a field, from the lower left corner.
-    fn read_map(path: &Path, field: &Field) -> (Cells, Vec<[u8; 3]>) {
-        let file = std::io::BufReader::new(std::fs::File::open(path).unwrap());
-        let mut reader = png::Decoder::new(file).read_info().unwrap();
+    fn read_map(file: Vec<u8>, field: &Field) -> (Cells, Vec<[u8; 3]>) {
+        let mut reader = png::Decoder::new(std::io::Cursor::new(file)).read_info().unwrap();
         let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
         let info = reader.next_frame(&mut bytes).unwrap();
         let samples = info.color_type.samples();
@@ -353,8 +348,6 @@ mod tests {
     /// maps are small, at the limit and beyond it; rectangles, strips and oblong cells.
     #[test]
     fn pictures_have_the_shares_of_their_fields() {
-        let dir = tempfile::tempdir().unwrap();
-        let path = dir.path().join("a.png");
         for (cells, size, whole) in [
             ([64, 16], [4.0, 1.0], true),
             ([512, 128], [4.0, 1.0], true),
@@ -380,8 +373,7 @@ mod tests {
             let (low, high) = FieldPicture::ends(field.values());
             let drawn = picture(&field, true);
             assert_eq!(drawn.scale().ends(), (0.0, high), "{low}");
-            drawn.save(&path).unwrap();
-            let (pixels, map) = read_map(&path, &field);
+            let (pixels, map) = read_map(drawn.png("a").unwrap(), &field);
             let share =
                 |color: [u8; 3]| map.iter().filter(|p| **p == color).count() as f64 / map.len() as f64;
             let of = |test: &dyn Fn(f64) -> bool| {
@@ -417,8 +409,7 @@ mod tests {
             };
             let classes = Field::new(cells, size, field.values().iter().map(class).collect()).unwrap();
             let drawn = FieldPicture { classes: &["open", "stick", "slip"], ..picture(&classes, true) };
-            drawn.save(&path).unwrap();
-            let (_, map) = read_map(&path, &classes);
+            let (_, map) = read_map(drawn.png("a").unwrap(), &classes);
             for value in [0.0, 1.0, 2.0] {
                 let colour = drawn.scale().colour(value);
                 let found = map.iter().filter(|p| **p == colour).count();
@@ -430,8 +421,7 @@ mod tests {
             let contact: Vec<bool> = field.values().iter().map(|v| *v > 0.0).collect();
             let gap = Field::new(cells, size, gap).unwrap();
             let drawn = FieldPicture { contact: &contact, ..picture(&gap, false) };
-            drawn.save(&path).unwrap();
-            let (_, map) = read_map(&path, &gap);
+            let (_, map) = read_map(drawn.png("a").unwrap(), &gap);
             let touching = drawn.scale().colour(0.0);
             let inside = map.iter().filter(|p| **p == touching).count();
             near(inside as f64 / map.len() as f64, of(&|v| v > 0.0), "outlined");
@@ -518,7 +508,7 @@ mod tests {
             let side = PIXEL * SIDE as f64;
             let mut drawing = Drawing::new(LEFT + side + RIGHT, TOP + side + BELOW);
             picture.draw_arrows(&mut drawing, [LEFT, TOP, side, side]);
-            drawing.svg(&Fonts::load().unwrap(), Path::new("a picture")).unwrap()
+            drawing.svg(&Fonts::load().unwrap(), "a picture").unwrap()
         };
         let side = PIXEL * SIDE as f64;
         let middle = (LEFT + 0.5 * side, TOP + 0.5 * side);
@@ -534,12 +524,11 @@ mod tests {
         assert!(!drawn(0.0, 0.0).contains("<path d") && !drawn(f64::NAN, 1.0).contains("<path d"));
         let field = Field::new([3, 1], [3.0, 1.0], vec![0.0, 1.0, 2.0]).unwrap();
         let classes = &["open", "stick", "slip"][..];
-        let dir = tempfile::tempdir().unwrap();
-        let path = dir.path().join("c.png");
         let picture = FieldPicture { classes, ..picture(&field, true) };
-        picture.save(&path).unwrap();
+        picture.png("c").unwrap();
         let short = FieldPicture { arrows: Some([&[0.0; 3], &[0.0; 2]]), ..picture };
-        assert!(short.save(&path).is_err());
+        let error = short.png("c").unwrap_err().to_string();
+        assert_eq!(error, "c: 2 components of 3 values");
     }
 
     #[test]
@@ -548,19 +537,16 @@ mod tests {
         assert_ne!(colors(&flat, false, &[(0.5, 0.5)])[0], [255; 3]);
         let zero = Field::new([2, 2], [1.0, 1.0], vec![0.0; 4]).unwrap();
         assert_eq!(colors(&zero, true, &[(0.5, 0.5)])[0], [255; 3]);
-        let dir = tempfile::tempdir().unwrap();
         let long = Field::new([100, 1], [100.0, 1.0], (0..100).map(f64::from).collect()).unwrap();
-        picture(&long, false).save(&dir.path().join("g.png")).unwrap();
+        picture(&long, false).png("g").unwrap();
         // The largest and the smallest numbers, as sides and as values.
         for side in [1.7e308, 1e-300, 1e-307, 1e-318] {
             let values: Vec<f64> = (0..12).map(|i| f64::from(i) / 12.0 * side).collect();
             for (cells, sides) in [([4, 3], [side, 0.75 * side]), ([3, 4], [side, side])] {
                 let field = Field::new(cells, sides, values.clone()).unwrap();
-                let path = dir.path().join("h.png");
-                picture(&field, false).save(&path).unwrap();
-                let (_, map) = read_map(&path, &field);
+                let (_, map) = read_map(picture(&field, false).png("h").unwrap(), &field);
                 assert_eq!([map[0], map[map.len() - 1]], [0, 255].map(|i| crate::viridis()[i]), "{side:e}");
-                crate::write_grey(&path, cells, sides, field.values()).unwrap();
+                crate::grey_png("h", cells, sides, field.values()).unwrap();
             }
         }
     }

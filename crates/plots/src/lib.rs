@@ -5,8 +5,8 @@
 //! | [`Chart`] | a few named curves |
 //! | [`Picture`] | the figures of the paper and the benchmarks |
 //! | [`Panels`] | several pictures in one file |
-//! | [`save_maps`] | maps side by side |
-//! | [`write_grey`] | a map of one value per cell |
+//! | [`grey_maps`] | maps side by side |
+//! | [`grey_png`] | a map of one value per cell |
 //!
 //! # Conventions
 //!
@@ -20,7 +20,7 @@
 //! * **Colours** can be distinguished in grey as well. The same fractal dimension has the same colour in
 //!   every picture ([`color`]).
 //! * **Maps** have row 0 at the bottom.
-//! * **Files** are written whole or not at all.
+//! * **Files** are returned as bytes, with their names. The caller writes them.
 
 #![allow(clippy::format_push_string)] // Text is built once per file: clear beats one allocation less.
 
@@ -28,6 +28,7 @@ mod axis;
 mod chart;
 mod colours;
 mod drawing;
+mod error;
 mod field;
 mod frame;
 mod legend;
@@ -43,11 +44,11 @@ mod text;
 pub use axis::{Axis, extent, linear, logarithmic};
 pub use chart::{Chart, Curve};
 pub use colours::{ColourScale, Palette, encode_viridis, viridis};
+pub use error::{Error, Result};
 pub use field::FieldPicture;
-pub use files::{Error, Result};
 pub use legend::Legend;
-pub use map::{encode_grey, grey, grey_between, most, write_grey};
-pub use maps::{GreyMap, GreyScale, save_maps};
+pub use map::{encode_grey, grey, grey_between, grey_png, most};
+pub use maps::{GreyMap, GreyScale, grey_maps};
 pub use panels::Panels;
 pub use pixels::{reduction, shown_cells};
 pub use plot::Picture;

@@ -1,41 +1,45 @@
 //! Maps as grey-scale PNG.
 
+use crate::error::{Error, Result};
 use crate::pixels::Pixels;
 use contact_model::{Cells, Size};
-use files::{Error, Result};
-use std::path::Path;
 
 /// Most pixels along a side of a picture whose cells are oblong; one with square cells has a pixel for each.
 const MOST_PIXELS: f64 = 4096.0;
 
-/// Writes a map of values (row-major, columns along x and rows along y) on a rectangle of the given size as a
-/// PNG, y upwards: the lowest value is white, the highest black, undefined points (NaN) are transparent.
+/// A PNG of a map of values (row-major, columns along x and rows along y) on a rectangle of the given size, y
+/// upwards: the lowest value is white, the highest black, undefined points (NaN) are transparent.
 ///
 /// The picture has the aspect ratio of the rectangle. A pixel is a square of the shorter side of a cell, or
 /// larger where cells are oblong and the picture would have more than 4096 of them along a side. A pixel on
 /// several cells shows one of them, so chosen that shares of areas, the mean and the extrema are kept.
 ///
 /// # Errors
-/// [`Error::Content`] for another number of values than cells, no cells or a size that is not positive,
-/// [`Error::System`] when it cannot be written.
-pub fn write_grey(path: &Path, cells: impl Into<Cells>, size: impl Into<Size>, values: &[f64]) -> Result<()> {
+/// [`Error`] with the name that the caller gives the picture, for another number of values than cells, no
+/// cells or a size that is not positive.
+pub fn grey_png(
+    picture: &str,
+    cells: impl Into<Cells>,
+    size: impl Into<Size>,
+    values: &[f64],
+) -> Result<Vec<u8>> {
     let (cells, size) = (cells.into(), size.into());
     let Cells { columns, rows } = cells;
     if values.is_empty() || cells.checked_count() != Some(values.len()) {
         let message = format!("{} values are no map of {rows} rows x {columns} columns", values.len());
-        return Err(Error::content(path, message));
+        return Err(Error::new(picture, message));
     }
-    cells.validate(size).map_err(|e| Error::content(path, e.to_string()))?;
+    cells.validate(size).map_err(|e| Error::new(picture, e.to_string()))?;
     let finite = || values.iter().copied().filter(|v| v.is_finite());
     let low = finite().fold(f64::INFINITY, f64::min);
     let high = finite().fold(f64::NEG_INFINITY, f64::max);
     let [width, height] = pixels(cells, size);
     let transparent = values.iter().any(|v| !v.is_finite());
     let mut bytes = Vec::with_capacity(width * height * if transparent { 2 } else { 1 });
-    let picture = Pixels::new(cells, Cells { columns: width, rows: height }, values);
+    let reduced = Pixels::new(cells, Cells { columns: width, rows: height }, values);
     for y in (0..height).rev() {
         for x in 0..width {
-            let value = values[picture.cell(x, y)];
+            let value = values[reduced.cell(x, y)];
             let defined = value.is_finite();
             bytes.push(if defined { shade(value, low, high) } else { 255 });
             if transparent {
@@ -43,12 +47,11 @@ pub fn write_grey(path: &Path, cells: impl Into<Cells>, size: impl Into<Size>, v
             }
         }
     }
-    let picture = if transparent {
-        encode(path, width, &bytes, png::ColorType::GrayscaleAlpha, 2)?
+    if transparent {
+        encode(picture, width, &bytes, png::ColorType::GrayscaleAlpha, 2)
     } else {
-        encode_grey(path, width, &bytes)?
-    };
-    files::write_whole(path, &picture)
+        encode_grey(picture, width, &bytes)
+    }
 }
 
 /// Width and height in pixels of a picture of these cells.
@@ -105,28 +108,28 @@ pub(crate) fn share(value: f64, low: f64, high: f64) -> f64 {
 /// Encodes a grey-scale picture, first row on top.
 ///
 /// # Errors
-/// [`Error::Content`] where the encoder refuses.
-pub fn encode_grey(path: &Path, width: usize, pixels: &[u8]) -> Result<Vec<u8>> {
-    encode(path, width, pixels, png::ColorType::Grayscale, 1)
+/// [`Error`] with the name that the caller gives the picture, where the encoder refuses.
+pub fn encode_grey(picture: &str, width: usize, pixels: &[u8]) -> Result<Vec<u8>> {
+    encode(picture, width, pixels, png::ColorType::Grayscale, 1)
 }
 
 /// Encodes a picture of three bytes a pixel, first row on top; one without colours with one byte a pixel.
-pub(crate) fn encode_rgb(path: &Path, width: usize, pixels: &[u8]) -> Result<Vec<u8>> {
+pub(crate) fn encode_rgb(picture: &str, width: usize, pixels: &[u8]) -> Result<Vec<u8>> {
     if pixels.chunks(3).all(|p| p[0] == p[1] && p[0] == p[2]) {
         let grey: Vec<u8> = pixels.iter().copied().step_by(3).collect();
-        return encode_grey(path, width, &grey);
+        return encode_grey(picture, width, &grey);
     }
-    encode(path, width, pixels, png::ColorType::Rgb, 3)
+    encode(picture, width, pixels, png::ColorType::Rgb, 3)
 }
 
 fn encode(
-    path: &Path,
+    picture: &str,
     width: usize,
     pixels: &[u8],
     color: png::ColorType,
     channels: usize,
 ) -> Result<Vec<u8>> {
-    let failed = |e: png::EncodingError| Error::content(path, e.to_string());
+    let failed = |e: png::EncodingError| Error::new(picture, e.to_string());
     let height = pixels.len() / channels / width.max(1);
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, width as u32, height as u32);
@@ -165,12 +168,9 @@ mod tests {
 
     #[test]
     fn pictures_keep_the_shape_of_the_rectangle() {
-        let dir = tempfile::tempdir().unwrap();
-        let path = dir.path().join("a.png");
         let image = |cells: [usize; 2], size: [f64; 2], values: &[f64]| {
-            write_grey(&path, cells, size, values).unwrap();
-            let file = std::io::BufReader::new(std::fs::File::open(&path).unwrap());
-            let mut reader = png::Decoder::new(file).read_info().unwrap();
+            let file = grey_png("a.png", cells, size, values).unwrap();
+            let mut reader = png::Decoder::new(std::io::Cursor::new(file)).read_info().unwrap();
             let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
             let info = reader.next_frame(&mut pixels).unwrap();
             (info.width, info.height, pixels)
@@ -189,9 +189,9 @@ mod tests {
         // Long rectangles do not become large files.
         let (width, height, _) = image([1, 2], [5e3, 1.0], &[0.0, 1.0]);
         assert_eq!((width, height), (4096, 1));
-        assert!(
-            write_grey(&path, [2, 2], 1.0, &[0.0; 3]).is_err() && write_grey(&path, 0, 1.0, &[]).is_err()
-        );
-        assert!(write_grey(&path, [1, 2], [1.0, 1e9], &[0.0; 2]).is_err());
+        let error = grey_png("a.png", [2, 2], 1.0, &[0.0; 3]).unwrap_err().to_string();
+        assert_eq!(error, "a.png: 3 values are no map of 2 rows x 2 columns");
+        assert!(grey_png("a.png", 0, 1.0, &[]).is_err());
+        assert!(grey_png("a.png", [1, 2], [1.0, 1e9], &[0.0; 2]).is_err());
     }
 }

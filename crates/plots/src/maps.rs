@@ -2,11 +2,10 @@
 
 use crate::axis::Axis;
 use crate::drawing::{Anchor, Drawing, Paint, rectangle};
+use crate::error::{Error, Result};
 use crate::frame::{Frame, Side, TICK, TickStyle};
 use crate::style::INK;
 use crate::text::Fonts;
-use files::{Error, Result};
-use std::path::{Path, PathBuf};
 
 /// A square map of grey values.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -38,23 +37,21 @@ const TITLE: f64 = 54.0;
 const BAR: f64 = 14.0;
 const BELOW: f64 = 58.0;
 
-/// Writes `NAME.svg` and `NAME.png` with at most three maps in a row, a title, a line below it, and the scale
+/// The bytes of `NAME.svg` and `NAME.png`, with at most three maps in a row, a title, a line below it, and the scale
 /// of all maps below them.
 ///
 /// # Errors
-/// [`crate::Error::Content`] for a map that is no square of at least one value, [`crate::Error::System`] when
-/// they cannot be written.
-pub fn save_maps(
+/// [`Error`] for a map that is no square of at least one value.
+pub fn grey_maps(
     maps: Vec<GreyMap>,
     scale: &GreyScale,
     (title, subtitle): (&str, &str),
-    directory: &Path,
     name: &str,
-) -> Result<Vec<PathBuf>> {
+) -> Result<[(String, Vec<u8>); 2]> {
     let square = |map: &GreyMap| map.side > 0 && map.side.checked_mul(map.side) == Some(map.shades.len());
     if let Some(map) = maps.iter().find(|map| !square(map)) {
         let message = format!("{} values are no map of {} rows and columns", map.shades.len(), map.side);
-        return Err(Error::content(&directory.join(name), message));
+        return Err(Error::new(name, message));
     }
     let fonts = Fonts::load()?;
     let columns = maps.len().clamp(1, 3);
@@ -79,7 +76,7 @@ pub fn save_maps(
     frame.axis(&mut drawing, Side::Below, Axis::Linear(low, high), None);
     frame.outline(&mut drawing, 1.0);
     frame.name_below(&mut drawing, &scale.label, 1.2 * TICK, bottom + GAP + BAR + 3.2 * TICK);
-    drawing.save(&fonts, directory, name)
+    drawing.files(&fonts, name)
 }
 
 #[cfg(test)]
@@ -88,21 +85,20 @@ mod tests {
 
     #[test]
     fn maps_are_inside_both_files() {
-        let dir = tempfile::tempdir().unwrap();
         let map = |label: &str| GreyMap { label: label.into(), shades: vec![0, 80, 160, 255], side: 2 };
         let scale = GreyScale { ends: (-2.0, 3.0), label: "height".into() };
         let maps = vec![map("$D_f$ = 2"), map("$D_f$ = 3")];
-        let files = save_maps(maps, &scale, ("t", "s"), dir.path(), "m").unwrap();
-        let svg = std::fs::read_to_string(&files[0]).unwrap();
+        let [(_, svg), (_, png)] = grey_maps(maps, &scale, ("t", "s"), "m").unwrap();
+        let svg = String::from_utf8(svg).unwrap();
         assert_eq!(svg.matches("<image").count(), 3);
         assert!(
             ["height", "3", "\u{2212}2"].iter().all(|label| svg.contains(&format!("aria-label=\"{label}\"")))
         );
         assert!(svg.contains("aria-label=\"D_f = 3\"") && svg.contains("data:image/png;base64,"));
-        assert!(std::fs::metadata(&files[1]).unwrap().len() > 1000);
+        assert!(png.len() > 1000);
         for side in [0, 1, usize::MAX] {
             let wrong = GreyMap { side, ..map("m") };
-            assert!(save_maps(vec![wrong], &scale, ("t", "s"), dir.path(), "n").is_err(), "{side}");
+            assert!(grey_maps(vec![wrong], &scale, ("t", "s"), "n").is_err(), "{side}");
         }
     }
 }

@@ -1,12 +1,11 @@
 //! Several pictures in one file.
 
 use crate::drawing::{Anchor, Drawing};
+use crate::error::Result;
 use crate::legend::Legend;
 use crate::plot::{Picture, SIZE, TITLE, WORDS};
 use crate::style::INK;
 use crate::text::Fonts;
-use files::Result;
-use std::path::{Path, PathBuf};
 
 /// Pictures of one size beside and below each other, with a title above and a legend below all of them.
 #[derive(Debug, Clone, Default)]
@@ -22,19 +21,10 @@ pub struct Panels {
 }
 
 impl Panels {
-    /// Writes `NAME.svg` and `NAME.png`.
-    ///
-    /// # Errors
-    /// [`crate::Error::System`] when they cannot be written.
-    pub fn save(self, directory: &Path, name: &str) -> Result<Vec<PathBuf>> {
-        let fonts = Fonts::load()?;
-        self.drawing(&fonts).save(&fonts, directory, name)
-    }
-
     /// The bytes of `NAME.svg` and `NAME.png`.
     ///
     /// # Errors
-    /// [`crate::Error::Content`] where an image in it cannot be encoded.
+    /// [`crate::Error`] where an image in it cannot be encoded.
     pub fn files(self, name: &str) -> Result<[(String, Vec<u8>); 2]> {
         let fonts = Fonts::load()?;
         self.drawing(&fonts).files(&fonts, name)
@@ -43,10 +33,10 @@ impl Panels {
     /// The SVG as text.
     ///
     /// # Errors
-    /// [`crate::Error::Content`] where an image in it cannot be encoded.
+    /// [`crate::Error`] where an image in it cannot be encoded.
     pub fn svg(self) -> Result<String> {
         let fonts = Fonts::load()?;
-        self.drawing(&fonts).svg(&fonts, Path::new("a picture"))
+        self.drawing(&fonts).svg(&fonts, "a picture")
     }
 
     pub(crate) fn drawing(mut self, fonts: &Fonts) -> Drawing {
@@ -82,12 +72,24 @@ impl Panels {
 }
 
 impl Picture {
-    /// Writes `NAME.svg` and `NAME.png`.
+    /// The bytes of `NAME.svg` and `NAME.png`.
     ///
     /// # Errors
-    /// [`crate::Error::System`] when they cannot be written.
-    pub fn save(self, directory: &Path, name: &str) -> Result<Vec<PathBuf>> {
-        Panels { columns: 1, pictures: vec![self], ..Panels::default() }.save(directory, name)
+    /// [`crate::Error`] where an image in it cannot be encoded.
+    pub fn files(self, name: &str) -> Result<[(String, Vec<u8>); 2]> {
+        self.alone().files(name)
+    }
+
+    /// The SVG as text.
+    ///
+    /// # Errors
+    /// [`crate::Error`] where an image in it cannot be encoded.
+    pub fn svg(self) -> Result<String> {
+        self.alone().svg()
+    }
+
+    fn alone(self) -> Panels {
+        Panels { columns: 1, pictures: vec![self], ..Panels::default() }
     }
 }
 
@@ -99,7 +101,6 @@ mod tests {
 
     #[test]
     fn panels_stand_side_by_side() {
-        let dir = tempfile::tempdir().unwrap();
         let small = || {
             let (x, y) = (Axis::Linear(0.0, 1.0), Axis::Linear(0.0, 1.0));
             Picture::new(x, y, "x", "y").with_title("A law").with_size(400.0, 300.0)
@@ -108,8 +109,7 @@ mod tests {
         legend.push("both", "#000000", Key::Words);
         let panels =
             Panels { pictures: vec![small(), small(), small()], columns: 2, title: "Three".into(), legend };
-        let files = panels.save(dir.path(), "p").unwrap();
-        let svg = std::fs::read_to_string(&files[0]).unwrap();
+        let svg = panels.svg().unwrap();
         assert!(svg.contains("width=\"800\"") && svg.contains("aria-label=\"both\""));
         assert_eq!(svg.matches("aria-label=\"A law\"").count(), 3);
     }

@@ -407,9 +407,9 @@ mod tests {
 
     #[test]
     fn both_files_are_whole_and_hold_the_labels() {
-        let dir = tempfile::tempdir().unwrap();
-        let files = picture().save(dir.path(), "p").unwrap();
-        let svg = std::fs::read_to_string(&files[0]).unwrap();
+        let [(drawn, svg), (pixels, png)] = picture().files("p").unwrap();
+        assert_eq!([drawn, pixels], ["p.svg", "p.png"]);
+        let svg = String::from_utf8(svg).unwrap();
         for label in ["force F\u{304}", "stiffness k\u{304}", "A law", "2049 × 2049 cells", "D_f = 2", "0.01"]
         {
             assert!(svg.contains(&format!("aria-label=\"{label}\"")), "{label}");
@@ -417,12 +417,10 @@ mod tests {
         assert!(svg.trim_end().ends_with("</svg>") && !svg.contains("<text") && !svg.contains("NaN"));
         // The point beyond the axes is not drawn: one in the picture, one in the legend.
         assert_eq!(svg.matches("fill=\"#aa0000\" stroke").count(), 2);
-        let png = std::fs::read(&files[1]).unwrap();
         assert!(
             png.starts_with(b"\x89PNG") && png.ends_with(&[0x49, 0x45, 0x4e, 0x44, 0xae, 0x42, 0x60, 0x82])
         );
         // The same picture has the same bytes.
-        picture().save(dir.path(), "q").unwrap();
-        assert_eq!(std::fs::read(dir.path().join("q.png")).unwrap(), png);
+        assert_eq!(picture().files("q").unwrap()[1], ("q.png".to_owned(), png));
     }
 }

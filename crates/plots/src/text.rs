@@ -4,8 +4,7 @@
 //! character or `{group}`, `\bar{x}` and `\tilde{x}` put an accent on a symbol, `\rm{words}` is upright:
 //! `$\bar{k} = k/(1.1419 E^* L)$`.
 
-use files::{Error, Result};
-use std::path::Path;
+use crate::error::{Error, Result};
 use ttf_parser::{Face, GlyphId, OutlineBuilder};
 
 /// Size of a script beside that of its line, and how far it is raised or lowered, in sizes of the line.
@@ -57,7 +56,7 @@ pub(crate) enum Piece {
 impl Fonts {
     pub fn load() -> Result<Self> {
         let parse = |name: &str, bytes: &'static [u8]| {
-            Face::parse(bytes, 0).map_err(|e| Error::content(Path::new(name), e.to_string()))
+            Face::parse(bytes, 0).map_err(|e| Error::new(name, e.to_string()))
         };
         let regular = parse("STIXTwoText-Regular.ttf", include_bytes!("../fonts/STIXTwoText-Regular.ttf"))?;
         let italic = parse("STIXTwoText-Italic.ttf", include_bytes!("../fonts/STIXTwoText-Italic.ttf"))?;

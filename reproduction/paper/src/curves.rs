@@ -6,6 +6,7 @@ use crate::evaluation::{
     measure_showing, samples_table, write_budget,
 };
 use crate::judged::Judged;
+use crate::output::save;
 use crate::words;
 use contact_model::Table;
 use plots::{Axis, Key, LineStyle, Mark, MarkShape, NEUTRAL, Picture, REFERENCE, color, logarithmic, shape};
@@ -235,7 +236,7 @@ pub(crate) fn draw(name: &str, csv: &Path, over: Option<&Path>, out: &Path) -> R
         let label = format!("fewer than {} contact {cells}", crate::evaluation::FLOOR_CELLS);
         picture.legend(&label, NEUTRAL, Key::Mark(Mark::Hollow(MarkShape::Circle)));
     }
-    Ok(picture.save(out, name)?)
+    save(picture.files(name), out)
 }
 
 /// The points (x, y, below the floor of the grid) of one fractal dimension with their line and legend, in

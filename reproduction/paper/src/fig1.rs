@@ -2,9 +2,10 @@
 
 use crate::evaluation::{FRACTAL_DIMENSION, Flag, Outcome, Run, Session, TableOf, header, list, read_rows};
 use crate::judged::Judged;
+use crate::output::{refused, save};
 use crate::{curves, words};
 use contact_model::{HeightMap, SelfAffine};
-use plots::{GreyMap, GreyScale, encode_grey, grey, grey_between, most, save_maps};
+use plots::{GreyMap, GreyScale, encode_grey, grey, grey_between, grey_maps, most};
 use runs::{CsvFile, Error, Progress, Result, files, threads_for_memory};
 use std::path::{Path, PathBuf};
 use surface_io::write_npy;
@@ -88,7 +89,8 @@ fn full_size(out: &Path, d: f64, map: &HeightMap) -> Result<[PathBuf; 2]> {
     let npy = out.join(format!("fig1-df{d:?}.npy"));
     write_npy(&npy, &[n, n], map.heights())?;
     let png = out.join(format!("fig1-df{d:?}.png"));
-    files::write_whole(&png, &encode_grey(&png, n, &flipped(&grey(map.heights()), n))?)?;
+    let picture = encode_grey(&png.display().to_string(), n, &flipped(&grey(map.heights()), n));
+    files::write_whole(&png, &picture.map_err(refused)?)?;
     Ok([npy, png])
 }
 
@@ -108,7 +110,7 @@ pub(crate) fn draw(csv: &Path, out: &Path) -> Result<Vec<PathBuf>> {
     let below =
         format!("{}sides $L$, the same phases for every $D_{{\\rm{{f}}}}$", cells.unwrap_or_default());
     let scale = GreyScale { ends, label: "height, in units of the rms height $h$".into() };
-    Ok(save_maps(maps, &scale, (&words::title(&file), &below), out, "fig1")?)
+    save(grey_maps(maps, &scale, (&words::title(&file), &below), "fig1"), out)
 }
 
 #[cfg(test)]

@@ -6,6 +6,7 @@ use crate::evaluation::{
     header, measure, read_rows, transformed,
 };
 use crate::judged::Judged;
+use crate::output::save;
 use crate::{curves, words};
 use plots::{Axis, Key, LineStyle, Mark, MarkShape, NEUTRAL, Picture, REFERENCE, logarithmic};
 use runs::{CsvFile, Progress, Result};
@@ -76,5 +77,5 @@ pub(crate) fn draw(csv: &Path, out: &Path) -> Result<Vec<PathBuf>> {
         let label = format!("fewer than {} contact cells", crate::evaluation::FLOOR_CELLS);
         picture.legend(&label, NEUTRAL, Key::Mark(Mark::Hollow(MarkShape::Circle)));
     }
-    Ok(picture.save(out, "fig4")?)
+    save(picture.files("fig4"), out)
 }

@@ -2,6 +2,7 @@
 
 use crate::evaluation::{FRACTAL_DIMENSION, Flag, Outcome, Run, Session, TableOf, header, list, read_rows};
 use crate::judged::Judged;
+use crate::output::save;
 use crate::{curves, words};
 use contact_model::{Line, SelfAffine};
 use plots::{Axis, LineStyle, Panels, Picture, extent};
@@ -113,7 +114,7 @@ pub(crate) fn draw(csv: &Path, out: &Path) -> Result<Vec<PathBuf>> {
     }
     let size = words::flag(&file, "--elements").and_then(|n| n.parse().ok()).map(words::elements);
     let title = format!("{}{}", words::title(&file), size.map_or_else(String::new, |s| format!(", {s}")));
-    Ok(Panels { pictures, columns: 1, title, ..Panels::default() }.save(out, "fig5")?)
+    save(Panels { pictures, columns: 1, title, ..Panels::default() }.files("fig5"), out)
 }
 
 #[cfg(test)]

@@ -7,6 +7,7 @@ use crate::evaluation::{
     describe, header, laws, measure, read_rows,
 };
 use crate::judged::Judged;
+use crate::output::save;
 use crate::{curves, words};
 use analysis::{Bootstrap, Curves, FitWindow, FittedPowerLaw, StiffnessSample, fit_power_law};
 use plots::{Axis, Key, LineStyle, Mark, MarkShape, Picture, REFERENCE, number};
@@ -216,7 +217,7 @@ impl FittedFigure {
         for formula in self.formulas {
             picture.legend(formula.legend, REFERENCE, Key::Line(formula.style));
         }
-        Ok(picture.save(out, self.name)?)
+        save(picture.files(self.name), out)
     }
 }
 

@@ -48,6 +48,7 @@ mod fig6;
 mod fig7;
 mod fitted;
 mod judged;
+mod output;
 mod partial_slip;
 mod redraw;
 mod reference;

@@ -2,6 +2,7 @@
 
 use crate::evaluation::run::distinct;
 use crate::evaluation::table_of::read_rows;
+use crate::output::save;
 use analysis::observed_power;
 use plots::{Key, LineStyle, Mark, MarkShape, NEUTRAL, Picture, color, logarithmic, number};
 use runs::{CsvFile, Error, Result};
@@ -145,7 +146,7 @@ fn draw(
             drawing.legend(&label, NEUTRAL, Key::Mark(Mark::Solid(MARKS[rank % MARKS.len()])));
         }
     }
-    plot.files.extend(drawing.save(directory, name)?);
+    plot.files.extend(save(drawing.files(name), directory)?);
     Ok(())
 }
 

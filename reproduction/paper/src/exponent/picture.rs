@@ -1,6 +1,7 @@
 //! The pictures: local slopes with bands and the laws, and the ratio of line to surface.
 
 use crate::evaluation::{distinct, read_rows};
+use crate::output::save;
 use crate::words;
 use plots::{Axis, Key, Legend, LineStyle, Mark, Panels, Picture, color, logarithmic, shape};
 use runs::{CsvFile, Result};
@@ -90,7 +91,7 @@ fn slopes(directory: &Path) -> Result<Vec<PathBuf>> {
         Key::Words,
     );
     let title = "Local exponent of stiffness over force".to_owned();
-    Ok(Panels { pictures, columns: 3, title, legend }.save(directory, "exponent")?)
+    save(Panels { pictures, columns: 3, title, legend }.files("exponent"), directory)
 }
 
 fn ratios(directory: &Path) -> Result<Vec<PathBuf>> {
@@ -116,5 +117,5 @@ fn ratios(directory: &Path) -> Result<Vec<PathBuf>> {
         picture.legend(&words::dimension(d), &color, Key::Curve(mark));
     }
     picture.legend("bands: 95 %, scatter and what both grids leave", "#000000", Key::Words);
-    Ok(picture.save(directory, "exponent-ratio")?)
+    save(picture.files("exponent-ratio"), directory)
 }

@@ -1,6 +1,7 @@
 //! The picture of the grid study, drawn from its table.
 
 use crate::evaluation::{distinct, read_rows};
+use crate::output::save;
 use crate::words;
 use plots::{Axis, Key, Legend, LineStyle, Mark, Panels, Picture, REFERENCE, color, shape};
 use runs::{CsvFile, Result};
@@ -88,5 +89,5 @@ pub(crate) fn draw(directory: &Path) -> Result<Vec<PathBuf>> {
     }
     legend.push("bars: 95 % over surfaces, and the grid", REFERENCE, Key::Words);
     let title = "Share of the contact that sticks, $ν = 0$".to_owned();
-    Ok(Panels { pictures, columns, title, legend }.save(directory, "partial-slip-grids")?)
+    save(Panels { pictures, columns, title, legend }.files("partial-slip-grids"), directory)
 }

@@ -1,6 +1,7 @@
 //! The pictures of the study of partial slip, drawn from its tables.
 
 use crate::evaluation::{distinct, read_rows};
+use crate::output::save;
 use crate::words;
 use plots::{Axis, COLORS, Key, Legend, LineStyle, Mark, Panels, Picture, REFERENCE, SHAPES, color, shape};
 use runs::{CsvFile, Result};
@@ -122,7 +123,7 @@ fn curves(rows: &[SlipRow], out: &Path) -> Result<Vec<PathBuf>> {
             }
         }
     }
-    Ok(picture.save(out, "partial-slip-curve")?)
+    save(picture.files("partial-slip-curve"), out)
 }
 
 /// As in the paper of 2014: share of the contact that sticks, and stiffness, over the tangential force.
@@ -161,7 +162,7 @@ fn fractions(rows: &[SlipRow], out: &Path) -> Result<Vec<PathBuf>> {
     legend.push("$1 - Q/(μ F)$", REFERENCE, Key::Line(LineStyle::Dashed));
     legend.push(BARS, REFERENCE, Key::Words);
     let title = format!("What sticks, and how stiff it is: $ν = {nu}$, $\\bar{{F}} = {force}$");
-    Ok(Panels { pictures, columns: 2, title, legend }.save(out, "partial-slip-stick")?)
+    save(Panels { pictures, columns: 2, title, legend }.files("partial-slip-stick"), out)
 }
 
 /// Over Poisson's ratio: points of one load beside those of the next.
@@ -200,7 +201,7 @@ fn ratios(rows: &[StiffnessRow], out: &Path) -> Result<Vec<PathBuf>> {
     }
     legend.push(BARS, REFERENCE, Key::Words);
     let title = "Stiffness $k_t/k$ over $(2 - 2ν)/(2 - ν)$".to_owned();
-    Ok(Panels { pictures, columns, title, legend }.save(out, "partial-slip-stiffness")?)
+    save(Panels { pictures, columns, title, legend }.files("partial-slip-stiffness"), out)
 }
 
 /// The errors of Ciavarella and Jaeger's approximation: four numbers over Poisson's ratio, for several
@@ -253,5 +254,5 @@ fn misses(slips: &[SlipRow], loops: &[LoopRow], out: &Path) -> Result<Vec<PathBu
     }
     legend.push(BARS, REFERENCE, Key::Words);
     let title = format!("Ciavarella and Jaeger over the solution, less 1: {}", words::dimension(d));
-    Ok(Panels { pictures, columns: 2, title, legend }.save(out, "partial-slip-misses")?)
+    save(Panels { pictures, columns: 2, title, legend }.files("partial-slip-misses"), out)
 }

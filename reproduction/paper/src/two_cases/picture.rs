@@ -3,6 +3,7 @@
 use super::reading::slopes;
 use super::study::{CaseCurve, NAME, NAMES, PairRow};
 use crate::evaluation::{FLOOR_CELLS, FRACTAL_DIMENSION, TableOf, read_rows};
+use crate::output::save;
 use crate::words;
 use contact_model::PAPER_STIFFNESS_FACTOR;
 use contact_model::Table;
@@ -196,7 +197,7 @@ fn panel(
     if rows.iter().any(|r| r.stiffness_bar > HIGHEST) {
         picture.legend(&format!("periodic: only $\\bar{{k}}$ up to {HIGHEST} is shown"), NEUTRAL, Key::Words);
     }
-    Ok(picture.save(out, name)?)
+    save(picture.files(name), out)
 }
 
 fn mark_shape(mark: Mark) -> MarkShape {

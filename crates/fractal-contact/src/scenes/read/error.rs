@@ -1,6 +1,7 @@
 //! The one error type of this crate.
 
 use crate::scenes::read::Diagnostic;
+use std::path::Path;
 
 /// Result of everything in this crate.
 pub type Result<T, E = Error> = std::result::Result<T, E>;
@@ -38,6 +39,12 @@ impl Error {
 impl From<Diagnostic> for Error {
     fn from(diagnostic: Diagnostic) -> Self {
         Self::Scene(Box::new(diagnostic))
+    }
+}
+
+impl From<plots::Error> for Error {
+    fn from(error: plots::Error) -> Self {
+        Self::Run(runs::Error::content(Path::new(&error.picture), error.reason))
     }
 }
 

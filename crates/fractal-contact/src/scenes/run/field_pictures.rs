@@ -109,10 +109,10 @@ pub(crate) fn draw(
                 let step = scene.surface.size().x / cells.columns as f64;
                 let points = values.iter().enumerate().map(|(i, v)| ((i as f64 + 0.5) * step, *v));
                 let stem = name.strip_suffix(".png").unwrap_or(&name);
-                for path in row_chart(&drawn, points.collect()).save(out, stem)? {
-                    let Some(name) = path.file_name().and_then(|name| name.to_str()) else { continue };
+                for (name, bytes) in row_chart(&drawn, points.collect()).files(stem)? {
+                    runs::files::write_whole(&out.join(&name), &bytes)?;
                     state.files.retain(|file| file.name != name);
-                    state.files.push(StoredFile::of(out, name.to_owned())?);
+                    state.files.push(StoredFile::of(out, name)?);
                 }
                 continue;
             }
@@ -127,7 +127,8 @@ pub(crate) fn draw(
                     "; one scale for all loads"
                 };
             }
-            drawn.save(&out.join(&name))?;
+            let path = out.join(&name);
+            runs::files::write_whole(&path, &drawn.png(&path.display().to_string())?)?;
             state.files.retain(|file| file.name != name);
             state.files.push(StoredFile::of(out, name)?);
         }

@@ -243,7 +243,11 @@ impl ModelOnSurface {
                     }
                     FieldFormat::Png => continue,
                     FieldFormat::Pixels if !drawn => continue,
-                    FieldFormat::Pixels => plots::write_grey(&path, field.cells(), field.size(), &shown)?,
+                    FieldFormat::Pixels => {
+                        let name = path.display().to_string();
+                        let png = plots::grey_png(&name, field.cells(), field.size(), &shown)?;
+                        runs::files::write_whole(&path, &png)?;
+                    }
                     FieldFormat::Vti => write_vti(&path, quantity, scene, field.cells(), &components)?,
                 }
                 kept.files.push(StoredFile::of(out, file)?);

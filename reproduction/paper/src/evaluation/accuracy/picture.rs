@@ -2,6 +2,7 @@
 
 use crate::evaluation::run::distinct;
 use crate::evaluation::table_of::read_rows;
+use crate::output::save;
 use plots::{Axis, Key, Legend, LineStyle, Mark, MarkShape, NEUTRAL, Panels, Picture, color, extent};
 use runs::{CsvFile, Result};
 use serde::Deserialize;
@@ -76,7 +77,7 @@ pub(crate) fn draw(csv: &Path, out: &Path, name: &str) -> Result<Vec<PathBuf>> {
         }
     }
     let title = "Error of the stiffness over the time of one solve".to_owned();
-    Ok(Panels { pictures, columns: 2, title, legend: legend(&points, &dimensions) }.save(out, name)?)
+    save(Panels { pictures, columns: 2, title, legend: legend(&points, &dimensions) }.files(name), out)
 }
 
 /// One pair of axes for all panels, as long as the points need.

@@ -1,0 +1,18 @@
+//! Pictures into files.
+
+use runs::{Error, Result, files};
+use std::path::{Path, PathBuf};
+
+/// Writes the files of a picture into a directory.
+///
+/// # Errors
+/// A picture that cannot be drawn, files that cannot be written.
+pub(crate) fn save(drawn: plots::Result<[(String, Vec<u8>); 2]>, directory: &Path) -> Result<Vec<PathBuf>> {
+    Ok(files::write_all(directory, drawn.map_err(refused)?)?)
+}
+
+/// A picture that cannot be drawn, as an error of a command.
+#[allow(clippy::needless_pass_by_value)] // For `map_err`.
+pub(crate) fn refused(error: plots::Error) -> Error {
+    Error::content(Path::new(&error.picture), error.reason)
+}
