@@ -8,6 +8,8 @@ use pyo3::exceptions::{PyOSError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyDict, PyTuple, PyType};
+use std::io;
+use std::path::Path;
 
 /// An exception class of `fractal_contact._errors`.
 fn class<'py>(py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyType>> {
@@ -131,24 +133,28 @@ fn of_any(
 
 /// A refusal of the system as Python has it: `FileNotFoundError`, `PermissionError` and other classes of
 /// `OSError`.
-fn of_system(error: &files::Error) -> Option<PyErr> {
-    let files::Error::System { path, source, .. } = error else { return None };
+fn of_system(path: &Path, source: &io::Error) -> Option<PyErr> {
     let code = source.raw_os_error()?;
     let reason = source.to_string();
     let reason = reason.split(" (os error").next().unwrap_or_default().to_owned();
-    Some(PyOSError::new_err((code, reason, path.clone().into_os_string())))
+    Some(PyOSError::new_err((code, reason, path.as_os_str().to_owned())))
 }
 
 /// An error of the file of a surface.
 pub fn of_surface(py: Python<'_>, error: &surface_io::Error) -> PyErr {
-    let system = if let surface_io::Error::System(error) = error { of_system(error) } else { None };
+    let system = match error {
+        surface_io::Error::System { path, source, .. } => of_system(path, source),
+        _ => None,
+    };
     system.unwrap_or_else(|| plain(py, "ReadError", &error.to_string()))
 }
 
 /// An error of a scene or its files.
 pub fn of_scene(py: Python<'_>, error: &scenes::Error) -> PyErr {
     let system = match error {
-        scenes::Error::Run(runs::Error::File(error)) => of_system(error),
+        scenes::Error::Run(runs::Error::File(files::Error::System { path, source, .. })) => {
+            of_system(path, source)
+        }
         scenes::Error::Surface(error) => return of_surface(py, error),
         _ => None,
     };

@@ -16,7 +16,7 @@
 
 use fractal_contact::surface_gen::height_map;
 use fractal_contact::surface_io::{
-    Detrend, Fill, Metric, Preprocessing, ReadOptions, Scan, Undefined, write_map,
+    Detrend, Fill, Metric, Preprocessing, ReadOptions, Scan, Undefined, map_file,
 };
 use fractal_contact::{Bem3d, ContactModel, HeightMap, Load, Scene, SelfAffine, Surface};
 use std::error::Error;
@@ -29,7 +29,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let surface = SelfAffine { short_cutoff: Some(std::f64::consts::TAU / 40e-6), ..surface };
     let complete = height_map(&Surface::SelfAffine(surface), [128, 96], 3)?;
     let path = out.join("optical.x3p");
-    write_map(&path, &lossy(&complete)?, Metric::Metres)?;
+    std::fs::write(&path, map_file("x3p", &lossy(&complete)?, Metric::Metres)?)?;
 
     let scan = Scan::read(&path, &ReadOptions::default())?;
     let undefined = scan.metadata().undefined as f64;

@@ -191,7 +191,8 @@ curves = true
 "#;
 
 fn parsed(text: &str, directory: &std::path::Path) -> fractal_contact::scenes::Result<SceneFile> {
-    surface_io::write_npy(&directory.join("map.npy"), &[2, 3], &[0.0, 1.0, 2.0, 1.0, 0.5, 0.0]).unwrap();
+    let map = surface_io::npy(&[2, 3], &[0.0, 1.0, 2.0, 1.0, 0.5, 0.0]).unwrap();
+    std::fs::write(directory.join("map.npy"), map).unwrap();
     let registry = Registry::new().with(Block, "1").unwrap();
     SceneFile::parse_with(&directory.join("block.toml"), text.into(), &registry)
 }

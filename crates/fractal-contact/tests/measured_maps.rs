@@ -18,7 +18,8 @@ fn folder(keys: &str) -> (tempfile::TempDir, fractal_contact::scenes::Result<Sce
     std::fs::write(dir.path().join("lower.npy"), surface_io::npy(&[3, 4], &all).unwrap()).unwrap();
     let metres = all.iter().map(|h| h * 1e-6).collect();
     let map = HeightMap::new([4, 3], [4e-3, 3e-3], metres).unwrap();
-    surface_io::write_map(&dir.path().join("upper.x3p"), &map, surface_io::Metric::Metres).unwrap();
+    let upper = surface_io::map_file("x3p", &map, surface_io::Metric::Metres).unwrap();
+    std::fs::write(dir.path().join("upper.x3p"), upper).unwrap();
     let text = format!(
         "[scene]\nmodels = [\"bem3d\"]\ncontact_modulus = \"1 GPa\"\nforce = \"1 N\"\n[scene.surface]\n\
          kind = \"file\"\npath = \"lower.npy\"\nunit = \"um\"\ncell = \"1 mm\"\ndetrend = \"none\"\n{keys}\n"

@@ -229,7 +229,8 @@ fn pictures_have_the_areas_of_the_table() {
     let hole = |i: usize| (i % 90 / 7 + i / 90 / 5).is_multiple_of(6);
     let heights = map.heights().iter().enumerate().map(|(i, h)| if hole(i) { f64::NAN } else { *h });
     let map = HeightMap::with_undefined([90, 60], [90.0, 60.0], heights.collect()).unwrap();
-    surface_io::write_map(&dir.path().join("map.npy"), &map, surface_io::Metric::Unitless).unwrap();
+    let map = surface_io::map_file("npy", &map, surface_io::Metric::Unitless).unwrap();
+    std::fs::write(dir.path().join("map.npy"), map).unwrap();
     let surface = "kind = \"file\"\npath = \"map.npy\"\nunit = \"um\"\nsize = [\"90 um\", \"60 um\"]\nundefined = \"no_contact\"";
     let load = ["20 N", "4 N"];
     compare(dir.path(), &Case { surface, boundary: "", load, cells: [90, 60], pixels: [1080, 720] });

@@ -175,7 +175,7 @@ fn a_surface_has_a_report() {
     let file = dir.path().join(format!("{HOSTILE}.npy").replace('/', ""));
     let surface = contact_model::SelfAffine::new(2.2, [2.0, 1.0], 0.01).unwrap();
     let map = surface_gen::self_affine_map(&surface, [300, 150], 5).unwrap();
-    surface_io::write_map(&file, &map, surface_io::Metric::Unitless).unwrap();
+    std::fs::write(&file, surface_io::map_file("npy", &map, surface_io::Metric::Unitless).unwrap()).unwrap();
     let declared = surface_io::ReadOptions {
         unit: Some("none".parse().unwrap()),
         size: Some("2 x 1".parse().unwrap()),

@@ -22,7 +22,7 @@
 use std::error::Error;
 use std::path::PathBuf;
 use surface_io::{
-    Decimal, Detrend, Fill, Metric, Preprocessing, ReadOptions, Scan, Undefined, describe, write_map,
+    Decimal, Detrend, Fill, Metric, Preprocessing, ReadOptions, Scan, Undefined, describe, map_file,
 };
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -35,7 +35,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let line = |iy| (0..64).map(|ix| entry(ix, iy)).collect::<Vec<_>>().join(";") + "\n";
     let text = (0..48).map(line).collect::<String>().replace('.', ",");
     let path = out.join("profilometer.txt");
-    files::write_whole(&path, text.as_bytes())?;
+    std::fs::write(&path, text)?;
 
     // What the file does not say is given; the rest is found and can be looked at.
     let options = ReadOptions {
@@ -58,6 +58,6 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("{}", describe(&map));
     // A ripple sin x cos y has half the amplitude as rms.
     assert!((describe(&map).rms_height / 0.1e-6 - 1.0).abs() < 0.02);
-    write_map(&out.join("profilometer.npy"), &map, Metric::Metres)?;
+    std::fs::write(out.join("profilometer.npy"), map_file("npy", &map, Metric::Metres)?)?;
     Ok(())
 }

@@ -28,7 +28,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     ];
     for (name, encoding) in [("rough.vti", Encoding::Base64), ("rough-ascii.vti", Encoding::Ascii)] {
         let bytes = vti(map.cells(), map.size(), &fields, encoding)?;
-        files::write_whole(&out.join(name), &bytes)?;
+        std::fs::write(out.join(name), &bytes)?;
         println!("{name}: {} kB", bytes.len() / 1000);
         // Two doubles a cell; base64 takes four characters for three bytes.
         assert!(bytes.len() > 2 * n * n * 8 * 4 / 3);

@@ -8,15 +8,22 @@ use std::fmt::{self, Write as _};
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// Result type of everything that reads or writes.
+/// Result type of everything that reads.
 pub type Result<T, E = Error> = std::result::Result<T, E>;
 
 /// What can go wrong with a file.
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum Error {
-    /// The operating system refused to read or write.
-    System(files::Error),
+    /// The operating system refused.
+    System {
+        /// What was being done (`open`, `read`, ...).
+        action: &'static str,
+        /// Where.
+        path: PathBuf,
+        /// Its reason.
+        source: io::Error,
+    },
     /// The file, or a request for it, does not give a surface.
     Content {
         /// Where.
@@ -28,8 +35,8 @@ pub enum Error {
 
 impl Error {
     pub(crate) fn system(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> Self {
-        let refused = files::Error::system(action, path);
-        move |source| Self::System(refused(source))
+        let path = path.to_owned();
+        move |source| Self::System { action, path, source }
     }
 
     pub(crate) fn content(path: &Path) -> impl FnOnce(ContentError) -> Self {
@@ -41,15 +48,7 @@ impl Error {
     pub fn problem(&self) -> Option<&ContentError> {
         match self {
             Self::Content { problem, .. } => Some(problem),
-            Self::System(_) => None,
-        }
-    }
-
-    /// The error with its problem in words, for callers that do not need the kind of the problem.
-    pub fn into_words(self) -> files::Error {
-        match self {
-            Self::System(error) => error,
-            Self::Content { path, problem } => files::Error::content(&path, problem.to_string()),
+            Self::System { .. } => None,
         }
     }
 }
@@ -635,7 +634,9 @@ impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut f = Escaping::of_line(f);
         match self {
-            Self::System(error) => write!(f, "{error}"),
+            Self::System { action, path, source } => {
+                write!(f, "cannot {action} {}: {source}", path.display())
+            }
             Self::Content { path, problem } => write!(f, "{}: {problem}", path.display()),
         }
     }
@@ -644,7 +645,7 @@ impl fmt::Display for Error {
 impl std::error::Error for Error {
     fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
         match self {
-            Self::System(error) => std::error::Error::source(error),
+            Self::System { source, .. } => Some(source),
             Self::Content { problem, .. } => problem.source(),
         }
     }

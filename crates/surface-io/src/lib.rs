@@ -127,9 +127,9 @@
 //!
 //! # Writing
 //!
-//! [`write_map`] writes a map in the format of the name's ending. [`npy`], [`hdf5`], [`text()`], [`xyz`],
-//! [`x3p`], [`gwy`], [`netcdf`] and [`vti`] (for ParaView) return bytes, and [`files::write_whole`] puts them
-//! into a file whole or not at all. [`write_npy`] does both for an array.
+//! [`map_file`] returns the bytes of a map in the format of a name's ending. [`npy`], [`hdf5`], [`text()`],
+//! [`xyz`], [`x3p`], [`gwy`], [`netcdf`] and [`vti`] (for ParaView) return the bytes of one format. The caller
+//! writes them into a file.
 //!
 //! # Features
 //!
@@ -198,4 +198,4 @@ pub use scan::{Metadata, Scan};
 pub use sides::Sides;
 pub use surface_file::SurfaceFile;
 pub use vti::{DataArray, Encoding, vti};
-pub use write::{Metric, text, write_map, write_npy, xyz};
+pub use write::{Metric, map_file, text, xyz};

@@ -1,14 +1,13 @@
-//! Writing of maps: as text, and in the format of the name's ending.
+//! Maps as the bytes of files: as text, and in the format of a name's ending.
 
 use crate::channel::check_unit;
-use crate::error::{ContentError, Error, Result};
+use crate::error::ContentError;
 use crate::instruments::{gwy, hdf5, netcdf, x3p};
 use crate::lines::Lines;
 use crate::npy;
 use crate::quantity::{Dimension, Unit};
 use crate::vti::{DataArray, Encoding, vti};
 use contact_model::HeightMap;
-use std::path::Path;
 
 /// Unit of the numbers of a map: metres, as [`crate::Scan::map`] gives them, or no unit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -49,8 +48,8 @@ impl Metric {
     }
 }
 
-/// Writes a map whole or not at all, in the format of the name's ending: `npy`, `h5`, `txt`, `xyz`, `vti`,
-/// `x3p`, `gwy` or `nc` (NetCDF-3).
+/// The bytes of a file of a map, in the format of its name's ending: `npy`, `h5`, `txt`, `xyz`, `vti`, `x3p`,
+/// `gwy` or `nc` (NetCDF-3). The caller writes them.
 ///
 /// All formats but NPY (an array `[row, column]`) contain the size and the unit; X3P is in metres only. Every
 /// number is written so that the same double is read again. X3P contains the sides of a cell, whose multiple
@@ -59,23 +58,16 @@ impl Metric {
 /// NetCDF masks them too.
 ///
 /// # Errors
-/// [`Error::System`] where the system refuses, [`Error::Content`] for another ending, for a format that the
-/// build leaves out, and for X3P without a unit.
+/// [`ContentError::Ending`] for another ending, [`ContentError::LeftOut`] for a format that the build leaves
+/// out, [`ContentError::Unspecified`] for X3P without a unit.
 ///
-/// ```no_run
-/// use surface_io::{Metric, write_map};
+/// ```
+/// use surface_io::{Metric, map_file};
 /// let map = contact_model::HeightMap::new(2, 1e-6, vec![0.0, 1e-9, 2e-9, 3e-9])?;
-/// write_map("a.txt".as_ref(), &map, Metric::Metres)?;
+/// assert_eq!(map_file("txt", &map, Metric::Metres)?, surface_io::text(&map, Metric::Metres).into_bytes());
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn write_map(path: &Path, map: &HeightMap, metric: Metric) -> Result<()> {
-    let ending = path.extension().and_then(|e| e.to_str()).unwrap_or_default();
-    let bytes = encoded(ending, map, metric).map_err(Error::content(path))?;
-    files::write_whole(path, &bytes).map_err(Error::System)
-}
-
-/// The bytes of a file whose name has this ending.
-fn encoded(ending: &str, map: &HeightMap, metric: Metric) -> Result<Vec<u8>, ContentError> {
+pub fn map_file(ending: &str, map: &HeightMap, metric: Metric) -> Result<Vec<u8>, ContentError> {
     Ok(match ending {
         "npy" => npy(&[map.rows(), map.columns()], &with_nan(map))?,
         "h5" => hdf5(map, metric)?,
@@ -95,16 +87,6 @@ fn encoded(ending: &str, map: &HeightMap, metric: Metric) -> Result<Vec<u8>, Con
         "nc" => netcdf(map, metric)?,
         other => return Err(ContentError::Ending { found: other.chars().take(16).collect() }),
     })
-}
-
-/// Writes numbers as an NPY array of the given shape (float64, row-major), whole or not at all.
-///
-/// # Errors
-/// [`files::Error::Content`] where the shape holds another number of values, [`files::Error::System`] when it
-/// cannot be written.
-pub fn write_npy(path: &Path, shape: &[usize], values: &[f64]) -> files::Result<()> {
-    let bytes = npy(shape, values).map_err(|e| files::Error::content(path, e.to_string()))?;
-    files::write_whole(path, &bytes)
 }
 
 /// A text matrix with a header: rows in lines, tabs between the numbers, `nan` at undefined points.

@@ -2,13 +2,12 @@
 
 use crate::evaluation::{FRACTAL_DIMENSION, Flag, Outcome, Run, Session, TableOf, header, list, read_rows};
 use crate::judged::Judged;
-use crate::output::{refused, save};
+use crate::output::{refused, save, write_npy};
 use crate::{curves, words};
 use contact_model::{HeightMap, SelfAffine};
 use plots::{GreyMap, GreyScale, encode_grey, grey, grey_between, grey_maps, most};
 use runs::{CsvFile, Error, Progress, Result, files, threads_for_memory};
 use std::path::{Path, PathBuf};
-use surface_io::write_npy;
 
 /// The flags on which Fig. 1 depends.
 pub const FLAGS: [Flag; 3] = [Flag::CELLS, Flag::FRACTAL_DIMENSIONS, Flag::SEED];

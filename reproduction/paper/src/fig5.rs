@@ -2,13 +2,12 @@
 
 use crate::evaluation::{FRACTAL_DIMENSION, Flag, Outcome, Run, Session, TableOf, header, list, read_rows};
 use crate::judged::Judged;
-use crate::output::save;
+use crate::output::{save, write_npy};
 use crate::{curves, words};
 use contact_model::{Line, SelfAffine};
 use plots::{Axis, LineStyle, Panels, Picture, extent};
 use runs::{CsvFile, Error, Progress, Result, threads_for_memory};
 use std::path::{Path, PathBuf};
-use surface_io::write_npy;
 
 /// The flags on which Fig. 5 depends.
 pub const FLAGS: [Flag; 3] = [Flag::ELEMENTS, Flag::FRACTAL_DIMENSIONS, Flag::SEED];

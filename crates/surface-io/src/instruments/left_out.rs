@@ -60,7 +60,7 @@ pub fn x3p(_map: &HeightMap) -> Result<Vec<u8>, ContentError> {
 
 #[cfg(test)]
 mod tests {
-    use crate::{Format, Metric, ReadOptions, Scan, write_map};
+    use crate::{Format, Metric, ReadOptions, Scan, map_file};
     use contact_model::HeightMap;
 
     #[test]
@@ -78,12 +78,12 @@ mod tests {
             let read = Scan::from_bytes("a", start, &ReadOptions::default()).unwrap_err().to_string();
             assert!(read.contains(&words), "{read}");
             if written {
-                let write = write_map("a.h5".as_ref(), &map, Metric::Metres).unwrap_err().to_string();
+                let write = map_file("h5", &map, Metric::Metres).unwrap_err().to_string();
                 assert!(write.contains(&words), "{write}");
             }
         }
         if !cfg!(feature = "x3p") {
-            let write = write_map("a.x3p".as_ref(), &map, Metric::Metres).unwrap_err().to_string();
+            let write = map_file("x3p", &map, Metric::Metres).unwrap_err().to_string();
             assert!(write.contains("the feature x3p of the crate surface-io"), "{write}");
             let other = crate::zip::archive(&[("a.txt", vec![1])]).unwrap();
             let read = Scan::from_bytes("a", &other, &ReadOptions::default()).unwrap_err().to_string();

@@ -6,6 +6,7 @@ use crate::evaluation::limits::{self, require, within};
 use crate::evaluation::realisation::Discretisation;
 use crate::evaluation::square_map::{read_map, unit_area};
 use crate::evaluation::table_of::{maybe, names};
+use crate::output::write_npy;
 use bem3d::benchmarks::{Part, Recorder, Spent, prepare_recorded};
 use bem3d::{Bem3d, Method};
 use contact_model::{
@@ -19,7 +20,6 @@ use runs::{
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, LazyLock};
 use std::time::Instant;
-use surface_io::write_npy;
 
 /// The solves that are measured.
 #[derive(Debug, Clone)]
@@ -346,7 +346,7 @@ impl BenchSeries {
             .map(|(d, seed)| format!("_N{}_Df{d:?}_seed{seed}", row.cells.columns))
             .unwrap_or_default();
         let name = format!("pressure_{stem}{drawn}_F{:?}_tol{:?}.npy", row.force_bar, row.tolerance);
-        Ok(write_npy(&directory.join(name), &[pressure.rows(), pressure.columns()], pressure.values())?)
+        write_npy(&directory.join(name), &[pressure.rows(), pressure.columns()], pressure.values())
     }
 }
 

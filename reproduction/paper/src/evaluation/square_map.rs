@@ -21,16 +21,25 @@ pub(crate) fn read_map(path: &Path) -> Result<HeightMap> {
     let cell = Quantity::new(1.0, Dimension::NONE).map_err(|e| wrong(e.to_string()))?;
     let declared =
         ReadOptions { format: Some(Format::Npy), cell: Some(Sides::One(cell)), ..ReadOptions::default() };
-    let scan = Scan::read(path, &declared).map_err(surface_io::Error::into_words)?;
+    let scan = Scan::read(path, &declared).map_err(in_words)?;
     let map = scan.map(&Preprocessing::default()).map_err(|error| match error.problem() {
         // What could be done about it elsewhere is not offered here.
         Some(ContentError::Undefined { undefined, points, first }) => wrong(format!(
             "{undefined} of {points} numbers are NaN, the first in {first}: expected finite heights"
         )),
-        _ => error.into_words(),
+        _ => in_words(error),
     })?;
     let size = unit_area(map.cells());
     Ok(HeightMap::new(map.cells(), size, map.heights().to_vec()).map_err(|e| wrong(e.to_string()))?)
+}
+
+/// An error of a surface's file with its problem in words.
+fn in_words(error: surface_io::Error) -> Error {
+    match error {
+        surface_io::Error::System { action, path, source } => Error::System { action, path, source },
+        surface_io::Error::Content { path, problem } => Error::content(&path, problem.to_string()),
+        other => Error::content(Path::new("the map"), other.to_string()),
+    }
 }
 
 /// Sides of a rectangle of square cells with `sqrt(Lx Ly) = 1`.
@@ -43,7 +52,7 @@ pub(crate) fn unit_area(cells: Cells) -> Size {
 mod tests {
     use super::*;
     use std::fs;
-    use surface_io::write_npy;
+    use surface_io::npy;
 
     fn header(text: &str) -> Vec<u8> {
         let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
@@ -57,7 +66,7 @@ mod tests {
     fn a_map_comes_back_and_fortran_order_is_turned() {
         let dir = tempfile::tempdir().unwrap();
         let path = dir.path().join("map.npy");
-        write_npy(&path, &[2, 2], &[0.0, 1.0, 2.0, 3.0]).unwrap();
+        fs::write(&path, npy(&[2, 2], &[0.0, 1.0, 2.0, 3.0]).unwrap()).unwrap();
         let map = read_map(&path).unwrap();
         assert_eq!((map.columns(), map.heights()), (2, &[0.0, 1.0, 2.0, 3.0][..]));
         let mut bytes = header("{'descr': '<f8', 'fortran_order': True, 'shape': (2, 2), }");
@@ -74,7 +83,7 @@ mod tests {
     fn a_rectangle_has_square_cells_and_area_one() {
         let dir = tempfile::tempdir().unwrap();
         let path = dir.path().join("map.npy");
-        write_npy(&path, &[2, 8], &[0.5; 16]).unwrap();
+        fs::write(&path, npy(&[2, 8], &[0.5; 16]).unwrap()).unwrap();
         let map = read_map(&path).unwrap();
         assert_eq!((map.columns(), map.rows()), (8, 2));
         approx::assert_relative_eq!(map.size().area(), 1.0, max_relative = 1e-15);

@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 use std::path::Path;
 use std::sync::Arc;
 use surface_gen::{Anisotropy, HeightDistribution, TwinSpectrum};
-use surface_io::{Dimension, Metric, Preprocessing, Quantity, ReadOptions, Scan, Sides, write_map};
+use surface_io::{Dimension, Metric, Preprocessing, Quantity, ReadOptions, Scan, Sides, map_file};
 
 /// Memory of drawing a surface and writing it, bytes per cell.
 const BYTES: f64 = 24.0;
@@ -39,12 +39,12 @@ pub struct GeneratedSurface {
 }
 
 impl GeneratedSurface {
-    /// Generates the surface, writes it in the format of the name's ending ([`surface_io::write_map`]) and
+    /// Generates the surface, writes it in the format of the name's ending ([`surface_io::map_file`]) and
     /// returns a description in a few lines.
     ///
     /// # Errors
     /// [`Error::Argument`] for an invalid length or units that do not fit, [`Error::Run`] for numbers outside
-    /// of their range, [`Error::Surface`] for an unknown ending or a file that cannot be written.
+    /// of their range or a file that cannot be written, [`Error::Surface`] for an unknown ending.
     pub fn write(&self, path: &Path) -> Result<String> {
         let mut units: Option<Dimension> = None;
         let wrong = |name: &'static str, e: surface_io::QuantityError| Error::Argument {
@@ -103,7 +103,8 @@ impl GeneratedSurface {
 /// the map's heights.
 ///
 /// # Errors
-/// [`Error::Surface`] for files that cannot be read or written, [`Error::Run`] for undefined points and a map of equal heights.
+/// [`Error::Surface`] for a file that cannot be read and an unknown ending, [`Error::Run`] for undefined points,
+/// a map of equal heights and a file that cannot be written.
 pub fn write_twin(
     path: &Path,
     (declared, preprocessing): (&ReadOptions, &Preprocessing),
@@ -123,7 +124,10 @@ pub fn write_twin(
 
 /// Writes a surface and returns a description.
 fn write(path: &Path, Drawn { map, spectrum_residual }: &Drawn, metric: Metric) -> Result<String> {
-    write_map(path, map, metric)?;
+    let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
+    let bytes = map_file(ending, map, metric)
+        .map_err(|problem| surface_io::Error::Content { path: path.to_owned(), problem })?;
+    runs::files::write_whole(path, &bytes)?;
     let (unit, system) = if metric == Metric::Metres { ("m", System::Si) } else { ("none", System::None) };
     let mut text = format!("{}\nunit               {unit}\n{}\n", path.display(), description(map, system));
     if let Some(residual) = spectrum_residual {

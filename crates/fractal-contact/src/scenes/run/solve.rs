@@ -239,7 +239,9 @@ impl ModelOnSurface {
                 match format {
                     FieldFormat::Npy => {
                         let shape = [components.len(), field.rows(), field.columns()];
-                        surface_io::write_npy(&path, &shape[usize::from(components.len() == 1)..], &all)?;
+                        let bytes = surface_io::npy(&shape[usize::from(components.len() == 1)..], &all)
+                            .map_err(|e| runs::Error::content(&path, e.to_string()))?;
+                        runs::files::write_whole(&path, &bytes)?;
                     }
                     FieldFormat::Png => continue,
                     FieldFormat::Pixels if !drawn => continue,
