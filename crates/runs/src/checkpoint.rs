@@ -6,6 +6,7 @@
 //! the bytes that follow. Where any of these differs, the checkpoint is not used.
 
 use crate::error::{Error, Result};
+use crate::files;
 use crate::store::fnv1a_128;
 use std::fmt;
 use std::path::{Path, PathBuf};

@@ -1,6 +1,7 @@
 //! CSV with a header that explains itself.
 
 use crate::error::{Error, Result};
+use crate::files;
 use contact_model::Source;
 use contact_model::{Table, Value};
 use flate2::read::GzDecoder;

@@ -1,5 +1,6 @@
 //! The one error type of this crate; it names the place and the expected value.
 
+use crate::files;
 use std::fmt;
 use std::io;
 use std::path::Path;

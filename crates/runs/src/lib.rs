@@ -36,6 +36,7 @@ pub mod cluster;
 mod csv_file;
 mod encoding;
 mod error;
+pub mod files;
 mod finite;
 mod jobs;
 mod manifest;
@@ -51,7 +52,6 @@ pub use checkpoint::{Checkpoint, Unused};
 pub use csv_file::{CsvFile, Header, csv_bytes, number, write_csv};
 pub use encoding::ResultKind;
 pub use error::{Error, Result};
-pub use files;
 pub use jobs::{
     Failure, Job, JobList, Ordered, Threads, collect, on_one_thread, run_in_order, run_jobs, run_stored,
 };

@@ -1,6 +1,7 @@
 //! `manifest.json`: how and where the files of a directory were made.
 
 use crate::error::{Error, Result};
+use crate::files;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 

@@ -7,6 +7,7 @@
 //! files as there were processes.
 
 use crate::error::{Error, Result};
+use crate::files;
 use crate::progress::Progress;
 use contact_model::Stop;
 use std::collections::HashMap;

@@ -2,6 +2,7 @@
 
 use super::plan::ShardPlan;
 use crate::error::{Error, Result};
+use crate::files;
 use crate::jobs::JobList;
 use crate::store::{Pack, Store, fnv1a_128};
 use rayon::prelude::*;

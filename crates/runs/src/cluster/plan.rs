@@ -2,6 +2,7 @@
 
 use super::words::quoted;
 use crate::error::{Error, Result};
+use crate::files;
 use crate::jobs::JobList;
 use crate::store::fnv1a_128;
 use rayon::prelude::*;

@@ -4,6 +4,7 @@ use super::check::{Completeness, JobState};
 use super::plan::ShardPlan;
 use super::shard_run::shards;
 use crate::error::{Error, Result};
+use crate::files;
 use crate::jobs::JobList;
 use crate::shard::MOST_SHARDS;
 use std::collections::{BTreeMap, BTreeSet};

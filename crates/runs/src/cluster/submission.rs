@@ -8,6 +8,7 @@ use super::status::submitted_tasks;
 use super::words::{line, quoted, ranges, shown, toml};
 use crate::amounts::duration;
 use crate::error::{Error, Result};
+use crate::files;
 use crate::jobs::JobList;
 use std::collections::BTreeSet;
 use std::fmt;

@@ -1,6 +1,6 @@
 //! Files written whole or not at all.
 
-use crate::error::{Error, Result};
+use super::error::{Error, Result};
 use std::fs;
 use std::io::{Read as _, Write as _};
 use std::path::{Path, PathBuf};
