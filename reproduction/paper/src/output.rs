@@ -12,7 +12,6 @@ pub(crate) fn save(drawn: plots::Result<[(String, Vec<u8>); 2]>, directory: &Pat
 }
 
 /// A picture that cannot be drawn, as an error of a command.
-#[allow(clippy::needless_pass_by_value)] // For `map_err`.
 pub(crate) fn refused(error: plots::Error) -> Error {
     Error::content(Path::new(&error.picture), error.reason)
 }
