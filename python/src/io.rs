@@ -1,13 +1,12 @@
 //! Surfaces from files.
 
-use crate::errors::{of_scene, of_surface, plain};
+use crate::errors::{of_surface, plain};
 use crate::height_map::HeightMap;
 use crate::pool;
 use crate::scene::optional;
-use fractal_contact::runs::files;
 use fractal_contact::scenes;
 use fractal_contact::surface_io::{
-    self, Decimal, Detrend, Dimension, Error, Metadata, Metric, Preprocessing, Quantity, ReadOptions, Scan,
+    Decimal, Detrend, Dimension, Error, Metadata, Metric, Preprocessing, Quantity, ReadOptions, Scan,
     SurfaceFile, Undefined,
 };
 use pyo3::exceptions::{PyTypeError, PyValueError};
@@ -163,11 +162,5 @@ pub fn si(text: &str) -> PyResult<f64> {
 pub fn write_surface(py: Python<'_>, path: PathBuf, map: &HeightMap, metres: bool) -> PyResult<()> {
     let metric = if metres { Metric::Metres } else { Metric::Unitless };
     let map = Arc::clone(&map.0);
-    let write = move || -> scenes::Result<()> {
-        let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
-        let bytes = surface_io::map_file(ending, &map, metric)
-            .map_err(|problem| surface_io::Error::Content { path: path.clone(), problem })?;
-        Ok(files::write_whole(&path, &bytes)?)
-    };
-    pool::call(py, write)?.map_err(|error| of_scene(py, &error))
+    pool::call(py, move || scenes::write_map(&path, &map, metric))?.map_err(|error| of_surface(py, &error))
 }

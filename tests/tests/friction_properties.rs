@@ -7,7 +7,7 @@ use contact_model::{
 };
 use proptest::prelude::*;
 use proptest::test_runner::{FileFailurePersistence, RngSeed};
-use tests::stability::{PlainShear, compliance};
+use tests::stability::{Dragged, PlainShear, compliance};
 use tests::{hard_map, rough_map, scene};
 
 const TOLERANCE: f64 = 1e-10;
@@ -67,10 +67,14 @@ impl Drawn {
     }
 
     fn prepare(&self) -> Box<dyn PreparedContact> {
+        self.prepare_to(TOLERANCE)
+    }
+
+    fn prepare_to(&self, tolerance: f64) -> Box<dyn PreparedContact> {
         let mut scene = Scene { pair: Some(self.pair()), ..scene(self.map.clone()) };
         scene.effects.friction = Friction::coulomb(self.coefficient);
         scene.outputs = Outputs { pressure: true, traction: true, slip: true, ..Outputs::default() };
-        Bem3d { tolerance: TOLERANCE, ..Bem3d::default() }.prepare(&scene, 0).unwrap()
+        Bem3d { tolerance, ..Bem3d::default() }.prepare(&scene, 0).unwrap()
     }
 
     fn sum(&self) -> PlainShear {
@@ -192,6 +196,29 @@ proptest! {
             prop_assert!(gap <= 5.0 * TOLERANCE * friction * longest, "{gap} of {}", friction * longest);
             (before, energy) = (now, 0.5 * square);
         }
+    }
+
+    /// The duality gap of a step bounds the whole square of the error of the tractions, `e' K e`, and not half of
+    /// it: beside tractions to rounding under the same displacement and the same limits of friction.
+    #[test]
+    fn the_gap_bounds_the_square_of_the_error(drawn in any_contact(), leg in any_leg()) {
+        let (mut contact, sum) = (drawn.prepare_to(0.03), drawn.sum());
+        let state = contact.advance(drawn.step(leg)).unwrap();
+        let mut now = Sheared::of(&drawn, &state);
+        let u = sum.displacement(&now.forces);
+        let slip = |i: usize| [0, 1].map(|k| now.displacement[k] - u[i][k]);
+        let of_cell = |(&(i, f), b): (&(usize, [f64; 2]), &f64)| b * length(slip(i)) - dot(f, slip(i));
+        let gap: f64 = now.forces.iter().zip(&now.limits).map(of_cell).sum();
+        let mut exact = Dragged::new(&sum);
+        let limits: Vec<(usize, f64)> =
+            now.forces.iter().map(|(i, _)| *i).zip(now.limits.iter().copied()).collect();
+        exact.advance(&limits, now.displacement);
+        for (i, f) in &mut now.forces {
+            *f = [0, 1].map(|k| f[k] - exact.forces[*i][k]);
+        }
+        let square = now.product(&sum, &now);
+        let scale = now.limits.iter().sum::<f64>() * length(now.displacement);
+        prop_assert!(square <= gap + ROUNDING * scale, "{square} beyond {gap}");
     }
 
     /// A closed loop of the force dissipates energy, since the elastic energy is the same at both ends. With

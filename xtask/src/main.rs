@@ -178,13 +178,14 @@ fn redraw(options: &Redraw) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Ctrl-C, SIGTERM and SIGHUP end the process at once: finished results are kept, and an unfinished one is
-/// lost. Where the system grants no thread for the message, the process ends without it.
+/// Ctrl-C, SIGTERM and SIGHUP end the process at once. Results are kept, of a surface in hand the states so far;
+/// the state that is being solved is lost. Where the system grants no thread for the message, the process ends
+/// without it.
 fn tell_what_an_interruption_leaves(out: PathBuf) -> Result<()> {
     let tell = move || {
         let (count, units) = (Store::count(&out), out.join(".units"));
         runs::err!(
-            "\nstopped: {count} finished results are kept in {}; the same command goes on with the others",
+            "\nstopped: {count} results, finished or begun, are kept in {}; the same command goes on with the rest",
             units.display()
         );
         std::process::exit(130);

@@ -518,9 +518,8 @@ pub struct Certificate {
     /// `|delta - m|` and of the largest `|s - m|`, with the tangential displacement delta and the mean m,
     /// weighted by the pressure, of the displacements s from which the slip of the cells counts: how far the
     /// contact has slid before is not in it. The sum is the duality gap of the convex programme of one step of
-    /// friction. Half the square of the error of the tractions, in the norm of their elastic energy, is at most
-    /// this sum. 0 without displacement; `None` without friction, and for models that do not solve it cell by
-    /// cell.
+    /// friction. The error e of the tractions has `e'Ke`, twice its elastic energy, of at most this sum. 0 without
+    /// displacement; `None` without friction, and for models that do not solve it cell by cell.
     pub tangential_duality_gap: Option<f64>,
     /// `|Q - Q_prescribed| / (mu F)`; 0 where the tangential displacement was prescribed, `None` as above.
     pub tangential_load_error: Option<f64>,

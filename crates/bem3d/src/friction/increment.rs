@@ -148,8 +148,9 @@ struct Solver<'a> {
 ///
 /// The conditions `|q| <= b`, `q . w = b |w|` with `w = delta - K q - reference` are those of the minimum of the convex
 /// function `q'Kq/2 - q'(delta - reference)` over the disks `|q| <= b`, at a prescribed force over those of them
-/// that have this sum; delta is then its multiplier. Half the square of the error of q in the norm of K is at
-/// most the duality gap `sum(b |w| - q . w)`.
+/// that have this sum; delta is then its multiplier. The square of the error of q in the norm of K is at most the
+/// duality gap `sum(b |w| - q . w)`: the function at q exceeds its minimum by half the square at least, and by the
+/// gap less half the square at most.
 ///
 /// Each step linearises the conditions for the cells that stick and slip by `y = q + rho w`: `w = 0` where
 /// `|y| <= b`; elsewhere `q = b y/|y| + tau t` with the tangent t and `(K tau)_t + tau |w|/b = w_t`, which is

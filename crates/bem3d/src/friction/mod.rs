@@ -13,7 +13,7 @@
 //! (`Friction::advance`), unless pressures cause tangential displacements: then the steps of a growing
 //! contact have to be small.
 //!
-//! **Certificate.** The duality gap `sum(mu p |w| - q . w)` of admissible tractions bounds half the square of their
+//! **Certificate.** The duality gap `sum(mu p |w| - q . w)` of admissible tractions bounds the square of their
 //! error in the norm of K. It is given relative to `mu F` times a length, the larger of |delta| and of the largest
 //! reference: a force-weighted mean of the slip that stick cells still have. The length vanishes only where delta
 //! and all references do, and the tractions with them; it does not at `delta = 0` after a reversal. The

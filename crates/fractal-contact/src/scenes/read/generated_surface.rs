@@ -1,7 +1,7 @@
 //! Generated surfaces as files: self-affine ones, and twins of a map.
 
 use crate::scenes::read::{Drawn, Error, RandomSpectrum, RandomSurface, Result, System, description};
-use contact_model::{Amplitude, Cells, SelfAffine, Size};
+use contact_model::{Amplitude, Cells, HeightMap, SelfAffine, Size};
 use std::f64::consts::PI;
 use std::path::Path;
 use std::sync::Arc;
@@ -39,12 +39,12 @@ pub struct GeneratedSurface {
 }
 
 impl GeneratedSurface {
-    /// Generates the surface, writes it in the format of the name's ending ([`surface_io::map_file`]) and
-    /// returns a description in a few lines.
+    /// Generates the surface, writes it in the format of the name's ending ([`write_map`]) and returns a
+    /// description in a few lines.
     ///
     /// # Errors
     /// [`Error::Argument`] for an invalid length or units that do not fit, [`Error::Run`] for numbers outside
-    /// of their range or a file that cannot be written, [`Error::Surface`] for an unknown ending.
+    /// of their range, [`Error::Surface`] for an unknown ending or a file that cannot be written.
     pub fn write(&self, path: &Path) -> Result<String> {
         let mut units: Option<Dimension> = None;
         let wrong = |name: &'static str, e: surface_io::QuantityError| Error::Argument {
@@ -103,8 +103,8 @@ impl GeneratedSurface {
 /// the map's heights.
 ///
 /// # Errors
-/// [`Error::Surface`] for a file that cannot be read and an unknown ending, [`Error::Run`] for undefined points,
-/// a map of equal heights and a file that cannot be written.
+/// [`Error::Surface`] for files that cannot be read or written and an unknown ending, [`Error::Run`] for undefined
+/// points and a map of equal heights.
 pub fn write_twin(
     path: &Path,
     (declared, preprocessing): (&ReadOptions, &Preprocessing),
@@ -122,12 +122,29 @@ pub fn write_twin(
     write(out, &drawn.map_err(runs::Error::model("the twin"))?, metric)
 }
 
+/// Writes a map whole or not at all, in the format of the name's ending ([`map_file`]).
+///
+/// # Errors
+/// [`surface_io::Error::Content`] for another ending, a format that the build leaves out, and X3P without a unit;
+/// [`surface_io::Error::System`] where the system refuses.
+pub fn write_map(path: &Path, map: &HeightMap, metric: Metric) -> surface_io::Result<()> {
+    let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
+    let content = |problem| surface_io::Error::Content { path: path.to_owned(), problem };
+    let bytes = map_file(ending, map, metric).map_err(content)?;
+    runs::files::write_whole(path, &bytes).map_err(|refused| match refused {
+        runs::files::Error::System { action, path, source } => {
+            surface_io::Error::System { action, path, source }
+        }
+        other => {
+            let source = std::io::Error::other(other.to_string());
+            surface_io::Error::System { action: "write", path: path.to_owned(), source }
+        }
+    })
+}
+
 /// Writes a surface and returns a description.
 fn write(path: &Path, Drawn { map, spectrum_residual }: &Drawn, metric: Metric) -> Result<String> {
-    let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
-    let bytes = map_file(ending, map, metric)
-        .map_err(|problem| surface_io::Error::Content { path: path.to_owned(), problem })?;
-    runs::files::write_whole(path, &bytes)?;
+    write_map(path, map, metric)?;
     let (unit, system) = if metric == Metric::Metres { ("m", System::Si) } else { ("none", System::None) };
     let mut text = format!("{}\nunit               {unit}\n{}\n", path.display(), description(map, system));
     if let Some(residual) = spectrum_residual {
