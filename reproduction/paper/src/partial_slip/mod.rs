@@ -5,6 +5,10 @@
 //! (`tests/tests/partial_slip.rs`), and depends on Poisson's ratio through G*/E* alone. So the solution for a
 //! Poisson's ratio of 0, in units of its tractions and of `mu (E*/G*) d(F)`, is that approximation for every
 //! other ratio, and the difference of the two is its error. `equivalent` is compared in the same units.
+//!
+//! The study has jobs of its own beside those of scenes, for two reasons. It compares the tractions of bodies with
+//! different Poisson's ratios cell by cell, and a stored state has no fields. It follows the stiffness along a
+//! branch on which single states miss their tolerance, where a cell begins to slip; the path of a scene ends there.
 
 mod grid_job;
 mod grid_means;
