@@ -154,3 +154,26 @@ fn write(path: &Path, Drawn { map, spectrum_residual }: &Drawn, metric: Metric) 
     }
     Ok(text)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_map_is_written_by_its_ending_and_nothing_where_it_is_refused() {
+        let dir = tempfile::tempdir().unwrap();
+        let map = HeightMap::new(2, 1e-6, vec![0.0, 1e-9, 2e-9, 3e-9]).unwrap();
+        let write = |name: &str, metric| write_map(&dir.path().join(name), &map, metric);
+        for name in ["a.hdf5", "a", "a.TXT"] {
+            let error = write(name, Metric::Metres).unwrap_err();
+            assert!(matches!(error, surface_io::Error::Content { .. }), "{error}");
+        }
+        assert!(write("a.x3p", Metric::Unitless).is_err());
+        let error = write("missing/a.txt", Metric::Metres).unwrap_err();
+        assert!(matches!(error, surface_io::Error::System { action: "write", .. }), "{error}");
+        assert_eq!(std::fs::read_dir(dir.path()).unwrap().count(), 0);
+        write("a.txt", Metric::Metres).unwrap();
+        let written = std::fs::read(dir.path().join("a.txt")).unwrap();
+        assert_eq!(written, map_file("txt", &map, Metric::Metres).unwrap());
+    }
+}
