@@ -2,7 +2,8 @@
 //! `audit`, `bench`, `reproduce-two-cases`, `accuracy-cost`, `budget-check`, `exponent`,
 //! `partial-slip`, `redraw`, `check-reference`, `stability`, `book`.
 //!
-//! Argument parsing and exit codes; the figures are in the crate `paper`.
+//! Argument parsing and exit codes, the table of hard cases and the check of the book; the figures are in the crate
+//! `paper`.
 //!
 //! Exit codes: 0 done, 1 an error (its message says where), 2 bad arguments, 3 done but some solves did not
 //! converge, stored numbers differ, a hard case fails, error budgets do not hold or a link or command of the

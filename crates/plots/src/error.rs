@@ -9,7 +9,7 @@ pub type Result<T, E = Error> = std::result::Result<T, E>;
 pub struct Error {
     /// The picture, as the caller named it, or the font.
     pub picture: String,
-    /// What is wrong, in words.
+    /// The reason, in words.
     pub reason: String,
 }
 

@@ -17,7 +17,7 @@ pub type Result<T, E = Error> = std::result::Result<T, E>;
 pub enum Error {
     /// The operating system refused.
     System {
-        /// What was being done (`open`, `read`, ...).
+        /// The action that it refused, such as `open` or `read`.
         action: &'static str,
         /// Where.
         path: PathBuf,

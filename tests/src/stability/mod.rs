@@ -44,7 +44,7 @@
 //!
 //! # What it does not do
 //!
-//! It neither prints nor writes files (`paper` and `xtask` do), and it measures no time.
+//! It neither prints nor writes files (`xtask` does), and it measures no time.
 
 mod case;
 mod cases;

@@ -72,7 +72,7 @@
 //!
 //! # What it does not do
 //!
-//! No mechanics of its own, no error budgets of means (`evaluation` has them).
+//! No mechanics of its own, no error budgets of means (the figures of the paper have them).
 
 mod answer;
 mod plan;

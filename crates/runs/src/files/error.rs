@@ -13,7 +13,7 @@ pub enum Error {
     /// The operating system refused.
     #[error("cannot {action} {}: {source}", .path.display())]
     System {
-        /// What was being done (`open`, `read`, `write`, ...).
+        /// The action that it refused, such as `open`, `read` or `write`.
         action: &'static str,
         /// Where.
         path: PathBuf,
@@ -25,7 +25,7 @@ pub enum Error {
     Content {
         /// Where.
         path: PathBuf,
-        /// What is wrong.
+        /// The reason, in words.
         reason: String,
     },
 }

@@ -67,9 +67,9 @@ impl Over {
     }
 }
 
-/// Draws seconds over cells from a table of [`crate::evaluation::write_bench`], as SVG and PNG; over force where all rows
-/// have one size, and in a second picture (`NAME-force`) where there are several of both. Solves that did not
-/// converge have hollow marks and are left out of the fits.
+/// Draws seconds over cells from a table of [`crate::evaluation::write_bench`], as SVG and PNG; over force where
+/// all rows have one size, and in a second picture (`NAME-force`) where there are several of both. Solves that did
+/// not converge have hollow marks and are left out of the fits.
 ///
 /// # Errors
 /// [`Error::File`] for a table that cannot be read, [`Error::Parameter`] for a picture without a name.

@@ -31,7 +31,9 @@ impl Budget {
     /// first three is unknown.
     ///
     /// ```
-    /// let budget = paper::evaluation::Budget { algebraic: 1.0, discretisation: Some(3.0), ensemble: Some(4.0), window: None };
+    /// use paper::evaluation::Budget;
+    /// let (discretisation, ensemble) = (Some(3.0), Some(4.0));
+    /// let budget = Budget { algebraic: 1.0, discretisation, ensemble, window: None };
     /// assert_eq!(budget.half_width(), Some(6.0));
     /// ```
     pub fn half_width(&self) -> Option<f64> {

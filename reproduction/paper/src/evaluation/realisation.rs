@@ -165,7 +165,7 @@ impl Discretisation {
         self.numerics().model().sources()
     }
 
-    /// What is computed of a state; a rough line has no area to claim.
+    /// The requested outputs: the stiffness, and the area where the model claims one. A rough line has none.
     fn outputs(&self) -> Outputs {
         let area = matches!(self, Self::Bem3d { .. });
         Outputs { stiffness: true, area, ..Outputs::default() }
@@ -239,7 +239,7 @@ impl Realisation {
         question
     }
 
-    /// What its scene is called in messages.
+    /// Name of its scene in messages.
     fn words(&self) -> String {
         let (d, size) = (self.fractal_dimension, self.discretisation.size());
         match self.discretisation.of() {

@@ -100,7 +100,7 @@ fn seconds_of_sizes(scene: &SceneFile, numerics: &Numerics) -> f64 {
             Some(seconds) => seconds,
             None => states * seconds_of_dense(scene, numerics),
         },
-        // The profile of 50 states is computed before the first load.
+        // The profile has about 49 nodes, each a state of the boundary elements, before the first load.
         Numerics::Equivalent(_) => (states + 49.0) * seconds_of_dense(scene, numerics),
         // One sort and one transform; the loads cost nothing beside them.
         Numerics::Mdr1d(model) => {
@@ -111,8 +111,8 @@ fn seconds_of_sizes(scene: &SceneFile, numerics: &Numerics) -> f64 {
     }
 }
 
-/// Seconds of all loads where [`seconds_of_rough_sweep`] says them; `None` for other loads and surfaces, and for
-/// other than elastic contact.
+/// Seconds of all loads by [`seconds_of_rough_sweep`]; `None` for loads and surfaces other than normalised forces
+/// on a self-affine surface, and for contacts with an effect.
 fn rough_sweep(scene: &SceneFile, model: &bem3d::Bem3d) -> Option<f64> {
     let SceneSurface::Plain(Surface::SelfAffine(surface)) = &scene.surface else { return None };
     let LoadRequest::Loads(LoadList { kind: LoadKind::ForceBar, values }) = &scene.request else {

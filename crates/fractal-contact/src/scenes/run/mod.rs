@@ -7,7 +7,7 @@ pub(crate) mod outcome;
 pub(crate) mod path_keeper;
 pub(crate) mod pilot;
 pub(crate) mod scene_job;
-pub(crate) mod shared_models;
+pub(crate) mod shared_lines;
 pub(crate) mod solve;
 pub(crate) mod state_result;
 pub(crate) mod warnings;
@@ -17,7 +17,7 @@ pub(crate) use outcome::{Options, SceneOutcome};
 pub(crate) use path_keeper::{KeepResult, Keeper};
 pub(crate) use pilot::{SharedStop, remove_trials, take_trial};
 pub(crate) use scene_job::{SceneJob, scene_jobs, units};
-pub(crate) use shared_models::SharedModels;
+pub(crate) use shared_lines::SharedLines;
 pub(crate) use state_result::{
     Answer, FieldFile, ModelResult, Solved, SolvedUnit, StateRecord, StoredFile, field_of_file,
 };

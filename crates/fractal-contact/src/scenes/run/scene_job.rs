@@ -2,7 +2,7 @@
 
 use crate::scenes::plan::{FORMAT, ModelOnSurface, calibration};
 use crate::scenes::read::{Error, Result, SceneFile, cells};
-use crate::scenes::run::{KeepResult, Keeper, ModelResult, SharedModels, field_pictures};
+use crate::scenes::run::{KeepResult, Keeper, ModelResult, SharedLines, field_pictures};
 use contact_model::Stop;
 use runs::{Checkpoint, Job, JobList, Progress, ResultKind, Silent, StatesInHand, Store, fnv1a_128};
 use std::path::Path;
@@ -15,8 +15,8 @@ use std::time::Instant;
 pub struct SceneJob {
     pub(crate) unit: ModelOnSurface,
     pub(crate) scene: Arc<SceneFile>,
-    /// The models of the scene, which its jobs share.
-    pub(crate) models: Arc<SharedModels>,
+    /// The plan of the lines of the scene, which its jobs share.
+    pub(crate) lines: Arc<SharedLines>,
     /// Number of its scene, where several scenes share the directory.
     pub(crate) among: Option<usize>,
     /// Directory of the results.
@@ -84,9 +84,9 @@ impl Job for SceneJob {
 }
 
 impl SceneJob {
-    /// A job that draws its pictures and shares no models.
+    /// A job that draws its pictures and shares no lines with others.
     pub(crate) fn new(scene: Arc<SceneFile>, unit: ModelOnSurface, out: Arc<Path>) -> Self {
-        Self { unit, scene, models: Arc::default(), among: None, out, draws: true }
+        Self { unit, scene, lines: Arc::default(), among: None, out, draws: true }
     }
 
     /// Solves the states that `begun` lacks.
@@ -109,8 +109,7 @@ impl SceneJob {
         let states = [begun.kept, self.scene.request.count()];
         let told = StatesInHand::new((self.name(), self.cost()), states, progress, stop);
         let mut keeper = Keeper::new(store, checkpoint, progress, self.name(), &told);
-        let mut result =
-            self.unit.solve((&self.scene, &self.models), &self.out, begun, &mut keeper, &told)?;
+        let mut result = self.unit.solve((&self.scene, &self.lines), &self.out, begun, &mut keeper, &told)?;
         let mut drawn = Vec::new();
         if self.draws {
             let (start, numerics) = (Instant::now(), self.unit.numerics(&self.scene));
@@ -153,9 +152,9 @@ pub(crate) fn units(scene: &SceneFile) -> Vec<ModelOnSurface> {
 /// The same, as jobs that write their fields into `out`.
 pub(crate) fn scene_jobs(scene: &SceneFile, out: &Path) -> Vec<SceneJob> {
     let (scene, out) = (Arc::new(scene.clone()), Arc::<Path>::from(out));
-    let models = Arc::default();
+    let lines = Arc::default();
     let of = |unit| SceneJob {
-        models: Arc::clone(&models),
+        lines: Arc::clone(&lines),
         ..SceneJob::new(Arc::clone(&scene), unit, Arc::clone(&out))
     };
     units(&scene).into_iter().map(of).collect()

@@ -6,8 +6,8 @@ use crate::scenes::read::{
     distributed, step_to, words,
 };
 use crate::scenes::run::{
-    Answer, FieldFile, FieldView, Keeper, ModelResult, SharedModels, Solved, StateRecord, StoredFile,
-    Warning, field_pictures,
+    Answer, FieldFile, FieldView, Keeper, ModelResult, SharedLines, Solved, StateRecord, StoredFile, Warning,
+    field_pictures,
 };
 use contact_model::{Cells, Field, FieldQuantity, LargestPull, Load, PreparedContact, Stop};
 use std::borrow::Cow;
@@ -24,7 +24,7 @@ impl ModelOnSurface {
     /// error: the result is then incomplete.
     pub fn solve(
         &self,
-        (scene, models): (&SceneFile, &SharedModels),
+        (scene, lines): (&SceneFile, &SharedLines),
         out: &Path,
         mut result: ModelResult,
         keeper: &mut Keeper<'_>,
@@ -43,7 +43,7 @@ impl ModelOnSurface {
         let seed = scene.seed(self.surface);
         let physics = scene.scene(numerics, seed).map_err(runs::Error::model(what()))?;
         let before = result.seconds;
-        let prepared = models.model(numerics, &physics.surface).prepare(&physics, seed);
+        let prepared = lines.model(numerics, &physics.surface).prepare(&physics, seed);
         let mut contact = prepared.map_err(runs::Error::model(what()))?;
         let is_path = matches!(scene.request, LoadRequest::Path(_));
         // Loads that were complete have lost a file; those of a contact without a memory are solved each by
