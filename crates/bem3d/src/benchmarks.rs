@@ -8,7 +8,7 @@ use crate::friction::{
     Friction, FrictionLimits, FrictionLoad, PressedCells, SlipMemory, StiffnessOf, TangentialControl,
 };
 use crate::geometry::{CellSet, Grid, Lengths};
-use crate::kernel::{KernelTable, TangentialTable};
+use crate::kernel::{NormalTable, TangentialTable};
 use crate::linear::Factor;
 use crate::model::Bem3d;
 use crate::operator::{
@@ -52,7 +52,7 @@ pub fn timed(name: &str, side: usize, step: usize) -> Option<Box<dyn FnMut() -> 
     let p: Vec<f64> = (0..set.len()).map(|k| 1.0 + (k as f64).sin()).collect();
     let mut u = vec![0.0; set.len()];
     let window = set.window()?;
-    let table = KernelTable::shared(grid, Boundary::Free);
+    let table = NormalTable::shared(grid, Boundary::Free);
     let (free, torus) = (Lengths::free(window), Lengths::torus(window));
     Some(match name {
         "direct" => Box::new(move || {
@@ -129,7 +129,7 @@ const TANGENTIAL: f64 = 0.3 / 0.7;
 pub fn factor(side: usize, count: usize) -> bool {
     let grid = Grid { columns: side, rows: side, stretch: 1.0 };
     let set = CellSet::from_index(grid, &(0..count as u32).collect::<Vec<_>>());
-    Factor::new(&KernelTable::shared(grid, Boundary::Free), &set).is_some()
+    Factor::new(&NormalTable::shared(grid, Boundary::Free), &set).is_some()
 }
 
 /// Work and result of one increment of friction.

@@ -104,10 +104,11 @@
 //! 4. Steps 2 and 3 repeat until the residuals meet the tolerance.
 //!
 //! Why is it safe to remove the cells in tension? A true contact cell is never removed where G, restricted to
-//! the set, is an inverse M-matrix. It was one on every set tried, with kernels whose entries are all
-//! positive. The periodic kernel of zero mean and the kernel of a half-plane get a constant for this reason.
-//! Rounding, an early stop of the linear solve or a hardness can break the property. Step 3 then returns the
-//! cell. If the residuals have not fallen for many iterations, a fall-back takes over that lowers the energy
+//! the set, is an inverse M-matrix. It was one on every set tried, of the half-space and of the half-plane. The
+//! periodic kernel of zero mean needs a constant for this, which changes nothing under a given force. The
+//! constant that it has makes every entry positive; only nearly full sets would need one and a half times as
+//! much. There, and by rounding, an early stop of the linear solve or a hardness, a cell may be removed that
+//! belongs to the contact. Step 3 then returns it. If the residuals have not fallen for many iterations, a fall-back takes over that lowers the energy
 //! with every step (`active_set::descent`).
 //!
 //! Coarse grids give initial guesses. They never restrict the candidates, because the summits of a fractal
@@ -141,11 +142,11 @@
 //! | `model/contact.rs` | `solve_until`, `at`, `at_target`, `settle` | tell adhesion from its absence, find the pressure and then the stiffness, return the state |
 //! | `active_set/solver.rs` | `solve`, `iterate`, `evaluate`, `improve` | iterate over contact sets |
 //! | `linear/pcg.rs` | `Workspace::solve`, `pcg` | solve the linear system on one set |
-//! | `operator/operators.rs` | `Operators::exact`, `Planned::apply` | apply the operator that is planned for the set |
-//! | `operator/fft.rs` | `FftConvolution::apply` | convolve |
+//! | `operator/plans.rs` | `Plans::exact`, `Planned::apply` | apply the operator that is planned for the set |
+//! | `operator/convolution.rs` | `Convolution::apply` | convolve |
 //!
 //! Corrections of the pressure go through `linear/pcg.rs`. Residuals go from the solver straight to
-//! `Operators::exact`, in double precision. Three more files belong to this: `model/load.rs` brings a load
+//! `Plans::exact`, in double precision. Three more files belong to this: `model/load.rs` brings a load
 //! into the units of the surface, `model/state.rs` assembles every state, and `active_set/bounds.rs` has what
 //! an upper bound of the pressure changes. With adhesion, `at` leads to `model/adhesive.rs` and
 //! `adhesion/equilibrium.rs`.
@@ -171,14 +172,18 @@
 //! |---|---|---|
 //! | `geometry::CellSet` | the one type of sets: rows of columns, with runs where they are long | plain lists of indices |
 //! | `kernel::love` | influence coefficients of rectangular cells; the far field by multipoles | values of 40 digits; a rectangle as three squares |
+//! | `kernel::definition`, `table` | what a kernel says of itself; the list of kernels, and a table of each on its grid with the symbols made from it | inverses and eigenvalues of dense matrices |
+//! | `kernel::half_space` | Love's coefficients as a kernel | `kernel::love` |
 //! | `kernel::half_plane` | strips on a half-plane, for profiles with free boundaries; displacements are counted from twice the side, so that every entry is positive | differences of long rows of Love's squares; quadrature |
-//! | `kernel::periodic` | the kernel of a rectangle that repeats itself, from its symbol; a constant on top of the zero mean makes every entry positive | sums of Love's kernel over images |
-//! | `kernel::tangential`, `tangential_table` | Cerruti's solution on rectangular cells for two bodies, free and periodic | quadrature of point forces; sums over images |
-//! | `kernel::coupling_table` | the coupling of normal and tangential displacements | quadrature of point forces; sums over images |
+//! | `kernel::periodic`, `period`, `waves` | the kernel of a rectangle that repeats itself, from its symbol; a constant on top of the zero mean makes every entry positive | sums of Love's kernel over images |
+//! | `kernel::tangential`, `cerruti` | Cerruti's solution on rectangular cells for two bodies, free and periodic | quadrature of point forces; sums over images |
+//! | `kernel::coupling` | the coupling of normal and tangential displacements | quadrature of point forces; sums over images |
+//! | `kernel::tensor` | how the entries of a kernel act on one, two or three components | sums over pairs |
 //! | `operator::direct` | the sum over pairs | it is the reference |
-//! | `operator::fft` | a circular convolution on the bounding box, exact at the length 2(n - 1) for an even kernel, or at the period itself; in double precision, or in single precision inside an iteration | `direct` |
+//! | `operator::convolution` | a circular convolution on the bounding box, exact at the length 2(n - 1) for an even kernel, 2n - 1 for one with an odd entry, or at the period itself; in double precision, or in single precision inside an iteration | `direct` |
 //! | `operator::transform` | the transforms of one, two or three fields in the same rows and columns | sums over pairs |
-//! | `operator::vector`, `coupling` | convolutions with a tensor, of length 2n - 1 because its entry across is odd | sums over pairs |
+//! | `operator::plans` | the exact operators of a kernel, each planned when it is first used | `direct` |
+//! | `operator::coupling` | normal and tangential displacements under the tractions of the other | sums over pairs |
 //! | `operator::two_level` | a smooth far field on a lattice of 4 to 32 cells' spacing and a near field by close pairs, inside an iteration only | `direct`, with an error that falls with order and reach |
 //! | `operator::two_transforms` | the same split for sets that fill their window; the near field is an FFT of n + R - 1 cells in single precision | the whole kernel, with an error that falls with order and reach |
 //! | `operator::recipe` | the choice of how a system is solved | its own tests, without a clock |

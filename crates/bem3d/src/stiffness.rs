@@ -2,7 +2,7 @@
 
 use crate::active_set::{Bounds, Problem, Solved};
 use crate::geometry::CellSet;
-use crate::kernel::KernelTable;
+use crate::kernel::NormalTable;
 use crate::linear::{Energy, Fixed, StoppingCriteria};
 use crate::operator::{Conditioning, Recipe};
 use crate::parts::Part;
@@ -173,7 +173,7 @@ fn bounds(sum: f64, rq: f64, energy: f64) -> (f64, f64) {
 /// removing one takes away `q_j^2 / (G^-1)_jj`, at most `q_j^2 G_jj`. Undecided are the cells of
 /// [`Solved::undecided`] and those whose pressure is nearer to its bounds (`room`) than what their own
 /// residual gap can change. `tests/stiffness_error.rs` compares the sum of both parts with true errors.
-fn set_error(table: &KernelTable, room: &[f64], left: &[f64], at_undecided: &[f64], q: &[f64]) -> f64 {
+fn set_error(table: &NormalTable, room: &[f64], left: &[f64], at_undecided: &[f64], q: &[f64]) -> f64 {
     let smallest = table.smallest_eigenvalue();
     let added: f64 = at_undecided.iter().map(|v| (1.0 - v).powi(2)).sum::<f64>() / smallest;
     let doubtful = room.iter().zip(q).zip(left).filter(|&((p, _), gap)| *p < gap.abs() / smallest);

@@ -202,7 +202,7 @@ fn coarser(problem: &Problem) -> Problem {
             *mean = if count > 0.0 { sum / count } else { f64::INFINITY };
         }
     });
-    let medium = problem.operators.table().medium();
+    let medium = problem.medium;
     let mut coarse = Problem::recorded(grid, Arc::new(z), medium, &tuning, problem.operators.recorder());
     coarse.bounds = problem.bounds.scaled(pressure_ratio(fine, &tuning));
     coarse

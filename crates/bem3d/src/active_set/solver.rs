@@ -347,7 +347,7 @@ fn eliminate(problem: &mut Problem, superset: &CellSet, target: Control) -> Opti
     let mut set = superset.clone();
     loop {
         let z = problem.candidates.gaps(&set);
-        problem.operators.solves += 1;
+        problem.operators.plans.solves += 1;
         let factored = || Some(Factor::new(problem.operators.table(), &set)?.solve_pair(&z));
         let (q, w) = problem.operators.recorder().timed(Part::Factor, factored)?;
         let d = match target {

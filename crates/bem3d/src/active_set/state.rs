@@ -5,7 +5,7 @@ use super::candidates::Candidates;
 use super::residuals::Residuals;
 use super::undecided::undecided;
 use crate::geometry::{CellSet, Grid};
-use crate::kernel::{KernelTable, Medium};
+use crate::kernel::{Medium, NormalTable};
 use crate::linear::Workspace;
 use crate::operator::Operators;
 use crate::parts::{Part, Recorder};
@@ -17,6 +17,8 @@ use std::sync::Arc;
 /// One surface in nondimensional form: z in units of the rms height, p so that `u = sum I p`.
 #[derive(Debug)]
 pub struct Problem {
+    /// What deforms.
+    pub medium: Medium,
     /// Where contact is possible.
     pub candidates: Candidates,
     /// The operators.
@@ -41,8 +43,10 @@ impl Problem {
         tuning: &Tuning,
         recorder: &Recorder,
     ) -> Self {
-        let table = recorder.timed(Part::Plans, || KernelTable::shared(grid, medium));
+        let medium = medium.into();
+        let table = recorder.timed(Part::Plans, || NormalTable::shared(grid, medium));
         Self {
+            medium,
             candidates: Candidates::new(grid, z),
             operators: Operators::recorded(table, tuning, recorder),
             workspace: Workspace::default(),

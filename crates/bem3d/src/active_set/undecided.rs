@@ -73,7 +73,7 @@ pub fn undecided(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::kernel::KernelTable;
+    use crate::kernel::NormalTable;
     use crate::linear::Factor;
     use crate::operator::{DirectSum, InfluenceOperator};
     use approx::assert_relative_eq;
@@ -144,7 +144,7 @@ mod tests {
 
     /// Change of all gaps when the gaps left on the contact are made zero.
     fn changes(grid: Grid, contact: &CellSet, gap: &[f64]) -> Vec<f64> {
-        let table = KernelTable::shared(grid, Boundary::Free);
+        let table = NormalTable::shared(grid, Boundary::Free);
         let (_, p) = Factor::new(&table, contact).unwrap().solve_pair(gap);
         let mut u = vec![0.0; grid.count()];
         DirectSum(&table).apply(contact, &p, &CellSet::all(grid), &mut u);

@@ -302,10 +302,9 @@ impl Linear {
             .map(|(r, &open)| if open > 0.0 { (1.0 - r * r * own).max(LEAST as f32) } else { own }.recip())
             .collect();
         let (decay, recorder) = (operators.tuning().decay, operators.recorder().clone());
-        let (mut matrix, mut torus) = operators.system(recipe);
-        let mut extension = Extension::default();
+        let ((mut matrix, mut torus), mut extensions) = (operators.system(recipe), [Extension::default()]);
         if let (Conditioning::Torus { extended, .. }, Some(torus)) = (recipe.conditioning, &torus) {
-            extension.set(contact, torus.window(), if extended { decay } else { 0.0 });
+            extensions[0].set(contact, torus.window(), if extended { decay } else { 0.0 });
         }
         let near = torus.as_ref().and_then(|_| Near::of(attraction, on, both, is_open));
         let mut beside = vec![0.0f32; n];
@@ -326,8 +325,9 @@ impl Linear {
             }
             let mut on_contact = contact.carry(both, r);
             let mut found = vec![0.0; contact.len()];
-            let (extension, recorder) = (&mut extension, recorder.clone());
-            TorusInverse { transform, extension, recorder }.apply(contact, 0.0, &mut on_contact, &mut found);
+            let recorder = recorder.clone();
+            let mut inverse = TorusInverse { transform, extensions: &mut extensions, recorder };
+            inverse.apply(contact, 0.0, &mut on_contact, &mut found);
             both.add_carried(contact, &found, z);
         };
         // A fixed net force is the product with these; the correction of it is distributed by the weights.
@@ -371,8 +371,8 @@ impl Linear {
         let mut b = vec![0.0f32; n];
         neighbours(&right, &mut b);
         let (y, outcome) = minres(product, precondition, b, (reduction, STEPS), stop);
-        operators.applications += applications;
-        operators.solves += 1;
+        operators.plans.applications += applications;
+        operators.plans.solves += 1;
         let mut change = vec![0.0f32; n];
         neighbours(&y, &mut change);
         times_root(&mut change);

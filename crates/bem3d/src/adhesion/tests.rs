@@ -8,7 +8,7 @@ use super::relaxation::{Tractions, follow};
 use super::*;
 use crate::active_set::{Limits, Problem};
 use crate::geometry::{CellSet, Grid};
-use crate::kernel::KernelTable;
+use crate::kernel::NormalTable;
 use crate::tuning::Tuning;
 use contact_model::{Boundary, never};
 use std::f64::consts::PI;
@@ -56,7 +56,7 @@ fn problem(grid: Grid, z: &[f64], boundary: Boundary) -> Problem {
 }
 
 fn dense(grid: Grid, boundary: Boundary) -> Vec<Vec<f64>> {
-    let table = KernelTable::shared(grid, boundary);
+    let table = NormalTable::shared(grid, boundary);
     let place = |i: usize| (i % grid.columns, i / grid.columns);
     (0..grid.count())
         .map(|i| {
@@ -64,7 +64,7 @@ fn dense(grid: Grid, boundary: Boundary) -> Vec<Vec<f64>> {
             (0..grid.count())
                 .map(|j| {
                     let (a, b) = place(j);
-                    table.row(y.abs_diff(b))[x.abs_diff(a)]
+                    table.lag(x.abs_diff(a), y.abs_diff(b))[0]
                 })
                 .collect()
         })
@@ -75,7 +75,7 @@ fn dense(grid: Grid, boundary: Boundary) -> Vec<Vec<f64>> {
 /// keeps the matrix regular: at a plane that of zero mean acts.
 fn at_a_plane(grid: Grid, boundary: Boundary) -> Vec<Vec<f64>> {
     const LEFT: f64 = 1e-8;
-    let constant = KernelTable::shared(grid, boundary).shift() * (1.0 - LEFT);
+    let constant = NormalTable::shared(grid, boundary).shift() * (1.0 - LEFT);
     let without = |row: Vec<f64>| row.iter().map(|g| g - constant).collect();
     dense(grid, boundary).into_iter().map(without).collect()
 }

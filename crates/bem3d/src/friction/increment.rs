@@ -3,7 +3,7 @@
 use super::disks::{length, multiplier, project, sums, total};
 use super::linearised::{Branch, Linearised, Room, SLIPPING, Split, TorusWindow, extend};
 use crate::geometry::CellSet;
-use crate::linear::{Extension, Fixed, StoppingCriteria, TensorTorusInverse, Vectors, pcg};
+use crate::linear::{Extension, Fixed, StoppingCriteria, TorusInverse, Vectors, pcg};
 use crate::operator::{InfluenceOperator, TangentialOperators};
 use crate::parts::Part;
 use crate::real::{binary_unit, dot, each, largest, sum, update};
@@ -487,7 +487,7 @@ impl<'a> Solver<'a> {
             TorusWindow { window: transform.window(), decay: tuning.decay, extended: tuning.extended };
         recorder.timed(Part::Sets, || extend(extensions, &torus, &branch.stick));
         let mut split = Split {
-            torus: TensorTorusInverse { transform, extensions },
+            torus: TorusInverse { transform, extensions, recorder: recorder.clone() },
             branch: &branch,
             own: SLIPPING * own as f32,
             sums: None,

@@ -2,8 +2,8 @@
 //! tangent of their disk.
 
 use crate::geometry::CellSet;
-use crate::linear::{Extension, Preconditioned, Preconditioner, TensorTorusInverse};
-use crate::operator::{InfluenceOperator, PlannedVector};
+use crate::linear::{Extension, Preconditioned, Preconditioner, TORUS_ENERGY, TorusInverse};
+use crate::operator::{InfluenceOperator, Planned};
 use crate::parts::{Part, Recorder};
 use crate::real::{dot, each, largest, sum, update};
 use crate::tuning::CHUNK;
@@ -124,7 +124,7 @@ impl Branch {
 #[derive(Debug)]
 pub struct Linearised<'a> {
     /// The kernel.
-    pub kernel: PlannedVector<'a>,
+    pub kernel: Planned<'a, 2, 3>,
     /// The constant in its diagonal entries, which is not part of the displacement.
     pub shift: f32,
     /// The admissible changes of the cells.
@@ -163,7 +163,7 @@ impl InfluenceOperator<f32> for Linearised<'_> {
 #[derive(Debug)]
 pub struct Split<'a> {
     /// On stick cells.
-    pub torus: TensorTorusInverse<'a>,
+    pub torus: TorusInverse<'a, 2, 3>,
     /// The admissible changes of the cells.
     pub branch: &'a Branch,
     /// Compliance of a slip cell along its tangent: with its turning the diagonal.
@@ -278,17 +278,18 @@ impl Split<'_> {
     fn weights(&mut self, set: &CellSet, ones: &[Vec<f32>; 2]) -> [Vec<f32>; 2] {
         ones.each_ref().map(|ones| {
             let mut weights = vec![0.0; ones.len()];
-            self.precondition(set, ones, &mut weights);
+            self.precondition(set, &mut ones.clone(), &mut weights);
             weights
         })
     }
 
     /// `z = M r` of a restricted residual.
-    fn precondition(&mut self, set: &CellSet, r: &[f32], z: &mut [f32]) {
+    fn precondition(&mut self, set: &CellSet, r: &mut [f32], z: &mut [f32]) {
         let Self { torus, branch, own, room: Room { r: on_stick, z: stuck }, .. } = self;
         let (n, stick, own) = (set.len(), &branch.stick, *own);
         if stick.len() == n {
-            return torus.apply(stick, r, z);
+            torus.precondition(stick, 0.0, r, z);
+            return;
         }
         for (r, z) in r.chunks_exact(n).zip(z.chunks_exact_mut(n)) {
             let chunks = z.chunks_mut(CHUNK).zip(r.chunks(CHUNK)).zip(branch.turning.chunks(CHUNK));
@@ -306,7 +307,7 @@ impl Split<'_> {
             on_stick.extend(branch.sticking.iter().map(|&i| r[i as usize]));
         }
         stuck.resize(on_stick.len(), 0.0);
-        torus.apply(stick, on_stick, stuck);
+        torus.precondition(stick, 0.0, on_stick, stuck);
         for (stuck, z) in stuck.chunks_exact(stick.len()).zip(z.chunks_exact_mut(n)) {
             for (&i, stuck) in branch.sticking.iter().zip(stuck) {
                 z[i as usize] = *stuck;
@@ -336,7 +337,7 @@ impl Preconditioner<f32> for Split<'_> {
     }
 
     fn energy_factor(&self) -> f64 {
-        TensorTorusInverse::SAFETY
+        TORUS_ENERGY
     }
 }
 

@@ -5,12 +5,12 @@ use super::increment::{self, FrictionLimits, FrictionRoom, Increment, Sliding, T
 use super::linearised::Branch;
 use super::stiffness::{self, Held, TangentialStiffness, Uncertain, Undecided};
 use crate::geometry::{CellSet, Grid};
-use crate::kernel::{Medium, TangentialTable};
+use crate::kernel::TangentialTable;
 use crate::operator::{CouplingOperator, TangentialOperators};
 use crate::parts::Recorder;
 use crate::real::{dot, sum};
 use crate::tuning::Tuning;
-use contact_model::{Status, Stop};
+use contact_model::{Boundary, Status, Stop};
 use serde::{Deserialize, Serialize};
 
 /// The contact at the end of an increment, nondimensional: pressures so that `u = sum I p`.
@@ -102,20 +102,19 @@ pub struct Friction {
 }
 
 impl Friction {
-    /// A surface on bodies of the constant `compliance = E* sum nu/(2 G)`, see [`TangentialTable`].
+    /// A surface on bodies of the constant `compliance = E* sum nu/(2 G)`, see `kernel/tangential.rs`.
     ///
     /// `beta` is Dundurs' second constant with the body as the first one on which the tractions act; 0 leaves the
     /// normal and the tangential problem independent of each other.
     pub fn new(
         grid: Grid,
-        medium: impl Into<Medium>,
+        boundary: Boundary,
         [compliance, beta]: [f64; 2],
         tuning: &Tuning,
         recorder: &Recorder,
     ) -> Self {
-        let medium = medium.into();
-        let table = TangentialTable::shared(grid, medium, compliance);
-        let coupling = (beta.abs() > 0.0).then(|| CouplingOperator::new(grid, medium, beta));
+        let table = TangentialTable::shared(grid, boundary, compliance);
+        let coupling = (beta.abs() > 0.0).then(|| CouplingOperator::new(grid, boundary, beta));
         let operators = TangentialOperators::new(table, tuning, recorder);
         Self { operators, room: FrictionRoom::default(), coupling }
     }

@@ -3,7 +3,7 @@
 use super::increment::{FrictionRoom, exact};
 use super::linearised::{Branch, Linearised, SLIPPING, Split, TorusWindow, extend, inverse_of};
 use crate::geometry::CellSet;
-use crate::linear::{Fixed, StoppingCriteria, TensorTorusInverse, pcg};
+use crate::linear::{Fixed, StoppingCriteria, TORUS_ENERGY, TorusInverse, pcg};
 use crate::operator::TangentialOperators;
 use crate::parts::Part;
 use crate::real::{dot, largest};
@@ -155,7 +155,7 @@ fn correct(
     let torus = TorusWindow { window: transform.window(), decay: tuning.decay, extended: tuning.extended };
     recorder.timed(Part::Sets, || extend(extensions, &torus, &branch.stick));
     let mut split = Split {
-        torus: TensorTorusInverse { transform, extensions },
+        torus: TorusInverse { transform, extensions, recorder: recorder.clone() },
         branch,
         own: SLIPPING * own as f32,
         sums: None,
@@ -189,15 +189,16 @@ fn energy(
     let torus = TorusWindow { window: transform.window(), decay: tuning.decay, extended: tuning.extended };
     recorder.timed(Part::Preconditioner, || {
         extend(&mut room.extensions, &torus, &whole.stick);
-        let mut inverse = TensorTorusInverse { transform, extensions: &mut room.extensions };
-        let r = residual.each_ref().map(|r| r.iter().map(|r| (r / size) as f32).collect::<Vec<f32>>());
-        let z = r.each_ref().map(|r| {
+        let extensions = &mut room.extensions;
+        let mut inverse = TorusInverse { transform, extensions, recorder: recorder.clone() };
+        let mut r = residual.each_ref().map(|r| r.iter().map(|r| (r / size) as f32).collect::<Vec<f32>>());
+        let z = r.each_mut().map(|r| {
             let mut z = vec![0.0; r.len()];
-            inverse.apply(cells, r, &mut z);
+            inverse.precondition(cells, 0.0, r, &mut z);
             branch.restrict(&mut z);
             z
         });
-        let factor = TensorTorusInverse::SAFETY * size * size;
+        let factor = TORUS_ENERGY * size * size;
         let product = |i: usize, j: usize| factor * dot(&r[i], &z[j]);
         [product(0, 0), product(1, 1), product(0, 1)]
     })

@@ -6,7 +6,10 @@
 //! every entry is positive and the matrix is an inverse M-matrix on every set tried. Pressure, contact and
 //! gap at a prescribed force do not depend on it; the approach and the stiffness do.
 
-use crate::geometry::Grid;
+use super::definition::{Coefficients, Evidence, Kernel};
+use super::symbol::Parity;
+use crate::geometry::{Grid, Lengths};
+use contact_model::Boundary;
 use std::f64::consts::PI;
 
 /// Beyond this distance, in steps, the series is used: the closed form, a difference of terms `x ln x`, loses
@@ -17,16 +20,59 @@ const DATUM: f64 = 2.0;
 /// Catalan's constant.
 const CATALAN: f64 = 0.915_965_594_177_219;
 
+/// A half-plane in plane strain under the pressures on one row of strips.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HalfPlane {
+    /// The grid, of one row.
+    pub grid: Grid,
+}
+
+impl Kernel<1> for HalfPlane {
+    fn grid(&self) -> Grid {
+        self.grid
+    }
+
+    fn boundary(&self) -> Boundary {
+        Boundary::Free
+    }
+
+    fn parities(&self) -> [[Parity; 2]; 1] {
+        [[Parity::Even; 2]]
+    }
+
+    fn coefficients(&self) -> Coefficients<1> {
+        let grid = self.grid;
+        Coefficients::at_lags(move |_, x, _| influence(x, grid))
+    }
+
+    fn smallest_eigenvalue(&self) -> f64 {
+        smallest_eigenvalue(self.grid.stretch)
+    }
+
+    fn vanishes_far_away(&self) -> bool {
+        false
+    }
+
+    fn within_period(&self, lengths: Lengths) -> Lengths {
+        // One row has no lag along y.
+        Lengths { y: 1, ..lengths }
+    }
+
+    fn inverse_m_matrix(&self) -> Evidence {
+        Evidence::Observed
+    }
+}
+
 /// Displacement at a lag, in strips of width a, under unit pressure, times `pi E* / c`; c is the unit of
 /// length and `stretch = a / c`: `2 (a/c) (ln(D/a) - <ln|x + t|>)`, the mean over `-1/2 < t < 1/2`.
-pub fn influence(lag: usize, grid: Grid) -> f64 {
+fn influence(lag: usize, grid: Grid) -> f64 {
     let datum = (DATUM * grid.columns as f64).ln();
     2.0 * grid.stretch * (datum - mean_logarithm(lag))
 }
 
 /// A lower bound of the eigenvalues on every set of strips: that of the alternating wave on the infinite
 /// line, `8 G a / (pi c)` with Catalan's constant G.
-pub fn smallest_eigenvalue(stretch: f64) -> f64 {
+fn smallest_eigenvalue(stretch: f64) -> f64 {
     8.0 * CATALAN / PI * stretch
 }
 
@@ -45,7 +91,6 @@ fn mean_logarithm(lag: usize) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::CellSet;
     use approx::assert_relative_eq;
 
     fn line(columns: usize) -> Grid {
@@ -85,68 +130,5 @@ mod tests {
                 max_relative = 1e-5
             );
         }
-    }
-
-    #[test]
-    fn the_matrix_is_an_inverse_m_matrix_above_its_smallest_eigenvalue() {
-        let grid = line(40);
-        let sets: [Vec<u32>; 5] = [
-            (0..40).collect(),
-            vec![0, 39],
-            (0..40).step_by(3).collect(),
-            (0..40).filter(|k| !(8..30).contains(k)).collect(),
-            vec![0, 1, 2, 20, 38, 39],
-        ];
-        for set in sets {
-            let set = CellSet::from_index(grid, &set);
-            let places: Vec<usize> = set.places().map(|(x, _)| x).collect();
-            let n = places.len();
-            let entry = |i: usize, j: usize| influence(places[i].abs_diff(places[j]), grid);
-            let inverse = inverse(n, &entry);
-            let largest = (0..n).map(|i| inverse[i * n + i]).fold(0.0, f64::max);
-            for i in 0..n {
-                for j in (0..n).filter(|&j| j != i) {
-                    assert!(inverse[i * n + j] <= 1e-12 * largest, "({i}, {j}): {}", inverse[i * n + j]);
-                }
-            }
-            // Below the eigenvalue: G - lambda is positive definite as long as elimination meets positive
-            // pivots.
-            let bound = smallest_eigenvalue(grid.stretch);
-            assert!(
-                pivots(n, &|i, j| entry(i, j) - if i == j { bound } else { 0.0 }).iter().all(|&p| p > 0.0)
-            );
-        }
-    }
-
-    fn eliminated(n: usize, width: usize, a: &mut [f64]) -> Vec<f64> {
-        let mut pivots = Vec::new();
-        for k in 0..n {
-            let pivot = a[k * width + k];
-            pivots.push(pivot);
-            let above = a[k * width..(k + 1) * width].to_vec();
-            for i in (0..n).filter(|&i| i != k) {
-                let factor = a[i * width + k] / pivot;
-                for (value, above) in a[i * width..(i + 1) * width].iter_mut().zip(&above) {
-                    *value -= factor * above;
-                }
-            }
-        }
-        pivots
-    }
-
-    fn pivots(n: usize, entry: &dyn Fn(usize, usize) -> f64) -> Vec<f64> {
-        let mut a: Vec<f64> = (0..n * n).map(|k| entry(k / n, k % n)).collect();
-        eliminated(n, n, &mut a)
-    }
-
-    fn inverse(n: usize, entry: &dyn Fn(usize, usize) -> f64) -> Vec<f64> {
-        let width = 2 * n;
-        let value = |k: usize| {
-            let (i, j) = (k / width, k % width);
-            if j < n { entry(i, j) } else { f64::from(u8::from(j - n == i)) }
-        };
-        let mut a: Vec<f64> = (0..n * width).map(value).collect();
-        let pivots = eliminated(n, width, &mut a);
-        (0..n * n).map(|k| a[(k / n) * width + n + k % n] / pivots[k / n]).collect()
     }
 }

@@ -1,19 +1,27 @@
-//! Influence coefficients: those of Love for a half-space that is unloaded outside the map, of a periodic
-//! half-space, of a half-plane and of tangential tractions, and tables of them.
+//! Kernels: how tractions on rectangular cells displace the surfaces of the bodies, and tables of them.
+//!
+//! A kernel is a file of this folder ([`Kernel`] says what it has to state) and a line of `table.rs`, where
+//! kernels are listed. [`KernelTable`] keeps its coefficients and the symbols made from it for all surfaces of a
+//! grid.
 
 mod alternating;
-mod coupling_table;
+mod cerruti;
+mod coupling;
+mod definition;
 mod half_plane;
+mod half_space;
 mod inverse;
 pub mod love;
+mod period;
 mod periodic;
 mod symbol;
 mod table;
 mod tangential;
-mod tangential_table;
+mod tensor;
+mod waves;
 
-pub use coupling_table::CouplingTable;
+pub use definition::{Evidence, Kernel};
 pub use inverse::Inverse;
 pub use symbol::Symbol;
-pub use table::{KernelTable, Medium};
-pub use tangential_table::TangentialTable;
+pub use table::{CouplingTable, KernelTable, Medium, NormalTable, TangentialTable};
+pub use tensor::{Invertible, Symmetric, Tensor};

@@ -36,19 +36,15 @@ impl Symbol {
     ///
     /// Cost: one evaluation of the kernel for each lag and two passes of real FFTs.
     pub fn of_kernel(lengths: Lengths, kernel: impl Fn(usize, usize) -> f64 + Sync) -> Self {
-        Self::of_rows(lengths, |y, row| {
+        Self::with_parity(lengths, [Parity::Even; 2], |y, row| {
             for (x, value) in row.iter_mut().enumerate() {
                 *value = kernel(x, y);
             }
         })
     }
 
-    /// The same of a kernel that `fill` writes row by row: at the lags `(0 ..= lx / 2, y)`.
-    pub fn of_rows(lengths: Lengths, fill: impl Fn(usize, &mut [f64]) + Sync) -> Self {
-        Self::with_parity(lengths, [Parity::Even; 2], fill)
-    }
-
-    /// The same of a kernel with these parities along x and y.
+    /// The same of a kernel with these parities along x and y, which `fill` writes row by row: at the lags
+    /// `(0 ..= lx / 2, y)`.
     pub fn with_parity(
         lengths: Lengths,
         [along_x, along_y]: [Parity; 2],
@@ -85,9 +81,9 @@ impl Symbol {
 
     /// The values over the number of points (neither transform is normalised), in the precision of a
     /// convolution.
-    pub fn scaled<T: Real>(&self) -> Arc<Vec<T>> {
+    pub fn scaled<T: Real>(&self) -> Arc<Vec<[T; 1]>> {
         let norm = 1.0 / self.lengths.points() as f64;
-        Arc::new(self.values.iter().map(|&v| T::of(v * norm)).collect())
+        Arc::new(self.values.iter().map(|&v| [T::of(v * norm)]).collect())
     }
 }
 

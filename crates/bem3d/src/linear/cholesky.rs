@@ -2,7 +2,7 @@
 //! and stiffness are computed.
 
 use crate::geometry::CellSet;
-use crate::kernel::KernelTable;
+use crate::kernel::NormalTable;
 #[cfg(feature = "faer")]
 use faer::{Mat, Side, linalg::solvers::Llt, linalg::solvers::Solve};
 
@@ -13,7 +13,7 @@ pub enum Factor {}
 
 #[cfg(not(feature = "faer"))]
 impl Factor {
-    pub fn new(_: &KernelTable, _: &CellSet) -> Option<Self> {
+    pub fn new(_: &NormalTable, _: &CellSet) -> Option<Self> {
         None
     }
 
@@ -34,11 +34,12 @@ impl Factor {
     /// Assembles and factors G on a set of n cells; `None` if rounding makes it indefinite (never seen).
     ///
     /// Cost: n^3 / 3 multiplications and 16 n^2 bytes.
-    pub fn new(table: &KernelTable, set: &CellSet) -> Option<Self> {
+    pub fn new(table: &NormalTable, set: &CellSet) -> Option<Self> {
         let places: Vec<(usize, usize)> = set.places().collect();
         let matrix = Mat::from_fn(set.len(), set.len(), |i, j| {
             let ((xi, yi), (xj, yj)) = (places[i], places[j]);
-            table.row(yi.abs_diff(yj))[xi.abs_diff(xj)]
+            let [value] = table.lag(xi.abs_diff(xj), yi.abs_diff(yj));
+            value
         });
         Llt::new(matrix.as_ref(), Side::Lower).ok().map(|factor| Self { factor })
     }
@@ -69,7 +70,7 @@ mod tests {
             (Grid { columns: 9, rows: 14, stretch: 1.3 }, Boundary::Free),
             (Grid { columns: 1, rows: 20, stretch: 1.0 }, Boundary::Periodic),
         ] {
-            let table = KernelTable::shared(grid, boundary);
+            let table = NormalTable::shared(grid, boundary);
             let picks = [true, false, true, true, false, true, false];
             let cells = CellSet::numbered(grid, |i| picks[i % picks.len()]);
             let z: Vec<f64> = (0..cells.len()).map(|k| 1.0 + (k as f64 * 0.7).sin()).collect();

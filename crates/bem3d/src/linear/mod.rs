@@ -5,11 +5,9 @@ mod extension;
 mod minres;
 mod pcg;
 mod preconditioner;
-mod tensor_torus;
 
 pub use cholesky::Factor;
 pub use extension::Extension;
 pub use minres::minres;
 pub use pcg::{Energy, Fixed, StoppingCriteria, Vectors, Workspace, pcg};
-pub use preconditioner::{Preconditioned, Preconditioner, TorusInverse};
-pub use tensor_torus::TensorTorusInverse;
+pub use preconditioner::{Preconditioned, Preconditioner, TORUS_ENERGY, TorusInverse};

@@ -113,7 +113,7 @@ impl Workspace {
         criteria: StoppingCriteria,
         stop: Stop<'_>,
     ) -> PcgOutcome {
-        operators.solves += 1;
+        operators.plans.solves += 1;
         // In units of its own size: its square neither overflows nor underflows.
         let unit = largest(right);
         self.unit = unit;
@@ -134,7 +134,7 @@ impl Workspace {
                 let outcome = if let Some(transform) = torus {
                     let mut inverse = TorusInverse {
                         transform,
-                        extension: &mut self.extension,
+                        extensions: std::array::from_mut(&mut self.extension),
                         recorder: recorder.clone(),
                     };
                     pcg(&mut operator, &mut inverse, v, fixed, criteria, stop)
@@ -151,7 +151,7 @@ impl Workspace {
                 outcome
             }
         });
-        operators.applications += outcome.applications;
+        operators.plans.applications += outcome.applications;
         PcgOutcome { energy: outcome.energy * square, ..outcome }
     }
 

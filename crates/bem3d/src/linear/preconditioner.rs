@@ -2,7 +2,8 @@
 
 use super::extension::Extension;
 use crate::geometry::{CellSet, Window};
-use crate::operator::FftConvolution;
+use crate::kernel::Tensor;
+use crate::operator::Convolution;
 use crate::parts::{Part, Recorder};
 use crate::real::{Real, dot, each, largest, sum};
 use crate::tuning::BAND;
@@ -48,36 +49,49 @@ impl<T: Real> Preconditioner<T> for Identity {
 }
 
 /// `M = E' B E`: the residual is extended into the gaps between contacts ([`Extension`]), the inverse of the
-/// kernel on a torus around the window is applied (about |q| / 2 pi), and the transpose leads back. A quarter
-/// of the cost of an application of G or less.
+/// kernel on a torus around the window is applied (for pressures about |q| / 2 pi), and the transpose leads back.
+/// A quarter of the cost of an application of the kernel or less.
 #[derive(Debug)]
-pub struct TorusInverse<'a> {
+pub struct TorusInverse<'a, const N: usize, const E: usize> {
     /// The inverse on the torus.
-    pub transform: &'a mut FftConvolution<f32>,
-    /// The extension, for this set.
-    pub extension: &'a mut Extension,
+    pub transform: &'a mut Convolution<f32, N, E>,
+    /// The extension of each component, for this set.
+    pub extensions: &'a mut [Extension; N],
     /// The recorder that its time is charged to.
     pub recorder: Recorder,
 }
 
-impl TorusInverse<'_> {
-    /// Safety factor of the energy on a torus.
-    ///
-    /// `(G_CC)^-1 <= (G^-1)_CC` for every set C, so that the inverse on the whole lattice gives a bound;
-    /// wrapping the lattice on a torus turns the bound into an estimate, which residuals as wide as the torus
-    /// can exceed by some ten per cent.
-    pub const SAFETY: f64 = 2.0;
+/// Upper bound of the ratio of the energy `r' K^-1 r` to `r' M r` on a torus.
+///
+/// `(K_CC)^-1 <= (K^-1)_CC` for every set C, so that the inverse on the whole lattice gives a bound; wrapping the
+/// lattice on a torus turns the bound into an estimate, which residuals as wide as the torus can exceed by some
+/// ten per cent.
+pub const TORUS_ENERGY: f64 = 2.0;
 
-    fn precondition(&mut self, set: &CellSet, offset: f32, r: &mut [f32], z: &mut [f32]) -> Preconditioned {
-        let Self { transform, extension, .. } = self;
+impl<const N: usize, const E: usize> TorusInverse<'_, N, E>
+where
+    [f32; E]: Tensor<f32, N>,
+{
+    /// Lowers the residual `r` by `offset` and writes `z = M r`; n numbers of each component.
+    pub fn precondition(
+        &mut self,
+        set: &CellSet,
+        offset: f32,
+        r: &mut [f32],
+        z: &mut [f32],
+    ) -> Preconditioned {
+        let Self { transform, extensions, .. } = self;
         let Window { x: x0, y: y0, width, .. } = transform.window();
-        let bands = transform.bands();
+        let (bands, n) = (transform.bands(), set.len());
         let first_rows = || bands.clone().map(|y| y + y0);
         let rows = |y: usize| set.rows_within(y..y + BAND);
         // The residual, and its sums over blocks.
-        extension.clear();
-        let parts = first_rows().zip(set.split(r, first_rows())).zip(extension.bands(bands.len()));
-        let largest_residuals = map(set.len(), parts, |((y, (start, r)), mut sums)| {
+        let mut parts = Vec::with_capacity(N * bands.len());
+        for (extension, r) in extensions.iter_mut().zip(r.chunks_exact_mut(n)) {
+            extension.clear();
+            parts.extend(first_rows().zip(set.split(r, first_rows())).zip(extension.bands(bands.len())));
+        }
+        let largest_residuals = map(N * n, parts.into_iter(), |((y, (start, r)), mut sums)| {
             let mut line = vec![0.0; width];
             let mut largest_residual = 0.0f32;
             for row in rows(y).map(|row| row.after(start)) {
@@ -94,24 +108,27 @@ impl TorusInverse<'_> {
             }
             largest_residual
         });
-        extension.extend();
-        let (extended, residual) = (&**extension, &*r);
+        extensions.iter_mut().for_each(Extension::extend);
+        let (extended, residual) = (&**extensions, &*r);
         transform.forward(
-            |_| true,
-            |y, out| {
-                extended.fill(y, out);
+            |_, _| true,
+            |component, y, out| {
+                extended[component].fill(y, out);
                 if let Some(row) = set.row(y + y0) {
-                    row.spread(residual, out, x0);
+                    row.spread(&residual[component * n..][..n], out, x0);
                 }
             },
         );
         transform.multiply(|_| true);
-        extension.clear();
-        let outputs = set.split(z, first_rows()).into_iter().zip(extension.bands(bands.len()));
+        let mut outputs = Vec::with_capacity(N * bands.len());
+        for (extension, z) in extensions.iter_mut().zip(z.chunks_exact_mut(n)) {
+            extension.clear();
+            outputs.extend(set.split(z, first_rows()).into_iter().zip(extension.bands(bands.len())));
+        }
         transform.backward(
             |_| true,
-            outputs,
-            |((start, z), sums), y, u| {
+            outputs.into_iter(),
+            |((start, z), sums), _, y, u| {
                 let row = set.row(y + y0).map(|row| row.after(*start));
                 if let Some(row) = row {
                     row.collect(u, z, x0);
@@ -124,16 +141,19 @@ impl TorusInverse<'_> {
                 }
             },
         );
-        extension.collect();
-        let extended = &**extension;
-        let parts = first_rows().zip(set.split(z, first_rows()));
-        let sums = map(set.len(), parts, |(y, (start, z))| {
+        extensions.iter_mut().for_each(Extension::collect);
+        let mut parts = Vec::with_capacity(N * bands.len());
+        for ((extension, r), z) in extensions.iter().zip(r.chunks_exact(n)).zip(z.chunks_exact_mut(n)) {
+            let z = set.split(z, first_rows());
+            parts.extend(first_rows().zip(z).map(|(y, z)| (extension, r, y, z)));
+        }
+        let sums = map(N * n, parts.into_iter(), |(extension, r, y, (start, z))| {
             let mut line = vec![0.0; width];
             let (mut product, mut total) = (0.0, 0.0);
             for row in rows(y) {
                 let (at, z_row) = (row.span(), row.after(start));
-                if extended.is_wanted() {
-                    extended.take(row.y - y0, &mut line);
+                if extension.is_wanted() {
+                    extension.take(row.y - y0, &mut line);
                     z_row.add(&line, z, x0);
                 }
                 let z = &z[z_row.span()];
@@ -151,13 +171,13 @@ impl TorusInverse<'_> {
     }
 }
 
-impl Preconditioner<f32> for TorusInverse<'_> {
+impl Preconditioner<f32> for TorusInverse<'_, 1, 1> {
     fn apply(&mut self, set: &CellSet, offset: f32, r: &mut [f32], z: &mut [f32]) -> Preconditioned {
         let recorder = self.recorder.clone();
         recorder.timed(Part::Preconditioner, || self.precondition(set, offset, r, z))
     }
 
     fn energy_factor(&self) -> f64 {
-        Self::SAFETY
+        TORUS_ENERGY
     }
 }

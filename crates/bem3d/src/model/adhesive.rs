@@ -9,6 +9,7 @@ use crate::adhesion::{
     AdhesiveControl, Attraction, Ended, Equilibrium, Law, Response, Search, energy, respond,
 };
 use crate::geometry::CellSet;
+use crate::kernel::Evidence;
 use crate::kernel::love::influence_of_rectangle;
 use contact_model::{
     Adhesion, AdhesiveState, Branch, Certificate, ContactState, Error, Result, Status, Stop,
@@ -347,6 +348,10 @@ pub(super) fn attraction(surface: &PreparedSurface, adhesion: Adhesion) -> Resul
         }
         other => return Err(Error::unsupported(NAME, format!("the adhesion {other:?}"))),
     };
+    if surface.problem.operators.table().kernel().inverse_m_matrix() == Evidence::Violated {
+        let what = "adhesion of a body whose contacts need not shrink when they are unloaded: its branches are not ordered";
+        return Err(Error::unsupported(NAME, what));
+    }
     let law = attraction.law;
     let own = law.peak / law.range * influence_of_rectangle(0, 0, surface.problem.grid().stretch);
     if !(own.is_finite() && own > 0.0) {

@@ -103,8 +103,8 @@ impl PreparedSurface {
 
     /// Adds the work of friction to that of the load.
     pub(super) fn count(&mut self, [applications, solves]: [usize; 2], now: [usize; 2]) {
-        self.problem.operators.applications += now[0] - applications;
-        self.problem.operators.solves += now[1] - solves;
+        self.problem.operators.plans.applications += now[0] - applications;
+        self.problem.operators.plans.solves += now[1] - solves;
     }
 
     pub(super) fn gross_slip(&self, control: TangentialControl, beyond: ForceTooLarge) -> Error {

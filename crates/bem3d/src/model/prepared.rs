@@ -6,7 +6,6 @@ use super::profile;
 use super::sliding::Sliding;
 use crate::active_set::{self, Bounds, Candidates, Control, Guess, LastState, Limits, Problem, Solved};
 use crate::geometry::{CellSet, Grid};
-use crate::kernel::Medium;
 use crate::parts::Recorder;
 use crate::real::{each, sum_of_pairs, update};
 use crate::stiffness::Stiffness;
@@ -133,7 +132,7 @@ impl PreparedSurface {
         };
         Ok(Self {
             options,
-            outputs: profile::outputs(scene.outputs, problem.operators.table().medium()),
+            outputs: profile::outputs(scene.outputs, problem.operators.table().kernel()),
             problem,
             nondimensional,
             height,
@@ -179,7 +178,7 @@ impl PreparedSurface {
 
     /// Whether states have an approach, which needs displacements that vanish at infinity.
     pub(super) fn has_approach(&self) -> bool {
-        self.problem.operators.table().medium() == Medium::HalfSpace
+        self.problem.operators.table().kernel().vanishes_far_away()
     }
 
     pub(super) fn limits(&self) -> Limits {
@@ -274,7 +273,7 @@ impl PreparedSurface {
 
     /// Starts the counting of work.
     pub(super) fn begin_count(&mut self) {
-        self.problem.operators.applications = 0;
-        self.problem.operators.solves = 0;
+        self.problem.operators.plans.applications = 0;
+        self.problem.operators.plans.solves = 0;
     }
 }

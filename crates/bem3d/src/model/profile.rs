@@ -1,7 +1,7 @@
 //! Profiles: bodies that are uniform along y, in plane strain.
 
 use super::options::NAME;
-use crate::kernel::Medium;
+use crate::kernel::{Kernel, Medium};
 use contact_model::{Adhesion, Boundary, Conductance, Error, Friction, Outputs, Result, Scene, Surface};
 
 /// The body under a scene's surface: under a profile with free boundaries a half-plane. With periodic ones
@@ -47,11 +47,11 @@ pub(super) fn check(scene: &Scene) -> Result<()> {
     }
 }
 
-/// The outputs of a medium: the stiffness of a half-plane depends on the reference of the displacements and
-/// is not given.
-pub(super) fn outputs(outputs: Outputs, medium: Medium) -> Outputs {
-    match medium {
-        Medium::HalfPlane => Outputs { stiffness: false, stiffness_fixed_area: false, ..outputs },
-        _ => outputs,
+/// The outputs on a kernel: where the approach has no meaning, a stiffness would depend on the place from which
+/// displacements are measured, unless the mean gap takes its place.
+pub(super) fn outputs(outputs: Outputs, kernel: &dyn Kernel<1>) -> Outputs {
+    if kernel.vanishes_far_away() || kernel.boundary() == Boundary::Periodic {
+        return outputs;
     }
+    Outputs { stiffness: false, stiffness_fixed_area: false, ..outputs }
 }

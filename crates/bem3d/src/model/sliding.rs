@@ -81,9 +81,9 @@ impl Sliding {
         // E* sum nu/(2 G), from 1/G* = 1/E* + sum nu/(4 G).
         let compliance = (2.0 * (pair.contact_modulus()? / pair.shear_modulus()? - 1.0)).max(0.0);
         let beta = if coupling == Some(Coupling::Full) { pair.coupling()? } else { 0.0 };
-        let medium = problem.operators.table().medium();
+        let boundary = problem.operators.table().boundary();
         Ok(Some(Self {
-            friction: Friction::new(problem.grid(), medium, [compliance, beta], tuning, recorder),
+            friction: Friction::new(problem.grid(), boundary, [compliance, beta], tuning, recorder),
             coefficient,
             undeformed: problem.candidates.shared(),
             before: SlipMemory::default(),

@@ -72,9 +72,9 @@ impl PreparedSurface {
         }
         let tangential = found.slid.map(|slid| self.tangential(slid)).transpose()?.flatten();
         let mut report = SolveReport::new(found.status, found.strategy);
-        report.work = Work::of(std::mem::take(&mut self.problem.operators.solves), fields.as_ref());
+        report.work = Work::of(std::mem::take(&mut self.problem.operators.plans.solves), fields.as_ref());
         report.iterations = found.iterations;
-        report.applications = std::mem::take(&mut self.problem.operators.applications);
+        report.applications = std::mem::take(&mut self.problem.operators.plans.applications);
         report.contact_cells = Some(found.contact.len());
         report.certificate = found.certificate;
         let signed = |value: f64, of: &dyn Fn(f64) -> Result<f64>| Ok(of(value.abs())?.copysign(value));

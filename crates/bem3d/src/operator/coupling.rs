@@ -1,9 +1,9 @@
 //! The coupling of normal and tangential displacements.
 
-use super::transform::Transform;
-use crate::geometry::{CellSet, Grid, Window};
-use crate::kernel::{CouplingTable, Medium};
-use rustfft::num_complex::Complex;
+use super::convolution::Convolution;
+use crate::geometry::{CellSet, Grid};
+use crate::kernel::CouplingTable;
+use contact_model::Boundary;
 use std::sync::Arc;
 
 /// `u_z = beta (J_x q_x + J_y q_y)` and `(u_x, u_y) = -beta (J_x, J_y) p` on a grid in double precision, see
@@ -11,92 +11,52 @@ use std::sync::Arc;
 #[derive(Debug)]
 pub struct CouplingOperator {
     beta: f64,
-    grid: Grid,
-    table: CouplingTable,
-    plan: Option<Plan>,
+    table: Arc<CouplingTable>,
+    /// The convolution of `(p, q_x, q_y)`.
+    plan: Option<Convolution<f64, 3, 2>>,
     /// Applications so far.
     pub applications: usize,
 }
 
-/// The transforms of `(p, q_x, q_y)`, and the symbol.
-#[derive(Debug)]
-struct Plan {
-    transform: Transform<f64, 3>,
-    symbol: Arc<Vec<[f64; 2]>>,
-}
-
 impl CouplingOperator {
     /// An operator without plans.
-    pub fn new(grid: Grid, medium: Medium, beta: f64) -> Self {
-        Self { beta, grid, table: CouplingTable::new(grid, medium), plan: None, applications: 0 }
+    pub fn new(grid: Grid, boundary: Boundary, beta: f64) -> Self {
+        Self { beta, table: CouplingTable::shared(grid, boundary), plan: None, applications: 0 }
     }
 
     /// Normal displacement on the whole grid under tractions on a set, two numbers a cell.
     pub fn normal(&mut self, sources: &CellSet, q: &[f64]) -> Vec<f64> {
-        let n = sources.len();
-        let targets = CellSet::all(self.grid);
-        self.apply(sources, &[None, Some(&q[..n]), Some(&q[n..])], &targets).swap_remove(0)
+        let targets = CellSet::all(self.table.grid());
+        let (x, y) = q.split_at(sources.len());
+        let mut u = self.apply(sources, [None, Some(x), Some(y)], &targets);
+        u.truncate(targets.len());
+        u
     }
 
     /// Tangential displacement of cells under pressures on a set, two numbers a cell.
     pub fn tangential(&mut self, sources: &CellSet, p: &[f64], targets: &CellSet) -> Vec<f64> {
-        let mut fields = self.apply(sources, &[Some(p), None, None], targets);
-        let y = fields.pop().unwrap_or_default();
-        let mut u = fields.pop().unwrap_or_default();
-        u.extend(y);
-        u
+        self.apply(sources, [Some(p), None, None], targets).split_off(targets.len())
     }
 
-    /// All displacements under the given fields, `(p, q_x, q_y)`.
+    /// The normal displacement and both tangential ones under the given fields `(p, q_x, q_y)`.
     ///
     /// Cost: the transforms of three fields of the grid, except for rows of zeros.
-    fn apply(&mut self, sources: &CellSet, given: &[Option<&[f64]>; 3], targets: &CellSet) -> Vec<Vec<f64>> {
-        let mut u = vec![vec![0.0; targets.len()]; 3];
+    fn apply(&mut self, sources: &CellSet, given: [Option<&[f64]>; 3], targets: &CellSet) -> Vec<f64> {
+        let mut u = vec![0.0; 3 * targets.len()];
         if sources.is_empty() || targets.is_empty() || self.beta.abs() <= 0.0 {
             return u;
         }
         self.applications += 1;
-        let Self { table, grid, beta, plan, .. } = self;
-        let Plan { transform, symbol } = plan.get_or_insert_with(|| {
-            let window = grid.window();
+        let table = &self.table;
+        let convolution = self.plan.get_or_insert_with(|| {
+            let window = table.grid().window();
             let lengths = table.exact_lengths(window);
-            Plan { transform: Transform::new(window, lengths), symbol: table.symbol(lengths) }
+            Convolution::new(window, lengths, table.symbol_f64(lengths))
         });
-        let (rows, Window { height, .. }) = (transform.rows(), grid.window());
-        transform.forward(
-            |at| at % rows < height && given[at / rows].is_some() && sources.row(at % rows).is_some(),
-            |at, line| {
-                if let (Some(row), Some(values)) = (sources.row(at % rows), given[at / rows]) {
-                    row.spread(values, line, 0);
-                }
-            },
-        );
-        let (half, beta) = (transform.lengths().y / 2 + 1, *beta);
-        let held = |at: usize| at % rows < height && targets.row(at % rows).is_some();
-        transform.change(held, |kx, [p, x, y]| {
-            let symbol = &symbol[kx * half..][..half];
-            let length = p.len();
-            let turned = |z: Complex<f64>| Complex::new(z.im, -z.re);
-            let fields = p.iter_mut().zip(x.iter_mut()).zip(y.iter_mut()).enumerate();
-            for (ky, ((p, x), y)) in fields {
-                // The component along y changes its sign with that of the wave.
-                let [sx, sy] = if ky < half {
-                    symbol[ky]
-                } else {
-                    let [sx, sy] = symbol[length - ky];
-                    [sx, -sy]
-                };
-                let (normal, pressed) = (turned(*x * sx + *y * sy) * beta, turned(*p) * -beta);
-                (*p, *x, *y) = (normal, pressed * sx, pressed * sy);
-            }
-        });
-        let bands: Vec<usize> = transform.bands().take(transform.bands().len() / 3).collect();
-        let outputs: Vec<_> = u.iter_mut().flat_map(|u| targets.split(u, bands.iter().copied())).collect();
-        transform.backward(held, outputs.into_iter(), |(start, u), at, line| {
-            if let Some(row) = targets.row(at % rows) {
-                row.after(*start).collect(line, u, 0);
-            }
-        });
+        convolution.apply_to(sources, given, targets, &mut u);
+        for u in &mut u {
+            *u *= self.beta;
+        }
         u
     }
 }
@@ -107,14 +67,14 @@ mod tests {
 
     #[test]
     fn displacements_are_sums_over_pairs_and_reciprocal() {
-        for (grid, medium) in [
-            (Grid { columns: 9, rows: 7, stretch: 1.0 }, Medium::HalfSpace),
-            (Grid { columns: 6, rows: 40, stretch: 1.3 }, Medium::HalfSpace),
-            (Grid { columns: 8, rows: 9, stretch: 0.7 }, Medium::Periodic),
+        for (grid, boundary) in [
+            (Grid { columns: 9, rows: 7, stretch: 1.0 }, Boundary::Free),
+            (Grid { columns: 6, rows: 40, stretch: 1.3 }, Boundary::Free),
+            (Grid { columns: 8, rows: 9, stretch: 0.7 }, Boundary::Periodic),
         ] {
             let beta = 0.27;
-            let table = CouplingTable::new(grid, medium);
-            let mut operator = CouplingOperator::new(grid, medium, beta);
+            let table = CouplingTable::shared(grid, boundary);
+            let mut operator = CouplingOperator::new(grid, boundary, beta);
             let sources = CellSet::numbered(grid, |i| i % 5 != 2);
             let (all, n) = (CellSet::all(grid), sources.len());
             let q: Vec<f64> = (0..2 * n).map(|k| (1.1 * k as f64).sin()).collect();
@@ -150,8 +110,8 @@ mod tests {
         // Over images in squares, those at the edges by half, the lattice sum of x/r^2 converges as one over
         // the square of its side.
         let grid = Grid { columns: 5, rows: 5, stretch: 1.0 };
-        let periodic = CouplingTable::new(grid, Medium::Periodic);
-        let free = CouplingTable::new(grid, Medium::HalfSpace);
+        let periodic = CouplingTable::shared(grid, Boundary::Periodic);
+        let free = CouplingTable::shared(Grid { columns: 205, rows: 205, stretch: 1.0 }, Boundary::Free);
         let images = |(x, y): (usize, usize), m: isize| -> f64 {
             let lag = |a: usize, i: isize| a.cast_signed() + 5 * i;
             let weight = |i: isize| if i.abs() == m { 0.5 } else { 1.0 };

@@ -3,7 +3,7 @@
 use super::two_level::Split;
 use super::two_transforms::TwoTransforms;
 use crate::geometry::{CellSet, Lengths, Window};
-use crate::kernel::{KernelTable, Medium};
+use crate::kernel::NormalTable;
 use crate::tuning::Tuning;
 use std::fmt;
 
@@ -94,11 +94,37 @@ impl fmt::Display for Recipe {
     }
 }
 
+/// The time of one application of a kernel by its size, ns.
+#[derive(Debug, Clone, Copy)]
+pub struct Costs<'a> {
+    tuning: &'a Tuning,
+    components: f64,
+    entries: f64,
+}
+
+impl<'a> Costs<'a> {
+    /// Of a kernel with this number of components and of entries.
+    pub fn new(tuning: &'a Tuning, components: usize, entries: usize) -> Self {
+        Self { tuning, components: components as f64, entries: entries as f64 }
+    }
+
+    /// A sum over all pairs: a product for each entry.
+    pub fn direct(&self, sources: usize, targets: usize) -> f64 {
+        self.entries * self.tuning.pair_ns * sources as f64 * targets as f64
+    }
+
+    /// Transforms of each component in double precision.
+    pub fn transforms(&self, lengths: Lengths) -> f64 {
+        let points = lengths.points() as f64;
+        self.components * self.tuning.point_ns * points * points.log2()
+    }
+}
+
 /// Chooses recipes for one grid.
 #[derive(Debug, Clone, Copy)]
 pub struct Planner<'a> {
     /// The kernel.
-    pub table: &'a KernelTable,
+    pub table: &'a NormalTable,
     /// The cost model.
     pub tuning: &'a Tuning,
     /// Whether approximations of the far field may be chosen.
@@ -106,18 +132,20 @@ pub struct Planner<'a> {
 }
 
 impl Planner<'_> {
+    fn costs(&self) -> Costs<'_> {
+        Costs::new(self.tuning, 1, 1)
+    }
+
     fn fft_ns(&self, lengths: Lengths) -> f64 {
-        let points = lengths.points() as f64;
-        self.tuning.point_ns * points * points.log2()
+        self.costs().transforms(lengths)
     }
 
     fn direct_ns(&self, sources: usize, targets: usize) -> f64 {
-        self.tuning.pair_ns * sources as f64 * targets as f64
+        self.costs().direct(sources, targets)
     }
 
-    /// The smooth far field is that of the free kernel of square cells.
     fn knows_far_field(&self) -> bool {
-        self.two_levels && self.table.medium() == Medium::HalfSpace && self.table.grid().has_square_cells()
+        self.two_levels && self.table.kernel().has_far_field_of_squares()
     }
 
     /// The cheapest transforms of a window in single precision with their time, ns; `every_lag`: whether the
@@ -138,13 +166,6 @@ impl Planner<'_> {
         let time = tuning.single * (self.fft_ns(near) + self.fft_ns(far))
             + tuning.filter_ns * (split.order * window.count()) as f64;
         if time < one.0 { (time, Application::TwoTransforms(split)) } else { one }
-    }
-
-    /// The cheaper exact way between two sets in a window: direct sums or a transform in double precision.
-    pub fn exact(&self, sources: usize, targets: usize, window: Window) -> Application {
-        let lengths = self.table.exact_lengths(window);
-        let direct = self.direct_ns(sources, targets) <= self.fft_ns(lengths);
-        if direct { Application::Direct } else { Application::Fft(lengths) }
     }
 
     /// The cheapest way to five digits or more between two sets inside a window.
@@ -253,7 +274,6 @@ mod tests {
     use super::*;
     use crate::geometry::Grid;
     use contact_model::Boundary;
-    use std::sync::Arc;
 
     const GRID: Grid = Grid { columns: 2049, rows: 2049, stretch: 1.0 };
 
@@ -263,7 +283,7 @@ mod tests {
     }
 
     fn with<R>(grid: Grid, boundary: Boundary, ask: impl FnOnce(Planner<'_>) -> R) -> R {
-        let table: Arc<KernelTable> = KernelTable::shared(grid, boundary);
+        let table = NormalTable::shared(grid, boundary);
         ask(Planner { table: &table, tuning: &Tuning::DEFAULT, two_levels: true })
     }
 
@@ -271,9 +291,9 @@ mod tests {
     fn small_sets_never_pay_for_the_grid() {
         with(GRID, Boundary::Free, |planner| {
             let window = GRID.window();
-            assert_eq!(planner.exact(300, 3000, window), Application::Direct);
-            let lengths = Lengths { x: 4096, y: 4096 };
-            assert_eq!(planner.exact(100_000, 100_000, window), Application::Fft(lengths));
+            let transforms = planner.fft_ns(Lengths { x: 4096, y: 4096 });
+            assert!(planner.direct_ns(300, 3000) < transforms);
+            assert!(planner.direct_ns(100_000, 100_000) > transforms);
             assert!(planner.factors(200, window) && !planner.factors(50_000, window));
         });
     }

@@ -8,7 +8,7 @@
 //! the number of cells and of close pairs; the window matters only by the size of its lattice. It is made for
 //! square cells and the free kernel.
 
-use super::fft::FftConvolution;
+use super::convolution::FftConvolution;
 use super::influence::InfluenceOperator;
 use crate::geometry::{CellSet, Lengths, Window};
 use crate::kernel::Symbol;
@@ -252,7 +252,7 @@ fn lagrange(t: f64, order: usize) -> Vec<f64> {
 mod tests {
     use super::*;
     use crate::geometry::Grid;
-    use crate::kernel::KernelTable;
+    use crate::kernel::NormalTable;
     use crate::operator::DirectSum;
     use approx::assert_relative_eq;
     use contact_model::Boundary;
@@ -262,7 +262,7 @@ mod tests {
 
     fn exactly(set: &CellSet, p: &[f64]) -> Vec<f64> {
         let mut u = vec![0.0; set.len()];
-        DirectSum(&KernelTable::shared(GRID, Boundary::Free)).apply(set, p, set, &mut u);
+        DirectSum(&NormalTable::shared(GRID, Boundary::Free)).apply(set, p, set, &mut u);
         u
     }
 

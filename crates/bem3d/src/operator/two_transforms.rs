@@ -7,7 +7,7 @@
 //! one thread of an EPYC, 2026-11). Interpolation is separable; along rows it is done where they are read and
 //! written anyway. In single precision, for square cells and the free kernel.
 
-use super::fft::{FftConvolution, Rounded};
+use super::convolution::{FftConvolution, Rounded};
 use super::influence::InfluenceOperator;
 use super::two_level::Split;
 use crate::geometry::{CellSet, Window};
@@ -105,8 +105,8 @@ impl TwoTransforms {
         let order = split.order;
         let (nodes, blocks) = (interpolation.nodes, lattice.height + 1 - order);
         far.forward(
-            |_| true,
-            |ny, out| {
+            |_, _| true,
+            |_, ny, out| {
                 let (window, lattice, interpolation, rows) =
                     (&*window, &*lattice, &*interpolation, &rows[..]);
                 widest(
@@ -130,7 +130,7 @@ impl TwoTransforms {
         far.backward(
             |_| true,
             outputs,
-            |output, y, row| output[y % BAND * nodes..][..row.len()].copy_from_slice(row),
+            |output, _, y, row| output[y % BAND * nodes..][..row.len()].copy_from_slice(row),
         );
     }
 
@@ -141,8 +141,8 @@ impl TwoTransforms {
         let (nodes, begin) = (interpolation.nodes, x0 - lattice.x * SPACING);
         let held = |y: usize| targets.row(y + y0).is_some();
         near.forward(
-            |y| sources.row(y + y0).is_some(),
-            |y, line| {
+            |_, y| sources.row(y + y0).is_some(),
+            |_, y, line| {
                 if let Some(row) = sources.row(y + y0) {
                     row.spread(p, line, x0);
                 }
@@ -151,7 +151,7 @@ impl TwoTransforms {
         near.multiply(held);
         let outputs = targets.split(u, near.bands().map(|y| y + y0)).into_iter();
         let outputs = outputs.map(|output| (output, vec![0.0; nodes], interpolation.cells()));
-        near.backward(held, outputs, |((start, u), between, cells), y, line| {
+        near.backward(held, outputs, |((start, u), between, cells), _, y, line| {
             let Some(row) = targets.row(y + y0) else { return };
             let block = row.y / SPACING - lattice.y;
             let weights = &interpolation.weights[row.y % SPACING];
@@ -297,14 +297,14 @@ impl Interpolation {
 mod tests {
     use super::*;
     use crate::geometry::{Grid, Lengths};
-    use crate::kernel::KernelTable;
+    use crate::kernel::NormalTable;
     use crate::operator::DirectSum;
     use contact_model::Boundary;
 
     /// Largest error over the largest displacement on cells of a grid, against the whole kernel in double
     /// precision.
     fn error(grid: Grid, set: &CellSet, p: &[f64], split: Split) -> f64 {
-        let table = KernelTable::shared(grid, Boundary::Free);
+        let table = NormalTable::shared(grid, Boundary::Free);
         let (window, targets) = (grid.window(), CellSet::all(grid));
         let lengths = Lengths::free(window);
         let (mut exact, mut fast) = (vec![0.0; grid.count()], vec![0.0; grid.count()]);
@@ -348,7 +348,7 @@ mod tests {
             // Rows without sources and rows without targets.
             let (sources, targets) = (CellSet::from_rows(rows(3)), CellSet::from_rows(rows(2)));
             let p: Vec<f64> = (0..sources.len()).map(|k| 1.5 + (k as f64).sin()).collect();
-            let table = KernelTable::shared(grid, Boundary::Free);
+            let table = NormalTable::shared(grid, Boundary::Free);
             let (mut exact, mut fast) = (vec![0.0; targets.len()], vec![1.0; targets.len()]);
             DirectSum(&table).apply(&sources, &p, &targets, &mut exact);
             let mut operator = TwoTransforms::new(window, TwoTransforms::split_at(12, 6));

@@ -70,7 +70,7 @@ fn full(grid: Grid) -> Solved {
 
 /// The same state, factored.
 fn factored(state: &Solved, grid: Grid) -> Solved {
-    let factor = Factor::new(&KernelTable::shared(grid, Boundary::Free), &state.contact).unwrap();
+    let factor = Factor::new(&NormalTable::shared(grid, Boundary::Free), &state.contact).unwrap();
     let (q, _) = factor.solve_pair(&vec![0.0; state.p.len()]);
     Solved { q: Some(q), ..state.clone() }
 }
@@ -129,7 +129,7 @@ fn both_parts_of_the_error_add_up() {
 #[test]
 fn cells_on_the_wrong_side_by_hand() {
     for grid in [Grid::square(2, 2), Grid { columns: 4, rows: 1, stretch: 1.6 }] {
-        let table = KernelTable::shared(grid, Boundary::Free);
+        let table = NormalTable::shared(grid, Boundary::Free);
         let (eigenvalue, own) = (table.smallest_eigenvalue(), table.own());
         // The second contact cell carries less than its gap of 0.4 may change; the first far more.
         let estimate = |p: f64| {
@@ -149,7 +149,7 @@ fn the_stated_error_of_an_undecided_corner_is_what_the_corner_changes() {
     // A small map with and without one corner. Schur complements lie between the smallest eigenvalue and
     // G_jj: the estimate exceeds the change by a factor between 1 and 1.9325 for square cells.
     for grid in [Grid::square(4, 4), Grid { columns: 6, rows: 3, stretch: 1.2 }] {
-        let table = KernelTable::shared(grid, Boundary::Free);
+        let table = NormalTable::shared(grid, Boundary::Free);
         let excess = table.own() / table.smallest_eigenvalue();
         let value = |state: &Solved| factored(state, grid).q.unwrap().iter().sum::<f64>();
         let with = value(&full(grid));
@@ -204,25 +204,25 @@ fn a_good_guess_costs_no_step_and_a_cold_start_a_few() {
         for tuning in preconditioned() {
             let mut problem = flat(grid, tuning);
             let cold = solve(&mut problem, &state, None, 1e-4, &never);
-            let (cold_work, steps) = (problem.operators.applications, cold.steps);
+            let (cold_work, steps) = (problem.operators.plans.applications, cold.steps);
             // Counts, not times: one correction reaches what is asked, and one exact application says so.
             assert_eq!(cold_work, steps + 1);
             assert!((3..=8).contains(&steps) && cold_work <= 10, "{steps} steps, {cold_work} applications");
             let tight = solve(&mut problem, &state, Some(cold.q), TIGHT, &never);
             assert!(tight.steps > 0);
-            let before = problem.operators.applications;
+            let before = problem.operators.plans.applications;
             let warm = solve(&mut problem, &state, Some(tight.q), 1e-6, &never);
             assert_eq!(warm.steps, 0);
             // Where one application would be a transform, the first is one in single precision.
             let looks =
                 if problem.operators.last().unwrap().to_string().starts_with("direct") { 1 } else { 2 };
-            assert_eq!(problem.operators.applications - before, looks, "it is good enough");
+            assert_eq!(problem.operators.plans.applications - before, looks, "it is good enough");
         }
         // That of a factored state is exact.
         let mut problem = flat(grid, Tuning::DEFAULT);
         let exact = solve(&mut problem, &factored(&state, grid), None, TIGHT, &never);
         assert!(exact.steps == 0 && exact.solve_error < 1e-12, "{}", exact.solve_error);
-        assert_eq!(problem.operators.applications, 1);
+        assert_eq!(problem.operators.plans.applications, 1);
         assert!(
             !problem.operators.last().unwrap().has_preconditioner(),
             "a factored state needs no transform"
@@ -237,7 +237,7 @@ fn a_stopped_solve_claims_nothing() {
         let mut problem = flat(grid, tuning);
         let k = solve(&mut problem, &full(grid), None, TIGHT, &|| true);
         assert!(k.solve_error.is_infinite() && k.q.is_empty());
-        assert_eq!(problem.operators.applications, 1);
+        assert_eq!(problem.operators.plans.applications, 1);
         // Stopped later, it returns what it has.
         let polls = Cell::new(0);
         let few = || {
@@ -258,7 +258,7 @@ fn an_unattainable_tolerance_ends_when_nothing_improves() {
         let mut problem = flat(grid, tuning);
         let k = solve(&mut problem, &full(grid), None, -1.0, &never);
         assert!(k.solve_error < 1e-13, "{}", k.solve_error);
-        let work = problem.operators.applications;
+        let work = problem.operators.plans.applications;
         println!("{work} applications {} steps", k.steps);
         assert!(work <= 70, "{work} applications");
         // Every application but the exact ones is a step, those that changed nothing included.

@@ -1,7 +1,7 @@
 use super::super::{Control, Guess, Limits, Problem, cold_start, solve};
 use super::*;
 use crate::geometry::Grid;
-use crate::kernel::KernelTable;
+use crate::kernel::NormalTable;
 use crate::linear::Factor;
 use crate::operator::{DirectSum, InfluenceOperator};
 use crate::tuning::Tuning;
@@ -32,7 +32,7 @@ struct Enumerated {
 
 /// All solutions, by trying every assignment of open, elastic and saturated to the cells. Cost `O(3^n n^3)`.
 fn every_state(grid: Grid, z: &[f64], target: Control, hardness: f64) -> Vec<Enumerated> {
-    let table = KernelTable::shared(grid, Boundary::Free);
+    let table = NormalTable::shared(grid, Boundary::Free);
     let (n, all) = (grid.count(), CellSet::all(grid));
     let apply = |p: &[f64]| {
         let mut u = vec![0.0; n];

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::geometry::Grid;
-use crate::kernel::KernelTable;
+use crate::kernel::NormalTable;
 use crate::tuning::Tuning;
 use approx::assert_relative_eq;
 use contact_model::{Boundary, never};
@@ -64,7 +64,7 @@ fn every_step_lowers_the_energy_and_the_end_is_the_solution() {
             (0.2, None),
             (f64::INFINITY, None),
         ] {
-            let mut operators = Operators::new(KernelTable::shared(grid, boundary), &Tuning::DEFAULT);
+            let mut operators = Operators::new(NormalTable::shared(grid, boundary), &Tuning::DEFAULT);
             let cells = CellSet::all(grid);
             // z - d where the approach is prescribed.
             let z: Vec<f64> = z.iter().map(|z| z - if force.is_none() { 1.5 } else { 0.0 }).collect();
@@ -115,13 +115,13 @@ fn every_step_lowers_the_energy_and_the_end_is_the_solution() {
 #[test]
 fn nothing_is_done_at_a_solution_or_when_stopped() {
     let grid = Grid::square(3, 1);
-    let mut operators = Operators::new(KernelTable::shared(grid, Boundary::Free), &Tuning::DEFAULT);
+    let mut operators = Operators::new(NormalTable::shared(grid, Boundary::Free), &Tuning::DEFAULT);
     let cells = CellSet::all(grid);
     let feasible = Feasible { bounds: Bounds::UpTo(1.0), force: Some(1.0) };
     // The saturated cell is the lowest.
     let (mut p, mut gap) = (vec![0.0, 1.0, 0.0], vec![0.5, -0.5, 0.5]);
     assert_eq!(descend(&mut operators, &cells, (&mut p, &mut gap), feasible, 9, &never), 0);
-    assert_eq!((p, operators.applications), (vec![0.0, 1.0, 0.0], 0));
+    assert_eq!((p, operators.plans.applications), (vec![0.0, 1.0, 0.0], 0));
     let (mut p, mut gap) = (vec![1.0, 0.0, 0.0], vec![0.5, -0.5, 0.5]);
     assert_eq!(descend(&mut operators, &cells, (&mut p, &mut gap), feasible, 9, &|| true), 0);
     assert_eq!(p, [1.0, 0.0, 0.0]);

@@ -3,7 +3,7 @@
 use super::*;
 use crate::active_set::Bounds;
 use crate::geometry::Grid;
-use crate::kernel::KernelTable;
+use crate::kernel::NormalTable;
 use crate::kernel::love::influence;
 use crate::operator::{DirectSum, InfluenceOperator};
 use crate::stiffness::{self, Responding};
@@ -194,7 +194,7 @@ fn a_resumed_state_is_not_evaluated_again() {
             let mut problem = problem(grid, &z, Tuning::DEFAULT);
             let solved = solve(&mut problem, target, everything(grid, target), loose, &never);
             assert_eq!(solved.status, Status::Converged);
-            let before = problem.operators.applications;
+            let before = problem.operators.plans.applications;
             let tight = if resumed {
                 resume(&mut problem, target, solved, limits(false), &never)
             } else {
@@ -202,7 +202,7 @@ fn a_resumed_state_is_not_evaluated_again() {
                 solve(&mut problem, target, guess, limits(false), &never)
             };
             assert_eq!(tight.status, Status::Converged);
-            (tight, problem.operators.applications - before)
+            (tight, problem.operators.plans.applications - before)
         });
         assert!(resumed.1 <= again.1, "{} applications instead of {}", resumed.1, again.1);
         assert_eq!(resumed.0.contact, again.0.contact);
@@ -211,10 +211,10 @@ fn a_resumed_state_is_not_evaluated_again() {
         let mut problem = problem(grid, &z, Tuning::DEFAULT);
         let solved = solve(&mut problem, target, everything(grid, target), loose, &never);
         let (contact, d, residuals) = (solved.contact.clone(), solved.d, solved.residuals);
-        let work = problem.operators.applications;
+        let work = problem.operators.plans.applications;
         let same = resume(&mut problem, target, solved, limits(false), &|| true);
         assert_eq!((same.status, same.steps), (Status::Stopped, 0));
-        assert_eq!(problem.operators.applications, work);
+        assert_eq!(problem.operators.plans.applications, work);
         assert_eq!(same.contact, contact);
         assert_relative_eq!(same.d, d);
         assert_relative_eq!(same.residuals.worst(), residuals.worst());
@@ -231,7 +231,7 @@ fn work_of_standard_solves_is_pinned() {
         let target = Control::Force(force);
         let solved = solve(&mut problem, target, everything(grid, target), limits(false), &never);
         assert_eq!(solved.status, Status::Converged);
-        let work = problem.operators.applications;
+        let work = problem.operators.plans.applications;
         println!("force {force}: {work} applications");
         assert!(work <= most, "force {force}: {work} applications, {most} were enough");
     }

@@ -1,7 +1,7 @@
 use super::*;
 use crate::active_set::{Control, Limits, Problem};
 use crate::friction::coupled::{self, CoupledLoad, CoupledState};
-use crate::kernel::{CouplingTable, KernelTable, Medium};
+use crate::kernel::{CouplingTable, NormalTable, TangentialTable};
 use contact_model::Status;
 use std::sync::Arc;
 
@@ -35,7 +35,7 @@ fn gaps(grid: Grid) -> Vec<f64> {
 
 struct Contact {
     grid: Grid,
-    medium: Medium,
+    boundary: Boundary,
     pair: Pair,
     z: Vec<f64>,
     problem: Problem,
@@ -43,11 +43,11 @@ struct Contact {
 }
 
 impl Contact {
-    fn new(grid: Grid, medium: Medium, pair: Pair, z: Vec<f64>) -> Self {
-        let problem = Problem::new(grid, Arc::new(z.clone()), medium, &Tuning::DEFAULT);
+    fn new(grid: Grid, boundary: Boundary, pair: Pair, z: Vec<f64>) -> Self {
+        let problem = Problem::new(grid, Arc::new(z.clone()), boundary, &Tuning::DEFAULT);
         let constants = [pair.c, pair.beta];
-        let friction = Friction::new(grid, medium, constants, &Tuning::DEFAULT, &Recorder::default());
-        Self { grid, medium, pair, z, problem, friction }
+        let friction = Friction::new(grid, boundary, constants, &Tuning::DEFAULT, &Recorder::default());
+        Self { grid, boundary, pair, z, problem, friction }
     }
 
     fn advance(
@@ -69,9 +69,9 @@ impl Contact {
 
     /// Normal and tangential displacement of all cells, by pairs.
     fn displaced(&self, state: &SlipMemory) -> (Vec<f64>, Vec<[f64; 2]>) {
-        let normal = KernelTable::shared(self.grid, self.medium);
-        let table = TangentialTable::shared(self.grid, self.medium, self.pair.c);
-        let cross = CouplingTable::new(self.grid, self.medium);
+        let normal = NormalTable::shared(self.grid, self.boundary);
+        let table = TangentialTable::shared(self.grid, self.boundary, self.pair.c);
+        let cross = CouplingTable::shared(self.grid, self.boundary);
         let (places, n): (Vec<_>, usize) = (state.cells.places().collect(), state.cells.len());
         let (beta, shift) = (self.pair.beta, table.shift());
         let all = CellSet::all(self.grid);
@@ -85,7 +85,7 @@ impl Contact {
                 let xy = sign(x, xs) * sign(y, ys) * xy;
                 let [jx, jy] = cross.lag(lx, ly);
                 let (jx, jy) = (beta * sign(x, xs) * jx, beta * sign(y, ys) * jy);
-                z += normal.row(ly)[lx] * p + jx * q[0] + jy * q[1];
+                z += normal.lag(lx, ly)[0] * p + jx * q[0] + jy * q[1];
                 u[0] += (xx - shift) * q[0] + xy * q[1] - jx * p;
                 u[1] += xy * q[0] + (yy - shift) * q[1] - jy * p;
             }
@@ -128,9 +128,9 @@ impl Contact {
 #[test]
 fn a_coupled_path_meets_the_conditions_of_both_problems() {
     use TangentialControl::{Displacement, Force};
-    for (medium, nu) in [(Medium::HalfSpace, 0.0), (Medium::HalfSpace, 0.3), (Medium::Periodic, 0.3)] {
+    for (boundary, nu) in [(Boundary::Free, 0.0), (Boundary::Free, 0.3), (Boundary::Periodic, 0.3)] {
         let grid = Grid::square(14, 14);
-        let mut contact = Contact::new(grid, medium, Pair::on_rigid(nu), gaps(grid));
+        let mut contact = Contact::new(grid, boundary, Pair::on_rigid(nu), gaps(grid));
         let (mu, force) = (0.4, 30.0);
         let most = mu * force;
         let mut before = SlipMemory::default();
@@ -141,7 +141,7 @@ fn a_coupled_path_meets_the_conditions_of_both_problems() {
             (force, Displacement([0.0, 0.1])),
         ] {
             let state = contact.advance(&before, mu, force, control);
-            println!("{medium:?} {nu}: {} rounds, contraction {:?}", state.rounds, state.contraction);
+            println!("{boundary:?} {nu}: {} rounds, contraction {:?}", state.rounds, state.contraction);
             contact.check(&before, &state, mu, force);
             assert!(state.contraction.is_none_or(|contraction| contraction < 0.9));
             before = state.tangential.memory;
@@ -158,7 +158,7 @@ fn pressed_without_a_force_the_surface_is_held_back_from_moving_inwards() {
             0.05 * (x * x + y * y)
         })
         .collect();
-    let mut contact = Contact::new(grid, Medium::HalfSpace, Pair::on_rigid(0.1), z);
+    let mut contact = Contact::new(grid, Boundary::Free, Pair::on_rigid(0.1), z);
     let state = contact.advance(&SlipMemory::default(), 0.2, 30.0, TangentialControl::Force([0.0, 0.0]));
     contact.check(&SlipMemory::default(), &state, 0.2, 30.0);
     let memory = &state.tangential.memory;
@@ -172,7 +172,7 @@ fn pressed_without_a_force_the_surface_is_held_back_from_moving_inwards() {
     // Held by friction, it takes more force to the same approach.
     let free = {
         let mut contact =
-            Contact::new(grid, Medium::HalfSpace, Pair { c: 0.1 / 0.9, beta: 0.0 }, contact.z.clone());
+            Contact::new(grid, Boundary::Free, Pair { c: 0.1 / 0.9, beta: 0.0 }, contact.z.clone());
         contact.advance(&SlipMemory::default(), 0.2, 30.0, TangentialControl::Force([0.0, 0.0])).normal.d
     };
     assert!(state.normal.d < free, "{} {free}", state.normal.d);

@@ -3,7 +3,7 @@
 
 use super::*;
 use crate::geometry::{Grid, Lengths};
-use crate::kernel::KernelTable;
+use crate::kernel::NormalTable;
 use crate::kernel::love::SMALLEST_EIGENVALUE;
 use crate::linear::Factor;
 use crate::operator::{Application, Conditioning, Split};
@@ -18,7 +18,7 @@ const SQUARE: Grid = Grid { columns: 16, rows: 16, stretch: 1.0 };
 const OBLONG: Grid = Grid { columns: 13, rows: 19, stretch: 1.2 };
 
 fn operators(grid: Grid) -> Operators {
-    Operators::new(KernelTable::shared(grid, Boundary::Free), &Tuning::DEFAULT)
+    Operators::new(NormalTable::shared(grid, Boundary::Free), &Tuning::DEFAULT)
 }
 
 fn scattered(grid: Grid) -> CellSet {
@@ -142,9 +142,9 @@ fn every_recipe_reaches_the_factored_solution() {
         for recipe in recipes(grid, &set) {
             for fixed_sum in [false, true] {
                 let criteria = StoppingCriteria { reduction: 1e-5, ..endless(200) };
-                let before = operators.solves;
+                let before = operators.plans.solves;
                 let found = solve_on(&mut operators, &set, recipe, &r, fixed(fixed_sum), criteria);
-                assert_eq!(operators.solves, before + 1);
+                assert_eq!(operators.plans.solves, before + 1);
                 // With a fixed sum the approach takes up the rest: x = w - (sum w / sum q) q.
                 let shift = if fixed_sum { w.iter().sum::<f64>() / q.iter().sum::<f64>() } else { 0.0 };
                 for ((x, w), q) in found.x.iter().zip(&w).zip(&q) {
@@ -327,9 +327,9 @@ fn work_is_counted_and_a_uniform_gap_needs_none_under_a_given_force() {
     let [identity, torus] = both(&set);
     let got = solve_on(&mut operators, &set, identity, &uniform, Fixed::Force, endless(5));
     assert!(got.outcome.steps == 0 && got.x.iter().all(|&x| x == 0.0));
-    assert_eq!((operators.applications, operators.solves), (0, 1));
+    assert_eq!((operators.plans.applications, operators.plans.solves), (0, 1));
     solve_on(&mut operators, &set, torus, &uniform, Fixed::Approach, endless(5));
-    assert_eq!((operators.applications, operators.solves), (5, 2));
+    assert_eq!((operators.plans.applications, operators.plans.solves), (5, 2));
     assert_eq!(operators.last(), Some(torus));
     // Nothing is asked for.
     let got = solve_on(&mut operators, &set, torus, &vec![0.0; set.len()], Fixed::Approach, endless(5));
@@ -339,7 +339,7 @@ fn work_is_counted_and_a_uniform_gap_needs_none_under_a_given_force() {
     workspace.take(&mut operators, set.clone(), torus);
     let outcome = workspace.solve(&mut operators, &mut x, Fixed::Approach, endless(5), &|| true);
     assert!(outcome.steps == 0 && x.iter().all(|&x| x == 0.0));
-    assert_eq!(operators.applications, 5);
+    assert_eq!(operators.plans.applications, 5);
 }
 
 #[test]

@@ -3,6 +3,7 @@
 use super::*;
 use crate::geometry::{Grid, Lengths};
 use crate::kernel::love::influence;
+use crate::operator::DirectSum;
 use crate::real::{dot, largest};
 use approx::assert_relative_eq;
 use contact_model::Boundary;
@@ -22,10 +23,10 @@ fn pressure(n: usize) -> Vec<f64> {
 }
 
 fn operators(grid: Grid, boundary: Boundary) -> Operators {
-    Operators::new(KernelTable::shared(grid, boundary), &Tuning::DEFAULT)
+    Operators::new(NormalTable::shared(grid, boundary), &Tuning::DEFAULT)
 }
 
-fn directly(table: &KernelTable, sources: &CellSet, p: &[f64], targets: &CellSet) -> Vec<f64> {
+fn directly(table: &NormalTable, sources: &CellSet, p: &[f64], targets: &CellSet) -> Vec<f64> {
     let mut u = vec![0.0; targets.len()];
     DirectSum(table).apply(sources, p, targets, &mut u);
     u
@@ -44,7 +45,7 @@ fn a_circular_length_of_twice_n_less_one_is_exact() {
     // The lag n - 1 meets its own mirror image; an odd kernel would not survive this.
     for (columns, rows) in [(2, 2), (3, 3), (5, 5), (9, 9), (33, 33), (2, 9), (33, 5), (5, 1)] {
         let grid = Grid::square(columns, rows);
-        let table = KernelTable::shared(grid, Boundary::Free);
+        let table = NormalTable::shared(grid, Boundary::Free);
         let (all, window) = (CellSet::all(grid), grid.window());
         let lengths = Lengths::free(window);
         let shortest = |n: usize| (2 * (n - 1)).max(2);
@@ -91,7 +92,7 @@ fn the_torus_inverse_undoes_the_operator_on_smooth_pressure() {
             .filter(|((x, y), _)| inner(*x, grid.columns) && inner(*y, grid.rows));
         let error = errors.map(|(_, (back, p))| (back - p).abs()).fold(0.0, f64::max);
         assert!(error < 0.05, "{grid:?}: {error}");
-        assert_eq!(operators.applications, 1, "the preconditioner is not an application of K");
+        assert_eq!(operators.plans.applications, 1, "the preconditioner is not an application of K");
     }
 }
 
@@ -102,10 +103,10 @@ fn a_shortened_transform_is_exact_up_to_three_quarters_of_the_window_and_positiv
         let grid = Grid::square(columns, rows);
         let (all, window) = (CellSet::all(grid), grid.window());
         let mut operators = operators(grid, Boundary::Free);
-        let table = Arc::clone(&operators.table);
+        let table = Arc::clone(&operators.plans.table);
         let (short, free) = (table.shortened_lengths(window, 1.5), table.exact_lengths(window));
         assert_eq!(short, expected);
-        assert!(table.symbol_f64(short).iter().all(|&s| s > 0.0));
+        assert!(table.symbol_f64(short).iter().all(|&[s]| s > 0.0));
         let mut apply = |lengths: Lengths, p: &[f64]| {
             let mut u = vec![0.0; p.len()];
             operators.system(recipe(window, Application::Fft(lengths))).0.apply(&all, p, &all, &mut u);
@@ -135,15 +136,15 @@ fn a_shortened_transform_is_exact_up_to_three_quarters_of_the_window_and_positiv
 fn a_transform_is_planned_once_and_kept_where_it_serves() {
     let grid = Grid::square(40, 30);
     let mut operators = operators(grid, Boundary::Free);
-    let table = Arc::clone(&operators.table);
+    let table = Arc::clone(&operators.plans.table);
     let window = |x, y, width, height| Window { x, y, width, height };
     let rows = |w: Window| {
         CellSet::from_rows((w.y..w.y + w.height).map(move |y| (y, w.x as u32..(w.x + w.width) as u32)))
     };
     let planned = |operators: &Operators| {
         (
-            operators.single.as_ref().map(FftConvolution::window),
-            operators.shortened.as_ref().map(FftConvolution::window),
+            operators.plans.single.as_ref().map(FftConvolution::window),
+            operators.plans.shortened.as_ref().map(FftConvolution::window),
         )
     };
     let (large, part, other) = (window(2, 3, 30, 20), window(3, 4, 27, 18), window(5, 1, 30, 20));
@@ -188,16 +189,16 @@ fn applications_are_counted_and_empty_sets_are_free() {
         operators.exact(sources, p, targets, &mut u);
         assert!(u.len() == targets.len() && u.iter().all(|&u| u == 0.0));
     }
-    assert_eq!(operators.applications, 0);
+    assert_eq!(operators.plans.applications, 0);
     // A few cells never pay for a transform of the grid.
     let (few, mut u) = (CellSet::from_index(grid, &[0, 65, 4095]), Vec::new());
     operators.exact(&few, &[1.0, 2.0, 3.0], &few, &mut u);
-    assert!(operators.double.is_none() && operators.applications == 1);
+    assert!(operators.plans.double.is_none() && operators.plans.applications == 1);
     operators.exact(&all, &p, &all, &mut u);
-    assert!(operators.double.is_some() && operators.applications == 2);
+    assert!(operators.plans.double.is_some() && operators.plans.applications == 2);
     operators.rough(&all, &p, &all, &mut u);
-    assert!(operators.single.is_some() && operators.applications == 3);
-    assert!(operators.last().is_none() && operators.solves == 0, "no system was solved");
+    assert!(operators.plans.single.is_some() && operators.plans.applications == 3);
+    assert!(operators.last().is_none() && operators.plans.solves == 0, "no system was solved");
 }
 
 #[test]
@@ -213,7 +214,7 @@ fn two_levels_follow_the_sets_and_are_kept_where_they_fit() {
     };
     let (left, right, part) = (scattered(0..390), scattered(410..800), scattered(0..380));
     let mut operators = operators(grid, Boundary::Free);
-    let table = Arc::clone(&operators.table);
+    let table = Arc::clone(&operators.plans.table);
     let mut plans = Vec::new();
     for cells in [&left, &right, &left, &part] {
         let p = pressure(cells.len());
@@ -264,7 +265,7 @@ proptest! {
         prop_assume!(!sources.is_empty() && !targets.is_empty());
         let boundary = if periodic { Boundary::Periodic } else { Boundary::Free };
         let p = pressure(sources.len());
-        let table = KernelTable::shared(grid, boundary);
+        let table = NormalTable::shared(grid, boundary);
         let exact = directly(&table, &sources, &p, &targets);
         let scale = largest(&exact);
         let window = sources.window().unwrap().union(targets.window().unwrap());

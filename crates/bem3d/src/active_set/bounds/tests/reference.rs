@@ -3,7 +3,7 @@
 
 use super::super::super::{Bounds, Control, Guess, Limits, Problem, Solved, cold_start, solve};
 use crate::geometry::{CellSet, Grid};
-use crate::kernel::KernelTable;
+use crate::kernel::NormalTable;
 use crate::linear::Factor;
 use crate::operator::{DirectSum, InfluenceOperator};
 use crate::tuning::Tuning;
@@ -36,7 +36,7 @@ enum Kind {
 /// A dense problem.
 struct Dense {
     grid: Grid,
-    table: Arc<KernelTable>,
+    table: Arc<NormalTable>,
     z: Vec<f64>,
     hardness: f64,
     target: Control,
@@ -136,7 +136,7 @@ fn state(number: u64) -> (Dense, Boundary) {
         *z -= lowest;
     }
     let boundary = if draw(0.0, 1.0) < 0.5 { Boundary::Free } else { Boundary::Periodic };
-    let table = KernelTable::shared(grid, boundary);
+    let table = NormalTable::shared(grid, boundary);
     let defined = z.iter().filter(|z| z.is_finite()).count() as f64;
     let hardness = scale * 10f64.powf(draw(-2.5, 1.0)) / table.own();
     let target = if draw(0.0, 1.0) < 0.3 {

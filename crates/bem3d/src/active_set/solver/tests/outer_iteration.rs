@@ -95,7 +95,7 @@ fn a_cell_is_added_when_it_penetrates_by_more_than_the_noise() {
         assert_eq!(solver.now.contact, set(&[0]));
         assert_relative_eq!(solver.now.d, influence(0, 0), max_relative = 1e-14);
         assert_relative_eq!(solver.reach, 1.05 * solver.now.d, max_relative = 1e-14);
-        assert_eq!(problem.operators.solves, factors, "gap {gap}");
+        assert_eq!(problem.operators.plans.solves, factors, "gap {gap}");
     }
 }
 
@@ -106,7 +106,7 @@ fn a_cell_without_pressure_is_not_in_contact() {
     for recipe in recipes() {
         let mut problem = summit();
         problem.operators =
-            crate::operator::Operators::new(KernelTable::shared(EIGHT, Boundary::Free), &recipe.0);
+            crate::operator::Operators::new(NormalTable::shared(EIGHT, Boundary::Free), &recipe.0);
         let mut solver = solver(&mut problem, 0, 5.0, false);
         solver.state = Continuation { checked: set(&[0, 1]), gap: vec![0.5, -0.8], reach: 5.0 };
         solver.left = vec![0.5];
@@ -203,7 +203,7 @@ fn a_gap_equals_that_of_plain_sums() {
             let all = CellSet::all(grid);
             let p: Vec<f64> = all.carry(&guess.set, &guess.p).iter().map(|p| p * factor).collect();
             let mut gap = vec![0.0; grid.count()];
-            DirectSum(&KernelTable::shared(grid, Boundary::Free)).apply(&all, &p, &all, &mut gap);
+            DirectSum(&NormalTable::shared(grid, Boundary::Free)).apply(&all, &p, &all, &mut gap);
             for (g, z) in gap.iter_mut().zip(&z) {
                 *g += z;
             }

@@ -1,0 +1,200 @@
+//! The kernel of one surface without approximation: sums over pairs and convolutions, each planned when it is
+//! first used.
+
+use super::convolution::Convolution;
+use super::direct::DirectSum;
+use super::influence::InfluenceOperator;
+use super::recipe::Costs;
+use crate::geometry::{CellSet, Lengths, Window};
+use crate::kernel::{Invertible, KernelTable, Symmetric, Tensor};
+use crate::parts::{Part, Recorder};
+use crate::real::Real;
+use crate::tuning::Tuning;
+use std::fmt;
+use std::sync::Arc;
+
+/// `u = K t` of N components on one surface, with work counters.
+pub struct Plans<const N: usize, const E: usize> {
+    pub(super) table: Arc<KernelTable<E>>,
+    tuning: Tuning,
+    recorder: Recorder,
+    pub(super) double: Option<Convolution<f64, N, E>>,
+    pub(super) single: Option<Convolution<f32, N, E>>,
+    pub(super) shortened: Option<Convolution<f32, N, E>>,
+    pub(super) torus: Option<Convolution<f32, N, E>>,
+    /// Applications of the kernel so far, all precisions together; each has N components.
+    pub applications: usize,
+    /// Number of linear systems so far: factorisations and runs of conjugate gradients.
+    pub solves: usize,
+}
+
+/// The operators of tangential tractions.
+pub type TangentialOperators = Plans<2, 3>;
+
+/// The kernel in the form that is cheaper for one set, in single precision, with the recorder of its time.
+#[derive(Debug)]
+pub enum Planned<'a, const N: usize, const E: usize> {
+    /// Sum over all pairs.
+    Direct(DirectSum<'a, N, E>, &'a Recorder),
+    /// Transforms, exact or shortened.
+    Fft(&'a mut Convolution<f32, N, E>, Part, &'a Recorder),
+}
+
+impl<T: Real, const N: usize, const E: usize> InfluenceOperator<T> for Planned<'_, N, E>
+where
+    [f64; E]: Symmetric<f64, N>,
+    Convolution<f32, N, E>: InfluenceOperator<T>,
+{
+    fn apply(&mut self, sources: &CellSet, t: &[T], targets: &CellSet, u: &mut [T]) {
+        match self {
+            Self::Direct(direct, recorder) => {
+                recorder.timed(Part::Direct, || direct.apply(sources, t, targets, u));
+            }
+            Self::Fft(transform, part, recorder) => {
+                recorder.timed(*part, || transform.apply(sources, t, targets, u));
+            }
+        }
+    }
+}
+
+impl<const N: usize, const E: usize> fmt::Debug for Plans<N, E> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Plans({:?}, {} applications)", self.table, self.applications)
+    }
+}
+
+impl<const N: usize, const E: usize> Plans<N, E>
+where
+    [f64; E]: Symmetric<f64, N> + Invertible,
+    [f32; E]: Tensor<f32, N>,
+{
+    /// No plans yet.
+    pub fn new(table: Arc<KernelTable<E>>, tuning: &Tuning, recorder: &Recorder) -> Self {
+        Self {
+            table,
+            tuning: *tuning,
+            recorder: recorder.clone(),
+            double: None,
+            single: None,
+            shortened: None,
+            torus: None,
+            applications: 0,
+            solves: 0,
+        }
+    }
+
+    /// Drops all plans. The rounding of displacements then depends only on the applications from here on, and
+    /// not on earlier windows.
+    pub fn forget_plans(&mut self) {
+        let fresh = Self::new(Arc::clone(&self.table), &self.tuning, &self.recorder);
+        *self = Self { applications: self.applications, solves: self.solves, ..fresh };
+    }
+
+    /// The kernel.
+    pub fn table(&self) -> &KernelTable<E> {
+        &self.table
+    }
+
+    /// The tuned constants.
+    pub fn tuning(&self) -> &Tuning {
+        &self.tuning
+    }
+
+    /// The recorder of time.
+    pub fn recorder(&self) -> &Recorder {
+        &self.recorder
+    }
+
+    fn costs(&self) -> Costs<'_> {
+        Costs::new(&self.tuning, N, E)
+    }
+
+    /// Resizes `u` to the targets and counts an application. Returns the window of both sets, `None` where the
+    /// sources or the targets are empty.
+    pub fn begin(&mut self, sources: &CellSet, targets: &CellSet, u: &mut Vec<f64>) -> Option<Window> {
+        u.resize(N * targets.len(), 0.0);
+        let (Some(from), Some(to)) = (sources.window(), targets.window()) else {
+            u.fill(0.0);
+            return None;
+        };
+        self.applications += 1;
+        Some(from.union(to))
+    }
+
+    /// `u = K t` in double precision without approximation: direct sums or the FFT, whichever is cheaper.
+    pub fn exact(&mut self, sources: &CellSet, t: &[f64], targets: &CellSet, u: &mut Vec<f64>) {
+        let Some(window) = self.begin(sources, targets, u) else { return };
+        let lengths = self.table.exact_lengths(window);
+        if self.costs().direct(sources.len(), targets.len()) <= self.costs().transforms(lengths) {
+            let direct = || DirectSum(&self.table).apply(sources, t, targets, u);
+            return self.recorder.timed(Part::Direct, direct);
+        }
+        let table = &self.table;
+        let transform = planned(&mut self.double, window, (&self.tuning, &self.recorder), || {
+            Convolution::new(window, lengths, table.symbol_f64(lengths))
+        });
+        self.recorder.timed(Part::Double, || transform.apply(sources, t, targets, u));
+    }
+
+    /// The kernel on a set in single precision, and the transform of its torus inverse; `None` on no cells.
+    ///
+    /// `every_lag`: whether the kernel must be exact at every lag, as for a stiffness, or may be that of a shorter
+    /// torus, as for corrections that the exact displacement is evaluated after.
+    pub fn system(
+        &mut self,
+        set: &CellSet,
+        every_lag: bool,
+    ) -> Option<(Planned<'_, N, E>, &mut Convolution<f32, N, E>)> {
+        let window = set.window()?;
+        let lengths = if every_lag {
+            self.table.exact_lengths(window)
+        } else {
+            self.table.shortened_lengths(window, self.tuning.shortened)
+        };
+        let transforms = self.tuning.single * self.costs().transforms(lengths);
+        let direct = self.costs().direct(set.len(), set.len()) <= transforms;
+        let torus = self.table.torus_lengths(window);
+        let (kernel, inverse) = self.planned((!direct).then_some(lengths), window, Some(torus));
+        Some((kernel, inverse?))
+    }
+
+    /// The kernel in single precision by transforms of these lengths, by sums over pairs where there are none;
+    /// and the transform of its inverse on a torus, where that has lengths.
+    pub fn planned(
+        &mut self,
+        lengths: Option<Lengths>,
+        window: Window,
+        torus_lengths: Option<Lengths>,
+    ) -> (Planned<'_, N, E>, Option<&mut Convolution<f32, N, E>>) {
+        let Self { table, tuning, recorder, single, shortened, torus, .. } = self;
+        let inverse = torus_lengths.map(|lengths| {
+            planned(torus, window, (tuning, recorder), || {
+                Convolution::new(window, lengths, table.inverse_symbol(lengths))
+            })
+        });
+        let Some(lengths) = lengths else { return (Planned::Direct(DirectSum(table), recorder), inverse) };
+        let exact = lengths == table.exact_lengths(window);
+        let (slot, part) = if exact { (single, Part::Single) } else { (shortened, Part::Shortened) };
+        let transform = planned(slot, window, (tuning, recorder), || {
+            let symbol = if exact { table.symbol_f32(lengths) } else { table.shortened_symbol(lengths) };
+            Convolution::new(window, lengths, symbol)
+        });
+        (Planned::Fft(transform, part, recorder), inverse)
+    }
+}
+
+/// The convolution of `slot` where it can be used for the window, otherwise a new one.
+fn planned<'a, T: Real, const N: usize, const E: usize>(
+    slot: &'a mut Option<Convolution<T, N, E>>,
+    window: Window,
+    (tuning, recorder): (&Tuning, &Recorder),
+    make: impl FnOnce() -> Convolution<T, N, E>,
+) -> &'a mut Convolution<T, N, E>
+where
+    [T; E]: Tensor<T, N>,
+{
+    if !slot.as_ref().is_some_and(|c| c.window().serves(window, tuning)) {
+        *slot = None;
+    }
+    slot.get_or_insert_with(|| recorder.timed(Part::Plans, make))
+}
