@@ -109,7 +109,7 @@
 //! constant that it has makes every entry positive; only nearly full sets would need one and a half times as
 //! much. There, and by rounding, an early stop of the linear solve or a hardness, a cell may be removed that
 //! belongs to the contact. Step 3 then returns it. If the residuals have not fallen for many iterations, a fall-back takes over that lowers the energy
-//! with every step (`active_set::descent`).
+//! with every step (`law::descent`).
 //!
 //! Coarse grids give initial guesses. They never restrict the candidates, because the summits of a fractal
 //! vanish on them.
@@ -164,7 +164,7 @@
 //! # Parts
 //!
 //! Modules use each other in one direction. In the list `model`, `adhesion`, `friction`, `stiffness`,
-//! `active_set`, `linear`, `operator`, `kernel`, `geometry` each module uses only those behind it. Each part
+//! `active_set`, `law`, `linear`, `operator`, `kernel`, `geometry` each module uses only those behind it. Each part
 //! that is fast or intricate stands beside a reference implementation that is slow and right, and tests
 //! compare the two.
 //!
@@ -192,7 +192,8 @@
 //! | `linear::preconditioner`, `extension` | the inverse of G on a torus, and the extension of residuals; any extension bounds the energy | the transpose by products |
 //! | `linear::cholesky` | a factor of a small set, from which p and k follow | `pcg` |
 //! | `active_set::progress` | the end of the outer iteration, and the tolerance of the next linear solve | decisions one by one |
-//! | `active_set::descent` | the fall-back: projected gradients and conjugate gradients between the bounds, each step downhill | projections by hand; random states by a dense reference |
+//! | `law` | what a cell obeys: an interval of pressures or a disc of tractions, with projections onto the admissible ones of a given sum and their part of the duality gap | by hand |
+//! | `law::descent` | the fall-back of contact and of friction: projected gradients and conjugate gradients between the bounds, each step downhill | random states by a dense reference |
 //! | `active_set::residuals` | the one routine of the certificate | values by hand |
 //! | `active_set::undecided` | how far an open gap may still change: the largest gap left near by, and an eighth of the largest anywhere; cells below that are undecided and count in the error of k | true changes of all open gaps by elimination |
 //! | `stiffness` | `G q = 1`, the Ritz value and an upper estimate; the error of k has a part from the solve and one from undecided cells | full contact of small squares; tighter solves |
@@ -251,6 +252,7 @@ mod adhesion;
 mod friction;
 mod geometry;
 mod kernel;
+mod law;
 mod linear;
 mod model;
 mod operator;

@@ -2,6 +2,7 @@
 
 use super::candidates::Candidates;
 use crate::geometry::CellSet;
+use crate::law::{Interval, Law};
 use crate::real::{each, largest, smallest, sum, sum_of_pairs};
 use std::borrow::Cow;
 
@@ -26,9 +27,8 @@ const SMALL: f64 = 1e-6;
 /// at the upper bound, whose negative gap is the plastic indentation. A cell is at its upper bound exactly
 /// where its pressure is that bound; no set is stored for it.
 ///
-/// The outer iteration, its residuals and its certificate use only the methods of this type. A tangential
-/// problem would be a variant of its own: its cells have two unknowns each, and their bound is the disc
-/// `|q| <= mu p`.
+/// The outer iteration, its residuals and its certificate use only the methods of this type and those of the law
+/// of a cell, [`Interval`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Bounds {
     /// `0 <= p`.
@@ -57,6 +57,11 @@ impl Bounds {
             Self::Unlimited => f64::INFINITY,
             Self::UpTo(upper) => upper,
         }
+    }
+
+    /// The law of each cell.
+    pub fn law(self) -> Interval {
+        Interval { upper: self.upper() }
     }
 
     /// The bounds of a multiple of the pressure.
@@ -186,13 +191,6 @@ impl Bounds {
         }
     }
 
-    /// The contribution of a cell of the contact set to the duality gap over the force, from its gap and the
-    /// level of [`Extremes`].
-    pub fn excess(self, p: f64, gap: f64, level: f64, force: f64) -> f64 {
-        // Below the lowest gap there is none: without an upper bound the first case never occurs.
-        if gap < level { (self.upper() - p) / force * (level - gap) } else { p / force * (gap - level) }
-    }
-
     /// The extremes of the gap on `everywhere` under a pressure of this sum on a part of it.
     ///
     /// Where no cell is at its upper bound, the bound is ignored: the duality gap is then that of the same
@@ -208,13 +206,14 @@ impl Bounds {
             return Extremes { deepest: (-lowest).max(0.0), level: lowest, unfilled: 0.0 };
         }
         let upper = self.upper();
+        let shares = Interval { upper: upper / force };
         let level = nth(gap.to_vec(), (force / upper) as usize);
         let p = everywhere.carry(contact, p);
         let (mut deepest, mut unfilled) = (0.0_f64, 0.0);
         for (&p, &g) in p.iter().zip(gap) {
             deepest = deepest.max(if p >= upper { g } else { -g });
-            if p <= 0.0 && g < level {
-                unfilled += upper / force * (level - g);
+            if p <= 0.0 {
+                unfilled += shares.excess(0, [0.0], [level - g]);
             }
         }
         Extremes { deepest, level, unfilled }

@@ -7,7 +7,7 @@
 /// Without it the iteration may alternate between contact sets for ever. Both pressures obey the bounds and
 /// have the same force, and so has every pressure between them; u is linear. A step that was cut at the
 /// bounds need not begin downhill, though: a step whose minimum is at its beginning has length zero, and the
-/// next one is the same again. See [`super::descent`].
+/// next one is the same again. See [`crate::law::descend`].
 pub fn shorten(old: (Vec<f64>, &[f64], f64), new: (&mut [f64], &mut [f64]), whole: f64) -> Option<f64> {
     let ((before, gap, d), (p, displaced)) = (old, new);
     let (mut first, mut last) = (0.0, 0.0);

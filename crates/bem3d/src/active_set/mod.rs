@@ -2,7 +2,6 @@
 
 mod bounds;
 mod candidates;
-mod descent;
 mod initial_guess;
 mod line_search;
 mod progress;

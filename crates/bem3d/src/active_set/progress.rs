@@ -80,7 +80,7 @@ impl OuterProgress {
         }
     }
 
-    /// Whether the next pressure comes from the fall-back ([`super::descent`]).
+    /// Whether the next pressure comes from the fall-back ([`crate::law::descend`]).
     pub fn falls_back(&self) -> bool {
         self.goal.is_some()
     }

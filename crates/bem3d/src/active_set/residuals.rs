@@ -2,6 +2,7 @@
 
 use super::bounds::{Bounds, Extremes};
 use crate::geometry::CellSet;
+use crate::law::Law;
 use crate::real::{sum, sum_of_pairs};
 use serde::{Deserialize, Serialize};
 
@@ -43,7 +44,8 @@ impl Residuals {
         }
         // Shares of the force, so that no product of two tiny or two huge numbers is ever formed.
         let weighted = sum_of_pairs(p, left, |p, g| p / force * bounds.violation(p, g));
-        let duality = sum_of_pairs(p, left, |p, g| bounds.excess(p, g, level, force)) + unfilled;
+        let law = bounds.scaled(force.recip()).law();
+        let duality = sum_of_pairs(p, left, |p, g| law.excess(0, [p / force], [level - g])) + unfilled;
         Self { duality_gap: duality / s, penetration: deepest / s, complementarity: weighted / s, deepest }
     }
 }

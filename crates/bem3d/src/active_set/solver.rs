@@ -1,12 +1,12 @@
 //! The outer iteration: solve on a superset of the contact set, remove cells in tension, add penetrating
 //! cells.
 
-use super::descent::{Feasible, descend};
 use super::line_search::shorten;
 use super::progress::{Decision, Evaluated, Look, OuterProgress, criteria};
 use super::residuals::Residuals;
 use super::state::{Continuation, Control, Guess, Limits, Problem, Solved};
 use crate::geometry::CellSet;
+use crate::law::{Descent, descend};
 use crate::linear::{Factor, Fixed};
 use crate::parts::{Part, Recorder};
 use crate::real::{each, largest, sum_of_pairs, update};
@@ -321,10 +321,17 @@ impl<'a> Solver<'a> {
         let Self { problem, target, now, state, .. } = self;
         let Problem { operators, bounds, .. } = &mut **problem;
         let Continuation { checked, gap, .. } = state;
-        let feasible = Feasible { bounds: *bounds, force: target.force() };
         let mut p = checked.carry(&now.contact, &now.p);
         let most = operators.tuning().fall_back_steps;
-        let steps = descend(operators, checked, (&mut p, gap), feasible, most, stop);
+        let descent = Descent {
+            law: &bounds.law(),
+            force: target.force().map(|force| [force]),
+            tractions: &mut p,
+            gradient: gap,
+            own: operators.table().own(),
+        };
+        let displace = |change: &[f64], u: &mut Vec<f64>| operators.exact(checked, change, checked, u);
+        let steps = descend(descent, displace, most, stop);
         let contact = checked.filter(&p, |p| p > 0.0);
         p.retain(|&p| p > 0.0);
         let d = now.d;

@@ -1,8 +1,8 @@
 //! One increment: the tractions at its end from those at its beginning.
 
-use super::disks::{length, multiplier, project, sums, total};
 use super::linearised::{Branch, Linearised, Room, SLIPPING, Split, TorusWindow, extend};
 use crate::geometry::CellSet;
+use crate::law::{Descent, Discs, Law, descend, excess, length, sums, total};
 use crate::linear::{Extension, Fixed, StoppingCriteria, TorusInverse, Vectors, pcg};
 use crate::operator::{InfluenceOperator, TangentialOperators};
 use crate::parts::Part;
@@ -147,7 +147,7 @@ struct Solver<'a> {
 /// Solves an increment from tractions `start`.
 ///
 /// The conditions `|q| <= b`, `q . w = b |w|` with `w = delta - K q - reference` are those of the minimum of the convex
-/// function `q'Kq/2 - q'(delta - reference)` over the disks `|q| <= b`, at a prescribed force over those of them
+/// function `q'Kq/2 - q'(delta - reference)` over the discs `|q| <= b`, at a prescribed force over those of them
 /// that have this sum; delta is then its multiplier. The square of the error of q in the norm of K is at most the
 /// duality gap `sum(b |w| - q . w)`: the function at q exceeds its minimum by half the square at least, and by the
 /// gap less half the square at most.
@@ -386,11 +386,14 @@ impl<'a> Solver<'a> {
         }
     }
 
+    fn law(&self) -> Discs<'a> {
+        Discs { limit: self.increment.limit }
+    }
+
     /// Moves the tractions to admissible ones.
     fn admit(&mut self) {
-        let limit = self.increment.limit;
-        let shift = self.force().map_or([0.0; 2], |force| multiplier(&self.q, limit, force, [0.0; 2]));
-        project(&mut self.q, limit, shift);
+        let (law, force) = (self.law(), self.force());
+        law.project(&mut self.q, force);
     }
 
     /// Evaluates the displacements of the present tractions.
@@ -408,6 +411,7 @@ impl<'a> Solver<'a> {
 
     /// The slip under the present displacements, and the duality gap.
     fn slide(&mut self) {
+        let law = self.law();
         let Self { increment, q, u, w, delta, rho, .. } = self;
         let n = increment.limit.len();
         w.clone_from(u);
@@ -418,15 +422,13 @@ impl<'a> Solver<'a> {
                 let mut y = w.clone();
                 update(&mut y, q, |y, q| *y = q + *rho * *y);
                 let start = delta.map(|delta| *rho * delta);
-                multiplier(&y, increment.limit, force, start).map(|shift| shift / *rho)
+                law.multiplier(&y, force, start).map(|shift| shift / *rho)
             }
         };
         for (w, delta) in w.chunks_exact_mut(n).zip(*delta) {
             each(w, |w| *w += delta);
         }
-        let [gap] = sums((q, w), increment.limit, |[qx, qy], [wx, wy], b| {
-            [(b * length([wx, wy]) - qx * wx - qy * wy).max(0.0)]
-        });
+        let [gap] = sums((q, w), increment.limit, |q, w, b| [excess(q, w, b)]);
         // Where nothing is displaced, as under uniform tractions with periodic boundaries, displacements are rounding.
         let table = self.operators.table();
         let displaced = table.own() + table.shift() * length(total(q));
@@ -447,7 +449,7 @@ impl<'a> Solver<'a> {
             length([x - fx, y - fy]) / self.most
         });
         let mut traction = q.clone();
-        project(&mut traction, increment.limit, [0.0; 2]);
+        self.law().project(&mut traction, None);
         Sliding {
             traction,
             slip: w.clone(),
@@ -546,9 +548,7 @@ impl<'a> Solver<'a> {
     /// Projects tractions onto the admissible ones and moves there, or as far as the energy falls. Returns
     /// whether that made progress.
     fn go_to(&mut self, mut next: Vec<f64>) -> bool {
-        let limit = self.increment.limit;
-        let shift = self.force().map_or([0.0; 2], |force| multiplier(&next, limit, force, [0.0; 2]));
-        project(&mut next, limit, shift);
+        self.law().project(&mut next, self.force());
         let u = self.exact(&next);
         let (mut slope, mut curvature, mut rounding) = (0.0, 0.0, 0.0);
         for ((((q, next), w), from), to) in self.q.iter().zip(&next).zip(&self.w).zip(&self.u).zip(&u) {
@@ -575,35 +575,16 @@ impl<'a> Solver<'a> {
         true
     }
 
-    /// Projected gradients of Barzilai and Borwein's lengths with exact line searches.
+    /// Steps of the fall-back, each of which lowers the energy.
     fn descend(&mut self, steps: usize, stop: Stop<'_>) {
-        let limit = self.increment.limit;
-        let mut length = self.rho;
-        for _ in 0..steps {
-            if stop.stops() || self.gap <= self.limits.tolerance {
-                return;
-            }
-            self.steps += 1;
-            let mut next: Vec<f64> = self.q.iter().zip(&self.w).map(|(q, w)| q + length * w).collect();
-            let shift = self.force().map_or([0.0; 2], |force| multiplier(&next, limit, force, [0.0; 2]));
-            project(&mut next, limit, shift);
-            let d: Vec<f64> = next.iter().zip(&self.q).map(|(next, q)| next - q).collect();
-            let v = self.exact(&d);
-            let (square, curvature) = (dot(&d, &d), dot(&d, &v));
-            let slope = dot(&d, &self.w);
-            if slope.is_nan() || slope <= 0.0 || square <= 0.0 {
-                return;
-            }
-            let share = if curvature > 0.0 { (slope / curvature).min(1.0) } else { 1.0 };
-            for (q, d) in self.q.iter_mut().zip(&d) {
-                *q += share * d;
-            }
-            for (u, v) in self.u.iter_mut().zip(&v) {
-                *u += share * v;
-            }
-            length = if curvature > 0.0 { square / curvature } else { self.rho };
-            self.slide();
-        }
+        let (law, force) = (self.law(), self.force());
+        let Self { operators, increment, q, w, .. } = self;
+        let cells = increment.cells;
+        let mut gradient: Vec<f64> = w.iter().map(|w| -w).collect();
+        let own = operators.table().own();
+        let descent = Descent { law: &law, force, tractions: q, gradient: &mut gradient, own };
+        let displace = |change: &[f64], u: &mut Vec<f64>| exact(operators, cells, change, cells, u);
+        self.steps += descend(descent, displace, steps, stop);
         self.admit();
         self.displace();
     }

@@ -24,15 +24,13 @@
 //!
 //! | part | contents | reference implementation in the tests |
 //! |---|---|---|
-//! | `disks` | projections onto the admissible tractions, with a given sum | by hand |
 //! | `linearised` | the linear system of stick and slip cells, and its preconditioner | `increment` |
-//! | `increment` | Newton's method with line searches, projected gradients where it fails, certificate | dense matrices and accelerated gradients along paths; differences of two pressures without Poisson's ratio |
+//! | `increment` | Newton's method with line searches, the descent of `law` where it fails, certificate | dense matrices and accelerated gradients along paths; differences of two pressures without Poisson's ratio |
 //! | `stiffness` | `dT/d(delta)` of a branch and of full stick, with bounds | difference quotients; tighter solves |
 //! | `state` | the memory of a path, and its increments | energy balance over loops |
 //! | `coupled` | normal and tangential contact in turn where beta is not 0 | sums over pairs |
 
 mod coupled;
-mod disks;
 mod increment;
 mod linearised;
 mod state;

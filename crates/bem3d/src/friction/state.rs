@@ -1,11 +1,11 @@
 //! A surface with friction through the increments of a path.
 
-use super::disks::total;
 use super::increment::{self, FrictionLimits, FrictionRoom, Increment, Sliding, TangentialControl, exact};
 use super::linearised::Branch;
 use super::stiffness::{self, Held, TangentialStiffness, Uncertain, Undecided};
 use crate::geometry::{CellSet, Grid};
 use crate::kernel::TangentialTable;
+use crate::law::total;
 use crate::operator::{CouplingOperator, TangentialOperators};
 use crate::parts::Recorder;
 use crate::real::{dot, sum};

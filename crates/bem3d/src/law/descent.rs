@@ -1,0 +1,171 @@
+//! The fall-back of the iterations of contact and of friction: a descent method that lowers the energy in every
+//! step from any tractions.
+
+use super::definition::Law;
+use crate::real::{dot, sum_of_pairs, update};
+use contact_model::Stop;
+
+/// The conditions of a descent, and where it is.
+#[derive(Debug)]
+pub struct Descent<'a, L, const N: usize> {
+    /// What the tractions obey.
+    pub law: &'a L,
+    /// Their sum, where it is prescribed.
+    pub force: Option<[f64; N]>,
+    /// The tractions, admissible.
+    pub tractions: &'a mut [f64],
+    /// The gradient of the energy: the gap, or minus the slip.
+    pub gradient: &'a mut [f64],
+    /// The displacement of a cell under its own unit traction.
+    pub own: f64,
+}
+
+/// Minimises the energy `t'Kt/2 + z't` over the admissible tractions, `gradient` being `Kt + z`, in at most the
+/// given number of steps; `displace` writes `K` times a field. Returns the number of steps taken, which is smaller
+/// where the energy cannot fall any more.
+///
+/// The first step goes towards the projection of `t - a gradient`, to the minimum of the energy on the way or to
+/// its end. Conjugate gradients on the cells between their bounds follow, up to the first bound that a step
+/// meets, and as long as the gradient on those cells is the larger part of the projected gradient; then
+/// another projected gradient. This is the method of J. J. Moré, G. Toraldo, SIAM J. Optim. 1, 93 (1991) with
+/// the proportioning of Z. Dostál, J. Schöberl, Comput. Optim. Appl. 30, 23 (2005), and with exact line
+/// searches, which a quadratic energy allows.
+///
+/// Every step lowers the energy. With a step length a between the inverses of the largest and of the smallest
+/// eigenvalue of K, as every one here is, a projected gradient lowers it by at least a fixed share of its
+/// distance from the minimum; runs that begin with such a step therefore converge to the unique solution from
+/// any tractions (D. P. Bertsekas, Nonlinear Programming, section 2.3).
+///
+/// Cost: one application of K in double precision a step.
+pub fn descend<L: Law<N>, const N: usize>(
+    descent: Descent<'_, L, N>,
+    mut displace: impl FnMut(&[f64], &mut Vec<f64>),
+    steps: usize,
+    stop: Stop<'_>,
+) -> usize {
+    let Descent { law, force, tractions: t, gradient, own } = descent;
+    let n = t.len() / N;
+    let (mut target, mut displaced) = (Vec::new(), Vec::new());
+    let (mut change, mut residual) = (vec![0.0; t.len()], vec![0.0; t.len()]);
+    let mut length = 1.0 / own;
+    // The square of the last gradient on the cells between their bounds, while conjugate gradients go on.
+    let mut conjugate: Option<f64> = None;
+    for taken in 0..steps {
+        if stop.stops() {
+            return taken;
+        }
+        let Projected { inside, outside, mean } = project_gradient(law, t, gradient, force, &mut residual);
+        let on_face = taken > 0 && inside > outside;
+        let limit = if on_face {
+            let beta = conjugate.map_or(0.0, |last| inside / last);
+            update(&mut change, &residual, |change, r| *change = beta * *change - r);
+            (0..n).map(|i| law.room(i, at(t, n, i), at(&change, n, i))).fold(f64::INFINITY, f64::min)
+        } else {
+            target.clear();
+            for (component, mean) in mean.into_iter().enumerate() {
+                let cells = component * n..(component + 1) * n;
+                let pairs = t[cells.clone()].iter().zip(&gradient[cells]);
+                target.extend(pairs.map(|(t, gradient)| t - length * (gradient - mean)));
+            }
+            law.project(&mut target, force);
+            change.copy_from_slice(&target);
+            update(&mut change, t, |change, t| *change -= t);
+            1.0
+        };
+        // The sum of the change is zero up to rounding, and a distant plane would multiply that rounding.
+        let slope = slope(&change, gradient, mean);
+        if slope.is_nan() || slope >= 0.0 {
+            if on_face && conjugate.is_some() {
+                // Rounding: begin anew.
+                conjugate = None;
+                continue;
+            }
+            return taken;
+        }
+        displace(&change, &mut displaced);
+        let curvature = dot(&change, &displaced);
+        if curvature.is_nan() || curvature <= 0.0 {
+            return taken;
+        }
+        length = dot(&change, &change) / curvature;
+        let share = (-slope / curvature).min(limit);
+        if !on_face && share >= 1.0 {
+            t.copy_from_slice(&target);
+        } else {
+            update(t, &change, |t, change| *t += share * change);
+            for i in 0..n {
+                put(t, n, i, law.nearest(i, at(t, n, i)));
+            }
+        }
+        conjugate = (on_face && share < limit).then_some(inside);
+        if on_face && share >= limit {
+            law.meet(t, &change);
+        }
+        update(gradient, &displaced, |gradient, u| *gradient += share * u);
+    }
+    steps
+}
+
+/// The components of cell i.
+fn at<const N: usize>(v: &[f64], n: usize, i: usize) -> [f64; N] {
+    std::array::from_fn(|component| v[component * n + i])
+}
+
+fn put<const N: usize>(v: &mut [f64], n: usize, i: usize, value: [f64; N]) {
+    for (component, value) in value.into_iter().enumerate() {
+        v[component * n + i] = value;
+    }
+}
+
+/// The slope of the energy along a change, with gradients measured from their mean.
+fn slope<const N: usize>(change: &[f64], gradient: &[f64], mean: [f64; N]) -> f64 {
+    let n = change.len() / N;
+    let of = |component: usize| {
+        let (cells, mean) = (component * n..(component + 1) * n, mean[component]);
+        let along = |change, gradient| change * (gradient - mean);
+        sum_of_pairs(&change[cells.clone()], &gradient[cells], along)
+    };
+    (0..N).map(of).reduce(|a, b| a + b).unwrap_or(0.0)
+}
+
+/// The two parts of a gradient.
+struct Projected<const N: usize> {
+    /// The square of the gradient on cells between their bounds, less its mean where the force is prescribed.
+    inside: f64,
+    /// The square of the part of the gradient that cells at their bounds may follow.
+    outside: f64,
+    mean: [f64; N],
+}
+
+/// Splits a gradient, and writes its part on cells between their bounds, zero on all others.
+fn project_gradient<L: Law<N>, const N: usize>(
+    law: &L,
+    t: &[f64],
+    gradient: &[f64],
+    force: Option<[f64; N]>,
+    residual: &mut [f64],
+) -> Projected<N> {
+    let n = t.len() / N;
+    let (mut total, mut count) = ([0.0; N], 0.0);
+    for i in (0..n).filter(|&i| law.held(i, at(t, n, i), [0.0; N]).is_none()) {
+        let gradient: [f64; N] = at(gradient, n, i);
+        total.iter_mut().zip(gradient).for_each(|(total, gradient)| *total += gradient);
+        count += 1.0;
+    }
+    if count <= 0.0 {
+        return Projected { inside: 0.0, outside: f64::INFINITY, mean: [0.0; N] };
+    }
+    let mean = total.map(|total| if force.is_some() { total / count } else { 0.0 });
+    let mut outside = 0.0;
+    for i in 0..n {
+        let gradient: [f64; N] = at(gradient, n, i);
+        let r: [f64; N] = std::array::from_fn(|component| gradient[component] - mean[component]);
+        let held = law.held(i, at(t, n, i), r.map(|r| -r));
+        outside += held.unwrap_or(0.0);
+        put(residual, n, i, if held.is_some() { [0.0; N] } else { r });
+    }
+    Projected { inside: dot(residual, residual), outside, mean }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,16 @@
+//! What the tractions of a cell obey: convex laws, and what is written once for all of them.
+//!
+//! A pressure lies between zero and the hardness, the traction of friction in a disc. Both are convex sets. With
+//! given attraction and given limits, the state under a load is the minimum of a quadratic energy over them, so
+//! that one projection, one duality gap and one fall-back serve both ([`Law`], [`descend`]). Attraction is no such
+//! law: it is held while the convex problem is solved (`adhesion`).
+
+mod definition;
+mod descent;
+mod disc;
+mod interval;
+
+pub use definition::Law;
+pub use descent::{Descent, descend};
+pub use disc::{Discs, excess, length, sums, total};
+pub use interval::Interval;
