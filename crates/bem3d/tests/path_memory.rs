@@ -225,6 +225,16 @@ fn adhesion() {
         scene.outputs.mean_gap = true;
         check(name, &scene, 64, &normal(gaps));
     }
+    let mut scene = Scene::new(rough(0.8, 0.01), 1.0);
+    scene.effects.hardness = Hardness::Limit { pressure: 0.05 };
+    for law in [AdhesionLaw::Exponential, AdhesionLaw::Dugdale] {
+        scene.effects.adhesion = Adhesion::FiniteRange { work: 4e-5, range: 6e-3, law };
+        (scene.outputs.area, scene.outputs.plastic_depth) = (true, true);
+        check("hardness with adhesion", &scene, 33, &normal(approaches));
+        check("hardness with adhesion", &scene, 33, &normal(forces));
+        scene.outputs.stiffness = true;
+        stop_anywhere("hardness with adhesion", &scene, (17, 5), &normal(approaches[1..4].iter().copied()));
+    }
 }
 
 #[test]

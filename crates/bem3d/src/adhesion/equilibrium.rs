@@ -1,7 +1,7 @@
 //! A state of contact pressure and attraction at one load.
 
 use super::attraction::Attraction;
-use crate::active_set::{Problem, Residuals};
+use crate::active_set::{Bounds, Problem, Residuals};
 use crate::geometry::CellSet;
 use crate::linear::Fixed;
 use crate::real::{dot, sum};
@@ -84,10 +84,21 @@ impl Equilibrium {
         self.d - shift * self.force()
     }
 
-    /// The largest gap left on the contact, or penetration beside it.
-    pub fn largest_gap_left(&self) -> f64 {
+    /// The largest gap left on the contact, or penetration beside it. Cells at the upper bound of the pressure may
+    /// penetrate.
+    pub fn largest_gap_left(&self, bounds: Bounds) -> f64 {
         let gaps = self.pressure.iter().zip(&self.gap);
-        gaps.map(|(&p, &g)| if p > 0.0 { g.abs() } else { (-g).max(0.0) }).fold(0.0, f64::max)
+        gaps.map(|(&p, &g)| bounds.violation(p, g)).fold(0.0, f64::max)
+    }
+
+    /// The cells at the upper bound of the pressure, and how deep they are indented by this state.
+    pub fn indented(&self, bounds: Bounds) -> (CellSet, Vec<f64>) {
+        if !bounds.is_reached(&self.pressure) {
+            return (CellSet::default(), Vec::new());
+        }
+        let saturated = self.cells.filter(&self.pressure, |p| p >= bounds.upper());
+        let depth = saturated.carry(&self.cells, &self.gap).iter().map(|gap| (-gap).max(0.0)).collect();
+        (saturated, depth)
     }
 
     /// Net force.

@@ -261,7 +261,10 @@ pub fn respond(
     stop: Stop<'_>,
 ) -> Response {
     let law = attraction.law;
+    // Cells that flow do not follow.
     let contact = state.contact();
+    let on_contact = contact.carry(&state.cells, &state.pressure);
+    let contact = problem.bounds.free(&contact, &on_contact).into_owned();
     let shift = problem.operators.table().shift();
     if shift > 0.0 && contact.len() == problem.grid().count() {
         return Response { stability: 1.0, ..Response::default() };

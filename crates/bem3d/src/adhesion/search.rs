@@ -12,8 +12,8 @@
 use super::attraction::Attraction;
 use super::equilibrium::{AdhesiveControl, Equilibrium};
 use super::law::Shape;
-use super::update::{Progress, Updates};
-use crate::active_set::{self, Bounds, Candidates, Control, Limits, Problem, Residuals};
+use super::update::{Progress, SETTLED, Updates};
+use crate::active_set::{self, Bounds, Candidates, Control, Guess, Limits, Problem, Residuals};
 use crate::geometry::CellSet;
 use crate::real::{each, largest_difference, smallest, sum};
 use contact_model::{Status, Stop};
@@ -28,6 +28,11 @@ const AHEAD: f64 = 0.5;
 const FAR: f64 = 2.0;
 /// Tolerance of the elastic contact that a first load begins with.
 const FIRST: f64 = 1e-2;
+/// Where the pressure has an upper bound, the contact under an attraction is solved to this share of what is left of
+/// the state.
+const BETWEEN: f64 = 0.1;
+/// Smallest such share.
+const MOST_ACCURATE: f64 = 1e-4;
 
 /// Why a search ended without a state.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -88,7 +93,7 @@ impl Search<'_> {
         stop: Stop<'_>,
     ) -> Result<Equilibrium, Box<(Ended, Equilibrium)>> {
         let tolerance = self.limits.tolerance;
-        let mut progress = Progress::default();
+        let (mut progress, mut accuracy) = (Progress::default(), BETWEEN);
         self.evaluate(&mut state);
         if self.is_far(&state) {
             self.contact_afresh(&mut state, stop);
@@ -103,16 +108,60 @@ impl Search<'_> {
             if stop.stops() {
                 return Err(Box::new((Ended::Status(Status::Stopped), state)));
             }
-            let Self { problem, attraction, control, limits, plain } = self;
-            let (control, tolerance, plain) = (*control, limits.tolerance, *plain);
-            let mut updates = Updates { problem, attraction, control, tolerance, plain };
-            if !updates.update(&mut state, &mut progress, stop) {
+            let held = if self.problem.bounds == Bounds::Unlimited {
+                let Self { problem, attraction, control, limits, plain } = self;
+                let (control, tolerance, plain) = (*control, limits.tolerance, *plain);
+                let mut updates = Updates { problem, attraction, control, tolerance, plain };
+                updates.update(&mut state, &mut progress, stop)
+            } else {
+                self.update_between_bounds(&mut state, worst, &mut accuracy, stop)
+            };
+            if !held {
                 return Err(Box::new((Ended::PulledOff, state)));
             }
             self.evaluate(&mut state);
             state.updates += 1;
         }
         Err(Box::new((Ended::Status(Status::IterationLimit), state)))
+    }
+
+    /// One update where the pressure has an upper bound: the attraction of the present gaps, where these are those
+    /// of a contact, and then the whole contact under it. `false` where the attraction cannot hold the force.
+    ///
+    /// More attraction still closes gaps everywhere, so that this plain iteration follows the branches as it does
+    /// without a bound. The other updates stay on them because gaps are convex in the attraction, which a bound
+    /// ends.
+    ///
+    /// Cost: a solve of the contact, which becomes more accurate as the attraction comes to rest.
+    fn update_between_bounds(
+        &mut self,
+        state: &mut Equilibrium,
+        worst: f64,
+        accuracy: &mut f64,
+        stop: Stop<'_>,
+    ) -> bool {
+        let range = self.attraction.law.range;
+        let left = state.largest_gap_left(self.problem.bounds);
+        if left <= SETTLED * range {
+            state.attraction.clone_from(&state.lawful);
+        }
+        if let AdhesiveControl::Force(asked) = self.control
+            && asked + sum(&state.attraction) <= 0.0
+        {
+            return false;
+        }
+        let length = self.limits.height.unwrap_or_else(|| state.d.abs().max(range));
+        let wanted = worst.min(SETTLED).max(self.limits.tolerance);
+        // A gap that is wrong by a share of the range changes the attraction by as much. The tolerance of a contact
+        // allows larger gaps where the pressure is small.
+        let misses = left > BETWEEN * worst * range;
+        *accuracy = if misses { (BETWEEN * *accuracy).max(MOST_ACCURATE) } else { *accuracy };
+        let tolerance = *accuracy * wanted * (range / length).min(1.0);
+        let contact = state.contact();
+        let p = contact.carry(&state.cells, &state.pressure);
+        let guess = (!contact.is_empty()).then_some(Guess { set: contact, p, d: state.d });
+        self.contact_under(state, guess, tolerance, stop);
+        true
     }
 
     /// Whether the load of a state is far from the requested one; its contact is then solved from coarse
@@ -134,9 +183,20 @@ impl Search<'_> {
         state
     }
 
-    /// The contact under the present attraction, by nested iteration: the elastic problem of the gaps
-    /// `z - G s`.
+    /// The contact under the present attraction, by nested iteration.
     fn contact_afresh(&mut self, state: &mut Equilibrium, stop: Stop<'_>) {
+        self.contact_under(state, None, FIRST, stop);
+    }
+
+    /// The contact under the present attraction: the problem of the gaps `z - G s` without attraction, from a guess
+    /// or by nested iteration.
+    fn contact_under(
+        &mut self,
+        state: &mut Equilibrium,
+        guess: Option<Guess>,
+        tolerance: f64,
+        stop: Stop<'_>,
+    ) {
         let grid = self.problem.grid();
         let mut lifted = Vec::new();
         self.problem.operators.exact(&state.cells, &state.attraction, &CellSet::all(grid), &mut lifted);
@@ -149,16 +209,23 @@ impl Search<'_> {
         };
         let (Control::Force(load) | Control::Approach(load)) = target;
         if load <= 0.0 {
+            // The plane does not reach the surface, which an indentation may have lowered.
+            if self.problem.bounds != Bounds::Unlimited {
+                state.pressure.fill(0.0);
+            }
             return;
         }
         each(&mut lifted, |z| *z -= first);
         let lifted = Candidates::new(grid, Arc::new(lifted));
         let candidates = std::mem::replace(&mut self.problem.candidates, lifted);
         let coarser = self.problem.coarser.take();
-        let limits = Limits { tolerance: FIRST, ..self.limits };
+        let limits = Limits { tolerance, ..self.limits };
         // A contact under an attraction that is not its own yet.
         let unheard = || stop.stops();
-        let guess = active_set::cold_start(self.problem, target, limits, &unheard);
+        let guess = match guess {
+            Some(guess) => Guess { d: guess.d - first, ..guess },
+            None => active_set::cold_start(self.problem, target, limits, &unheard),
+        };
         let solved = active_set::solve(self.problem, target, guess, limits, &unheard);
         (self.problem.candidates, self.problem.coarser) = (candidates, coarser);
         let cells = state.cells.union(&solved.contact);
@@ -195,6 +262,12 @@ impl Search<'_> {
             let force = sum(&state.pressure);
             match *control {
                 AdhesiveControl::Plane(plane) => state.d = plane + shift * sum(&net),
+                AdhesiveControl::Force(_) if force > 0.0 && problem.bounds.is_reached(&state.pressure) => {
+                    let contact = state.contact();
+                    let on_contact = |values: &[f64]| contact.carry(&state.cells, values);
+                    let (p, left) = (on_contact(&state.pressure), on_contact(&state.gap));
+                    state.d = problem.bounds.approach(&p, &left, &state.gap).unwrap_or(state.d);
+                }
                 AdhesiveControl::Force(_) if force > 0.0 => {
                     state.d = state.pressure.iter().zip(&state.gap).map(|(p, g)| p / force * g).sum();
                 }
@@ -222,7 +295,7 @@ impl Search<'_> {
             (contact.carry(&state.cells, &state.pressure), contact.carry(&state.cells, &state.gap));
         let length = limits.height.unwrap_or_else(|| state.d.abs().max(law.range));
         let everywhere = (&state.cells, &state.gap[..]);
-        state.residuals = Residuals::measure(Bounds::Unlimited, (&contact, &p, &left), everywhere, length);
+        state.residuals = Residuals::measure(problem.bounds, (&contact, &p, &left), everywhere, length);
         state.lawful = attraction.tractions(&state.cells, &state.gap);
         state.mismatch = match law.shape {
             Shape::Uniform => attraction.mismatch(&state.cells, &state.attraction, &state.gap),

@@ -26,7 +26,7 @@ const FOLLOWED: f64 = 0.002;
 const STEPS: usize = 40;
 /// The plain iteration changes the attraction where no gap of the contact is wrong by more than this share of
 /// the range.
-const SETTLED: f64 = 1e-3;
+pub const SETTLED: f64 = 1e-3;
 /// In the other updates: by more than this share of the change of its gaps under the attraction ...
 const BALANCE: f64 = 0.3;
 /// ... and at most this.
@@ -135,7 +135,8 @@ impl Updates<'_> {
         // Where the contact is not yet settled, the attraction waits.
         let settled =
             if plain { SETTLED } else { (BALANCE * change).max(0.5 * tolerance).min(SETTLED_FIRST) };
-        let waits = state.largest_gap_left() > settled * law.range && sum(&state.pressure) > 0.0;
+        let waits =
+            state.largest_gap_left(self.problem.bounds) > settled * law.range && sum(&state.pressure) > 0.0;
         if waits {
             next.clone_from(&state.attraction);
         }

@@ -5,6 +5,7 @@ use super::load::{LoadSequence, ScaledNormal};
 use super::options::NAME;
 use super::prepared::PreparedSurface;
 use super::state::{Assembly, returned};
+use crate::active_set::Bounds;
 use crate::adhesion::{
     AdhesiveControl, Attraction, Ended, Equilibrium, Law, Response, Search, energy, respond,
 };
@@ -48,6 +49,13 @@ pub(super) struct Last {
     state: ContactState,
 }
 
+/// A state that was reached, and the new indentation that it leaves.
+struct Reached {
+    last: Last,
+    saturated: CellSet,
+    depth: Vec<f64>,
+}
+
 /// An equilibrium that was found at a load.
 pub(super) struct Found {
     pub equilibrium: Equilibrium,
@@ -58,7 +66,12 @@ pub(super) struct Found {
 }
 
 impl AdhesiveContact {
-    pub(super) fn new(surface: PreparedSurface, attraction: Attraction) -> Self {
+    pub(super) fn new(mut surface: PreparedSurface, attraction: Attraction) -> Self {
+        // The solid bears the net pressure: a cell in contact, which is attracted by the peak of the law, touches
+        // with as much more. Where it flows its gap is zero or less, so that this is the bound of each cell.
+        if let Some(hardness) = surface.hardness {
+            surface.problem.bounds = Bounds::UpTo(hardness + attraction.law.peak);
+        }
         Self { surface, attraction, last: None, plain: false }
     }
 
@@ -75,6 +88,11 @@ impl AdhesiveContact {
         loads: LoadSequence,
         stop: Stop<'_>,
     ) -> Result<ContactState> {
+        if let (ScaledNormal::MeanGap(_), Some(_)) = (load, self.surface.hardness) {
+            let what =
+                "a mean gap with a hardness and adhesion together (not solved): give a force or a pressure";
+            return Err(Error::unsupported(NAME, what));
+        }
         let control = match load {
             ScaledNormal::Force(force) => AdhesiveControl::Force(force),
             ScaledNormal::Approach(d) => AdhesiveControl::Plane(d),
@@ -84,8 +102,8 @@ impl AdhesiveContact {
             self.forget();
         }
         let next = self.next(control, loads, stop)?;
-        let state = next.state.clone();
-        self.last = Some(next);
+        let state = next.last.state.clone();
+        self.accept(next);
         Ok(state)
     }
 
@@ -108,17 +126,29 @@ impl AdhesiveContact {
         }
     }
 
+    /// Takes a state as the last one; on a path its indentation stays.
+    fn accept(&mut self, Reached { last, saturated, depth }: Reached) {
+        if let Some(memory) = &mut self.surface.memory {
+            memory.advance(last.equilibrium.force(), self.surface.options.tolerance);
+        }
+        self.surface.indent(&saturated, &depth);
+        self.last = Some(last);
+    }
+
     /// The next state from the last one.
-    fn next(&mut self, control: AdhesiveControl, loads: LoadSequence, stop: Stop<'_>) -> Result<Last> {
+    fn next(&mut self, control: AdhesiveControl, loads: LoadSequence, stop: Stop<'_>) -> Result<Reached> {
         match control {
             AdhesiveControl::Force(f) if f < 0.0 && self.untouched() => {
                 // The segment begins without force: there the surfaces already hold each other.
-                let before = self.last.take();
+                let (before, memory) = (self.last.take(), self.surface.memory.clone());
                 let touched = self.step_to(AdhesiveControl::Force(0.0), LoadSequence::Path, stop);
                 let held = touched.and_then(|touched| {
-                    self.last = Some(touched);
+                    self.accept(touched);
                     self.step_to(AdhesiveControl::Force(f), LoadSequence::Path, stop)
                 });
+                if held.is_err() {
+                    self.surface.take_memory(memory);
+                }
                 self.last = before;
                 held
             }
@@ -130,7 +160,7 @@ impl AdhesiveContact {
         self.last.as_ref().is_none_or(|last| last.equilibrium.contact().is_empty())
     }
 
-    fn step_to(&mut self, control: AdhesiveControl, loads: LoadSequence, stop: Stop<'_>) -> Result<Last> {
+    fn step_to(&mut self, control: AdhesiveControl, loads: LoadSequence, stop: Stop<'_>) -> Result<Reached> {
         self.surface.begin_count();
         let last = self.last.as_ref().map(|last| last.equilibrium.clone());
         let found = self.search(control, last.as_ref().map(|last| (last, loads)), self.tolerance(), stop)?;
@@ -165,7 +195,8 @@ impl AdhesiveContact {
     ) -> Result<Found> {
         let last = before.map(|(last, _)| last);
         let rises = last.is_none_or(|last| self.rises(control, last));
-        let mut plain = self.plain;
+        // Under a hardness there is one kind of update.
+        let mut plain = self.plain || self.surface.hardness.is_some();
         let mut spent = (0, 0);
         loop {
             let (limits, attraction) = (self.surface.limits(), &self.attraction);
@@ -238,13 +269,14 @@ impl AdhesiveContact {
     }
 
     /// The state that is returned.
-    fn finish(&mut self, found: Found, stop: Stop<'_>) -> Result<Last> {
+    fn finish(&mut self, found: Found, stop: Stop<'_>) -> Result<Reached> {
         let Found { equilibrium, response, control, status, load_error } = found;
         let branch = match &self.last {
             Some(last) if self.same_load(control, &last.equilibrium) => last.branch,
             Some(last) if !self.rises(control, &last.equilibrium) => Branch::Withdrawal,
             _ => Branch::Approach,
         };
+        let (saturated, depth) = equilibrium.indented(self.surface.problem.bounds);
         let mut stiffness = self.stiffness(&equilibrium, &response, branch, stop);
         let force_error = self.force_error(control, &equilibrium, &response);
         let surface = &mut self.surface;
@@ -283,11 +315,11 @@ impl AdhesiveContact {
             certificate,
             force: equilibrium.force(),
             d: equilibrium.d,
-            complete: surface.is_full(&contact),
+            complete: surface.is_full(&contact) && saturated.is_empty(),
             contact: &contact,
             pressure: (&equilibrium.cells, &equilibrium.net()),
-            indented: (&CellSet::default(), &[]),
-            yielded: 0,
+            indented: (&saturated, &depth),
+            yielded: saturated.len(),
             area: self.attraction.area(&contact, &equilibrium.gap),
             stiffness: stiffness.along_the_branch.map(|k| PI * k),
             fixed_area: stiffness.fixed_area.map(|k| PI * k),
@@ -295,7 +327,8 @@ impl AdhesiveContact {
             resolution: None,
             slid: None,
         })?;
-        Ok(Last { equilibrium, control, branch, state: returned(state)? })
+        let last = Last { equilibrium, control, branch, state: returned(state)? };
+        Ok(Reached { last, saturated, depth })
     }
 
     /// The error of a force that was not prescribed, relative to it, estimated: it is the sum of the residual
@@ -304,7 +337,7 @@ impl AdhesiveContact {
     fn force_error(&self, control: AdhesiveControl, state: &Equilibrium, response: &Response) -> Option<f64> {
         let (AdhesiveControl::Plane(_), force) = (control, state.force().abs()) else { return None };
         let lack = self.attraction.imbalance(&state.cells, &state.attraction, &state.gap);
-        let left = state.largest_gap_left();
+        let left = state.largest_gap_left(self.surface.problem.bounds);
         let stiffest = self.surface.stiffest_on(&state.cells);
         let error = GROWTH * (lack + stiffest * left) / response.stability;
         (force > 0.0 && response.stability > 0.0).then(|| error / force)

@@ -129,7 +129,10 @@ impl PreparedBem3d {
         self.place = Place { loads, solved: None, time: 0.0 };
         match &mut self.contact {
             Contact::WithoutAdhesion(surface) => surface.begin(loads == LoadSequence::Path),
-            Contact::WithAdhesion(contact) => contact.forget(),
+            Contact::WithAdhesion(contact) => {
+                contact.surface.begin(loads == LoadSequence::Path);
+                contact.forget();
+            }
         }
     }
 }

@@ -13,7 +13,7 @@ use std::sync::Arc;
 /// state decides: cells of the indentation whose pressure is the hardness, within the tolerance, count as
 /// saturated, and the stiffness is that of a load that goes on in the direction of its last change. With
 /// growing load they flow, with falling load they do not.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct Memory {
     /// Undeformed gaps of the virgin surface.
     pub virgin: Arc<Vec<f64>>,

@@ -11,6 +11,8 @@ mod mean_gap;
 mod memory;
 mod options;
 mod path_memory;
+#[cfg(test)]
+mod plastic_adhesion;
 mod prepared;
 mod profile;
 mod sliding;
@@ -145,16 +147,17 @@ impl Bem3d {
     }
 }
 
-/// Refuses effects that the solvers do not combine: adhesion with a hardness, and friction with a hardness or
-/// with adhesion.
+/// Refuses effects that the solvers do not combine: adhesion of short range with a hardness, and friction with a
+/// hardness or with adhesion.
 ///
 /// # Errors
 /// [`Error::Unsupported`] for the first two of them that are on.
 fn refuse_together(effects: &Effects) -> Result<()> {
     let (hardness, adhesion) = (effects.hardness != Hardness::Off, effects.adhesion != Adhesion::Off);
     let friction = effects.friction != Friction::Off;
-    let what = if hardness && adhesion {
-        "hardness and adhesion together: where a contact flows, pull-off depends on the indentation that the attraction made"
+    let short = matches!(effects.adhesion, Adhesion::ShortRange { .. });
+    let what = if hardness && short {
+        "hardness and adhesion of short range together: at the edge of a contact the pressure of this limit has no bound; give the adhesion a range"
     } else if hardness && friction {
         "hardness and friction together: what flows under a pressure and a traction is not Coulomb's law on an indentation"
     } else if adhesion && friction {

@@ -46,6 +46,8 @@ pub struct PreparedSurface {
     /// Unit of lengths normal to the surface: the rms height where there is one.
     pub(super) height: f64,
     pub(super) normalisation: Normalisation,
+    /// The hardness, nondimensional: the upper bound of the net pressure.
+    pub(super) hardness: Option<f64>,
     /// Mean of z over the defined points.
     pub(super) mean: f64,
     /// Number of defined points.
@@ -116,6 +118,7 @@ impl PreparedSurface {
         let mut problem = Problem::recorded(grid, Arc::new(z), profile::medium(scene), tuning, recorder);
         problem.nested = options.method != Method::SingleLevel;
         problem.operators.two_levels = problem.nested;
+        let mut hardness = None;
         if let Hardness::Limit { pressure } = scene.effects.hardness {
             let upper = nondimensional.pressure_in(pressure) / PI;
             if !(upper.is_finite() && upper > 0.0) {
@@ -123,6 +126,7 @@ impl PreparedSurface {
                 return Err(Error::domain("hardness", pressure, expected));
             }
             problem.bounds = Bounds::UpTo(upper);
+            hardness = Some(upper);
         }
         let sliding = Sliding::new(scene, &problem, (tuning, recorder))?;
         let normalisation = Normalisation {
@@ -137,6 +141,7 @@ impl PreparedSurface {
             nondimensional,
             height,
             normalisation,
+            hardness,
             mean,
             defined,
             last: None,
@@ -161,6 +166,15 @@ impl PreparedSurface {
         if path && self.problem.bounds != Bounds::Unlimited {
             self.memory = Some(Memory::new(self.problem.candidates.shared()));
         }
+    }
+
+    /// Returns to an earlier memory of a path.
+    pub(super) fn take_memory(&mut self, memory: Option<Memory>) {
+        if let Some(memory) = &memory {
+            self.problem.candidates = Candidates::new(self.problem.grid(), memory.indented());
+            self.problem.coarser = None;
+        }
+        self.memory = memory;
     }
 
     /// Drops the plans of operators and the buffers of earlier loads, which would affect the rounding of the
@@ -232,7 +246,7 @@ impl PreparedSurface {
 
     /// The force of all defined cells at the hardness, nondimensional; infinite without one.
     pub(super) fn capacity(&self) -> f64 {
-        self.problem.bounds.upper() * self.defined as f64
+        self.hardness.unwrap_or(f64::INFINITY) * self.defined as f64
     }
 
     /// Adds the indentation of saturated cells to that of the path.

@@ -231,7 +231,7 @@ impl PreparedSurface {
     /// With a hardness: the number of cells at the hardness, and the depths of new indentation.
     fn plastic(&self, saturated: usize, depth: &[f64]) -> Result<Option<PlasticState>> {
         let units = self.nondimensional;
-        let Bounds::UpTo(hardness) = self.problem.bounds else { return Ok(None) };
+        let Some(hardness) = self.hardness else { return Ok(None) };
         let area = units.area(saturated as f64)?;
         let before: f64 = self.memory.as_ref().map_or(0.0, |memory| memory.indentation.iter().sum());
         let volume = units.area(1.0)? * units.approach(before + depth.iter().sum::<f64>())?;

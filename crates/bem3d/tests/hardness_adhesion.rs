@@ -1,0 +1,168 @@
+//! Hardness together with adhesion of finite range: limits, closed forms, the balance of energy.
+
+#![allow(clippy::unwrap_used)] // Helpers of tests.
+
+use bem3d::{
+    Adhesion, AdhesionLaw, Bem3d, Boundary, ContactModel, ContactState, Hardness, Load, Outputs, Scene,
+    SelfAffine, Step, Surface,
+};
+
+const RANGE: f64 = 0.02;
+
+/// A rough surface with sides of 1 and heights of 0.01 on 32 cells a side.
+fn scene(hardness: Option<f64>, work: f64, law: AdhesionLaw, boundary: Boundary) -> Scene {
+    let mut surface = SelfAffine::new(2.2, 1.0, 0.01).unwrap();
+    surface.short_cutoff = Some(50.0);
+    let mut scene = Scene::new(Surface::SelfAffine(surface), 1.0);
+    scene.effects.boundary = boundary;
+    if work > 0.0 {
+        scene.effects.adhesion = Adhesion::FiniteRange { work, range: RANGE, law };
+    }
+    if let Some(pressure) = hardness {
+        scene.effects.hardness = Hardness::Limit { pressure };
+    }
+    scene.outputs = Outputs { area: true, pressure: true, gap: true, ..Outputs::default() };
+    scene
+}
+
+const MODEL: Bem3d =
+    Bem3d { cells: 32, rows: None, tolerance: 1e-8, max_outer_iterations: 400, method: bem3d::Method::Auto };
+
+fn path(scene: &Scene, loads: &[Load]) -> Vec<ContactState> {
+    let mut contact = MODEL.prepare(scene, 2).unwrap();
+    let steps = loads.iter().enumerate();
+    steps.map(|(i, load)| contact.advance(Step::new(i as f64, *load)).unwrap()).collect()
+}
+
+fn approaches(values: &[f64]) -> Vec<Load> {
+    values.iter().map(|d| Load::approach(*d)).collect()
+}
+
+const LAWS: [AdhesionLaw; 2] = [AdhesionLaw::Exponential, AdhesionLaw::Dugdale];
+const PATH: [f64; 6] = [-0.005, 0.01, 0.03, 0.02, 0.005, -0.01];
+
+/// Where no pressure reaches the hardness the states are those without one. They are found by another kind of
+/// update, so that they agree to the tolerance.
+#[test]
+fn a_large_hardness_gives_the_states_without() {
+    for law in LAWS {
+        let hard = path(&scene(Some(1e3), 1e-4, law, Boundary::Free), &approaches(&PATH));
+        let elastic = path(&scene(None, 1e-4, law, Boundary::Free), &approaches(&PATH));
+        for (a, b) in hard.iter().zip(&elastic) {
+            assert!((a.force - b.force).abs() < 1e-5 * b.force.abs().max(1e-4), "{} {}", a.force, b.force);
+            assert_eq!(a.area, b.area);
+            assert!(a.plastic.as_ref().unwrap().volume == 0.0);
+            assert_eq!(a.adhesive.as_ref().unwrap().branch, b.adhesive.as_ref().unwrap().branch);
+        }
+    }
+}
+
+/// With less and less work the states tend to those of the hardness alone, in first order.
+#[test]
+fn without_work_the_states_are_those_of_the_hardness() {
+    for law in LAWS {
+        let plastic = path(&scene(Some(0.05), 0.0, law, Boundary::Free), &approaches(&PATH[1..5]));
+        let difference = |work: f64| {
+            let states = path(&scene(Some(0.05), work, law, Boundary::Free), &approaches(&PATH[1..5]));
+            let pairs = states.iter().zip(&plastic);
+            pairs.fold(0.0, |most: f64, (a, b)| most.max((a.force - b.force).abs()))
+        };
+        let (one, two) = (difference(1e-5), difference(1e-7));
+        assert!(two < 2e-2 * one, "{law:?}: {one} {two}");
+    }
+}
+
+/// The net pressure never exceeds the hardness. Where all of the contact flows, the force and the attraction of
+/// open cells are together the hardness times its area.
+#[test]
+fn a_contact_that_flows_bears_the_hardness_on_its_area() {
+    let hardness = 1e-3;
+    for law in LAWS {
+        for boundary in [Boundary::Free, Boundary::Periodic] {
+            let scene = scene(Some(hardness), 5e-6, law, boundary);
+            for state in path(&scene, &[Load::force(2e-4), Load::force(5e-4)]) {
+                let cell = 1.0 / 1024.0;
+                let pressures = state.pressure().unwrap().values();
+                assert!(pressures.iter().all(|p| *p <= hardness * (1.0 + 1e-9)));
+                let attracted: f64 = pressures.iter().map(|p| (-p).max(0.0)).sum::<f64>() * cell;
+                let flowing = state.plastic.as_ref().unwrap().area;
+                let area = state.area.unwrap();
+                // Cells at the edge of the contact bear less.
+                assert!(flowing > 0.8 * area, "{law:?} {flowing} {area}");
+                let borne = state.force + attracted;
+                assert!(
+                    borne <= hardness * area * (1.0 + 1e-9) && borne >= hardness * flowing * (1.0 - 1e-9)
+                );
+            }
+        }
+    }
+}
+
+/// The work done is the stored energy, with that of the attraction, and what the flow took.
+#[test]
+fn work_is_stored_or_taken_by_the_flow() {
+    let there = (0..=160).map(|i| -0.04 + 0.07 * f64::from(i) / 160.0);
+    let back = (1..=200).map(|i| 0.03 - 0.09 * f64::from(i) / 200.0);
+    let values: Vec<f64> = there.chain(back).collect();
+    let scene = scene(Some(0.05), 1e-4, AdhesionLaw::Exponential, Boundary::Free);
+    let states = path(&scene, &approaches(&values));
+    let energy = |state: &ContactState| {
+        state.adhesive.as_ref().unwrap().energy + state.plastic.as_ref().unwrap().dissipated
+    };
+    let (mut work, mut largest) = (0.0, 0.0_f64);
+    for (pair, d) in states.windows(2).zip(values.windows(2)) {
+        work += f64::midpoint(pair[0].force, pair[1].force) * (d[1] - d[0]);
+        largest = largest.max(work.abs());
+        let change = energy(&pair[1]) - energy(&states[0]);
+        assert!((change - work).abs() < 5e-3 * largest, "at {}: {change} {work}", d[1]);
+    }
+    assert!(states.last().unwrap().plastic.as_ref().unwrap().volume > 1e-5);
+}
+
+/// A contact that has flowed fits better, and holds more when it is pulled off.
+#[test]
+fn what_has_flowed_holds_more() {
+    let pulled: Vec<f64> = (0..=30).map(|i| 0.03 - 0.003 * f64::from(i)).collect();
+    let most = |hardness: Option<f64>| {
+        let scene = scene(hardness, 1e-4, AdhesionLaw::Exponential, Boundary::Free);
+        path(&scene, &approaches(&pulled)).iter().fold(0.0, |most: f64, state| most.min(state.force))
+    };
+    let (elastic, flowed) = (most(None), most(Some(0.05)));
+    assert!(flowed < 1.05 * elastic, "{elastic} {flowed}");
+}
+
+/// The stiffness is the slope of the force along the path, on the way in, where cells flow, and on the way out, where
+/// none does; that of the held area is the slope between states without new contact, which is steeper.
+#[test]
+fn the_stiffness_is_a_difference_quotient() {
+    let mut scene = scene(Some(0.05), 1e-4, AdhesionLaw::Exponential, Boundary::Free);
+    (scene.outputs.stiffness, scene.outputs.stiffness_fixed_area) = (true, true);
+    let step = 1e-6;
+    for turn in [0.03, 0.02] {
+        for (from, sign) in [(turn, 1.0), (turn - 0.004, -1.0)] {
+            let mut loads = approaches(&[0.01, 0.015, turn]);
+            if sign < 0.0 {
+                loads.push(Load::approach(from));
+            }
+            loads.push(Load::approach(from + sign * step));
+            let states = path(&scene, &loads);
+            let [.., before, after] = &states[..] else { unreachable!() };
+            let quotient = (after.force - before.force) / (sign * step);
+            let slope = before.stiffness.unwrap();
+            assert!((slope / quotient - 1.0).abs() < 1e-3, "{turn} {sign}: {slope} {quotient}");
+            assert!(before.stiffness_fixed_area.unwrap() > 0.0);
+            assert_eq!(before.plastic.as_ref().unwrap().area > 0.0, sign > 0.0);
+        }
+    }
+}
+
+#[test]
+fn what_is_not_solved_is_refused() {
+    let mut periodic = scene(Some(0.05), 1e-4, AdhesionLaw::Exponential, Boundary::Periodic);
+    periodic.outputs = Outputs::default();
+    let refused = MODEL.prepare(&periodic, 2).unwrap().solve(Load::mean_gap(0.01)).unwrap_err().to_string();
+    assert!(refused.contains("mean gap") && refused.contains("not solved"), "{refused}");
+    let mut short = periodic;
+    short.effects.adhesion = Adhesion::ShortRange { work: 1e-4 };
+    assert!(MODEL.prepare(&short, 2).err().unwrap().to_string().contains("short range"));
+}
