@@ -192,8 +192,7 @@ fn friction() {
         let mut scene = Scene::of_pair(rough(0.7, 0.01), pair).unwrap();
         scene.effects.friction = Friction::coulomb(0.4);
         if full {
-            scene.effects.friction =
-                Friction::Coulomb { coefficient: 0.4, coupling: Some(bem3d::Coupling::Full) };
+            scene.effects.friction = Friction::coulomb(0.4).with_coupling(Some(bem3d::Coupling::Full));
         }
         scene.outputs.tangential_stiffness = !full;
         let name = if full { "friction, coupled" } else { "friction" };

@@ -57,11 +57,11 @@ impl PreparedSurface {
         ScaledTangential { control, prescribed }: ScaledTangential,
         stop: Stop<'_>,
     ) -> Result<Slid> {
-        let Sliding { friction, coefficient, before, .. } = sliding;
+        let Sliding { friction, law, before, .. } = sliding;
         let (mut limits, tolerance) = (self.friction_limits(), self.options.tolerance);
         let work = friction.work();
         let contact = PressedCells { cells: &solved.contact, pressure: &solved.p };
-        let load = FrictionLoad { coefficient: *coefficient, control };
+        let load = FrictionLoad { law: *law, control };
         let first = friction.advance(before, contact, load, None, limits, stop);
         let mut state = first.map_err(|beyond| self.gross_slip(control, beyond))?;
         let mut stiffness = self.tangential_stiffness(friction, &state, stop);

@@ -24,7 +24,8 @@ use crate::tuning::Tuning;
 use contact::PreparedBem3d;
 use contact_model::{
     Abilities, Adhesion, AdhesionLaw, Boundary, ContactModel, Directions, Effect, Effects, Error, Friction,
-    Hardness, LoadKind, Output, Paths, PreparedContact, RequiredMemory, Result, Scene, Source, SurfaceKind,
+    LoadKind, NotCombined, Output, Paths, PreparedContact, RequiredMemory, Result, Scene, Source,
+    SurfaceKind,
 };
 use options::NAME;
 
@@ -95,8 +96,10 @@ impl ContactModel for Bem3d {
                 Effect::ExponentialAdhesion,
                 Effect::DugdaleAdhesion,
                 Effect::Friction,
+                Effect::ShearStrength,
                 Effect::FullCoupling,
             ],
+            not_combined: NOT_COMBINED,
             loads: LoadKind::ALL,
             paths: Paths::Remembered,
             directions: Directions::Plane,
@@ -136,7 +139,6 @@ impl Bem3d {
         recorder: &Recorder,
     ) -> Result<PreparedBem3d> {
         self.abilities().refuse(NAME, scene)?;
-        refuse_together(&scene.effects)?;
         profile::check(scene)?;
         if !(self.tolerance > 0.0 && self.tolerance < 1.0) {
             return Err(Error::domain("tolerance", self.tolerance, "a number in (0, 1)"));
@@ -145,25 +147,24 @@ impl Bem3d {
     }
 }
 
-/// Refuses effects that the solvers do not combine: adhesion with a hardness, and friction with a hardness or
-/// with adhesion.
-///
-/// # Errors
-/// [`Error::Unsupported`] for the first two of them that are on.
-fn refuse_together(effects: &Effects) -> Result<()> {
-    let (hardness, adhesion) = (effects.hardness != Hardness::Off, effects.adhesion != Adhesion::Off);
-    let friction = effects.friction != Friction::Off;
-    let what = if hardness && adhesion {
-        "hardness and adhesion together: where a contact flows, pull-off depends on the indentation that the attraction made"
-    } else if hardness && friction {
-        "hardness and friction together: what flows under a pressure and a traction is not Coulomb's law on an indentation"
-    } else if adhesion && friction {
-        "adhesion and friction together: how much friction holds under tension is not said by Coulomb's law"
-    } else {
-        return Ok(());
-    };
-    Err(Error::unsupported(NAME, what))
-}
+const ADHESION: &[Effect] =
+    &[Effect::ShortRangeAdhesion, Effect::ExponentialAdhesion, Effect::DugdaleAdhesion];
+
+/// Effects that the solvers do not combine.
+const NOT_COMBINED: &[NotCombined] = &[
+    NotCombined {
+        effects: [&[Effect::Hardness], ADHESION],
+        reason: "where a contact flows, pull-off depends on the indentation that the attraction made",
+    },
+    NotCombined {
+        effects: [ADHESION, &[Effect::Friction, Effect::FullCoupling, Effect::ShearStrength]],
+        reason: "how much friction holds under tension is not said by the law of friction",
+    },
+    NotCombined {
+        effects: [&[Effect::Hardness], &[Effect::FullCoupling]],
+        reason: "not solved, as the tractions would displace the surface that flows",
+    },
+];
 
 #[cfg(test)]
 mod tests {

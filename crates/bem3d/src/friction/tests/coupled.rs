@@ -59,7 +59,7 @@ impl Contact {
     ) -> CoupledState {
         let load = CoupledLoad {
             normal: Control::Force(force),
-            tangential: FrictionLoad { coefficient: mu, control },
+            tangential: FrictionLoad { law: FrictionLaw::coulomb(mu), control },
             normal_limits: NORMAL,
             tangential_limits: TANGENTIAL,
         };

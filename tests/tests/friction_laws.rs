@@ -1,0 +1,278 @@
+//! Laws of friction with a shear strength and a limit, with and without a hardness: paths of small contacts
+//! compared with a dense reference implementation, Tresca's friction under a flat punch, and the limits in which
+//! one law becomes another.
+
+use bem3d::Bem3d;
+use contact_model::{
+    Body, Boundary, ContactModel, ContactState, Coupling, Effects, Error, Friction, FrictionLaw, Hardness,
+    HeightMap, Load, Outputs, Pair, PreparedContact, Scene, Step, Surface, Tangential,
+};
+use std::collections::HashMap;
+use std::f64::consts::PI;
+use std::sync::Arc;
+use tests::rough_map;
+use tests::stability::{DensePath, PlainShear, PlainSum, Prescribed, compliance};
+
+fn alike(poisson: f64) -> Pair {
+    let body = Body::Elastic { young: 2.0 * (1.0 - poisson * poisson), poisson };
+    Pair { first: body, second: body }
+}
+
+/// Numbers in [0, 1) of a seed.
+struct Draw(u64);
+
+impl Draw {
+    fn new(seed: u64) -> Self {
+        Self(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1)
+    }
+
+    fn next(&mut self) -> f64 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.next()
+    }
+
+    fn index(&mut self, count: usize) -> usize {
+        (self.next() * count as f64) as usize
+    }
+}
+
+/// Kernels of the grids, which periodic images make expensive.
+#[derive(Default)]
+struct Kernels(HashMap<(usize, usize, bool, usize), (PlainSum, f64, PlainShear)>);
+
+const POISSONS: [f64; 3] = [0.0, 0.3, 0.5];
+
+impl Kernels {
+    fn of(&mut self, map: &HeightMap, periodic: bool, poisson: usize) -> &(PlainSum, f64, PlainShear) {
+        self.0.entry((map.columns(), map.rows(), periodic, poisson)).or_insert_with(|| {
+            let c = compliance(&alike(POISSONS[poisson])).unwrap();
+            if periodic {
+                let sum = PlainSum::periodic(map);
+                let mean = sum.mean();
+                (sum, mean, PlainShear::periodic(map, c))
+            } else {
+                (PlainSum::of(map), 0.0, PlainShear::of(map, c))
+            }
+        })
+    }
+}
+
+/// Largest deviations over the paths, each relative to the largest value of its kind.
+#[derive(Debug, Default)]
+struct Worst {
+    pressure: f64,
+    traction: f64,
+    displacement: f64,
+    force: f64,
+    dissipated: f64,
+    indentation: f64,
+    energy: f64,
+    /// Scenes, steps, steps with cells at the hardness, cells that stuck and slipped.
+    scenes: usize,
+    steps: usize,
+    flowing: usize,
+    stick: usize,
+    slip: usize,
+    /// Paths that ended at a cell that rounding could bring into contact.
+    undecided: usize,
+}
+
+/// A law of one of five kinds, for contacts of this mean pressure.
+fn any_law(draw: &mut Draw, pressure: f64) -> FrictionLaw {
+    let coefficient = draw.between(0.05, 1.0);
+    let shear_strength = pressure * draw.between(0.05, 1.0);
+    let kind = draw.index(5);
+    let law = match kind {
+        0 | 3 => FrictionLaw::coulomb(coefficient),
+        1 => FrictionLaw::tresca(shear_strength),
+        _ => FrictionLaw { coefficient, shear_strength, limit: None },
+    };
+    let limit = (kind >= 3).then(|| law.largest_traction(pressure) * draw.between(0.5, 1.5));
+    FrictionLaw { limit, ..law }
+}
+
+/// Follows one random path in both ways and notes the deviations.
+fn follow(seed: u64, flows: bool, kernels: &mut Kernels, worst: &mut Worst) {
+    let mut draw = Draw::new(seed);
+    let periodic = draw.index(2) == 1;
+    let poisson = draw.index(POISSONS.len());
+    let columns = 3 + draw.index(3);
+    let rows = if periodic { columns } else { 2 + draw.index(4) };
+    let heights: Vec<f64> = (0..columns * rows).map(|_| draw.next()).collect();
+    let size = [1.0, rows as f64 / columns as f64];
+    let map = HeightMap::new([columns, rows], size, heights).unwrap();
+    let area = map.dx() * map.dy();
+    let force = 10_f64.powf(draw.between(-1.5, 0.3));
+    let (sum, shift, shear) = kernels.of(&map, periodic, poisson);
+    let gaps: Vec<f64> = map.heights().iter().map(|h| map.highest() - h).collect();
+    let dense = |law, hardness| DensePath::new((sum, *shift), shear, gaps.clone(), area, (law, hardness));
+    // The pressures of the elastic contact give the scale of the law and of the hardness.
+    let mut elastic = dense(FrictionLaw::coulomb(0.0), None);
+    elastic.press(Prescribed::Force(force));
+    let touching = elastic.pressed.iter().filter(|p| **p > 0.0).count();
+    let (mean, largest) =
+        (force / (touching as f64 * area), elastic.pressed.iter().fold(0.0, |a: f64, b| a.max(*b)) / area);
+    let least = force / (gaps.len() as f64 * area);
+    let hardness = flows.then(|| (largest * draw.between(0.4, 1.2)).max(1.05 * least));
+    let law = any_law(&mut draw, mean);
+    let mut exact = dense(law, hardness);
+    let mut scene = Scene { pair: Some(alike(POISSONS[poisson])), ..tests::scene(map.clone()) };
+    scene.effects = Effects {
+        boundary: if periodic { Boundary::Periodic } else { Boundary::Free },
+        hardness: hardness.map_or(Hardness::Off, |pressure| Hardness::Limit { pressure }),
+        friction: Friction::of(law),
+        ..Effects::default()
+    };
+    scene.outputs = Outputs {
+        pressure: true,
+        traction: true,
+        stick_area: true,
+        plastic_depth: flows,
+        mean_gap: periodic,
+        ..Outputs::default()
+    };
+    let mut contact = Bem3d { tolerance: 1e-13, ..Bem3d::default() }.prepare(&scene, 0).unwrap();
+    worst.scenes += 1;
+    let mut before: Option<DensePath> = None;
+    let mut at = force;
+    for leg in 0..4 {
+        let capacity = hardness.map_or(f64::INFINITY, |hardness| hardness * gaps.len() as f64 * area);
+        if leg > 0 && draw.index(3) > 0 {
+            at = (force * draw.between(0.3, 1.6)).min(0.95 * capacity);
+        }
+        let by_approach = !periodic && draw.index(3) == 0;
+        exact.press(Prescribed::Force(at));
+        if exact.decided < 1e-6 {
+            worst.undecided += 1;
+            return;
+        }
+        let most: f64 = exact.limits().iter().sum();
+        let (share, (sin, cos)) = (draw.between(0.0, 0.9), draw.between(0.0, 2.0 * PI).sin_cos());
+        let load = if draw.index(2) == 0 {
+            Prescribed::Force([share * most * cos, share * most * sin])
+        } else {
+            Prescribed::Displacement([2.0 * share * most * cos, 2.0 * share * most * sin])
+        };
+        exact.slide(load);
+        let normal = if by_approach { Load::approach(exact.approach) } else { Load::force(at) };
+        let tangential = match load {
+            Prescribed::Force(force) => Tangential::Force(force),
+            Prescribed::Displacement(displacement) => Tangential::Displacement(displacement),
+        };
+        let state = contact
+            .advance(Step::new(0.0, normal.with_tangential(tangential)))
+            .unwrap_or_else(|error| panic!("{seed} {leg}: {error}"));
+        note(worst, &state, &exact, area, seed);
+        balance(worst, &state, before.as_ref(), &exact, hardness, seed);
+        before = Some(exact.clone());
+    }
+}
+
+/// Notes the deviations of a state.
+fn note(worst: &mut Worst, state: &ContactState, exact: &DensePath, area: f64, seed: u64) {
+    let found = state.tangential.unwrap();
+    let fields = state.fields.as_ref().unwrap();
+    let n = exact.pressed.len();
+    let compare = |worst: &mut f64, found: &[f64], exact: &[f64], scale: f64, what: &str, bound: f64| {
+        let off = found.iter().zip(exact).fold(0.0, |off: f64, (a, b)| off.max((a - b).abs()));
+        let off = if off > 0.0 { off / scale } else { 0.0 };
+        assert!(off <= bound, "{seed}: {what} {off:e}: {found:?} {exact:?}");
+        *worst = worst.max(off);
+    };
+    let p: Vec<f64> = fields.pressure.as_ref().unwrap().values().iter().map(|p| p * area).collect();
+    let largest = exact.pressed.iter().fold(0.0, |a: f64, b| a.max(*b));
+    compare(&mut worst.pressure, &p, &exact.pressed, largest, "pressure", 1e-7);
+    let [x, y] = fields.traction.as_ref().unwrap();
+    let q: Vec<f64> = x.values().iter().chain(y.values()).map(|q| q * area).collect();
+    let limits = exact.limits();
+    let largest = limits.iter().fold(0.0, |a: f64, b| a.max(*b));
+    compare(&mut worst.traction, &q, &exact.sheared, largest, "traction", 1e-4);
+    let most: f64 = limits.iter().sum();
+    compare(&mut worst.force, &found.force, &exact.force(), most, "force", 1e-5);
+    compare(&mut worst.force, &[found.sliding_force.unwrap()], &[most], most, "sliding force", 1e-8);
+    // The displacement at which all of it would slip is of the order of the sliding force.
+    let reach = exact.displacement[0].hypot(exact.displacement[1]).max(most);
+    compare(&mut worst.displacement, &found.displacement, &exact.displacement, reach, "displacement", 1e-5);
+    let work = most * reach + exact.dissipated;
+    compare(&mut worst.dissipated, &[found.dissipated], &[exact.dissipated], work, "dissipated", 1e-5);
+    if let Some(depth) = &fields.plastic_depth {
+        let deepest = exact.indentation.iter().fold(exact.approach.abs(), |a: f64, b| a.max(*b));
+        compare(&mut worst.indentation, depth.values(), &exact.indentation, deepest, "indentation", 1e-7);
+        worst.flowing += usize::from(state.plastic.unwrap().area > 0.0);
+    }
+    worst.steps += 1;
+    for i in (0..n).filter(|&i| exact.pressed[i] > 0.0) {
+        let sticks = exact.sheared[i].hypot(exact.sheared[n + i]) < (1.0 - 1e-9) * limits[i];
+        *(if sticks { &mut worst.stick } else { &mut worst.slip }) += 1;
+    }
+}
+
+/// The work of both loads is stored, dissipated by friction, or done on the indentation. With the loads at the end of
+/// a step it also holds half the product of its changes, and what the pressures did across the gaps that closed.
+fn balance(
+    worst: &mut Worst,
+    state: &ContactState,
+    before: Option<&DensePath>,
+    exact: &DensePath,
+    hardness: Option<f64>,
+    seed: u64,
+) {
+    let found = state.tangential.unwrap();
+    let Some(before) = before else { return };
+    // The loads of the solver, and its indentation; energies of the reference.
+    let moved = [0, 1].map(|k| found.displacement[k] - before.displacement[k]);
+    let work = found.force[0] * moved[0] + found.force[1] * moved[1];
+    let [stored, sheared] = exact.energies();
+    let [stored_before, sheared_before] = before.energies();
+    let mut change = exact.clone();
+    for (a, b) in [(&mut change.pressed, &before.pressed), (&mut change.sheared, &before.sheared)] {
+        a.iter_mut().zip(b).for_each(|(a, b)| *a -= b);
+    }
+    let [excess, sheared_excess] = change.energies();
+    let dissipated = found.dissipated - before.dissipated;
+    let expected = dissipated + sheared - sheared_before + sheared_excess;
+    let scale = work.abs() + sheared + sheared_before + dissipated.abs();
+    let off = (work - expected).abs() / scale;
+    assert!(off <= 1e-5, "{seed}: tangential work {work} {expected}");
+    worst.energy = worst.energy.max(off);
+    let (Some(hardness), Some(plastic), Some(approach)) = (hardness, state.plastic, state.approach) else {
+        return;
+    };
+    let work = state.force * (approach - before.approach);
+    let closed: f64 = exact.pressed.iter().zip(before.open_gaps()).map(|(p, gap)| p * gap).sum();
+    let volume = plastic.volume - before.indentation.iter().sum::<f64>() * exact.cell_area();
+    let expected = stored - stored_before + excess + hardness * volume + closed;
+    let scale = work.abs() + stored + stored_before + hardness * plastic.volume;
+    let off = (work - expected).abs() / scale;
+    assert!(off <= 1e-6, "{seed}: normal work {work} {expected}");
+    worst.energy = worst.energy.max(off);
+}
+
+#[test]
+fn paths_under_any_law_are_those_of_the_dense_reference() {
+    let (mut kernels, mut worst) = (Kernels::default(), Worst::default());
+    for seed in 1..=400 {
+        follow(seed, false, &mut kernels, &mut worst);
+    }
+    println!("{worst:?}");
+    assert!(worst.steps > 1200 && worst.stick > 1000 && worst.slip > 1000, "{worst:?}");
+}
+
+#[test]
+fn friction_with_a_hardness_is_that_of_the_dense_reference() {
+    let (mut kernels, mut worst) = (Kernels::default(), Worst::default());
+    for seed in 1001..=1400 {
+        follow(seed, true, &mut kernels, &mut worst);
+    }
+    println!("{worst:?}");
+    assert!(
+        worst.steps > 1200 && worst.flowing > 800 && worst.stick > 1000 && worst.slip > 1000,
+        "{worst:?}"
+    );
+}
