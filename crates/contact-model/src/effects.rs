@@ -49,8 +49,8 @@ impl Effects {
         self.rheology.validate()
     }
 
-    /// The effects that are on. The boundary ([`Effects::boundary`]) does not count as one; a law of friction
-    /// other than Coulomb's counts beside friction.
+    /// The effects that are on. The boundary ([`Effects::boundary`]) does not count as one. A shear strength and a
+    /// limit, which Coulomb's law does not have, count beside friction.
     ///
     /// ```
     /// use contact_model::{Adhesion, Effect, Effects};
@@ -71,10 +71,9 @@ impl Effects {
             Adhesion::FiniteRange { law: AdhesionLaw::Dugdale, .. } => Some(Effect::DugdaleAdhesion),
         };
         // Before friction itself, so that a model without any friction names the law that the scene has.
-        let law = match friction {
-            Friction::Slip { law, .. } if !law.is_coulomb() => Some(Effect::ShearStrength),
-            _ => None,
-        };
+        let law = friction.law();
+        let strength = law.filter(|law| law.shear_strength > 0.0).map(|_| Effect::ShearStrength);
+        let limit = law.filter(|law| law.limit.is_some()).map(|_| Effect::TractionLimit);
         let friction = match friction {
             Friction::Off => None,
             Friction::Slip { coupling: None | Some(Coupling::Neglected), .. } => Some(Effect::Friction),
@@ -87,7 +86,7 @@ impl Effects {
             Rheology::StandardSolid { .. } => Some(Effect::StandardSolid),
             Rheology::Prony(_) => Some(Effect::PronySeries),
         };
-        [hardness, adhesion, law, friction, rheology].into_iter().flatten()
+        [hardness, adhesion, strength, limit, friction, rheology].into_iter().flatten()
     }
 }
 
@@ -146,9 +145,12 @@ effects! {
     /// [`Friction::Slip`], normal and tangential problems independent of each other.
     Friction "friction" "friction"
         { friction: Friction::coulomb(0.3) },
-    /// [`Friction::Slip`] with a [`FrictionLaw`] other than Coulomb's.
-    ShearStrength "friction" "friction with a shear strength or a limit"
+    /// [`FrictionLaw::shear_strength`].
+    ShearStrength "friction" "friction with a shear strength"
         { friction: Friction::tresca(0.02) },
+    /// [`FrictionLaw::limit`].
+    TractionLimit "friction" "friction with a limit of the traction"
+        { friction: Friction::of(FrictionLaw { limit: Some(0.02), ..FrictionLaw::coulomb(0.3) }) },
     /// [`Friction::Slip`] with [`Coupling::Full`].
     FullCoupling "friction" "friction with full coupling of normal and tangential tractions"
         { friction: Friction::coulomb(0.3).with_coupling(Some(Coupling::Full)) },
@@ -278,11 +280,6 @@ impl FrictionLaw {
     /// Tresca's law: the same at any pressure.
     pub fn tresca(shear_strength: f64) -> Self {
         Self { coefficient: 0.0, shear_strength, limit: None }
-    }
-
-    /// Whether it is Coulomb's law.
-    pub fn is_coulomb(&self) -> bool {
-        self.shear_strength == 0.0 && self.limit.is_none()
     }
 
     /// The largest traction of a cell in contact with this pressure.

@@ -97,6 +97,7 @@ impl ContactModel for Bem3d {
                 Effect::DugdaleAdhesion,
                 Effect::Friction,
                 Effect::ShearStrength,
+                Effect::TractionLimit,
                 Effect::FullCoupling,
             ],
             not_combined: NOT_COMBINED,
@@ -150,6 +151,9 @@ impl Bem3d {
 const ADHESION: &[Effect] =
     &[Effect::ShortRangeAdhesion, Effect::ExponentialAdhesion, Effect::DugdaleAdhesion];
 
+const FRICTION: &[Effect] =
+    &[Effect::Friction, Effect::ShearStrength, Effect::TractionLimit, Effect::FullCoupling];
+
 /// Effects that the solvers do not combine.
 const NOT_COMBINED: &[NotCombined] = &[
     NotCombined {
@@ -157,8 +161,13 @@ const NOT_COMBINED: &[NotCombined] = &[
         reason: "where a contact flows, pull-off depends on the indentation that the attraction made",
     },
     NotCombined {
-        effects: [ADHESION, &[Effect::Friction, Effect::FullCoupling, Effect::ShearStrength]],
+        effects: [ADHESION, FRICTION],
         reason: "how much friction holds under tension is not said by the law of friction",
+    },
+    NotCombined {
+        effects: [&[Effect::ShearStrength], &[Effect::FullCoupling]],
+        reason: "a cell that touches with a vanishing pressure carries the whole shear strength, which may open it \
+                 again, so that there need not be any state",
     },
     NotCombined {
         effects: [&[Effect::Hardness], &[Effect::FullCoupling]],
