@@ -5,11 +5,10 @@
 use bem3d::Bem3d;
 use contact_model::{
     Body, Boundary, ContactModel, ContactState, Coupling, Effects, Error, Friction, FrictionLaw, Hardness,
-    HeightMap, Load, Outputs, Pair, PreparedContact, Scene, Step, Surface, Tangential,
+    HeightMap, Load, Outputs, Pair, Scene, Step, Surface, Tangential,
 };
 use std::collections::HashMap;
 use std::f64::consts::PI;
-use std::sync::Arc;
 use tests::rough_map;
 use tests::stability::{DensePath, PlainShear, PlainSum, Prescribed, compliance};
 
@@ -277,4 +276,203 @@ fn friction_with_a_hardness_is_that_of_the_dense_reference() {
         worst.steps > 1200 && worst.flowing > 800 && worst.stick > 1000 && worst.slip > 1000,
         "{worst:?}"
     );
+}
+
+/// The errors of the force and of the share that sticks under a flat punch that has moved until the ring outside of
+/// c slips, by Tresca's law.
+///
+/// Without a Poisson's ratio the tangential problem is the normal one: the traction tau on the ring has the line load
+/// `2 tau sqrt(a^2 - x^2)` (Abel), which is constant, `G* delta`, within c. So `delta = 2 tau sqrt(a^2 - c^2)/G*`, and
+/// the integral of the line load is `T = 2 tau (a^2 acos(c/a) + c sqrt(a^2 - c^2))`. At c = a the punch sticks, with
+/// the stiffness `2 G* a`; at c = 0 it slides at `pi tau a^2`.
+fn under_a_punch(cells: usize, stick: f64) -> [f64; 4] {
+    let (tau, pair) = (3e-4, alike(0.0));
+    let surface = Surface::FlatCircle { radius: 0.4, size: 1.0.into() };
+    let mut scene = Scene::of_pair(surface, pair).unwrap();
+    scene.effects.friction = Friction::tresca(tau);
+    scene.outputs =
+        Outputs { area: true, stick_area: true, tangential_stiffness_stuck: true, ..Outputs::default() };
+    let mut contact = Bem3d { cells, tolerance: 1e-9, ..Bem3d::default() }.prepare(&scene, 0).unwrap();
+    // The radius of the cells of the punch.
+    let first = contact.advance(Step::new(0.0, Load::force(1e-3))).unwrap();
+    let a = (first.area.unwrap() / PI).sqrt();
+    let (shear, c) = (pair.shear_modulus().unwrap(), stick * a);
+    let root = (a * a - c * c).sqrt();
+    let delta = 2.0 * tau * root / shear;
+    let step = Step::new(0.0, Load::force(1e-3).with_tangential(Tangential::Displacement([0.0, -delta])));
+    let found = contact.advance(step).unwrap().tangential.unwrap();
+    let force = 2.0 * tau * (a * a * stick.acos() + c * root);
+    [
+        -found.force[1] / force - 1.0,
+        found.stick_area.unwrap() / (PI * c * c) - 1.0,
+        found.sliding_force.unwrap() / (PI * tau * a * a) - 1.0,
+        found.stiffness_stuck.unwrap()[1][1] / (2.0 * shear * a) - 1.0,
+    ]
+}
+
+#[test]
+fn tresca_under_a_flat_punch_is_the_closed_form() {
+    for stick in [0.9, 0.6, 0.3] {
+        let mut errors = Vec::new();
+        for cells in [33, 65, 129] {
+            let [force, area, sliding, stiffness] = under_a_punch(cells, stick);
+            println!(
+                "c/a {stick} N {cells}: force {force:.1e}, stick area {area:.1e}, stiffness {stiffness:.1e}"
+            );
+            // By the cells of the same area.
+            assert!(sliding.abs() < 1e-12, "{sliding}");
+            errors.push([force.abs(), area.abs(), stiffness.abs()]);
+        }
+        let [coarse, _, fine] = errors[..] else { panic!() };
+        assert!(fine[0] < 2e-3 && fine[1] < 0.03 && fine[2] < 0.01, "{fine:?}");
+        assert!(fine[0] < 0.5 * coarse[0] && fine[2] < 0.5 * coarse[2], "{coarse:?} {fine:?}");
+    }
+}
+
+/// A rough surface with friction and perhaps a hardness, loaded, dragged, unloaded.
+fn rough_path(law: FrictionLaw, hardness: Option<f64>, boundary: Boundary) -> Vec<ContactState> {
+    let mut scene = Scene { pair: Some(alike(0.3)), ..tests::scene(rough_map(2.3, 24, 3).unwrap()) };
+    scene.effects = Effects {
+        boundary,
+        hardness: hardness.map_or(Hardness::Off, |pressure| Hardness::Limit { pressure }),
+        friction: Friction::of(law),
+        ..Effects::default()
+    };
+    scene.outputs = Outputs { pressure: true, traction: true, slip: true, ..Outputs::default() };
+    let mut contact = Bem3d { tolerance: 1e-9, ..Bem3d::default() }.prepare(&scene, 0).unwrap();
+    let path = [
+        (0.2, [0.0, 0.0]),
+        (0.2, [0.04, 0.0]),
+        (0.4, [0.05, 0.03]),
+        (0.3, [-0.03, 0.02]),
+        (0.1, [0.0, 0.01]),
+    ];
+    path.iter()
+        .map(|&(force, tangential)| {
+            let load = Load::force(force).with_tangential(Tangential::Force(tangential));
+            contact.advance(Step::new(0.0, load)).unwrap()
+        })
+        .collect()
+}
+
+/// Every number of a path by its bits.
+fn bits(states: &[ContactState]) -> Vec<u64> {
+    let numbers = |state: &ContactState| {
+        let (found, fields) = (state.tangential.unwrap(), state.fields.as_ref().unwrap());
+        let [x, y] = fields.traction.as_ref().unwrap();
+        let [sx, sy] = fields.slip.as_ref().unwrap();
+        let maps = [fields.pressure.as_ref().unwrap(), x, y, sx, sy];
+        let scalars =
+            [found.displacement[0], found.displacement[1], found.dissipated, state.approach.unwrap_or(0.0)];
+        maps.into_iter()
+            .flat_map(|map| map.values().to_vec())
+            .chain(scalars)
+            .map(f64::to_bits)
+            .collect::<Vec<_>>()
+    };
+    states.iter().flat_map(numbers).collect()
+}
+
+#[test]
+fn laws_become_one_another_in_their_limits() {
+    for boundary in [Boundary::Free, Boundary::Periodic] {
+        let coulomb = FrictionLaw::coulomb(0.4);
+        let expected = bits(&rough_path(coulomb, None, boundary));
+        // A limit that nothing reaches, a strength that adds nothing, and a hardness beyond all pressures.
+        for (law, hardness) in [
+            (FrictionLaw { limit: Some(1e9), ..coulomb }, None),
+            (FrictionLaw { shear_strength: 1e-300, limit: Some(1e9), ..coulomb }, None),
+            (coulomb, Some(1e9)),
+        ] {
+            assert_eq!(
+                bits(&rough_path(law, hardness, boundary)),
+                expected,
+                "{law:?} {hardness:?} {boundary:?}"
+            );
+        }
+        // A limit below every other traction is Tresca's law.
+        let capped = FrictionLaw { coefficient: 1e9, shear_strength: 1.0, limit: Some(1.0) };
+        let tresca = bits(&rough_path(FrictionLaw::tresca(1.0), None, boundary));
+        assert_eq!(bits(&rough_path(capped, None, boundary)), tresca);
+        // A large strength sticks, as a large coefficient does; only cells without pressure differ.
+        let stuck =
+            [FrictionLaw::tresca(1e6), FrictionLaw::coulomb(1e9)].map(|law| rough_path(law, None, boundary));
+        for (a, b) in stuck[0].iter().zip(&stuck[1]) {
+            let (a, b) = (a.tangential.unwrap(), b.tangential.unwrap());
+            for k in 0..2 {
+                let size = a.displacement[0].hypot(a.displacement[1]);
+                assert!((a.displacement[k] - b.displacement[k]).abs() <= 1e-3 * size, "{a:?} {b:?}");
+            }
+        }
+    }
+}
+
+/// A force beyond the strength of all cells in contact is refused with the sliding force.
+#[test]
+fn the_sliding_force_is_the_sum_of_the_largest_tractions() {
+    let law = FrictionLaw { coefficient: 0.3, shear_strength: 0.2, limit: Some(1.0) };
+    let (map, pair) = (rough_map(2.3, 24, 3).unwrap(), alike(0.3));
+    let area = map.dx() * map.dy();
+    for hardness in [None, Some(4.0)] {
+        let mut scene = Scene { pair: Some(pair), ..tests::scene(map.clone()) };
+        scene.effects.friction = Friction::of(law);
+        scene.effects.hardness = hardness.map_or(Hardness::Off, |pressure| Hardness::Limit { pressure });
+        scene.outputs = Outputs { pressure: true, ..Outputs::default() };
+        let mut contact = Bem3d::default().prepare(&scene, 0).unwrap();
+        let state = contact.advance(Step::new(0.0, Load::force(0.3))).unwrap();
+        let p = state.pressure().unwrap().values();
+        let of_cells: f64 = p.iter().filter(|p| **p > 0.0).map(|&p| law.largest_traction(p) * area).sum();
+        let sliding = state.tangential.unwrap().sliding_force.unwrap();
+        assert!((sliding / of_cells - 1.0).abs() < 1e-12, "{sliding} {of_cells}");
+        let beyond = Load::force(0.3).with_tangential(Tangential::Force([0.0, 1.01 * sliding]));
+        let refused = contact.advance(Step::new(0.0, beyond)).unwrap_err();
+        assert!(
+            matches!(refused, Error::OutOfRange { max, .. } if (max / sliding - 1.0).abs() < 1e-9),
+            "{refused}"
+        );
+    }
+}
+
+/// Every number of a law that makes no sense is named, and so are models and effects that do not go with it.
+#[test]
+fn laws_that_make_no_sense_or_are_not_solved_are_refused() {
+    let sphere = Surface::Sphere { radius: 1.0, size: 0.5.into() };
+    let scene = |friction| {
+        let mut scene = Scene::of_pair(sphere.clone(), alike(0.3)).unwrap();
+        scene.effects.friction = friction;
+        scene
+    };
+    let model = Bem3d { cells: 9, ..Bem3d::default() };
+    let refused = |model: &dyn ContactModel, friction| {
+        model.prepare(&scene(friction), 0).map(|_| ()).unwrap_err().to_string()
+    };
+    for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, -1.0] {
+        let strength = refused(&model, Friction::tresca(bad));
+        assert!(strength.starts_with(&format!("shear strength of friction = {bad}:")), "{strength}");
+        let law = FrictionLaw { limit: Some(bad), ..FrictionLaw::coulomb(0.3) };
+        let limit = refused(&model, Friction::of(law));
+        assert!(limit.starts_with(&format!("limit of friction = {bad}:")), "{limit}");
+    }
+    let none = FrictionLaw { limit: Some(0.0), ..FrictionLaw::coulomb(0.3) };
+    assert!(refused(&model, Friction::of(none)).starts_with("limit of friction = 0:"));
+    // Strengths that are no number in the units of the surface.
+    let small = refused(&model, Friction::tresca(5e-324));
+    assert!(small.contains("shear strength of friction"), "{small}");
+    let limited = Friction::of(FrictionLaw { limit: Some(0.1), ..FrictionLaw::coulomb(0.3) });
+    let equivalent = mdr1d::Equivalent::new(model);
+    let others: [&dyn ContactModel; 3] = [&mdr1d::PartialSlip, &equivalent, &analytic::CattaneoMindlin];
+    for other in others {
+        assert!(other.prepare(&scene(Friction::coulomb(0.3)), 0).is_ok());
+        let text = refused(other, Friction::tresca(0.1));
+        assert!(text.contains(other.name()) && text.contains("shear strength"), "{text}");
+        let text = refused(other, limited);
+        assert!(text.contains(other.name()) && text.contains("limit of the traction"), "{text}");
+    }
+    let text = refused(&model, Friction::tresca(0.1).with_coupling(Some(Coupling::Full)));
+    assert!(text.contains("together with") && text.contains("vanishing pressure"), "{text}");
+    assert!(model.prepare(&scene(limited.with_coupling(Some(Coupling::Full))), 0).is_ok());
+    let mut flows = scene(Friction::coulomb(0.3).with_coupling(Some(Coupling::Full)));
+    flows.effects.hardness = Hardness::Limit { pressure: 0.1 };
+    let text = model.prepare(&flows, 0).map(|_| ()).unwrap_err().to_string();
+    assert!(text.contains("a hardness together with") && text.contains("not solved"), "{text}");
 }

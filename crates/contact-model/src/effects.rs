@@ -128,6 +128,32 @@ macro_rules! effects {
     };
 }
 
+impl Effect {
+    /// The examples of this effect and of another one together; `None` where both are settings of one key that
+    /// exclude each other.
+    ///
+    /// ```
+    /// use contact_model::Effect;
+    /// assert!(Effect::Hardness.with(Effect::Friction).is_some());
+    /// assert!(Effect::Maxwell.with(Effect::KelvinVoigt).is_none());
+    /// ```
+    pub fn with(self, other: Self) -> Option<Effects> {
+        let (mut both, next) = (self.example(), other.example());
+        // All fields, so that a new effect is not forgotten.
+        let Effects { boundary: _, hardness, adhesion, friction, rheology } = next;
+        match (other.key(), self.key() == other.key()) {
+            ("hardness", false) => both.hardness = hardness,
+            ("adhesion", false) => both.adhesion = adhesion,
+            ("friction", false) => both.friction = friction,
+            ("rheology", false) => both.rheology = rheology,
+            ("friction", true) => both.friction = both.friction.joined(friction),
+            _ => return None,
+        }
+        let both_on = |effect| both.named().any(|named| named == effect);
+        (both_on(self) && both_on(other)).then_some(both)
+    }
+}
+
 // Each with its key in `[effects]`, its words, and an example.
 effects! {
     /// [`Hardness::Limit`].
@@ -323,6 +349,19 @@ impl Friction {
             Self::Off => Self::Off,
             Self::Slip { law, .. } => Self::Slip { law, coupling },
         }
+    }
+
+    /// What either of two has: the larger coefficient and shear strength, the smaller limit, the full coupling.
+    fn joined(self, other: Self) -> Self {
+        let (Self::Slip { law, coupling }, Self::Slip { law: next, coupling: also }) = (self, other) else {
+            return if self == Self::Off { other } else { self };
+        };
+        let law = FrictionLaw {
+            coefficient: law.coefficient.max(next.coefficient),
+            shear_strength: law.shear_strength.max(next.shear_strength),
+            limit: law.limit.into_iter().chain(next.limit).reduce(f64::min),
+        };
+        Self::Slip { law, coupling: coupling.or(also) }
     }
 
     /// Its law; `None` without friction.
