@@ -184,7 +184,7 @@ fn friction() {
         Step::new(i as f64, Load::force(force).with_tangential(Tangential::Force(tangential)))
     })
     .collect();
-    let limited = FrictionLaw { limit: Some(0.01), ..FrictionLaw::coulomb(0.4) };
+    let limited = FrictionLaw { limit: Some(0.06), ..FrictionLaw::coulomb(0.4) };
     let strong = FrictionLaw { shear_strength: 2e-3, ..limited };
     let flows = Hardness::Limit { pressure: 0.05 };
     for (name, law, hardness, full, cells) in [

@@ -249,6 +249,17 @@ impl Abilities {
         lacks.into_iter()
     }
 
+    /// Every two effects of the model that a scene can have together, in the order of [`Effect::ALL`], and why the
+    /// model does not combine them; `None` where it does.
+    pub fn pairs(&self) -> impl Iterator<Item = (Effect, Effect, Option<&'static str>)> + use<> {
+        let (effects, abilities) = (self.effects, *self);
+        let known = move || Effect::ALL.iter().copied().filter(|effect| effects.contains(effect));
+        let after = move |one: Effect| known().skip_while(move |other| *other != one).skip(1);
+        known().flat_map(move |one| after(one).map(move |other| (one, other))).filter_map(move |(one, other)| {
+            one.with(other).map(|_| (one, other, abilities.reason_against(one, other)))
+        })
+    }
+
     /// Why the model does not combine these two of its effects; `None` where it does.
     pub fn reason_against(&self, one: Effect, other: Effect) -> Option<&'static str> {
         self.not_combined.iter().find(|pair| pair.excludes(one, other)).map(|pair| pair.reason)
