@@ -49,7 +49,7 @@ mod _core {
     #[pymodule_export]
     use crate::io::{channels, read_surface, si, write_surface};
     #[pymodule_export]
-    use crate::model::{Model, model, models};
+    use crate::model::{Model, combinations, model, models};
     #[pymodule_export]
     use crate::picture::picture;
     #[pymodule_export]

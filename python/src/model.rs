@@ -78,6 +78,30 @@ pub fn models(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
     MODELS.iter().map(row).collect()
 }
 
+/// Which effects each model combines.
+///
+/// Returns
+/// -------
+/// list of dict
+///     For every two effects of a model that a scene can have together: ``model`` (its name), ``effects`` (both in
+///     words), ``keys`` (both names in `Effects`), ``combined``, and ``reason`` (why not, or None).
+#[pyfunction]
+pub fn combinations(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
+    let mut rows = Vec::new();
+    for record in MODELS {
+        for (one, other, reason) in record.model.abilities().pairs() {
+            let row = PyDict::new(py);
+            row.set_item("model", record.name())?;
+            row.set_item("effects", (one.words(), other.words()))?;
+            row.set_item("keys", (one.key(), other.key()))?;
+            row.set_item("combined", reason.is_none())?;
+            row.set_item("reason", reason)?;
+            rows.push(row);
+        }
+    }
+    Ok(rows)
+}
+
 /// A model by the name that scenes give it.
 #[pyfunction]
 #[pyo3(signature = (name, options, inner=None))]

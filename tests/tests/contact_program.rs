@@ -172,7 +172,7 @@ fn spences_compression_in_35_increments() {
     let map = paraboloid(0.004_116, [45, 45], [-4.4999; 2], 0.2);
     // The second body is 200 000 times as stiff, which CONTACT calls rigid.
     let pair = Pair { first: body(0.5, 0.0), second: body(1e5, 0.0) };
-    let friction = Friction::Coulomb { coefficient: 0.2986, coupling: Some(Coupling::Full) };
+    let friction = Friction::coulomb(0.2986).with_coupling(Some(Coupling::Full));
     let mut contact = prepared(map.clone(), pair, friction);
     let increments = rows("data/peers/contact-spence.csv");
     assert_eq!(increments.len(), 35);

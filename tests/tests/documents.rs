@@ -10,8 +10,8 @@ mod readmes;
 mod sources;
 
 use crate::abilities::told;
-use contact_model::Output;
 use contact_model::quantities::{Average, Compared, QUANTITIES, Quantity, Role};
+use contact_model::{Effect, Output};
 use fractal_contact::models::{MODELS, ModelRecord, abilities};
 use fractal_contact::scenes::{EFFECT_KEYS, EffectKey, SceneKey, scene_keys};
 use std::collections::BTreeSet;
@@ -126,14 +126,53 @@ fn models_page() -> String {
          each model. Each model declares these abilities as data (`ContactModel::abilities`), and in Python they are\n\
          `model.supports`. A scene that needs more is refused before anything is computed. The error names the models\n\
          that can answer it.\n\n\
-         A model takes one effect beside the boundary at a time. So a hardness, adhesion and friction are refused\n\
-         together, and so are friction and a rheology.\n\n{}\n## What they are\n\n{}",
+         [Which effects go together](#which-effects-go-together) stands below.\n\n{}\n## Which effects go together\n\n\
+         Effects that a model takes one by one need not go together. These tables have the models that take more than\n\
+         one. A number stands where a scene with both is refused, and the list below the table has the reason. A dash\n\
+         stands where both are settings of one key, of which a scene has one. The boundary goes with every effect.\n\
+         `Abilities::not_combined` of each model holds the same as data, and in Python it is `combinations()`.\n\n{}\
+         ## What they are\n\n{}",
         table(
             &["model", "surfaces", "boundaries", "effects", "needs", "loads", "paths", "outputs"],
             MODELS.iter().map(cells)
         ),
+        MODELS.iter().filter_map(combinations).collect::<String>(),
         table(&["model", "what it is", "what to expect of its numbers"], MODELS.iter().map(about)),
     )
+}
+
+/// Which effects of a model go together; `None` for a model with a single key of effects.
+fn combinations(record: &ModelRecord) -> Option<String> {
+    let abilities = record.model.abilities();
+    let effects: Vec<Effect> =
+        Effect::ALL.iter().copied().filter(|effect| abilities.effects.contains(effect)).collect();
+    if effects.iter().all(|effect| effect.key() == effects[0].key()) {
+        return None;
+    }
+    let mut reasons: Vec<&str> = Vec::new();
+    let mut rows = Vec::new();
+    for (i, one) in effects.iter().enumerate() {
+        let mut row = vec![one.words().to_owned()];
+        for (j, other) in effects.iter().enumerate() {
+            row.push(if i == j {
+                String::new()
+            } else if let Some(reason) = abilities.reason_against(*one, *other) {
+                if !reasons.contains(&reason) {
+                    reasons.push(reason);
+                }
+                (1 + reasons.iter().position(|known| *known == reason).unwrap()).to_string()
+            } else if one.with(*other).is_none() {
+                "-".to_owned()
+            } else {
+                "yes".to_owned()
+            });
+        }
+        rows.push(row);
+    }
+    let heads: Vec<&str> = [""].into_iter().chain(effects.iter().map(|effect| effect.words())).collect();
+    let listed: Vec<String> =
+        reasons.iter().enumerate().map(|(i, why)| format!("{}. {why}\n", i + 1)).collect();
+    Some(format!("### `{}`\n\n{}\n{}\n", record.name(), table(&heads, rows), listed.concat()))
 }
 
 /// The keys of `[effects]` of a scene.

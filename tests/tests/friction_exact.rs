@@ -136,7 +136,7 @@ fn the_radius_that_sticks_is_cattaneos() {
 
 fn coupled(surface: Surface, pair: Pair, mu: f64) -> Scene {
     let mut scene = Scene::of_pair(surface, pair).unwrap();
-    scene.effects.friction = Friction::Coulomb { coefficient: mu, coupling: Some(Coupling::Full) };
+    scene.effects.friction = Friction::coulomb(mu).with_coupling(Some(Coupling::Full));
     scene.outputs = Outputs { area: true, stick_area: true, ..Outputs::default() };
     scene
 }

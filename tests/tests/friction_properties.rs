@@ -432,7 +432,7 @@ fn invalid_coefficients_are_named() {
     scene.outputs = Outputs { traction: true, ..Outputs::default() };
     for coupling in [None, Some(Coupling::Neglected), Some(Coupling::Full)] {
         for bad in [f64::NAN, f64::INFINITY, -1e-300, -0.3, f64::NEG_INFINITY] {
-            scene.effects.friction = Friction::Coulomb { coefficient: bad, coupling };
+            scene.effects.friction = Friction::coulomb(bad).with_coupling(coupling);
             let refused = Bem3d::default().prepare(&scene, 0).err().unwrap().to_string();
             let value =
                 refused.strip_prefix("coefficient of friction = ").and_then(|rest| rest.split(':').next());
@@ -444,7 +444,7 @@ fn invalid_coefficients_are_named() {
         for coefficient in [0.0, 5e-324, 1e-300, 1e-9, 1e9, 1e200, 1e300, f64::MAX] {
             for boundary in [Boundary::Free, Boundary::Periodic] {
                 scene.effects.boundary = boundary;
-                scene.effects.friction = Friction::Coulomb { coefficient, coupling };
+                scene.effects.friction = Friction::coulomb(coefficient).with_coupling(coupling);
                 let model = Bem3d { tolerance: TOLERANCE, ..Bem3d::default() };
                 let mut contact = model.prepare(&scene, 0).unwrap();
                 match advance(&mut *contact, Tangential::Displacement([1e-3, 0.0])) {

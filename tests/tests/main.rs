@@ -15,6 +15,7 @@ mod exponent_study;
 mod exponents;
 mod friction;
 mod friction_exact;
+mod friction_laws;
 mod friction_properties;
 mod grid_error;
 mod hard;

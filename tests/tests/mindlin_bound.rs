@@ -110,7 +110,7 @@ proptest! {
         let force = 10_f64.powf(exponent) * pair.contact_modulus().unwrap() * if rms > 0.0 { rms } else { 1.0 };
         let mut scene = Scene::of_pair(Surface::Heights(Arc::new(map)), pair).unwrap();
         scene.effects.boundary = if periodic { Boundary::Periodic } else { Boundary::Free };
-        scene.effects.friction = Friction::Coulomb { coefficient: 0.3, coupling: Some(Coupling::Neglected) };
+        scene.effects.friction = Friction::coulomb(0.3).with_coupling(Some(Coupling::Neglected));
         scene.outputs = Outputs { stiffness: true, tangential_stiffness_stuck: true, ..Outputs::default() };
         let model = Bem3d { tolerance: TOLERANCE, ..Bem3d::default() };
         let state = model.prepare(&scene, 0).unwrap().advance(Step::new(0.0, Load::force(force)));

@@ -217,7 +217,7 @@ fn bodies_with_coupling_need_the_choice_of_it() {
     let force = 0.01;
     let mut displacements = Vec::new();
     for coupling in [Coupling::Neglected, Coupling::Full] {
-        scene.effects.friction = Friction::Coulomb { coefficient: MU, coupling: Some(coupling) };
+        scene.effects.friction = Friction::coulomb(MU).with_coupling(Some(coupling));
         let mut contact = model(24).prepare(&scene, 1).unwrap();
         advance(&mut *contact, step(0.0, force, [0.0; 2]));
         let mut dissipated = 0.0;

@@ -651,7 +651,7 @@ fn rubbed(draw: &mut Draw, holes: bool) -> Result<(Scene, f64, f64), Error> {
     (scene.contact_modulus, scene.pair) = (pair.contact_modulus()?, Some(pair));
     let coefficient = draw.between(0.05, 0.8);
     let coupling = Some(if draw.chance(0.6) { Coupling::Full } else { Coupling::Neglected });
-    scene.effects.friction = Friction::Coulomb { coefficient, coupling };
+    scene.effects.friction = Friction::coulomb(coefficient).with_coupling(coupling);
     let outputs = &mut scene.outputs;
     (outputs.traction, outputs.slip, outputs.stick_slip, outputs.stick_area) = (true, true, true, true);
     (outputs.tangential_stiffness, outputs.tangential_stiffness_stuck) = (true, true);

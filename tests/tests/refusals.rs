@@ -6,8 +6,8 @@ use analytic::{
 use bem3d::Bem3d;
 use contact_model::quantities::{AskedBy, QUANTITIES};
 use contact_model::{
-    Adhesion, AdhesionLaw, Body, Boundary, Conductance, ContactModel, Effects, Error, Friction, Hardness,
-    Line, Load, Output, Outputs, Pair, Rheology, Scene, Step, Surface,
+    Adhesion, AdhesionLaw, Body, Boundary, Conductance, ContactModel, Effect, Effects, Error, Friction,
+    Hardness, Line, Load, Output, Outputs, Pair, Rheology, Scene, Step, Surface,
 };
 use mdr1d::{Equivalent, Mdr1d, PartialSlip, Viscoelastic};
 use std::sync::Arc;
@@ -127,31 +127,41 @@ fn effects_are_refused() {
     }
 }
 
-/// No model takes two effects beside the boundary at once.
+/// Two effects at once are taken as the table of the model says: refused by the reason that stands there, prepared
+/// otherwise.
 #[test]
-fn two_effects_together_are_refused() {
+fn two_effects_together_are_as_the_table_says() {
     let body = Body::Elastic { young: 2.0, poisson: 0.3 };
     let sphere = Surface::Sphere { radius: 1.0, size: 0.5.into() };
     let scene = Scene::of_pair(sphere, Pair { first: body, second: body }).unwrap();
-    let [_, adhesion, hardness, range, friction, rheology] = each_effect().map(|(_, effects)| effects);
-    let hardness = |effects| Effects { hardness: hardness.hardness, ..effects };
-    let friction_too = |effects| Effects { friction: friction.friction, ..effects };
-    let pairs = [
-        hardness(adhesion),
-        hardness(range),
-        hardness(friction),
-        hardness(rheology),
-        friction_too(adhesion),
-        friction_too(range),
-        friction_too(rheology),
-        Effects { rheology: rheology.rheology, ..adhesion },
-        Effects { rheology: rheology.rheology, ..range },
-    ];
+    let (mut refused, mut taken) = (0, 0);
     for record in fractal_contact::models::MODELS {
-        for effects in pairs {
-            unsupported(record.model, &Scene { effects, ..scene.clone() });
+        let abilities = record.model.abilities();
+        for (&one, &other) in
+            Effect::ALL.iter().enumerate().flat_map(|(i, a)| Effect::ALL[i + 1..].iter().map(move |b| (a, b)))
+        {
+            let Some(effects) = one.with(other) else { continue };
+            let scene = Scene { effects, ..scene.clone() };
+            if !abilities.effects.contains(&one) || !abilities.effects.contains(&other) {
+                unsupported(record.model, &scene);
+                continue;
+            }
+            match abilities.reason_against(one, other) {
+                Some(reason) => {
+                    let what = unsupported(record.model, &scene);
+                    assert!(what.contains("together with") && what.contains(reason), "{what}");
+                    refused += 1;
+                }
+                None => {
+                    let prepared = record.model.prepare(&scene, 0).map(|_| ());
+                    assert!(prepared.is_ok(), "{}: {one:?} {other:?}: {prepared:?}", record.model.name());
+                    taken += 1;
+                }
+            }
         }
     }
+    // Those of the boundary elements and of equivalent profiles.
+    assert!(refused >= 10 && taken >= 5, "{refused} {taken}");
 }
 
 /// Theories of periodic contact take only scenes with periodic boundaries, and no other effect; their states

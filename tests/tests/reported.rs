@@ -216,7 +216,7 @@ fn a_step_of_nothing_keeps_stick_and_slip() {
     let pair = Pair { first: Body::Elastic { young: 1.0, poisson: 0.3 }, second: Body::Rigid };
     for coupling in [Coupling::Neglected, Coupling::Full] {
         let mut scene = Scene::of_pair(Surface::Sphere { radius: 1.0, size: 1.0.into() }, pair).unwrap();
-        scene.effects.friction = Friction::Coulomb { coefficient: 0.3, coupling: Some(coupling) };
+        scene.effects.friction = Friction::coulomb(0.3).with_coupling(Some(coupling));
         (scene.outputs.stick_area, scene.outputs.tangential_stiffness) = (true, true);
         let mut contact = Bem3d { cells: 33, ..Bem3d::default() }.prepare(&scene, 0).unwrap();
         let mut at = |tangential| {

@@ -5,9 +5,9 @@ use crate::closed::{self, ROUNDED_UP};
 use crate::hertz::Hertz;
 use crate::memory::{SlipCurve, SlipLoad, held, lost, reached};
 use contact_model::{
-    Abilities, ContactModel, ContactState, Effect, Effects, Error, Friction, Load, NormalLoad, Normalisation,
-    Outputs, Paths, PreparedContact, Result, Scene, Source, Step, Stop, Tangential, TangentialState,
-    check_stop,
+    Abilities, ContactModel, ContactState, Effect, Effects, Error, FrictionLaw, Load, NormalLoad,
+    Normalisation, Outputs, Paths, PreparedContact, Result, Scene, Source, Step, Stop, Tangential,
+    TangentialState, check_stop,
 };
 
 const NAME: &str = "cattaneo_mindlin";
@@ -20,7 +20,7 @@ const NAME: &str = "cattaneo_mindlin";
 /// was left there (Mindlin and Deresiewicz 1953). The memory is the list of reversals whose loops are not
 /// closed.
 ///
-/// Takes [`contact_model::Surface::Sphere`] with [`Friction::Coulomb`] and both bodies ([`Scene::of_pair`]).
+/// Takes [`contact_model::Surface::Sphere`] with [`Friction::Slip`] and both bodies ([`Scene::of_pair`]).
 /// The normal load may change only before the first tangential one; a tangential force beyond mu F is
 /// [`Error::OutOfRange`], a displacement beyond is gross slip. The theory neglects the influence of
 /// tangential tractions on the normal ones. This is exact where [`contact_model::Pair::coupling`] is 0, and
@@ -72,8 +72,8 @@ impl ContactModel for CattaneoMindlin {
 
     fn prepare(&self, scene: &Scene, seed: u64) -> Result<Box<dyn PreparedContact>> {
         closed::sphere(self, scene)?;
-        let Friction::Coulomb { coefficient, .. } = scene.effects.friction else {
-            return Err(Error::unsupported(NAME, "friction of another law than Coulomb's"));
+        let Some(FrictionLaw { coefficient, .. }) = scene.effects.friction.law() else {
+            return Err(Error::unsupported(NAME, "a contact without friction"));
         };
         if coefficient <= 0.0 {
             return Err(Error::domain("coefficient of friction", coefficient, "a finite number > 0"));
@@ -305,7 +305,7 @@ mod tests {
     use super::*;
     use crate::testing::{PRINTED, ROUNDING};
     use approx::{assert_abs_diff_eq, assert_relative_eq};
-    use contact_model::{Body, Load, Pair, Surface};
+    use contact_model::{Body, Friction, Load, Pair, Surface};
     use proptest::prelude::*;
     use proptest::test_runner::RngSeed;
 

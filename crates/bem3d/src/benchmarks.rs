@@ -195,7 +195,7 @@ impl PartialSlipBench {
         let contact = PressedCells { cells, pressure };
         let limits = FrictionLimits { tolerance, unresolved: tolerance, iterations: 100 };
         let control = TangentialControl::Force([force, 0.0]);
-        let load = FrictionLoad { coefficient, control };
+        let load = FrictionLoad { law: contact_model::FrictionLaw::coulomb(coefficient), control };
         let guess = guess.as_ref().map(|q| (&*cells, &q[..]));
         let state = friction.advance(&SlipMemory::default(), contact, load, guess, limits, &never).ok()?;
         let [after, _] = friction.work();

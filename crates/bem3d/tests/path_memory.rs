@@ -4,8 +4,8 @@
 #![allow(clippy::unwrap_used)] // Helpers of tests.
 
 use bem3d::{
-    Adhesion, AdhesionLaw, Bem3d, Boundary, ContactModel, ContactState, Friction, Hardness, Load, Pair,
-    PathMemory, PreparedContact, Scene, SelfAffine, Step, Surface, Tangential,
+    Adhesion, AdhesionLaw, Bem3d, Boundary, ContactModel, ContactState, Friction, FrictionLaw, Hardness,
+    Load, Pair, PathMemory, PreparedContact, Scene, SelfAffine, Step, Surface, Tangential,
 };
 use contact_model::{Error, never};
 use std::cell::Cell;
@@ -184,19 +184,24 @@ fn friction() {
         Step::new(i as f64, Load::force(force).with_tangential(Tangential::Force(tangential)))
     })
     .collect();
-    for (full, cells) in [(false, 129), (true, 49)] {
+    let limited = FrictionLaw { limit: Some(0.06), ..FrictionLaw::coulomb(0.4) };
+    let strong = FrictionLaw { shear_strength: 2e-3, ..limited };
+    let flows = Hardness::Limit { pressure: 0.05 };
+    for (name, law, hardness, full, cells) in [
+        ("friction", FrictionLaw::coulomb(0.4), Hardness::Off, false, 129),
+        ("friction with a shear strength", strong, Hardness::Off, false, 49),
+        ("friction with a hardness", strong, flows, false, 49),
+        ("friction, coupled", FrictionLaw::coulomb(0.4), Hardness::Off, true, 49),
+        ("friction with a limit, coupled", limited, Hardness::Off, true, 25),
+    ] {
         let pair = Pair {
             first: bem3d::Body::Rigid,
             second: bem3d::Body::Elastic { young: 0.9, poisson: if full { 0.2 } else { 0.5 } },
         };
         let mut scene = Scene::of_pair(rough(0.7, 0.01), pair).unwrap();
-        scene.effects.friction = Friction::coulomb(0.4);
-        if full {
-            scene.effects.friction =
-                Friction::Coulomb { coefficient: 0.4, coupling: Some(bem3d::Coupling::Full) };
-        }
+        scene.effects.friction = Friction::of(law).with_coupling(full.then_some(bem3d::Coupling::Full));
+        scene.effects.hardness = hardness;
         scene.outputs.tangential_stiffness = !full;
-        let name = if full { "friction, coupled" } else { "friction" };
         check(name, &scene, cells, &path);
         scene.outputs.tangential_stiffness = true;
         stop_anywhere(name, &scene, (if full { 13 } else { 33 }, 8), &path);

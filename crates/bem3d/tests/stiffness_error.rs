@@ -47,7 +47,7 @@ fn the_estimated_error_of_k_covers_the_true_one() {
 fn the_stiffness_under_full_coupling_meets_its_tolerance() {
     let pair = Pair { first: Body::Rigid, second: Body::Elastic { young: 1.0, poisson: 0.2 } };
     let mut scene = Scene::of_pair(Surface::Sphere { radius: 1.0, size: 1.0.into() }, pair).unwrap();
-    scene.effects.friction = Friction::Coulomb { coefficient: 0.5, coupling: Some(Coupling::Full) };
+    scene.effects.friction = Friction::coulomb(0.5).with_coupling(Some(Coupling::Full));
     let model = Bem3d { cells: 73, ..Bem3d::default() };
     let mut contact = model.prepare(&scene, 0).unwrap();
     for step in 1..=40 {

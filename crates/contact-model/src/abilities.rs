@@ -126,11 +126,29 @@ pub enum Paths {
     Needed,
 }
 
+/// Effects that a model treats each by itself, but not together.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[allow(clippy::exhaustive_structs)] // A model writes all of it.
+pub struct NotCombined {
+    /// None of the first group goes with any of the second one.
+    pub effects: [&'static [Effect]; 2],
+    /// Why not: a reason of physics, or that it is not solved.
+    pub reason: &'static str,
+}
+
+impl NotCombined {
+    /// Whether it excludes these two together, in either order.
+    pub fn excludes(&self, one: Effect, other: Effect) -> bool {
+        let [first, second] = self.effects;
+        first.contains(&one) && second.contains(&other) || first.contains(&other) && second.contains(&one)
+    }
+}
+
 /// The abilities of a model. [`Abilities::refuse`] refuses a scene that requests more, before anything is
 /// planned.
 ///
 /// These conditions are necessary, not sufficient: a model itself refuses, in `prepare`, what depends on
-/// several of them together or on numbers.
+/// numbers, or on a surface together with something else.
 ///
 /// ```
 /// use contact_model::{Abilities, Boundary, Effect, LoadKind, Output, Paths, Scene, Surface, SurfaceKind};
@@ -154,6 +172,8 @@ pub struct Abilities {
     pub boundaries: &'static [Boundary],
     /// Effects that it can treat.
     pub effects: &'static [Effect],
+    /// Pairs of them that it does not combine.
+    pub not_combined: &'static [NotCombined],
     /// Whether a scene must have at least one of these effects.
     pub needs_effect: bool,
     /// Loads that may be prescribed.
@@ -173,6 +193,7 @@ impl Abilities {
         surfaces: &[],
         boundaries: &[Boundary::Free],
         effects: &[],
+        not_combined: &[],
         needs_effect: false,
         loads: &[LoadKind::Force, LoadKind::Approach],
         paths: Paths::Forgotten,
@@ -203,6 +224,17 @@ impl Abilities {
         for effect in scene.effects.named().filter(|effect| !self.effects.contains(effect)) {
             lacks.push(effect.words().to_owned());
         }
+        let named: Vec<Effect> =
+            scene.effects.named().filter(|effect| self.effects.contains(effect)).collect();
+        let pairs = named
+            .iter()
+            .enumerate()
+            .flat_map(|(i, one)| named[i + 1..].iter().map(move |other| (one, other)));
+        for (&one, &other) in pairs {
+            if let Some(reason) = self.reason_against(one, other) {
+                lacks.push(format!("{} together with {}: {reason}", one.words(), other.words()));
+            }
+        }
         if !self.surfaces.contains(&SurfaceKind::of(&scene.surface)) {
             lacks.push(scene.surface.kind().to_owned());
         }
@@ -215,6 +247,22 @@ impl Abilities {
             lacks.push(format!("a contact without {}", keys.join(" or ")));
         }
         lacks.into_iter()
+    }
+
+    /// Every two effects of the model that a scene can have together, in the order of [`Effect::ALL`], and why the
+    /// model does not combine them; `None` where it does.
+    pub fn pairs(&self) -> impl Iterator<Item = (Effect, Effect, Option<&'static str>)> + use<> {
+        let (effects, abilities) = (self.effects, *self);
+        let known = move || Effect::ALL.iter().copied().filter(|effect| effects.contains(effect));
+        let after = move |one: Effect| known().skip_while(move |other| *other != one).skip(1);
+        known().flat_map(move |one| after(one).map(move |other| (one, other))).filter_map(
+            move |(one, other)| one.with(other).map(|_| (one, other, abilities.reason_against(one, other))),
+        )
+    }
+
+    /// Why the model does not combine these two of its effects; `None` where it does.
+    pub fn reason_against(&self, one: Effect, other: Effect) -> Option<&'static str> {
+        self.not_combined.iter().find(|pair| pair.excludes(one, other)).map(|pair| pair.reason)
     }
 
     /// Checks that the model accepts a load of this kind.

@@ -43,13 +43,14 @@ impl Effects {
                 positive("range of adhesion", range)?;
             }
         }
-        if let Friction::Coulomb { coefficient, .. } = self.friction {
-            non_negative("coefficient of friction", coefficient)?;
+        if let Friction::Slip { law, .. } = self.friction {
+            law.validate()?;
         }
         self.rheology.validate()
     }
 
-    /// The effects that are on. The boundary ([`Effects::boundary`]) does not count as one.
+    /// The effects that are on. The boundary ([`Effects::boundary`]) does not count as one. A shear strength and a
+    /// limit, which Coulomb's law does not have, count beside friction.
     ///
     /// ```
     /// use contact_model::{Adhesion, Effect, Effects};
@@ -69,10 +70,14 @@ impl Effects {
             Adhesion::FiniteRange { law: AdhesionLaw::Exponential, .. } => Some(Effect::ExponentialAdhesion),
             Adhesion::FiniteRange { law: AdhesionLaw::Dugdale, .. } => Some(Effect::DugdaleAdhesion),
         };
+        // Before friction itself, so that a model without any friction names the law that the scene has.
+        let law = friction.law();
+        let strength = law.filter(|law| law.shear_strength > 0.0).map(|_| Effect::ShearStrength);
+        let limit = law.filter(|law| law.limit.is_some()).map(|_| Effect::TractionLimit);
         let friction = match friction {
             Friction::Off => None,
-            Friction::Coulomb { coupling: None | Some(Coupling::Neglected), .. } => Some(Effect::Friction),
-            Friction::Coulomb { coupling: Some(Coupling::Full), .. } => Some(Effect::FullCoupling),
+            Friction::Slip { coupling: None | Some(Coupling::Neglected), .. } => Some(Effect::Friction),
+            Friction::Slip { coupling: Some(Coupling::Full), .. } => Some(Effect::FullCoupling),
         };
         let rheology = match rheology {
             Rheology::Elastic => None,
@@ -81,7 +86,7 @@ impl Effects {
             Rheology::StandardSolid { .. } => Some(Effect::StandardSolid),
             Rheology::Prony(_) => Some(Effect::PronySeries),
         };
-        [hardness, adhesion, friction, rheology].into_iter().flatten()
+        [hardness, adhesion, strength, limit, friction, rheology].into_iter().flatten()
     }
 }
 
@@ -106,7 +111,7 @@ macro_rules! effects {
             }
 
             /// This effect alone, with numbers that suit a side and an E* of about 1 and heights of about
-            /// 0.01: for trials of models.
+            /// 0.01: for trials of models. Its kind is the first one that [`Effects::named`] gives.
             pub fn example(self) -> Effects {
                 match self {
                     $(Self::$variant => Effects { $field: $example, ..Effects::default() },)+
@@ -123,6 +128,32 @@ macro_rules! effects {
     };
 }
 
+impl Effect {
+    /// The examples of this effect and of another one together; `None` where both are settings of one key that
+    /// exclude each other.
+    ///
+    /// ```
+    /// use contact_model::Effect;
+    /// assert!(Effect::Hardness.with(Effect::Friction).is_some());
+    /// assert!(Effect::Maxwell.with(Effect::KelvinVoigt).is_none());
+    /// ```
+    pub fn with(self, other: Self) -> Option<Effects> {
+        let (mut both, next) = (self.example(), other.example());
+        // All fields, so that a new effect is not forgotten.
+        let Effects { boundary: _, hardness, adhesion, friction, rheology } = next;
+        match (other.key(), self.key() == other.key()) {
+            ("hardness", false) => both.hardness = hardness,
+            ("adhesion", false) => both.adhesion = adhesion,
+            ("friction", false) => both.friction = friction,
+            ("rheology", false) => both.rheology = rheology,
+            ("friction", true) => both.friction = both.friction.joined(friction),
+            _ => return None,
+        }
+        let both_on = |effect| both.named().any(|named| named == effect);
+        (both_on(self) && both_on(other)).then_some(both)
+    }
+}
+
 // Each with its key in `[effects]`, its words, and an example.
 effects! {
     /// [`Hardness::Limit`].
@@ -137,12 +168,18 @@ effects! {
     /// [`Adhesion::FiniteRange`] with [`AdhesionLaw::Dugdale`].
     DugdaleAdhesion "adhesion" "adhesion by Dugdale's law"
         { adhesion: Adhesion::FiniteRange { work: 1e-4, range: 0.02, law: AdhesionLaw::Dugdale } },
-    /// [`Friction::Coulomb`], normal and tangential problems independent of each other.
+    /// [`Friction::Slip`], normal and tangential problems independent of each other.
     Friction "friction" "friction"
         { friction: Friction::coulomb(0.3) },
-    /// [`Friction::Coulomb`] with [`Coupling::Full`].
+    /// [`FrictionLaw::shear_strength`].
+    ShearStrength "friction" "friction with a shear strength"
+        { friction: Friction::tresca(0.02) },
+    /// [`FrictionLaw::limit`].
+    TractionLimit "friction" "friction with a limit of the traction"
+        { friction: Friction::of(FrictionLaw { limit: Some(0.02), ..FrictionLaw::coulomb(0.3) }) },
+    /// [`Friction::Slip`] with [`Coupling::Full`].
     FullCoupling "friction" "friction with full coupling of normal and tangential tractions"
-        { friction: Friction::Coulomb { coefficient: 0.3, coupling: Some(Coupling::Full) } },
+        { friction: Friction::coulomb(0.3).with_coupling(Some(Coupling::Full)) },
     /// [`Rheology::KelvinVoigt`].
     KelvinVoigt "rheology" "the rheology of Kelvin and Voigt"
         { rheology: Rheology::KelvinVoigt { viscosity: 1.0 } },
@@ -224,11 +261,11 @@ pub enum Friction {
     /// None.
     #[default]
     Off,
-    /// Coulomb's law: the tangential traction of a cell is at most `coefficient` times its pressure, and where
-    /// the cell slips it is that, in the direction of the slip.
-    Coulomb {
-        /// Coefficient of friction mu.
-        coefficient: f64,
+    /// Stick and slip: the tangential traction of a cell in contact is at most what its law allows at its
+    /// pressure, and where the cell slips it is that, in the direction of the slip.
+    Slip {
+        /// Largest traction of a cell.
+        law: FrictionLaw,
         /// How normal and tangential tractions act on each other; `None` leaves it open. It matters for
         /// bodies whose second Dundurs constant ([`crate::Pair::coupling`]) is not 0: a model that can do
         /// either then refuses `None` ([`crate::Scene::coupling`]), and one that always neglects the coupling
@@ -237,10 +274,102 @@ pub enum Friction {
     },
 }
 
+/// The largest tangential traction of a cell in contact with the pressure p:
+/// `min(limit, shear_strength + coefficient p)`.
+///
+/// A coefficient alone is Coulomb's law, a shear strength alone is Tresca's. With both, the junctions have a
+/// strength of their own which a pressure raises; the limit is the shear strength of the softer body, below
+/// whose surface the slip takes place once it is reached.
+///
+/// ```
+/// use contact_model::FrictionLaw;
+/// let law = FrictionLaw { coefficient: 0.5, shear_strength: 1.0, limit: Some(2.0) };
+/// assert_eq!([0.0, 1.0, 10.0].map(|pressure| law.largest_traction(pressure)), [1.0, 1.5, 2.0]);
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[allow(clippy::exhaustive_structs)] // A scene writes all of it.
+pub struct FrictionLaw {
+    /// Coefficient of friction mu.
+    pub coefficient: f64,
+    /// Traction that slip needs without any pressure, in the unit of pressures.
+    pub shear_strength: f64,
+    /// Largest traction at any pressure, in the unit of pressures; `None` without.
+    pub limit: Option<f64>,
+}
+
+impl FrictionLaw {
+    /// Coulomb's law: in proportion to the pressure.
+    pub fn coulomb(coefficient: f64) -> Self {
+        Self { coefficient, shear_strength: 0.0, limit: None }
+    }
+
+    /// Tresca's law: the same at any pressure.
+    pub fn tresca(shear_strength: f64) -> Self {
+        Self { coefficient: 0.0, shear_strength, limit: None }
+    }
+
+    /// The largest traction of a cell in contact with this pressure.
+    pub fn largest_traction(&self, pressure: f64) -> f64 {
+        let traction = self.shear_strength + self.coefficient * pressure;
+        self.limit.map_or(traction, |limit| traction.min(limit))
+    }
+
+    /// Checks the numbers.
+    ///
+    /// # Errors
+    /// [`Error::Domain`] for a coefficient or a shear strength that is negative or not finite, and for a limit
+    /// that is not positive and finite.
+    pub fn validate(&self) -> Result<()> {
+        non_negative("coefficient of friction", self.coefficient)?;
+        non_negative("shear strength of friction", self.shear_strength)?;
+        self.limit.map_or(Ok(()), |limit| positive("limit of friction", limit).map(|_| ()))
+    }
+}
+
 impl Friction {
     /// Coulomb's law with this coefficient; the coupling is left open.
     pub fn coulomb(coefficient: f64) -> Self {
-        Self::Coulomb { coefficient, coupling: None }
+        Self::of(FrictionLaw::coulomb(coefficient))
+    }
+
+    /// Tresca's law with this shear strength; the coupling is left open.
+    pub fn tresca(shear_strength: f64) -> Self {
+        Self::of(FrictionLaw::tresca(shear_strength))
+    }
+
+    /// A law; the coupling is left open.
+    pub fn of(law: FrictionLaw) -> Self {
+        Self::Slip { law, coupling: None }
+    }
+
+    /// The same law with another coupling.
+    #[must_use]
+    pub fn with_coupling(self, coupling: Option<Coupling>) -> Self {
+        match self {
+            Self::Off => Self::Off,
+            Self::Slip { law, .. } => Self::Slip { law, coupling },
+        }
+    }
+
+    /// What either of two has: the larger coefficient and shear strength, the smaller limit, the full coupling.
+    fn joined(self, other: Self) -> Self {
+        let (Self::Slip { law, coupling }, Self::Slip { law: next, coupling: also }) = (self, other) else {
+            return if self == Self::Off { other } else { self };
+        };
+        let law = FrictionLaw {
+            coefficient: law.coefficient.max(next.coefficient),
+            shear_strength: law.shear_strength.max(next.shear_strength),
+            limit: law.limit.into_iter().chain(next.limit).reduce(f64::min),
+        };
+        Self::Slip { law, coupling: coupling.or(also) }
+    }
+
+    /// Its law; `None` without friction.
+    pub fn law(self) -> Option<FrictionLaw> {
+        match self {
+            Self::Off => None,
+            Self::Slip { law, .. } => Some(law),
+        }
     }
 
     /// How normal and tangential tractions of these bodies act on each other; `None` where they do not (the
@@ -250,7 +379,7 @@ impl Friction {
     /// [`Error::Domain`] with that constant where it is not 0 and the friction leaves the coupling open; as
     /// [`Pair::coupling`].
     pub fn coupling_of(self, pair: &Pair) -> Result<Option<Coupling>> {
-        let Self::Coulomb { coupling, .. } = self else { return Ok(None) };
+        let Self::Slip { coupling, .. } = self else { return Ok(None) };
         let beta = pair.coupling()?;
         match coupling {
             _ if beta.abs() <= SAME_BODIES => Ok(None),
@@ -265,7 +394,8 @@ impl Friction {
 }
 
 /// How normal and tangential tractions act on each other, for bodies whose second Dundurs constant beta
-/// ([`crate::Pair::coupling`]) is not 0. The terms are of the order of `beta mu`.
+/// ([`crate::Pair::coupling`]) is not 0. The terms are of the order of beta
+/// times the ratio of tractions to pressures, which is mu for Coulomb's law.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Coupling {

@@ -126,7 +126,7 @@ impl Error {
         Self::OutOfMemory { what: what.into(), bytes, available: None }
     }
 
-    /// A tangential force beyond the limit `mu F` of Coulomb's friction.
+    /// A tangential force beyond the sliding force, `mu F` by Coulomb's law.
     pub fn gross_slip(force: f64, limit: f64) -> Self {
         let name = "tangential force (beyond it the contact slips as a whole)".into();
         Self::OutOfRange { name, value: force, min: -limit, max: limit }

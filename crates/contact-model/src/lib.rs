@@ -71,7 +71,7 @@ mod validation;
 mod value;
 mod work;
 
-pub use abilities::{Abilities, LoadKind, Paths, SurfaceKind};
+pub use abilities::{Abilities, LoadKind, NotCombined, Paths, SurfaceKind};
 pub use cells::{Cells, Size};
 pub use conductance::Conductance;
 pub use effects::*;

@@ -161,8 +161,8 @@ impl fmt::Display for NormalLoad {
 #[non_exhaustive]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Tangential {
-    /// Tangential force that the second body exerts on the first, at most mu F in size. At mu F the whole contact
-    /// slides, and its displacement is the least at which it does; a model may give that to a relative 1e-6.
+    /// Tangential force that the second body exerts on the first, at most the sliding force in size (mu F by
+    /// Coulomb's law). At it the whole contact slides, and its displacement is the least at which it does; a model may give that to a relative 1e-6.
     Force([f64; 2]),
     /// Tangential displacement of the second body relative to the first, far from the contact.
     Displacement([f64; 2]),

@@ -450,7 +450,8 @@ pub static QUANTITIES: &[Quantity] = &quantities! {
         "of the bodies relative to each other along y, far from the contact"
         => |s, _| s.tangential.map(|t| t.displacement[1]).into();
     "sliding_force" "sliding force" "" Si("N"); Effect("friction");
-        "tangential force at which the whole contact slips, the coefficient of friction times the normal force"
+        "tangential force at which the whole contact slips: the largest tractions of all cells in contact together, by Coulomb's law \\
+         the coefficient of friction times the normal force"
         { drawn: false }
         => |s, _| s.tangential.and_then(|t| t.sliding_force).into();
     "stick_area" "stick area" "" Si("m^2"); AskedBy::Output(Output::StickArea);
@@ -603,13 +604,14 @@ pub static QUANTITIES: &[Quantity] = &quantities! {
           average: Average::No, drawn: false }
         => |s, _| s.report.certificate.equilibrium.into();
     "tangential_duality_gap" "tangential duality gap" "" One; FrictionInPlane;
-        "sum (mu p |w| - w . q)/(mu F D) of the last step, solved cell by cell; D is the larger of |delta - m| and the largest |s - m|, \
-         with the mean m, weighted by mu p, of the displacements s from which the slip of the cells counts"
+        "sum (b |w| - w . q)/(B D) of the last step, solved cell by cell, with the largest traction b of a cell (mu p by Coulomb's law) \
+         and their sum B, the sliding force; D is the larger of |delta - m| and the largest |s - m|, with the mean m, weighted by b, \
+         of the displacements s from which the slip of the cells counts"
         { role: Role::Residual("the tractions minimise the elastic energy of the step of friction: by how much it could still fall, over sliding force \
                                 times tangential displacement, without how far the contact has slid before"),
           average: Average::No, drawn: false }
         => |s, _| s.report.certificate.tangential_duality_gap.into();
-    "tangential_load_error" "tangential load error" "" One; FrictionInPlane; "|Q - Q_prescribed|/(mu F), solved cell by cell"
+    "tangential_load_error" "tangential load error" "" One; FrictionInPlane; "|Q - Q_prescribed| over the sliding force, solved cell by cell"
         { role: Role::Residual("the tangential force is the prescribed one, relative to the sliding force"),
           average: Average::No, drawn: false }
         => |s, _| s.report.certificate.tangential_load_error.into();

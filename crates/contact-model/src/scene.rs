@@ -64,7 +64,7 @@ impl Scene {
     /// let mut scene = Scene::of_pair(Surface::Sphere { radius: 1.0, size: 1.0.into() }, pair)?;
     /// scene.effects.friction = Friction::coulomb(0.3);
     /// assert!(scene.coupling("mine").is_err());
-    /// scene.effects.friction = Friction::Coulomb { coefficient: 0.3, coupling: Some(Coupling::Full) };
+    /// scene.effects.friction = Friction::coulomb(0.3).with_coupling(Some(Coupling::Full));
     /// assert_eq!(scene.coupling("mine")?, Some(Coupling::Full));
     /// # Ok::<(), contact_model::Error>(())
     /// ```
@@ -333,7 +333,7 @@ pub fn line_length(side: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::effects::{Adhesion, AdhesionLaw, Effect, Friction};
+    use crate::effects::{Adhesion, AdhesionLaw, Effect, Friction, FrictionLaw};
     use crate::pair::Body;
     use crate::rheology::Rheology;
 
@@ -361,7 +361,11 @@ mod tests {
     fn an_example_is_its_effect_alone() {
         for &effect in Effect::ALL {
             let example = effect.example();
-            assert!(example.validate().is_ok() && example.named().eq([effect]), "{effect:?}: {example:?}");
+            assert!(example.validate().is_ok(), "{effect:?}: {example:?}");
+            let named: Vec<Effect> = example.named().collect();
+            assert_eq!(named[0], effect);
+            // Beside a law of friction there is friction.
+            assert!(named.iter().all(|other| other.key() == effect.key()), "{effect:?}: {example:?}");
         }
     }
 
@@ -376,6 +380,19 @@ mod tests {
                 ..Effects::default()
             },
             Effects { friction: Friction::coulomb(f64::INFINITY), ..Effects::default() },
+            Effects { friction: Friction::tresca(-1.0), ..Effects::default() },
+            Effects { friction: Friction::tresca(f64::NAN), ..Effects::default() },
+            Effects {
+                friction: Friction::of(FrictionLaw { limit: Some(0.0), ..FrictionLaw::coulomb(0.3) }),
+                ..Effects::default()
+            },
+            Effects {
+                friction: Friction::of(FrictionLaw {
+                    limit: Some(f64::INFINITY),
+                    ..FrictionLaw::tresca(1.0)
+                }),
+                ..Effects::default()
+            },
             Effects { rheology: Rheology::KelvinVoigt { viscosity: 0.0 }, ..Effects::default() },
         ] {
             scene.effects = effects;
@@ -414,8 +431,8 @@ mod tests {
         let [off, silent, neglected, full] = [
             Friction::Off,
             Friction::coulomb(0.3),
-            Friction::Coulomb { coefficient: 0.3, coupling: Some(Coupling::Neglected) },
-            Friction::Coulomb { coefficient: 0.3, coupling: Some(Coupling::Full) },
+            Friction::coulomb(0.3).with_coupling(Some(Coupling::Neglected)),
+            Friction::coulomb(0.3).with_coupling(Some(Coupling::Full)),
         ];
         // Bodies that are alike, and a rigid one on an incompressible one, do not couple.
         for (first, second) in [(elastic(0.3), elastic(0.3)), (Body::Rigid, elastic(0.5))] {

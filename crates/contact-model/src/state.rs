@@ -200,7 +200,8 @@ pub struct TangentialState {
     /// Tangential displacement delta of the second body relative to the first, far from the contact (with
     /// periodic boundaries that of their mean planes).
     pub displacement: [f64; 2],
-    /// Largest tangential force `mu F` under this normal force: at it the whole contact slips.
+    /// Largest tangential force under this normal force, at which the whole contact slips: the sum of the largest
+    /// tractions of its cells ([`crate::FrictionLaw`]), `mu F` by Coulomb's law.
     pub sliding_force: Option<f64>,
     /// Area of the contact that sticks, where its traction is below the limit of friction; `None` if not
     /// requested.
@@ -514,14 +515,15 @@ pub struct Certificate {
     /// Largest difference between the attractive traction of a cell and that of the law of adhesion at its
     /// gap, over `work/range`; `None` without adhesion of finite range.
     pub equilibrium: Option<f64>,
-    /// `sum (mu p |w| - w . q) / (mu F D)`, with the slip w of the last step. D is the larger of
+    /// `sum (b |w| - w . q) / (B D)`, with the slip w of the last step, the largest traction b of a cell
+    /// (`mu p` by Coulomb's law) and the sliding force B, the sum of b. D is the larger of
     /// `|delta - m|` and of the largest `|s - m|`, with the tangential displacement delta and the mean m,
-    /// weighted by the pressure, of the displacements s from which the slip of the cells counts: how far the
+    /// weighted by b, of the displacements s from which the slip of the cells counts: how far the
     /// contact has slid before is not in it. The sum is the duality gap of the convex programme of one step of
     /// friction. The error e of the tractions has `e'Ke`, twice its elastic energy, of at most this sum. 0 without
     /// displacement; `None` without friction, and for models that do not solve it cell by cell.
     pub tangential_duality_gap: Option<f64>,
-    /// `|Q - Q_prescribed| / (mu F)`; 0 where the tangential displacement was prescribed, `None` as above.
+    /// `|Q - Q_prescribed|` over the sliding force; 0 where the tangential displacement was prescribed, `None` as above.
     pub tangential_load_error: Option<f64>,
     /// Estimated relative error of the tangential stiffness, the larger one where both are computed; `None`
     /// where none is.

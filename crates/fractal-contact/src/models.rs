@@ -5,7 +5,7 @@ use analytic::{
     PowerLaw, PowerLawBody, Westergaard,
 };
 use bem3d::Bem3d;
-use contact_model::{ContactModel, Effect, LoadKind, Output, Paths, Scene, SurfaceKind};
+use contact_model::{ContactModel, Effect, LoadKind, NotCombined, Output, Paths, Scene, SurfaceKind};
 use mdr1d::{Equivalent, Mdr1d, PartialSlip, Viscoelastic};
 use std::fmt;
 
@@ -53,6 +53,11 @@ impl fmt::Display for ModelRecord {
         writeln!(f, "{}: {}", self.name(), self.about)?;
         for (of, words) in abilities(self.model).into_iter().filter(|(_, words)| !words.is_empty()) {
             writeln!(f, "  {of:<10} {}", words.join(", "))?;
+        }
+        for NotCombined { effects: [first, second], reason } in self.model.abilities().not_combined {
+            let words =
+                |group: &[Effect]| group.iter().map(|effect| effect.words()).collect::<Vec<_>>().join(", ");
+            writeln!(f, "  {:<10} {} with {}: {reason}", "never", words(first), words(second))?;
         }
         Ok(())
     }

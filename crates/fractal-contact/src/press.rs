@@ -345,7 +345,7 @@ fn couple(bodies: &str) -> bool {
         return false;
     }
     let Some(Material::Bodies(pair)) = question.material else { return false };
-    let solved = Friction::Coulomb { coefficient: 0.0, coupling: Some(Coupling::Full) };
+    let solved = Friction::coulomb(0.0).with_coupling(Some(Coupling::Full));
     solved.coupling_of(&pair).ok().flatten().is_some()
 }
 

@@ -2,7 +2,7 @@
 
 use contact_model::{
     Abilities, Boundary, ContactModel, ContactState, Coupling, Directions, Effect, Error, Field, Fields,
-    Friction, Load, LoadKind, NormalLoad, Normalisation, Output, Paths, PreparedContact, Result, Scene,
+    FrictionLaw, Load, LoadKind, NormalLoad, Normalisation, Output, Paths, PreparedContact, Result, Scene,
     SolveReport, Source, Step, StickSlip, Stop, Surface, SurfaceKind, Tangential, TangentialState,
 };
 use fractal_contact::scenes::{Options, Plan, Registry, SceneFile, run};
@@ -49,7 +49,7 @@ impl ContactModel for Block {
 
     fn prepare(&self, scene: &Scene, _seed: u64) -> Result<Box<dyn PreparedContact>> {
         self.abilities().refuse(NAME, scene)?;
-        let Friction::Coulomb { coefficient, .. } = scene.effects.friction else {
+        let Some(FrictionLaw { coefficient, .. }) = scene.effects.friction.law() else {
             return Err(Error::unsupported(NAME, "a contact without friction"));
         };
         let coupling = scene.coupling(NAME)?;

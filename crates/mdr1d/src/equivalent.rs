@@ -10,9 +10,9 @@ use crate::relaxation::{Relaxation, check_pair};
 use crate::slip::Springs;
 use crate::tabulated::{Node, Tabulated};
 use contact_model::{
-    Abilities, Adhesion, ContactModel, ContactState, Effect, Effects, Error, Friction, Hardness, Load,
-    NormalLoad, Normalisation, Output, Outputs, Paths, PreparedContact, RequiredMemory, Result, Scene,
-    Source, Step, Stop, Surface, SurfaceKind, Tangential, never,
+    Abilities, Adhesion, ContactModel, ContactState, Effect, Effects, Error, FrictionLaw, Hardness, Load,
+    NormalLoad, Normalisation, NotCombined, Output, Outputs, Paths, PreparedContact, RequiredMemory, Result,
+    Scene, Source, Step, Stop, Surface, SurfaceKind, Tangential, never,
 };
 use std::sync::Arc;
 
@@ -191,10 +191,18 @@ impl<M: ContactModel> ContactModel for Equivalent<M> {
         ];
         let of_a_line = self.model.abilities().surfaces.contains(&SurfaceKind::Line);
         let surfaces = &SURFACES[usize::from(!of_a_line)..];
+        const NOT_COMBINED: &[NotCombined] = &[NotCombined {
+            effects: [
+                &[Effect::Friction],
+                &[Effect::KelvinVoigt, Effect::Maxwell, Effect::StandardSolid, Effect::PronySeries],
+            ],
+            reason: "not solved, as springs that relax and slip have two memories that act on each other",
+        }];
         Abilities {
             surfaces,
             outputs: OUTPUTS,
             effects: EFFECTS,
+            not_combined: NOT_COMBINED,
             needs_effect: true,
             paths: Paths::Remembered,
             ..Abilities::ELASTIC
@@ -208,8 +216,8 @@ impl<M: ContactModel> ContactModel for Equivalent<M> {
             return Err(Error::unsupported(NAME, what));
         }
         self.abilities().refuse(NAME, scene)?;
-        let memory = match (friction, Material::new(&rheology, scene.contact_modulus, NAME)?) {
-            (Friction::Coulomb { coefficient, .. }, None) => {
+        let memory = match (friction.law(), Material::new(&rheology, scene.contact_modulus, NAME)?) {
+            (Some(FrictionLaw { coefficient, .. }), _) => {
                 let Some(pair) = scene.pair else {
                     let what = "a scene without both bodies: friction needs their shear moduli";
                     return Err(Error::unsupported(NAME, what));
@@ -218,7 +226,7 @@ impl<M: ContactModel> ContactModel for Equivalent<M> {
                 let table = Arc::new(Tabulated::new(&[])?);
                 Memory::Slip { springs: Springs::new(table, coefficient, shear), coefficient, time: 0.0 }
             }
-            (Friction::Off, Some(material)) => {
+            (None, Some(material)) => {
                 if let Some(pair) = &scene.pair {
                     check_pair(pair, &rheology, NAME)?;
                 }
@@ -231,13 +239,12 @@ impl<M: ContactModel> ContactModel for Equivalent<M> {
                 }
                 Memory::Relax(Relaxation::new(material, NAME))
             }
-            (Friction::Off, None) => {
+            (None, None) => {
                 return Err(Error::unsupported(
                     NAME,
                     "an elastic contact without friction (nothing to remember)",
                 ));
             }
-            _ => return Err(Error::unsupported(NAME, "friction together with a rheology")),
         };
         Ok(Box::new(PreparedEquivalent { normal: self.normal(scene, seed)?, memory }))
     }

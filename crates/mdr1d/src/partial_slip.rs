@@ -4,7 +4,7 @@ use crate::axisymmetric::Profile;
 use crate::body::RoundBody;
 use crate::slip::Springs;
 use contact_model::{
-    Abilities, ContactModel, ContactState, Effect, Error, Friction, Load, Normalisation, Output, Paths,
+    Abilities, ContactModel, ContactState, Effect, Error, FrictionLaw, Load, Normalisation, Output, Paths,
     PreparedContact, Result, Scene, SolveReport, Source, Step, Stop, Tangential, check_stop,
 };
 
@@ -13,7 +13,7 @@ const NAME: &str = "mdr1d_partial_slip";
 /// Coulomb's friction of axisymmetric bodies through their profile, each spring sticking or slipping by
 /// itself.
 ///
-/// The model takes the bodies of [`Profile`] with [`Friction::Coulomb`] and both bodies' materials
+/// The model takes the bodies of [`Profile`] with [`Friction::Slip`] and both bodies' materials
 /// ([`Scene::of_pair`]), and any path of normal and tangential loads. A step goes straight from one pair of
 /// approach and tangential displacement to the next; a step by force ends where the force is reached. The
 /// state at its end, including the energy, is exact for the springs whatever the length of the step, because
@@ -74,8 +74,8 @@ impl ContactModel for PartialSlip {
 
     fn prepare(&self, scene: &Scene, _seed: u64) -> Result<Box<dyn PreparedContact>> {
         self.abilities().refuse(NAME, scene)?;
-        let Friction::Coulomb { coefficient, .. } = scene.effects.friction else {
-            return Err(Error::unsupported(NAME, "friction of another law than Coulomb's"));
+        let Some(FrictionLaw { coefficient, .. }) = scene.effects.friction.law() else {
+            return Err(Error::unsupported(NAME, "a contact without friction"));
         };
         let body = RoundBody::required(scene, NAME, "friction by springs needs a round contact")?;
         let Some(pair) = scene.pair else {

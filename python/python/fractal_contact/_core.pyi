@@ -837,6 +837,16 @@ def models() -> list[dict[str, Any]]:
         ``has_options``.
     """
 
+def combinations() -> list[dict[str, Any]]:
+    """Which effects each model combines.
+
+    Returns
+    -------
+    list of dict
+            For every two effects of a model that a scene can have together: ``model`` (its name), ``effects`` (both in
+        words), ``keys`` (both names in `Effects`), ``combined``, and ``reason`` (why not, or None).
+    """
+
 def model(name: str, options: Mapping[str, Any], inner: Model | None = None) -> Model:
     """A model by the name that scenes give it."""
 

@@ -443,6 +443,24 @@ def models() -> list[dict[str, Any]]:
     return _core.models()
 
 
+def combinations() -> list[dict[str, Any]]:
+    """Which effects each model combines.
+
+    Returns
+    -------
+    list of dict
+        For every two effects of a model that a scene can have together: ``model`` (its name), ``effects`` (both in
+        words), ``keys`` (both names in `Effects`), ``combined``, and ``reason`` (why not, or None).
+
+    Examples
+    --------
+    >>> import fractal_contact as fc
+    >>> [row["combined"] for row in fc.combinations() if row["effects"] == ("a hardness", "friction")]
+    [True]
+    """
+    return _core.combinations()
+
+
 def table(states: Iterable[ContactState]) -> NDArray[np.void]:
     """States as a structured array with a row for each, which pandas and xarray can read.
 

@@ -82,9 +82,11 @@ class AdhesionDict(TypedDict):
 
 
 class FrictionDict(TypedDict):
-    """Coulomb's friction."""
+    """Friction: a coefficient, a shear strength or both, and perhaps a limit of the traction."""
 
-    coefficient: float
+    coefficient: NotRequired[float]
+    shear_strength: NotRequired[float]
+    limit: NotRequired[float]
     coupling: NotRequired[Literal["none", "full"]]
 
 

@@ -34,8 +34,8 @@
 //! # How accurate
 //!
 //! The reference implementations are [`every_contact_set`] (all sets of up to 16 cells), [`relaxed`]
-//! (projected Gauss-Seidel, to rounding), [`Dragged`] (the same for friction), [`PlainSum`] and
-//! [`PlainShear`]. Bounds are stated beside each case with their reason.
+//! (projected Gauss-Seidel, to rounding), [`Dragged`] (the same for friction), [`DensePath`] (hardness and any law of
+//! friction, by projected gradients), [`PlainSum`] and [`PlainShear`]. Bounds are stated beside each case with their reason.
 //!
 //! # How fast
 //!
@@ -48,6 +48,7 @@
 
 mod case;
 mod cases;
+mod dense;
 mod enumerate;
 mod ledger;
 mod maps;
@@ -58,6 +59,7 @@ mod slide;
 
 pub use case::{Case, CaseResult, Effort, run};
 pub use cases::cases;
+pub use dense::{DensePath, Prescribed};
 pub use enumerate::{SmallContact, every_contact_set};
 pub use maps::{embedded, hard_map, map, rough, rough_map, scene};
 pub use plain::{PlainSum, Relaxed, relaxed, relaxed_by};

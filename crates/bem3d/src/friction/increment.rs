@@ -24,7 +24,7 @@ pub enum TangentialControl {
 pub struct Increment<'a> {
     /// The contact at its end.
     pub cells: &'a CellSet,
-    /// Largest traction of each cell, the coefficient of friction times its pressure at the end.
+    /// Largest traction of each cell, by the law of friction at its pressure at the end.
     pub limit: &'a [f64],
     /// The sum of the elastic displacement and of the slip at the beginning: the slip of the increment is
     /// `w = delta - K q - reference`.

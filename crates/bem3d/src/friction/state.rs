@@ -10,7 +10,7 @@ use crate::operator::{CouplingOperator, TangentialOperators};
 use crate::parts::Recorder;
 use crate::real::{dot, sum};
 use crate::tuning::Tuning;
-use contact_model::{Boundary, Status, Stop};
+use contact_model::{Boundary, FrictionLaw, Status, Stop};
 use serde::{Deserialize, Serialize};
 
 /// The contact at the end of an increment, nondimensional: pressures so that `u = sum I p`.
@@ -74,11 +74,11 @@ pub struct ForceTooLarge {
     pub largest: f64,
 }
 
-/// The tangential load of an increment, and the coefficient of friction.
+/// The tangential load of an increment, and the law of friction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FrictionLoad {
-    /// Coefficient of friction.
-    pub coefficient: f64,
+    /// Largest traction at a pressure, both nondimensional.
+    pub law: FrictionLaw,
     /// What is prescribed at the end of the increment.
     pub control: TangentialControl,
 }
@@ -92,7 +92,7 @@ pub enum StiffnessOf {
     FullStick,
 }
 
-/// Coulomb's friction on one surface: operators and room, kept from increment to increment.
+/// Friction on one surface: operators and room, kept from increment to increment.
 #[derive(Debug)]
 pub struct Friction {
     pub(super) operators: TangentialOperators,
@@ -175,7 +175,7 @@ impl Friction {
     /// `guess` are tractions on some cells to begin with, admissible or not; `None`: those before.
     ///
     /// # Errors
-    /// [`ForceTooLarge`] for a force of more than `coefficient` times the sum of the pressures, beyond a
+    /// [`ForceTooLarge`] for a force of more than the sum of the largest tractions of the cells, beyond a
     /// billionth of it.
     pub fn advance(
         &mut self,
@@ -187,8 +187,11 @@ impl Friction {
         stop: Stop<'_>,
     ) -> Result<FrictionState, ForceTooLarge> {
         let PressedCells { cells, pressure } = contact;
-        let FrictionLoad { coefficient, control } = load;
-        let limit: Vec<f64> = pressure.iter().map(|p| coefficient * p).collect();
+        let FrictionLoad { law, control } = load;
+        let limits_of = |pressure: &[f64]| -> Vec<f64> {
+            pressure.iter().map(|&pressure| law.largest_traction(pressure)).collect()
+        };
+        let limit = limits_of(pressure);
         if let TangentialControl::Force([x, y]) = control {
             let largest = sum(&limit);
             if x.hypot(y) > largest * (1.0 + FORCE_ROUNDING) {
@@ -226,11 +229,14 @@ impl Friction {
             && *cells == before.cells
             // Also where a tighter tolerance than this asks for more than the arithmetic gives.
             && duality_gap <= limits.unresolved
-            && change(&before.pressure, pressure) * coefficient <= most
+            && change(&limits_of(&before.pressure), &limit) <= most
+            // Pressures that change no limit still displace, where both problems are coupled.
+            && (self.coupling.is_none()
+                || change(&before.pressure, pressure) <= limits.unresolved * sum(pressure))
             && change(&before.traction, &traction) <= most
             && weighted(&limit, &slip) <= most * length;
         if same {
-            let limit: Vec<f64> = before.pressure.iter().map(|p| coefficient * p).collect();
+            let limit = limits_of(&before.pressure);
             let (traction, moved) = (&before.traction, before.moved.clone());
             return Ok(FrictionState {
                 force: total(traction),

@@ -9,7 +9,7 @@ use crate::parts::Recorder;
 use crate::tuning::Tuning;
 use crate::{Bem3d, ContactModel, Load, Scene, SelfAffine, Surface};
 use approx::assert_relative_eq;
-use contact_model::{Boundary, Status, never};
+use contact_model::{Boundary, FrictionLaw, Status, never};
 use oracle::Oracle;
 
 const LIMITS: FrictionLimits = FrictionLimits { tolerance: 1e-11, unresolved: 1e-11, iterations: 100 };
@@ -57,7 +57,7 @@ fn friction(grid: Grid, boundary: Boundary, c: f64) -> Friction {
 }
 
 fn load(control: TangentialControl) -> FrictionLoad {
-    FrictionLoad { coefficient: MU, control }
+    FrictionLoad { law: FrictionLaw::coulomb(MU), control }
 }
 
 /// One increment, converged.
@@ -313,7 +313,14 @@ fn limits_of_the_coefficient_and_of_the_number_of_cells() {
     let begin = SlipMemory::default();
     let solve = |solver: &mut Friction, mu: f64, control| {
         let state = solver
-            .advance(&begin, all.cells(), FrictionLoad { coefficient: mu, control }, None, LIMITS, &never)
+            .advance(
+                &begin,
+                all.cells(),
+                FrictionLoad { law: FrictionLaw::coulomb(mu), control },
+                None,
+                LIMITS,
+                &never,
+            )
             .unwrap();
         assert_eq!(state.status, Status::Converged, "{mu} {control:?}: {:e}", state.duality_gap);
         state
@@ -329,7 +336,7 @@ fn limits_of_the_coefficient_and_of_the_number_of_cells() {
             .advance(
                 &begin,
                 all.cells(),
-                FrictionLoad { coefficient: 0.0, control: Force([1e-9, 0.0]) },
+                FrictionLoad { law: FrictionLaw::coulomb(0.0), control: Force([1e-9, 0.0]) },
                 None,
                 LIMITS,
                 &never

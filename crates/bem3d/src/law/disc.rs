@@ -10,7 +10,7 @@ use numerics::parallel::map;
 /// Newton's steps at most to the multiplier of a force; a handful are usual, some sixty where the force is
 /// within a billionth of the largest one.
 const STEPS: usize = 200;
-/// A force is met where it is off by less than this share of the largest one: the rounding of a sum.
+/// A force is met where it is off by less than this share of the tractions together: the rounding of a sum.
 const ROUNDING: f64 = 2e-15;
 /// Evaluations of a line search at most, and the share of the first slope at which it ends.
 const SEARCH: usize = 30;
@@ -155,7 +155,8 @@ impl Discs<'_> {
     /// Cost: O(n) a step.
     pub fn multiplier(&self, v: &[f64], force: [f64; 2], start: [f64; 2]) -> [f64; 2] {
         let limit = self.limit;
-        let most = crate::real::sum(limit);
+        let [tractions] = sums((v, v), limit, |v, _, b| [length(v).min(b)]);
+        let rounding = ROUNDING * tractions.max(force[0].hypot(force[1]));
         let size = crate::real::largest(v) + crate::real::largest(limit);
         // Gradient and second derivatives.
         let evaluate = |[sx, sy]: [f64; 2]| -> [f64; 5] {
@@ -175,7 +176,7 @@ impl Discs<'_> {
         let mut now = evaluate(shift);
         for _ in 0..STEPS {
             let [gx, gy, xx, yy, xy] = now;
-            if gx.hypot(gy) <= ROUNDING * most {
+            if gx.hypot(gy) <= rounding {
                 break;
             }
             // A tiny share of the trace keeps directions without resistance finite.

@@ -1,14 +1,16 @@
 //! Contacts with adhesion of finite range: a path of loads on one surface.
 
 use super::certificate::GROWTH;
-use super::load::{LoadSequence, ScaledNormal};
+use super::load::{LoadSequence, ScaledLoad, ScaledNormal, ScaledTangential};
 use super::options::NAME;
 use super::prepared::PreparedSurface;
+use super::sliding::Slid;
 use super::state::{Assembly, returned};
 use crate::active_set::Bounds;
 use crate::adhesion::{
     AdhesiveControl, Attraction, Ended, Equilibrium, Law, Response, Search, energy, respond,
 };
+use crate::friction::PressedCells;
 use crate::geometry::CellSet;
 use crate::kernel::Evidence;
 use crate::kernel::love::influence_of_rectangle;
@@ -49,9 +51,10 @@ pub(super) struct Last {
     state: ContactState,
 }
 
-/// A state that was reached, and the new indentation that it leaves.
+/// A state that was reached, with the slip and the new indentation that it leaves.
 struct Reached {
     last: Last,
+    slid: Option<Slid>,
     saturated: CellSet,
     depth: Vec<f64>,
 }
@@ -84,16 +87,17 @@ impl AdhesiveContact {
     /// contact.
     pub(super) fn at(
         &mut self,
-        load: ScaledNormal,
+        load: ScaledLoad,
         loads: LoadSequence,
         stop: Stop<'_>,
     ) -> Result<ContactState> {
-        if let (ScaledNormal::MeanGap(_), Some(_)) = (load, self.surface.hardness) {
+        let ScaledLoad { normal, tangential } = load;
+        if let (ScaledNormal::MeanGap(_), Some(_)) = (normal, self.surface.hardness) {
             let what =
                 "a mean gap with a hardness and adhesion together (not solved): give a force or a pressure";
             return Err(Error::unsupported(NAME, what));
         }
-        let control = match load {
+        let control = match normal {
             ScaledNormal::Force(force) => AdhesiveControl::Force(force),
             ScaledNormal::Approach(d) => AdhesiveControl::Plane(d),
             ScaledNormal::MeanGap(gap) => AdhesiveControl::Plane(self.surface.mean - gap),
@@ -101,7 +105,10 @@ impl AdhesiveContact {
         if loads == LoadSequence::Single && !self.continues(control) {
             self.forget();
         }
-        let next = self.next(control, loads, stop)?;
+        if let (Some(sliding), LoadSequence::Single) = (&mut self.surface.sliding, loads) {
+            sliding.begin();
+        }
+        let next = self.next(control, tangential, loads, stop)?;
         let state = next.last.state.clone();
         self.accept(next);
         Ok(state)
@@ -126,25 +133,33 @@ impl AdhesiveContact {
         }
     }
 
-    /// Takes a state as the last one; on a path its indentation stays.
-    fn accept(&mut self, Reached { last, saturated, depth }: Reached) {
+    /// Takes a state as the last one; on a path its indentation and its slip stay.
+    fn accept(&mut self, Reached { last, saturated, depth, slid }: Reached) {
         if let Some(memory) = &mut self.surface.memory {
             memory.advance(last.equilibrium.force(), self.surface.options.tolerance);
         }
         self.surface.indent(&saturated, &depth);
+        self.surface.remember_slip(slid);
         self.last = Some(last);
     }
 
     /// The next state from the last one.
-    fn next(&mut self, control: AdhesiveControl, loads: LoadSequence, stop: Stop<'_>) -> Result<Reached> {
+    fn next(
+        &mut self,
+        control: AdhesiveControl,
+        tangential: ScaledTangential,
+        loads: LoadSequence,
+        stop: Stop<'_>,
+    ) -> Result<Reached> {
         match control {
             AdhesiveControl::Force(f) if f < 0.0 && self.untouched() => {
-                // The segment begins without force: there the surfaces already hold each other.
+                // The segment begins without force: there the surfaces already hold each other. The tangential
+                // load comes with the whole of it.
                 let (before, memory) = (self.last.take(), self.surface.memory.clone());
-                let touched = self.step_to(AdhesiveControl::Force(0.0), LoadSequence::Path, stop);
+                let touched = self.step_to(AdhesiveControl::Force(0.0), None, LoadSequence::Path, stop);
                 let held = touched.and_then(|touched| {
                     self.accept(touched);
-                    self.step_to(AdhesiveControl::Force(f), LoadSequence::Path, stop)
+                    self.step_to(control, Some(tangential), LoadSequence::Path, stop)
                 });
                 if held.is_err() {
                     self.surface.take_memory(memory);
@@ -152,7 +167,7 @@ impl AdhesiveContact {
                 self.last = before;
                 held
             }
-            control => self.step_to(control, loads, stop),
+            control => self.step_to(control, Some(tangential), loads, stop),
         }
     }
 
@@ -160,11 +175,18 @@ impl AdhesiveContact {
         self.last.as_ref().is_none_or(|last| last.equilibrium.contact().is_empty())
     }
 
-    fn step_to(&mut self, control: AdhesiveControl, loads: LoadSequence, stop: Stop<'_>) -> Result<Reached> {
+    /// `tangential`: `None` where the step is a part of a segment whose tangential load comes later.
+    fn step_to(
+        &mut self,
+        control: AdhesiveControl,
+        tangential: Option<ScaledTangential>,
+        loads: LoadSequence,
+        stop: Stop<'_>,
+    ) -> Result<Reached> {
         self.surface.begin_count();
         let last = self.last.as_ref().map(|last| last.equilibrium.clone());
         let found = self.search(control, last.as_ref().map(|last| (last, loads)), self.tolerance(), stop)?;
-        self.finish(found, stop)
+        self.finish(found, tangential, stop)
     }
 
     /// The tolerance of a stiffness with attraction that follows the gaps, where one is requested.
@@ -269,7 +291,12 @@ impl AdhesiveContact {
     }
 
     /// The state that is returned.
-    fn finish(&mut self, found: Found, stop: Stop<'_>) -> Result<Reached> {
+    fn finish(
+        &mut self,
+        found: Found,
+        tangential: Option<ScaledTangential>,
+        stop: Stop<'_>,
+    ) -> Result<Reached> {
         let Found { equilibrium, response, control, status, load_error } = found;
         let branch = match &self.last {
             Some(last) if self.same_load(control, &last.equilibrium) => last.branch,
@@ -279,6 +306,9 @@ impl AdhesiveContact {
         let (saturated, depth) = equilibrium.indented(self.surface.problem.bounds);
         let mut stiffness = self.stiffness(&equilibrium, &response, branch, stop);
         let force_error = self.force_error(control, &equilibrium, &response);
+        let contact = equilibrium.contact();
+        let mut slid =
+            tangential.map(|load| self.slide(&equilibrium, &contact, load, stop)).transpose()?.flatten();
         let surface = &mut self.surface;
         let residuals = equilibrium.residuals;
         let mut certificate = Certificate {
@@ -292,26 +322,33 @@ impl AdhesiveContact {
             force_error,
             ..Certificate::default()
         };
+        if let Some(slid) = &slid {
+            slid.certify(&mut certificate);
+        }
         let status = surface.ended(status, &certificate, stop);
         if status == Status::Stopped {
             // The stiffnesses, and the error that follows from them, may be unfinished.
             stiffness = stiffness.unfinished();
             (certificate.stiffness_error, certificate.quotient_error) = (None, None);
-            certificate.force_error = None;
+            (certificate.force_error, certificate.tangential_stiffness_error) = (None, None);
+            slid = slid.map(|slid| Slid { stiffness: [None, None], ..slid });
         }
         let units = surface.nondimensional;
         let stored = PI * energy(&surface.problem, &self.attraction, &equilibrium);
         // A force times a length.
         let stored = stored.signum() * units.approach(units.force(stored.abs())?)?;
-        let contact = equilibrium.contact();
+        let friction = slid.as_ref().map_or(String::new(), |slid| format!("; {}", slid.strategy()));
         let state = surface.assemble(Assembly {
             status,
             strategy: format!(
-                "attraction on {} cells, {} updates",
+                "attraction on {} cells, {} updates{friction}",
                 equilibrium.cells.len(),
                 equilibrium.updates
             ),
-            iterations: equilibrium.steps + response.steps + stiffness.steps,
+            iterations: equilibrium.steps
+                + response.steps
+                + stiffness.steps
+                + slid.as_ref().map_or(0, Slid::steps),
             certificate,
             force: equilibrium.force(),
             d: equilibrium.d,
@@ -325,10 +362,26 @@ impl AdhesiveContact {
             fixed_area: stiffness.fixed_area.map(|k| PI * k),
             adhesive: Some(AdhesiveState::new(branch, stored, response.stability)),
             resolution: None,
-            slid: None,
+            slid: slid.as_ref(),
         })?;
         let last = Last { equilibrium, control, branch, state: returned(state)? };
-        Ok(Reached { last, saturated, depth })
+        Ok(Reached { last, slid, saturated, depth })
+    }
+
+    /// The increment of friction under a state: its law limits the tractions by the contact pressure, which is larger
+    /// than the net pressure by the attraction. `None` without friction.
+    fn slide(
+        &mut self,
+        state: &Equilibrium,
+        contact: &CellSet,
+        load: ScaledTangential,
+        stop: Stop<'_>,
+    ) -> Result<Option<Slid>> {
+        if contact.is_empty() {
+            return self.surface.slide_apart(load);
+        }
+        let pressure = contact.carry(&state.cells, &state.pressure);
+        self.surface.slide(PressedCells { cells: contact, pressure: &pressure }, load, stop)
     }
 
     /// The error of a force that was not prescribed, relative to it, estimated: it is the sum of the residual

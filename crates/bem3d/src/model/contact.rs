@@ -3,6 +3,7 @@
 
 use super::adhesive::{AdhesiveContact, attraction};
 use super::certificate::LoadError;
+use super::increment::pressed;
 use super::load::{LoadSequence, ScaledLoad, ScaledNormal, ScaledTangential};
 use super::options::{Bem3d, bytes_per_cell, friction_bytes_per_cell};
 use super::path_memory::{Place, Remembered};
@@ -120,7 +121,7 @@ impl PreparedBem3d {
                 }
                 found
             }
-            Contact::WithAdhesion(contact) => contact.at(load.normal, loads, stop),
+            Contact::WithAdhesion(contact) => contact.at(load, loads, stop),
         }
     }
 
@@ -248,7 +249,7 @@ impl PreparedSurface {
         }
         let (solved, tangent) = self.settle(target, self.limits(), stop);
         let error = self.load_error(target, &solved, tangent.as_ref());
-        let slid = self.slide(&solved, tangential, stop)?;
+        let slid = self.slide(pressed(&solved), tangential, stop)?;
         let recorder = self.problem.operators.recorder().clone();
         recorder.timed(Part::Results, || self.state(solved, tangent, error, slid, stop))
     }

@@ -148,11 +148,11 @@ impl PreparedSurface {
         near: (Option<Guess>, Option<SlipMemory>),
         stop: Stop<'_>,
     ) -> Result<CoupledState> {
-        let Sliding { friction, coefficient, undeformed, .. } = sliding;
+        let Sliding { friction, law, undeformed, .. } = sliding;
         let CoupledStep { before, normal, tangential: control } = step;
         let load = CoupledLoad {
             normal,
-            tangential: FrictionLoad { coefficient: *coefficient, control },
+            tangential: FrictionLoad { law: *law, control },
             normal_limits: limits.normal,
             tangential_limits: limits.tangential,
         };

@@ -20,6 +20,11 @@ const UNRESOLVED: f64 = 10.0;
 /// Largest number of times that an increment is solved further for its stiffness.
 pub(super) const TIGHTENINGS: usize = 4;
 
+/// The cells of a state that press.
+pub(super) fn pressed(solved: &Solved) -> PressedCells<'_> {
+    PressedCells { cells: &solved.contact, pressure: &solved.p }
+}
+
 impl PreparedSurface {
     /// Resets to the surface without displacements under tractions, where the problems are coupled.
     pub(super) fn undeform(&mut self) {
@@ -40,12 +45,12 @@ impl PreparedSurface {
     /// [`Error::OutOfRange`] for a tangential force beyond the limit of friction.
     pub(super) fn slide(
         &mut self,
-        solved: &Solved,
+        contact: PressedCells<'_>,
         load: ScaledTangential,
         stop: Stop<'_>,
     ) -> Result<Option<Slid>> {
         let Some(mut sliding) = self.sliding.take() else { return Ok(None) };
-        let slid = self.slide_by(&mut sliding, solved, load, stop);
+        let slid = self.slide_by(&mut sliding, contact, load, stop);
         self.sliding = Some(sliding);
         slid.map(Some)
     }
@@ -53,15 +58,14 @@ impl PreparedSurface {
     fn slide_by(
         &mut self,
         sliding: &mut Sliding,
-        solved: &Solved,
+        contact: PressedCells<'_>,
         ScaledTangential { control, prescribed }: ScaledTangential,
         stop: Stop<'_>,
     ) -> Result<Slid> {
-        let Sliding { friction, coefficient, before, .. } = sliding;
+        let Sliding { friction, law, before, .. } = sliding;
         let (mut limits, tolerance) = (self.friction_limits(), self.options.tolerance);
         let work = friction.work();
-        let contact = PressedCells { cells: &solved.contact, pressure: &solved.p };
-        let load = FrictionLoad { coefficient: *coefficient, control };
+        let load = FrictionLoad { law: *law, control };
         let first = friction.advance(before, contact, load, None, limits, stop);
         let mut state = first.map_err(|beyond| self.gross_slip(control, beyond))?;
         let mut stiffness = self.tangential_stiffness(friction, &state, stop);
@@ -72,7 +76,7 @@ impl PreparedSurface {
                 break;
             }
             limits.tolerance = limits.tolerance.min(state.duality_gap) * further(tolerance / error);
-            let guess = Some((&solved.contact, &state.memory.traction[..]));
+            let guess = Some((contact.cells, &state.memory.traction[..]));
             let Ok(next) = friction.advance(before, contact, load, guess, limits, stop) else { break };
             if next.duality_gap >= state.duality_gap {
                 break;

@@ -2,6 +2,7 @@
 //! constant.
 
 use super::certificate::LoadError;
+use super::increment::pressed;
 use super::load::ScaledTangential;
 use super::options::NAME;
 use super::prepared::{PreparedSurface, Tangent};
@@ -191,7 +192,7 @@ impl PreparedSurface {
         };
         let error = self.force_error(&solved, k, miss.abs());
         let error = LoadError { load: miss.abs() / self.limits().height.unwrap_or(self.mean), ..error };
-        let slid = self.slide(&solved, load, stop)?;
+        let slid = self.slide(pressed(&solved), load, stop)?;
         self.state(solved, tangent, error, slid, stop)
     }
 

@@ -26,7 +26,8 @@ use crate::tuning::Tuning;
 use contact::PreparedBem3d;
 use contact_model::{
     Abilities, Adhesion, AdhesionLaw, Boundary, ContactModel, Directions, Effect, Effects, Error, Friction,
-    Hardness, LoadKind, Output, Paths, PreparedContact, RequiredMemory, Result, Scene, Source, SurfaceKind,
+    LoadKind, NotCombined, Output, Paths, PreparedContact, RequiredMemory, Result, Scene, Source,
+    SurfaceKind,
 };
 use options::NAME;
 
@@ -97,8 +98,11 @@ impl ContactModel for Bem3d {
                 Effect::ExponentialAdhesion,
                 Effect::DugdaleAdhesion,
                 Effect::Friction,
+                Effect::ShearStrength,
+                Effect::TractionLimit,
                 Effect::FullCoupling,
             ],
+            not_combined: NOT_COMBINED,
             loads: LoadKind::ALL,
             paths: Paths::Remembered,
             directions: Directions::Plane,
@@ -138,7 +142,6 @@ impl Bem3d {
         recorder: &Recorder,
     ) -> Result<PreparedBem3d> {
         self.abilities().refuse(NAME, scene)?;
-        refuse_together(&scene.effects)?;
         profile::check(scene)?;
         if !(self.tolerance > 0.0 && self.tolerance < 1.0) {
             return Err(Error::domain("tolerance", self.tolerance, "a number in (0, 1)"));
@@ -147,26 +150,37 @@ impl Bem3d {
     }
 }
 
-/// Refuses effects that the solvers do not combine: adhesion of short range with a hardness, and friction with a
-/// hardness or with adhesion.
-///
-/// # Errors
-/// [`Error::Unsupported`] for the first two of them that are on.
-fn refuse_together(effects: &Effects) -> Result<()> {
-    let (hardness, adhesion) = (effects.hardness != Hardness::Off, effects.adhesion != Adhesion::Off);
-    let friction = effects.friction != Friction::Off;
-    let short = matches!(effects.adhesion, Adhesion::ShortRange { .. });
-    let what = if hardness && short {
-        "hardness and adhesion of short range together: at the edge of a contact the pressure of this limit has no bound; give the adhesion a range"
-    } else if hardness && friction {
-        "hardness and friction together: what flows under a pressure and a traction is not Coulomb's law on an indentation"
-    } else if adhesion && friction {
-        "adhesion and friction together: how much friction holds under tension is not said by Coulomb's law"
-    } else {
-        return Ok(());
-    };
-    Err(Error::unsupported(NAME, what))
-}
+const ADHESION: &[Effect] =
+    &[Effect::ShortRangeAdhesion, Effect::ExponentialAdhesion, Effect::DugdaleAdhesion];
+
+const FRICTION: &[Effect] =
+    &[Effect::Friction, Effect::ShearStrength, Effect::TractionLimit, Effect::FullCoupling];
+
+/// Effects that the solvers do not combine.
+const NOT_COMBINED: &[NotCombined] = &[
+    NotCombined {
+        effects: [&[Effect::Hardness], &[Effect::ShortRangeAdhesion]],
+        reason: "at the edge of a contact the tractions of this limit have no bound; give the adhesion a range",
+    },
+    NotCombined {
+        effects: [&[Effect::ShortRangeAdhesion], FRICTION],
+        reason: "not solved: the contact pressure at the edge grows without a limit as cells become smaller, and with \
+                 it what Coulomb's law holds; give the adhesion a range",
+    },
+    NotCombined {
+        effects: [ADHESION, &[Effect::FullCoupling]],
+        reason: "not solved, as the tractions would displace the surfaces that attract each other",
+    },
+    NotCombined {
+        effects: [&[Effect::ShearStrength], &[Effect::FullCoupling]],
+        reason: "a cell that touches with a vanishing pressure carries the whole shear strength, which may open it \
+                 again, so that there need not be any state",
+    },
+    NotCombined {
+        effects: [&[Effect::Hardness], &[Effect::FullCoupling]],
+        reason: "not solved, as the tractions would displace the surface that flows",
+    },
+];
 
 #[cfg(test)]
 mod tests {

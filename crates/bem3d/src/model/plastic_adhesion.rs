@@ -7,7 +7,7 @@
 use super::*;
 use crate::geometry::Grid;
 use crate::kernel::NormalTable;
-use contact_model::{HeightMap, Load, Status, Step, Surface};
+use contact_model::{Hardness, HeightMap, Load, Status, Step, Surface};
 use proptest::prelude::*;
 use std::sync::Arc;
 

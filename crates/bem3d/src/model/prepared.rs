@@ -128,7 +128,7 @@ impl PreparedSurface {
             problem.bounds = Bounds::UpTo(upper);
             hardness = Some(upper);
         }
-        let sliding = Sliding::new(scene, &problem, (tuning, recorder))?;
+        let sliding = Sliding::new(scene, &problem, nondimensional, (tuning, recorder))?;
         let normalisation = Normalisation {
             contact_modulus: scene.contact_modulus,
             length: map.length(),

@@ -5,14 +5,18 @@ use crate::active_set::Problem;
 use crate::friction::{Friction, FrictionState, SlipMemory, TangentialStiffness};
 use crate::parts::Recorder;
 use crate::tuning::Tuning;
-use contact_model::{Certificate, Coupling, Friction as Law, Result, Scene, Tangential};
+use contact_model::{
+    Certificate, Coupling, Error, FrictionLaw, Nondimensionalisation, Result, Scene, Tangential,
+};
+use std::f64::consts::PI;
 use std::sync::Arc;
 
 /// The friction of a surface.
 #[derive(Debug)]
 pub(super) struct Sliding {
     pub(super) friction: Friction,
-    pub(super) coefficient: f64,
+    /// The law, for nondimensional pressures and tractions.
+    pub(super) law: FrictionLaw,
     /// The undeformed gaps, without displacements under tractions.
     pub(super) undeformed: Arc<Vec<f64>>,
     /// The start of the next increment.
@@ -68,14 +72,16 @@ impl Sliding {
     /// The friction of a scene on the cells of a problem; `None` without.
     ///
     /// # Errors
-    /// As [`Scene::coupling`].
+    /// As [`Scene::coupling`]; [`contact_model::Error::Domain`] for a strength that is no number in the units of the
+    /// surface.
     pub(super) fn new(
         scene: &Scene,
         problem: &Problem,
+        units: Nondimensionalisation,
         (tuning, recorder): (&Tuning, &Recorder),
     ) -> Result<Option<Self>> {
         let coupling = scene.coupling(NAME)?;
-        let (Law::Coulomb { coefficient, .. }, Some(pair)) = (scene.effects.friction, scene.pair) else {
+        let (Some(law), Some(pair)) = (scene.effects.friction.law(), scene.pair) else {
             return Ok(None);
         };
         // E* sum nu/(2 G), from 1/G* = 1/E* + sum nu/(4 G).
@@ -84,7 +90,7 @@ impl Sliding {
         let boundary = problem.operators.table().boundary();
         Ok(Some(Self {
             friction: Friction::new(problem.grid(), boundary, [compliance, beta], tuning, recorder),
-            coefficient,
+            law: nondimensional(law, units)?,
             undeformed: problem.candidates.shared(),
             before: SlipMemory::default(),
             dissipated: 0.0,
@@ -100,4 +106,21 @@ impl Sliding {
     pub(super) fn is_coupled(&self) -> bool {
         self.friction.is_coupled()
     }
+}
+
+/// A law for pressures in the units of the surface, which are over pi.
+fn nondimensional(law: FrictionLaw, units: Nondimensionalisation) -> Result<FrictionLaw> {
+    let pressure = |name: &'static str, pressure: f64| {
+        let scaled = units.pressure_in(pressure) / PI;
+        if scaled.is_finite() && (scaled > 0.0) == (pressure > 0.0) {
+            Ok(scaled)
+        } else {
+            Err(Error::domain(name, pressure, "a pressure nearer to E* times the slope of the surface"))
+        }
+    };
+    Ok(FrictionLaw {
+        coefficient: law.coefficient,
+        shear_strength: pressure("shear strength of friction", law.shear_strength)?,
+        limit: law.limit.map(|limit| pressure("limit of friction", limit)).transpose()?,
+    })
 }

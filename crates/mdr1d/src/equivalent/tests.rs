@@ -2,8 +2,8 @@ use super::*;
 use crate::{Mdr1d, PartialSlip, Viscoelastic};
 use approx::assert_relative_eq;
 use contact_model::{
-    Abilities, Adhesion, Body, Conductance, ContactModel, ContactState, Load, NormalLoad, Output, Pair,
-    PreparedContact, PronySeries, Relaxing, Rheology, SelfAffine, SolveReport, Step, Stop, Surface,
+    Abilities, Adhesion, Body, Conductance, ContactModel, ContactState, Friction, Load, NormalLoad, Output,
+    Pair, PreparedContact, PronySeries, Relaxing, Rheology, SelfAffine, SolveReport, Step, Stop, Surface,
     SurfaceKind,
 };
 use std::sync::atomic::{AtomicUsize, Ordering};

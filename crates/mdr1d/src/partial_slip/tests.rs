@@ -1,6 +1,6 @@
 use super::*;
 use approx::assert_relative_eq;
-use contact_model::{Adhesion, Body, Effects, Load, Pair, SelfAffine, Step, Surface};
+use contact_model::{Adhesion, Body, Effects, Friction, Load, Pair, SelfAffine, Step, Surface};
 
 /// A root of a function that is known to a dozen digits.
 const ROOT: f64 = 1e-11;

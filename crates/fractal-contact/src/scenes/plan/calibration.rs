@@ -54,7 +54,7 @@ const RANGE_TIME: f64 = 3.0;
 /// sweeps depend on the contact more than on its size.
 pub(crate) fn from_sizes(scene: &SceneFile, model: usize) -> Option<Cost> {
     let numerics = &scene.models[model];
-    let coupled = matches!(scene.effects.friction, Friction::Coulomb { coupling: Some(Coupling::Full), .. });
+    let coupled = matches!(scene.effects.friction, Friction::Slip { coupling: Some(Coupling::Full), .. });
     let known = match numerics {
         Numerics::Bem3d(_) | Numerics::Equivalent(_) => scene.effects.adhesion == Adhesion::Off && !coupled,
         Numerics::Registered(_) => false,

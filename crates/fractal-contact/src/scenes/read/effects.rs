@@ -2,7 +2,8 @@
 
 use crate::scenes::read::{Diagnostic, Entries, Entry, Read, System, amount, number, printed};
 use contact_model::{
-    Adhesion, AdhesionLaw, Boundary, Coupling, Effects, Friction, Hardness, PronySeries, Relaxing, Rheology,
+    Adhesion, AdhesionLaw, Boundary, Coupling, Effects, Friction, FrictionLaw, Hardness, PronySeries,
+    Relaxing, Rheology,
 };
 use surface_io::Dimension;
 
@@ -107,38 +108,17 @@ pub static EFFECT_KEYS: &[EffectKey] = &[
     },
     EffectKey {
         name: "friction",
-        takes: "`{ coefficient, coupling }` with the `coupling` `\"none\"` or `\"full\"`, or the coefficient alone",
-        about: "Coulomb's friction under a tangential load, with this coefficient. Where the bodies differ, normal and tangential tractions \
-                act on each other: the coupling is neglected, or both are solved together.",
+        takes: "`{ coefficient, shear_strength, limit, coupling }` with the `coupling` `\"none\"` or `\"full\"`, or the coefficient alone",
+        about: "Friction under a tangential load: the traction is at most the shear strength (a pressure) plus the coefficient times the \
+                pressure, and at most the limit (a pressure). The coefficient alone is Coulomb's law, the shear strength alone is Tresca's. \
+                Where the bodies differ, normal and tangential tractions act on each other: the coupling is neglected, or both are \
+                solved together.",
         off: "no tangential load",
-        read: |entry, _, effects| {
-            let table = entry.table_or("coefficient")?;
-            let coefficient = table.require("coefficient", "0.3")?.not_negative_number()?;
-            let coupling = table.optional("coupling", |entry| entry.choice(&COUPLINGS))?;
-            effects.friction = Friction::Coulomb { coefficient, coupling };
-            table.finish()
+        read: |entry, system, effects| {
+            read_friction(&entry.table_or("coefficient")?, system).map(|friction| effects.friction = friction)
         },
-        print: |effects, _| match effects.friction {
-            Friction::Coulomb { coefficient, coupling } => {
-                let word =
-                    coupling.and_then(|coupling| COUPLINGS.iter().find(|(_, known)| *known == coupling));
-                let coupling =
-                    word.map_or(String::new(), |(word, _)| format!(", coupling = {}", printed::text(word)));
-                Some(format!("{{ coefficient = {}{coupling} }}", printed::number(coefficient)))
-            }
-            _ => None,
-        },
-        words: |effects, _| match effects.friction {
-            Friction::Coulomb { coefficient, coupling } => {
-                let coupling = match coupling {
-                    Some(Coupling::Full) => ", normal and tangential tractions solved together",
-                    Some(_) => ", coupling of normal and tangential tractions neglected",
-                    None => "",
-                };
-                Some(format!("Coulomb, coefficient {coefficient}{coupling}"))
-            }
-            _ => None,
-        },
+        print: |effects, system| print_friction(effects.friction, system),
+        words: |effects, system| friction_words(effects.friction, system),
     },
     EffectKey {
         name: "rheology",
@@ -231,6 +211,74 @@ fn read_adhesion(table: &Entries<'_>, system: System) -> Read<Adhesion> {
     };
     table.known_only()?;
     Ok(adhesion)
+}
+
+fn read_friction(table: &Entries<'_>, system: System) -> Read<Friction> {
+    let coefficient = table.optional("coefficient", Entry::not_negative_number)?;
+    let shear_strength =
+        table.optional("shear_strength", |entry| entry.not_negative(Dimension::PRESSURE, system))?;
+    let limit = table.find("limit").map(|e| Ok((e.positive(Dimension::PRESSURE, system)?, e))).transpose()?;
+    let coupling = table.optional("coupling", |entry| entry.choice(&COUPLINGS))?;
+    let limit = match (coefficient, shear_strength, limit) {
+        (None, None, Some((_, entry))) => {
+            return Err(entry
+                .diagnostic_at_key("`limit` caps a law of friction, and the law itself is not given")
+                .with_help(
+                    "add `coefficient = 0.3`, `shear_strength = \"10 MPa\"` or both; a traction that is the same at \
+                     any pressure is a `shear_strength` alone",
+                ));
+        }
+        // Named as what is missing.
+        (None, None, None) => table.require("coefficient", "0.3").map(|_| None)?,
+        (_, _, limit) => limit.map(|(limit, _)| limit),
+    };
+    table.known_only()?;
+    let law = FrictionLaw {
+        coefficient: coefficient.unwrap_or(0.0),
+        shear_strength: shear_strength.unwrap_or(0.0),
+        limit,
+    };
+    Ok(Friction::Slip { law, coupling })
+}
+
+fn print_friction(friction: Friction, system: System) -> Option<String> {
+    let Friction::Slip { law: FrictionLaw { coefficient, shear_strength, limit }, coupling } = friction
+    else {
+        return None;
+    };
+    let pressure = |value| printed::quantity(value, Dimension::PRESSURE, system);
+    let word = coupling.and_then(|coupling| COUPLINGS.iter().find(|(_, known)| *known == coupling));
+    let keys = [
+        (coefficient > 0.0 || shear_strength <= 0.0).then(|| ("coefficient", printed::number(coefficient))),
+        (shear_strength > 0.0).then(|| ("shear_strength", pressure(shear_strength))),
+        limit.map(|limit| ("limit", pressure(limit))),
+        word.map(|(word, _)| ("coupling", printed::text(word))),
+    ];
+    let keys: Vec<String> =
+        keys.into_iter().flatten().map(|(key, value)| format!("{key} = {value}")).collect();
+    Some(format!("{{ {} }}", keys.join(", ")))
+}
+
+fn friction_words(friction: Friction, system: System) -> Option<String> {
+    let Friction::Slip { law: FrictionLaw { coefficient, shear_strength, limit }, coupling } = friction
+    else {
+        return None;
+    };
+    let pressure = |value| amount(value, system.shown("Pa"));
+    let law = if shear_strength <= 0.0 {
+        format!("Coulomb, coefficient {coefficient}")
+    } else if coefficient <= 0.0 {
+        format!("Tresca, shear strength {}", pressure(shear_strength))
+    } else {
+        format!("shear strength {}, coefficient {coefficient}", pressure(shear_strength))
+    };
+    let limit = limit.map_or_else(String::new, |limit| format!(", traction at most {}", pressure(limit)));
+    let coupling = match coupling {
+        Some(Coupling::Full) => ", normal and tangential tractions solved together",
+        Some(_) => ", coupling of normal and tangential tractions neglected",
+        None => "",
+    };
+    Some(format!("{law}{limit}{coupling}"))
 }
 
 fn rheology_words(rheology: &Rheology, system: System) -> String {
@@ -352,10 +400,50 @@ mod tests {
         for (word, coupling) in [("none", Coupling::Neglected), ("full", Coupling::Full)] {
             let effects =
                 parse_effects(&format!("friction = {{ coefficient = 0.1, coupling = \"{word}\" }}"));
-            let expected = Friction::Coulomb { coefficient: 0.1, coupling: Some(coupling) };
+            let expected = Friction::coulomb(0.1).with_coupling(Some(coupling));
             assert_eq!(effects.unwrap().friction, expected);
         }
         assert_eq!(parse_effects("friction = 0.1").unwrap().friction, Friction::coulomb(0.1));
+        let law =
+            |text: &str| parse_effects(&format!("friction = {{ {text} }}")).unwrap().friction.law().unwrap();
+        assert_eq!(law("shear_strength = 2"), FrictionLaw::tresca(2.0));
+        let all = FrictionLaw { coefficient: 0.3, shear_strength: 0.1, limit: Some(5.0) };
+        assert_eq!(law("limit = 5, shear_strength = 0.1, coefficient = 0.3"), all);
+        assert_eq!(
+            law("coefficient = 0, limit = 5"),
+            FrictionLaw { limit: Some(5.0), ..FrictionLaw::coulomb(0.0) }
+        );
+        let words = |text: &str| friction_words(parse_effects(text).unwrap().friction, System::None).unwrap();
+        assert_eq!(words("friction = 0.3"), "Coulomb, coefficient 0.3");
+        assert_eq!(words("friction = { shear_strength = 2 }"), "Tresca, shear strength 2");
+        assert_eq!(
+            words("friction = { coefficient = 0.3, shear_strength = 0.1, limit = 5, coupling = \"full\" }"),
+            "shear strength 0.1, coefficient 0.3, traction at most 5, normal and tangential tractions solved together"
+        );
+    }
+
+    /// Each mistake in a law of friction is named with what was expected.
+    #[test]
+    fn laws_of_friction_are_checked() {
+        for (text, expected) in [
+            ("{ limit = 5 }", "`limit` caps a law of friction, and the law itself is not given"),
+            ("{ limit = 5, coupling = \"full\" }", "`limit` caps a law of friction"),
+            ("{ coupling = \"full\" }", "`coefficient` is missing"),
+            ("{ shear_strength = -1 }", "-1"),
+            ("{ shear_strength = nan }", "nan"),
+            ("{ shear_strength = inf }", "inf"),
+            ("{ coefficient = -0.3, shear_strength = 1 }", "-0.3"),
+            ("{ coefficient = 0.3, limit = 0 }", "0"),
+            ("{ coefficient = 0.3, limit = -2 }", "-2"),
+            ("{ coefficient = 0.3, limit = nan }", "nan"),
+            ("{ coefficient = 0.3, limit = inf }", "inf"),
+            ("{ coefficient = 0.3, strength = 1 }", "strength"),
+        ] {
+            let refused = parse_effects(&format!("friction = {text}")).unwrap_err();
+            let (words, lower) = (refused.to_string(), refused.to_string().to_lowercase());
+            assert!(lower.contains(expected), "{text}: {words}");
+            println!("{words}");
+        }
         for text in [
             "hardnes = 1",
             "adhesion = { work = 1, reach = 1 }",

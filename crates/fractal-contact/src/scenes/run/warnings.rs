@@ -254,9 +254,7 @@ impl StateNotes {
 fn neglects_coupling(scene: &SceneFile) -> bool {
     let Some(pair) = scene.pair.as_ref() else { return false };
     let friction = match scene.effects.friction {
-        Friction::Coulomb { coefficient, coupling: None } => {
-            Friction::Coulomb { coefficient, coupling: Some(Coupling::Neglected) }
-        }
+        silent @ Friction::Slip { coupling: None, .. } => silent.with_coupling(Some(Coupling::Neglected)),
         stated => stated,
     };
     friction.coupling_of(pair) == Ok(Some(Coupling::Neglected))

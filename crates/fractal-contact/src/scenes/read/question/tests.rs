@@ -4,8 +4,8 @@ use super::*;
 use crate::scenes::read::loads::LoadList;
 use crate::scenes::read::{Distributed, FieldFormat, LoadKind};
 use contact_model::{
-    Adhesion, AdhesionLaw, Boundary, Conductance, Coupling, Friction, Hardness, Output, PronySeries,
-    Relaxing, Rheology, Tangential,
+    Adhesion, AdhesionLaw, Boundary, Conductance, Coupling, Friction, FrictionLaw, Hardness, Output,
+    PronySeries, Relaxing, Rheology, Tangential,
 };
 use proptest::collection::vec;
 use proptest::option::of;
@@ -206,10 +206,17 @@ fn effects() -> BoxedStrategy<Effects> {
             law
         })
     ];
+    let law_of_friction = prop_oneof![
+        share().prop_map(FrictionLaw::coulomb),
+        positive().prop_map(FrictionLaw::tresca),
+        (share(), of(positive()), of(positive())).prop_map(|(coefficient, strength, limit)| {
+            FrictionLaw { coefficient, shear_strength: strength.unwrap_or(0.0), limit }
+        })
+    ];
     let friction = prop_oneof![
         Just(Friction::Off),
-        (share(), of(select(vec![Coupling::Neglected, Coupling::Full])))
-            .prop_map(|(coefficient, coupling)| Friction::Coulomb { coefficient, coupling })
+        (law_of_friction, of(select(vec![Coupling::Neglected, Coupling::Full])))
+            .prop_map(|(law, coupling)| Friction::of(law).with_coupling(coupling))
     ];
     let arm = || (positive(), positive()).prop_map(|(weight, time)| Relaxing { weight, time });
     let rheology = prop_oneof![

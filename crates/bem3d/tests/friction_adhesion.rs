@@ -1,0 +1,148 @@
+//! Friction together with adhesion of finite range: Derjaguin's law, Tresca's law, limits.
+
+#![allow(clippy::unwrap_used)] // Helpers of tests.
+
+use bem3d::{
+    Adhesion, AdhesionLaw, Bem3d, Body, Boundary, ContactModel, ContactState, Friction, FrictionLaw, Load,
+    Outputs, Pair, Scene, SelfAffine, Step, Surface, Tangential,
+};
+
+const RANGE: f64 = 0.01;
+const WORK: f64 = 1e-4;
+
+/// A rough surface with sides of 1 and heights of 0.01 on 33 cells a side, of bodies that are alike, with E* = 1.
+fn scene(friction: Friction, work: f64, law: AdhesionLaw, boundary: Boundary) -> Scene {
+    let mut surface = SelfAffine::new(2.2, 1.0, 0.01).unwrap();
+    surface.short_cutoff = Some(30.0);
+    let body = Body::Elastic { young: 2.0 * (1.0 - 0.09), poisson: 0.3 };
+    let mut scene = Scene::of_pair(Surface::SelfAffine(surface), Pair { first: body, second: body }).unwrap();
+    scene.effects.boundary = boundary;
+    scene.effects.friction = friction.with_coupling(Some(bem3d::Coupling::Neglected));
+    if work > 0.0 {
+        scene.effects.adhesion = Adhesion::FiniteRange { work, range: RANGE, law };
+    }
+    scene.outputs = Outputs { area: true, pressure: true, gap: true, traction: true, ..Outputs::default() };
+    scene
+}
+
+fn path(scene: &Scene, loads: &[Load]) -> Vec<ContactState> {
+    let model = Bem3d { cells: 33, tolerance: 1e-8, ..Bem3d::default() };
+    let mut contact = model.prepare(scene, 2).unwrap();
+    let steps = loads.iter().enumerate();
+    steps.map(|(i, load)| contact.advance(Step::new(i as f64, *load)).unwrap()).collect()
+}
+
+fn pushed(normal: Load, displacement: [f64; 2]) -> Load {
+    normal.with_tangential(Tangential::Displacement(displacement))
+}
+
+/// The sum of the attraction: that of open cells is their net pressure, that of closed ones the peak.
+fn attraction(state: &ContactState) -> f64 {
+    let net = state.pressure().unwrap().values();
+    let cell = 1.0 / net.len() as f64;
+    let open: f64 =
+        net.iter().zip(state.gap().unwrap().values()).filter(|(_, gap)| **gap > 1e-8).map(|(p, _)| -p).sum();
+    open * cell + WORK / RANGE * state.area.unwrap()
+}
+
+const LAWS: [AdhesionLaw; 2] = [AdhesionLaw::Exponential, AdhesionLaw::Dugdale];
+
+/// Derjaguin's law: in full sliding all friction is `mu (F + sum of the attraction)`, also where the contact is
+/// pulled.
+#[test]
+fn in_full_sliding_friction_is_that_of_force_and_attraction() {
+    let mu = 0.4;
+    for law in LAWS {
+        for boundary in [Boundary::Free, Boundary::Periodic] {
+            let scene = scene(Friction::coulomb(mu), WORK, law, boundary);
+            for force in [5e-3, 1e-3, 0.0, -2e-4] {
+                // Nothing breaks off before.
+                let states = path(
+                    &scene,
+                    &[Load::force(5e-3), Load::force(force), pushed(Load::force(force), [0.5, 0.2])],
+                );
+                let state = states.last().unwrap();
+                let found = state.tangential.as_ref().unwrap();
+                let expected = mu * (state.force + attraction(state));
+                let [x, y] = found.force;
+                assert!(
+                    (x.hypot(y) / expected - 1.0).abs() < 1e-6,
+                    "{law:?} {boundary:?} {force}: {x} {y} {expected}"
+                );
+                assert!((found.sliding_force.unwrap() / expected - 1.0).abs() < 1e-6);
+                // The direction is that of the displacement, but for what remains of the elastic one.
+                assert!((y / x - 0.4).abs() < 0.05);
+            }
+        }
+    }
+}
+
+/// A tangential load changes neither the area nor the pressure, because tractions do not change gaps here.
+#[test]
+fn a_tangential_load_leaves_the_normal_state_as_it_is() {
+    for law in LAWS {
+        let mut without = scene(Friction::Off, WORK, law, Boundary::Free);
+        without.outputs.traction = false;
+        let bare = path(&without, &[Load::approach(0.01), Load::approach(0.006)]);
+        let with = path(
+            &scene(Friction::coulomb(0.3), WORK, law, Boundary::Free),
+            &[pushed(Load::approach(0.01), [1e-3, 0.0]), pushed(Load::approach(0.006), [2e-3, 1e-3])],
+        );
+        for (a, b) in bare.iter().zip(&with) {
+            assert_eq!((a.force, a.area, a.adhesive), (b.force, b.area, b.adhesive));
+            assert_eq!(a.pressure().unwrap().values(), b.pressure().unwrap().values());
+        }
+    }
+}
+
+/// Tresca's law: the contact slides at its strength times its area, whatever the force.
+#[test]
+fn a_shear_strength_acts_on_the_area() {
+    let strength = 0.01;
+    for law in LAWS {
+        let scene = scene(Friction::tresca(strength), WORK, law, Boundary::Free);
+        for force in [3e-3, 0.0, -2e-4] {
+            let states = path(
+                &scene,
+                &[Load::force(5e-3), Load::force(force), pushed(Load::force(force), [0.9, 0.0])],
+            );
+            let state = states.last().unwrap();
+            let found = state.tangential.as_ref().unwrap();
+            let expected = strength * state.area.unwrap();
+            assert!((found.force[0] / expected - 1.0).abs() < 1e-4, "{force}: {:?} {expected}", found.force);
+            assert!((found.sliding_force.unwrap() / expected - 1.0).abs() < 1e-12);
+        }
+    }
+}
+
+/// Without work of adhesion the states are those of friction alone, and tend to them.
+#[test]
+fn without_work_the_tractions_are_those_of_friction_alone() {
+    let loads =
+        [Load::force(5e-3), pushed(Load::force(5e-3), [2e-3, 0.0]), pushed(Load::force(4e-3), [1e-3, 1e-3])];
+    let forces = |work: f64| -> Vec<f64> {
+        let scene = scene(Friction::coulomb(0.3), work, AdhesionLaw::Exponential, Boundary::Free);
+        path(&scene, &loads).iter().flat_map(|state| state.tangential.as_ref().unwrap().force).collect()
+    };
+    let alone = forces(0.0);
+    let far =
+        |work: f64| forces(work).iter().zip(&alone).fold(0.0, |far: f64, (a, b)| far.max((a - b).abs()));
+    let (one, two) = (far(1e-6), far(1e-8));
+    assert!(
+        two < 3e-2 * one && one < 0.1 * alone.iter().fold(0.0, |a: f64, b| a.max(b.abs())),
+        "{one} {two}"
+    );
+}
+
+#[test]
+fn what_is_not_solved_is_refused() {
+    let refused = |scene: &Scene| Bem3d::default().prepare(scene, 0).err().unwrap().to_string();
+    let mut short = scene(Friction::coulomb(0.3), WORK, AdhesionLaw::Dugdale, Boundary::Free);
+    short.effects.adhesion = Adhesion::ShortRange { work: WORK };
+    assert!(refused(&short).contains("give the adhesion a range"), "{}", refused(&short));
+    let mut coupled = scene(Friction::coulomb(0.3), WORK, AdhesionLaw::Dugdale, Boundary::Free);
+    coupled.pair = Some(Pair { first: Body::Rigid, second: Body::Elastic { young: 0.91, poisson: 0.3 } });
+    coupled.effects.friction =
+        Friction::of(FrictionLaw::coulomb(0.3)).with_coupling(Some(bem3d::Coupling::Full));
+    assert!(refused(&coupled).contains("not solved"), "{}", refused(&coupled));
+}
