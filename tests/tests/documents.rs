@@ -10,8 +10,8 @@ mod readmes;
 mod sources;
 
 use crate::abilities::told;
-use contact_model::{Effect, Output};
 use contact_model::quantities::{Average, Compared, QUANTITIES, Quantity, Role};
+use contact_model::{Effect, Output};
 use fractal_contact::models::{MODELS, ModelRecord, abilities};
 use fractal_contact::scenes::{EFFECT_KEYS, EffectKey, SceneKey, scene_keys};
 use std::collections::BTreeSet;
@@ -170,7 +170,8 @@ fn combinations(record: &ModelRecord) -> Option<String> {
         rows.push(row);
     }
     let heads: Vec<&str> = [""].into_iter().chain(effects.iter().map(|effect| effect.words())).collect();
-    let listed: Vec<String> = reasons.iter().enumerate().map(|(i, why)| format!("{}. {why}\n", i + 1)).collect();
+    let listed: Vec<String> =
+        reasons.iter().enumerate().map(|(i, why)| format!("{}. {why}\n", i + 1)).collect();
     Some(format!("### `{}`\n\n{}\n{}\n", record.name(), table(&heads, rows), listed.concat()))
 }
 

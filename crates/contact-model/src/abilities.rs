@@ -255,9 +255,9 @@ impl Abilities {
         let (effects, abilities) = (self.effects, *self);
         let known = move || Effect::ALL.iter().copied().filter(|effect| effects.contains(effect));
         let after = move |one: Effect| known().skip_while(move |other| *other != one).skip(1);
-        known().flat_map(move |one| after(one).map(move |other| (one, other))).filter_map(move |(one, other)| {
-            one.with(other).map(|_| (one, other, abilities.reason_against(one, other)))
-        })
+        known().flat_map(move |one| after(one).map(move |other| (one, other))).filter_map(
+            move |(one, other)| one.with(other).map(|_| (one, other, abilities.reason_against(one, other))),
+        )
     }
 
     /// Why the model does not combine these two of its effects; `None` where it does.

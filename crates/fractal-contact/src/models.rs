@@ -55,7 +55,8 @@ impl fmt::Display for ModelRecord {
             writeln!(f, "  {of:<10} {}", words.join(", "))?;
         }
         for NotCombined { effects: [first, second], reason } in self.model.abilities().not_combined {
-            let words = |group: &[Effect]| group.iter().map(|effect| effect.words()).collect::<Vec<_>>().join(", ");
+            let words =
+                |group: &[Effect]| group.iter().map(|effect| effect.words()).collect::<Vec<_>>().join(", ");
             writeln!(f, "  {:<10} {} with {}: {reason}", "never", words(first), words(second))?;
         }
         Ok(())
