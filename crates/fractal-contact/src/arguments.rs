@@ -34,7 +34,7 @@ pub fn command() -> clap::Command {
                 argument
             };
             let argument = if presses && argument.get_id() == "accuracy" {
-                argument.conflicts_with_all(["cells", "hardness", "friction"])
+                argument.conflicts_with_all(["cells", "hardness", "friction", "shear_strength"])
             } else {
                 argument
             };
@@ -255,6 +255,7 @@ pub enum Command {
 
 /// What is pressed and how.
 #[derive(Debug, Clone, clap::Args)]
+#[command(group(clap::ArgGroup::new("law_of_friction").args(["friction", "shear_strength"]).multiple(true)))]
 pub struct PressArguments {
     /// The measured map: a file of an instrument or program, NPY or text.
     pub map: PathBuf,
@@ -270,16 +271,23 @@ pub struct PressArguments {
     /// Hardness of the softer body, such as "2 GPa". The contact flows where the pressure reaches it.
     #[arg(long, value_name = "PRESSURE")]
     pub hardness: Option<String>,
-    /// Coefficient of Coulomb's friction. It needs --bodies and --tangential-force.
+    /// Coefficient of friction. Alone it is Coulomb's law. It needs --bodies and --tangential-force.
     #[arg(long, value_name = "MU")]
     pub friction: Option<f64>,
-    /// Tangential force along x, such as "0.1 N", applied after the normal load. It is at most the coefficient
-    /// of friction times the force.
-    #[arg(long, value_name = "FORCE", requires = "friction")]
+    /// Shear strength of the contact without pressure, such as "20 MPa". Alone it is Tresca's law; the coefficient
+    /// of friction times the pressure adds to it. It needs --bodies and --tangential-force.
+    #[arg(long, value_name = "PRESSURE")]
+    pub shear_strength: Option<String>,
+    /// Largest traction that friction holds at any pressure, such as "200 MPa".
+    #[arg(long, value_name = "PRESSURE", requires = "law_of_friction")]
+    pub traction_limit: Option<String>,
+    /// Tangential force along x, such as "0.1 N", applied after the normal load. It is at most what friction
+    /// holds: by Coulomb's law the coefficient times the force.
+    #[arg(long, value_name = "FORCE", requires = "law_of_friction")]
     pub tangential_force: Option<String>,
     /// Whether normal and tangential tractions act on each other if the bodies differ: full solves both
     /// together, none neglects the coupling.
-    #[arg(long, value_parser = ["none", "full"], requires = "friction")]
+    #[arg(long, value_parser = ["none", "full"], requires = "law_of_friction")]
     pub coupling: Option<String>,
     /// Any other key of a scene, such as scene.surface.rows=128 or outputs.displacement=npy. It may be given
     /// several times. The book lists the keys in "What a scene may say".
@@ -293,6 +301,11 @@ impl PressArguments {
     /// E* as it was written, under the flag's name or its former one.
     pub fn contact_modulus(&self) -> Option<&str> {
         self.problem.value("contact_modulus").or(self.former_modulus.as_deref())
+    }
+
+    /// Whether a law of friction is given.
+    pub fn has_friction(&self) -> bool {
+        self.friction.is_some() || self.shear_strength.is_some()
     }
 
     /// Said once where a flag was given under a former name.

@@ -107,14 +107,14 @@ fn lacking(asked: &PressArguments, map: &Metadata) -> Vec<Lacking> {
         Some(("--fill", "gives them a height, instead of --undefined: `--fill neighbours`")),
     );
     add(
-        asked.friction.is_some() && bodies.is_none(),
+        asked.has_friction() && bodies.is_none(),
         "--bodies",
         "rigid, 210 GPa 0.3",
         "Young's modulus and Poisson's ratio of both bodies, which friction needs".to_owned(),
         None,
     );
     add(
-        asked.friction.is_none() && asked.contact_modulus().is_none() && bodies.is_none(),
+        !asked.has_friction() && asked.contact_modulus().is_none() && bodies.is_none(),
         "--bodies",
         "210 GPa 0.3, 210 GPa 0.3",
         "Young's modulus and Poisson's ratio of both bodies, here steel on steel".to_owned(),
@@ -122,7 +122,7 @@ fn lacking(asked: &PressArguments, map: &Metadata) -> Vec<Lacking> {
     );
     let couple = bodies.is_none_or(couple);
     add(
-        asked.friction.is_some() && couple && asked.coupling.is_none(),
+        asked.has_friction() && couple && asked.coupling.is_none(),
         "--coupling",
         "full",
         "the bodies differ, so normal and tangential tractions act on each other: full solves both, none neglects this"
@@ -137,7 +137,7 @@ fn lacking(asked: &PressArguments, map: &Metadata) -> Vec<Lacking> {
         Some(("--force", "normal force, instead of --pressure; or --approach, counted from first touch")),
     );
     add(
-        asked.friction.is_some() && asked.tangential_force.is_none(),
+        asked.has_friction() && asked.tangential_force.is_none(),
         "--tangential-force",
         "10 mN",
         "tangential force along x, which friction has to hold".to_owned(),
@@ -243,7 +243,7 @@ fn question(asked: &PressArguments, at: &Path, profile: bool) -> Result<Question
         set("scene.contact_modulus", modulus)?;
     }
     match asked.load() {
-        Some((key, values)) if asked.friction.is_some() => {
+        Some((key, values)) if asked.has_friction() => {
             set(&format!("scene.path.0.{key}"), values)?;
             set("scene.path.1.tangential_force", asked.tangential_force.as_deref().unwrap_or_default())?;
             set("scene.path.1.states", "8")?;
@@ -255,10 +255,16 @@ fn question(asked: &PressArguments, at: &Path, profile: bool) -> Result<Question
     if let Some(hardness) = &asked.hardness {
         set("effects.hardness", hardness)?;
     }
-    if let Some(coefficient) = asked.friction {
-        let coupling =
-            asked.coupling.as_ref().map_or_else(String::new, |word| format!(", coupling = {}", toml(word)));
-        set("effects.friction", &format!("{{ coefficient = {coefficient}{coupling} }}"))?;
+    if asked.has_friction() {
+        let keys = [
+            ("coefficient", asked.friction.map(|coefficient| coefficient.to_string())),
+            ("shear_strength", asked.shear_strength.as_deref().map(toml)),
+            ("limit", asked.traction_limit.as_deref().map(toml)),
+            ("coupling", asked.coupling.as_deref().map(toml)),
+        ];
+        let keys: Vec<String> =
+            keys.into_iter().filter_map(|(key, value)| Some(format!("{key} = {}", value?))).collect();
+        set("effects.friction", &format!("{{ {} }}", keys.join(", ")))?;
     }
     outputs(&mut question, asked, profile);
     for assignment in &asked.set {
@@ -303,7 +309,7 @@ fn outputs(question: &mut Question, asked: &PressArguments, profile: bool) {
         (Output::Pressure, vec![FieldFormat::Npy, FieldFormat::Png]),
         (Output::Gap, vec![FieldFormat::Png]),
     ];
-    if asked.friction.is_some() {
+    if asked.has_friction() {
         requested.outputs.stick_area = true;
         requested.curves = true;
     } else {

@@ -244,6 +244,37 @@ fn friction_is_a_path_under_a_force() {
 }
 
 #[test]
+fn a_law_of_friction_has_flags_of_its_own() {
+    let dir = folder();
+    let press = |more: &[&str]| {
+        let asked = ["press", "map.txt", "--pressure", "1 MPa", "--bodies", "210 GPa 0.3, 210 GPa 0.3"];
+        program(dir.path(), &[&asked[..], &FLAGS, more].concat())
+    };
+    let dragged = ["--tangential-force", "2 uN"];
+    for law in [
+        &["--shear-strength", "100 GPa"][..],
+        &["--friction", "0.3", "--traction-limit", "100 GPa"],
+        &["--friction", "0.3", "--shear-strength", "10 MPa", "--traction-limit", "100 GPa"],
+    ] {
+        let (code, told, said) = press(&[law, &dragged].concat());
+        assert!(code == Some(0) && told.contains("stick"), "{law:?} {told} {said}");
+    }
+    let scene = std::fs::read_to_string(dir.path().join("out/map/scene.toml")).unwrap();
+    let line = "friction = { coefficient = 0.3, shear_strength = \"10 MPa\", limit = \"100 GPa\" }";
+    assert!(scene.contains(line), "{scene}");
+    // A limit caps a law, and a force needs one.
+    for lonely in [&["--traction-limit", "1 GPa"][..], &dragged] {
+        let (code, _, said) = press(lonely);
+        assert!(
+            code == Some(2) && said.contains("--friction") && said.contains("--shear-strength"),
+            "{said}"
+        );
+    }
+    let (code, _, said) = press(&[&["--shear-strength", "-1 MPa"], &dragged[..]].concat());
+    assert!(code == Some(2) && said.contains("shear_strength"), "{said}");
+}
+
+#[test]
 fn mistakes_leave_nothing_behind() {
     let dir = folder();
     let asked = ["press", "map.txt", "--contact-modulus", "1 GPx", "--pressure", "1 MPa"];

@@ -1,13 +1,20 @@
 //! Cells that reach the hardness.
 
 use crate::stability::case::{Case, Effort};
-use crate::stability::ledger::{Ledger, approach, pressure};
+use crate::stability::ledger::{Ledger, approach, largest, pressure};
 use crate::stability::maps::{hard_map, map, rough_map};
 use crate::stability::plain::PlainSum;
 use crate::stability::press::{forces, tight, watched};
-use contact_model::{ContactModel, ContactState, Error, Hardness, HeightMap, Load, Result};
+use crate::stability::shear::{PlainShear, compliance};
+use crate::stability::slide::{Fields, MU, alike, compare, rubbed, tangential, vectors};
+use crate::stability::{DensePath, Prescribed};
+use bem3d::Bem3d;
+use contact_model::{
+    ContactModel, ContactState, Error, Friction, FrictionLaw, Hardness, HeightMap, Load, Result, Step,
+    Tangential,
+};
 
-pub(super) const CASES: [Case; 4] = [
+pub(super) const CASES: [Case; 5] = [
     Case {
         name: "a flat punch at the hardness",
         why: "no cell ever opens: the edge saturates first, and the approach has no bound as the force reaches that of all cells",
@@ -36,6 +43,13 @@ pub(super) const CASES: [Case; 4] = [
         asserted: "the conditions by plain sums up to all cells but a thousandth at the hardness",
         bound: 1e-9,
         solve: full,
+    },
+    Case {
+        name: "sheared where it flows",
+        why: "cells at the hardness have one limit of friction, a tie of nearly all cells; the indentation moves the contact, and with it the cells that remember their slip",
+        asserted: "beside dense matrices with an indentation and tractions of their own: loaded until all cells but a few flow, sheared, turned, unloaded, loaded again",
+        bound: 1e-7,
+        solve: sheared,
     },
 ];
 
@@ -140,5 +154,67 @@ fn full(ledger: &mut Ledger, effort: Effort) -> Result<()> {
     let rough = rough_map(2.2, cells, 9)?;
     let slope = surface_gen::rms_slope_differences(&rough);
     pressed(ledger, &rough.scaled(1.0, 0.08 / slope)?, 0.1, &[1e-3, 0.01, 0.1, 0.3, 0.6, 0.9, 0.99, 0.999])?;
+    Ok(())
+}
+
+fn sheared(ledger: &mut Ledger, effort: Effort) -> Result<()> {
+    let cells = effort.pick(6, 9);
+    let noise: Vec<f64> = (0..1000).map(|i| (f64::from(i) * 0.618_033_988_75).fract()).collect();
+    let pair = alike(0.3);
+    let coulomb = FrictionLaw::coulomb(MU);
+    // Terraces, and heights over twenty decades.
+    for map in [rough_map(2.4, cells, 4)?, hard_map(1, cells, &noise)?, hard_map(6, cells, &noise)?] {
+        let gaps: Vec<f64> = map.heights().iter().map(|h| map.highest() - h).collect();
+        let (normal, shear) = (PlainSum::of(&map), PlainShear::of(&map, compliance(&pair)?));
+        let area = map.dx() * map.dy();
+        for (hardness, law) in [
+            (1.0, coulomb),
+            (0.03, coulomb),
+            (0.03, FrictionLaw { shear_strength: 0.01, limit: Some(0.015), ..coulomb }),
+        ] {
+            let mut scene = rubbed(&map, pair, MU);
+            scene.effects.friction = Friction::of(law);
+            scene.effects.hardness = Hardness::Limit { pressure: hardness };
+            scene.outputs.plastic_depth = true;
+            let mut contact = Bem3d { tolerance: 1e-12, ..tight() }.prepare(&scene, 0)?;
+            let mut exact = DensePath::new((&normal, 0.0), &shear, gaps.clone(), area, (law, Some(hardness)));
+            let path = [
+                (0.5, [0.0, 0.0]),
+                (0.9, [0.6, 0.3]),
+                (0.99, [-0.5, 0.4]),
+                (0.3, [0.2, 0.1]),
+                (0.95, [0.0, -0.8]),
+            ];
+            for (share, [x, y]) in path {
+                let force = share * hardness * area * gaps.len() as f64;
+                exact.press(Prescribed::Force(force));
+                let limits = exact.limits();
+                let most: f64 = limits.iter().sum();
+                let asked = [x * most, y * most];
+                exact.slide(Prescribed::Force(asked));
+                let load = Load::force(force).with_tangential(Tangential::Force(asked));
+                let state = contact.advance(Step::new(0.0, load))?;
+                let found = tangential(&state)?;
+                let p: Vec<f64> = pressure(&state)?.iter().map(|p| p * area).collect();
+                ledger.field(&p, &exact.pressed, largest(&exact.pressed));
+                // A hundredth of the deviation of the tractions: the square root of that of the energy.
+                let hundredth = |q: [f64; 2]| q.map(|q| 0.01 * q);
+                let q: Vec<[f64; 2]> = vectors(&state, Fields::Traction)?
+                    .iter()
+                    .map(|q| hundredth(q.map(|q| q * area)))
+                    .collect();
+                let n = limits.len();
+                let expected: Vec<[f64; 2]> =
+                    (0..n).map(|i| hundredth([exact.sheared[i], exact.sheared[n + i]])).collect();
+                compare(ledger, &q, &expected, largest(&limits));
+                let moved = exact.displacement[0].hypot(exact.displacement[1]).max(most);
+                compare(ledger, &[hundredth(found.displacement)], &[hundredth(exact.displacement)], moved);
+                ledger.enter((found.dissipated - exact.dissipated).abs() / (moved * most));
+                let depth = state.fields.as_ref().and_then(|fields| fields.plastic_depth.as_ref());
+                let depth = depth.map_or(&[][..], |depth| depth.values());
+                ledger.field(depth, &exact.indentation, largest(&exact.indentation).max(exact.approach));
+            }
+        }
+    }
     Ok(())
 }
