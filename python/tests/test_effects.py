@@ -581,10 +581,45 @@ def test_models_refuse_effects_that_they_lack(model, surface, effects):
 @pytest.mark.parametrize("adhesion", [EXPONENTIAL, DUGDALE])
 def test_hardness_and_adhesion_together_are_refused(adhesion):
     scene = fc.Scene(SPHERE, contact_modulus=1.0, effects={"hardness": 1.0, "adhesion": adhesion})
-    with pytest.raises(fc.Unsupported, match="hardness and adhesion together") as caught:
+    with pytest.raises(fc.Unsupported, match="a hardness together with adhesion") as caught:
         COARSE.prepare(scene)
     # No model has both.
     assert caught.value.able == () and "models that may" not in str(caught.value)
+
+
+def test_which_effects_go_together_is_a_table():
+    rows = [row for row in fc.combinations() if row["model"] == "bem3d"]
+    of_keys = {row["keys"]: row for row in rows if row["effects"][0] != row["effects"][1]}
+    assert of_keys["hardness", "adhesion"]["combined"] is False and of_keys["hardness", "adhesion"]["reason"]
+    body = fc.Body(young=2.0, poisson=0.3)
+    bodies, sphere = (body, body), fc.Surface.sphere(radius=1.0, size=0.5)
+    for row in rows:
+        assert row["combined"] == (row["reason"] is None)
+    scene = fc.Scene(sphere, bodies=bodies, effects={"hardness": 0.05, "friction": 0.3})
+    assert ("a hardness", "friction") in [row["effects"] for row in rows if row["combined"]]
+    path = fc.Bem3d(cells=17).prepare(scene)
+    states = list(path.follow(force=0.002, tangential_force=[0.0, 0.0003]))
+    assert states[1].sliding_force == pytest.approx(0.3 * 0.002)
+    assert states[1].plastic_volume >= 0.0
+
+
+def test_laws_of_friction():
+    body = fc.Body(young=2.0, poisson=0.3)
+
+    def sliding(friction):
+        surface = fc.Surface.flat_circle(radius=0.2, size=0.5)
+        path = fc.Bem3d(cells=16).prepare(fc.Scene(surface, bodies=(body, body), effects={"friction": friction}))
+        return next(iter(path.follow(force=[1e-3]))).sliding_force
+
+    tresca = sliding({"shear_strength": 1e-3})
+    assert tresca == pytest.approx(1e-3 * np.pi * 0.2**2, rel=0.1)
+    both = sliding({"shear_strength": 1e-3, "coefficient": 0.3})
+    assert both == pytest.approx(tresca + 0.3 * 1e-3)
+    assert sliding({"coefficient": 1e6, "limit": 1e-3}) == pytest.approx(tresca)
+    with pytest.raises(ValueError, match="`limit` caps a law of friction"):
+        fc.Effects(friction={"limit": 1.0})
+    with pytest.raises(fc.DomainError, match="shear_strength"):
+        fc.Effects(friction={"shear_strength": -1.0})
 
 
 def test_a_number_alone_is_adhesion_of_short_range():

@@ -41,14 +41,19 @@ impl Draw {
     }
 }
 
+/// Columns, rows, whether it is periodic, and the place of Poisson's ratio.
+type GridKey = (usize, usize, bool, usize);
+/// The normal kernel and its mean where it is periodic, and the tangential kernel.
+type KernelsOfGrid = (PlainSum, f64, PlainShear);
+
 /// Kernels of the grids, which periodic images make expensive.
 #[derive(Default)]
-struct Kernels(HashMap<(usize, usize, bool, usize), (PlainSum, f64, PlainShear)>);
+struct Kernels(HashMap<GridKey, KernelsOfGrid>);
 
 const POISSONS: [f64; 3] = [0.0, 0.3, 0.5];
 
 impl Kernels {
-    fn of(&mut self, map: &HeightMap, periodic: bool, poisson: usize) -> &(PlainSum, f64, PlainShear) {
+    fn of(&mut self, map: &HeightMap, periodic: bool, poisson: usize) -> &KernelsOfGrid {
         self.0.entry((map.columns(), map.rows(), periodic, poisson)).or_insert_with(|| {
             let c = compliance(&alike(POISSONS[poisson])).unwrap();
             if periodic {

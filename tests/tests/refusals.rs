@@ -146,17 +146,14 @@ fn two_effects_together_are_as_the_table_says() {
                 unsupported(record.model, &scene);
                 continue;
             }
-            match abilities.reason_against(one, other) {
-                Some(reason) => {
-                    let what = unsupported(record.model, &scene);
-                    assert!(what.contains("together with") && what.contains(reason), "{what}");
-                    refused += 1;
-                }
-                None => {
-                    let prepared = record.model.prepare(&scene, 0).map(|_| ());
-                    assert!(prepared.is_ok(), "{}: {one:?} {other:?}: {prepared:?}", record.model.name());
-                    taken += 1;
-                }
+            if let Some(reason) = abilities.reason_against(one, other) {
+                let what = unsupported(record.model, &scene);
+                assert!(what.contains("together with") && what.contains(reason), "{what}");
+                refused += 1;
+            } else {
+                let prepared = record.model.prepare(&scene, 0).map(|_| ());
+                assert!(prepared.is_ok(), "{}: {one:?} {other:?}: {prepared:?}", record.model.name());
+                taken += 1;
             }
         }
     }

@@ -20,7 +20,8 @@ const NAME: &str = "cattaneo_mindlin";
 /// was left there (Mindlin and Deresiewicz 1953). The memory is the list of reversals whose loops are not
 /// closed.
 ///
-/// Takes [`contact_model::Surface::Sphere`] with [`Friction::Slip`] and both bodies ([`Scene::of_pair`]).
+/// Takes [`contact_model::Surface::Sphere`] with friction by Coulomb's law ([`FrictionLaw::coulomb`]) and both
+/// bodies ([`Scene::of_pair`]).
 /// The normal load may change only before the first tangential one; a tangential force beyond mu F is
 /// [`Error::OutOfRange`], a displacement beyond is gross slip. The theory neglects the influence of
 /// tangential tractions on the normal ones. This is exact where [`contact_model::Pair::coupling`] is 0, and

@@ -15,7 +15,7 @@
 //! | [`AdhesiveWave`] | sine, periodic, [`contact_model::Adhesion::ShortRange`] | F (of either sign), mean gap, k, area, pull-off and snap-in |
 //! | [`Persson`] | self-affine with cut-off or map, periodic | F, mean gap, k, area |
 //! | [`GreenwoodWilliamson`] | self-affine with cut-off or map, periodic | F, mean gap, k, area up to half of the summits |
-//! | [`CattaneoMindlin`] (a history) | sphere, [`contact_model::Friction::Slip`] | tangential force and displacement, stick radius, dissipated energy |
+//! | [`CattaneoMindlin`] (a history) | sphere, friction by Coulomb's law | tangential force and displacement, stick radius, dissipated energy |
 //! | [`PowerLaw`] | self-affine or map, `k_bar <= 0.18` | k of F (Eq. 12 of Pohrt, Popov, Filippov 2012), d by integration |
 //!
 //! The other fits of that paper are plain functions: [`exponent_fit`] (Eq. 6), [`zeta_fit`] (Eq. 11),

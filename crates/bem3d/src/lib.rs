@@ -197,7 +197,7 @@
 //! | `active_set::residuals` | the one routine of the certificate | values by hand |
 //! | `active_set::undecided` | how far an open gap may still change: the largest gap left near by, and an eighth of the largest anywhere; cells below that are undecided and count in the error of k | true changes of all open gaps by elimination |
 //! | `stiffness` | `G q = 1`, the Ritz value and an upper estimate; the error of k has a part from the solve and one from undecided cells | full contact of small squares; tighter solves |
-//! | `friction` | an increment of Coulomb's friction with its certificate and tangential stiffness; coupled, normal and tangential contact are solved in turn | a dense convex programme; tractions of Ciavarella and Jaeger |
+//! | `friction` | an increment of friction, by any law of the pressure, with its certificate and tangential stiffness; coupled, normal and tangential contact are solved in turn | a dense convex programme; tractions of Ciavarella and Jaeger |
 //!
 //! # How accurate
 //!

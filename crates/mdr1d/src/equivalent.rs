@@ -189,8 +189,6 @@ impl<M: ContactModel> ContactModel for Equivalent<M> {
             SurfaceKind::Flat,
             SurfaceKind::Sine,
         ];
-        let of_a_line = self.model.abilities().surfaces.contains(&SurfaceKind::Line);
-        let surfaces = &SURFACES[usize::from(!of_a_line)..];
         const NOT_COMBINED: &[NotCombined] = &[NotCombined {
             effects: [
                 &[Effect::Friction],
@@ -198,6 +196,8 @@ impl<M: ContactModel> ContactModel for Equivalent<M> {
             ],
             reason: "not solved, as springs that relax and slip have two memories that act on each other",
         }];
+        let of_a_line = self.model.abilities().surfaces.contains(&SurfaceKind::Line);
+        let surfaces = &SURFACES[usize::from(!of_a_line)..];
         Abilities {
             surfaces,
             outputs: OUTPUTS,

@@ -13,8 +13,8 @@ const NAME: &str = "mdr1d_partial_slip";
 /// Coulomb's friction of axisymmetric bodies through their profile, each spring sticking or slipping by
 /// itself.
 ///
-/// The model takes the bodies of [`Profile`] with [`Friction::Slip`] and both bodies' materials
-/// ([`Scene::of_pair`]), and any path of normal and tangential loads. A step goes straight from one pair of
+/// The model takes the bodies of [`Profile`] with friction by Coulomb's law ([`FrictionLaw::coulomb`]) and both
+/// bodies' materials ([`Scene::of_pair`]), and any path of normal and tangential loads. A step goes straight from one pair of
 /// approach and tangential displacement to the next; a step by force ends where the force is reached. The
 /// state at its end, including the energy, is exact for the springs whatever the length of the step, because
 /// nothing is discretised in x or along the path. The cost of a step is O(m) for m corners in the deflection

@@ -122,7 +122,7 @@ impl DensePath {
             Prescribed::Force(_) => 0.0,
         };
         let linear: Vec<f64> = self.gaps.iter().map(|z| z - d).collect();
-        let (p, step, shift) = minimum(&self.normal, &linear, self.pressed.clone(), project);
+        let (p, step, shift) = minimum(&self.normal, &linear, &self.pressed, project);
         self.approach = match load {
             Prescribed::Displacement(d) => d,
             Prescribed::Force(_) => shift / step,
@@ -185,7 +185,7 @@ impl DensePath {
             Prescribed::Force(_) => [0.0; 2],
         };
         let linear: Vec<f64> = held.iter().enumerate().map(|(k, held)| held - delta[k / n]).collect();
-        let (q, step, shift) = minimum(&self.shear, &linear, self.sheared.clone(), project);
+        let (q, step, shift) = minimum(&self.shear, &linear, &self.sheared, project);
         let delta = match load {
             Prescribed::Displacement(delta) => delta,
             Prescribed::Force(_) => shift.map(|shift| shift / step),
@@ -228,12 +228,12 @@ impl DensePath {
 fn minimum<T>(
     a: &[Vec<f64>],
     b: &[f64],
-    start: Vec<f64>,
+    start: &[f64],
     mut project: impl FnMut(&[f64]) -> (Vec<f64>, T),
 ) -> (Vec<f64>, f64, T) {
     let bound = a.iter().map(|row| row.iter().map(|a| a.abs()).sum::<f64>()).fold(0.0, f64::max);
     let step = 1.0 / bound;
-    let mut x = project(&start).0;
+    let mut x = project(start).0;
     let (mut ahead, mut t, mut calm) = (x.clone(), 1.0_f64, 0);
     for _ in 0..STEPS {
         let y: Vec<f64> =

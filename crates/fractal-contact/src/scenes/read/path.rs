@@ -223,7 +223,7 @@ pub(crate) static PATH_KEYS: KeyTable<AskedStep> = KeyTable {
         Key {
             name: "tangential_force",
             takes: "force, or `[x, y]`",
-            about: "tangential force along x, or along x and y; at most [mu F](friction.md#one-step-is-one-increment)",
+            about: "tangential force along x, or along x and y; at most the [sliding force](friction.md#one-step-is-one-increment)",
             default: "that of the step before",
             read: |step, entry, context| {
                 let force = read_tangential(entry, Dimension::FORCE, context.system)?;
