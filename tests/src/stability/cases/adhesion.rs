@@ -1,20 +1,21 @@
 //! Attraction across open gaps.
 
 use crate::stability::case::{Case, Effort};
-use crate::stability::ledger::{Ledger, approach, largest, pressure};
+use crate::stability::ledger::{Ledger, approach, known, largest, pressure};
 use crate::stability::maps::{map, rough_map};
 use crate::stability::plain::PlainSum;
 use crate::stability::press::watched;
+use crate::stability::slide::{Fields, MU, alike, rubbed, tangential, vectors};
 use bem3d::Bem3d;
 use contact_model::{
-    Adhesion, AdhesionLaw, Boundary, ContactModel, ContactState, Error, HeightMap, Load, PreparedContact,
-    Result, Scene, Step,
+    Adhesion, AdhesionLaw, Boundary, ContactModel, ContactState, Error, Hardness, HeightMap, Load,
+    PreparedContact, Result, Scene, Step, Tangential,
 };
 
 /// Tolerance of the solves.
 pub(super) const TOLERANCE: f64 = 1e-8;
 
-pub(super) const CASES: [Case; 5] = [
+pub(super) const CASES: [Case; 6] = [
     Case {
         name: "a plateau snaps in",
         why: "all its cells become unstable at once: an iteration that starts too far in, or overshoots, finds the other branch",
@@ -49,6 +50,13 @@ pub(super) const CASES: [Case; 5] = [
         asserted: "full contact from push to pull; the pressure changes by dF/A at every cell (of the largest pressure)",
         bound: 1e-6,
         solve: tension,
+    },
+    Case {
+        name: "a plateau that snaps in, flows and is dragged",
+        why: "three effects at once: cells jump from open to the hardness in one step, slip under a pull, and fit each other on the way out",
+        asserted: "by plain sums over the indented surface: the law of every open cell, closed cells between zero and the hardness with the peak of the attraction, Coulomb's limit of the contact pressure, and all of it in sliding",
+        bound: 1e-6,
+        solve: three,
     },
 ];
 
@@ -144,7 +152,7 @@ fn summit(ledger: &mut Ledger, effort: Effort) -> Result<()> {
 }
 
 fn everything(ledger: &mut Ledger, effort: Effort) -> Result<()> {
-    let cells = effort.pick(24, 48);
+    let cells = effort.pick(32, 48);
     let map = rough_map(2.2, cells, 2)?.scaled(1.0, 0.02)?;
     let (work, range) = (0.5, 0.5);
     let mut history = path(&attracted(&map, work, range))?;
@@ -198,6 +206,66 @@ fn tension(ledger: &mut Ledger, effort: Effort) -> Result<()> {
             }
         }
         last = Some((force, p));
+    }
+    Ok(())
+}
+
+/// Net pressures between the law of the gap and the hardness, over the surface as it is indented now, and tractions
+/// within what friction holds of the contact pressure.
+fn three(ledger: &mut Ledger, effort: Effort) -> Result<()> {
+    let cells = effort.pick(32, 48);
+    let middle = |i: usize| (cells / 4..3 * cells / 4).contains(&i);
+    // A plateau with a slope, so that it does not flow everywhere at once.
+    let map =
+        map(cells, 1.0, |x, y| if middle(x) && middle(y) { -0.05 * x as f64 / cells as f64 } else { -1.0 })?;
+    let (work, range, hardness) = (0.05, 0.1, 0.6);
+    let mut scene = attracted(&map, work, range);
+    let rubbed = rubbed(&map, alike(0.3), MU);
+    (scene.pair, scene.effects.friction) = (rubbed.pair, rubbed.effects.friction);
+    scene.effects.hardness = Hardness::Limit { pressure: hardness };
+    (scene.outputs.traction, scene.outputs.plastic_depth, scene.outputs.gap) = (true, true, true);
+    let mut history = path(&scene)?;
+    let cell = map.dx() * map.dy();
+    let peak = work / range;
+    let loads = [
+        (-0.2, 0.0),
+        (-0.05, 0.0),
+        (0.05, 0.01),
+        (0.2, 0.02),
+        (0.2, 2.0),
+        (0.1, 2.0),
+        (0.02, 1.9),
+        (-0.05, 0.0),
+    ];
+    for (d, moved) in loads {
+        let load = Load::approach(d).with_tangential(Tangential::Displacement([moved, 0.0]));
+        let state = go(history.as_mut(), load)?;
+        meets_and_is_stable(ledger, &state);
+        let net = pressure(&state)?;
+        let forces: Vec<(usize, f64)> = net.iter().enumerate().map(|(i, p)| (i, p * cell)).collect();
+        let u = PlainSum::of(&map).displacement(&forces);
+        let depth = state.fields.as_ref().and_then(|fields| fields.plastic_depth.as_ref());
+        let depth = depth.map_or(&[][..], |depth| depth.values());
+        let tractions = vectors(&state, Fields::Traction)?;
+        let (mut held, mut borne) = (0.0, 0.0);
+        for i in 0..net.len() {
+            let gap = u[i] + map.highest() - map.heights()[i] + depth[i] - d;
+            ledger.enter((-gap / range).max(0.0));
+            ledger.enter(((net[i] - hardness) / hardness).max(0.0));
+            let contact = net[i] + peak * (-gap.max(0.0) / range).exp();
+            ledger.enter((-contact / peak).max(0.0));
+            ledger.enter((contact / peak).min(gap.max(0.0) / range).max(0.0));
+            let limit = MU * if gap < 1e-6 * range { contact.max(0.0) } else { 0.0 };
+            let [x, y] = tractions[i];
+            ledger.enter(((x.hypot(y) - limit) / (MU * peak)).max(0.0));
+            held += limit * cell;
+            borne += x.hypot(y) * cell;
+        }
+        // Dragged by twice the side all of it slides.
+        if moved > 1.9 && held > 0.0 {
+            ledger.near("friction in sliding", borne, held);
+            ledger.near("sliding force", known("sliding force", tangential(&state)?.sliding_force)?, held);
+        }
     }
     Ok(())
 }
