@@ -14,6 +14,8 @@ use contact_model::FrictionLaw;
 const STEPS: usize = 400_000;
 /// The iteration has settled where steps change less than this share of the largest value ...
 const SMALL: f64 = 2e-14;
+/// ... or, after a tenth of the steps, this share ...
+const ROUNDING: f64 = 1e-12;
 /// ... for this number of steps.
 const CALM: usize = 10;
 /// Pressures below this share of the largest one are rounding.
@@ -235,7 +237,7 @@ fn minimum<T>(
     let step = 1.0 / bound;
     let mut x = project(start).0;
     let (mut ahead, mut t, mut calm) = (x.clone(), 1.0_f64, 0);
-    for _ in 0..STEPS {
+    for done in 0..STEPS {
         let y: Vec<f64> =
             ahead.iter().zip(a).zip(b).map(|((x, row), b)| x - step * (dot(row, &ahead) + b)).collect();
         let (next, shift) = project(&y);
@@ -246,7 +248,9 @@ fn minimum<T>(
         let momentum = if uphill > 0.0 { 0.0 } else { (t - 1.0) / next_t };
         ahead = next.iter().zip(&change).map(|(next, d)| next + momentum * d).collect();
         let largest = |v: &[f64]| v.iter().fold(0.0, |largest: f64, v| largest.max(v.abs()));
-        calm = if largest(&change) <= SMALL * largest(&next) { calm + 1 } else { 0 };
+        // After very many steps rounding is what is left.
+        let small = if done < STEPS / 10 { SMALL } else { ROUNDING };
+        calm = if largest(&change) <= small * largest(&next) { calm + 1 } else { 0 };
         (x, t) = (next, next_t);
         if calm >= CALM {
             return (x, step, shift);
