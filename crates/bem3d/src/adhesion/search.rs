@@ -12,7 +12,7 @@
 use super::attraction::Attraction;
 use super::equilibrium::{AdhesiveControl, Equilibrium};
 use super::law::Shape;
-use super::update::{Progress, Updates};
+use super::update::{Progress, Updated, Updates};
 use crate::active_set::{self, Bounds, Candidates, Control, Limits, Problem, Residuals};
 use crate::geometry::CellSet;
 use crate::real::{each, largest_difference, smallest, sum};
@@ -90,7 +90,7 @@ impl Search<'_> {
         let tolerance = self.limits.tolerance;
         let mut progress = Progress::default();
         self.evaluate(&mut state);
-        if self.is_far(&state) {
+        if self.is_far(&state) && !stop.stops() {
             self.contact_afresh(&mut state, stop);
             self.evaluate(&mut state);
         }
@@ -106,8 +106,11 @@ impl Search<'_> {
             let Self { problem, attraction, control, limits, plain } = self;
             let (control, tolerance, plain) = (*control, limits.tolerance, *plain);
             let mut updates = Updates { problem, attraction, control, tolerance, plain };
-            if !updates.update(&mut state, &mut progress, stop) {
-                return Err(Box::new((Ended::PulledOff, state)));
+            match updates.update(&mut state, &mut progress, stop) {
+                Updated::Taken => {}
+                Updated::PulledOff => return Err(Box::new((Ended::PulledOff, state))),
+                // The state is that of the evaluation before.
+                Updated::Stopped => return Err(Box::new((Ended::Status(Status::Stopped), state))),
             }
             self.evaluate(&mut state);
             state.updates += 1;
@@ -175,9 +178,15 @@ impl Search<'_> {
         if miss > 0.0 { miss / state.force_scale(asked) } else { 0.0 }
     }
 
-    /// Evaluates the gap with the exact operator on all cells within reach.
+    /// Evaluates the gap with the exact operator on all cells within reach, and how far the state is from an
+    /// equilibrium.
     fn evaluate(&mut self, state: &mut Equilibrium) {
-        let Self { problem, attraction, control, limits, .. } = self;
+        self.evaluate_gap(state);
+        self.measure(state);
+    }
+
+    fn evaluate_gap(&mut self, state: &mut Equilibrium) {
+        let Self { problem, attraction, control, .. } = self;
         let law = attraction.law;
         let shift = problem.operators.table().shift();
         if let AdhesiveControl::Plane(plane) = *control {
@@ -217,6 +226,12 @@ impl Search<'_> {
                 break;
             }
         }
+    }
+
+    /// Residuals and mismatch of a state whose gap is evaluated.
+    fn measure(&self, state: &mut Equilibrium) {
+        let Self { attraction, limits, .. } = self;
+        let law = attraction.law;
         let contact = state.contact();
         let (p, left) =
             (contact.carry(&state.cells, &state.pressure), contact.carry(&state.cells, &state.gap));
