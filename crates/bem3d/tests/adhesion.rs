@@ -354,8 +354,9 @@ fn invalid_parameters_are_refused() {
     assert!(expected.starts_with("at most 1.78"), "{expected}");
     let mut scene = with(flat(), 0.01, 0.1, EXPONENTIAL);
     scene.effects.hardness = Hardness::Limit { pressure: 1.0 };
+    assert!(prepared(&scene).is_ok());
+    scene.effects.adhesion = Adhesion::ShortRange { work: 0.01 };
     assert!(matches!(prepared(&scene), Err(Error::Unsupported { .. })));
-    assert!(matches!(ContactModel::prepare(&Bem3d::default(), &scene, 0), Err(Error::Unsupported { .. })));
     let mut history = prepared(&with(flat(), 0.01, 0.1, EXPONENTIAL)).unwrap();
     for load in [Load::force(f64::NAN), Load::approach(f64::INFINITY), Load::mean_gap(0.1)] {
         assert!(at(&mut *history, load).is_err(), "{load:?}");

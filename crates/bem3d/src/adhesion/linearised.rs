@@ -266,7 +266,9 @@ pub fn respond(
     let on_contact = contact.carry(&state.cells, &state.pressure);
     let contact = problem.bounds.free(&contact, &on_contact).into_owned();
     let shift = problem.operators.table().shift();
-    if shift > 0.0 && contact.len() == problem.grid().count() {
+    let is_full = shift > 0.0 && contact.len() == problem.grid().count();
+    // A stopped search has no stability: nothing that is unstable was found.
+    if is_full || stop.stops() {
         return Response { stability: 1.0, ..Response::default() };
     }
     let constant = if matches!(control, AdhesiveControl::Plane(_)) { shift } else { 0.0 };
@@ -312,7 +314,7 @@ pub fn fixed_area(
 ) -> (Option<Slope>, usize) {
     let contact = attraction.held(&state.cells, &state.gap).unwrap_or_else(|| state.contact());
     let constant = problem.operators.table().shift();
-    if constant > 0.0 && contact.len() == problem.grid().count() {
+    if stop.stops() || (constant > 0.0 && contact.len() == problem.grid().count()) {
         return (None, 0);
     }
     let (both, open, slopes) = (contact.clone(), CellSet::default(), Vec::new());
@@ -370,6 +372,9 @@ impl Linearised<'_> {
             }
             // Ritz values lie above the eigenvalue.
             response.stability = response.stability.min(found.smallest);
+            if self.stop.stops() {
+                break;
+            }
             let mut more = b;
             update(&mut more, &found.displacement, |more, u| *more += u);
             let mut on_open = self.answer(&more);

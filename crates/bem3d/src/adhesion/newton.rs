@@ -170,6 +170,9 @@ pub fn step(
     let mut contact = predicted.contact.to_vec();
     let mut steps = 0;
     for _ in 0..ROUNDS {
+        if stop.stops() {
+            break;
+        }
         let linear = Linear::new(attraction, state, &contact);
         let left: Vec<f64> = (predicted.gap.iter().zip(&state.gap).zip(&contact))
             .map(|((after, before), &c)| if c > 0.0 { *after } else { after - before })

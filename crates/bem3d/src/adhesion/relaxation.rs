@@ -17,6 +17,7 @@
 
 use super::attraction::Attraction;
 use super::equilibrium::Equilibrium;
+use super::law::Law;
 use crate::geometry::{Grid, Window};
 use crate::kernel::Inverse;
 use crate::real::largest_difference;
@@ -54,73 +55,120 @@ pub fn follow(
     to: &mut Tractions<'_>,
     stop: Stop<'_>,
 ) {
-    let (law, cells) = (attraction.law, &state.cells);
+    let Some(window) = state.cells.window() else { return };
+    let mut fronts = Fronts::new(attraction, inverse, state, window);
     let change = largest_difference(to.attraction, &state.attraction);
-    let least = (BALANCED * law.peak).min(SHARE * change);
-    let Some(window) = cells.window() else { return };
-    let around = Around::new(window, inverse.reach);
-    let mut number = vec![NONE; around.count()];
-    let mut net = vec![0.0; around.count()];
-    let mut places = Vec::with_capacity(cells.len());
-    for (i, (x, y)) in cells.places().enumerate() {
-        let place = around.place(x, y);
-        number[place] = i as u32;
-        net[place] = state.pressure[i] - state.attraction[i];
-        places.push(place);
-    }
-    let closed = |i: usize| state.pressure[i] > 0.0;
-    let mut gap: Vec<f64> =
-        state.gap.iter().enumerate().map(|(i, &g)| if closed(i) { 0.0 } else { g.max(0.0) }).collect();
-    // Beyond the range it is the least that neighbours can leave.
-    let factor = |i: usize| {
-        let alone = law.traction(state.gap[i]);
-        if alone > 0.0 { state.lawful[i] / alone } else { 1.0 - attraction.strength() }
-    };
+    let least = (BALANCED * attraction.law.peak).min(SHARE * change);
+    let changes = to.attraction.iter().zip(&state.attraction).map(|(to, from)| (to - from).abs());
     let mut out_of_balance: Vec<usize> =
-        (0..cells.len()).filter(|&i| (to.attraction[i] - state.attraction[i]).abs() > least).collect();
-    let (mut moved, mut listed) = (vec![false; cells.len()], vec![0; cells.len()]);
+        changes.enumerate().filter(|(_, change)| *change > least).map(|(i, _)| i).collect();
+    // The last round in which a cell was listed.
+    let mut listed = vec![0; state.cells.len()];
     for round in 1..=ROUNDS {
         let mut beside = Vec::new();
         for &i in &out_of_balance {
-            let (place, factor, before) = (places[i], factor(i), gap[i]);
-            let (mut g, mut held) = (before, net[place]);
-            for _ in 0..MOVES {
-                let next = (g - (held + factor * law.traction(g)) / inverse.own).max(0.0);
-                held += inverse.own * (next - g);
-                g = next;
-            }
-            (gap[i], moved[i]) = (g, true);
-            for (start, weights) in around.rows(place).zip(&inverse.rows) {
-                let start = start - weights.len() / 2;
-                let net = &mut net[start..start + weights.len()];
-                net.iter_mut().zip(weights).for_each(|(net, weight)| *net += weight * (g - before));
-            }
-            for k in around.nearest(place).filter_map(|place| number.get(place)).filter(|k| **k != NONE) {
-                let k = *k as usize;
-                if listed[k] < round {
-                    listed[k] = round;
+            fronts.balance(i);
+            for k in fronts.nearest(i) {
+                if std::mem::replace(&mut listed[k], round) < round {
                     beside.push(k);
                 }
             }
         }
         if boundary == Boundary::Periodic {
-            around.fold(&mut net, grid);
+            fronts.around.fold(&mut fronts.net, grid);
         }
-        beside.retain(|&i| {
-            let off = net[places[i]] + factor(i) * law.traction(gap[i]);
-            off < -least || (off > least && gap[i] > 0.0)
-        });
+        beside.retain(|&i| fronts.is_off_balance(i, least));
         out_of_balance = beside;
         if out_of_balance.is_empty() || stop.stops() {
             break;
         }
     }
-    for i in 0..cells.len() {
-        if moved[i] {
-            to.attraction[i] = factor(i) * law.traction(gap[i]);
+    fronts.write(to);
+}
+
+/// The gaps of a state while its fronts are followed.
+struct Fronts<'a> {
+    law: Law,
+    /// The least that neighbours can leave of the attraction of a cell.
+    least_factor: f64,
+    inverse: &'a Inverse,
+    state: &'a Equilibrium,
+    around: Around,
+    /// Numbers of the cells at the places around them, or [`NONE`].
+    number: Vec<u32>,
+    /// Net pressure that holds the gaps, at the places.
+    net: Vec<f64>,
+    /// The place of each cell.
+    places: Vec<usize>,
+    gap: Vec<f64>,
+    moved: Vec<bool>,
+}
+
+impl<'a> Fronts<'a> {
+    fn new(attraction: &Attraction, inverse: &'a Inverse, state: &'a Equilibrium, window: Window) -> Self {
+        let cells = &state.cells;
+        let around = Around::new(window, inverse.reach);
+        let mut number = vec![NONE; around.count()];
+        let mut net = vec![0.0; around.count()];
+        let mut places = Vec::with_capacity(cells.len());
+        for (i, (x, y)) in cells.places().enumerate() {
+            let place = around.place(x, y);
+            number[place] = i as u32;
+            net[place] = state.pressure[i] - state.attraction[i];
+            places.push(place);
         }
-        let bears = gap[i] <= 0.0 && (closed(i) || moved[i]);
-        to.pressure[i] = if bears { (net[places[i]] + to.attraction[i]).max(0.0) } else { 0.0 };
+        let gaps = state.gap.iter().zip(&state.pressure);
+        let gap = gaps.map(|(&g, &p)| if p > 0.0 { 0.0 } else { g.max(0.0) }).collect();
+        let (law, least_factor) = (attraction.law, 1.0 - attraction.strength());
+        let moved = vec![false; cells.len()];
+        Self { law, least_factor, inverse, state, around, number, net, places, gap, moved }
+    }
+
+    /// What the neighbours of a cell multiply its attraction by; beyond the range it is the least that they
+    /// can leave.
+    fn factor(&self, i: usize) -> f64 {
+        let alone = self.law.traction(self.state.gap[i]);
+        if alone > 0.0 { self.state.lawful[i] / alone } else { self.least_factor }
+    }
+
+    /// Moves a cell towards its balance with the others held, and changes the net pressure around it.
+    fn balance(&mut self, i: usize) {
+        let (place, factor, before) = (self.places[i], self.factor(i), self.gap[i]);
+        let (mut g, mut held) = (before, self.net[place]);
+        for _ in 0..MOVES {
+            let next = (g - (held + factor * self.law.traction(g)) / self.inverse.own).max(0.0);
+            held += self.inverse.own * (next - g);
+            g = next;
+        }
+        (self.gap[i], self.moved[i]) = (g, true);
+        for (start, weights) in self.around.rows(place).zip(&self.inverse.rows) {
+            let start = start - weights.len() / 2;
+            let net = &mut self.net[start..start + weights.len()];
+            net.iter_mut().zip(weights).for_each(|(net, weight)| *net += weight * (g - before));
+        }
+    }
+
+    /// A cell and those beside it.
+    fn nearest(&self, i: usize) -> impl Iterator<Item = usize> {
+        let numbers = self.around.nearest(self.places[i]).filter_map(|place| self.number.get(place));
+        numbers.filter(|k| **k != NONE).map(|k| *k as usize)
+    }
+
+    /// Whether a cell is out of balance by more than `least`.
+    fn is_off_balance(&self, i: usize, least: f64) -> bool {
+        let off = self.net[self.places[i]] + self.factor(i) * self.law.traction(self.gap[i]);
+        off < -least || (off > least && self.gap[i] > 0.0)
+    }
+
+    /// The tractions at these gaps.
+    fn write(&self, to: &mut Tractions<'_>) {
+        for i in 0..self.gap.len() {
+            if self.moved[i] {
+                to.attraction[i] = self.factor(i) * self.law.traction(self.gap[i]);
+            }
+            let bears = self.gap[i] <= 0.0 && (self.state.pressure[i] > 0.0 || self.moved[i]);
+            to.pressure[i] = if bears { (self.net[self.places[i]] + to.attraction[i]).max(0.0) } else { 0.0 };
+        }
     }
 }
 

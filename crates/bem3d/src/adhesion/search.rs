@@ -12,7 +12,7 @@
 use super::attraction::Attraction;
 use super::equilibrium::{AdhesiveControl, Equilibrium};
 use super::law::Shape;
-use super::update::{Progress, SETTLED, Updates};
+use super::update::{Progress, SETTLED, Updated, Updates};
 use crate::active_set::{self, Bounds, Candidates, Control, Guess, Limits, Problem, Residuals};
 use crate::geometry::CellSet;
 use crate::real::{each, largest_difference, smallest, sum};
@@ -95,7 +95,7 @@ impl Search<'_> {
         let tolerance = self.limits.tolerance;
         let (mut progress, mut accuracy) = (Progress::default(), BETWEEN);
         self.evaluate(&mut state);
-        if self.is_far(&state) {
+        if self.is_far(&state) && !stop.stops() {
             self.contact_afresh(&mut state, stop);
             self.evaluate(&mut state);
         }
@@ -108,7 +108,7 @@ impl Search<'_> {
             if stop.stops() {
                 return Err(Box::new((Ended::Status(Status::Stopped), state)));
             }
-            let held = if self.problem.bounds == Bounds::Unlimited {
+            let updated = if self.problem.bounds == Bounds::Unlimited {
                 let Self { problem, attraction, control, limits, plain } = self;
                 let (control, tolerance, plain) = (*control, limits.tolerance, *plain);
                 let mut updates = Updates { problem, attraction, control, tolerance, plain };
@@ -116,8 +116,11 @@ impl Search<'_> {
             } else {
                 self.update_between_bounds(&mut state, worst, &mut accuracy, stop)
             };
-            if !held {
-                return Err(Box::new((Ended::PulledOff, state)));
+            match updated {
+                Updated::Taken => {}
+                Updated::PulledOff => return Err(Box::new((Ended::PulledOff, state))),
+                // The state is that of the evaluation before.
+                Updated::Stopped => return Err(Box::new((Ended::Status(Status::Stopped), state))),
             }
             self.evaluate(&mut state);
             state.updates += 1;
@@ -126,7 +129,7 @@ impl Search<'_> {
     }
 
     /// One update where the pressure has an upper bound: the attraction of the present gaps, where these are those
-    /// of a contact, and then the whole contact under it. `false` where the attraction cannot hold the force.
+    /// of a contact, and then the whole contact under it. A stopped update leaves the state as it was.
     ///
     /// More attraction still closes gaps everywhere, so that this plain iteration follows the branches as it does
     /// without a bound. The other updates stay on them because gaps are convex in the attraction, which a bound
@@ -139,8 +142,8 @@ impl Search<'_> {
         worst: f64,
         accuracy: &mut f64,
         stop: Stop<'_>,
-    ) -> bool {
-        let range = self.attraction.law.range;
+    ) -> Updated {
+        let (range, before) = (self.attraction.law.range, state.clone());
         let left = state.largest_gap_left(self.problem.bounds);
         if left <= SETTLED * range {
             state.attraction.clone_from(&state.lawful);
@@ -148,7 +151,7 @@ impl Search<'_> {
         if let AdhesiveControl::Force(asked) = self.control
             && asked + sum(&state.attraction) <= 0.0
         {
-            return false;
+            return Updated::PulledOff;
         }
         let length = self.limits.height.unwrap_or_else(|| state.d.abs().max(range));
         let wanted = worst.min(SETTLED).max(self.limits.tolerance);
@@ -161,7 +164,11 @@ impl Search<'_> {
         let p = contact.carry(&state.cells, &state.pressure);
         let guess = (!contact.is_empty()).then_some(Guess { set: contact, p, d: state.d });
         self.contact_under(state, guess, tolerance, stop);
-        true
+        if stop.stops() {
+            *state = before;
+            return Updated::Stopped;
+        }
+        Updated::Taken
     }
 
     /// Whether the load of a state is far from the requested one; its contact is then solved from coarse
@@ -242,9 +249,15 @@ impl Search<'_> {
         if miss > 0.0 { miss / state.force_scale(asked) } else { 0.0 }
     }
 
-    /// Evaluates the gap with the exact operator on all cells within reach.
+    /// Evaluates the gap with the exact operator on all cells within reach, and how far the state is from an
+    /// equilibrium.
     fn evaluate(&mut self, state: &mut Equilibrium) {
-        let Self { problem, attraction, control, limits, .. } = self;
+        self.evaluate_gap(state);
+        self.measure(state);
+    }
+
+    fn evaluate_gap(&mut self, state: &mut Equilibrium) {
+        let Self { problem, attraction, control, .. } = self;
         let law = attraction.law;
         let shift = problem.operators.table().shift();
         if let AdhesiveControl::Plane(plane) = *control {
@@ -290,12 +303,18 @@ impl Search<'_> {
                 break;
             }
         }
+    }
+
+    /// Residuals and mismatch of a state whose gap is evaluated.
+    fn measure(&self, state: &mut Equilibrium) {
+        let Self { attraction, limits, .. } = self;
+        let law = attraction.law;
         let contact = state.contact();
         let (p, left) =
             (contact.carry(&state.cells, &state.pressure), contact.carry(&state.cells, &state.gap));
         let length = limits.height.unwrap_or_else(|| state.d.abs().max(law.range));
         let everywhere = (&state.cells, &state.gap[..]);
-        state.residuals = Residuals::measure(problem.bounds, (&contact, &p, &left), everywhere, length);
+        state.residuals = Residuals::measure(self.problem.bounds, (&contact, &p, &left), everywhere, length);
         state.lawful = attraction.tractions(&state.cells, &state.gap);
         state.mismatch = match law.shape {
             Shape::Uniform => attraction.mismatch(&state.cells, &state.attraction, &state.gap),

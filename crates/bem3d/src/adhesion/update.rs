@@ -5,7 +5,7 @@ use super::attraction::Attraction;
 use super::bottleneck::Bottleneck;
 use super::equilibrium::{AdhesiveControl, Equilibrium};
 use super::law::Shape;
-use super::newton::{BEGIN, Predicted, step};
+use super::newton::{BEGIN, Predicted, Trial, step};
 use super::relaxation::{Tractions, follow};
 use crate::active_set::Problem;
 use crate::kernel::Inverse;
@@ -118,74 +118,169 @@ pub struct Updates<'a> {
     pub plain: bool,
 }
 
+/// How an update ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Updated {
+    /// The state has new pressure and attraction.
+    Taken,
+    /// The attraction cannot hold the force.
+    PulledOff,
+    /// It was stopped, and pressure and attraction of the state are as they were.
+    Stopped,
+}
+
+/// What an update would make of the attraction.
+struct Wanted {
+    /// The attraction.
+    attraction: Vec<f64>,
+    /// Its largest change, over the peak, also where it waits.
+    change: f64,
+    /// It stays as it is, because the contact is not yet settled.
+    waits: bool,
+    /// The fronts may be followed.
+    follows: bool,
+    /// What is held while the contact is corrected.
+    fixed: Fixed,
+    /// Whether this update is one of the plain iteration alone.
+    plain: bool,
+}
+
+/// Pressure and attraction before the contact is corrected, and the gap and the contact that follow from them.
+struct Uncorrected {
+    pressure: Vec<f64>,
+    attraction: Vec<f64>,
+    gap: Vec<f64>,
+    contact: Contact,
+}
+
 impl Updates<'_> {
-    /// One update: the attraction of the present gaps, and the pressure that then closes the contact. `false`
-    /// where the attraction cannot hold the force.
-    pub fn update(&mut self, state: &mut Equilibrium, progress: &mut Progress, stop: Stop<'_>) -> bool {
-        let tolerance = self.tolerance;
+    /// One update: the attraction of the present gaps, and the pressure that then closes the contact.
+    pub fn update(&mut self, state: &mut Equilibrium, progress: &mut Progress, stop: Stop<'_>) -> Updated {
+        let wanted = self.wanted(state);
+        let mut uncorrected = None;
+        if let Some(reduction) = self.newton_reduction(&wanted, progress) {
+            let Some(held) = self.uncorrected(state, &wanted, false, stop) else { return Updated::PulledOff };
+            let trial = self.newton_step(state, (&wanted, &held), reduction, stop);
+            if stop.stops() {
+                return Updated::Stopped;
+            }
+            if let Some(trial) = trial {
+                return self.take(state, trial.pressure, trial.attraction);
+            }
+            progress.refuse();
+            uncorrected = Some(held).filter(|_| !wanted.follows);
+        }
+        if uncorrected.is_none() {
+            uncorrected = self.uncorrected(state, &wanted, wanted.follows, stop);
+        }
+        let Some(mut next) = uncorrected else { return Updated::PulledOff };
+        if stop.stops() {
+            return Updated::Stopped;
+        }
+        state.steps += self.close(state, &mut next, &wanted, stop);
+        if stop.stops() {
+            return Updated::Stopped;
+        }
+        self.lead_through(state, &mut next, &wanted, progress);
+        self.take(state, next.pressure, next.attraction)
+    }
+
+    /// The attraction of the present gaps: a share of its change at a prescribed mean gap after many updates,
+    /// none where the contact is not yet settled.
+    fn wanted(&self, state: &Equilibrium) -> Wanted {
         let law = self.attraction.law;
         let plain = self.plain || law.shape == Shape::Uniform;
         let fixed = self.control.fixed(self.problem.operators.table().shift());
-        let mut next = state.lawful.clone();
+        let mut attraction = state.lawful.clone();
         let damped = matches!(fixed, Fixed::MeanPlane(_)) && state.updates > PATIENT;
         if damped {
-            update(&mut next, &state.attraction, |next, now| *next = now + DAMPED * (*next - now));
+            update(&mut attraction, &state.attraction, |next, now| *next = now + DAMPED * (*next - now));
         }
-        let change = largest_difference(&next, &state.attraction) / law.peak;
-        // Where the contact is not yet settled, the attraction waits.
+        let change = largest_difference(&attraction, &state.attraction) / law.peak;
         let settled =
-            if plain { SETTLED } else { (BALANCE * change).max(0.5 * tolerance).min(SETTLED_FIRST) };
+            if plain { SETTLED } else { (BALANCE * change).max(0.5 * self.tolerance).min(SETTLED_FIRST) };
         let waits =
             state.largest_gap_left(self.problem.bounds) > settled * law.range && sum(&state.pressure) > 0.0;
         if waits {
-            next.clone_from(&state.attraction);
+            attraction.clone_from(&state.attraction);
         }
-        let inverse = self.attraction.inverse().filter(|_| !plain && !waits && !damped);
-        let begin = if inverse.is_some() { FOLLOWED } else { BEGIN };
-        let newton = if plain || waits || change > begin { None } else { progress.newton(change, tolerance) };
-        let mut found = None;
-        if let Some(reduction) = newton {
-            let Some(pressure) = self.held(state, &mut next, None, stop) else { return false };
-            let (gap, contact) = self.gap_after(state, (&pressure, &next), fixed);
-            let predicted = Predicted {
-                pressure: &pressure,
-                attraction: &next,
-                gap: &gap,
-                contact: &contact.marked,
-                noise: contact.noise,
-            };
-            let (trial, steps) =
-                step(self.problem, self.attraction, (state, &predicted), fixed, reduction, stop);
-            state.steps += steps;
-            if let Some(trial) = trial {
-                (state.pressure, state.attraction) = (trial.pressure, trial.attraction);
-                return self.bring_to_force(state);
-            }
-            progress.refuse();
-            if inverse.is_none() {
-                found = Some((pressure, gap, contact));
-            }
-        }
-        let (mut pressure, gap, contact) = if let Some(found) = found {
-            found
-        } else {
-            let Some(pressure) = self.held(state, &mut next, inverse, stop) else { return false };
-            let (gap, contact) = self.gap_after(state, (&pressure, &next), fixed);
-            (pressure, gap, contact)
+        let follows = self.attraction.inverse().is_some() && !plain && !waits && !damped;
+        Wanted { attraction, change, waits, follows, fixed, plain }
+    }
+
+    /// The reduction of the linear system of a Newton step; `None`: none is taken.
+    fn newton_reduction(&self, wanted: &Wanted, progress: &mut Progress) -> Option<f64> {
+        let begin = if wanted.follows { FOLLOWED } else { BEGIN };
+        let is_early = wanted.plain || wanted.waits || wanted.change > begin;
+        if is_early { None } else { progress.newton(wanted.change, self.tolerance) }
+    }
+
+    /// The state of a Newton step; `None` where it is refused.
+    fn newton_step(
+        &mut self,
+        state: &mut Equilibrium,
+        (wanted, held): (&Wanted, &Uncorrected),
+        reduction: f64,
+        stop: Stop<'_>,
+    ) -> Option<Trial> {
+        let predicted = Predicted {
+            pressure: &held.pressure,
+            attraction: &held.attraction,
+            gap: &held.gap,
+            contact: &held.contact.marked,
+            noise: held.contact.noise,
         };
-        let reduction = if plain { PLAIN_REDUCTION } else { REDUCTION };
-        state.steps += self.close(state, (&gap, &contact), &mut pressure, (fixed, reduction), stop);
-        if plain || change > SLOW {
+        let (trial, steps) =
+            step(self.problem, self.attraction, (state, &predicted), wanted.fixed, reduction, stop);
+        state.steps += steps;
+        trial
+    }
+
+    /// The wanted attraction, or with `follows` that to which the fronts move, and the state that it leads to
+    /// before the contact is corrected. `None` where it leaves no force for the contact.
+    fn uncorrected(
+        &mut self,
+        state: &Equilibrium,
+        wanted: &Wanted,
+        follows: bool,
+        stop: Stop<'_>,
+    ) -> Option<Uncorrected> {
+        let mut attraction = wanted.attraction.clone();
+        let inverse = self.attraction.inverse().filter(|_| follows);
+        let pressure = self.held(state, &mut attraction, inverse, stop)?;
+        let (gap, contact) = self.gap_after(state, (&pressure, &attraction), wanted.fixed);
+        Some(Uncorrected { pressure, attraction, gap, contact })
+    }
+
+    /// Takes the next state far along its change where the iteration is in a bottleneck.
+    fn lead_through(
+        &self,
+        state: &Equilibrium,
+        next: &mut Uncorrected,
+        wanted: &Wanted,
+        progress: &mut Progress,
+    ) {
+        if wanted.plain || wanted.change > SLOW {
             progress.bottleneck.clear();
-        } else if !waits {
-            let moved = next.iter().zip(&state.attraction).map(|(s, s0)| (s - s0) / law.peak).collect();
-            if let Some(factor) = progress.bottleneck.factor(change, moved) {
-                extrapolate(factor, &state.pressure, &mut pressure, f64::INFINITY);
-                extrapolate(factor, &state.attraction, &mut next, self.attraction.strongest());
+        } else if !wanted.waits {
+            let peak = self.attraction.law.peak;
+            let moved = next.attraction.iter().zip(&state.attraction).map(|(s, s0)| (s - s0) / peak);
+            if let Some(factor) = progress.bottleneck.factor(wanted.change, moved.collect()) {
+                extrapolate(factor, &state.pressure, &mut next.pressure, f64::INFINITY);
+                extrapolate(factor, &state.attraction, &mut next.attraction, self.attraction.strongest());
             }
         }
-        (state.pressure, state.attraction) = (pressure, next);
-        self.bring_to_force(state)
+    }
+
+    /// Gives a state these tractions, brought to the force.
+    fn take(&self, state: &mut Equilibrium, pressure: Vec<f64>, attraction: Vec<f64>) -> Updated {
+        (state.pressure, state.attraction) = (pressure, attraction);
+        let AdhesiveControl::Force(force) = self.control else { return Updated::Taken };
+        let (wanted, sum) = (force + sum(&state.attraction), sum(&state.pressure));
+        if wanted > 0.0 && sum > 0.0 {
+            each(&mut state.pressure, |p| *p *= wanted / sum);
+        }
+        if wanted > 0.0 { Updated::Taken } else { Updated::PulledOff }
     }
 
     /// The pressure of a state brought to the force that an attraction leaves to it; `None` where the
@@ -225,16 +320,6 @@ impl Updates<'_> {
         Some(pressure)
     }
 
-    /// Brings the pressure of a state to the force. `false` where the attraction cannot hold it.
-    fn bring_to_force(&self, state: &mut Equilibrium) -> bool {
-        let AdhesiveControl::Force(force) = self.control else { return true };
-        let (wanted, sum) = (force + sum(&state.attraction), sum(&state.pressure));
-        if wanted > 0.0 && sum > 0.0 {
-            each(&mut state.pressure, |p| *p *= wanted / sum);
-        }
-        wanted > 0.0
-    }
-
     /// The gap of a state after pressure and attraction have changed, in single precision (the error is
     /// relative to the change), and the contact that follows.
     fn gap_after(
@@ -269,22 +354,22 @@ impl Updates<'_> {
     fn close(
         &mut self,
         state: &Equilibrium,
-        (gap, contact): (&[f64], &Contact),
-        pressure: &mut [f64],
-        (fixed, reduction): (Fixed, f64),
+        next: &mut Uncorrected,
+        wanted: &Wanted,
         stop: Stop<'_>,
     ) -> usize {
-        let set = state.cells.filter(&contact.marked, |m| m > 0.0);
+        let reduction = if wanted.plain { PLAIN_REDUCTION } else { REDUCTION };
+        let set = state.cells.filter(&next.contact.marked, |m| m > 0.0);
         let Problem { operators, workspace, .. } = &mut *self.problem;
-        let Some(recipe) = operators.planner().system(&set, contact.count, false) else { return 0 };
-        let mut right: Vec<f64> = set.carry(&state.cells, gap);
+        let Some(recipe) = operators.planner().system(&set, next.contact.count, false) else { return 0 };
+        let mut right: Vec<f64> = set.carry(&state.cells, &next.gap);
         each(&mut right, |r| *r = -*r);
         let criteria = StoppingCriteria { reduction, energy: None, floor: 0.0, steps: STEPS };
         workspace.begin_load();
         workspace.take(operators, set, recipe);
-        let outcome = workspace.solve(operators, &mut right, fixed, criteria, stop);
+        let outcome = workspace.solve(operators, &mut right, wanted.fixed, criteria, stop);
         let correction = state.cells.carry(workspace.set(), &right);
-        update(pressure, &correction, |p, x| *p = (*p + x).max(0.0));
+        update(&mut next.pressure, &correction, |p, x| *p = (*p + x).max(0.0));
         outcome.steps
     }
 }
