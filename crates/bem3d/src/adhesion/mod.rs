@@ -17,10 +17,10 @@
 //! | following fronts (`relaxation`) | 1.95, time 1.28 | not used | not used | stays |
 //! | the same at a tolerance of 1e-8 | 2.50, time 2.00 | not used | not used | |
 //! | waiting until the contact is settled | 0.88 | 0.82 | 0.40 | stays: without it some states are others |
-//! | passing bottlenecks (`bottleneck`) | 1.00 | 1.01 | not used | not decided: its test of folds did not end |
+//! | passing bottlenecks (`bottleneck`) | 1.00 | 1.01 | not used | not decided: folds not done |
 //! | shorter falling steps of Newton | 1.01 | 1.02 | not used | not decided: not all paths were run |
 //! | plain updates after a refused step | 1.03 | 0.96 | not used | not decided: see below |
-//! | the solution of the linear systems by the last decrease | 1.00 | 1.00 | not used | not decided: see below |
+//! | linear systems solved by the last decrease | 1.00 | 1.00 | not used | not decided: see below |
 //! | first states from an elastic contact | 1.00 | 1.00 | 1.00 | not decided: see below |
 //! | a contact anew after a far step (`is_far`) | 1.00 | 1.00 | 1.00 | not decided: see below |
 //! | a contact anew for a single load (`continued`) | 1.00 | 1.00 | 1.00 | not decided: see below |
