@@ -151,12 +151,25 @@
 //! an upper bound of the pressure changes. With adhesion, `at` leads to `model/adhesive.rs` and
 //! `adhesion/equilibrium.rs`.
 //!
+//! **A step of friction** comes after the pressure, and crosses these files:
+//!
+//! | file | functions | what they do |
+//! |---|---|---|
+//! | `model/increment.rs` | `slide`, `slide_by` | take the contact and its pressures, and solve further where the stiffness asks for it |
+//! | `friction/state.rs` | `advance` | give each cell its limit by the law, and the place from which its slip counts |
+//! | `friction/increment.rs` | `solve`, `iterate`, `newton`, `go_to` | iterate over the cells that stick and slip, each step downhill |
+//! | `linear/pcg.rs` | `pcg` | solve the linearised conditions |
+//! | `operator/plans.rs` | `Plans::exact`, `Planned::apply` | apply the kernel of two components |
+//!
+//! **A kernel** is one file of `kernel` and one line of `kernel/table.rs`, where kernels are listed. It says of
+//! itself all that operators, planner, preconditioner and stiffness ask.
+//!
 //! **Between loads** the prepared contact keeps its plans, its buffers and the coarser grids. The next load
 //! gets the tangent of the last state (`LastState`). A load that is solved again to a tighter tolerance goes
 //! on with the gap of its state (`Continuation`).
 //!
-//! **Three kinds of state depend on the path.** `model/memory.rs` adds the indentation of a hardness to the
-//! heights. `model/adhesive.rs` goes from equilibrium to equilibrium. `model/increment.rs` takes one
+//! **Three kinds of state depend on the path,** and effects compose: `model/memory.rs` adds the indentation of a
+//! hardness to the heights, with or without attraction; friction acts on the contact pressure of any of them. `model/adhesive.rs` goes from equilibrium to equilibrium. `model/increment.rs` takes one
 //! increment of friction a step. `model/path_memory.rs` holds all that the next step follows from, and an
 //! effect that remembers more must add it there. Everything else that a contact keeps between loads is
 //! forgotten before each step of a path. A path that was interrupted therefore goes on to the same bits.
