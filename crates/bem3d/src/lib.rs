@@ -168,11 +168,12 @@
 //! gets the tangent of the last state (`LastState`). A load that is solved again to a tighter tolerance goes
 //! on with the gap of its state (`Continuation`).
 //!
-//! **Three kinds of state depend on the path,** and effects compose: `model/memory.rs` adds the indentation of a
-//! hardness to the heights, with or without attraction; friction acts on the contact pressure of any of them. `model/adhesive.rs` goes from equilibrium to equilibrium. `model/increment.rs` takes one
-//! increment of friction a step. `model/path_memory.rs` holds all that the next step follows from, and an
-//! effect that remembers more must add it there. Everything else that a contact keeps between loads is
-//! forgotten before each step of a path. A path that was interrupted therefore goes on to the same bits.
+//! **Three kinds of state depend on the path.** `model/memory.rs` adds the indentation of a hardness to the
+//! heights, with and without attraction. `model/adhesive.rs` goes from equilibrium to equilibrium.
+//! `model/increment.rs` takes one increment of friction a step, under the contact pressures of either.
+//! `model/path_memory.rs` holds all that the next step follows from, and an effect that remembers more must add
+//! it there. Everything else that a contact keeps between loads is forgotten before each step of a path. A path
+//! that was interrupted therefore goes on to the same bits.
 //!
 //! # Parts
 //!
