@@ -119,6 +119,27 @@ fn work_is_stored_or_taken_by_the_flow() {
     assert!(states.last().unwrap().plastic.as_ref().unwrap().volume > 1e-5);
 }
 
+/// A single pull is the end of a path that begins without a force: what flows there stays.
+#[test]
+fn a_single_pull_is_the_end_of_a_path() {
+    for law in LAWS {
+        let scene = scene(Some(2e-3), 1e-4, law, Boundary::Free);
+        let loads = [Load::force(0.0), Load::force(-1e-5)];
+        let states = path(&scene, &loads);
+        assert!(states[0].plastic.as_ref().unwrap().volume > 0.0);
+        let mut contact = MODEL.prepare(&scene, 2).unwrap();
+        for _ in 0..2 {
+            let single = contact.solve(loads[1]).unwrap();
+            assert_eq!(
+                (single.force, single.area, single.plastic),
+                (states[1].force, states[1].area, states[1].plastic)
+            );
+            // The next one begins with the virgin surface again.
+            contact.solve(Load::force(1e-3)).unwrap();
+        }
+    }
+}
+
 /// A contact that has flowed fits better, and holds more when it is pulled off.
 #[test]
 fn what_has_flowed_holds_more() {

@@ -2,7 +2,7 @@
 
 use super::candidates::Candidates;
 use crate::geometry::CellSet;
-use crate::law::{Interval, Law};
+use crate::law::{ConvexLaw, PressureRange};
 use crate::real::{each, largest, smallest, sum, sum_of_pairs};
 use std::borrow::Cow;
 
@@ -28,7 +28,7 @@ const SMALL: f64 = 1e-6;
 /// where its pressure is that bound; no set is stored for it.
 ///
 /// The outer iteration, its residuals and its certificate use only the methods of this type and those of the law
-/// of a cell, [`Interval`].
+/// of a cell, [`PressureRange`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Bounds {
     /// `0 <= p`.
@@ -60,8 +60,8 @@ impl Bounds {
     }
 
     /// The law of each cell.
-    pub fn law(self) -> Interval {
-        Interval { upper: self.upper() }
+    pub fn law(self) -> PressureRange {
+        PressureRange { upper: self.upper() }
     }
 
     /// The bounds of a multiple of the pressure.
@@ -206,7 +206,7 @@ impl Bounds {
             return Extremes { deepest: (-lowest).max(0.0), level: lowest, unfilled: 0.0 };
         }
         let upper = self.upper();
-        let shares = Interval { upper: upper / force };
+        let shares = PressureRange { upper: upper / force };
         let level = nth(gap.to_vec(), (force / upper) as usize);
         let p = everywhere.carry(contact, p);
         let (mut deepest, mut unfilled) = (0.0_f64, 0.0);

@@ -2,7 +2,7 @@
 
 use super::bounds::{Bounds, Extremes};
 use crate::geometry::CellSet;
-use crate::law::Law;
+use crate::law::ConvexLaw;
 use crate::real::{sum, sum_of_pairs};
 use serde::{Deserialize, Serialize};
 

@@ -2,7 +2,7 @@
 
 use super::linearised::{Branch, Linearised, Room, SLIPPING, Split, TorusWindow, extend};
 use crate::geometry::CellSet;
-use crate::law::{Descent, Discs, Law, descend, excess, length, sums, total};
+use crate::law::{ConvexLaw, Descent, Discs, descend, excess, length, sums, total};
 use crate::linear::{Extension, Fixed, StoppingCriteria, TorusInverse, Vectors, pcg};
 use crate::operator::{InfluenceOperator, TangentialOperators};
 use crate::parts::Part;
@@ -466,60 +466,54 @@ impl<'a> Solver<'a> {
 
     /// One step of Newton's method. Returns whether it made progress.
     fn newton(&mut self, stop: Stop<'_>) -> bool {
+        let (branch, on_circles) = self.branch();
+        let Some(next) = self.solve_linearised(&branch, on_circles, stop) else { return false };
+        self.go_to(next)
+    }
+
+    /// The cells that stick and slip at present, and the tractions with those of slip cells on their circles.
+    fn branch(&self) -> (Branch, Vec<f64>) {
         let Increment { cells, limit, .. } = self.increment;
         let n = limit.len();
         let y: Vec<f64> = self.q.iter().zip(&self.w).map(|(q, w)| q + self.rho * w).collect();
         let branch = Branch::of(cells, &y, &self.w, limit);
-        // Slip cells onto their circles.
         let mut next = self.q.clone();
         for (i, &b) in limit.iter().enumerate().filter(|(i, _)| branch.slips(*i)) {
             let length = length([y[i], y[n + i]]);
             (next[i], next[n + i]) = (y[i] * b / length, y[n + i] * b / length);
         }
-        let force = self.force();
+        (branch, next)
+    }
+
+    /// The tractions that meet the linearised conditions of a branch, from `next`, whose slip cells are on their
+    /// circles. `None` without cells.
+    fn solve_linearised(&mut self, branch: &Branch, mut next: Vec<f64>, stop: Stop<'_>) -> Option<Vec<f64>> {
+        let (cells, force) = (self.increment.cells, self.force());
         let recorder = self.operators.recorder().clone();
         let tuning = *self.operators.tuning();
         let (own, shift) = (self.operators.table().own(), self.operators.table().shift());
         let criteria =
             StoppingCriteria { reduction: self.reduction, energy: None, floor: 0.0, steps: INNER_STEPS };
         self.operators.solves += 1;
-        let Some((kernel, transform)) = self.operators.system(cells, false) else { return false };
+        let (kernel, transform) = self.operators.system(cells, false)?;
         let FrictionRoom { vectors, extensions, split: room, weights } = &mut *self.room;
         let torus =
             TorusWindow { window: transform.window(), decay: tuning.decay, extended: tuning.extended };
         recorder.timed(Part::Sets, || extend(extensions, &torus, &branch.stick));
         let mut split = Split {
             torus: TorusInverse { transform, extensions, recorder: recorder.clone() },
-            branch: &branch,
+            branch,
             own: SLIPPING * own as f32,
             sums: None,
             room: std::mem::take(room),
             recorder: recorder.clone(),
         };
-        let mut linearised = Linearised { kernel, shift: shift as f32, branch: &branch };
+        let mut linearised = Linearised { kernel, shift: shift as f32, branch };
+        let spread = spread_force(&mut split, (cells, weights), force, &next);
         // The change of the tractions so far, whose displacements the residual needs.
         let mut change: Vec<f32> = next.iter().zip(&self.q).map(|(next, q)| (next - q) as f32).collect();
-        let mut spread = vec![0.0; 2 * n];
-        if let Some([fx, fy]) = force {
-            split.fix_sums(cells, weights);
-            let [x, y] = total(&next);
-            if let Some(sums) = &split.sums {
-                sums.spread([fx - x, fy - y], &mut spread);
-                change.iter_mut().zip(&spread).for_each(|(change, spread)| *change += spread);
-            }
-        }
-        let mut applications = 0;
-        let mut displaced = vec![0.0; 2 * n];
-        if change.iter().any(|change| *change != 0.0) {
-            linearised.kernel.apply(cells, &change, cells, &mut displaced);
-            applications += 1;
-            for (displaced, change) in displaced.chunks_exact_mut(n).zip(change.chunks_exact(n)) {
-                let mean = shift * sum(change);
-                for u in displaced.iter_mut() {
-                    *u -= mean as f32;
-                }
-            }
-        }
+        change.iter_mut().zip(&spread).for_each(|(change, spread)| *change += spread);
+        let (displaced, mut applications) = displacement(&mut linearised, cells, &change, shift);
         let mut right: Vec<f64> = self.w.iter().zip(&displaced).map(|(w, u)| w - f64::from(*u)).collect();
         branch.restrict_f64(&mut right);
         let moved: Vec<f64> = spread.iter().map(|&spread| f64::from(spread)).collect();
@@ -542,7 +536,7 @@ impl<'a> Solver<'a> {
         for ((next, x), spread) in next.iter_mut().zip(&right).zip(&moved) {
             *next += x + spread;
         }
-        self.go_to(next)
+        Some(next)
     }
 
     /// Projects tractions onto the admissible ones and moves there, or as far as the energy falls. Returns
@@ -588,6 +582,48 @@ impl<'a> Solver<'a> {
         self.admit();
         self.displace();
     }
+}
+
+/// What brings the sum of tractions to a prescribed force, by the weights of a preconditioner that keeps sums from
+/// then on; zero where none is prescribed.
+fn spread_force(
+    split: &mut Split<'_>,
+    (cells, weights): (&CellSet, &mut Option<[Vec<f32>; 2]>),
+    force: Option<[f64; 2]>,
+    tractions: &[f64],
+) -> Vec<f32> {
+    let mut spread = vec![0.0; tractions.len()];
+    if let Some([fx, fy]) = force {
+        split.fix_sums(cells, weights);
+        let [x, y] = total(tractions);
+        if let Some(sums) = &split.sums {
+            sums.spread([fx - x, fy - y], &mut spread);
+        }
+    }
+    spread
+}
+
+/// The displacement under a change of the tractions in single precision, without the constant of a periodic
+/// kernel, and the number of applications.
+fn displacement(
+    linearised: &mut Linearised<'_>,
+    cells: &CellSet,
+    change: &[f32],
+    shift: f64,
+) -> (Vec<f32>, usize) {
+    let mut displaced = vec![0.0; change.len()];
+    if change.iter().all(|change| *change == 0.0) {
+        return (displaced, 0);
+    }
+    linearised.kernel.apply(cells, change, cells, &mut displaced);
+    let n = cells.len();
+    for (displaced, change) in displaced.chunks_exact_mut(n).zip(change.chunks_exact(n)) {
+        let mean = shift * sum(change);
+        for u in displaced.iter_mut() {
+            *u -= mean as f32;
+        }
+    }
+    (displaced, 1)
 }
 
 /// `u = K q` in double precision, without the constant of a periodic kernel.

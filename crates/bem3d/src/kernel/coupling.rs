@@ -10,16 +10,16 @@ use contact_model::Boundary;
 
 /// The integrals `J = (J_x, J_y)` of `(x, y)/r^2` over a cell: with Dundurs' beta, tractions cause the normal
 /// displacement `u_z = beta (J_x q_x + J_y q_y)` and pressures the tangential one `-beta J p`, in the units of
-/// [`super::tangential::Tangential`]. With periodic boundaries its mean is zero.
+/// [`super::tangential::TangentialKernel`]. With periodic boundaries its mean is zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Coupling {
+pub struct CouplingKernel {
     /// The grid.
     pub grid: Grid,
     /// What lies outside the map.
     pub boundary: Boundary,
 }
 
-impl Kernel<2> for Coupling {
+impl Kernel<2> for CouplingKernel {
     fn grid(&self) -> Grid {
         self.grid
     }

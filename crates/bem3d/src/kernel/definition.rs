@@ -64,13 +64,13 @@ pub enum Evidence {
 /// The entries of a kernel at all lags.
 pub enum Coefficients<const E: usize> {
     /// By a function, which writes entry `e` at the lags `(0 .., y)`.
-    Lags(Box<Fill>),
+    Lags(Box<FillRow>),
     /// From a table of one period.
     Period(Period<E>),
 }
 
 /// Writes an entry at the lags `(0 .., y)`: `(entry, y, row)`.
-pub type Fill = dyn Fn(usize, usize, &mut [f64]) + Send + Sync;
+pub type FillRow = dyn Fn(usize, usize, &mut [f64]) + Send + Sync;
 
 impl<const E: usize> fmt::Debug for Coefficients<E> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -23,12 +23,12 @@ const SHIFT_OVER_DEPTH: f64 = 1.25;
 
 /// A half-space under the pressures on its map and on all copies of it.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Periodic {
+pub struct PeriodicHalfSpace {
     /// The grid.
     pub grid: Grid,
 }
 
-impl Periodic {
+impl PeriodicHalfSpace {
     /// The kernel at the lags of one period. Exact to rounding: the displacement at cell centres under uniform
     /// pressure on cells.
     ///
@@ -48,7 +48,7 @@ impl Periodic {
     }
 }
 
-impl Kernel<1> for Periodic {
+impl Kernel<1> for PeriodicHalfSpace {
     fn grid(&self) -> Grid {
         self.grid
     }
@@ -81,7 +81,7 @@ mod tests {
     use approx::assert_relative_eq;
 
     fn kernel(columns: usize, rows: usize, stretch: f64) -> Period<1> {
-        Periodic { grid: Grid { columns, rows, stretch } }.period()
+        PeriodicHalfSpace { grid: Grid { columns, rows, stretch } }.period()
     }
 
     #[test]

@@ -1,12 +1,12 @@
 //! The kernels, and for each grid a table of one with its symbols, shared by all surfaces of that grid.
 
-use super::coupling::Coupling;
+use super::coupling::CouplingKernel;
 use super::definition::{Coefficients, Kernel};
 use super::half_plane::HalfPlane;
 use super::half_space::HalfSpace;
-use super::periodic::Periodic;
+use super::periodic::PeriodicHalfSpace;
 use super::symbol::{Parity, Symbol};
-use super::tangential::Tangential;
+use super::tangential::TangentialKernel;
 use super::tensor::Invertible;
 use crate::geometry::{Grid, Lengths, Window};
 use crate::real::Real;
@@ -47,7 +47,7 @@ impl NormalTable {
     pub fn shared(grid: Grid, medium: impl Into<Medium>) -> Arc<Self> {
         match medium.into() {
             Medium::HalfSpace => Self::of(HalfSpace { grid }),
-            Medium::Periodic => Self::of(Periodic { grid }),
+            Medium::Periodic => Self::of(PeriodicHalfSpace { grid }),
             Medium::HalfPlane => Self::of(HalfPlane { grid }),
         }
     }
@@ -56,14 +56,14 @@ impl NormalTable {
 impl TangentialTable {
     /// The table of a grid and of bodies of the constant `compliance = E* sum nu/(2 G)`.
     pub fn shared(grid: Grid, boundary: Boundary, compliance: f64) -> Arc<Self> {
-        Self::of(Tangential { grid, boundary, compliance })
+        Self::of(TangentialKernel { grid, boundary, compliance })
     }
 }
 
 impl CouplingTable {
     /// The table of a grid.
     pub fn shared(grid: Grid, boundary: Boundary) -> Arc<Self> {
-        Self::of(Coupling { grid, boundary })
+        Self::of(CouplingKernel { grid, boundary })
     }
 }
 

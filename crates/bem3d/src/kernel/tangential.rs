@@ -19,7 +19,7 @@ const SHIFT: f64 = 2.0;
 /// boundaries displacements are measured from their mean, except for a constant in both diagonal entries, which
 /// makes the kernel definite.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Tangential {
+pub struct TangentialKernel {
     /// The grid.
     pub grid: Grid,
     /// What lies outside the map.
@@ -28,7 +28,7 @@ pub struct Tangential {
     pub compliance: f64,
 }
 
-impl Tangential {
+impl TangentialKernel {
     fn period(self) -> Period<3> {
         let Self { grid, compliance: c, .. } = self;
         let normal = symbol(grid, Integrand::Normal);
@@ -44,7 +44,7 @@ impl Tangential {
     }
 }
 
-impl Kernel<3> for Tangential {
+impl Kernel<3> for TangentialKernel {
     fn grid(&self) -> Grid {
         self.grid
     }

@@ -5,7 +5,7 @@
 /// With a velocity `v`, which is minus the gradient of the energy (minus the gap, or the slip), the conditions of
 /// contact say that v lies in the normal cone of the set of its cell: no admissible traction has more work with v
 /// than the present one. Vectors of a field hold the first component of all cells, then the next one.
-pub trait Law<const N: usize> {
+pub trait ConvexLaw<const N: usize> {
     /// The nearest admissible traction of cell i.
     fn nearest(&self, i: usize, t: [f64; N]) -> [f64; N];
 

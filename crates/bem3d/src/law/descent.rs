@@ -1,7 +1,7 @@
 //! The fall-back of the iterations of contact and of friction: a descent method that lowers the energy in every
 //! step from any tractions.
 
-use super::definition::Law;
+use super::definition::ConvexLaw;
 use crate::real::{dot, sum_of_pairs, update};
 use contact_model::Stop;
 
@@ -37,7 +37,7 @@ pub struct Descent<'a, L, const N: usize> {
 /// any tractions (D. P. Bertsekas, Nonlinear Programming, section 2.3).
 ///
 /// Cost: one application of K in double precision a step.
-pub fn descend<L: Law<N>, const N: usize>(
+pub fn descend<L: ConvexLaw<N>, const N: usize>(
     descent: Descent<'_, L, N>,
     mut displace: impl FnMut(&[f64], &mut Vec<f64>),
     steps: usize,
@@ -138,7 +138,7 @@ struct Projected<const N: usize> {
 }
 
 /// Splits a gradient, and writes its part on cells between their bounds, zero on all others.
-fn project_gradient<L: Law<N>, const N: usize>(
+fn project_gradient<L: ConvexLaw<N>, const N: usize>(
     law: &L,
     t: &[f64],
     gradient: &[f64],

@@ -3,7 +3,7 @@
 //! Vectors are in units of about the largest limit, so that squares do not overflow and those that underflow are
 //! negligible.
 
-use super::definition::Law;
+use super::definition::ConvexLaw;
 use crate::tuning::{CHUNK, LANES};
 use numerics::parallel::map;
 
@@ -77,7 +77,7 @@ pub struct Discs<'a> {
 /// A vector counts as one within its disc where it is shorter than the limit by this share.
 const WITHIN: f64 = 1e-12;
 
-impl Law<2> for Discs<'_> {
+impl ConvexLaw<2> for Discs<'_> {
     fn nearest(&self, i: usize, q: [f64; 2]) -> [f64; 2] {
         within(q, self.limit[i])
     }

@@ -1,6 +1,6 @@
 //! The law of a pressure: between zero and an upper bound.
 
-use super::definition::Law;
+use super::definition::ConvexLaw;
 use crate::real::{each, sum, update};
 
 /// Largest number of passes over the cells in a projection; about a dozen are usual.
@@ -10,12 +10,12 @@ const ROUNDING: f64 = 1e-15;
 
 /// `0 <= p <= upper`, the same on every cell; without a hardness `upper` is infinite.
 #[derive(Debug, Clone, Copy)]
-pub struct Interval {
+pub struct PressureRange {
     /// The upper bound.
     pub upper: f64,
 }
 
-impl Law<1> for Interval {
+impl ConvexLaw<1> for PressureRange {
     fn nearest(&self, _: usize, [p]: [f64; 1]) -> [f64; 1] {
         [p.clamp(0.0, self.upper)]
     }
@@ -127,7 +127,7 @@ mod tests {
     fn a_pressure_is_projected_by_hand() {
         let projected = |y: &[f64], hardness: f64, force: Option<f64>| {
             let mut y = y.to_vec();
-            Interval { upper: hardness }.project(&mut y, force.map(|force| [force]));
+            PressureRange { upper: hardness }.project(&mut y, force.map(|force| [force]));
             y
         };
         let close = |found: Vec<f64>, expected: &[f64]| {

@@ -2,7 +2,7 @@
 //!
 //! A pressure lies between zero and the hardness, the traction of friction in a disc. Both are convex sets. With
 //! given attraction and given limits, the state under a load is the minimum of a quadratic energy over them, so
-//! that one projection, one duality gap and one fall-back serve both ([`Law`], [`descend`]). Attraction is no such
+//! that one projection, one duality gap and one fall-back serve both ([`ConvexLaw`], [`descend`]). Attraction is no such
 //! law: it is held while the convex problem is solved (`adhesion`).
 
 mod definition;
@@ -10,7 +10,7 @@ mod descent;
 mod disc;
 mod interval;
 
-pub use definition::Law;
+pub use definition::ConvexLaw;
 pub use descent::{Descent, descend};
 pub use disc::{Discs, excess, length, sums, total};
-pub use interval::Interval;
+pub use interval::PressureRange;

@@ -2,6 +2,7 @@
 
 use super::certificate::GROWTH;
 use super::load::{LoadSequence, ScaledLoad, ScaledNormal, ScaledTangential};
+use super::memory::Memory;
 use super::options::NAME;
 use super::prepared::PreparedSurface;
 use super::sliding::Slid;
@@ -156,12 +157,16 @@ impl AdhesiveContact {
                 // The segment begins without force: there the surfaces already hold each other. The tangential
                 // load comes with the whole of it.
                 let (before, memory) = (self.last.take(), self.surface.memory.clone());
+                if memory.is_none() && self.surface.hardness.is_some() {
+                    // What flows without a force stays under the pull, also of a single load.
+                    self.surface.memory = Some(Memory::new(self.surface.problem.candidates.shared()));
+                }
                 let touched = self.step_to(AdhesiveControl::Force(0.0), None, LoadSequence::Path, stop);
                 let held = touched.and_then(|touched| {
                     self.accept(touched);
                     self.step_to(control, Some(tangential), LoadSequence::Path, stop)
                 });
-                if held.is_err() {
+                if held.is_err() || memory.is_none() {
                     self.surface.take_memory(memory);
                 }
                 self.last = before;

@@ -168,12 +168,15 @@ impl PreparedSurface {
         }
     }
 
-    /// Returns to an earlier memory of a path.
+    /// Returns to another memory of a path; without one the surface is the virgin one.
     pub(super) fn take_memory(&mut self, memory: Option<Memory>) {
-        if let Some(memory) = &memory {
-            self.problem.candidates = Candidates::new(self.problem.grid(), memory.indented());
-            self.problem.coarser = None;
-        }
+        let gaps = match (&memory, &self.memory) {
+            (Some(memory), _) => memory.indented(),
+            (None, Some(now)) => Arc::clone(&now.virgin),
+            (None, None) => return,
+        };
+        self.problem.candidates = Candidates::new(self.problem.grid(), gaps);
+        self.problem.coarser = None;
         self.memory = memory;
     }
 

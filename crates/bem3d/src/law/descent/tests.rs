@@ -3,7 +3,7 @@
 use super::*;
 use crate::geometry::{CellSet, Grid};
 use crate::kernel::{NormalTable, TangentialTable};
-use crate::law::{Discs, Interval};
+use crate::law::{Discs, PressureRange};
 use crate::operator::{Operators, TangentialOperators};
 use crate::parts::Recorder;
 use crate::real::sum;
@@ -18,7 +18,7 @@ fn descended(
     operators: &mut Operators,
     cells: &CellSet,
     (p, gap): (&mut [f64], &mut [f64]),
-    (law, force): (Interval, Option<f64>),
+    (law, force): (PressureRange, Option<f64>),
     steps: usize,
     stop: Stop<'_>,
 ) -> usize {
@@ -59,7 +59,7 @@ fn every_step_lowers_the_energy_and_the_end_is_the_solution() {
             let cells = CellSet::all(grid);
             // z - d where the approach is prescribed.
             let z: Vec<f64> = z.iter().map(|z| z - if force.is_none() { 1.5 } else { 0.0 }).collect();
-            let law = Interval { upper: hardness };
+            let law = PressureRange { upper: hardness };
             let mut p: Vec<f64> = (0..n).map(|i| (i % 5) as f64).collect();
             law.project(&mut p, force.map(|force| [force]));
             let (mut last, mut gap) = evaluated(&mut operators, &cells, &p, &z);
@@ -167,7 +167,7 @@ fn nothing_is_done_at_a_solution_or_when_stopped() {
     let grid = Grid::square(3, 1);
     let mut operators = Operators::new(NormalTable::shared(grid, Boundary::Free), &Tuning::DEFAULT);
     let cells = CellSet::all(grid);
-    let conditions = (Interval { upper: 1.0 }, Some(1.0));
+    let conditions = (PressureRange { upper: 1.0 }, Some(1.0));
     // The saturated cell is the lowest.
     let (mut p, mut gap) = (vec![0.0, 1.0, 0.0], vec![0.5, -0.5, 0.5]);
     assert_eq!(descended(&mut operators, &cells, (&mut p, &mut gap), conditions, 9, &never), 0);
