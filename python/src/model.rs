@@ -83,8 +83,8 @@ pub fn models(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
 /// Returns
 /// -------
 /// list of dict
-///     For every two effects of a model that a scene can have together: ``model`` (its name), ``effects`` (both in
-///     words), ``keys`` (both names in `Effects`), ``combined``, and ``reason`` (why not, or None).
+///     For every two effects of a model that a scene can have together: ``model`` (its name), ``effects`` (both
+///     in words), ``keys`` (both names in `Effects`), ``combined``, and ``reason`` (why not, or None).
 #[pyfunction]
 pub fn combinations(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
     let mut rows = Vec::new();

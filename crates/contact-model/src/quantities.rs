@@ -450,7 +450,7 @@ pub static QUANTITIES: &[Quantity] = &quantities! {
         "of the bodies relative to each other along y, far from the contact"
         => |s, _| s.tangential.map(|t| t.displacement[1]).into();
     "sliding_force" "sliding force" "" Si("N"); Effect("friction");
-        "tangential force at which the whole contact slips: the largest tractions of all cells in contact together, by Coulomb's law \\
+        "tangential force at which the whole contact slips: the largest tractions of all cells in contact together, by Coulomb's law \
          the coefficient of friction times the normal force"
         { drawn: false }
         => |s, _| s.tangential.and_then(|t| t.sliding_force).into();

@@ -27,6 +27,7 @@ __all__ = [
     "Surface",
     "channels",
     "check_effects",
+    "combinations",
     "effect_keys",
     "ensemble",
     "fields",
@@ -289,8 +290,8 @@ class ContactState:
         """
     @property
     def sliding_force(self) -> float | None:
-        """float or None: sliding force, tangential force at which the whole contact slips, the coefficient of
-        friction times the normal force [N].
+        """float or None: sliding force, tangential force at which the whole contact slips: the largest tractions of
+        all cells in contact together, by Coulomb's law the coefficient of friction times the normal force [N].
         """
     @property
     def stick_area(self) -> float | None:
@@ -454,13 +455,14 @@ class ContactState:
         """
     @property
     def tangential_duality_gap(self) -> float | None:
-        """float or None: tangential duality gap, sum (mu p |w| - w . q)/(mu F D) of the last step, solved cell by
-        cell; D is the larger of |delta - m| and the largest |s - m|, with the mean m, weighted by mu p, of the
-        displacements s from which the slip of the cells counts.
+        """float or None: tangential duality gap, sum (b |w| - w . q)/(B D) of the last step, solved cell by cell,
+        with the largest traction b of a cell (mu p by Coulomb's law) and their sum B, the sliding force; D is the
+        larger of |delta - m| and the largest |s - m|, with the mean m, weighted by b, of the displacements s from
+        which the slip of the cells counts.
         """
     @property
     def tangential_load_error(self) -> float | None:
-        """float or None: tangential load error, |Q - Q_prescribed|/(mu F), solved cell by cell."""
+        """float or None: tangential load error, |Q - Q_prescribed| over the sliding force, solved cell by cell."""
     @property
     def tangential_stiffness_error(self) -> float | None:
         """float or None: estimated relative error of the tangential stiffness."""
@@ -843,8 +845,8 @@ def combinations() -> list[dict[str, Any]]:
     Returns
     -------
     list of dict
-            For every two effects of a model that a scene can have together: ``model`` (its name), ``effects`` (both in
-        words), ``keys`` (both names in `Effects`), ``combined``, and ``reason`` (why not, or None).
+            For every two effects of a model that a scene can have together: ``model`` (its name), ``effects`` (both
+            in words), ``keys`` (both names in `Effects`), ``combined``, and ``reason`` (why not, or None).
     """
 
 def model(name: str, options: Mapping[str, Any], inner: Model | None = None) -> Model:

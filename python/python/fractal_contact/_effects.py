@@ -31,11 +31,12 @@ class Effects:
         Attraction with this work of adhesion (energy per area): of short range (JKR), or across open gaps with a
         range (a length), by the exponential law if none is named. Not named: no attraction.
     friction : optional
-        { coefficient, shear_strength, limit, coupling } with the coupling "none" or "full", or the coefficient alone
-        Friction under a tangential load: the traction is at most the shear strength (a pressure) plus the coefficient
-        times the pressure, and at most the limit (a pressure). The coefficient alone is Coulomb's law, the shear
-        strength alone is Tresca's. Where the bodies differ, normal and tangential tractions act on each other: the
-        coupling is neglected, or both are solved together. Not named: no tangential load.
+        { coefficient, shear_strength, limit, coupling } with the coupling "none" or "full", or the coefficient
+        alone
+        Friction under a tangential load: the traction is at most the shear strength (a pressure) plus the
+        coefficient times the pressure, and at most the limit (a pressure). The coefficient alone is Coulomb's law,
+        the shear strength alone is Tresca's. Where the bodies differ, normal and tangential tractions act on each
+        other: the coupling is neglected, or both are solved together. Not named: no tangential load.
     rheology : optional
         { kind: "kelvin_voigt" or "maxwell", viscosity }, { kind: "standard_solid", weight, time }, { kind: "prony",
         weights, times }
