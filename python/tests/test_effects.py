@@ -578,19 +578,31 @@ def test_models_refuse_effects_that_they_lack(model, surface, effects):
     assert caught.value.model == model.name
 
 
-@pytest.mark.parametrize("adhesion", [EXPONENTIAL, DUGDALE])
-def test_hardness_and_adhesion_together_are_refused(adhesion):
-    scene = fc.Scene(SPHERE, contact_modulus=1.0, effects={"hardness": 1.0, "adhesion": adhesion})
+def test_hardness_and_adhesion_of_short_range_together_are_refused():
+    scene = fc.Scene(SPHERE, contact_modulus=1.0, effects={"hardness": 1.0, "adhesion": {"work": 1e-3}})
     with pytest.raises(fc.Unsupported, match="a hardness together with adhesion") as caught:
         COARSE.prepare(scene)
     # No model has both.
     assert caught.value.able == () and "models that may" not in str(caught.value)
 
 
+def test_what_flows_and_is_attracted_slides_at_the_contact_pressure():
+    body = fc.Body(young=2.0, poisson=0.3)
+    surface = fc.Surface.sphere(radius=1.0, size=0.5)
+    adhesion = {"work": 1e-3, "range": 0.02, "law": "exponential"}
+    effects = {"hardness": 0.05, "adhesion": adhesion, "friction": 0.3}
+    path = fc.Bem3d(cells=48).prepare(fc.Scene(surface, bodies=(body, body), effects=effects))
+    states = list(path.follow(force=[2e-3, 2e-3, 0.0], tangential_force=[0.0, 3e-4, 0.0]))
+    assert all(state.plastic_volume > 0.0 for state in states)
+    # More than the coefficient times the force, and some of it without any force.
+    assert states[1].sliding_force > 0.3 * 2e-3 and states[2].sliding_force > 0.0
+
+
 def test_which_effects_go_together_is_a_table():
     rows = [row for row in fc.combinations() if row["model"] == "bem3d"]
     of_keys = {row["keys"]: row for row in rows if row["effects"][0] != row["effects"][1]}
-    assert of_keys["hardness", "adhesion"]["combined"] is False and of_keys["hardness", "adhesion"]["reason"]
+    reasons = {row["effects"]: row["reason"] for row in rows}
+    assert reasons["a hardness", "adhesion of short range"] and of_keys["hardness", "adhesion"]["combined"]
     body = fc.Body(young=2.0, poisson=0.3)
     bodies, sphere = (body, body), fc.Surface.sphere(radius=1.0, size=0.5)
     for row in rows:
