@@ -188,6 +188,13 @@ fn act<T: Real, S: Tensor<T, N>, const N: usize>(
 ) {
     let count = symbol.len();
     let mut columns = columns.map(|column| &mut column[..count]);
+    if let [column] = &mut columns[..] {
+        // Of one component, as a loop over one slice, which is vectorised.
+        for (value, entries) in column.iter_mut().zip(symbol) {
+            *value = entries.displacements([*value; N])[0];
+        }
+        return;
+    }
     for (k, entries) in symbol.enumerate() {
         let moved = entries.displacements(std::array::from_fn(|i| columns[i][k]));
         for (column, moved) in columns.iter_mut().zip(moved) {
