@@ -106,7 +106,7 @@
 //! Why is it safe to remove the cells in tension? A true contact cell is never removed where G, restricted to
 //! the set, is an inverse M-matrix. It was one on every set tried, of the half-space and of the half-plane. The
 //! periodic kernel of zero mean needs a constant for this, which changes nothing under a given force. The
-//! constant that it has makes every entry positive; only nearly full sets would need one and a half times as
+//! constant that it has makes every entry positive; only nearly full sets would need up to twice as
 //! much. There, and by rounding, an early stop of the linear solve or a hardness, a cell may be removed that
 //! belongs to the contact. Step 3 then returns it. If the residuals have not fallen for many iterations, a fall-back takes over that lowers the energy
 //! with every step (`law::descent`).

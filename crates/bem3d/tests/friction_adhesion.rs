@@ -115,6 +115,35 @@ fn a_shear_strength_acts_on_the_area() {
     }
 }
 
+/// A sphere by Tresca's law: in full stick the stiffness is that of the area, `2 E* a` without a Poisson's ratio, and in
+/// full sliding the force is the strength times the area, which is that of the sphere without friction.
+#[test]
+fn a_sphere_that_is_attracted_sticks_and_slides_with_its_area() {
+    let body = Body::Elastic { young: 2.0, poisson: 0.0 };
+    let surface = Surface::Sphere { radius: 1.0, size: 0.5.into() };
+    let mut scene = Scene::of_pair(surface, Pair { first: body, second: body }).unwrap();
+    let (work, strength) = (2e-4, 0.005);
+    scene.effects.adhesion = Adhesion::FiniteRange { work, range: 5e-3, law: AdhesionLaw::Dugdale };
+    scene.outputs = Outputs { area: true, ..Outputs::default() };
+    let model = Bem3d { cells: 129, tolerance: 1e-6, ..Bem3d::default() };
+    let bare = model.prepare(&scene, 0).unwrap().solve(Load::force(5e-4)).unwrap();
+    scene.effects.friction = Friction::tresca(strength);
+    scene.outputs.tangential_stiffness_stuck = true;
+    let mut contact = model.prepare(&scene, 0).unwrap();
+    let state = contact.advance(Step::new(0.0, Load::force(5e-4))).unwrap();
+    assert_eq!(state.area, bare.area);
+    let area = state.area.unwrap();
+    let radius = (area / std::f64::consts::PI).sqrt();
+    let stuck = state.tangential.unwrap().stiffness_stuck.unwrap()[0][0];
+    // Of first order in the cell over the radius.
+    println!("{} cells a radius, stiffness {:e}", radius * 129.0 / 0.5, stuck / (2.0 * radius) - 1.0);
+    assert!((stuck / (2.0 * radius) - 1.0).abs() < 0.01, "{stuck} {radius}");
+    let slid = contact.advance(Step::new(1.0, pushed(Load::force(5e-4), [0.1, 0.0]))).unwrap();
+    let found = slid.tangential.unwrap();
+    assert!((found.force[0] / (strength * area) - 1.0).abs() < 1e-6);
+    assert_eq!(slid.area, bare.area);
+}
+
 /// Without work of adhesion the states are those of friction alone, and tend to them.
 #[test]
 fn without_work_the_tractions_are_those_of_friction_alone() {

@@ -17,7 +17,7 @@ use std::sync::Arc;
 /// One surface in nondimensional form: z in units of the rms height, p so that `u = sum I p`.
 #[derive(Debug)]
 pub struct Problem {
-    /// What deforms.
+    /// The body that deforms under the pressures.
     pub medium: Medium,
     /// Where contact is possible.
     pub candidates: Candidates,

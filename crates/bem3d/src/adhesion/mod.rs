@@ -8,7 +8,8 @@
 //! rough maps of 129 cells a side and of spheres: free and periodic, under forces, approaches and mean gaps,
 //! there and back, with a tolerance of 1e-5. The first two rows also have maps of 257 and spheres of 104 and
 //! 192 cells a side. The table has the applications of the kernel without the kind of update over those with
-//! it, and the same ratio of user times (one thread of a shared machine, one run each, so to about 5 %).
+//! it, and the same ratio of user times (one thread of a shared machine, one run each, so to about 5 %). The
+//! switches are not in the code.
 //!
 //! | switched off | short range | exponential | Dugdale | so it |
 //! |---|---|---|---|---|

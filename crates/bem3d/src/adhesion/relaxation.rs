@@ -124,8 +124,8 @@ impl<'a> Fronts<'a> {
         Self { law, least_factor, inverse, state, around, number, net, places, gap, moved }
     }
 
-    /// What the neighbours of a cell multiply its attraction by; beyond the range it is the least that they
-    /// can leave.
+    /// The factor by which the neighbours of a cell change its attraction; beyond the range it is the least that
+    /// they can leave.
     fn factor(&self, i: usize) -> f64 {
         let alone = self.law.traction(self.state.gap[i]);
         if alone > 0.0 { self.state.lawful[i] / alone } else { self.least_factor }

@@ -129,7 +129,7 @@ pub enum Updated {
     Stopped,
 }
 
-/// What an update would make of the attraction.
+/// The attraction at which an update aims, and the kind of the update.
 struct Wanted {
     /// The attraction.
     attraction: Vec<f64>,
@@ -139,7 +139,7 @@ struct Wanted {
     waits: bool,
     /// The fronts may be followed.
     follows: bool,
-    /// What is held while the contact is corrected.
+    /// The load that stays fixed while the contact is corrected.
     fixed: Fixed,
     /// Whether this update is one of the plain iteration alone.
     plain: bool,

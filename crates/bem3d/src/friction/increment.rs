@@ -584,8 +584,8 @@ impl<'a> Solver<'a> {
     }
 }
 
-/// What brings the sum of tractions to a prescribed force, by the weights of a preconditioner that keeps sums from
-/// then on; zero where none is prescribed.
+/// The change of tractions that brings their sum to a prescribed force, by the weights of a preconditioner, which
+/// keeps the sum from then on; zero where no force is prescribed.
 fn spread_force(
     split: &mut Split<'_>,
     (cells, weights): (&CellSet, &mut Option<[Vec<f32>; 2]>),

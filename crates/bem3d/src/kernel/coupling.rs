@@ -15,7 +15,7 @@ use contact_model::Boundary;
 pub struct CouplingKernel {
     /// The grid.
     pub grid: Grid,
-    /// What lies outside the map.
+    /// The boundary of the map.
     pub boundary: Boundary,
 }
 

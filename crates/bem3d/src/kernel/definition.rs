@@ -1,4 +1,4 @@
-//! What a kernel says of itself.
+//! The definition of a kernel: the properties that every kernel states.
 
 use super::period::Period;
 use super::symbol::Parity;
@@ -17,7 +17,7 @@ pub trait Kernel<const E: usize>: fmt::Debug + Any + Send + Sync {
     /// The grid.
     fn grid(&self) -> Grid;
 
-    /// What lies outside the map.
+    /// The boundary of the map: a free surface around it, or periodic copies of it.
     fn boundary(&self) -> Boundary;
 
     /// How each entry changes when a lag along x, or along y, changes its sign.

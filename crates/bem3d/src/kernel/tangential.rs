@@ -22,7 +22,7 @@ const SHIFT: f64 = 2.0;
 pub struct TangentialKernel {
     /// The grid.
     pub grid: Grid,
-    /// What lies outside the map.
+    /// The boundary of the map.
     pub boundary: Boundary,
     /// The constant c of the bodies, `E* sum nu/(2 G)`, in [0, 1].
     pub compliance: f64,

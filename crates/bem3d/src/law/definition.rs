@@ -1,4 +1,4 @@
-//! What a convex law says of itself.
+//! The definition of a convex law of a cell.
 
 /// The tractions of N components that the cells of a set may have: a convex set for each cell.
 ///

@@ -101,13 +101,16 @@ impl ConvexLaw<2> for Discs<'_> {
     }
 
     fn room(&self, i: usize, [x, y]: [f64; 2], [cx, cy]: [f64; 2]) -> f64 {
-        // |q + s c| = limit.
+        // |q + s c| = limit, by the form of the root that does not cancel.
         let (square, half) = (cx * cx + cy * cy, x * cx + y * cy);
-        let missing = self.limit[i].powi(2) - (x * x + y * y);
-        if square > 0.0 {
-            missing / (half + (half * half + square * missing.max(0.0)).sqrt())
-        } else {
+        let missing = (self.limit[i].powi(2) - (x * x + y * y)).max(0.0);
+        let root = (half * half + square * missing).sqrt();
+        if square <= 0.0 {
             f64::INFINITY
+        } else if half > 0.0 {
+            missing / (half + root)
+        } else {
+            (root - half) / square
         }
     }
 
@@ -238,6 +241,19 @@ mod tests {
             let [x, y] = within([angle.cos() * 7.3, angle.sin() * 1.9], 0.3);
             assert!(x.hypot(y) <= 0.3);
         }
+    }
+
+    #[test]
+    fn the_way_to_the_circle_by_hand() {
+        let law = Discs { limit: &[5.0] };
+        // Outwards from the middle, outwards and inwards from 3, and along the other axis: 3-4-5.
+        assert!((law.room(0, [0.0, 0.0], [0.0, 2.0]) - 2.5).abs() < 1e-15);
+        assert!((law.room(0, [3.0, 0.0], [1.0, 0.0]) - 2.0).abs() < 1e-15);
+        assert!((law.room(0, [3.0, 0.0], [-1.0, 0.0]) - 8.0).abs() < 1e-15);
+        assert!((law.room(0, [3.0, 0.0], [0.0, 1.0]) - 4.0).abs() < 1e-15);
+        // From the circle itself across the disc, where the other form of the root is 0/0.
+        assert!((law.room(0, [5.0, 0.0], [-1.0, 0.0]) - 10.0).abs() < 1e-14);
+        assert!(law.room(0, [3.0, 0.0], [0.0, 0.0]).is_infinite());
     }
 
     #[test]

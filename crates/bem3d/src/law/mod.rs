@@ -1,4 +1,4 @@
-//! What the tractions of a cell obey: convex laws, and what is written once for all of them.
+//! Laws of the tractions of a cell that are convex sets, and the fall-back that serves all of them.
 //!
 //! A pressure lies between zero and the hardness, the traction of friction in a disc. Both are convex sets. With
 //! given attraction and given limits, the state under a load is the minimum of a quadratic energy over them, so

@@ -164,8 +164,9 @@ const NOT_COMBINED: &[NotCombined] = &[
     },
     NotCombined {
         effects: [&[Effect::ShortRangeAdhesion], FRICTION],
-        reason: "not solved: the contact pressure at the edge grows without a limit as cells become smaller, and with \
-                 it what Coulomb's law holds; give the adhesion a range",
+        reason: "at the edge of a contact the pressure of this limit grows without end as cells become smaller, and \
+                 with it what a coefficient holds, and a shear strength on partly attached cells is not solved; \
+                 give the adhesion a range",
     },
     NotCombined {
         effects: [ADHESION, &[Effect::FullCoupling]],
