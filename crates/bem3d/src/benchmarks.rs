@@ -4,9 +4,7 @@
 pub use crate::parts::{Part, Recorder, Spent};
 pub use crate::tuning::{CONSTANTS, Constant};
 
-use crate::friction::{
-    Friction, FrictionLimits, FrictionLoad, PressedCells, SlipMemory, StiffnessOf, TangentialControl,
-};
+use crate::friction::{Friction, FrictionLimits, FrictionLoad, PressedCells, SlipMemory, TangentialControl};
 use crate::geometry::{CellSet, Grid, Lengths};
 use crate::kernel::{NormalTable, TangentialTable};
 use crate::linear::Factor;
@@ -14,6 +12,8 @@ use crate::model::Bem3d;
 use crate::operator::{
     DirectSum, FftConvolution, InfluenceOperator, Split, TwoLevel, TwoTransforms, VectorConvolution,
 };
+use crate::response::TangentialStiffness;
+use crate::response::tangential::{self, StiffnessOf};
 use crate::tuning::Tuning;
 use contact_model::{Boundary, Field, PreparedContact, Result, Scene, Status, never};
 
@@ -199,7 +199,8 @@ impl PartialSlipBench {
         let guess = guess.as_ref().map(|q| (&*cells, &q[..]));
         let state = friction.advance(&SlipMemory::default(), contact, load, guess, limits, &never).ok()?;
         let [after, _] = friction.work();
-        let k = stiffness.then(|| friction.stiffness(&state, StiffnessOf::Branch, tolerance, &never));
+        let k =
+            stiffness.then(|| tangential::solve(friction, &state, StiffnessOf::Branch, tolerance, &never));
         let [end, _] = friction.work();
         Some(PartialSlip {
             applications: after - before,
@@ -209,8 +210,8 @@ impl PartialSlipBench {
             stick: state.stick.len() as f64 / cells.len().max(1) as f64,
             stiffness: (
                 end - after,
-                k.map_or(0.0, |k| k.value[0]),
-                k.map_or(0.0, |k| k.solve_error + k.set_error),
+                k.as_ref().map_or(0.0, |k| k.value[0]),
+                k.as_ref().map_or(0.0, TangentialStiffness::error),
             ),
         })
     }

@@ -131,7 +131,7 @@
 //! | certificate | always the exact sums, or transforms in double precision |
 //!
 //! The preconditioner bounds the energy `r' G^-1 r` of a residual r, and this bounds the error of k too
-//! (`stiffness`). The two-level operator is for square cells with free boundaries. Oblong cells and periodic
+//! (`response`). The two-level operator is for square cells with free boundaries. Oblong cells and periodic
 //! maps take transforms instead. The tuned constants of a solve are in `tuning`, with meaning and unit. Those
 //! of adhesion stand beside their iterations.
 //!
@@ -177,7 +177,7 @@
 //!
 //! # Parts
 //!
-//! Modules use each other in one direction. In the list `model`, `adhesion`, `friction`, `stiffness`,
+//! Modules use each other in one direction. In the list `model`, `response`, `adhesion`, `friction`,
 //! `active_set`, `law`, `linear`, `operator`, `kernel`, `geometry` each module uses only those behind it. Each part
 //! that is fast or intricate stands beside a reference implementation that is slow and right, and tests
 //! compare the two.
@@ -210,7 +210,7 @@
 //! | `law::descent` | the fall-back of contact and of friction: projected gradients and conjugate gradients between the bounds, each step downhill | random states by a dense reference |
 //! | `active_set::residuals` | the one routine of the certificate | values by hand |
 //! | `active_set::undecided` | how far an open gap may still change: the largest gap left near by, and an eighth of the largest anywhere; cells below that are undecided and count in the error of k | true changes of all open gaps by elimination |
-//! | `stiffness` | `G q = 1`, the Ritz value and an upper estimate; the error of k has a part from the solve and one from undecided cells | full contact of small squares; tighter solves |
+//! | `response` | the stiffnesses of pressures, of tractions on a branch of friction, and along a branch of adhesion: one refinement of `A X = B` for any number of directions, with a Ritz value and an upper estimate; the error has a part from the solve and one from undecided cells | full contact of small squares; tighter solves; difference quotients |
 //! | `friction` | an increment of friction, by any law of the pressure, with its certificate and tangential stiffness; coupled, normal and tangential contact are solved in turn | a dense convex programme; tractions of Ciavarella and Jaeger |
 //!
 //! # How accurate
@@ -273,7 +273,7 @@ mod model;
 mod operator;
 mod parts;
 mod real;
-mod stiffness;
+mod response;
 mod tuning;
 
 // All that a first program needs beside the model itself: scenes, loads, states, height maps, the traits.

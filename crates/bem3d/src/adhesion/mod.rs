@@ -26,7 +26,7 @@
 //! | a contact anew after a far step (`is_far`) | 1.00 | 1.00 | 1.00 | not decided: see below |
 //! | a contact anew for a single load (`continued`) | 1.00 | 1.00 | 1.00 | not decided: see below |
 //! | `near` in `newton` | 1.05, time 0.96 | not used | not used | not decided: see below |
-//! | `near` in `linearised` | 1.04, time 0.95 | not used | not used | not decided: see below |
+//! | `near` in `response::adhesive` | 1.04, time 0.95 | not used | not used | not decided: see below |
 //! | damping after 100 updates at a mean gap | 1.00 | 1.00 | 0.90 | not decided: see below |
 //!
 //! Applications alone are misleading for Newton steps with a short range: a sphere of 104 cells takes as
@@ -47,7 +47,6 @@ mod attraction;
 mod bottleneck;
 mod equilibrium;
 mod law;
-mod linearised;
 mod near;
 mod neighbours;
 mod newton;
@@ -58,8 +57,9 @@ mod update;
 
 pub use attraction::Attraction;
 pub use equilibrium::{AdhesiveControl, Equilibrium, energy};
-pub use law::Law;
-pub use linearised::{Response, fixed_area, respond};
+pub use law::{Law, Shape};
+pub use near::Near;
+pub use pairs::Pairs;
 pub use search::{Ended, Search};
 
 #[cfg(test)]

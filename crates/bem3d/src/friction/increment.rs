@@ -1,11 +1,10 @@
 //! One increment: the tractions at its end from those at its beginning.
 
-use super::linearised::{Branch, Linearised, Room, SLIPPING, Split, TorusWindow, extend};
+use super::linearised::{Branch, BranchSystem, FrictionRoom, Linearised};
 use crate::geometry::CellSet;
 use crate::law::{ConvexLaw, Descent, Discs, descend, excess, length, sums, total};
-use crate::linear::{Extension, Fixed, StoppingCriteria, TorusInverse, Vectors, pcg};
+use crate::linear::StoppingCriteria;
 use crate::operator::{InfluenceOperator, TangentialOperators};
-use crate::parts::Part;
 use crate::real::{binary_unit, dot, each, largest, sum, update};
 use contact_model::{Status, Stop};
 use serde::{Deserialize, Serialize};
@@ -71,19 +70,6 @@ pub struct Sliding {
     pub steps: usize,
     /// How it ended.
     pub status: Status,
-}
-
-/// Room for the systems of an increment, kept from one to the next.
-#[derive(Debug, Default)]
-pub struct FrictionRoom {
-    /// Vectors of conjugate gradients.
-    pub vectors: Vectors<f32>,
-    /// Extension of each component.
-    pub extensions: [Extension; 2],
-    /// Vectors of the preconditioner.
-    pub split: Room,
-    /// The weights by which the sums of corrections are kept, in the present increment.
-    weights: Option<[Vec<f32>; 2]>,
 }
 
 /// `rho` times the own compliance: y = q + rho w decides between stick and slip.
@@ -340,7 +326,7 @@ impl<'a> Solver<'a> {
     fn iterate(mut self, stop: Stop<'_>) -> Sliding {
         self.admit();
         self.displace();
-        self.room.vectors.take_fields(self.increment.cells.clone(), 2);
+        self.room.take(self.increment.cells);
         self.room.weights = None;
         let mut best = self.state(Status::IterationLimit);
         let (mut since_best, mut gradients) = (0, GRADIENTS);
@@ -489,50 +475,23 @@ impl<'a> Solver<'a> {
     /// circles. `None` without cells.
     fn solve_linearised(&mut self, branch: &Branch, mut next: Vec<f64>, stop: Stop<'_>) -> Option<Vec<f64>> {
         let (cells, force) = (self.increment.cells, self.force());
-        let recorder = self.operators.recorder().clone();
-        let tuning = *self.operators.tuning();
-        let (own, shift) = (self.operators.table().own(), self.operators.table().shift());
+        let shift = self.operators.table().shift();
         let criteria =
             StoppingCriteria { reduction: self.reduction, energy: None, floor: 0.0, steps: INNER_STEPS };
         self.operators.solves += 1;
-        let (kernel, transform) = self.operators.system(cells, false)?;
-        let FrictionRoom { vectors, extensions, split: room, weights } = &mut *self.room;
-        let torus =
-            TorusWindow { window: transform.window(), decay: tuning.decay, extended: tuning.extended };
-        recorder.timed(Part::Sets, || extend(extensions, &torus, &branch.stick));
-        let mut split = Split {
-            torus: TorusInverse { transform, extensions, recorder: recorder.clone() },
-            branch,
-            own: SLIPPING * own as f32,
-            sums: None,
-            room: std::mem::take(room),
-            recorder: recorder.clone(),
-        };
-        let mut linearised = Linearised { kernel, shift: shift as f32, branch };
-        let spread = spread_force(&mut split, (cells, weights), force, &next);
+        let mut system = self.room.system(self.operators, branch, false)?;
+        let spread = spread_force(&mut system, cells, force, &next);
         // The change of the tractions so far, whose displacements the residual needs.
         let mut change: Vec<f32> = next.iter().zip(&self.q).map(|(next, q)| (next - q) as f32).collect();
         change.iter_mut().zip(&spread).for_each(|(change, spread)| *change += spread);
-        let (displaced, mut applications) = displacement(&mut linearised, cells, &change, shift);
+        let (displaced, applications) = displacement(&mut system.conditions, cells, &change, shift);
         let mut right: Vec<f64> = self.w.iter().zip(&displaced).map(|(w, u)| w - f64::from(*u)).collect();
         branch.restrict_f64(&mut right);
         let moved: Vec<f64> = spread.iter().map(|&spread| f64::from(spread)).collect();
         branch.add_turning(&moved, &mut right, -1.0);
-        let size = largest(&right);
-        if size > 0.0 && size.is_finite() {
-            let outcome = recorder.timed(Part::Vectors, || {
-                vectors.load(&right, size);
-                let outcome = pcg(&mut linearised, &mut split, vectors, Fixed::Approach, criteria, stop);
-                vectors.unload(&mut right, size);
-                outcome
-            });
-            applications += outcome.applications;
-            self.steps += outcome.steps;
-        } else {
-            right.fill(0.0);
-        }
-        *room = std::mem::take(&mut split.room);
-        self.operators.applications += applications;
+        let outcome = system.solve(&mut right, criteria, stop);
+        self.steps += outcome.steps;
+        self.operators.applications += applications + outcome.applications;
         for ((next, x), spread) in next.iter_mut().zip(&right).zip(&moved) {
             *next += x + spread;
         }
@@ -587,16 +546,17 @@ impl<'a> Solver<'a> {
 /// The change of tractions that brings their sum to a prescribed force, by the weights of a preconditioner, which
 /// keeps the sum from then on; zero where no force is prescribed.
 fn spread_force(
-    split: &mut Split<'_>,
-    (cells, weights): (&CellSet, &mut Option<[Vec<f32>; 2]>),
+    system: &mut BranchSystem<'_>,
+    cells: &CellSet,
     force: Option<[f64; 2]>,
     tractions: &[f64],
 ) -> Vec<f32> {
     let mut spread = vec![0.0; tractions.len()];
     if let Some([fx, fy]) = force {
-        split.fix_sums(cells, weights);
+        let BranchSystem { preconditioner, weights, .. } = system;
+        preconditioner.fix_sums(cells, weights);
         let [x, y] = total(tractions);
-        if let Some(sums) = &split.sums {
+        if let Some(sums) = &preconditioner.sums {
             sums.spread([fx - x, fy - y], &mut spread);
         }
     }

@@ -1,12 +1,16 @@
 //! The linearised conditions of friction on a contact: stick cells have two unknowns, slip cells one, along the
 //! tangent of their disk.
 
-use crate::geometry::CellSet;
-use crate::linear::{Extension, Preconditioned, Preconditioner, TORUS_ENERGY, TorusInverse};
-use crate::operator::{InfluenceOperator, Planned};
+use crate::geometry::{CellSet, Window};
+use crate::linear::{
+    Energy, Extension, Fixed, PcgOutcome, Preconditioned, Preconditioner, StoppingCriteria, TORUS_ENERGY,
+    TorusInverse, Vectors, pcg,
+};
+use crate::operator::{InfluenceOperator, Planned, TangentialOperators};
 use crate::parts::{Part, Recorder};
 use crate::real::{dot, each, largest, sum, update};
 use crate::tuning::CHUNK;
+use contact_model::Stop;
 use numerics::parallel::map;
 
 /// Largest `|w|/b` of a slip cell; a cell beyond it is treated as if it did not move.
@@ -163,22 +167,21 @@ impl InfluenceOperator<f32> for Linearised<'_> {
 #[derive(Debug)]
 pub struct Split<'a> {
     /// On stick cells.
-    pub torus: TorusInverse<'a, 2, 3>,
+    torus: TorusInverse<'a, 2, 3>,
     /// The admissible changes of the cells.
-    pub branch: &'a Branch,
+    branch: &'a Branch,
     /// Compliance of a slip cell along its tangent: with its turning the diagonal.
-    pub own: f32,
+    own: f32,
     /// How the sums are kept; `None` where they are free.
     pub sums: Option<FixedSums>,
     /// Vectors on the stick cells.
-    pub room: Room,
-    /// The recorder of time.
-    pub recorder: Recorder,
+    on_stick: &'a mut StickVectors,
+    recorder: Recorder,
 }
 
 /// Vectors on the stick cells.
 #[derive(Debug, Default)]
-pub struct Room {
+struct StickVectors {
     r: Vec<f32>,
     z: Vec<f32>,
 }
@@ -285,7 +288,7 @@ impl Split<'_> {
 
     /// `z = M r` of a restricted residual.
     fn precondition(&mut self, set: &CellSet, r: &mut [f32], z: &mut [f32]) {
-        let Self { torus, branch, own, room: Room { r: on_stick, z: stuck }, .. } = self;
+        let Self { torus, branch, own, on_stick: StickVectors { r: on_stick, z: stuck }, .. } = self;
         let (n, stick, own) = (set.len(), &branch.stick, *own);
         if stick.len() == n {
             torus.precondition(stick, 0.0, r, z);
@@ -341,20 +344,109 @@ impl Preconditioner<f32> for Split<'_> {
     }
 }
 
-/// Takes the stick cells of a branch for the extension of the preconditioner.
-pub fn extend(extensions: &mut [Extension; 2], torus: &TorusWindow, stick: &CellSet) {
-    for extension in extensions {
-        extension.set(stick, torus.window, if stick.len() >= torus.extended { torus.decay } else { 0.0 });
+/// Room for the systems of an increment, kept from one to the next.
+#[derive(Debug, Default)]
+pub struct FrictionRoom {
+    /// Vectors of conjugate gradients.
+    vectors: Vectors<f32>,
+    /// Extension of each component.
+    extensions: [Extension; 2],
+    on_stick: StickVectors,
+    /// The weights by which the sums of corrections are kept, in the present increment.
+    pub weights: Option<[Vec<f32>; 2]>,
+}
+
+/// A linear system on a branch, with its preconditioner.
+#[derive(Debug)]
+pub struct BranchSystem<'a> {
+    /// The linearised conditions.
+    pub conditions: Linearised<'a>,
+    /// The preconditioner.
+    pub preconditioner: Split<'a>,
+    /// The weights of the room.
+    pub weights: &'a mut Option<[Vec<f32>; 2]>,
+    vectors: &'a mut Vectors<f32>,
+}
+
+impl FrictionRoom {
+    /// Takes the cells of the systems that follow.
+    pub fn take(&mut self, cells: &CellSet) {
+        self.vectors.take_fields(cells.clone(), 2);
+    }
+
+    /// The system of a branch on the cells that were taken; `None` without any. `every_lag` as in
+    /// [`Plans::system`](crate::operator::Plans::system).
+    pub fn system<'a>(
+        &'a mut self,
+        operators: &'a mut TangentialOperators,
+        branch: &'a Branch,
+        every_lag: bool,
+    ) -> Option<BranchSystem<'a>> {
+        let recorder = operators.recorder().clone();
+        let (own, shift) = (operators.table().own(), operators.table().shift());
+        let (decay, extended) = (operators.tuning().decay, operators.tuning().extended);
+        let Self { vectors, extensions, on_stick, weights } = self;
+        let (kernel, transform) = operators.system(&vectors.set, every_lag)?;
+        let decay = if branch.stick.len() >= extended { decay } else { 0.0 };
+        recorder.timed(Part::Sets, || extend(extensions, transform.window(), decay, &branch.stick));
+        let torus = TorusInverse { transform, extensions, recorder: recorder.clone() };
+        let preconditioner =
+            Split { torus, branch, own: SLIPPING * own as f32, sums: None, on_stick, recorder };
+        let conditions = Linearised { kernel, shift: shift as f32, branch };
+        Some(BranchSystem { conditions, preconditioner, weights, vectors })
+    }
+
+    /// `M r` for the inverse M on a torus of all cells that were taken, restricted to a branch: `r' M r` times
+    /// [`TORUS_ENERGY`] is an upper estimate of the energy of r, whichever cells slip. `None` without cells.
+    pub fn stuck_inverse(
+        &mut self,
+        operators: &mut TangentialOperators,
+        branch: &Branch,
+        residuals: &mut [Vec<f32>; 2],
+    ) -> Option<[Vec<f32>; 2]> {
+        let recorder = operators.recorder().clone();
+        let (decay, extended) = (operators.tuning().decay, operators.tuning().extended);
+        let Self { vectors, extensions, .. } = self;
+        let (_, transform) = operators.system(&vectors.set, true)?;
+        Some(recorder.timed(Part::Preconditioner, || {
+            let decay = if vectors.set.len() >= extended { decay } else { 0.0 };
+            extend(extensions, transform.window(), decay, &vectors.set);
+            let mut inverse = TorusInverse { transform, extensions, recorder: recorder.clone() };
+            residuals.each_mut().map(|r| {
+                let mut z = vec![0.0; r.len()];
+                inverse.precondition(&vectors.set, 0.0, r, &mut z);
+                branch.restrict(&mut z);
+                z
+            })
+        }))
     }
 }
 
-/// The window of the torus, and how residuals are extended in it.
-#[derive(Debug, Clone, Copy)]
-pub struct TorusWindow {
-    /// The window.
-    pub window: crate::geometry::Window,
-    /// Factor of a value of the next coarser level in a gap.
-    pub decay: f32,
-    /// Number of cells from which on residuals are extended.
-    pub extended: usize,
+impl BranchSystem<'_> {
+    /// Solves for a right-hand side and writes the solution over it.
+    pub fn solve(&mut self, right: &mut [f64], criteria: StoppingCriteria, stop: Stop<'_>) -> PcgOutcome {
+        let size = largest(right);
+        if size <= 0.0 || !size.is_finite() {
+            right.fill(0.0);
+            return PcgOutcome::default();
+        }
+        // In units of its own size, as the energy in the criteria.
+        let energy = criteria.energy.map(|energy| Energy { base: energy.base / (size * size), ..energy });
+        let criteria = StoppingCriteria { energy, floor: criteria.floor / size, ..criteria };
+        let Self { conditions, preconditioner, vectors, .. } = self;
+        let recorder = preconditioner.recorder.clone();
+        recorder.timed(Part::Vectors, || {
+            vectors.load(right, size);
+            let outcome = pcg(conditions, preconditioner, vectors, Fixed::Approach, criteria, stop);
+            vectors.unload(right, size);
+            outcome
+        })
+    }
+}
+
+/// Takes the stick cells of a branch for the extension of residuals in the preconditioner.
+fn extend(extensions: &mut [Extension; 2], window: Window, decay: f32, stick: &CellSet) {
+    for extension in extensions {
+        extension.set(stick, window, decay);
+    }
 }

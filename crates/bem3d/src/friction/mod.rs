@@ -31,7 +31,6 @@
 //! |---|---|---|
 //! | `linearised` | the linear system of stick and slip cells, and its preconditioner | `increment` |
 //! | `increment` | Newton's method with line searches, the descent of `law` where it fails, certificate | dense matrices and accelerated gradients along paths; differences of two pressures without Poisson's ratio |
-//! | `stiffness` | `dT/d(delta)` of a branch and of full stick, with bounds | difference quotients; tighter solves |
 //! | `state` | the memory of a path, and its increments | energy balance over loops |
 //! | `coupled` | normal and tangential contact in turn where beta is not 0 | sums over pairs |
 
@@ -39,13 +38,10 @@ mod coupled;
 mod increment;
 mod linearised;
 mod state;
-mod stiffness;
 #[cfg(test)]
 mod tests;
 
 pub use coupled::{CoupledLoad, CoupledState, advance as advance_coupled};
-pub use increment::{FrictionLimits, TangentialControl};
-pub use state::{
-    ForceTooLarge, Friction, FrictionLoad, FrictionState, PressedCells, SlipMemory, StiffnessOf,
-};
-pub use stiffness::TangentialStiffness;
+pub use increment::{FrictionLimits, TangentialControl, exact};
+pub use linearised::{Branch, FrictionRoom, inverse_of};
+pub use state::{ForceTooLarge, Friction, FrictionLoad, FrictionState, PressedCells, SlipMemory};

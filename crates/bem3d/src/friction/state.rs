@@ -1,8 +1,7 @@
 //! A surface with friction through the increments of a path.
 
-use super::increment::{self, FrictionLimits, FrictionRoom, Increment, Sliding, TangentialControl, exact};
-use super::linearised::Branch;
-use super::stiffness::{self, Held, TangentialStiffness, Uncertain, Undecided};
+use super::increment::{self, FrictionLimits, Increment, Sliding, TangentialControl, exact};
+use super::linearised::{Branch, FrictionRoom};
 use crate::geometry::{CellSet, Grid};
 use crate::kernel::TangentialTable;
 use crate::law::total;
@@ -83,20 +82,13 @@ pub struct FrictionLoad {
     pub control: TangentialControl,
 }
 
-/// Which cells may slip in the state whose stiffness is requested.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum StiffnessOf {
-    /// The branch as the load goes on: stick cells, and slip cells in the directions in which they may move.
-    Branch,
-    /// The whole contact: what the branch begins with after a reversal.
-    FullStick,
-}
-
 /// Friction on one surface: operators and room, kept from increment to increment.
 #[derive(Debug)]
 pub struct Friction {
-    pub(super) operators: TangentialOperators,
-    pub(super) room: FrictionRoom,
+    /// The kernel of tangential tractions.
+    pub operators: TangentialOperators,
+    /// Room for its systems.
+    pub room: FrictionRoom,
     /// The coupling of normal and tangential displacements; `None` where it vanishes or is neglected.
     coupling: Option<CouplingOperator>,
 }
@@ -292,31 +284,15 @@ impl Friction {
         }
         u
     }
+}
 
-    /// `dT/d(delta)` of a state, to about `tolerance` relative to its larger eigenvalue.
-    pub fn stiffness(
-        &mut self,
-        state: &FrictionState,
-        of: StiffnessOf,
-        tolerance: f64,
-        stop: Stop<'_>,
-    ) -> TangentialStiffness {
-        let Self { operators, room, .. } = self;
-        let cells = &state.memory.cells;
-        let (branch, (undecided, uncertain)) = match of {
-            StiffnessOf::FullStick => (Branch::stuck(cells), (Vec::new(), Vec::new())),
-            StiffnessOf::Branch => {
-                let rho = increment::step(operators);
-                let moved = |(q, w): (&f64, &f64)| q + rho * w;
-                let y: Vec<f64> = state.memory.traction.iter().zip(&state.slip).map(moved).collect();
-                let branch = Branch::of(cells, &y, &state.slip, &state.limit);
-                let smallest = operators.table().smallest_eigenvalue();
-                let unknown = unknown(state, &branch, smallest);
-                (branch, unknown)
-            }
-        };
-        let held = Held { cells, branch: &branch, undecided: &undecided, uncertain: &uncertain };
-        stiffness::solve(operators, room, held, tolerance, stop)
+impl FrictionState {
+    /// The cells that stick and slip as the load goes on.
+    pub fn branch(&self, operators: &TangentialOperators) -> Branch {
+        let rho = increment::step(operators);
+        let moved = |(q, w): (&f64, &f64)| q + rho * w;
+        let y: Vec<f64> = self.memory.traction.iter().zip(&self.slip).map(moved).collect();
+        Branch::of(&self.memory.cells, &y, &self.slip, &self.limit)
     }
 }
 
@@ -343,27 +319,4 @@ fn carried(cells: &CellSet, from: &CellSet, v: &[f64]) -> Vec<f64> {
         v.chunks_exact(from.len()).for_each(|v| carried.extend(cells.carry(from, v)));
     }
     carried
-}
-
-/// First the cells for which stick or slip is undecided: stick cells that the residual slip could bring to
-/// their limit, and slip cells whose slip is no larger than the residual one. Then the other slip cells,
-/// whose slip is known to the residual slip.
-fn unknown(state: &FrictionState, branch: &Branch, smallest: f64) -> (Vec<Undecided>, Vec<Uncertain>) {
-    let (n, q, w) = (state.limit.len(), &state.memory.traction, &state.slip);
-    let slipped = |i: usize| w[i].hypot(w[n + i]);
-    let squares: f64 = (0..n).filter(|&i| !branch.slips(i)).map(|i| slipped(i).powi(2)).sum();
-    let noise = (squares / state.stick.len().max(1) as f64).sqrt();
-    let (mut undecided, mut uncertain) = (Vec::new(), Vec::new());
-    for cell in 0..n {
-        let (sticks, length, limit) = (!branch.slips(cell), q[cell].hypot(q[n + cell]), state.limit[cell]);
-        let doubtful =
-            if sticks { limit - length < noise.max(slipped(cell)) / smallest } else { slipped(cell) < noise };
-        let radial = [q[cell] / length, q[n + cell] / length];
-        if length > 0.0 && doubtful {
-            undecided.push(Undecided { cell, radial, sticks });
-        } else if length > 0.0 && !sticks {
-            uncertain.push(Uncertain { cell, radial, turning: noise / limit });
-        }
-    }
-    (undecided, uncertain)
 }

@@ -6,6 +6,7 @@ use super::*;
 use crate::geometry::{CellSet, Grid};
 use crate::kernel::TangentialTable;
 use crate::parts::Recorder;
+use crate::response::tangential::{self, StiffnessOf};
 use crate::tuning::Tuning;
 use crate::{Bem3d, ContactModel, Load, Scene, SelfAffine, Surface};
 use approx::assert_relative_eq;
@@ -349,7 +350,7 @@ fn limits_of_the_coefficient_and_of_the_number_of_cells() {
     let total = all.friction();
     let stuck = solve(&mut solver, 1e3, Force([0.3 * total, 0.1 * total]));
     assert!(stuck.stick.len() > all.cells.len() / 2);
-    let k = solver.stiffness(&stuck, StiffnessOf::FullStick, 1e-9, &never);
+    let k = tangential::solve(&mut solver, &stuck, StiffnessOf::FullStick, 1e-9, &never);
     let [dx, dy] = stuck.memory.displacement;
     let [xx, yy, xy] = k.value;
     assert!(k.solve_error < 1e-9);
@@ -360,7 +361,7 @@ fn limits_of_the_coefficient_and_of_the_number_of_cells() {
     let empty = PressedCells { cells: &nothing, pressure: &[] };
     let state = solver.advance(&begin, empty, load(Displacement([1.0, 0.0])), None, LIMITS, &never).unwrap();
     assert!(state.force == [0.0, 0.0] && state.memory.traction.is_empty());
-    close(&solver.stiffness(&state, StiffnessOf::Branch, 1e-6, &never).value, &[0.0; 3], 0.0);
+    close(&tangential::solve(&mut solver, &state, StiffnessOf::Branch, 1e-6, &never).value, &[0.0; 3], 0.0);
     // And back into contact from there.
     let again = solver
         .advance(&state.memory, all.cells(), load(Displacement([1.0, 0.0])), None, LIMITS, &never)
@@ -389,7 +390,7 @@ fn one_and_two_cells_by_hand() {
             close(&state.memory.traction[..1], &[fx], 1e-9);
             let expected = [pair[0] * fx + pair[2] * fy, pair[2] * fx + pair[1] * fy];
             close(&state.memory.displacement, &expected, 1e-8);
-            let k = solver.stiffness(&state, StiffnessOf::Branch, 1e-10, &never);
+            let k = tangential::solve(&mut solver, &state, StiffnessOf::Branch, 1e-10, &never);
             let determinant = pair[0] * pair[1] - pair[2] * pair[2];
             let inverse = [pair[1], pair[0], -pair[2]].map(|k| count * k / determinant);
             close(&k.value, &inverse, 1e-8);
@@ -413,8 +414,8 @@ fn stiffnesses_are_difference_quotients() {
         let state = advance(&mut solver, &begin, TangentialControl::Force([0.45 * most, 0.2 * most]));
         let [dx, dy] = state.memory.displacement;
         let size = dx.hypot(dy);
-        let branch = solver.stiffness(&state, StiffnessOf::Branch, 1e-8, &never);
-        let stuck = solver.stiffness(&state, StiffnessOf::FullStick, 1e-8, &never);
+        let branch = tangential::solve(&mut solver, &state, StiffnessOf::Branch, 1e-8, &never);
+        let stuck = tangential::solve(&mut solver, &state, StiffnessOf::FullStick, 1e-8, &never);
         assert!(branch.solve_error < 1e-8 && stuck.solve_error < 1e-8);
         println!("{boundary:?} {branch:?} {stuck:?} stick {} of {}", state.stick.len(), all.cells.len());
         // From the beginning of the increment to displacements on both sides.
@@ -548,7 +549,7 @@ fn the_error_of_a_stiffness_holds_its_true_error() {
                 let limits = FrictionLimits { tolerance, ..LIMITS };
                 let begin = SlipMemory::default();
                 let state = solver.advance(&begin, all.cells(), load(control), None, limits, &never).unwrap();
-                solver.stiffness(&state, StiffnessOf::Branch, tolerance, &never)
+                tangential::solve(&mut solver, &state, StiffnessOf::Branch, tolerance, &never)
             };
             let exact = stiffness(1e-13).value;
             for tolerance in [1e-2, 1e-3, 1e-4, 1e-6] {

@@ -9,5 +9,5 @@ mod preconditioner;
 pub use cholesky::Factor;
 pub use extension::Extension;
 pub use minres::minres;
-pub use pcg::{Energy, Fixed, StoppingCriteria, Vectors, Workspace, pcg};
+pub use pcg::{Energy, Fixed, PcgOutcome, StoppingCriteria, Vectors, Workspace, pcg};
 pub use preconditioner::{Preconditioned, Preconditioner, TORUS_ENERGY, TorusInverse};

@@ -8,13 +8,12 @@ use super::prepared::PreparedSurface;
 use super::sliding::Slid;
 use super::state::{Assembly, returned};
 use crate::active_set::Bounds;
-use crate::adhesion::{
-    AdhesiveControl, Attraction, Ended, Equilibrium, Law, Response, Search, energy, respond,
-};
+use crate::adhesion::{AdhesiveControl, Attraction, Ended, Equilibrium, Law, Search, energy};
 use crate::friction::PressedCells;
 use crate::geometry::CellSet;
 use crate::kernel::Evidence;
 use crate::kernel::love::influence_of_rectangle;
+use crate::response::adhesive::{Response, respond};
 use contact_model::{
     Adhesion, AdhesiveState, Branch, Certificate, ContactState, Error, Result, Status, Stop,
 };

@@ -8,7 +8,8 @@
 
 use super::adhesive::AdhesiveContact;
 use super::load::LoadSequence;
-use crate::adhesion::{AdhesiveControl, Equilibrium, Response, fixed_area};
+use crate::adhesion::{AdhesiveControl, Equilibrium};
+use crate::response::adhesive::{Response, fixed_area};
 use contact_model::{Branch, Status, Stop};
 
 /// The first step of the plane, in ranges of the law.
@@ -76,20 +77,19 @@ impl AdhesiveContact {
         let mut solved = |error: f64| found.solve_error = Some(found.solve_error.unwrap_or(0.0).max(error));
         if self.surface.outputs.needs_fixed_area() {
             let (problem, tolerance) = (&mut self.surface.problem, self.surface.options.tolerance);
-            let (slope, steps) = fixed_area(problem, &self.attraction, state, tolerance, stop);
-            found.steps = steps;
-            found.fixed_area = slope.map(|slope| slope.value);
-            if let Some(slope) = slope {
-                solved(slope.relative_error());
+            if let Some(k) = fixed_area(problem, &self.attraction, state, tolerance, stop) {
+                found.steps = k.steps;
+                found.fixed_area = Some(k.k());
+                solved(k.solve_error);
             }
         }
         if !self.surface.outputs.stiffness {
             return found;
         }
         if !self.attraction.moves_by_cells() {
-            found.along_the_branch = response.stiffness.map(|slope| slope.value);
-            if let Some(slope) = response.stiffness {
-                solved(slope.relative_error());
+            if let Some(k) = &response.stiffness {
+                found.along_the_branch = Some(k.k());
+                solved(k.solve_error);
             }
         } else if let Some((slope, error)) = self.quotient(state, branch, &mut found.steps, stop) {
             found.along_the_branch = Some(slope);

@@ -47,7 +47,7 @@ impl PreparedSurface {
     /// that of a circle around the contact, which is at least as stiff (free boundaries only).
     pub(super) fn stiffest(&self, solved: &Solved, tangent: Option<&Tangent>) -> f64 {
         if let Some(Tangent { stiffness: t, .. }) = tangent {
-            return t.value * self.magnification(t.value) * (1.0 + self.stiffness_error(t));
+            return t.k() * self.magnification(t.k()) * (1.0 + self.stiffness_error(t));
         }
         self.stiffest_on(&solved.contact)
     }

@@ -12,7 +12,7 @@ use super::sliding::Sliding;
 use crate::active_set::{self, Control, Limits, Solved};
 use crate::geometry::{CellSet, Grid};
 use crate::parts::{Part, Recorder};
-use crate::stiffness::{self, Responding, Stiffness};
+use crate::response::normal::{self, Responding, Wanted};
 use crate::tuning::Tuning;
 use contact_model::{
     ContactState, Error, Load, NormalLoad, Normalisation, PathMemory, PreparedContact, RequiredMemory,
@@ -331,8 +331,8 @@ impl PreparedSurface {
             // The tighter state counts as converged when it meets the tolerance that was asked for.
             let converged = next.residuals.worst() <= self.options.tolerance;
             let status = if converged { Status::Converged } else { next.status };
-            let q = self.responding(&next).cells.carry(&tangent.cells, &tangent.stiffness.q);
-            let whole = tangent.whole.map(|whole| next.contact.carry(&solved.contact, &whole.q));
+            let q = self.responding(&next).cells.carry(&tangent.cells, tangent.stiffness.q());
+            let whole = tangent.whole.map(|whole| next.contact.carry(&solved.contact, whole.q()));
             let steps = solved.steps + tangent.stiffness.steps;
             solved = Solved { steps, status, ..next };
             tangent = self.tangent(&solved, (Some(q), whole), k, stop);
@@ -349,44 +349,17 @@ impl PreparedSurface {
         stop: Stop<'_>,
     ) -> Tangent {
         let responding = self.responding(solved);
-        let stiffness = self.stiffness(solved, &responding, q, k, stop);
+        let (problem, tolerance) = (&mut self.problem, self.options.tolerance);
+        let wanted = Wanted { tolerance, q, expected: k };
+        let stiffness = normal::solve_of_zero_mean(problem, solved, &responding, wanted, stop);
         let another = responding.cells.len() != solved.contact.len();
         let wanted = another && self.outputs.needs_fixed_area() && !self.is_full(&solved.contact);
         let whole = wanted.then(|| {
             let whole = Responding::whole(solved, self.problem.bounds);
-            self.stiffness(solved, &whole, of_whole, None, stop)
+            let wanted = Wanted { tolerance, q: of_whole, expected: None };
+            normal::solve_of_zero_mean(&mut self.problem, solved, &whole, wanted, stop)
         });
         Tangent { stiffness, cells: responding.cells.into_owned(), whole }
-    }
-
-    /// The stiffness of the cells that respond.
-    fn stiffness(
-        &mut self,
-        solved: &Solved,
-        responding: &Responding<'_>,
-        mut q: Option<Vec<f64>>,
-        k: Option<f64>,
-        stop: Stop<'_>,
-    ) -> Stiffness {
-        let misjudged = self.problem.operators.tuning().misjudged;
-        let mut expected = k.map_or(1.0, |k| self.magnification(k));
-        let mut steps = 0;
-        let factored = solved.q.as_ref().filter(|q| q.len() == responding.cells.len());
-        if let Some(factored) = factored {
-            q = Some(factored.clone());
-        }
-        loop {
-            let tolerance = self.options.tolerance / expected;
-            let mut found = stiffness::solve(&mut self.problem, solved, responding, q, tolerance, stop);
-            steps += found.steps;
-            found.steps = steps;
-            let magnified = self.magnification(found.value);
-            if magnified <= misjudged * expected || factored.is_some() || found.q.is_empty() || stop.stops() {
-                return found;
-            }
-            expected = magnified;
-            q = Some(found.q);
-        }
     }
 
     /// An upper estimate of the stiffness to a few per cent; infinite where the contact is complete.
@@ -396,8 +369,9 @@ impl PreparedSurface {
             return f64::INFINITY;
         }
         let responding = self.responding(solved);
-        let found = stiffness::solve(&mut self.problem, solved, &responding, None, ROUGH, stop);
-        let k = found.value * (1.0 + found.solve_error.min(1.0));
+        let wanted = Wanted { tolerance: ROUGH, ..Wanted::default() };
+        let found = normal::solve(&mut self.problem, solved, &responding, wanted, stop);
+        let k = found.k() * (1.0 + found.solve_error.min(1.0));
         k * self.magnification(k)
     }
 

@@ -8,9 +8,11 @@ use super::sliding::{Slid, Sliding};
 use crate::active_set::{Candidates, Solved};
 use crate::friction::{
     ForceTooLarge, Friction, FrictionLimits, FrictionLoad, FrictionState, PressedCells, SlipMemory,
-    StiffnessOf, TangentialControl, TangentialStiffness,
+    TangentialControl,
 };
 use crate::geometry::CellSet;
+use crate::response::TangentialStiffness;
+use crate::response::tangential::{self, StiffnessOf};
 use contact_model::{Error, Fields, Result, Status, StickSlip, Stop, Tangential, TangentialState};
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -102,7 +104,9 @@ impl PreparedSurface {
             (self.outputs.tangential_stiffness && !(full && sticks), StiffnessOf::Branch),
             (self.outputs.tangential_stiffness_stuck && !full, StiffnessOf::FullStick),
         ];
-        asked.map(|(asked, of)| asked.then(|| friction.stiffness(state, of, self.options.tolerance, stop)))
+        asked.map(|(asked, of)| {
+            asked.then(|| tangential::solve(friction, state, of, self.options.tolerance, stop))
+        })
     }
 
     /// Adds the work of friction to that of the load.
@@ -149,7 +153,7 @@ impl PreparedSurface {
             iterations: [0; 2],
             status: Status::Converged,
         };
-        let nothing = |asked: bool| asked.then(TangentialStiffness::default);
+        let nothing = |asked: bool| asked.then(TangentialStiffness::nothing);
         let stiffness =
             [self.outputs.tangential_stiffness, self.outputs.tangential_stiffness_stuck].map(nothing);
         Ok(Some(Slid { prescribed: load.prescribed, state, stiffness, normal_stiffness: None, rounds: None }))
@@ -238,7 +242,7 @@ impl PreparedSurface {
 
 /// The relative error of the stiffness along the branch; 0 where none was asked for.
 pub(super) fn branch_error(stiffness: &[Option<TangentialStiffness>; 2]) -> f64 {
-    stiffness[0].as_ref().map_or(0.0, |k| k.solve_error + k.set_error)
+    stiffness[0].as_ref().map_or(0.0, TangentialStiffness::error)
 }
 
 /// The factor by which a duality gap is to fall for an error of the stiffness to fall by `factor`.

@@ -85,7 +85,7 @@ impl PreparedSurface {
                 high = high.min((force - least * solved.p.len() as f64).ln());
             }
             let slope = match (&tangent, before) {
-                (Some(t), _) => t.stiffness.value * self.magnification(t.stiffness.value) / force,
+                (Some(t), _) => t.stiffness.k() * self.magnification(t.stiffness.k()) / force,
                 (None, Some((x0, miss0))) if (miss0 - miss).abs() > 0.0 => (x - x0) / (miss0 - miss),
                 _ => 1.0 / self.mean,
             };

@@ -221,11 +221,15 @@ mod tests {
 
     #[test]
     fn the_error_of_k_is_magnified_as_k_is() {
-        use crate::stiffness::Stiffness;
+        use crate::response::NormalStiffness;
         use contact_model::HeightMap;
         let map = HeightMap::from_fn(8, 1.0, |ix, iy| (ix * iy) as f64).unwrap();
-        let tangent =
-            |value| Stiffness { value, solve_error: 0.01, set_error: 0.02, q: Vec::new(), steps: 0 };
+        let tangent = |value| NormalStiffness {
+            value: [value],
+            solve_error: 0.01,
+            set_error: 0.02,
+            ..NormalStiffness::nothing()
+        };
         let mut scene = Scene::new(Surface::Heights(Arc::new(map.clone())), 1.0);
         let numerics = (&Tuning::DEFAULT, &Recorder::default());
         let free = PreparedSurface::of_map(Bem3d::default(), &scene, &map, true, numerics).unwrap();

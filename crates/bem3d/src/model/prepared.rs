@@ -8,8 +8,9 @@ use crate::active_set::{self, Bounds, Candidates, Control, Guess, LastState, Lim
 use crate::geometry::{CellSet, Grid};
 use crate::parts::Recorder;
 use crate::real::{each, sum_of_pairs, update};
-use crate::stiffness::Stiffness;
-use crate::tuning::{MAGNIFIED, Tuning};
+use crate::response::NormalStiffness;
+use crate::response::normal::magnification;
+use crate::tuning::Tuning;
 use contact_model::{
     Boundary, Error, Hardness, HeightMap, Nondimensionalisation, Normalisation, Outputs, Result, Scene, Size,
     Stop, Surface,
@@ -21,12 +22,12 @@ use std::sync::Arc;
 #[derive(Debug)]
 pub(super) struct Tangent {
     /// Along the branch, on the cells that respond.
-    pub stiffness: Stiffness,
+    pub stiffness: NormalStiffness,
     /// The cells that respond.
     pub cells: CellSet,
     /// The stiffness of the whole contact, where it differs and is requested; also `None` for complete
     /// contact.
-    pub whole: Option<Stiffness>,
+    pub whole: Option<NormalStiffness>,
 }
 
 impl Tangent {
@@ -228,13 +229,12 @@ impl PreparedSurface {
     ///
     /// 1 with free boundaries; grows without limit towards full contact of a periodic surface.
     pub(super) fn magnification(&self, value: f64) -> f64 {
-        let rest = 1.0 - self.problem.operators.table().shift() * value;
-        if rest > 1.0 / MAGNIFIED { 1.0 / rest } else { MAGNIFIED }
+        magnification(self.problem.operators.table().shift(), value)
     }
 
     /// Relative error of k itself.
-    pub(super) fn stiffness_error(&self, tangent: &Stiffness) -> f64 {
-        tangent.error() * self.magnification(tangent.value)
+    pub(super) fn stiffness_error(&self, tangent: &NormalStiffness) -> f64 {
+        tangent.error() * self.magnification(tangent.k())
     }
 
     /// Whether every cell of a periodic surface is in contact: the force is then free at a mean gap of zero.
@@ -269,13 +269,12 @@ impl PreparedSurface {
     /// Keeps a state as the start of the next one.
     pub(super) fn remember(&mut self, solved: Solved, tangent: Option<Tangent>) {
         // Cells that flow do not follow the tangent.
-        let tangent = tangent.filter(|t| t.stiffness.value > 0.0).map(|t| {
-            let q = if t.cells.len() == solved.contact.len() {
-                t.stiffness.q
-            } else {
-                solved.contact.carry(&t.cells, &t.stiffness.q)
-            };
-            (q, t.stiffness.value)
+        let tangent = tangent.filter(|t| t.stiffness.k() > 0.0).map(|t| {
+            let k = t.stiffness.k();
+            let [q] = t.stiffness.change;
+            let q =
+                if t.cells.len() == solved.contact.len() { q } else { solved.contact.carry(&t.cells, &q) };
+            (q, k)
         });
         let Solved { contact, p, d, .. } = solved;
         let force = p.iter().sum();

@@ -2,8 +2,9 @@
 
 use super::options::NAME;
 use crate::active_set::Problem;
-use crate::friction::{Friction, FrictionState, SlipMemory, TangentialStiffness};
+use crate::friction::{Friction, FrictionState, SlipMemory};
 use crate::parts::Recorder;
+use crate::response::TangentialStiffness;
 use crate::tuning::Tuning;
 use contact_model::{
     Certificate, Coupling, Error, FrictionLaw, Nondimensionalisation, Result, Scene, Tangential,

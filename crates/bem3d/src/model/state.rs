@@ -6,7 +6,7 @@ use super::prepared::{PreparedSurface, Tangent};
 use super::sliding::Slid;
 use crate::active_set::{Bounds, Solved};
 use crate::geometry::CellSet;
-use crate::stiffness::Stiffness;
+use crate::response::NormalStiffness;
 use contact_model::{
     AdhesiveState, Boundary, Certificate, ContactResolution, ContactState, Error, Field, Fields, Patches,
     PlasticState, Result, SolveReport, Status, Stop, Work,
@@ -175,7 +175,7 @@ impl PreparedSurface {
             slid = slid.map(|slid| Slid { stiffness: [None, None], normal_stiffness: None, ..slid });
         }
         let (saturated, depth) = plastic_depth(&solved, self.problem.bounds);
-        let k = |t: &Stiffness| PI * t.value * self.magnification(t.value);
+        let k = |t: &NormalStiffness| PI * t.k() * self.magnification(t.k());
         let of_pressures = tangent.as_ref().map(|t| k(&t.stiffness));
         let fixed_area = match &tangent {
             Some(Tangent { whole: Some(whole), .. }) => Some(k(whole)),

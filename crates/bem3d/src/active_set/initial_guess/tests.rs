@@ -6,7 +6,7 @@ use crate::active_set::Bounds;
 use crate::active_set::residuals::Residuals;
 use crate::active_set::state::Continuation;
 use crate::kernel::love::influence;
-use crate::stiffness::{self, Responding};
+use crate::response::normal::{self, Responding, Wanted};
 use approx::assert_relative_eq;
 use contact_model::{Boundary, Status, never};
 
@@ -39,15 +39,14 @@ mod tangent {
                 let guess = Guess { set, p, d: 4.0 * force };
                 let solved = solve(&mut problem, Control::Force(force), guess, limits, &never);
                 assert_eq!(solved.status, Status::Converged);
-                let k = stiffness::solve(
+                let k = normal::solve(
                     &mut problem,
                     &solved,
                     &Responding::whole(&solved, Bounds::Unlimited),
-                    None,
-                    1e-9,
+                    Wanted { tolerance: 1e-9, q: None, expected: None },
                     &never,
                 );
-                (solved, k.q)
+                (solved, k.q().to_vec())
             })
             .collect();
         (problem, states)
@@ -72,12 +71,11 @@ mod tangent {
             let extrapolated = last(&states[0]).tangent_at(solved, &solved.contact, &TUNING).unwrap();
             // A tolerance that any guess meets returns what the guess is worth.
             let [carried, extrapolated] = [carried, extrapolated].map(|q| {
-                let k = stiffness::solve(
+                let k = normal::solve(
                     &mut problem,
                     solved,
                     &Responding::whole(solved, Bounds::Unlimited),
-                    Some(q),
-                    100.0,
+                    Wanted { tolerance: 100.0, q: Some(q), expected: None },
                     &never,
                 );
                 assert_eq!(k.steps, 0);

@@ -6,7 +6,7 @@ use crate::geometry::Grid;
 use crate::kernel::NormalTable;
 use crate::kernel::love::influence;
 use crate::operator::{DirectSum, InfluenceOperator};
-use crate::stiffness::{self, Responding};
+use crate::response::normal::{self, Responding, Wanted};
 use crate::tuning::Tuning;
 use approx::assert_relative_eq;
 use contact_model::{Boundary, never};
@@ -126,25 +126,23 @@ fn every_recipe_finds_the_factored_state() {
                     assert_recipe(&problem, recipe);
                 }
                 let Some(k) = k else { continue };
-                let tangent = stiffness::solve(
+                let tangent = normal::solve(
                     &mut problem,
                     &exact,
                     &Responding::whole(&exact, Bounds::Unlimited),
-                    None,
-                    TOLERANCE,
+                    Wanted { tolerance: TOLERANCE, q: None, expected: None },
                     &never,
                 );
-                assert_relative_eq!(tangent.value, k, max_relative = TOLERANCE);
-                let tangent = stiffness::solve(
+                assert_relative_eq!(tangent.k(), k, max_relative = TOLERANCE);
+                let tangent = normal::solve(
                     &mut problem,
                     &found,
                     &Responding::whole(&found, Bounds::Unlimited),
-                    None,
-                    TOLERANCE,
+                    Wanted { tolerance: TOLERANCE, q: None, expected: None },
                     &never,
                 );
                 assert!(tangent.solve_error <= TOLERANCE, "{what} {}: {tangent:?}", recipe.1);
-                assert_relative_eq!(tangent.value, k, max_relative = 1e-8);
+                assert_relative_eq!(tangent.k(), k, max_relative = 1e-8);
             }
         }
     }
@@ -158,27 +156,25 @@ fn the_stiffness_of_a_large_contact_is_the_same_in_every_recipe() {
     let mut first = problem(grid, &z, Tuning::DEFAULT);
     let solved = solve(&mut first, target, everything(grid, target), limits(false), &never);
     assert!(solved.contact.len() > grid.count() / 3, "{} cells", solved.contact.len());
-    let reference = stiffness::solve(
+    let reference = normal::solve(
         &mut first,
         &solved,
         &Responding::whole(&solved, Bounds::Unlimited),
-        None,
-        1e-8,
+        Wanted { tolerance: 1e-8, q: None, expected: None },
         &never,
     );
     assert!(first.operators.last().unwrap().has_preconditioner());
     for recipe in recipes() {
         let mut problem = problem(grid, &z, recipe.0);
-        let found = stiffness::solve(
+        let found = normal::solve(
             &mut problem,
             &solved,
             &Responding::whole(&solved, Bounds::Unlimited),
-            None,
-            1e-8,
+            Wanted { tolerance: 1e-8, q: None, expected: None },
             &never,
         );
         assert_recipe(&problem, recipe);
-        assert_relative_eq!(found.value, reference.value, max_relative = 1e-8);
+        assert_relative_eq!(found.k(), reference.k(), max_relative = 1e-8);
         assert!(found.solve_error <= 1e-8 && found.solve_error > 0.0, "{}", found.solve_error);
         assert_relative_eq!(found.set_error, reference.set_error, epsilon = 1e-8);
     }

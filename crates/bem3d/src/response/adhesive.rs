@@ -19,12 +19,10 @@
 //! With the mean plane of a periodic surface held, G stands for the kernel of zero mean. Where every cell
 //! touches, that is singular: the force is free, and there is no stiffness.
 
-use super::attraction::Attraction;
-use super::equilibrium::{AdhesiveControl, Equilibrium};
-use super::law::Shape;
-use super::near::Near;
-use super::pairs::Pairs;
+use super::normal::{of_held_cells, of_zero_mean};
+use super::{Conditions, Correction, Goal, NormalStiffness, refine};
 use crate::active_set::Problem;
+use crate::adhesion::{AdhesiveControl, Attraction, Equilibrium, Near, Pairs, Shape};
 use crate::geometry::CellSet;
 use crate::linear::{Energy, Fixed, StoppingCriteria};
 use crate::real::{dot, each, largest, sum, update};
@@ -48,41 +46,18 @@ const INNER_STEPS: usize = 60;
 const STEPS: usize = 200;
 /// The stability may still change by so much of itself in each of two steps: in one it may pause.
 const SETTLED: f64 = 3e-3;
-/// Rounds of correction of the response with the exact operator.
-const ROUNDS: usize = 4;
 
 /// The response to a small change of the load.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Default)]
 pub struct Response {
     /// `1 - r` for the exponential law, with the approach or the force held as the control says; for
     /// Dugdale's law the smallest distance of the gap of a cell from the range, in ranges.
     pub stability: f64,
-    /// The stiffness, where it was requested and exists.
-    pub stiffness: Option<Slope>,
+    /// The stiffness along the branch `dF/dd`, with periodic boundaries `-dF/d(mean gap)`, where it was
+    /// requested and exists.
+    pub stiffness: Option<NormalStiffness>,
     /// Steps of conjugate gradients.
     pub steps: usize,
-}
-
-/// A derivative of the net force in the plane, nondimensional.
-#[derive(Debug, Clone, Copy)]
-pub struct Slope {
-    /// `dF/dd`, with periodic boundaries `-dF/d(mean gap)`.
-    pub value: f64,
-    /// Its absolute error, estimated from above.
-    pub error: f64,
-}
-
-impl Slope {
-    /// The error relative to the value.
-    pub fn relative_error(self) -> f64 {
-        if self.error > 0.0 { self.error / self.value.abs() } else { 0.0 }
-    }
-
-    /// From the kernel with its constant c to one of zero mean: `k = k'/(1 - c k')`.
-    fn of_zero_mean(self, constant: f64) -> Self {
-        let rest = 1.0 - constant * self.value;
-        Self { value: self.value / rest, error: self.error / (rest * rest) }
-    }
 }
 
 /// The linearised problem of a state.
@@ -101,6 +76,11 @@ struct Linearised<'a> {
     constant: f64,
     /// The correction on the contact for the displacement that the open cells cause there.
     near: Option<Near>,
+    control: AdhesiveControl,
+    /// The largest relative error of the stiffness; `None` where only the stability is wanted.
+    tolerance: Option<f64>,
+    /// The smallest Ritz value so far; `None` before the first correction.
+    stability: Option<f64>,
     steps: usize,
     stop: Stop<'a>,
 }
@@ -284,13 +264,29 @@ pub fn respond(
     let is_open = both.carry(&open, &vec![1.0; open.len()]);
     let on = (problem.grid(), problem.operators.table().boundary());
     let near = Near::of(attraction, on, &both, &is_open);
-    let mut linearised =
-        Linearised { problem, contact, open, both, slopes, coupling, unit, constant, near, steps: 0, stop };
-    let mut response = linearised.response(control, tolerance);
-    response.steps = linearised.steps;
-    if let AdhesiveControl::Force(_) = control {
-        response.stiffness = response.stiffness.map(|slope| slope.of_zero_mean(shift));
-    }
+    let mut linearised = Linearised {
+        problem,
+        contact,
+        open,
+        both,
+        slopes,
+        coupling,
+        unit,
+        constant,
+        near,
+        control,
+        tolerance,
+        stability: None,
+        steps: 0,
+        stop,
+    };
+    let stiffness = linearised.stiffness();
+    let (stability, steps) = (linearised.stability.unwrap_or(1.0), linearised.steps);
+    let stiffness = match control {
+        AdhesiveControl::Force(_) => stiffness.map(|k| of_zero_mean(k, shift)),
+        AdhesiveControl::Plane(_) => stiffness,
+    };
+    let mut response = Response { stability, stiffness, steps };
     if law.shape == Shape::Uniform {
         response.stability = (state.pressure.iter().zip(&state.gap))
             .filter(|(p, _)| **p <= 0.0)
@@ -301,8 +297,7 @@ pub fn respond(
 }
 
 /// The stiffness at a fixed contact area: that of the closed cells and, with a short range, of the cells that
-/// hold more than half of their work. `None` where the contact area is the whole of a periodic surface. Also
-/// returns the number of conjugate gradient steps.
+/// hold more than half of their work. `None` where the contact area is the whole of a periodic surface.
 ///
 /// Cost: one or two solves on the contact.
 pub fn fixed_area(
@@ -311,89 +306,110 @@ pub fn fixed_area(
     state: &Equilibrium,
     tolerance: f64,
     stop: Stop<'_>,
-) -> (Option<Slope>, usize) {
-    let contact = attraction.held(&state.cells, &state.gap).unwrap_or_else(|| state.contact());
-    let constant = problem.operators.table().shift();
-    if stop.stops() || (constant > 0.0 && contact.len() == problem.grid().count()) {
-        return (None, 0);
+) -> Option<NormalStiffness> {
+    let area = attraction.held(&state.cells, &state.gap).unwrap_or_else(|| state.contact());
+    let is_periodic = problem.operators.table().shift() > 0.0;
+    if stop.stops() || (is_periodic && area.len() == problem.grid().count()) {
+        return None;
     }
-    let (both, open, slopes) = (contact.clone(), CellSet::default(), Vec::new());
-    let (coupling, near, unit) = (None, None, 1.0);
-    let mut linearised =
-        Linearised { problem, contact, open, both, slopes, coupling, unit, constant, near, steps: 0, stop };
-    let response = linearised.response(AdhesiveControl::Plane(state.d), Some(tolerance));
-    (response.stiffness, linearised.steps)
+    if area.is_empty() {
+        return Some(NormalStiffness::nothing());
+    }
+    let found = of_held_cells(problem, &area, tolerance, stop);
+    found.solve_error.is_finite().then_some(found)
 }
 
 impl Linearised<'_> {
-    fn response(&mut self, control: AdhesiveControl, tolerance: Option<f64>) -> Response {
-        let mut response = Response { stability: 1.0, ..Response::default() };
+    /// The stiffness where it is wanted, and the stability.
+    fn stiffness(&mut self) -> Option<NormalStiffness> {
         if self.both.is_empty() {
             // No cell is within reach: there is no response.
-            return Response { stiffness: Some(Slope { value: 0.0, error: 0.0 }), ..response };
+            return Some(NormalStiffness::nothing());
         }
+        let tuning = *self.problem.operators.tuning();
+        let stop = self.stop;
+        let found = refine(self, None, self.tolerance.unwrap_or(1.0), &tuning, stop);
+        // No later solve begins with the pressures, which are as large as the state.
+        let found = NormalStiffness { change: [Vec::new()], ..found };
+        found.solve_error.is_finite().then_some(found)
+    }
+}
+
+/// The numbers are the net pressures of the contact and of the open cells, and after them the openings of the
+/// open cells, whose attractions follow these exactly.
+impl Conditions<1, 1> for Linearised<'_> {
+    const DEFINITE: bool = false;
+
+    fn displacements(&self) -> [Vec<f64>; 1] {
+        let mut right = vec![1.0; self.both.len()];
+        right.resize(self.both.len() + self.open.len(), 0.0);
+        [right]
+    }
+
+    fn forces(&self, x: &[f64]) -> [f64; 1] {
+        [sum(&x[..self.both.len()])]
+    }
+
+    fn residual(&mut self, [x]: &[Vec<f64>; 1], _: bool, [r]: &mut [Vec<f64>; 1]) -> bool {
+        let (x, opening) = x.split_at(self.both.len());
+        let mut left = Vec::new();
+        self.problem.operators.exact(&self.both, x, &self.both, &mut left);
+        self.without_constant(x, &mut left);
+        self.both.add_carried(&self.open, opening, &mut left);
+        each(&mut left, |r| *r = 1.0 - *r);
+        r[..left.len()].copy_from_slice(&left);
+        r[left.len()..].fill(0.0);
+        true
+    }
+
+    fn correct(&mut self, [r]: &mut [Vec<f64>; 1], goal: Goal<1>) -> Option<Correction<1>> {
+        let before = self.steps;
         let (contact, open) = (self.contact.clone(), self.open.clone());
-        let mut best = Slope { value: 0.0, error: f64::INFINITY };
-        // The net pressure per approach, and what is left of its equation.
-        let mut x = vec![0.0; self.both.len()];
-        let mut opening = vec![0.0; self.open.len()];
-        let mut r = vec![1.0; self.both.len()];
-        for round in 0..ROUNDS {
-            let mut on_contact = self.contact.carry(&self.both, &r);
-            let energy = self.contact_solve(&mut on_contact, INNER, None);
-            let through = self.rough(&contact, &on_contact, &open);
-            let mut b = self.open.carry(&self.both, &r);
-            update(&mut b, &through, |b, through| *b -= through);
-            // Of the quadratic form of what is left of the open cells, from above.
-            let magnitudes: Vec<f64> = b.iter().map(|b| b.abs()).collect();
-            let left = dot(&magnitudes, &self.answer(&magnitudes));
-            if round > 0 {
-                let value = sum(&x) + dot(&r, &x);
-                let error = energy.abs() + left / response.stability.max(f64::MIN_POSITIVE);
-                if error < best.error {
-                    best = Slope { value, error };
-                }
-                if tolerance.is_none_or(|t| best.error <= 0.5 * t * best.value.abs()) {
-                    break;
-                }
-            }
-            let held = match control {
-                AdhesiveControl::Force(_) if round == 0 => Some(sum(&on_contact)).filter(|held| *held > 0.0),
-                _ => None,
-            };
-            let scale = sum(&on_contact).abs().max(left);
-            let wanted = tolerance.map(|t| 1e-2 * t * scale);
-            let found = self.reduce(&b, wanted, held);
-            if round == 0 {
-                response.stability = found.smallest;
-                if found.smallest <= 0.0 || tolerance.is_none() {
-                    return response;
-                }
-            }
-            // Ritz values lie above the eigenvalue.
-            response.stability = response.stability.min(found.smallest);
-            if self.stop.stops() {
-                break;
-            }
-            let mut more = b;
-            update(&mut more, &found.displacement, |more, u| *more += u);
-            let mut on_open = self.answer(&more);
-            each(&mut on_open, |x| *x = -*x);
-            update(&mut opening, &more, |opening, more| *opening += more);
-            let u = self.rough(&open, &on_open, &contact);
-            let mut more = self.contact.carry(&self.both, &r);
-            more.iter_mut().zip(&u).for_each(|(m, u)| *m -= u);
-            self.contact_solve(&mut more, INNER, None);
-            self.both.add_carried(&self.contact, &more, &mut x);
-            self.both.add_carried(&self.open, &on_open, &mut x);
-            // What is left, with the exact operator.
-            self.problem.operators.exact(&self.both, &x, &self.both, &mut r);
-            self.without_constant(&x, &mut r);
-            self.both.add_carried(&self.open, &opening, &mut r);
-            each(&mut r, |r| *r = 1.0 - *r);
+        let (r, opening) = r.split_at_mut(self.both.len());
+        // Eliminates the contact.
+        let mut on_contact = contact.carry(&self.both, r);
+        let energy = self.contact_solve(&mut on_contact, INNER, None);
+        let through = self.rough(&contact, &on_contact, &open);
+        let mut b = open.carry(&self.both, r);
+        update(&mut b, &through, |b, through| *b -= through);
+        // Of the quadratic form of what is left of the open cells, from above.
+        let magnitudes: Vec<f64> = b.iter().map(|b| b.abs()).collect();
+        let left = dot(&magnitudes, &self.answer(&magnitudes));
+        let energy = [energy.abs() + left / self.stability.unwrap_or(1.0).max(f64::MIN_POSITIVE)];
+        if goal.only_energy || energy[0] < goal.enough * goal.bases[0].abs() {
+            return Some(Correction { energy, steps: None });
         }
-        response.stiffness = best.error.is_finite().then_some(best);
-        response
+        // The open cells.
+        let first = self.stability.is_none();
+        let held = match self.control {
+            AdhesiveControl::Force(_) if first => Some(sum(&on_contact)).filter(|held| *held > 0.0),
+            _ => None,
+        };
+        let scale = sum(&on_contact).abs().max(left);
+        let found = self.reduce(&b, self.tolerance.map(|t| 1e-2 * t * scale), held);
+        // Ritz values lie above the eigenvalue.
+        self.stability = Some(self.stability.map_or(found.smallest, |known| known.min(found.smallest)));
+        if self.tolerance.is_none() || (first && found.smallest <= 0.0) || self.stop.stops() {
+            return None;
+        }
+        let mut opened = b;
+        update(&mut opened, &found.displacement, |opened, u| *opened += u);
+        let mut on_open = self.answer(&opened);
+        each(&mut on_open, |x| *x = -*x);
+        // Back to the contact.
+        let u = self.rough(&open, &on_open, &contact);
+        let mut on_contact = contact.carry(&self.both, r);
+        on_contact.iter_mut().zip(&u).for_each(|(x, u)| *x -= u);
+        self.contact_solve(&mut on_contact, INNER, None);
+        r.fill(0.0);
+        self.both.add_carried(&contact, &on_contact, r);
+        self.both.add_carried(&open, &on_open, r);
+        opening.copy_from_slice(&opened);
+        Some(Correction { energy, steps: Some(self.steps - before) })
+    }
+
+    fn set_error(&self, _: &[Vec<f64>; 1]) -> f64 {
+        0.0
     }
 }
 
