@@ -338,6 +338,86 @@ fn friction_with_adhesion_is_that_of_the_dense_reference() {
     assert!(steps > 1200 && pulled > 100 && stick > 1000 && slip > 1000);
 }
 
+/// The share of the work of adhesion that a cell of this gap still holds with a short range; see
+/// `bem3d/src/adhesion/attraction.rs` for the law. E* = 1.
+fn attached(gap: f64, work: f64, side: f64) -> f64 {
+    let range = 15.0 / 8.0 * work / (0.59 * (work / side).sqrt());
+    let y = (1.0 - gap / range).clamp(0.0, 1.0);
+    // The law y (0.4 + 2.2 y - 1.6 y^2), integrated.
+    15.0 / 8.0 * (0.2 * y.powi(2) + 2.2 / 3.0 * y.powi(3) - 0.4 * y.powi(4))
+}
+
+/// A shear strength under adhesion of short range holds the attached share of each cell: the reference has the shares
+/// of the solver's gaps, and solves for the tractions.
+#[test]
+fn a_shear_strength_on_attached_shares_is_that_of_the_dense_reference() {
+    let (mut kernels, mut worst) = (Kernels::default(), 0.0_f64);
+    let (mut steps, mut pulled, mut partly, mut stick, mut slip) = (0, 0, 0, 0, 0);
+    for seed in 3001..=3400 {
+        let mut draw = Draw::new(seed);
+        let (periodic, poisson) = (draw.index(2) == 1, draw.index(POISSONS.len()));
+        let columns = 3 + draw.index(3);
+        let rows = if periodic { columns } else { 2 + draw.index(4) };
+        let heights: Vec<f64> = (0..columns * rows).map(|_| 0.1 * draw.next()).collect();
+        let map = HeightMap::new([columns, rows], [1.0, rows as f64 / columns as f64], heights).unwrap();
+        let (area, n, side) = (map.dx() * map.dy(), columns * rows, map.dx().max(map.dy()));
+        let work = 10_f64.powf(draw.between(-5.0, -3.0));
+        let (strength, force) =
+            (10_f64.powf(draw.between(-2.5, -0.5)), 10_f64.powf(draw.between(-2.5, -1.0)));
+        let (sum, shift, shear) = kernels.of(&map, periodic, poisson);
+        let law = FrictionLaw::coulomb(strength);
+        let mut exact = DensePath::new((sum, *shift), shear, vec![0.0; n], area, (law, None));
+        let mut scene = Scene { pair: Some(alike(POISSONS[poisson])), ..tests::scene(map.clone()) };
+        scene.effects = Effects {
+            boundary: if periodic { Boundary::Periodic } else { Boundary::Free },
+            adhesion: Adhesion::ShortRange { work },
+            friction: Friction::tresca(strength),
+            ..Effects::default()
+        };
+        scene.outputs =
+            Outputs { gap: true, traction: true, area: true, stick_area: true, ..Outputs::default() };
+        let mut contact = Bem3d { tolerance: 1e-11, ..Bem3d::default() }.prepare(&scene, 0).unwrap();
+        for leg in 0..4 {
+            // The last normal load pulls.
+            let at = if leg == 3 { -0.3 * work } else { force * draw.between(0.3, 1.0) };
+            let (sin, cos) = draw.between(0.0, 2.0 * PI).sin_cos();
+            let far = 0.3 * draw.next().powi(2) * strength;
+            let delta = [far * cos, far * sin];
+            let load = Load::force(at).with_tangential(Tangential::Displacement(delta));
+            let Ok(state) = contact.advance(Step::new(0.0, load)) else {
+                assert!(leg == 3, "{seed} {leg}");
+                break;
+            };
+            let gaps = state.gap().unwrap().values();
+            exact.pressed = gaps.iter().map(|gap| attached(*gap, work, side) * area).collect();
+            partly += exact.pressed.iter().filter(|share| **share > 0.0 && **share < area).count();
+            exact.slide(Prescribed::Displacement(delta));
+            let [x, y] = state.fields.as_ref().unwrap().traction.as_ref().unwrap();
+            let found: Vec<f64> = x.values().iter().chain(y.values()).map(|q| q * area).collect();
+            let limits = exact.limits();
+            let largest = limits.iter().fold(0.0, |a: f64, b| a.max(*b));
+            let off = found.iter().zip(&exact.sheared).fold(0.0, |off: f64, (a, b)| off.max((a - b).abs()));
+            assert!(off <= 1e-4 * largest, "{seed} {leg}: {off} {largest}");
+            worst = worst.max(off / largest);
+            // What slides is the strength times the contact area, of which a part sticks.
+            let tangential = state.tangential.unwrap();
+            let slides = tangential.sliding_force.unwrap();
+            assert!((slides - strength * state.area.unwrap()).abs() <= 1e-9 * slides, "{seed} {leg}");
+            let parts = tangential.stick_area.unwrap() + tangential.slip_area.unwrap();
+            assert!((parts - state.area.unwrap()).abs() <= 1e-9 * parts, "{seed} {leg}");
+            (steps, pulled) = (steps + 1, pulled + usize::from(at < 0.0));
+            for i in (0..n).filter(|&i| limits[i] > 0.0) {
+                let sticks = exact.sheared[i].hypot(exact.sheared[n + i]) < (1.0 - 1e-9) * limits[i];
+                *(if sticks { &mut stick } else { &mut slip }) += 1;
+            }
+        }
+    }
+    println!(
+        "{steps} steps, {pulled} pulled, {partly} partly attached, {stick} stick, {slip} slip, worst {worst:.1e}"
+    );
+    assert!(steps > 1200 && pulled > 100 && partly > 500 && stick > 1000 && slip > 1000);
+}
+
 #[test]
 fn friction_with_a_hardness_is_that_of_the_dense_reference() {
     let (mut kernels, mut worst) = (Kernels::default(), Worst::default());

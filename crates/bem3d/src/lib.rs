@@ -257,8 +257,8 @@
 //!
 //! These are refused at `prepare`:
 //!
-//! * adhesion of short range together with a hardness or with friction, full coupling of friction together with a
-//!   hardness, with adhesion or with a shear strength, and rheology;
+//! * adhesion of short range together with a hardness or with a coefficient of friction, full coupling of friction
+//!   together with a hardness, with adhesion or with a shear strength, and rheology;
 //! * adhesion and friction of profiles;
 //! * displacement fields, conductances and loads by approach, for profiles with free boundaries.
 

@@ -1,4 +1,4 @@
-//! Friction together with adhesion of finite range: Derjaguin's law, Tresca's law, limits.
+//! Friction together with adhesion: Derjaguin's law, Tresca's law, limits.
 
 #![allow(clippy::unwrap_used)] // Helpers of tests.
 
@@ -144,6 +144,46 @@ fn a_sphere_that_is_attracted_sticks_and_slides_with_its_area() {
     assert_eq!(slid.area, bare.area);
 }
 
+/// The same without a range: JKR's sphere slides at the strength times JKR's area, pressed and pulled (Menga, Carbone
+/// and Dini, J. Mech. Phys. Solids 112, 145 (2018), for a uniform shear stress). In full stick it has Savkoor and
+/// Briggs's stiffness `8 G* a = 2 E* a` to first order in the cell: cells that are attached in part stick as a whole.
+#[test]
+fn a_sphere_with_adhesion_of_short_range_slides_with_jkr_s_area() {
+    let body = Body::Elastic { young: 2.0, poisson: 0.0 };
+    let (work, strength, size) = (2e-4, 0.005, 0.36);
+    let pull_off: f64 = 1.5 * std::f64::consts::PI * work;
+    let mut too_stiff = Vec::new();
+    for cells in [65, 129] {
+        let surface = Surface::Sphere { radius: 1.0, size: size.into() };
+        let mut scene = Scene::of_pair(surface, Pair { first: body, second: body }).unwrap();
+        scene.effects.adhesion = Adhesion::ShortRange { work };
+        scene.effects.friction = Friction::tresca(strength);
+        scene.outputs =
+            Outputs { area: true, stick_area: true, tangential_stiffness_stuck: true, ..Outputs::default() };
+        let mut contact = Bem3d { cells, tolerance: 1e-6, ..Bem3d::default() }.prepare(&scene, 0).unwrap();
+        for (i, share) in [1.0, 0.0, -0.5].into_iter().enumerate() {
+            let force = share * pull_off;
+            // JKR: a^3 = 3 R/(4 E*) (F + 3 pi w R + sqrt(6 pi w R F + (3 pi w R)^2)).
+            let unit = 2.0 * pull_off;
+            let radius = (0.75 * (force + unit + (2.0 * unit * force + unit * unit).sqrt())).cbrt();
+            let step =
+                |time: usize, delta: f64| Step::new(time as f64, pushed(Load::force(force), [delta, 0.0]));
+            let stuck = contact.advance(step(2 * i, 0.1 * i as f64)).unwrap();
+            let area = stuck.area.unwrap();
+            let found = (area / std::f64::consts::PI).sqrt();
+            assert!((found / radius - 1.0).abs() < 0.02, "{cells} {share}: {found} {radius}");
+            let stiffness = stuck.tangential.unwrap().stiffness_stuck.unwrap()[0][0];
+            too_stiff.push((stiffness / (2.0 * radius) - 1.0) * radius * cells as f64 / size);
+            let slides = contact.advance(step(2 * i + 1, 0.1 * (i + 1) as f64)).unwrap();
+            let found = slides.tangential.unwrap();
+            assert!((found.force[0] / (strength * area) - 1.0).abs() < 1e-4, "{cells} {share}: {found:?}");
+            assert_eq!(slides.area, stuck.area);
+        }
+    }
+    println!("too stiff by these numbers of cells over the radius: {too_stiff:?}");
+    assert!(too_stiff.iter().all(|cells| (0.0..2.5).contains(cells)), "{too_stiff:?}");
+}
+
 /// Without work of adhesion the states are those of friction alone, and tend to them.
 #[test]
 fn without_work_the_tractions_are_those_of_friction_alone() {
@@ -169,6 +209,8 @@ fn what_is_not_solved_is_refused() {
     let mut short = scene(Friction::coulomb(0.3), WORK, AdhesionLaw::Dugdale, Boundary::Free);
     short.effects.adhesion = Adhesion::ShortRange { work: WORK };
     assert!(refused(&short).contains("give the adhesion a range"), "{}", refused(&short));
+    short.effects.friction = Friction::of(FrictionLaw { shear_strength: 0.1, ..FrictionLaw::coulomb(0.3) });
+    assert!(refused(&short).contains("a shear strength alone"), "{}", refused(&short));
     let mut coupled = scene(Friction::coulomb(0.3), WORK, AdhesionLaw::Dugdale, Boundary::Free);
     coupled.pair = Some(Pair { first: Body::Rigid, second: Body::Elastic { young: 0.91, poisson: 0.3 } });
     coupled.effects.friction =

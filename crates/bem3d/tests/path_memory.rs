@@ -243,6 +243,35 @@ fn adhesion() {
 }
 
 #[test]
+fn friction_with_adhesion() {
+    let body = bem3d::Body::Elastic { young: 2.0, poisson: 0.0 };
+    let path: Vec<Step> = [(5e-3, 0.0), (5e-3, 2e-5), (1e-3, 2e-5), (0.0, -1e-5), (-1e-5, 0.0), (3e-3, 1e-5)]
+        .iter()
+        .enumerate()
+        .map(|(i, &(force, tangential))| {
+            let load = Load::force(force).with_tangential(Tangential::Force([tangential, 0.5 * tangential]));
+            Step::new(i as f64, load)
+        })
+        .collect();
+    let (work, range) = (4e-5, 6e-3);
+    for (name, adhesion, friction) in [
+        ("a shear strength with a short range", Adhesion::ShortRange { work }, Friction::tresca(0.05)),
+        (
+            "a coefficient with a range",
+            Adhesion::FiniteRange { work, range, law: AdhesionLaw::Exponential },
+            Friction::coulomb(0.5),
+        ),
+    ] {
+        let mut scene = Scene::of_pair(rough(0.8, 0.01), Pair { first: body, second: body }).unwrap();
+        (scene.effects.adhesion, scene.effects.friction) = (adhesion, friction);
+        (scene.outputs.area, scene.outputs.stick_area) = (true, true);
+        scene.outputs.tangential_stiffness = true;
+        check(name, &scene, 49, &path);
+        stop_anywhere(name, &scene, (25, 5), &path[..4]);
+    }
+}
+
+#[test]
 fn memories_that_are_not_of_the_surface_are_refused() {
     let mut scene = Scene::new(rough(0.7, 0.01), 1.0);
     let path = normal([1e-3, 4e-3].map(Load::force));

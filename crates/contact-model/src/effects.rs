@@ -76,8 +76,10 @@ impl Effects {
         let limit = law.filter(|law| law.limit.is_some()).map(|_| Effect::TractionLimit);
         let friction = match friction {
             Friction::Off => None,
-            Friction::Slip { coupling: None | Some(Coupling::Neglected), .. } => Some(Effect::Friction),
             Friction::Slip { coupling: Some(Coupling::Full), .. } => Some(Effect::FullCoupling),
+            // A shear strength without a coefficient is named alone.
+            Friction::Slip { law, .. } if law.coefficient <= 0.0 && strength.is_some() => None,
+            Friction::Slip { .. } => Some(Effect::Friction),
         };
         let rheology = match rheology {
             Rheology::Elastic => None,
@@ -168,7 +170,7 @@ effects! {
     /// [`Adhesion::FiniteRange`] with [`AdhesionLaw::Dugdale`].
     DugdaleAdhesion "adhesion" "adhesion by Dugdale's law"
         { adhesion: Adhesion::FiniteRange { work: 1e-4, range: 0.02, law: AdhesionLaw::Dugdale } },
-    /// [`Friction::Slip`], normal and tangential problems independent of each other.
+    /// [`Friction::Slip`] with a coefficient, normal and tangential problems independent of each other.
     Friction "friction" "friction"
         { friction: Friction::coulomb(0.3) },
     /// [`FrictionLaw::shear_strength`].

@@ -126,6 +126,21 @@ impl Attraction {
         self.neighbours.as_ref().map(|_| cells.filter(gap, |g| self.law.attached(g) > 0.5))
     }
 
+    /// Whether cells may be attached in part.
+    pub fn has_shares(&self) -> bool {
+        self.neighbours.is_some()
+    }
+
+    /// The cells that are attached in part or as a whole, with their attached shares. `None`: the attraction has a
+    /// range of its own, and cells are in contact or not.
+    pub fn attached(&self, cells: &CellSet, gap: &[f64]) -> Option<(CellSet, Vec<f64>)> {
+        self.neighbours.as_ref()?;
+        let shares: Vec<f64> = gap.iter().map(|&g| self.law.attached(g)).collect();
+        let attached = cells.filter(&shares, |share| share > 0.0);
+        let on_attached = attached.carry(cells, &shares);
+        Some((attached, on_attached))
+    }
+
     /// Whether the attraction moves over the grid by whole cells, so that the force changes in steps that no
     /// derivative at a state shows: the fronts of a short range, the edges of Dugdale's zones.
     pub fn moves_by_cells(&self) -> bool {

@@ -75,6 +75,9 @@ impl AdhesiveContact {
         if let Some(hardness) = surface.hardness {
             surface.problem.bounds = Bounds::UpTo(hardness + attraction.law.peak);
         }
+        if let (true, Some(sliding)) = (attraction.has_shares(), &mut surface.sliding) {
+            sliding.act_on_shares();
+        }
         Self { surface, attraction, last: None, plain: false }
     }
 
@@ -373,7 +376,8 @@ impl AdhesiveContact {
     }
 
     /// The increment of friction under a state: its law limits the tractions by the contact pressure, which is larger
-    /// than the net pressure by the attraction. `None` without friction.
+    /// than the net pressure by the attraction; with a short range by the attached share of each cell. `None` without
+    /// friction.
     fn slide(
         &mut self,
         state: &Equilibrium,
@@ -381,11 +385,17 @@ impl AdhesiveContact {
         load: ScaledTangential,
         stop: Stop<'_>,
     ) -> Result<Option<Slid>> {
-        if contact.is_empty() {
+        if self.surface.sliding.is_none() {
+            return Ok(None);
+        }
+        let (cells, acting) = self
+            .attraction
+            .attached(&state.cells, &state.gap)
+            .unwrap_or_else(|| (contact.clone(), contact.carry(&state.cells, &state.pressure)));
+        if cells.is_empty() {
             return self.surface.slide_apart(load);
         }
-        let pressure = contact.carry(&state.cells, &state.pressure);
-        self.surface.slide(PressedCells { cells: contact, pressure: &pressure }, load, stop)
+        self.surface.slide(PressedCells { cells: &cells, pressure: &acting }, load, stop)
     }
 
     /// The error of a force that was not prescribed, relative to it, estimated: it is the sum of the residual

@@ -195,8 +195,9 @@ impl PreparedSurface {
         };
         let [branch, stuck] = stiffness.each_ref().map(|k| k.as_ref().map(matrix).transpose());
         let areas = self.outputs.stick_area.then(|| -> Result<(f64, f64)> {
-            let (stick, all) = (state.stick.len(), state.memory.cells.len());
-            Ok((units.area(stick as f64)?, units.area((all - stick) as f64)?))
+            let area = |cells: &CellSet| sliding.area(cells, &state.memory);
+            let (stick, all) = (area(&state.stick), area(&state.memory.cells));
+            Ok((units.area(stick)?, units.area((all - stick).max(0.0))?))
         });
         let (stick, slip) = areas.transpose()?.unzip();
         Ok(Some(

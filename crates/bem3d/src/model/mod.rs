@@ -153,9 +153,6 @@ impl Bem3d {
 const ADHESION: &[Effect] =
     &[Effect::ShortRangeAdhesion, Effect::ExponentialAdhesion, Effect::DugdaleAdhesion];
 
-const FRICTION: &[Effect] =
-    &[Effect::Friction, Effect::ShearStrength, Effect::TractionLimit, Effect::FullCoupling];
-
 /// Effects that the solvers do not combine.
 const NOT_COMBINED: &[NotCombined] = &[
     NotCombined {
@@ -163,10 +160,12 @@ const NOT_COMBINED: &[NotCombined] = &[
         reason: "at the edge of a contact the tractions of this limit have no bound; give the adhesion a range",
     },
     NotCombined {
-        effects: [&[Effect::ShortRangeAdhesion], FRICTION],
+        effects: [
+            &[Effect::ShortRangeAdhesion],
+            &[Effect::Friction, Effect::TractionLimit, Effect::FullCoupling],
+        ],
         reason: "at the edge of a contact the pressure of this limit grows without end as cells become smaller, and \
-                 with it what a coefficient holds, and a shear strength on partly attached cells is not solved; \
-                 give the adhesion a range",
+                 with it what a coefficient holds; give the adhesion a range, or friction a shear strength alone",
     },
     NotCombined {
         effects: [ADHESION, &[Effect::FullCoupling]],

@@ -3,6 +3,7 @@
 use super::options::NAME;
 use crate::active_set::Problem;
 use crate::friction::{Friction, FrictionState, SlipMemory};
+use crate::geometry::CellSet;
 use crate::parts::Recorder;
 use crate::response::TangentialStiffness;
 use crate::tuning::Tuning;
@@ -18,6 +19,8 @@ pub(super) struct Sliding {
     pub(super) friction: Friction,
     /// The law, for nondimensional pressures and tractions.
     pub(super) law: FrictionLaw,
+    /// Whether it acts on the attached share of each cell in place of its pressure.
+    pub(super) on_shares: bool,
     /// The undeformed gaps, without displacements under tractions.
     pub(super) undeformed: Arc<Vec<f64>>,
     /// The start of the next increment.
@@ -92,6 +95,7 @@ impl Sliding {
         Ok(Some(Self {
             friction: Friction::new(problem.grid(), boundary, [compliance, beta], tuning, recorder),
             law: nondimensional(law, units)?,
+            on_shares: false,
             undeformed: problem.candidates.shared(),
             before: SlipMemory::default(),
             dissipated: 0.0,
@@ -101,6 +105,22 @@ impl Sliding {
     /// Resets the surface to its state before any load.
     pub(super) fn begin(&mut self) {
         (self.before, self.dissipated) = (SlipMemory::default(), 0.0);
+    }
+
+    /// From here on a shear strength acts on the attached share of each cell: what holds a cell is in proportion to
+    /// it, as it is to the pressure by Coulomb's law.
+    pub(super) fn act_on_shares(&mut self) {
+        self.law = FrictionLaw::coulomb(self.law.largest_traction(0.0));
+        self.on_shares = true;
+    }
+
+    /// Area of some cells of the last contact that friction acted on, in cells.
+    pub(super) fn area(&self, cells: &CellSet, state: &SlipMemory) -> f64 {
+        if self.on_shares {
+            cells.carry(&state.cells, &state.pressure).iter().sum()
+        } else {
+            cells.len() as f64
+        }
     }
 
     /// Whether the normal and the tangential problem are coupled.

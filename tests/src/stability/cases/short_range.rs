@@ -2,14 +2,20 @@
 
 use super::adhesion::{attracted_by, go, meets_and_is_stable, path};
 use crate::stability::case::{Case, Effort};
-use crate::stability::ledger::{Ledger, approach, pressure};
+use crate::stability::ledger::{Ledger, approach, known, pressure};
 use crate::stability::maps::{map, rough_map};
 use crate::stability::plain::PlainSum;
+use crate::stability::shear::{Dragged, PlainShear, compliance};
+use crate::stability::slide::{Fields, alike, rubbed, tangential, vectors};
 use analytic::jkr::AdhesiveSphere;
-use contact_model::{Adhesion, Boundary, ContactState, Effects, Error, HeightMap, Load, Result, Scene};
+use bem3d::Bem3d;
+use contact_model::{
+    Adhesion, Boundary, ContactModel, ContactState, Effects, Error, Friction, HeightMap, Load, Result, Scene,
+    Status, Tangential,
+};
 use std::f64::consts::PI;
 
-pub(super) const CASES: [Case; 2] = [
+pub(super) const CASES: [Case; 3] = [
     Case {
         name: "a front pinned cell by cell",
         why: "a sphere drawn off under force control: its front jumps from cells to cells until none of them holds, at a fold of the path",
@@ -25,6 +31,14 @@ pub(super) const CASES: [Case; 2] = [
                    that closes less than half without adhesion; what a push has closed stays; a pull is held",
         bound: 1e-6,
         solve: avalanche,
+    },
+    Case {
+        name: "a front that retreats while it is dragged",
+        why: "a sphere dragged by its shear strength is drawn off step by step: cells at the front are let go while they stick, and come back under the next push",
+        asserted: "traction and gap of every cell by plain sums; tractions by relaxation of the plain tangential sum with the strength times each \
+                   cell's attached share; sliding force and both areas; beyond the fold an error, from where the path goes on",
+        bound: 3e-5,
+        solve: dragged,
     },
 ];
 
@@ -62,9 +76,7 @@ fn conditions(
         *g = (*g - d) / range;
     }
     let nearness = |g: &f64| (1.0 - g.max(0.0)).max(0.0);
-    // The law is a cubic in the nearness, the share of the work its integral.
-    let attached: Vec<f64> =
-        (gap.iter().map(nearness)).map(|y| y * y * (3.0 + y * (11.0 - 6.0 * y)) / 8.0).collect();
+    let attached: Vec<f64> = gap.iter().map(nearness).map(share_of_work).collect();
     for ((p, g), factor) in p.iter().zip(&gap).zip(factors(map, periodic, &attached)) {
         ledger.enter((-g).max(0.0));
         let y = nearness(g);
@@ -74,6 +86,11 @@ fn conditions(
         ledger.enter(contact.min(g.max(0.0)).max(0.0));
     }
     Ok(())
+}
+
+/// The share of the work that is left, the integral of the law.
+fn share_of_work(nearness: f64) -> f64 {
+    nearness * nearness * (3.0 + nearness * (11.0 - 6.0 * nearness)) / 8.0
 }
 
 /// The factor of the traction of each cell due to its neighbours: 1 on a straight front, more inside.
@@ -98,6 +115,15 @@ fn factors(map: &HeightMap, periodic: bool, attached: &[f64]) -> Vec<f64> {
     (0..columns * rows).map(|i| 1.0 + 2.0 * FRONT / distance * (2.0 * mean(i) - 1.0)).collect()
 }
 
+/// The sphere R = 1 with this number of cells in its contact radius without load.
+fn ball(exact: &AdhesiveSphere, in_radius: f64) -> Result<HeightMap> {
+    let dx = exact.radius_at_force(0.0)? / in_radius;
+    let cells = (2.6 * in_radius).ceil() as usize;
+    // The centre lies beside all symmetries of the grid.
+    let (x0, y0) = (0.5 * cells as f64 - 0.19, 0.5 * cells as f64 - 0.37);
+    map(cells, cells as f64 * dx, |x, y| -0.5 * dx * dx * ((x as f64 - x0).powi(2) + (y as f64 - y0).powi(2)))
+}
+
 fn pinned(ledger: &mut Ledger, effort: Effort) -> Result<()> {
     /// Bound for the trapping of fronts, and for cells of a tenth of the radius.
     const JKR: f64 = 0.04;
@@ -105,13 +131,7 @@ fn pinned(ledger: &mut Ledger, effort: Effort) -> Result<()> {
     let work = 1e-4;
     let exact = AdhesiveSphere::new(1.0, 1.0, work)?;
     let unit = exact.pull_off_at_force()?.force;
-    let dx = exact.radius_at_force(0.0)? / in_radius;
-    let cells = (2.6 * in_radius).ceil() as usize;
-    // The centre lies beside all symmetries of the grid.
-    let (x0, y0) = (0.5 * cells as f64 - 0.19, 0.5 * cells as f64 - 0.37);
-    let map = map(cells, cells as f64 * dx, |x, y| {
-        -0.5 * dx * dx * ((x as f64 - x0).powi(2) + (y as f64 - y0).powi(2))
-    })?;
+    let map = ball(&exact, in_radius)?;
     let sum = PlainSum::of(&map);
     let mut history = path(&attracted_by(&map, Adhesion::ShortRange { work }))?;
     let mut drawn = |ledger: &mut Ledger, share: f64| -> Result<ContactState> {
@@ -147,6 +167,65 @@ fn pinned(ledger: &mut Ledger, effort: Effort) -> Result<()> {
     }
     drawn(ledger, 0.5)?;
     drawn(ledger, 0.0)?;
+    Ok(())
+}
+
+fn dragged(ledger: &mut Ledger, effort: Effort) -> Result<()> {
+    let (work, strength) = (1e-4, 0.01);
+    let exact = AdhesiveSphere::new(1.0, 1.0, work)?;
+    let unit = exact.pull_off_at_force()?.force;
+    let map = ball(&exact, effort.pick(6.0, 9.0))?;
+    let (sum, pair) = (PlainSum::of(&map), alike(0.3));
+    let shear = PlainShear::of(&map, compliance(&pair)?);
+    let mut relaxed = Dragged::new(&shear);
+    let mut scene = attracted_by(&map, Adhesion::ShortRange { work });
+    scene.outputs = rubbed(&map, pair, 1.0).outputs;
+    (scene.pair, scene.effects.friction) = (Some(pair), Friction::tresca(strength));
+    (scene.outputs.gap, scene.outputs.area) = (true, true);
+    // A duality gap bounds the square of an error of the tractions.
+    let mut history = Bem3d { tolerance: 1e-11, ..Bem3d::default() }.prepare(&scene, 0)?;
+    let cell = map.dx() * map.dy();
+    let range = 15.0 / 8.0 * work / (STRENGTH * (work / map.dx()).sqrt());
+    // Slides at about 0.03.
+    let loads = [
+        (-0.5, 0.0),
+        (-0.5, 2e-3),
+        (0.4, 2e-3),
+        (0.8, 3e-3),
+        (0.8, -1e-3),
+        (0.2, -1e-3),
+        (2.0, 0.0),
+        (0.6, 0.1),
+    ];
+    for (share, moved) in loads {
+        let displacement = [moved, 0.5 * moved];
+        let load = Load::force(share * unit).with_tangential(Tangential::Displacement(displacement));
+        let state = match go(history.as_mut(), load) {
+            Err(Error::NotConverged { best }) if share > 1.0 => {
+                ledger.must(best.report.status == Status::PulledOff, || format!("{:?}", best.report));
+                continue;
+            }
+            found => found?,
+        };
+        ledger.must(share < 1.0, || "more than the pull-off force is held".into());
+        conditions(ledger, &sum, &map, (work, Boundary::Free), &state)?;
+        let gaps = known("gap", state.gap())?.values();
+        let share_of = |gap: &f64| share_of_work((1.0 - gap / range).clamp(0.0, 1.0));
+        let limits: Vec<(usize, f64)> = (gaps.iter().map(share_of).enumerate())
+            .filter(|(_, share)| *share > 0.0)
+            .map(|(i, share)| (i, strength * share * cell))
+            .collect();
+        relaxed.advance(&limits, displacement);
+        let most: f64 = limits.iter().map(|(_, limit)| limit).sum();
+        for ([x, y], [fx, fy]) in vectors(&state, Fields::Traction)?.iter().zip(&relaxed.forces) {
+            ledger.enter((x - fx / cell).hypot(y - fy / cell) / strength);
+        }
+        let found = tangential(&state)?;
+        ledger.near("sliding force", known("sliding force", found.sliding_force)?, most);
+        let areas = known("stick", found.stick_area)? + known("slip", found.slip_area)?;
+        ledger.near("stick and slip", areas, most / strength);
+        ledger.near("area", known("area", state.area)?, most / strength);
+    }
     Ok(())
 }
 
