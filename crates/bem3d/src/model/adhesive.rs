@@ -6,7 +6,7 @@ use super::memory::Memory;
 use super::options::NAME;
 use super::prepared::PreparedSurface;
 use super::sliding::Slid;
-use super::state::{Assembly, returned};
+use super::state::{NormalSolution, returned};
 use crate::active_set::Bounds;
 use crate::adhesion::{AdhesiveControl, Attraction, Ended, Equilibrium, Law, Search, energy};
 use crate::friction::PressedCells;
@@ -33,13 +33,18 @@ const RANGES: std::ops::RangeInclusive<f64> = 1e-9..=1e9;
 /// A gap that has moved against the load by more than this, in ranges, has left the branch.
 const ON_BRANCH: f64 = 1e-3;
 
-/// One surface with adhesion of finite range, on its path.
+/// The attraction of a surface, and where it is on its path.
 #[derive(Debug)]
-pub struct AdhesiveContact {
-    pub(super) surface: PreparedSurface,
-    pub(super) attraction: Attraction,
+pub(super) struct AdhesivePath {
+    attraction: Attraction,
     pub(super) last: Option<Last>,
-    plain: bool,
+}
+
+/// A surface with its attraction.
+pub(super) struct AdhesiveContact<'a> {
+    pub(super) surface: &'a mut PreparedSurface,
+    pub(super) attraction: &'a Attraction,
+    last: &'a mut Option<Last>,
 }
 
 /// The end of the last step.
@@ -68,8 +73,13 @@ pub(super) struct Found {
     load_error: f64,
 }
 
-impl AdhesiveContact {
-    pub(super) fn new(mut surface: PreparedSurface, attraction: Attraction) -> Self {
+impl AdhesivePath {
+    /// The attraction of a surface before any load; `None` where there is none.
+    ///
+    /// # Errors
+    /// As [`attraction`].
+    pub(super) fn of(surface: &mut PreparedSurface, adhesion: Adhesion) -> Result<Option<Self>> {
+        let Some(attraction) = attraction(surface, adhesion)? else { return Ok(None) };
         // The solid bears the net pressure: a cell in contact, which is attracted by the peak of the law, touches
         // with as much more. Where it flows its gap is zero or less, so that this is the bound of each cell.
         if let Some(hardness) = surface.hardness {
@@ -78,14 +88,16 @@ impl AdhesiveContact {
         if let (true, Some(sliding)) = (attraction.has_shares(), &mut surface.sliding) {
             sliding.act_on_shares();
         }
-        Self { surface, attraction, last: None, plain: false }
+        Ok(Some(Self { attraction, last: None }))
     }
 
-    /// Resets to no contact.
-    pub(super) fn forget(&mut self) {
-        self.last = None;
+    /// The contact of its surface.
+    pub(super) fn on<'a>(&'a mut self, surface: &'a mut PreparedSurface) -> AdhesiveContact<'a> {
+        AdhesiveContact { surface, attraction: &self.attraction, last: &mut self.last }
     }
+}
 
+impl AdhesiveContact<'_> {
     /// The state of a load: on a path, from the last state; otherwise on the branch of approach from no
     /// contact.
     pub(super) fn at(
@@ -106,10 +118,7 @@ impl AdhesiveContact {
             ScaledNormal::MeanGap(gap) => AdhesiveControl::Plane(self.surface.mean - gap),
         };
         if loads == LoadSequence::Single && !self.continues(control) {
-            self.forget();
-        }
-        if let (Some(sliding), LoadSequence::Single) = (&mut self.surface.sliding, loads) {
-            sliding.begin();
+            *self.last = None;
         }
         let next = self.next(control, tangential, loads, stop)?;
         let state = next.last.state.clone();
@@ -136,14 +145,10 @@ impl AdhesiveContact {
         }
     }
 
-    /// Takes a state as the last one; on a path its indentation and its slip stay.
+    /// Takes a state as the last one.
     fn accept(&mut self, Reached { last, saturated, depth, slid }: Reached) {
-        if let Some(memory) = &mut self.surface.memory {
-            memory.advance(last.equilibrium.force(), self.surface.options.tolerance);
-        }
-        self.surface.indent(&saturated, &depth);
-        self.surface.remember_slip(slid);
-        self.last = Some(last);
+        self.surface.keep(last.equilibrium.force(), (&saturated, &depth), slid);
+        *self.last = Some(last);
     }
 
     /// The next state from the last one.
@@ -171,7 +176,7 @@ impl AdhesiveContact {
                 if held.is_err() || memory.is_none() {
                     self.surface.take_memory(memory);
                 }
-                self.last = before;
+                *self.last = before;
                 held
             }
             control => self.step_to(control, Some(tangential), loads, stop),
@@ -225,10 +230,10 @@ impl AdhesiveContact {
         let last = before.map(|(last, _)| last);
         let rises = last.is_none_or(|last| self.rises(control, last));
         // Under a hardness there is one kind of update.
-        let mut plain = self.plain || self.surface.hardness.is_some();
+        let mut plain = self.surface.hardness.is_some();
         let mut spent = (0, 0);
         loop {
-            let (limits, attraction) = (self.surface.limits(), &self.attraction);
+            let (limits, attraction) = (self.surface.limits(), self.attraction);
             let mut search =
                 Search { problem: &mut self.surface.problem, attraction, control, limits, plain };
             let start = match before {
@@ -286,7 +291,7 @@ impl AdhesiveContact {
     fn pulled_off(&self, control: AdhesiveControl) -> Result<Error> {
         let force = if let AdhesiveControl::Force(f) = control { f } else { 0.0 };
         let value = self.surface.nondimensional.force(PI * force.abs())?.copysign(force);
-        Ok(match &self.last {
+        Ok(match &*self.last {
             Some(last) => {
                 let mut best = last.state.clone();
                 best.report.status = Status::PulledOff;
@@ -305,61 +310,44 @@ impl AdhesiveContact {
         stop: Stop<'_>,
     ) -> Result<Reached> {
         let Found { equilibrium, response, control, status, load_error } = found;
-        let branch = match &self.last {
+        let branch = match &*self.last {
             Some(last) if self.same_load(control, &last.equilibrium) => last.branch,
             Some(last) if !self.rises(control, &last.equilibrium) => Branch::Withdrawal,
             _ => Branch::Approach,
         };
         let (saturated, depth) = equilibrium.indented(self.surface.problem.bounds);
-        let mut stiffness = self.stiffness(&equilibrium, &response, branch, stop);
+        let stiffness = self.stiffness(&equilibrium, &response, branch, stop);
         let force_error = self.force_error(control, &equilibrium, &response);
         let contact = equilibrium.contact();
-        let mut slid =
+        let slid =
             tangential.map(|load| self.slide(&equilibrium, &contact, load, stop)).transpose()?.flatten();
-        let surface = &mut self.surface;
-        let residuals = equilibrium.residuals;
-        let mut certificate = Certificate {
-            duality_gap: residuals.duality_gap,
-            penetration: residuals.penetration,
-            complementarity: residuals.complementarity,
-            load_error,
-            stiffness_error: stiffness.solve_error,
-            quotient_error: stiffness.quotient_error,
-            equilibrium: Some(equilibrium.mismatch),
-            force_error,
-            ..Certificate::default()
-        };
-        if let Some(slid) = &slid {
-            slid.certify(&mut certificate);
-        }
-        let status = surface.ended(status, &certificate, stop);
-        if status == Status::Stopped {
-            // The stiffnesses, and the error that follows from them, may be unfinished.
-            stiffness = stiffness.unfinished();
-            (certificate.stiffness_error, certificate.quotient_error) = (None, None);
-            (certificate.force_error, certificate.tangential_stiffness_error) = (None, None);
-            slid = slid.map(|slid| Slid { stiffness: [None, None], ..slid });
-        }
-        let units = surface.nondimensional;
-        let stored = PI * energy(&surface.problem, &self.attraction, &equilibrium);
+        let units = self.surface.nondimensional;
+        let stored = PI * energy(&self.surface.problem, self.attraction, &equilibrium);
         // A force times a length.
         let stored = stored.signum() * units.approach(units.force(stored.abs())?)?;
-        let friction = slid.as_ref().map_or(String::new(), |slid| format!("; {}", slid.strategy()));
-        let state = surface.assemble(Assembly {
+        let residuals = equilibrium.residuals;
+        let normal = NormalSolution {
             status,
             strategy: format!(
-                "attraction on {} cells, {} updates{friction}",
+                "attraction on {} cells, {} updates",
                 equilibrium.cells.len(),
                 equilibrium.updates
             ),
-            iterations: equilibrium.steps
-                + response.steps
-                + stiffness.steps
-                + slid.as_ref().map_or(0, Slid::steps),
-            certificate,
+            iterations: equilibrium.steps + response.steps + stiffness.steps,
+            certificate: Certificate {
+                duality_gap: residuals.duality_gap,
+                penetration: residuals.penetration,
+                complementarity: residuals.complementarity,
+                load_error,
+                stiffness_error: stiffness.solve_error,
+                quotient_error: stiffness.quotient_error,
+                equilibrium: Some(equilibrium.mismatch),
+                force_error,
+                ..Certificate::default()
+            },
             force: equilibrium.force(),
             d: equilibrium.d,
-            complete: surface.is_full(&contact) && saturated.is_empty(),
+            complete: self.surface.is_full(&contact) && saturated.is_empty(),
             contact: &contact,
             pressure: (&equilibrium.cells, &equilibrium.net()),
             indented: (&saturated, &depth),
@@ -369,8 +357,8 @@ impl AdhesiveContact {
             fixed_area: stiffness.fixed_area.map(|k| PI * k),
             adhesive: Some(AdhesiveState::new(branch, stored, response.stability)),
             resolution: None,
-            slid: slid.as_ref(),
-        })?;
+        };
+        let (state, slid) = self.surface.assess(normal, slid, stop)?;
         let last = Last { equilibrium, control, branch, state: returned(state)? };
         Ok(Reached { last, slid, saturated, depth })
     }
@@ -429,7 +417,7 @@ impl AdhesiveContact {
 ///
 /// # Errors
 /// Cells that do not resolve the range; numbers that overflow.
-pub(super) fn attraction(surface: &PreparedSurface, adhesion: Adhesion) -> Result<Option<Attraction>> {
+fn attraction(surface: &PreparedSurface, adhesion: Adhesion) -> Result<Option<Attraction>> {
     let units = surface.nondimensional;
     let unit = PI * units.pressure(1.0)?;
     let (dx, dy) = surface.cell();

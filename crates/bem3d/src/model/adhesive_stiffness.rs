@@ -54,14 +54,7 @@ pub(super) struct Stiffnesses {
     pub steps: usize,
 }
 
-impl Stiffnesses {
-    /// None of them, with the steps that were taken for them.
-    pub(super) fn unfinished(self) -> Self {
-        Self { steps: self.steps, ..Self::default() }
-    }
-}
-
-impl AdhesiveContact {
+impl AdhesiveContact<'_> {
     /// The requested stiffnesses.
     pub(super) fn stiffness(
         &mut self,
@@ -77,7 +70,7 @@ impl AdhesiveContact {
         let mut solved = |error: f64| found.solve_error = Some(found.solve_error.unwrap_or(0.0).max(error));
         if self.surface.outputs.needs_fixed_area() {
             let (problem, tolerance) = (&mut self.surface.problem, self.surface.options.tolerance);
-            if let Some(k) = fixed_area(problem, &self.attraction, state, tolerance, stop) {
+            if let Some(k) = fixed_area(problem, self.attraction, state, tolerance, stop) {
                 found.steps = k.steps;
                 found.fixed_area = Some(k.k());
                 solved(k.solve_error);

@@ -1,7 +1,7 @@
 //! A surface under loads, behind the common traits: one type for single loads and for paths, with and without
 //! adhesion.
 
-use super::adhesive::{AdhesiveContact, attraction};
+use super::adhesive::AdhesivePath;
 use super::certificate::LoadError;
 use super::increment::pressed;
 use super::load::{LoadSequence, ScaledLoad, ScaledNormal, ScaledTangential};
@@ -26,15 +26,10 @@ use std::borrow::Cow;
 /// single load ends a path, and a path that begins after single loads reaches the last of them first.
 #[derive(Debug)]
 pub struct PreparedBem3d {
-    contact: Contact,
+    surface: PreparedSurface,
+    /// `None` without adhesion.
+    adhesion: Option<AdhesivePath>,
     place: Place,
-}
-
-/// The solver of a load: the only place that distinguishes surfaces with and without adhesion.
-#[derive(Debug)]
-enum Contact {
-    WithoutAdhesion(Box<PreparedSurface>),
-    WithAdhesion(Box<AdhesiveContact>),
 }
 
 impl PreparedBem3d {
@@ -46,40 +41,24 @@ impl PreparedBem3d {
         tuning: &Tuning,
         recorder: &Recorder,
     ) -> Result<Self> {
-        let surface = PreparedSurface::new(model, scene, seed, tuning, recorder)?;
-        let contact = match attraction(&surface, scene.effects.adhesion)? {
-            Some(attraction) => Contact::WithAdhesion(Box::new(AdhesiveContact::new(surface, attraction))),
-            None => Contact::WithoutAdhesion(Box::new(surface)),
-        };
-        Ok(Self { contact, place: Place { loads: LoadSequence::Single, solved: None, time: 0.0 } })
-    }
-
-    fn surface(&self) -> &PreparedSurface {
-        match &self.contact {
-            Contact::WithoutAdhesion(surface) => surface,
-            Contact::WithAdhesion(contact) => &contact.surface,
-        }
-    }
-
-    fn surface_mut(&mut self) -> &mut PreparedSurface {
-        match &mut self.contact {
-            Contact::WithoutAdhesion(surface) => surface,
-            Contact::WithAdhesion(contact) => &mut contact.surface,
-        }
+        let mut surface = PreparedSurface::new(model, scene, seed, tuning, recorder)?;
+        let adhesion = AdhesivePath::of(&mut surface, scene.effects.adhesion)?;
+        let place = Place { loads: LoadSequence::Single, solved: None, time: 0.0 };
+        Ok(Self { surface, adhesion, place })
     }
 
     /// A load in the units of the surface; with adhesion it may pull.
     fn scaled_load(&self, load: Load) -> Result<ScaledLoad> {
-        let load = match (&self.contact, load.normal) {
-            (Contact::WithAdhesion(_), _) => load.validated_with_adhesion()?,
+        let load = match load.normal {
+            _ if self.adhesion.is_some() => load.validated_with_adhesion()?,
             // Undefined points let the planes pass each other.
-            (Contact::WithoutAdhesion(_), NormalLoad::MeanGap(gap)) if gap.is_finite() => {
+            NormalLoad::MeanGap(gap) if gap.is_finite() => {
                 load.tangential.validated()?;
                 load
             }
-            (Contact::WithoutAdhesion(_), _) => load.validated()?,
+            _ => load.validated()?,
         };
-        self.surface().scaled_load(load)
+        self.surface.scaled_load(load)
     }
 
     /// The state of a load, with the given relation to other loads.
@@ -107,40 +86,29 @@ impl PreparedBem3d {
     }
 
     fn state_at(&mut self, load: ScaledLoad, loads: LoadSequence, stop: Stop<'_>) -> Result<ContactState> {
-        self.surface_mut().forget_plans();
-        match &mut self.contact {
-            Contact::WithoutAdhesion(surface) => {
-                if let (Some(sliding), LoadSequence::Single) = (&mut surface.sliding, loads) {
-                    sliding.begin();
-                }
-                // Loads that were stopped go on from where they were.
-                let last = surface.last.clone();
-                let found = surface.at(load, stop);
-                if matches!(found, Err(Error::Stopped { .. })) {
-                    surface.last = last;
-                }
-                found
-            }
-            Contact::WithAdhesion(contact) => contact.at(load, loads, stop),
+        self.surface.forget_plans();
+        if let (Some(sliding), LoadSequence::Single) = (&mut self.surface.sliding, loads) {
+            sliding.begin();
+        }
+        match &mut self.adhesion {
+            Some(adhesion) => adhesion.on(&mut self.surface).at(load, loads, stop),
+            None => self.surface.at(load, stop),
         }
     }
 
     /// Takes the virgin surface again.
     fn begin(&mut self, loads: LoadSequence) {
         self.place = Place { loads, solved: None, time: 0.0 };
-        match &mut self.contact {
-            Contact::WithoutAdhesion(surface) => surface.begin(loads == LoadSequence::Path),
-            Contact::WithAdhesion(contact) => {
-                contact.surface.begin(loads == LoadSequence::Path);
-                contact.forget();
-            }
+        self.surface.begin(loads == LoadSequence::Path);
+        if let Some(adhesion) = &mut self.adhesion {
+            adhesion.last = None;
         }
     }
 }
 
 impl PreparedContact for PreparedBem3d {
     fn normalisation(&self) -> Normalisation {
-        self.surface().normalisation
+        self.surface.normalisation
     }
 
     fn solve_until(&mut self, load: Load, stop: Stop<'_>) -> Result<ContactState> {
@@ -150,11 +118,11 @@ impl PreparedContact for PreparedBem3d {
 
     /// Cost O(N).
     fn required_memory(&self, load: Load) -> Option<RequiredMemory> {
-        if matches!(self.contact, Contact::WithAdhesion(_)) {
+        if self.adhesion.is_some() {
             // Attraction reaches beyond the contact, and how far is not known before.
             return None;
         }
-        let surface = self.surface();
+        let surface = &self.surface;
         let Grid { columns, rows, .. } = surface.problem.grid();
         let contact = surface.expected_contact(load.normal);
         let friction = surface.sliding.as_ref().map_or(0.0, |_| friction_bytes_per_cell(contact));
@@ -163,10 +131,9 @@ impl PreparedContact for PreparedBem3d {
     }
 
     fn advance_until(&mut self, step: Step, stop: Stop<'_>) -> Result<ContactState> {
-        let step = match self.contact {
-            Contact::WithoutAdhesion(_) => step.validated(self.place.time)?,
-            Contact::WithAdhesion(_) => step.validated_with_adhesion(self.place.time)?,
-        };
+        let time = self.place.time;
+        let step =
+            if self.adhesion.is_some() { step.validated_with_adhesion(time)? } else { step.validated(time)? };
         if stop.stops() {
             return Err(Error::Stopped { best: None });
         }
@@ -188,29 +155,18 @@ impl PreparedContact for PreparedBem3d {
     }
 
     fn memory(&self) -> Result<Option<PathMemory>> {
-        let adhesive = match &self.contact {
-            Contact::WithoutAdhesion(_) => None,
-            Contact::WithAdhesion(contact) => contact.last.as_ref(),
-        };
-        PathMemory::of(&Remembered::of(self.place, self.surface(), adhesive)).map(Some)
+        let adhesive = self.adhesion.as_ref().and_then(|adhesion| adhesion.last.as_ref());
+        PathMemory::of(&Remembered::of(self.place, &self.surface, adhesive)).map(Some)
     }
 
     fn recall(&mut self, memory: &PathMemory) -> Result<()> {
         self.restart();
         let remembered: Remembered<'_> = memory.read()?;
-        let unreadable = PathMemory::unreadable(memory.bytes().len());
         let place = remembered.place;
         self.begin(place.loads);
-        let fits = match &mut self.contact {
-            Contact::WithoutAdhesion(_) if remembered.adhesive.is_some() => Err(unreadable.clone()),
-            Contact::WithoutAdhesion(surface) => remembered.recall(surface).map(|_| ()),
-            Contact::WithAdhesion(contact) => {
-                remembered.recall(&mut contact.surface).map(|last| contact.last = last)
-            }
-        };
-        if fits.is_err() {
+        if !remembered.recall(&mut self.surface, &mut self.adhesion) {
             self.restart();
-            return Err(unreadable);
+            return Err(PathMemory::unreadable(memory.bytes().len()));
         }
         self.place = place;
         Ok(())
@@ -218,8 +174,17 @@ impl PreparedContact for PreparedBem3d {
 }
 
 impl PreparedSurface {
-    /// The state of a load without adhesion.
+    /// The state of a load without adhesion. A load that was stopped leaves the surface where it was.
     fn at(&mut self, load: ScaledLoad, stop: Stop<'_>) -> Result<ContactState> {
+        let last = self.last.clone();
+        let found = self.solved_at(load, stop);
+        if matches!(found, Err(Error::Stopped { .. })) {
+            self.last = last;
+        }
+        found
+    }
+
+    fn solved_at(&mut self, load: ScaledLoad, stop: Stop<'_>) -> Result<ContactState> {
         self.undeform();
         // 0 but for an indented surface.
         let first = self.problem.candidates.range().first;

@@ -7,14 +7,13 @@
 //! contact that is restored from a memory therefore continues to the same bits as one that was never
 //! interrupted.
 
-use super::adhesive::Last;
+use super::adhesive::{AdhesivePath, Last};
 use super::load::{LoadSequence, ScaledLoad};
 use super::memory::Memory;
 use super::prepared::PreparedSurface;
 use crate::active_set::{Candidates, LastState};
 use crate::friction::SlipMemory;
 use crate::geometry::{CellSet, Grid};
-use contact_model::{PathMemory, Result};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
@@ -72,11 +71,9 @@ impl<'a> Remembered<'a> {
         }
     }
 
-    /// Restores a surface without any state to this memory.
-    ///
-    /// # Errors
-    /// [`PathMemory::unreadable`] for a memory that does not belong to this surface and its effects.
-    pub fn recall(self, surface: &mut PreparedSurface) -> Result<Option<Last>> {
+    /// Restores a surface without any state to this memory. `false`, and nothing is changed, for a memory that does
+    /// not belong to this surface and its effects.
+    pub fn recall(self, surface: &mut PreparedSurface, adhesion: &mut Option<AdhesivePath>) -> bool {
         let grid = surface.problem.grid();
         let Self { place, last, hardness, friction, adhesive } = self;
         let fits = place.time.is_finite()
@@ -85,9 +82,10 @@ impl<'a> Remembered<'a> {
             && hardness.as_ref().is_none_or(|indented| indented.fits(grid))
             && friction.as_ref().is_none_or(|slipped| slipped.fits(grid))
             && hardness.is_some() == surface.memory.is_some()
-            && friction.is_some() == surface.sliding.is_some();
+            && friction.is_some() == surface.sliding.is_some()
+            && (adhesive.is_none() || adhesion.is_some());
         if !fits {
-            return Err(PathMemory::unreadable(0));
+            return false;
         }
         if let (Some(indented), Some(memory)) = (hardness, &mut surface.memory) {
             for (i, depth) in indented.cells.index(grid).zip(&indented.depth) {
@@ -100,7 +98,10 @@ impl<'a> Remembered<'a> {
             (sliding.before, sliding.dissipated) = (slipped.memory.into_owned(), slipped.dissipated);
         }
         surface.last = last.map(Cow::into_owned);
-        Ok(adhesive.map(Cow::into_owned))
+        if let Some(path) = adhesion {
+            path.last = adhesive.map(Cow::into_owned);
+        }
+        true
     }
 }
 

@@ -68,7 +68,9 @@ impl Slid {
         certificate.tangential_load_error = Some(self.state.load_error);
         let errors = self.stiffness.iter().flatten().map(|k| k.solve_error + k.set_error);
         certificate.tangential_stiffness_error = errors.reduce(f64::max);
-        certificate.quotient_error = self.normal_stiffness.map(|(_, error)| error);
+        if let Some((_, error)) = self.normal_stiffness {
+            certificate.quotient_error = Some(error);
+        }
     }
 }
 

@@ -9,13 +9,13 @@ use crate::geometry::CellSet;
 use crate::response::NormalStiffness;
 use contact_model::{
     AdhesiveState, Boundary, Certificate, ContactResolution, ContactState, Error, Field, Fields, Patches,
-    PlasticState, Result, SolveReport, Status, Stop, Work,
+    PlasticState, Result, SolveReport, Status, Stop, Work, never,
 };
 use std::f64::consts::PI;
 
 /// The parts of a state, in the units of the surface; forces are over pi.
 #[derive(Debug)]
-pub(super) struct Assembly<'a> {
+pub(super) struct NormalSolution<'a> {
     /// How the solve ended.
     pub status: Status,
     /// How it was found, in one short phrase.
@@ -48,8 +48,6 @@ pub(super) struct Assembly<'a> {
     pub adhesive: Option<AdhesiveState>,
     /// How well the cells resolve the contact.
     pub resolution: Option<ContactResolution>,
-    /// The part of friction.
-    pub slid: Option<&'a Slid>,
 }
 
 /// The state as a result: an error with the state in it unless it has converged.
@@ -62,15 +60,56 @@ pub(super) fn returned(state: ContactState) -> Result<ContactState> {
 }
 
 impl PreparedSurface {
+    /// The state of a normal solution and of the increment of friction under it, and that increment: with the
+    /// certificate of both, and without what a stop has left unfinished.
+    pub(super) fn assess(
+        &mut self,
+        mut normal: NormalSolution<'_>,
+        mut slid: Option<Slid>,
+        stop: Stop<'_>,
+    ) -> Result<(ContactState, Option<Slid>)> {
+        if let Some(slid) = &slid {
+            slid.certify(&mut normal.certificate);
+            normal.strategy = format!("{}; {}", normal.strategy, slid.strategy());
+            normal.iterations += slid.steps();
+        }
+        if self.memory.is_some() && !normal.certificate.meets(self.options.tolerance) {
+            let rest = Certificate { stiffness_error: None, ..normal.certificate };
+            if rest.meets(self.options.tolerance) {
+                // It is not known which cells flow: the stiffness jumps nearby.
+                normal = NormalSolution { certificate: rest, stiffness: None, fixed_area: None, ..normal };
+            }
+        }
+        normal.status = self.ended(normal.status, &normal.certificate, stop);
+        if normal.status == Status::Stopped {
+            // The stiffnesses, and the error that follows from one, may be unfinished.
+            (normal.stiffness, normal.fixed_area) = (None, None);
+            let of = &mut normal.certificate;
+            (of.stiffness_error, of.quotient_error) = (None, None);
+            (of.force_error, of.tangential_stiffness_error) = (None, None);
+            slid = slid.map(|slid| Slid { stiffness: [None, None], normal_stiffness: None, ..slid });
+        }
+        Ok((self.assemble(normal, slid.as_ref())?, slid))
+    }
+
+    /// Keeps what a state leaves on a path: its new indentation and its slip.
+    pub(super) fn keep(&mut self, force: f64, (saturated, depth): (&CellSet, &[f64]), slid: Option<Slid>) {
+        if let Some(memory) = &mut self.memory {
+            memory.advance(force, self.options.tolerance);
+        }
+        self.indent(saturated, depth);
+        self.remember_slip(slid);
+    }
+
     /// The state in the units of the scene, with the requested outputs.
-    pub(super) fn assemble(&mut self, found: Assembly<'_>) -> Result<ContactState> {
+    fn assemble(&mut self, found: NormalSolution<'_>, slid: Option<&Slid>) -> Result<ContactState> {
         let units = self.nondimensional;
         let mut fields = self.fields(found.pressure, found.d, found.indented)?;
-        self.raise(found.slid, &mut fields)?;
-        if let (Some(fields), Some(slid)) = (&mut fields, found.slid) {
+        self.raise(slid, &mut fields)?;
+        if let (Some(fields), Some(slid)) = (&mut fields, slid) {
             self.slip_fields(slid, fields)?;
         }
-        let tangential = found.slid.map(|slid| self.tangential(slid)).transpose()?.flatten();
+        let tangential = slid.map(|slid| self.tangential(slid)).transpose()?.flatten();
         let mut report = SolveReport::new(found.status, found.strategy);
         report.work = Work::of(std::mem::take(&mut self.problem.operators.plans.solves), fields.as_ref());
         report.iterations = found.iterations;
@@ -110,15 +149,11 @@ impl PreparedSurface {
         let nothing = CellSet::default();
         let stiffness = self.outputs.needs_stiffness().then_some(0.0);
         let slid = self.slide_apart(load)?;
-        let mut certificate = Certificate::default();
-        if let Some(slid) = &slid {
-            slid.certify(&mut certificate);
-        }
-        let state = self.assemble(Assembly {
+        let nothing = NormalSolution {
             status: Status::Converged,
             strategy: "no contact".to_owned(),
             iterations: 0,
-            certificate,
+            certificate: Certificate::default(),
             force: 0.0,
             d,
             complete: false,
@@ -131,8 +166,8 @@ impl PreparedSurface {
             fixed_area: stiffness,
             adhesive: None,
             resolution: None,
-            slid: slid.as_ref(),
-        })?;
+        };
+        let (state, slid) = self.assess(nothing, slid, &never)?;
         self.remember_slip(slid);
         Ok(state)
     }
@@ -141,39 +176,12 @@ impl PreparedSurface {
     pub(super) fn state(
         &mut self,
         solved: Solved,
-        mut tangent: Option<Tangent>,
+        tangent: Option<Tangent>,
         error: LoadError,
-        mut slid: Option<Slid>,
+        slid: Option<Slid>,
         stop: Stop<'_>,
     ) -> Result<ContactState> {
         let force: f64 = solved.p.iter().sum();
-        let mut certificate = Certificate {
-            duality_gap: solved.residuals.duality_gap,
-            penetration: solved.residuals.penetration,
-            complementarity: solved.residuals.complementarity,
-            load_error: error.load,
-            stiffness_error: tangent.as_ref().map(|t| self.tangent_error(t)),
-            force_error: error.force,
-            ..Certificate::default()
-        };
-        if let Some(slid) = &slid {
-            slid.certify(&mut certificate);
-        }
-        if self.memory.is_some() && !certificate.meets(self.options.tolerance) {
-            let rest = Certificate { stiffness_error: None, ..certificate };
-            if rest.meets(self.options.tolerance) {
-                // It is not known which cells flow: the stiffness jumps nearby.
-                (certificate, tangent) = (rest, None);
-            }
-        }
-        let status = self.ended(solved.status, &certificate, stop);
-        if status == Status::Stopped {
-            // The stiffnesses, and the error that follows from one, may be unfinished.
-            tangent = None;
-            (certificate.stiffness_error, certificate.force_error) = (None, None);
-            (certificate.tangential_stiffness_error, certificate.quotient_error) = (None, None);
-            slid = slid.map(|slid| Slid { stiffness: [None, None], normal_stiffness: None, ..slid });
-        }
         let (saturated, depth) = plastic_depth(&solved, self.problem.bounds);
         let k = |t: &NormalStiffness| PI * t.k() * self.magnification(t.k());
         let of_pressures = tangent.as_ref().map(|t| k(&t.stiffness));
@@ -186,13 +194,19 @@ impl PreparedSurface {
             Some(slid) if slid.rounds.is_some() => slid.normal_stiffness.map(|(slope, _)| PI * slope),
             _ => of_pressures,
         };
-        let state = self.assemble(Assembly {
-            status,
-            strategy: self.strategy(&solved, slid.as_ref()),
-            iterations: solved.steps
-                + tangent.as_ref().map_or(0, Tangent::steps)
-                + slid.as_ref().map_or(0, Slid::steps),
-            certificate,
+        let normal = NormalSolution {
+            status: solved.status,
+            strategy: self.strategy(&solved),
+            iterations: solved.steps + tangent.as_ref().map_or(0, Tangent::steps),
+            certificate: Certificate {
+                duality_gap: solved.residuals.duality_gap,
+                penetration: solved.residuals.penetration,
+                complementarity: solved.residuals.complementarity,
+                load_error: error.load,
+                stiffness_error: tangent.as_ref().map(|t| self.tangent_error(t)),
+                force_error: error.force,
+                ..Certificate::default()
+            },
             force,
             d: solved.d,
             complete: self.is_complete(&solved),
@@ -205,27 +219,23 @@ impl PreparedSurface {
             fixed_area,
             adhesive: None,
             resolution: Some(self.resolution(&solved)?),
-            slid: slid.as_ref(),
-        })?;
+        };
+        let (state, slid) = self.assess(normal, slid, stop)?;
         if state.report.status == Status::Converged {
-            if let Some(memory) = &mut self.memory {
-                memory.advance(force, self.options.tolerance);
-            }
-            self.indent(&saturated, &depth);
-            self.remember(solved, tangent);
-            self.remember_slip(slid);
+            self.keep(force, (&saturated, &depth), slid);
+            let certified = state.report.certificate.stiffness_error.is_some();
+            self.remember(solved, tangent.filter(|_| certified));
         }
         returned(state)
     }
 
-    /// How a state was found, in one short phrase.
-    fn strategy(&self, solved: &Solved, slid: Option<&Slid>) -> String {
-        let pressed = match (solved.q.is_some(), self.problem.operators.last()) {
+    /// How a contact was solved, in one short phrase.
+    fn strategy(&self, solved: &Solved) -> String {
+        match (solved.q.is_some(), self.problem.operators.last()) {
             (true, _) => format!("dense {}", solved.contact.len()),
             (false, Some(recipe)) => recipe.to_string(),
             (false, None) => format!("direct {}", solved.contact.len()),
-        };
-        slid.map_or_else(|| pressed.clone(), |slid| format!("{pressed}; {}", slid.strategy()))
+        }
     }
 
     /// With a hardness: the number of cells at the hardness, and the depths of new indentation.
