@@ -5,9 +5,9 @@ use crate::exclusive::Exclusive;
 use crate::load_order::{Highest, check_rising};
 use crate::loads::{load, load_of, tangential};
 use crate::memory;
-use crate::numbers::Real;
+use crate::numbers::RealNumber;
 use crate::pool::{self, StopToken};
-use crate::state::{self, ContactState, Origin};
+use crate::state::{self, PyContactState, StateOrigin};
 use fractal_contact::{
     ContactState as RustState, Error, Hardness, LargestPull, Load, Normalisation as RustNormalisation,
     PathMemory, PreparedContact, Scene, Status, Step,
@@ -20,12 +20,12 @@ use std::sync::{Mutex, PoisonError};
 const LOADS: [&str; 4] = ["force", "approach", "mean_pressure", "mean_gap"];
 
 /// Conversion of forces and stiffnesses to the dimensionless ones of the paper.
-#[pyclass(frozen, eq, module = "fractal_contact")]
+#[pyclass(name = "Normalisation", frozen, eq, module = "fractal_contact")]
 #[derive(Clone, PartialEq)]
-pub struct Normalisation(pub RustNormalisation);
+pub struct PyNormalisation(pub RustNormalisation);
 
 #[pymethods]
-impl Normalisation {
+impl PyNormalisation {
     /// float: contact modulus E*.
     #[getter]
     fn contact_modulus(&self) -> f64 {
@@ -45,17 +45,17 @@ impl Normalisation {
     }
 
     /// F for F_bar = F/(E* h L).
-    fn force(&self, py: Python<'_>, force_bar: Real) -> PyResult<f64> {
+    fn force(&self, py: Python<'_>, force_bar: RealNumber) -> PyResult<f64> {
         self.0.force(force_bar.0).map_err(|error| of_model(py, error))
     }
 
     /// F_bar = F/(E* h L) for F.
-    fn force_bar(&self, py: Python<'_>, force: Real) -> PyResult<f64> {
+    fn force_bar(&self, py: Python<'_>, force: RealNumber) -> PyResult<f64> {
         self.0.force_bar(force.0).map_err(|error| of_model(py, error))
     }
 
     /// k_bar = k/(1.1419 E* L) for k.
-    fn stiffness_bar(&self, stiffness: Real) -> f64 {
+    fn stiffness_bar(&self, stiffness: RealNumber) -> f64 {
         self.0.stiffness_bar(stiffness.0)
     }
 
@@ -86,17 +86,17 @@ impl Normalisation {
 ///
 /// With a hardness `solve` begins with the virgin surface: a load smaller than one before is refused, because
 /// the indentation of that one would be forgotten. `advance` and `follow` keep it, along any path.
-#[pyclass(frozen, module = "fractal_contact")]
-pub struct Contact {
+#[pyclass(name = "Contact", frozen, module = "fractal_contact")]
+pub struct PyContact {
     inner: Exclusive<Inner>,
-    origin: Origin,
+    origin: StateOrigin,
     long: bool,
     /// Whether its memory is looked at before each solve.
     large: bool,
     /// Whether the surface yields, so that the order of loads matters.
     yields: bool,
-    best: Mutex<Option<Py<ContactState>>>,
-    last: Mutex<Option<Py<ContactState>>>,
+    best: Mutex<Option<Py<PyContactState>>>,
+    last: Mutex<Option<Py<PyContactState>>>,
 }
 
 struct Inner {
@@ -113,10 +113,10 @@ enum Asked {
     Step(Step),
 }
 
-impl Contact {
+impl PyContact {
     /// A contact of a scene whose solves are long, or not.
     pub fn new(contact: Box<dyn PreparedContact>, scene: &Scene, long: bool, large: bool) -> Self {
-        let origin = Origin::new(scene, contact.normalisation());
+        let origin = StateOrigin::new(scene, contact.normalisation());
         let inner = Exclusive::new(Inner { contact, highest: None, largest: LargestPull::default() });
         let yields = scene.effects.hardness != Hardness::Off;
         let (best, last) = (Mutex::new(None), Mutex::new(None));
@@ -141,7 +141,7 @@ impl Contact {
         asked: &Asked,
         area: Option<f64>,
         token: StopToken<'_>,
-    ) -> PyResult<Py<ContactState>> {
+    ) -> PyResult<Py<PyContactState>> {
         if token.is_set(py)? {
             return Err(stopped(py));
         }
@@ -219,18 +219,18 @@ impl Contact {
 /// Sets a state; the one before it.
 #[must_use]
 fn replaced(
-    place: &Mutex<Option<Py<ContactState>>>,
-    state: Option<Py<ContactState>>,
-) -> Option<Py<ContactState>> {
+    place: &Mutex<Option<Py<PyContactState>>>,
+    state: Option<Py<PyContactState>>,
+) -> Option<Py<PyContactState>> {
     std::mem::replace(&mut *place.lock().unwrap_or_else(PoisonError::into_inner), state)
 }
 
-fn shown(py: Python<'_>, place: &Mutex<Option<Py<ContactState>>>) -> Option<Py<ContactState>> {
+fn shown(py: Python<'_>, place: &Mutex<Option<Py<PyContactState>>>) -> Option<Py<PyContactState>> {
     place.lock().unwrap_or_else(PoisonError::into_inner).as_ref().map(|state| state.clone_ref(py))
 }
 
 #[pymethods]
-impl Contact {
+impl PyContact {
     /// Solves for one load, from no contact: a path that was followed is forgotten.
     ///
     /// Parameters
@@ -257,12 +257,12 @@ impl Contact {
     fn solve(
         &self,
         py: Python<'_>,
-        force: Option<Real>,
-        approach: Option<Real>,
-        mean_pressure: Option<Real>,
-        mean_gap: Option<Real>,
+        force: Option<RealNumber>,
+        approach: Option<RealNumber>,
+        mean_pressure: Option<RealNumber>,
+        mean_gap: Option<RealNumber>,
         stop: Option<Py<PyAny>>,
-    ) -> PyResult<Py<ContactState>> {
+    ) -> PyResult<Py<PyContactState>> {
         let token = StopToken::new(py, stop.as_ref())?;
         let load = load(self.normalisation(), force, approach, mean_pressure, mean_gap)?;
         self.answer(py, &Asked::Load(load), mean_pressure.map(|_| self.area()), token)
@@ -320,7 +320,7 @@ impl Contact {
     ///     For a load that makes no sense or that the model does not hold for.
     /// NotConverged, Stopped
     ///     With the state that was reached as ``best``; beyond pull-off that is the last stable state.
-    #[pyo3(signature = (time=Real(0.0), *, force=None, approach=None, mean_pressure=None, mean_gap=None,
+    #[pyo3(signature = (time=RealNumber(0.0), *, force=None, approach=None, mean_pressure=None, mean_gap=None,
                         tangential_force=None, tangential_displacement=None, stop=None),
            text_signature = "($self, time=0.0, *, force=None, approach=None, mean_pressure=None, mean_gap=None, \
                              tangential_force=None, tangential_displacement=None, stop=None)")]
@@ -328,15 +328,15 @@ impl Contact {
     fn advance(
         &self,
         py: Python<'_>,
-        time: Real,
-        force: Option<Real>,
-        approach: Option<Real>,
-        mean_pressure: Option<Real>,
-        mean_gap: Option<Real>,
+        time: RealNumber,
+        force: Option<RealNumber>,
+        approach: Option<RealNumber>,
+        mean_pressure: Option<RealNumber>,
+        mean_gap: Option<RealNumber>,
         tangential_force: Option<Bound<'_, PyAny>>,
         tangential_displacement: Option<Bound<'_, PyAny>>,
         stop: Option<Py<PyAny>>,
-    ) -> PyResult<Py<ContactState>> {
+    ) -> PyResult<Py<PyContactState>> {
         let token = StopToken::new(py, stop.as_ref())?;
         let normal = load(self.normalisation(), force, approach, mean_pressure, mean_gap)?;
         let tangential = tangential(tangential_force.as_ref(), tangential_displacement.as_ref())?;
@@ -459,13 +459,13 @@ impl Contact {
 
     /// Normalisation: that of this surface.
     #[getter(normalisation)]
-    fn shown_normalisation(&self) -> Normalisation {
-        Normalisation(self.origin.normalisation)
+    fn shown_normalisation(&self) -> PyNormalisation {
+        PyNormalisation(self.origin.normalisation)
     }
 
     /// ContactState or None: the best state of the last solve that a signal such as Ctrl-C interrupted.
     #[getter]
-    fn best(&self, py: Python<'_>) -> Option<Py<ContactState>> {
+    fn best(&self, py: Python<'_>) -> Option<Py<PyContactState>> {
         shown(py, &self.best)
     }
 
@@ -475,7 +475,7 @@ impl Contact {
     /// It says where the contact stands after a step that failed, or that a signal such as Ctrl-C
     /// interrupted.
     #[getter]
-    fn last(&self, py: Python<'_>) -> Option<Py<ContactState>> {
+    fn last(&self, py: Python<'_>) -> Option<Py<PyContactState>> {
         shown(py, &self.last)
     }
 

@@ -4,11 +4,11 @@ use crate::errors::{of_planning, of_solve, plain, stopped};
 use crate::load_order::check_rising;
 use crate::loads::load_of;
 use crate::memory;
-use crate::model::{Model, Shared};
+use crate::model::{PyModel, SharedModel};
 use crate::numbers::Seed;
 use crate::pool::{self, StopToken};
-use crate::scene::Scene;
-use crate::state::{self, Origin};
+use crate::scene::PyScene;
+use crate::state::{self, StateOrigin};
 use fractal_contact::runs::{Threads, run_jobs, threads_for_memory};
 use fractal_contact::{
     ContactModel, ContactState as RustState, Error, Hardness, Load, Outputs, RequiredMemory, Result,
@@ -23,7 +23,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 /// `MemoryError` where all states, which are kept until the end, do not fit in beside one surface.
 fn surfaces_in_memory(
     py: Python<'_>,
-    model: &Shared,
+    model: &SharedModel,
     scene: &RustScene,
     (surfaces, loads): (usize, usize),
 ) -> PyResult<Threads> {
@@ -48,8 +48,8 @@ fn surfaces_in_memory(
 #[allow(clippy::too_many_arguments)] // One for each keyword.
 pub fn ensemble(
     py: Python<'_>,
-    model: &Model,
-    scene: &Scene,
+    model: &PyModel,
+    scene: &PyScene,
     loads: Vec<(String, f64)>,
     seed: Seed,
     surfaces: usize,
@@ -76,9 +76,9 @@ pub fn ensemble(
     let threads = surfaces_in_memory(py, model, scene, (surfaces, loads.len()))?;
     let answer = |index: usize, stop: Stop<'_>| {
         let seed = fractal_contact::surface_gen::surface_seed(seed.0, index as u64);
-        let (scene, contact) = Model::planned(model, asked, seed);
+        let (scene, contact) = PyModel::planned(model, asked, seed);
         let mut contact = contact?;
-        let origin = Origin::new(&scene, contact.normalisation());
+        let origin = StateOrigin::new(&scene, contact.normalisation());
         let unit = &origin.normalisation;
         let given = |(kind, value): &(String, f64)| match kind.as_str() {
             "force_bar" => Ok(Load::force(unit.force(*value)?)),
@@ -107,7 +107,7 @@ pub fn ensemble(
         run_jobs(threads, &(0..surfaces).collect::<Vec<usize>>(), stop, answer)
     })?;
     // A load that was refused stands for itself among the others.
-    let one = |origin: &Origin, state: Result<RustState>| -> PyResult<Py<PyAny>> {
+    let one = |origin: &StateOrigin, state: Result<RustState>| -> PyResult<Py<PyAny>> {
         match state {
             Ok(state) => Ok(state::of(py, state, origin)?.into_any()),
             Err(error) => Ok(of_solve(py, error, origin).into_value(py).into_any()),

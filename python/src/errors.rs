@@ -1,6 +1,6 @@
 //! Errors of the library as the exceptions of `fractal_contact._errors`, with their numbers as attributes.
 
-use crate::state::{self, ContactState, Origin};
+use crate::state::{self, PyContactState, StateOrigin};
 use fractal_contact::models::{ModelRecord, able};
 use fractal_contact::runs::{self, files};
 use fractal_contact::{ContactState as RustState, Error, Scene, scenes, surface_io};
@@ -43,7 +43,7 @@ pub fn of_model(py: Python<'_>, error: Error) -> PyErr {
 }
 
 /// An error of a contact of this origin.
-pub fn of_solve(py: Python<'_>, error: Error, origin: &Origin) -> PyErr {
+pub fn of_solve(py: Python<'_>, error: Error, origin: &StateOrigin) -> PyErr {
     let message = error.to_string();
     of_any(py, error, &message, &PyDict::new(py), Some(origin))
 }
@@ -76,9 +76,9 @@ fn of_any(
     error: Error,
     message: &str,
     attributes: &Bound<'_, PyDict>,
-    origin: Option<&Origin>,
+    origin: Option<&StateOrigin>,
 ) -> PyErr {
-    let state = |best: RustState| -> PyResult<Option<Py<ContactState>>> {
+    let state = |best: RustState| -> PyResult<Option<Py<PyContactState>>> {
         origin.map(|origin| state::of(py, best, origin)).transpose()
     };
     let fill = || -> PyResult<&str> {

@@ -67,7 +67,7 @@ impl<T: Send> Exclusive<T> {
                 "this thread is already solving with this object: it cannot be used inside the handler of a signal",
             ));
         }
-        let place = Place { of: self, number: state.next };
+        let place = WaitingPlace { of: self, number: state.next };
         state.next += 1;
         state.waiting.push_back((place.number, this));
         drop(state);
@@ -111,12 +111,12 @@ impl<T> State<T> {
 }
 
 /// A place among those that wait, until the value is taken or the wait is given up.
-struct Place<'a, T> {
+struct WaitingPlace<'a, T> {
     of: &'a Exclusive<T>,
     number: u64,
 }
 
-impl<T> Drop for Place<'_, T> {
+impl<T> Drop for WaitingPlace<'_, T> {
     fn drop(&mut self) {
         let mut state = self.of.state.lock().unwrap_or_else(PoisonError::into_inner);
         state.waiting.retain(|(number, _)| *number != self.number);

@@ -2,7 +2,7 @@
 
 use crate::errors::of_model;
 use crate::memory;
-use crate::numbers::{OneOrTwo, Pair, Real, pair};
+use crate::numbers::{NumberPair, OneOrTwo, RealNumber, pair};
 use crate::pool;
 use crate::state::reduced;
 use fractal_contact::surface_io::{Dimension, Sides as TextSides, Unit};
@@ -30,11 +30,11 @@ use std::sync::Arc;
 ///     Unit of the heights in the array, such as ``"nm"``: the map is then in metres.
 /// undefined : {"error", "no_contact"}
 ///     What NaN means: an error, or a point that cannot touch. Masked points cannot touch either way.
-#[pyclass(frozen, module = "fractal_contact")]
+#[pyclass(name = "HeightMap", frozen, module = "fractal_contact")]
 #[derive(Clone)]
-pub struct HeightMap(pub Arc<RustMap>);
+pub struct PyHeightMap(pub Arc<RustMap>);
 
-impl From<RustMap> for HeightMap {
+impl From<RustMap> for PyHeightMap {
     fn from(map: RustMap) -> Self {
         Self(Arc::new(map))
     }
@@ -49,9 +49,9 @@ pub fn size(of: OneOrTwo<f64>) -> Size {
 }
 
 /// Sides as numbers, or as texts with units.
-struct Sides(Size);
+struct GivenSides(Size);
 
-impl<'py> FromPyObject<'_, 'py> for Sides {
+impl<'py> FromPyObject<'_, 'py> for GivenSides {
     type Error = PyErr;
 
     fn extract(of: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
@@ -85,7 +85,7 @@ fn centres(py: Python<'_>, count: usize, side: f64) -> Bound<'_, PyArray1<f64>> 
 
 /// An operation on a map and a number or an array, of `fractal_contact._arrays`.
 fn combined<'py>(
-    map: &Bound<'py, HeightMap>,
+    map: &Bound<'py, PyHeightMap>,
     other: &Bound<'py, PyAny>,
     operation: &str,
     reflected: bool,
@@ -94,7 +94,7 @@ fn combined<'py>(
     arrays.call_method1("combined", (map, other, operation, reflected))
 }
 
-impl HeightMap {
+impl PyHeightMap {
     /// A copy of the heights, NaN at undefined points.
     fn array<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         self.copied(py)?;
@@ -110,17 +110,17 @@ impl HeightMap {
 }
 
 #[pymethods]
-impl HeightMap {
+impl PyHeightMap {
     #[new]
     #[pyo3(signature = (heights, size, *, unit=None, undefined="error"))]
     fn new(
         py: Python<'_>,
         heights: &Bound<'_, PyAny>,
-        size: Sides,
+        size: GivenSides,
         unit: Option<&str>,
         undefined: &str,
     ) -> PyResult<Self> {
-        let Sides(size) = size;
+        let GivenSides(size) = size;
         // Numpy's own rules for types, masks and memory orders.
         let prepared = py.import("fractal_contact._arrays")?.call_method1("heights", (heights, undefined))?;
         let (array, partly): (PyReadonlyArray2<'_, f64>, bool) = prepared.extract()?;
@@ -265,8 +265,8 @@ impl HeightMap {
     /// ----------
     /// rows, columns : (int, int)
     ///     First, and the one after the last.
-    fn cropped(&self, py: Python<'_>, rows: Pair, columns: Pair) -> PyResult<Self> {
-        let (Pair(rows), Pair(columns)) = (rows, columns);
+    fn cropped(&self, py: Python<'_>, rows: NumberPair, columns: NumberPair) -> PyResult<Self> {
+        let (NumberPair(rows), NumberPair(columns)) = (rows, columns);
         let [wide, high] = [columns, rows].map(|[first, end]| end.saturating_sub(first));
         let cells = Cells { columns: wide.min(self.0.columns()), rows: high.min(self.0.rows()) };
         memory::check_grid(py, "a map", cells, cells.map_bytes())?;
@@ -275,7 +275,7 @@ impl HeightMap {
     }
 
     /// The map with its sides and its heights multiplied.
-    fn scaled(&self, py: Python<'_>, lateral: Real, vertical: Real) -> PyResult<Self> {
+    fn scaled(&self, py: Python<'_>, lateral: RealNumber, vertical: RealNumber) -> PyResult<Self> {
         self.copied(py)?;
         self.0.scaled(lateral.0, vertical.0).map(Self::from).map_err(|error| of_model(py, error))
     }
@@ -345,7 +345,7 @@ impl HeightMap {
     }
 
     fn __neg__(&self, py: Python<'_>) -> PyResult<Self> {
-        self.scaled(py, Real(1.0), Real(-1.0))
+        self.scaled(py, RealNumber(1.0), RealNumber(-1.0))
     }
 
     fn __pos__(&self) -> Self {

@@ -1,7 +1,7 @@
 //! Surfaces from files.
 
 use crate::errors::{of_surface, plain};
-use crate::height_map::HeightMap;
+use crate::height_map::PyHeightMap;
 use crate::pool;
 use crate::scene::optional;
 use fractal_contact::scenes;
@@ -94,7 +94,7 @@ fn metadata<'py>(py: Python<'py>, of: &Metadata) -> PyResult<Bound<'py, PyDict>>
 }
 
 /// Map, metadata, steps, and the distance from which on heights are reliable.
-type Read<'py> = (HeightMap, Bound<'py, PyDict>, Vec<String>, Option<f64>);
+type ReadFile<'py> = (PyHeightMap, Bound<'py, PyDict>, Vec<String>, Option<f64>);
 
 /// A surface of a file: its map, what the file says, what was done to the map, from which distance on the tip
 /// lets heights be seen.
@@ -104,7 +104,7 @@ pub fn read_surface<'py>(
     py: Python<'py>,
     path: PathBuf,
     options: &Bound<'py, PyDict>,
-) -> PyResult<Read<'py>> {
+) -> PyResult<ReadFile<'py>> {
     let (declared, preprocessing) = self::options(options)?;
     let file = path.clone();
     let read = move || -> Result<_, Error> {
@@ -159,7 +159,7 @@ pub fn si(text: &str) -> PyResult<f64> {
 
 /// Writes a map by the ending of the file's name; lengths are in metres, or without a unit.
 #[pyfunction]
-pub fn write_surface(py: Python<'_>, path: PathBuf, map: &HeightMap, metres: bool) -> PyResult<()> {
+pub fn write_surface(py: Python<'_>, path: PathBuf, map: &PyHeightMap, metres: bool) -> PyResult<()> {
     let metric = if metres { Metric::Metres } else { Metric::Unitless };
     let map = Arc::clone(&map.0);
     pool::call(py, move || scenes::write_map(&path, &map, metric))?.map_err(|error| of_surface(py, &error))

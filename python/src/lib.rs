@@ -41,15 +41,15 @@ mod _core {
     }
 
     #[pymodule_export]
-    use crate::contact::{Contact, Normalisation};
+    use crate::contact::{PyContact, PyNormalisation};
     #[pymodule_export]
     use crate::ensemble::ensemble;
     #[pymodule_export]
-    use crate::height_map::HeightMap;
+    use crate::height_map::PyHeightMap;
     #[pymodule_export]
     use crate::io::{channels, read_surface, si, write_surface};
     #[pymodule_export]
-    use crate::model::{Model, combinations, model, models};
+    use crate::model::{PyModel, combinations, model, models};
     #[pymodule_export]
     use crate::picture::picture;
     #[pymodule_export]
@@ -57,11 +57,11 @@ mod _core {
     #[pymodule_export]
     use crate::quantities::{fields, quantities};
     #[pymodule_export]
-    use crate::scene::{Scene, Surface, check_effects, effect_keys, height_map, scene, surface};
+    use crate::scene::{PyScene, PySurface, check_effects, effect_keys, height_map, scene, surface};
     #[pymodule_export]
-    use crate::scenes::{SceneFile, run_scene};
+    use crate::scenes::{PySceneFile, run_scene};
     #[pymodule_export]
-    use crate::state::{Certificate, ContactState};
+    use crate::state::{PyCertificate, PyContactState};
     #[pymodule_export]
     use crate::statistics::{fit_spectrum, height_difference, parameters, power_spectrum, scale_dependence};
     #[pymodule_export]

@@ -1,6 +1,6 @@
 //! Loads and steps from the keywords of Python.
 
-use crate::numbers::Real;
+use crate::numbers::RealNumber;
 use fractal_contact::{Load, Normalisation, Tangential};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -19,10 +19,10 @@ pub fn load_of(normalisation: &Normalisation, kind: &str, value: f64) -> Load {
 /// The one load that is given.
 pub fn load(
     normalisation: &Normalisation,
-    force: Option<Real>,
-    approach: Option<Real>,
-    mean_pressure: Option<Real>,
-    mean_gap: Option<Real>,
+    force: Option<RealNumber>,
+    approach: Option<RealNumber>,
+    mean_pressure: Option<RealNumber>,
+    mean_gap: Option<RealNumber>,
 ) -> PyResult<Load> {
     let (kind, value) = match (force, approach, mean_pressure, mean_gap) {
         (Some(force), None, None, None) => ("force", force),
@@ -41,13 +41,14 @@ pub fn load(
 /// A number along x, or two along x and along y.
 fn components(value: &Bound<'_, PyAny>) -> PyResult<[f64; 2]> {
     // What is a number is one, and its own error tells of what is neither.
-    let number = value.extract::<Real>();
+    let number = value.extract::<RealNumber>();
     let (Err(error), false) = (&number, value.is_instance_of::<PyString>()) else {
-        return number.map(|Real(along_x)| [along_x, 0.0]);
+        return number.map(|RealNumber(along_x)| [along_x, 0.0]);
     };
     let Ok(items) = value.try_iter() else { return Err(error.clone_ref(value.py())) };
     // One more than there may be, of what may never end.
-    let values = items.take(3).map(|item| Ok(item?.extract::<Real>()?.0)).collect::<PyResult<Vec<f64>>>()?;
+    let values =
+        items.take(3).map(|item| Ok(item?.extract::<RealNumber>()?.0)).collect::<PyResult<Vec<f64>>>()?;
     let shown = |count: usize| if count < 3 { count.to_string() } else { "more than two".to_owned() };
     values.try_into().map_err(|values: Vec<f64>| {
         let count = shown(values.len());

@@ -1,11 +1,11 @@
 //! Models by name, and contacts that they have planned.
 
-use crate::contact::Contact;
+use crate::contact::PyContact;
 use crate::errors::{of_planning, of_values};
 use crate::memory;
 use crate::numbers::Seed;
 use crate::pool;
-use crate::scene::Scene;
+use crate::scene::PyScene;
 use crate::toml_text::toml_text;
 use fractal_contact::models::{MODELS, ModelRecord, abilities};
 use fractal_contact::scenes::Numerics;
@@ -20,9 +20,9 @@ use std::sync::Arc;
 
 /// A model that is chosen at run time.
 #[derive(Clone)]
-pub struct Shared(Arc<dyn ContactModel>);
+pub struct SharedModel(Arc<dyn ContactModel>);
 
-impl ContactModel for Shared {
+impl ContactModel for SharedModel {
     fn name(&self) -> &'static str {
         self.0.name()
     }
@@ -49,10 +49,10 @@ impl ContactModel for Shared {
 }
 
 /// A model of contact, which relates force, approach and stiffness.
-#[pyclass(frozen, module = "fractal_contact._core")]
+#[pyclass(name = "Model", frozen, module = "fractal_contact._core")]
 #[derive(Clone)]
-pub struct Model {
-    pub model: Shared,
+pub struct PyModel {
+    pub model: SharedModel,
     /// Whether its solves may be long enough to leave the interpreter's thread.
     long: bool,
 }
@@ -109,14 +109,14 @@ pub fn model(
     py: Python<'_>,
     name: &str,
     options: &Bound<'_, PyDict>,
-    inner: Option<&Model>,
-) -> PyResult<Model> {
+    inner: Option<&PyModel>,
+) -> PyResult<PyModel> {
     let numerics = Numerics::named(name);
     let numerics = numerics.ok_or_else(|| PyValueError::new_err(format!("no model is called {name:?}")))?;
     let options = toml_text(options, name)?;
     let numerics = numerics.configured(&options).map_err(|error| of_values(py, &error))?;
     let model: Arc<dyn ContactModel> = match (numerics, inner) {
-        (Numerics::Equivalent(equivalent), Some(Model { model, .. })) => Arc::new(Equivalent {
+        (Numerics::Equivalent(equivalent), Some(PyModel { model, .. })) => Arc::new(Equivalent {
             model: model.clone(),
             per_decade: equivalent.per_decade,
             decades: equivalent.decades,
@@ -128,15 +128,15 @@ pub fn model(
     };
     let has_options = ModelRecord::named(name).is_none_or(|record| record.has_options);
     let long = has_options || model.abilities().paths == Paths::Needed;
-    Ok(Model { model: Shared(model), long })
+    Ok(PyModel { model: SharedModel(model), long })
 }
 
-impl Model {
+impl PyModel {
     /// A contact of a scene, and the scene that it is of. Where the caller named no outputs that is the stiffness,
     /// or nothing of a model that has none.
     pub fn planned(
-        model: &Shared,
-        scene: &Scene,
+        model: &SharedModel,
+        scene: &PyScene,
         seed: u64,
     ) -> (RustScene, fractal_contact::Result<Box<dyn PreparedContact>>) {
         let contact = model.prepare(&scene.scene, seed);
@@ -158,7 +158,7 @@ impl Model {
 }
 
 #[pymethods]
-impl Model {
+impl PyModel {
     /// Name of the model, as in scenes.
     #[getter]
     fn name(&self) -> &'static str {
@@ -181,13 +181,13 @@ impl Model {
         Ok(dict)
     }
 
-    fn prepare(&self, py: Python<'_>, scene: &Scene, seed: Seed) -> PyResult<Contact> {
+    fn prepare(&self, py: Python<'_>, scene: &PyScene, seed: Seed) -> PyResult<PyContact> {
         let large = self.check_memory(py, &scene.scene)?;
         // Any model may measure a map.
         let (model, scene) = (self.model.clone(), scene.clone());
         let (scene, contact) = pool::call(py, move || Self::planned(&model, &scene, seed.0))?;
         contact
-            .map(|contact| Contact::new(contact, &scene, self.long, large))
+            .map(|contact| PyContact::new(contact, &scene, self.long, large))
             .map_err(|error| of_planning(py, error, &scene))
     }
 }

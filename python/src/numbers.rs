@@ -40,9 +40,9 @@ fn is_no_number(of: &Bound<'_, PyAny>) -> bool {
 
 /// A real number.
 #[derive(Debug, Clone, Copy)]
-pub struct Real(pub f64);
+pub struct RealNumber(pub f64);
 
-impl<'py> FromPyObject<'_, 'py> for Real {
+impl<'py> FromPyObject<'_, 'py> for RealNumber {
     type Error = PyErr;
 
     fn extract(of: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
@@ -76,7 +76,7 @@ impl Single for f64 {
     const WORDS: [&'static str; 2] = ["a number", "two numbers, along x and along y"];
 
     fn single(of: &Bound<'_, PyAny>) -> Option<Self> {
-        of.extract::<Real>().ok().map(|Real(value)| value)
+        of.extract::<RealNumber>().ok().map(|RealNumber(value)| value)
     }
 }
 
@@ -158,9 +158,9 @@ impl<'py> FromPyObject<'_, 'py> for Seed {
 }
 
 /// A pair of whole numbers.
-pub struct Pair(pub [usize; 2]);
+pub struct NumberPair(pub [usize; 2]);
 
-impl<'py> FromPyObject<'_, 'py> for Pair {
+impl<'py> FromPyObject<'_, 'py> for NumberPair {
     type Error = PyErr;
 
     fn extract(of: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {

@@ -1,7 +1,7 @@
 //! The table of quantities as properties of a class, as values of a state, and as a list.
 
-use crate::state::ContactState;
-use fractal_contact::quantities::{AskedBy, QUANTITIES, Quantity, Role, Unit};
+use crate::state::PyContactState;
+use fractal_contact::quantities::{AskedBy, QUANTITIES, QuantityUnit, Role, StateQuantity};
 use fractal_contact::{
     ContactState as RustState, FIELDS, FieldQuantity, Normalisation, Outputs, Patches, SolveReport, Value,
 };
@@ -20,7 +20,7 @@ pub fn object(py: Python<'_>, value: Value) -> PyResult<Bound<'_, PyAny>> {
 }
 
 /// Whether a state that lacks it does not name it: the quantities of effects and of paths.
-pub fn is_named_where_known(quantity: &Quantity) -> bool {
+pub fn is_named_where_known(quantity: &StateQuantity) -> bool {
     match quantity.asked_by {
         AskedBy::Effect(_)
         | AskedBy::Path
@@ -33,7 +33,7 @@ pub fn is_named_where_known(quantity: &Quantity) -> bool {
 }
 
 /// Its type in Python, and whether a state may lack it.
-fn kind(quantity: &Quantity) -> (&'static str, bool) {
+fn kind(quantity: &StateQuantity) -> (&'static str, bool) {
     let normalisation = Normalisation { contact_modulus: 1.0, length: 1.0, height: None };
     let value = |state: &RustState| (quantity.value)(state, &normalisation);
     let bare = RustState::new(1.0, SolveReport::exact(""));
@@ -43,7 +43,7 @@ fn kind(quantity: &Quantity) -> (&'static str, bool) {
         Value::Text(_) => "str",
         Value::Count(_) => "int",
         Value::Flag(_) => "bool",
-        Value::Empty if quantity.unit == Unit::Word => "str",
+        Value::Empty if quantity.unit == QuantityUnit::Word => "str",
         Value::Number(_) | Value::Empty => "float",
     };
     (kind, value(&bare) == Value::Empty)
@@ -55,12 +55,12 @@ pub fn is_count(name: &str) -> bool {
 }
 
 /// What a property says of itself.
-fn sentence(quantity: &Quantity) -> String {
+fn sentence(quantity: &StateQuantity) -> String {
     let (kind, optional) = kind(quantity);
-    let Quantity { words, meaning, unit, .. } = *quantity;
+    let StateQuantity { words, meaning, unit, .. } = *quantity;
     let of = if meaning.contains(words) { String::new() } else { format!("{words}, ") };
     let unit = match unit {
-        Unit::Word | Unit::One => String::new(),
+        QuantityUnit::Word | QuantityUnit::One => String::new(),
         unit => format!(" [{}]", unit.words()),
     };
     format!("{kind}{}: {of}{meaning}{unit}.", if optional { " or None" } else { "" })
@@ -68,21 +68,21 @@ fn sentence(quantity: &Quantity) -> String {
 
 /// Gives the class of states a documented property for each quantity that it does not have as something else.
 pub fn make_properties(py: Python<'_>) -> PyResult<()> {
-    let class = py.get_type::<ContactState>();
+    let class = py.get_type::<PyContactState>();
     let property = py.import("builtins")?.getattr("property")?;
     for quantity in QUANTITIES {
         if class.hasattr(quantity.name)? {
             continue;
         }
         let get = PyCFunction::new_closure(py, None, None, move |args, _| -> PyResult<Py<PyAny>> {
-            let state = args.get_item(0)?.cast_into::<ContactState>()?;
+            let state = args.get_item(0)?.cast_into::<PyContactState>()?;
             Ok(object(args.py(), state.get().value(quantity))?.unbind())
         })?;
         class.setattr(quantity.name, property.call1((get, py.None(), py.None(), sentence(quantity)))?)?;
     }
     for quantity in FIELDS {
         let get = PyCFunction::new_closure(py, None, None, move |args, _| -> PyResult<_> {
-            let state = args.get_item(0)?.cast_into::<ContactState>()?;
+            let state = args.get_item(0)?.cast_into::<PyContactState>()?;
             Ok(state.get().field(args.py(), quantity))
         })?;
         let FieldQuantity { name, meaning, unit, .. } = quantity;
@@ -109,7 +109,7 @@ fn shape(field: &FieldQuantity) -> &'static str {
 ///     ``work`` or ``of_path``) and ``type`` in Python.
 #[pyfunction]
 pub fn quantities(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
-    let row = |quantity: &Quantity| {
+    let row = |quantity: &StateQuantity| {
         let (kind, optional) = kind(quantity);
         let role = match quantity.role {
             Role::Answer => "answer",

@@ -1,8 +1,8 @@
 //! Scenes from the values of the Python classes.
 
 use crate::errors::{of_model, of_values};
-use crate::height_map::HeightMap;
-use crate::numbers::{OneOrTwo, Real, Seed};
+use crate::height_map::PyHeightMap;
+use crate::numbers::{OneOrTwo, RealNumber, Seed};
 use crate::toml_text::toml_text;
 use fractal_contact::scenes::{EFFECT_KEYS, EffectKey, parse_effects};
 use fractal_contact::{
@@ -45,9 +45,9 @@ pub fn optional<'py, T: FromPyObjectOwned<'py>>(of: &Bound<'py, PyDict>, name: &
 }
 
 /// The surface in contact.
-#[pyclass(frozen, module = "fractal_contact._core")]
+#[pyclass(name = "Surface", frozen, module = "fractal_contact._core")]
 #[derive(Clone)]
-pub struct Surface(pub RustSurface);
+pub struct PySurface(pub RustSurface);
 
 /// The kinds of surfaces and their parameters.
 const KINDS: [(&str, &[&str]); 8] = [
@@ -63,7 +63,7 @@ const KINDS: [(&str, &[&str]); 8] = [
 
 /// A surface of a kind.
 #[pyfunction]
-pub fn surface(py: Python<'_>, kind: &str, parameters: &Bound<'_, PyDict>) -> PyResult<Surface> {
+pub fn surface(py: Python<'_>, kind: &str, parameters: &Bound<'_, PyDict>) -> PyResult<PySurface> {
     let Some((_, known)) = KINDS.iter().find(|(name, _)| *name == kind) else {
         let kinds: Vec<&str> = KINDS.iter().map(|(name, _)| *name).collect();
         let message = format!("no surface is of the kind {kind:?}: there are {}", kinds.join(", "));
@@ -76,12 +76,12 @@ pub fn surface(py: Python<'_>, kind: &str, parameters: &Bound<'_, PyDict>) -> Py
             return Err(PyTypeError::new_err(message));
         }
     }
-    let number = |name: &str| required::<Real>(parameters, name).map(|Real(value)| value);
+    let number = |name: &str| required::<RealNumber>(parameters, name).map(|RealNumber(value)| value);
     let size = crate::height_map::size(required::<OneOrTwo<f64>>(parameters, "size")?);
     let surface = match kind {
         "self_affine" => {
             let wavenumber = |name: &str| -> PyResult<Option<f64>> {
-                Ok(optional::<Real>(parameters, name)?.map(|Real(wavelength)| TAU / wavelength))
+                Ok(optional::<RealNumber>(parameters, name)?.map(|RealNumber(wavelength)| TAU / wavelength))
             };
             RustSurface::SelfAffine(SelfAffine {
                 size,
@@ -110,25 +110,30 @@ pub fn surface(py: Python<'_>, kind: &str, parameters: &Bound<'_, PyDict>) -> Py
         other => return Err(PyValueError::new_err(format!("no surface is of the kind {other:?}"))),
     };
     surface.validate().map_err(|error| of_model(py, error))?;
-    Ok(Surface(surface))
+    Ok(PySurface(surface))
 }
 
 /// The height of each cell of a surface.
 #[pyfunction]
-pub fn height_map(py: Python<'_>, of: &Surface, cells: OneOrTwo<usize>, seed: Seed) -> PyResult<HeightMap> {
+pub fn height_map(
+    py: Python<'_>,
+    of: &PySurface,
+    cells: OneOrTwo<usize>,
+    seed: Seed,
+) -> PyResult<PyHeightMap> {
     let cells = crate::surface_gen::cells(cells, of.0.size());
     let surface = of.0.clone();
     let bytes = fractal_contact::surface_gen::height_map_memory(&surface, cells);
     crate::memory::check_grid(py, "a map", cells, bytes)?;
     let map =
         crate::pool::call(py, move || fractal_contact::surface_gen::height_map(&surface, cells, seed.0))?;
-    map.map(HeightMap).map_err(|error| of_model(py, error))
+    map.map(PyHeightMap).map_err(|error| of_model(py, error))
 }
 
 /// Everything physical about one contact problem.
-#[pyclass(frozen, module = "fractal_contact._core")]
+#[pyclass(name = "Scene", frozen, module = "fractal_contact._core")]
 #[derive(Clone)]
-pub struct Scene {
+pub struct PyScene {
     pub scene: RustScene,
     /// Whether the caller named no outputs: the scene then asks for the stiffness.
     pub default_outputs: bool,
@@ -136,12 +141,12 @@ pub struct Scene {
 
 #[derive(FromPyObject)]
 pub enum AnySurface {
-    Map(Py<HeightMap>),
-    Described(Py<Surface>),
+    Map(Py<PyHeightMap>),
+    Described(Py<PySurface>),
 }
 
-fn body(of: Option<(Real, Real)>) -> Body {
-    of.map_or(Body::Rigid, |(Real(young), Real(poisson))| Body::Elastic { young, poisson })
+fn body(of: Option<(RealNumber, RealNumber)>) -> Body {
+    of.map_or(Body::Rigid, |(RealNumber(young), RealNumber(poisson))| Body::Elastic { young, poisson })
 }
 
 /// The output of this name. The conductance is none of them: it needs what it is of.
@@ -163,19 +168,19 @@ fn output(name: &str) -> PyResult<Output> {
 pub fn scene(
     py: Python<'_>,
     surface: AnySurface,
-    contact_modulus: Option<Real>,
-    bodies: Option<[Option<(Real, Real)>; 2]>,
+    contact_modulus: Option<RealNumber>,
+    bodies: Option<[Option<(RealNumber, RealNumber)>; 2]>,
     effects: &Bound<'_, PyDict>,
     outputs: Option<Vec<String>>,
-    conductance: Option<(String, Real, Real)>,
-) -> PyResult<Scene> {
+    conductance: Option<(String, RealNumber, RealNumber)>,
+) -> PyResult<PyScene> {
     let surface = match surface {
         AnySurface::Map(map) => RustSurface::Heights(Arc::clone(&map.get().0)),
         AnySurface::Described(surface) => surface.get().0.clone(),
     };
     let pair = bodies.map(|[first, second]| Pair { first: body(first), second: body(second) });
     let made = match (contact_modulus, pair) {
-        (Some(Real(contact_modulus)), None) => Ok(RustScene::new(surface, contact_modulus)),
+        (Some(RealNumber(contact_modulus)), None) => Ok(RustScene::new(surface, contact_modulus)),
         (None, Some(pair)) => RustScene::of_pair(surface, pair),
         (None, None) => return Err(PyTypeError::new_err("give contact_modulus or bodies")),
         (Some(_), Some(_)) => return Err(PyTypeError::new_err("give contact_modulus or bodies, not both")),
@@ -191,10 +196,10 @@ pub fn scene(
     }
     scene.outputs.conductance = match conductance {
         None => Conductance::Off,
-        Some((kind, Real(first), Real(second))) if kind == "electrical" => {
+        Some((kind, RealNumber(first), RealNumber(second))) if kind == "electrical" => {
             Conductance::Electrical { first, second }
         }
-        Some((kind, Real(first), Real(second))) if kind == "thermal" => {
+        Some((kind, RealNumber(first), RealNumber(second))) if kind == "thermal" => {
             Conductance::Thermal { first, second }
         }
         Some((kind, ..)) => {
@@ -204,7 +209,7 @@ pub fn scene(
         }
     };
     scene.validate().map_err(|error| of_model(py, error))?;
-    Ok(Scene { scene, default_outputs })
+    Ok(PyScene { scene, default_outputs })
 }
 
 /// Errors for effects whose numbers or words make no sense.

@@ -16,10 +16,10 @@ use std::path::PathBuf;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// A scene file: the surface, the material, the effects, the loads and the requested outputs.
-#[pyclass(frozen, module = "fractal_contact")]
-pub struct SceneFile(RustSceneFile);
+#[pyclass(name = "SceneFile", frozen, module = "fractal_contact")]
+pub struct PySceneFile(RustSceneFile);
 
-impl SceneFile {
+impl PySceneFile {
     /// The scene of a question, whose files are looked up from the folder of `path`.
     fn of(py: Python<'_>, question: Question, path: PathBuf) -> PyResult<Self> {
         let scene = pool::call(py, move || RustSceneFile::of(question, &path))?;
@@ -28,7 +28,7 @@ impl SceneFile {
 }
 
 #[pymethods]
-impl SceneFile {
+impl PySceneFile {
     /// Reads a file.
     #[staticmethod]
     fn read(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
@@ -102,12 +102,12 @@ impl SceneFile {
 
 /// Relative cost of what is done and of all.
 #[derive(Default)]
-struct Counter {
+struct CostCounter {
     done: AtomicU64,
     total: AtomicU64,
 }
 
-impl Progress for Counter {
+impl Progress for CostCounter {
     fn begin(&self, _: &str, total: u64) {
         self.done.store(0, Ordering::Relaxed);
         self.total.store(total, Ordering::Relaxed);
@@ -163,7 +163,7 @@ fn columns<'py>(py: Python<'py>, table: &Table) -> PyResult<Bound<'py, PyDict>> 
 #[allow(clippy::too_many_arguments)] // One for each keyword.
 pub fn run_scene<'py>(
     py: Python<'py>,
-    scene: &SceneFile,
+    scene: &PySceneFile,
     out: PathBuf,
     threads: Option<usize>,
     fresh: bool,
@@ -173,7 +173,7 @@ pub fn run_scene<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     let token = StopToken::new(py, stop.as_ref())?;
     let threads = threads.map_or_else(pool::threads, Ok)?.max(1);
-    let (counter, mut file) = (Counter::default(), scene.0.clone());
+    let (counter, mut file) = (CostCounter::default(), scene.0.clone());
     if let Some(states) = drawn_states {
         file = file.drawing(states).map_err(|error| of_values(py, &error))?;
     }

@@ -2,7 +2,7 @@
 
 use crate::errors::of_model;
 use crate::quantities::{is_named_where_known, object};
-use fractal_contact::quantities::{QUANTITIES, Quantity, Role};
+use fractal_contact::quantities::{QUANTITIES, Role, StateQuantity};
 use fractal_contact::scenes::StateNotes;
 use fractal_contact::{
     Certificate as RustCertificate, ContactState as RustState, FIELDS, Field, FieldQuantity,
@@ -56,14 +56,14 @@ where
 
 /// What a contact tells its states, besides what was solved.
 #[derive(Debug, Clone, Copy)]
-pub struct Origin {
+pub struct StateOrigin {
     pub normalisation: RustNormalisation,
     notes: StateNotes,
     /// Sides of the rectangle.
     size: [f64; 2],
 }
 
-impl Origin {
+impl StateOrigin {
     /// Of a contact of this scene.
     pub fn new(scene: &Scene, normalisation: RustNormalisation) -> Self {
         let size = scene.surface.size();
@@ -85,12 +85,12 @@ pub fn look_up_arrays(py: Python<'_>) -> PyResult<()> {
 /// How exactly the contact conditions hold, measured with the exact operator in double precision.
 ///
 /// All numbers are relative and dimensionless.
-#[pyclass(frozen, eq, module = "fractal_contact")]
+#[pyclass(name = "Certificate", frozen, eq, module = "fractal_contact")]
 #[derive(Clone, PartialEq)]
-pub struct Certificate(RustCertificate);
+pub struct PyCertificate(RustCertificate);
 
 #[pymethods]
-impl Certificate {
+impl PyCertificate {
     /// float: duality gap of the quadratic programme over force times rms height.
     #[getter]
     fn duality_gap(&self) -> f64 {
@@ -216,8 +216,8 @@ impl Certificate {
 ///
 /// Its numbers and words are those of `quantities`. Units in brackets are those of SI; a scene in other units
 /// has its own.
-#[pyclass(frozen, module = "fractal_contact")]
-pub struct ContactState {
+#[pyclass(name = "ContactState", frozen, module = "fractal_contact")]
+pub struct PyContactState {
     state: RustState,
     normalisation: RustNormalisation,
     notes: Vec<String>,
@@ -227,18 +227,18 @@ pub struct ContactState {
 }
 
 /// Moves a state of a contact of this origin into Python.
-pub fn of(py: Python<'_>, mut state: RustState, origin: &Origin) -> PyResult<Py<ContactState>> {
-    let Origin { normalisation, notes, size } = *origin;
+pub fn of(py: Python<'_>, mut state: RustState, origin: &StateOrigin) -> PyResult<Py<PyContactState>> {
+    let StateOrigin { normalisation, notes, size } = *origin;
     let notes = notes.of(&state);
     let mut taken = state.fields.take().unwrap_or_default();
     let arrays = FIELDS.iter().map(|quantity| array(py, (quantity.take)(&mut taken)));
     let fields = arrays.collect::<PyResult<_>>()?;
-    Py::new(py, ContactState { state, normalisation, notes, size, fields })
+    Py::new(py, PyContactState { state, normalisation, notes, size, fields })
 }
 
-impl ContactState {
+impl PyContactState {
     /// What the table takes from it.
-    pub fn value(&self, quantity: &Quantity) -> Value {
+    pub fn value(&self, quantity: &StateQuantity) -> Value {
         (quantity.value)(&self.state, &self.normalisation)
     }
 
@@ -251,7 +251,7 @@ impl ContactState {
 }
 
 #[pymethods]
-impl ContactState {
+impl PyContactState {
     /// int or None: cells in contact at an edge of a free rectangle.
     #[getter]
     fn edge_cells(&self) -> Option<usize> {
@@ -283,8 +283,8 @@ impl ContactState {
 
     /// Certificate: how exactly the contact conditions hold.
     #[getter]
-    fn certificate(&self) -> Certificate {
-        Certificate(self.state.report.certificate)
+    fn certificate(&self) -> PyCertificate {
+        PyCertificate(self.state.report.certificate)
     }
 
     /// The numbers and words by their names, which are those of the columns of scenes; arrays only with

@@ -1,9 +1,9 @@
 //! Statistics of a map.
 
 use crate::errors::of_model;
-use crate::height_map::HeightMap;
+use crate::height_map::PyHeightMap;
 use crate::memory;
-use crate::numbers::Real;
+use crate::numbers::RealNumber;
 use crate::pool;
 use fractal_contact::surface_statistics::{
     Bins, Derivatives, DifferenceBands, DifferenceMap, FeatureParameters, HeightParameters, HybridParameters,
@@ -27,7 +27,7 @@ const SPECTRUM: f64 = 24.0;
 const DIFFERENCES: [f64; 2] = [100.0, 400.0];
 
 /// `MemoryError` where there is less than so many bytes for each point of a map.
-fn check_memory(py: Python<'_>, map: &HeightMap, bytes: f64) -> PyResult<()> {
+fn check_memory(py: Python<'_>, map: &PyHeightMap, bytes: f64) -> PyResult<()> {
     let cells = map.0.cells();
     memory::check_grid(py, "the statistics of a map", cells, cells.map_bytes() / 8.0 * bytes)
 }
@@ -45,7 +45,7 @@ fn arrays(dict: &Bound<'_, PyDict>, of: &[(&str, Vec<f64>)]) -> PyResult<()> {
 
 /// Parameters of ISO 25178-2 and of the derivatives; None where the map does not define one.
 #[pyfunction]
-pub fn parameters<'py>(py: Python<'py>, map: &HeightMap, periodic: bool) -> PyResult<Bound<'py, PyDict>> {
+pub fn parameters<'py>(py: Python<'py>, map: &PyHeightMap, periodic: bool) -> PyResult<Bound<'py, PyDict>> {
     check_memory(py, map, DIFFERENCES[1])?;
     let of = Arc::clone(&map.0);
     let found = pool::call(py, move || -> Result<Vec<(&'static str, Option<f64>)>> {
@@ -90,11 +90,11 @@ pub fn parameters<'py>(py: Python<'py>, map: &HeightMap, periodic: bool) -> PyRe
 #[pyfunction]
 pub fn power_spectrum<'py>(
     py: Python<'py>,
-    map: &HeightMap,
+    map: &PyHeightMap,
     direction: &str,
     periodic: bool,
-    per_decade: Real,
-    level: Real,
+    per_decade: RealNumber,
+    level: RealNumber,
 ) -> PyResult<Bound<'py, PyDict>> {
     check_memory(py, map, SPECTRUM)?;
     let (of, taper) = (Arc::clone(&map.0), if periodic { Taper::None } else { Taper::Hann });
@@ -137,10 +137,10 @@ fn limits(bands: Option<Vec<Option<[f64; 2]>>>, count: usize) -> (Vec<f64>, Vec<
 #[pyfunction]
 pub fn height_difference<'py>(
     py: Python<'py>,
-    map: &HeightMap,
+    map: &PyHeightMap,
     periodic: bool,
-    per_decade: Real,
-    level: Real,
+    per_decade: RealNumber,
+    level: RealNumber,
 ) -> PyResult<Bound<'py, PyDict>> {
     check_memory(py, map, DIFFERENCES[usize::from(!periodic)])?;
     let of = Arc::clone(&map.0);
@@ -172,11 +172,11 @@ pub fn height_difference<'py>(
 #[pyfunction]
 pub fn scale_dependence<'py>(
     py: Python<'py>,
-    map: &HeightMap,
+    map: &PyHeightMap,
     of_curvature: bool,
     along_y: bool,
     periodic: bool,
-    level: Real,
+    level: RealNumber,
 ) -> PyResult<Bound<'py, PyDict>> {
     check_memory(py, map, SPECTRUM)?;
     let (of, boundary, axis) = (Arc::clone(&map.0), boundary(periodic), usize::from(along_y));
@@ -208,13 +208,13 @@ pub fn scale_dependence<'py>(
 #[pyo3(signature = (map, periodic, instrument))]
 pub fn fit_spectrum<'py>(
     py: Python<'py>,
-    map: &HeightMap,
+    map: &PyHeightMap,
     periodic: bool,
-    instrument: Option<Real>,
+    instrument: Option<RealNumber>,
 ) -> PyResult<Bound<'py, PyDict>> {
     check_memory(py, map, SPECTRUM)?;
     let (of, boundary) = (Arc::clone(&map.0), boundary(periodic));
-    let instrument = instrument.map(|Real(wavelength)| wavelength);
+    let instrument = instrument.map(|RealNumber(wavelength)| wavelength);
     let found = pool::call(py, move || {
         let reliable = ReliableWavelengths::new(&of, boundary, instrument)?;
         SpectrumFit::new(&of, &reliable.fit_options(boundary))

@@ -1,11 +1,11 @@
 //! Generated maps.
 
 use crate::errors::of_model;
-use crate::height_map::HeightMap;
+use crate::height_map::PyHeightMap;
 use crate::memory;
-use crate::numbers::{OneOrTwo, Real, Seed};
+use crate::numbers::{OneOrTwo, RealNumber, Seed};
 use crate::pool;
-use crate::scene::Surface;
+use crate::scene::PySurface;
 use fractal_contact::scenes::{RandomSpectrum, RandomSurface};
 use fractal_contact::surface_gen::{self, Anisotropy, HeightDistribution, TwinSpectrum};
 use fractal_contact::{Cells, HeightMap as RustMap, Result, Size, Surface as RustSurface};
@@ -21,10 +21,10 @@ pub fn cells(given: OneOrTwo<usize>, size: Size) -> Cells {
     }
 }
 
-fn drawn(py: Python<'_>, random: RandomSurface, cells: Cells, seed: u64) -> PyResult<HeightMap> {
+fn drawn(py: Python<'_>, random: RandomSurface, cells: Cells, seed: u64) -> PyResult<PyHeightMap> {
     memory::check_grid(py, "a map", cells, random.memory(cells))?;
     let map: Result<RustMap> = pool::call(py, move || random.map(cells, seed))?;
-    map.map(HeightMap::from).map_err(|error| of_model(py, error))
+    map.map(PyHeightMap::from).map_err(|error| of_model(py, error))
 }
 
 /// Seed of surface number `index` of the ensemble of a master seed.
@@ -38,20 +38,20 @@ pub fn surface_seed(seed: Seed, index: Seed) -> u64 {
 #[pyo3(signature = (surface, cells, seed, anisotropy, weibull))]
 pub fn self_affine_map(
     py: Python<'_>,
-    surface: &Surface,
+    surface: &PySurface,
     cells: OneOrTwo<usize>,
     seed: Seed,
-    anisotropy: Option<(Real, Real)>,
-    weibull: Option<Real>,
-) -> PyResult<HeightMap> {
+    anisotropy: Option<(RealNumber, RealNumber)>,
+    weibull: Option<RealNumber>,
+) -> PyResult<PyHeightMap> {
     let RustSurface::SelfAffine(described) = &surface.0 else {
         return Err(PyTypeError::new_err("the surface is not self-affine"));
     };
     let spectrum = RandomSpectrum::SelfAffine {
         surface: *described,
-        anisotropy: anisotropy.map(|(Real(ratio), Real(lay))| Anisotropy { ratio, lay }),
+        anisotropy: anisotropy.map(|(RealNumber(ratio), RealNumber(lay))| Anisotropy { ratio, lay }),
     };
-    let heights = weibull.map(|Real(shape)| HeightDistribution::Weibull { shape });
+    let heights = weibull.map(|RealNumber(shape)| HeightDistribution::Weibull { shape });
     let random = RandomSurface::new(spectrum, heights);
     let cells = self::cells(cells, random.size());
     drawn(py, random, cells, seed.0)
@@ -62,11 +62,11 @@ pub fn self_affine_map(
 #[pyo3(signature = (map, seed, rings, keep_heights))]
 pub fn twin(
     py: Python<'_>,
-    map: &HeightMap,
+    map: &PyHeightMap,
     seed: Seed,
     rings: bool,
     keep_heights: bool,
-) -> PyResult<HeightMap> {
+) -> PyResult<PyHeightMap> {
     let of = Arc::clone(&map.0);
     let (cells, like) = (of.cells(), if rings { TwinSpectrum::Rings } else { TwinSpectrum::EachWave });
     let heights = keep_heights.then(|| HeightDistribution::Of(Arc::clone(&of)));

@@ -1,18 +1,18 @@
 //! The checker: any model against the exact solution.
 
-use crate::problem::Problem;
+use crate::problem::ExactProblem;
 use contact_model::{ContactModel, ContactState, Error, Load, Result};
 
 /// Which of force and approach is prescribed; the other is the response.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Prescribed {
+pub enum PrescribedQuantity {
     /// The exact force is prescribed; the approach is the response.
     Force,
     /// The exact approach is prescribed; the force is the response.
     Approach,
 }
 
-/// Relative errors, root mean square over the cases of a [`Problem`].
+/// Relative errors, root mean square over the cases of a [`ExactProblem`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Deviation {
     /// Error of the approach at given force, or of the force at given approach.
@@ -31,15 +31,15 @@ pub struct Deviation {
 /// requested.
 pub fn deviation(
     model: &dyn ContactModel,
-    problem: &Problem,
-    prescribed: Prescribed,
+    problem: &ExactProblem,
+    prescribed: PrescribedQuantity,
 ) -> Result<Option<Deviation>> {
     let mut squares = [0.0; 3];
     for case in &problem.cases {
         let exact = problem.exact(case)?;
         let load = match prescribed {
-            Prescribed::Force => Load::force(exact.force),
-            Prescribed::Approach => Load::approach(case.approach),
+            PrescribedQuantity::Force => Load::force(exact.force),
+            PrescribedQuantity::Approach => Load::approach(case.approach),
         };
         let found = match model.prepare(&case.scene, 0) {
             Ok(mut contact) => contact.solve(load)?,
@@ -56,7 +56,7 @@ pub fn deviation(
 }
 
 /// Response, stiffness and area of a state.
-fn numbers(state: &ContactState, prescribed: Prescribed) -> Result<[f64; 3]> {
+fn numbers(state: &ContactState, prescribed: PrescribedQuantity) -> Result<[f64; 3]> {
     let asked = |name: &'static str, value: Option<f64>| {
         value.ok_or(Error::Shape {
             name: name.into(),
@@ -65,8 +65,8 @@ fn numbers(state: &ContactState, prescribed: Prescribed) -> Result<[f64; 3]> {
         })
     };
     let response = match prescribed {
-        Prescribed::Force => asked("approach", state.approach)?,
-        Prescribed::Approach => state.force,
+        PrescribedQuantity::Force => asked("approach", state.approach)?,
+        PrescribedQuantity::Approach => state.force,
     };
     Ok([response, asked("stiffness", state.stiffness)?, asked("area", state.area)?])
 }

@@ -5,7 +5,7 @@
 //! The tests themselves are in the `tests/` folder beside this file, one topic a file. They follow four
 //! rules.
 //!
-//! * A [`Problem`] knows its exact solution; [`deviation`] compares any model that accepts the scene, and
+//! * A [`ExactProblem`] knows its exact solution; [`deviation`] compares any model that accepts the scene, and
 //!   returns `None` where the model refuses it.
 //! * Errors of a discretisation are stated as an [`order`] over several grids and as a bound on the finest,
 //!   not as one loose tolerance.
@@ -30,9 +30,9 @@ mod order;
 mod problem;
 pub mod stability;
 
-pub use deviation::{Deviation, Prescribed, deviation};
+pub use deviation::{Deviation, PrescribedQuantity, deviation};
 pub use order::order;
-pub use problem::{Case, Problem, problems};
+pub use problem::{ExactCase, ExactProblem, problems};
 pub use stability::{SmallContact, embedded, every_contact_set, hard_map, map, rough, rough_map, scene};
 
 /// The examples of README.md and of the book are tests too.

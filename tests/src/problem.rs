@@ -5,7 +5,7 @@ use contact_model::{ContactModel, ContactState, Load, Outputs, Result, Scene, Su
 
 /// One scene and an approach at which its exact solution is known.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Case {
+pub struct ExactCase {
     /// The scene; it requests stiffness and area.
     pub scene: Scene,
     /// The approach.
@@ -16,26 +16,26 @@ pub struct Case {
 ///
 /// There are several states, because the error of a single one depends on the position of the edge of the
 /// contact relative to the cells; their mean does not.
-pub struct Problem {
+pub struct ExactProblem {
     /// Short name.
     pub name: &'static str,
     /// The exact solution.
     pub theory: Box<dyn ContactModel>,
     /// The states.
-    pub cases: Vec<Case>,
+    pub cases: Vec<ExactCase>,
 }
 
-impl Problem {
+impl ExactProblem {
     /// The exact state of a case.
     ///
     /// # Errors
     /// Those of the theory.
-    pub fn exact(&self, case: &Case) -> Result<ContactState> {
+    pub fn exact(&self, case: &ExactCase) -> Result<ContactState> {
         self.theory.prepare(&case.scene, 0)?.solve(Load::approach(case.approach))
     }
 }
 
-impl std::fmt::Debug for Problem {
+impl std::fmt::Debug for ExactProblem {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Problem")
             .field("name", &self.name)
@@ -55,21 +55,21 @@ const RADII: [f64; 6] = [0.263, 0.291, 0.317, 0.349, 0.377, 0.411];
 ///
 /// # Errors
 /// None with the numbers written here; those of [`analytic::power_law_body::kappa`] in general.
-pub fn problems() -> Result<Vec<Problem>> {
+pub fn problems() -> Result<Vec<ExactProblem>> {
     let power = |coefficient, exponent| Surface::PowerLaw { coefficient, exponent, size: SIDE.into() };
     Ok(vec![
         round("sphere", Box::new(Hertz), &Surface::Sphere { radius: 5.0, size: SIDE.into() }, 2.0, 0.1)?,
         round("cone", Box::new(PowerLawBody), &Surface::Cone { slope: 0.1, size: SIDE.into() }, 1.0, 0.1)?,
         round("power law n = 1/2", Box::new(PowerLawBody), &power(0.2, 0.5), 0.5, 0.2)?,
         round("power law n = 3", Box::new(PowerLawBody), &power(0.05, 3.0), 3.0, 0.05)?,
-        Problem {
+        ExactProblem {
             name: "flat circle",
             theory: Box::new(FlatPunch),
             cases: (RADII.iter())
                 .map(|r| case(Surface::FlatCircle { radius: r * SIDE, size: SIDE.into() }, 0.01))
                 .collect(),
         },
-        Problem {
+        ExactProblem {
             name: "flat square",
             theory: Box::new(FlatPunch),
             cases: vec![case(Surface::Flat { size: SIDE.into() }, 0.01)],
@@ -84,14 +84,14 @@ fn round(
     body: &Surface,
     n: f64,
     c: f64,
-) -> Result<Problem> {
+) -> Result<ExactProblem> {
     let kappa = analytic::power_law_body::kappa(n)?;
     let cases = RADII.iter().map(|r| case(body.clone(), kappa * c * (r * SIDE).powf(n))).collect();
-    Ok(Problem { name, theory, cases })
+    Ok(ExactProblem { name, theory, cases })
 }
 
-fn case(surface: Surface, approach: f64) -> Case {
+fn case(surface: Surface, approach: f64) -> ExactCase {
     let mut scene = Scene::new(surface, MODULUS);
     scene.outputs = Outputs { area: true, ..scene.outputs };
-    Case { scene, approach }
+    ExactCase { scene, approach }
 }

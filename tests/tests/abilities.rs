@@ -1,6 +1,6 @@
 //! The declared abilities of the models are correct: each ability is tried, and everything else is refused.
 
-use contact_model::quantities::{AskedBy, QUANTITIES, Quantity, Role};
+use contact_model::quantities::{AskedBy, QUANTITIES, Role, StateQuantity};
 use contact_model::{
     Adhesion, Body, Boundary, Conductance, ContactModel, ContactState, Effect, Effects, Error, Friction,
     HeightMap, LargestPull, Line, Load, LoadKind, Output, Pair, Paths, PreparedContact, Rheology, Scene,
@@ -138,7 +138,7 @@ pub fn told(model: &dyn ContactModel) -> BTreeSet<&'static str> {
         let Ok(mut contact) = prepared(model, &scene) else { continue };
         let Ok(state) = pressed(contact.as_mut(), &scene) else { continue };
         let normalisation = contact.normalisation();
-        let has = |quantity: &&Quantity| (quantity.value)(&state, &normalisation) != Value::Empty;
+        let has = |quantity: &&StateQuantity| (quantity.value)(&state, &normalisation) != Value::Empty;
         told.extend(QUANTITIES.iter().filter(has).map(|quantity| quantity.name));
         if model.abilities().paths != Paths::Forgotten {
             let step = Step::new(2.0, Load::force(0.001));
@@ -153,7 +153,7 @@ pub fn told(model: &dyn ContactModel) -> BTreeSet<&'static str> {
                 let load = Load::force(force);
                 let reached = contact.advance(Step::new(0.0, load)).or_else(Error::into_best);
                 let Ok(state) = reached.map(|state| largest.enter(load.normal, state)) else { break };
-                let has = |quantity: &&Quantity| {
+                let has = |quantity: &&StateQuantity| {
                     quantity.role == Role::OfPath && (quantity.value)(&state, &normalisation) != Value::Empty
                 };
                 told.extend(QUANTITIES.iter().filter(has).map(|quantity| quantity.name));

@@ -174,8 +174,8 @@ impl OnCells {
 /// The cohesive zone grows by whole cells, so that each branch deviates from the closed form by a share of a
 /// cell, and the force by the traction on that share along the edge. Measured were 0.2, 1.2 and 4 cells for
 /// the force and 0.3, 0.4 and 1.3 for the radius; the bounds are rounded up.
-type Case = (f64, f64, [usize; 2], (f64, f64));
-const SPHERES: [Case; 3] = [
+type AdhesionCase = (f64, f64, [usize; 2], (f64, f64));
+const SPHERES: [AdhesionCase; 3] = [
     (0.3, 3.2, [64, 128], (0.3, 0.5)),
     (1.0, 2.4, [96, 192], (1.5, 0.6)),
     (2.0, 2.2, [160, 320], (5.0, 1.7)),

@@ -10,7 +10,7 @@ mod readmes;
 mod sources;
 
 use crate::abilities::told;
-use contact_model::quantities::{Average, Compared, QUANTITIES, Quantity, Role};
+use contact_model::quantities::{Average, Compared, QUANTITIES, Role, StateQuantity};
 use contact_model::{Effect, Output};
 use fractal_contact::models::{MODELS, ModelRecord, abilities};
 use fractal_contact::scenes::{EFFECT_KEYS, EffectKey, SceneKey, scene_keys};
@@ -21,7 +21,7 @@ const BEGIN: &str = "<!-- generated: ";
 const END: &str = "<!-- end of what is generated -->";
 
 /// The symbol of a quantity without commands of TeX.
-fn symbol(quantity: &Quantity) -> String {
+fn symbol(quantity: &StateQuantity) -> String {
     let mut symbol = quantity.symbol.replace("\\rm", "");
     while let Some(at) = symbol.find("\\bar{") {
         let end = symbol[at..].find('}').map_or(symbol.len(), |end| at + end);
@@ -31,7 +31,7 @@ fn symbol(quantity: &Quantity) -> String {
 }
 
 /// The models that report a quantity for some state; each model is tried.
-fn claimed_by(quantity: &Quantity, told: &[BTreeSet<&'static str>]) -> String {
+fn claimed_by(quantity: &StateQuantity, told: &[BTreeSet<&'static str>]) -> String {
     let claims = MODELS.iter().zip(told).filter(|(_, told)| told.contains(quantity.name));
     let names: Vec<&str> = claims.map(|(record, _)| record.name()).collect();
     if names.len() == MODELS.len() { "all".into() } else { names.join(", ") }
@@ -52,7 +52,7 @@ fn table(heads: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> String 
 /// Rows of the glossary.
 fn glossary() -> String {
     let told = QUANTITIES.iter().filter(|quantity| !matches!(quantity.role, Role::Work));
-    let cells = |quantity: &Quantity| {
+    let cells = |quantity: &StateQuantity| {
         let name = format!("`{}`", quantity.name);
         vec![name, symbol(quantity), quantity.unit.words().into(), quantity.meaning.into()]
     };
@@ -60,19 +60,19 @@ fn glossary() -> String {
 }
 
 fn quantities_page() -> String {
-    let average = |quantity: &Quantity| match quantity.average {
+    let average = |quantity: &StateQuantity| match quantity.average {
         Average::Mean => "mean, standard error, deviation",
         Average::Same => "the same on all",
         Average::No => "",
     };
-    let compared = |quantity: &Quantity| match quantity.compared {
+    let compared = |quantity: &StateQuantity| match quantity.compared {
         Compared::Yes => "yes",
         Compared::Periodic => "periodic, resolved waves",
         Compared::No => "",
     };
     let told: Vec<BTreeSet<&str>> = MODELS.iter().map(|record| told(record.model)).collect();
     let rows = |wanted: &dyn Fn(Role) -> bool| {
-        let cells = |quantity: &Quantity| {
+        let cells = |quantity: &StateQuantity| {
             vec![
                 format!("`{}`", quantity.name),
                 symbol(quantity),

@@ -4,7 +4,7 @@ use analytic::{FlatPunch, Hertz, PowerLaw, PowerLawBody};
 use bem3d::Bem3d;
 use contact_model::ContactModel;
 use mdr1d::Mdr1d;
-use tests::{Deviation, Prescribed, deviation, order, problems};
+use tests::{Deviation, PrescribedQuantity, deviation, order, problems};
 
 /// Closed forms: a few roundings, times 1/n = 2 for the power n = 1/2.
 const CLOSED_FORM: f64 = 1e-12;
@@ -16,7 +16,7 @@ const ONE_DIMENSION: f64 = 1e-10;
 const GRIDS: [usize; 3] = [65, 129, 257];
 
 /// The expected convergence of a discretisation.
-struct Expected {
+struct ExpectedConvergence {
     names: &'static [&'static str],
     /// Order of the response (force or approach), of the stiffness and of the area.
     response: std::ops::Range<f64>,
@@ -27,11 +27,11 @@ struct Expected {
 }
 
 /// Measured, then rounded up by about two.
-const TABLE: [Expected; 3] = [
+const TABLE: [ExpectedConvergence; 3] = [
     // The contact edge is a staircase, off by a fraction of a cell: area and stiffness are of first order,
     // better where the steps average out along the edge (3/2), hence noisy. The force at given approach is
     // stationary in the contact set, so its error is of second order in the same fraction.
-    Expected {
+    ExpectedConvergence {
         names: &["sphere", "cone", "power law n = 1/2", "power law n = 3"],
         response: 1.7..2.3,
         stiffness: 0.9..1.8,
@@ -40,7 +40,7 @@ const TABLE: [Expected; 3] = [
     },
     // A punch's pressure grows like 1/sqrt(distance) at its edge, which cells resolve to first order; force,
     // approach and stiffness are the same number. The round edge adds its staircase.
-    Expected {
+    ExpectedConvergence {
         names: &["flat circle"],
         response: 0.8..1.4,
         stiffness: 0.8..1.4,
@@ -48,7 +48,7 @@ const TABLE: [Expected; 3] = [
         finest: [3e-3, 3e-3, 1e-3],
     },
     // No staircase: first order without noise, k_N = k (1 - 0.35/N + ...). The area is exact.
-    Expected {
+    ExpectedConvergence {
         names: &["flat square"],
         response: 0.97..1.01,
         stiffness: 0.97..1.01,
@@ -61,7 +61,7 @@ const TABLE: [Expected; 3] = [
 fn boundary_elements_converge_with_their_order() {
     for problem in problems().unwrap() {
         let expected = TABLE.iter().find(|row| row.names.contains(&problem.name)).unwrap();
-        for prescribed in [Prescribed::Approach, Prescribed::Force] {
+        for prescribed in [PrescribedQuantity::Approach, PrescribedQuantity::Force] {
             let found: Vec<(usize, Deviation)> = (GRIDS.iter())
                 .map(|&cells| {
                     let model = Bem3d { cells, tolerance: 1e-8, ..Bem3d::default() };
@@ -103,7 +103,7 @@ fn exact_models_are_exact_where_they_accept() {
     ];
     for (model, accepted, tolerance) in models {
         for problem in problems().unwrap() {
-            for prescribed in [Prescribed::Approach, Prescribed::Force] {
+            for prescribed in [PrescribedQuantity::Approach, PrescribedQuantity::Force] {
                 let found = deviation(model, &problem, prescribed).unwrap();
                 let place = format!("{} on the {}: {found:?}", model.name(), problem.name);
                 assert_eq!(found.is_some(), accepted.contains(&problem.name), "{place}");

@@ -2,7 +2,7 @@
 //! independent code: numbers, intervals, p-values, resolved windows, verdicts.
 
 use crate::committed::{Row, number, rows};
-use crate::exponent_study::{Study, study, towards_zero};
+use crate::exponent_study::{ExponentStudy, study, towards_zero};
 use std::collections::BTreeMap;
 
 /// Rounding of sums in another order, of numbers with five digits in the samples.
@@ -55,7 +55,7 @@ fn left_by_grids([fine, half, quarter]: [f64; 3]) -> f64 {
     1.5 * last.abs().max(0.5 * before.abs()) * fall / (1.0 - fall)
 }
 
-impl Study {
+impl ExponentStudy {
     /// Levels that have a load.
     fn levels_at(&self, j: usize) -> usize {
         self.levels.iter().filter(|level| level.iter().any(|surface| surface.len() > j)).count()
@@ -113,7 +113,7 @@ impl Study {
 }
 
 /// A number of the samples with the parts of its interval.
-struct Found {
+struct SampledNumber {
     value: f64,
     variance: f64,
     freedom: f64,
@@ -121,14 +121,14 @@ struct Found {
     resolved: bool,
 }
 
-fn of_window(study: &Study, window: &[usize]) -> Found {
+fn of_window(study: &ExponentStudy, window: &[usize]) -> SampledNumber {
     let (variance, freedom) = study.exponent_variance(window);
     let (value, grid) = (study.exponent(window), study.exponent_grid_part(window));
-    Found { value, variance, freedom, grid, resolved: study.resolves(window) }
+    SampledNumber { value, variance, freedom, grid, resolved: study.resolves(window) }
 }
 
-fn check(row: &Row, found: &Found) {
-    let Found { value, variance, freedom, grid, resolved } = *found;
+fn check(row: &Row, found: &SampledNumber) {
+    let SampledNumber { value, variance, freedom, grid, resolved } = *found;
     let [stated, low, high, chance, expected, tests] =
         ["found", "low", "high", "chance", "expected", "tests"].map(|column| number(row, column));
     assert!((value - stated).abs() < ROUNDING, "{value}: {row:?}");
@@ -159,7 +159,7 @@ fn family(name: &str) -> Vec<Row> {
 }
 
 /// Surfaces or lines of the tested run; `None` where it has none, in which case the row has no number either.
-fn tested(row: &Row, model: &str) -> Option<Study> {
+fn tested(row: &Row, model: &str) -> Option<ExponentStudy> {
     let study = study("--tested", model, number(row, "fractal_dimension"));
     let absent = study.levels.is_empty();
     assert_eq!(row["verdict"] == "no number", absent, "{row:?}");
@@ -167,7 +167,7 @@ fn tested(row: &Row, model: &str) -> Option<Study> {
     (!absent).then_some(study)
 }
 
-fn window(row: &Row, study: &Study) -> Vec<usize> {
+fn window(row: &Row, study: &ExponentStudy) -> Vec<usize> {
     let (from, to) = row["window"].split_once("..").unwrap();
     let window = study.window(from.parse().unwrap(), to.parse().unwrap());
     assert_eq!(window.len(), 7, "{row:?}");
@@ -181,7 +181,7 @@ fn slopes_of_line_over_surface_and_their_verdicts_are_those_of_the_samples() {
         let [line, solid] = [line, solid].map(|study| of_window(&study, &window(&row, &study)));
         let variance = line.variance + solid.variance;
         let spread = line.variance.powi(2) / line.freedom + solid.variance.powi(2) / solid.freedom;
-        let found = Found {
+        let found = SampledNumber {
             value: line.value - solid.value,
             variance,
             freedom: variance * variance / spread,

@@ -4,7 +4,7 @@ use crate::committed::{Row, list, mean_and_error, number, of_dimension, rows, sl
 use std::collections::BTreeMap;
 
 /// Loads and, for each level, its surfaces: k_bar on the coarsest grid, then differences.
-pub(crate) struct Study {
+pub(crate) struct ExponentStudy {
     pub(crate) forces: Vec<f64>,
     pub(crate) levels: Vec<Vec<Vec<f64>>>,
 }
@@ -18,8 +18,8 @@ fn sources(flag: &str) -> Vec<String> {
 }
 
 /// The surfaces or lines of a fractal dimension, of all runs together, at the loads that all of them have.
-pub(crate) fn study(flag: &str, model: &str, d: f64) -> Study {
-    let mut found = Study { forces: Vec::new(), levels: Vec::new() };
+pub(crate) fn study(flag: &str, model: &str, d: f64) -> ExponentStudy {
+    let mut found = ExponentStudy { forces: Vec::new(), levels: Vec::new() };
     for path in sources(flag) {
         let own: Vec<Row> =
             of_dimension(rows(&path), d).into_iter().filter(|row| row["model"] == model).collect();
@@ -71,7 +71,7 @@ fn loads(path: &str, model: &str) -> Vec<f64> {
     (0..count).map(|i| low * (high / low).powf(f64::from(i) / f64::from(count - 1))).collect()
 }
 
-impl Study {
+impl ExponentStudy {
     /// Mean curve of the first levels.
     pub(crate) fn mean(&self, levels: usize) -> Vec<f64> {
         let of = |level: &Vec<Vec<f64>>, j: usize| {
@@ -186,12 +186,12 @@ fn the_slope_of_line_over_surface_is_that_of_the_samples() {
 
 /// alpha and omega of the law zeta F^alpha (1 + c F^omega) that fits best.
 pub(crate) fn towards_zero(x: &[f64], y: &[f64], weights: &[f64], held: Option<f64>) -> (f64, f64) {
-    let Law { alpha, omega, .. } = law(x, y, weights, held);
+    let ExponentLaw { alpha, omega, .. } = law(x, y, weights, held);
     (alpha, omega)
 }
 
 /// A law zeta F^alpha (1 + c F^omega), c in powers of the largest force, and its misfit.
-struct Law {
+struct ExponentLaw {
     misfit: f64,
     alpha: f64,
     omega: f64,
@@ -199,7 +199,7 @@ struct Law {
 }
 
 /// The law that fits best, by a search of omega and c that is refined fourteen times.
-fn law(x: &[f64], y: &[f64], weights: &[f64], held: Option<f64>) -> Law {
+fn law(x: &[f64], y: &[f64], weights: &[f64], held: Option<f64>) -> ExponentLaw {
     let top = x[x.len() - 1];
     let all: f64 = weights.iter().sum();
     let line = |omega: f64, c: f64| {
@@ -233,7 +233,7 @@ fn law(x: &[f64], y: &[f64], weights: &[f64], held: Option<f64>) -> Law {
         deep *= 0.6;
     }
     let (misfit, alpha, omega, c) = best;
-    Law { misfit, alpha, omega, c }
+    ExponentLaw { misfit, alpha, omega, c }
 }
 
 #[test]

@@ -69,7 +69,7 @@ impl Kernels {
 
 /// Largest deviations over the paths, each relative to the largest value of its kind.
 #[derive(Debug, Default)]
-struct Worst {
+struct WorstDeviation {
     pressure: f64,
     traction: f64,
     displacement: f64,
@@ -102,7 +102,7 @@ fn any_law(draw: &mut Draw, pressure: f64) -> FrictionLaw {
 }
 
 /// Follows one random path in both ways and notes the deviations.
-fn follow(seed: u64, flows: bool, kernels: &mut Kernels, worst: &mut Worst) {
+fn follow(seed: u64, flows: bool, kernels: &mut Kernels, worst: &mut WorstDeviation) {
     let mut draw = Draw::new(seed);
     let periodic = draw.index(2) == 1;
     let poisson = draw.index(POISSONS.len());
@@ -179,7 +179,7 @@ fn follow(seed: u64, flows: bool, kernels: &mut Kernels, worst: &mut Worst) {
 }
 
 /// Notes the deviations of a state.
-fn note(worst: &mut Worst, state: &ContactState, exact: &DensePath, area: f64, seed: u64) {
+fn note(worst: &mut WorstDeviation, state: &ContactState, exact: &DensePath, area: f64, seed: u64) {
     let found = state.tangential.unwrap();
     let fields = state.fields.as_ref().unwrap();
     let n = exact.pressed.len();
@@ -220,7 +220,7 @@ fn note(worst: &mut Worst, state: &ContactState, exact: &DensePath, area: f64, s
 /// The work of both loads is stored, dissipated by friction, or done on the indentation. With the loads at the end of
 /// a step it also holds half the product of its changes, and what the pressures did across the gaps that closed.
 fn balance(
-    worst: &mut Worst,
+    worst: &mut WorstDeviation,
     state: &ContactState,
     before: Option<&DensePath>,
     exact: &DensePath,
@@ -262,7 +262,7 @@ fn balance(
 
 #[test]
 fn paths_under_any_law_are_those_of_the_dense_reference() {
-    let (mut kernels, mut worst) = (Kernels::default(), Worst::default());
+    let (mut kernels, mut worst) = (Kernels::default(), WorstDeviation::default());
     for seed in 1..=400 {
         follow(seed, false, &mut kernels, &mut worst);
     }
@@ -420,7 +420,7 @@ fn a_shear_strength_on_attached_shares_is_that_of_the_dense_reference() {
 
 #[test]
 fn friction_with_a_hardness_is_that_of_the_dense_reference() {
-    let (mut kernels, mut worst) = (Kernels::default(), Worst::default());
+    let (mut kernels, mut worst) = (Kernels::default(), WorstDeviation::default());
     for seed in 1001..=1400 {
         follow(seed, true, &mut kernels, &mut worst);
     }

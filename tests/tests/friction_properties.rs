@@ -29,7 +29,7 @@ fn config(cases: u32) -> ProptestConfig {
 
 /// A surface, its bodies and their friction.
 #[derive(Debug, Clone)]
-struct Drawn {
+struct SlidingScene {
     map: HeightMap,
     poisson: f64,
     coefficient: f64,
@@ -41,14 +41,14 @@ prop_compose! {
     fn any_contact()(
         kind in 0_u8..9, cells in 2_usize..13, seed in 0_u64..1000, noise in prop::collection::vec(0.0_f64..1.0, 200),
         poisson in prop_oneof![Just(0.0), Just(0.5), 0.0_f64..0.5], coefficient in -2.0_f64..1.0, exponent in -4.0_f64..1.0,
-    ) -> Drawn {
+    ) -> SlidingScene {
         let map = match kind {
             7 | 8 if cells > 2 => rough_map(if kind == 7 { 2.2 } else { 2.8 }, cells, seed).unwrap(),
             _ => hard_map(kind, cells, &noise).unwrap(),
         };
         let rms = surface_gen::rms_height(map.heights());
         let unit = if rms > 0.0 { rms } else { 1.0 };
-        Drawn { map, poisson, coefficient: 10_f64.powf(coefficient), force: 10_f64.powf(exponent) * unit }
+        SlidingScene { map, poisson, coefficient: 10_f64.powf(coefficient), force: 10_f64.powf(exponent) * unit }
     }
 }
 
@@ -60,7 +60,7 @@ fn any_leg() -> impl Strategy<Value = Leg> {
     (prop_oneof![Just(1.0), 0.2_f64..3.0], 0.0_f64..0.98, 0.0_f64..7.0, any::<bool>())
 }
 
-impl Drawn {
+impl SlidingScene {
     fn pair(&self) -> Pair {
         let body = Body::Elastic { young: 2.0 * (1.0 - self.poisson * self.poisson), poisson: self.poisson };
         Pair { first: body, second: body }
@@ -109,7 +109,7 @@ struct Sheared {
 }
 
 impl Sheared {
-    fn of(drawn: &Drawn, state: &ContactState) -> Self {
+    fn of(drawn: &SlidingScene, state: &ContactState) -> Self {
         let fields = state.fields.as_ref().unwrap();
         let area = drawn.map.dx() * drawn.map.dy();
         let (p, [x, y]) = (fields.pressure.as_ref().unwrap().values(), fields.traction.as_ref().unwrap());
@@ -126,7 +126,7 @@ impl Sheared {
         }
     }
 
-    fn nothing(drawn: &Drawn) -> Self {
+    fn nothing(drawn: &SlidingScene) -> Self {
         let slip = vec![[0.0; 2]; drawn.map.heights().len()];
         Self {
             forces: vec![],
@@ -227,7 +227,7 @@ proptest! {
     fn loops_close_and_lose_energy(
         drawn in any_contact(), top in 0.05_f64..0.97, part in 0.0_f64..1.0, angle in 0.0_f64..7.0, steps in 1_u32..4,
     ) {
-        let drawn = Drawn { poisson: 0.0, ..drawn };
+        let drawn = SlidingScene { poisson: 0.0, ..drawn };
         let mut contact = drawn.prepare();
         let bottom = top - 2.0 * part * top;
         let mut turns = Vec::new();
@@ -307,7 +307,7 @@ proptest! {
             }
             if mirror { y * n + n - 1 - x } else { y * n + x }
         };
-        let turned = Drawn { map: turn_map(&drawn.map), ..drawn.clone() };
+        let turned = SlidingScene { map: turn_map(&drawn.map), ..drawn.clone() };
         let (mut here, mut there) = (drawn.prepare(), turned.prepare());
         for leg in legs {
             let step = drawn.step(leg);
@@ -339,8 +339,9 @@ proptest! {
     }
 }
 
-fn hostile() -> (Drawn, Box<dyn PreparedContact>) {
-    let drawn = Drawn { map: rough_map(2.3, 8, 1).unwrap(), poisson: 0.3, coefficient: 0.4, force: 0.3 };
+fn hostile() -> (SlidingScene, Box<dyn PreparedContact>) {
+    let drawn =
+        SlidingScene { map: rough_map(2.3, 8, 1).unwrap(), poisson: 0.3, coefficient: 0.4, force: 0.3 };
     let contact = drawn.prepare();
     (drawn, contact)
 }

@@ -38,4 +38,5 @@ mod short_range;
 mod small_sets;
 mod stability;
 mod symmetry;
+mod type_names;
 mod work;

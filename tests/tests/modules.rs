@@ -12,7 +12,7 @@ use syn::{Item, ItemUse, UseTree, Visibility};
 type Name = Vec<String>;
 
 #[derive(Default)]
-struct Module {
+struct ParsedModule {
     items: BTreeSet<String>,
     /// Imported names and where they come from.
     imports: BTreeMap<String, Name>,
@@ -24,7 +24,7 @@ struct Module {
 
 #[derive(Default)]
 struct Crate {
-    modules: BTreeMap<Name, Module>,
+    modules: BTreeMap<Name, ParsedModule>,
 }
 
 fn is_test(attributes: &[syn::Attribute]) -> bool {
@@ -35,9 +35,9 @@ fn is_test(attributes: &[syn::Attribute]) -> bool {
 }
 
 /// Everything of one file that is not an item's name.
-struct Paths<'a>(&'a mut Vec<Name>);
+struct PathVisitor<'a>(&'a mut Vec<Name>);
 
-impl<'ast> Visit<'ast> for Paths<'_> {
+impl<'ast> Visit<'ast> for PathVisitor<'_> {
     fn visit_path(&mut self, path: &'ast syn::Path) {
         self.0.push(path.segments.iter().map(|s| s.ident.to_string()).collect());
         visit::visit_path(self, path);
@@ -73,7 +73,7 @@ impl Crate {
     }
 
     fn items(&mut self, items: &[Item], children: &Path, name: Name) {
-        let mut module = Module::default();
+        let mut module = ParsedModule::default();
         for item in items {
             if let Item::Mod(inner) = item {
                 if is_test(&inner.attrs) {
@@ -122,7 +122,7 @@ impl Crate {
 
     /// Which modules each module uses.
     fn uses(&self) -> BTreeMap<Name, BTreeSet<Name>> {
-        let of = |(name, module): (&Name, &Module)| {
+        let of = |(name, module): (&Name, &ParsedModule)| {
             let used = module.paths.iter().filter_map(|path| self.definer(name, path, 0));
             (name.clone(), used.filter(|other| other != name).collect())
         };
@@ -130,7 +130,7 @@ impl Crate {
     }
 }
 
-impl Module {
+impl ParsedModule {
     fn take(&mut self, item: &Item) {
         let (name, attributes) = match item {
             Item::Const(i) => (Some(&i.ident), &i.attrs),
@@ -155,7 +155,7 @@ impl Module {
             return;
         }
         self.items.extend(name.map(ToString::to_string));
-        Paths(&mut self.paths).visit_item(item);
+        PathVisitor(&mut self.paths).visit_item(item);
     }
 
     fn import(&mut self, tree: &UseTree, before: &mut Name, exported: bool) {

@@ -20,9 +20,9 @@ fn share(at: f64) -> usize {
 }
 
 /// A number of each surface, from the coarsest grid to the finest.
-type Surfaces = BTreeMap<usize, Vec<f64>>;
+type SurfaceNumbers = BTreeMap<usize, Vec<f64>>;
 
-fn on_grids(all: &[Row], column: &str, [d, force, nu]: [f64; 3], at: f64) -> Surfaces {
+fn on_grids(all: &[Row], column: &str, [d, force, nu]: [f64; 3], at: f64) -> SurfaceNumbers {
     let mut found: BTreeMap<usize, BTreeMap<usize, f64>> = BTreeMap::new();
     for row in all.iter().filter(|row| {
         let is = |column, value| same(number(row, column), value);
@@ -36,14 +36,14 @@ fn on_grids(all: &[Row], column: &str, [d, force, nu]: [f64; 3], at: f64) -> Sur
 
 /// Mean, standard error and discretisation error.
 #[derive(Clone, Copy)]
-struct Found {
+struct StudyMean {
     mean: f64,
     error: f64,
     grid: f64,
     surfaces: usize,
 }
 
-impl Found {
+impl StudyMean {
     fn half(&self) -> f64 {
         student(self.surfaces as f64 - 1.0) * self.error
     }
@@ -55,7 +55,7 @@ impl Found {
 }
 
 /// The limit of small cells, as `hypotheses.md` defines it.
-fn limit(surfaces: &[Vec<f64>]) -> Found {
+fn limit(surfaces: &[Vec<f64>]) -> StudyMean {
     let line = |values: &[f64], n: usize| 2.0 * values[n] - values[n - 1];
     let last = surfaces[0].len() - 1;
     let limits: Vec<f64> = surfaces.iter().map(|values| line(values, last)).collect();
@@ -65,24 +65,24 @@ fn limit(surfaces: &[Vec<f64>]) -> Found {
     let reach = (mean - of(&|values| values[last])).abs();
     let grid =
         if last == 1 { reach } else { (1.5 * (mean - of(&|values| line(values, 1))).abs()).max(0.5 * reach) };
-    Found { mean, error, grid, surfaces: surfaces.len() }
+    StudyMean { mean, error, grid, surfaces: surfaces.len() }
 }
 
 /// The finest grid.
-fn finest(surfaces: &[Vec<f64>]) -> Found {
+fn finest(surfaces: &[Vec<f64>]) -> StudyMean {
     let of = |n: usize| surfaces.iter().map(|values| values[n]).collect::<Vec<f64>>();
     let (mean, error) = mean_and_error(&of(2));
     let differences: Vec<[f64; 2]> = surfaces.iter().map(|v| [v[1] - v[2], v[0] - v[1]]).collect();
     let known = analysis::KnownPart::default();
     let grid = analysis::mean_grid_error(&differences, known, surfaces.len()).unwrap();
-    Found { mean, error, grid, surfaces: surfaces.len() }
+    StudyMean { mean, error, grid, surfaces: surfaces.len() }
 }
 
 fn samples() -> Vec<Row> {
     rows("data/partial-slip/partial-slip-grid-samples.csv")
 }
 
-fn whole(surfaces: Surfaces) -> Vec<Vec<f64>> {
+fn whole(surfaces: SurfaceNumbers) -> Vec<Vec<f64>> {
     surfaces.into_values().collect()
 }
 
@@ -98,7 +98,7 @@ fn limits_of_small_cells_are_those_of_the_samples() {
     for row in limits {
         let [d, force, nu, at] =
             ["fractal_dimension", "force_bar", "poisson", "share"].map(|column| number(row, column));
-        let agree = |found: Found, column: &str| {
+        let agree = |found: StudyMean, column: &str| {
             let stated = [column.to_owned(), format!("{column}_half"), format!("{column}_grid")]
                 .map(|c| number(row, &c));
             for (stated, found) in stated.into_iter().zip([found.mean, found.half(), found.grid]) {
@@ -118,7 +118,7 @@ fn limits_of_small_cells_are_those_of_the_samples() {
 }
 
 /// The number that a test of `hypotheses.md` is about, of the surfaces that it takes.
-fn tested(all: &[Row], row: &Row) -> Found {
+fn tested(all: &[Row], row: &Row) -> StudyMean {
     let [force, at] = ["force_bar", "share"].map(|column| number(row, column));
     let dimensions: Vec<f64> = row["fractal_dimension"].split(" - ").map(|d| d.parse().unwrap()).collect();
     let column = if row["family"] == "C" { "stiffness" } else { "stick" };
@@ -327,7 +327,7 @@ fn the_page_has_the_limits_of_small_cells_of_the_samples() {
             let [half, most] = [0.5, 0.9].map(|at| limit(&of("stick", at)));
             let power = |share: f64| share.ln() / 0.1_f64.ln();
             let stiffness = finest(&of("stiffness", 0.5));
-            let plain = |of: &Found| format!("{:.3} ± {:.3}", of.mean, of.whole());
+            let plain = |of: &StudyMean| format!("{:.3} ± {:.3}", of.mean, of.whole());
             let row = format!(
                 "| {d} | {force} | {} | {} | {:.2} ({:.2} to {:.2}) | {} |",
                 plain(&half),

@@ -11,7 +11,7 @@ use tests::scene;
 const AGREEMENT: f64 = 1e-6;
 
 /// One row of the reference.
-struct Row {
+struct PeerRow {
     force_bar: f64,
     approach_over_h: f64,
     stiffness_bar: f64,
@@ -22,7 +22,7 @@ fn data(name: &str) -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../data/peers").join(name)
 }
 
-fn rows() -> Vec<Row> {
+fn rows() -> Vec<PeerRow> {
     let mut reader = csv::Reader::from_path(data("reference-N256-Df2.4.csv")).unwrap();
     let heads = reader.headers().unwrap().clone();
     let column = |name: &str| heads.iter().position(|head| head == name).unwrap();
@@ -33,7 +33,7 @@ fn rows() -> Vec<Row> {
             let record = record.unwrap();
             let [force_bar, approach_over_h, stiffness_bar, cells] =
                 columns.map(|c| record[c].parse::<f64>().unwrap());
-            Row { force_bar, approach_over_h, stiffness_bar, contact_cells: cells as usize }
+            PeerRow { force_bar, approach_over_h, stiffness_bar, contact_cells: cells as usize }
         })
         .collect()
 }
@@ -46,12 +46,12 @@ fn prepared() -> Box<dyn PreparedContact> {
     Bem3d { tolerance: 1e-8, ..Bem3d::default() }.prepare(&scene(map), 0).unwrap()
 }
 
-fn press(contact: &mut dyn PreparedContact, row: &Row) -> ContactState {
+fn press(contact: &mut dyn PreparedContact, row: &PeerRow) -> ContactState {
     let force = contact.normalisation().force(row.force_bar).unwrap();
     contact.solve(Load::force(force)).unwrap()
 }
 
-fn agree(contact: &dyn PreparedContact, state: &ContactState, row: &Row) {
+fn agree(contact: &dyn PreparedContact, state: &ContactState, row: &PeerRow) {
     let normalisation = contact.normalisation();
     let approach = normalisation.approach_over_h(state.approach.unwrap()).unwrap();
     assert_relative_eq!(approach, row.approach_over_h, max_relative = AGREEMENT);

@@ -26,9 +26,9 @@ const ROUNDING: f64 = 1e-9;
 const QUOTIENT: f64 = 1e-4;
 
 /// Numbers in [0, 1) from a seed.
-struct Draw(u64);
+struct UniformNumbers(u64);
 
-impl Draw {
+impl UniformNumbers {
     fn new(seed: u64) -> Self {
         let mut draw = Self(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) ^ 0x1234_5678);
         for _ in 0..4 {
@@ -56,7 +56,7 @@ impl Draw {
 }
 
 /// A map of waves and noise; `noise` is the share of the latter.
-fn heights(draw: &mut Draw, cells: (usize, usize), noise: f64, holes: bool) -> HeightMap {
+fn heights(draw: &mut UniformNumbers, cells: (usize, usize), noise: f64, holes: bool) -> HeightMap {
     let [columns, rows] = [cells.0, cells.1].map(|n| draw.count(n, n + 8));
     let sides = [1.0, 0.6, 1.7];
     let [dx, dy] = [0; 2].map(|_| sides[draw.count(0, 2)]);
@@ -83,7 +83,7 @@ fn heights(draw: &mut Draw, cells: (usize, usize), noise: f64, holes: bool) -> H
     HeightMap::with_undefined([columns, rows], [columns as f64 * dx, rows as f64 * dy], heights).unwrap()
 }
 
-fn scene(draw: &mut Draw, map: HeightMap) -> Scene {
+fn scene(draw: &mut UniformNumbers, map: HeightMap) -> Scene {
     let mut scene = Scene::new(Surface::Heights(Arc::new(map)), draw.between(0.5, 2.0));
     if draw.chance(0.5) {
         scene.effects.boundary = Boundary::Periodic;
@@ -230,7 +230,7 @@ fn load_at(scene: &Scene, plane: f64) -> Load {
 
 /// A state of an elastic contact, by force, approach or mean gap.
 fn elastic(seed: u64) -> Result<Faults, Error> {
-    let mut draw = Draw::new(seed);
+    let mut draw = UniformNumbers::new(seed);
     let (noise, holes) = (draw.unit(), draw.chance(0.5));
     let map = heights(&mut draw, (4, 3), noise, holes);
     let scene = scene(&mut draw, map);
@@ -294,7 +294,7 @@ fn walked(model: Bem3d, scene: &Scene, loads: &[Load]) -> Result<ContactState, E
 
 /// A path with a hardness: loads up and down, old loads again.
 fn plastic(seed: u64) -> Result<Faults, Error> {
-    let mut draw = Draw::new(seed);
+    let mut draw = UniformNumbers::new(seed);
     let (noise, holes) = (draw.unit(), draw.chance(0.4));
     let map = heights(&mut draw, (4, 3), noise, holes);
     let mut scene = scene(&mut draw, map);
@@ -375,7 +375,7 @@ fn plastic(seed: u64) -> Result<Faults, Error> {
 /// The energy that a hardness dissipates is the work around a loop.
 fn plastic_loop(seed: u64) -> Result<Faults, Error> {
     const STEPS: usize = 60;
-    let mut draw = Draw::new(seed);
+    let mut draw = UniformNumbers::new(seed);
     let map = heights(&mut draw, (5, 5), 0.3, false);
     let mut scene = scene(&mut draw, map);
     scene.outputs = contact_model::Outputs { mean_gap: is_periodic(&scene), ..Default::default() };
@@ -404,7 +404,7 @@ fn plastic_loop(seed: u64) -> Result<Faults, Error> {
 }
 
 /// A contact with adhesion on smooth bumps; where both laws are possible, one is chosen at random.
-fn adhesive_scene(draw: &mut Draw, law: Option<AdhesionLaw>, cells: (usize, usize)) -> Scene {
+fn adhesive_scene(draw: &mut UniformNumbers, law: Option<AdhesionLaw>, cells: (usize, usize)) -> Scene {
     let holes = draw.chance(0.3);
     let noise = if law.is_some() { 0.3 * draw.unit() } else { 0.0 };
     let map = heights(draw, cells, noise, holes);
@@ -425,7 +425,7 @@ fn adhesive_scene(draw: &mut Draw, law: Option<AdhesionLaw>, cells: (usize, usiz
 }
 
 /// Approaches up and down, from separation to compression.
-fn planes(draw: &mut Draw, scene: &Scene) -> Vec<f64> {
+fn planes(draw: &mut UniformNumbers, scene: &Scene) -> Vec<f64> {
     let map = map_of(scene);
     let highest = if is_periodic(scene) {
         let defined = map.defined().count() as f64;
@@ -437,7 +437,7 @@ fn planes(draw: &mut Draw, scene: &Scene) -> Vec<f64> {
 }
 
 fn exponential(seed: u64) -> Result<Faults, Error> {
-    let mut draw = Draw::new(seed);
+    let mut draw = UniformNumbers::new(seed);
     let scene = adhesive_scene(&mut draw, Some(AdhesionLaw::Exponential), (4, 3));
     let mut planes = planes(&mut draw, &scene);
     if is_periodic(&scene) {
@@ -490,7 +490,7 @@ fn exponential(seed: u64) -> Result<Faults, Error> {
 /// Compares the slope with fronts that move by cells, from states further along the branch, with the
 /// stiffness that the state claims. `None` where the state claims none.
 fn moving_front(seed: u64, law: Option<AdhesionLaw>) -> Result<(Faults, Option<bool>), Error> {
-    let mut draw = Draw::new(seed);
+    let mut draw = UniformNumbers::new(seed);
     let scene = adhesive_scene(&mut draw, law, (18, 18));
     let mut planes = planes(&mut draw, &scene);
     if is_periodic(&scene) {
@@ -600,7 +600,7 @@ fn parabola(points: &[(f64, f64)]) -> (f64, f64) {
 /// it.
 fn friction(seed: u64) -> Result<Faults, Error> {
     const STEPS: usize = 400;
-    let mut draw = Draw::new(seed);
+    let mut draw = UniformNumbers::new(seed);
     let body = Body::Elastic { young: draw.between(0.5, 3.0), poisson: draw.between(0.0, 0.49) };
     let pair = Pair { first: body, second: if draw.chance(0.5) { Body::Rigid } else { body } };
     let mut scene = Scene::of_pair(Surface::Sphere { radius: 2.0, size: 3.0.into() }, pair)?;
@@ -641,7 +641,7 @@ fn friction(seed: u64) -> Result<Faults, Error> {
 }
 
 /// The scene of a rough map with friction cell by cell, its coefficient, and a normal force.
-fn rubbed(draw: &mut Draw, holes: bool) -> Result<(Scene, f64, f64), Error> {
+fn rubbed(draw: &mut UniformNumbers, holes: bool) -> Result<(Scene, f64, f64), Error> {
     let noise = draw.between(0.0, 0.3);
     let map = heights(draw, (6, 6), noise, holes);
     let body = Body::Elastic { young: draw.between(0.5, 3.0), poisson: draw.between(0.0, 0.45) };
@@ -713,7 +713,7 @@ fn slope_after(scene: &Scene, steps: &[Step], state: &ContactState, sign: f64) -
 /// which nothing changes: areas, forces and displacements with the fields, a repeated step with the one before, and
 /// with full coupling the stiffness with the difference quotient of one more step.
 fn sheared(seed: u64) -> Result<Faults, Error> {
-    let mut draw = Draw::new(seed);
+    let mut draw = UniformNumbers::new(seed);
     let (scene, coefficient, force) = rubbed(&mut draw, seed.is_multiple_of(3))?;
     let mut contact = model(TOLERANCE).prepare(&scene, 0)?;
     let mut faults = Vec::new();
@@ -777,7 +777,7 @@ fn sheared(seed: u64) -> Result<Faults, Error> {
 /// increment of the elastic force, and its area that of the contact radius.
 fn rheology(seed: u64) -> Result<Faults, Error> {
     const STEPS: usize = 4000;
-    let mut draw = Draw::new(seed);
+    let mut draw = UniformNumbers::new(seed);
     let arms: Vec<Relaxing> = (0..draw.count(1, 3))
         .map(|_| Relaxing { weight: draw.between(0.1, 3.0), time: 10f64.powf(draw.between(-1.0, 1.0)) })
         .collect();

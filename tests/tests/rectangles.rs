@@ -164,10 +164,10 @@ fn odd_prime_and_smooth_sizes_converge_from_first_contact_to_full_contact() {
 
 #[test]
 fn pits_spikes_and_steps_converge_on_a_periodic_square_of_odd_side() {
-    type Shape<'a> = &'a dyn Fn(usize, usize) -> f64;
+    type HeightsOf<'a> = &'a dyn Fn(usize, usize) -> f64;
     let n = 65;
     let rough = noise(5);
-    let shapes: [(&str, Shape<'_>); 4] = [
+    let shapes: [(&str, HeightsOf<'_>); 4] = [
         ("smooth", &|x, y| (2.0 * PI * (x + 2 * y) as f64 / n as f64).cos()),
         ("steps", &|x, y| ((x / 7 + y / 5) % 3) as f64),
         ("spikes", &|x, y| if rough(x, y) > 0.97 { 1.0 } else { 0.1 * rough(y, x) }),

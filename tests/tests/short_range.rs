@@ -158,7 +158,7 @@ struct WavySphere {
 
 /// A contact circle in equilibrium.
 #[derive(Clone, Copy)]
-struct Circle {
+struct ContactCircle {
     radius: f64,
     approach: f64,
     force: f64,
@@ -171,7 +171,7 @@ impl WavySphere {
 
     /// The approach and the force with which each circle is in equilibrium: `d = g(a) - sqrt(2 pi a w)` and
     /// `F = 2 (d a - int_0^a g)`, with `g(x) = x int_0^(pi/2) z'(x sin t) dt`.
-    fn circles(&self, largest: f64) -> Vec<Circle> {
+    fn circles(&self, largest: f64) -> Vec<ContactCircle> {
         const RADII: usize = 10_000;
         const ANGLES: usize = 200;
         let k = 2.0 * PI / self.length;
@@ -186,7 +186,7 @@ impl WavySphere {
                 integral += 0.5 * (below + g) * step;
                 below = g;
                 let approach = g - (2.0 * PI * radius * WORK).sqrt();
-                Circle { radius, approach, force: 2.0 * (approach * radius - integral) }
+                ContactCircle { radius, approach, force: 2.0 * (approach * radius - integral) }
             })
             .collect()
     }
@@ -232,7 +232,7 @@ fn a_wavy_sphere_sticks_and_comes_off_ring_by_ring() {
                 (0..=edge).rfind(|&k| circles[k].approach <= d)
             }
         });
-        let none = Circle { radius: 0.0, approach: d, force: 0.0 };
+        let none = ContactCircle { radius: 0.0, approach: d, force: 0.0 };
         let exact = edge.map_or(none, |k| circles[k]);
         assert!((state.force - exact.force).abs() < FORCE * unit, "{i}: {} {}", state.force, exact.force);
         assert!((radius(&state) - exact.radius).abs() <= SAME * exact.radius, "{i}: {}", radius(&state));

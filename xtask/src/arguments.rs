@@ -7,12 +7,12 @@ mod studies;
 mod words;
 
 pub use bench::BenchArguments;
-pub use cluster::{PlanArguments, ShardsArguments, SubmitArguments};
+pub use cluster::{PlanArguments, StudyShardsArguments, SubmitArguments};
 
 use clap::{Parser, Subcommand};
-use paper::evaluation::{AccuracyTarget, Model, Request};
+use paper::evaluation::{AccuracyTarget, EnsembleModel, Request};
 use runs::ShardChoice;
-use sizes::{Both, LineSizes, Maps, Reduced, Solid, SolveSizes};
+use sizes::{Both, LineSizes, Maps, ReducedSizes, Solid, SolveSizes};
 use std::path::PathBuf;
 use studies::{
     AccuracyCost, Audit, BookArguments, BudgetCheck, ExponentArguments, PartialSlipArguments, Reference,
@@ -27,9 +27,9 @@ pub use studies::{Redraw, TuningArguments};
 /// the paper's own claim.
 #[derive(Debug, Parser)]
 #[command(name = "cargo xtask", bin_name = "cargo xtask", version, after_long_help = AFTER)]
-pub struct Arguments {
+pub struct XtaskArguments {
     #[command(subcommand)]
-    pub command: Command,
+    pub command: XtaskCommand,
 }
 
 const AFTER: &str = "\
@@ -56,7 +56,7 @@ SIGTERM or SIGHUP; 141 nobody reads the output any more.";
 const EXPAND: &str = "Run with --help for every flag.";
 
 #[derive(Debug, Subcommand)]
-pub enum Command {
+pub enum XtaskCommand {
     /// Grey-scale maps of the six surfaces (CSV, NPY, PNG).
     #[command(after_help = EXPAND)]
     ReproduceFig1(Maps),
@@ -74,7 +74,7 @@ pub enum Command {
     ReproduceFig5(LineSizes),
     /// Stiffness over force, 1D reduction.
     #[command(after_help = EXPAND)]
-    ReproduceFig6(Reduced),
+    ReproduceFig6(ReducedSizes),
     /// Factor zeta over the fractal dimension, 3D and 1D.
     #[command(after_help = EXPAND)]
     ReproduceFig7(Both),
@@ -118,10 +118,10 @@ pub enum Command {
     /// --now submits it. Finished jobs are not run again.
     Submit(SubmitArguments),
     /// Lists which shards in a directory are done, running, failed or missing.
-    Status(ShardsArguments),
+    Status(StudyShardsArguments),
     /// Makes tables and pictures from the shards in a directory, byte for byte those of a single process.
     /// Refuses missing or damaged shards and mixed plans.
-    Merge(ShardsArguments),
+    Merge(StudyShardsArguments),
     /// Solves a random share of the states of Fig. 2 again, from a cold start and to a tight tolerance
     /// (audit.csv).
     #[command(after_help = EXPAND)]
@@ -144,26 +144,26 @@ pub enum Command {
     Book(BookArguments),
 }
 
-impl Command {
+impl XtaskCommand {
     /// The sizes of the solves of a figure, and the ensembles that it needs.
-    fn solved(&self) -> Option<(&SolveSizes, &'static [Model])> {
+    fn solved(&self) -> Option<(&SolveSizes, &'static [EnsembleModel])> {
         Some(match self {
-            Self::ReproduceFig2(a) | Self::ReproduceFig4(a) => (&a.solve, &[Model::Bem3d]),
-            Self::ReproduceFig6(a) => (&a.solve, &[Model::Mdr1d]),
+            Self::ReproduceFig2(a) | Self::ReproduceFig4(a) => (&a.solve, &[EnsembleModel::Bem3d]),
+            Self::ReproduceFig6(a) => (&a.solve, &[EnsembleModel::Mdr1d]),
             Self::ReproduceFig3(a) | Self::ReproduceFig7(a) | Self::ReproduceAll(a) | Self::Verify(a) => {
-                (&a.solve, &Model::BOTH)
+                (&a.solve, &EnsembleModel::BOTH)
             }
             _ => return None,
         })
     }
 
     /// The ensembles that a figure needs.
-    pub fn models(&self) -> Option<&'static [Model]> {
+    pub fn models(&self) -> Option<&'static [EnsembleModel]> {
         self.solved().map(|(_, models)| models)
     }
 
     /// The accuracy that was requested of a figure, and the ensembles that it needs.
-    pub fn target(&self) -> Option<(&'static [Model], AccuracyTarget)> {
+    pub fn target(&self) -> Option<(&'static [EnsembleModel], AccuracyTarget)> {
         let (solve, models) = self.solved()?;
         Some((models, solve.target()?))
     }
@@ -218,13 +218,13 @@ mod tests {
     use clap::CommandFactory as _;
     use paper::evaluation::{Preset, Surfaces};
 
-    fn parse(line: &str) -> Result<Arguments, clap::Error> {
-        Arguments::try_parse_from(std::iter::once("xtask").chain(line.split_whitespace()))
+    fn parse(line: &str) -> Result<XtaskArguments, clap::Error> {
+        XtaskArguments::try_parse_from(std::iter::once("xtask").chain(line.split_whitespace()))
     }
 
     #[test]
     fn the_command_line_is_well_formed() {
-        Arguments::command().debug_assert();
+        XtaskArguments::command().debug_assert();
     }
 
     #[test]
@@ -252,7 +252,7 @@ mod tests {
             samples: None,
         };
         assert_eq!(request, expected);
-        assert!(matches!(arguments.command, Command::Verify(_)));
+        assert!(matches!(arguments.command, XtaskCommand::Verify(_)));
     }
 
     #[test]
@@ -293,7 +293,7 @@ mod tests {
 
     fn bench(line: &str) -> BenchArguments {
         match parse(line).unwrap().command {
-            Command::Bench(options) => options,
+            XtaskCommand::Bench(options) => options,
             other => panic!("{other:?}"),
         }
     }
@@ -327,9 +327,15 @@ mod tests {
     fn an_accuracy_target_is_a_share_and_a_time() {
         let target = |line: &str| parse(line).unwrap().command.target();
         let (models, asked) = target("reproduce-fig2 --accuracy 1% --budget 2h").unwrap();
-        assert_eq!((models, asked), (&[Model::Bem3d][..], AccuracyTarget { share: 0.01, seconds: 7200.0 }));
+        assert_eq!(
+            (models, asked),
+            (&[EnsembleModel::Bem3d][..], AccuracyTarget { share: 0.01, seconds: 7200.0 })
+        );
         let (models, asked) = target("verify --accuracy 0.05").unwrap();
-        assert_eq!((models, asked), (&Model::BOTH[..], AccuracyTarget { share: 0.05, seconds: 600.0 }));
+        assert_eq!(
+            (models, asked),
+            (&EnsembleModel::BOTH[..], AccuracyTarget { share: 0.05, seconds: 600.0 })
+        );
         assert!(target("reproduce-fig6").is_none() && target("bench").is_none());
         for line in [
             "reproduce-fig2 --accuracy 0",

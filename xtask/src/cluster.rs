@@ -1,9 +1,9 @@
 //! Commands on many machines: shards, their plan, submission, status and merge.
 
-use crate::arguments::{Arguments, Command, PlanArguments, ShardsArguments, SubmitArguments};
+use crate::arguments::{PlanArguments, StudyShardsArguments, SubmitArguments, XtaskArguments, XtaskCommand};
 use clap::Parser as _;
 use paper::evaluation::{Run, ensemble_jobs};
-use runs::cluster::{self, Division, Forecast, Status, check, quoted, run_shard, status, without_flags};
+use runs::cluster::{self, Division, Forecast, PlanStatus, check, quoted, run_shard, status, without_flags};
 use runs::{Error, JobList, Reporter, Result, ShardChoice};
 
 /// Name of the program in messages.
@@ -13,7 +13,7 @@ const PROGRAM: &str = "cargo xtask";
 ///
 /// # Errors
 /// [`Error::Parameter`] for a command that has no jobs, and for the values that [`Run::new`] refuses.
-pub fn jobs(command: &Command) -> Result<Box<dyn JobList>> {
+pub fn jobs(command: &XtaskCommand) -> Result<Box<dyn JobList>> {
     if let Some((_, target)) = command.target() {
         let expected = "no accuracy together with --shard: run --accuracy on one machine first, and give the sizes that it prints";
         return Err(Error::parameter("accuracy", target.share, expected));
@@ -27,10 +27,14 @@ pub fn jobs(command: &Command) -> Result<Box<dyn JobList>> {
         return Ok(Box::new(ensemble_jobs(&run, models)?));
     }
     match command {
-        Command::Exponent(options) => Ok(Box::new(options.study(&run)?.jobs()?)),
-        Command::ReproduceTwoCases(options) => paper::two_cases_jobs(&options.study()?, &options.out),
-        Command::AccuracyCost(options) => paper::evaluation::accuracy_cost_jobs(options.depth, options.seed),
-        Command::BudgetCheck(options) => paper::evaluation::budget_check_jobs(options.cases, options.seed),
+        XtaskCommand::Exponent(options) => Ok(Box::new(options.study(&run)?.jobs()?)),
+        XtaskCommand::ReproduceTwoCases(options) => paper::two_cases_jobs(&options.study()?, &options.out),
+        XtaskCommand::AccuracyCost(options) => {
+            paper::evaluation::accuracy_cost_jobs(options.depth, options.seed)
+        }
+        XtaskCommand::BudgetCheck(options) => {
+            paper::evaluation::budget_check_jobs(options.cases, options.seed)
+        }
         _ => {
             let expected = "reproduce-fig2, -fig3, -fig4, -fig6, -fig7, reproduce-all, verify, reproduce-two-cases, exponent, accuracy-cost or budget-check";
             Err(Error::parameter("command", "a command without jobs to share", expected))
@@ -42,7 +46,7 @@ pub fn jobs(command: &Command) -> Result<Box<dyn JobList>> {
 ///
 /// # Errors
 /// As [`jobs`]; the first job that fails.
-pub fn shard(command: &Command, choice: ShardChoice, typed: &[String]) -> Result<(), runs::Failure> {
+pub fn shard(command: &XtaskCommand, choice: ShardChoice, typed: &[String]) -> Result<(), runs::Failure> {
     let shard = choice.resolve(&|name| std::env::var(name).ok())?;
     let jobs = jobs(command)?;
     let (out, run) = (command.out(), Run::new(&command.request())?);
@@ -58,9 +62,9 @@ fn plan_of(typed: &[String], jobs: &dyn JobList) -> cluster::ShardPlan {
     cluster::ShardPlan::new(PROGRAM, arguments, jobs)
 }
 
-fn parsed(typed: &[String]) -> Result<Command> {
+fn parsed(typed: &[String]) -> Result<XtaskCommand> {
     let words = std::iter::once("cargo xtask".to_owned()).chain(typed.iter().cloned());
-    match Arguments::try_parse_from(words) {
+    match XtaskArguments::try_parse_from(words) {
         Ok(arguments) => Ok(arguments.command),
         Err(error) => {
             let error = error.to_string();
@@ -99,7 +103,7 @@ pub fn submit(options: &SubmitArguments) -> Result<()> {
 }
 
 /// The plan of a directory, the command that it is of, and the jobs.
-fn planned(options: &ShardsArguments) -> Result<(cluster::ShardPlan, Command, Box<dyn JobList>)> {
+fn planned(options: &StudyShardsArguments) -> Result<(cluster::ShardPlan, XtaskCommand, Box<dyn JobList>)> {
     let plan = cluster::ShardPlan::only(&options.out, PROGRAM, options.plan.as_deref())?;
     let mut words = plan.arguments.clone();
     words.extend(["--out".to_owned(), options.out.to_string_lossy().into_owned()]);
@@ -112,7 +116,7 @@ fn planned(options: &ShardsArguments) -> Result<(cluster::ShardPlan, Command, Bo
 ///
 /// # Errors
 /// A directory without a plan or with several.
-pub fn tell_status(options: &ShardsArguments) -> Result<Status> {
+pub fn tell_status(options: &StudyShardsArguments) -> Result<PlanStatus> {
     let (plan, _, jobs) = planned(options)?;
     let status = status(&check(&plan, &*jobs, &options.out)?, &*jobs, &options.out);
     runs::out!("{status}");
@@ -124,7 +128,7 @@ pub fn tell_status(options: &ShardsArguments) -> Result<Status> {
 ///
 /// # Errors
 /// [`Error::Parameter`] with what is missing, damaged or of another plan.
-pub fn merged(options: &ShardsArguments) -> Result<(Command, Vec<String>)> {
+pub fn merged(options: &StudyShardsArguments) -> Result<(XtaskCommand, Vec<String>)> {
     let (plan, command, jobs) = planned(options)?;
     let found = check(&plan, &*jobs, &options.out)?;
     let out = quoted(&options.out.to_string_lossy());

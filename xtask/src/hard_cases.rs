@@ -1,6 +1,6 @@
 //! The table of hard cases, with the assertions and the values reached.
 
-use ::tests::stability::{self, Case, CaseResult, Effort};
+use ::tests::stability::{self, CaseResult, Effort, HardCase};
 use contact_model::ContactModel as _;
 use contact_model::Table;
 use paper::evaluation::{TableOf, markdown_table};
@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 /// # Errors
 /// [`runs::Error::File`] where a file cannot be written. A case that fails is not an error; it has a row.
 pub fn hard_cases(
-    cases: &[Case],
+    cases: &[HardCase],
     effort: Effort,
     out: &Path,
     progress: &dyn Progress,
@@ -84,7 +84,7 @@ mod tests {
     #[test]
     fn the_table_has_a_row_for_every_case_in_their_order() {
         let dir = tempfile::tempdir().unwrap();
-        let cases: Vec<Case> = stability::cases().into_iter().take(3).collect();
+        let cases: Vec<HardCase> = stability::cases().into_iter().take(3).collect();
         let (verdicts, files) = hard_cases(&cases, Effort::Quick, dir.path(), &Silent).unwrap();
         assert_eq!(verdicts.len(), 3);
         let csv = CsvFile::read(&files[0]).unwrap();

@@ -14,7 +14,7 @@ mod book;
 mod cluster;
 mod hard_cases;
 
-use arguments::{Arguments, BenchArguments, Command, Redraw, TuningArguments};
+use arguments::{BenchArguments, Redraw, TuningArguments, XtaskArguments, XtaskCommand};
 use clap::{CommandFactory as _, Parser as _};
 use paper::evaluation::{BenchRow, Outcome, Run};
 use paper::{Claim, Judged};
@@ -29,7 +29,7 @@ fn main() -> ExitCode {
     // A path that is not valid UTF-8 is still a path.
     let typed: Vec<String> =
         std::env::args_os().skip(1).map(|word| word.to_string_lossy().into_owned()).collect();
-    let command = Arguments::parse().command;
+    let command = XtaskArguments::parse().command;
     let asked = std::env::var_os(runs::THREADS_VARIABLE);
     let done = runs::with_threads(asked.as_deref(), || execute(command, &typed));
     match done.map_err(Failure::from).and_then(|done| done) {
@@ -41,20 +41,20 @@ fn main() -> ExitCode {
     }
 }
 
-fn execute(command: Command, typed: &[String]) -> Result<ExitCode, Failure> {
+fn execute(command: XtaskCommand, typed: &[String]) -> Result<ExitCode, Failure> {
     if let Some(choice) = command.shard() {
         tell_what_an_interruption_leaves(command.out())?;
         return cluster::shard(&command, choice, typed).map(|()| ExitCode::SUCCESS);
     }
     match &command {
-        Command::Plan(options) => cluster::plan(options)?,
-        Command::Submit(options) => cluster::submit(options)?,
-        Command::Status(options) => {
+        XtaskCommand::Plan(options) => cluster::plan(options)?,
+        XtaskCommand::Submit(options) => cluster::submit(options)?,
+        XtaskCommand::Status(options) => {
             if !cluster::tell_status(options)?.complete() {
                 return Ok(ExitCode::from(3));
             }
         }
-        Command::Merge(options) => {
+        XtaskCommand::Merge(options) => {
             let (command, typed) = cluster::merged(options)?;
             return Ok(solve(command, &typed)?);
         }
@@ -63,20 +63,20 @@ fn execute(command: Command, typed: &[String]) -> Result<ExitCode, Failure> {
     Ok(ExitCode::SUCCESS)
 }
 
-fn solve(command: Command, typed: &[String]) -> Result<ExitCode> {
+fn solve(command: XtaskCommand, typed: &[String]) -> Result<ExitCode> {
     match &command {
-        Command::CheckReference(options) => return check_reference(options.bless, &options.out),
-        Command::Stability(options) => return stability(options.thorough, &options.out),
-        Command::Bench(options) => return bench(options),
-        Command::Tuning(options) => return tuning(options),
-        Command::Redraw(options) => return redraw(options),
-        Command::Completions { shell } => {
+        XtaskCommand::CheckReference(options) => return check_reference(options.bless, &options.out),
+        XtaskCommand::Stability(options) => return stability(options.thorough, &options.out),
+        XtaskCommand::Bench(options) => return bench(options),
+        XtaskCommand::Tuning(options) => return tuning(options),
+        XtaskCommand::Redraw(options) => return redraw(options),
+        XtaskCommand::Completions { shell } => {
             let mut script = Vec::new();
-            clap_complete::generate(*shell, &mut Arguments::command(), "xtask", &mut script);
+            clap_complete::generate(*shell, &mut XtaskArguments::command(), "xtask", &mut script);
             runs::print(format_args!("{}", String::from_utf8_lossy(&script)));
             return Ok(ExitCode::SUCCESS);
         }
-        Command::Book(options) => return book::book(options.pictures),
+        XtaskCommand::Book(options) => return book::book(options.pictures),
         _ => {}
     }
     let reporter = Reporter::new();
@@ -98,23 +98,23 @@ fn solve(command: Command, typed: &[String]) -> Result<ExitCode> {
     };
     let mut coverage_fails = false;
     let mut outcomes = match command {
-        Command::ReproduceFig1(_) => vec![paper::fig1(&run, &reporter)?],
-        Command::ReproduceFig2(_) => vec![paper::fig2(&run, &reporter)?],
-        Command::ReproduceFig3(_) => vec![paper::fig3(&run, &reporter)?],
-        Command::ReproduceFig4(_) => vec![paper::fig4(&run, &reporter)?],
-        Command::ReproduceFig5(_) => vec![paper::fig5(&run, &reporter)?],
-        Command::ReproduceFig6(_) => vec![paper::fig6(&run, &reporter)?],
-        Command::ReproduceFig7(_) => vec![paper::fig7(&run, &reporter)?],
-        Command::Verify(_) => vec![paper::verify(&run, &reporter)?],
-        Command::ReproduceAll(_) => paper::reproduce_all(&run, &reporter)?,
-        Command::AccuracyCost(options) => {
+        XtaskCommand::ReproduceFig1(_) => vec![paper::fig1(&run, &reporter)?],
+        XtaskCommand::ReproduceFig2(_) => vec![paper::fig2(&run, &reporter)?],
+        XtaskCommand::ReproduceFig3(_) => vec![paper::fig3(&run, &reporter)?],
+        XtaskCommand::ReproduceFig4(_) => vec![paper::fig4(&run, &reporter)?],
+        XtaskCommand::ReproduceFig5(_) => vec![paper::fig5(&run, &reporter)?],
+        XtaskCommand::ReproduceFig6(_) => vec![paper::fig6(&run, &reporter)?],
+        XtaskCommand::ReproduceFig7(_) => vec![paper::fig7(&run, &reporter)?],
+        XtaskCommand::Verify(_) => vec![paper::verify(&run, &reporter)?],
+        XtaskCommand::ReproduceAll(_) => paper::reproduce_all(&run, &reporter)?,
+        XtaskCommand::AccuracyCost(options) => {
             let kept = (options.out.as_path(), options.fresh);
             vec![paper::evaluation::accuracy_cost(options.depth, options.seed, kept, &reporter)?.into()]
         }
-        Command::ReproduceTwoCases(options) => {
+        XtaskCommand::ReproduceTwoCases(options) => {
             vec![paper::two_cases(&options.study()?, &options.out, &reporter)?]
         }
-        Command::BudgetCheck(options) => {
+        XtaskCommand::BudgetCheck(options) => {
             let (outcome, coverage) = paper::evaluation::budget_check(
                 options.cases,
                 options.seed,
@@ -126,11 +126,11 @@ fn solve(command: Command, typed: &[String]) -> Result<ExitCode> {
             coverage_fails = !coverage.holds();
             vec![outcome.into()]
         }
-        Command::Exponent(options) if !options.samples.is_empty() => {
+        XtaskCommand::Exponent(options) if !options.samples.is_empty() => {
             let tested = if options.tested.is_empty() { &options.samples } else { &options.tested };
             vec![paper::exponent_of_samples(&options.samples, tested, options.error, &run.out)?]
         }
-        Command::Exponent(options) => {
+        XtaskCommand::Exponent(options) => {
             let study = options.study(&run)?;
             for line in paper::exponent_plan(&study, options.budget, &reporter)? {
                 runs::out!("{line}");
@@ -141,8 +141,8 @@ fn solve(command: Command, typed: &[String]) -> Result<ExitCode> {
             // `--fresh` has already been applied by the plan.
             vec![paper::exponent(&paper::Exponent { fresh: false, ..study }, &reporter)?]
         }
-        Command::PartialSlip(options) => vec![paper::partial_slip(&options.study(&run)?, &reporter)?],
-        Command::Audit(options) => {
+        XtaskCommand::PartialSlip(options) => vec![paper::partial_slip(&options.study(&run)?, &reporter)?],
+        XtaskCommand::Audit(options) => {
             let (outcome, summary) = paper::evaluation::audit(&run, options.share, options.tight, &reporter)?;
             runs::out!("{summary}");
             vec![outcome.into()]

@@ -48,9 +48,9 @@ fn refused(words: &[&str], flag: &str) -> Option<String> {
 }
 
 /// The command, its flag, and the values of the lists that this flag accepts.
-type Case = (&'static [&'static str], &'static str, &'static [&'static str]);
+type LimitCase = (&'static [&'static str], &'static str, &'static [&'static str]);
 
-const WITH_COUNTS: [Case; 29] = [
+const WITH_COUNTS: [LimitCase; 29] = [
     (&["reproduce-fig1"], "--cells", &[]),
     (&["reproduce-fig2"], "--cells", &[]),
     (&["reproduce-fig2"], "--surfaces", &[]),
@@ -82,7 +82,7 @@ const WITH_COUNTS: [Case; 29] = [
     (&["plan", "reproduce-two-cases"], "--surfaces", &[]),
 ];
 
-const WITH_NUMBERS: [Case; 15] = [
+const WITH_NUMBERS: [LimitCase; 15] = [
     (&["reproduce-fig2"], "--tolerance", &[]),
     (&["reproduce-fig2"], "--accuracy", &[]),
     (&["reproduce-fig2", "--accuracy", "5%"], "--budget", &[]),
@@ -101,7 +101,7 @@ const WITH_NUMBERS: [Case; 15] = [
 ];
 
 /// Flags of `submit` that stand before the command.
-const OF_ENGINES: [Case; 5] = [
+const OF_ENGINES: [LimitCase; 5] = [
     (&["plan"], "--nodes", &[]),
     (&["plan"], "--node-cores", &[]),
     (&["plan"], "--tasks", &[]),

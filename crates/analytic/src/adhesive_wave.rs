@@ -2,7 +2,7 @@
 
 mod strips;
 
-use crate::closed::{self, Law};
+use crate::closed::{self, LoadLaw};
 use crate::periodic;
 use crate::westergaard::whole_waves;
 use contact_model::{
@@ -55,7 +55,7 @@ pub struct WavyContact {
 
 /// State under a mean pressure of surfaces that are in contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Branch {
+enum WaveState {
     /// The mean pressure is below the pull-off.
     PulledOff,
     Partial(Strips),
@@ -180,14 +180,14 @@ impl WavyContact {
             return Err(Error::domain("mean pressure", pressure, "a finite number"));
         }
         match self.branch(self.nondimensional.pressure_in(pressure) / PI) {
-            Branch::PulledOff => Err(Error::OutOfRange {
+            WaveState::PulledOff => Err(Error::OutOfRange {
                 name: "mean pressure (the contact pulls off under a prescribed force)".into(),
                 value: pressure,
                 min: self.pull_off()?.map_or(0.0, |limit| limit.1),
                 max: f64::INFINITY,
             }),
-            Branch::Partial(strips) => Ok(Some(strips.tangent.atan())),
-            Branch::Full => Ok(None),
+            WaveState::Partial(strips) => Ok(Some(strips.tangent.atan())),
+            WaveState::Full => Ok(None),
         }
     }
 
@@ -200,28 +200,28 @@ impl WavyContact {
     }
 
     /// The contact under a mean pressure over p*, which may be infinite.
-    fn branch(&self, ratio: f64) -> Branch {
+    fn branch(&self, ratio: f64) -> WaveState {
         let alpha = self.alpha;
         let Some([first, last]) = self.limits else {
             return match ratio {
-                _ if alpha > 0.0 => Branch::Full,
-                _ if ratio < 0.0 => Branch::PulledOff,
-                _ if ratio * closed::ROUNDED_UP >= 1.0 => Branch::Full,
-                _ => Branch::Partial(Strips { tangent: (ratio / (1.0 - ratio)).sqrt() }),
+                _ if alpha > 0.0 => WaveState::Full,
+                _ if ratio < 0.0 => WaveState::PulledOff,
+                _ if ratio * closed::ROUNDED_UP >= 1.0 => WaveState::Full,
+                _ => WaveState::Partial(Strips { tangent: (ratio / (1.0 - ratio)).sqrt() }),
             };
         };
         let [least, largest] = [first, last].map(|strips| strips.pressure(alpha));
         let rounding = closed::ROUNDED_UP - 1.0;
         if ratio < least - rounding * least.abs() {
-            Branch::PulledOff
+            WaveState::PulledOff
         } else if ratio > largest + rounding * largest.abs() {
-            Branch::Full
+            WaveState::Full
         } else if ratio <= least {
-            Branch::Partial(first)
+            WaveState::Partial(first)
         } else if ratio >= largest {
-            Branch::Partial(last)
+            WaveState::Partial(last)
         } else {
-            Branch::Partial(between(first, last, alpha, ratio))
+            WaveState::Partial(between(first, last, alpha, ratio))
         }
     }
 }
@@ -301,7 +301,7 @@ impl WaveLaw {
     }
 }
 
-impl Law for WaveLaw {
+impl LoadLaw for WaveLaw {
     fn state(&self, load: NormalLoad, scaling: &Scaling) -> Result<ContactState> {
         let force = match load.validated_with_adhesion()? {
             NormalLoad::Force(force) => force,
@@ -314,9 +314,9 @@ impl Law for WaveLaw {
             return Err(Error::not_representable("force over E* D L", ratio));
         }
         let strips = match self.wave.branch(ratio) {
-            Branch::PulledOff => return Err(self.pulled_off(force, nondimensional)),
-            Branch::Partial(strips) => Some(strips),
-            Branch::Full => None,
+            WaveState::PulledOff => return Err(self.pulled_off(force, nondimensional)),
+            WaveState::Partial(strips) => Some(strips),
+            WaveState::Full => None,
         };
         let alpha = self.wave.alpha;
         let gap = strips.map_or(0.0, |strips| strips.gap(alpha));

@@ -8,7 +8,7 @@ use contact_model::{
 use std::f64::consts::PI;
 
 /// A theory that relates a load to a state.
-pub(crate) trait Law: Send {
+pub(crate) trait LoadLaw: Send {
     /// The state under a load, with the requested outputs.
     fn state(&self, load: NormalLoad, scaling: &Scaling) -> Result<ContactState>;
 }
@@ -19,7 +19,7 @@ struct Prepared<L> {
     scaling: Scaling,
 }
 
-impl<L: Law> PreparedContact for Prepared<L> {
+impl<L: LoadLaw> PreparedContact for Prepared<L> {
     fn normalisation(&self) -> Normalisation {
         self.scaling.normalisation
     }
@@ -31,7 +31,7 @@ impl<L: Law> PreparedContact for Prepared<L> {
 }
 
 /// A contact that a law answers.
-pub(crate) fn prepared<L: Law + 'static>(scaling: Scaling, law: L) -> Box<dyn PreparedContact> {
+pub(crate) fn prepared<L: LoadLaw + 'static>(scaling: Scaling, law: L) -> Box<dyn PreparedContact> {
     Box::new(Prepared { law, scaling })
 }
 
@@ -77,7 +77,7 @@ impl ClosedState {
     }
 }
 
-impl<L: ClosedLaw> Law for Closed<L> {
+impl<L: ClosedLaw> LoadLaw for Closed<L> {
     fn state(&self, load: NormalLoad, scaling: &Scaling) -> Result<ContactState> {
         let nondimensional = scaling.nondimensional;
         let (asked, value) = match load.validated()? {

@@ -1,6 +1,6 @@
 //! Johnson, Kendall, Roberts: a sphere with short-range adhesion.
 
-use crate::closed::{self, Law};
+use crate::closed::{self, LoadLaw};
 use contact_model::{
     Abilities, ContactModel, ContactState, Effect, Error, Nondimensionalisation, NormalLoad, PreparedContact,
     Result, ScaledState, Scaling, Scene, Size, SolveReport, Source,
@@ -89,7 +89,7 @@ pub struct AdhesiveSphere {
 
 /// The last stable state of a contact that is pulled.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PullOff {
+pub struct JkrPullOff {
     /// Force, negative.
     pub force: f64,
     /// Approach.
@@ -179,7 +179,7 @@ impl AdhesiveSphere {
     ///
     /// # Errors
     /// [`Error::Domain`] for numbers that no `f64` holds.
-    pub fn pull_off_at_force(&self) -> Result<PullOff> {
+    pub fn pull_off_at_force(&self) -> Result<JkrPullOff> {
         self.pull_off((9.0 / 8.0 * PI * self.work).cbrt(), -1.5 * PI * self.work)
     }
 
@@ -187,12 +187,12 @@ impl AdhesiveSphere {
     ///
     /// # Errors
     /// As [`AdhesiveSphere::pull_off_at_force`].
-    pub fn pull_off_at_approach(&self) -> Result<PullOff> {
+    pub fn pull_off_at_approach(&self) -> Result<JkrPullOff> {
         self.pull_off(self.smallest_radius(), -5.0 / 6.0 * PI * self.work)
     }
 
-    fn pull_off(&self, radius: f64, force: f64) -> Result<PullOff> {
-        Ok(PullOff {
+    fn pull_off(&self, radius: f64, force: f64) -> Result<JkrPullOff> {
+        Ok(JkrPullOff {
             force: self.nondimensional.force(force)?,
             approach: self.nondimensional.approach(self.approach_of(radius))?,
             radius: self.nondimensional.approach(radius)?,
@@ -284,7 +284,7 @@ struct JkrLaw {
     size: Size,
 }
 
-impl Law for JkrLaw {
+impl LoadLaw for JkrLaw {
     fn state(&self, load: NormalLoad, scaling: &Scaling) -> Result<ContactState> {
         let sphere = &self.sphere;
         let (a, asked) = match load.validated_with_adhesion()? {

@@ -3,14 +3,14 @@
 mod curve;
 
 use crate::Hertz;
-use crate::closed::{self, Law};
-use crate::jkr::PullOff;
+use crate::closed::{self, LoadLaw};
+use crate::jkr::JkrPullOff;
 use contact_model::{
     Abilities, Adhesion, AdhesionLaw, ContactModel, ContactState, Effect, Effects, Error,
     Nondimensionalisation, NormalLoad, PreparedContact, Result, ScaledState, Scaling, Scene, Size,
     SolveReport, Source,
 };
-use curve::{Curve, Point};
+use curve::{MaugisCurve, MaugisPoint};
 use numerics::root;
 use std::f64::consts::PI;
 
@@ -98,7 +98,7 @@ impl ContactModel for MaugisDugdale {
 pub struct MaugisSphere {
     /// Lengths in R, moduli in E*.
     nondimensional: Nondimensionalisation,
-    curve: Curve,
+    curve: MaugisCurve,
     /// `(3 pi w R^2/(4 E*))^(1/3)` over R.
     unit: f64,
     /// `pi w/(E* R)`.
@@ -135,15 +135,16 @@ impl MaugisSphere {
         if !Self::LAMBDA.contains(&lambda) {
             return Err(Error::domain("Maugis's parameter lambda", lambda, "from 1e-6 to 1e6"));
         }
-        let curve = Curve { lambda };
+        let curve = MaugisCurve { lambda };
         Ok(Self {
             nondimensional,
             curve,
             unit: (0.75 * PI * scaled).cbrt(),
             force_unit: PI * scaled,
-            force_fold: root::between(Curve::LEAST, Curve::MOST, |x| curve.at(x).rates(lambda).0),
-            approach_fold: (curve.end().rates(lambda).1 < 0.0)
-                .then(|| root::between(Curve::LEAST, Curve::MOST, |x| curve.at(x).rates(lambda).1)),
+            force_fold: root::between(MaugisCurve::LEAST, MaugisCurve::MOST, |x| curve.at(x).rates(lambda).0),
+            approach_fold: (curve.end().rates(lambda).1 < 0.0).then(|| {
+                root::between(MaugisCurve::LEAST, MaugisCurve::MOST, |x| curve.at(x).rates(lambda).1)
+            }),
         })
     }
 
@@ -220,7 +221,7 @@ impl MaugisSphere {
     ///
     /// # Errors
     /// [`Error::Domain`] for numbers that no `f64` holds.
-    pub fn pull_off_at_force(&self) -> Result<PullOff> {
+    pub fn pull_off_at_force(&self) -> Result<JkrPullOff> {
         self.pull_off(&self.curve.at(self.force_fold))
     }
 
@@ -229,59 +230,59 @@ impl MaugisSphere {
     ///
     /// # Errors
     /// As [`MaugisSphere::pull_off_at_force`].
-    pub fn pull_off_at_approach(&self) -> Result<PullOff> {
+    pub fn pull_off_at_approach(&self) -> Result<JkrPullOff> {
         self.pull_off(&self.least_approach())
     }
 
-    fn pull_off(&self, point: &Point) -> Result<PullOff> {
-        Ok(PullOff {
+    fn pull_off(&self, point: &MaugisPoint) -> Result<JkrPullOff> {
+        Ok(JkrPullOff {
             force: self.nondimensional.force(self.force_of(point))?,
             approach: self.nondimensional.approach(self.approach_of(point))?,
             radius: self.radius_of(point)?,
         })
     }
 
-    fn least_approach(&self) -> Point {
+    fn least_approach(&self) -> MaugisPoint {
         self.approach_fold.map_or_else(|| self.curve.end(), |x| self.curve.at(x))
     }
 
     /// Force over E* R^2.
-    fn force_of(&self, point: &Point) -> f64 {
+    fn force_of(&self, point: &MaugisPoint) -> f64 {
         self.force_unit * point.force(self.curve.lambda)
     }
 
     /// Approach over R.
-    fn approach_of(&self, point: &Point) -> f64 {
+    fn approach_of(&self, point: &MaugisPoint) -> f64 {
         self.unit * (self.unit * point.approach(self.curve.lambda))
     }
 
-    /// `dF/dd` over E* R from [`Point::rates`].
+    /// `dF/dd` over E* R from [`MaugisPoint::rates`].
     fn slope_of(&self, force: f64, approach: f64) -> f64 {
         4.0 / 3.0 * self.unit * force / approach
     }
 
     /// The slope of a state; `None` at the pull-off under prescribed approach.
-    fn slope_of_state(&self, point: &Point) -> Option<f64> {
+    fn slope_of_state(&self, point: &MaugisPoint) -> Option<f64> {
         /// `(dd/da)/a` without adhesion.
         const ELASTIC: f64 = 2.0;
         let (force, approach) = point.rates(self.curve.lambda);
         (approach > ELASTIC * closed::AT_FOLD).then(|| self.slope_of(force, approach))
     }
 
-    fn radius_of(&self, point: &Point) -> Result<f64> {
+    fn radius_of(&self, point: &MaugisPoint) -> Result<f64> {
         self.nondimensional.approach(self.unit * point.a)
     }
 
-    fn point(&self, contact_radius: f64) -> Result<Point> {
+    fn point(&self, contact_radius: f64) -> Result<MaugisPoint> {
         let a = self.nondimensional.length_in(contact_radius) / self.unit;
-        if contact_radius.is_finite() && contact_radius >= 0.0 && a <= self.curve.at(Curve::LEAST).a {
+        if contact_radius.is_finite() && contact_radius >= 0.0 && a <= self.curve.at(MaugisCurve::LEAST).a {
             Ok(self.curve.at_radius(a))
         } else {
             Err(Error::of_non_negative("contact radius", contact_radius))
         }
     }
 
-    fn at_force(&self, force: f64) -> Result<Point> {
+    fn at_force(&self, force: f64) -> Result<MaugisPoint> {
         if !force.is_finite() {
             return Err(Error::domain("force", force, "a finite number"));
         }
@@ -301,7 +302,7 @@ impl MaugisSphere {
             .ok_or_else(|| Error::not_representable("force", force))
     }
 
-    fn at_approach(&self, approach: f64) -> Result<Point> {
+    fn at_approach(&self, approach: f64) -> Result<MaugisPoint> {
         if !approach.is_finite() {
             return Err(Error::domain("approach", approach, "a finite number"));
         }
@@ -322,7 +323,7 @@ impl MaugisSphere {
         if wanted <= least {
             return Ok(end);
         }
-        let from = self.approach_fold.unwrap_or(Curve::MOST);
+        let from = self.approach_fold.unwrap_or(MaugisCurve::MOST);
         self.curve
             .above(from, |point| point.approach(lambda) - wanted)
             .ok_or_else(|| Error::not_representable("approach", approach))
@@ -335,7 +336,7 @@ struct MaugisLaw {
     size: Size,
 }
 
-impl Law for MaugisLaw {
+impl LoadLaw for MaugisLaw {
     fn state(&self, load: NormalLoad, scaling: &Scaling) -> Result<ContactState> {
         let sphere = &self.sphere;
         let point = match load.validated_with_adhesion()? {
@@ -404,7 +405,7 @@ mod tests {
     #[test]
     fn the_curve_is_that_of_the_printed_equations() {
         for lambda in [1e-3, 0.03, 0.3, 1.0, 3.0, 30.0] {
-            let curve = Curve { lambda };
+            let curve = MaugisCurve { lambda };
             for a in [0.01, 0.1, 0.5, 1.0, 2.0, 5.0] {
                 let (m, force, approach) = printed(lambda, a);
                 let point = curve.at_radius(a);
@@ -461,7 +462,7 @@ mod tests {
     #[test]
     fn states_are_those_of_long_arithmetic() {
         for (lambda, a, [c, force, approach]) in TABLE {
-            let point = Curve { lambda }.at_radius(a);
+            let point = MaugisCurve { lambda }.at_radius(a);
             // 15 digits are printed; a root in ln s, |ln s| < 20, leaves a few more roundings.
             let near = 3e-14;
             assert_relative_eq!(point.c, c, max_relative = near);
@@ -542,7 +543,8 @@ mod tests {
             let mut last = sphere.curve.end().rates(lambda);
             assert!(last.0 < 0.0);
             for i in 0..=20_000 {
-                let x = Curve::MOST + (Curve::LEAST - Curve::MOST) * f64::from(i) / 20_000.0;
+                let x =
+                    MaugisCurve::MOST + (MaugisCurve::LEAST - MaugisCurve::MOST) * f64::from(i) / 20_000.0;
                 let rates = sphere.curve.at(x).rates(lambda);
                 force += i32::from((rates.0 > 0.0) != (last.0 > 0.0));
                 approach += i32::from((rates.1 > 0.0) != (last.1 > 0.0));

@@ -41,7 +41,7 @@ pub(crate) fn lost(t: f64) -> f64 {
 
 /// A point of the curve: force over mu F, displacement over the reach.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(crate) struct SlipPoint {
+pub(crate) struct MemoryPoint {
     pub t: f64,
     pub u: f64,
 }
@@ -54,7 +54,7 @@ pub(crate) enum SlipLoad {
 }
 
 impl SlipLoad {
-    fn from(self, point: SlipPoint) -> f64 {
+    fn from(self, point: MemoryPoint) -> f64 {
         match self {
             Self::Force(t) => t - point.t,
             Self::Displacement(u) => u - point.u,
@@ -65,11 +65,11 @@ impl SlipLoad {
 /// The curve so far.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct SlipCurve {
-    pub now: SlipPoint,
+    pub now: MemoryPoint,
     /// Sign of the last motion, 0 before any.
     direction: f64,
     /// Turns that are not closed, the first one on the curve of first loading.
-    pub turns: Vec<SlipPoint>,
+    pub turns: Vec<MemoryPoint>,
     /// Displacement at which first loading begins: it moves with gross slip.
     origin: f64,
     /// Over mu F and the reach.
@@ -91,9 +91,9 @@ impl SlipCurve {
         loop {
             // Where this branch ends, and the turn before its own that is closed there.
             let end = match self.turns[..] {
-                [] => SlipPoint { t: direction, u: self.origin + direction },
+                [] => MemoryPoint { t: direction, u: self.origin + direction },
                 // Back to first loading on the other side.
-                [turn] => SlipPoint { t: -turn.t, u: 2.0 * self.origin - turn.u },
+                [turn] => MemoryPoint { t: -turn.t, u: 2.0 * self.origin - turn.u },
                 [.., earlier, _] => earlier,
             };
             if goal.from(end) * direction < 0.0 {
@@ -123,15 +123,15 @@ impl SlipCurve {
     fn along(&mut self, goal: SlipLoad) {
         let (start, scale) = match self.turns.last() {
             Some(turn) => (*turn, 2.0),
-            None => (SlipPoint { t: 0.0, u: self.origin }, 1.0),
+            None => (MemoryPoint { t: 0.0, u: self.origin }, 1.0),
         };
         let share = |t: f64| ((t - start.t).abs() / scale).min(1.0);
         let before = lost(share(self.now.t));
         self.now = match goal {
-            SlipLoad::Force(t) => SlipPoint { t, u: start.u + self.direction * scale * reached(share(t)) },
+            SlipLoad::Force(t) => MemoryPoint { t, u: start.u + self.direction * scale * reached(share(t)) },
             SlipLoad::Displacement(u) => {
                 let part = ((u - start.u).abs() / scale).min(1.0);
-                SlipPoint { t: start.t + self.direction * scale * held(part), u }
+                MemoryPoint { t: start.t + self.direction * scale * held(part), u }
             }
         };
         self.dissipated += scale * (lost(share(self.now.t)) - before).max(0.0);

@@ -1,6 +1,6 @@
 //! Common code of all theories of periodic contact: a law in the mean pressure becomes a state.
 
-use crate::closed::Law;
+use crate::closed::LoadLaw;
 use contact_model::{
     Abilities, Boundary, ContactState, Error, LoadKind, NormalLoad, Output, Result, ScaledState, Scaling,
     SolveReport, SurfaceKind,
@@ -56,7 +56,7 @@ impl<L: PeriodicLaw> Periodic<L> {
     }
 }
 
-impl<L: PeriodicLaw> Law for Periodic<L> {
+impl<L: PeriodicLaw> LoadLaw for Periodic<L> {
     fn state(&self, load: NormalLoad, scaling: &Scaling) -> Result<ContactState> {
         let pressure = self.press(load, scaling)?;
         let outputs = scaling.outputs;

@@ -62,7 +62,7 @@ impl ContactModel for Westergaard {
     fn prepare(&self, scene: &Scene, _seed: u64) -> Result<Box<dyn PreparedContact>> {
         self.abilities().refuse(NAME, scene)?;
         let (height, whole, size) = whole_waves(scene, NAME)?;
-        let law = Wave { full: PI * whole * (size.length() / size.x) };
+        let law = UnitWave { full: PI * whole * (size.length() / size.x) };
         let scaling = Scaling::new(scene, height, Some(height / SQRT_2))?;
         Ok(closed::prepared(scaling, Periodic { model: NAME, law, strategy: "closed form (Westergaard)" }))
     }
@@ -91,12 +91,12 @@ pub(crate) fn whole_waves(scene: &Scene, model: &'static str) -> Result<(f64, f6
 }
 
 /// Heights in D, pressures in E* D/L.
-struct Wave {
+struct UnitWave {
     /// p*.
     full: f64,
 }
 
-impl Wave {
+impl UnitWave {
     fn ratio(&self, pressure: f64) -> f64 {
         pressure / self.full
     }
@@ -125,7 +125,7 @@ pub(crate) fn gap_of_fractions(r: f64, e: f64) -> f64 {
     sum
 }
 
-impl PeriodicLaw for Wave {
+impl PeriodicLaw for UnitWave {
     fn admit(&self, _pressure: f64) -> Result<()> {
         Ok(())
     }

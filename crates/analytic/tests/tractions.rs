@@ -136,7 +136,7 @@ fn a_state_is_what_its_tractions_do() {
 }
 
 /// Tractions of Johnson's wave: Westergaard's pressure, and those of the bonded strips under a mean tension.
-struct Wave {
+struct JohnsonWave {
     amplitude: f64,
     wavelength: f64,
     contact_modulus: f64,
@@ -145,7 +145,7 @@ struct Wave {
     tension: f64,
 }
 
-impl Wave {
+impl JohnsonWave {
     fn full(&self) -> f64 {
         PI * self.contact_modulus * self.amplitude / self.wavelength
     }
@@ -214,7 +214,7 @@ fn a_state_is_what_its_pressure_does() {
             let state = model.solve(Load::force(force)).unwrap();
             let psi = FRAC_PI_2 * state.area.unwrap() / (size.x * size.y);
             let pressure = force / (size.x * size.y);
-            let wave = Wave {
+            let wave = JohnsonWave {
                 amplitude,
                 wavelength,
                 contact_modulus,

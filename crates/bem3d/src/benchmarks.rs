@@ -1,10 +1,12 @@
 //! The operators and the parts of a solve, for benchmarks. This module is not part of the public interface
 //! and may change in any version.
 
-pub use crate::parts::{Part, Recorder, Spent};
+pub use crate::parts::{Part, PartTime, Recorder};
 pub use crate::tuning::{CONSTANTS, Constant};
 
-use crate::friction::{Friction, FrictionLimits, FrictionLoad, PressedCells, SlipMemory, TangentialControl};
+use crate::friction::{
+    FrictionLimits, FrictionLoad, FrictionSolver, PressedCells, SlipMemory, TangentialControl,
+};
 use crate::geometry::{CellSet, Grid, Lengths};
 use crate::kernel::{NormalTable, TangentialTable};
 use crate::linear::Factor;
@@ -134,7 +136,7 @@ pub fn factor(side: usize, count: usize) -> bool {
 
 /// Work and result of one increment of friction.
 #[derive(Debug, Clone, Copy)]
-pub struct PartialSlip {
+pub struct IncrementResult {
     /// Applications of the tangential kernel.
     pub applications: usize,
     /// Newton's steps and those of conjugate gradients.
@@ -153,7 +155,7 @@ pub struct PartialSlip {
 /// share of its friction: one increment with `compliance = E* sum nu/(2 G)`, and the stiffness where
 /// requested.
 pub struct PartialSlipBench {
-    friction: Friction,
+    friction: FrictionSolver,
     cells: CellSet,
     pressure: Vec<f64>,
 }
@@ -170,7 +172,8 @@ impl PartialSlipBench {
         let (columns, rows) = (pressure.columns(), pressure.rows());
         let grid = Grid { columns, rows, stretch: 1.0 };
         let cells = CellSet::of_grid(grid, pressure.values(), |p| p > 0.0);
-        let friction = Friction::new(grid, Boundary::Free, [compliance, 0.0], &Tuning::DEFAULT, recorder);
+        let friction =
+            FrictionSolver::new(grid, Boundary::Free, [compliance, 0.0], &Tuning::DEFAULT, recorder);
         Self { friction, cells, pressure: pressure.values().iter().copied().filter(|p| *p > 0.0).collect() }
     }
 
@@ -182,7 +185,7 @@ impl PartialSlipBench {
         tolerance: f64,
         guess: Option<&[f64]>,
         stiffness: bool,
-    ) -> Option<PartialSlip> {
+    ) -> Option<IncrementResult> {
         let Self { friction, cells, pressure } = self;
         let [before, _] = friction.work();
         let force = share * coefficient * pressure.iter().sum::<f64>();
@@ -202,7 +205,7 @@ impl PartialSlipBench {
         let k =
             stiffness.then(|| tangential::solve(friction, &state, StiffnessOf::Branch, tolerance, &never));
         let [end, _] = friction.work();
-        Some(PartialSlip {
+        Some(IncrementResult {
             applications: after - before,
             iterations: state.iterations,
             duality_gap: state.duality_gap,

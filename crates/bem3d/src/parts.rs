@@ -78,7 +78,7 @@ impl Part {
 
 /// Time of one part, and how often it was entered.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Spent {
+pub struct PartTime {
     /// Units of the clock.
     pub time: u64,
     /// Number of times.
@@ -93,12 +93,12 @@ pub struct Recorder(Option<Arc<Account>>);
 #[derive(Debug)]
 struct Account {
     clock: fn() -> u64,
-    entries: Mutex<Entries>,
+    entries: Mutex<Timings>,
 }
 
 #[derive(Debug)]
-struct Entries {
-    spent: [Spent; Part::ALL.len()],
+struct Timings {
+    spent: [PartTime; Part::ALL.len()],
     /// The part that runs, and since when.
     now: (Part, u64),
 }
@@ -106,18 +106,18 @@ struct Entries {
 impl Recorder {
     /// Charges time in units of this clock from now on.
     pub fn new(clock: fn() -> u64) -> Self {
-        let entries = Entries { spent: [Spent::default(); Part::ALL.len()], now: (Part::Other, clock()) };
+        let entries = Timings { spent: [PartTime::default(); Part::ALL.len()], now: (Part::Other, clock()) };
         Self(Some(Arc::new(Account { clock, entries: Mutex::new(entries) })))
     }
 
     /// The time since the last call, or since the beginning; empty when off.
-    pub fn take(&self) -> Vec<(Part, Spent)> {
+    pub fn take(&self) -> Vec<(Part, PartTime)> {
         let Some(account) = &self.0 else { return Vec::new() };
         let mut entries = account.entries();
         let now = entries.now.0;
         entries.switch(now, (account.clock)());
-        let spent = std::mem::replace(&mut entries.spent, [Spent::default(); Part::ALL.len()]);
-        Part::ALL.into_iter().zip(spent).filter(|(_, spent)| *spent != Spent::default()).collect()
+        let spent = std::mem::replace(&mut entries.spent, [PartTime::default(); Part::ALL.len()]);
+        Part::ALL.into_iter().zip(spent).filter(|(_, spent)| *spent != PartTime::default()).collect()
     }
 
     /// Runs some work as a separate part, whose time is not counted in the surrounding part.
@@ -132,7 +132,7 @@ impl Recorder {
 
 impl Account {
     /// The entries, including those of a thread that panicked.
-    fn entries(&self) -> MutexGuard<'_, Entries> {
+    fn entries(&self) -> MutexGuard<'_, Timings> {
         self.entries.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -144,7 +144,7 @@ impl Account {
     }
 }
 
-impl Entries {
+impl Timings {
     /// Charges the part that runs, and begins another one.
     fn switch(&mut self, part: Part, now: u64) -> Part {
         let (last, since) = std::mem::replace(&mut self.now, (part, now));

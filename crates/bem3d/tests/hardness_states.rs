@@ -15,9 +15,9 @@ const TIGHT_SHARE: u64 = 4;
 const TOLERANCES: [f64; 2] = [1e-6, 1e-9];
 
 /// Reproducible random numbers (splitmix64).
-struct Draw(u64);
+struct SplitMix(u64);
 
-impl Draw {
+impl SplitMix {
     fn next(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -44,7 +44,7 @@ impl Draw {
 }
 
 /// White noise, smoothed repeatedly over a cell and its neighbours, periodically across the edges.
-fn heights(draw: &mut Draw, columns: usize, rows: usize) -> Vec<f64> {
+fn heights(draw: &mut SplitMix, columns: usize, rows: usize) -> Vec<f64> {
     let mut h: Vec<f64> =
         (0..columns * rows).map(|_| (0..4).map(|_| draw.uniform()).sum::<f64>() - 2.0).collect();
     for _ in 0..draw.index(0, 6).saturating_sub(2) {
@@ -71,7 +71,7 @@ fn heights(draw: &mut Draw, columns: usize, rows: usize) -> Vec<f64> {
 
 /// A state by its number: model, scene and load.
 fn state(number: u64, tolerances: [f64; 2]) -> (Bem3d, Scene, Load) {
-    let mut draw = Draw(number);
+    let mut draw = SplitMix(number);
     let (columns, rows) = (draw.index(8, 30), draw.index(8, 30));
     let (dx, dy) = (0.05, if draw.index(0, 2) == 0 { 0.05 } else { 0.05 * draw.between(0.5, 2.0) });
     let size = [columns as f64 * dx, rows as f64 * dy];

@@ -19,11 +19,11 @@ use contact_model::{
 use std::f64::consts::PI;
 
 /// A thin layer on a rigid base: independent springs of E*/thickness per area.
-struct Winkler {
+struct WinklerModel {
     thickness: f64,
 }
 
-impl ContactModel for Winkler {
+impl ContactModel for WinklerModel {
     fn name(&self) -> &'static str {
         "winkler"
     }
@@ -51,12 +51,12 @@ impl ContactModel for Winkler {
         let (cell, contact_modulus) = (map.dx() * map.dy(), scene.contact_modulus);
         let normalisation = Normalisation { contact_modulus, length: map.length(), height: None };
         let spring = cell * contact_modulus / self.thickness;
-        Ok(Box::new(Layer { depths, cell, spring, normalisation, outputs: scene.outputs }))
+        Ok(Box::new(WinklerLayer { depths, cell, spring, normalisation, outputs: scene.outputs }))
     }
 }
 
 /// The undeformed gaps in ascending order, and the spring under one cell.
-struct Layer {
+struct WinklerLayer {
     depths: Vec<f64>,
     cell: f64,
     spring: f64,
@@ -64,7 +64,7 @@ struct Layer {
     outputs: Outputs,
 }
 
-impl PreparedContact for Layer {
+impl PreparedContact for WinklerLayer {
     fn normalisation(&self) -> Normalisation {
         self.normalisation
     }
@@ -92,7 +92,7 @@ fn main() -> Result<()> {
     let map = HeightMap::from_fn(400, Size::from(side), sphere)?;
     let mut scene = Scene::new(Surface::Heights(map.into()), contact_modulus);
     scene.outputs.area = true;
-    let model: &dyn ContactModel = &Winkler { thickness };
+    let model: &dyn ContactModel = &WinklerModel { thickness };
     let mut contact = model.prepare(&scene, 0)?;
     println!("{:>9} {:>12} {:>12} {:>10} {:>10}", "approach", "force", "closed form", "k", "area");
     for approach in [0.005, 0.01, 0.02, 0.04] {

@@ -59,7 +59,7 @@ impl PathMemory {
 mod tests {
     use super::*;
 
-    type Remembered = (Vec<f64>, Option<f64>, String);
+    type Example = (Vec<f64>, Option<f64>, String);
 
     #[test]
     fn comes_back_bit_for_bit_or_not_at_all() {
@@ -67,11 +67,11 @@ mod tests {
         let memory = PathMemory::of(&remembered).unwrap();
         assert_eq!(PathMemory::from_bytes(memory.bytes().to_vec()).read(), Ok(remembered));
         for cut in 0..memory.bytes().len() {
-            assert!(PathMemory::from_bytes(memory.bytes()[..cut].to_vec()).read::<Remembered>().is_err());
+            assert!(PathMemory::from_bytes(memory.bytes()[..cut].to_vec()).read::<Example>().is_err());
         }
         let longer = [memory.bytes(), &[0]].concat();
-        assert!(PathMemory::from_bytes(longer).read::<Remembered>().is_err());
+        assert!(PathMemory::from_bytes(longer).read::<Example>().is_err());
         // A length that no file has.
-        assert!(PathMemory::from_bytes(vec![0xff; 9]).read::<Remembered>().is_err());
+        assert!(PathMemory::from_bytes(vec![0xff; 9]).read::<Example>().is_err());
     }
 }

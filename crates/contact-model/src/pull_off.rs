@@ -35,7 +35,7 @@ use crate::state::{ContactState, PullOff, Status};
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct LargestPull {
     /// The stable states, in their order.
-    held: Vec<Point>,
+    held: Vec<PathPoint>,
     /// Index of the state of the largest pull.
     largest: usize,
 }
@@ -43,7 +43,7 @@ pub struct LargestPull {
 /// A state of the path.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-struct Point {
+struct PathPoint {
     /// The prescribed distance by which the bodies are pressed together; `None` under a prescribed force.
     distance: Option<f64>,
     force: f64,
@@ -75,13 +75,13 @@ impl LargestPull {
                 NormalLoad::MeanGap(gap) => Some(-gap),
                 NormalLoad::Force(_) => None,
             };
-            self.held.push(Point { distance, force, approach, mean_gap });
+            self.held.push(PathPoint { distance, force, approach, mean_gap });
         }
         ContactState { pull_off: self.pull_off(beyond), ..state }
     }
 
     fn pull_off(&self, beyond: Option<NormalLoad>) -> Option<PullOff> {
-        let Point { force, approach, mean_gap, .. } =
+        let PathPoint { force, approach, mean_gap, .. } =
             *self.held.get(self.largest).filter(|largest| largest.force < 0.0)?;
         let error = match beyond {
             Some(NormalLoad::Force(asked)) => Some((force - asked).max(0.0)),

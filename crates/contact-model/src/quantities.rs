@@ -252,7 +252,7 @@ impl AskedBy {
 
 /// Unit of a quantity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Unit {
+pub enum QuantityUnit {
     /// Text.
     Word,
     /// A pure number or a count.
@@ -263,7 +263,7 @@ pub enum Unit {
     Conductance,
 }
 
-impl Unit {
+impl QuantityUnit {
     /// The unit in SI (`1` for a pure number, `-` for text).
     pub fn si(self, outputs: &Outputs) -> &'static str {
         match self {
@@ -326,7 +326,7 @@ pub enum Compared {
 /// One quantity, with everything that tables, files and pictures need to know about it.
 #[derive(Debug, Clone, Copy)]
 #[non_exhaustive]
-pub struct Quantity {
+pub struct StateQuantity {
     /// Its name in code, CSV, JSON and Python.
     pub name: &'static str,
     /// Its name in titles.
@@ -334,7 +334,7 @@ pub struct Quantity {
     /// Its symbol, in the commands of TeX; may be empty.
     pub symbol: &'static str,
     /// Its unit.
-    pub unit: Unit,
+    pub unit: QuantityUnit,
     /// Its meaning, in one sentence.
     pub meaning: &'static str,
     /// The publication that defines it, where it is not common knowledge; may be empty.
@@ -357,7 +357,7 @@ pub struct Quantity {
     pub columns: [&'static str; 6],
 }
 
-impl Quantity {
+impl StateQuantity {
     /// The quantity of this name.
     pub fn named(name: &str) -> Option<&'static Self> {
         QUANTITIES.iter().find(|quantity| quantity.name == name)
@@ -382,9 +382,9 @@ macro_rules! quantities {
     ($($name:literal $words:literal $symbol:literal $unit:expr; $asked:expr; $meaning:literal
        $({ $($field:ident: $setting:expr),+ $(,)? })?
        => $value:expr;)+) => {
-        [$(Quantity {
+        [$(StateQuantity {
             $($($field: $setting,)+)?
-            ..Quantity {
+            ..StateQuantity {
                 name: $name,
                 words: $words,
                 symbol: $symbol,
@@ -414,13 +414,13 @@ use AskedBy::{
     All, Always, AnyStiffness, AnyTangentialStiffness, Effect, FreeBoundary, FrictionInPlane, Path,
     PrescribedDistance, RoughSurface,
 };
-use Unit::{One, Si, Word};
+use QuantityUnit::{One, Si, Word};
 
 /// A path with adhesion.
 const PULLED: &[AskedBy] = &[Path, Effect("adhesion")];
 
 /// Every quantity, in the order of the columns of tables.
-pub static QUANTITIES: &[Quantity] = &quantities! {
+pub static QUANTITIES: &[StateQuantity] = &quantities! {
     "time" "time" "t" Si("s"); Path; "time at the end of the step"
         { average: Average::Same, drawn: false }
         => |s, _| s.time.into();
@@ -543,7 +543,7 @@ pub static QUANTITIES: &[Quantity] = &quantities! {
     "contact_fraction" "contact fraction" "A/A_0" One; AskedBy::Output(Output::Area); "A/(Lx Ly), undefined points included"
         { drawn: false }
         => |s, n| s.area.map(|a| n.contact_fraction(a)).into();
-    "conductance" "conductance" "Λ" Unit::Conductance; AskedBy::Output(Output::Conductance);
+    "conductance" "conductance" "Λ" QuantityUnit::Conductance; AskedBy::Output(Output::Conductance);
         "2 k/(E* (rho_1 + rho_2)) with the stiffness at fixed contact area (Barber)"
         { compared: Compared::Yes, source: "Barber, Proc. R. Soc. A 459, 53 (2003)" }
         => |s, _| s.conductance.into();
@@ -634,7 +634,7 @@ mod tests {
 
     #[test]
     fn names_are_words_and_stand_once() {
-        let mut names: Vec<&str> = QUANTITIES.iter().flat_map(Quantity::column_names).collect();
+        let mut names: Vec<&str> = QUANTITIES.iter().flat_map(StateQuantity::column_names).collect();
         let letter = |c: char| c.is_ascii_lowercase() || c == '_';
         assert!(names.iter().all(|name| name.chars().all(letter)), "{names:?}");
         let count = names.len();

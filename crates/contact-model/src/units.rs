@@ -9,7 +9,7 @@ const PREFIXES: [(&str, i32); 9] =
 
 /// An SI unit with its multiples: the text before and behind the prefix, the power to which the prefix is
 /// raised, and the smallest and the largest power of ten of the prefix.
-struct Scale {
+struct UnitScale {
     unit: &'static str,
     head: &'static str,
     base: &'static str,
@@ -23,12 +23,12 @@ const fn scale(
     base: &'static str,
     power: i32,
     prefixes: [i32; 2],
-) -> Scale {
-    Scale { unit, head, base, power, prefixes }
+) -> UnitScale {
+    UnitScale { unit, head, base, power, prefixes }
 }
 
 /// Lengths have no larger unit than the metre, times none than the second.
-const SCALES: [Scale; 16] = [
+const SCALES: [UnitScale; 16] = [
     scale("m", "", "m", 1, [-12, 0]),
     scale("m^2", "", "m^2", 2, [-9, 0]),
     scale("m^3", "", "m^3", 3, [-9, 0]),

@@ -49,12 +49,12 @@ impl ContactModel for Winkler {
         let normalisation =
             Normalisation { contact_modulus: scene.contact_modulus, length: map.length(), height: None };
         let (foundation, cell) = (scene.contact_modulus / self.thickness, map.dx() * map.dy());
-        Ok(Box::new(Springs { depths, foundation, cell, normalisation, outputs: scene.outputs }))
+        Ok(Box::new(SpringBed { depths, foundation, cell, normalisation, outputs: scene.outputs }))
     }
 }
 
 /// The undeformed gaps in ascending order, pressure per indentation, area of a cell.
-struct Springs {
+struct SpringBed {
     depths: Vec<f64>,
     foundation: f64,
     cell: f64,
@@ -62,7 +62,7 @@ struct Springs {
     outputs: Outputs,
 }
 
-impl PreparedContact for Springs {
+impl PreparedContact for SpringBed {
     fn normalisation(&self) -> Normalisation {
         self.normalisation
     }

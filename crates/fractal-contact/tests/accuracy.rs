@@ -16,9 +16,9 @@ const SCENE: &str = "[scene]\nunits = \"none\"\nmodels = [\"bem3d\"]\ncontact_mo
 
 /// Counts the jobs that were done, without those that were found in a store.
 #[derive(Default)]
-struct Counter(AtomicUsize);
+struct SolvedJobs(AtomicUsize);
 
-impl Progress for Counter {
+impl Progress for SolvedJobs {
     fn begin(&self, _: &str, _: u64) {}
     fn advance(&self, _: u64, reused: bool) {
         self.0.fetch_add(usize::from(!reused), Ordering::Relaxed);
@@ -26,7 +26,7 @@ impl Progress for Counter {
     fn end(&self) {}
 }
 
-impl Counter {
+impl SolvedJobs {
     fn done(&self) -> usize {
         self.0.load(Ordering::Relaxed)
     }
@@ -70,7 +70,7 @@ fn files(out: &Path) -> Vec<(String, Vec<u8>)> {
 fn the_run_takes_the_states_of_the_pilot() {
     let dir = tempfile::tempdir().unwrap();
     let (out, alone) = (dir.path().join("out"), dir.path().join("alone"));
-    let counter = Counter::default();
+    let counter = SolvedJobs::default();
     let grid = chosen(SCENE, &out, &counter);
     // 128 and 256 cells.
     assert_eq!((grid.models[0].size(), counter.done()), (256, 2));
@@ -102,7 +102,7 @@ fn a_pilot_goes_on_after_an_interruption() {
     let whole = dir.path().join("whole");
     solved(&chosen(SCENE, &whole, &Silent), &whole);
     // Between two grids.
-    let (out, counter) = (dir.path().join("between"), Counter::default());
+    let (out, counter) = (dir.path().join("between"), SolvedJobs::default());
     let stopped = chosen_until(SCENE, &out, &counter, &|| counter.done() == 1).unwrap_err();
     assert!(stopped.to_string().contains("the pilot of `accuracy`"), "{stopped}");
     assert_eq!(counter.done(), 1);

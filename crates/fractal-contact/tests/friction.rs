@@ -23,9 +23,9 @@ const OUTPUTS: &[Output] = &[
     Output::StickSlip,
 ];
 
-struct Block;
+struct BlockModel;
 
-impl ContactModel for Block {
+impl ContactModel for BlockModel {
     fn name(&self) -> &'static str {
         NAME
     }
@@ -193,7 +193,7 @@ curves = true
 fn parsed(text: &str, directory: &std::path::Path) -> fractal_contact::scenes::Result<SceneFile> {
     let map = surface_io::npy(&[2, 3], &[0.0, 1.0, 2.0, 1.0, 0.5, 0.0]).unwrap();
     std::fs::write(directory.join("map.npy"), map).unwrap();
-    let registry = Registry::new().with(Block, "1").unwrap();
+    let registry = Registry::new().with(BlockModel, "1").unwrap();
     SceneFile::parse_with(&directory.join("block.toml"), text.into(), &registry)
 }
 

@@ -40,8 +40,8 @@ fn two_bodies_lie_face_to_face() {
     const SECOND: &str =
         "[scene.second_surface]\nkind = \"file\"\npath = \"upper.x3p\"\ndetrend = \"none\"\n";
     // Where the point of the second body lies that is over [row, column] of the first.
-    type Over = fn(usize, usize) -> [usize; 2];
-    let cases: [(&str, [usize; 2], Over); 5] = [
+    type FacingPoint = fn(usize, usize) -> [usize; 2];
+    let cases: [(&str, [usize; 2], FacingPoint); 5] = [
         ("", [3, 4], |row, column| [row, 3 - column]),
         ("facing = \"y\"", [3, 4], |row, column| [2 - row, column]),
         ("facing = \"none\"", [3, 4], |row, column| [row, column]),

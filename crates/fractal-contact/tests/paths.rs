@@ -6,12 +6,12 @@ use fractal_contact::scenes::{Options, Plan, SceneFile, run};
 use runs::{CsvFile, Silent};
 
 /// The states of a path, as a scene has them: the numbers of a column by model, surface and state.
-struct Solved {
+struct PathColumns {
     scene: SceneFile,
     file: CsvFile,
 }
 
-impl Solved {
+impl PathColumns {
     fn of(text: &str) -> Self {
         let scene =
             SceneFile::parse("scene.toml".as_ref(), text.into()).unwrap_or_else(|e| panic!("{e}\n{text}"));
@@ -107,7 +107,7 @@ const BALL: &str = "[scene]\nunits = \"none\"\nmodels = MODELS\nbodies = [{ youn
     [scene.body]\nkind = \"sphere\"\nradius = 1\nside = 1\n[effects]\nfriction = { coefficient = 0.3, coupling = \"none\" }\n";
 const MODELS: [&str; 4] = ["bem3d", "equivalent", "mdr1d_partial_slip", "cattaneo_mindlin"];
 
-fn ball(models: &[&str], path: &str) -> Solved {
+fn ball(models: &[&str], path: &str) -> PathColumns {
     let mut text = BALL.replace("MODELS", &format!("{models:?}"));
     for model in models {
         match *model {
@@ -116,7 +116,7 @@ fn ball(models: &[&str], path: &str) -> Solved {
             _ => {}
         }
     }
-    Solved::of(&(text + path))
+    PathColumns::of(&(text + path))
 }
 
 /// To and fro between tangential force and displacement. The increments of friction are four in the piece
@@ -221,7 +221,8 @@ const ROUGH: &str = "[scene]\nunits = \"none\"\nmodels = [\"bem3d\"]\nmodulus = 
 fn a_plastic_contact_is_drawn_off_from_the_approach_reached() {
     let path = "[[scene.path]]\nforce = 0.005\nstates = 2\n[[scene.path]]\napproach = 0.03\nstates = 3\n\
         [[scene.path]]\nforce = 0.008\nstates = 3\n";
-    let solved = Solved::of(&format!("{ROUGH}[effects]\nhardness = 0.05\n[outputs]\narea = true\n{path}"));
+    let solved =
+        PathColumns::of(&format!("{ROUGH}[effects]\nhardness = 0.05\n[outputs]\narea = true\n{path}"));
     let starts = [0, 1].map(|surface| {
         let states = solved.assert_is(0, surface, &|i, before| {
             Step::new(
@@ -252,7 +253,7 @@ fn an_adhesive_contact_is_drawn_off_from_the_approach_reached() {
              [effects]\nadhesion = {adhesion}\n[outputs]\narea = true\n[models.bem3d]\ncells = 64\n\
              [[scene.path]]\nforce = 0.003\n[[scene.path]]\napproach = 0\nstates = 6\n[[scene.path]]\nforce = 0.001\nstates = 2\n"
         );
-        let solved = Solved::of(&text);
+        let solved = PathColumns::of(&text);
         let states = solved.assert_is(0, 0, &|i, before| {
             Step::new(
                 0.0,
@@ -283,7 +284,7 @@ fn a_periodic_contact_goes_on_from_the_mean_gap_reached() {
                 "{ROUGH}[effects]\nboundary = \"periodic\"\n{effect}\n[outputs]\narea = true\n{outputs}{path}"
             )
         };
-        let solved = Solved::of(&text("mean_gap = true\n"));
+        let solved = PathColumns::of(&text("mean_gap = true\n"));
         let states = solved.assert_is(0, 1, &|i, before| {
             Step::new(
                 0.0,
@@ -297,7 +298,7 @@ fn a_periodic_contact_goes_on_from_the_mean_gap_reached() {
         // Met to the tolerance, in rms heights.
         let gap = |i: usize| states[i].mean_gap.unwrap();
         assert!((1..=4).all(|i| (gap(i) - part(gap(0), 0.03, i, 4)).abs() < 1e-7), "{effect}: {}", gap(0));
-        let silent = Solved::of(&text(""));
+        let silent = PathColumns::of(&text(""));
         assert!(silent.file.numbers("mean_gap").is_err());
         for name in ["force", "area"] {
             assert_eq!(silent.column("bem3d", 0, name), solved.column("bem3d", 0, name), "{effect}");
@@ -318,7 +319,7 @@ fn a_relaxing_contact_ends_where_an_undivided_piece_does() {
              [[scene.path]]\ntime = 3\nforce = 0.08\nstates = {states}\n"
         )
     };
-    let (once, divided) = (Solved::of(&text(1)), Solved::of(&text(4)));
+    let (once, divided) = (PathColumns::of(&text(1)), PathColumns::of(&text(4)));
     for (model, name, tolerance) in [(0, "mdr1d_viscoelastic", 1e-9), (1, "equivalent", 1e-3)] {
         let states = divided.assert_is(model, 0, &|i, before| {
             let normal = match i {
@@ -354,7 +355,8 @@ fn a_path_of_forces_crosses_zero() {
              [sampling]\nseed = 1\n"
         )
     };
-    let solved = Solved::of(&text("[[scene.path]]\nforce = 0.3\n[[scene.path]]\nforce = -0.1\nstates = 4\n"));
+    let solved =
+        PathColumns::of(&text("[[scene.path]]\nforce = 0.3\n[[scene.path]]\nforce = -0.1\nstates = 4\n"));
     let states = solved.assert_is(0, 0, &|i, _| {
         let forces = [0.3, 0.3 - 0.4 * 0.25, 0.3 - 0.4 * 0.5, 0.0, -0.1];
         Step::new(0.0, Load::force(forces[i]))
@@ -365,7 +367,7 @@ fn a_path_of_forces_crosses_zero() {
         let path = format!(
             "[[scene.path]]\nforce = 0.3\n[[scene.path]]\nforce = {small}\n[[scene.path]]\nforce = -0.1\n"
         );
-        let solved = Solved::of(&text(&path));
+        let solved = PathColumns::of(&text(&path));
         let found = solved.column("bem3d", 0, "force")[1];
         assert!((found - small.parse::<f64>().unwrap()).abs() < 1e-6, "{small}: {found:e}");
     }
@@ -379,7 +381,7 @@ fn a_force_of_zero_that_is_held_stays_on_its_branch() {
         [effects]\nadhesion = { work = 0.002, range = 0.05, law = \"exponential\" }\n[models.bem3d]\ncells = CELLS\ntolerance = 1e-12\n\
         [[scene.path]]\nforce = 0.003\n[[scene.path]]\nforce = 0\n[[scene.path]]\nforce = 0\nstates = 3\n";
     for cells in ["48", "64", "96"] {
-        let solved = Solved::of(&text.replace("CELLS", cells));
+        let solved = PathColumns::of(&text.replace("CELLS", cells));
         assert_eq!(solved.file.texts("branch").unwrap()[1..], ["withdrawal"; 4], "{cells} cells");
     }
 }
@@ -396,7 +398,7 @@ fn a_coupled_contact_is_displaced_from_where_pressing_has_left_it() {
             .replace("surfaces = 2", "surfaces = 1")
             .replace("cells = 32", "cells = 16")
     );
-    let states = Solved::of(&text).assert_is(0, 0, &|i, before| {
+    let states = PathColumns::of(&text).assert_is(0, 0, &|i, before| {
         let tangential = if i == 0 { Tangential::default() } else { shifted(&before[0], 0.004, i, 4) };
         Step::new(0.0, Load::force(0.01).with_tangential(tangential))
     });

@@ -47,12 +47,12 @@ rows = ROWS
 "#;
 
 /// A picture: its width, and three bytes a pixel.
-struct Image {
+struct DecodedPicture {
     width: usize,
     pixels: Vec<[u8; 3]>,
 }
 
-impl Image {
+impl DecodedPicture {
     fn decode(bytes: &[u8]) -> Self {
         let mut decoder = png::Decoder::new(std::io::Cursor::new(bytes));
         decoder.set_transformations(png::Transformations::EXPAND);
@@ -91,18 +91,18 @@ fn values(path: &Path, count: usize) -> Vec<f64> {
 }
 
 /// The picture and the values of each field of a report, by the first word of its title.
-fn figures(page: &str) -> Vec<(String, serde_json::Value, Image)> {
+fn figures(page: &str) -> Vec<(String, serde_json::Value, DecodedPicture)> {
     let figure = |part: &str| {
         let (data, rest) = part.split_once("\">").unwrap();
         let data = serde_json::from_str(&data.replace("&quot;", "\"")).unwrap();
         let png = rest.split_once("data:image/png;base64,").unwrap().1.split_once('"').unwrap().0;
         let title = rest.split_once("<figcaption><strong>").unwrap().1.split_once(',').unwrap().0;
-        (title.to_owned(), data, Image::decode(&STANDARD.decode(png).unwrap()))
+        (title.to_owned(), data, DecodedPicture::decode(&STANDARD.decode(png).unwrap()))
     };
     page.split("<figure class=\"field\" data-field=\"").skip(1).map(figure).collect()
 }
 
-struct Case<'a> {
+struct ComparedPicture<'a> {
     surface: &'a str,
     boundary: &'a str,
     load: [&'a str; 2],
@@ -112,8 +112,8 @@ struct Case<'a> {
 }
 
 /// Runs a scene and compares the shares of each picture of its last state with the field and the table.
-fn compare(dir: &Path, case: &Case<'_>) {
-    let Case { surface, boundary, load, cells: [columns, rows], pixels } = *case;
+fn compare(dir: &Path, case: &ComparedPicture<'_>) {
+    let ComparedPicture { surface, boundary, load, cells: [columns, rows], pixels } = *case;
     let mut text = SCENE.replace("SURFACE", surface).replace("BOUNDARY", boundary);
     text = text.replace("FORCE", load[0]).replace("TANGENTIAL", load[1]);
     text = text.replace("COLUMNS", &columns.to_string()).replace("ROWS", &rows.to_string());
@@ -151,19 +151,19 @@ fn compare(dir: &Path, case: &Case<'_>) {
     let whole = pixels[0] % columns == 0 && pixels[1] % rows == 0;
     let tolerance = if whole { WHOLE } else { REDUCED / (pixels[0] as f64 * pixels[1] as f64).sqrt() };
     let scale = ColourScale::new((0.0, 2.0), true, false);
-    let map = Image::read(&file("stick_slip", "png")).map(pixels);
+    let map = DecodedPicture::read(&file("stick_slip", "png")).map(pixels);
     for (class, share) in [(0.0, open), (1.0, stick), (2.0, slip)] {
         tell(map.share(|p| p == scale.colour(class)), share, tolerance, "class");
     }
-    let map = Image::read(&file("pressure", "png")).map(pixels);
+    let map = DecodedPicture::read(&file("pressure", "png")).map(pixels);
     tell(map.share(|p| p != [255; 3]), stick + slip, tolerance, "under pressure");
     // The contact is inside its outline, in the colour of the smallest gap to the tolerance of the solution.
-    let gap = Image::read(&file("gap", "png")).map(pixels);
+    let gap = DecodedPicture::read(&file("gap", "png")).map(pixels);
     let inside = gap.share(|p| [0, 1, 2].iter().all(|i| p[*i].abs_diff(plots::viridis()[0][*i]) <= 2));
     assert!(inside >= stick + slip - tolerance, "{inside}");
 
     // Grey: open is white, slip black.
-    let map = Image::read(&file("stick_slip", "pixels.png"));
+    let map = DecodedPicture::read(&file("stick_slip", "pixels.png"));
     for (grey, share) in [(255, open), (128, stick), (0, slip)] {
         tell(map.share(|p| p == [grey; 3]), share, WHOLE, "class, a pixel for each cell");
     }
@@ -221,7 +221,7 @@ fn pictures_have_the_areas_of_the_table() {
     {
         let dir = dir.path().join(i.to_string());
         std::fs::create_dir(&dir).unwrap();
-        compare(&dir, &Case { surface: &rough(size), boundary, load, cells, pixels });
+        compare(&dir, &ComparedPicture { surface: &rough(size), boundary, load, cells, pixels });
     }
     // A measured map with holes.
     let surface = contact_model::SelfAffine::new(2.2, [90.0, 60.0], 0.8).unwrap();
@@ -233,7 +233,10 @@ fn pictures_have_the_areas_of_the_table() {
     std::fs::write(dir.path().join("map.npy"), map).unwrap();
     let surface = "kind = \"file\"\npath = \"map.npy\"\nunit = \"um\"\nsize = [\"90 um\", \"60 um\"]\nundefined = \"no_contact\"";
     let load = ["20 N", "4 N"];
-    compare(dir.path(), &Case { surface, boundary: "", load, cells: [90, 60], pixels: [1080, 720] });
+    compare(
+        dir.path(),
+        &ComparedPicture { surface, boundary: "", load, cells: [90, 60], pixels: [1080, 720] },
+    );
 }
 
 /// Whether every tick of a map lies on its axis, and every number of its scale is one.

@@ -21,9 +21,9 @@ fn texts(output: &Output) -> (String, String) {
 
 /// Counts units, and those found on disk.
 #[derive(Default)]
-struct Counter(AtomicUsize, AtomicUsize);
+struct UnitCounter(AtomicUsize, AtomicUsize);
 
-impl Progress for Counter {
+impl Progress for UnitCounter {
     fn begin(&self, _: &str, _: u64) {}
     fn advance(&self, _: u64, reused: bool) {
         self.0.fetch_add(1, Ordering::Relaxed);
@@ -41,14 +41,14 @@ fn a_stopped_run_goes_on_and_ends_in_the_same_bytes() {
     let bytes = |name: &str| std::fs::read(dir.path().join(name).join("results.csv")).unwrap();
     run(&scene, &plan, &options("whole", 1), &Silent, &contact_model::never).unwrap();
 
-    let counter = Counter::default();
+    let counter = UnitCounter::default();
     let stop = || counter.0.load(Ordering::Relaxed) >= 2;
     let outcome = run(&scene, &plan, &options("parts", 1), &counter, &stop).unwrap();
     assert!(outcome.stopped && outcome.states >= 6 && outcome.states < 18, "{outcome:?}");
     let manifest = std::fs::read_to_string(dir.path().join("parts/manifest.json")).unwrap();
     assert!(manifest.contains("\"complete\": false"));
 
-    let counter = Counter::default();
+    let counter = UnitCounter::default();
     let outcome = run(&scene, &plan, &options("parts", 2), &counter, &contact_model::never).unwrap();
     assert!(!outcome.stopped && outcome.states == 18);
     assert_eq!((counter.0.into_inner(), counter.1.into_inner()), (6, 2));

@@ -20,10 +20,10 @@ const LARGE: usize = CELLS * CELLS * 8;
 /// The count is of the process: one measurement at a time.
 static ALONE: Mutex<()> = Mutex::new(());
 
-struct Counting;
+struct CountingAllocator;
 
 // SAFETY: every call is passed on to the system's allocator unchanged.
-unsafe impl GlobalAlloc for Counting {
+unsafe impl GlobalAlloc for CountingAllocator {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         BLOCKS.fetch_add(usize::from(layout.size() >= LARGE), Ordering::Relaxed);
         unsafe { System.alloc(layout) }
@@ -34,7 +34,7 @@ unsafe impl GlobalAlloc for Counting {
 }
 
 #[global_allocator]
-static ALLOCATOR: Counting = Counting;
+static ALLOCATOR: CountingAllocator = CountingAllocator;
 
 /// Iterated, so that the stiffness is a linear solve of its own: a factored set gives it beside the pressure.
 const LOADS: [f64; 2] = [0.01, 0.1];

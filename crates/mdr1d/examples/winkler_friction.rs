@@ -25,13 +25,13 @@ use mdr1d::{
 use std::f64::consts::PI;
 
 /// A layer of this thickness under a sphere: `F = pi E* R d^2/thickness`, `k = dF/dd`.
-struct Winkler {
+struct WinklerFriction {
     thickness: f64,
 }
 
-struct Layer(f64, Normalisation);
+struct SlidingLayer(f64, Normalisation);
 
-impl ContactModel for Winkler {
+impl ContactModel for WinklerFriction {
     fn name(&self) -> &'static str {
         "winkler"
     }
@@ -51,11 +51,11 @@ impl ContactModel for Winkler {
         };
         let normalisation =
             Normalisation { contact_modulus: scene.contact_modulus, length: size.length(), height: None };
-        Ok(Box::new(Layer(PI * scene.contact_modulus * radius / self.thickness, normalisation)))
+        Ok(Box::new(SlidingLayer(PI * scene.contact_modulus * radius / self.thickness, normalisation)))
     }
 }
 
-impl PreparedContact for Layer {
+impl PreparedContact for SlidingLayer {
     fn normalisation(&self) -> Normalisation {
         self.1
     }
@@ -75,7 +75,7 @@ fn main() -> Result<()> {
     let pair = Pair { first: Body::Rigid, second: Body::Elastic { young: 1.0, poisson: 0.4 } };
     let mut scene = Scene::of_pair(Surface::Sphere { radius: 1.0, size: 1.0.into() }, pair)?;
     scene.effects.friction = Friction::coulomb(0.3);
-    let mut contact = Equivalent::new(Winkler { thickness: 0.05 }).prepare(&scene, 0)?;
+    let mut contact = Equivalent::new(WinklerFriction { thickness: 0.05 }).prepare(&scene, 0)?;
     let normal = Load::approach(0.02);
     let force = contact.advance(Step::new(0.0, normal))?.force;
     // Full slip from this displacement on.

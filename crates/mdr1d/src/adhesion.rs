@@ -33,7 +33,7 @@ pub(crate) struct Adhesive {
 
 /// The smallest load of its kind that the contact can bear, or a number that no f64 holds.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Failure {
+pub(crate) enum NoEquilibrium {
     PullsOff { smallest: f64 },
     Range(f64),
 }
@@ -54,7 +54,7 @@ impl Adhesive {
     }
 
     /// The stable state under a prescribed approach.
-    pub fn at_approach(self, approach: f64) -> Result<RoundContact, Failure> {
+    pub fn at_approach(self, approach: f64) -> Result<RoundContact, NoEquilibrium> {
         match self.profile {
             Profile::Power { exponent, slope } => {
                 let root = largest_root(slope, self.tear, 2.0 * exponent, approach)?;
@@ -66,14 +66,16 @@ impl Adhesive {
     }
 
     /// The stable state under a prescribed force.
-    pub fn at_force(self, force: f64) -> Result<RoundContact, Failure> {
+    pub fn at_force(self, force: f64) -> Result<RoundContact, NoEquilibrium> {
         match self.profile {
             Profile::Power { exponent, slope } => {
                 let share = exponent / (exponent + 1.0);
                 let root = largest_root(slope * share, self.tear, 2.0 / 3.0 * (exponent + 1.0), 0.5 * force)
                     .map_err(|failure| match failure {
-                        Failure::PullsOff { smallest } => Failure::PullsOff { smallest: 2.0 * smallest },
-                        range @ Failure::Range(_) => range,
+                        NoEquilibrium::PullsOff { smallest } => {
+                            NoEquilibrium::PullsOff { smallest: 2.0 * smallest }
+                        }
+                        range @ NoEquilibrium::Range(_) => range,
                     })?;
                 let radius = root.cbrt().powi(2);
                 let approach = slope * radius.powf(exponent) - self.tear * radius.sqrt();
@@ -113,10 +115,10 @@ impl Adhesive {
 
     /// A flat punch (Kendall 1971): `load` is the approach times `stiffness`; its whole edge detaches at
     /// once.
-    fn flat(self, radius: f64, load: f64, stiffness: f64) -> Result<RoundContact, Failure> {
+    fn flat(self, radius: f64, load: f64, stiffness: f64) -> Result<RoundContact, NoEquilibrium> {
         let least = -self.tear * radius.sqrt() * stiffness;
         if load < least * ROUNDED_UP {
-            return Err(Failure::PullsOff { smallest: least });
+            return Err(NoEquilibrium::PullsOff { smallest: least });
         }
         let approach = load / stiffness;
         Ok(RoundContact { force: 2.0 * radius * approach, approach, radius })
@@ -127,11 +129,11 @@ impl Adhesive {
 ///
 /// Convex in t: Newton's steps from above the root only descend. Solved in the unit of whichever of `c t` and
 /// `y` is the larger, so that nothing is lost as c -> 0.
-fn largest_root(b: f64, c: f64, m: f64, y: f64) -> Result<f64, Failure> {
-    let range = |value: f64| if value.is_finite() { Ok(value) } else { Err(Failure::Range(value)) };
+fn largest_root(b: f64, c: f64, m: f64, y: f64) -> Result<f64, NoEquilibrium> {
+    let range = |value: f64| if value.is_finite() { Ok(value) } else { Err(NoEquilibrium::Range(value)) };
     let loaded = if y > 0.0 { (y / b).powf(m.recip()) } else { 0.0 };
     if c <= 0.0 {
-        return if y < 0.0 { Err(Failure::PullsOff { smallest: 0.0 }) } else { range(loaded) };
+        return if y < 0.0 { Err(NoEquilibrium::PullsOff { smallest: 0.0 }) } else { range(loaded) };
     }
     if y > 0.0 && c * loaded <= y {
         // t = loaded s: s^m = 1 + e s with e in [0, 1].
@@ -143,14 +145,14 @@ fn largest_root(b: f64, c: f64, m: f64, y: f64) -> Result<f64, Failure> {
     }
     let unit = (c / b).powf((m - 1.0).recip());
     if !unit.is_normal() {
-        return Err(Failure::Range(unit));
+        return Err(NoEquilibrium::Range(unit));
     }
     // t = unit s: s^m - s = y / (c unit).
     let load = y / (c * unit);
     let fold = m.powf(-(m - 1.0).recip());
     let least = -fold * (1.0 - m.recip());
     if load < least * ROUNDED_UP {
-        return Err(Failure::PullsOff { smallest: least * c * unit });
+        return Err(NoEquilibrium::PullsOff { smallest: least * c * unit });
     }
     if load <= least {
         return range(unit * fold);
@@ -209,10 +211,14 @@ mod tests {
     #[test]
     fn the_pull_offs_of_the_sphere() {
         let work = 0.01;
-        let Err(Failure::PullsOff { smallest }) = sphere(work).at_force(-1.0) else { panic!("it holds") };
+        let Err(NoEquilibrium::PullsOff { smallest }) = sphere(work).at_force(-1.0) else {
+            panic!("it holds")
+        };
         assert_relative_eq!(smallest, -1.5 * PI * work, max_relative = ROUNDING);
         assert!(sphere(work).at_force(smallest).is_ok());
-        let Err(Failure::PullsOff { smallest }) = sphere(work).at_approach(-1.0) else { panic!("it holds") };
+        let Err(NoEquilibrium::PullsOff { smallest }) = sphere(work).at_approach(-1.0) else {
+            panic!("it holds")
+        };
         let last = sphere(work).at_approach(smallest).unwrap();
         assert_relative_eq!(last.force, -5.0 / 6.0 * PI * work, max_relative = 1e-12);
         assert_relative_eq!(last.radius, (PI * work / 8.0).cbrt(), max_relative = 1e-12);
@@ -224,13 +230,13 @@ mod tests {
         // sqrt(a) = 3 c/(2 s).
         let (work, slope) = (1e-3, 0.2);
         let cone = adhesive(&Surface::Cone { slope, size: 1.0.into() }, work);
-        let Err(Failure::PullsOff { smallest }) = cone.at_force(-1.0) else { panic!("it holds") };
+        let Err(NoEquilibrium::PullsOff { smallest }) = cone.at_force(-1.0) else { panic!("it holds") };
         let (c, s) = ((2.0 * PI * work).sqrt(), PI / 2.0 * slope);
         let a = (1.5 * c / s).powi(2);
         assert_relative_eq!(smallest, s * a * a - 2.0 * c * a.powf(1.5), max_relative = 1e-12);
         // Kendall: F = -sqrt(8 pi w E* a^3).
         let punch = adhesive(&Surface::FlatCircle { radius: 0.1, size: 1.0.into() }, work);
-        let Err(Failure::PullsOff { smallest }) = punch.at_force(-1.0) else { panic!("it holds") };
+        let Err(NoEquilibrium::PullsOff { smallest }) = punch.at_force(-1.0) else { panic!("it holds") };
         assert_relative_eq!(smallest, -(8.0 * PI * work * 1e-3).sqrt(), max_relative = ROUNDING);
         let state = punch.at_approach(-0.01).unwrap();
         assert_relative_eq!(state.force, -0.002, max_relative = ROUNDING);
@@ -240,7 +246,7 @@ mod tests {
     fn sharp_bodies_are_refused_and_bad_ranges_named() {
         let sharp = Profile::Power { exponent: 0.5, slope: 1.0 };
         assert!(Adhesive::new(sharp, 0.1).is_err() && Adhesive::new(sharp, 0.0).is_ok());
-        assert!(matches!(power(1e-3, 0.501, 1e3).at_force(0.0), Err(Failure::Range(_))));
+        assert!(matches!(power(1e-3, 0.501, 1e3).at_force(0.0), Err(NoEquilibrium::Range(_))));
     }
 
     /// The rule itself on a line of springs: an element holds unless stretched beyond the length of its own

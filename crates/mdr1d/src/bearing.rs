@@ -36,12 +36,12 @@ pub struct Bearing {
     /// `z` of all elements, grouped by bin, ascending from bin to bin; sorted inside a bin once `knots` of
     /// that bin are there.
     depths: Vec<f64>,
-    bins: Vec<Bin>,
+    bins: Vec<DepthBin>,
 }
 
 /// Elements of neighbouring depths.
 #[derive(Debug, Clone)]
-struct Bin {
+struct DepthBin {
     /// First and one past the last element in `depths`; `start` is the number of elements above this bin.
     start: usize,
     end: usize,
@@ -220,7 +220,7 @@ impl Bearing {
 /// Depth range and `S` at both ends of every bin that is not empty: `S` grows by `m (z' - z)` where `m`
 /// elements bear from `z` to `z'`, and by `sum (high - z)` for those that lie in the bin itself. Every term
 /// is positive.
-fn bins(depths: &[f64], ends: &[usize]) -> Vec<Bin> {
+fn bins(depths: &[f64], ends: &[usize]) -> Vec<DepthBin> {
     let mut sum = Sum::from(0.0);
     let (mut start, mut last) = (0, 0.0);
     let mut bins = Vec::with_capacity(ends.len());
@@ -244,7 +244,7 @@ fn bins(depths: &[f64], ends: &[usize]) -> Vec<Bin> {
             }
             sum.add(lanes.iter().sum::<f64>() + rest.iter().map(|z| high - z).sum::<f64>());
         }
-        bins.push(Bin { start, end, low, high, sum_low, sum_high: sum.value(), knots: Vec::new() });
+        bins.push(DepthBin { start, end, low, high, sum_low, sum_high: sum.value(), knots: Vec::new() });
         (start, last) = (end, high);
     }
     bins

@@ -5,7 +5,7 @@ mod normal;
 
 use self::normal::{NAME, Normal};
 use crate::axisymmetric::RoundContact;
-use crate::material::Material;
+use crate::material::ViscoelasticMaterial;
 use crate::relaxation::{Relaxation, check_pair};
 use crate::slip::Springs;
 use crate::tabulated::{Node, Tabulated};
@@ -216,48 +216,56 @@ impl<M: ContactModel> ContactModel for Equivalent<M> {
             return Err(Error::unsupported(NAME, what));
         }
         self.abilities().refuse(NAME, scene)?;
-        let memory = match (friction.law(), Material::new(&rheology, scene.contact_modulus, NAME)?) {
-            (Some(FrictionLaw { coefficient, .. }), _) => {
-                let Some(pair) = scene.pair else {
-                    let what = "a scene without both bodies: friction needs their shear moduli";
-                    return Err(Error::unsupported(NAME, what));
-                };
-                let shear = pair.shear_modulus()? / scene.contact_modulus;
-                let table = Arc::new(Tabulated::new(&[])?);
-                Memory::Slip { springs: Springs::new(table, coefficient, shear), coefficient, time: 0.0 }
-            }
-            (None, Some(material)) => {
-                if let Some(pair) = &scene.pair {
-                    check_pair(pair, &rheology, NAME)?;
+        let memory =
+            match (friction.law(), ViscoelasticMaterial::new(&rheology, scene.contact_modulus, NAME)?) {
+                (Some(FrictionLaw { coefficient, .. }), _) => {
+                    let Some(pair) = scene.pair else {
+                        let what = "a scene without both bodies: friction needs their shear moduli";
+                        return Err(Error::unsupported(NAME, what));
+                    };
+                    let shear = pair.shear_modulus()? / scene.contact_modulus;
+                    let table = Arc::new(Tabulated::new(&[])?);
+                    EquivalentMemory::Slip {
+                        springs: Springs::new(table, coefficient, shear),
+                        coefficient,
+                        time: 0.0,
+                    }
                 }
-                if scene.outputs.pressure {
-                    return Err(Error::unsupported(NAME, "a pressure field with rheology (M's is elastic)"));
+                (None, Some(material)) => {
+                    if let Some(pair) = &scene.pair {
+                        check_pair(pair, &rheology, NAME)?;
+                    }
+                    if scene.outputs.pressure {
+                        return Err(Error::unsupported(
+                            NAME,
+                            "a pressure field with rheology (M's is elastic)",
+                        ));
+                    }
+                    if scene.outputs.stiffness || scene.outputs.stiffness_fixed_area {
+                        let what = "the stiffness with rheology (it depends on how fast one pushes)";
+                        return Err(Error::unsupported(NAME, what));
+                    }
+                    EquivalentMemory::Relax(Relaxation::new(material, NAME))
                 }
-                if scene.outputs.stiffness || scene.outputs.stiffness_fixed_area {
-                    let what = "the stiffness with rheology (it depends on how fast one pushes)";
-                    return Err(Error::unsupported(NAME, what));
+                (None, None) => {
+                    return Err(Error::unsupported(
+                        NAME,
+                        "an elastic contact without friction (nothing to remember)",
+                    ));
                 }
-                Memory::Relax(Relaxation::new(material, NAME))
-            }
-            (None, None) => {
-                return Err(Error::unsupported(
-                    NAME,
-                    "an elastic contact without friction (nothing to remember)",
-                ));
-            }
-        };
+            };
         Ok(Box::new(PreparedEquivalent { normal: self.normal(scene, seed)?, memory }))
     }
 }
 
-enum Memory {
+enum EquivalentMemory {
     Slip { springs: Springs<Arc<Tabulated>>, coefficient: f64, time: f64 },
     Relax(Relaxation),
 }
 
 struct PreparedEquivalent {
     normal: Normal,
-    memory: Memory,
+    memory: EquivalentMemory,
 }
 
 impl PreparedContact for PreparedEquivalent {
@@ -272,14 +280,14 @@ impl PreparedContact for PreparedEquivalent {
     fn advance_until(&mut self, step: Step, stop: Stop<'_>) -> Result<ContactState> {
         let normal = &mut self.normal;
         match &mut self.memory {
-            Memory::Slip { springs, coefficient, time } => {
+            EquivalentMemory::Slip { springs, coefficient, time } => {
                 let step = step.validated(*time)?;
                 step.load.tangential.refuse_y(NAME)?;
                 let (next, state) = slip(normal, springs, *coefficient, step, stop)?;
                 (*springs, *time) = (next, step.time);
                 Ok(state)
             }
-            Memory::Relax(relaxation) => {
+            EquivalentMemory::Relax(relaxation) => {
                 let step = relaxation.validated(step)?;
                 relax(normal, relaxation, step, stop)
             }
@@ -288,8 +296,8 @@ impl PreparedContact for PreparedEquivalent {
 
     fn restart(&mut self) {
         match &mut self.memory {
-            Memory::Slip { springs, time, .. } => (*springs, *time) = (springs.unloaded(), 0.0),
-            Memory::Relax(relaxation) => relaxation.restart(),
+            EquivalentMemory::Slip { springs, time, .. } => (*springs, *time) = (springs.unloaded(), 0.0),
+            EquivalentMemory::Relax(relaxation) => relaxation.restart(),
         }
     }
 }

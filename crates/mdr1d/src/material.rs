@@ -11,7 +11,7 @@ use numerics::root;
 
 /// Relaxation of the modulus over E*: a spring, a dashpot, and arms with different rates in ascending order.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Material {
+pub(crate) struct ViscoelasticMaterial {
     /// e, 0 for a fluid.
     equilibrium: f64,
     /// v, a time.
@@ -29,7 +29,7 @@ struct Arm {
 
 /// The memory of the material.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Memory {
+pub(crate) struct ViscousMemory {
     /// Phi.
     pub load: f64,
     /// q_i.
@@ -59,7 +59,7 @@ struct Mode {
     magnitude: f64,
 }
 
-impl Material {
+impl ViscoelasticMaterial {
     /// The material of a rheology with the scene's modulus; `None` for an elastic one.
     ///
     /// # Errors
@@ -111,8 +111,8 @@ impl Material {
     }
 
     /// Before any load.
-    pub fn fresh(&self) -> Memory {
-        Memory { load: 0.0, arms: vec![0.0; self.arms.len()], force: 0.0 }
+    pub fn fresh(&self) -> ViscousMemory {
+        ViscousMemory { load: 0.0, arms: vec![0.0; self.arms.len()], force: 0.0 }
     }
 
     /// Whether a jump of the load takes an infinite force.
@@ -125,32 +125,32 @@ impl Material {
         self.arms.iter().map(|arm| arm.rate)
     }
 
-    /// After a jump of Phi (only where [`Material::is_stiff`] is false).
-    pub fn jumped(&self, memory: &Memory, by: f64) -> Memory {
+    /// After a jump of Phi (only where [`ViscoelasticMaterial::is_stiff`] is false).
+    pub fn jumped(&self, memory: &ViscousMemory, by: f64) -> ViscousMemory {
         let arms = memory.arms.iter().map(|q| q + by).collect();
         self.with_force(memory.load + by, arms, 0.0)
     }
 
     /// After a jump of the force: elastic with all arms, or nothing where a dashpot holds everything.
-    pub fn jumped_to_force(&self, memory: &Memory, force: f64) -> Memory {
+    pub fn jumped_to_force(&self, memory: &ViscousMemory, force: f64) -> ViscousMemory {
         if self.is_stiff() {
-            return Memory { force, ..memory.clone() };
+            return ViscousMemory { force, ..memory.clone() };
         }
         let glassy = self.equilibrium + self.arms.iter().map(|arm| arm.weight).sum::<f64>();
         let by = (force - memory.force) / glassy;
-        Memory { force, ..self.jumped(memory, by) }
+        ViscousMemory { force, ..self.jumped(memory, by) }
     }
 
     /// After a segment in which Phi went to `load` and ended with the rate `speed`; `integrals` are
     /// `int exp(-r_i (D - s)) Phi'(s) ds` over it.
     pub fn relaxed(
         &self,
-        memory: &Memory,
+        memory: &ViscousMemory,
         duration: f64,
         load: f64,
         speed: f64,
         integrals: &[f64],
-    ) -> Memory {
+    ) -> ViscousMemory {
         let arms = self
             .arms
             .iter()
@@ -162,7 +162,7 @@ impl Material {
     }
 
     /// Phi during a segment of this duration in which the force goes straight from the memory's to `force`.
-    pub fn creep(&self, memory: &Memory, force: f64, duration: f64) -> Creep {
+    pub fn creep(&self, memory: &ViscousMemory, force: f64, duration: f64) -> Creep {
         let slope = (force - memory.force) / duration;
         let moment = |k: i32| self.arms.iter().map(|arm| arm.weight * arm.rate.powi(-k)).sum::<f64>();
         let first = moment(1) + self.viscous;
@@ -210,7 +210,7 @@ impl Material {
     }
 
     /// The memory at a time within such a segment.
-    pub fn crept(&self, memory: &Memory, creep: &Creep, at: f64, force: f64) -> Memory {
+    pub fn crept(&self, memory: &ViscousMemory, creep: &Creep, at: f64, force: f64) -> ViscousMemory {
         let integrals: Vec<f64> = self.rates().map(|rate| creep.remembered(rate, at)).collect();
         let mut end = self.relaxed(memory, at, memory.load + creep.rise(at), creep.speed(at), &integrals);
         end.force = force;
@@ -218,14 +218,14 @@ impl Material {
     }
 
     /// Relative difference between the force of a memory, from its arms, and the prescribed force.
-    pub fn residual(&self, memory: &Memory, speed: f64) -> f64 {
+    pub fn residual(&self, memory: &ViscousMemory, speed: f64) -> f64 {
         let force = self.force(memory.load, &memory.arms, speed);
         if memory.force > 0.0 { (force / memory.force - 1.0).abs() } else { 0.0 }
     }
 
-    fn with_force(&self, load: f64, arms: Vec<f64>, speed: f64) -> Memory {
+    fn with_force(&self, load: f64, arms: Vec<f64>, speed: f64) -> ViscousMemory {
         let force = self.force(load, &arms, speed);
-        Memory { load, arms, force }
+        ViscousMemory { load, arms, force }
     }
 
     fn force(&self, load: f64, arms: &[f64], speed: f64) -> f64 {
@@ -382,10 +382,10 @@ mod tests {
 
     const ROUNDING: f64 = 1e-12;
 
-    fn prony(arms: &[(f64, f64)]) -> Material {
+    fn prony(arms: &[(f64, f64)]) -> ViscoelasticMaterial {
         let arms: Vec<Relaxing> = arms.iter().map(|&(weight, time)| Relaxing { weight, time }).collect();
         let series = PronySeries::new(&arms).unwrap();
-        Material::new(&Rheology::Prony(series), 1.0, "test").unwrap().unwrap()
+        ViscoelasticMaterial::new(&Rheology::Prony(series), 1.0, "test").unwrap().unwrap()
     }
 
     #[test]
@@ -393,9 +393,12 @@ mod tests {
         // Standard solid: 1/(tau (1 + w)). Kelvin-Voigt: G/eta = E*/(4 eta). Maxwell: none, it flows.
         let solid = prony(&[(3.0, 2.0)]);
         assert_relative_eq!(solid.creep[0], 1.0 / 8.0, max_relative = ROUNDING);
-        let voigt = Material::new(&Rheology::KelvinVoigt { viscosity: 0.5 }, 4.0, "test").unwrap().unwrap();
+        let voigt = ViscoelasticMaterial::new(&Rheology::KelvinVoigt { viscosity: 0.5 }, 4.0, "test")
+            .unwrap()
+            .unwrap();
         assert_relative_eq!(voigt.creep[0], 2.0, max_relative = ROUNDING);
-        let maxwell = Material::new(&Rheology::Maxwell { viscosity: 1.0 }, 1.0, "test").unwrap().unwrap();
+        let maxwell =
+            ViscoelasticMaterial::new(&Rheology::Maxwell { viscosity: 1.0 }, 1.0, "test").unwrap().unwrap();
         assert!(maxwell.creep.is_empty());
         // Equal times are one arm, arms without weight are none; zeros and poles alternate.
         assert_eq!(prony(&[(1.0, 2.0), (0.0, 5.0), (2.0, 2.0)]), solid);
@@ -415,8 +418,10 @@ mod tests {
         for material in [
             prony(&[(3.0, 2.0)]),
             prony(&[(1.0, 1e-2), (0.5, 1.0), (2.0, 70.0)]),
-            Material::new(&Rheology::Maxwell { viscosity: 0.3 }, 1.0, "test").unwrap().unwrap(),
-            Material::new(&Rheology::KelvinVoigt { viscosity: 0.3 }, 1.0, "test").unwrap().unwrap(),
+            ViscoelasticMaterial::new(&Rheology::Maxwell { viscosity: 0.3 }, 1.0, "test").unwrap().unwrap(),
+            ViscoelasticMaterial::new(&Rheology::KelvinVoigt { viscosity: 0.3 }, 1.0, "test")
+                .unwrap()
+                .unwrap(),
         ] {
             let mut memory = material.fresh();
             for (force, duration) in [(1.0, 1e-6), (1.5, 0.1), (2.0, 30.0), (1.9, 1e-3), (4.0, 1e4)] {
@@ -446,8 +451,8 @@ mod tests {
 
     #[test]
     fn times_out_of_range_are_errors() {
-        assert!(Material::new(&Rheology::Maxwell { viscosity: 1e300 }, 1e-300, "test").is_err());
-        assert!(Material::new(&Rheology::Maxwell { viscosity: -1.0 }, 1.0, "test").is_err());
-        assert!(Material::new(&Rheology::Elastic, 1.0, "test").unwrap().is_none());
+        assert!(ViscoelasticMaterial::new(&Rheology::Maxwell { viscosity: 1e300 }, 1e-300, "test").is_err());
+        assert!(ViscoelasticMaterial::new(&Rheology::Maxwell { viscosity: -1.0 }, 1.0, "test").is_err());
+        assert!(ViscoelasticMaterial::new(&Rheology::Elastic, 1.0, "test").unwrap().is_none());
     }
 }

@@ -1,6 +1,6 @@
 //! [`Mdr1d`]: the method behind the common trait.
 
-use crate::adhesion::{Adhesive, Failure};
+use crate::adhesion::{Adhesive, NoEquilibrium};
 use crate::axisymmetric::{Profile, RoundContact};
 use crate::bearing::Bearing;
 use crate::body::{RoundBody, out_of_f64};
@@ -307,14 +307,14 @@ impl RoundIndenter {
                 let touches = adhesive.attracts() || value.abs() > 0.0;
                 if touches && contact.radius <= 0.0 { Err(out_of_f64(contact.radius)) } else { Ok(contact) }
             }
-            Err(Failure::PullsOff { smallest }) => {
+            Err(NoEquilibrium::PullsOff { smallest }) => {
                 let smallest = match load {
                     NormalLoad::Force(_) => nondimensional.force(smallest)?,
                     _ => nondimensional.approach(smallest)?,
                 };
                 Err(load.pull_off(smallest))
             }
-            Err(Failure::Range(radius)) => Err(out_of_f64(radius)),
+            Err(NoEquilibrium::Range(radius)) => Err(out_of_f64(radius)),
         }
     }
 }

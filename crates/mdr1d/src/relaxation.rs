@@ -2,7 +2,7 @@
 //! profile.
 
 use crate::axisymmetric::RoundContact;
-use crate::material::{Material, Memory};
+use crate::material::{ViscoelasticMaterial, ViscousMemory};
 use crate::shape::Shape;
 use contact_model::{Body, Error, Pair, Result, Rheology, Step};
 use numerics::gauss::Gauss;
@@ -13,7 +13,7 @@ pub(crate) struct RelaxedState {
     pub time: f64,
     /// The elastic contact with this approach.
     pub contact: RoundContact,
-    pub memory: Memory,
+    pub memory: ViscousMemory,
     /// Relative difference between the force from the arms and the prescribed force.
     pub residual: f64,
 }
@@ -34,14 +34,14 @@ impl RelaxedState {
 /// model differ by its tolerance.
 #[derive(Debug, Clone)]
 pub(crate) struct Relaxation {
-    material: Material,
+    material: ViscoelasticMaterial,
     pub at: RelaxedState,
     model: &'static str,
 }
 
 impl Relaxation {
     /// Before any contact; the name is for errors.
-    pub fn new(material: Material, model: &'static str) -> Self {
+    pub fn new(material: ViscoelasticMaterial, model: &'static str) -> Self {
         let memory = material.fresh();
         let contact = RoundContact::NONE;
         Self { at: RelaxedState { time: 0.0, contact, memory, residual: 0.0 }, material, model }

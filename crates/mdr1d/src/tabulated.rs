@@ -52,14 +52,14 @@ struct Segment {
     /// x at the beginning, and by how much it grows.
     start: f64,
     rise: f64,
-    form: Form,
+    form: TabulatedForm,
     /// F/E* at the beginning.
     force: f64,
 }
 
 /// How x grows with s from 0 to 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Form {
+enum TabulatedForm {
     /// `s + c s (1 - s)`, |c| <= 1.
     Parabola(f64),
     /// `s^m`, m > 0; only in the first segment, from x = 0.
@@ -161,10 +161,11 @@ impl Tabulated {
 /// From first touch to the first state.
 fn first(end: Node, chord: f64) -> Segment {
     let (width, high) = (end.approach, end.radius);
-    let segment = Segment { from: 0.0, width, start: 0.0, rise: high, form: Form::Parabola(0.0), force: 0.0 };
+    let segment =
+        Segment { from: 0.0, width, start: 0.0, rise: high, form: TabulatedForm::Parabola(0.0), force: 0.0 };
     let power = high / chord - 1.0;
     if power >= POWERS.0 {
-        Segment { form: Form::Power(power.min(POWERS.1)), ..segment }
+        Segment { form: TabulatedForm::Power(power.min(POWERS.1)), ..segment }
     } else {
         // A flat face and a flank.
         let face = (2.0 * chord - high).clamp(0.0, high);
@@ -180,7 +181,7 @@ fn between(begin: Node, end: Node, chord: f64) -> Vec<Segment> {
         width,
         start: begin.radius,
         rise,
-        form: Form::Parabola(0.0),
+        form: TabulatedForm::Parabola(0.0),
         force: begin.force,
     };
     let share = (chord - begin.radius) / rise;
@@ -189,7 +190,10 @@ fn between(begin: Node, end: Node, chord: f64) -> Vec<Segment> {
         return vec![segment];
     }
     if (PARABOLA.0 - ROUNDING..=PARABOLA.1 + ROUNDING).contains(&share) {
-        return vec![Segment { form: Form::Parabola((6.0 * share - 3.0).clamp(-1.0, 1.0)), ..segment }];
+        return vec![Segment {
+            form: TabulatedForm::Parabola((6.0 * share - 3.0).clamp(-1.0, 1.0)),
+            ..segment
+        }];
     }
     let share = share.clamp(STEEPEST, 1.0 - STEEPEST);
     // Flat and then a ramp, or a ramp and then flat.
@@ -223,8 +227,8 @@ fn shrinks(name: &'static str, value: f64, min: f64, max: f64) -> Error {
 impl Segment {
     fn radius(&self, s: f64) -> f64 {
         let share = match self.form {
-            Form::Parabola(c) => s * (1.0 + c * (1.0 - s)),
-            Form::Power(m) => s.powf(m),
+            TabulatedForm::Parabola(c) => s * (1.0 + c * (1.0 - s)),
+            TabulatedForm::Power(m) => s.powf(m),
         };
         self.start + self.rise * share
     }
@@ -232,8 +236,8 @@ impl Segment {
     /// `F/E*` at s.
     fn force_at(&self, s: f64) -> f64 {
         let share = match self.form {
-            Form::Parabola(c) => s * s * (0.5 + c * (0.5 - s / 3.0)),
-            Form::Power(m) => s.powf(m + 1.0) / (m + 1.0),
+            TabulatedForm::Parabola(c) => s * s * (0.5 + c * (0.5 - s / 3.0)),
+            TabulatedForm::Power(m) => s.powf(m + 1.0) / (m + 1.0),
         };
         self.force + 2.0 * self.width * (self.start * s + self.rise * share)
     }
@@ -246,11 +250,11 @@ impl Segment {
         let share = ((x - self.start) / self.rise).min(1.0);
         match self.form {
             // The smaller root of c s^2 - (1 + c) s + share = 0.
-            Form::Parabola(c) => {
+            TabulatedForm::Parabola(c) => {
                 let b = 1.0 + c;
                 2.0 * share / (b + (b * b - 4.0 * c * share).max(0.0).sqrt())
             }
-            Form::Power(m) => share.powf(m.recip()),
+            TabulatedForm::Power(m) => share.powf(m.recip()),
         }
     }
 
@@ -258,7 +262,7 @@ impl Segment {
     fn integral(&self, [low, high]: [f64; 2], q: impl Fn(f64) -> f64) -> f64 {
         let middle = 0.5 * (low + high);
         match self.form {
-            Form::Parabola(c) => {
+            TabulatedForm::Parabola(c) => {
                 // q dx/ds is a cubic: Simpson's rule is exact.
                 let slope = |gamma: f64| {
                     let s = (gamma - self.from) / self.width;
@@ -267,7 +271,7 @@ impl Segment {
                 let sum = slope(low) + 4.0 * slope(middle) + slope(high);
                 self.rise * ((high - low) / self.width) * sum / 6.0
             }
-            Form::Power(m) => {
+            TabulatedForm::Power(m) => {
                 let position = |gamma: f64| self.radius(gamma / self.width);
                 of_power(m.recip(), position, [low, high], [low, middle, high].map(q))
             }

@@ -2,7 +2,7 @@
 
 use crate::axisymmetric::Profile;
 use crate::body::RoundBody;
-use crate::material::Material;
+use crate::material::ViscoelasticMaterial;
 use crate::relaxation::{Relaxation, check_pair};
 use contact_model::{
     Abilities, ContactModel, ContactState, Effect, Error, Load, NormalLoad, Normalisation, Output, Paths,
@@ -87,7 +87,7 @@ impl ContactModel for Viscoelastic {
         }
         self.abilities().refuse(NAME, scene)?;
         let rheology = scene.effects.rheology;
-        let Some(material) = Material::new(&rheology, scene.contact_modulus, NAME)? else {
+        let Some(material) = ViscoelasticMaterial::new(&rheology, scene.contact_modulus, NAME)? else {
             return Err(Error::unsupported(NAME, "an elastic material (there is nothing to remember)"));
         };
         if let Some(pair) = &scene.pair {

@@ -14,18 +14,18 @@ use std::error::Error;
 use std::path::PathBuf;
 
 /// The force of a body over the approach.
-type Law = fn(f64) -> f64;
+type ForceLaw = fn(f64) -> f64;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let out = std::env::args().nth(1).map_or_else(std::env::temp_dir, PathBuf::from);
     // E* = 1; a cylinder of radius 0.1, a sphere of radius 1, a cone of slope 0.5.
-    let force: [(&str, Law); 3] = [
+    let force: [(&str, ForceLaw); 3] = [
         ("flat cylinder, 2 E* a d", |d| 0.2 * d),
         ("sphere, (4/3) E* R^(1/2) d^(3/2)", |d| 4.0 / 3.0 * d.powf(1.5)),
         ("cone, (2/pi) E* d^2/slope", |d| std::f64::consts::FRAC_2_PI * d * d / 0.5),
     ];
     let approaches = (0..=40).map(|i| 10_f64.powf(-4.0 + 0.075 * f64::from(i)));
-    let curve = |(label, law): &(&str, Law)| Curve {
+    let curve = |(label, law): &(&str, ForceLaw)| Curve {
         label: (*label).to_owned(),
         points: approaches.clone().map(|d| (d, law(d))).collect(),
         ..Curve::default()

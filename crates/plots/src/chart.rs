@@ -3,7 +3,7 @@
 use crate::axis::{Axis, linear, logarithmic};
 use crate::error::Result;
 use crate::plot::Picture;
-use crate::style::{COLORS, Key, LineStyle, Mark, MarkShape, NEUTRAL, SHAPES};
+use crate::style::{COLORS, LegendKey, LineStyle, Mark, MarkShape, NEUTRAL, SHAPES};
 use contact_model::units::multiple;
 
 /// A named curve.
@@ -129,14 +129,14 @@ impl Chart {
                 );
             }
             picture.points(&curve.careful, NEUTRAL, CAREFUL, Mark::Ring(MarkShape::Square));
-            let key = if marked { Key::Curve(mark) } else { Key::Line(LineStyle::Solid) };
+            let key = if marked { LegendKey::Curve(mark) } else { LegendKey::Line(LineStyle::Solid) };
             picture.legend(&curve.label, color, key);
         }
         if self.directed && self.curves.iter().any(|curve| !curve.points.is_empty()) {
-            picture.legend("start", NEUTRAL, Key::Sized(Mark::Ring(MarkShape::Circle), 7.0));
+            picture.legend("start", NEUTRAL, LegendKey::Sized(Mark::Ring(MarkShape::Circle), 7.0));
         }
         if self.curves.iter().any(|curve| !curve.careful.is_empty()) {
-            picture.legend(&self.careful, NEUTRAL, Key::Sized(Mark::Ring(MarkShape::Square), 7.0));
+            picture.legend(&self.careful, NEUTRAL, LegendKey::Sized(Mark::Ring(MarkShape::Square), 7.0));
         }
         picture
     }

@@ -4,7 +4,7 @@ use crate::axis::Axis;
 use crate::colours::ColourScale;
 use crate::drawing::{Anchor, Drawing, Paint, Rectangle, polygon, polyline};
 use crate::error::{Error, Result};
-use crate::frame::{Frame, Side, TICK, TickStyle};
+use crate::frame::{AxisSide, Frame, TICK, TickStyle};
 use crate::pixels::{Pixels, raster, reduction};
 use crate::style::{INK, NEUTRAL};
 use crate::text::Fonts;
@@ -141,8 +141,8 @@ impl FieldPicture<'_> {
         self.draw_arrows(&mut drawing, frame);
         let (length_unit, per_length) = multiple(self.length_unit, longer);
         let map = Frame { fonts: &fonts, place: frame, style: TickStyle::OF_MAPS };
-        map.axis(&mut drawing, Side::Below, Axis::Linear(0.0, per_length * size.x), None);
-        map.axis(&mut drawing, Side::Left, Axis::Linear(0.0, per_length * size.y), None);
+        map.axis(&mut drawing, AxisSide::Below, Axis::Linear(0.0, per_length * size.x), None);
+        map.axis(&mut drawing, AxisSide::Left, Axis::Linear(0.0, per_length * size.y), None);
         let around = [LEFT - 0.5 * LINE, TOP - 0.5 * LINE, w + LINE, h + LINE];
         Frame { place: around, ..map }.outline(&mut drawing, LINE);
         let with = |words: &str, unit: &str| {
@@ -167,7 +167,7 @@ impl FieldPicture<'_> {
         let (unit, per_unit) = multiple(self.unit, low.abs().max(high.abs()));
         let style = TickStyle { beside: [9.0, 0.5 * TICK], ..TickStyle::OF_MAPS };
         let beside = Frame { fonts: &fonts, place: bar, style };
-        beside.axis(&mut drawing, Side::Right, Axis::Linear(per_unit * low, per_unit * high), None);
+        beside.axis(&mut drawing, AxisSide::Right, Axis::Linear(per_unit * low, per_unit * high), None);
         beside.outline(&mut drawing, 1.2);
         let words = LEFT + w + RIGHT - 0.6 * TICK;
         beside.name_beside(&mut drawing, &with(&self.quantity, &unit), NAME, words);

@@ -7,7 +7,7 @@ use crate::text::Fonts;
 
 /// Where an axis stands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Side {
+pub(crate) enum AxisSide {
     Below,
     Left,
     Right,
@@ -67,7 +67,7 @@ pub(crate) struct Frame<'a> {
 impl Frame<'_> {
     /// Ticks and labels of an axis, labels at these values where they are given; the power of ten that labels
     /// share stands at the end.
-    pub fn axis(&self, drawing: &mut Drawing, side: Side, axis: Axis, given: Option<&[f64]>) {
+    pub fn axis(&self, drawing: &mut Drawing, side: AxisSide, axis: Axis, given: Option<&[f64]>) {
         let style = self.style;
         let [x, y, w, h] = self.place;
         let (right, bottom) = (x + w, y + h);
@@ -79,11 +79,11 @@ impl Frame<'_> {
             let at_left = [(x, up), (x + inward, up)];
             let at_right = [(right, up), (right - inward, up)];
             let [own, opposite] = match side {
-                Side::Below => {
+                AxisSide::Below => {
                     [[(along, bottom), (along, bottom - inward)], [(along, y), (along, y + inward)]]
                 }
-                Side::Left => [at_left, at_right],
-                Side::Right => [at_right, at_left],
+                AxisSide::Left => [at_left, at_right],
+                AxisSide::Right => [at_right, at_left],
             };
             for line in [Some(own), style.inwards.then_some(opposite)].into_iter().flatten() {
                 drawing.path(polyline(&line), Paint::stroked(INK, 1.1), None);
@@ -93,18 +93,18 @@ impl Frame<'_> {
             let middle = up + 0.33 * style.size;
             let (at, anchor) = match side {
                 // A label that would leave the picture is left out.
-                Side::Below if along + 0.5 * set.width >= drawing.width() => continue,
-                Side::Below => ((along, bottom + style.below[0]), Anchor::Middle),
-                Side::Left => ((x - style.beside[0], middle), Anchor::End),
-                Side::Right => ((right + style.beside[0], middle), Anchor::Start),
+                AxisSide::Below if along + 0.5 * set.width >= drawing.width() => continue,
+                AxisSide::Below => ((along, bottom + style.below[0]), Anchor::Middle),
+                AxisSide::Left => ((x - style.beside[0], middle), Anchor::End),
+                AxisSide::Right => ((right + style.beside[0], middle), Anchor::Start),
             };
             drawing.label(set, at, anchor, false, INK);
         }
         if let Some(power) = power {
             let (at, anchor) = match side {
-                Side::Below => ((right, bottom + style.below[1]), Anchor::End),
-                Side::Left => ((x - style.beside[0], y - style.beside[1]), Anchor::End),
-                Side::Right => ((x, y - style.beside[1]), Anchor::Start),
+                AxisSide::Below => ((right, bottom + style.below[1]), Anchor::End),
+                AxisSide::Left => ((x - style.beside[0], y - style.beside[1]), Anchor::End),
+                AxisSide::Right => ((x, y - style.beside[1]), Anchor::Start),
             };
             drawing.label(self.fonts.power_of_ten(power, style.size), at, anchor, false, INK);
         }

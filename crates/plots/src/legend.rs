@@ -2,7 +2,7 @@
 
 use crate::drawing::{Anchor, Drawing, Paint, Rectangle, polygon, polyline};
 use crate::mark;
-use crate::style::{INK, Key, LineStyle};
+use crate::style::{INK, LegendKey, LineStyle};
 use crate::text::{Fonts, Typeset};
 
 /// One line of a legend.
@@ -10,7 +10,7 @@ use crate::text::{Fonts, Typeset};
 struct LegendEntry {
     label: String,
     color: String,
-    key: Key,
+    key: LegendKey,
 }
 
 /// The lines of a legend.
@@ -28,7 +28,7 @@ const COLUMN: f64 = 1.6;
 
 impl Legend {
     /// Adds a line; the label may hold symbols between dollar signs.
-    pub fn push(&mut self, label: &str, color: &str, key: Key) {
+    pub fn push(&mut self, label: &str, color: &str, key: LegendKey) {
         self.entries.push(LegendEntry { label: label.to_owned(), color: color.to_owned(), key });
     }
 
@@ -54,7 +54,7 @@ impl Legend {
 
 /// Where the words of a line begin.
 fn indent(entry: &LegendEntry, size: f64) -> f64 {
-    if entry.key == Key::Words { 0.0 } else { (KEY + GAP) * size }
+    if entry.key == LegendKey::Words { 0.0 } else { (KEY + GAP) * size }
 }
 
 /// The width of columns with their gaps.
@@ -95,25 +95,25 @@ impl SetLegend<'_> {
                 drawing.path(polyline(&ends), paint, None);
             };
             match entry.key {
-                Key::Line(style) => line(drawing, style),
-                Key::Curve(mark) => {
+                LegendKey::Line(style) => line(drawing, style),
+                LegendKey::Curve(mark) => {
                     line(drawing, LineStyle::Solid);
                     mark::draw(drawing, middle, &entry.color, 4.6, mark);
                 }
-                Key::Mark(mark) => mark::draw(drawing, middle, &entry.color, 4.6, mark),
-                Key::Sized(mark, radius) => mark::draw(drawing, middle, &entry.color, radius, mark),
-                Key::Bar(mark) => {
+                LegendKey::Mark(mark) => mark::draw(drawing, middle, &entry.color, 4.6, mark),
+                LegendKey::Sized(mark, radius) => mark::draw(drawing, middle, &entry.color, radius, mark),
+                LegendKey::Bar(mark) => {
                     let ends = [(middle.0, middle.1 - 0.5 * size), (middle.0, middle.1 + 0.5 * size)];
                     drawing.path(polyline(&ends), Paint::stroked(&entry.color, 1.5), None);
                     mark::draw(drawing, middle, &entry.color, 4.6, mark);
                 }
-                Key::Band => {
+                LegendKey::Band => {
                     let (a, b) = (middle.0 - half, middle.0 + half);
                     let (c, d) = (middle.1 - 0.3 * size, middle.1 + 0.3 * size);
                     let corners = [(a, c), (b, c), (b, d), (a, d)];
                     drawing.path(polygon(&corners), Paint::filled(&entry.color, 0.3), None);
                 }
-                Key::Words => {}
+                LegendKey::Words => {}
             }
             drawing.label(set, (x + indent(entry, size), baseline), Anchor::Start, false, INK);
         }
@@ -171,7 +171,7 @@ mod tests {
     fn many_lines_make_columns_where_they_fit() {
         let fonts = Fonts::load().unwrap();
         let mut legend = Legend::default();
-        (0..5).for_each(|_| legend.push("word", "#000000", Key::Band));
+        (0..5).for_each(|_| legend.push("word", "#000000", LegendKey::Band));
         let narrow = legend.set(&fonts, 10.0, 50.0);
         assert_eq!((narrow.columns.len(), narrow.rows), (1, 5));
         let wide = legend.set(&fonts, 10.0, 200.0);

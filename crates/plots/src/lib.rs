@@ -52,5 +52,5 @@ pub use maps::{GreyMap, GreyScale, grey_maps};
 pub use panels::Panels;
 pub use pixels::{reduction, shown_cells};
 pub use plot::Picture;
-pub use style::{COLORS, Key, LineStyle, Mark, MarkShape, NEUTRAL, REFERENCE, SHAPES, color, shape};
+pub use style::{COLORS, LegendKey, LineStyle, Mark, MarkShape, NEUTRAL, REFERENCE, SHAPES, color, shape};
 pub use text::number;

@@ -3,7 +3,7 @@
 use crate::axis::Axis;
 use crate::drawing::{Anchor, Drawing, Paint, rectangle};
 use crate::error::{Error, Result};
-use crate::frame::{Frame, Side, TICK, TickStyle};
+use crate::frame::{AxisSide, Frame, TICK, TickStyle};
 use crate::style::INK;
 use crate::text::Fonts;
 
@@ -73,7 +73,7 @@ pub fn grey_maps(
     let (low, high) = scale.ends;
     drawing.image(bar, (0..=u8::MAX).rev().flat_map(|shade| [shade; 3]).collect(), 1 + usize::from(u8::MAX));
     let frame = Frame { fonts: &fonts, place: bar, style: TickStyle::OF_MAPS };
-    frame.axis(&mut drawing, Side::Below, Axis::Linear(low, high), None);
+    frame.axis(&mut drawing, AxisSide::Below, Axis::Linear(low, high), None);
     frame.outline(&mut drawing, 1.0);
     frame.name_below(&mut drawing, &scale.label, 1.2 * TICK, bottom + GAP + BAR + 3.2 * TICK);
     drawing.files(&fonts, name)

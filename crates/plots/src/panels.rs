@@ -97,7 +97,7 @@ impl Picture {
 mod tests {
     use super::*;
     use crate::axis::Axis;
-    use crate::style::Key;
+    use crate::style::LegendKey;
 
     #[test]
     fn panels_stand_side_by_side() {
@@ -106,7 +106,7 @@ mod tests {
             Picture::new(x, y, "x", "y").with_title("A law").with_size(400.0, 300.0)
         };
         let mut legend = Legend::default();
-        legend.push("both", "#000000", Key::Words);
+        legend.push("both", "#000000", LegendKey::Words);
         let panels =
             Panels { pictures: vec![small(), small(), small()], columns: 2, title: "Three".into(), legend };
         let svg = panels.svg().unwrap();

@@ -2,10 +2,10 @@
 
 use crate::axis::Axis;
 use crate::drawing::{Anchor, Drawing, Paint, Rectangle, polygon, polyline};
-use crate::frame::{Frame, Side, TickStyle};
+use crate::frame::{AxisSide, Frame, TickStyle};
 use crate::legend::{Legend, free_place};
 use crate::mark;
-use crate::style::{INK, Key, LineStyle, Mark, NEUTRAL};
+use crate::style::{INK, LegendKey, LineStyle, Mark, NEUTRAL};
 use crate::text::Fonts;
 
 /// Width and height of a picture: as wide as a README shows it.
@@ -38,14 +38,14 @@ pub struct Picture {
     title: String,
     subtitle: String,
     pub(crate) size: (f64, f64),
-    drawn: Vec<Drawn>,
+    drawn: Vec<PlotItem>,
     legend: Legend,
     pub(crate) legend_below: bool,
 }
 
 /// In coordinates of the axes.
 #[derive(Debug, Clone)]
-enum Drawn {
+enum PlotItem {
     Line { points: Vec<(f64, f64)>, color: String, width: f64, style: LineStyle },
     Points { points: Vec<(f64, f64)>, color: String, radius: f64, mark: Mark },
     Band { points: Vec<(f64, f64, f64)>, color: String },
@@ -109,47 +109,47 @@ impl Picture {
     /// Draws a line through the points; it is interrupted where the axes cannot show a point.
     pub fn line(&mut self, points: &[(f64, f64)], color: &str, width: f64, style: LineStyle) {
         let (points, color) = (points.to_vec(), color.to_owned());
-        self.drawn.push(Drawn::Line { points, color, width, style });
+        self.drawn.push(PlotItem::Line { points, color, width, style });
     }
 
     /// Draws marks at the points within the axes.
     pub fn points(&mut self, points: &[(f64, f64)], color: &str, radius: f64, mark: Mark) {
         let [x, y] = self.axes;
         let points = points.iter().copied().filter(|p| x.holds(p.0) && y.holds(p.1)).collect();
-        self.drawn.push(Drawn::Points { points, color: color.to_owned(), radius, mark });
+        self.drawn.push(PlotItem::Points { points, color: color.to_owned(), radius, mark });
     }
 
     /// Draws a shaded band through (x, lower end, upper end).
     pub fn band(&mut self, points: &[(f64, f64, f64)], color: &str) {
-        self.drawn.push(Drawn::Band { points: points.to_vec(), color: color.to_owned() });
+        self.drawn.push(PlotItem::Band { points: points.to_vec(), color: color.to_owned() });
     }
 
     /// Draws heads of arrows along a line through the points, in their order.
     pub fn arrows(&mut self, points: &[(f64, f64)], color: &str) {
-        self.drawn.push(Drawn::Arrows { points: points.to_vec(), color: color.to_owned() });
+        self.drawn.push(PlotItem::Arrows { points: points.to_vec(), color: color.to_owned() });
     }
 
     /// Draws thin lines through the origin, where it lies within the axes.
     pub fn zeros(&mut self) {
-        self.drawn.push(Drawn::Zeros);
+        self.drawn.push(PlotItem::Zeros);
     }
 
     /// Draws vertical bars of (x, value, half width), with short ends.
     pub fn errors(&mut self, points: &[(f64, f64, Option<f64>)], color: &str) {
         let bar = |&(x, y, e): &(f64, f64, Option<f64>)| e.map(|e| (x, y - e, y + e));
         let points = points.iter().filter_map(bar).collect();
-        self.drawn.push(Drawn::Bars { points, color: color.to_owned() });
+        self.drawn.push(PlotItem::Bars { points, color: color.to_owned() });
     }
 
     /// Adds a line to the legend; points and lines do not do so themselves.
-    pub fn legend(&mut self, label: &str, color: &str, key: Key) {
+    pub fn legend(&mut self, label: &str, color: &str, key: LegendKey) {
         self.legend.push(label, color, key);
     }
 
     /// Whether nothing is drawn between the axes.
     pub fn is_empty(&self) -> bool {
         self.drawn.iter().all(
-            |d| matches!(d, Drawn::Points { points, .. } | Drawn::Line { points, .. } | Drawn::Arrows { points, .. } if points.is_empty()),
+            |d| matches!(d, PlotItem::Points { points, .. } | PlotItem::Line { points, .. } | PlotItem::Arrows { points, .. } if points.is_empty()),
         )
     }
 
@@ -229,10 +229,16 @@ impl Picture {
         Some((frame[0] + x * frame[2], frame[1] + (1.0 - y) * frame[3]))
     }
 
-    fn draw_item(&self, item: &Drawn, drawing: &mut Drawing, frame: Rectangle, taken: &mut Vec<(f64, f64)>) {
+    fn draw_item(
+        &self,
+        item: &PlotItem,
+        drawing: &mut Drawing,
+        frame: Rectangle,
+        taken: &mut Vec<(f64, f64)>,
+    ) {
         let place = |p: (f64, f64)| self.place(frame, p);
         match item {
-            Drawn::Line { points, color, width, style } => {
+            PlotItem::Line { points, color, width, style } => {
                 let places: Vec<Option<(f64, f64)>> = points.iter().map(|p| place(*p)).collect();
                 for run in places.split(Option::is_none) {
                     let run: Vec<(f64, f64)> = run.iter().copied().flatten().collect();
@@ -243,13 +249,13 @@ impl Picture {
                     }
                 }
             }
-            Drawn::Points { points, color, radius, mark } => {
+            PlotItem::Points { points, color, radius, mark } => {
                 for at in points.iter().filter_map(|p| place(*p)) {
                     taken.push(at);
                     mark::draw(drawing, at, color, *radius, *mark);
                 }
             }
-            Drawn::Band { points, color } => {
+            PlotItem::Band { points, color } => {
                 let floor = self.axes[1].ends().0;
                 let lower = points.iter().filter_map(|p| place((p.0, p.1.max(floor))));
                 let upper = points.iter().rev().filter_map(|p| place((p.0, p.2.max(floor))));
@@ -259,7 +265,7 @@ impl Picture {
                     drawing.path(polygon(&corners), Paint::filled(color, 0.25), Some(frame));
                 }
             }
-            Drawn::Arrows { points, color } => {
+            PlotItem::Arrows { points, color } => {
                 let places: Vec<(f64, f64)> = points.iter().filter_map(|p| place(*p)).collect();
                 let [left, top, w, h] = frame;
                 let inside = |&((x, y), _): &((f64, f64), (f64, f64))| {
@@ -277,7 +283,7 @@ impl Picture {
                     drawing.path(polygon(&corners), Paint::filled(color, 1.0), Some(frame));
                 }
             }
-            Drawn::Zeros => {
+            PlotItem::Zeros => {
                 let inside = |axis: Axis| matches!(axis, Axis::Linear(low, high) if low < 0.0 && high > 0.0);
                 let [left, top, w, h] = frame;
                 let mut line = |ends: [(f64, f64); 2]| {
@@ -290,7 +296,7 @@ impl Picture {
                     line([(left, top + (1.0 - y) * h), (left + w, top + (1.0 - y) * h)]);
                 }
             }
-            Drawn::Bars { points, color } => {
+            PlotItem::Bars { points, color } => {
                 /// Half the width of the ends.
                 const END: f64 = 3.5;
                 // What lies below a logarithmic axis ends on it.
@@ -314,7 +320,7 @@ impl Picture {
     fn draw_axes(&self, fonts: &Fonts, drawing: &mut Drawing, place: Rectangle, corner: (f64, f64)) {
         let scale = self.text_scale();
         let frame = Frame { fonts, place, style: TICKS.scaled(scale) };
-        for (i, side) in [Side::Below, Side::Left].into_iter().enumerate() {
+        for (i, side) in [AxisSide::Below, AxisSide::Left].into_iter().enumerate() {
             frame.axis(drawing, side, self.axes[i], self.ticks[i].as_deref());
         }
         frame.outline(drawing, 1.3);
@@ -385,7 +391,7 @@ mod tests {
         picture.line(&[(1e-3, 1e-2), (1e2, 1.0)], "#000000", 1.0, LineStyle::Dashed);
         picture.points(&[(1.0, 0.1), (1e5, 0.1)], "#aa0000", 4.0, Mark::Solid(MarkShape::Circle));
         picture.band(&[(0.1, 0.0, 0.1), (1.0, 0.1, 0.2)], "#aa0000");
-        picture.legend("$D_f$ = 2", "#aa0000", Key::Curve(Mark::Solid(MarkShape::Circle)));
+        picture.legend("$D_f$ = 2", "#aa0000", LegendKey::Curve(Mark::Solid(MarkShape::Circle)));
         picture
     }
 

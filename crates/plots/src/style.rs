@@ -113,7 +113,7 @@ impl LineStyle {
 
 /// Style of an entry of a legend.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Key {
+pub enum LegendKey {
     /// A line.
     Line(LineStyle),
     /// A mark.

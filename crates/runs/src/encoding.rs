@@ -32,7 +32,7 @@ struct Written<'a, T> {
 
 /// A text as it is read: its other entries are compared with what would be written.
 #[derive(Deserialize)]
-struct Read<T> {
+struct ReadBack<T> {
     output: T,
 }
 
@@ -59,7 +59,7 @@ impl ResultKind {
 
     /// Reads an output back bit for bit; `None` for any text that [`ResultKind::encode`] does not write.
     pub fn decode<T: Serialize + DeserializeOwned>(&self, text: &str) -> Option<T> {
-        let Read { output } = serde_json::from_str(text).ok()?;
+        let ReadBack { output } = serde_json::from_str(text).ok()?;
         // An entry that is absent, unknown or of another kind would otherwise be passed over.
         (self.encode(&output) == text).then_some(output)
     }
@@ -74,39 +74,48 @@ mod tests {
     const KIND: ResultKind = ResultKind::new("test", 7);
 
     #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-    enum Solved {
+    enum StoredExample {
         Nothing,
         Number(f64),
         Pair(f32, Option<f64>),
         Named { rows: Vec<Option<f64>>, text: String, digest: u128 },
     }
 
-    fn all() -> Vec<Solved> {
+    fn all() -> Vec<StoredExample> {
         let text = "a \"b\"\n\u{1f300}".to_owned();
         let rows =
             vec![Some(-0.0), None, Some(5e-324), Some(1e308), Some(0.1 + 0.2), Some(f64::MIN_POSITIVE)];
-        let named = Solved::Named { rows, text, digest: u128::MAX };
-        vec![Solved::Nothing, Solved::Number(-1.0 / 3.0), Solved::Pair(0.1, None), named]
+        let named = StoredExample::Named { rows, text, digest: u128::MAX };
+        vec![StoredExample::Nothing, StoredExample::Number(-1.0 / 3.0), StoredExample::Pair(0.1, None), named]
     }
 
     #[test]
     fn outputs_come_back_bit_for_bit_and_damage_does_not() {
         let text = KIND.encode(&all());
-        let back: Vec<Solved> = KIND.decode(&text).unwrap();
+        let back: Vec<StoredExample> = KIND.decode(&text).unwrap();
         assert_eq!(back, all());
         // Signs of zeros too.
         assert_eq!(KIND.encode(&back), text);
         for cut in (0..text.len()).filter(|cut| text.is_char_boundary(*cut)) {
-            assert_eq!(KIND.decode::<Vec<Solved>>(&text[..cut]), None, "{cut} of {} bytes", text.len());
+            assert_eq!(
+                KIND.decode::<Vec<StoredExample>>(&text[..cut]),
+                None,
+                "{cut} of {} bytes",
+                text.len()
+            );
         }
         for bad in [format!("{text}\n"), format!("{text}{text}"), format!(" {text}"), text.replace('7', "8")]
         {
-            assert_eq!(KIND.decode::<Vec<Solved>>(&bad), None, "{bad}");
+            assert_eq!(KIND.decode::<Vec<StoredExample>>(&bad), None, "{bad}");
         }
         for (from, to) in
             [("1e+308", "1e+309"), ("1e+308", "1e308"), ("5e-324", "NaN"), ("null", "0"), ("test", "rest")]
         {
-            assert_eq!(KIND.decode::<Vec<Solved>>(&text.replacen(from, to, 1)), None, "{from} as {to}");
+            assert_eq!(
+                KIND.decode::<Vec<StoredExample>>(&text.replacen(from, to, 1)),
+                None,
+                "{from} as {to}"
+            );
         }
         assert_eq!(KIND.decode::<Vec<f64>>(&text), None);
     }
@@ -131,14 +140,22 @@ mod tests {
     #[test]
     fn numbers_that_are_not_finite_are_refused_and_not_taken_for_absent_ones() {
         for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
-            let outputs = [Solved::Number(bad), Solved::Pair(bad as f32, None), Solved::Pair(1.0, Some(bad))];
+            let outputs = [
+                StoredExample::Number(bad),
+                StoredExample::Pair(bad as f32, None),
+                StoredExample::Pair(1.0, Some(bad)),
+            ];
             for output in outputs {
                 let text = KIND.encode(&output);
                 assert_eq!(text, "{\"fractal-contact\":\"test\",\"format\":7}\n");
-                assert_eq!(KIND.decode::<Solved>(&text), None);
+                assert_eq!(KIND.decode::<StoredExample>(&text), None);
             }
             assert_eq!(KIND.decode::<Option<f64>>(&KIND.encode(&Some(bad))), None);
-            assert!(!all_finite(&[Solved::Named { rows: vec![Some(bad)], text: String::new(), digest: 0 }]));
+            assert!(!all_finite(&[StoredExample::Named {
+                rows: vec![Some(bad)],
+                text: String::new(),
+                digest: 0
+            }]));
             assert!(!all_finite(&BTreeMap::from([(1, (0, [bad]))])));
         }
         assert_eq!(KIND.decode::<Option<f64>>(&KIND.encode(&None::<f64>)), Some(None));

@@ -460,9 +460,9 @@ mod tests {
 
     /// Counts jobs and those taken from the store.
     #[derive(Default)]
-    struct Counter(AtomicUsize, AtomicUsize);
+    struct JobCounter(AtomicUsize, AtomicUsize);
 
-    impl Progress for Counter {
+    impl Progress for JobCounter {
         fn begin(&self, _: &str, _: u64) {}
         fn advance(&self, _: u64, stored: bool) {
             self.0.fetch_add(1, Ordering::Relaxed);
@@ -477,7 +477,7 @@ mod tests {
         let store = Store::open(dir.path(), false).unwrap();
         let jobs: Vec<Doubled> = (0..3).map(Doubled).collect();
         let run = || {
-            let counter = Counter::default();
+            let counter = JobCounter::default();
             let done =
                 collect(run_stored("doubles", &jobs, &store, Threads::all(2), &counter, &never)).unwrap();
             assert_eq!(done, [0, 2, 4]);
@@ -514,7 +514,7 @@ mod tests {
         }
 
         fn solve(&self, stop: Stop<'_>) -> Result<Vec<usize>, Error> {
-            self.resume(None, &|_| Ok(()), &Counter::default(), stop)
+            self.resume(None, &|_| Ok(()), &JobCounter::default(), stop)
         }
 
         fn resume(
@@ -546,7 +546,7 @@ mod tests {
         let jobs = vec![Counted(5)];
         let run = || {
             let store = Store::open(dir.path(), false).unwrap();
-            let done = run_stored("counts", &jobs, &store, Threads::all(1), &Counter::default(), &never);
+            let done = run_stored("counts", &jobs, &store, Threads::all(1), &JobCounter::default(), &never);
             (collect(done).ok(), JobList::is_done(&jobs, 0, &store))
         };
         let counted = Some(vec![vec![0, 1, 2, 3, 4]]);

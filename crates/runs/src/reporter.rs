@@ -80,7 +80,7 @@ struct Done {
     /// Of whole jobs.
     whole: f64,
     /// Of jobs under way, by their names.
-    parts: BTreeMap<String, Part>,
+    parts: BTreeMap<String, JobPart>,
     /// Costs of jobs whose states are all solved, and which write their files.
     writing: Vec<u64>,
     /// The part of it that was found on disk, which does not predict the time of the rest.
@@ -89,7 +89,7 @@ struct Done {
 
 /// Of a job under way.
 #[derive(Debug, Clone, Copy)]
-struct Part {
+struct JobPart {
     cost: f64,
     /// States that are solved.
     states: usize,
@@ -124,7 +124,7 @@ impl Done {
             }
             return;
         }
-        let new = Part { cost: 0.0, states: job.done, first: 0.0 };
+        let new = JobPart { cost: 0.0, states: job.done, first: 0.0 };
         let part = self.parts.entry(job.name.to_owned()).or_insert(new);
         if part.states != job.done {
             *part = new;

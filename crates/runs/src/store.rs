@@ -91,7 +91,7 @@ fn is_of_another_format(path: &Path) -> bool {
 
 /// Where a result lies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-struct Place {
+struct ResultPlace {
     /// Number of its pack.
     pack: usize,
     offset: u64,
@@ -130,7 +130,7 @@ struct Packs {
     /// The pack of each number.
     paths: Vec<PathBuf>,
     /// Places of each key, the newest last.
-    places: HashMap<u128, Vec<Place>>,
+    places: HashMap<u128, Vec<ResultPlace>>,
     own: Option<Own>,
     /// Packs of another format, which are not read.
     unused: Vec<PathBuf>,
@@ -297,7 +297,7 @@ impl Store {
     /// processes did by mistake has two.
     pub fn texts(&self, key: &str) -> impl Iterator<Item = String> + '_ {
         let body = head(key);
-        let found: Vec<(PathBuf, Place)> = {
+        let found: Vec<(PathBuf, ResultPlace)> = {
             let packs = self.held();
             let places = packs.places.get(&fnv1a_128(key.as_bytes()));
             places
@@ -355,7 +355,7 @@ impl Store {
         if let Some(old) = places.pop_if(|place| place.pack == number) {
             own.waste += old.bytes;
         }
-        places.push(Place { pack: number, offset, bytes: result.len() as u64 });
+        places.push(ResultPlace { pack: number, offset, bytes: result.len() as u64 });
         if own.waste > LEAST_WASTE && 2 * own.waste > own.bytes {
             self.compact(packs)?;
         }
@@ -407,7 +407,7 @@ impl Store {
             for place in places.iter_mut().filter(|place| place.pack == old.number) {
                 let text = read_at(&path, *place)?;
                 own.file.write_all(text.as_bytes()).map_err(Error::file("write", &path))?;
-                *place = Place { pack: number, offset: own.bytes, ..*place };
+                *place = ResultPlace { pack: number, offset: own.bytes, ..*place };
                 own.bytes += place.bytes;
             }
         }
@@ -430,7 +430,7 @@ impl Packs {
             let number = packs.paths.len();
             packs.paths.push(path);
             for (hash, (offset, bytes)) in pack.results.into_iter().zip(places) {
-                packs.places.entry(hash).or_default().push(Place { pack: number, offset, bytes });
+                packs.places.entry(hash).or_default().push(ResultPlace { pack: number, offset, bytes });
             }
         }
         Ok(packs)
@@ -535,7 +535,7 @@ fn whole(stored: &str, head: &str) -> Option<String> {
     body.strip_prefix(head).filter(|_| whole).map(str::to_owned)
 }
 
-fn read_at(path: &Path, place: Place) -> Result<String> {
+fn read_at(path: &Path, place: ResultPlace) -> Result<String> {
     let mut bytes = vec![0; place.bytes as usize];
     let read = File::open(path).and_then(|mut file| {
         file.seek(SeekFrom::Start(place.offset))?;

@@ -16,14 +16,14 @@ use crate::error::Result;
 use crate::extent::Extent;
 use crate::number_type::NumberType;
 use crate::options::Axes;
-use crate::source::Source;
+use crate::source::OpenedFile;
 use contact_model::units::number;
 
 /// An array of two dimensions as its container describes it.
 pub(crate) struct Array {
     pub(crate) name: String,
     /// Slower and faster index.
-    pub(crate) dimensions: [Dimension; 2],
+    pub(crate) dimensions: [ArrayDimension; 2],
     /// The order of the axes where no dimension has a name of one, and why.
     pub(crate) custom: (FileAxes, &'static str),
     pub(crate) number: NumberType,
@@ -46,7 +46,7 @@ pub(crate) struct Array {
 
 /// A dimension of an array.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Dimension {
+pub(crate) struct ArrayDimension {
     /// As the file has it, empty for none.
     pub(crate) name: String,
     /// A second name, of what it is: `axis` or `standard_name` of its coordinates.
@@ -74,7 +74,7 @@ pub(crate) enum Numbers {
     Decoded(&'static str, Box<Decode>),
 }
 
-type Decode = dyn Fn(&RawHeights, &mut Source<'_>) -> Result<Vec<f64>> + Send + Sync;
+type Decode = dyn Fn(&RawHeights, &mut OpenedFile<'_>) -> Result<Vec<f64>> + Send + Sync;
 
 /// Names of dimensions along x and along y, in lower case.
 const NAMES: [&[&str]; 2] = [
@@ -155,7 +155,7 @@ pub(crate) fn valid(
     }
 }
 
-impl Dimension {
+impl ArrayDimension {
     pub(crate) fn of_length(length: usize) -> Self {
         Self { length, ..Self::default() }
     }
@@ -170,7 +170,7 @@ impl Array {
     /// An array without any statement, whose axes are in an order that its format has or that is the custom.
     pub(crate) fn new(
         name: &str,
-        dimensions: [Dimension; 2],
+        dimensions: [ArrayDimension; 2],
         number: NumberType,
         custom: (FileAxes, &'static str),
     ) -> Self {
@@ -193,7 +193,7 @@ impl Array {
     }
 
     /// The order of the axes.
-    fn axes(&self, source: &Source<'_>) -> Result<FileAxes> {
+    fn axes(&self, source: &OpenedFile<'_>) -> Result<FileAxes> {
         let [first, second] = &self.dimensions;
         match (first.axis(), second.axis()) {
             (None, None) => Ok(self.custom.0),
@@ -213,7 +213,7 @@ impl Array {
 
     /// Takes the direction of one axis from its coordinates, and the side of a cell where the file states no
     /// other and where it is known which axis this is.
-    fn place(&mut self, source: &Source<'_>, index: usize, axis: usize, said: bool) -> Result<()> {
+    fn place(&mut self, source: &OpenedFile<'_>, index: usize, axis: usize, said: bool) -> Result<()> {
         let dimension = &self.dimensions[index];
         let (name, length) = (&dimension.name, dimension.length);
         let Some(found) = dimension.coordinates.as_ref().filter(|_| self.extent[axis].is_none()) else {
@@ -275,7 +275,7 @@ impl Array {
     /// # Errors
     /// Where statements of the file contradict each other, or where heights would be other ones without a
     /// statement that is not understood.
-    pub(crate) fn channel(mut self, source: &Source<'_>, numbers: Numbers) -> Result<StoredChannel> {
+    pub(crate) fn channel(mut self, source: &OpenedFile<'_>, numbers: Numbers) -> Result<StoredChannel> {
         let axes = self.axes(source)?;
         let order = axes.order();
         let said = !matches!(axes, FileAxes::Assumed(_));

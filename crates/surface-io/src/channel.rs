@@ -6,7 +6,7 @@ use crate::extent::Extent;
 use crate::number_type::NumberType;
 use crate::options::Axes;
 use crate::quantity::{Dimension, QuantityError, Unit};
-use crate::source::Source;
+use crate::source::OpenedFile;
 use contact_model::escaped;
 use contact_model::units::number;
 
@@ -109,7 +109,7 @@ pub(crate) enum StoredHeights {
 }
 
 /// Reads the heights row by row, NaN where undefined.
-type Deferred = dyn Fn(&mut Source<'_>) -> Result<Vec<f64>> + Send + Sync;
+type Deferred = dyn Fn(&mut OpenedFile<'_>) -> Result<Vec<f64>> + Send + Sync;
 
 /// Numbers one after another: `height = scale * number + shift`.
 pub(crate) struct RawHeights {
@@ -262,7 +262,7 @@ impl RawHeights {
 
     /// An error where the scale would make all heights equal or not finite; called before the channel is
     /// listed.
-    pub(crate) fn check_scale(&self, source: &Source<'_>) -> Result<()> {
+    pub(crate) fn check_scale(&self, source: &OpenedFile<'_>) -> Result<()> {
         if self.scale.is_finite() && self.scale.abs() > 0.0 && self.shift.is_finite() {
             return Ok(());
         }
@@ -276,7 +276,7 @@ impl RawHeights {
 
     /// An error where the numbers are not all there, or their scale makes no heights; called before the
     /// channel is listed.
-    pub(crate) fn check(&self, source: &Source<'_>, rows: usize, columns: usize) -> Result<()> {
+    pub(crate) fn check(&self, source: &OpenedFile<'_>, rows: usize, columns: usize) -> Result<()> {
         source.check_cells([rows, columns])?;
         let (offset, found) = match &self.bytes {
             Bytes::File(offset) => (*offset, source.length().saturating_sub(*offset)),
@@ -294,7 +294,7 @@ impl RawHeights {
     }
 
     /// The heights, row-major, NaN where undefined.
-    pub(crate) fn read(&self, source: &mut Source<'_>, rows: usize, columns: usize) -> Result<Vec<f64>> {
+    pub(crate) fn read(&self, source: &mut OpenedFile<'_>, rows: usize, columns: usize) -> Result<Vec<f64>> {
         self.check(source, rows, columns)?;
         let mut heights = undefined_heights(source, rows, columns)?;
         self.each(source, rows, columns, &mut |i, height| heights[i] = height)?;
@@ -304,7 +304,7 @@ impl RawHeights {
     /// Calls for each height with its place row by row, NaN where undefined, in the order of the file.
     pub(crate) fn each(
         &self,
-        source: &mut Source<'_>,
+        source: &mut OpenedFile<'_>,
         rows: usize,
         columns: usize,
         take: &mut dyn FnMut(usize, f64),
@@ -357,7 +357,7 @@ impl RawHeights {
     /// The index, row by row, of the number at a place of a line, and its height.
     pub(crate) fn placed(
         &self,
-        source: &Source<'_>,
+        source: &OpenedFile<'_>,
         shape: [usize; 2],
         place: [usize; 2],
         raw: &[u8],
@@ -384,7 +384,7 @@ impl RawHeights {
 }
 
 /// A map of undefined points, where there is memory for it.
-pub(crate) fn undefined_heights(source: &Source<'_>, rows: usize, columns: usize) -> Result<Vec<f64>> {
+pub(crate) fn undefined_heights(source: &OpenedFile<'_>, rows: usize, columns: usize) -> Result<Vec<f64>> {
     let mut heights = source.room(rows * columns)?;
     heights.resize(rows * columns, f64::NAN);
     Ok(heights)
@@ -393,7 +393,7 @@ pub(crate) fn undefined_heights(source: &Source<'_>, rows: usize, columns: usize
 impl StoredChannel {
     /// A channel without a name, with this number of rows and columns, whose numbers are all in the file.
     pub(crate) fn new(
-        source: &Source<'_>,
+        source: &OpenedFile<'_>,
         raw: RawHeights,
         [rows, columns]: [usize; 2],
         unit: StoredUnit,
@@ -410,7 +410,7 @@ impl StoredChannel {
         shape: [usize; 2],
         unit: StoredUnit,
         extent: [Option<Extent>; 2],
-        read: impl Fn(&mut Source<'_>) -> Result<Vec<f64>> + Send + Sync + 'static,
+        read: impl Fn(&mut OpenedFile<'_>) -> Result<Vec<f64>> + Send + Sync + 'static,
     ) -> Self {
         Self { extent, ..Self::of(StoredHeights::Deferred(Box::new(read)), details, shape, unit) }
     }
@@ -429,7 +429,7 @@ impl StoredChannel {
 
     /// The channel of numbers as [`StoredChannel::new`], undefined where those of a mask are not 0.
     pub(crate) fn masked(
-        source: &Source<'_>,
+        source: &OpenedFile<'_>,
         raw: RawHeights,
         (mask, detail): (RawHeights, &str),
         [rows, columns]: [usize; 2],
@@ -439,7 +439,7 @@ impl StoredChannel {
         raw.check(source, rows, columns)?;
         mask.check(source, rows, columns)?;
         let (details, compared) = (format!("{}, {detail}", raw.details()), raw.compared());
-        let read = move |source: &mut Source<'_>| {
+        let read = move |source: &mut OpenedFile<'_>| {
             let mut heights = raw.read(source, rows, columns)?;
             mask.each(source, rows, columns, &mut |i, masked| {
                 if masked.abs() > 0.0 {
@@ -575,7 +575,7 @@ impl StoredChannel {
     }
 
     /// The heights, row-major, NaN where undefined.
-    pub(crate) fn read(&mut self, source: &mut Source<'_>) -> Result<Vec<f64>> {
+    pub(crate) fn read(&mut self, source: &mut OpenedFile<'_>) -> Result<Vec<f64>> {
         let heights = match &mut self.heights {
             StoredHeights::Read(heights) => std::mem::take(heights),
             StoredHeights::Raw(raw) => raw.read(source, self.rows, self.columns)?,
@@ -641,7 +641,7 @@ pub(crate) const MOST_CHANNELS: usize = 256;
 
 /// An error where a header lists more channels than files have: each takes more memory than its line in the
 /// header.
-pub(crate) fn check_number(source: &Source<'_>, offset: u64, channels: usize) -> Result<()> {
+pub(crate) fn check_number(source: &OpenedFile<'_>, offset: u64, channels: usize) -> Result<()> {
     if channels <= MOST_CHANNELS {
         return Ok(());
     }
@@ -652,7 +652,7 @@ pub(crate) fn check_number(source: &Source<'_>, offset: u64, channels: usize) ->
 /// its type are not those of the file. A few bytes are a note.
 pub(crate) fn check_rest(
     channels: &mut [StoredChannel],
-    source: &Source<'_>,
+    source: &OpenedFile<'_>,
     end: u64,
     line: usize,
 ) -> Result<()> {

@@ -42,8 +42,12 @@ pub fn composite(first: &HeightMap, second: &HeightMap, offset: [f64; 2]) -> Res
 }
 
 fn summed(first: &HeightMap, second: &HeightMap, offset: [f64; 2]) -> Result<HeightMap, ContentError> {
-    let x = Axis::common([first.columns(), second.columns()], [first.size().x, second.size().x], offset[0])?;
-    let y = Axis::common([first.rows(), second.rows()], [first.size().y, second.size().y], offset[1])?;
+    let x = SharedAxis::common(
+        [first.columns(), second.columns()],
+        [first.size().x, second.size().x],
+        offset[0],
+    )?;
+    let y = SharedAxis::common([first.rows(), second.rows()], [first.size().y, second.size().y], offset[1])?;
     let cells = Cells { columns: x.count, rows: y.count };
     let mut heights = means(first, &x.shares[0], &y.shares[0]);
     for (sum, h) in heights.iter_mut().zip(means(second, &x.shares[1], &y.shares[1])) {
@@ -54,7 +58,7 @@ fn summed(first: &HeightMap, second: &HeightMap, offset: [f64; 2]) -> Result<Hei
 }
 
 /// The common part of both maps along one axis.
-struct Axis {
+struct SharedAxis {
     cell: f64,
     count: usize,
     /// For each cell of the result and each map: its first cell there, and the shares of that and those
@@ -62,7 +66,7 @@ struct Axis {
     shares: [Vec<(usize, Vec<f64>)>; 2],
 }
 
-impl Axis {
+impl SharedAxis {
     fn common(counts: [usize; 2], sides: [f64; 2], offset: f64) -> Result<Self, ContentError> {
         let cells = [sides[0] / counts[0] as f64, sides[1] / counts[1] as f64];
         let cell = cells[0].max(cells[1]);

@@ -1,16 +1,16 @@
 //! A file read from a place on, some bytes at a time.
 
 use crate::error::{Error, Result};
-use crate::fields::Stored;
+use crate::fields::FixedLength;
 use crate::number_type::ByteOrder;
-use crate::source::Source;
+use crate::source::OpenedFile;
 
 /// Bytes of a file that a cursor reads at a time, and the longest name or text.
 const WINDOW: u64 = 1 << 16;
 
 /// A file read from an offset on, number by number and never beyond its end.
 pub(crate) struct Cursor<'s, 'a> {
-    pub(crate) source: &'s mut Source<'a>,
+    pub(crate) source: &'s mut OpenedFile<'a>,
     order: ByteOrder,
     /// Offset of what is read next.
     pub(crate) at: u64,
@@ -18,7 +18,7 @@ pub(crate) struct Cursor<'s, 'a> {
 }
 
 impl<'s, 'a> Cursor<'s, 'a> {
-    pub(crate) fn new(source: &'s mut Source<'a>, order: ByteOrder, at: u64) -> Self {
+    pub(crate) fn new(source: &'s mut OpenedFile<'a>, order: ByteOrder, at: u64) -> Self {
         Self { source, order, at, window: (0, Vec::new()) }
     }
 
@@ -49,7 +49,7 @@ impl<'s, 'a> Cursor<'s, 'a> {
     }
 
     /// The next number, text or row of them.
-    pub(crate) fn get<T: Stored>(&mut self) -> Result<T> {
+    pub(crate) fn get<T: FixedLength>(&mut self) -> Result<T> {
         let order = self.order;
         self.take(T::BYTES as u64).map(|bytes| T::decode(bytes, order))
     }

@@ -3,7 +3,7 @@
 use crate::error::{Error, Result};
 use crate::extent::Extent;
 use crate::fields::decoded;
-use crate::source::Source;
+use crate::source::OpenedFile;
 use crate::subject::Subject;
 
 /// A line of such a header.
@@ -41,7 +41,7 @@ impl<'l> HeaderLine<'l> {
 pub(crate) const SIX_DIGITS: f64 = 1e-5;
 
 /// A text header; names of sections and keys are in small letters.
-pub(crate) struct Entries {
+pub(crate) struct TextHeader {
     sections: Vec<Section>,
     /// Offset behind its last line.
     pub(crate) end: u64,
@@ -54,7 +54,7 @@ pub(crate) struct Section {
     subject: Subject,
 }
 
-impl Entries {
+impl TextHeader {
     /// Reads lines up to the one that ends the header, and returns whether there is one.
     pub(crate) fn read(
         subject: &Subject,
@@ -93,7 +93,7 @@ impl Entries {
 
     /// Reads lines up to one that ends the header; an error says that it is expected.
     pub(crate) fn up_to_end(
-        source: &Source<'_>,
+        source: &OpenedFile<'_>,
         text: &[u8],
         line: impl for<'l> Fn(&'l str) -> HeaderLine<'l>,
         expected: &str,

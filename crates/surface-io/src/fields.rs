@@ -8,7 +8,7 @@ use std::ops::Deref;
 use std::path::Path;
 
 /// A part of a file that is in memory, read number by number and never beyond its end.
-pub(crate) struct Fields<'a> {
+pub(crate) struct ByteFields<'a> {
     subject: Subject,
     order: ByteOrder,
     bytes: Cow<'a, [u8]>,
@@ -18,7 +18,7 @@ pub(crate) struct Fields<'a> {
 }
 
 /// What stands in a header with a length of its own.
-pub(crate) trait Stored: Sized {
+pub(crate) trait FixedLength: Sized {
     const BYTES: usize;
 
     fn decode(bytes: &[u8], order: ByteOrder) -> Self;
@@ -26,7 +26,7 @@ pub(crate) trait Stored: Sized {
 
 macro_rules! stored_numbers {
     ($($number:ty),*) => {$(
-        impl Stored for $number {
+        impl FixedLength for $number {
             const BYTES: usize = size_of::<$number>();
 
             fn decode(bytes: &[u8], order: ByteOrder) -> Self {
@@ -43,7 +43,7 @@ macro_rules! stored_numbers {
 
 stored_numbers!(u8, i8, u16, i16, u32, i32, u64, i64, f32, f64);
 
-impl<T: Stored, const N: usize> Stored for [T; N] {
+impl<T: FixedLength, const N: usize> FixedLength for [T; N] {
     const BYTES: usize = N * T::BYTES;
 
     fn decode(bytes: &[u8], order: ByteOrder) -> Self {
@@ -55,7 +55,7 @@ impl<T: Stored, const N: usize> Stored for [T; N] {
 #[derive(Debug, Default, Clone, PartialEq)]
 pub(crate) struct Text<const N: usize>(String);
 
-impl<const N: usize> Stored for Text<N> {
+impl<const N: usize> FixedLength for Text<N> {
     const BYTES: usize = N;
 
     fn decode(bytes: &[u8], _: ByteOrder) -> Self {
@@ -75,7 +75,7 @@ impl<const N: usize> Deref for Text<N> {
 #[derive(Debug, Default, Clone, PartialEq)]
 pub(crate) struct Wide<const N: usize>(String);
 
-impl<const N: usize> Stored for Wide<N> {
+impl<const N: usize> FixedLength for Wide<N> {
     const BYTES: usize = 2 * N;
 
     fn decode(bytes: &[u8], order: ByteOrder) -> Self {
@@ -113,7 +113,7 @@ macro_rules! header {
 
         impl $name {
             /// Reads the fields at their offsets from where this part of the file begins.
-            fn of(fields: &mut $crate::fields::Fields<'_>) -> $crate::error::Result<Self> {
+            fn of(fields: &mut $crate::fields::ByteFields<'_>) -> $crate::error::Result<Self> {
                 Ok(Self { $($field: fields.go($at).get()?,)* })
             }
         }
@@ -121,7 +121,7 @@ macro_rules! header {
 }
 pub(crate) use header;
 
-impl<'a> Fields<'a> {
+impl<'a> ByteFields<'a> {
     pub(crate) fn new(
         subject: Subject,
         order: ByteOrder,
@@ -180,7 +180,7 @@ impl<'a> Fields<'a> {
     }
 
     /// The next number, text or row of them.
-    pub(crate) fn get<T: Stored>(&mut self) -> Result<T> {
+    pub(crate) fn get<T: FixedLength>(&mut self) -> Result<T> {
         let order = self.order;
         self.take(T::BYTES).map(|bytes| T::decode(bytes, order))
     }

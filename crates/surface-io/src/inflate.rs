@@ -1,7 +1,7 @@
 //! Packed numbers: deflate with and without the header of zlib.
 
 use crate::error::{ContentError, Result};
-use crate::source::Source;
+use crate::source::OpenedFile;
 use flate2::read::{DeflateDecoder, ZlibDecoder};
 use std::io::Read;
 
@@ -35,7 +35,7 @@ pub(crate) struct Packed {
 impl Packed {
     /// An error where the file ends too early or the bytes cannot unpack to as many as claimed; called before
     /// anything is allocated.
-    pub(crate) fn check(self, source: &Source<'_>) -> Result<()> {
+    pub(crate) fn check(self, source: &OpenedFile<'_>) -> Result<()> {
         let Self { packing, offset, length, unpacked } = self;
         if offset.checked_add(length).is_none_or(|end| end > source.length()) {
             let expected =
@@ -54,7 +54,7 @@ impl Packed {
     }
 
     /// Appends the unpacked bytes.
-    pub(crate) fn unpack(self, source: &mut Source<'_>, into: &mut Vec<u8>) -> Result<()> {
+    pub(crate) fn unpack(self, source: &mut OpenedFile<'_>, into: &mut Vec<u8>) -> Result<()> {
         self.check(source)?;
         let Self { packing, offset, length, unpacked } = self;
         let before = into.len();

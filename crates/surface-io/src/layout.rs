@@ -16,7 +16,7 @@ use crate::options::ReadOptions;
 use crate::points::{AxisColumn, PointColumns, is_full_grid};
 use crate::provenance::contradiction;
 use crate::quantity::Unit;
-use crate::text::{Column, Kind, TextTable, symbol};
+use crate::text::{ColumnKind, TextColumn, TextTable, symbol};
 
 /// The kind of map that a table of numbers is.
 #[derive(Debug)]
@@ -47,7 +47,7 @@ pub(crate) fn layout(
     requested: Option<Format>,
     declared: &ReadOptions,
 ) -> Result<Layout, ContentError> {
-    if requested == Some(Format::Text) || !table.heading.columns.iter().any(Column::tells) {
+    if requested == Some(Format::Text) || !table.heading.columns.iter().any(TextColumn::tells) {
         return by_numbers(table, requested, declared);
     }
     by_names(table, requested, declared)
@@ -102,7 +102,7 @@ fn by_names(
         let columns: Vec<String> = columns.iter().map(ToString::to_string).collect();
         ContentError::Columns { columns: columns.join(", "), problem }
     };
-    let of = |is: &dyn Fn(&Column) -> bool| -> Vec<usize> {
+    let of = |is: &dyn Fn(&TextColumn) -> bool| -> Vec<usize> {
         (0..columns.len()).filter(|&at| is(&columns[at])).collect()
     };
     let [along_x, along_y] = [0, 1].map(|axis| of(&|column| column.axis() == Some(axis)));
@@ -112,17 +112,17 @@ fn by_names(
             return Err(refused(format!("{first} and {second} are along one axis, expected one of them")));
         }
     }
-    if let Some(column) = columns.iter().find(|column| matches!(column.kind, Kind::Degrees(_))) {
+    if let Some(column) = columns.iter().find(|column| matches!(column.kind, ColumnKind::Degrees(_))) {
         let remedy = "project the points to lengths, such as metres of easting and northing";
         return Err(refused(format!("{column} is an angle, and no length: {remedy}")));
     }
     let (mut x, mut y) = (along_x.first().copied(), along_y.first().copied());
-    let heights = of(&|column| column.kind == Kind::Height);
-    let mut others = of(&|column| column.kind == Kind::Other && !column.name.is_empty());
+    let heights = of(&|column| column.kind == ColumnKind::Height);
+    let mut others = of(&|column| column.kind == ColumnKind::Other && !column.name.is_empty());
     if let (None, None) = (x, y) {
-        x = of(&|column| column.kind == Kind::Along).first().copied();
+        x = of(&|column| column.kind == ColumnKind::Along).first().copied();
     } else {
-        others.extend(of(&|column| column.kind == Kind::Along));
+        others.extend(of(&|column| column.kind == ColumnKind::Along));
         others.sort_unstable();
     }
     let mut values = if heights.is_empty() { others } else { heights };
@@ -173,7 +173,7 @@ fn by_names(
     for value in values {
         let axes = places.iter().map(|&at| axis_column(table, at, declared)).collect::<Result<_, _>>()?;
         let column = &columns[value];
-        let named = several || column.kind == Kind::Other;
+        let named = several || column.kind == ColumnKind::Other;
         let mut notes = Vec::new();
         if !unused.is_empty() {
             notes.push(format!(
@@ -188,7 +188,7 @@ fn by_names(
 }
 
 /// The unit of the values of a column: that of its heading, or of a statement about heights.
-fn unit_of_values(table: &TextTable, column: &Column) -> Result<StoredUnit, ContentError> {
+fn unit_of_values(table: &TextTable, column: &TextColumn) -> Result<StoredUnit, ContentError> {
     match (StoredUnit::written(symbol(&column.unit)), table.heading.stored_unit()) {
         (StoredUnit::Unknown, stated) => Ok(stated),
         (StoredUnit::Heights(own), StoredUnit::Heights(stated)) if !own.same(&stated) => {
@@ -204,7 +204,7 @@ fn unit_of_values(table: &TextTable, column: &Column) -> Result<StoredUnit, Cont
 
 fn axis_column(table: &TextTable, at: usize, declared: &ReadOptions) -> Result<AxisColumn, ContentError> {
     let column = &table.heading.columns[at];
-    if let Kind::Index(_) = column.kind {
+    if let ColumnKind::Index(_) = column.kind {
         if declared.lateral_unit.is_some() {
             let reason =
                 "the heading names numbers of rows or columns, which have no unit; cell says their step";

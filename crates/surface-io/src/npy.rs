@@ -13,14 +13,14 @@ use crate::channel::{RawHeights, StoredChannel, StoredUnit};
 use crate::error::{ContentError, Result};
 use crate::format::Format;
 use crate::reader::Reader;
-use crate::source::Source;
+use crate::source::OpenedFile;
 use header::{MAGIC, NpyHeader};
 
 pub(crate) const READER: Reader =
     Reader { format: Format::Npy, recognises: |start, _| start.starts_with(MAGIC), channels };
 
 /// An array of two dimensions.
-fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
+fn channels(source: &mut OpenedFile<'_>) -> Result<Vec<StoredChannel>> {
     let (header, header_bytes) = NpyHeader::read(source)?;
     let [rows, columns] = header.shape[..] else {
         return Err(source.content(ContentError::Shape { found: header.shape }));

@@ -14,13 +14,13 @@ pub(crate) enum ByteOrder {
 /// Type and byte order of a number in a binary file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct NumberType {
-    kind: Kind,
+    kind: NumberTypeKind,
     size: u8,
     little: bool,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Kind {
+enum NumberTypeKind {
     Float,
     Signed,
     Unsigned,
@@ -30,11 +30,11 @@ enum Kind {
 const EXACT: i128 = 1 << 53;
 
 impl NumberType {
-    pub(crate) const U8: Self = Self { kind: Kind::Unsigned, size: 1, little: true };
+    pub(crate) const U8: Self = Self { kind: NumberTypeKind::Unsigned, size: 1, little: true };
     pub(crate) const U16: Self = Self { size: 2, ..Self::U8 };
-    pub(crate) const I16: Self = Self { kind: Kind::Signed, ..Self::U16 };
+    pub(crate) const I16: Self = Self { kind: NumberTypeKind::Signed, ..Self::U16 };
     pub(crate) const I32: Self = Self { size: 4, ..Self::I16 };
-    pub(crate) const F32: Self = Self { kind: Kind::Float, ..Self::I32 };
+    pub(crate) const F32: Self = Self { kind: NumberTypeKind::Float, ..Self::I32 };
     pub(crate) const F64: Self = Self { size: 8, ..Self::F32 };
 
     /// By its code in a format, its place in a list of types as numpy calls them: `i2`, `f8`, empty for what
@@ -46,10 +46,10 @@ impl NumberType {
 
     /// By the letter of numpy (`f`, `i`, `u`) and the number of bytes; `None` for what is not read.
     pub(crate) fn new(letter: u8, size: u8, little: bool) -> Option<Self> {
-        let (kind, sizes): (Kind, &[u8]) = match letter {
-            b'f' => (Kind::Float, &[2, 4, 8]),
-            b'i' => (Kind::Signed, &[1, 2, 4, 8]),
-            b'u' => (Kind::Unsigned, &[1, 2, 4, 8]),
+        let (kind, sizes): (NumberTypeKind, &[u8]) = match letter {
+            b'f' => (NumberTypeKind::Float, &[2, 4, 8]),
+            b'i' => (NumberTypeKind::Signed, &[1, 2, 4, 8]),
+            b'u' => (NumberTypeKind::Unsigned, &[1, 2, 4, 8]),
             _ => return None,
         };
         sizes.contains(&size).then_some(Self { kind, size, little })
@@ -62,34 +62,34 @@ impl NumberType {
 
     /// The integer of as many bytes with a sign or without.
     pub(crate) fn with_sign(self, signed: bool) -> Self {
-        Self { kind: if signed { Kind::Signed } else { Kind::Unsigned }, ..self }
+        Self { kind: if signed { NumberTypeKind::Signed } else { NumberTypeKind::Unsigned }, ..self }
     }
 
     /// The integer of this type with the bytes of one of the other sign, such as 65535 for -1.
     pub(crate) fn wrapped(self, number: f64) -> f64 {
         match self.kind {
-            Kind::Unsigned if number < 0.0 => number + self.values(),
-            Kind::Signed if number >= 0.5 * self.values() => number - self.values(),
+            NumberTypeKind::Unsigned if number < 0.0 => number + self.values(),
+            NumberTypeKind::Signed if number >= 0.5 * self.values() => number - self.values(),
             _ => number,
         }
     }
 
     /// Whether it is a float, which NaN is one of.
     pub(crate) fn is_float(self) -> bool {
-        self.kind == Kind::Float
+        self.kind == NumberTypeKind::Float
     }
 
     /// Whether it is an integer with a sign.
     pub(crate) fn is_signed(self) -> bool {
-        self.kind == Kind::Signed
+        self.kind == NumberTypeKind::Signed
     }
 
     /// Type and bits, such as float32.
     pub(crate) fn name(self) -> String {
         let name = match self.kind {
-            Kind::Float => "float",
-            Kind::Signed => "int",
-            Kind::Unsigned => "uint",
+            NumberTypeKind::Float => "float",
+            NumberTypeKind::Signed => "int",
+            NumberTypeKind::Unsigned => "uint",
         };
         format!("{name}{}", 8 * self.size)
     }
@@ -111,13 +111,13 @@ impl NumberType {
     /// The nearest float of this type; integers stay as they are.
     fn nearest(self, number: f64) -> f64 {
         match (self.kind, self.size) {
-            (Kind::Float, 2) => {
+            (NumberTypeKind::Float, 2) => {
                 // Ten bits behind the first one, down to 2^-24.
                 let digit = 2_f64.powi((number.abs().log2().floor().clamp(-14.0, 15.0) as i32) - 10);
                 let nearest = (number / digit).round_ties_even() * digit;
                 if nearest.abs() > 65504.0 { f64::INFINITY.copysign(number) } else { nearest }
             }
-            (Kind::Float, 4) => f64::from(number as f32),
+            (NumberTypeKind::Float, 4) => f64::from(number as f32),
             _ => number,
         }
     }
@@ -142,13 +142,13 @@ impl NumberType {
         }
         let bits = u64::from_le_bytes(word);
         match self.kind {
-            Kind::Float => Ok(match raw.len() {
+            NumberTypeKind::Float => Ok(match raw.len() {
                 2 => half(bits as u16),
                 4 => f64::from(f32::from_bits(bits as u32)),
                 _ => f64::from_bits(bits),
             }),
-            Kind::Unsigned => exact(i128::from(bits)),
-            Kind::Signed => {
+            NumberTypeKind::Unsigned => exact(i128::from(bits)),
+            NumberTypeKind::Signed => {
                 let unused = 64 - 8 * raw.len() as u32;
                 exact(i128::from((bits << unused).cast_signed() >> unused))
             }

@@ -3,7 +3,7 @@
 use crate::channel::StoredChannel;
 use crate::error::Result;
 use crate::format::Format;
-use crate::source::Source;
+use crate::source::OpenedFile;
 
 /// Number of bytes at the beginning of a file by which its format is recognised.
 pub(crate) const SNIFF: u64 = 1024;
@@ -15,5 +15,5 @@ pub(crate) struct Reader {
     /// of a shorter file.
     pub(crate) recognises: fn(start: &[u8], length: u64) -> bool,
     /// The channels by the headers of the file; heights are read later.
-    pub(crate) channels: fn(&mut Source<'_>) -> Result<Vec<StoredChannel>>,
+    pub(crate) channels: fn(&mut OpenedFile<'_>) -> Result<Vec<StoredChannel>>,
 }

@@ -1,7 +1,7 @@
 //! The bytes of a file, read at the places that its header names and never beyond its end.
 
 use crate::error::{ContentError, Error, Result};
-use crate::fields::{Fields, Stored};
+use crate::fields::{ByteFields, FixedLength};
 use crate::format::Format;
 use crate::number_type::ByteOrder;
 use crate::subject::Subject;
@@ -78,13 +78,13 @@ impl Seek for Detached {
 }
 
 /// An opened file of a known length.
-pub(crate) struct Source<'a> {
+pub(crate) struct OpenedFile<'a> {
     input: Box<dyn Input + 'a>,
     subject: Subject,
     length: u64,
 }
 
-impl<'a> Source<'a> {
+impl<'a> OpenedFile<'a> {
     pub(crate) fn new(path: &Path, input: impl Input + 'a, length: u64) -> Self {
         Self { input: Box::new(input), subject: Subject::new(path, None), length }
     }
@@ -131,12 +131,17 @@ impl<'a> Source<'a> {
     }
 
     /// The same as numbers of one byte order.
-    pub(crate) fn fields(&mut self, order: ByteOrder, offset: u64, count: u64) -> Result<Fields<'static>> {
-        Ok(Fields::new(self.subject.clone(), order, offset, self.bytes(offset, count)?))
+    pub(crate) fn fields(
+        &mut self,
+        order: ByteOrder,
+        offset: u64,
+        count: u64,
+    ) -> Result<ByteFields<'static>> {
+        Ok(ByteFields::new(self.subject.clone(), order, offset, self.bytes(offset, count)?))
     }
 
     /// A number or text, or several of one type, from an offset on.
-    pub(crate) fn get<T: Stored>(&mut self, order: ByteOrder, offset: u64) -> Result<T> {
+    pub(crate) fn get<T: FixedLength>(&mut self, order: ByteOrder, offset: u64) -> Result<T> {
         self.fields(order, offset, T::BYTES as u64)?.get()
     }
 
@@ -189,7 +194,7 @@ impl<'a> Source<'a> {
     }
 
     /// A part of the input, for readers of other crates; the caller has compared its end with
-    /// [`Source::length`].
+    /// [`OpenedFile::length`].
     pub(crate) fn part(&mut self, offset: u64, length: u64) -> Result<Take<&mut (dyn Input + 'a)>> {
         self.input.seek(SeekFrom::Start(offset)).map_err(Error::system("read", self.subject.path()))?;
         Ok((&mut *self.input as &mut (dyn Input + 'a)).take(length))

@@ -9,7 +9,7 @@ use crate::layout::{self, Layout};
 use crate::options::ReadOptions;
 use crate::reader::SNIFF;
 use crate::scan::Scan;
-use crate::source::{Input, Source};
+use crate::source::{Input, OpenedFile};
 use crate::{points, text};
 use std::fs::File;
 use std::io::{BufReader, Cursor};
@@ -27,7 +27,7 @@ use std::path::Path;
 /// # Ok::<(), surface_io::Error>(())
 /// ```
 pub struct SurfaceFile<'a> {
-    source: Source<'a>,
+    source: OpenedFile<'a>,
     format: Format,
     channels: Vec<StoredChannel>,
     declared: ReadOptions,
@@ -153,12 +153,12 @@ pub(crate) fn told<'a>(
     input: impl Input + 'a,
     length: u64,
     declared: &ReadOptions,
-) -> Result<(Source<'a>, Option<Format>)> {
+) -> Result<(OpenedFile<'a>, Option<Format>)> {
     if length > declared.largest_bytes {
         let problem = ContentError::TooLarge { bytes: length, largest: declared.largest_bytes };
         return Err(Error::content(path)(problem));
     }
-    let mut source = Source::new(path, input, length);
+    let mut source = OpenedFile::new(path, input, length);
     let start = source.start(SNIFF)?;
     let format = detect(declared.format, path, &start, length).map_err(Error::content(path))?;
     source.read_as(format);
@@ -203,7 +203,7 @@ impl Scan {
 
 /// The scan of a channel.
 pub(crate) fn scan(
-    source: &mut Source<'_>,
+    source: &mut OpenedFile<'_>,
     format: Format,
     (number, mut channel): (usize, StoredChannel),
     declared: &ReadOptions,
@@ -228,7 +228,7 @@ pub(crate) fn scan(
 
 /// The channels of a text: matrices, points or profiles, as their headings name the columns.
 pub(crate) fn of_text(
-    source: &mut Source<'_>,
+    source: &mut OpenedFile<'_>,
     requested: Option<Format>,
     declared: &ReadOptions,
 ) -> Result<(Format, Vec<StoredChannel>)> {

@@ -7,7 +7,7 @@ mod matrix;
 mod number;
 mod statement;
 
-pub(crate) use columns::{Column, Kind, symbol};
+pub(crate) use columns::{ColumnKind, TextColumn, symbol};
 pub(crate) use delimiter::Delimiter;
 pub(crate) use heading::Heading;
 pub(crate) use matrix::matrix;

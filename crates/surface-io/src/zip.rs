@@ -5,11 +5,11 @@
 //! bounded by the claimed size of the directory and not by the file.
 
 use crate::error::{ContentError, Result};
-use crate::fields::{Fields, header};
+use crate::fields::{ByteFields, header};
 use crate::format::EXPORT;
 use crate::inflate::{Packed, Packing};
 use crate::number_type::ByteOrder;
-use crate::source::Source;
+use crate::source::OpenedFile;
 use flate2::Crc;
 
 pub(crate) const MAGIC: &[u8] = b"PK\x03\x04";
@@ -26,11 +26,11 @@ const LONGEST_COMMENT: u64 = 0xffff;
 #[derive(Debug, Clone)]
 pub(crate) struct Member {
     pub(crate) name: String,
-    entry: Entry,
+    entry: ZipEntry,
 }
 
 /// The members by the directory at the end of the file.
-pub(crate) fn members(source: &mut Source<'_>) -> Result<Vec<Member>> {
+pub(crate) fn members(source: &mut OpenedFile<'_>) -> Result<Vec<Member>> {
     let length = source.length();
     let tail = length.min(TAIL + LONGEST_COMMENT);
     let bytes = source.bytes(length - tail, tail)?;
@@ -38,7 +38,7 @@ pub(crate) fn members(source: &mut Source<'_>) -> Result<Vec<Member>> {
         return Err(source.wrong(length, "the directory of the archive before this (cut short?)"));
     };
     let at = length - tail + end as u64;
-    let mut fields = Fields::new(source.subject().clone(), ByteOrder::Little, length - tail, bytes);
+    let mut fields = ByteFields::new(source.subject().clone(), ByteOrder::Little, length - tail, bytes);
     let (count, size, offset): (u16, u32, u32) = (fields.go(end + 10).get()?, fields.get()?, fields.get()?);
     let (size, offset) = (u64::from(size), u64::from(offset));
     if offset + size > at {
@@ -52,7 +52,7 @@ pub(crate) fn members(source: &mut Source<'_>) -> Result<Vec<Member>> {
 
 header! {
     /// An entry of the directory.
-    struct Entry {
+    struct ZipEntry {
         magic: [u8; 4] = 0,
         flags: u16 = 8,
         method: u16 = 10,
@@ -66,9 +66,9 @@ header! {
 }
 
 /// One entry of the directory.
-fn entry(fields: &mut Fields<'_>) -> Result<Member> {
+fn entry(fields: &mut ByteFields<'_>) -> Result<Member> {
     let wrong = fields.wrong("an entry of the directory of the archive");
-    let entry = Entry::of(&mut Fields::of_start(ByteOrder::Little, fields.take(ENTRY as usize)?))?;
+    let entry = ZipEntry::of(&mut ByteFields::of_start(ByteOrder::Little, fields.take(ENTRY as usize)?))?;
     if entry.magic != DIRECTORY {
         return Err(wrong);
     }
@@ -90,7 +90,7 @@ impl Member {
     }
 
     /// Where its bytes are; an error where they cannot be all there.
-    pub(crate) fn packed(&self, source: &mut Source<'_>) -> Result<Packed> {
+    pub(crate) fn packed(&self, source: &mut OpenedFile<'_>) -> Result<Packed> {
         let packing = match (self.entry.method, self.entry.flags & 1 == 1) {
             (0, false) => Packing::Stored,
             (8, false) => Packing::Deflate,
@@ -113,7 +113,7 @@ impl Member {
 
     /// Its text, whose checksum is right: what is no UTF-8 is a question mark. An error where it is longer
     /// than `most` bytes, before it is unpacked.
-    pub(crate) fn unpack_text(&self, source: &mut Source<'_>, most: u64) -> Result<String> {
+    pub(crate) fn unpack_text(&self, source: &mut OpenedFile<'_>, most: u64) -> Result<String> {
         if self.unpacked() > most {
             let expected = format!("{} of at most {most} bytes, it has {}", self.name, self.unpacked());
             return Err(source.wrong(self.offset(), expected));
@@ -122,7 +122,7 @@ impl Member {
     }
 
     /// Its bytes, whose checksum is right.
-    pub(crate) fn unpack(&self, source: &mut Source<'_>) -> Result<Vec<u8>> {
+    pub(crate) fn unpack(&self, source: &mut OpenedFile<'_>) -> Result<Vec<u8>> {
         let mut bytes = Vec::new();
         self.packed(source)?.unpack(source, &mut bytes)?;
         let mut sum = Crc::new();

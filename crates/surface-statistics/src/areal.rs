@@ -326,7 +326,7 @@ impl FeatureParameters {
             // there.
             if [i - columns, i - 1, i, i + 1, i + columns]
                 .iter()
-                .any(|&j| points[j] != holes::Point::Measured)
+                .any(|&j| points[j] != holes::HolePoint::Measured)
             {
                 continue;
             }
@@ -340,10 +340,10 @@ impl FeatureParameters {
         } else {
             Some(finite("Spc", sum / whole as f64 * unit / map.dx() / map.dy())?)
         };
-        let count = |of: holes::Point| points.iter().filter(|point| **point == of).count();
-        let seen = 1.0 - count(holes::Point::Outside) as f64 / points.len() as f64;
+        let count = |of: holes::HolePoint| points.iter().filter(|point| **point == of).count();
+        let seen = 1.0 - count(holes::HolePoint::Outside) as f64 / points.len() as f64;
         let spd =
             if peaks.is_empty() { 0.0 } else { peaks.len() as f64 / map.size().x / map.size().y / seen };
-        Ok(Self { hills: peaks.len(), spd, spc, filled: count(holes::Point::Filled) })
+        Ok(Self { hills: peaks.len(), spd, spc, filled: count(holes::HolePoint::Filled) })
     }
 }

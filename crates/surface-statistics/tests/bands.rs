@@ -83,18 +83,18 @@ fn bands_of_cut_maps_cover_their_spectrum() {
 }
 
 /// Of mean squares over distances, with the bands of each surface.
-type Banded = Vec<(f64, Option<[f64; 2]>)>;
+type BandedDifferences = Vec<(f64, Option<[f64; 2]>)>;
 
 #[test]
 fn bands_of_differences_cover_the_mean_square() {
     for (boundary, maps) in [(Boundary::Periodic, gaussian_maps()), (Boundary::Free, cut_maps())] {
         let bins = Bins::of_distances(&maps[0], 10.0).unwrap();
-        let of = |map: &HeightMap| -> [Banded; 3] {
+        let of = |map: &HeightMap| -> [BandedDifferences; 3] {
             let bands = DifferenceBands::new(map, boundary).unwrap();
             let a = DifferenceMap::new(map, boundary).radial(&bins).unwrap();
             let slope = ScaleDependence::slope_along_x(map, boundary).unwrap();
             let curvature = ScaleDependence::curvature_along_y(map, boundary).unwrap();
-            let squares = |rms: &[f64], bands: Vec<Option<[f64; 2]>>| -> Banded {
+            let squares = |rms: &[f64], bands: Vec<Option<[f64; 2]>>| -> BandedDifferences {
                 let bands = bands.into_iter().map(|band| band.map(|limits| limits.map(|l| l * l)));
                 rms.iter().map(|v| v * v).zip(bands).collect()
             };

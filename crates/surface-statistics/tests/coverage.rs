@@ -11,7 +11,7 @@ use surface_statistics::{FitOptions, SpectrumFit, Wavelength};
 
 /// Where a map comes from.
 #[derive(Clone, Copy, PartialEq)]
-enum Part {
+enum MapOrigin {
     /// All of a period, amplitudes prescribed.
     Period,
     /// All of a period, the sum of 16 independent surfaces: each wave has a Gaussian amplitude, all but
@@ -22,7 +22,7 @@ enum Part {
 }
 
 /// Surfaces whose true parameters are known.
-struct Case {
+struct CoverageCase {
     name: &'static str,
     hurst: f64,
     /// Wavelengths; `None`: none.
@@ -31,15 +31,15 @@ struct Case {
     cells: [usize; 2],
     /// Sides of a cell in 1/128.
     cell: [f64; 2],
-    part: Part,
+    part: MapOrigin,
     /// Shortest wavelength of the fit.
     shortest: Option<f64>,
 }
 
-fn draw(case: &Case, seed: u64) -> HeightMap {
+fn draw(case: &CoverageCase, seed: u64) -> HeightMap {
     let [columns, rows] = case.cells;
     let size = [columns as f64 * case.cell[0] / 128.0, rows as f64 * case.cell[1] / 128.0];
-    let times = if case.part == Part::Cut { 4 } else { 1 };
+    let times = if case.part == MapOrigin::Cut { 4 } else { 1 };
     let surface = SelfAffine {
         size: size.map(|side| side * times as f64).into(),
         hurst: case.hurst,
@@ -49,7 +49,7 @@ fn draw(case: &Case, seed: u64) -> HeightMap {
     };
     let draw = |seed| self_affine_map(&surface, case.cells.map(|n| n * times), seed).unwrap();
     let map = draw(seed);
-    if case.part == Part::Gaussian {
+    if case.part == MapOrigin::Gaussian {
         return (1..16).fold(map, |sum, k| sum.plus(&draw(surface_seed(seed, k))).unwrap());
     }
     if times == 1 {
@@ -59,9 +59,9 @@ fn draw(case: &Case, seed: u64) -> HeightMap {
     }
 }
 
-fn coverage(case: &Case, master: u64, count: u64) {
+fn coverage(case: &CoverageCase, master: u64, count: u64) {
     let start = Instant::now();
-    let boundary = if case.part == Part::Cut { Boundary::Free } else { Boundary::Periodic };
+    let boundary = if case.part == MapOrigin::Cut { Boundary::Free } else { Boundary::Periodic };
     let options = FitOptions { boundary, shortest: case.shortest, longest: None };
     let mut covered = [0; 3];
     let (mut bounds, mut good, mut widths) = ([0; 2], 0, Vec::new());
@@ -99,85 +99,85 @@ fn coverage(case: &Case, master: u64, count: u64) {
     }
 }
 
-const CASES: [Case; 8] = [
-    Case {
+const CASES: [CoverageCase; 8] = [
+    CoverageCase {
         name: "periodic, Gaussian",
         hurst: 0.7,
         roll_off: Some(0.12),
         cut_off: Some(0.02),
         cells: [128, 96],
         cell: [1.0, 1.0],
-        part: Part::Gaussian,
+        part: MapOrigin::Gaussian,
         shortest: None,
     },
-    Case {
+    CoverageCase {
         name: "periodic",
         hurst: 0.8,
         roll_off: Some(0.125),
         cut_off: Some(0.02),
         cells: [128, 128],
         cell: [1.0, 1.0],
-        part: Part::Period,
+        part: MapOrigin::Period,
         shortest: None,
     },
-    Case {
+    CoverageCase {
         name: "free",
         hurst: 0.8,
         roll_off: Some(0.1),
         cut_off: Some(0.0213),
         cells: [128, 128],
         cell: [1.0, 1.0],
-        part: Part::Cut,
+        part: MapOrigin::Cut,
         shortest: None,
     },
-    Case {
+    CoverageCase {
         name: "free, no limits inside",
         hurst: 0.6,
         roll_off: None,
         cut_off: None,
         cells: [128, 128],
         cell: [1.0, 1.0],
-        part: Part::Cut,
+        part: MapOrigin::Cut,
         shortest: None,
     },
-    Case {
+    CoverageCase {
         name: "free rectangle, oblong cells",
         hurst: 0.5,
         roll_off: Some(0.08),
         cut_off: None,
         cells: [192, 80],
         cell: [1.0, 1.25],
-        part: Part::Cut,
+        part: MapOrigin::Cut,
         shortest: None,
     },
-    Case {
+    CoverageCase {
         name: "free, tip limit",
         hurst: 0.7,
         roll_off: Some(0.12),
         cut_off: Some(0.02),
         cells: [128, 128],
         cell: [1.0, 1.0],
-        part: Part::Cut,
+        part: MapOrigin::Cut,
         shortest: Some(0.028),
     },
-    Case {
+    CoverageCase {
         name: "free, cut-off far inside",
         hurst: 0.2,
         roll_off: Some(0.08),
         cut_off: Some(0.03),
         cells: [128, 128],
         cell: [1.0, 1.0],
-        part: Part::Cut,
+        part: MapOrigin::Cut,
         shortest: None,
     },
-    Case {
+    CoverageCase {
         name: "free, steep",
         hurst: 1.0,
         roll_off: None,
         cut_off: Some(0.03),
         cells: [128, 128],
         cell: [1.0, 1.0],
-        part: Part::Cut,
+        part: MapOrigin::Cut,
         shortest: None,
     },
 ];

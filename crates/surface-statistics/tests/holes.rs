@@ -22,11 +22,11 @@ const HILLS: f64 = 0.1;
 /// Outlines of the autocorrelation.
 const OUTLINE: f64 = 0.05;
 
-type Found = Vec<(&'static str, Option<f64>, f64)>;
+type StatisticsFound = Vec<(&'static str, Option<f64>, f64)>;
 
 /// Name, value and bound of everything.
-fn parameters(map: &HeightMap) -> Found {
-    let mut all: Found = Vec::new();
+fn parameters(map: &HeightMap) -> StatisticsFound {
+    let mut all: StatisticsFound = Vec::new();
     let heights = HeightParameters::new(map).ok();
     let height = |of: fn(&HeightParameters) -> f64| heights.as_ref().map(of);
     all.push(("Sa", height(|h| h.sa), MEAN));

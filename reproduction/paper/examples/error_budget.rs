@@ -12,7 +12,7 @@
 //! fig2: accuracy reached (95 % half-width of the mean k_bar, 3 rows without floor): 16.30 % or better, half of them 6.72 %; the widest at D_f = 2.4, F_bar = 1.000e-1
 //! ```
 
-use paper::evaluation::{Model, Request, Result, Run, state_budgets};
+use paper::evaluation::{EnsembleModel, Request, Result, Run, state_budgets};
 use runs::{CsvFile, Reporter};
 use std::path::PathBuf;
 
@@ -27,7 +27,7 @@ fn main() -> Result<()> {
         ..Request::default()
     };
     // Solved surfaces are kept in the directory: the second run of this example reads them back.
-    let outcome = state_budgets(&Run::new(&request)?, &[Model::Bem3d], &Reporter::new())?;
+    let outcome = state_budgets(&Run::new(&request)?, &[EnsembleModel::Bem3d], &Reporter::new())?;
     let table = CsvFile::read(&outcome.files[0])?;
     println!("{:>7} {:>8} {:>10} {:>14} {:>9}", "F_bar", "k_bar", "solver", "grid", "surfaces");
     let column = |name| table.numbers(name);

@@ -12,7 +12,7 @@
 //! ```
 
 use analysis::FitWindow;
-use paper::evaluation::{Model, Request, Result, Run, Session, laws, measure};
+use paper::evaluation::{EnsembleModel, Request, Result, Run, Session, laws, measure};
 use paper::{Claim, Estimate, Statement, Verdict, plain};
 use runs::Silent;
 use std::path::PathBuf;
@@ -35,7 +35,7 @@ fn main() -> Result<()> {
         ..Request::default()
     };
     let run = Run::new(&request)?;
-    let measured = measure(Model::Mdr1d, &run, &Session::open(&run.out, run.fresh)?.store, &Silent)?;
+    let measured = measure(EnsembleModel::Mdr1d, &run, &Session::open(&run.out, run.fresh)?.store, &Silent)?;
     let mut claims = Vec::new();
     for (series, fit) in measured.series.iter().zip(laws(&measured, &FitWindow::PAPER)) {
         let (Ok(fit), d) = (fit, series.fractal_dimension) else { continue };

@@ -1,6 +1,6 @@
 //! The claims of the paper: the table `claims.toml`, and how its entries become [`Claim`]s.
 //!
-//! An entry names its data ([`Data`]), which give [`Row`]s: one for each D_f, or a single one. The verdict
+//! An entry names its data ([`Data`]), which give [`ClaimRow`]s: one for each D_f, or a single one. The verdict
 //! follows from the interval of the row and from what the entry allows ([`Claim::judge`],
 //! [`Claim::in_convention`]); the rows of one statement are judged together ([`crate::together`]). Identities
 //! that only test code (Eqs. 7, 19 to 23, full contact of a line) are tests, not claims. Area over force is
@@ -13,12 +13,12 @@ mod solved;
 mod table;
 
 use crate::claim::Claim;
-use crate::evaluation::{Measured, Model};
+use crate::evaluation::{EnsembleModel, Measured};
 use runs::Result;
 use table::wrong;
 
-pub(crate) use ensemble::{Ensembles, Law};
-pub(crate) use table::{CaseData, Cases, Data, Entry, Found, Row, entries};
+pub(crate) use ensemble::{Ensembles, SeriesLaw};
+pub(crate) use table::{CaseData, Cases, ClaimEntry, ClaimRow, ClaimedNumber, Data, entries};
 
 /// The commands whose claims `verify` judges, in the order of its table.
 pub(crate) const VERIFIED: [&str; 6] = ["fig3", "fig7", "fig4", "fig2", "fig6", "verify"];
@@ -46,9 +46,9 @@ pub(crate) fn judged(command: &str, ensembles: &Ensembles<'_>) -> Result<Vec<Cla
 ///
 /// # Errors
 /// Errors of a solver; an ensemble that the command does not have.
-fn rows(ensembles: &Ensembles<'_>, entry: &'static Entry) -> Result<Vec<Row>> {
-    let solid = || ensembles.of(Model::Bem3d);
-    let line = || ensembles.of(Model::Mdr1d);
+fn rows(ensembles: &Ensembles<'_>, entry: &'static ClaimEntry) -> Result<Vec<ClaimRow>> {
+    let solid = || ensembles.of(EnsembleModel::Bem3d);
+    let line = || ensembles.of(EnsembleModel::Mdr1d);
     Ok(match &entry.data {
         Data::Exponent(model) => laws::exponents(ensembles.of(*model)?),
         Data::ExponentOverDimension(model) => laws::over_dimension(ensembles.of(*model)?),
@@ -82,7 +82,7 @@ fn rows(ensembles: &Ensembles<'_>, entry: &'static Entry) -> Result<Vec<Row>> {
         Data::ContactLengthOverDiameters => solved::length_over_diameters()?,
         Data::RatioOfHeights(dimensions) => solved::ratio_of_heights(dimensions)?,
         Data::RunTimes => curves::run_times(solid()?, line()?),
-        Data::NotJudged(reason) => Row::only(Err(reason.as_str().into())),
+        Data::NotJudged(reason) => ClaimRow::only(Err(reason.as_str().into())),
         Data::TwoCases(_) => {
             return Err(wrong(&format!("{}: the study of the two problems judges it", entry.id)));
         }

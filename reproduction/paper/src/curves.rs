@@ -2,14 +2,16 @@
 
 use crate::claims;
 use crate::evaluation::{
-    Measured, Model, Outcome, Run, Session, compact_table, curves_table, describe, flags, header,
+    EnsembleModel, Measured, Outcome, Run, Session, compact_table, curves_table, describe, flags, header,
     measure_showing, samples_table, write_budget,
 };
 use crate::judged::Judged;
 use crate::output::save;
 use crate::words;
 use contact_model::Table;
-use plots::{Axis, Key, LineStyle, Mark, MarkShape, NEUTRAL, Picture, REFERENCE, color, logarithmic, shape};
+use plots::{
+    Axis, LegendKey, LineStyle, Mark, MarkShape, NEUTRAL, Picture, REFERENCE, color, logarithmic, shape,
+};
 use runs::{CsvFile, Error, Header, Progress, Result, write_csv};
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
@@ -19,7 +21,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 pub(crate) struct CurveFigure {
     pub name: &'static str,
     pub title: &'static str,
-    pub model: Model,
+    pub model: EnsembleModel,
 }
 
 impl CurveFigure {
@@ -32,7 +34,7 @@ impl CurveFigure {
             return Err(Error::parameter("samples", directory.display(), expected));
         }
         let session = Session::open(&run.out, run.fresh)?;
-        let so_far = SoFar { figure: self, run, progress, told: AtomicBool::new(false) };
+        let so_far = FigureSoFar { figure: self, run, progress, told: AtomicBool::new(false) };
         let measured = measure_showing(self.model, run, &session.store, progress, &|seen| so_far.draw(seen))?;
         let mut outcome = Outcome::of(self.name, self.write(run, &measured)?, &[&measured]);
         so_far.remove()?;
@@ -65,14 +67,14 @@ impl CurveFigure {
 /// The figure while it is solved: `name-so-far.csv`, `.svg`, `.png`, first from coarser grids, then from the
 /// surfaces that are complete. The name differs from that of the figure, so that the files of an earlier run
 /// are kept until this one is done.
-struct SoFar<'a> {
+struct FigureSoFar<'a> {
     figure: &'a CurveFigure,
     run: &'a Run,
     progress: &'a dyn Progress,
     told: AtomicBool,
 }
 
-impl SoFar<'_> {
+impl FigureSoFar<'_> {
     fn name(&self) -> String {
         format!("{}-so-far", self.figure.name)
     }
@@ -224,17 +226,17 @@ pub(crate) fn draw(name: &str, csv: &Path, over: Option<&Path>, out: &Path) -> R
         let points: Vec<_> = points.iter().map(|p| (p.force, p.stiffness, p.below_floor)).collect();
         draw_curve(&mut picture, *d, &points, [1.8, 3.0, 3.8]);
     }
-    picture.legend("paper, Eq. 12", REFERENCE, Key::Line(LineStyle::Dashed));
+    picture.legend("paper, Eq. 12", REFERENCE, LegendKey::Line(LineStyle::Dashed));
     let ring = Mark::Ring(MarkShape::Circle);
     picture.points(&[(analytic::F_BAR_UL, analytic::K_BAR_UL)], REFERENCE, 10.0, ring);
     let crossing = format!("paper: curves cross at $({}, {})$", analytic::F_BAR_UL, analytic::K_BAR_UL);
-    picture.legend(&crossing, REFERENCE, Key::Sized(ring, 7.0));
+    picture.legend(&crossing, REFERENCE, LegendKey::Sized(ring, 7.0));
     if curves.iter().flat_map(|c| &c.1).any(|p| p.error.is_some()) {
-        picture.legend("shaded: ± 2 standard errors", NEUTRAL, Key::Band);
+        picture.legend("shaded: ± 2 standard errors", NEUTRAL, LegendKey::Band);
     }
     if curves.iter().flat_map(|c| &c.1).any(|p| p.below_floor) {
         let label = format!("fewer than {} contact {cells}", crate::evaluation::FLOOR_CELLS);
-        picture.legend(&label, NEUTRAL, Key::Mark(Mark::Hollow(MarkShape::Circle)));
+        picture.legend(&label, NEUTRAL, LegendKey::Mark(Mark::Hollow(MarkShape::Circle)));
     }
     save(picture.files(name), out)
 }
@@ -252,7 +254,7 @@ pub(crate) fn draw_curve(picture: &mut Picture, d: f64, points: &[(f64, f64, boo
     picture.line(&line, &color, widths[0], LineStyle::Solid);
     picture.points(&marked(true), &color, widths[1], Mark::Hollow(shape));
     picture.points(&marked(false), &color, widths[2], Mark::Solid(shape));
-    picture.legend(&words::dimension(d), &color, Key::Curve(Mark::Solid(shape)));
+    picture.legend(&words::dimension(d), &color, LegendKey::Curve(Mark::Solid(shape)));
 }
 
 fn above_floor(points: &[CurvePoint]) -> Vec<(f64, f64)> {

@@ -1,14 +1,14 @@
 //! Fig. 2: stiffness over force in three dimensions.
 
 use crate::curves::CurveFigure;
-use crate::evaluation::{Model, Run};
+use crate::evaluation::{EnsembleModel, Run};
 use crate::judged::Judged;
 use runs::{Progress, Result};
 
 pub(crate) const FIGURE: CurveFigure = CurveFigure {
     name: "fig2",
     title: "Fig. 2: stiffness over force, 3D boundary elements",
-    model: Model::Bem3d,
+    model: EnsembleModel::Bem3d,
 };
 
 /// Solves the 3D ensemble and writes `fig2.csv`, `fig2-samples.csv`, `fig2-budget.csv`, `fig2.svg`,

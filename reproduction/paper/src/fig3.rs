@@ -1,7 +1,7 @@
 //! Fig. 3: the exponent alpha over the fractal dimension.
 
 use crate::evaluation::Run;
-use crate::fitted::{FittedFigure, Formula};
+use crate::fitted::{FittedFigure, FittedFormula};
 use crate::judged::Judged;
 use plots::{Axis, LineStyle};
 use runs::{Progress, Result};
@@ -13,14 +13,14 @@ pub(crate) const FIGURE: FittedFigure = FittedFigure {
     value: |law| (law.alpha, law.alpha_se),
     estimate: |law| law.alpha,
     formulas: &[
-        Formula {
+        FittedFormula {
             name: "paper_fit",
             note: "Eq. 6: 0.266 D_f",
             of: analytic::exponent_fit,
             legend: "paper, Eq. 6: $α = 0.266 D_{\\rm{f}}$",
             style: LineStyle::Solid,
         },
-        Formula {
+        FittedFormula {
             name: "scaling",
             note: "Eq. 24: 1/(1 + H)",
             of: |d| analytic::exponent_scaling(3.0 - d),

@@ -2,13 +2,13 @@
 
 use crate::claims;
 use crate::evaluation::{
-    FORCE_BAR, FRACTAL_DIMENSION, MODEL, Measured, Model, Outcome, Run, Session, TableOf, describe, flags,
-    header, measure, read_rows, transformed,
+    EnsembleModel, FORCE_BAR, FRACTAL_DIMENSION, MODEL, Measured, Outcome, Run, Session, TableOf, describe,
+    flags, header, measure, read_rows, transformed,
 };
 use crate::judged::Judged;
 use crate::output::save;
 use crate::{curves, words};
-use plots::{Axis, Key, LineStyle, Mark, MarkShape, NEUTRAL, Picture, REFERENCE, logarithmic};
+use plots::{Axis, LegendKey, LineStyle, Mark, MarkShape, NEUTRAL, Picture, REFERENCE, logarithmic};
 use runs::{CsvFile, Progress, Result};
 use std::path::{Path, PathBuf};
 
@@ -21,7 +21,7 @@ use std::path::{Path, PathBuf};
 /// As [`crate::fig2`].
 pub fn fig4(run: &Run, progress: &dyn Progress) -> Result<Judged> {
     let session = Session::open(&run.out, run.fresh)?;
-    let measured = measure(Model::Bem3d, run, &session.store, progress)?;
+    let measured = measure(EnsembleModel::Bem3d, run, &session.store, progress)?;
     let outcome = session.close(write(run, &measured)?)?;
     Ok(Judged::new(outcome, claims::of_figure("fig4", &[&measured])?))
 }
@@ -39,7 +39,8 @@ pub(crate) fn write(run: &Run, measured: &Measured) -> Result<Outcome> {
         .column("force_tilde", "1", TILDE, |p| p.1.force_tilde)
         .column("below_floor", "-", "true where some surface has fewer than 10 contact cells", |p| p.2)
         .table()?;
-    let header = describe(header(run.command("reproduce-fig4", flags(Model::Bem3d))), run, &[measured]);
+    let header =
+        describe(header(run.command("reproduce-fig4", flags(EnsembleModel::Bem3d))), run, &[measured]);
     let files = curves::written(run, "fig4", &table, &header, |csv| draw(csv, &run.out))?;
     Ok(Outcome::of("fig4", files, &[measured]))
 }
@@ -71,11 +72,11 @@ pub(crate) fn draw(csv: &Path, out: &Path) -> Result<Vec<PathBuf>> {
         let points: Vec<_> = series.iter().map(|r| (r.1, r.2, r.3)).collect();
         curves::draw_curve(&mut picture, series[0].0, &points, [1.5, 3.2, 4.0]);
     }
-    picture.legend("paper, Eq. 12", REFERENCE, Key::Line(LineStyle::Dashed));
-    picture.legend("its upper limit $\\bar{F} = 0.086$", NEUTRAL, Key::Line(LineStyle::Dotted));
+    picture.legend("paper, Eq. 12", REFERENCE, LegendKey::Line(LineStyle::Dashed));
+    picture.legend("its upper limit $\\bar{F} = 0.086$", NEUTRAL, LegendKey::Line(LineStyle::Dotted));
     if rows.iter().any(|r| r.3 && x.holds(r.1) && y.holds(r.2)) {
         let label = format!("fewer than {} contact cells", crate::evaluation::FLOOR_CELLS);
-        picture.legend(&label, NEUTRAL, Key::Mark(Mark::Hollow(MarkShape::Circle)));
+        picture.legend(&label, NEUTRAL, LegendKey::Mark(Mark::Hollow(MarkShape::Circle)));
     }
     save(picture.files("fig4"), out)
 }

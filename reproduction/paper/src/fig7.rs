@@ -1,7 +1,7 @@
 //! Fig. 7: the factor zeta over the fractal dimension.
 
 use crate::evaluation::Run;
-use crate::fitted::{FittedFigure, Formula};
+use crate::fitted::{FittedFigure, FittedFormula};
 use crate::judged::Judged;
 use plots::{Axis, LineStyle};
 use runs::{Progress, Result};
@@ -12,7 +12,7 @@ pub(crate) const FIGURE: FittedFigure = FittedFigure {
     columns: ["zeta", "zeta_se"],
     value: |law| (law.zeta, law.zeta_se),
     estimate: |law| law.zeta,
-    formulas: &[Formula {
+    formulas: &[FittedFormula {
         name: "paper_fit",
         note: "Eq. 11: 0.18/0.086^(0.266 D_f)",
         of: analytic::zeta_fit,

@@ -1,16 +1,16 @@
 //! The common parts of Figs. 3 and 7: fitted values over the fractal dimension.
 
 use crate::claim::Estimate;
-use crate::claims::{self, Law};
+use crate::claims::{self, SeriesLaw};
 use crate::evaluation::{
-    FRACTAL_DIMENSION, Flag, Measured, Model, Outcome, Run, Series, Session, TableOf, dense_dimensions,
-    describe, header, laws, measure, read_rows,
+    EnsembleModel, FRACTAL_DIMENSION, Flag, Measured, Outcome, Run, Series, Session, TableOf,
+    dense_dimensions, describe, header, laws, measure, read_rows,
 };
 use crate::judged::Judged;
 use crate::output::save;
 use crate::{curves, words};
 use analysis::{Bootstrap, Curves, FitWindow, FittedPowerLaw, StiffnessSample, fit_power_law};
-use plots::{Axis, Key, LineStyle, Mark, MarkShape, Picture, REFERENCE, number};
+use plots::{Axis, LegendKey, LineStyle, Mark, MarkShape, Picture, REFERENCE, number};
 use runs::{CsvFile, Error, Progress, Result, Store};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
@@ -26,8 +26,8 @@ pub(crate) struct FittedFigure {
     pub columns: [&'static str; 2],
     pub value: fn(&FittedPowerLaw) -> (f64, Option<f64>),
     /// The parameter with its 95 % interval.
-    pub estimate: fn(&Law) -> Estimate,
-    pub formulas: &'static [Formula],
+    pub estimate: fn(&SeriesLaw) -> Estimate,
+    pub formulas: &'static [FittedFormula],
     /// Title of the picture and label of its axis.
     pub words: [&'static str; 2],
     /// The axis for the largest end of an error bar.
@@ -35,7 +35,7 @@ pub(crate) struct FittedFigure {
 }
 
 /// A formula of the paper.
-pub(crate) struct Formula {
+pub(crate) struct FittedFormula {
     /// Its name in the column of models.
     pub name: &'static str,
     /// Its text in the column of notes.
@@ -48,7 +48,7 @@ pub(crate) struct Formula {
 
 /// The ensembles of both models, surfaces first; they are solved where they are not stored.
 pub(crate) fn both(run: &Run, store: &Store, progress: &dyn Progress) -> Result<[Measured; 2]> {
-    let [solid, line] = Model::BOTH.map(|model| measure(model, run, store, progress));
+    let [solid, line] = EnsembleModel::BOTH.map(|model| measure(model, run, store, progress));
     Ok([solid?, line?])
 }
 
@@ -128,11 +128,11 @@ impl FittedFigure {
                 .series
                 .iter()
                 .find(|s| s.fractal_dimension.total_cmp(&series.fractal_dimension).is_eq())?;
-            let law = Law::over_forces_of(surfaces, line, series).ok()?;
+            let law = SeriesLaw::over_forces_of(surfaces, line, series).ok()?;
             Some((self.estimate)(&law))
         };
         let of = |measured: &Measured| -> Vec<FittedRow> {
-            let lines = measured.discretisation.of() == Model::Mdr1d;
+            let lines = measured.discretisation.of() == EnsembleModel::Mdr1d;
             let own = laws(measured, &FitWindow::PAPER);
             let lowest = own.iter().filter_map(|fit| fit.as_ref().ok());
             let lowest = lowest.map(|fit| fit.force_bar_min).fold(0.0, f64::max);
@@ -142,7 +142,7 @@ impl FittedFigure {
                     let note = fit.as_ref().err().map(ToString::to_string);
                     let fit = fit.ok();
                     let (value, error) = fit.as_ref().map(self.value).unzip();
-                    let law = Law::new(measured, series).ok();
+                    let law = SeriesLaw::new(measured, series).ok();
                     FittedRow {
                         model: measured.discretisation.name(),
                         fractal_dimension: series.fractal_dimension,
@@ -215,7 +215,7 @@ impl FittedFigure {
         }
         draw_points(&mut picture, &all);
         for formula in self.formulas {
-            picture.legend(formula.legend, REFERENCE, Key::Line(formula.style));
+            picture.legend(formula.legend, REFERENCE, LegendKey::Line(formula.style));
         }
         save(picture.files(self.name), out)
     }
@@ -278,13 +278,18 @@ fn draw_points(picture: &mut Picture, all: &[(String, Vec<FittedPoint>)]) {
         let bars: Vec<_> = points.iter().filter_map(bar).collect();
         picture.points(&bars.iter().map(|b| (b.0, b.1)).collect::<Vec<_>>(), color, 4.4, mark);
         picture.errors(&bars, color);
-        let key = if bars.iter().any(|b| b.2.is_some()) { Key::Bar(mark) } else { Key::Mark(mark) };
+        let key =
+            if bars.iter().any(|b| b.2.is_some()) { LegendKey::Bar(mark) } else { LegendKey::Mark(mark) };
         picture.legend(&format!("{label}{}", window(points)), color, key);
     }
     let words = "bars: 95 %, with scatter, window and grid; points of one $D_{\\rm{f}}$ stand side by side";
-    picture.legend(words, "#000000", Key::Words);
+    picture.legend(words, "#000000", LegendKey::Words);
     if all.len() > 2 {
-        picture.legend("open marks: fitted to the means alone, no error is known", "#000000", Key::Words);
+        picture.legend(
+            "open marks: fitted to the means alone, no error is known",
+            "#000000",
+            LegendKey::Words,
+        );
     }
 }
 

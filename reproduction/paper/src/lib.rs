@@ -72,7 +72,7 @@ pub use fig5::fig5;
 pub use fig6::fig6;
 pub use fig7::fig7;
 pub use judged::Judged;
-pub use partial_slip::{PartialSlip, PartialSlipSizes, draw_partial_slip, partial_slip};
+pub use partial_slip::{PartialSlipSizes, PartialSlipStudy, draw_partial_slip, partial_slip};
 pub use redraw::{Beside, redraw};
 pub use reference::{RELATIVE, check_reference};
 pub use two_cases::{TwoCases, two_cases, two_cases_jobs};

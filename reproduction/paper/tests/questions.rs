@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used)] // Helpers outside #[test] functions.
 
 use fractal_contact::scenes::{SceneFile, jobs_of_scenes};
-use paper::evaluation::{Model, Preset, Request, Run, ensemble_jobs};
+use paper::evaluation::{EnsembleModel, Preset, Request, Run, ensemble_jobs};
 use runs::Job;
 use std::path::Path;
 
@@ -16,7 +16,9 @@ fn committed_scenes_ask_what_the_figures_ask() {
         ..Request::default()
     };
     let run = Run::new(&request).unwrap();
-    for (model, name) in [(Model::Bem3d, "fig2-quick.toml"), (Model::Mdr1d, "fig6-quick.toml")] {
+    for (model, name) in
+        [(EnsembleModel::Bem3d, "fig2-quick.toml"), (EnsembleModel::Mdr1d, "fig6-quick.toml")]
+    {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/figures").join(name);
         let scene = SceneFile::parse(&path, std::fs::read_to_string(&path).unwrap()).unwrap();
         let of_scene: Vec<String> = jobs_of_scenes(&[scene], &run.out).iter().map(Job::stored_key).collect();

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used)] // Helpers outside #[test] functions.
 
-use paper::evaluation::{AccuracyTarget, Model, Request, Run};
+use paper::evaluation::{AccuracyTarget, EnsembleModel, Request, Run};
 use paper::{Verdict, counts, fig1, fig2, fig3, fig4, fig5, fig6, fig7, verify};
 use runs::{CsvFile, Error, Progress, Silent, Store};
 use std::fs;
@@ -32,12 +32,12 @@ fn read(out: &Path, name: &str) -> Vec<u8> {
 
 /// Counts jobs and those found on disk.
 #[derive(Default)]
-struct Counter {
+struct StoredJobCounter {
     jobs: AtomicUsize,
     reused: AtomicUsize,
 }
 
-impl Progress for Counter {
+impl Progress for StoredJobCounter {
     fn begin(&self, _: &str, _: u64) {}
     fn advance(&self, _: u64, reused: bool) {
         self.jobs.fetch_add(1, Ordering::Relaxed);
@@ -90,7 +90,7 @@ fn a_run_resumes_and_damage_is_solved_again() {
     let (_, other) = text[4].split_once('\n').unwrap();
     fs::write(&path, [&text[0], half, "\n", name, "\n", other, &text[4]].concat()).unwrap();
     fs::write(dir.path().join(".units/.partial-0-0-x.csv"), "half").unwrap();
-    let counter = Counter::default();
+    let counter = StoredJobCounter::default();
     fig2(&run, &counter).unwrap();
     assert_eq!((counter.jobs.into_inner(), counter.reused.into_inner()), (4, 1));
     assert!(TABLES.map(|t| read(dir.path(), t)).to_vec() == whole);
@@ -104,7 +104,7 @@ fn other_figures_reuse_results_and_other_parameters_do_not() {
     fig2(&run, &Silent).unwrap();
     fig6(&run, &Silent).unwrap();
     let reused = |run: &Run, figure: fn(&Run, &dyn Progress) -> runs::Result<paper::Judged>| {
-        let counter = Counter::default();
+        let counter = StoredJobCounter::default();
         figure(run, &counter).unwrap();
         (counter.jobs.into_inner(), counter.reused.into_inner())
     };
@@ -222,7 +222,7 @@ fn an_accuracy_target_is_met_or_refused_with_its_cost() {
         threads: Some(1),
         ..Request::default()
     };
-    let models = [Model::Bem3d];
+    let models = [EnsembleModel::Bem3d];
     let plan = |share, seconds| {
         paper::evaluation::plan(&request, &models, AccuracyTarget { share, seconds }, &Silent)
     };
@@ -230,7 +230,7 @@ fn an_accuracy_target_is_met_or_refused_with_its_cost() {
     assert!(planned.seconds <= 600.0 && planned.run.surfaces >= 2, "{:?}", planned.lines);
     let target = AccuracyTarget { share: 0.1, seconds: 600.0 };
     let settled = paper::evaluation::settle(planned, &models, target, &Silent).unwrap();
-    let counter = Counter::default();
+    let counter = StoredJobCounter::default();
     fig2(&settled.run, &counter).unwrap();
     assert_eq!(counter.jobs.into_inner(), counter.reused.into_inner());
     let file = CsvFile::read(&dir.path().join("fig2-budget.csv")).unwrap();

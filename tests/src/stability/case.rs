@@ -31,7 +31,7 @@ impl Effort {
 
 /// A hard case: a real solve with physical or exact assertions.
 #[derive(Debug, Clone, Copy)]
-pub struct Case {
+pub struct HardCase {
     /// Short name, the key of the table.
     pub name: &'static str,
     /// Why a solver may fail here.
@@ -44,7 +44,7 @@ pub struct Case {
     pub(crate) solve: fn(&mut Ledger, Effort) -> Result<()>,
 }
 
-impl Case {
+impl HardCase {
     /// Solves the case and judges it.
     ///
     /// An error of a model, or even a panic, counts as a failed case, and the other cases still run.
@@ -66,7 +66,7 @@ impl Case {
 #[derive(Debug, Clone)]
 pub struct CaseResult {
     /// The case.
-    pub case: Case,
+    pub case: HardCase,
     /// The largest deviation found, dimensionless; `None` where it is not a finite number.
     pub figure: Option<f64>,
     /// Assertions that do not hold, in words, the first few.
@@ -87,8 +87,8 @@ impl CaseResult {
 
 /// Solves cases in parallel; threads without a case help the others. `found` is called with each result. The
 /// results are returned in the order of the cases.
-pub fn run(cases: &[Case], effort: Effort, found: &(dyn Fn(&CaseResult) + Sync)) -> Vec<CaseResult> {
-    let one = |case: &Case| {
+pub fn run(cases: &[HardCase], effort: Effort, found: &(dyn Fn(&CaseResult) + Sync)) -> Vec<CaseResult> {
+    let one = |case: &HardCase| {
         let verdict = case.run(effort);
         found(&verdict);
         verdict
@@ -103,7 +103,7 @@ mod tests {
     use contact_model::Error;
 
     fn case(bound: f64, solve: fn(&mut Ledger, Effort) -> Result<()>) -> CaseResult {
-        Case { name: "test", why: "", asserted: "", bound, solve }.run(Effort::Quick)
+        HardCase { name: "test", why: "", asserted: "", bound, solve }.run(Effort::Quick)
     }
 
     #[test]
@@ -146,7 +146,7 @@ mod tests {
 
     #[test]
     fn verdicts_keep_the_order_and_none_is_lost() {
-        let fine = Case {
+        let fine = HardCase {
             name: "a",
             why: "",
             asserted: "",
@@ -156,7 +156,7 @@ mod tests {
                 Ok(())
             },
         };
-        let bad = Case { name: "b", solve: |_, _| panic!("of a solver"), ..fine };
+        let bad = HardCase { name: "b", solve: |_, _| panic!("of a solver"), ..fine };
         let verdicts = run(&[bad, fine, bad, fine], Effort::Quick, &|_| ());
         assert_eq!(verdicts.iter().map(CaseResult::passed).collect::<Vec<_>>(), [false, true, false, true]);
     }

@@ -5,7 +5,7 @@
 //! On which problems do solvers of this field fail? [`cases`] is a registry of such problems: one cell, ties,
 //! full contact, loads over sixteen decades, units at the ends of f64, misleading warm starts, limits.
 //!
-//! A [`Case`] says why it is hard and what is asserted. [`Case::run`] solves it and returns a [`CaseResult`].
+//! A [`HardCase`] says why it is hard and what is asserted. [`HardCase::run`] solves it and returns a [`CaseResult`].
 //! This has the largest deviation found ([`CaseResult::figure`]), the bound of this deviation, and the
 //! assertions that do not hold. It is not enough that a solver returns a result. Each case compares this
 //! result with a closed form, a symmetry, a bound of mechanics or a reference implementation.
@@ -57,7 +57,7 @@ mod press;
 mod shear;
 mod slide;
 
-pub use case::{Case, CaseResult, Effort, run};
+pub use case::{CaseResult, Effort, HardCase, run};
 pub use cases::cases;
 pub use dense::{DensePath, Prescribed};
 pub use enumerate::{SmallContact, every_contact_set};

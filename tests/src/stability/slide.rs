@@ -153,7 +153,7 @@ impl<'a> Slide<'a> {
             format!("{load:?}: {:?}, {}", report.status, report.certificate)
         });
         let (found, p) = (tangential(state)?, pressure(state)?);
-        let (q, s) = (vectors(state, Fields::Traction)?, vectors(state, Fields::Slip)?);
+        let (q, s) = (vectors(state, VectorField::Traction)?, vectors(state, VectorField::Slip)?);
         let area = self.map.dx() * self.map.dy();
         let friction = self.coefficient * p.iter().sum::<f64>() * area;
         ledger.must(
@@ -226,7 +226,7 @@ impl<'a> Slide<'a> {
         let (found, p) = (tangential(state)?, pressure(state)?);
         let classes = state.fields.as_ref().and_then(|fields| fields.stick_slip.as_ref());
         let classes = known("stick_slip", classes.map(Field::values))?;
-        let q = vectors(state, Fields::Traction)?;
+        let q = vectors(state, VectorField::Traction)?;
         let count = |class: StickSlip| classes.iter().filter(|c| (*c - class.value()).abs() < 0.5).count();
         let area = self.map.dx() * self.map.dy();
         let areas = [found.stick_area, found.slip_area].map(|area| area.unwrap_or(f64::NAN));
@@ -259,7 +259,7 @@ pub(crate) fn tangential(state: &ContactState) -> Result<TangentialState> {
 
 /// A field of two components.
 #[derive(Debug, Clone, Copy)]
-pub(crate) enum Fields {
+pub(crate) enum VectorField {
     /// Tangential tractions.
     Traction,
     /// Slip since each cell touched.
@@ -270,11 +270,11 @@ pub(crate) enum Fields {
 ///
 /// # Errors
 /// [`contact_model::Error::Shape`] where it is missing.
-pub(crate) fn vectors(state: &ContactState, of: Fields) -> Result<Vec<[f64; 2]>> {
+pub(crate) fn vectors(state: &ContactState, of: VectorField) -> Result<Vec<[f64; 2]>> {
     let fields = known("fields", state.fields.as_ref())?;
     let [x, y] = match of {
-        Fields::Traction => known("traction", fields.traction.as_ref())?,
-        Fields::Slip => known("slip", fields.slip.as_ref())?,
+        VectorField::Traction => known("traction", fields.traction.as_ref())?,
+        VectorField::Slip => known("slip", fields.slip.as_ref())?,
     };
     Ok(x.values().iter().zip(y.values()).map(|(&x, &y)| [x, y]).collect())
 }
@@ -312,7 +312,7 @@ pub(crate) fn against_dragging(
         ledger.near("normal force", state.force, pressed.force);
         compare(ledger, &[found.force], &[dragged.force()], most);
         let q: Vec<[f64; 2]> =
-            vectors(&state, Fields::Traction)?.iter().map(|q| q.map(|q| 0.1 * q * area)).collect();
+            vectors(&state, VectorField::Traction)?.iter().map(|q| q.map(|q| 0.1 * q * area)).collect();
         let exact: Vec<[f64; 2]> = dragged.forces.iter().map(|f| f.map(|f| 0.1 * f)).collect();
         compare(ledger, &q, &exact, limits.iter().fold(0.0, |most, (_, b)| b.max(most)));
         ledger.enter((found.dissipated - dragged.dissipated).abs() / (most * longest(&[delta])));

@@ -1,7 +1,7 @@
 //! Tables of the tuned constants, from their source and from the measured cost of half and of twice the
 //! value.
 
-use super::sources::{Constant, constants, files, members};
+use super::sources::{DocumentedConstant, constants, files, members};
 use super::{readmes::plain, root, table};
 use std::collections::BTreeMap;
 
@@ -72,14 +72,14 @@ pub fn others() -> String {
     for file in files(&source, ".rs") {
         let name = file.strip_prefix(&source).unwrap().to_string_lossy().replace('\\', "/");
         if name != "tuning.rs" && name != "lib.rs" {
-            let place = |constant: &Constant| [vec![format!("`{name}`")], cells(constant)].concat();
+            let place = |constant: &DocumentedConstant| [vec![format!("`{name}`")], cells(constant)].concat();
             rows.extend(constants(&file).iter().map(place));
         }
     }
     table(&["file", "constant", "value", "meaning"], rows)
 }
 
-fn cells(constant: &Constant) -> Vec<String> {
+fn cells(constant: &DocumentedConstant) -> Vec<String> {
     vec![format!("`{}`", constant.name), format!("`{}`", constant.value), plain(&constant.meaning)]
 }
 

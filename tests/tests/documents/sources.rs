@@ -167,14 +167,14 @@ fn first_sentence(text: &str) -> String {
 }
 
 /// A constant with its documentation.
-pub struct Constant {
+pub struct DocumentedConstant {
     pub name: String,
     pub meaning: String,
     pub value: String,
 }
 
 /// Constants of a file outside of functions and tests, whose type is a number.
-pub fn constants(file: &Path) -> Vec<Constant> {
+pub fn constants(file: &Path) -> Vec<DocumentedConstant> {
     let text = std::fs::read_to_string(file).unwrap();
     let mut meaning: Vec<&str> = Vec::new();
     let mut found = Vec::new();
@@ -190,7 +190,11 @@ pub fn constants(file: &Path) -> Vec<Constant> {
             && ["f64", "f32", "usize", "u32", "(f64, f64)"].contains(&kind)
         {
             let first = meaning.split(|line| line.is_empty()).next().unwrap_or_default();
-            found.push(Constant { name: name.into(), meaning: first.join(" "), value: value.into() });
+            found.push(DocumentedConstant {
+                name: name.into(),
+                meaning: first.join(" "),
+                value: value.into(),
+            });
         }
         meaning.clear();
     }
@@ -198,7 +202,7 @@ pub fn constants(file: &Path) -> Vec<Constant> {
 }
 
 /// Members of a struct, with the values that its constant `DEFAULT` gives them.
-pub fn members(file: &Path) -> Vec<Constant> {
+pub fn members(file: &Path) -> Vec<DocumentedConstant> {
     let text = std::fs::read_to_string(file).unwrap();
     let values: BTreeMap<&str, &str> =
         (text.lines().skip_while(|line| !line.contains("DEFAULT: Self = Self {")).skip(1))
@@ -215,7 +219,11 @@ pub fn members(file: &Path) -> Vec<Constant> {
             meaning.push(words);
         } else if let Some((name, _)) = line.strip_prefix("pub ").and_then(|line| line.split_once(": ")) {
             let value = values.get(name).unwrap_or_else(|| panic!("no value of {name}"));
-            found.push(Constant { name: name.into(), meaning: meaning.join(" "), value: (*value).into() });
+            found.push(DocumentedConstant {
+                name: name.into(),
+                meaning: meaning.join(" "),
+                value: (*value).into(),
+            });
             meaning.clear();
         }
     }

@@ -47,7 +47,7 @@ pub struct SubmitArguments {
 
 /// Flags of the commands that read a directory of shards.
 #[derive(Debug, Args)]
-pub struct ShardsArguments {
+pub struct StudyShardsArguments {
     /// Directory of the results.
     #[arg(long, value_name = "DIR", default_value = "out")]
     pub out: PathBuf,

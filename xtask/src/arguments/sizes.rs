@@ -197,7 +197,7 @@ impl Sizes for BothSizes {
 
 /// Flags of a figure that solves ensembles of these sizes.
 #[derive(Debug, Args)]
-pub struct Solved<S: Args> {
+pub struct EnsembleFlags<S: Args> {
     #[command(flatten)]
     common: Common,
     #[command(flatten)]
@@ -206,7 +206,7 @@ pub struct Solved<S: Args> {
     pub(super) solve: SolveSizes,
 }
 
-impl<S: Args + Sizes> Solved<S> {
+impl<S: Args + Sizes> EnsembleFlags<S> {
     pub(super) fn fill(&self, request: &mut Request) {
         self.common.fill(request);
         self.size.fill(request);
@@ -215,8 +215,8 @@ impl<S: Args + Sizes> Solved<S> {
 }
 
 /// Flags of Figs. 2 and 4.
-pub type Solid = Solved<SolidSize>;
+pub type Solid = EnsembleFlags<SolidSize>;
 /// Flags of Fig. 6.
-pub type Reduced = Solved<LineSize>;
+pub type ReducedSizes = EnsembleFlags<LineSize>;
 /// Flags of everything that needs both models.
-pub type Both = Solved<BothSizes>;
+pub type Both = EnsembleFlags<BothSizes>;

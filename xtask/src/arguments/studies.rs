@@ -6,7 +6,7 @@ use super::words::{Words, words};
 use clap::Args;
 use paper::TwoCases;
 use paper::evaluation::{Depth, Forces, Request, Run};
-use paper::{Exponent, ExponentSizes, PartialSlip, PartialSlipSizes};
+use paper::{Exponent, ExponentSizes, PartialSlipSizes, PartialSlipStudy};
 use std::path::PathBuf;
 
 /// Flags of the audit.
@@ -314,10 +314,10 @@ impl PartialSlipArguments {
     ///
     /// # Errors
     /// [`runs::Error::Parameter`] for an invalid list of loads.
-    pub fn study(&self, run: &Run) -> runs::Result<PartialSlip> {
-        let sizes = PartialSlip::new(self.preset)?;
+    pub fn study(&self, run: &Run) -> runs::Result<PartialSlipStudy> {
+        let sizes = PartialSlipStudy::new(self.preset)?;
         let forces = self.forces.as_deref().map(Forces::parse).transpose()?;
-        Ok(PartialSlip {
+        Ok(PartialSlipStudy {
             cells: self.cells.unwrap_or(sizes.cells),
             cells_per_wave: self.cells_per_wave.unwrap_or(sizes.cells_per_wave),
             grids: self.grids.clone().unwrap_or(sizes.grids),

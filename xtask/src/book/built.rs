@@ -6,7 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The result of a check.
-pub struct Found {
+pub struct BuiltCheck {
     /// Pages read.
     pub pages: usize,
     /// Links within the pages and to files beside them, pictures and scripts among them.
@@ -16,14 +16,14 @@ pub struct Found {
 }
 
 /// Checks all pages below a folder.
-pub fn check(folder: &Path) -> Result<Found> {
+pub fn check(folder: &Path) -> Result<BuiltCheck> {
     let mut texts = BTreeMap::new();
     collect(folder, &mut texts)?;
     let anchors: BTreeMap<&Path, BTreeSet<String>> = texts
         .iter()
         .map(|(page, text)| (page.as_path(), attributes(text, &["id", "name"]).into_iter().collect()))
         .collect();
-    let mut found = Found { pages: texts.len(), links: 0, broken: Vec::new() };
+    let mut found = BuiltCheck { pages: texts.len(), links: 0, broken: Vec::new() };
     for (page, text) in &texts {
         let links: BTreeSet<String> = attributes(text, &["href", "src"]).into_iter().collect();
         for link in links.iter().filter(|link| !leaves(link)) {

@@ -7,7 +7,7 @@ use std::process::{Command, Output};
 
 /// A fenced block of commands.
 #[derive(Debug, PartialEq)]
-pub struct Block {
+pub struct CodeBlock {
     /// File and line.
     pub place: String,
     /// Its text.
@@ -17,7 +17,7 @@ pub struct Block {
 }
 
 /// The blocks of commands of all pages of a folder, in the order of the files' names.
-pub fn blocks(folder: &Path) -> Result<Vec<Block>> {
+pub fn blocks(folder: &Path) -> Result<Vec<CodeBlock>> {
     let mut all = Vec::new();
     for path in pages(folder)? {
         let text = fs::read_to_string(&path).map_err(Error::file("read", &path))?;
@@ -37,7 +37,7 @@ pub fn pages(folder: &Path) -> Result<Vec<PathBuf>> {
     Ok(pages)
 }
 
-fn blocks_of(text: &str, name: &str) -> Vec<Block> {
+fn blocks_of(text: &str, name: &str) -> Vec<CodeBlock> {
     let mut blocks = Vec::new();
     let mut lines = text.lines().enumerate();
     while let Some((number, line)) = lines.next() {
@@ -47,7 +47,7 @@ fn blocks_of(text: &str, name: &str) -> Vec<Block> {
         }
         let inside = lines.by_ref().map(|(_, line)| line).take_while(|line| *line != "```");
         let text = inside.collect::<Vec<_>>().join("\n");
-        blocks.push(Block { place: format!("{name}:{}", number + 1), text, long });
+        blocks.push(CodeBlock { place: format!("{name}:{}", number + 1), text, long });
     }
     blocks
 }
@@ -130,7 +130,8 @@ mod tests {
     fn blocks_are_found_by_their_fences() {
         let page = "text\n```sh\na\nb\n```\n```sh,long\nc\n```\n```text\nd\n```\n";
         let found = blocks_of(page, "p.md");
-        let block = |place: &str, text: &str, long| Block { place: place.into(), text: text.into(), long };
+        let block =
+            |place: &str, text: &str, long| CodeBlock { place: place.into(), text: text.into(), long };
         assert_eq!(found, [block("p.md:2", "a\nb", false), block("p.md:6", "c", true)]);
     }
 }

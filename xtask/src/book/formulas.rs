@@ -10,7 +10,7 @@ use std::process::{Command, Stdio};
 
 /// A formula in TeX.
 #[derive(Debug, PartialEq)]
-struct Formula {
+struct BookFormula {
     /// Line of its beginning.
     line: usize,
     source: String,
@@ -19,7 +19,7 @@ struct Formula {
 }
 
 /// The result of a check.
-pub struct Found {
+pub struct FormulaCheck {
     /// Formulas read.
     pub formulas: usize,
     /// Whether node was installed, so that they were checked.
@@ -29,13 +29,13 @@ pub struct Found {
 }
 
 /// Sets every formula below a root with the KaTeX that the pages use, where node is installed.
-pub fn check(root: &Path) -> Result<Found> {
-    let mut found = Found { formulas: 0, set: false, wrong: Vec::new() };
+pub fn check(root: &Path) -> Result<FormulaCheck> {
+    let mut found = FormulaCheck { formulas: 0, set: false, wrong: Vec::new() };
     let mut input = String::new();
     for path in links::markdown(root)? {
         let text = fs::read_to_string(&path).map_err(Error::file("read", &path))?;
         let name = path.strip_prefix(root).unwrap_or(&path).display();
-        for Formula { line, source, display } in formulas(&text) {
+        for BookFormula { line, source, display } in formulas(&text) {
             found.formulas += 1;
             let display = if display { "display" } else { "" };
             input.push_str(&[&format!("{name}:{line}"), source.as_str(), display, ""].join("\0"));
@@ -63,7 +63,7 @@ pub fn check(root: &Path) -> Result<Found> {
     Ok(found)
 }
 
-fn formulas(text: &str) -> Vec<Formula> {
+fn formulas(text: &str) -> Vec<BookFormula> {
     let (mut found, mut prose) = (Vec::new(), String::new());
     // The language of the fence that is open.
     let mut fence: Option<&str> = None;
@@ -73,7 +73,7 @@ fn formulas(text: &str) -> Vec<Formula> {
             (None, Some(language)) => {
                 fence = Some(language);
                 if language == "math" {
-                    found.push(Formula { line: number + 1, source: String::new(), display: true });
+                    found.push(BookFormula { line: number + 1, source: String::new(), display: true });
                 }
             }
             (Some(_), Some("")) => fence = None,
@@ -94,7 +94,7 @@ fn formulas(text: &str) -> Vec<Formula> {
 }
 
 /// Spans of code within a paragraph that stand between two dollar signs.
-fn inline(prose: &str) -> Vec<Formula> {
+fn inline(prose: &str) -> Vec<BookFormula> {
     let mut found = Vec::new();
     let mut at = 0;
     while let Some(begin) = prose[at..].find('`').map(|i| at + i) {
@@ -123,7 +123,7 @@ fn inline(prose: &str) -> Vec<Formula> {
             let source = prose[inside..end].to_owned();
             // In a table a bar is written with a backslash.
             let source = if row { source.replace("\\|", "|") } else { source };
-            found.push(Formula { line, source, display: false });
+            found.push(BookFormula { line, source, display: false });
         }
     }
     found
@@ -136,7 +136,7 @@ mod tests {
     #[test]
     fn formulas_are_blocks_and_code_between_dollar_signs() {
         let text = "a $`x^2`$, `$` and `$y`\n\n```math\nk = 2 E^* a\n```\n```sh\n$`no`$\n```\n| $`\\|z\\|`$ |\n`` $`no`$ ``\n";
-        let formula = |line, source: &str, display| Formula { line, source: source.into(), display };
+        let formula = |line, source: &str, display| BookFormula { line, source: source.into(), display };
         let expected =
             [formula(1, "x^2", false), formula(3, "k = 2 E^* a\n", true), formula(9, "|z|", false)];
         assert_eq!(formulas(text), expected);

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 const LEFT_OUT: [&str; 4] = ["target", "out", ".git", "book/book"];
 
 /// The result of a check.
-pub struct Found {
+pub struct LinkCheck {
     /// Files read.
     pub files: usize,
     /// Links within the repository, includes and pictures among them.
@@ -20,13 +20,13 @@ pub struct Found {
 }
 
 /// Checks all files below a root.
-pub fn check(root: &Path) -> Result<Found> {
+pub fn check(root: &Path) -> Result<LinkCheck> {
     let texts = markdown(root)?.into_iter().map(|path| {
         let text = fs::read_to_string(&path).map_err(Error::file("read", &path))?;
         Ok((path, text))
     });
     let texts: HashMap<PathBuf, String> = texts.collect::<Result<_>>()?;
-    let mut found = Found { files: texts.len(), links: 0, broken: Vec::new() };
+    let mut found = LinkCheck { files: texts.len(), links: 0, broken: Vec::new() };
     for (path, text) in &texts {
         let name = path.strip_prefix(root).unwrap_or(path).display();
         for (line, link) in links(text) {

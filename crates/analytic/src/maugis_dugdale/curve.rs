@@ -10,13 +10,13 @@ use std::f64::consts::PI;
 /// the range, `lambda a^2/2 A(s) + 4/3 lambda^2 a B(s) = 1`, is quadratic in a at a given s. A and B grow
 /// with s, and a falls.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Curve {
+pub(super) struct MaugisCurve {
     pub lambda: f64,
 }
 
-/// One state, in the units of its [`Curve`].
+/// One state, in the units of its [`MaugisCurve`].
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Point {
+pub(super) struct MaugisPoint {
     /// Contact radius.
     pub a: f64,
     /// `sqrt(c^2 - a^2)`.
@@ -29,41 +29,41 @@ pub(super) struct Point {
     pub rest: f64,
 }
 
-impl Curve {
+impl MaugisCurve {
     /// Smallest x: the contact radius is near 1e98, and its cube is still a number.
     pub const LEAST: f64 = -150.0;
     /// Largest x: a is 1e-26 c, and forces and approaches are those of a = 0 to all digits.
     pub const MOST: f64 = 60.0;
 
-    pub fn at(self, x: f64) -> Point {
+    pub fn at(self, x: f64) -> MaugisPoint {
         let s = x.exp();
         let (theta, rest) = (s.atan(), s_less_atan(s));
         // A = s + (s^2 - 1) atan s, B = s atan s - (sqrt(1 + s^2) - 1), without their cancellations.
         let square = 0.5 * self.lambda * (rest + s * s * theta);
         let linear = 4.0 / 3.0 * self.lambda * self.lambda * (s * (theta - s / (1.0 + s.hypot(1.0))));
         let a = 2.0 / (linear + linear.hypot(2.0 * square.sqrt()));
-        Point { a, q: a * s, c: a * s.hypot(1.0), theta, rest }
+        MaugisPoint { a, q: a * s, c: a * s.hypot(1.0), theta, rest }
     }
 
     /// The state of contact radius 0, a regular end: `pi/4 lambda c^2 + 4/3 (pi/2 - 1) lambda^2 c = 1`.
-    pub fn end(self) -> Point {
+    pub fn end(self) -> MaugisPoint {
         let square = 0.25 * PI * self.lambda;
         let linear = 4.0 / 3.0 * (0.5 * PI - 1.0) * self.lambda * self.lambda;
         let c = 2.0 / (linear + linear.hypot(2.0 * square.sqrt()));
-        Point { a: 0.0, q: c, c, theta: 0.5 * PI, rest: f64::INFINITY }
+        MaugisPoint { a: 0.0, q: c, c, theta: 0.5 * PI, rest: f64::INFINITY }
     }
 
-    /// The state of a contact radius not above that of [`Curve::LEAST`].
-    pub fn at_radius(self, a: f64) -> Point {
+    /// The state of a contact radius not above that of [`MaugisCurve::LEAST`].
+    pub fn at_radius(self, a: f64) -> MaugisPoint {
         if a <= self.at(Self::MOST).a {
-            return Point { a, ..self.end() };
+            return MaugisPoint { a, ..self.end() };
         }
         self.at(root::between(Self::LEAST, Self::MOST, |x| (self.at(x).a / a).ln()))
     }
 
     /// The state where a function that is negative at `from` and grows with the contact radius vanishes;
-    /// `None` beyond [`Curve::LEAST`], and for functions without a value.
-    pub fn above(self, from: f64, function: impl Fn(&Point) -> f64) -> Option<Point> {
+    /// `None` beyond [`MaugisCurve::LEAST`], and for functions without a value.
+    pub fn above(self, from: f64, function: impl Fn(&MaugisPoint) -> f64) -> Option<MaugisPoint> {
         let (mut low, mut step) = (from, 1.0);
         while low > Self::LEAST {
             let high = low;
@@ -77,7 +77,7 @@ impl Curve {
     }
 }
 
-impl Point {
+impl MaugisPoint {
     /// `a^3 - lambda a^2 (s + m^2 asec m)`.
     pub fn force(&self, lambda: f64) -> f64 {
         self.a.powi(3) - lambda * (self.a * self.q + self.c * (self.c * self.theta))

@@ -45,7 +45,7 @@
 //! diagonals 1.005 and 0.997, along (1, 2) 1.002 and 0.999; the line with c = 0.7 and a disc of 4 cells had
 //! 1.059 and 0.962 along the rows. On oblong cells they are nearer to w. `fronts` repeats the calibration.
 
-use super::law::{Law, Shape};
+use super::law::{AttractionLaw, LawShape};
 use super::neighbours::Neighbours;
 use super::pairs::Pairs;
 use crate::geometry::{CellSet, Grid};
@@ -64,7 +64,7 @@ const FOLLOWING: f64 = 5.0;
 #[derive(Debug, Clone)]
 pub struct Attraction {
     /// The law of a single cell.
-    pub law: Law,
+    pub law: AttractionLaw,
     /// The neighbours that matter, for a short range.
     neighbours: Option<Neighbours>,
     /// By which share the attraction of a cell whose neighbours are all attached exceeds that of a cell on a
@@ -76,7 +76,7 @@ pub struct Attraction {
 
 impl Attraction {
     /// The attraction of a finite range, in which neighbours play no part.
-    pub fn of(law: Law) -> Self {
+    pub fn of(law: AttractionLaw) -> Self {
         Self { law, neighbours: None, strength: 0.0, inverse: None }
     }
 
@@ -87,7 +87,7 @@ impl Attraction {
         let ring = (RING.0 * side, RING.1 * side);
         let neighbours = Neighbours::ring(grid, boundary == Boundary::Periodic, ring);
         Self {
-            law: Law::short(work, side),
+            law: AttractionLaw::short(work, side),
             strength: 2.0 * FRONT_WIDTH * side / neighbours.distance,
             neighbours: Some(neighbours),
             inverse: Some(Inverse::within(grid, FOLLOWING)),
@@ -144,7 +144,7 @@ impl Attraction {
     /// Whether the attraction moves over the grid by whole cells, so that the force changes in steps that no
     /// derivative at a state shows: the fronts of a short range, the edges of Dugdale's zones.
     pub fn moves_by_cells(&self) -> bool {
-        self.neighbours.is_some() || self.law.shape == Shape::Uniform
+        self.neighbours.is_some() || self.law.shape == LawShape::Uniform
     }
 
     /// The cells that attract with at least half of the work of adhesion left: of a short range the attached
@@ -302,7 +302,7 @@ mod tests {
             (0..all.len()).map(|i| attraction.law.range * if i < 5 { 0.28 } else { 0.29 }).collect();
         assert_eq!(attraction.held(&all, &gap).unwrap().len(), 5);
         // Across gaps: the closed cells, and nothing is held.
-        let across = Attraction::of(Law { shape: Shape::Exponential, ..attraction.law });
+        let across = Attraction::of(AttractionLaw { shape: LawShape::Exponential, ..attraction.law });
         assert!((across.area(&all, &closed) - 144.0).abs() < 1e-12 && across.held(&all, &gap).is_none());
         approx::assert_relative_eq!(across.mismatch(&all, &none, &closed), 1.0, max_relative = 1e-12);
     }

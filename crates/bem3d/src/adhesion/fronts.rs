@@ -12,7 +12,7 @@
 #![allow(clippy::cast_possible_wrap, clippy::cast_sign_loss)] // Small numbers.
 
 use super::attraction::Attraction;
-use super::law::Law;
+use super::law::AttractionLaw;
 use super::tests::eliminated;
 use crate::geometry::Grid;
 use crate::kernel::love::influence_of_rectangle;
@@ -131,7 +131,7 @@ impl Direction {
 
 /// Half of a strip, in units of the side of a square cell of the same area and with `E* = w = 1`.
 struct Strip {
-    law: Law,
+    law: AttractionLaw,
     strength: f64,
     /// Longer side of a cell.
     side: f64,
@@ -166,7 +166,7 @@ impl Strip {
                 }
             }
         }
-        let law = Law { peak: PI * attraction.law.peak, ..attraction.law };
+        let law = AttractionLaw { peak: PI * attraction.law.peak, ..attraction.law };
         Self { law, strength, side, half, spacing: length.recip(), influence: influence.collect(), weights }
     }
 

@@ -15,7 +15,7 @@ const FRONT_WORK: f64 = 8.0 / 15.0;
 
 /// The shape of the law.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Shape {
+pub enum LawShape {
     /// `peak exp(-g/range)`.
     Exponential,
     /// `peak` below the range.
@@ -25,7 +25,7 @@ pub enum Shape {
     Smooth,
 }
 
-impl From<AdhesionLaw> for Shape {
+impl From<AdhesionLaw> for LawShape {
     fn from(law: AdhesionLaw) -> Self {
         if law == AdhesionLaw::Dugdale { Self::Uniform } else { Self::Exponential }
     }
@@ -33,21 +33,21 @@ impl From<AdhesionLaw> for Shape {
 
 /// The attractive traction of a gap, nondimensional.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Law {
+pub struct AttractionLaw {
     /// Traction in contact.
     pub peak: f64,
     /// Range.
     pub range: f64,
     /// The shape of the law.
-    pub shape: Shape,
+    pub shape: LawShape,
 }
 
-impl Law {
+impl AttractionLaw {
     /// The law of a short range, of this work of adhesion over `pi E*` times the height on cells with this
     /// longer side.
     pub fn short(work: f64, side: f64) -> Self {
         let peak = FRONT_TRACTION * (work / (PI * side)).sqrt();
-        Self { peak, range: work / (FRONT_WORK * peak), shape: Shape::Smooth }
+        Self { peak, range: work / (FRONT_WORK * peak), shape: LawShape::Smooth }
     }
 
     /// 1 in contact, 0 from the range on.
@@ -58,37 +58,37 @@ impl Law {
     /// Traction of a gap; penetrations count as contact.
     pub fn traction(self, gap: f64) -> f64 {
         match self.shape {
-            Shape::Uniform if gap < self.range => self.peak,
-            Shape::Uniform => 0.0,
-            Shape::Smooth => {
+            LawShape::Uniform if gap < self.range => self.peak,
+            LawShape::Uniform => 0.0,
+            LawShape::Smooth => {
                 let y = self.nearness(gap);
                 self.peak * y * (0.4 + y * (2.2 - 1.6 * y))
             }
-            Shape::Exponential => self.peak * (-gap.max(0.0) / self.range).exp(),
+            LawShape::Exponential => self.peak * (-gap.max(0.0) / self.range).exp(),
         }
     }
 
     /// Magnitude of the derivative of the traction; 0 for Dugdale's law away from its jump.
     pub fn slope(self, gap: f64) -> f64 {
         match self.shape {
-            Shape::Smooth if gap < self.range => {
+            LawShape::Smooth if gap < self.range => {
                 let y = self.nearness(gap);
                 self.peak / self.range * (0.4 + y * (4.4 - 4.8 * y))
             }
-            Shape::Uniform | Shape::Smooth => 0.0,
-            Shape::Exponential => self.traction(gap) / self.range,
+            LawShape::Uniform | LawShape::Smooth => 0.0,
+            LawShape::Exponential => self.traction(gap) / self.range,
         }
     }
 
     /// Energy per area, which is the work of adhesion below zero in contact and 0 far apart.
     pub fn energy(self, gap: f64) -> f64 {
         match self.shape {
-            Shape::Uniform => self.peak * (gap.max(0.0) - self.range).min(0.0),
-            Shape::Smooth => {
+            LawShape::Uniform => self.peak * (gap.max(0.0) - self.range).min(0.0),
+            LawShape::Smooth => {
                 let y = self.nearness(gap);
                 -self.peak * self.range * y * y * (0.2 + y * (2.2 / 3.0 - 0.4 * y))
             }
-            Shape::Exponential => -self.range * self.traction(gap),
+            LawShape::Exponential => -self.range * self.traction(gap),
         }
     }
 
@@ -98,7 +98,7 @@ impl Law {
     pub fn mismatch(self, traction: f64, gap: f64) -> f64 {
         let difference = (traction - self.traction(gap)).abs() / self.peak;
         match self.shape {
-            Shape::Uniform => difference.min((gap / self.range - 1.0).abs()),
+            LawShape::Uniform => difference.min((gap / self.range - 1.0).abs()),
             _ => difference,
         }
     }
@@ -111,8 +111,8 @@ impl Law {
     /// The gap from which on there is no attraction.
     pub fn reach(self) -> f64 {
         match self.shape {
-            Shape::Uniform | Shape::Smooth => self.range,
-            Shape::Exponential => FARTHEST * self.range,
+            LawShape::Uniform | LawShape::Smooth => self.range,
+            LawShape::Exponential => FARTHEST * self.range,
         }
     }
 }

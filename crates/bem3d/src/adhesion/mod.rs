@@ -57,7 +57,7 @@ mod update;
 
 pub use attraction::Attraction;
 pub use equilibrium::{AdhesiveControl, Equilibrium, energy};
-pub use law::{Law, Shape};
+pub use law::{AttractionLaw, LawShape};
 pub use near::Near;
 pub use pairs::Pairs;
 pub use search::{Ended, Search};

@@ -13,7 +13,7 @@
 //! cells displaces the contact by.
 
 use super::attraction::Attraction;
-use super::law::Shape;
+use super::law::LawShape;
 use super::neighbours::Neighbours;
 use super::pairs::Pairs;
 use crate::geometry::{CellSet, Grid};
@@ -43,7 +43,7 @@ impl Near {
         cells: &CellSet,
         is_open: &[f32],
     ) -> Option<Self> {
-        (attraction.law.shape == Shape::Smooth).then(|| Self::new(grid, cells, is_open))
+        (attraction.law.shape == LawShape::Smooth).then(|| Self::new(grid, cells, is_open))
     }
 
     /// On the cells of a set; `is_open` is 1 on open cells and 0 on closed ones.

@@ -64,7 +64,7 @@
 
 use super::attraction::Attraction;
 use super::equilibrium::Equilibrium;
-use super::law::Shape;
+use super::law::LawShape;
 use super::near::Near;
 use crate::active_set::Problem;
 use crate::geometry::CellSet;
@@ -131,7 +131,7 @@ struct Linear {
 }
 
 /// The solution of the system, on both sets of cells.
-struct Solution {
+struct NewtonSolution {
     /// Change of the net pressure.
     change: Vec<f64>,
     /// Gap of open cells, beyond the one at which the law is linearised.
@@ -259,7 +259,7 @@ impl Taken<'_> {
 impl Linear {
     fn new(attraction: &Attraction, state: &Equilibrium, contact: &[f64]) -> Self {
         let mut slopes = attraction.slopes(&state.cells, &state.gap);
-        let flat = if attraction.law.shape == Shape::Smooth { LEVEL } else { FLAT };
+        let flat = if attraction.law.shape == LawShape::Smooth { LEVEL } else { FLAT };
         let least = flat * attraction.law.peak / attraction.law.range;
         slopes.iter_mut().zip(contact).filter(|(_, c)| **c > 0.0).for_each(|(s, _)| *s = 0.0);
         let open = state.cells.filter(&slopes, |s| s > least);
@@ -282,7 +282,7 @@ impl Linear {
         fixed: Fixed,
         reduction: f64,
         stop: Stop<'_>,
-    ) -> Option<Solution> {
+    ) -> Option<NewtonSolution> {
         let Self { contact, both, root, is_open } = self;
         let on = (problem.grid(), problem.operators.table().boundary());
         let (n, unit, operators) = (both.len(), largest(left), &mut problem.operators);
@@ -380,7 +380,7 @@ impl Linear {
         neighbours(&y, &mut change);
         times_root(&mut change);
         let opening = y.iter().zip(root).zip(is_open);
-        Some(Solution {
+        Some(NewtonSolution {
             change: change.into_iter().map(|c| unit * f64::from(c)).collect(),
             opening: opening.map(|((y, root), open)| unit * f64::from(y * open / root)).collect(),
             steps: outcome.steps,

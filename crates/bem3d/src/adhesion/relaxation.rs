@@ -17,7 +17,7 @@
 
 use super::attraction::Attraction;
 use super::equilibrium::Equilibrium;
-use super::law::Law;
+use super::law::AttractionLaw;
 use crate::geometry::{Grid, Window};
 use crate::kernel::Inverse;
 use crate::real::largest_difference;
@@ -88,7 +88,7 @@ pub fn follow(
 
 /// The gaps of a state while its fronts are followed.
 struct Fronts<'a> {
-    law: Law,
+    law: AttractionLaw,
     /// The least that neighbours can leave of the attraction of a cell.
     least_factor: f64,
     inverse: &'a Inverse,

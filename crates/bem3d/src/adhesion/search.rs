@@ -11,8 +11,8 @@
 
 use super::attraction::Attraction;
 use super::equilibrium::{AdhesiveControl, Equilibrium};
-use super::law::Shape;
-use super::update::{Progress, SETTLED, Updated, Updates};
+use super::law::LawShape;
+use super::update::{SETTLED, UpdateProgress, Updated, Updates};
 use crate::active_set::{self, Bounds, Candidates, Control, Guess, Limits, Problem, Residuals};
 use crate::geometry::CellSet;
 use crate::real::{each, largest_difference, smallest, sum};
@@ -93,7 +93,7 @@ impl Search<'_> {
         stop: Stop<'_>,
     ) -> Result<Equilibrium, Box<(Ended, Equilibrium)>> {
         let tolerance = self.limits.tolerance;
-        let (mut progress, mut accuracy) = (Progress::default(), BETWEEN);
+        let (mut progress, mut accuracy) = (UpdateProgress::default(), BETWEEN);
         self.evaluate(&mut state);
         if self.is_far(&state) && !stop.stops() {
             self.contact_afresh(&mut state, stop);
@@ -317,7 +317,7 @@ impl Search<'_> {
         state.residuals = Residuals::measure(self.problem.bounds, (&contact, &p, &left), everywhere, length);
         state.lawful = attraction.tractions(&state.cells, &state.gap);
         state.mismatch = match law.shape {
-            Shape::Uniform => attraction.mismatch(&state.cells, &state.attraction, &state.gap),
+            LawShape::Uniform => attraction.mismatch(&state.cells, &state.attraction, &state.gap),
             _ => largest_difference(&state.attraction, &state.lawful) / law.peak,
         };
     }

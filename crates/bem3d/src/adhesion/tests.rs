@@ -3,7 +3,7 @@
 
 #![allow(clippy::needless_range_loop)] // Indices as in the formulas.
 
-use super::law::Shape;
+use super::law::LawShape;
 use super::relaxation::{Tractions, follow};
 use super::*;
 use crate::active_set::{Limits, Problem};
@@ -25,9 +25,9 @@ const LIMITS: Limits =
     Limits { tolerance: TOLERANCE, height: Some(1.0), outer_iterations: 300, factor: true };
 
 /// Numbers in [0, 1) from a fixed sequence.
-struct Numbers(u64);
+struct FixedSequence(u64);
 
-impl Numbers {
+impl FixedSequence {
     fn next(&mut self) -> f64 {
         self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 11) as f64 / (1u64 << 53) as f64
@@ -36,7 +36,7 @@ impl Numbers {
 
 /// A rough surface whose highest point is 0.
 fn heights(grid: Grid, seed: u64) -> Vec<f64> {
-    let mut numbers = Numbers(seed);
+    let mut numbers = FixedSequence(seed);
     for _ in 0..8 {
         numbers.next();
     }
@@ -250,13 +250,13 @@ fn gaps(grid: Grid, state: &Equilibrium) -> Vec<f64> {
 
 /// The attraction of a law whose strength is this share of what the cells allow.
 fn law(range: f64, share: f64) -> Attraction {
-    Attraction::of(Law { peak: share * range / 3.525_494, range, shape: Shape::Exponential })
+    Attraction::of(AttractionLaw { peak: share * range / 3.525_494, range, shape: LawShape::Exponential })
 }
 
 #[test]
 fn a_short_range_does_the_work_with_the_traction_of_its_longer_side() {
     for (work, side) in [(0.3, 1.0), (0.3, 2.0), (0.02, 1.0)] {
-        let law = Law::short(work, side);
+        let law = AttractionLaw::short(work, side);
         approx::assert_relative_eq!(
             law.peak.powi(2) * PI * side,
             0.59f64.powi(2) * work,
@@ -444,7 +444,7 @@ fn known(grid: Grid, state: &Equilibrium, reach: f64) -> Vec<f64> {
 fn compared(seeds: std::ops::Range<u64>) -> (usize, Vec<String>) {
     let (mut count, mut different) = (0, Vec::new());
     for seed in seeds {
-        let mut numbers = Numbers(seed + 1000);
+        let mut numbers = FixedSequence(seed + 1000);
         let grid = if seed % 2 == 0 {
             Grid::square(12, 9)
         } else {
@@ -587,8 +587,8 @@ fn a_force_beyond_the_pull_off_force_is_an_error() {
 
 #[test]
 fn a_law_is_its_energy_differentiated() {
-    for shape in [Shape::Exponential, Shape::Uniform, Shape::Smooth] {
-        let law = Law { peak: 2.0, range: 0.5, shape };
+    for shape in [LawShape::Exponential, LawShape::Uniform, LawShape::Smooth] {
+        let law = AttractionLaw { peak: 2.0, range: 0.5, shape };
         for gap in [0.1, 0.3, 0.49, 0.6, 3.0] {
             let h = 1e-6;
             let slope = (law.energy(gap + h) - law.energy(gap - h)) / (2.0 * h);
@@ -597,12 +597,12 @@ fn a_law_is_its_energy_differentiated() {
             approx::assert_relative_eq!(-slope, law.slope(gap), epsilon = 1e-6);
             assert!(law.mismatch(law.traction(gap), gap) <= 0.0);
         }
-        let work = if shape == Shape::Smooth { 8.0 / 15.0 } else { 1.0 };
+        let work = if shape == LawShape::Smooth { 8.0 / 15.0 } else { 1.0 };
         approx::assert_relative_eq!(law.energy(0.0), -work);
         approx::assert_relative_eq!(law.attached(0.0), 1.0);
     }
     // Next to the jump a traction of either side is right.
-    let dugdale = Law { peak: 2.0, range: 0.5, shape: Shape::Uniform };
+    let dugdale = AttractionLaw { peak: 2.0, range: 0.5, shape: LawShape::Uniform };
     approx::assert_relative_eq!(dugdale.mismatch(2.0, 0.55), 0.1, epsilon = 1e-12);
     approx::assert_relative_eq!(dugdale.mismatch(0.0, 0.0), 1.0);
 }
@@ -660,8 +660,8 @@ fn no_attachment_or_detachment_of_a_single_cell_lowers_the_energy_of_a_short_ran
 
 #[test]
 fn a_law_at_its_ends() {
-    let law = |shape| Law { peak: 2.0, range: 0.5, shape };
-    let (exponential, dugdale) = (law(Shape::Exponential), law(Shape::Uniform));
+    let law = |shape| AttractionLaw { peak: 2.0, range: 0.5, shape };
+    let (exponential, dugdale) = (law(LawShape::Exponential), law(LawShape::Uniform));
     for law in [exponential, dugdale] {
         // A penetration counts as contact.
         assert!(law.traction(-0.1) >= 2.0 && law.traction(-0.1) <= 2.0);

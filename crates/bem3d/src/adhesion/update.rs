@@ -4,7 +4,7 @@
 use super::attraction::Attraction;
 use super::bottleneck::Bottleneck;
 use super::equilibrium::{AdhesiveControl, Equilibrium};
-use super::law::Shape;
+use super::law::LawShape;
 use super::newton::{BEGIN, Predicted, Trial, step};
 use super::relaxation::{Tractions, follow};
 use crate::active_set::Problem;
@@ -53,7 +53,7 @@ const REST: usize = 8;
 
 /// The history of the updates, from which the next one is chosen.
 #[derive(Debug)]
-pub struct Progress {
+pub struct UpdateProgress {
     bottleneck: Bottleneck,
     /// Plain updates before the next Newton step, and how many after one that is refused.
     rest: usize,
@@ -65,13 +65,13 @@ pub struct Progress {
     before: Option<f64>,
 }
 
-impl Default for Progress {
+impl Default for UpdateProgress {
     fn default() -> Self {
         Self { bottleneck: Bottleneck::default(), rest: 0, pause: 0, reduction: FIRST_STEP, before: None }
     }
 }
 
-impl Progress {
+impl UpdateProgress {
     /// The reduction of the linear system of a Newton step with this mismatch; `None`: a plain update.
     fn newton(&mut self, mismatch: f64, tolerance: f64) -> Option<f64> {
         let before = self.before.take();
@@ -150,12 +150,17 @@ struct Uncorrected {
     pressure: Vec<f64>,
     attraction: Vec<f64>,
     gap: Vec<f64>,
-    contact: Contact,
+    contact: CarryingCells,
 }
 
 impl Updates<'_> {
     /// One update: the attraction of the present gaps, and the pressure that then closes the contact.
-    pub fn update(&mut self, state: &mut Equilibrium, progress: &mut Progress, stop: Stop<'_>) -> Updated {
+    pub fn update(
+        &mut self,
+        state: &mut Equilibrium,
+        progress: &mut UpdateProgress,
+        stop: Stop<'_>,
+    ) -> Updated {
         let wanted = self.wanted(state);
         let mut uncorrected = None;
         if let Some(reduction) = self.newton_reduction(&wanted, progress) {
@@ -189,7 +194,7 @@ impl Updates<'_> {
     /// none where the contact is not yet settled.
     fn wanted(&self, state: &Equilibrium) -> Wanted {
         let law = self.attraction.law;
-        let plain = self.plain || law.shape == Shape::Uniform;
+        let plain = self.plain || law.shape == LawShape::Uniform;
         let fixed = self.control.fixed(self.problem.operators.table().shift());
         let mut attraction = state.lawful.clone();
         let damped = matches!(fixed, Fixed::MeanPlane(_)) && state.updates > PATIENT;
@@ -209,7 +214,7 @@ impl Updates<'_> {
     }
 
     /// The reduction of the linear system of a Newton step; `None`: none is taken.
-    fn newton_reduction(&self, wanted: &Wanted, progress: &mut Progress) -> Option<f64> {
+    fn newton_reduction(&self, wanted: &Wanted, progress: &mut UpdateProgress) -> Option<f64> {
         let begin = if wanted.follows { FOLLOWED } else { BEGIN };
         let is_early = wanted.plain || wanted.waits || wanted.change > begin;
         if is_early { None } else { progress.newton(wanted.change, self.tolerance) }
@@ -258,7 +263,7 @@ impl Updates<'_> {
         state: &Equilibrium,
         next: &mut Uncorrected,
         wanted: &Wanted,
-        progress: &mut Progress,
+        progress: &mut UpdateProgress,
     ) {
         if wanted.plain || wanted.change > SLOW {
             progress.bottleneck.clear();
@@ -327,7 +332,7 @@ impl Updates<'_> {
         state: &Equilibrium,
         (pressure, next): (&[f64], &[f64]),
         fixed: Fixed,
-    ) -> (Vec<f64>, Contact) {
+    ) -> (Vec<f64>, CarryingCells) {
         let mut changed: Vec<f64> = pressure.iter().zip(next).map(|(p, s)| p - s).collect();
         let before = state.pressure.iter().zip(&state.attraction);
         changed.iter_mut().zip(before).for_each(|(changed, (p, s))| *changed -= p - s);
@@ -346,7 +351,7 @@ impl Updates<'_> {
             Fixed::Approach => 0.0,
         };
         each(&mut gap, |g| *g -= offset);
-        let contact = Contact::new(pressure, &gap, self.problem.operators.tuning().noise);
+        let contact = CarryingCells::new(pressure, &gap, self.problem.operators.tuning().noise);
         (gap, contact)
     }
 
@@ -375,7 +380,7 @@ impl Updates<'_> {
 }
 
 /// The contact that a pressure and its gap make: cells that carry, and those that penetrate.
-struct Contact {
+struct CarryingCells {
     /// 1 on its cells.
     marked: Vec<f64>,
     /// Cells that carry.
@@ -384,7 +389,7 @@ struct Contact {
     noise: f64,
 }
 
-impl Contact {
+impl CarryingCells {
     fn new(pressure: &[f64], gap: &[f64], noise: f64) -> Self {
         let (square, count) = (pressure.iter().zip(gap))
             .filter(|(p, _)| **p > 0.0)

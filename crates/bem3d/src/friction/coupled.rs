@@ -2,7 +2,7 @@
 //! tangential ones.
 
 use super::increment::FrictionLimits;
-use super::state::{ForceTooLarge, Friction, FrictionLoad, FrictionState, PressedCells, SlipMemory};
+use super::state::{ForceTooLarge, FrictionLoad, FrictionSolver, FrictionState, PressedCells, SlipMemory};
 use crate::active_set::{self, Candidates, Continuation, Control, Guess, Limits, Problem, Residuals, Solved};
 use contact_model::{Status, Stop};
 use std::sync::Arc;
@@ -59,10 +59,10 @@ pub struct CoupledLoad {
 /// `z` are the undeformed gaps of the surface; the problem is left with those that the tractions deform.
 ///
 /// # Errors
-/// As [`Friction::advance`].
+/// As [`FrictionSolver::advance`].
 pub fn advance(
     (problem, z): (&mut Problem, &[f64]),
-    friction: &mut Friction,
+    friction: &mut FrictionSolver,
     before: &SlipMemory,
     load: CoupledLoad,
     (mut guess, mut tractions): (Option<Guess>, Option<SlipMemory>),

@@ -1,6 +1,6 @@
 //! One increment: the tractions at its end from those at its beginning.
 
-use super::linearised::{Branch, BranchSystem, FrictionRoom, Linearised};
+use super::linearised::{BranchSystem, FrictionRoom, LinearisedFriction, SlipBranch};
 use crate::geometry::CellSet;
 use crate::law::{ConvexLaw, Descent, Discs, descend, excess, length, sums, total};
 use crate::linear::StoppingCriteria;
@@ -47,7 +47,7 @@ pub struct FrictionLimits {
 
 /// Tractions and slip during the iteration and at the end of an increment.
 #[derive(Debug, Clone)]
-pub struct Sliding {
+pub struct IncrementState {
     /// Tractions, admissible to rounding.
     pub traction: Vec<f64>,
     /// Slip of the increment.
@@ -106,7 +106,7 @@ const SMALLEST_UNIT: f64 = 1e-100;
 /// the least one at which the contact slides, by at most 1e-6 of it for a ball: `(1 - Q/(mu F))^(2/3)` by Cattaneo.
 pub const LARGEST_SHARE: f64 = 1.0 - 1e-9;
 
-struct Solver<'a> {
+struct IncrementSolver<'a> {
     operators: &'a mut TangentialOperators,
     room: &'a mut FrictionRoom,
     increment: Increment<'a>,
@@ -156,20 +156,23 @@ pub fn solve(
     start: Vec<f64>,
     limits: FrictionLimits,
     stop: Stop<'_>,
-) -> Sliding {
+) -> IncrementState {
     if largest(increment.limit) <= 0.0 {
         return free(increment);
     }
     from_mean(increment, |increment| {
         in_units(increment, start, |increment, start| {
-            Solver::new(operators, room, increment, start, limits).iterate(stop)
+            IncrementSolver::new(operators, room, increment, start, limits).iterate(stop)
         })
     })
 }
 
 /// Solves with displacements and references that are counted from the mean reference, weighted by the limits.
 /// Only their difference is in the conditions, and after long slip both are much larger than it.
-fn from_mean(increment: Increment<'_>, solve: impl FnOnce(Increment<'_>) -> Sliding) -> Sliding {
+fn from_mean(
+    increment: Increment<'_>,
+    solve: impl FnOnce(Increment<'_>) -> IncrementState,
+) -> IncrementState {
     let Increment { limit, reference, control, displacement, .. } = increment;
     let (n, most) = (limit.len(), sum(limit));
     let mean: [f64; 2] = std::array::from_fn(|component| dot(limit, &reference[component * n..][..n]) / most);
@@ -186,12 +189,12 @@ fn from_mean(increment: Increment<'_>, solve: impl FnOnce(Increment<'_>) -> Slid
         TangentialControl::Displacement(delta) => {
             let control = TangentialControl::Displacement(from(delta));
             let found = solve(Increment { reference: &less, control, displacement, ..increment });
-            Sliding { displacement: delta, ..found }
+            IncrementState { displacement: delta, ..found }
         }
         TangentialControl::Force(_) => {
             let found = solve(Increment { reference: &less, displacement, ..increment });
             let [x, y] = found.displacement;
-            Sliding { displacement: [x + mean[0], y + mean[1]], ..found }
+            IncrementState { displacement: [x + mean[0], y + mean[1]], ..found }
         }
     }
 }
@@ -200,8 +203,8 @@ fn from_mean(increment: Increment<'_>, solve: impl FnOnce(Increment<'_>) -> Slid
 fn in_units(
     increment: Increment<'_>,
     mut start: Vec<f64>,
-    solve: impl FnOnce(Increment<'_>, Vec<f64>) -> Sliding,
-) -> Sliding {
+    solve: impl FnOnce(Increment<'_>, Vec<f64>) -> IncrementState,
+) -> IncrementState {
     let Increment { limit, reference, control, displacement, .. } = increment;
     let [dx, dy] = match control {
         TangentialControl::Displacement(displacement) => displacement,
@@ -237,9 +240,9 @@ pub fn by_gradients(
     start: Vec<f64>,
     limits: FrictionLimits,
     steps: usize,
-) -> Sliding {
+) -> IncrementState {
     in_units(increment, start, |increment, start| {
-        let mut solver = Solver::new(operators, room, increment, start, limits);
+        let mut solver = IncrementSolver::new(operators, room, increment, start, limits);
         solver.admit();
         solver.displace();
         solver.descend(steps, &contact_model::never);
@@ -262,7 +265,7 @@ pub fn sticking(cells: &CellSet, (q, w): (&[f64], &[f64]), limit: &[f64], rho: f
 }
 
 /// The state without resistance: there is no traction, and all displacement is slip.
-fn free(increment: Increment<'_>) -> Sliding {
+fn free(increment: Increment<'_>) -> IncrementState {
     let displacement = match increment.control {
         TangentialControl::Displacement(delta) => delta,
         TangentialControl::Force(_) => increment.displacement,
@@ -271,7 +274,7 @@ fn free(increment: Increment<'_>) -> Sliding {
     let slip = (increment.reference.iter().enumerate())
         .map(|(i, reference)| displacement[usize::from(i >= n)] - reference)
         .collect();
-    Sliding {
+    IncrementState {
         traction: vec![0.0; 2 * n],
         slip,
         displacement,
@@ -285,7 +288,7 @@ fn free(increment: Increment<'_>) -> Sliding {
     }
 }
 
-impl<'a> Solver<'a> {
+impl<'a> IncrementSolver<'a> {
     /// From tractions that need not be admissible.
     fn new(
         operators: &'a mut TangentialOperators,
@@ -323,7 +326,7 @@ impl<'a> Solver<'a> {
         }
     }
 
-    fn iterate(mut self, stop: Stop<'_>) -> Sliding {
+    fn iterate(mut self, stop: Stop<'_>) -> IncrementState {
         self.admit();
         self.displace();
         self.room.take(self.increment.cells);
@@ -362,7 +365,7 @@ impl<'a> Solver<'a> {
                 (gradients, since_best) = (2 * gradients, 0);
             }
         };
-        Sliding { status, iterations: self.iterations, steps: self.steps, ..best }
+        IncrementState { status, iterations: self.iterations, steps: self.steps, ..best }
     }
 
     fn force(&self) -> Option<[f64; 2]> {
@@ -428,7 +431,7 @@ impl<'a> Solver<'a> {
         self.reach.max(length(self.delta))
     }
 
-    fn state(&self, status: Status) -> Sliding {
+    fn state(&self, status: Status) -> IncrementState {
         let Self { increment, q, w, delta, rho, .. } = self;
         let load_error = self.force().map_or(0.0, |[fx, fy]| {
             let [x, y] = total(q);
@@ -436,7 +439,7 @@ impl<'a> Solver<'a> {
         });
         let mut traction = q.clone();
         self.law().project(&mut traction, None);
-        Sliding {
+        IncrementState {
             traction,
             slip: w.clone(),
             displacement: *delta,
@@ -458,11 +461,11 @@ impl<'a> Solver<'a> {
     }
 
     /// The cells that stick and slip at present, and the tractions with those of slip cells on their circles.
-    fn branch(&self) -> (Branch, Vec<f64>) {
+    fn branch(&self) -> (SlipBranch, Vec<f64>) {
         let Increment { cells, limit, .. } = self.increment;
         let n = limit.len();
         let y: Vec<f64> = self.q.iter().zip(&self.w).map(|(q, w)| q + self.rho * w).collect();
-        let branch = Branch::of(cells, &y, &self.w, limit);
+        let branch = SlipBranch::of(cells, &y, &self.w, limit);
         let mut next = self.q.clone();
         for (i, &b) in limit.iter().enumerate().filter(|(i, _)| branch.slips(*i)) {
             let length = length([y[i], y[n + i]]);
@@ -473,7 +476,12 @@ impl<'a> Solver<'a> {
 
     /// The tractions that meet the linearised conditions of a branch, from `next`, whose slip cells are on their
     /// circles. `None` without cells.
-    fn solve_linearised(&mut self, branch: &Branch, mut next: Vec<f64>, stop: Stop<'_>) -> Option<Vec<f64>> {
+    fn solve_linearised(
+        &mut self,
+        branch: &SlipBranch,
+        mut next: Vec<f64>,
+        stop: Stop<'_>,
+    ) -> Option<Vec<f64>> {
         let (cells, force) = (self.increment.cells, self.force());
         let shift = self.operators.table().shift();
         let criteria =
@@ -566,7 +574,7 @@ fn spread_force(
 /// The displacement under a change of the tractions in single precision, without the constant of a periodic
 /// kernel, and the number of applications.
 fn displacement(
-    linearised: &mut Linearised<'_>,
+    linearised: &mut LinearisedFriction<'_>,
     cells: &CellSet,
     change: &[f32],
     shift: f64,

@@ -25,7 +25,7 @@ pub const SLIPPING: f32 = 2.0;
 
 /// The admissible changes of the traction of each cell.
 #[derive(Debug, Clone, Default)]
-pub struct Branch {
+pub struct SlipBranch {
     /// Unit vectors along which slip cells move; zero for stick cells. In double precision: of a slip that is
     /// large beside what is left on stick cells an angle of single precision would be as much.
     tangent: Vec<[f64; 2]>,
@@ -47,7 +47,7 @@ fn each_cell<T: Send>(v: &mut [T], tangent: &[[f64; 2]], change: impl Fn([&mut T
     });
 }
 
-impl Branch {
+impl SlipBranch {
     /// All cells stick.
     pub fn stuck(cells: &CellSet) -> Self {
         let n = cells.len();
@@ -126,16 +126,16 @@ impl Branch {
 
 /// The linearised conditions as an operator on restricted tractions.
 #[derive(Debug)]
-pub struct Linearised<'a> {
+pub struct LinearisedFriction<'a> {
     /// The kernel.
     pub kernel: Planned<'a, 2, 3>,
     /// The constant in its diagonal entries, which is not part of the displacement.
     pub shift: f32,
     /// The admissible changes of the cells.
-    pub branch: &'a Branch,
+    pub branch: &'a SlipBranch,
 }
 
-impl InfluenceOperator<f32> for Linearised<'_> {
+impl InfluenceOperator<f32> for LinearisedFriction<'_> {
     fn apply(&mut self, sources: &CellSet, t: &[f32], targets: &CellSet, u: &mut [f32]) {
         let Self { kernel, shift, branch } = self;
         kernel.apply(sources, t, targets, u);
@@ -165,11 +165,11 @@ impl InfluenceOperator<f32> for Linearised<'_> {
 /// With a prescribed force corrections have no sum: `P M P'` with `P = 1 - W (B W)^-1 B`, B the sums of both
 /// components, which is symmetric and keeps the sums whatever W is; it is `M B'` of the first branch of an increment.
 #[derive(Debug)]
-pub struct Split<'a> {
+pub struct BranchPreconditioner<'a> {
     /// On stick cells.
     torus: TorusInverse<'a, 2, 3>,
     /// The admissible changes of the cells.
-    branch: &'a Branch,
+    branch: &'a SlipBranch,
     /// Compliance of a slip cell along its tangent: with its turning the diagonal.
     own: f32,
     /// How the sums are kept; `None` where they are free.
@@ -231,7 +231,7 @@ pub fn inverse_of([xx, yy, xy]: [f64; 3], share: f64) -> [f64; 3] {
     [middle + difference * cos, middle - difference * cos, difference * sin]
 }
 
-impl Split<'_> {
+impl BranchPreconditioner<'_> {
     /// Keeps the sums from now on. `weights` are those of the first branch of the increment, which are found where
     /// there are none; stick cells keep them.
     pub fn fix_sums(&mut self, set: &CellSet, weights: &mut Option<[Vec<f32>; 2]>) {
@@ -319,7 +319,7 @@ impl Split<'_> {
     }
 }
 
-impl Preconditioner<f32> for Split<'_> {
+impl Preconditioner<f32> for BranchPreconditioner<'_> {
     fn apply(&mut self, set: &CellSet, _: f32, r: &mut [f32], z: &mut [f32]) -> Preconditioned {
         let recorder = self.recorder.clone();
         recorder.timed(Part::Preconditioner, || {
@@ -360,9 +360,9 @@ pub struct FrictionRoom {
 #[derive(Debug)]
 pub struct BranchSystem<'a> {
     /// The linearised conditions.
-    pub conditions: Linearised<'a>,
+    pub conditions: LinearisedFriction<'a>,
     /// The preconditioner.
-    pub preconditioner: Split<'a>,
+    pub preconditioner: BranchPreconditioner<'a>,
     /// The weights of the room.
     pub weights: &'a mut Option<[Vec<f32>; 2]>,
     vectors: &'a mut Vectors<f32>,
@@ -379,7 +379,7 @@ impl FrictionRoom {
     pub fn system<'a>(
         &'a mut self,
         operators: &'a mut TangentialOperators,
-        branch: &'a Branch,
+        branch: &'a SlipBranch,
         every_lag: bool,
     ) -> Option<BranchSystem<'a>> {
         let recorder = operators.recorder().clone();
@@ -390,9 +390,15 @@ impl FrictionRoom {
         let decay = if branch.stick.len() >= extended { decay } else { 0.0 };
         recorder.timed(Part::Sets, || extend(extensions, transform.window(), decay, &branch.stick));
         let torus = TorusInverse { transform, extensions, recorder: recorder.clone() };
-        let preconditioner =
-            Split { torus, branch, own: SLIPPING * own as f32, sums: None, on_stick, recorder };
-        let conditions = Linearised { kernel, shift: shift as f32, branch };
+        let preconditioner = BranchPreconditioner {
+            torus,
+            branch,
+            own: SLIPPING * own as f32,
+            sums: None,
+            on_stick,
+            recorder,
+        };
+        let conditions = LinearisedFriction { kernel, shift: shift as f32, branch };
         Some(BranchSystem { conditions, preconditioner, weights, vectors })
     }
 
@@ -401,7 +407,7 @@ impl FrictionRoom {
     pub fn stuck_inverse(
         &mut self,
         operators: &mut TangentialOperators,
-        branch: &Branch,
+        branch: &SlipBranch,
         residuals: &mut [Vec<f32>; 2],
     ) -> Option<[Vec<f32>; 2]> {
         let recorder = operators.recorder().clone();

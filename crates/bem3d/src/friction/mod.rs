@@ -43,5 +43,5 @@ mod tests;
 
 pub use coupled::{CoupledLoad, CoupledState, advance as advance_coupled};
 pub use increment::{FrictionLimits, TangentialControl, exact};
-pub use linearised::{Branch, FrictionRoom, inverse_of};
-pub use state::{ForceTooLarge, Friction, FrictionLoad, FrictionState, PressedCells, SlipMemory};
+pub use linearised::{FrictionRoom, SlipBranch, inverse_of};
+pub use state::{ForceTooLarge, FrictionLoad, FrictionSolver, FrictionState, PressedCells, SlipMemory};

@@ -1,7 +1,7 @@
 //! A surface with friction through the increments of a path.
 
-use super::increment::{self, FrictionLimits, Increment, Sliding, TangentialControl, exact};
-use super::linearised::{Branch, FrictionRoom};
+use super::increment::{self, FrictionLimits, Increment, IncrementState, TangentialControl, exact};
+use super::linearised::{FrictionRoom, SlipBranch};
 use crate::geometry::{CellSet, Grid};
 use crate::kernel::TangentialTable;
 use crate::law::total;
@@ -56,7 +56,7 @@ pub struct FrictionState {
     pub dissipated: f64,
     /// The cells that stick.
     pub stick: CellSet,
-    /// Relative duality gap, see [`Sliding::duality_gap`].
+    /// Relative duality gap, see [`IncrementState::duality_gap`].
     pub duality_gap: f64,
     /// Difference of the force from the prescribed one, over the largest force.
     pub load_error: f64,
@@ -84,7 +84,7 @@ pub struct FrictionLoad {
 
 /// Friction on one surface: operators and room, kept from increment to increment.
 #[derive(Debug)]
-pub struct Friction {
+pub struct FrictionSolver {
     /// The kernel of tangential tractions.
     pub operators: TangentialOperators,
     /// Room for its systems.
@@ -93,7 +93,7 @@ pub struct Friction {
     coupling: Option<CouplingOperator>,
 }
 
-impl Friction {
+impl FrictionSolver {
     /// A surface on bodies of the constant `compliance = E* sum nu/(2 G)`, see `kernel/tangential.rs`.
     ///
     /// `beta` is Dundurs' second constant with the body as the first one on which the tractions act; 0 leaves the
@@ -203,7 +203,7 @@ impl Friction {
             displacement: before.displacement,
         };
         let Self { operators, room, .. } = self;
-        let Sliding {
+        let IncrementState {
             traction,
             slip,
             displacement,
@@ -288,11 +288,11 @@ impl Friction {
 
 impl FrictionState {
     /// The cells that stick and slip as the load goes on.
-    pub fn branch(&self, operators: &TangentialOperators) -> Branch {
+    pub fn branch(&self, operators: &TangentialOperators) -> SlipBranch {
         let rho = increment::step(operators);
         let moved = |(q, w): (&f64, &f64)| q + rho * w;
         let y: Vec<f64> = self.memory.traction.iter().zip(&self.slip).map(moved).collect();
-        Branch::of(&self.memory.cells, &y, &self.slip, &self.limit)
+        SlipBranch::of(&self.memory.cells, &y, &self.slip, &self.limit)
     }
 }
 

@@ -17,13 +17,13 @@ const LIMITS: FrictionLimits = FrictionLimits { tolerance: 1e-11, unresolved: 1e
 const MU: f64 = 0.4;
 
 /// Cells in contact at one load, their pressure in units of `u = sum I p`, and the approach.
-struct Pressed {
+struct PressedContact {
     cells: CellSet,
     pressure: Vec<f64>,
     approach: f64,
 }
 
-impl Pressed {
+impl PressedContact {
     fn cells(&self) -> PressedCells<'_> {
         PressedCells { cells: &self.cells, pressure: &self.pressure }
     }
@@ -34,7 +34,7 @@ impl Pressed {
 }
 
 /// A rough surface under some forces.
-fn pressed(n: usize, seed: u64, boundary: Boundary, forces: &[f64]) -> (Grid, Vec<Pressed>) {
+fn pressed(n: usize, seed: u64, boundary: Boundary, forces: &[f64]) -> (Grid, Vec<PressedContact>) {
     let surface = SelfAffine::new(2.4, 1.0, 1.0).map(Surface::SelfAffine).unwrap();
     let mut scene = Scene::new(surface, 1.0);
     scene.effects.boundary = boundary;
@@ -48,13 +48,13 @@ fn pressed(n: usize, seed: u64, boundary: Boundary, forces: &[f64]) -> (Grid, Ve
         let field: Vec<f64> = state.pressure().unwrap().values().iter().map(|p| p * unit).collect();
         let cells = CellSet::of_grid(grid, &field, |p| p > 0.0);
         let pressure = field.into_iter().filter(|p| *p > 0.0).collect();
-        Pressed { cells, pressure, approach: state.approach.unwrap_or(0.0) }
+        PressedContact { cells, pressure, approach: state.approach.unwrap_or(0.0) }
     });
     (grid, states.collect())
 }
 
-fn friction(grid: Grid, boundary: Boundary, c: f64) -> Friction {
-    Friction::new(grid, boundary, [c, 0.0], &Tuning::DEFAULT, &Recorder::default())
+fn friction(grid: Grid, boundary: Boundary, c: f64) -> FrictionSolver {
+    FrictionSolver::new(grid, boundary, [c, 0.0], &Tuning::DEFAULT, &Recorder::default())
 }
 
 fn load(control: TangentialControl) -> FrictionLoad {
@@ -63,9 +63,9 @@ fn load(control: TangentialControl) -> FrictionLoad {
 
 /// One increment, converged.
 fn advance(
-    friction: &mut Friction,
+    friction: &mut FrictionSolver,
     before: &SlipMemory,
-    pressed: &Pressed,
+    pressed: &PressedContact,
     control: TangentialControl,
 ) -> FrictionState {
     let state = friction.advance(before, pressed.cells(), load(control), None, LIMITS, &never).unwrap();
@@ -173,7 +173,7 @@ fn paths_are_those_of_the_dense_oracle() {
 }
 
 /// Applies the tensor to the tractions of a state and gives the stored energy of it and of a change.
-fn energies(friction: &mut Friction, [a, b]: [&SlipMemory; 2]) -> [f64; 3] {
+fn energies(friction: &mut FrictionSolver, [a, b]: [&SlipMemory; 2]) -> [f64; 3] {
     let cells = a.cells.union(&b.cells);
     let on_both = |memory: &SlipMemory| -> Vec<f64> {
         if memory.cells.is_empty() {
@@ -242,7 +242,7 @@ fn a_turned_and_a_mirrored_surface_have_the_turned_and_mirrored_tractions() {
         }
         let set = CellSet::of_grid(grid, &field, |p| p > 0.0);
         let pressure: Vec<f64> = field.iter().copied().filter(|p| *p > 0.0).collect();
-        let moved = Pressed { cells: set.clone(), pressure, approach: 0.0 };
+        let moved = PressedContact { cells: set.clone(), pressure, approach: 0.0 };
         let mut solver = friction(grid, Boundary::Free, 0.43);
         let state = advance(&mut solver, &SlipMemory::default(), &moved, TangentialControl::Force(force));
         let q = |component: usize, (x, y): (usize, usize)| {
@@ -312,7 +312,7 @@ fn limits_of_the_coefficient_and_of_the_number_of_cells() {
     let all = &states[0];
     let mut solver = friction(grid, Boundary::Free, 0.43);
     let begin = SlipMemory::default();
-    let solve = |solver: &mut Friction, mu: f64, control| {
+    let solve = |solver: &mut FrictionSolver, mu: f64, control| {
         let state = solver
             .advance(
                 &begin,
@@ -377,7 +377,7 @@ fn one_and_two_cells_by_hand() {
     for cells in [vec![14], vec![14, 21], vec![14, 16]] {
         let set = CellSet::from_index(grid, &cells);
         let pressure = vec![1.0; cells.len()];
-        let pressed = Pressed { cells: set, pressure, approach: 0.0 };
+        let pressed = PressedContact { cells: set, pressure, approach: 0.0 };
         let (x, y) = ((cells.last().unwrap() % 6) - 2, cells.last().unwrap() / 6 - 2);
         let ([own, _, _], [xx, yy, xy]) = (table.lag(0, 0), table.lag(x as usize, y as usize));
         let pair = if cells.len() == 1 { [own, own, 0.0] } else { [own + xx, own + yy, xy] };
@@ -407,7 +407,7 @@ fn stiffnesses_are_difference_quotients() {
         let mut solver = friction(grid, boundary, 0.43);
         let most = all.friction();
         let limits = FrictionLimits { tolerance: 1e-14, ..LIMITS };
-        let advance = |solver: &mut Friction, before: &SlipMemory, control| {
+        let advance = |solver: &mut FrictionSolver, before: &SlipMemory, control| {
             solver.advance(before, all.cells(), load(control), None, limits, &never).unwrap()
         };
         let begin = SlipMemory::default();

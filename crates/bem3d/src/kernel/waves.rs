@@ -55,7 +55,8 @@ impl Integrand {
 /// The symbol at the waves of a grid, `[kx * (rows / 2 + 1) + ky]`, 0 at the mean.
 pub(super) fn symbol(grid: Grid, integrand: Integrand) -> Vec<f64> {
     let (a, b) = grid.cell();
-    let (along_x, along_y) = (Interpolation::new(grid.columns, a / b), Interpolation::new(grid.rows, b / a));
+    let (along_x, along_y) =
+        (WaveInterpolation::new(grid.columns, a / b), WaveInterpolation::new(grid.rows, b / a));
     let weights = alternating_weights();
     let symmetric = grid.has_square_cells() && integrand == Integrand::Normal;
     let alias = |x: f64, y: f64| {
@@ -97,14 +98,14 @@ fn first(integrand: Integrand, x: f64, y: f64, a: f64, b: f64) -> f64 {
 /// The contribution of the waves that the grid does not distinguish from q (aliases) is analytic for
 /// `|x| < 2 pi` and `|Im x| < (a/b) pi`, so that polynomials in `2 (x/pi)^2 - 1` represent it: few of them
 /// unless the cells are oblong.
-struct Interpolation {
+struct WaveInterpolation {
     /// The nodes at which values are needed.
     nodes: Vec<f64>,
     /// Weights of the values at each wave; empty where the nodes are the waves.
     weights: Vec<Vec<f64>>,
 }
 
-impl Interpolation {
+impl WaveInterpolation {
     /// For the waves `2 pi k / n`, `k = 0 ..= n/2`; `aspect` is that of the cell, along over across.
     fn new(n: usize, aspect: f64) -> Self {
         let waves: Vec<f64> = (0..=n / 2).map(|k| TAU * k as f64 / n as f64).collect();
@@ -189,7 +190,7 @@ mod tests {
         for aspect in [1.0f64, 4.0, 0.1] {
             let (a, b) = (aspect.sqrt(), aspect.sqrt().recip());
             let (nx, ny) = (2000, 600);
-            let (along_x, along_y) = (Interpolation::new(nx, a / b), Interpolation::new(ny, b / a));
+            let (along_x, along_y) = (WaveInterpolation::new(nx, a / b), WaveInterpolation::new(ny, b / a));
             assert!(!along_x.weights.is_empty() && !along_y.weights.is_empty());
             let value = |y: f64| -> Vec<f64> {
                 along_x.nodes.iter().map(|&x| aliases(Integrand::Normal, &weights, x, y, a, b)).collect()

@@ -2,13 +2,13 @@
 
 use super::certificate::GROWTH;
 use super::load::{LoadSequence, ScaledLoad, ScaledNormal, ScaledTangential};
-use super::memory::Memory;
+use super::memory::IndentationMemory;
 use super::options::NAME;
 use super::prepared::PreparedSurface;
 use super::sliding::Slid;
 use super::state::{NormalSolution, returned};
 use crate::active_set::Bounds;
-use crate::adhesion::{AdhesiveControl, Attraction, Ended, Equilibrium, Law, Search, energy};
+use crate::adhesion::{AdhesiveControl, Attraction, AttractionLaw, Ended, Equilibrium, Search, energy};
 use crate::friction::PressedCells;
 use crate::geometry::CellSet;
 use crate::kernel::Evidence;
@@ -65,7 +65,7 @@ struct Reached {
 }
 
 /// An equilibrium that was found at a load.
-pub(super) struct Found {
+pub(super) struct EquilibriumFound {
     pub equilibrium: Equilibrium,
     response: Response,
     control: AdhesiveControl,
@@ -166,7 +166,8 @@ impl AdhesiveContact<'_> {
                 let (before, memory) = (self.last.take(), self.surface.memory.clone());
                 if memory.is_none() && self.surface.hardness.is_some() {
                     // What flows without a force stays under the pull, also of a single load.
-                    self.surface.memory = Some(Memory::new(self.surface.problem.candidates.shared()));
+                    self.surface.memory =
+                        Some(IndentationMemory::new(self.surface.problem.candidates.shared()));
                 }
                 let touched = self.step_to(AdhesiveControl::Force(0.0), None, LoadSequence::Path, stop);
                 let held = touched.and_then(|touched| {
@@ -226,7 +227,7 @@ impl AdhesiveContact<'_> {
         before: Option<(&Equilibrium, LoadSequence)>,
         tolerance: Option<f64>,
         stop: Stop<'_>,
-    ) -> Result<Found> {
+    ) -> Result<EquilibriumFound> {
         let last = before.map(|(last, _)| last);
         let rises = last.is_none_or(|last| self.rises(control, last));
         // Under a hardness there is one kind of update.
@@ -273,7 +274,7 @@ impl AdhesiveContact<'_> {
             let stable = response.stability > 0.0;
             let status = if status == Status::Converged && !stable { Status::Stagnated } else { status };
             let load_error = search_error;
-            return Ok(Found { equilibrium, response, control, status, load_error });
+            return Ok(EquilibriumFound { equilibrium, response, control, status, load_error });
         }
     }
 
@@ -305,11 +306,11 @@ impl AdhesiveContact<'_> {
     /// The state that is returned.
     fn finish(
         &mut self,
-        found: Found,
+        found: EquilibriumFound,
         tangential: Option<ScaledTangential>,
         stop: Stop<'_>,
     ) -> Result<Reached> {
-        let Found { equilibrium, response, control, status, load_error } = found;
+        let EquilibriumFound { equilibrium, response, control, status, load_error } = found;
         let branch = match &*self.last {
             Some(last) if self.same_load(control, &last.equilibrium) => last.branch,
             Some(last) if !self.rises(control, &last.equilibrium) => Branch::Withdrawal,
@@ -426,7 +427,11 @@ fn attraction(surface: &PreparedSurface, adhesion: Adhesion) -> Result<Option<At
         // Without work the states without adhesion, bit by bit.
         Adhesion::ShortRange { work } | Adhesion::FiniteRange { work, .. } if work <= 0.0 => return Ok(None),
         Adhesion::FiniteRange { work, range, law } => {
-            let law = Law { peak: work / range / unit, range: units.approach_in(range), shape: law.into() };
+            let law = AttractionLaw {
+                peak: work / range / unit,
+                range: units.approach_in(range),
+                shape: law.into(),
+            };
             ("range of adhesion", range, Attraction::of(law))
         }
         Adhesion::ShortRange { work } => {

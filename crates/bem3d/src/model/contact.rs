@@ -6,13 +6,13 @@ use super::certificate::LoadError;
 use super::increment::pressed;
 use super::load::{LoadSequence, ScaledLoad, ScaledNormal, ScaledTangential};
 use super::options::{Bem3d, bytes_per_cell, friction_bytes_per_cell};
-use super::path_memory::{Place, Remembered};
+use super::path_memory::{PlaceInLoads, Remembered};
 use super::prepared::{PreparedSurface, Tangent};
-use super::sliding::Sliding;
+use super::sliding::SurfaceFriction;
 use crate::active_set::{self, Control, Limits, Solved};
 use crate::geometry::{CellSet, Grid};
 use crate::parts::{Part, Recorder};
-use crate::response::normal::{self, Responding, Wanted};
+use crate::response::normal::{self, Responding, StiffnessRequest};
 use crate::tuning::Tuning;
 use contact_model::{
     ContactState, Error, Load, NormalLoad, Normalisation, PathMemory, PreparedContact, RequiredMemory,
@@ -29,7 +29,7 @@ pub struct PreparedBem3d {
     surface: PreparedSurface,
     /// `None` without adhesion.
     adhesion: Option<AdhesivePath>,
-    place: Place,
+    place: PlaceInLoads,
 }
 
 impl PreparedBem3d {
@@ -43,7 +43,7 @@ impl PreparedBem3d {
     ) -> Result<Self> {
         let mut surface = PreparedSurface::new(model, scene, seed, tuning, recorder)?;
         let adhesion = AdhesivePath::of(&mut surface, scene.effects.adhesion)?;
-        let place = Place { loads: LoadSequence::Single, solved: None, time: 0.0 };
+        let place = PlaceInLoads { loads: LoadSequence::Single, solved: None, time: 0.0 };
         Ok(Self { surface, adhesion, place })
     }
 
@@ -98,7 +98,7 @@ impl PreparedBem3d {
 
     /// Takes the virgin surface again.
     fn begin(&mut self, loads: LoadSequence) {
-        self.place = Place { loads, solved: None, time: 0.0 };
+        self.place = PlaceInLoads { loads, solved: None, time: 0.0 };
         self.surface.begin(loads == LoadSequence::Path);
         if let Some(adhesion) = &mut self.adhesion {
             adhesion.last = None;
@@ -209,7 +209,7 @@ impl PreparedSurface {
         stop: Stop<'_>,
     ) -> Result<ContactState> {
         self.begin_count();
-        if self.sliding.as_ref().is_some_and(Sliding::is_coupled) {
+        if self.sliding.as_ref().is_some_and(SurfaceFriction::is_coupled) {
             return self.at_coupled(target, tangential, stop);
         }
         let (solved, tangent) = self.settle(target, self.limits(), stop);
@@ -315,13 +315,13 @@ impl PreparedSurface {
     ) -> Tangent {
         let responding = self.responding(solved);
         let (problem, tolerance) = (&mut self.problem, self.options.tolerance);
-        let wanted = Wanted { tolerance, q, expected: k };
+        let wanted = StiffnessRequest { tolerance, q, expected: k };
         let stiffness = normal::solve_of_zero_mean(problem, solved, &responding, wanted, stop);
         let another = responding.cells.len() != solved.contact.len();
         let wanted = another && self.outputs.needs_fixed_area() && !self.is_full(&solved.contact);
         let whole = wanted.then(|| {
             let whole = Responding::whole(solved, self.problem.bounds);
-            let wanted = Wanted { tolerance, q: of_whole, expected: None };
+            let wanted = StiffnessRequest { tolerance, q: of_whole, expected: None };
             normal::solve_of_zero_mean(&mut self.problem, solved, &whole, wanted, stop)
         });
         Tangent { stiffness, cells: responding.cells.into_owned(), whole }
@@ -334,7 +334,7 @@ impl PreparedSurface {
             return f64::INFINITY;
         }
         let responding = self.responding(solved);
-        let wanted = Wanted { tolerance: ROUGH, ..Wanted::default() };
+        let wanted = StiffnessRequest { tolerance: ROUGH, ..StiffnessRequest::default() };
         let found = normal::solve(&mut self.problem, solved, &responding, wanted, stop);
         let k = found.k() * (1.0 + found.solve_error.min(1.0));
         k * self.magnification(k)

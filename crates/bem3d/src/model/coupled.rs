@@ -9,7 +9,7 @@ use super::increment::{TIGHTENINGS, branch_error, further};
 use super::load::ScaledTangential;
 use super::options::NAME;
 use super::prepared::{PreparedSurface, Tangent};
-use super::sliding::{Slid, Sliding};
+use super::sliding::{Slid, SurfaceFriction};
 use crate::active_set::{Candidates, Control, Guess, Limits, Solved};
 use crate::friction::{
     CoupledLoad, CoupledState, FrictionLimits, FrictionLoad, SlipMemory, TangentialControl, advance_coupled,
@@ -60,7 +60,7 @@ impl PreparedSurface {
     /// The pressure, its tangent where the stiffness at a fixed contact area is asked for, and the tractions.
     fn solve_coupled(
         &mut self,
-        sliding: &mut Sliding,
+        sliding: &mut SurfaceFriction,
         target: Control,
         ScaledTangential { control, prescribed }: ScaledTangential,
         stop: Stop<'_>,
@@ -142,13 +142,13 @@ impl PreparedSurface {
     /// The state at the end of a step of both loads.
     fn advance_both(
         &mut self,
-        sliding: &mut Sliding,
+        sliding: &mut SurfaceFriction,
         step: CoupledStep<'_>,
         limits: CoupledLimits,
         near: (Option<Guess>, Option<SlipMemory>),
         stop: Stop<'_>,
     ) -> Result<CoupledState> {
-        let Sliding { friction, law, undeformed, .. } = sliding;
+        let SurfaceFriction { friction, law, undeformed, .. } = sliding;
         let CoupledStep { before, normal, tangential: control } = step;
         let load = CoupledLoad {
             normal,
@@ -165,7 +165,7 @@ impl PreparedSurface {
     /// meets the tolerance that was asked for.
     fn tighten(
         &mut self,
-        sliding: &mut Sliding,
+        sliding: &mut SurfaceFriction,
         step: CoupledStep<'_>,
         limits: CoupledLimits,
         state: &mut CoupledState,
@@ -202,7 +202,7 @@ impl PreparedSurface {
     /// change. `None` where no step can be solved, as where the tangential force is all that friction holds.
     fn quotient(
         &mut self,
-        sliding: &mut Sliding,
+        sliding: &mut SurfaceFriction,
         state: &CoupledState,
         tangential: TangentialControl,
         limits: CoupledLimits,

@@ -4,10 +4,10 @@
 use super::load::ScaledTangential;
 use super::options::{Bem3d, NAME};
 use super::prepared::PreparedSurface;
-use super::sliding::{Slid, Sliding};
+use super::sliding::{Slid, SurfaceFriction};
 use crate::active_set::{Candidates, Solved};
 use crate::friction::{
-    ForceTooLarge, Friction, FrictionLimits, FrictionLoad, FrictionState, PressedCells, SlipMemory,
+    ForceTooLarge, FrictionLimits, FrictionLoad, FrictionSolver, FrictionState, PressedCells, SlipMemory,
     TangentialControl,
 };
 use crate::geometry::CellSet;
@@ -59,12 +59,12 @@ impl PreparedSurface {
 
     fn slide_by(
         &mut self,
-        sliding: &mut Sliding,
+        sliding: &mut SurfaceFriction,
         contact: PressedCells<'_>,
         ScaledTangential { control, prescribed }: ScaledTangential,
         stop: Stop<'_>,
     ) -> Result<Slid> {
-        let Sliding { friction, law, before, .. } = sliding;
+        let SurfaceFriction { friction, law, before, .. } = sliding;
         let (mut limits, tolerance) = (self.friction_limits(), self.options.tolerance);
         let work = friction.work();
         let load = FrictionLoad { law: *law, control };
@@ -94,7 +94,7 @@ impl PreparedSurface {
     /// force moves.
     pub(super) fn tangential_stiffness(
         &self,
-        friction: &mut Friction,
+        friction: &mut FrictionSolver,
         state: &FrictionState,
         stop: Stop<'_>,
     ) -> [Option<TangentialStiffness>; 2] {

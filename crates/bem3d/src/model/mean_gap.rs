@@ -6,7 +6,7 @@ use super::increment::pressed;
 use super::load::ScaledTangential;
 use super::options::NAME;
 use super::prepared::{PreparedSurface, Tangent};
-use super::sliding::Sliding;
+use super::sliding::SurfaceFriction;
 use crate::active_set::{Bounds, Control, Solved};
 use crate::tuning::{FLOWING_GAP_LOADS, GAP_LOADS, GAP_STEP, POLISHED_GAP, POLISHING_LOADS};
 use contact_model::{ContactState, Error, Result, Status, Stop};
@@ -46,7 +46,7 @@ impl PreparedSurface {
                 expected,
             ));
         }
-        if self.sliding.as_ref().is_some_and(Sliding::is_coupled) {
+        if self.sliding.as_ref().is_some_and(SurfaceFriction::is_coupled) {
             let what = "a mean gap with full coupling: prescribe a force or a pressure";
             return Err(Error::unsupported(NAME, what));
         }

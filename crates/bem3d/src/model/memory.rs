@@ -14,7 +14,7 @@ use std::sync::Arc;
 /// saturated, and the stiffness is that of a load that goes on in the direction of its last change. With
 /// growing load they flow, with falling load they do not.
 #[derive(Debug, Clone)]
-pub(super) struct Memory {
+pub(super) struct IndentationMemory {
     /// Undeformed gaps of the virgin surface.
     pub virgin: Arc<Vec<f64>>,
     /// Depth of the plastic indentation, nondimensional, row-major; it is in the gaps of the problem.
@@ -25,7 +25,7 @@ pub(super) struct Memory {
     rising: bool,
 }
 
-impl Memory {
+impl IndentationMemory {
     /// The memory of a virgin surface.
     pub fn new(virgin: Arc<Vec<f64>>) -> Self {
         Self { indentation: vec![0.0; virgin.len()], virgin, force: 0.0, rising: true }

@@ -9,7 +9,7 @@
 
 use super::adhesive::{AdhesivePath, Last};
 use super::load::{LoadSequence, ScaledLoad};
-use super::memory::Memory;
+use super::memory::IndentationMemory;
 use super::prepared::PreparedSurface;
 use crate::active_set::{Candidates, LastState};
 use crate::friction::SlipMemory;
@@ -20,7 +20,7 @@ use std::borrow::Cow;
 /// All that a contact remembers of its loads.
 #[derive(Serialize, Deserialize)]
 pub(super) struct Remembered<'a> {
-    pub place: Place,
+    pub place: PlaceInLoads,
     /// The start of the solve of the next load.
     last: Option<Cow<'a, LastState>>,
     hardness: Option<Indented>,
@@ -31,7 +31,7 @@ pub(super) struct Remembered<'a> {
 
 /// Where a contact is in its loads.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub(super) struct Place {
+pub(super) struct PlaceInLoads {
     pub loads: LoadSequence,
     /// The single load that was solved last, from which a path goes on.
     pub solved: Option<ScaledLoad>,
@@ -57,7 +57,7 @@ struct Slipped<'a> {
 
 impl<'a> Remembered<'a> {
     /// The memory of a surface at a place in its loads, and of its adhesion.
-    pub fn of(place: Place, surface: &'a PreparedSurface, adhesive: Option<&'a Last>) -> Self {
+    pub fn of(place: PlaceInLoads, surface: &'a PreparedSurface, adhesive: Option<&'a Last>) -> Self {
         let grid = surface.problem.grid();
         Self {
             place,
@@ -106,7 +106,7 @@ impl<'a> Remembered<'a> {
 }
 
 impl Indented {
-    fn of(grid: Grid, memory: &Memory) -> Self {
+    fn of(grid: Grid, memory: &IndentationMemory) -> Self {
         let cells = CellSet::of_grid(grid, &memory.indentation, |depth| depth > 0.0);
         let depth = cells.index(grid).map(|i| memory.indentation[i]).collect();
         let (force, rising) = memory.reached();

@@ -12,7 +12,7 @@ use proptest::prelude::*;
 use std::sync::Arc;
 
 /// A contact of a few cells, in physical units with E* = 1.
-struct Dense {
+struct DenseContact {
     n: usize,
     matrix: Vec<f64>,
     z: Vec<f64>,
@@ -25,7 +25,7 @@ struct Dense {
     d: f64,
 }
 
-impl Dense {
+impl DenseContact {
     fn new(map: &HeightMap, boundary: Boundary, [hardness, peak, range]: [f64; 3], dugdale: bool) -> Self {
         let grid = Grid::of(map);
         let table = NormalTable::shared(grid, boundary);
@@ -99,14 +99,14 @@ impl Dense {
     }
 
     /// The equilibrium of a load, from the last one. `None` where the attraction cannot hold it.
-    fn step(&mut self, load: Prescribed) -> Option<()> {
+    fn step(&mut self, load: DenseLoad) -> Option<()> {
         for _ in 0..2000 {
             match load {
-                Prescribed::Approach(d) => {
+                DenseLoad::Approach(d) => {
                     self.d = d;
                     self.press();
                 }
-                Prescribed::Force(force) => {
+                DenseLoad::Force(force) => {
                     let wanted = force + self.s.iter().sum::<f64>();
                     if wanted <= 0.0 {
                         return None;
@@ -137,7 +137,7 @@ impl Dense {
 }
 
 #[derive(Debug, Clone, Copy)]
-enum Prescribed {
+enum DenseLoad {
     Approach(f64),
     Force(f64),
 }
@@ -176,21 +176,21 @@ proptest! {
         scene.outputs = contact_model::Outputs { area: true, pressure: true, ..Default::default() };
         let model = Bem3d { tolerance: 1e-9, ..Bem3d::default() };
         let mut path = model.prepare(&scene, 0).unwrap();
-        let mut dense = Dense::new(&map, boundary, [hardness, work / range, range], dugdale);
+        let mut dense = DenseContact::new(&map, boundary, [hardness, work / range, range], dugdale);
         let (cell, cells) = (map.dx() * map.dy(), dense.n as f64);
         // The last load pulls.
         let loads = if periodic {
             let capacity = hardness * cells;
-            [0.1, 0.5, 0.9, 0.3, 0.05].map(|share| Prescribed::Force(5.0 * share * most * capacity)).to_vec()
+            [0.1, 0.5, 0.9, 0.3, 0.05].map(|share| DenseLoad::Force(5.0 * share * most * capacity)).to_vec()
         } else {
-            [0.3, 1.0, 0.6, 0.2, 1.1].map(|share| Prescribed::Approach(share * most)).to_vec()
+            [0.3, 1.0, 0.6, 0.2, 1.1].map(|share| DenseLoad::Approach(share * most)).to_vec()
         };
-        let pulled = if periodic { Prescribed::Force(-0.3 * dense.peak) } else { Prescribed::Approach(-0.5 * range) };
-        let loads: Vec<Prescribed> = loads.into_iter().chain([pulled]).collect();
+        let pulled = if periodic { DenseLoad::Force(-0.3 * dense.peak) } else { DenseLoad::Approach(-0.5 * range) };
+        let loads: Vec<DenseLoad> = loads.into_iter().chain([pulled]).collect();
         for (time, load) in loads.into_iter().enumerate() {
             let step = match load {
-                Prescribed::Approach(d) => Load::approach(d),
-                Prescribed::Force(force) => Load::force(force * cell),
+                DenseLoad::Approach(d) => Load::approach(d),
+                DenseLoad::Force(force) => Load::force(force * cell),
             };
             let state = path.advance(Step::new(time as f64, step));
             let reference = dense.step(load);

@@ -1,9 +1,9 @@
 //! One surface, ready to be loaded.
 
-use super::memory::Memory;
+use super::memory::IndentationMemory;
 use super::options::{Bem3d, Method, NAME};
 use super::profile;
-use super::sliding::Sliding;
+use super::sliding::SurfaceFriction;
 use crate::active_set::{self, Bounds, Candidates, Control, Guess, LastState, Limits, Problem, Solved};
 use crate::geometry::{CellSet, Grid};
 use crate::parts::Recorder;
@@ -55,9 +55,9 @@ pub struct PreparedSurface {
     pub(super) defined: usize,
     pub(super) last: Option<LastState>,
     /// The memory of a path with a hardness; `None` without a path.
-    pub(super) memory: Option<Memory>,
+    pub(super) memory: Option<IndentationMemory>,
     /// Friction, and what it remembers of a path.
-    pub(super) sliding: Option<Sliding>,
+    pub(super) sliding: Option<SurfaceFriction>,
     /// Sides of the map.
     pub(super) size: Size,
     /// Whether it is a profile: a body uniform along y.
@@ -129,7 +129,7 @@ impl PreparedSurface {
             problem.bounds = Bounds::UpTo(upper);
             hardness = Some(upper);
         }
-        let sliding = Sliding::new(scene, &problem, nondimensional, (tuning, recorder))?;
+        let sliding = SurfaceFriction::new(scene, &problem, nondimensional, (tuning, recorder))?;
         let normalisation = Normalisation {
             contact_modulus: scene.contact_modulus,
             length: map.length(),
@@ -165,12 +165,12 @@ impl PreparedSurface {
             sliding.begin();
         }
         if path && self.problem.bounds != Bounds::Unlimited {
-            self.memory = Some(Memory::new(self.problem.candidates.shared()));
+            self.memory = Some(IndentationMemory::new(self.problem.candidates.shared()));
         }
     }
 
     /// Returns to another memory of a path; without one the surface is the virgin one.
-    pub(super) fn take_memory(&mut self, memory: Option<Memory>) {
+    pub(super) fn take_memory(&mut self, memory: Option<IndentationMemory>) {
         let gaps = match (&memory, &self.memory) {
             (Some(memory), _) => memory.indented(),
             (None, Some(now)) => Arc::clone(&now.virgin),

@@ -2,7 +2,7 @@
 
 use super::options::NAME;
 use crate::active_set::Problem;
-use crate::friction::{Friction, FrictionState, SlipMemory};
+use crate::friction::{FrictionSolver, FrictionState, SlipMemory};
 use crate::geometry::CellSet;
 use crate::parts::Recorder;
 use crate::response::TangentialStiffness;
@@ -15,8 +15,8 @@ use std::sync::Arc;
 
 /// The friction of a surface.
 #[derive(Debug)]
-pub(super) struct Sliding {
-    pub(super) friction: Friction,
+pub(super) struct SurfaceFriction {
+    pub(super) friction: FrictionSolver,
     /// The law, for nondimensional pressures and tractions.
     pub(super) law: FrictionLaw,
     /// Whether it acts on the attached share of each cell in place of its pressure.
@@ -74,7 +74,7 @@ impl Slid {
     }
 }
 
-impl Sliding {
+impl SurfaceFriction {
     /// The friction of a scene on the cells of a problem; `None` without.
     ///
     /// # Errors
@@ -95,7 +95,7 @@ impl Sliding {
         let beta = if coupling == Some(Coupling::Full) { pair.coupling()? } else { 0.0 };
         let boundary = problem.operators.table().boundary();
         Ok(Some(Self {
-            friction: Friction::new(problem.grid(), boundary, [compliance, beta], tuning, recorder),
+            friction: FrictionSolver::new(problem.grid(), boundary, [compliance, beta], tuning, recorder),
             law: nondimensional(law, units)?,
             on_shares: false,
             undeformed: problem.candidates.shared(),

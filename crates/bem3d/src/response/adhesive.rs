@@ -20,9 +20,9 @@
 //! touches, that is singular: the force is free, and there is no stiffness.
 
 use super::normal::{of_held_cells, of_zero_mean};
-use super::{Conditions, Correction, Goal, NormalStiffness, refine};
+use super::{Conditions, Goal, NormalStiffness, StiffnessCorrection, refine};
 use crate::active_set::Problem;
-use crate::adhesion::{AdhesiveControl, Attraction, Equilibrium, Near, Pairs, Shape};
+use crate::adhesion::{AdhesiveControl, Attraction, Equilibrium, LawShape, Near, Pairs};
 use crate::geometry::CellSet;
 use crate::linear::{Energy, Fixed, StoppingCriteria};
 use crate::real::{dot, each, largest, sum, update};
@@ -61,7 +61,7 @@ pub struct Response {
 }
 
 /// The linearised problem of a state.
-struct Linearised<'a> {
+struct LinearisedAdhesion<'a> {
     problem: &'a mut Problem,
     contact: CellSet,
     open: CellSet,
@@ -93,7 +93,7 @@ struct Reduced {
     smallest: f64,
 }
 
-impl Linearised<'_> {
+impl LinearisedAdhesion<'_> {
     /// `G_CC^-1 r`, in place; returns the energy of r.
     fn contact_solve(&mut self, r: &mut [f64], reduction: f64, energy: Option<Energy>) -> f64 {
         let Problem { operators, workspace, .. } = &mut *self.problem;
@@ -264,7 +264,7 @@ pub fn respond(
     let is_open = both.carry(&open, &vec![1.0; open.len()]);
     let on = (problem.grid(), problem.operators.table().boundary());
     let near = Near::of(attraction, on, &both, &is_open);
-    let mut linearised = Linearised {
+    let mut linearised = LinearisedAdhesion {
         problem,
         contact,
         open,
@@ -287,7 +287,7 @@ pub fn respond(
         AdhesiveControl::Plane(_) => stiffness,
     };
     let mut response = Response { stability, stiffness, steps };
-    if law.shape == Shape::Uniform {
+    if law.shape == LawShape::Uniform {
         response.stability = (state.pressure.iter().zip(&state.gap))
             .filter(|(p, _)| **p <= 0.0)
             .map(|(_, g)| (g / law.range - 1.0).abs())
@@ -319,7 +319,7 @@ pub fn fixed_area(
     found.solve_error.is_finite().then_some(found)
 }
 
-impl Linearised<'_> {
+impl LinearisedAdhesion<'_> {
     /// The stiffness where it is wanted, and the stability.
     fn stiffness(&mut self) -> Option<NormalStiffness> {
         if self.both.is_empty() {
@@ -337,7 +337,7 @@ impl Linearised<'_> {
 
 /// The numbers are the net pressures of the contact and of the open cells, and after them the openings of the
 /// open cells, whose attractions follow these exactly.
-impl Conditions<1, 1> for Linearised<'_> {
+impl Conditions<1, 1> for LinearisedAdhesion<'_> {
     const DEFINITE: bool = false;
 
     fn displacements(&self) -> [Vec<f64>; 1] {
@@ -362,7 +362,7 @@ impl Conditions<1, 1> for Linearised<'_> {
         true
     }
 
-    fn correct(&mut self, [r]: &mut [Vec<f64>; 1], goal: Goal<1>) -> Option<Correction<1>> {
+    fn correct(&mut self, [r]: &mut [Vec<f64>; 1], goal: Goal<1>) -> Option<StiffnessCorrection<1>> {
         let before = self.steps;
         let (contact, open) = (self.contact.clone(), self.open.clone());
         let (r, opening) = r.split_at_mut(self.both.len());
@@ -377,7 +377,7 @@ impl Conditions<1, 1> for Linearised<'_> {
         let left = dot(&magnitudes, &self.answer(&magnitudes));
         let energy = [energy.abs() + left / self.stability.unwrap_or(1.0).max(f64::MIN_POSITIVE)];
         if goal.only_energy || energy[0] < goal.enough * goal.bases[0].abs() {
-            return Some(Correction { energy, steps: None });
+            return Some(StiffnessCorrection { energy, steps: None });
         }
         // The open cells.
         let first = self.stability.is_none();
@@ -405,7 +405,7 @@ impl Conditions<1, 1> for Linearised<'_> {
         self.both.add_carried(&contact, &on_contact, r);
         self.both.add_carried(&open, &on_open, r);
         opening.copy_from_slice(&opened);
-        Some(Correction { energy, steps: Some(self.steps - before) })
+        Some(StiffnessCorrection { energy, steps: Some(self.steps - before) })
     }
 
     fn set_error(&self, _: &[Vec<f64>; 1]) -> f64 {

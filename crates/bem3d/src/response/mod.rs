@@ -100,7 +100,7 @@ pub trait Conditions<const N: usize, const E: usize> {
 
     /// Estimates the energy of a residual, solves `A x = r` roughly and writes x over r. `None` where these
     /// conditions have no response, which ends the refinement.
-    fn correct(&mut self, r: &mut [Vec<f64>; N], goal: Goal<N>) -> Option<Correction<E>>;
+    fn correct(&mut self, r: &mut [Vec<f64>; N], goal: Goal<N>) -> Option<StiffnessCorrection<E>>;
 
     /// Change of the stiffness that the uncertainty of the state allows, by X and its last residual.
     fn set_error(&self, x: &[Vec<f64>; N]) -> f64;
@@ -121,7 +121,7 @@ pub struct Goal<const N: usize> {
 
 /// What a correction found.
 #[derive(Debug, Clone, Copy)]
-pub struct Correction<const E: usize> {
+pub struct StiffnessCorrection<const E: usize> {
     /// Upper estimate of the energy `R' A^-1 R` of the residual before it, where A is not definite of its
     /// magnitude.
     pub energy: [f64; E],
@@ -141,7 +141,7 @@ pub fn refine<const N: usize, const E: usize, C: Conditions<N, E>>(
     stop: Stop<'_>,
 ) -> Stiffness<N, E>
 where
-    [f64; E]: Entries,
+    [f64; E]: StiffnessEntries,
 {
     let mut r = conditions.displacements();
     let mut x = guess;
@@ -211,7 +211,7 @@ impl<const N: usize> Products<N> {
     /// The stiffness, and the estimated error of its solve relative to its largest eigenvalue.
     fn stiffness<const E: usize>(&self, energy: [f64; E], definite: bool) -> ([f64; E], f64)
     where
-        [f64; E]: Entries,
+        [f64; E]: StiffnessEntries,
     {
         let forces = <[f64; E]>::of(|i, j| self.forces[i][j]);
         let left = <[f64; E]>::of(|i, j| self.left[i][j]);
@@ -231,7 +231,7 @@ fn relative(part: f64, whole: f64) -> f64 {
 }
 
 /// The entries of a symmetric matrix.
-pub trait Entries: Sized {
+pub trait StiffnessEntries: Sized {
     /// From its rows and columns.
     fn of(entry: impl Fn(usize, usize) -> f64) -> Self;
 
@@ -242,7 +242,7 @@ pub trait Entries: Sized {
     fn largest(self) -> f64;
 }
 
-impl Entries for [f64; 1] {
+impl StiffnessEntries for [f64; 1] {
     fn of(entry: impl Fn(usize, usize) -> f64) -> Self {
         [entry(0, 0)]
     }
@@ -256,7 +256,7 @@ impl Entries for [f64; 1] {
     }
 }
 
-impl Entries for [f64; 3] {
+impl StiffnessEntries for [f64; 3] {
     fn of(entry: impl Fn(usize, usize) -> f64) -> Self {
         [entry(0, 0), entry(1, 1), f64::midpoint(entry(0, 1), entry(1, 0))]
     }

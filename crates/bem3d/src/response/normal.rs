@@ -1,6 +1,6 @@
 //! The stiffness of the normal force on given cells, which keep their contact: `G q = 1`.
 
-use super::{Conditions, Correction, Goal, NormalStiffness, refine};
+use super::{Conditions, Goal, NormalStiffness, StiffnessCorrection, refine};
 use crate::active_set::{Bounds, Problem, Solved};
 use crate::geometry::CellSet;
 use crate::kernel::NormalTable;
@@ -124,7 +124,7 @@ impl Conditions<1, 1> for FixedSet<'_> {
         !rough
     }
 
-    fn correct(&mut self, [r]: &mut [Vec<f64>; 1], goal: Goal<1>) -> Option<Correction<1>> {
+    fn correct(&mut self, [r]: &mut [Vec<f64>; 1], goal: Goal<1>) -> Option<StiffnessCorrection<1>> {
         let Self { operators, workspace, stop, .. } = self;
         let tuning = *operators.tuning();
         if !std::mem::replace(&mut self.started, true) {
@@ -137,7 +137,10 @@ impl Conditions<1, 1> for FixedSet<'_> {
             steps: if goal.only_energy { 0 } else { tuning.stiffness_steps },
         };
         let outcome = workspace.solve(operators, r, Fixed::Approach, criteria, *stop);
-        Some(Correction { energy: [outcome.energy], steps: (!goal.only_energy).then_some(outcome.steps) })
+        Some(StiffnessCorrection {
+            energy: [outcome.energy],
+            steps: (!goal.only_energy).then_some(outcome.steps),
+        })
     }
 
     fn set_error(&self, [q]: &[Vec<f64>; 1]) -> f64 {
@@ -148,7 +151,7 @@ impl Conditions<1, 1> for FixedSet<'_> {
 
 /// What is asked of a stiffness.
 #[derive(Debug, Default)]
-pub struct Wanted {
+pub struct StiffnessRequest {
     /// Largest relative error of the solve, twice.
     pub tolerance: f64,
     /// That of a similar set to begin with.
@@ -166,7 +169,7 @@ pub fn solve(
     problem: &mut Problem,
     state: &Solved,
     responding: &Responding<'_>,
-    wanted: Wanted,
+    wanted: StiffnessRequest,
     stop: Stop<'_>,
 ) -> NormalStiffness {
     let cells = &*responding.cells;
@@ -176,7 +179,7 @@ pub fn solve(
     let factored = state.q.as_ref().filter(|q| q.len() == cells.len());
     let q = wanted.q.or_else(|| factored.cloned());
     let doubts = Doubts::of(problem, state, responding);
-    on_cells(problem, (cells, doubts), Wanted { q, ..wanted }, factored.is_some(), stop)
+    on_cells(problem, (cells, doubts), StiffnessRequest { q, ..wanted }, factored.is_some(), stop)
 }
 
 /// As [`solve`], to a tolerance of the stiffness of the kernel of zero mean, which the value still has to be
@@ -185,11 +188,11 @@ pub fn solve_of_zero_mean(
     problem: &mut Problem,
     state: &Solved,
     responding: &Responding<'_>,
-    wanted: Wanted,
+    wanted: StiffnessRequest,
     stop: Stop<'_>,
 ) -> NormalStiffness {
     let factored = state.q.as_ref().filter(|q| q.len() == responding.cells.len());
-    let wanted = Wanted { q: factored.cloned().or(wanted.q), ..wanted };
+    let wanted = StiffnessRequest { q: factored.cloned().or(wanted.q), ..wanted };
     to_magnified_tolerance(problem, wanted, factored.is_some(), stop, |problem, wanted| {
         solve(problem, state, responding, wanted, stop)
     })
@@ -202,7 +205,7 @@ pub fn of_held_cells(
     tolerance: f64,
     stop: Stop<'_>,
 ) -> NormalStiffness {
-    let wanted = Wanted { tolerance, ..Wanted::default() };
+    let wanted = StiffnessRequest { tolerance, ..StiffnessRequest::default() };
     let found = to_magnified_tolerance(problem, wanted, false, stop, |problem, wanted| {
         on_cells(problem, (cells, Doubts::default()), wanted, false, stop)
     });
@@ -232,10 +235,10 @@ pub fn of_zero_mean(found: NormalStiffness, constant: f64) -> NormalStiffness {
 /// Solves again where the error is magnified by more than was expected.
 fn to_magnified_tolerance(
     problem: &mut Problem,
-    mut wanted: Wanted,
+    mut wanted: StiffnessRequest,
     is_exact: bool,
     stop: Stop<'_>,
-    mut solve: impl FnMut(&mut Problem, Wanted) -> NormalStiffness,
+    mut solve: impl FnMut(&mut Problem, StiffnessRequest) -> NormalStiffness,
 ) -> NormalStiffness {
     let misjudged = problem.operators.tuning().misjudged;
     let constant = problem.operators.table().shift();
@@ -243,7 +246,7 @@ fn to_magnified_tolerance(
     let mut steps = 0;
     loop {
         let tolerance = wanted.tolerance / expected;
-        let mut found = solve(problem, Wanted { tolerance, q: wanted.q, expected: None });
+        let mut found = solve(problem, StiffnessRequest { tolerance, q: wanted.q, expected: None });
         steps += found.steps;
         found.steps = steps;
         let magnified = magnification(constant, found.k());
@@ -259,7 +262,7 @@ fn to_magnified_tolerance(
 fn on_cells(
     problem: &mut Problem,
     (cells, doubts): (&CellSet, Doubts),
-    wanted: Wanted,
+    wanted: StiffnessRequest,
     is_exact: bool,
     stop: Stop<'_>,
 ) -> NormalStiffness {

@@ -1,7 +1,7 @@
 //! The stiffness of the tangential force on a branch of friction, or with every cell stuck.
 
-use super::{Conditions, Correction, Goal, Stiffness, TangentialStiffness, refine};
-use crate::friction::{Branch, Friction, FrictionRoom, FrictionState, exact};
+use super::{Conditions, Goal, Stiffness, StiffnessCorrection, TangentialStiffness, refine};
+use crate::friction::{FrictionRoom, FrictionSolver, FrictionState, SlipBranch, exact};
 use crate::geometry::CellSet;
 use crate::law::total;
 use crate::linear::{Energy, StoppingCriteria, TORUS_ENERGY};
@@ -23,7 +23,7 @@ const LEAST_REDUCTION: f64 = 0.3;
 
 /// A slip cell of which the direction of the traction and of the slip are not known exactly.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Uncertain {
+struct UncertainCell {
     /// Its position.
     cell: usize,
     /// Direction of its traction.
@@ -53,11 +53,11 @@ struct OnBranch<'a> {
     room: &'a mut FrictionRoom,
     cells: &'a CellSet,
     /// The admissible changes of each cell.
-    branch: &'a Branch,
+    branch: &'a SlipBranch,
     /// Cells that may be on the other side of stick and slip.
     undecided: Vec<Undecided>,
     /// Slip cells whose direction and turning `|w|/b` are not known exactly.
-    uncertain: Vec<Uncertain>,
+    uncertain: Vec<UncertainCell>,
     /// Displacements under X.
     displaced: [Vec<f64>; 2],
     stop: Stop<'a>,
@@ -91,11 +91,11 @@ impl Conditions<2, 3> for OnBranch<'_> {
         true
     }
 
-    fn correct(&mut self, r: &mut [Vec<f64>; 2], goal: Goal<2>) -> Option<Correction<3>> {
+    fn correct(&mut self, r: &mut [Vec<f64>; 2], goal: Goal<2>) -> Option<StiffnessCorrection<3>> {
         let energy = self.energy(r);
         let is_enough = (0..2).all(|i| energy[i] < goal.enough * goal.bases[i]);
         if goal.only_energy || is_enough {
-            return Some(Correction { energy, steps: None });
+            return Some(StiffnessCorrection { energy, steps: None });
         }
         let tuning = *self.operators.tuning();
         let mut steps = 0;
@@ -111,7 +111,7 @@ impl Conditions<2, 3> for OnBranch<'_> {
             let criteria = StoppingCriteria { reduction, energy, floor: 0.0, steps: tuning.stiffness_steps };
             steps += self.solve(r, criteria);
         }
-        Some(Correction { energy, steps: Some(steps) })
+        Some(StiffnessCorrection { energy, steps: Some(steps) })
     }
 
     /// Of both directions together.
@@ -135,7 +135,7 @@ impl Conditions<2, 3> for OnBranch<'_> {
             });
             terms.sum()
         });
-        let uncertain = self.uncertain.iter().map(|&Uncertain { cell, radial, turning }| -> f64 {
+        let uncertain = self.uncertain.iter().map(|&UncertainCell { cell, radial, turning }| -> f64 {
             let terms = (0..2).map(|k| {
                 let moved = x[k][cell].hypot(x[k][n + cell]);
                 turning * moved * (moved + 2.0 * held_back(k, cell, radial).abs() / smallest)
@@ -175,19 +175,19 @@ impl OnBranch<'_> {
 ///
 /// Cost: about 20 applications for 1e-4.
 pub fn solve(
-    friction: &mut Friction,
+    friction: &mut FrictionSolver,
     state: &FrictionState,
     of: StiffnessOf,
     tolerance: f64,
     stop: Stop<'_>,
 ) -> TangentialStiffness {
-    let Friction { operators, room, .. } = friction;
+    let FrictionSolver { operators, room, .. } = friction;
     let cells = &state.memory.cells;
     if cells.is_empty() {
         return Stiffness::nothing();
     }
     let (branch, (undecided, uncertain)) = match of {
-        StiffnessOf::FullStick => (Branch::stuck(cells), (Vec::new(), Vec::new())),
+        StiffnessOf::FullStick => (SlipBranch::stuck(cells), (Vec::new(), Vec::new())),
         StiffnessOf::Branch => {
             let branch = state.branch(operators);
             let unknown = unknown(state, &branch, operators.table().smallest_eigenvalue());
@@ -207,7 +207,11 @@ pub fn solve(
 /// First the cells for which stick or slip is undecided: stick cells that the residual slip could bring to
 /// their limit, and slip cells whose slip is no larger than the residual one. Then the other slip cells,
 /// whose slip is known to the residual slip.
-fn unknown(state: &FrictionState, branch: &Branch, smallest: f64) -> (Vec<Undecided>, Vec<Uncertain>) {
+fn unknown(
+    state: &FrictionState,
+    branch: &SlipBranch,
+    smallest: f64,
+) -> (Vec<Undecided>, Vec<UncertainCell>) {
     let (n, q, w) = (state.limit.len(), &state.memory.traction, &state.slip);
     let slipped = |i: usize| w[i].hypot(w[n + i]);
     let squares: f64 = (0..n).filter(|&i| !branch.slips(i)).map(|i| slipped(i).powi(2)).sum();
@@ -221,7 +225,7 @@ fn unknown(state: &FrictionState, branch: &Branch, smallest: f64) -> (Vec<Undeci
         if length > 0.0 && doubtful {
             undecided.push(Undecided { cell, radial, sticks });
         } else if length > 0.0 && !sticks {
-            uncertain.push(Uncertain { cell, radial, turning: noise / limit });
+            uncertain.push(UncertainCell { cell, radial, turning: noise / limit });
         }
     }
     (undecided, uncertain)

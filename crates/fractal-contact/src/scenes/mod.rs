@@ -95,7 +95,7 @@ pub use read::entries::System;
 pub use read::error::{Error, Result};
 pub use read::generated_surface::{GeneratedSurface, write_map, write_twin};
 pub use read::key::SceneKey;
-pub use read::load_kind::LoadKind;
+pub use read::load_kind::PrescribedLoad;
 pub use read::loads::{AskedLoads, LoadList, LoadRequest};
 pub use read::numerics::Numerics;
 pub use read::outputs::{FieldFormat, RequestedOutputs};

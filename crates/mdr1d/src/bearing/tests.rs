@@ -7,12 +7,12 @@ use proptest::test_runner::RngSeed;
 const ROUNDING: f64 = 1e-14;
 
 /// The reference implementation: sums over all elements, force inverted by bisection.
-struct Reference {
+struct BearingReference {
     depths: Vec<f64>,
     element: f64,
 }
 
-impl Reference {
+impl BearingReference {
     fn new(line: &Line) -> Self {
         let depths = line.heights().iter().map(|h| line.highest() - h).collect();
         Self { depths, element: line.element() }
@@ -87,7 +87,7 @@ fn flat_lines_and_ties() {
     heights[17] = -1e6;
     heights[18] = 0.5;
     let line = Line::new(1.0, heights).unwrap();
-    let (mut bearing, reference) = (Bearing::new(&line), Reference::new(&line));
+    let (mut bearing, reference) = (Bearing::new(&line), BearingReference::new(&line));
     for d in [0.1, 0.5, 0.6, 1e5, 1e6 + 1.0, 1e6 + 2.0] {
         let s = bearing.press(NormalLoad::Approach(d), 1.0).unwrap();
         assert_relative_eq!(s.force, reference.force(d, 1.0), max_relative = ROUNDING);
@@ -100,7 +100,7 @@ fn flat_lines_and_ties() {
 #[test]
 fn a_long_line_equals_the_sums() {
     let line = long_line(40_000);
-    let (mut bearing, reference) = (Bearing::new(&line), Reference::new(&line));
+    let (mut bearing, reference) = (Bearing::new(&line), BearingReference::new(&line));
     assert!(bearing.bins.len() > 50);
     let height = line.highest() - range(line.heights()).0;
     for i in 0..60 {
@@ -232,7 +232,7 @@ proptest! {
     #[test]
     fn equals_the_sums(heights in prop::collection::vec(-1.0_f64..1.0, 1..300), d in 1e-6_f64..3.0) {
         let line = line(heights);
-        let (mut bearing, reference) = (Bearing::new(&line), Reference::new(&line));
+        let (mut bearing, reference) = (Bearing::new(&line), BearingReference::new(&line));
         let s = bearing.press(NormalLoad::Approach(d), 2.0).unwrap();
         assert_relative_eq!(s.force, reference.force(d, 2.0), max_relative = ROUNDING);
         prop_assert_eq!(s.elements, reference.elements(d));
@@ -245,7 +245,7 @@ proptest! {
     fn kinks_belong_to_the_set_that_carries(heights in grid_heights(), i in 0_usize..200) {
         // At d = z_i exactly, by approach and by force alike, the elements at z_i are not in contact.
         let line = line(heights);
-        let reference = Reference::new(&line);
+        let reference = BearingReference::new(&line);
         let d = reference.depths[i % reference.depths.len()];
         let mut bearing = Bearing::new(&line);
         let by_approach = bearing.press(NormalLoad::Approach(d), 1.0).unwrap();

@@ -22,6 +22,6 @@ pub use check::{Completeness, JobState, check};
 pub use forecast::{Division, Forecast};
 pub use plan::{ShardPlan, without_flags};
 pub use shard_run::{ShardReport, run_shard};
-pub use status::{Status, status, submitted_tasks};
+pub use status::{PlanStatus, status, submitted_tasks};
 pub use submission::{Engine, Submission, Submitted};
 pub use words::{quoted, toml};

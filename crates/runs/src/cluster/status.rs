@@ -22,7 +22,7 @@ enum TaskState {
 
 /// The finished part of a plan, and the state of the rest.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Status {
+pub struct PlanStatus {
     command: String,
     digest: String,
     jobs: usize,
@@ -205,7 +205,7 @@ fn parse_hyperqueue(text: &str) -> Vec<(usize, TaskState)> {
 }
 
 /// The status of a plan. Where shards were submitted, the engine is queried about those that are not done.
-pub fn status(found: &Completeness, jobs: &dyn JobList, out: &Path) -> Status {
+pub fn status(found: &Completeness, jobs: &dyn JobList, out: &Path) -> PlanStatus {
     let plan = &found.plan;
     let count = submitted_tasks(out, plan);
     let ((states, silent), of) = match count {
@@ -214,7 +214,7 @@ pub fn status(found: &Completeness, jobs: &dyn JobList, out: &Path) -> Status {
     };
     let cost = |job: usize| jobs.cost(job) as f64;
     let all: f64 = (0..jobs.count()).map(cost).sum();
-    let mut status = Status {
+    let mut status = PlanStatus {
         command: plan.command(),
         digest: plan.short_digest(),
         jobs: jobs.count(),
@@ -255,14 +255,14 @@ pub fn status(found: &Completeness, jobs: &dyn JobList, out: &Path) -> Status {
     status
 }
 
-impl Status {
+impl PlanStatus {
     /// Whether all jobs are done.
     pub fn complete(&self) -> bool {
         self.done == self.jobs
     }
 }
 
-impl fmt::Display for Status {
+impl fmt::Display for PlanStatus {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "{} (plan {})", self.command, self.digest)?;
         writeln!(

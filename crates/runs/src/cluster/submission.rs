@@ -109,7 +109,7 @@ impl fmt::Display for Submitted {
 
 /// The program, its directory of results and how its jobs are divided.
 #[derive(Clone)]
-pub(crate) struct Target<'a> {
+pub(crate) struct SubmittedProgram<'a> {
     /// The program that the tasks run: a built binary.
     pub binary: &'a Path,
     /// Directory of the results.
@@ -142,18 +142,19 @@ impl Submission {
         let tasks = division.tasks.or_else(|| submitted_tasks(out, plan));
         let forecast = forecast(&Division { tasks, ..division.clone() });
         let binary = std::env::current_exe().map_err(Error::file("find", Path::new("this program")))?;
-        let submitted = self.write(&Target { binary: &binary, out, plan, jobs }, &forecast, &found)?;
+        let submitted =
+            self.write(&SubmittedProgram { binary: &binary, out, plan, jobs }, &forecast, &found)?;
         Ok(format!("{forecast}\n{submitted}"))
     }
 
     /// The same with a forecast and a program that are given.
     pub(crate) fn write(
         &self,
-        target: &Target<'_>,
+        target: &SubmittedProgram<'_>,
         forecast: &Forecast,
         found: &Completeness,
     ) -> Result<Submitted> {
-        let Target { out, plan, jobs, .. } = *target;
+        let SubmittedProgram { out, plan, jobs, .. } = *target;
         let of = shards(jobs, forecast.tasks);
         plan.write(out)?;
         let busy = super::status::busy(out, plan, forecast.tasks)?;
@@ -222,7 +223,7 @@ struct Script<'a> {
 impl<'a> Script<'a> {
     fn new(
         submission: &'a Submission,
-        target: &Target<'a>,
+        target: &SubmittedProgram<'a>,
         forecast: &'a Forecast,
         directory: &Path,
     ) -> Result<Self> {
@@ -412,7 +413,7 @@ mod tests {
         let forecast = Forecast::new(&squares, &Division { tasks: Some(3), cores: None });
         run_shard(&plan, &squares, Shard { index: 1, count: 3 }, (&out, 1), &Silent, &never).unwrap();
         let binary = std::env::current_exe().unwrap();
-        let target = Target { binary: &binary, out: &out, plan: &plan, jobs: &squares };
+        let target = SubmittedProgram { binary: &binary, out: &out, plan: &plan, jobs: &squares };
         let write =
             |engine| submission(engine).write(&target, &forecast, &check(&plan, &squares, &out).unwrap());
         let slurm = write(Engine::Slurm).unwrap();
@@ -437,7 +438,7 @@ mod tests {
         let hostile = ShardPlan::new("p", vec!["x\ntouch y".into()], &squares);
         let refused = submission(Engine::Slurm)
             .write(
-                &Target { plan: &hostile, ..target.clone() },
+                &SubmittedProgram { plan: &hostile, ..target.clone() },
                 &forecast,
                 &check(&hostile, &squares, &out).unwrap(),
             )
@@ -447,7 +448,11 @@ mod tests {
         let odd = dir.path().join("a%j");
         std::fs::create_dir(&odd).unwrap();
         let refused = submission(Engine::Slurm)
-            .write(&Target { out: &odd, ..target.clone() }, &forecast, &check(&plan, &squares, &odd).unwrap())
+            .write(
+                &SubmittedProgram { out: &odd, ..target.clone() },
+                &forecast,
+                &check(&plan, &squares, &odd).unwrap(),
+            )
             .unwrap_err()
             .to_string();
         assert!(refused.starts_with("path = "), "{refused}");

@@ -16,7 +16,7 @@ const MOST: u64 = 4096;
 pub(crate) const READER: Reader =
     Reader { format: Format::Al3d, recognises: |start, _| start.starts_with(MAGIC), channels };
 
-fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
+fn channels(source: &mut OpenedFile<'_>) -> Result<Vec<StoredChannel>> {
     let begin = MAGIC.len() as u64;
     let [(version, _), (count, tags)] = [tag(source, begin)?, tag(source, begin + TAG)?];
     let tags: u64 = tags.parse().unwrap_or(u64::MAX);
@@ -49,7 +49,7 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
 }
 
 /// Name and value of the tag at an offset.
-fn tag(source: &mut Source<'_>, offset: u64) -> Result<(Text<20>, Text<30>)> {
+fn tag(source: &mut OpenedFile<'_>, offset: u64) -> Result<(Text<20>, Text<30>)> {
     let mut fields = source.fields(ByteOrder::Little, offset, TAG)?;
     let tag = (fields.get()?, fields.get()?);
     if fields.take(2)? != b"\r\n" {

@@ -11,7 +11,7 @@
 //! Not read: force curves.
 
 use super::prelude::*;
-use crate::entries::{Entries, HeaderLine};
+use crate::entries::{HeaderLine, TextHeader};
 
 /// What may stand before text of two bytes a character.
 const MARK: &[u8] = b"\xff\xfe";
@@ -43,14 +43,14 @@ fn text(bytes: &[u8]) -> (String, u64) {
     (char::decode_utf16(units).map(|c| c.unwrap_or(char::REPLACEMENT_CHARACTER)).collect(), 2)
 }
 
-fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
+fn channels(source: &mut OpenedFile<'_>) -> Result<Vec<StoredChannel>> {
     let start = source.start(LONGEST)?;
     let marked = if start.starts_with(MARK) { MARK.len() as u64 } else { 0 };
     let wide = text(&start).1;
     let subject = source.subject().clone();
     let header = |bytes: u64| {
         let (text, _) = text(&start[..start.len().min(bytes as usize)]);
-        let (header, _) = Entries::read(&subject, text.as_bytes(), |line| {
+        let (header, _) = TextHeader::read(&subject, text.as_bytes(), |line| {
             if line.starts_with(['%', '#']) { HeaderLine::Passed } else { HeaderLine::entry(line, '=') }
         })?;
         Ok(header)

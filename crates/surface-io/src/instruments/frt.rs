@@ -25,7 +25,7 @@ const IMAGES: u16 = 0x7d;
 pub(crate) const READER: Reader =
     Reader { format: Format::Frt, recognises: |start, _| start.starts_with(MAGIC), channels };
 
-fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
+fn channels(source: &mut OpenedFile<'_>) -> Result<Vec<StoredChannel>> {
     let wide = match &source.get::<[u8; 4]>(LITTLE, 12)? {
         b"1.00" => false,
         b"1.01" => true,

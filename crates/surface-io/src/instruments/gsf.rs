@@ -7,7 +7,7 @@
 //! and not used. The numbers fill the file to its end: another length is an error. The offsets are not used.
 
 use super::prelude::*;
-use crate::entries::{Entries, HeaderLine};
+use crate::entries::{HeaderLine, TextHeader};
 
 const MAGIC: &[u8] = b"Gwyddion Simple Field 1.0\n";
 /// Longest header that is read.
@@ -16,12 +16,12 @@ const LONGEST: u64 = 1 << 20;
 pub(crate) const READER: Reader =
     Reader { format: Format::Gsf, recognises: |start, _| start.starts_with(MAGIC), channels };
 
-fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
+fn channels(source: &mut OpenedFile<'_>) -> Result<Vec<StoredChannel>> {
     let start = source.start(LONGEST)?;
     let Some(end) = start.iter().position(|&b| b == 0) else {
         return Err(source.wrong(start.len() as u64, "a zero behind the header before this (cut short?)"));
     };
-    let (header, _) = Entries::read(source.subject(), &start[..end], |line| HeaderLine::entry(line, '='))?;
+    let (header, _) = TextHeader::read(source.subject(), &start[..end], |line| HeaderLine::entry(line, '='))?;
     let header = header.section("");
     let [rows, columns] = [header.whole("yres")?, header.whole("xres")?];
     let begin = end as u64 / 4 * 4 + 4;

@@ -36,7 +36,7 @@ struct Numbered {
     mask: Option<DataField>,
 }
 
-fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
+fn channels(source: &mut OpenedFile<'_>) -> Result<Vec<StoredChannel>> {
     let mut found = Vec::new();
     let mut file = Cursor::new(source, ByteOrder::Little, MAGIC.len() as u64);
     let (name, end) = object(&mut file)?;
@@ -134,7 +134,7 @@ fn unit(file: &mut Cursor<'_, '_>, outer: u64) -> Result<String> {
     Ok(text)
 }
 
-fn channel(source: &Source<'_>, field: &DataField, mask: Option<&DataField>) -> Result<StoredChannel> {
+fn channel(source: &OpenedFile<'_>, field: &DataField, mask: Option<&DataField>) -> Result<StoredChannel> {
     let ([Some(columns), Some(rows)], Some((at, count))) = (field.shape, field.values) else {
         return Err(source.wrong(0, "xres, yres and data of each data field"));
     };

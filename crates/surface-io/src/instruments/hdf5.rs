@@ -49,17 +49,17 @@ mod write;
 pub use write::hdf5;
 
 use super::prelude::*;
-use crate::array::{Array, Dimension, Numbers};
+use crate::array::{Array, ArrayDimension, Numbers};
 use crate::channel::{FileAxes, check_number};
 use crate::options::Axes;
 use crate::source::Budget;
 use attributes::{Attributes, LABELS, SIZE, SIZE_UNIT, UNIT, describe, text, written};
 use hdf5_pure::{Dataset, File, ReadSeekSource};
-use scales::Scale;
+use scales::DimensionScale;
 use std::collections::{HashSet, VecDeque};
 use std::sync::Arc;
-use storage::{Found, layout, number_type, unreadable};
-use vendor::Grid;
+use storage::{DataLocation, layout, number_type, unreadable};
+use vendor::JpkGrid;
 
 /// Groups inside groups, and objects, that are looked at: links may form loops.
 const DEEPEST: usize = 8;
@@ -74,7 +74,7 @@ const NAMED: usize = 20;
 pub(crate) const READER: Reader =
     Reader { format: Format::Hdf5, recognises: super::magic::is_hdf5, channels };
 
-fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
+fn channels(source: &mut OpenedFile<'_>) -> Result<Vec<StoredChannel>> {
     let budget = Budget::new(source.length().saturating_mul(REREAD).saturating_add(LEAST));
     let input = ReadSeekSource::new(source.detached(&budget)?).map_err(|e| unreadable(source, &e))?;
     let file = File::from_source(input).map_err(|e| unreadable(source, &e))?;
@@ -86,7 +86,7 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
     let mut waiting: VecDeque<_> = [(String::new(), file.root(), 0, None)].into();
     while let Some((path, group, depth, grid)) = waiting.pop_front() {
         let beside = group.attrs().unwrap_or_default();
-        let grid = Grid::of(&beside).or(grid);
+        let grid = JpkGrid::of(&beside).or(grid);
         let datasets = group.iter_datasets().map_err(|e| unreadable(source, &e))?;
         let datasets: Vec<_> = datasets.take(MOST).collect();
         for (name, dataset) in &datasets {
@@ -95,7 +95,7 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
         for (name, dataset) in datasets {
             seen += 1;
             let name = join(&path, &name);
-            let beside = Beside { path: &path, attributes: &beside, scales: &scales, grid };
+            let beside = FileStatements { path: &path, attributes: &beside, scales: &scales, grid };
             match of_dataset(source, &dataset, &beside, &name, &mut taken) {
                 Ok(found) if found.is_empty() && others.len() < NAMED => others.push(shown(&dataset, &name)),
                 Ok(found) => channels.extend(found),
@@ -140,21 +140,21 @@ fn join(path: &str, name: &str) -> String {
 }
 
 /// The statements of the file outside of a data set that concern it.
-struct Beside<'a> {
+struct FileStatements<'a> {
     /// Path and attributes of its group.
     path: &'a str,
     attributes: &'a Attributes,
     /// Those of its group and of the groups before.
-    scales: &'a [Scale],
+    scales: &'a [DimensionScale],
     /// JPK's, of its group or of one before.
-    grid: Option<Grid>,
+    grid: Option<JpkGrid>,
 }
 
 /// The channels of a data set: none for those that are no map, several of a video.
 fn of_dataset(
-    source: &Source<'_>,
+    source: &OpenedFile<'_>,
     dataset: &Dataset,
-    beside: &Beside<'_>,
+    beside: &FileStatements<'_>,
     name: &str,
     taken: &mut HashSet<u64>,
 ) -> Result<Vec<StoredChannel>> {
@@ -170,7 +170,7 @@ fn of_dataset(
     if matlab == Some("char") || (matlab.is_some() && (first, second) == (1, 1)) {
         return Ok(Vec::new());
     }
-    let dimensions = [first, second].map(|length| Dimension::of_length(length as usize));
+    let dimensions = [first, second].map(|length| ArrayDimension::of_length(length as usize));
     let custom = "as SurfaceTopography and MATLAB write it, no label says it";
     let mut array = Array::new(name, dimensions, number, (FileAxes::Assumed(Axes::Xy), custom));
     let described = describe(&mut array, &attributes)
@@ -191,11 +191,11 @@ fn of_dataset(
         }
     }
     let numbers = match found {
-        Found::Stored(bytes) => Numbers::Stored(bytes),
-        Found::Chunked(pieces) => {
+        DataLocation::Stored(bytes) => Numbers::Stored(bytes),
+        DataLocation::Chunked(pieces) => {
             Numbers::Decoded(", in chunks", Box::new(move |raw, source| pieces.read(raw, source)))
         }
-        Found::Unread(said) => {
+        DataLocation::Unread(said) => {
             // The other channels of the file are read all the same.
             Numbers::Decoded("", Box::new(move |_, source| Err(unreadable(source, &said))))
         }
@@ -204,13 +204,20 @@ fn of_dataset(
 }
 
 /// A channel of each frame of a scan, whose points stand one below the other.
-fn frames(source: &Source<'_>, array: &Array, found: Found, grid: Grid) -> Result<Vec<StoredChannel>> {
-    let Grid { columns, rows, extent, turned } = grid;
+fn frames(
+    source: &OpenedFile<'_>,
+    array: &Array,
+    found: DataLocation,
+    grid: JpkGrid,
+) -> Result<Vec<StoredChannel>> {
+    let JpkGrid { columns, rows, extent, turned } = grid;
     let found = Arc::new(found);
     let [points, count] = [0, 1].map(|i| array.dimensions[i].length);
     check_number(source, 0, count)?;
-    let dimension =
-        |(name, length): (&str, usize)| Dimension { name: name.to_owned(), ..Dimension::of_length(length) };
+    let dimension = |(name, length): (&str, usize)| ArrayDimension {
+        name: name.to_owned(),
+        ..ArrayDimension::of_length(length)
+    };
     let frame = |frame: usize| {
         let name = if count > 1 { format!("{} frame {frame}", array.name) } else { array.name.clone() };
         let dimensions = [("y", rows), ("x", columns)].map(dimension);
@@ -223,7 +230,7 @@ fn frames(source: &Source<'_>, array: &Array, found: Found, grid: Grid) -> Resul
         let plain = Array::new(&name, dimensions, number, custom);
         let one = Array { unsigned, valid, unit, scale, shift, undefined, extent, notes, ..plain };
         let found = Arc::clone(&found);
-        let read = move |raw: &RawHeights, source: &mut Source<'_>| {
+        let read = move |raw: &RawHeights, source: &mut OpenedFile<'_>| {
             let all = found.read(raw, source, [points, count])?;
             Ok(all.into_iter().skip(frame).step_by(count).collect())
         };

@@ -36,7 +36,7 @@ pub(crate) const READER: Reader =
 /// The version and the byte order, where the sum of all words of the headers is 0.
 fn version(start: &[u8]) -> Option<(u16, ByteOrder)> {
     [ByteOrder::Little, ByteOrder::Big].into_iter().find_map(|order| {
-        let mut fields = Fields::of_start(order, start);
+        let mut fields = ByteFields::of_start(order, start);
         let version = fields.get::<u16>().ok()?;
         let words = match version {
             1 => 59,
@@ -52,7 +52,7 @@ fn version(start: &[u8]) -> Option<(u16, ByteOrder)> {
 
 header! {
     /// Both headers.
-    struct Header {
+    struct IbwHeader {
         /// Bytes of the second header and the numbers.
         wave: u32 = 4,
         /// Bytes of the formula and of the note.
@@ -69,12 +69,12 @@ header! {
     }
 }
 
-fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
+fn channels(source: &mut OpenedFile<'_>) -> Result<Vec<StoredChannel>> {
     let start = source.start(HEADER)?;
     let Some((5, order)) = version(&start) else {
         return Err(source.wrong(0, "version 5: waves of older versions have one dimension"));
     };
-    let header = Header::of(&mut source.fields(order, 0, HEADER)?)?;
+    let header = IbwHeader::of(&mut source.fields(order, 0, HEADER)?)?;
     let [columns, rows, layers, more] = header.count;
     let layers = layers.max(1);
     if rows == 0 || more > 0 {

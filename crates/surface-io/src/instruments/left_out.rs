@@ -25,13 +25,13 @@ pub(super) const X3P: Reader =
     Reader { format: Format::X3p, recognises: magic::is_archive, channels: archive };
 
 #[cfg(not(all(feature = "hdf5", feature = "tiff")))]
-fn refused(source: &mut Source<'_>, format: Format) -> Result<Vec<StoredChannel>> {
+fn refused(source: &mut OpenedFile<'_>, format: Format) -> Result<Vec<StoredChannel>> {
     Err(source.content(ContentError::LeftOut { format }))
 }
 
 /// An archive without the member that describes an X3P file is none.
 #[cfg(not(feature = "x3p"))]
-fn archive(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
+fn archive(source: &mut OpenedFile<'_>) -> Result<Vec<StoredChannel>> {
     let members = crate::zip::members(source)?;
     let problem = match magic::main_member(&members) {
         Some(_) => ContentError::LeftOut { format: Format::X3p },

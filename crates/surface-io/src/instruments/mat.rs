@@ -60,7 +60,7 @@ struct Matrix {
     bytes: u64,
 }
 
-fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
+fn channels(source: &mut OpenedFile<'_>) -> Result<Vec<StoredChannel>> {
     let order = order(&source.start(HEADER)?).unwrap_or(ByteOrder::Little);
     let mut found = Vec::new();
     let mut at = HEADER;
@@ -77,7 +77,7 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
             _ => Ok(Vec::new()),
         };
         let subject = source.subject().clone();
-        let matrix = start.and_then(|start| matrix(&mut Fields::new(subject, order, at, start)));
+        let matrix = start.and_then(|start| matrix(&mut ByteFields::new(subject, order, at, start)));
         if let Some(matrix) = matrix.transpose() {
             let name = matrix.as_ref().ok().map(|matrix| matrix.name.clone());
             let packed = (kind == PACKED).then_some((begin, length));
@@ -97,7 +97,7 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
 }
 
 /// The beginning of what is packed.
-fn unpacked(source: &mut Source<'_>, offset: u64, length: u64) -> Result<Vec<u8>> {
+fn unpacked(source: &mut OpenedFile<'_>, offset: u64, length: u64) -> Result<Vec<u8>> {
     let mut start = Vec::new();
     let read = ZlibDecoder::new(source.part(offset, length)?).take(START).read_to_end(&mut start);
     read.map_err(|error| source.wrong(offset, format!("a packed element ({error})")))?;
@@ -105,7 +105,7 @@ fn unpacked(source: &mut Source<'_>, offset: u64, length: u64) -> Result<Vec<u8>
 }
 
 /// The matrix in the beginning of an element; `None` for all else.
-fn matrix(fields: &mut Fields<'_>) -> Result<Option<Matrix>> {
+fn matrix(fields: &mut ByteFields<'_>) -> Result<Option<Matrix>> {
     if fields.left() == 0 || fields.get::<[u32; 2]>()?[0] != MATRIX {
         return Ok(None);
     }
@@ -138,7 +138,7 @@ fn matrix(fields: &mut Fields<'_>) -> Result<Option<Matrix>> {
 }
 
 /// Number and place of the bytes of an element's data, at least `least` bytes; the next element is behind it.
-fn element(fields: &mut Fields<'_>, least: u32) -> Result<(u32, usize)> {
+fn element(fields: &mut ByteFields<'_>, least: u32) -> Result<(u32, usize)> {
     let kind: u32 = fields.get()?;
     let small = kind > 0xffff;
     let bytes = if small { kind >> 16 } else { fields.get()? };
@@ -152,7 +152,7 @@ fn element(fields: &mut Fields<'_>, least: u32) -> Result<(u32, usize)> {
 }
 
 fn channel(
-    source: &Source<'_>,
+    source: &OpenedFile<'_>,
     matrix: Matrix,
     begin: u64,
     packed: Option<(u64, u64)>,

@@ -44,7 +44,7 @@ header! {
     }
 }
 
-fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
+fn channels(source: &mut OpenedFile<'_>) -> Result<Vec<StoredChannel>> {
     let phase = Phase::of(&mut source.fields(ByteOrder::Big, 0, HEADER)?)?;
     let wrong = |offset: u64, expected: String| Err(source.wrong(offset, expected));
     let format = u16::from(phase.kind - 0x6e);

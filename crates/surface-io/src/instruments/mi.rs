@@ -13,7 +13,7 @@
 
 use super::prelude::*;
 use crate::channel::{check_number, check_rest};
-use crate::entries::{Entries, HeaderLine, Section};
+use crate::entries::{HeaderLine, Section, TextHeader};
 
 const IMAGE: &[u8] = b"fileType      Image";
 const SPECTRA: &[u8] = b"fileType      Spectroscopy";
@@ -28,12 +28,12 @@ pub(crate) const READER: Reader = Reader {
     channels,
 };
 
-fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
+fn channels(source: &mut OpenedFile<'_>) -> Result<Vec<StoredChannel>> {
     let bytes = source.start(LONGEST)?;
     if bytes.starts_with(SPECTRA) {
         return Err(source.wrong(0, "an image; this file holds spectra"));
     }
-    let header = Entries::up_to_end(source, &bytes, line, "the line data before this")?;
+    let header = TextHeader::up_to_end(source, &bytes, line, "the line data before this")?;
     let mut lines = bytes[..header.end as usize].trim_ascii_end().rsplit(|&b| b == b'\n');
     let number = match lines.next().unwrap_or_default().get(KEY..).unwrap_or_default().trim_ascii() {
         b"" | b"BINARY" => NumberType::I16,

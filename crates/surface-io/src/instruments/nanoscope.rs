@@ -16,7 +16,7 @@
 //! changed.
 
 use super::prelude::*;
-use crate::entries::{Entries, HeaderLine, Section};
+use crate::entries::{HeaderLine, Section, TextHeader};
 use crate::provenance::PRINTED;
 use crate::quantity::{Dimension, Unit};
 
@@ -37,7 +37,7 @@ fn recognises(start: &[u8], _: u64) -> bool {
         && lines.all(|line| line.first().is_none_or(|&b| b == b'\\' || b < b' '))
 }
 
-fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
+fn channels(source: &mut OpenedFile<'_>) -> Result<Vec<StoredChannel>> {
     let bytes = source.start(LONGEST)?;
     let first = bytes.split_inclusive(|&b| b == b'\n').next().unwrap_or_default();
     if !first.ends_with(b"\r\n") || first.ends_with(b"\r\r\n") {
@@ -46,7 +46,7 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
         return Err(source.wrong(0, expected));
     }
     let expected = "the line \\*File list end of the header";
-    let header = Entries::up_to_end(source, &bytes, line, expected)?;
+    let header = TextHeader::up_to_end(source, &bytes, line, expected)?;
     let lists = |ending: &'static str| header.sections().iter().filter(move |s| s.name.ends_with(ending));
     let find = |ending: &'static str, key: &str| lists(ending).find_map(|s| s.text(key));
     let version = find("file list", "version").unwrap_or_default().trim_start_matches("0x");
@@ -84,7 +84,7 @@ fn line(line: &str) -> HeaderLine<'_> {
 }
 
 fn channel<'s>(
-    source: &Source<'_>,
+    source: &OpenedFile<'_>,
     image: &Section,
     (version, end): (u32, u64),
     scales: &impl Fn(&str) -> Option<&'s str>,
@@ -112,7 +112,7 @@ fn channel<'s>(
     let Some(key) = key else {
         return Err(source.wrong(offset, "an entry @2:Z scale of each image (version 4.3 or later)"));
     };
-    let scale = Scale::read(image.text(key).unwrap_or_default());
+    let scale = NanoscopeScale::read(image.text(key).unwrap_or_default());
     let unit = match scale.as_ref().and_then(|scale| scale.height(scales)) {
         Some((height, unit)) => {
             // All counts together make the range of the hard value.
@@ -162,13 +162,13 @@ fn name(image: &Section) -> Option<String> {
 }
 
 /// `V [soft scale] (hard scale) value unit`.
-struct Scale<'a> {
+struct NanoscopeScale<'a> {
     soft: Option<&'a str>,
     value: f64,
     unit: &'a str,
 }
 
-impl<'a> Scale<'a> {
+impl<'a> NanoscopeScale<'a> {
     fn read(text: &'a str) -> Option<Self> {
         let mut rest = text.trim().strip_prefix(['V', 'C', 'S'])?.trim_start();
         let mut soft = None;
@@ -194,7 +194,7 @@ impl<'a> Scale<'a> {
     /// Height of the whole range and its unit; `None` where the soft scale is no length per unit of the hard
     /// value.
     fn height<'s>(&self, scales: &impl Fn(&str) -> Option<&'s str>) -> Option<(f64, Unit)> {
-        let soft = Scale::read(scales(&format!("@{}", self.soft?.to_ascii_lowercase()))?)?;
+        let soft = NanoscopeScale::read(scales(&format!("@{}", self.soft?.to_ascii_lowercase()))?)?;
         let (length, per) = soft.unit.split_once('/')?;
         let unit = length_unit(length)?;
         let (hard, per): (Unit, Unit) = (self.unit.parse().ok()?, per.trim().parse().ok()?);

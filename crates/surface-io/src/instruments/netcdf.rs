@@ -20,7 +20,7 @@ mod write;
 pub use write::netcdf;
 
 use super::prelude::*;
-use crate::array::{Array, Coordinates, Dimension, Numbers, unsigned, valid};
+use crate::array::{Array, ArrayDimension, Coordinates, Numbers, unsigned, valid};
 use crate::channel::FileAxes;
 use crate::options::Axes;
 
@@ -47,12 +47,12 @@ struct Variable {
     rank: u64,
     number: Option<NumberType>,
     offset: u64,
-    attributes: Attributes,
+    attributes: NetcdfAttributes,
 }
 
 /// What is kept of its attributes.
 #[derive(Debug, Default)]
-struct Attributes {
+struct NetcdfAttributes {
     unit: String,
     /// `axis` or `standard_name`: what coordinates are of.
     role: String,
@@ -66,10 +66,10 @@ struct Attributes {
     shift: Option<f64>,
 }
 
-fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
-    let mut header = Header::new(source)?;
+fn channels(source: &mut OpenedFile<'_>) -> Result<Vec<StoredChannel>> {
+    let mut header = NetcdfHeader::new(source)?;
     let mut dimensions = header.dimensions()?;
-    header.attributes(&mut Attributes::default())?;
+    header.attributes(&mut NetcdfAttributes::default())?;
     let variables = header.variables()?;
     let over_two = |v: &&Variable| v.rank == 2 && v.number.is_some() && v.name != "mask";
     let maps: Vec<&Variable> = match variables.iter().find(|variable| variable.name == "heights") {
@@ -99,7 +99,7 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
 
 impl Variable {
     /// Its name and its dimensions, for people.
-    fn shown(&self, dimensions: &[Dimension]) -> String {
+    fn shown(&self, dimensions: &[ArrayDimension]) -> String {
         let named = |&number: &u64| dimensions.get(usize::try_from(number).ok()?);
         let mut names: Vec<&str> =
             self.dimensions.iter().filter_map(named).map(|d| d.name.as_str()).collect();
@@ -110,8 +110,8 @@ impl Variable {
     }
 
     /// Puts the coordinates that it has into its dimension. One with a length has the size instead.
-    fn along(&self, source: &mut Source<'_>, dimension: &mut Dimension) -> Result<()> {
-        let Attributes { length: None, unit, role, scale, shift, .. } = &self.attributes else {
+    fn along(&self, source: &mut OpenedFile<'_>, dimension: &mut ArrayDimension) -> Result<()> {
+        let NetcdfAttributes { length: None, unit, role, scale, shift, .. } = &self.attributes else {
             return Ok(());
         };
         let (Some(number), 1..) = (self.number, dimension.length) else { return Ok(()) };
@@ -125,20 +125,20 @@ impl Variable {
 
     fn channel(
         &self,
-        source: &Source<'_>,
-        dimensions: &[Dimension],
+        source: &OpenedFile<'_>,
+        dimensions: &[ArrayDimension],
         variables: &[Self],
     ) -> Result<StoredChannel> {
         let wrong = |expected: &str| source.wrong(self.offset, format!("{} {expected}", self.name));
         let named = |&number: &u64| dimensions.get(usize::try_from(number).ok()?).cloned();
-        let of: Vec<Dimension> = self.dimensions.iter().filter_map(named).collect();
-        let (Ok(of), 2) = (<[Dimension; 2]>::try_from(of), self.rank) else {
+        let of: Vec<ArrayDimension> = self.dimensions.iter().filter_map(named).collect();
+        let (Ok(of), 2) = (<[ArrayDimension; 2]>::try_from(of), self.rank) else {
             return Err(wrong("over the dimensions x and y, or over two of other names"));
         };
         let number = self.number.ok_or_else(|| wrong("that are numbers"))?;
         let custom = "as the conventions have it, the dimensions have other names than x and y";
         let mut array = Array::new(&self.name, of, number, (FileAxes::Assumed(Axes::Yx), custom));
-        let Attributes { unit, fill, missing, scale, shift, .. } = &self.attributes;
+        let NetcdfAttributes { unit, fill, missing, scale, shift, .. } = &self.attributes;
         let own = if number.is_float() { Some(FILL) } else { None };
         array.undefined = Undefined::either(fill.or(own), *missing);
         (array.scale, array.shift, array.unit) = (*scale, *shift, StoredUnit::written(unit));
@@ -150,7 +150,7 @@ impl Variable {
         array.valid = ends.map_err(|expected| wrong(&format!("with {expected}")))?;
         let variable = |name: &str| variables.iter().find(|variable| variable.name == name);
         array.extent = ["x", "y"].map(|name| {
-            let Attributes { unit, length, .. } = &variable(name)?.attributes;
+            let NetcdfAttributes { unit, length, .. } = &variable(name)?.attributes;
             Extent::of_side((*length)?, unit).filter(|_| !unit.is_empty())
         });
         array.mask = match variable("mask").filter(|_| self.name == "heights") {
@@ -167,13 +167,13 @@ impl Variable {
 }
 
 /// The header, read from its beginning to its end.
-struct Header<'s, 'a> {
+struct NetcdfHeader<'s, 'a> {
     file: Cursor<'s, 'a>,
     version: u8,
 }
 
-impl<'s, 'a> Header<'s, 'a> {
-    fn new(source: &'s mut Source<'a>) -> Result<Self> {
+impl<'s, 'a> NetcdfHeader<'s, 'a> {
+    fn new(source: &'s mut OpenedFile<'a>) -> Result<Self> {
         let version = source.get(ByteOrder::Big, 3)?;
         let mut header = Self { file: Cursor::new(source, ByteOrder::Big, 4), version };
         // The number of records.
@@ -219,19 +219,19 @@ impl<'s, 'a> Header<'s, 'a> {
         self.text(length)
     }
 
-    fn dimensions(&mut self) -> Result<Vec<Dimension>> {
+    fn dimensions(&mut self) -> Result<Vec<ArrayDimension>> {
         let mut found = Vec::new();
         for _ in 0..self.list(10)? {
             if found.len() == MOST {
                 return Err(self.file.wrong(format!("{MOST} dimensions at most")));
             }
             let (name, length) = (self.name()?, self.count()? as usize);
-            found.push(Dimension { name, ..Dimension::of_length(length) });
+            found.push(ArrayDimension { name, ..ArrayDimension::of_length(length) });
         }
         Ok(found)
     }
 
-    fn attributes(&mut self, keep: &mut Attributes) -> Result<()> {
+    fn attributes(&mut self, keep: &mut NetcdfAttributes) -> Result<()> {
         for _ in 0..self.list(12)? {
             let name = self.name()?;
             let (kind, count) = (self.u32()?, self.count()?);

@@ -15,7 +15,7 @@
 
 use super::prelude::*;
 use crate::channel::{check_number, check_rest};
-use crate::entries::{Entries, HeaderLine, SIX_DIGITS, Section};
+use crate::entries::{HeaderLine, SIX_DIGITS, Section, TextHeader};
 
 const MAGIC: &[u8] = b"[DataSet]\r\n";
 /// What stands between the header and the first map, behind a line break.
@@ -25,13 +25,13 @@ const LONGEST: u64 = 1 << 20;
 pub(crate) const READER: Reader =
     Reader { format: Format::Nid, recognises: |start, _| start.starts_with(MAGIC), channels };
 
-fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
+fn channels(source: &mut OpenedFile<'_>) -> Result<Vec<StoredChannel>> {
     let bytes = source.start(LONGEST)?;
     let Some(end) = bytes.windows(MARK.len()).position(|part| part == MARK) else {
         return Err(source.wrong(bytes.len() as u64, "the mark #! before this (cut short?)"));
     };
     let (header, _) =
-        Entries::read(source.subject(), &bytes[..=end], |line| HeaderLine::in_section(line, '='))?;
+        TextHeader::read(source.subject(), &bytes[..=end], |line| HeaderLine::in_section(line, '='))?;
     let place = |key: &str| {
         let (group, channel) = key.strip_prefix("gr")?.split_once("-ch")?;
         Some([group.parse::<u32>().ok()?, channel.parse().ok()?])
@@ -85,7 +85,7 @@ fn layout(map: &Section) -> Result<([usize; 2], NumberType, u64)> {
 }
 
 fn channel(
-    source: &Source<'_>,
+    source: &OpenedFile<'_>,
     map: &Section,
     at: u64,
     shape: [usize; 2],

@@ -27,7 +27,7 @@ pub(crate) const READER: Reader = Reader {
 
 header! {
     /// What counts of the header.
-    struct Header {
+    struct NmsHeader {
         /// 2: uint16.
         kind: u32 = 0,
         /// 1: a map.
@@ -43,8 +43,8 @@ header! {
     }
 }
 
-fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
-    let header = Header::of(&mut source.fields(ByteOrder::Little, 0, HEADER)?)?;
+fn channels(source: &mut OpenedFile<'_>) -> Result<Vec<StoredChannel>> {
+    let header = NmsHeader::of(&mut source.fields(ByteOrder::Little, 0, HEADER)?)?;
     if [header.kind, header.dimensions] != [2, 1] {
         let expected = format!("a map of uint16 (2, 1), found {}, {}", header.kind, header.dimensions);
         return Err(source.wrong(0, expected));

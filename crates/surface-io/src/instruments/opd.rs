@@ -26,7 +26,7 @@ pub(crate) const READER: Reader = Reader {
 
 header! {
     /// An entry of the directory.
-    struct Entry {
+    struct OpdEntry {
         name: Text<16> = 0,
         kind: i16 = 16,
         /// A negative length is none.
@@ -35,17 +35,17 @@ header! {
 }
 
 /// An entry, and where its block begins.
-struct Block {
-    entry: Entry,
+struct OpdBlock {
+    entry: OpdEntry,
     length: u64,
     offset: u64,
 }
 
-fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
+fn channels(source: &mut OpenedFile<'_>) -> Result<Vec<StoredChannel>> {
     let blocks = blocks(source)?;
     let mut number = |name: &str| -> Result<Option<f64>> {
         let block = blocks.iter().find(|b| &*b.entry.name == name && b.length > 0);
-        let Some(Block { entry, length, offset }) = block else { return Ok(None) };
+        let Some(OpdBlock { entry, length, offset }) = block else { return Ok(None) };
         let kind = match (entry.kind, length) {
             (8, 8..) => NumberType::F64,
             (6, 2) => NumberType::I16,
@@ -66,7 +66,7 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
     };
     let side = |times: f64| Extent::of_cell(pixel? * times, "mm");
     let mut channels = Vec::new();
-    for Block { entry, length, offset } in &blocks {
+    for OpdBlock { entry, length, offset } in &blocks {
         if entry.kind != ARRAY || !HEIGHTS.contains(&&*entry.name) {
             continue;
         }
@@ -96,7 +96,7 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
 }
 
 /// The directory, whose first entry is itself.
-fn blocks(source: &mut Source<'_>) -> Result<Vec<Block>> {
+fn blocks(source: &mut OpenedFile<'_>) -> Result<Vec<OpdBlock>> {
     let length = u64::try_from(source.get::<i32>(ByteOrder::Little, DIRECTORY + 18)?).unwrap_or(0);
     if length == 0 || length % ENTRY != 0 || length / ENTRY > MOST {
         let expected =
@@ -106,9 +106,9 @@ fn blocks(source: &mut Source<'_>) -> Result<Vec<Block>> {
     let mut offset = DIRECTORY + length;
     let mut blocks = Vec::new();
     for at in (DIRECTORY..offset).step_by(ENTRY as usize).skip(1) {
-        let entry = Entry::of(&mut source.fields(ByteOrder::Little, at, ENTRY)?)?;
+        let entry = OpdEntry::of(&mut source.fields(ByteOrder::Little, at, ENTRY)?)?;
         let length = u64::try_from(entry.length).unwrap_or(0);
-        blocks.push(Block { entry, length, offset });
+        blocks.push(OpdBlock { entry, length, offset });
         offset += length;
     }
     Ok(blocks)

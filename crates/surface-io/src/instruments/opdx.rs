@@ -54,14 +54,14 @@ pub(crate) const READER: Reader =
     Reader { format: Format::Opdx, recognises: |start, _| start.starts_with(MAGIC), channels };
 
 /// An item of the tree, and where its content is.
-struct Item {
+struct OpdxItem {
     name: String,
     kind: u8,
     begin: u64,
     end: u64,
 }
 
-fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
+fn channels(source: &mut OpenedFile<'_>) -> Result<Vec<StoredChannel>> {
     let mut found = Vec::new();
     let all = [MAGIC.len() as u64, source.length()];
     for data in items(source, all, |name, kind| kind == GROUP && DATA.contains(&name))? {
@@ -78,10 +78,10 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
 
 /// The items that are wanted from an offset up to another one or to a mark of the end.
 fn items(
-    source: &mut Source<'_>,
+    source: &mut OpenedFile<'_>,
     [begin, end]: [u64; 2],
     keep: impl Fn(&str, u8) -> bool,
-) -> Result<Vec<Item>> {
+) -> Result<Vec<OpdxItem>> {
     let mut found = Vec::new();
     let mut file = Cursor::new(source, LITTLE, begin);
     while file.at < end {
@@ -118,7 +118,7 @@ fn items(
             if found.len() == MOST {
                 return Err(file.wrong(format!("{MOST} items in a group at most")));
             }
-            found.push(Item { name, kind, begin, end: file.at });
+            found.push(OpdxItem { name, kind, begin, end: file.at });
         }
     }
     Ok(found)
@@ -138,7 +138,7 @@ fn length(file: &mut Cursor<'_, '_>) -> Result<u64> {
     })
 }
 
-fn channel(source: &mut Source<'_>, group: &Item) -> Result<StoredChannel> {
+fn channel(source: &mut OpenedFile<'_>, group: &OpdxItem) -> Result<StoredChannel> {
     let items = items(source, [group.begin, group.end], |name, _| WANTED.contains(&name))?;
     let find = |name: &str, kinds: &[u8]| items.iter().find(|i| i.name == name && kinds.contains(&i.kind));
     let wanted = |name: &str, kinds: &[u8]| {
@@ -197,7 +197,7 @@ fn channel(source: &mut Source<'_>, group: &Item) -> Result<StoredChannel> {
 }
 
 /// A number and the sign of its unit.
-fn quantity(source: &mut Source<'_>, item: &Item) -> Result<(f64, String)> {
+fn quantity(source: &mut OpenedFile<'_>, item: &OpdxItem) -> Result<(f64, String)> {
     let mut file = Cursor::new(source, LITTLE, item.begin);
     let value = file.get()?;
     text(&mut file)?;
@@ -205,7 +205,7 @@ fn quantity(source: &mut Source<'_>, item: &Item) -> Result<(f64, String)> {
 }
 
 /// The distance of the places of points, which must be equally spaced.
-fn cell(source: &mut Source<'_>, places: &Item, count: u64) -> Result<Option<Extent>> {
+fn cell(source: &mut OpenedFile<'_>, places: &OpdxItem, count: u64) -> Result<Option<Extent>> {
     let mut file = Cursor::new(source, LITTLE, places.begin);
     text(&mut file)?;
     let unit = text(&mut file)?;

@@ -24,7 +24,7 @@ pub(crate) const READER: Reader = Reader { format: Format::Plu, recognises, chan
 
 header! {
     /// The header as far as it counts.
-    struct Header {
+    struct PluHeader {
         /// In letters, zeros behind it.
         date: [u8; 128] = 0,
         /// Rows and columns.
@@ -39,7 +39,7 @@ header! {
 }
 
 fn recognises(start: &[u8], length: u64) -> bool {
-    let Ok(header) = Header::of(&mut Fields::of_start(ByteOrder::Little, start)) else { return false };
+    let Ok(header) = PluHeader::of(&mut ByteFields::of_start(ByteOrder::Little, start)) else { return false };
     let date = header.date.split(|&b| b == 0).next().unwrap_or_default();
     let [rows, columns] = header.shape.map(|n| u64::from(n.min(MOST)));
     let bytes = 4 * rows * columns;
@@ -53,8 +53,8 @@ fn recognises(start: &[u8], length: u64) -> bool {
         && HEADER + SHAPE + bytes + RANGE <= length
 }
 
-fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
-    let header = Header::of(&mut source.fields(ByteOrder::Little, 0, HEADER + SHAPE)?)?;
+fn channels(source: &mut OpenedFile<'_>) -> Result<Vec<StoredChannel>> {
+    let header = PluHeader::of(&mut source.fields(ByteOrder::Little, 0, HEADER + SHAPE)?)?;
     let [rows, columns] = header.shape;
     let mut at = HEADER;
     let mut channels = Vec::new();

@@ -6,8 +6,8 @@ pub(in crate::instruments) use crate::channel::{
 pub(in crate::instruments) use crate::cursor::Cursor;
 pub(in crate::instruments) use crate::error::Result;
 pub(in crate::instruments) use crate::extent::Extent;
-pub(in crate::instruments) use crate::fields::{Fields, Text, decoded, header};
+pub(in crate::instruments) use crate::fields::{ByteFields, Text, decoded, header};
 pub(in crate::instruments) use crate::format::Format;
 pub(in crate::instruments) use crate::number_type::{ByteOrder, NumberType};
 pub(in crate::instruments) use crate::reader::Reader;
-pub(in crate::instruments) use crate::source::Source;
+pub(in crate::instruments) use crate::source::OpenedFile;

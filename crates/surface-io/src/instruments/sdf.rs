@@ -14,7 +14,7 @@
 
 use super::prelude::*;
 use crate::channel::undefined_heights;
-use crate::entries::{Entries, HeaderLine};
+use crate::entries::{HeaderLine, TextHeader};
 
 /// Behind an `a` for text or a `b` for numbers.
 const REVISIONS: [&[u8]; 4] = [b"ISO-1.0", b"ISO-2.0", b"BCR-0.0", b"BCR-1.0"];
@@ -30,7 +30,7 @@ pub(crate) const READER: Reader = Reader {
 };
 
 /// What both kinds of header say.
-struct Header {
+struct SdfHeader {
     manufacturer: String,
     /// Points of a profile, and profiles.
     count: [usize; 2],
@@ -40,7 +40,7 @@ struct Header {
     kind: f64,
 }
 
-fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
+fn channels(source: &mut OpenedFile<'_>) -> Result<Vec<StoredChannel>> {
     let start = source.start(LONGEST)?;
     let (header, offset) = if start[0] == b'a' {
         text_header(source, &start)?
@@ -74,7 +74,7 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
         let expected = format!("{columns} x {rows} numbers, there are {left} bytes (cut short?)");
         return Err(source.wrong(offset, expected));
     }
-    let read = move |source: &mut Source<'_>| numbers(source, offset, &raw, shape);
+    let read = move |source: &mut OpenedFile<'_>| numbers(source, offset, &raw, shape);
     Ok(vec![StoredChannel::deferred("text, row by row".to_owned(), shape, unit, extent, read)])
 }
 
@@ -96,7 +96,7 @@ fn number(kind: u8, bcr: bool) -> Option<(NumberType, Undefined)> {
 }
 
 /// The header, and the offset of its end; numbers of points and profiles have 16 bits, or 32.
-fn binary_header(source: &mut Source<'_>, wide: bool) -> Result<(Header, u64)> {
+fn binary_header(source: &mut OpenedFile<'_>, wide: bool) -> Result<(SdfHeader, u64)> {
     let little = ByteOrder::Little;
     let (count, at) = if wide {
         (source.get::<[u32; 2]>(little, 42)?.map(|count| count as usize), 50)
@@ -106,22 +106,22 @@ fn binary_header(source: &mut Source<'_>, wide: bool) -> Result<(Header, u64)> {
     let manufacturer = source.get::<Text<10>>(little, 8)?.to_string();
     let scale = source.get(little, at)?;
     let [compression, kind, _] = source.get::<[u8; 3]>(little, at + 32)?.map(f64::from);
-    Ok((Header { manufacturer, count, scale, compression, kind }, at + 35))
+    Ok((SdfHeader { manufacturer, count, scale, compression, kind }, at + 35))
 }
 
 /// The header of a text, and the offset behind the asterisk that ends it.
-fn text_header(source: &Source<'_>, start: &[u8]) -> Result<(Header, u64)> {
+fn text_header(source: &OpenedFile<'_>, start: &[u8]) -> Result<(SdfHeader, u64)> {
     let Some(end) = start.windows(2).position(|two| two == b"\n*") else {
         let expected = "a line with an asterisk at the end of the header before this";
         return Err(source.wrong(start.len() as u64, expected));
     };
-    let (header, _) = Entries::read(source.subject(), &start[..=end], |line| {
+    let (header, _) = TextHeader::read(source.subject(), &start[..=end], |line| {
         if line.trim_start().starts_with(';') { HeaderLine::Passed } else { HeaderLine::entry(line, '=') }
     })?;
     let section = header.section("");
     let number = |key: &str| Ok(section.number(key)?.unwrap_or(0.0));
     let scale = |key: &str| Ok(section.number(key)?.unwrap_or(f64::NAN));
-    let header = Header {
+    let header = SdfHeader {
         manufacturer: section.text("manufacid").unwrap_or_default().to_owned(),
         count: [section.whole("numpoints")?, section.whole("numprofiles")?],
         scale: [scale("xscale")?, scale("yscale")?, scale("zscale")?],
@@ -132,7 +132,12 @@ fn text_header(source: &Source<'_>, start: &[u8]) -> Result<(Header, u64)> {
 }
 
 /// Numbers as text from an offset on, up to an asterisk or the end; comments begin with a semicolon.
-fn numbers(source: &mut Source<'_>, offset: u64, raw: &RawHeights, shape: [usize; 2]) -> Result<Vec<f64>> {
+fn numbers(
+    source: &mut OpenedFile<'_>,
+    offset: u64,
+    raw: &RawHeights,
+    shape: [usize; 2],
+) -> Result<Vec<f64>> {
     let [rows, columns] = shape;
     let bytes = source.bytes(offset, source.length() - offset)?;
     let mut heights = undefined_heights(source, rows, columns)?;

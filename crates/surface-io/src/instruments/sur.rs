@@ -30,7 +30,7 @@ pub(crate) const READER: Reader = Reader {
 
 header! {
     /// What is kept of a header.
-    struct Header {
+    struct SurHeader {
         magic: [u8; 12] = 0,
         machine: u16 = 12,
         objects: u16 = 14,
@@ -55,13 +55,13 @@ header! {
     }
 }
 
-fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
+fn channels(source: &mut OpenedFile<'_>) -> Result<Vec<StoredChannel>> {
     let mut found = Vec::new();
     let (mut at, mut most, mut first_kind) = (0, 1, 0);
     // Older writers have the code of a material where newer ones have the number of channels: what follows
     // decides.
     while found.len() < most && source.length() - at >= HEADER {
-        let header = Header::of(&mut source.fields(ByteOrder::Little, at, HEADER)?)?;
+        let header = SurHeader::of(&mut source.fields(ByteOrder::Little, at, HEADER)?)?;
         if header.magic != *PLAIN && header.magic != *COMPRESSED {
             break;
         }
@@ -84,8 +84,14 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
 }
 
 /// The channel of an object and the offset of its end.
-fn object(source: &mut Source<'_>, at: u64, header: &Header, image: bool) -> Result<(StoredChannel, u64)> {
-    let wrong = |source: &Source<'_>, inside: u64, expected: String| Err(source.wrong(at + inside, expected));
+fn object(
+    source: &mut OpenedFile<'_>,
+    at: u64,
+    header: &SurHeader,
+    image: bool,
+) -> Result<(StoredChannel, u64)> {
+    let wrong =
+        |source: &OpenedFile<'_>, inside: u64, expected: String| Err(source.wrong(at + inside, expected));
     if header.machine != 0 {
         return wrong(source, 12, format!("0, the format of a PC, found {}", header.machine));
     }
@@ -135,7 +141,7 @@ fn object(source: &mut Source<'_>, at: u64, header: &Header, image: bool) -> Res
     let (mut channel, end) = if header.magic == *COMPRESSED {
         let details = format!("{}, compressed", plain.details());
         let (streams, end) = streams(source, data, length)?;
-        let read = move |source: &mut Source<'_>| {
+        let read = move |source: &mut OpenedFile<'_>| {
             let mut bytes = Vec::new();
             for stream in &streams {
                 stream.unpack(source, &mut bytes)?;
@@ -151,7 +157,7 @@ fn object(source: &mut Source<'_>, at: u64, header: &Header, image: bool) -> Res
 }
 
 /// The streams of a compressed object that unpack to `length` bytes, and the offset of their end.
-fn streams(source: &mut Source<'_>, data: u64, length: u64) -> Result<(Vec<Packed>, u64)> {
+fn streams(source: &mut OpenedFile<'_>, data: u64, length: u64) -> Result<(Vec<Packed>, u64)> {
     let count: u32 = source.get(ByteOrder::Little, data)?;
     if !(1..=STREAMS).contains(&count) {
         return Err(source.wrong(data, format!("1 to {STREAMS} streams, found {count}")));

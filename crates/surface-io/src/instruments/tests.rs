@@ -5,12 +5,12 @@
 
 use super::{READERS, mat, opdx};
 use crate::channel::StoredChannel;
-use crate::source::Source;
+use crate::source::OpenedFile;
 use std::io::Cursor;
 use std::path::Path;
 
 fn channels(bytes: &[u8]) -> Vec<StoredChannel> {
-    let mut source = Source::new(Path::new("a"), Cursor::new(bytes), bytes.len() as u64);
+    let mut source = OpenedFile::new(Path::new("a"), Cursor::new(bytes), bytes.len() as u64);
     let reader = READERS.iter().find(|reader| (reader.recognises)(bytes, bytes.len() as u64)).unwrap();
     source.read_as(Some(reader.format));
     (reader.channels)(&mut source).unwrap()

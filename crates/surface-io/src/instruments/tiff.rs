@@ -29,7 +29,7 @@ mod mask;
 mod park;
 
 use super::prelude::*;
-use crate::array::{Array, Dimension as Along, Numbers};
+use crate::array::{Array, ArrayDimension as Along, Numbers};
 use crate::channel::{FileAxes, undefined_heights};
 use crate::error::{ContentError, Error, Place};
 use crate::inflate::RATIO;
@@ -60,7 +60,7 @@ pub(crate) const READER: Reader =
     Reader { format: Format::Tiff, recognises: super::magic::is_tiff, channels };
 
 /// A decoder that stands at the first image.
-fn open(source: &mut Source<'_>) -> Result<Decoder<impl Read + Seek>> {
+fn open(source: &mut OpenedFile<'_>) -> Result<Decoder<impl Read + Seek>> {
     let length = source.length();
     let mut limits = Limits::default();
     limits.decoding_buffer_size = usize::try_from(RATIO.saturating_mul(length)).unwrap_or(usize::MAX);
@@ -78,7 +78,7 @@ fn unreadable(said: &dyn std::fmt::Display) -> ContentError {
     ContentError::Binary { format: Format::Tiff, offset: 0, expected }
 }
 
-fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
+fn channels(source: &mut OpenedFile<'_>) -> Result<Vec<StoredChannel>> {
     let tags = Directories::read(source)?;
     if let Some(channel) = park::channel(source, &tags)? {
         return Ok(vec![channel]);
@@ -274,7 +274,7 @@ impl ImageJ {
 }
 
 fn channel(
-    source: &Source<'_>,
+    source: &OpenedFile<'_>,
     number: usize,
     page: Page,
     first: &First,
@@ -339,14 +339,14 @@ fn channel(
         array.unit = StoredUnit::NoHeights(Some("an image of less resolution".into()));
     }
     let details = format!("{}, row by row{}", kind.name(), if mask.is_some() { ", with a mask" } else { "" });
-    let image = Image { number, size: page.size, bytes: u64::from(bits / 8), mask };
+    let image = TiffImage { number, size: page.size, bytes: u64::from(bits / 8), mask };
     let numbers = Numbers::Decoded("", Box::new(move |raw, source| image.read(raw, source)));
     // Byte order and packing are not those of the file any more.
     Ok(Some(StoredChannel { details, ..array.channel(source, numbers)? }))
 }
 
 /// What is needed to read one image.
-struct Image {
+struct TiffImage {
     number: usize,
     size: (u32, u32),
     /// Bytes of a number.
@@ -354,8 +354,8 @@ struct Image {
     mask: Option<Mask>,
 }
 
-impl Image {
-    fn read(&self, raw: &RawHeights, source: &mut Source<'_>) -> Result<Vec<f64>> {
+impl TiffImage {
+    fn read(&self, raw: &RawHeights, source: &mut OpenedFile<'_>) -> Result<Vec<f64>> {
         let (columns, rows) = (self.size.0 as usize, self.size.1 as usize);
         let mut heights = undefined_heights(source, rows, columns)?;
         let path = source.path().to_owned();

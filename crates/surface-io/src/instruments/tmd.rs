@@ -17,7 +17,7 @@ const MAGIC: &[u8] = b"Binary TrueMap Data File v2.0\r\n\0";
 pub(crate) const READER: Reader =
     Reader { format: Format::Tmd, recognises: |start, _| start.starts_with(MAGIC), channels };
 
-fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
+fn channels(source: &mut OpenedFile<'_>) -> Result<Vec<StoredChannel>> {
     let mut file = Cursor::new(source, ByteOrder::Little, MAGIC.len() as u64);
     let comment = file.name()?;
     let [columns, rows] = file.get::<[u32; 2]>()?;

@@ -17,7 +17,7 @@
 
 use super::prelude::*;
 use crate::channel::check_rest;
-use crate::entries::{Entries, HeaderLine, SIX_DIGITS, number_and_text};
+use crate::entries::{HeaderLine, SIX_DIGITS, TextHeader, number_and_text};
 
 const MAGIC: &[u8] = b"WSxM file copyright";
 /// The second line of images; curves and movies have another one.
@@ -33,9 +33,9 @@ pub(crate) const READER: Reader = Reader {
     channels,
 };
 
-fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
+fn channels(source: &mut OpenedFile<'_>) -> Result<Vec<StoredChannel>> {
     let bytes = source.start(LONGEST)?;
-    let header = Entries::up_to_end(source, &bytes, line, "the line [Header end] before this")?;
+    let header = TextHeader::up_to_end(source, &bytes, line, "the line [Header end] before this")?;
     let [general, control, other] =
         ["general info", "control", "miscellaneous"].map(|name| header.section(name));
     let number = match general.text("image data type") {

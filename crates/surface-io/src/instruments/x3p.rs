@@ -23,7 +23,7 @@ use super::magic::{self, MAIN};
 use super::prelude::*;
 use crate::error::Error;
 use crate::zip::{self, Member};
-use main_xml::{Axis, Main};
+use main_xml::{Main, X3pAxis};
 
 /// Bytes of it: a description has a few thousand, a list of a million heights as text about this many. It is
 /// unpacked as a whole.
@@ -32,14 +32,14 @@ const LONGEST: u64 = 16 << 20;
 pub(crate) const READER: Reader = Reader { format: Format::X3p, recognises: magic::is_archive, channels };
 
 /// Where the numbers are.
-enum Numbers {
+enum X3pNumbers {
     /// In a member, with another one for the points that are defined.
     Linked { data: Member, valid: Option<Member>, number: NumberType },
     /// In `main.xml`.
     Listed(Member),
 }
 
-fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
+fn channels(source: &mut OpenedFile<'_>) -> Result<Vec<StoredChannel>> {
     let members = zip::members(source)?;
     let Some(main_member) = magic::main_member(&members) else {
         return Err(source.content(zip::refused(&members)));
@@ -81,7 +81,7 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
             return Err(wrong(source, main_member, &expected));
         }
         details += ", as text";
-        Numbers::Listed(main_member.clone())
+        X3pNumbers::Listed(main_member.clone())
     } else {
         let Some(data) = member(&main.data) else {
             return Err(wrong(source, main_member, "PointDataLink with the name of a member"));
@@ -96,15 +96,15 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
             details += ", with a mask";
             valid = Some(bits);
         }
-        Numbers::Linked { data, valid, number }
+        X3pNumbers::Linked { data, valid, number }
     };
     let (x, y) = (x.cell(), y.cell());
-    let read = move |source: &mut Source<'_>| numbers.read(source, [columns, rows], (scale, shift));
+    let read = move |source: &mut OpenedFile<'_>| numbers.read(source, [columns, rows], (scale, shift));
     let channel = StoredChannel::deferred(details, [rows, columns], unit, [x, y], read);
     Ok(vec![StoredChannel { notes, ..channel }])
 }
 
-fn wrong(source: &Source<'_>, main: &Member, expected: &str) -> Error {
+fn wrong(source: &OpenedFile<'_>, main: &Member, expected: &str) -> Error {
     source.wrong(main.offset(), format!("in main.xml {expected}"))
 }
 
@@ -163,7 +163,7 @@ fn length(text: &str, absent: f64) -> Option<f64> {
     number.filter(|number: &f64| number.is_finite())
 }
 
-impl Axis {
+impl X3pAxis {
     /// The side of a cell, where the increment is one.
     fn cell(&self) -> Option<Extent> {
         Extent::of_cell(length(&self.increment, 0.0)?, "m")
@@ -171,7 +171,7 @@ impl Axis {
 }
 
 /// An error where a member has another length, or cannot have it.
-fn sized(source: &mut Source<'_>, member: &Member, bytes: Option<u64>) -> Result<()> {
+fn sized(source: &mut OpenedFile<'_>, member: &Member, bytes: Option<u64>) -> Result<()> {
     if bytes != Some(member.unpacked()) {
         let bytes = bytes.map_or("more".to_owned(), |bytes| bytes.to_string());
         let expected =
@@ -181,11 +181,11 @@ fn sized(source: &mut Source<'_>, member: &Member, bytes: Option<u64>) -> Result
     member.packed(source).map(drop)
 }
 
-impl Numbers {
+impl X3pNumbers {
     /// `height = scale * number + shift`, row by row.
     fn read(
         &self,
-        source: &mut Source<'_>,
+        source: &mut OpenedFile<'_>,
         [columns, rows]: [usize; 2],
         (scale, shift): (f64, f64),
     ) -> Result<Vec<f64>> {

@@ -17,7 +17,7 @@ const LONGEST: u64 = 1 << 16;
 pub(crate) const READER: Reader =
     Reader { format: Format::ZygoXyz, recognises: |start, _| start.starts_with(MAGIC), channels };
 
-fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
+fn channels(source: &mut OpenedFile<'_>) -> Result<Vec<StoredChannel>> {
     let text = decoded(&source.start(LONGEST)?);
     let Some(end) = text.find("\n#").map(|end| end + 2) else {
         return Err(source.wrong(text.len() as u64, "a line with # at the end of the header before this"));
@@ -41,7 +41,7 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
     }
     let resolution = numbers(7).get(6).copied().flatten().unwrap_or(0.0);
     let behind = end as u64;
-    let read = move |source: &mut Source<'_>| points(source, behind, [left, top], [rows, columns]);
+    let read = move |source: &mut OpenedFile<'_>| points(source, behind, [left, top], [rows, columns]);
     let (unit, extent) = (StoredUnit::written("um"), [Extent::of_cell(resolution, "m"); 2]);
     let mut channel =
         StoredChannel::deferred("points as text".to_owned(), [rows, columns], unit, extent, read);
@@ -52,7 +52,7 @@ fn channels(source: &mut Source<'_>) -> Result<Vec<StoredChannel>> {
 
 /// The heights, NaN where none is said.
 fn points(
-    source: &mut Source<'_>,
+    source: &mut OpenedFile<'_>,
     offset: u64,
     from: [f64; 2],
     [rows, columns]: [usize; 2],

@@ -3,7 +3,7 @@
 use crate::channel::AxisOrder;
 use crate::error::{ContentError, Result};
 use crate::number_type::NumberType;
-use crate::source::Source;
+use crate::source::OpenedFile;
 
 /// First bytes of the file.
 pub(super) const MAGIC: &[u8] = b"\x93NUMPY";
@@ -31,7 +31,7 @@ pub(super) struct NpyHeader {
 
 impl NpyHeader {
     /// Reads the header; returns its own length too.
-    pub(super) fn read(source: &mut Source<'_>) -> Result<(Self, u64)> {
+    pub(super) fn read(source: &mut OpenedFile<'_>) -> Result<(Self, u64)> {
         let start = source.start(12)?;
         let wrong = |offset, expected| source.content(ContentError::Header { offset, expected });
         let byte = |i: usize| start.get(i).copied().ok_or_else(|| wrong(i, "the length of the header"));

@@ -28,19 +28,19 @@ pub(super) struct Form {
     kind: FormKind,
     /// A, B, C, E; or A, B, E, direction and slope of the axis: in units of half the diagonal.
     parameters: [f64; MOST],
-    places: Places,
+    places: ScaledPoints,
     middle: f64,
 }
 
 /// Places of the points about the middle of the map in units of half its diagonal.
 #[derive(Debug, Clone, Copy)]
-struct Places {
+struct ScaledPoints {
     cells: Cells,
     cell: [f64; 2],
     unit: f64,
 }
 
-impl Places {
+impl ScaledPoints {
     fn new(cells: Cells, cell: [f64; 2]) -> Self {
         let unit = 0.5 * (cells.columns as f64 * cell[0]).hypot(cells.rows as f64 * cell[1]);
         Self { cells, cell, unit }
@@ -102,7 +102,7 @@ impl Form {
         cell: [f64; 2],
         heights: &[f64],
     ) -> Result<Self, ContentError> {
-        let places = Places::new(cells, cell);
+        let places = ScaledPoints::new(cells, cell);
         let (unit, unknowns) = (places.unit, kind.unknowns());
         let measured = || heights.iter().enumerate().filter(|(_, h)| !h.is_nan());
         let (low, high) =
@@ -183,7 +183,7 @@ impl FormKind {
     /// The paraboloid or the parabolic cylinder of least squares.
     fn start(
         self,
-        places: Places,
+        places: ScaledPoints,
         points: &(impl Iterator<Item = (usize, f64)> + Clone),
     ) -> Option<[f64; MOST]> {
         let fit = |basis: &dyn Fn([f64; 2]) -> [f64; MOST], unknowns: usize| {

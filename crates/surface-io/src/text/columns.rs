@@ -12,7 +12,7 @@ use std::fmt;
 
 /// What the values of a column are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Kind {
+pub(crate) enum ColumnKind {
     /// Coordinates along x (0) or y (1).
     Coordinate(usize),
     /// Numbers of columns (0) or rows (1).
@@ -27,16 +27,16 @@ pub(crate) enum Kind {
 
 /// A column as its heading names it.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Column {
+pub(crate) struct TextColumn {
     /// As written.
     pub(crate) cell: String,
     pub(crate) name: String,
-    pub(crate) kind: Kind,
+    pub(crate) kind: ColumnKind,
     /// As written, empty for none.
     pub(crate) unit: String,
 }
 
-impl fmt::Display for Column {
+impl fmt::Display for TextColumn {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match (self.cell.as_str(), self.unit.as_str()) {
             ("", _) => f.write_str("(no name)"),
@@ -69,12 +69,16 @@ pub(crate) fn symbol(text: &str) -> &str {
     WORDS.iter().find(|(word, _)| word.eq_ignore_ascii_case(text)).map_or(text, |(_, unit)| unit)
 }
 
-impl Column {
+impl TextColumn {
     fn new(cell: &str) -> Self {
         let cell = cell.trim().trim_matches('"').trim();
         let (name, unit) = Self::split(cell).unwrap_or((cell, ""));
-        let mut column =
-            Self { cell: cell.to_owned(), name: name.to_owned(), kind: Kind::Other, unit: unit.to_owned() };
+        let mut column = Self {
+            cell: cell.to_owned(),
+            name: name.to_owned(),
+            kind: ColumnKind::Other,
+            unit: unit.to_owned(),
+        };
         column.kind = column.kind();
         column
     }
@@ -95,7 +99,7 @@ impl Column {
         (!name.trim().is_empty()).then_some((name.trim(), unit))
     }
 
-    fn kind(&self) -> Kind {
+    fn kind(&self) -> ColumnKind {
         let lower = self.name.to_lowercase().replace(['_', '-', ':', '.'], " ");
         let words: Vec<&str> = lower.split_whitespace().collect();
         let words = match &words[..] {
@@ -107,23 +111,27 @@ impl Column {
         let pixels = ["px", "pixel", "pixels", "pix"].contains(&unit.as_str());
         let degrees = unit.starts_with("deg") || unit == "\u{b0}";
         match (axis_of(words), words) {
-            (Some(axis), name) if !is_length && (degrees || name.starts_with('l')) => Kind::Degrees(axis),
+            (Some(axis), name) if !is_length && (degrees || name.starts_with('l')) => {
+                ColumnKind::Degrees(axis)
+            }
             (Some(axis), name)
                 if !is_length && (pixels || name.starts_with("col") || name.starts_with("row")) =>
             {
-                Kind::Index(axis)
+                ColumnKind::Index(axis)
             }
-            (Some(axis), _) => Kind::Coordinate(axis),
+            (Some(axis), _) => ColumnKind::Coordinate(axis),
             // As ParaView writes points.
-            (None, "points 0") => Kind::Coordinate(0),
-            (None, "points 1") => Kind::Coordinate(1),
+            (None, "points 0") => ColumnKind::Coordinate(0),
+            (None, "points 1") => ColumnKind::Coordinate(1),
             (None, "points 2" | "z" | "height" | "heights" | "elevation" | "altitude" | "topography")
                 if unit.is_empty() || is_length =>
             {
-                Kind::Height
+                ColumnKind::Height
             }
-            (None, "distance" | "lateral" | "position" | "scan position" | "lateral distance") => Kind::Along,
-            _ => Kind::Other,
+            (None, "distance" | "lateral" | "position" | "scan position" | "lateral distance") => {
+                ColumnKind::Along
+            }
+            _ => ColumnKind::Other,
         }
     }
 
@@ -133,19 +141,19 @@ impl Column {
 
     /// Whether the cell is more than a word.
     pub(crate) fn tells(&self) -> bool {
-        self.kind != Kind::Other || !self.unit.is_empty()
+        self.kind != ColumnKind::Other || !self.unit.is_empty()
     }
 
     /// Whether the cell can be nothing but the name of a column: a known one, or words with a unit.
     fn is_named(&self) -> bool {
         let words = !self.cell.contains(|c: char| c.is_ascii_digit() || matches!(c, ':' | '='));
-        self.kind != Kind::Other || (words && !self.unit.is_empty())
+        self.kind != ColumnKind::Other || (words && !self.unit.is_empty())
     }
 
     /// The axis that these are places along: 0 for x, 1 for y.
     pub(crate) fn axis(&self) -> Option<usize> {
         match self.kind {
-            Kind::Coordinate(axis) | Kind::Index(axis) | Kind::Degrees(axis) => Some(axis),
+            ColumnKind::Coordinate(axis) | ColumnKind::Index(axis) | ColumnKind::Degrees(axis) => Some(axis),
             _ => None,
         }
     }
@@ -168,7 +176,7 @@ fn cells(line: &str, delimiter: Delimiter) -> Vec<String> {
 
 /// The cells of a line that is a heading of this number of columns: none of them a number, in any delimiter,
 /// first that of the numbers.
-fn heading_cells(line: &str, own: Delimiter, count: usize) -> Option<(Delimiter, Vec<Column>)> {
+fn heading_cells(line: &str, own: Delimiter, count: usize) -> Option<(Delimiter, Vec<TextColumn>)> {
     // Some programs mark a heading as a comment of their own.
     let line = line.trim_start_matches(['/', '!', '*', ' ']);
     let all = [own, Delimiter::Tab, Delimiter::Semicolon, Delimiter::Comma, Delimiter::Whitespace];
@@ -180,14 +188,14 @@ fn heading_cells(line: &str, own: Delimiter, count: usize) -> Option<(Delimiter,
         let words = cells.iter().all(|cell| cell.trim_matches('"').parse::<f64>().is_err());
         let some = cells.iter().any(|cell| !cell.is_empty());
         (cells.len() == count && words && some)
-            .then(|| (delimiter, cells.iter().map(|cell| Column::new(cell)).collect()))
+            .then(|| (delimiter, cells.iter().map(|cell| TextColumn::new(cell)).collect()))
     })
 }
 
 /// The units in a line of nothing else, one for each column.
 fn units(line: &str, own: Delimiter, count: usize) -> Option<Vec<String>> {
     let (_, cells) = heading_cells(line, own, count)?;
-    let unit = |column: &Column| {
+    let unit = |column: &TextColumn| {
         let text = column.cell.trim_matches(['[', ']', '(', ')']);
         if text.is_empty() { Some(String::new()) } else { unit_of(text).map(str::to_owned) }
     };
@@ -200,7 +208,7 @@ fn units(line: &str, own: Delimiter, count: usize) -> Option<Vec<String>> {
 ///
 /// Words between spaces may be a sentence: two of them at least have to be names that are known, or to have a
 /// unit. The title is believed in a delimiter alone.
-pub(super) fn named(lines: &[String], title: Option<&str>, own: Delimiter, count: usize) -> Vec<Column> {
+pub(super) fn named(lines: &[String], title: Option<&str>, own: Delimiter, count: usize) -> Vec<TextColumn> {
     if count < 2 {
         return Vec::new();
     }
@@ -235,6 +243,6 @@ pub(super) fn names_axes(line: &str) -> bool {
     all.into_iter().any(|delimiter| {
         let cells = cells(line, delimiter);
         (2..=MOST_CHANNELS).contains(&cells.len())
-            && cells.iter().filter(|cell| Column::new(cell).is_named()).count() >= 2
+            && cells.iter().filter(|cell| TextColumn::new(cell).is_named()).count() >= 2
     })
 }

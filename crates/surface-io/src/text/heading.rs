@@ -5,8 +5,8 @@
 //! (`IO/Text.py`) and Gwyddion (`spip-asc.c`), and their usual variants. A length counts where it has a unit;
 //! a number of pixels has none and is compared with the lines.
 
-use super::columns::{Column, names_axes};
-use super::statement::{Side, Statement, key_and_value, lengths};
+use super::columns::{TextColumn, names_axes};
+use super::statement::{HeadingStatement, Side, key_and_value, lengths};
 use crate::channel::StoredUnit;
 use crate::error::ContentError;
 use crate::extent::{Extent, agree};
@@ -52,7 +52,7 @@ pub(crate) struct Heading {
     /// Lines that may name the columns, the last few.
     pub(super) lines: Vec<String>,
     /// The columns as such a line names them; empty for none.
-    pub(crate) columns: Vec<Column>,
+    pub(crate) columns: Vec<TextColumn>,
 }
 
 /// A unit that is none of heights.
@@ -148,22 +148,25 @@ impl Heading {
         };
         let about_size = matches!(
             statement,
-            Statement::Side(..) | Statement::Size | Statement::Cell(_) | Statement::Count(_)
+            HeadingStatement::Side(..)
+                | HeadingStatement::Size
+                | HeadingStatement::Cell(_)
+                | HeadingStatement::Count(_)
         );
         if about_size && value.contains(|c: char| c.is_ascii_digit()) && self.sizes.len() < NOTED {
             self.sizes.push(text.trim().chars().take(80).collect());
         }
         match statement {
-            Statement::Channel => {
+            HeadingStatement::Channel => {
                 self.name = self.name.take().or_else(|| (!value.is_empty()).then(|| value.clone()));
             }
-            Statement::Side(axis, of_scan) => self.side(&key, &value, axis, of_scan, line)?,
-            Statement::Size => match lengths(&value).as_deref() {
+            HeadingStatement::Side(axis, of_scan) => self.side(&key, &value, axis, of_scan, line)?,
+            HeadingStatement::Size => match lengths(&value).as_deref() {
                 Some([one]) => once(&mut self.square, Some(*one), &key)?,
                 Some([x, y]) => both(&mut self.sides, [*x, *y], &key)?,
                 _ => {}
             },
-            Statement::Cell(axis) => {
+            HeadingStatement::Cell(axis) => {
                 let said = lengths(&without_pixels(&value)).unwrap_or_default();
                 let of_length = |side: &Side| side.quantity.dimension() == Dimension::LENGTH;
                 self.grid |= key == "cellsize";
@@ -175,9 +178,9 @@ impl Heading {
                     (None, [one, ..]) => both(&mut self.cells, [*one; 2], &key)?,
                 }
             }
-            Statement::Count(axis) => self.count(axis, &value, &key)?,
-            Statement::HeightUnit | Statement::LateralUnit if !value.is_empty() => {
-                let of_heights = statement == Statement::HeightUnit;
+            HeadingStatement::Count(axis) => self.count(axis, &value, &key)?,
+            HeadingStatement::HeightUnit | HeadingStatement::LateralUnit if !value.is_empty() => {
+                let of_heights = statement == HeadingStatement::HeightUnit;
                 let unit = match unit(&value) {
                     Ok(unit) => unit,
                     Err(source) => {
@@ -196,7 +199,7 @@ impl Heading {
                 }
                 field.get_or_insert(unit);
             }
-            Statement::DataUnit => match unit(&value) {
+            HeadingStatement::DataUnit => match unit(&value) {
                 Ok(unit) => self.unit = self.unit.take().or(Some(unit)),
                 Err(source) => {
                     let problem = ContentError::Heading { line, key, source };
@@ -204,14 +207,14 @@ impl Heading {
                     self.other_unit = self.other_unit.take().or(Some(other));
                 }
             },
-            Statement::Factor(of) => {
+            HeadingStatement::Factor(of) => {
                 if let (Some(factor), Ok(unit)) = (positive(&value), unit(&of)) {
                     (self.scale, self.unit) = (Some(factor), Some(unit));
                 }
             }
-            Statement::Missing => self.missing = self.missing.or(value.parse().ok()),
-            Statement::BitToNm => self.bit_to_nm = self.bit_to_nm.or(positive(&value)),
-            Statement::HeightUnit | Statement::LateralUnit => {}
+            HeadingStatement::Missing => self.missing = self.missing.or(value.parse().ok()),
+            HeadingStatement::BitToNm => self.bit_to_nm = self.bit_to_nm.or(positive(&value)),
+            HeadingStatement::HeightUnit | HeadingStatement::LateralUnit => {}
         }
         Ok(())
     }

@@ -12,7 +12,7 @@ pub(crate) struct Side {
 
 /// What a key is about.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) enum Statement {
+pub(super) enum HeadingStatement {
     /// Name of the channel.
     Channel,
     /// Side of the map along an axis; whether the key is one of scans, not a word of everyday.
@@ -37,7 +37,7 @@ pub(super) enum Statement {
 
 /// Kind, key and value of a line `key: value` or `key = value`, or with a tab between; `None` for what means
 /// nothing here.
-pub(super) fn key_and_value(text: &str) -> Option<(Statement, String, String)> {
+pub(super) fn key_and_value(text: &str) -> Option<(HeadingStatement, String, String)> {
     let text = text.trim().trim_start_matches(['\\', '@', '*']);
     let joined = joined(text);
     let of_table = joined.is_some();
@@ -55,7 +55,7 @@ pub(super) fn key_and_value(text: &str) -> Option<(Statement, String, String)> {
     if let Some(of) = lower.strip_prefix("height conversion factor") {
         // Cut out of the text as written: upper and lower case differ in units.
         let of = key.get(key.len() - of.len()..)?.trim().strip_prefix("(->")?.strip_suffix(')')?;
-        return Some((Statement::Factor(of.trim().to_owned()), lower, value.to_owned()));
+        return Some((HeadingStatement::Factor(of.trim().to_owned()), lower, value.to_owned()));
     }
     // A unit behind the key is that of the value.
     let (name, unit) = match key.strip_suffix([')', ']']).and_then(|k| k.rsplit_once(['(', '['])) {
@@ -66,8 +66,8 @@ pub(super) fn key_and_value(text: &str) -> Option<(Statement, String, String)> {
     let words: Vec<&str> = words.split_whitespace().collect();
     let words = words.join(" ");
     // Of Keyence's tables the unit is that of the numbers; elsewhere it may be that of anything.
-    let statement = if words == "unit" && of_table { Statement::DataUnit } else { known(&words)? };
-    if between.is_none() && statement != Statement::HeightUnit {
+    let statement = if words == "unit" && of_table { HeadingStatement::DataUnit } else { known(&words)? };
+    if between.is_none() && statement != HeadingStatement::HeightUnit {
         return None;
     }
     let value = if unit.is_empty() { value.to_owned() } else { format!("{value} {unit}") };
@@ -99,26 +99,26 @@ fn unquoted(text: &str) -> &str {
     text.trim().trim_matches('"').trim()
 }
 
-fn known(words: &str) -> Option<Statement> {
+fn known(words: &str) -> Option<HeadingStatement> {
     Some(match words {
-        "channel" | "channel name" => Statement::Channel,
-        "width" => Statement::Side(0, false),
-        "height" => Statement::Side(1, false),
+        "channel" | "channel name" => HeadingStatement::Channel,
+        "width" => HeadingStatement::Side(0, false),
+        "height" => HeadingStatement::Side(1, false),
         "x length" | "xlength" | "x size" | "size x" | "x range" | "x amplitude" | "scan size x"
-        | "x scan size" | "scan range x" | "x scan range" | "length x" => Statement::Side(0, true),
+        | "x scan size" | "scan range x" | "x scan range" | "length x" => HeadingStatement::Side(0, true),
         "y length" | "ylength" | "y size" | "size y" | "y range" | "y amplitude" | "scan size y"
-        | "y scan size" | "scan range y" | "y scan range" | "length y" => Statement::Side(1, true),
-        "scan size" | "scan range" | "scan area" | "image size" | "field of view" => Statement::Size,
+        | "y scan size" | "scan range y" | "y scan range" | "length y" => HeadingStatement::Side(1, true),
+        "scan size" | "scan range" | "scan area" | "image size" | "field of view" => HeadingStatement::Size,
         "pixel size" | "pixelsize" | "cell size" | "cellsize" | "xy calibration" | "point spacing"
-        | "sample spacing" => Statement::Cell(None),
+        | "sample spacing" => HeadingStatement::Cell(None),
         "x pixel size" | "pixel size x" | "x spacing" | "spacing x" | "x step" | "step x" | "x increment"
-        | "dx" | "x resolution" => Statement::Cell(Some(0)),
+        | "dx" | "x resolution" => HeadingStatement::Cell(Some(0)),
         "y pixel size" | "pixel size y" | "y spacing" | "spacing y" | "y step" | "step y" | "y increment"
-        | "dy" | "y resolution" => Statement::Cell(Some(1)),
+        | "dy" | "y resolution" => HeadingStatement::Cell(Some(1)),
         "x pixels" | "pixels x" | "columns" | "number of columns" | "samps/line" | "samples/line" | "nx"
-        | "w" | "ncols" | "numcols" | "horizontal" => Statement::Count(0),
+        | "w" | "ncols" | "numcols" | "horizontal" => HeadingStatement::Count(0),
         "y pixels" | "pixels y" | "rows" | "number of rows" | "number of lines" | "lines" | "ny" | "h"
-        | "nrows" | "numrows" | "vertical" => Statement::Count(1),
+        | "nrows" | "numrows" | "vertical" => HeadingStatement::Count(1),
         "value units"
         | "value unit"
         | "werteeinheiten"
@@ -128,12 +128,12 @@ fn known(words: &str) -> Option<Statement> {
         | "height units"
         | "unit z"
         | "exported image units"
-        | "z data" => Statement::HeightUnit,
+        | "z data" => HeadingStatement::HeightUnit,
         "lateral units" | "lateral unit" | "xy unit" | "xy units" | "x unit" | "x units" | "y unit"
-        | "y units" => Statement::LateralUnit,
-        "data unit" => Statement::DataUnit,
-        "nodata value" => Statement::Missing,
-        "bit2nm" => Statement::BitToNm,
+        | "y units" => HeadingStatement::LateralUnit,
+        "data unit" => HeadingStatement::DataUnit,
+        "nodata value" => HeadingStatement::Missing,
+        "bit2nm" => HeadingStatement::BitToNm,
         _ => return translated(words),
     })
 }
@@ -141,15 +141,18 @@ fn known(words: &str) -> Option<Statement> {
 /// The labels of Gwyddion's exports in the languages that it speaks besides English, as its own catalogues
 /// (version 2.62) have them: Czech, German, Spanish, French, Italian, Japanese, Korean, Brazilian Portuguese
 /// and Russian.
-const TRANSLATED: [(Statement, &[&str]); 5] = [
-    (Statement::Channel, &["kanál", "kanal", "canal", "canale", "チャネル", "채널", "канал"]),
+const TRANSLATED: [(HeadingStatement, &[&str]); 5] = [
+    (HeadingStatement::Channel, &["kanál", "kanal", "canal", "canale", "チャネル", "채널", "канал"]),
     (
-        Statement::Side(0, false),
+        HeadingStatement::Side(0, false),
         &["šířka", "breite", "anchura", "largeur", "larghezza", "幅", "폭", "largura", "ширина"],
     ),
-    (Statement::Side(1, false), &["výška", "höhe", "altura", "hauteur", "altezza", "高さ", "높이", "высота"]),
     (
-        Statement::HeightUnit,
+        HeadingStatement::Side(1, false),
+        &["výška", "höhe", "altura", "hauteur", "altezza", "高さ", "높이", "высота"],
+    ),
+    (
+        HeadingStatement::HeightUnit,
         &[
             "jednotky hodnot",
             "einheiten",
@@ -162,7 +165,7 @@ const TRANSLATED: [(Statement, &[&str]); 5] = [
         ],
     ),
     (
-        Statement::LateralUnit,
+        HeadingStatement::LateralUnit,
         &[
             "jednotky rozměrů",
             "unités latérales",
@@ -174,7 +177,7 @@ const TRANSLATED: [(Statement, &[&str]); 5] = [
     ),
 ];
 
-fn translated(words: &str) -> Option<Statement> {
+fn translated(words: &str) -> Option<HeadingStatement> {
     TRANSLATED.iter().find(|(_, labels)| labels.contains(&words)).map(|(statement, _)| statement.clone())
 }
 

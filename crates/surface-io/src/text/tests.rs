@@ -218,8 +218,8 @@ fn every_bad_text_says_where_and_what_to_do() {
 
 #[test]
 fn headers_of_the_usual_programs_are_read() {
-    type Found = (Option<[f64; 2]>, Option<String>);
-    let found = |text: &[u8]| -> Found {
+    type SidesAndUnit = (Option<[f64; 2]>, Option<String>);
+    let found = |text: &[u8]| -> SidesAndUnit {
         let scan = read(text).unwrap_or_else(|e| panic!("{e}\n{}", String::from_utf8_lossy(text)));
         assert_eq!(scan.metadata().rows, 2);
         let rounded = |q: Quantity| format!("{:.6e}", q.value()).parse().unwrap();

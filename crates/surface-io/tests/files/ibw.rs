@@ -7,7 +7,7 @@ pub fn files() -> Vec<Small> {
     let heights = [1e-9_f32, -2e-9, f32::NAN, 3e-9, 0.0, 7e-9];
     let asylum = Small {
         name: "ibw of Asylum",
-        bytes: Wave { kind: 2, ..Wave::new(2) }
+        bytes: IbwWave { kind: 2, ..IbwWave::new(2) }
             .file(false, &heights.iter().chain(&heights).flat_map(|h| h.to_le_bytes()).collect::<Vec<_>>()),
         number: 1,
         shape: [3, 2],
@@ -16,10 +16,10 @@ pub fn files() -> Vec<Small> {
         compressed: false,
     };
     let doubles: Vec<u8> = [1.5_f64, -2.0, 3.0, 4.0, 0.0, 7.0].iter().flat_map(|h| h.to_be_bytes()).collect();
-    let plain = Wave { unit: "nm", program: "", labels: &[], ..Wave::new(0) };
+    let plain = IbwWave { unit: "nm", program: "", labels: &[], ..IbwWave::new(0) };
     let big = Small {
         name: "ibw big-endian",
-        bytes: Wave { kind: 4, ..plain }.file(true, &doubles),
+        bytes: IbwWave { kind: 4, ..plain }.file(true, &doubles),
         number: 0,
         heights: [4.0, 0.0, 7.0, 1.5, -2.0, 3.0].map(|h: f64| h * 1e-9).to_vec(),
         ..asylum.clone()
@@ -27,7 +27,7 @@ pub fn files() -> Vec<Small> {
     let shorts: Vec<u8> = [1_u16, 65535, 3, 4, 0, 7].iter().flat_map(|h| h.to_le_bytes()).collect();
     let long = Small {
         name: "ibw of uint16 with a long unit",
-        bytes: Wave { kind: 0x50, unit: "angstrom", ..plain }.file(false, &shorts),
+        bytes: IbwWave { kind: 0x50, unit: "angstrom", ..plain }.file(false, &shorts),
         heights: [4.0, 0.0, 7.0, 1.0, 65535.0, 3.0].map(|h: f64| h * 1e-10).to_vec(),
         ..big.clone()
     };
@@ -36,7 +36,7 @@ pub fn files() -> Vec<Small> {
 
 /// A wave of three columns and two rows.
 #[derive(Clone, Copy)]
-struct Wave {
+struct IbwWave {
     kind: u16,
     layers: u32,
     unit: &'static str,
@@ -44,7 +44,7 @@ struct Wave {
     program: &'static str,
 }
 
-impl Wave {
+impl IbwWave {
     fn new(layers: u32) -> Self {
         Self {
             kind: 2,

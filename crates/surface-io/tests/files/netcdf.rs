@@ -16,8 +16,14 @@ pub fn files() -> Vec<Small> {
     // Column by column: x runs slower. The second point of the first column is masked, the last point filled.
     let doubles = [1.5, 1e3, -2.0, 0.0, 2.5, 1e20].map(f64::to_be_bytes).concat();
     let masked = [
-        Variable::new("heights", &[0, 1], 6, doubles, vec![double("_FillValue", 1e20), text("unit", "nm")]),
-        Variable::new("mask", &[0, 1], 1, vec![0, 1, 0, 0, 0, 0], vec![]),
+        TestVariable::new(
+            "heights",
+            &[0, 1],
+            6,
+            doubles,
+            vec![double("_FillValue", 1e20), text("unit", "nm")],
+        ),
+        TestVariable::new("mask", &[0, 1], 1, vec![0, 1, 0, 0, 0, 0], vec![]),
         side("x", 0, 3.0),
         side("y", 1, 1.0),
     ];
@@ -36,17 +42,17 @@ pub fn files() -> Vec<Small> {
         double("missing_value", -999.0),
         text("units", "nm"),
     ];
-    let other = || Variable::new("other", &[], 2, vec![b'a'], vec![text("long_name", "nothing")]);
+    let other = || TestVariable::new("other", &[], 2, vec![b'a'], vec![text("long_name", "nothing")]);
     let expected = vec![20e-9, -4e-9, nan, 10e-9, 610e-9, 8e-9];
     let short = [
         other(),
         side("x", 0, 3.0),
         side("y", 1, 1.0),
-        Variable::new("heights", &[1, 0], 3, of_16_bits, scaled),
+        TestVariable::new("heights", &[1, 0], 3, of_16_bits, scaled),
     ];
     let of_floats = vec![double("scale_factor", 2e-9), double("add_offset", 10e-9), text("unit", "m")];
     let float = [
-        Variable::new("heights", &[1, 0], 5, floats, of_floats),
+        TestVariable::new("heights", &[1, 0], 5, floats, of_floats),
         side("y", 1, 1.0),
         other(),
         side("x", 0, 3.0),
@@ -60,7 +66,7 @@ pub fn files() -> Vec<Small> {
 
 type Attribute = (&'static str, u32, u32, Vec<u8>);
 
-struct Variable {
+struct TestVariable {
     name: &'static str,
     dimensions: &'static [u32],
     kind: u32,
@@ -68,7 +74,7 @@ struct Variable {
     attributes: Vec<Attribute>,
 }
 
-impl Variable {
+impl TestVariable {
     fn new(
         name: &'static str,
         dimensions: &'static [u32],
@@ -89,11 +95,11 @@ fn text(name: &'static str, value: &str) -> Attribute {
 }
 
 /// A coordinate with the length of its side in um.
-fn side(name: &'static str, dimension: usize, length: f32) -> Variable {
+fn side(name: &'static str, dimension: usize, length: f32) -> TestVariable {
     let dimensions: &[u32] = [&[0], &[1]][dimension];
     let count = [3, 2][dimension];
     let length = ("length", 5, 1, length.to_be_bytes().to_vec());
-    Variable::new(
+    TestVariable::new(
         name,
         dimensions,
         6,
@@ -102,7 +108,7 @@ fn side(name: &'static str, dimension: usize, length: f32) -> Variable {
     )
 }
 
-fn file(version: u8, variables: &[Variable]) -> Vec<u8> {
+fn file(version: u8, variables: &[TestVariable]) -> Vec<u8> {
     let data = header(version, variables, 0).len();
     let mut file = header(version, variables, data);
     for variable in variables {
@@ -112,7 +118,7 @@ fn file(version: u8, variables: &[Variable]) -> Vec<u8> {
     file
 }
 
-fn header(version: u8, variables: &[Variable], mut data: usize) -> Vec<u8> {
+fn header(version: u8, variables: &[TestVariable], mut data: usize) -> Vec<u8> {
     let mut header = [b"CDF", &[version][..]].concat();
     let word = |header: &mut Vec<u8>, n: u32| header.extend(n.to_be_bytes());
     let count = |header: &mut Vec<u8>, n: usize| {

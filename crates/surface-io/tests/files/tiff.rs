@@ -20,19 +20,19 @@ pub fn files() -> Vec<Small> {
     let described =
         "ImageJ=1.54f\nunit=\\u00B5m\nspacing=7.0\ncf=0\nc0=-10.0\nc1=0.5\nvunit=nm\nmin=0.0\nmax=5.0\n";
     let calibrated =
-        Image { description: described, resolution: Some([[7, 2], [2, 1]]), ..Image::new(16, 1) };
+        TestImage { description: described, resolution: Some([[7, 2], [2, 1]]), ..TestImage::new(16, 1) };
     vec![
         // 72 dpi, two strips, upside down.
         small(
             "tiff",
-            Image { dpi: true, orientation: 4, ..Image::new(16, 2) }
+            TestImage { dpi: true, orientation: 4, ..TestImage::new(16, 2) }
                 .file(false, &[&words(&[3, 4, 5]), &words(&[0, 1, 2])]),
             None,
             count,
         ),
         small(
             "tiff big-endian floats",
-            Image::new(32, 3).file(true, &[&floats[..12], &floats[12..]]),
+            TestImage::new(32, 3).file(true, &[&floats[..12], &floats[12..]]),
             None,
             vec![0.0, 1.0, 2.0, f64::NAN, 4.0, 5.0],
         ),
@@ -45,7 +45,7 @@ pub fn files() -> Vec<Small> {
         // Runs of PackBits: a literal of 1 + 2 bytes, 3 + 1 equal ones.
         small(
             "tiff packed",
-            Image { compression: 32773, ..Image::new(16, 1) }
+            TestImage { compression: 32773, ..TestImage::new(16, 1) }
                 .file(false, &[&[2, 1, 0, 7, 0xff, 0, 0, 9], &[0xfd, 2, 1, 2, 2]]),
             None,
             vec![1.0, 7.0, 9.0 * 256.0, 514.0, 514.0, 514.0],
@@ -53,23 +53,23 @@ pub fn files() -> Vec<Small> {
         // The first row of the file is the last one.
         small(
             "tiff of JPK",
-            Image { private: jpk(), ..Image::new(16, 1) }
+            TestImage { private: jpk(), ..TestImage::new(16, 1) }
                 .file(true, &[&[0, 1, 0, 2, 0, 3], &[0, 4, 0, 5, 0, 6]]),
             Some([3e-6, 1e-6]),
             [4.0, 5.0, 6.0, 1.0, 2.0, 3.0].map(|n: f64| n * 2e-9 - 1e-9).to_vec(),
         ),
         small(
             "tiff of Park",
-            Image { private: park(&words(&[1, 2, 3, -4, 5, 6]), 1, 0), ..Image::new(8, 1) }
+            TestImage { private: park(&words(&[1, 2, 3, -4, 5, 6]), 1, 0), ..TestImage::new(8, 1) }
                 .file(false, &[&[1, 2, 3], &[4, 5, 6]]),
             Some([3e-6, 1e-6]),
             [-4.0, 5.0, 6.0, 1.0, 2.0, 3.0].map(|n: f64| -0.5 * (n + 10.0) * 1e-9).to_vec(),
         ),
         small(
             "tiff of Park with float32",
-            Image {
+            TestImage {
                 private: park(&[1_f32, 2.0, 3.0, -4.0, 5.5, 6.0].map(f32::to_le_bytes).concat(), 2, 2),
-                ..Image::new(8, 1)
+                ..TestImage::new(8, 1)
             }
             .file(false, &[&[1, 2, 3], &[4, 5, 6]]),
             Some([3e-6, 1e-6]),
@@ -123,7 +123,7 @@ fn park(data: &[u8], version: u8, number: u32) -> Vec<Private> {
 }
 
 /// An image of three columns and two rows, one strip each.
-struct Image {
+struct TestImage {
     bits: u16,
     sample_format: u16,
     compression: u16,
@@ -134,7 +134,7 @@ struct Image {
     private: Vec<Private>,
 }
 
-impl Image {
+impl TestImage {
     fn new(bits: u16, sample_format: u16) -> Self {
         let (compression, orientation) = (1, 1);
         let (dpi, description, resolution, private) = (false, "", None, Vec::new());

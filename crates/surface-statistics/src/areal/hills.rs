@@ -1,6 +1,6 @@
 //! Hills of a map and their pruning.
 
-use super::holes::Point;
+use super::holes::HolePoint;
 use contact_model::Cells;
 
 /// Why a hill is incomplete.
@@ -24,7 +24,7 @@ pub(super) struct Hills {
 /// saddle. Its hill is united with the one on the other side if its peak is less than `pruning` above the
 /// saddle: that is the order of Wolf's pruning, because the neighbour across the highest saddle of the least
 /// hill has a higher peak.
-pub(super) fn hills(heights: &[f64], points: &[Point], cells: Cells, pruning: f64) -> Hills {
+pub(super) fn hills(heights: &[f64], points: &[HolePoint], cells: Cells, pruning: f64) -> Hills {
     let Cells { columns, rows } = cells;
     let mut order: Vec<usize> = (0..heights.len()).filter(|&i| !heights[i].is_nan()).collect();
     // Of equal heights the first is the higher one.
@@ -46,9 +46,9 @@ pub(super) fn hills(heights: &[f64], points: &[Point], cells: Cells, pruning: f6
             for nx in x.saturating_sub(1)..(x + 2).min(columns) {
                 let j = ny * columns + nx;
                 open |= match points[j] {
-                    Point::Hole => HOLE,
-                    Point::Outside => EDGE,
-                    Point::Measured | Point::Filled => 0,
+                    HolePoint::Hole => HOLE,
+                    HolePoint::Outside => EDGE,
+                    HolePoint::Measured | HolePoint::Filled => 0,
                 };
                 if j != i && hill[j] != none {
                     around.push(j);
@@ -124,7 +124,7 @@ mod tests {
             })
             .collect();
         let cells = Cells { columns: 11, rows: 7 };
-        let measured = vec![Point::Measured; 77];
+        let measured = vec![HolePoint::Measured; 77];
         let found = |pruning: f64| hills(&field, &measured, cells, pruning).peaks;
         let at = |x: usize| 33 + x;
         assert_eq!(found(0.1), [at(3), at(5), at(7)]);
@@ -132,9 +132,9 @@ mod tests {
         assert_eq!(found(1.5), [at(3)]);
         // The rim's hills touch the edge; the ridge touches a hole.
         let mut hole = (field.clone(), measured.clone());
-        (hole.0[at(4) + 11], hole.1[at(4) + 11]) = (f64::NAN, Point::Hole);
+        (hole.0[at(4) + 11], hole.1[at(4) + 11]) = (f64::NAN, HolePoint::Hole);
         assert_eq!(hills(&hole.0, &hole.1, cells, 0.5), Hills { peaks: vec![at(7)], cut: 1 });
-        hole.1[at(4) + 11] = Point::Outside;
+        hole.1[at(4) + 11] = HolePoint::Outside;
         assert_eq!(hills(&hole.0, &hole.1, cells, 0.5), Hills { peaks: vec![at(7)], cut: 0 });
     }
 }

@@ -11,7 +11,7 @@ const SWEEPS: usize = 60;
 
 /// Kind of a point of a map.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Point {
+pub(super) enum HolePoint {
     /// A point with a measured height.
     Measured,
     /// A point with the mean height of its neighbours.
@@ -25,8 +25,8 @@ pub(super) enum Point {
 
 /// Fills patches of at most 16 undefined points, joined along the axes, so that each filled height is the
 /// mean of its neighbours': no filled point is a peak. Returns the kind of each point.
-pub(super) fn fill_small(heights: &mut [f64], cells: Cells) -> Vec<Point> {
-    let mut points = vec![Point::Measured; heights.len()];
+pub(super) fn fill_small(heights: &mut [f64], cells: Cells) -> Vec<HolePoint> {
+    let mut points = vec![HolePoint::Measured; heights.len()];
     let mut seen: Vec<bool> = heights.iter().map(|h| !h.is_nan()).collect();
     for start in 0..heights.len() {
         if seen[start] {
@@ -48,14 +48,14 @@ pub(super) fn fill_small(heights: &mut [f64], cells: Cells) -> Vec<Point> {
             at += 1;
         }
         let of = match (patch.len() <= LARGEST && patch.len() < heights.len(), edge) {
-            (true, _) => Point::Filled,
-            (false, true) => Point::Outside,
-            (false, false) => Point::Hole,
+            (true, _) => HolePoint::Filled,
+            (false, true) => HolePoint::Outside,
+            (false, false) => HolePoint::Hole,
         };
         for &i in &patch {
             points[i] = of;
         }
-        if of == Point::Filled {
+        if of == HolePoint::Filled {
             fill(heights, cells, &patch);
         }
     }
@@ -107,14 +107,14 @@ mod tests {
         };
         let mut heights: Vec<f64> = (0..120).map(|i| if hole(i) { f64::NAN } else { plane(i) }).collect();
         let points = fill_small(&mut heights, cells);
-        let count = |of: Point| points.iter().filter(|p| **p == of).count();
-        assert_eq!([Point::Filled, Point::Hole, Point::Outside].map(count), [4, 20, 18]);
+        let count = |of: HolePoint| points.iter().filter(|p| **p == of).count();
+        assert_eq!([HolePoint::Filled, HolePoint::Hole, HolePoint::Outside].map(count), [4, 20, 18]);
         for i in [14, 15, 27] {
             assert!((heights[i] - plane(i)).abs() < 1e-9, "{} {}", heights[i], plane(i));
         }
         // At a corner there are two neighbours.
         assert!((heights[119] - 0.5 * (plane(118) + plane(107))).abs() < 1e-9);
         let mut nothing = vec![f64::NAN; 4];
-        assert_eq!(fill_small(&mut nothing, Cells { columns: 2, rows: 2 }), [Point::Outside; 4]);
+        assert_eq!(fill_small(&mut nothing, Cells { columns: 2, rows: 2 }), [HolePoint::Outside; 4]);
     }
 }

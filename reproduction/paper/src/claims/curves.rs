@@ -1,9 +1,9 @@
 //! Numbers of the curves themselves: the crossing, saturation, the collapse, lines over surfaces, finer
 //! grids.
 
-use super::ensemble::{Ensemble, ONE_SURFACE, resampled, stiffness_at};
+use super::ensemble::{EnsembleLaws, ONE_SURFACE, resampled, stiffness_at};
 use super::solved::height_over_continuous;
-use super::table::{Reason, Row};
+use super::table::{ClaimRow, Reason};
 use crate::claim::Estimate;
 use crate::evaluation::{Measured, Series, transformed};
 use analysis::{
@@ -17,7 +17,7 @@ use std::ops::RangeInclusive;
 pub(super) const NO_LOAD: &str = "outside the loads of this run";
 
 /// k_bar at a load, and at the same load where F_bar is counted by the rms height of the continuous spectrum.
-pub(super) fn stiffnesses(solid: &Ensemble<'_>, load: f64) -> Result<Vec<Row>> {
+pub(super) fn stiffnesses(solid: &EnsembleLaws<'_>, load: f64) -> Result<Vec<ClaimRow>> {
     let row = |series: &Series| {
         let d = series.fractal_dimension;
         let log_means: Vec<Option<f64>> =
@@ -30,13 +30,13 @@ pub(super) fn stiffnesses(solid: &Ensemble<'_>, load: f64) -> Result<Vec<Row>> {
         let found = stiffness_at(series, load).map(|k| (k, conditions)).ok_or(NO_LOAD.into());
         let ratio = height_over_continuous(d, solid.measured.discretisation.size())?;
         let continuous = stiffness_at(series, load / ratio).filter(|_| found.is_ok());
-        Ok(Row { in_convention: continuous.map(|k| k.value), ..Row::at(d, found) })
+        Ok(ClaimRow { in_convention: continuous.map(|k| k.value), ..ClaimRow::at(d, found) })
     };
     solid.measured.series.iter().map(row).collect()
 }
 
 /// Standard deviation of ln k_bar over the curves of all D_f at a load, over that at another.
-pub(super) fn spread(solid: &Ensemble<'_>, load: f64, other: f64) -> Vec<Row> {
+pub(super) fn spread(solid: &EnsembleLaws<'_>, load: f64, other: f64) -> Vec<ClaimRow> {
     let spread = |load: f64, draw: &[usize]| -> Option<f64> {
         let log = |s: &Series| interpolate(s.curves.force_bar(), &s.curves.mean_of(draw), load).map(f64::ln);
         let logs: Option<Vec<f64>> = solid.measured.series.iter().map(log).collect();
@@ -50,17 +50,17 @@ pub(super) fn spread(solid: &Ensemble<'_>, load: f64, other: f64) -> Vec<Row> {
         .map(|found| {
             (found, format!("relative spread {:.3} at {load}", spread(load, &all).unwrap_or_default()))
         });
-    Row::only(found.ok_or("fewer than two curves, or surfaces, at these loads".into()))
+    ClaimRow::only(found.ok_or("fewer than two curves, or surfaces, at these loads".into()))
 }
 
 /// Eq. 13 from the solved stiffness: Lambda (rho_1 + rho_2)/L, mean over D_f.
-pub(super) fn conductance(solid: &Ensemble<'_>, load: f64) -> Vec<Row> {
+pub(super) fn conductance(solid: &EnsembleLaws<'_>, load: f64) -> Vec<ClaimRow> {
     let values: Vec<Estimate> =
         solid.measured.series.iter().filter_map(|series| stiffness_at(series, load)).collect();
     // Shared phases: the errors of different D_f add, they do not average out.
     let mean = |pick: fn(&Estimate) -> f64| sum(values.iter().map(pick)) / values.len() as f64;
     let (k, half_width) = (mean(|e| e.value), mean(|e| e.half_width));
-    Row::only(match analysis::conductance(k * PAPER_STIFFNESS_FACTOR, 1.0, 0.5, 0.5) {
+    ClaimRow::only(match analysis::conductance(k * PAPER_STIFFNESS_FACTOR, 1.0, 0.5, 0.5) {
         Ok(value) if !values.is_empty() => {
             let found = Estimate { value, half_width: half_width * 2.0 * PAPER_STIFFNESS_FACTOR };
             Ok((found, "2 k/(E* L), exact (Barber); errors of all D_f taken to add up".to_owned()))
@@ -86,7 +86,7 @@ fn force_of(measured: &Measured, series: &Series, share: f64) -> Option<Estimate
     resampled(series.realisations.len(), |draw| reaches(measured, series, share, draw))
 }
 
-pub(super) fn force_at_share(ensemble: &Ensemble<'_>, share: f64) -> Vec<Row> {
+pub(super) fn force_at_share(ensemble: &EnsembleLaws<'_>, share: f64) -> Vec<ClaimRow> {
     ensemble.each(|series| {
         let force = force_of(ensemble.measured, series, share).ok_or(NO_LOAD)?;
         let last = series.curves.force_bar().last().copied().unwrap_or_default();
@@ -96,7 +96,7 @@ pub(super) fn force_at_share(ensemble: &Ensemble<'_>, share: f64) -> Vec<Row> {
     })
 }
 
-pub(super) fn area_at_share(solid: &Ensemble<'_>, share: f64) -> Vec<Row> {
+pub(super) fn area_at_share(solid: &EnsembleLaws<'_>, share: f64) -> Vec<ClaimRow> {
     solid.each(|series| {
         let fractions: Vec<Option<f64>> =
             (0..series.points.len()).map(|j| series.contact_fraction(j)).collect();
@@ -109,7 +109,7 @@ pub(super) fn area_at_share(solid: &Ensemble<'_>, share: f64) -> Vec<Row> {
 }
 
 /// The force of a share of the plateau, lines over surfaces.
-pub(super) fn sooner(solid: &Ensemble<'_>, line: &Ensemble<'_>, share: f64) -> Result<Vec<Row>> {
+pub(super) fn sooner(solid: &EnsembleLaws<'_>, line: &EnsembleLaws<'_>, share: f64) -> Result<Vec<ClaimRow>> {
     compared(solid, line, |of_solid, of_line, heights| {
         let forces = force_of(line.measured, of_line, share).zip(force_of(solid.measured, of_solid, share));
         let (line, solid) = forces.ok_or(NO_LOAD)?;
@@ -123,15 +123,17 @@ type FoundInBoth = std::result::Result<(Estimate, String, Option<f64>), Reason>;
 
 /// A row for each D_f from the series of both models and the ratio of their rms heights in one spectrum.
 fn compared(
-    solid: &Ensemble<'_>,
-    line: &Ensemble<'_>,
+    solid: &EnsembleLaws<'_>,
+    line: &EnsembleLaws<'_>,
     found: impl Fn(&Series, &Series, f64) -> FoundInBoth,
-) -> Result<Vec<Row>> {
+) -> Result<Vec<ClaimRow>> {
     let row = |(of_solid, of_line): (&Series, &Series)| {
         let d = of_solid.fractal_dimension;
         Ok(match found(of_solid, of_line, line.height_ratio(solid, d)?) {
-            Ok((value, remark, in_convention)) => Row { in_convention, ..Row::at(d, Ok((value, remark))) },
-            Err(reason) => Row::at(d, Err(reason)),
+            Ok((value, remark, in_convention)) => {
+                ClaimRow { in_convention, ..ClaimRow::at(d, Ok((value, remark))) }
+            }
+            Err(reason) => ClaimRow::at(d, Err(reason)),
         })
     };
     solid.beside(line).map(row).collect()
@@ -144,10 +146,10 @@ fn ratio_at(solid: &Series, line: &Series, load: f64, over: f64) -> Option<Estim
 }
 
 pub(super) fn largest_ratio(
-    solid: &Ensemble<'_>,
-    line: &Ensemble<'_>,
+    solid: &EnsembleLaws<'_>,
+    line: &EnsembleLaws<'_>,
     loads: RangeInclusive<f64>,
-) -> Result<Vec<Row>> {
+) -> Result<Vec<ClaimRow>> {
     let mut largest: [Option<(Estimate, String)>; 2] = [None, None];
     for (of_solid, of_line) in solid.beside(line) {
         let d = of_solid.fractal_dimension;
@@ -164,7 +166,7 @@ pub(super) fn largest_ratio(
     let [own, in_one_spectrum] = largest;
     let none = || format!("no load of the two models in common above {}", loads.start()).into();
     let in_convention = in_one_spectrum.map(|(ratio, _)| ratio.value);
-    Ok(vec![Row { in_convention, ..Row::of("", own.ok_or_else(none)) }])
+    Ok(vec![ClaimRow { in_convention, ..ClaimRow::of("", own.ok_or_else(none)) }])
 }
 
 /// Number of cells in contact on every surface from which on k_3D counts as resolved in a ratio.
@@ -179,7 +181,7 @@ fn resolved(solid: &Series) -> impl Iterator<Item = f64> {
 }
 
 /// k_1D/k_3D at the smallest resolved load over that at the end of the power law.
-pub(super) fn change_of_ratio(solid: &Ensemble<'_>, line: &Ensemble<'_>) -> Result<Vec<Row>> {
+pub(super) fn change_of_ratio(solid: &EnsembleLaws<'_>, line: &EnsembleLaws<'_>) -> Result<Vec<ClaimRow>> {
     let largest = FitWindow::PAPER.max_force_bar;
     // Half a decade below, at least.
     let below = largest / 10_f64.sqrt();
@@ -214,7 +216,7 @@ pub(super) fn change_of_ratio(solid: &Ensemble<'_>, line: &Ensemble<'_>) -> Resu
     })
 }
 
-pub(super) fn farthest_ratio(solid: &Ensemble<'_>, line: &Ensemble<'_>) -> Result<Vec<Row>> {
+pub(super) fn farthest_ratio(solid: &EnsembleLaws<'_>, line: &EnsembleLaws<'_>) -> Result<Vec<ClaimRow>> {
     compared(solid, line, |solid, line, heights| {
         let farthest = |over: f64| {
             let ratios = resolved(solid).filter_map(|load| Some((load, ratio_at(solid, line, load, over)?)));
@@ -230,7 +232,7 @@ pub(super) fn farthest_ratio(solid: &Ensemble<'_>, line: &Ensemble<'_>) -> Resul
 
 /// Relative change of the mean stiffness with cells twice as large, where it is largest in the window of the
 /// power law.
-pub(super) fn change_with_grid(solid: &Ensemble<'_>) -> Vec<Row> {
+pub(super) fn change_with_grid(solid: &EnsembleLaws<'_>) -> Vec<ClaimRow> {
     solid.each(|series| {
         let window = FitWindow::PAPER;
         let coarser = solid.measured.coarser_at(series.fractal_dimension);
@@ -257,7 +259,7 @@ fn changes(series: &Series, coarser: Option<[&Series; 2]>, j: usize) -> Option<V
 }
 
 /// rms of these changes over the scatter between surfaces, at the load nearest to one.
-pub(super) fn change_over_scatter(solid: &Ensemble<'_>, load: f64) -> Vec<Row> {
+pub(super) fn change_over_scatter(solid: &EnsembleLaws<'_>, load: f64) -> Vec<ClaimRow> {
     let away = |f: f64| (f / load).ln().abs();
     solid.each(|series| {
         let number = || {
@@ -283,7 +285,7 @@ pub(super) fn change_over_scatter(solid: &Ensemble<'_>, load: f64) -> Vec<Row> {
 }
 
 /// The transformed curves of Fig. 4 above the floor of the grid, of redrawn surfaces or of all.
-fn master_curves(solid: &Ensemble<'_>, draw: Option<&[usize]>) -> Vec<Vec<CollapsePoint>> {
+fn master_curves(solid: &EnsembleLaws<'_>, draw: Option<&[usize]>) -> Vec<Vec<CollapsePoint>> {
     let above_floor = |series: &Series| -> Vec<CollapsePoint> {
         transformed(series).into_iter().filter(|p| !p.1).map(|p| p.0).collect()
     };
@@ -292,7 +294,11 @@ fn master_curves(solid: &Ensemble<'_>, draw: Option<&[usize]>) -> Vec<Vec<Collap
 }
 
 /// A residual of the master curve in decades of F_tilde, up to a load.
-pub(super) fn collapse(solid: &Ensemble<'_>, top: f64, pick: fn(&Residual) -> Option<f64>) -> Vec<Row> {
+pub(super) fn collapse(
+    solid: &EnsembleLaws<'_>,
+    top: f64,
+    pick: fn(&Residual) -> Option<f64>,
+) -> Vec<ClaimRow> {
     let of = |draw: Option<&[usize]>| {
         Some(pick(&residual(&master_curves(solid, draw), 0.0, top)?)? / std::f64::consts::LN_10)
     };
@@ -303,17 +309,19 @@ pub(super) fn collapse(solid: &Ensemble<'_>, top: f64, pick: fn(&Residual) -> Op
         // Half a decade of points cannot show a collapse.
         .filter(|_| solid.laws.iter().any(Result::is_ok))
         .map(|found| (found, "at least 10 contact cells on every surface".to_owned()));
-    Row::only(found.ok_or("no fractal dimension has a window of a decade or more, or one surface".into()))
+    ClaimRow::only(
+        found.ok_or("no fractal dimension has a window of a decade or more, or one surface".into()),
+    )
 }
 
 /// Decades of F_bar within a factor of the master curve, for the best D_f.
-pub(super) fn decades(solid: &Ensemble<'_>, factor: f64) -> Vec<Row> {
+pub(super) fn decades(solid: &EnsembleLaws<'_>, factor: f64) -> Vec<ClaimRow> {
     let each: Vec<(f64, f64)> = (solid.measured.series.iter().zip(master_curves(solid, None)))
         .map(|(s, curve)| (s.fractal_dimension, decades_within(&curve, factor)))
         .collect();
     let words: Vec<String> = each.iter().map(|(d, decades)| format!("{decades:.2} at {d:?}")).collect();
     let (words, cells) = (words.join(", "), solid.measured.discretisation.size());
-    Row::only(match each.iter().map(|e| e.1).max_by(f64::total_cmp) {
+    ClaimRow::only(match each.iter().map(|e| e.1).max_by(f64::total_cmp) {
         // Loads are a third of a decade apart.
         Some(value) if cells >= 2049 => Ok((
             Estimate { value, half_width: 0.33 },
@@ -326,7 +334,7 @@ pub(super) fn decades(solid: &Ensemble<'_>, factor: f64) -> Vec<Row> {
 
 /// Seconds of the stored jobs of both models, whenever they were solved. They depend on the machine and are
 /// therefore not written to files.
-pub(super) fn run_times(solid: &Ensemble<'_>, line: &Ensemble<'_>) -> Vec<Row> {
+pub(super) fn run_times(solid: &EnsembleLaws<'_>, line: &EnsembleLaws<'_>) -> Vec<ClaimRow> {
     let (solid, line) = (solid.measured, line.measured);
     let (t3, t1) = (solid.seconds(), line.seconds());
     let count = |m: &Measured| m.series.iter().map(|s| s.realisations.len()).sum::<usize>();
@@ -338,7 +346,7 @@ pub(super) fn run_times(solid: &Ensemble<'_>, line: &Ensemble<'_>) -> Vec<Row> {
         count(line)
     );
     let ratio = t3 / t1;
-    Row::only(if t1 <= 0.0 {
+    ClaimRow::only(if t1 <= 0.0 {
         Err("surfaces that are read from a table have no times".into())
     } else if cells < 2049 || elements < 1 << 20 {
         Err(format!("here {ratio:.3e}: {sizes}; the statement is about 2049 cells and 2^20 elements").into())

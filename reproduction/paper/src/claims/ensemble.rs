@@ -1,26 +1,26 @@
 //! The ensembles of a command with their fitted laws, and functions that several claims use.
 
 use super::solved::height_ratio;
-use super::table::{Found, Reason, Row};
+use super::table::{ClaimRow, ClaimedNumber, Reason};
 use crate::claim::Estimate;
-use crate::evaluation::{Measured, Model, Series, WindowedLaw, law_over_forces_of, windowed_law};
+use crate::evaluation::{EnsembleModel, Measured, Series, WindowedLaw, law_over_forces_of, windowed_law};
 use analysis::{Bootstrap, Curves, FitWindow, FittedPowerLaw, fit_power_law, interpolate};
 use runs::{Error, Result};
 
 /// The ensembles that a command has solved.
-pub(crate) struct Ensembles<'a>(Vec<Ensemble<'a>>);
+pub(crate) struct Ensembles<'a>(Vec<EnsembleLaws<'a>>);
 
 /// An ensemble and the law of each of its series, or the reason why there is none.
-pub(super) struct Ensemble<'a> {
+pub(super) struct EnsembleLaws<'a> {
     pub measured: &'a Measured,
-    pub laws: Vec<std::result::Result<Law, Reason>>,
+    pub laws: Vec<std::result::Result<SeriesLaw, Reason>>,
     /// Of lines beside surfaces: the laws over the forces over which surfaces of the same D_f are fitted.
-    pub same_forces: Vec<std::result::Result<Law, Reason>>,
+    pub same_forces: Vec<std::result::Result<SeriesLaw, Reason>>,
 }
 
 /// A power law of one series, with the uncertainty of its window.
 #[derive(Debug, Clone)]
-pub(crate) struct Law {
+pub(crate) struct SeriesLaw {
     /// D_f.
     pub fractal_dimension: f64,
     /// The fit over the window of Figs. 3 and 7.
@@ -38,14 +38,14 @@ impl<'a> Ensembles<'a> {
     /// The ensembles with their laws.
     pub fn new(measured: &[&'a Measured]) -> Self {
         let of_model = |model| measured.iter().copied().find(|m| m.discretisation.of() == model);
-        let solid = of_model(Model::Bem3d);
+        let solid = of_model(EnsembleModel::Bem3d);
         let of = |&measured: &&'a Measured| {
-            let laws = measured.series.iter().map(|series| Law::new(measured, series)).collect();
-            let lines = solid.filter(|_| measured.discretisation.of() == Model::Mdr1d);
+            let laws = measured.series.iter().map(|series| SeriesLaw::new(measured, series)).collect();
+            let lines = solid.filter(|_| measured.discretisation.of() == EnsembleModel::Mdr1d);
             let beside = lines.into_iter().flat_map(|solid| solid.series.iter().zip(&measured.series));
             let same_forces =
-                beside.map(|(solid, line)| Law::over_forces_of(solid, measured, line)).collect();
-            Ensemble { measured, laws, same_forces }
+                beside.map(|(solid, line)| SeriesLaw::over_forces_of(solid, measured, line)).collect();
+            EnsembleLaws { measured, laws, same_forces }
         };
         Self(measured.iter().map(of).collect())
     }
@@ -54,22 +54,26 @@ impl<'a> Ensembles<'a> {
     ///
     /// # Errors
     /// [`Error::Parameter`] for one that the command does not have.
-    pub(super) fn of(&self, model: Model) -> Result<&Ensemble<'a>> {
+    pub(super) fn of(&self, model: EnsembleModel) -> Result<&EnsembleLaws<'a>> {
         let ensemble = self.0.iter().find(|e| e.measured.discretisation.of() == model);
         ensemble.ok_or_else(|| Error::parameter("model", model.name(), "one that the command solves"))
     }
 }
 
-impl Ensemble<'_> {
+impl EnsembleLaws<'_> {
     /// A row for each series.
-    pub fn each(&self, found: impl Fn(&Series) -> Found) -> Vec<Row> {
-        self.measured.series.iter().map(|series| Row::at(series.fractal_dimension, found(series))).collect()
+    pub fn each(&self, found: impl Fn(&Series) -> ClaimedNumber) -> Vec<ClaimRow> {
+        self.measured
+            .series
+            .iter()
+            .map(|series| ClaimRow::at(series.fractal_dimension, found(series)))
+            .collect()
     }
 
     /// A row for each series, from its law.
-    pub fn each_law(&self, found: impl Fn(&Series, &Law) -> Found) -> Vec<Row> {
-        let row = |(series, law): (&Series, &std::result::Result<Law, Reason>)| {
-            Row::at(
+    pub fn each_law(&self, found: impl Fn(&Series, &SeriesLaw) -> ClaimedNumber) -> Vec<ClaimRow> {
+        let row = |(series, law): (&Series, &std::result::Result<SeriesLaw, Reason>)| {
+            ClaimRow::at(
                 series.fractal_dimension,
                 law.as_ref().map_err(Reason::clone).and_then(|law| found(series, law)),
             )
@@ -95,7 +99,7 @@ impl Ensemble<'_> {
     }
 }
 
-impl Law {
+impl SeriesLaw {
     /// The law of a series, or the reason why there is none.
     pub fn new(measured: &Measured, series: &Series) -> std::result::Result<Self, Reason> {
         Self::of(series, windowed_law(measured, series)?)

@@ -1,7 +1,7 @@
 //! Numbers of the fitted power laws: alpha, zeta, where the laws meet, how straight the curves are.
 
-use super::ensemble::{Ensemble, Law, ONE_SURFACE, law_of, resampled};
-use super::table::{Found, Reason, Row};
+use super::ensemble::{EnsembleLaws, ONE_SURFACE, SeriesLaw, law_of, resampled};
+use super::table::{ClaimRow, ClaimedNumber, Reason};
 use crate::claim::Estimate;
 use crate::evaluation::{FLOOR_CELLS, Series, laws};
 use analysis::{Bootstrap, Crossing, FitWindow, crossing, interpolate, sum};
@@ -9,20 +9,20 @@ use analysis::{Bootstrap, Crossing, FitWindow, crossing, interpolate, sum};
 /// The sources of error in the intervals of exponents, in words.
 const INTERVAL: &str = "the interval holds scatter, floors of 10, 30 and 100 cells, upper ends of 0.086 and 0.03, and the remaining discretisation error";
 
-pub(super) fn exponents(ensemble: &Ensemble<'_>) -> Vec<Row> {
+pub(super) fn exponents(ensemble: &EnsembleLaws<'_>) -> Vec<ClaimRow> {
     ensemble.each_law(|_, law| Ok((law.alpha, format!("{}; {INTERVAL}", law.window()))))
 }
 
-pub(super) fn factors(ensemble: &Ensemble<'_>) -> Vec<Row> {
+pub(super) fn factors(ensemble: &EnsembleLaws<'_>) -> Vec<ClaimRow> {
     let conditions = "F_bar counts the measured rms height; the interval holds scatter and window";
     ensemble.each_law(|_, law| Ok((law.zeta, format!("{}; {conditions}", law.window()))))
 }
 
 /// alpha of lines over the forces of surfaces, with alpha over the lines' own forces in the remark.
-pub(super) fn exponents_over_same_forces(line: &Ensemble<'_>) -> Vec<Row> {
+pub(super) fn exponents_over_same_forces(line: &EnsembleLaws<'_>) -> Vec<ClaimRow> {
     (line.measured.series.iter().zip(&line.laws).zip(&line.same_forces))
         .map(|((series, own), law)| {
-            let remark = |law: &Law| {
+            let remark = |law: &SeriesLaw| {
                 let own = own.as_ref().map(|own| {
                     let Estimate { value, half_width } = own.alpha;
                     format!("; {value:.3} +- {half_width:.3} over {}", own.window())
@@ -30,13 +30,13 @@ pub(super) fn exponents_over_same_forces(line: &Ensemble<'_>) -> Vec<Row> {
                 format!("{}: the forces of surfaces; {INTERVAL}{}", law.window(), own.unwrap_or_default())
             };
             let law = law.as_ref().map_err(Reason::clone);
-            Row::at(series.fractal_dimension, law.map(|law| (law.alpha, remark(law))))
+            ClaimRow::at(series.fractal_dimension, law.map(|law| (law.alpha, remark(law))))
         })
         .collect()
 }
 
 /// alpha of lines minus alpha of surfaces, both over the same forces.
-pub(super) fn differences(solid: &Ensemble<'_>, line: &Ensemble<'_>) -> Vec<Row> {
+pub(super) fn differences(solid: &EnsembleLaws<'_>, line: &EnsembleLaws<'_>) -> Vec<ClaimRow> {
     (solid.measured.series.iter().zip(&solid.laws).zip(&line.same_forces))
         .map(|((series, solid), line)| {
             let both = || {
@@ -48,18 +48,18 @@ pub(super) fn differences(solid: &Ensemble<'_>, line: &Ensemble<'_>) -> Vec<Row>
                 );
                 Ok((line.alpha.minus(solid.alpha), remark))
             };
-            Row::at(series.fractal_dimension, both().map_err(Reason::clone))
+            ClaimRow::at(series.fractal_dimension, both().map_err(Reason::clone))
         })
         .collect()
 }
 
 /// alpha over D_f, with the own window of each D_f and with the window that all have in common.
-pub(super) fn over_dimension(ensemble: &Ensemble<'_>) -> Vec<Row> {
-    let own: Result<Vec<&Law>, &Reason> = ensemble.laws.iter().map(Result::as_ref).collect();
+pub(super) fn over_dimension(ensemble: &EnsembleLaws<'_>) -> Vec<ClaimRow> {
+    let own: Result<Vec<&SeriesLaw>, &Reason> = ensemble.laws.iter().map(Result::as_ref).collect();
     let own = match own {
         Ok(own) if own.len() >= 3 => own,
-        Ok(_) => return Row::only(Err("at least three fractal dimensions are needed".into())),
-        Err(reason) => return Row::only(Err(reason.clone())),
+        Ok(_) => return ClaimRow::only(Err("at least three fractal dimensions are needed".into())),
+        Err(reason) => return ClaimRow::only(Err(reason.clone())),
     };
     // Through the origin: sum D alpha / sum D^2.
     let square = sum(own.iter().map(|l| l.fractal_dimension.powi(2)));
@@ -93,13 +93,13 @@ pub(super) fn over_dimension(ensemble: &Ensemble<'_>) -> Vec<Row> {
             let moved = others.iter().filter_map(|other| Some((slope(other, &all)? - found.value).abs()));
             (found.widened(moved.fold(0.0, f64::max)).widened(grid), INTERVAL.to_owned())
         });
-        Row::of(words, found.ok_or(ONE_SURFACE.into()))
+        ClaimRow::of(words, found.ok_or(ONE_SURFACE.into()))
     };
     ways.into_iter().map(row).collect()
 }
 
 /// alpha of the upper half of the window minus that of the lower half.
-pub(super) fn halves(ensemble: &Ensemble<'_>) -> Vec<Row> {
+pub(super) fn halves(ensemble: &EnsembleLaws<'_>) -> Vec<ClaimRow> {
     ensemble.each_law(|series, law| {
         let middle = (law.fit.force_bar_min * law.fit.force_bar_max).sqrt();
         let above_floor =
@@ -117,7 +117,7 @@ pub(super) fn halves(ensemble: &Ensemble<'_>) -> Vec<Row> {
 }
 
 /// alpha from the first load to the second minus alpha above the second.
-pub(super) fn below_minus_above(line: &Ensemble<'_>, from: f64, middle: f64) -> Vec<Row> {
+pub(super) fn below_minus_above(line: &EnsembleLaws<'_>, from: f64, middle: f64) -> Vec<ClaimRow> {
     let low = FitWindow { min_force_bar: from * (1.0 - 1e-9), max_force_bar: middle, ..FitWindow::PAPER };
     let high = FitWindow { min_force_bar: middle, ..FitWindow::PAPER };
     let both = laws(line.measured, &low).into_iter().zip(laws(line.measured, &high));
@@ -126,7 +126,7 @@ pub(super) fn below_minus_above(line: &Ensemble<'_>, from: f64, middle: f64) -> 
         let too_few = |load: f64| {
             format!("every line has {FLOOR_CELLS} elements in contact only from {load:.1e} on: more elements reach {from:e}")
         };
-        let found = || -> Found {
+        let found = || -> ClaimedNumber {
             let (Ok(a), Ok(b)) = (&below, &above) else { return Err(too_few(middle).into()) };
             // Two loads a decade at least: the first of them lies within a factor 2.2.
             if a.force_bar_min > 2.2 * from {
@@ -138,13 +138,13 @@ pub(super) fn below_minus_above(line: &Ensemble<'_>, from: f64, middle: f64) -> 
             let remark = format!("{low:.3} from {first:.1e} to {middle:e}, {high:.3} above");
             Ok((below.minus(above), remark))
         };
-        Row::at(series.fractal_dimension, found())
+        ClaimRow::at(series.fractal_dimension, found())
     })
     .collect()
 }
 
 /// k_bar over the fitted law at a load above its window.
-pub(super) fn stiffness_over_law(ensemble: &Ensemble<'_>, load: f64) -> Vec<Row> {
+pub(super) fn stiffness_over_law(ensemble: &EnsembleLaws<'_>, load: f64) -> Vec<ClaimRow> {
     ensemble.each_law(|series, law| {
         // Law and stiffness of the same draw; the loads of the fit stay.
         let over = |window: &FitWindow, draw: &[usize]| {
@@ -167,7 +167,7 @@ pub(super) fn stiffness_over_law(ensemble: &Ensemble<'_>, load: f64) -> Vec<Row>
 }
 
 /// zeta of lines over zeta of surfaces, both over the same forces, at the D_f where the two differ most.
-fn farthest_factors(solid: &Ensemble<'_>, line: &Ensemble<'_>) -> Option<(Estimate, String)> {
+fn farthest_factors(solid: &EnsembleLaws<'_>, line: &EnsembleLaws<'_>) -> Option<(Estimate, String)> {
     let ratios = solid.laws.iter().zip(&line.same_forces).filter_map(|(solid, line)| {
         let (solid, line) = (solid.as_ref().ok()?, line.as_ref().ok()?);
         Some((line.zeta.over(solid.zeta), solid.fractal_dimension))
@@ -176,25 +176,25 @@ fn farthest_factors(solid: &Ensemble<'_>, line: &Ensemble<'_>) -> Option<(Estima
     farthest.map(|(ratio, d)| (ratio, format!("at D_f = {d:?}")))
 }
 
-pub(super) fn ratio_of_factors(solid: &Ensemble<'_>, line: &Ensemble<'_>) -> Vec<Row> {
+pub(super) fn ratio_of_factors(solid: &EnsembleLaws<'_>, line: &EnsembleLaws<'_>) -> Vec<ClaimRow> {
     let found = farthest_factors(solid, line);
-    Row::only(found.ok_or("no fractal dimension has two fits over a decade or more".into()))
+    ClaimRow::only(found.ok_or("no fractal dimension has two fits over a decade or more".into()))
 }
 
 /// The distance of that ratio from 1, where there is one.
-pub(super) fn distance_of_factors(solid: &Ensemble<'_>, line: &Ensemble<'_>) -> Vec<Row> {
+pub(super) fn distance_of_factors(solid: &EnsembleLaws<'_>, line: &EnsembleLaws<'_>) -> Vec<ClaimRow> {
     let distance = |ratio: Estimate| Estimate { value: (ratio.value - 1.0).abs(), ..ratio };
     let found = farthest_factors(solid, line);
-    found.into_iter().flat_map(|(ratio, remark)| Row::only(Ok((distance(ratio), remark)))).collect()
+    found.into_iter().flat_map(|(ratio, remark)| ClaimRow::only(Ok((distance(ratio), remark)))).collect()
 }
 
 /// Where the fitted laws of all fractal dimensions meet.
-pub(super) fn meeting_point(solid: &Ensemble<'_>, pick: fn(&Crossing) -> f64) -> Vec<Row> {
-    let used: Vec<(&Series, &Law)> = (solid.measured.series.iter().zip(&solid.laws))
+pub(super) fn meeting_point(solid: &EnsembleLaws<'_>, pick: fn(&Crossing) -> f64) -> Vec<ClaimRow> {
+    let used: Vec<(&Series, &SeriesLaw)> = (solid.measured.series.iter().zip(&solid.laws))
         .filter_map(|(s, law)| Some((s, law.as_ref().ok()?)))
         .collect();
     let laws: Vec<(f64, f64)> = used.iter().map(|(_, l)| (l.fit.alpha, l.fit.zeta)).collect();
-    let found = || -> Found {
+    let found = || -> ClaimedNumber {
         let Some(here) = crossing(&laws).filter(|_| laws.len() >= 3) else {
             let count = laws.len();
             let reason =
@@ -204,8 +204,9 @@ pub(super) fn meeting_point(solid: &Ensemble<'_>, pick: fn(&Crossing) -> f64) ->
         // All fractal dimensions are resampled with the same surfaces: they share phases. The forces of each
         // fit stay.
         let error = Bootstrap::default().half_width(solid.surfaces(), |draw| {
-            let law =
-                |(s, l): &(&Series, &Law)| law_of(&s.curves, &l.loads(), draw).map(|l| (l.alpha, l.zeta));
+            let law = |(s, l): &(&Series, &SeriesLaw)| {
+                law_of(&s.curves, &l.loads(), draw).map(|l| (l.alpha, l.zeta))
+            };
             let drawn: Option<Vec<(f64, f64)>> = used.iter().map(law).collect();
             crossing(&drawn?).map(|c| pick(&c))
         });
@@ -221,5 +222,5 @@ pub(super) fn meeting_point(solid: &Ensemble<'_>, pick: fn(&Crossing) -> f64) ->
         );
         Ok((scatter.widened(moved), remark))
     };
-    Row::only(found())
+    ClaimRow::only(found())
 }

@@ -1,7 +1,7 @@
 //! Numbers that are solved for a claim alone, whatever the size of the run: full contact, regions of contact,
 //! rms heights.
 
-use super::table::{Found, Row};
+use super::table::{ClaimRow, ClaimedNumber};
 use crate::claim::Estimate;
 use crate::evaluation::SEED;
 use analytic::spectrum::Spectrum;
@@ -39,16 +39,16 @@ fn square() -> Result<Estimate> {
     })
 }
 
-pub(super) fn plateau() -> Result<Vec<Row>> {
+pub(super) fn plateau() -> Result<Vec<ClaimRow>> {
     let [n, m] = GRIDS;
     let remark = format!(
         "1.012 x 2/sqrt(pi) is an old value of the rigid square punch, the converged one is 1.152298; full contact of {n} and {m} cells a side, \
          extrapolated in 1/N; the continuum plateau of k_bar is 1.0091"
     );
-    Ok(Row::only(Ok((square()?, remark))))
+    Ok(ClaimRow::only(Ok((square()?, remark))))
 }
 
-pub(super) fn ratio_of_plateaus() -> Result<Vec<Row>> {
+pub(super) fn ratio_of_plateaus() -> Result<Vec<ClaimRow>> {
     let scene = Scene::new(Surface::SelfAffine(self_affine(2.0)?), 1.0);
     // 1e6 E* h L presses every element flat.
     let line = full_contact("a line", &Mdr1d { elements: 4096 }, &scene, 1e6)?;
@@ -57,7 +57,7 @@ pub(super) fn ratio_of_plateaus() -> Result<Vec<Row>> {
         Estimate { value: line / square.value, half_width: line * square.half_width / square.value.powi(2) };
     let remark =
         "a line of length (2/sqrt(pi)) L has k = 1.12838 E* L: equal areas are not equal stiffnesses";
-    Ok(Row::only(Ok((ratio, remark.to_owned()))))
+    Ok(ClaimRow::only(Ok((ratio, remark.to_owned()))))
 }
 
 /// Elements and cells of the paper.
@@ -65,14 +65,17 @@ const SIZES: (usize, usize) = (1 << 20, 2049);
 
 /// rms height of the line over that of the surface, both to the ends of their own spectra; 1 between equal
 /// limits.
-pub(super) fn ratio_of_heights(dimensions: &[f64]) -> Result<Vec<Row>> {
+pub(super) fn ratio_of_heights(dimensions: &[f64]) -> Result<Vec<ClaimRow>> {
     let (elements, cells) = SIZES;
     let remark = format!(
         "{elements} elements, {cells} cells a side, each to the ends of its own spectrum; F_bar counts the measured rms height of each"
     );
     let row = |&d: &f64| {
         let ratio = height_ratio(d, elements, cells)?;
-        Ok(Row { in_convention: Some(1.0), ..Row::at(d, Ok((Estimate::exact(ratio), remark.clone()))) })
+        Ok(ClaimRow {
+            in_convention: Some(1.0),
+            ..ClaimRow::at(d, Ok((Estimate::exact(ratio), remark.clone())))
+        })
     };
     dimensions.iter().map(row).collect()
 }
@@ -102,24 +105,24 @@ pub(super) fn height_ratio(d: f64, elements: usize, cells: usize) -> Result<f64>
 const CELLS: usize = 513;
 const SURFACES: u64 = 24;
 
-pub(super) fn share_in_one_region(dimensions: &[f64]) -> Result<Vec<Row>> {
+pub(super) fn share_in_one_region(dimensions: &[f64]) -> Result<Vec<ClaimRow>> {
     let row = |&d: &f64| {
         let share = mean_of(self_affine(d)?, 1e-3, "no pressure field", |state| {
             Some(share_near_the_centre(state.fields.as_ref()?.pressure.as_ref()?))
         })?;
-        Ok(Row::at(d, share.map(|(share, remark)| (within_one(share), remark))))
+        Ok(ClaimRow::at(d, share.map(|(share, remark)| (within_one(share), remark))))
     };
     dimensions.iter().map(row).collect()
 }
 
-pub(super) fn length_over_diameters() -> Result<Vec<Row>> {
+pub(super) fn length_over_diameters() -> Result<Vec<ClaimRow>> {
     let smooth =
         SelfAffine { roll_off: Some(TAU * 16.0), short_cutoff: Some(TAU * 32.0), ..self_affine(2.2)? };
     let ratio = mean_of(smooth, 0.03, "no patches", |state| {
         let (k, patches) = (state.stiffness?, state.patches.as_ref()?);
         Some(k / analysis::sum(patches.areas().iter().map(|area| 2.0 * (area / PI).sqrt())))
     })?;
-    Ok(Row::only(ratio.map(|(ratio, remark)| (ratio, format!("F_bar = 0.03, {remark}")))))
+    Ok(ClaimRow::only(ratio.map(|(ratio, remark)| (ratio, format!("F_bar = 0.03, {remark}")))))
 }
 
 fn self_affine(d: f64) -> Result<SelfAffine> {
@@ -138,7 +141,7 @@ fn mean_of(
     force_bar: f64,
     absent: &'static str,
     read: impl Fn(&ContactState) -> Option<f64>,
-) -> Result<Found> {
+) -> Result<ClaimedNumber> {
     let model = Bem3d { cells: CELLS, tolerance: 1e-4, ..Bem3d::default() };
     let mut scene = Scene::new(Surface::SelfAffine(surface), 1.0);
     scene.outputs.stiffness = true;

@@ -1,7 +1,7 @@
 //! The table `claims.toml`: its entries, and the verdict of one on a number.
 
 use crate::claim::{Claim, Estimate, Statement};
-use crate::evaluation::Model;
+use crate::evaluation::EnsembleModel;
 use runs::{Error, Result};
 use serde::Deserialize;
 use std::borrow::Cow;
@@ -12,14 +12,14 @@ use std::sync::LazyLock;
 /// An entry of the table, whose head explains each field.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct Entry {
+pub(crate) struct ClaimEntry {
     pub id: String,
     quotation: String,
     place: String,
     pub reading: String,
     quantity: String,
     pub data: Data,
-    allowed: Limits,
+    allowed: ClaimLimits,
     /// The entry to whose statement it belongs; otherwise its own.
     part_of: Option<String>,
     only: Option<Only>,
@@ -36,15 +36,15 @@ pub(crate) struct Entry {
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Data {
     /// alpha of each D_f, fitted below F_bar = 0.086.
-    Exponent(Model),
+    Exponent(EnsembleModel),
     /// Slope of the straight line through the origin that fits alpha over D_f best.
-    ExponentOverDimension(Model),
+    ExponentOverDimension(EnsembleModel),
     /// alpha of lines over the forces over which surfaces of the same D_f are fitted.
     ExponentOverForcesOfSurfaces,
     /// alpha of lines minus alpha of surfaces, both over the same forces.
     ExponentDifference,
     /// alpha of the upper half of the window minus that of the lower half.
-    ExponentOfHalves(Model),
+    ExponentOfHalves(EnsembleModel),
     /// alpha of lines from the first load to the second minus alpha above.
     ExponentBelowMinusAbove(f64, f64),
     /// zeta of surfaces.
@@ -72,7 +72,7 @@ pub(crate) enum Data {
     /// Lambda (rho_1 + rho_2)/L of surfaces at a load, mean over D_f.
     ConductanceAt(f64),
     /// F_bar at which k has a share of its plateau.
-    ForceAtPlateauShare(Model, f64),
+    ForceAtPlateauShare(EnsembleModel, f64),
     /// Share of the square in contact where k has a share of its plateau.
     AreaAtPlateauShare(f64),
     /// F_bar at which k has a share of its plateau, lines over surfaces.
@@ -173,7 +173,7 @@ impl Printed {
 /// The range that a reading allows.
 #[derive(Debug, Clone, Copy, Deserialize)]
 #[serde(rename_all = "snake_case")]
-enum Limits {
+enum ClaimLimits {
     Range([f64; 2]),
     Within(Printed, f64),
     Share(Printed, f64),
@@ -181,7 +181,7 @@ enum Limits {
     Either([f64; 2], [f64; 2]),
 }
 
-impl Limits {
+impl ClaimLimits {
     /// The limits at a D_f, for a number that may choose between two ranges.
     fn at(self, d: f64, value: f64) -> [f64; 2] {
         match self {
@@ -210,40 +210,40 @@ enum Only {
 }
 
 /// A number with its conditions, or the reason why there is none.
-pub(crate) type Found = std::result::Result<(Estimate, String), Reason>;
+pub(crate) type ClaimedNumber = std::result::Result<(Estimate, String), Reason>;
 
 /// The reason why there is no number.
 pub(crate) type Reason = Cow<'static, str>;
 
 /// One number for an entry.
-pub(crate) struct Row {
+pub(crate) struct ClaimRow {
     /// D_f; NaN for a number without one.
     pub fractal_dimension: f64,
     /// The text that replaces {} in the quantity.
     pub label: String,
-    pub found: Found,
+    pub found: ClaimedNumber,
     /// The same number in the other convention of the entry.
     pub in_convention: Option<f64>,
 }
 
-impl Row {
+impl ClaimRow {
     /// At a fractal dimension.
-    pub fn at(fractal_dimension: f64, found: Found) -> Self {
+    pub fn at(fractal_dimension: f64, found: ClaimedNumber) -> Self {
         Self { fractal_dimension, ..Self::of(format!("{fractal_dimension:?}"), found) }
     }
 
     /// A number without a fractal dimension.
-    pub fn of(label: impl Into<String>, found: Found) -> Self {
+    pub fn of(label: impl Into<String>, found: ClaimedNumber) -> Self {
         Self { fractal_dimension: f64::NAN, label: label.into(), found, in_convention: None }
     }
 
     /// The only one.
-    pub fn only(found: Found) -> Vec<Self> {
+    pub fn only(found: ClaimedNumber) -> Vec<Self> {
         vec![Self::of("", found)]
     }
 }
 
-impl Entry {
+impl ClaimEntry {
     pub fn speaks_of(&self, d: f64) -> bool {
         match self.only {
             None => true,
@@ -254,7 +254,7 @@ impl Entry {
     }
 
     /// The verdict on a number.
-    pub fn judge(&'static self, row: Row) -> Claim {
+    pub fn judge(&'static self, row: ClaimRow) -> Claim {
         let d = row.fractal_dimension;
         let Self { quotation, place, reading, .. } = self;
         let name = self.part_of.as_ref().unwrap_or(&self.id);
@@ -273,7 +273,7 @@ impl Entry {
 }
 
 /// The table, by commands.
-type ClaimTable = BTreeMap<String, Vec<Entry>>;
+type ClaimTable = BTreeMap<String, Vec<ClaimEntry>>;
 
 static TABLE: LazyLock<std::result::Result<ClaimTable, String>> =
     LazyLock::new(|| read(include_str!("../../claims.toml")).map_err(|error| error.to_string()));
@@ -292,7 +292,7 @@ fn read(text: &str) -> std::result::Result<ClaimTable, toml::de::Error> {
             entry.entry("part_of").or_insert(like);
         }
     }
-    let whole = |entries: Vec<toml::Table>| -> std::result::Result<Vec<Entry>, _> {
+    let whole = |entries: Vec<toml::Table>| -> std::result::Result<Vec<ClaimEntry>, _> {
         entries.into_iter().map(toml::Table::try_into).collect()
     };
     commands.into_iter().map(|(command, entries)| Ok((command, whole(entries)?))).collect()
@@ -302,7 +302,7 @@ fn read(text: &str) -> std::result::Result<ClaimTable, toml::de::Error> {
 ///
 /// # Errors
 /// A table that cannot be read, which would be an error of this crate.
-pub(crate) fn entries(command: &str) -> Result<&'static [Entry]> {
+pub(crate) fn entries(command: &str) -> Result<&'static [ClaimEntry]> {
     let table = TABLE.as_ref().map_err(|error| wrong(error))?;
     Ok(table.get(command).ok_or_else(|| wrong(&format!("no claims of {command}")))?)
 }
@@ -335,15 +335,15 @@ mod tests {
     fn limits_follow_from_what_is_printed() {
         let half = Printed::Number(0.5);
         for (limits, low, high) in [
-            (Limits::Within(half, 0.25), 0.25, 0.75),
-            (Limits::Share(half, 0.5), 0.25, 0.75),
-            (Limits::Factor(half, 2.0), 0.25, 1.0),
-            (Limits::Within(Printed::Equation(Equation::Eq24), 0.0), 1.0 / 1.5, 1.0 / 1.5),
+            (ClaimLimits::Within(half, 0.25), 0.25, 0.75),
+            (ClaimLimits::Share(half, 0.5), 0.25, 0.75),
+            (ClaimLimits::Factor(half, 2.0), 0.25, 1.0),
+            (ClaimLimits::Within(Printed::Equation(Equation::Eq24), 0.0), 1.0 / 1.5, 1.0 / 1.5),
         ] {
             approx::assert_relative_eq!(limits.at(2.5, 0.0)[0], low);
             approx::assert_relative_eq!(limits.at(2.5, 0.0)[1], high);
         }
-        let either = Limits::Either([0.0, 0.9], [1.1, f64::INFINITY]);
+        let either = ClaimLimits::Either([0.0, 0.9], [1.1, f64::INFINITY]);
         approx::assert_relative_eq!(either.at(2.5, 0.95)[1], 0.9);
         approx::assert_relative_eq!(either.at(2.5, 1.05)[0], 1.1);
     }

@@ -4,7 +4,9 @@ use crate::evaluation::header::{flags, header};
 use crate::evaluation::limits::require;
 use crate::evaluation::measured::measure;
 use crate::evaluation::outcome::Outcome;
-use crate::evaluation::realisation::{Discretisation, Model, Realisation, RealisationResult, solve_alone};
+use crate::evaluation::realisation::{
+    Discretisation, EnsembleModel, Realisation, RealisationResult, solve_alone,
+};
 use crate::evaluation::run::Run;
 use crate::evaluation::session::Session;
 use crate::evaluation::table_of::TableOf;
@@ -44,7 +46,7 @@ pub fn audit(run: &Run, share: f64, tolerance: f64, progress: &dyn Progress) -> 
     let expected = format!("a number from 1e-12 to below the run's {:?}", run.tolerance);
     require((1e-12..run.tolerance).contains(&tolerance), "audit-tolerance", tolerance, expected)?;
     let session = Session::open(&run.out, run.fresh)?;
-    let measured = measure(Model::Bem3d, run, &session.store, progress)?;
+    let measured = measure(EnsembleModel::Bem3d, run, &session.store, progress)?;
     let realisations: Vec<&(Realisation, RealisationResult)> =
         measured.series.iter().flat_map(|s| &s.realisations).collect();
     let loads = measured.force_bar().len();
@@ -76,7 +78,7 @@ pub fn audit(run: &Run, share: f64, tolerance: f64, progress: &dyn Progress) -> 
     let path = run.out.join("audit.csv");
     let header = header(format!(
         "{} --share {share} --audit-tolerance {tolerance}",
-        run.command("audit", flags(Model::Bem3d))
+        run.command("audit", flags(EnsembleModel::Bem3d))
     ))
     .with_note(summary.clone());
     write_csv(&path, &table(&pairs)?, &header)?;

@@ -7,7 +7,7 @@ use crate::evaluation::realisation::Discretisation;
 use crate::evaluation::square_map::{read_map, unit_area};
 use crate::evaluation::table_of::{maybe, names};
 use crate::output::write_npy;
-use bem3d::benchmarks::{Part, Recorder, Spent, prepare_recorded};
+use bem3d::benchmarks::{Part, PartTime, Recorder, prepare_recorded};
 use bem3d::{Bem3d, Method};
 use contact_model::{
     Boundary, Cells, Certificate, ContactState, Load, Normalisation, PreparedContact, Scene, SelfAffine,
@@ -56,18 +56,18 @@ pub fn elapsed() -> u64 {
 
 /// The time of some rows by the parts of a solve: a line for each part, the largest first.
 pub fn parts_table(rows: &[BenchRow]) -> Vec<String> {
-    let mut parts: Vec<(Part, Spent)> = Vec::new();
+    let mut parts: Vec<(Part, PartTime)> = Vec::new();
     for &(part, spent) in rows.iter().flat_map(|row| &row.parts) {
         match parts.iter_mut().find(|(p, _)| *p == part) {
             Some((_, sum)) => {
-                *sum = Spent { time: sum.time + spent.time, times: sum.times + spent.times };
+                *sum = PartTime { time: sum.time + spent.time, times: sum.times + spent.times };
             }
             None => parts.push((part, spent)),
         }
     }
     parts.sort_by_key(|(_, spent)| std::cmp::Reverse(spent.time));
     let all: u64 = parts.iter().map(|(_, spent)| spent.time).sum();
-    let line = |(part, spent): &(Part, Spent)| {
+    let line = |(part, spent): &(Part, PartTime)| {
         let (seconds, share) = (spent.time as f64 * 1e-9, 100.0 * spent.time as f64 / all.max(1) as f64);
         format!("{:<34} {:>8} {seconds:>10.3} {share:>6.1} %", part.name(), spent.times)
     };
@@ -116,7 +116,7 @@ pub struct BenchRow {
     /// the same time.
     pub cpu_seconds: Option<f64>,
     /// The parts of the solve, with their nanoseconds and their number of calls; empty without a clock.
-    pub parts: Vec<(Part, Spent)>,
+    pub parts: Vec<(Part, PartTime)>,
     /// Largest resident memory of the process during this row, in bytes, where the platform reports it. It
     /// includes the memory of other threads, and counts from the start of the process where the count cannot
     /// be reset.

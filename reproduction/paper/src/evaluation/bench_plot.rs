@@ -4,7 +4,7 @@ use crate::evaluation::run::distinct;
 use crate::evaluation::table_of::read_rows;
 use crate::output::save;
 use analysis::observed_power;
-use plots::{Key, LineStyle, Mark, MarkShape, NEUTRAL, Picture, color, logarithmic, number};
+use plots::{LegendKey, LineStyle, Mark, MarkShape, NEUTRAL, Picture, color, logarithmic, number};
 use runs::{CsvFile, Error, Result};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
@@ -44,7 +44,7 @@ impl BenchPoint {
 
 /// The quantity along the horizontal axis; the other one distinguishes the curves.
 #[derive(Clone, Copy)]
-struct Over {
+struct BenchAxis {
     of: fn(&BenchPoint) -> f64,
     name: &'static str,
     /// Its symbol in a picture.
@@ -52,15 +52,16 @@ struct Over {
     label: &'static str,
 }
 
-const CELLS: Over = Over { of: |p| p.cells, name: "cells", symbol: "N", label: "cells per side $N$" };
-const FORCE: Over = Over {
+const CELLS: BenchAxis =
+    BenchAxis { of: |p| p.cells, name: "cells", symbol: "N", label: "cells per side $N$" };
+const FORCE: BenchAxis = BenchAxis {
     of: |p| p.force_bar,
     name: "F_bar",
     symbol: "\\bar{F}",
     label: "normalised force $\\bar{F} = F/(E^* h L)$",
 };
 
-impl Over {
+impl BenchAxis {
     /// The distinct values, increasing.
     fn values(self, points: &[BenchPoint]) -> Vec<f64> {
         distinct(points.iter().map(self.of))
@@ -93,7 +94,7 @@ pub fn plot_bench(csv: &Path, picture: &Path) -> Result<BenchPlot> {
 
 fn draw(
     points: &[BenchPoint],
-    [over, other]: [Over; 2],
+    [over, other]: [BenchAxis; 2],
     directory: &Path,
     name: &str,
     plot: &mut BenchPlot,
@@ -127,7 +128,7 @@ fn draw(
             let label = first
                 .fractal_dimension
                 .map_or_else(|| what.clone(), |d| format!("$D_{{\\rm{{f}}}} = {d:?}$"));
-            drawing.legend(&label, &color, Key::Line(LineStyle::Solid));
+            drawing.legend(&label, &color, LegendKey::Line(LineStyle::Solid));
             known.push(what.clone());
         }
         let power = |of: fn(&BenchPoint) -> f64| observed_power(done.iter().map(|p| ((over.of)(p), of(p))));
@@ -143,7 +144,7 @@ fn draw(
     if others.len() > 1 {
         for (rank, value) in others.iter().enumerate() {
             let label = format!("${} = {}$", other.symbol, number(*value).replace('$', ""));
-            drawing.legend(&label, NEUTRAL, Key::Mark(Mark::Solid(MARKS[rank % MARKS.len()])));
+            drawing.legend(&label, NEUTRAL, LegendKey::Mark(Mark::Solid(MARKS[rank % MARKS.len()])));
         }
     }
     plot.files.extend(save(drawing.files(name), directory)?);
@@ -151,7 +152,7 @@ fn draw(
 }
 
 /// Points of one surface, one tolerance and one value of `other`, in the order in which they come.
-fn curves(points: &[BenchPoint], other: Over) -> Vec<Vec<BenchPoint>> {
+fn curves(points: &[BenchPoint], other: BenchAxis) -> Vec<Vec<BenchPoint>> {
     let mut curves: Vec<Vec<BenchPoint>> = Vec::new();
     for p in points {
         let same = |c: &&mut Vec<BenchPoint>| {

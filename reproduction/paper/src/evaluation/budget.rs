@@ -4,7 +4,7 @@ use crate::evaluation::fitted_laws::{WindowedLaw, windowed_law};
 use crate::evaluation::header::{describe, flags, header};
 use crate::evaluation::measured::{COARSER_SURFACES, Measured, Series, measure};
 use crate::evaluation::outcome::Outcome;
-use crate::evaluation::realisation::Model;
+use crate::evaluation::realisation::EnsembleModel;
 use crate::evaluation::run::Run;
 use crate::evaluation::sample::{FLOOR_CELLS, Sample};
 use crate::evaluation::session::Session;
@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 
 /// Absolute half-widths of the 95 % intervals by source; `None` where a part is unknown.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Budget {
+pub struct ErrorBudget {
     /// From the tolerance of the solver: its own estimates, added up.
     pub algebraic: f64,
     /// From the grid, including the waves that only finer grids resolve.
@@ -26,7 +26,7 @@ pub struct Budget {
     pub window: Option<f64>,
 }
 
-impl Budget {
+impl ErrorBudget {
     /// The total: `algebraic + sqrt(discretisation^2 + ensemble^2 + window^2)`; `None` where one of the
     /// first three is unknown.
     ///
@@ -53,7 +53,7 @@ pub struct Budgeted {
     /// The number.
     pub value: f64,
     /// Its budget.
-    pub budget: Budget,
+    pub budget: ErrorBudget,
     /// Whether some surface has fewer than 10 contact cells.
     pub below_floor: bool,
 }
@@ -76,13 +76,13 @@ pub(crate) fn algebraic(s: &Sample) -> f64 {
 ///
 /// # Errors
 /// As [`measure`].
-pub fn state_budgets(run: &Run, models: &[Model], progress: &dyn Progress) -> Result<Outcome> {
+pub fn state_budgets(run: &Run, models: &[EnsembleModel], progress: &dyn Progress) -> Result<Outcome> {
     let session = Session::open(&run.out, run.fresh)?;
     let mut outcome = Outcome::new("budget");
     for &model in models {
         let name = match model {
-            Model::Bem3d => "fig2",
-            Model::Mdr1d => "fig6",
+            EnsembleModel::Bem3d => "fig2",
+            EnsembleModel::Mdr1d => "fig6",
         };
         outcome.add_budget(write_budget(name, run, &measure(model, run, &session.store, progress)?)?);
     }
@@ -136,7 +136,7 @@ pub(crate) fn budgets(measured: &Measured) -> Vec<Budgeted> {
             fractal_dimension: d,
             force_bar: None,
             value,
-            budget: Budget {
+            budget: ErrorBudget {
                 algebraic,
                 discretisation,
                 ensemble: error.map(|error| freedom * error),
@@ -164,7 +164,7 @@ fn row(measured: &Measured, series: &Series, j: usize) -> Option<Budgeted> {
     let edge = measured.discretisation.edge_part(k.mean);
     let grid = (measured.coarser_at(series.fractal_dimension))
         .and_then(|coarser| analysis::mean_grid_error(&series.grid_differences(coarser, j), edge, k.count));
-    let budget = Budget {
+    let budget = ErrorBudget {
         algebraic: k.mean * mean_algebraic(series, j),
         discretisation: grid.map(|d| k.mean * d),
         ensemble: k.standard_error.map(|se| analysis::student(k.count as f64 - 1.0) * se),

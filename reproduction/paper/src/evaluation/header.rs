@@ -1,7 +1,7 @@
 //! The header of every CSV about ensembles: the paper, the command, the ensembles.
 
 use crate::evaluation::measured::Measured;
-use crate::evaluation::realisation::{Discretisation, Model};
+use crate::evaluation::realisation::{Discretisation, EnsembleModel};
 use crate::evaluation::run::{Flag, Run, list};
 use runs::Header;
 
@@ -15,14 +15,14 @@ pub fn header(command: String) -> Header {
 }
 
 /// The flags on which the results of an ensemble of a model depend.
-pub const fn flags(model: Model) -> &'static [Flag] {
+pub const fn flags(model: EnsembleModel) -> &'static [Flag] {
     const BEM3D: [Flag; 6] =
         [Flag::CELLS, Flag::SURFACES, Flag::FRACTAL_DIMENSIONS, Flag::FORCES, Flag::TOLERANCE, Flag::SEED];
     const MDR1D: [Flag; 5] =
         [Flag::ELEMENTS, Flag::LINES, Flag::FRACTAL_DIMENSIONS, Flag::FORCES, Flag::SEED];
     match model {
-        Model::Bem3d => &BEM3D,
-        Model::Mdr1d => &MDR1D,
+        EnsembleModel::Bem3d => &BEM3D,
+        EnsembleModel::Mdr1d => &MDR1D,
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::evaluation::read_surfaces::ReadSurfaces;
 use crate::evaluation::realisation::{
-    Discretisation, Model, Realisation, RealisationResult, of_scene, realisation_jobs,
+    Discretisation, EnsembleModel, Realisation, RealisationResult, of_scene, realisation_jobs,
 };
 use crate::evaluation::realisation_jobs::is_solved;
 use crate::evaluation::run::Run;
@@ -47,7 +47,7 @@ pub struct Measured {
 ///
 /// # Errors
 /// See [`crate::evaluation::solve_realisations`].
-pub fn measure(model: Model, run: &Run, store: &Store, progress: &dyn Progress) -> Result<Measured> {
+pub fn measure(model: EnsembleModel, run: &Run, store: &Store, progress: &dyn Progress) -> Result<Measured> {
     measure_showing(model, run, store, progress, &|_| Ok(()))
 }
 
@@ -59,7 +59,7 @@ pub fn measure(model: Model, run: &Run, store: &Store, progress: &dyn Progress) 
 /// # Errors
 /// As [`measure`], and errors of `show`.
 pub fn measure_showing(
-    model: Model,
+    model: EnsembleModel,
     run: &Run,
     store: &Store,
     progress: &dyn Progress,
@@ -98,7 +98,7 @@ pub fn measure_showing(
 fn read(
     table: &ReadSurfaces,
     ensembles: Vec<Vec<Realisation>>,
-    (model, run): (Model, &Run),
+    (model, run): (EnsembleModel, &Run),
 ) -> Result<Measured> {
     let of = |realisations: Vec<Realisation>| {
         let results = realisations.iter().map(|one| table.of(one)).collect::<Result<_>>()?;
@@ -108,7 +108,7 @@ fn read(
 }
 
 /// The last ensemble, which is on the finest grid, with those before it as its coarser ones.
-fn with_coarser(mut measured: Vec<Measured>, model: Model) -> Result<Measured> {
+fn with_coarser(mut measured: Vec<Measured>, model: EnsembleModel) -> Result<Measured> {
     let finest = measured.pop().ok_or_else(|| Error::parameter("model", model.name(), "a grid"))?;
     let coarser = measured.pop().zip(measured.pop()).map(|(half, quarter)| Box::new([half, quarter]));
     Ok(Measured { coarser, ..finest })
@@ -116,14 +116,14 @@ fn with_coarser(mut measured: Vec<Measured>, model: Model) -> Result<Measured> {
 
 /// A description of the solves, with their predicted time.
 fn words(
-    model: Model,
+    model: EnsembleModel,
     run: &Run,
     ensembles: &[Vec<Realisation>],
     (jobs, store): (&[SceneJob], &Store),
 ) -> String {
     let kind = match model {
-        Model::Bem3d => "surfaces",
-        Model::Mdr1d => "lines",
+        EnsembleModel::Bem3d => "surfaces",
+        EnsembleModel::Mdr1d => "lines",
     };
     let of = |realisations: &Vec<Realisation>| {
         let size = match realisations.first()?.discretisation {
@@ -148,7 +148,7 @@ fn words(
 }
 
 /// The grid of a model with its number of surfaces, and the two coarser ones.
-fn grids(model: Model, run: &Run) -> impl Iterator<Item = (Discretisation, usize)> {
+fn grids(model: EnsembleModel, run: &Run) -> impl Iterator<Item = (Discretisation, usize)> {
     let (grid, surfaces, _) = run.ensemble(model);
     let coarser = grid.coarser().into_iter().flatten();
     std::iter::once((grid, surfaces)).chain(coarser.map(move |grid| (grid, surfaces.min(COARSER_SURFACES))))
@@ -158,7 +158,7 @@ fn grids(model: Model, run: &Run) -> impl Iterator<Item = (Discretisation, usize
 ///
 /// # Errors
 /// As [`realisation_jobs`].
-pub fn ensemble_jobs(run: &Run, models: &[Model]) -> Result<Vec<SceneJob>> {
+pub fn ensemble_jobs(run: &Run, models: &[EnsembleModel]) -> Result<Vec<SceneJob>> {
     let all = models.iter().flat_map(|&model| grids(model, run));
     let all: Vec<Realisation> = all.flat_map(|(grid, surfaces)| realisations(grid, surfaces, run)).collect();
     realisation_jobs(&all, &run.out)

@@ -6,7 +6,7 @@
 //! | item | what it does |
 //! |---|---|
 //! | [`Run`] | has the parameters of one command: those of a [`Preset`], overridden by a [`Request`] and checked |
-//! | [`measure`] | solves the ensemble of a [`Model`] |
+//! | [`measure`] | solves the ensemble of a [`EnsembleModel`] |
 //! | [`state_budgets`] | writes the error budgets of the means |
 //! | [`plan`], [`settle`] | choose the sizes that meet an accuracy target |
 //! | [`accuracy_cost`] | measures the time that accuracy costs |
@@ -67,7 +67,7 @@ pub use analysis::AccuracyTarget;
 pub use audit::audit;
 pub use bench::{BENCH_COLUMNS, Bench, BenchRow, Clock, Surfaces, bench, elapsed, parts_table, write_bench};
 pub use bench_plot::{BenchPlot, plot_bench, redraw_benches};
-pub use budget::{Budget, Budgeted, state_budgets, write_budget};
+pub use budget::{Budgeted, ErrorBudget, state_budgets, write_budget};
 pub use fitted_laws::{WindowedLaw, dense_dimensions, law_over_forces_of, laws, windowed_law};
 pub use forces::Forces;
 pub use header::{PAPER, describe, flags, header};
@@ -76,7 +76,9 @@ pub use measured::{
     COARSER_SURFACES, Measured, Series, ensemble_jobs, measure, measure_showing, transformed,
 };
 pub use outcome::Outcome;
-pub use realisation::{Discretisation, Model, Realisation, RealisationResult, of_scene, realisation_jobs};
+pub use realisation::{
+    Discretisation, EnsembleModel, Realisation, RealisationResult, of_scene, realisation_jobs,
+};
 pub use realisation_jobs::{is_solved, solve_realisations};
 pub use run::{FRACTAL_DIMENSIONS, Flag, Preset, Request, Run, SEED, TOLERANCE, distinct, list};
 pub use runs::{Error, Result};

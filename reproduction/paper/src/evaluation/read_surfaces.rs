@@ -1,6 +1,6 @@
 //! Surfaces of an ensemble that are read from a compact table, one row each, instead of solved.
 
-use crate::evaluation::realisation::{Discretisation, Model, Realisation, RealisationResult};
+use crate::evaluation::realisation::{Discretisation, EnsembleModel, Realisation, RealisationResult};
 use crate::evaluation::run::Run;
 use crate::evaluation::sample::Sample;
 use crate::evaluation::table_of::read_rows;
@@ -16,7 +16,7 @@ const READ: &str = "read from a table";
 
 /// A row of a compact table.
 #[derive(Deserialize)]
-struct Row {
+struct SurfaceRow {
     size: usize,
     fractal_dimension: f64,
     seed: u64,
@@ -31,7 +31,7 @@ struct Row {
 /// Numbers have seven digits; certificates, work and times are not in the table.
 pub struct ReadSurfaces {
     path: PathBuf,
-    rows: Vec<Row>,
+    rows: Vec<SurfaceRow>,
 }
 
 impl ReadSurfaces {
@@ -40,10 +40,10 @@ impl ReadSurfaces {
     /// # Errors
     /// [`Error::File`] for a file that cannot be read, is no compact table, or has other loads or another
     /// tolerance.
-    pub fn open(directory: &Path, model: Model, run: &Run) -> Result<Self> {
+    pub fn open(directory: &Path, model: EnsembleModel, run: &Run) -> Result<Self> {
         let name = match model {
-            Model::Bem3d => "fig2-compact.csv",
-            Model::Mdr1d => "fig6-compact.csv",
+            EnsembleModel::Bem3d => "fig2-compact.csv",
+            EnsembleModel::Mdr1d => "fig6-compact.csv",
         };
         let path = directory.join(name);
         let file = CsvFile::read(&path)?;
@@ -54,8 +54,8 @@ impl ReadSurfaces {
             solved.ok_or_else(|| Error::content(&path, format!("no line {begin}... with its loads")))?;
         let ends = format!(", loads {}", forces.spec());
         let tolerance = format!(", tolerance {:?},", run.tolerance);
-        if !solved.ends_with(&ends) || (model == Model::Bem3d && !solved.contains(&tolerance)) {
-            let wanted = if model == Model::Bem3d { &tolerance[2..] } else { "" };
+        if !solved.ends_with(&ends) || (model == EnsembleModel::Bem3d && !solved.contains(&tolerance)) {
+            let wanted = if model == EnsembleModel::Bem3d { &tolerance[2..] } else { "" };
             let reason = format!("it has \"{solved}\"; the run asks for \"{wanted}{}\"", &ends[1..]);
             return Err(Error::content(&path, reason));
         }
@@ -70,8 +70,9 @@ impl ReadSurfaces {
         let wrong = |reason: String| Error::content(&self.path, reason);
         let (size, d, seed) =
             (realisation.discretisation.size(), realisation.fractal_dimension, realisation.seed());
-        let same =
-            |row: &&Row| row.size == size && row.seed == seed && row.fractal_dimension.total_cmp(&d).is_eq();
+        let same = |row: &&SurfaceRow| {
+            row.size == size && row.seed == seed && row.fractal_dimension.total_cmp(&d).is_eq()
+        };
         let name = || format!("surface {} (seed {seed}) of D_f = {d:?} with size {size}", realisation.index);
         let row = self.rows.iter().find(same).ok_or_else(|| wrong(format!("it has no {}", name())))?;
         let columns = [&row.stiffness_bar, &row.approach_over_h, &row.contact_cells];

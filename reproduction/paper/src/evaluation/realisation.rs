@@ -9,8 +9,8 @@ use contact_model::{
     Load, Outputs, PAPER_STIFFNESS_FACTOR, Scene, SelfAffine, Source, Stop, Surface, line_length,
 };
 use fractal_contact::scenes::{
-    self, AskedLoads, AskedSampling, AskedSelfAffine, AskedSurface, LoadKind, LoadList, Material,
-    ModelResult, Numerics, Question, SceneFile, SceneJob, System, jobs_of_scenes,
+    self, AskedLoads, AskedSampling, AskedSelfAffine, AskedSurface, LoadList, Material, ModelResult,
+    Numerics, PrescribedLoad, Question, SceneFile, SceneJob, System, jobs_of_scenes,
 };
 use mdr1d::Mdr1d;
 use runs::{Error, Result};
@@ -20,7 +20,7 @@ use std::sync::Arc;
 
 /// The models of ensembles.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
-pub enum Model {
+pub enum EnsembleModel {
     /// Boundary elements on surfaces.
     #[serde(rename = "3D")]
     Bem3d,
@@ -29,7 +29,7 @@ pub enum Model {
     Mdr1d,
 }
 
-impl Model {
+impl EnsembleModel {
     /// Surfaces first, as in the figures.
     pub const BOTH: [Self; 2] = [Self::Bem3d, Self::Mdr1d];
 
@@ -61,10 +61,10 @@ pub enum Discretisation {
 
 impl Discretisation {
     /// The model that it belongs to.
-    pub fn of(&self) -> Model {
+    pub fn of(&self) -> EnsembleModel {
         match self {
-            Self::Bem3d { .. } => Model::Bem3d,
-            Self::Mdr1d { .. } => Model::Mdr1d,
+            Self::Bem3d { .. } => EnsembleModel::Bem3d,
+            Self::Mdr1d { .. } => EnsembleModel::Mdr1d,
         }
     }
 
@@ -227,7 +227,7 @@ impl Realisation {
         question.models = vec![self.discretisation.numerics()];
         question.material = Some(Material::ContactModulus(1.0));
         let values = self.forces.to_vec();
-        question.loads = Some(AskedLoads::Loads(LoadList { kind: LoadKind::ForceBar, values }));
+        question.loads = Some(AskedLoads::Loads(LoadList { kind: PrescribedLoad::ForceBar, values }));
         let mut surface = AskedSelfAffine::default();
         surface.size = Some(1.0.into());
         surface.hurst = Some(3.0 - self.fractal_dimension);
@@ -243,8 +243,8 @@ impl Realisation {
     fn words(&self) -> String {
         let (d, size) = (self.fractal_dimension, self.discretisation.size());
         match self.discretisation.of() {
-            Model::Bem3d => format!("D_f = {d:?}, {size} cells a side"),
-            Model::Mdr1d => format!("D_f = {d:?}, {size} elements"),
+            EnsembleModel::Bem3d => format!("D_f = {d:?}, {size} cells a side"),
+            EnsembleModel::Mdr1d => format!("D_f = {d:?}, {size} elements"),
         }
     }
 

@@ -2,7 +2,7 @@
 
 use crate::evaluation::forces::Forces;
 use crate::evaluation::limits::{self, require, within};
-use crate::evaluation::realisation::{Discretisation, Model};
+use crate::evaluation::realisation::{Discretisation, EnsembleModel};
 use runs::Result;
 use std::path::PathBuf;
 
@@ -212,20 +212,22 @@ impl Run {
     }
 
     /// How the ensemble of a model is solved, the number of its surfaces, and its loads.
-    pub fn ensemble(&self, model: Model) -> (Discretisation, usize, &Forces) {
+    pub fn ensemble(&self, model: EnsembleModel) -> (Discretisation, usize, &Forces) {
         let Self { cells, tolerance, elements, .. } = *self;
         match model {
-            Model::Bem3d => (Discretisation::Bem3d { cells, tolerance }, self.surfaces, &self.forces_3d),
-            Model::Mdr1d => (Discretisation::Mdr1d { elements }, self.lines, &self.forces_1d),
+            EnsembleModel::Bem3d => {
+                (Discretisation::Bem3d { cells, tolerance }, self.surfaces, &self.forces_3d)
+            }
+            EnsembleModel::Mdr1d => (Discretisation::Mdr1d { elements }, self.lines, &self.forces_1d),
         }
     }
 
     /// The same run with this number of cells a side (elements) and of surfaces (lines) of a model.
     #[must_use]
-    pub fn with_sizes(&self, model: Model, size: usize, surfaces: usize) -> Self {
+    pub fn with_sizes(&self, model: EnsembleModel, size: usize, surfaces: usize) -> Self {
         match model {
-            Model::Bem3d => Self { cells: size, surfaces, ..self.clone() },
-            Model::Mdr1d => Self { elements: size, lines: surfaces, ..self.clone() },
+            EnsembleModel::Bem3d => Self { cells: size, surfaces, ..self.clone() },
+            EnsembleModel::Mdr1d => Self { elements: size, lines: surfaces, ..self.clone() },
         }
     }
 

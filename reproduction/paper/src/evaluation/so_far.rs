@@ -21,10 +21,10 @@ pub(crate) struct SoFar<'a> {
     ensembles: &'a [Vec<Realisation>],
     run: &'a Run,
     show: &'a Show<'a>,
-    found: Mutex<Found>,
+    found: Mutex<FoundSoFar>,
 }
 
-struct Found {
+struct FoundSoFar {
     /// Results of each grid, in the order of the jobs.
     results: Vec<Vec<Option<RealisationResult>>>,
     last: Instant,
@@ -35,7 +35,12 @@ struct Found {
 impl<'a> SoFar<'a> {
     pub fn new(ensembles: &'a [Vec<Realisation>], run: &'a Run, show: &'a Show<'a>) -> Self {
         let results = ensembles.iter().map(|jobs| vec![None; jobs.len()]).collect();
-        Self { ensembles, run, show, found: Mutex::new(Found { results, last: Instant::now(), shown: None }) }
+        Self {
+            ensembles,
+            run,
+            show,
+            found: Mutex::new(FoundSoFar { results, last: Instant::now(), shown: None }),
+        }
     }
 
     /// Takes the result of a job; the jobs are numbered from the coarsest grid on.
@@ -99,7 +104,7 @@ impl<'a> SoFar<'a> {
 mod tests {
     use super::*;
     use crate::evaluation::measured::realisations;
-    use crate::evaluation::realisation::Model;
+    use crate::evaluation::realisation::EnsembleModel;
     use crate::evaluation::run::{Preset, Request};
     use crate::evaluation::sample::tests::sample;
 
@@ -107,7 +112,7 @@ mod tests {
     fn coarse_grids_count_when_they_are_whole_and_the_finest_from_three_surfaces_on() {
         let request =
             Request { preset: Preset::Quick, fractal_dimensions: Some(vec![2.0, 2.6]), ..Request::default() };
-        let run = Run::new(&request).unwrap().with_sizes(Model::Bem3d, 129, 5);
+        let run = Run::new(&request).unwrap().with_sizes(EnsembleModel::Bem3d, 129, 5);
         let so_far = SoFar::new(&[], &run, &|_, _| Ok(()));
         let result =
             RealisationResult { rms_height: 1.0, seconds: 0.0, samples: vec![sample(0.1), sample(1.0)] };
@@ -131,8 +136,8 @@ mod tests {
         let run = Run::new(&request).unwrap();
         let ensembles: Vec<Vec<Realisation>> = [2, 3]
             .map(|surfaces| {
-                let run = run.with_sizes(Model::Bem3d, 9, surfaces);
-                realisations(run.ensemble(Model::Bem3d).0, surfaces, &run)
+                let run = run.with_sizes(EnsembleModel::Bem3d, 9, surfaces);
+                realisations(run.ensemble(EnsembleModel::Bem3d).0, surfaces, &run)
             })
             .into();
         let so_far = SoFar::new(&ensembles, &run, &|_, _| Ok(()));

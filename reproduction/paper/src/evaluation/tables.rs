@@ -131,7 +131,7 @@ pub fn samples_table(title: &str, measured: &Measured) -> Result<Table> {
 mod tests {
     use super::*;
     use crate::evaluation::header::{describe, header};
-    use crate::evaluation::realisation::Model;
+    use crate::evaluation::realisation::EnsembleModel;
     use crate::evaluation::run::Run;
     use crate::evaluation::{Request, Session, measure};
     use approx::assert_relative_eq;
@@ -157,7 +157,9 @@ mod tests {
             let run = Run::new(&Request { samples: samples.clone(), ..request }).unwrap();
             measure(model, &run, &store, &Silent).map_err(|error| error.to_string())
         };
-        for (model, name) in [(Model::Bem3d, "fig2-compact.csv"), (Model::Mdr1d, "fig6-compact.csv")] {
+        for (model, name) in
+            [(EnsembleModel::Bem3d, "fig2-compact.csv"), (EnsembleModel::Mdr1d, "fig6-compact.csv")]
+        {
             let solved = measure(model, &run, &store, &Silent).unwrap();
             assert!(read(request.clone(), model).unwrap_err().contains(name));
             let header = describe(header("command".to_owned()), &run, &[&solved]);
@@ -178,7 +180,7 @@ mod tests {
                     }
                     for j in 0..again.points.len() {
                         assert_eq!(again.points[j].min_contact_cells, solved.points[j].min_contact_cells);
-                        assert_eq!(again.contact_fraction(j).is_some(), model == Model::Bem3d);
+                        assert_eq!(again.contact_fraction(j).is_some(), model == EnsembleModel::Bem3d);
                     }
                 }
             }
@@ -189,7 +191,7 @@ mod tests {
             let missing = read(more, model).unwrap_err();
             assert!(missing.contains("it has no surface 3 (seed "), "{missing}");
         }
-        let tight = read(Request { tolerance: Some(1e-6), ..request }, Model::Bem3d).unwrap_err();
+        let tight = read(Request { tolerance: Some(1e-6), ..request }, EnsembleModel::Bem3d).unwrap_err();
         assert!(tight.contains("tolerance 1e-6"), "{tight}");
     }
 }

@@ -1,6 +1,6 @@
 //! Mean curves, local slopes and fits, each with its band.
 
-use super::ladder::{Pair, Rungs, Solved};
+use super::ladder::{GridPair, GridResults, Rungs};
 use crate::evaluation::Discretisation;
 use analysis::{Multilevel, Uncertain, slope_weights};
 use contact_model::{Amplitude, SelfAffine};
@@ -45,14 +45,14 @@ impl Convention {
 
 /// A number with the two parts of its 95 % half-width.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Banded {
+pub struct BandedNumber {
     /// From the scatter of the surfaces.
     pub scatter: Uncertain,
     /// The discretisation error of the finest grid.
     pub grid: f64,
 }
 
-impl Banded {
+impl BandedNumber {
     /// The number.
     pub fn value(&self) -> f64 {
         self.scatter.value
@@ -173,14 +173,14 @@ impl MeanCurve {
     }
 
     /// Mean k_bar at a point; `None` for fewer than three grids.
-    pub fn stiffness(&self, point: usize) -> Option<Banded> {
+    pub fn stiffness(&self, point: usize) -> Option<BandedNumber> {
         let mut gradient = vec![0.0; self.forces.len()];
         gradient[point] = 1.0;
         self.banded(point..point + 1, &gradient, |means| Some(means[point]))
     }
 
     /// Slope of ln k_bar over ln F_bar by least squares through the points.
-    pub fn slope(&self, points: Range<usize>) -> Option<Banded> {
+    pub fn slope(&self, points: Range<usize>) -> Option<BandedNumber> {
         self.logarithmic(points.clone(), &slope_weights(&self.ln_forces(points))?)
     }
 
@@ -190,7 +190,7 @@ impl MeanCurve {
     }
 
     /// Local slope: through [`SLOPE_REACH`] points on each side, where all of them are resolved.
-    pub fn local_slope(&self, point: usize) -> Option<Banded> {
+    pub fn local_slope(&self, point: usize) -> Option<BandedNumber> {
         self.local_points(point).and_then(|points| self.slope(points))
     }
 
@@ -221,7 +221,7 @@ impl MeanCurve {
     }
 
     /// `sum w ln k_bar` over the points.
-    pub fn logarithmic(&self, points: Range<usize>, weights: &[f64]) -> Option<Banded> {
+    pub fn logarithmic(&self, points: Range<usize>, weights: &[f64]) -> Option<BandedNumber> {
         let gradient = self.gradient(points.clone(), weights);
         let start = points.start;
         self.banded(points, &gradient, |means| {
@@ -235,10 +235,10 @@ impl MeanCurve {
         points: Range<usize>,
         gradient: &[f64],
         quantity: impl Fn(&[f64]) -> Option<f64>,
-    ) -> Option<Banded> {
+    ) -> Option<BandedNumber> {
         let value = quantity(&self.levels.means(self.levels.levels()))?;
         let grid = self.grid_part(points, &quantity)?;
-        Some(Banded { scatter: self.levels.propagated(value, gradient), grid })
+        Some(BandedNumber { scatter: self.levels.propagated(value, gradient), grid })
     }
 
     /// The discretisation error of the finest grid in a number of the mean curve at these points.
@@ -291,7 +291,7 @@ fn spectrum_heights(rungs: &Rungs) -> contact_model::Result<Vec<f64>> {
 
 /// k_bar of a pair at the forces, or its difference; as far as the loads go. `None` where a solve did not
 /// meet its tolerance.
-fn difference(pair: &Pair, level: usize, forces: &[f64], heights: &[f64]) -> Option<Vec<f64>> {
+fn difference(pair: &GridPair, level: usize, forces: &[f64], heights: &[f64]) -> Option<Vec<f64>> {
     let fine = stiffnesses(&pair.fine, forces, heights[level])?;
     let Some(coarse) = &pair.coarse else { return Some(fine) };
     let coarse = stiffnesses(coarse, forces, heights[level - 1])?;
@@ -300,7 +300,7 @@ fn difference(pair: &Pair, level: usize, forces: &[f64], heights: &[f64]) -> Opt
 
 /// k_bar at forces that are normalised by another rms height, which is `height` times the surface's own; up
 /// to the last load that was solved.
-fn stiffnesses(solved: &Solved, forces: &[f64], height: f64) -> Option<Vec<f64>> {
+fn stiffnesses(solved: &GridResults, forces: &[f64], height: f64) -> Option<Vec<f64>> {
     let points: Option<Vec<(f64, f64)>> =
         solved.forces.iter().zip(&solved.stiffnesses).map(|(f, k)| Some((f.ln(), (*k)?.ln()))).collect();
     let points = points?;

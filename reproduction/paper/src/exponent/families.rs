@@ -1,12 +1,12 @@
 //! The hypotheses of `data/exponent/hypotheses.md`, fixed before the run that tests them.
 
-use super::curve::{Banded, Convention, MeanCurve};
-use super::laws::{DECADES, FREE, Factor, Limit, eq6, eq24, ratios};
+use super::curve::{BandedNumber, Convention, MeanCurve};
+use super::laws::{DECADES, FREE, FittedLimit, ModelRatio, eq6, eq24, ratios};
 use std::ops::Range;
 
 /// One test of a family.
 #[derive(Debug, Clone)]
-pub struct Test {
+pub struct FamilyTest {
     /// A to D.
     pub family: &'static str,
     /// Number of tests of the family.
@@ -33,7 +33,7 @@ pub struct Test {
     pub resolved: bool,
 }
 
-impl Test {
+impl FamilyTest {
     /// Whether the hypothesis is rejected.
     pub fn verdict(&self) -> &'static str {
         match self.interval {
@@ -80,11 +80,11 @@ fn close(a: f64, b: f64) -> bool {
 }
 
 /// All tests, made with these curves and the fits of them.
-pub fn tests(curves: &[MeanCurve], limits: &[Limit]) -> Vec<Test> {
+pub fn tests(curves: &[MeanCurve], limits: &[FittedLimit]) -> Vec<FamilyTest> {
     let measured: Vec<MeanCurve> =
         curves.iter().filter(|c| c.convention == Convention::Measured).cloned().collect();
     let (_, factors) = ratios(&measured);
-    let mut tests: Vec<Test> = RATIOS.iter().map(|&at| of_ratio(&factors, at)).collect();
+    let mut tests: Vec<FamilyTest> = RATIOS.iter().map(|&at| of_ratio(&factors, at)).collect();
     for (family, hypothesis, law) in [("B", EQ24, eq24 as fn(f64) -> f64), ("C", EQ6, eq6 as fn(f64) -> f64)]
     {
         tests.extend(WINDOWS.iter().map(|&at| of_window(&measured, (family, hypothesis, law), at)));
@@ -101,9 +101,9 @@ fn asked(
     (model, quantity): (&'static str, &'static str),
     (window, fractal_dimension): (&'static str, f64),
     (hypothesis, expected): (&'static str, f64),
-) -> Test {
+) -> FamilyTest {
     let (value, interval, chance, resolved) = (None, None, None, false);
-    Test {
+    FamilyTest {
         family,
         of,
         quantity,
@@ -119,15 +119,15 @@ fn asked(
     }
 }
 
-impl Test {
-    fn with(self, number: &Banded, resolved: bool) -> Self {
+impl FamilyTest {
+    fn with(self, number: &BandedNumber, resolved: bool) -> Self {
         let interval = Some(number.interval(0.05 / self.of as f64));
         let chance = Some(number.chance_of(self.expected));
         Self { value: Some(number.value()), interval, chance, resolved, ..self }
     }
 }
 
-fn of_ratio(factors: &[Factor], at: (&'static str, f64)) -> Test {
+fn of_ratio(factors: &[ModelRatio], at: (&'static str, f64)) -> FamilyTest {
     let quantity = "slope of ln(k_1D/k_3D) over ln F";
     let test = asked(("A", RATIOS.len()), ("mdr1d over bem3d", quantity), at, (CONSTANT, 0.0));
     let own = factors.iter().find(|f| f.window == at.0 && close(f.fractal_dimension, at.1));
@@ -141,7 +141,7 @@ fn of_window(
     curves: &[MeanCurve],
     (family, hypothesis, law): (&'static str, &'static str, fn(f64) -> f64),
     at: (&'static str, f64),
-) -> Test {
+) -> FamilyTest {
     let test =
         asked((family, WINDOWS.len()), ("bem3d", "exponent of the window"), at, (hypothesis, law(at.1)));
     let forces: Option<Range<f64>> =
@@ -157,12 +157,12 @@ fn of_window(
     }
 }
 
-fn of_limit(limits: &[Limit], model: &'static str, d: f64) -> Test {
+fn of_limit(limits: &[FittedLimit], model: &'static str, d: f64) -> FamilyTest {
     let test = asked(("D", LIMITS_TESTED), (model, "alpha towards zero force"), ("fit", d), (EQ24, eq24(d)));
-    let judged = |l: &&Limit| l.variant == FREE && l.convention == Convention::Measured;
-    let own = |l: &&Limit| l.model == model && close(l.fractal_dimension, d);
+    let judged = |l: &&FittedLimit| l.variant == FREE && l.convention == Convention::Measured;
+    let own = |l: &&FittedLimit| l.model == model && close(l.fractal_dimension, d);
     match limits.iter().filter(judged).find(own) {
-        Some(limit) => Test {
+        Some(limit) => FamilyTest {
             value: Some(limit.law.alpha),
             interval: Some(limit.family),
             resolved: limit.resolved,
@@ -180,7 +180,8 @@ mod tests {
     fn a_verdict_needs_a_resolved_number() {
         let test = asked(("A", 7), ("", ""), (HEAVIER, 2.0), (CONSTANT, 0.0));
         assert_eq!(test.verdict(), "no number");
-        let with = |interval, resolved| Test { interval: Some(interval), resolved, ..test.clone() }.verdict();
+        let with =
+            |interval, resolved| FamilyTest { interval: Some(interval), resolved, ..test.clone() }.verdict();
         assert_eq!(with([-0.03, -0.01], true), "rejected");
         assert_eq!(with([-0.03, 0.01], true), "not rejected");
         assert_eq!(with([-0.03, -0.01], false), "not resolved");

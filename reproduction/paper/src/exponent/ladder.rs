@@ -28,7 +28,7 @@ pub struct Ladder {
 
 /// The results of one surface on one grid.
 #[derive(Debug, Clone)]
-pub struct Solved {
+pub struct GridResults {
     /// F_bar, increasing.
     pub forces: Vec<f64>,
     /// k_bar at each force; `None` where a solve did not meet its tolerance. It has the five digits of the
@@ -40,13 +40,13 @@ pub struct Solved {
 
 /// One surface on the grid of its level, and on the next coarser one.
 #[derive(Debug, Clone)]
-pub struct Pair {
+pub struct GridPair {
     /// Number of the surface on its level.
     pub index: usize,
     /// On the grid of the level.
-    pub fine: Solved,
+    pub fine: GridResults,
     /// On the next coarser grid; `None` on the coarsest.
-    pub coarse: Option<Solved>,
+    pub coarse: Option<GridResults>,
 }
 
 /// All pairs of one model and fractal dimension, level by level.
@@ -61,11 +61,11 @@ pub struct Rungs {
     /// Loads F_bar; finer levels may end before the last.
     pub forces: Vec<f64>,
     /// Level, surface.
-    pub levels: Vec<Vec<Pair>>,
+    pub levels: Vec<Vec<GridPair>>,
 }
 
 /// A realisation of a study and its place in it.
-struct Place {
+struct RealisationPlace {
     dimension: usize,
     level: usize,
     fine: bool,
@@ -108,7 +108,7 @@ impl Ladder {
     }
 
     /// The jobs of each level, on its own grid and, under the same loads, on the next coarser one.
-    fn places(&self, dimensions: &[f64], seed: u64, surfaces: &[usize]) -> Vec<Place> {
+    fn places(&self, dimensions: &[f64], seed: u64, surfaces: &[usize]) -> Vec<RealisationPlace> {
         let mut places = Vec::new();
         for (level, &count) in surfaces.iter().enumerate() {
             let own = self.sizes[level];
@@ -116,7 +116,7 @@ impl Ladder {
             let grids = std::iter::once(own).chain(level.checked_sub(1).map(|below| self.sizes[below]));
             for index in 0..count {
                 for (dimension, &fractal_dimension) in dimensions.iter().enumerate() {
-                    places.extend(grids.clone().map(|size| Place {
+                    places.extend(grids.clone().map(|size| RealisationPlace {
                         dimension,
                         level,
                         fine: size == own,
@@ -197,22 +197,22 @@ impl Ladder {
             .collect();
         for (place, result) in places.into_iter().zip(results.into_iter().flatten()) {
             let level = &mut rungs[place.dimension].levels[place.level];
-            let result = Solved::from(&result);
+            let result = GridResults::from(&result);
             match level.last_mut() {
                 // The coarse grid follows the fine one.
                 Some(pair) if !place.fine => pair.coarse = Some(result),
-                _ => level.push(Pair { index: place.realisation.index, fine: result, coarse: None }),
+                _ => level.push(GridPair { index: place.realisation.index, fine: result, coarse: None }),
             }
         }
         Ok(rungs)
     }
 }
 
-fn realisations<'a>(places: impl Iterator<Item = &'a Place>) -> Vec<Realisation> {
+fn realisations<'a>(places: impl Iterator<Item = &'a RealisationPlace>) -> Vec<Realisation> {
     places.map(|place| place.realisation.clone()).collect()
 }
 
-impl From<&RealisationResult> for Solved {
+impl From<&RealisationResult> for GridResults {
     fn from(result: &RealisationResult) -> Self {
         let samples = &result.samples;
         let stiffness = |s: &Sample| s.stiffness_bar.filter(|_| s.converged()).and_then(five_digits);
@@ -231,15 +231,15 @@ fn five_digits(stiffness: f64) -> Option<f64> {
 
 impl Rungs {
     /// Pairs of all levels.
-    pub fn pairs(&self) -> impl Iterator<Item = &Pair> {
+    pub fn pairs(&self) -> impl Iterator<Item = &GridPair> {
         self.levels.iter().flatten()
     }
 }
 
-impl Pair {
+impl GridPair {
     /// Seconds of both solves, where known.
     pub fn seconds(&self) -> f64 {
-        let seconds = |solved: &Solved| solved.seconds.unwrap_or(0.0);
+        let seconds = |solved: &GridResults| solved.seconds.unwrap_or(0.0);
         seconds(&self.fine) + self.coarse.as_ref().map_or(0.0, seconds)
     }
 

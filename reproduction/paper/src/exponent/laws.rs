@@ -1,7 +1,7 @@
 //! Exponents over windows, towards zero force, and the factor between line and surface.
 
 use super::correction::{Correction, Points};
-use super::curve::{Banded, Convention, MeanCurve};
+use super::curve::{BandedNumber, Convention, MeanCurve};
 use analysis::slope_weights;
 use std::ops::Range;
 
@@ -31,7 +31,7 @@ pub struct LawRow {
     /// Whether the whole window is resolved.
     pub resolved: bool,
     /// The exponent.
-    pub alpha: Banded,
+    pub alpha: BandedNumber,
     /// Size of the level from which most of the scatter comes, and its share of the variance.
     pub widest: Option<(usize, f64)>,
 }
@@ -86,7 +86,7 @@ pub fn law_rows(curves: &[MeanCurve]) -> Vec<LawRow> {
 
 /// k = zeta F^alpha (1 + c F^omega) fitted to a curve.
 #[derive(Debug, Clone)]
-pub struct Limit {
+pub struct FittedLimit {
     /// Name of the model.
     pub model: &'static str,
     /// How forces are normalised.
@@ -119,7 +119,7 @@ pub struct Limit {
 /// A fit whose misfit is exceeded by a smaller share of curves about its law does not describe the curve.
 const FITS: f64 = 0.05;
 
-impl Limit {
+impl FittedLimit {
     /// Which law lies in the 95 % interval, or why the fit says nothing of either.
     pub fn conclusion(&self) -> &'static str {
         if !self.resolved {
@@ -170,7 +170,7 @@ fn first_force(model: &str, d: f64) -> f64 {
 
 /// Fits of all curves: the one that is judged ([`judged_limit`]) and, for forces normalised by the measured
 /// rms height, further fits for comparison.
-pub fn limits(curves: &[MeanCurve], family: usize) -> Vec<Limit> {
+pub fn limits(curves: &[MeanCurve], family: usize) -> Vec<FittedLimit> {
     let mut limits = Vec::new();
     let [_, beside] = DRAWS;
     for curve in curves {
@@ -187,7 +187,7 @@ pub fn limits(curves: &[MeanCurve], family: usize) -> Vec<Limit> {
 }
 
 /// The fit of a curve that is judged, with an interval for this number of tests in its family.
-pub fn judged_limit(curve: &MeanCurve, family: usize) -> Option<Limit> {
+pub fn judged_limit(curve: &MeanCurve, family: usize) -> Option<FittedLimit> {
     let start = first_force(curve.model, curve.fractal_dimension);
     limit(curve, (FREE, start..0.2, None), (family, DRAWS[0]))
 }
@@ -196,7 +196,7 @@ fn limit(
     curve: &MeanCurve,
     (variant, forces, held): (&'static str, Range<f64>, Option<f64>),
     (family, draws): (usize, usize),
-) -> Option<Limit> {
+) -> Option<FittedLimit> {
     let points = curve.window(&forces)?;
     let levels = &curve.levels;
     let means = levels.means(levels.levels());
@@ -242,7 +242,7 @@ fn limit(
     };
     let (alphas, omegas) = (sorted(|law| law.alpha), sorted(|law| law.omega));
     let with_grid = |[low, high]: [f64; 2]| [low - grid, high + grid];
-    Some(Limit {
+    Some(FittedLimit {
         model: curve.model,
         convention: curve.convention,
         fractal_dimension: curve.fractal_dimension,
@@ -269,12 +269,12 @@ pub struct Ratio {
     /// F_bar.
     pub force_bar: f64,
     /// ln(k_1D/k_3D).
-    pub logarithm: Banded,
+    pub logarithm: BandedNumber,
 }
 
 /// k_1D/k_3D over a window that both models resolve.
 #[derive(Debug, Clone)]
-pub struct Factor {
+pub struct ModelRatio {
     /// How forces are normalised.
     pub convention: Convention,
     /// D_f.
@@ -284,19 +284,19 @@ pub struct Factor {
     /// Whether both models resolve it.
     pub resolved: bool,
     /// Mean of ln(k_1D/k_3D) over the loads.
-    pub logarithm: Banded,
+    pub logarithm: BandedNumber,
     /// Slope of that logarithm over that of the force.
-    pub slope: Banded,
+    pub slope: BandedNumber,
 }
 
 /// exp of a logarithm, and half the width of its interval.
-pub fn raised(logarithm: &Banded) -> (f64, f64) {
+pub fn raised(logarithm: &BandedNumber) -> (f64, f64) {
     let value = logarithm.value().exp();
     (value, value * logarithm.half_width())
 }
 
 /// The ratio of line to surface at every load that both resolve, and over decades below [`LARGEST`].
-pub fn ratios(curves: &[MeanCurve]) -> (Vec<Ratio>, Vec<Factor>) {
+pub fn ratios(curves: &[MeanCurve]) -> (Vec<Ratio>, Vec<ModelRatio>) {
     let (mut ratios, mut factors) = (Vec::new(), Vec::new());
     for solid in curves.iter().filter(|c| c.model == "bem3d") {
         let (convention, fractal_dimension) = (solid.convention, solid.fractal_dimension);
@@ -331,7 +331,7 @@ pub fn ratios(curves: &[MeanCurve]) -> (Vec<Ratio>, Vec<Factor>) {
             let both = [i.clone(), j];
             let mean = over(both.clone(), &vec![1.0 / i.len() as f64; i.len()]);
             let slope = slope_weights(&solid.ln_forces(i)).and_then(|weights| over(both, &weights));
-            factors.extend(mean.zip(slope).map(|(logarithm, slope)| Factor {
+            factors.extend(mean.zip(slope).map(|(logarithm, slope)| ModelRatio {
                 convention,
                 fractal_dimension,
                 window,

@@ -35,7 +35,7 @@ use contact_model::ContactModel as _;
 use contact_model::Table;
 use curve::{Convention, MeanCurve};
 use fractal_contact::scenes::SceneJob;
-use ladder::{Pair, Rungs};
+use ladder::{GridPair, Rungs};
 use runs::{Header, Progress, Result, Store, files, write_csv};
 use std::path::{Path, PathBuf};
 
@@ -219,7 +219,7 @@ pub fn exponent(study: &Exponent, progress: &dyn Progress) -> Result<Judged> {
         )?);
     }
     let mut outcome = Outcome::new("exponent");
-    outcome.not_converged = rungs.iter().flat_map(Rungs::pairs).map(Pair::not_converged).sum();
+    outcome.not_converged = rungs.iter().flat_map(Rungs::pairs).map(GridPair::not_converged).sum();
     let heavy = study.solid.heavy.map_or(0, |heavy| heavy.1);
     let largest = laws::LARGEST;
     let header = described(study.command())
@@ -231,7 +231,7 @@ pub fn exponent(study: &Exponent, progress: &dyn Progress) -> Result<Judged> {
     outcome.files.extend(evaluate(&rungs, None, (&study.out, study.error), &header)?);
     let seconds = |model: &str| {
         let of = rungs.iter().filter(|r| r.model.name() == model);
-        analysis::sum(of.flat_map(Rungs::pairs).map(Pair::seconds))
+        analysis::sum(of.flat_map(Rungs::pairs).map(GridPair::seconds))
     };
     (outcome.bem3d_seconds, outcome.mdr1d_seconds) = (Some(seconds("bem3d")), Some(seconds("mdr1d")));
     session.close(outcome).map(Judged::from)

@@ -3,7 +3,7 @@
 use crate::evaluation::{distinct, read_rows};
 use crate::output::save;
 use crate::words;
-use plots::{Axis, Key, Legend, LineStyle, Mark, Panels, Picture, color, logarithmic, shape};
+use plots::{Axis, Legend, LegendKey, LineStyle, Mark, Panels, Picture, color, logarithmic, shape};
 use runs::{CsvFile, Result};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
@@ -81,14 +81,14 @@ fn slopes(directory: &Path) -> Result<Vec<PathBuf>> {
         pictures.push(picture);
     }
     let mut legend = Legend::default();
-    legend.push("surfaces (3D), on the finest grid", SOLID, Key::Line(LineStyle::Solid));
-    legend.push("lines (1D), with the most elements", LINE, Key::Line(LineStyle::Solid));
-    legend.push("$0.266 D_{\\rm{f}}$ (Eq. 6)", "#000000", Key::Line(LineStyle::Dashed));
-    legend.push("$1/(1 + H)$ (Eq. 24)", "#000000", Key::Line(LineStyle::Dotted));
+    legend.push("surfaces (3D), on the finest grid", SOLID, LegendKey::Line(LineStyle::Solid));
+    legend.push("lines (1D), with the most elements", LINE, LegendKey::Line(LineStyle::Solid));
+    legend.push("$0.266 D_{\\rm{f}}$ (Eq. 6)", "#000000", LegendKey::Line(LineStyle::Dashed));
+    legend.push("$1/(1 + H)$ (Eq. 24)", "#000000", LegendKey::Line(LineStyle::Dotted));
     legend.push(
         "bands: 95 % for the whole curve, and the discretisation error; curves end where it is too large",
         "#000000",
-        Key::Words,
+        LegendKey::Words,
     );
     let title = "Local exponent of stiffness over force".to_owned();
     save(Panels { pictures, columns: 3, title, legend }.files("exponent"), directory)
@@ -114,8 +114,8 @@ fn ratios(directory: &Path) -> Result<Vec<PathBuf>> {
         picture.band(&band, &color);
         picture.line(&line, &color, 1.6, LineStyle::Solid);
         picture.points(&line, &color, 3.6, mark);
-        picture.legend(&words::dimension(d), &color, Key::Curve(mark));
+        picture.legend(&words::dimension(d), &color, LegendKey::Curve(mark));
     }
-    picture.legend("bands: 95 %, scatter and what both grids leave", "#000000", Key::Words);
+    picture.legend("bands: 95 %, scatter and what both grids leave", "#000000", LegendKey::Words);
     save(picture.files("exponent-ratio"), directory)
 }

@@ -1,6 +1,6 @@
 //! Predicts the cost of the study, and the number of surfaces for a given time.
 
-use super::ladder::{Ladder, Pair, Rungs};
+use super::ladder::{GridPair, Ladder, Rungs};
 use crate::evaluation::Forces;
 
 /// Largest ratio of the variance of a level to that of the level before, for differences between grids that
@@ -30,7 +30,7 @@ pub struct LevelCost {
 pub fn costs(ladder: &Ladder, rungs: &[Rungs], seconds: f64) -> Vec<LevelCost> {
     let mut levels: Vec<LevelCost> = Vec::with_capacity(ladder.sizes.len());
     for (level, &size) in ladder.sizes.iter().enumerate() {
-        let pairs: Vec<(usize, &Pair)> =
+        let pairs: Vec<(usize, &GridPair)> =
             rungs.iter().enumerate().flat_map(|(d, r)| r.levels[level].iter().map(move |p| (d, p))).collect();
         let found = variance(rungs, level).filter(|_| pairs.len() >= 2 * rungs.len());
         let (own, measured) = match found {
@@ -66,7 +66,7 @@ fn variance(rungs: &[Rungs], level: usize) -> Option<f64> {
     for rung in rungs {
         let pairs = &rung.levels[level];
         for j in 0..pairs.first()?.fine.stiffnesses.len() {
-            let stiffness = |pair: &Pair| {
+            let stiffness = |pair: &GridPair| {
                 let fine = pair.fine.stiffnesses[j]?;
                 let coarse = pair.coarse.as_ref().map_or(Some(0.0), |c| c.stiffnesses[j])?;
                 Some((fine, fine - coarse))

@@ -1,9 +1,9 @@
 //! The tables of the study in words, for a page that includes them.
 
 use super::curve::Convention;
-use super::families::Test;
+use super::families::FamilyTest;
 use super::ladder::Rungs;
-use super::laws::{Factor, LawRow, Limit, eq6, eq24, raised};
+use super::laws::{FittedLimit, LawRow, ModelRatio, eq6, eq24, raised};
 use crate::evaluation::markdown_table;
 
 /// `0.5123 +- 0.0045`: as many digits as the error allows.
@@ -33,13 +33,14 @@ fn solved(rungs: &[Rungs]) -> String {
 }
 
 /// The exponents towards zero force that are judged.
-fn towards_zero(limits: &[Limit]) -> String {
+fn towards_zero(limits: &[FittedLimit]) -> String {
     let head = "| | D_f | F_bar from | alpha towards 0, 95 % | omega | alpha, omega = 0.5 | alpha, to 0.06 | 0.266 D_f | 1/(1 + H) | fit | inside | |\n|---|---|---|---|---|---|---|---|---|---|---|---|";
-    let measured: Vec<&Limit> = limits.iter().filter(|l| l.convention == Convention::Measured).collect();
-    let range = |l: &Limit| format!("{:.4} [{:.4}, {:.4}]", l.law.alpha, l.interval[0], l.interval[1]);
+    let measured: Vec<&FittedLimit> =
+        limits.iter().filter(|l| l.convention == Convention::Measured).collect();
+    let range = |l: &FittedLimit| format!("{:.4} [{:.4}, {:.4}]", l.law.alpha, l.interval[0], l.interval[1]);
     let rows = measured.iter().filter(|l| l.variant == super::laws::FREE).map(|l| {
         let other = |variant: &str| {
-            let same = |other: &&&Limit| {
+            let same = |other: &&&FittedLimit| {
                 other.model == l.model
                     && other.variant == variant
                     && other.fractal_dimension.total_cmp(&l.fractal_dimension).is_eq()
@@ -85,15 +86,15 @@ fn decades(laws: &[LawRow]) -> String {
 }
 
 /// Line over surface.
-fn over(factors: &[Factor]) -> String {
+fn over(factors: &[ModelRatio]) -> String {
     let head = "| D_f | F_bar | k_1D/k_3D, measured rms | one spectrum | slope of its logarithm over ln F, measured rms |\n|---|---|---|---|---|";
-    let text = |f: &Factor| {
+    let text = |f: &ModelRatio| {
         let (value, half) = raised(&f.logarithm);
         with_error(value, half)
     };
     let measured = factors.iter().filter(|f| f.resolved && f.convention == Convention::Measured);
     let rows = measured.map(|f| {
-        let same = |other: &&Factor| {
+        let same = |other: &&ModelRatio| {
             other.convention == Convention::FixedSpectrum
                 && other.resolved
                 && other.window == f.window
@@ -111,7 +112,7 @@ fn over(factors: &[Factor]) -> String {
 }
 
 /// The tests of the hypotheses.
-fn hypotheses(tests: &[Test]) -> String {
+fn hypotheses(tests: &[FamilyTest]) -> String {
     let head = "| | | D_f | F_bar | hypothesis | found | together with its family | p of this test alone | |\n|---|---|---|---|---|---|---|---|---|";
     let rows = tests.iter().map(|t| {
         [
@@ -134,7 +135,7 @@ fn hypotheses(tests: &[Test]) -> String {
 pub fn report(
     command: &str,
     rungs: &[Rungs],
-    (limits, laws, factors, tests): (&[Limit], &[LawRow], &[Factor], &[Test]),
+    (limits, laws, factors, tests): (&[FittedLimit], &[LawRow], &[ModelRatio], &[FamilyTest]),
 ) -> String {
     format!(
         "`{command}`\n\n{}\nAlpha towards zero force, F_bar by the measured rms height of each grid. The column \"fit\" is the share of curves that scatter about the fitted law as the surfaces do and have a larger misfit:\n\n{}\nDecade by decade, where all of it is resolved:\n\n{}\nLine over surface, where both are resolved:\n\n{}\nHypotheses, A to D:\n\n{}",

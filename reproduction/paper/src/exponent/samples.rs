@@ -1,6 +1,6 @@
 //! Reads the table of samples, and combines several of them.
 
-use super::ladder::{Pair, Rungs, Solved};
+use super::ladder::{GridPair, GridResults, Rungs};
 use crate::evaluation::{Discretisation, Forces, read_rows};
 use runs::{CsvFile, Error, Result};
 use serde::Deserialize;
@@ -10,7 +10,7 @@ use std::path::Path;
 pub const SAMPLES: &str = "exponent-samples.csv";
 
 #[derive(Debug, Deserialize)]
-struct Row {
+struct SampleRow {
     model: String,
     fractal_dimension: f64,
     level: usize,
@@ -46,7 +46,7 @@ pub fn read(path: &Path) -> Result<Vec<Rungs>> {
     };
     let [solid, line] = [loads("--forces")?, loads("--line-forces")?];
     let mut all: Vec<Rungs> = Vec::new();
-    for row in read_rows::<Row>(path, &file)? {
+    for row in read_rows::<SampleRow>(path, &file)? {
         let (model, forces) = match row.model.as_str() {
             "bem3d" => (Discretisation::Bem3d { cells: 0, tolerance: 0.0 }, &solid),
             "mdr1d" => (Discretisation::Mdr1d { elements: 0 }, &line),
@@ -70,7 +70,7 @@ pub fn read(path: &Path) -> Result<Vec<Rungs>> {
         {
             return Err(wrong(&format!("level {} has another size", row.level)));
         }
-        let solved = |text: &str| -> Result<Solved> {
+        let solved = |text: &str| -> Result<GridResults> {
             let number = |word: &str| match word {
                 "-" => Ok(None),
                 word => word.parse().map(Some).map_err(|_| wrong(&format!("{word} is no stiffness"))),
@@ -78,10 +78,10 @@ pub fn read(path: &Path) -> Result<Vec<Rungs>> {
             let stiffnesses: Vec<Option<f64>> = text.split(' ').map(number).collect::<Result<_>>()?;
             let forces =
                 forces.get(..stiffnesses.len()).ok_or_else(|| wrong("more stiffnesses than loads"))?;
-            Ok(Solved { forces: forces.to_vec(), stiffnesses, seconds: None })
+            Ok(GridResults { forces: forces.to_vec(), stiffnesses, seconds: None })
         };
         let coarse = row.coarse_stiffness_bar.as_deref().filter(|text| !text.is_empty());
-        rungs.levels[row.level].push(Pair {
+        rungs.levels[row.level].push(GridPair {
             index: row.surface,
             fine: solved(&row.stiffness_bar)?,
             coarse: coarse.map(&solved).transpose()?,
@@ -132,7 +132,7 @@ pub fn together(runs: Vec<Vec<Rungs>>) -> Result<Vec<Rungs>> {
     Ok(all)
 }
 
-impl Solved {
+impl GridResults {
     /// Keeps these loads, where it has them.
     fn keep(&mut self, forces: &[f64]) {
         let own = |f: &f64| {
@@ -150,15 +150,15 @@ mod tests {
     use crate::evaluation::header;
     use runs::write_csv;
 
-    fn solved(forces: &[f64], of: impl Fn(f64) -> f64) -> Solved {
+    fn solved(forces: &[f64], of: impl Fn(f64) -> f64) -> GridResults {
         let stiffnesses = forces.iter().map(|f| Some(of(*f))).collect();
-        Solved { forces: forces.to_vec(), stiffnesses, seconds: None }
+        GridResults { forces: forces.to_vec(), stiffnesses, seconds: None }
     }
 
     fn rungs(forces: &[f64], offset: f64) -> Rungs {
         let pair = |index: usize, coarse: bool| {
             let k = offset + index as f64;
-            Pair {
+            GridPair {
                 index,
                 fine: solved(forces, |f| k + f),
                 coarse: coarse.then(|| solved(forces, |f| k + 2.0 * f)),

@@ -1,9 +1,9 @@
 //! The tables of the study of the exponent.
 
-use super::curve::{Banded, MeanCurve};
-use super::families::Test;
-use super::ladder::{Pair, Rungs, Solved};
-use super::laws::{Factor, LawRow, Limit, Ratio, eq6, eq24, raised};
+use super::curve::{BandedNumber, MeanCurve};
+use super::families::FamilyTest;
+use super::ladder::{GridPair, GridResults, Rungs};
+use super::laws::{FittedLimit, LawRow, ModelRatio, Ratio, eq6, eq24, raised};
 use crate::evaluation::{FRACTAL_DIMENSION, TableOf};
 use contact_model::Table;
 use runs::Result;
@@ -41,17 +41,17 @@ const VALUES: &str = "at the loads of the header that this level has, from the s
 
 /// Mean curves and local slopes.
 pub fn curves(curves: &[MeanCurve]) -> Result<Table> {
-    struct Row<'a> {
+    struct ExponentRow<'a> {
         curve: &'a MeanCurve,
         point: usize,
-        stiffness: Option<Banded>,
-        slope: Option<Banded>,
+        stiffness: Option<BandedNumber>,
+        slope: Option<BandedNumber>,
     }
     let mut rows = Vec::new();
     for curve in curves {
         for point in 0..curve.forces.len() {
             let (stiffness, slope) = (curve.stiffness(point), curve.local_slope(point));
-            rows.push(Row { curve, point, stiffness, slope });
+            rows.push(ExponentRow { curve, point, stiffness, slope });
         }
     }
     TableOf::new("Stiffness over force on the finest grids, and its local slope", &rows)
@@ -113,7 +113,7 @@ pub fn laws(rows: &[LawRow]) -> Result<Table> {
 }
 
 /// Exponents towards zero force.
-pub fn limits(rows: &[Limit]) -> Result<Table> {
+pub fn limits(rows: &[FittedLimit]) -> Result<Table> {
     const TITLE: &str = "k_bar = zeta F_bar^alpha (1 + c F_bar^omega), weighted least squares of ln k_bar; intervals by bootstrap samples of whole surfaces, 2000 of the fits that are judged, 500 of others";
     TableOf::new(TITLE, rows)
         .column("model", "-", MODEL, |r| r.model)
@@ -135,10 +135,10 @@ pub fn limits(rows: &[Limit]) -> Result<Table> {
         .column("omega_high", "1", "upper end", |r| r.omega[1])
         .column("misfit", "1", "weighted sum of squares", |r| r.law.misfit)
         .column("goodness", "1", GOODNESS, |r| r.goodness)
-        .column("planned", "-", PLANNED, Limit::was_planned)
+        .column("planned", "-", PLANNED, FittedLimit::was_planned)
         .column("eq6", "1", "0.266 D_f", |r| eq6(r.fractal_dimension))
         .column("eq24", "1", "1/(1 + H) = 1/(4 - D_f)", |r| eq24(r.fractal_dimension))
-        .column("conclusion", "-", CONCLUSION, Limit::conclusion)
+        .column("conclusion", "-", CONCLUSION, FittedLimit::conclusion)
         .table()
 }
 
@@ -154,7 +154,7 @@ pub fn ratios(rows: &[Ratio]) -> Result<Table> {
 }
 
 /// Whether the factor between them depends on the force.
-pub fn factors(rows: &[Factor]) -> Result<Table> {
+pub fn factors(rows: &[ModelRatio]) -> Result<Table> {
     TableOf::new("The factor between line and surface, decade by decade", rows)
         .column("convention", "-", CONVENTION, |r| r.convention.as_str())
         .column("fractal_dimension", "1", FRACTAL_DIMENSION, |r| r.fractal_dimension)
@@ -169,7 +169,7 @@ pub fn factors(rows: &[Factor]) -> Result<Table> {
 }
 
 /// The tests of the hypotheses.
-pub fn tests(rows: &[Test]) -> Result<Table> {
+pub fn tests(rows: &[FamilyTest]) -> Result<Table> {
     TableOf::new("Hypotheses of data/exponent/hypotheses.md and what was found of them", rows)
         .column("family", "-", FAMILY, |r| r.family)
         .column("tests", "1", "tests of the family", |r| r.of)
@@ -184,7 +184,7 @@ pub fn tests(rows: &[Test]) -> Result<Table> {
         .column("high", "1", "its upper end", |r| r.interval.map(|i| i[1]))
         .column("chance", "1", "of such a distance, this test alone; empty for the bootstrap", |r| r.chance)
         .column("resolved", "-", ALL_RESOLVED, |r| r.resolved)
-        .column("verdict", "-", "rejected, not rejected, not resolved", Test::verdict)
+        .column("verdict", "-", "rejected, not rejected, not resolved", FamilyTest::verdict)
         .table()
 }
 
@@ -196,11 +196,12 @@ pub fn samples(rungs: &[Rungs]) -> Result<Table> {
             rows.extend(pairs.iter().map(move |pair| (rung, level, pair)));
         }
     }
-    let text = |solved: &Solved| {
+    let text = |solved: &GridResults| {
         let stiffness = |k: &Option<f64>| k.map_or_else(|| "-".to_owned(), |k| format!("{k:.4e}"));
         solved.stiffnesses.iter().map(stiffness).collect::<Vec<_>>().join(" ")
     };
-    let coarser = |&(rung, level, _): &(&Rungs, usize, &Pair)| level.checked_sub(1).map(|l| rung.sizes[l]);
+    let coarser =
+        |&(rung, level, _): &(&Rungs, usize, &GridPair)| level.checked_sub(1).map(|l| rung.sizes[l]);
     let title =
         "Stiffness k/(1.1419 E* L) of every surface on its two grids, F_bar by the measured rms height";
     TableOf::new(title, &rows)

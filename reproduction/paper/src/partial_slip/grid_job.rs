@@ -1,8 +1,8 @@
 //! One surface on one grid: the share of the contact that sticks and the stiffness, as they depend on the size
 //! of the cells.
 
-use super::job::{DIRECTIONS, Pressed, converged};
-use super::study::{COEFFICIENT, PartialSlip, SHARES, SlipCase, mindlin};
+use super::job::{DIRECTIONS, PressedSurface, converged};
+use super::study::{COEFFICIENT, PartialSlipStudy, SHARES, SlipCase, mindlin};
 use crate::evaluation::Discretisation;
 use bem3d::Bem3d;
 use contact_model::{
@@ -22,7 +22,7 @@ const FORMAT: u32 = 1;
 /// The shortest wave has the same length on every grid, so a seed draws the same surface on all of them.
 #[derive(Debug, Clone)]
 pub(super) struct GridJob {
-    pub(super) study: Arc<PartialSlip>,
+    pub(super) study: Arc<PartialSlipStudy>,
     pub(super) fractal_dimension: f64,
     pub(super) seed: u64,
     /// Cells a side.
@@ -58,7 +58,7 @@ pub(super) struct SurfaceOnGrid {
 
 /// Numbers of a state of the normal contact.
 #[derive(Clone, Copy)]
-struct Normal {
+struct NormalState {
     area: f64,
     corrected: f64,
     stiffness: f64,
@@ -66,7 +66,7 @@ struct Normal {
     approach: f64,
 }
 
-impl Normal {
+impl NormalState {
     fn of(state: &ContactState) -> Option<Self> {
         Some(Self {
             area: state.area?,
@@ -102,10 +102,11 @@ impl GridJob {
         normal: &mut dyn PreparedContact,
         force: f64,
         stop: Stop<'_>,
-    ) -> Result<(Normal, FirstLoading), ModelError> {
+    ) -> Result<(NormalState, FirstLoading), ModelError> {
         let mut at = |share: f64| {
             let state = normal.solve_until(Load::force(force * (1.0 - share)), stop)?;
-            Normal::of(&state).ok_or_else(|| ModelError::unsupported("bem3d", "a contact without an area"))
+            NormalState::of(&state)
+                .ok_or_else(|| ModelError::unsupported("bem3d", "a contact without an area"))
         };
         let whole = at(0.0)?;
         let mut loading =
@@ -122,7 +123,7 @@ impl GridJob {
     /// Friction cell by cell: means of a force along x and one along y.
     fn with_friction(
         sliding: &mut dyn PreparedContact,
-        load: Pressed,
+        load: PressedSurface,
         area: f64,
         stop: Stop<'_>,
     ) -> Result<FirstLoading, ModelError> {
@@ -201,7 +202,8 @@ impl Job for GridJob {
             let (whole, first) = Self::without_poissons_ratio(&mut *normal, force, stop)?;
             let mut loadings = vec![first];
             for (nu, sliding) in &mut frictional {
-                let load = Pressed { force, displacement: COEFFICIENT * whole.approach / mindlin(*nu) };
+                let load =
+                    PressedSurface { force, displacement: COEFFICIENT * whole.approach / mindlin(*nu) };
                 loadings.push(Self::with_friction(&mut **sliding, load, whole.area, stop)?);
             }
             Ok(LoadOnGrid { contact: whole.area, contact_cells: whole.cells, loadings })

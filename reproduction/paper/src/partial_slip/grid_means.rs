@@ -2,7 +2,7 @@
 
 use super::grid_job::{LoadOnGrid, SurfaceOnGrid};
 use super::means::mean;
-use super::study::{PartialSlip, SHARES};
+use super::study::{PartialSlipStudy, SHARES};
 use crate::claim::Estimate;
 use analysis::{KnownPart, Multilevel, Uncertain, mean_grid_error};
 
@@ -22,7 +22,7 @@ pub(super) struct SolvedGrids<'a> {
 
 /// A number of a first loading.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Quantity {
+pub(super) enum GridQuantity {
     Stick,
     Corrected,
     Stiffness,
@@ -30,7 +30,7 @@ pub(super) enum Quantity {
 
 /// A load, a Poisson's ratio and a tangential force, by their indices.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Place {
+pub(super) struct CaseIndices {
     pub(super) force: usize,
     pub(super) poisson: usize,
     pub(super) share: usize,
@@ -57,13 +57,13 @@ impl<'a> SolvedGrids<'a> {
 
     /// The number of each surface on each grid that has it; `None` for a surface that misses its tolerance on one
     /// of them.
-    pub(super) fn values(self, quantity: Quantity, place: Place) -> Vec<Option<Vec<f64>>> {
+    pub(super) fn values(self, quantity: GridQuantity, place: CaseIndices) -> Vec<Option<Vec<f64>>> {
         let one = |load: Option<&LoadOnGrid>| {
             let loading = load?.loadings.get(place.poisson)?;
             match quantity {
-                Quantity::Stick => loading.stick.get(place.share).copied(),
-                Quantity::Corrected => loading.stick_corrected.get(place.share).copied(),
-                Quantity::Stiffness => loading.stiffness.get(place.share).copied(),
+                GridQuantity::Stick => loading.stick.get(place.share).copied(),
+                GridQuantity::Corrected => loading.stick_corrected.get(place.share).copied(),
+                GridQuantity::Stiffness => loading.stiffness.get(place.share).copied(),
             }
         };
         // Friction is not solved on the finest grid.
@@ -80,7 +80,7 @@ fn extrapolated(fine: f64, half: f64) -> f64 {
 
 /// A mean over surfaces with its two errors.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Found {
+pub(super) struct GridMean {
     pub(super) mean: Uncertain,
     /// The remaining discretisation error, a half-width that is added to that of the scatter.
     pub(super) grid: f64,
@@ -92,7 +92,7 @@ fn uncertain(values: &[f64]) -> Option<Uncertain> {
     Some(of.propagated(of.means(1)[0], &[1.0]))
 }
 
-impl Found {
+impl GridMean {
     /// The extrapolated mean. Its discretisation error is 1.5 times the change from the value that the two
     /// coarser grids extrapolate to, or half of what was extrapolated where that is larger. Of two grids there is
     /// no such change, and the error is all that was extrapolated.
@@ -125,10 +125,10 @@ impl Found {
         Some(Self { mean: uncertain(&finest)?, grid, surfaces: finest.len() })
     }
 
-    pub(super) fn of(quantity: Quantity, on_grids: &[Vec<f64>]) -> Option<Self> {
+    pub(super) fn of(quantity: GridQuantity, on_grids: &[Vec<f64>]) -> Option<Self> {
         match quantity {
-            Quantity::Stick | Quantity::Corrected => Self::extrapolated(on_grids),
-            Quantity::Stiffness => Self::finest(on_grids),
+            GridQuantity::Stick | GridQuantity::Corrected => Self::extrapolated(on_grids),
+            GridQuantity::Stiffness => Self::finest(on_grids),
         }
     }
 }
@@ -150,23 +150,23 @@ pub(super) struct GridRow {
     pub(super) surfaces: usize,
 }
 
-fn estimate(found: Option<Found>) -> Option<Estimate> {
+fn estimate(found: Option<GridMean>) -> Option<Estimate> {
     found.map(|found| Estimate { value: found.mean.value, half_width: found.mean.half_width() })
 }
 
-pub(super) fn rows(study: &PartialSlip, solved: &[SolvedGrids<'_>]) -> Vec<GridRow> {
+pub(super) fn rows(study: &PartialSlipStudy, solved: &[SolvedGrids<'_>]) -> Vec<GridRow> {
     let mut rows = Vec::new();
     for &of in solved {
         for (force, &force_bar) in study.forces.values().iter().enumerate() {
             let fewest = of.fewest_cells(force);
             for (poisson, &nu) in study.poissons.iter().enumerate() {
                 for (i, share) in SHARES.into_iter().enumerate() {
-                    let place = Place { force, poisson, share: i };
+                    let place = CaseIndices { force, poisson, share: i };
                     let all = |quantity| -> Vec<Vec<f64>> {
                         of.values(quantity, place).into_iter().flatten().collect()
                     };
                     let [stick, corrected, stiffness] =
-                        [Quantity::Stick, Quantity::Corrected, Quantity::Stiffness].map(all);
+                        [GridQuantity::Stick, GridQuantity::Corrected, GridQuantity::Stiffness].map(all);
                     let row = |cells, surfaces| GridRow {
                         fractal_dimension: of.fractal_dimension,
                         force_bar,
@@ -192,9 +192,9 @@ pub(super) fn rows(study: &PartialSlip, solved: &[SolvedGrids<'_>]) -> Vec<GridR
                         });
                     }
                     let limits = [
-                        Found::extrapolated(&stick),
-                        Found::extrapolated(&corrected),
-                        Found::finest(&stiffness),
+                        GridMean::extrapolated(&stick),
+                        GridMean::extrapolated(&corrected),
+                        GridMean::finest(&stiffness),
                     ];
                     let [stick_limit, corrected_limit, stiffness_limit] = limits;
                     rows.push(GridRow {

@@ -2,8 +2,8 @@
 
 use super::grid_job::{FirstLoading, LoadOnGrid};
 use super::grid_means::{GridRow, SolvedGrids};
-use super::grid_tests::Test;
-use super::study::PartialSlip;
+use super::grid_tests::GridTest;
+use super::study::PartialSlipStudy;
 use super::tables::{FORCE, HALF, POISSON, SHARE, SURFACES, half, value};
 use crate::evaluation::{FRACTAL_DIMENSION, TableOf, markdown_table};
 use contact_model::Table;
@@ -41,7 +41,7 @@ pub(super) fn rows(rows: &[GridRow]) -> Result<Table> {
 }
 
 /// The tests of the hypotheses.
-pub(super) fn tests(tests: &[Test]) -> Result<Table> {
+pub(super) fn tests(tests: &[GridTest]) -> Result<Table> {
     TableOf::new("Tests of hypotheses.md, bodies without Poisson's ratio", tests)
         .column("family", "-", "family of tests", |t| t.family)
         .column("of", "1", "number of tests of the family", |t| t.of)
@@ -57,18 +57,18 @@ pub(super) fn tests(tests: &[Test]) -> Result<Table> {
             "scatter",
             "1",
             "half-width by Student's distribution, simultaneous with the family",
-            Test::scatter,
+            GridTest::scatter,
         )
         .column("grid", "1", "half-width of the discretisation error, to be added", |t| {
             t.found.map(|f| f.grid)
         })
-        .column("chance", "1", "p-value of this test alone, the difference reduced by grid", Test::chance)
-        .column("verdict", "-", "whether the hypothesis is rejected", Test::verdict)
+        .column("chance", "1", "p-value of this test alone, the difference reduced by grid", GridTest::chance)
+        .column("verdict", "-", "whether the hypothesis is rejected", GridTest::verdict)
         .table()
 }
 
 /// A surface on a grid with one load and one Poisson's ratio.
-struct Sample<'a> {
+struct GridSample<'a> {
     fractal_dimension: f64,
     force_bar: f64,
     poisson: f64,
@@ -79,14 +79,14 @@ struct Sample<'a> {
 }
 
 /// Every surface on every grid: the means can be computed again from it.
-pub(super) fn samples(study: &PartialSlip, solved: &[SolvedGrids<'_>]) -> Result<Table> {
+pub(super) fn samples(study: &PartialSlipStudy, solved: &[SolvedGrids<'_>]) -> Result<Table> {
     let mut rows = Vec::new();
     for of in solved {
         for (i, on_grid) in of.surfaces.iter().enumerate() {
             for (load, &force_bar) in on_grid.loads.iter().zip(study.forces.values()) {
                 let Some(load) = load else { continue };
                 for (loading, &poisson) in load.loadings.iter().zip(&study.poissons) {
-                    rows.push(Sample {
+                    rows.push(GridSample {
                         fractal_dimension: of.fractal_dimension,
                         force_bar,
                         poisson,
@@ -129,7 +129,7 @@ pub(super) fn samples(study: &PartialSlip, solved: &[SolvedGrids<'_>]) -> Result
 const SHOWN: [f64; 3] = [0.3, 0.5, 0.9];
 
 /// The extrapolated shares and the tests in short tables.
-pub(super) fn text(study: &PartialSlip, rows: &[GridRow], tests: &[Test]) -> String {
+pub(super) fn text(study: &PartialSlipStudy, rows: &[GridRow], tests: &[GridTest]) -> String {
     let with_errors = |of: Option<crate::claim::Estimate>, grid: Option<f64>| {
         of.zip(grid).map_or_else(String::new, |(of, grid)| {
             format!("{:.4} ± {:.4} ± {grid:.4}", of.value, of.half_width)
@@ -150,7 +150,7 @@ pub(super) fn text(study: &PartialSlip, rows: &[GridRow], tests: &[Test]) -> Str
     let head = "| D_f | F_bar | nu | Q/(mu F) | share that sticks | of corrected areas | k_t(Q)/k_t(0) |\n| --- | --- | --- | --- | --- | --- | --- |";
     let limits = markdown_table(head, rows.iter().filter(shown).map(limit));
     let number = |of: Option<f64>| of.map_or_else(String::new, |of| format!("{of:.4}"));
-    let test = |t: &Test| {
+    let test = |t: &GridTest| {
         [
             t.family.to_owned(),
             t.quantity.to_owned(),

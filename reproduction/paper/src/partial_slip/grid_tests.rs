@@ -1,7 +1,7 @@
 //! The tests of `data/partial-slip/hypotheses.md`, fixed before the surfaces were drawn that decide them.
 
-use super::grid_means::{Found, Place, Quantity, SolvedGrids};
-use super::study::{PartialSlip, SHARES};
+use super::grid_means::{CaseIndices, GridMean, GridQuantity, SolvedGrids};
+use super::study::{PartialSlipStudy, SHARES};
 
 /// The first surfaces of each fractal dimension were known when the hypotheses were written; the others test
 /// them.
@@ -13,13 +13,13 @@ const AREA_EXPONENT: f64 = 0.93;
 
 /// Which surfaces a test takes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Sample {
+pub(super) enum TestedSurfaces {
     Seen,
     New,
     All,
 }
 
-impl Sample {
+impl TestedSurfaces {
     const EACH: [Self; 3] = [Self::Seen, Self::New, Self::All];
 
     pub(super) fn name(self) -> &'static str {
@@ -40,7 +40,7 @@ impl Sample {
 }
 
 /// One test of a family, with one sample.
-pub(super) struct Test {
+pub(super) struct GridTest {
     pub(super) family: &'static str,
     /// Number of tests of the family.
     pub(super) of: usize,
@@ -48,13 +48,13 @@ pub(super) struct Test {
     pub(super) fractal_dimension: String,
     pub(super) force_bar: f64,
     pub(super) share: f64,
-    pub(super) sample: Sample,
+    pub(super) sample: TestedSurfaces,
     /// The value of the number under the hypothesis.
     pub(super) expected: f64,
-    pub(super) found: Option<Found>,
+    pub(super) found: Option<GridMean>,
 }
 
-impl Test {
+impl GridTest {
     /// Half-width of the scatter, simultaneous with all of the family.
     pub(super) fn scatter(&self) -> Option<f64> {
         Some(self.found?.mean.half_width_at(LEVEL / self.of as f64))
@@ -75,52 +75,52 @@ impl Test {
 
 /// A family: what is measured of bodies without Poisson's ratio, at which tangential forces, and the value
 /// under the hypothesis as a function of Q/(mu F).
-struct Family {
+struct TestFamily {
     name: &'static str,
     quantity: &'static str,
-    of: Quantity,
+    of: GridQuantity,
     shares: &'static [f64],
     /// Whether the difference of two fractal dimensions is tested instead of each of them.
     difference: bool,
     expected: fn(f64) -> f64,
 }
 
-const FAMILIES: [Family; 4] = [
-    Family {
+const FAMILIES: [TestFamily; 4] = [
+    TestFamily {
         name: "A",
         quantity: "share that sticks, extrapolated, against 1 - Q/(mu F)",
-        of: Quantity::Stick,
+        of: GridQuantity::Stick,
         shares: &[0.5, 0.9],
         difference: false,
         expected: |share| 1.0 - share,
     },
-    Family {
+    TestFamily {
         name: "B",
         quantity: "difference of shares that stick, extrapolated",
-        of: Quantity::Stick,
+        of: GridQuantity::Stick,
         shares: &[0.5, 0.9],
         difference: true,
         expected: |_| 0.0,
     },
-    Family {
+    TestFamily {
         name: "C",
         quantity: "difference of k_t(Q)/k_t(0), finest grid",
-        of: Quantity::Stiffness,
+        of: GridQuantity::Stiffness,
         shares: &[0.5],
         difference: true,
         expected: |_| 0.0,
     },
-    Family {
+    TestFamily {
         name: "D",
         quantity: "share that sticks, extrapolated, against (1 - Q/(mu F))^0.93",
-        of: Quantity::Stick,
+        of: GridQuantity::Stick,
         shares: &[0.9],
         difference: false,
         expected: |share| (1.0 - share).powf(AREA_EXPONENT),
     },
 ];
 
-pub(super) fn tests(study: &PartialSlip, solved: &[SolvedGrids<'_>]) -> Vec<Test> {
+pub(super) fn tests(study: &PartialSlipStudy, solved: &[SolvedGrids<'_>]) -> Vec<GridTest> {
     // The two ends of the range of fractal dimensions.
     let (Some(&first), Some(&last)) = (solved.first(), solved.last()) else { return Vec::new() };
     let mut tests = Vec::new();
@@ -131,7 +131,7 @@ pub(super) fn tests(study: &PartialSlip, solved: &[SolvedGrids<'_>]) -> Vec<Test
             for (force, &force_bar) in study.forces.values().iter().enumerate() {
                 for &share in family.shares {
                     let at = SHARES.iter().position(|s| (s - share).abs() < 1e-9).unwrap_or_default();
-                    let place = Place { force, poisson: 0, share: at };
+                    let place = CaseIndices { force, poisson: 0, share: at };
                     let [a, b] = [one, other].map(|of| of.values(family.of, place));
                     let each: Vec<Option<Vec<f64>>> = if family.difference {
                         let minus = |(a, b): (&Vec<f64>, &Vec<f64>)| -> Vec<f64> {
@@ -141,11 +141,11 @@ pub(super) fn tests(study: &PartialSlip, solved: &[SolvedGrids<'_>]) -> Vec<Test
                     } else {
                         a
                     };
-                    for sample in Sample::EACH {
+                    for sample in TestedSurfaces::EACH {
                         let own = each.iter().enumerate().filter(|(i, _)| sample.has(*i));
                         let own: Vec<Vec<f64>> = own.filter_map(|(_, values)| values.clone()).collect();
                         let dimensions = [one, other].map(|of| of.fractal_dimension);
-                        tests.push(Test {
+                        tests.push(GridTest {
                             family: family.name,
                             of: count,
                             quantity: family.quantity,
@@ -158,7 +158,7 @@ pub(super) fn tests(study: &PartialSlip, solved: &[SolvedGrids<'_>]) -> Vec<Test
                             share,
                             sample,
                             expected: (family.expected)(share),
-                            found: Found::of(family.of, &own),
+                            found: GridMean::of(family.of, &own),
                         });
                     }
                 }

@@ -3,7 +3,7 @@
 use super::grid_job::{GridJob, SurfaceOnGrid};
 use super::grid_means::{self, SolvedGrids};
 use super::grid_picture::{self, GRIDS};
-use super::study::{PartialSlip, SHARES};
+use super::study::{PartialSlipStudy, SHARES};
 use super::{grid_tables, grid_tests};
 use crate::evaluation::{Outcome, Session, header, list};
 use crate::judged::Judged;
@@ -14,7 +14,7 @@ use std::sync::Arc;
 
 /// Solves the surfaces on all grids and writes `partial-slip-grids.csv`, `partial-slip-grid-tests.csv`,
 /// `partial-slip-grid-samples.csv`, a picture and `partial-slip-grids.md`.
-pub(super) fn grids(study: &PartialSlip, progress: &dyn Progress) -> Result<Judged> {
+pub(super) fn grids(study: &PartialSlipStudy, progress: &dyn Progress) -> Result<Judged> {
     let session = Session::open(&study.out, study.fresh)?;
     let shared = Arc::new(study.clone());
     let mut jobs = Vec::new();
@@ -68,7 +68,7 @@ pub(super) fn grids(study: &PartialSlip, progress: &dyn Progress) -> Result<Judg
 #[cfg(test)]
 mod tests {
     use super::super::study::{PartialSlipSizes, SlipCase};
-    use super::super::{PartialSlip, partial_slip};
+    use super::super::{PartialSlipStudy, partial_slip};
     use super::*;
     use approx::assert_relative_eq;
     use contact_model::{Boundary, Outputs};
@@ -76,9 +76,9 @@ mod tests {
     use std::f64::consts::TAU;
     use std::path::Path;
 
-    fn small(out: &Path) -> PartialSlip {
-        let quick = PartialSlip::new(PartialSlipSizes::Quick).unwrap();
-        PartialSlip {
+    fn small(out: &Path) -> PartialSlipStudy {
+        let quick = PartialSlipStudy::new(PartialSlipSizes::Quick).unwrap();
+        PartialSlipStudy {
             grids: vec![32, 64, 128],
             fractal_dimensions: vec![2.2, 2.8],
             poissons: vec![0.0, 0.3],
@@ -144,7 +144,7 @@ mod tests {
     #[test]
     fn shares_from_normal_contacts_are_those_of_friction() {
         use super::super::job::SlipJob;
-        let study = Arc::new(PartialSlip { tolerance: 1e-8, ..small(Path::new("never-made")) });
+        let study = Arc::new(PartialSlipStudy { tolerance: 1e-8, ..small(Path::new("never-made")) });
         let (fractal_dimension, cells) = (2.2, study.cells);
         let case = SlipCase { boundary: Boundary::Free, fractal_dimension };
         let solved = SlipJob { study: Arc::clone(&study), case, seed: 5 }.solve(&never).unwrap();

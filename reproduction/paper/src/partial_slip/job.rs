@@ -1,7 +1,8 @@
 //! One surface with one boundary, as a job that is stored.
 
 use super::study::{
-    AMPLITUDES, COEFFICIENT, PartialSlip, SHARES, SlipCase, SlipPoint, Slipped, SurfaceSlips, mindlin,
+    AMPLITUDES, COEFFICIENT, PartialSlipStudy, SHARES, SlipCase, SlipPoint, SlippedSurface, SurfaceSlips,
+    mindlin,
 };
 use crate::evaluation::Discretisation;
 use bem3d::Bem3d;
@@ -18,7 +19,7 @@ const FORMAT: u32 = 1;
 /// One surface with one boundary under all loads, for all Poisson's ratios.
 #[derive(Debug, Clone)]
 pub(super) struct SlipJob {
-    pub(super) study: Arc<PartialSlip>,
+    pub(super) study: Arc<PartialSlipStudy>,
     pub(super) case: SlipCase,
     pub(super) seed: u64,
 }
@@ -27,7 +28,7 @@ pub(super) struct SlipJob {
 const STIFFNESS_TOLERANCE: f64 = 1e-3;
 
 /// Both components of the traction at each share, along each direction.
-type Tractions = [Vec<[Vec<f64>; 2]>; 2];
+type ShareTractions = [Vec<[Vec<f64>; 2]>; 2];
 
 /// Directions of the force, along x and along y: in the mean of both, the anisotropy of a surface enters only
 /// with its square.
@@ -35,12 +36,12 @@ pub(super) const DIRECTIONS: [[f64; 2]; 2] = [[1.0, 0.0], [0.0, 1.0]];
 
 /// The normal load of a surface, and the unit of its displacements.
 #[derive(Clone, Copy)]
-pub(super) struct Pressed {
+pub(super) struct PressedSurface {
     pub(super) force: f64,
     pub(super) displacement: f64,
 }
 
-impl Pressed {
+impl PressedSurface {
     pub(super) fn step(self, share: f64, direction: [f64; 2]) -> Step {
         let tangential = Tangential::Force(direction.map(|e| share * COEFFICIENT * self.force * e));
         Step::new(0.0, Load::force(self.force).with_tangential(tangential))
@@ -97,9 +98,9 @@ impl SlipJob {
         &self,
         [pressed, sliding, cycling, yielding]: [&mut (dyn PreparedContact + 'static); 4],
         (force, poisson): (f64, f64),
-        without: &mut Tractions,
+        without: &mut ShareTractions,
         stop: Stop<'_>,
-    ) -> Result<Slipped, ModelError> {
+    ) -> Result<SlippedSurface, ModelError> {
         pressed.restart();
         let start = pressed.advance_until(Step::new(0.0, Load::force(force)), stop)?;
         let stuck = start.tangential.and_then(|t| t.stiffness_stuck);
@@ -107,7 +108,7 @@ impl SlipJob {
             return Err(ModelError::unsupported(self.model().name(), "a contact without a stiffness"));
         };
         let contact_cells = start.report.contact_cells.unwrap_or(0);
-        let mut slipped = Slipped {
+        let mut slipped = SlippedSurface {
             contact: area,
             contact_cells,
             stiffness: [stuck[0][0], stuck[1][1], stuck[0][1]].map(|k| k / normal),
@@ -115,7 +116,7 @@ impl SlipJob {
             dissipated: Vec::new(),
         };
         let Some(approach) = start.approach.filter(|_| self.case.is_free()) else { return Ok(slipped) };
-        let load = Pressed { force, displacement: COEFFICIENT * approach / mindlin(poisson) };
+        let load = PressedSurface { force, displacement: COEFFICIENT * approach / mindlin(poisson) };
         let (mut points, mut dissipated) = ([Vec::new(), Vec::new()], [Vec::new(), Vec::new()]);
         let reference = poisson.abs() <= 0.0;
         for (which, direction) in DIRECTIONS.into_iter().enumerate() {
@@ -165,7 +166,7 @@ impl SlipJob {
         let (Some(approach), Some(radius)) = (start.approach, start.contact_radius) else {
             return Err(ModelError::unsupported("equivalent", "a contact without a radius"));
         };
-        let load = Pressed { force, displacement: COEFFICIENT * approach };
+        let load = PressedSurface { force, displacement: COEFFICIENT * approach };
         let mut points = Vec::new();
         for share in SHARES {
             let state = contact.advance_until(load.step(share, DIRECTIONS[0]), stop)?;
@@ -186,7 +187,7 @@ impl SlipJob {
 /// where a cell begins to slip.
 fn stiffness(
     contact: &mut dyn PreparedContact,
-    load: Pressed,
+    load: PressedSurface,
     which: usize,
     stop: Stop<'_>,
 ) -> Result<[Option<f64>; SHARES.len()], ModelError> {
@@ -297,7 +298,7 @@ impl Job for SlipJob {
             let normalisation = contacts[0][0].normalisation();
             for force_bar in study.forces.values() {
                 let force = normalisation.force(*force_bar)?;
-                let mut without = Tractions::default();
+                let mut without = ShareTractions::default();
                 for (i, nu) in study.poissons.iter().enumerate() {
                     let of_ratio = contacts.each_mut().map(|of| &mut *of[i]);
                     let solved = self.slipped(of_ratio, (force, *nu), &mut without, stop);

@@ -1,6 +1,8 @@
 //! Means over surfaces, with their 95 % intervals.
 
-use super::study::{AMPLITUDES, PartialSlip, SHARES, SlipCase, SlipPoint, Slipped, SurfaceSlips, mindlin};
+use super::study::{
+    AMPLITUDES, PartialSlipStudy, SHARES, SlipCase, SlipPoint, SlippedSurface, SurfaceSlips, mindlin,
+};
 use crate::claim::Estimate;
 use analysis::Multilevel;
 
@@ -69,7 +71,7 @@ pub(super) fn mean(values: impl Iterator<Item = f64>) -> Option<Estimate> {
 }
 
 /// Over Mindlin's ratio: the mean of both directions, along x, along y; and the anisotropy.
-fn ratios(slipped: &Slipped, poisson: f64) -> [f64; 4] {
+fn ratios(slipped: &SlippedSurface, poisson: f64) -> [f64; 4] {
     let [xx, yy, xy] = slipped.stiffness;
     let mindlin = mindlin(poisson);
     let middle = 0.5 * (xx + yy);
@@ -77,16 +79,16 @@ fn ratios(slipped: &Slipped, poisson: f64) -> [f64; 4] {
 }
 
 /// Loads and Poisson's ratios with their indices.
-fn places(study: &PartialSlip) -> impl Iterator<Item = ((usize, f64), (usize, f64))> + '_ {
+fn places(study: &PartialSlipStudy) -> impl Iterator<Item = ((usize, f64), (usize, f64))> + '_ {
     let forces = study.forces.values().iter().copied().enumerate();
     forces.flat_map(|force| study.poissons.iter().copied().enumerate().map(move |nu| (force, nu)))
 }
 
-pub(super) fn stiffness(study: &PartialSlip, solved: &[SolvedCase<'_>]) -> Vec<StiffnessRow> {
+pub(super) fn stiffness(study: &PartialSlipStudy, solved: &[SolvedCase<'_>]) -> Vec<StiffnessRow> {
     let mut rows = Vec::new();
     for &SolvedCase { case, surfaces } in solved {
         for ((j, force_bar), (i, poisson)) in places(study) {
-            let found: Vec<&Slipped> = surfaces.iter().filter_map(|s| s.at(study, j, i)).collect();
+            let found: Vec<&SlippedSurface> = surfaces.iter().filter_map(|s| s.at(study, j, i)).collect();
             let of = |which: usize| mean(found.iter().map(|s| ratios(s, poisson)[which]));
             rows.push(StiffnessRow {
                 case,
@@ -112,7 +114,7 @@ fn missed(pairs: impl Iterator<Item = [Option<f64>; 2]>) -> Option<Estimate> {
     mean(both.filter(|miss| miss.is_finite()))
 }
 
-pub(super) fn slips(study: &PartialSlip, solved: &[SolvedCase<'_>]) -> Vec<SlipRow> {
+pub(super) fn slips(study: &PartialSlipStudy, solved: &[SolvedCase<'_>]) -> Vec<SlipRow> {
     let mut rows = Vec::new();
     for &SolvedCase { case, surfaces } in solved.iter().filter(|s| s.case.is_free()) {
         for ((j, force_bar), (i, poisson)) in places(study) {
@@ -148,7 +150,7 @@ pub(super) fn slips(study: &PartialSlip, solved: &[SolvedCase<'_>]) -> Vec<SlipR
     rows
 }
 
-pub(super) fn loops(study: &PartialSlip, solved: &[SolvedCase<'_>]) -> Vec<LoopRow> {
+pub(super) fn loops(study: &PartialSlipStudy, solved: &[SolvedCase<'_>]) -> Vec<LoopRow> {
     let mut rows = Vec::new();
     for &SolvedCase { case, surfaces } in solved.iter().filter(|s| s.case.is_free()) {
         for ((j, force_bar), (i, poisson)) in places(study) {

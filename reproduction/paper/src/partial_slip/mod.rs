@@ -24,7 +24,7 @@ mod study;
 mod tables;
 
 pub use picture::draw as draw_partial_slip;
-pub use study::{PartialSlip, PartialSlipSizes};
+pub use study::{PartialSlipSizes, PartialSlipStudy};
 
 use crate::evaluation::{Outcome, Session, header, list};
 use crate::judged::Judged;
@@ -49,7 +49,7 @@ const NAME: &str = "partial-slip";
 ///
 /// # Errors
 /// [`runs::Error::Parameter`] for invalid parameters, errors of a model, and files that cannot be written.
-pub fn partial_slip(study: &PartialSlip, progress: &dyn Progress) -> Result<Judged> {
+pub fn partial_slip(study: &PartialSlipStudy, progress: &dyn Progress) -> Result<Judged> {
     study.check()?;
     if !study.grids.is_empty() {
         return grids::grids(study, progress);
@@ -108,8 +108,8 @@ mod tests {
     use runs::{CsvFile, Silent, Store};
     use std::path::Path;
 
-    fn small(out: &Path) -> PartialSlip {
-        PartialSlip { out: out.into(), ..PartialSlip::new(PartialSlipSizes::Quick).unwrap() }
+    fn small(out: &Path) -> PartialSlipStudy {
+        PartialSlipStudy { out: out.into(), ..PartialSlipStudy::new(PartialSlipSizes::Quick).unwrap() }
     }
 
     #[test]
@@ -155,7 +155,7 @@ mod tests {
     /// The displacement, the stick area and the loop without Poisson's ratio from normal contacts alone.
     #[test]
     fn without_poissons_ratio_it_is_ciavarella_and_jaegers_approximation() {
-        let study = PartialSlip { surfaces: 2, tolerance: 1e-9, ..small(Path::new("never-made")) };
+        let study = PartialSlipStudy { surfaces: 2, tolerance: 1e-9, ..small(Path::new("never-made")) };
         let case = study.cases()[0];
         let job = SlipJob { study: Arc::new(study.clone()), case, seed: 5 };
         let SurfaceSlips { solved, .. } = job.solve(&never).unwrap();
@@ -192,18 +192,18 @@ mod tests {
     fn invalid_parameters_are_named() {
         let small = || small(Path::new("never-made"));
         for (study, name) in [
-            (PartialSlip { threads: 0, ..small() }, "threads"),
-            (PartialSlip { surfaces: 1, ..small() }, "surfaces"),
-            (PartialSlip { cells: 2, ..small() }, "cells"),
-            (PartialSlip { cells_per_wave: 5, ..small() }, "cells-per-wave"),
-            (PartialSlip { increments: 0, ..small() }, "increments"),
-            (PartialSlip { poissons: vec![0.1, 0.3], ..small() }, "poisson"),
-            (PartialSlip { poissons: vec![0.0, 0.6], ..small() }, "poisson"),
-            (PartialSlip { poissons: vec![0.0, f64::NAN], ..small() }, "poisson"),
-            (PartialSlip { fractal_dimensions: vec![3.5], ..small() }, "df"),
-            (PartialSlip { grids: vec![32, 64, 96], ..small() }, "grids"),
-            (PartialSlip { grids: vec![32, 64], ..small() }, "grids"),
-            (PartialSlip { grids: vec![16, 32, 64], ..small() }, "grids"),
+            (PartialSlipStudy { threads: 0, ..small() }, "threads"),
+            (PartialSlipStudy { surfaces: 1, ..small() }, "surfaces"),
+            (PartialSlipStudy { cells: 2, ..small() }, "cells"),
+            (PartialSlipStudy { cells_per_wave: 5, ..small() }, "cells-per-wave"),
+            (PartialSlipStudy { increments: 0, ..small() }, "increments"),
+            (PartialSlipStudy { poissons: vec![0.1, 0.3], ..small() }, "poisson"),
+            (PartialSlipStudy { poissons: vec![0.0, 0.6], ..small() }, "poisson"),
+            (PartialSlipStudy { poissons: vec![0.0, f64::NAN], ..small() }, "poisson"),
+            (PartialSlipStudy { fractal_dimensions: vec![3.5], ..small() }, "df"),
+            (PartialSlipStudy { grids: vec![32, 64, 96], ..small() }, "grids"),
+            (PartialSlipStudy { grids: vec![32, 64], ..small() }, "grids"),
+            (PartialSlipStudy { grids: vec![16, 32, 64], ..small() }, "grids"),
         ] {
             let error = partial_slip(&study, &Silent).unwrap_err().to_string();
             assert!(error.contains(name), "{error}");

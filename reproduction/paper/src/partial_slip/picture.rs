@@ -3,7 +3,9 @@
 use crate::evaluation::{distinct, read_rows};
 use crate::output::save;
 use crate::words;
-use plots::{Axis, COLORS, Key, Legend, LineStyle, Mark, Panels, Picture, REFERENCE, SHAPES, color, shape};
+use plots::{
+    Axis, COLORS, Legend, LegendKey, LineStyle, Mark, Panels, Picture, REFERENCE, SHAPES, color, shape,
+};
 use runs::{CsvFile, Result};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
@@ -20,7 +22,7 @@ const POISSON: &str = "Poisson's ratio $ν$";
 const BARS: &str = "bars: 95 %, over the surfaces";
 
 #[derive(Debug, Deserialize)]
-struct StiffnessRow {
+struct DrawnStiffnessRow {
     boundary: String,
     fractal_dimension: f64,
     force_bar: f64,
@@ -30,7 +32,7 @@ struct StiffnessRow {
 }
 
 #[derive(Debug, Deserialize)]
-struct SlipRow {
+struct DrawnSlipRow {
     fractal_dimension: f64,
     force_bar: f64,
     poisson: f64,
@@ -49,7 +51,7 @@ struct SlipRow {
 }
 
 #[derive(Debug, Deserialize)]
-struct LoopRow {
+struct DrawnLoopRow {
     fractal_dimension: f64,
     force_bar: f64,
     poisson: f64,
@@ -80,7 +82,7 @@ pub fn draw(directory: &Path) -> Result<Vec<PathBuf>> {
     fn rows<T: serde::de::DeserializeOwned>(path: &Path) -> Result<Vec<T>> {
         read_rows(path, &CsvFile::read(path)?)
     }
-    let slips: Vec<SlipRow> = rows(&directory.join(SLIPS))?;
+    let slips: Vec<DrawnSlipRow> = rows(&directory.join(SLIPS))?;
     let mut files = curves(&slips, directory)?;
     files.extend(fractions(&slips, directory)?);
     files.extend(ratios(&rows(&directory.join(STIFFNESS))?, directory)?);
@@ -89,7 +91,7 @@ pub fn draw(directory: &Path) -> Result<Vec<PathBuf>> {
 }
 
 /// Q over delta: the curves of all Poisson's ratios in one picture for each fractal dimension.
-fn curves(rows: &[SlipRow], out: &Path) -> Result<Vec<PathBuf>> {
+fn curves(rows: &[DrawnSlipRow], out: &Path) -> Result<Vec<PathBuf>> {
     let forces = distinct(rows.iter().map(|r| r.force_bar));
     let ratios = distinct(rows.iter().map(|r| r.poisson));
     let shown = [ratios.first(), ratios.last()].into_iter().flatten();
@@ -106,7 +108,7 @@ fn curves(rows: &[SlipRow], out: &Path) -> Result<Vec<PathBuf>> {
     .with_legend_below();
     for d in distinct(rows.iter().map(|r| r.fractal_dimension)) {
         for (which, nu) in shown.clone().enumerate() {
-            let of = |r: &&SlipRow| {
+            let of = |r: &&DrawnSlipRow| {
                 same(r.fractal_dimension, d) && same(r.force_bar, force) && same(r.poisson, *nu)
             };
             let points = rows.iter().filter(of).filter_map(|r| Some((r.displacement?, r.share)));
@@ -115,11 +117,15 @@ fn curves(rows: &[SlipRow], out: &Path) -> Result<Vec<PathBuf>> {
             if which == 0 {
                 picture.line(&points, &color, 1.6, LineStyle::Solid);
                 let label = format!("{}, Ciavarella and Jaeger ($ν = 0$)", words::dimension(d));
-                picture.legend(&label, &color, Key::Line(LineStyle::Solid));
+                picture.legend(&label, &color, LegendKey::Line(LineStyle::Solid));
             } else {
                 let mark = Mark::Hollow(shape(d));
                 picture.points(&points[1..], &color, 4.0, mark);
-                picture.legend(&format!("{}, $ν = {nu}$", words::dimension(d)), &color, Key::Mark(mark));
+                picture.legend(
+                    &format!("{}, $ν = {nu}$", words::dimension(d)),
+                    &color,
+                    LegendKey::Mark(mark),
+                );
             }
         }
     }
@@ -127,12 +133,12 @@ fn curves(rows: &[SlipRow], out: &Path) -> Result<Vec<PathBuf>> {
 }
 
 /// As in the paper of 2014: share of the contact that sticks, and stiffness, over the tangential force.
-fn fractions(rows: &[SlipRow], out: &Path) -> Result<Vec<PathBuf>> {
-    type Column = (fn(&SlipRow) -> Option<f64>, fn(&SlipRow) -> Option<f64>);
+fn fractions(rows: &[DrawnSlipRow], out: &Path) -> Result<Vec<PathBuf>> {
+    type DrawnColumn = (fn(&DrawnSlipRow) -> Option<f64>, fn(&DrawnSlipRow) -> Option<f64>);
     let (forces, ratios) =
         (distinct(rows.iter().map(|r| r.force_bar)), distinct(rows.iter().map(|r| r.poisson)));
     let (force, nu) = (middle(&forces), nearest(&ratios, 0.3));
-    let columns: [(&str, Column); 2] = [
+    let columns: [(&str, DrawnColumn); 2] = [
         ("stick area over contact area", (|r| r.stick, |r| r.stick_half)),
         ("$k_t(Q)/k_t(0)$", (|r| r.stiffness, |r| r.stiffness_half)),
     ];
@@ -142,10 +148,10 @@ fn fractions(rows: &[SlipRow], out: &Path) -> Result<Vec<PathBuf>> {
             .with_size(400.0, 330.0);
         picture.line(&[(0.0, 1.0), (1.0, 0.0)], REFERENCE, 1.2, LineStyle::Dashed);
         for d in distinct(rows.iter().map(|r| r.fractal_dimension)) {
-            let of = |r: &&SlipRow| {
+            let of = |r: &&DrawnSlipRow| {
                 same(r.fractal_dimension, d) && same(r.force_bar, force) && same(r.poisson, nu)
             };
-            let own: Vec<&SlipRow> = rows.iter().filter(of).collect();
+            let own: Vec<&DrawnSlipRow> = rows.iter().filter(of).collect();
             let points: Vec<_> = own.iter().filter_map(|r| Some((r.share, value(r)?))).collect();
             let bars: Vec<_> = own.iter().filter_map(|r| Some((r.share, value(r)?, half(r)))).collect();
             let color = color(d);
@@ -157,16 +163,16 @@ fn fractions(rows: &[SlipRow], out: &Path) -> Result<Vec<PathBuf>> {
     }
     let mut legend = Legend::default();
     for d in distinct(rows.iter().map(|r| r.fractal_dimension)) {
-        legend.push(&words::dimension(d), &color(d), Key::Curve(Mark::Solid(shape(d))));
+        legend.push(&words::dimension(d), &color(d), LegendKey::Curve(Mark::Solid(shape(d))));
     }
-    legend.push("$1 - Q/(μ F)$", REFERENCE, Key::Line(LineStyle::Dashed));
-    legend.push(BARS, REFERENCE, Key::Words);
+    legend.push("$1 - Q/(μ F)$", REFERENCE, LegendKey::Line(LineStyle::Dashed));
+    legend.push(BARS, REFERENCE, LegendKey::Words);
     let title = format!("What sticks, and how stiff it is: $ν = {nu}$, $\\bar{{F}} = {force}$");
     save(Panels { pictures, columns: 2, title, legend }.files("partial-slip-stick"), out)
 }
 
 /// Over Poisson's ratio: points of one load beside those of the next.
-fn ratios(rows: &[StiffnessRow], out: &Path) -> Result<Vec<PathBuf>> {
+fn ratios(rows: &[DrawnStiffnessRow], out: &Path) -> Result<Vec<PathBuf>> {
     let ends = rows.iter().filter_map(|r| Some([r.ratio? - r.ratio_half?, r.ratio? + r.ratio_half?]));
     let y = plots::linear(ends.flatten().chain([1.0]));
     let forces = distinct(rows.iter().map(|r| r.force_bar));
@@ -179,11 +185,11 @@ fn ratios(rows: &[StiffnessRow], out: &Path) -> Result<Vec<PathBuf>> {
                     .with_subtitle(&format!("{boundary}, {}", words::dimension(d)));
             picture.line(&[(-0.02, 1.0), (0.54, 1.0)], REFERENCE, 1.2, LineStyle::Dashed);
             for (j, force) in forces.iter().enumerate() {
-                let of = |r: &&StiffnessRow| {
+                let of = |r: &&DrawnStiffnessRow| {
                     r.boundary == boundary && same(r.fractal_dimension, d) && same(r.force_bar, *force)
                 };
                 let beside = 0.008 * (j as f64 - 0.5 * (forces.len() - 1) as f64);
-                let bar = |r: &StiffnessRow| Some((r.poisson + beside, r.ratio?, r.ratio_half));
+                let bar = |r: &DrawnStiffnessRow| Some((r.poisson + beside, r.ratio?, r.ratio_half));
                 let bars: Vec<_> = rows.iter().filter(of).filter_map(bar).collect();
                 let points: Vec<_> = bars.iter().map(|b| (b.0, b.1)).collect();
                 let (color, mark) = (COLORS[j % 6], SHAPES[j % 6]);
@@ -197,25 +203,25 @@ fn ratios(rows: &[StiffnessRow], out: &Path) -> Result<Vec<PathBuf>> {
     let mut legend = Legend::default();
     for (j, force) in forces.iter().enumerate() {
         let mark = Mark::Solid(SHAPES[j % 6]);
-        legend.push(&format!("$\\bar{{F}} = {force}$"), COLORS[j % 6], Key::Mark(mark));
+        legend.push(&format!("$\\bar{{F}} = {force}$"), COLORS[j % 6], LegendKey::Mark(mark));
     }
-    legend.push(BARS, REFERENCE, Key::Words);
+    legend.push(BARS, REFERENCE, LegendKey::Words);
     let title = "Stiffness $k_t/k$ over $(2 - 2ν)/(2 - ν)$".to_owned();
     save(Panels { pictures, columns, title, legend }.files("partial-slip-stiffness"), out)
 }
 
 /// The errors of Ciavarella and Jaeger's approximation: four numbers over Poisson's ratio, for several
 /// tangential forces.
-fn misses(slips: &[SlipRow], loops: &[LoopRow], out: &Path) -> Result<Vec<PathBuf>> {
-    type Found = (f64, f64, f64, f64, Option<f64>, Option<f64>);
+fn misses(slips: &[DrawnSlipRow], loops: &[DrawnLoopRow], out: &Path) -> Result<Vec<PathBuf>> {
+    type DrawnQuantity = (f64, f64, f64, f64, Option<f64>, Option<f64>);
     let d = distinct(slips.iter().map(|r| r.fractal_dimension)).first().copied().unwrap_or_default();
-    let of_slips = |value: fn(&SlipRow) -> [Option<f64>; 2]| -> Vec<Found> {
+    let of_slips = |value: fn(&DrawnSlipRow) -> [Option<f64>; 2]| -> Vec<DrawnQuantity> {
         let own = slips.iter().filter(|r| same(r.fractal_dimension, d));
         own.map(|r| (r.force_bar, r.poisson, r.share, d, value(r)[0], value(r)[1])).collect()
     };
     let own = loops.iter().filter(|r| same(r.fractal_dimension, d));
     let of_loops = own.map(|r| (r.force_bar, r.poisson, r.share, d, r.miss, r.miss_half)).collect();
-    let quantities: [(&str, Vec<Found>); 4] = [
+    let quantities: [(&str, Vec<DrawnQuantity>); 4] = [
         ("displacement (%)", of_slips(|r| [r.displacement_miss, r.displacement_miss_half])),
         ("stick area (%)", of_slips(|r| [r.stick_miss, r.stick_miss_half])),
         ("energy of a loop (%)", of_loops),
@@ -247,12 +253,12 @@ fn misses(slips: &[SlipRow], loops: &[LoopRow], out: &Path) -> Result<Vec<PathBu
     let mut legend = Legend::default();
     for (i, share) in shares.iter().enumerate() {
         let mark = Mark::Solid(SHAPES[i % 6]);
-        legend.push(&format!("$Q/(μ F) = {share}$"), COLORS[i % 6], Key::Mark(mark));
+        legend.push(&format!("$Q/(μ F) = {share}$"), COLORS[i % 6], LegendKey::Mark(mark));
     }
     for (j, force) in forces.iter().enumerate() {
-        legend.push(&format!("$\\bar{{F}} = {force}$"), REFERENCE, Key::Line(styles[j % 3]));
+        legend.push(&format!("$\\bar{{F}} = {force}$"), REFERENCE, LegendKey::Line(styles[j % 3]));
     }
-    legend.push(BARS, REFERENCE, Key::Words);
+    legend.push(BARS, REFERENCE, LegendKey::Words);
     let title = format!("Ciavarella and Jaeger over the solution, less 1: {}", words::dimension(d));
     save(Panels { pictures, columns: 2, title, legend }.files("partial-slip-misses"), out)
 }

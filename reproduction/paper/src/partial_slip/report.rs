@@ -1,7 +1,7 @@
 //! The results in short tables.
 
 use super::means::{LoopRow, SlipRow, StiffnessRow};
-use super::study::PartialSlip;
+use super::study::PartialSlipStudy;
 use crate::claim::Estimate;
 use crate::evaluation::markdown_table;
 
@@ -24,7 +24,7 @@ fn percent(of: Option<Estimate>) -> String {
 }
 
 pub(super) fn text(
-    study: &PartialSlip,
+    study: &PartialSlipStudy,
     stiffness: &[StiffnessRow],
     slips: &[SlipRow],
     loops: &[LoopRow],

@@ -24,7 +24,7 @@ pub(super) const AMPLITUDES: [f64; 3] = [0.3, 0.6, 0.9];
 /// contact are independent. Their modulus is such that E* is the same for every Poisson's ratio: pressures
 /// are too.
 #[derive(Debug, Clone, PartialEq)]
-pub struct PartialSlip {
+pub struct PartialSlipStudy {
     /// Cells a side.
     pub cells: usize,
     /// Cells of the shortest wave.
@@ -86,7 +86,7 @@ impl SlipCase {
     }
 
     /// The contact of bodies of this Poisson's ratio, with E* = 1, L = 1 and h = 1.
-    pub(super) fn scene(self, study: &PartialSlip, poisson: f64, outputs: Outputs) -> Result<Scene> {
+    pub(super) fn scene(self, study: &PartialSlipStudy, poisson: f64, outputs: Outputs) -> Result<Scene> {
         let failed = || Error::model(self.label());
         let surface = SelfAffine {
             roll_off: (!self.is_free()).then_some(TAU * ROLL_OFF),
@@ -113,7 +113,7 @@ pub(super) fn mindlin(poisson: f64) -> f64 {
     (2.0 - 2.0 * poisson) / (2.0 - poisson)
 }
 
-impl PartialSlip {
+impl PartialSlipStudy {
     /// The study at these sizes.
     ///
     /// # Errors
@@ -204,7 +204,7 @@ impl PartialSlip {
 
 /// One surface under one load with one Poisson's ratio.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(super) struct Slipped {
+pub(super) struct SlippedSurface {
     /// Share of the square in contact.
     pub(super) contact: f64,
     pub(super) contact_cells: usize,
@@ -250,14 +250,19 @@ impl SlipPoint {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct SurfaceSlips {
     /// By force, then by Poisson's ratio; `None` where the tolerance was not met.
-    pub(super) solved: Vec<Option<Slipped>>,
+    pub(super) solved: Vec<Option<SlippedSurface>>,
     /// The equivalent profile by force, free boundaries alone: points and dissipated energies.
     pub(super) equivalent: Vec<Option<(Vec<SlipPoint>, Vec<f64>)>>,
 }
 
 impl SurfaceSlips {
     /// The results for a force and a Poisson's ratio, by their indices.
-    pub(super) fn at(&self, study: &PartialSlip, force: usize, poisson: usize) -> Option<&Slipped> {
+    pub(super) fn at(
+        &self,
+        study: &PartialSlipStudy,
+        force: usize,
+        poisson: usize,
+    ) -> Option<&SlippedSurface> {
         self.solved.get(force * study.poissons.len() + poisson)?.as_ref()
     }
 }

@@ -1,7 +1,7 @@
 //! The tables of the study of partial slip.
 
 use super::means::{LoopRow, SlipRow, StiffnessRow};
-use super::study::{PartialSlip, SlipPoint, mindlin};
+use super::study::{PartialSlipStudy, SlipPoint, mindlin};
 use super::{SlipCase, SolvedCase};
 use crate::claim::Estimate;
 use crate::evaluation::{FRACTAL_DIMENSION, TableOf};
@@ -106,7 +106,7 @@ pub(super) fn loops(rows: &[LoopRow]) -> Result<Table> {
 }
 
 /// A surface with one load and one Poisson's ratio, or its equivalent profile.
-struct Sample<'a> {
+struct LoadedSurface<'a> {
     case: SlipCase,
     surface: usize,
     force_bar: f64,
@@ -117,12 +117,12 @@ struct Sample<'a> {
 }
 
 /// Every surface: the means can be computed again from it.
-pub(super) fn samples(study: &PartialSlip, solved: &[SolvedCase<'_>]) -> Result<Table> {
+pub(super) fn samples(study: &PartialSlipStudy, solved: &[SolvedCase<'_>]) -> Result<Table> {
     let mut rows = Vec::new();
     for &SolvedCase { case, surfaces } in solved {
         for (surface, slips) in surfaces.iter().enumerate() {
             for (j, &force_bar) in study.forces.values().iter().enumerate() {
-                let sample = |poisson, contact, points, dissipated| Sample {
+                let sample = |poisson, contact, points, dissipated| LoadedSurface {
                     case,
                     surface,
                     force_bar,
@@ -147,8 +147,9 @@ pub(super) fn samples(study: &PartialSlip, solved: &[SolvedCase<'_>]) -> Result<
         let words = values.map(|v| v.map_or_else(|| "-".to_owned(), |v| format!("{v:.6e}")));
         words.collect::<Vec<_>>().join(" ")
     };
-    let of = |r: &Sample<'_>, value: fn(&SlipPoint) -> Option<f64>| listed(&mut r.points.iter().map(value));
-    let stiffness = |r: &Sample<'_>, which: usize| r.contact.map(|(.., k)| k[which]);
+    let of =
+        |r: &LoadedSurface<'_>, value: fn(&SlipPoint) -> Option<f64>| listed(&mut r.points.iter().map(value));
+    let stiffness = |r: &LoadedSurface<'_>, which: usize| r.contact.map(|(.., k)| k[which]);
     TableOf::new("Partial slip of each surface", &rows)
         .column("model", "-", "bem3d, or equivalent, which is the same for every Poisson's ratio", |r| {
             if r.poisson.is_some() { "bem3d" } else { "equivalent" }

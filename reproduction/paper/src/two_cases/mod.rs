@@ -15,7 +15,7 @@ use contact_model::{ContactModel as _, ContactState, Status};
 use fractal_contact::scenes::{ModelResult, SceneFile, SceneJob, jobs_of_scenes, solve_jobs};
 pub(crate) use picture::draw;
 use picture::{names, pairs_table, table};
-use reading::{SolvedCase, judged, pairs, summary};
+use reading::{ReadCase, judged, pairs, summary};
 use runs::{Error, JobList, Progress, Result, Store, files, write_csv};
 use std::path::Path;
 pub(crate) use study::NAME;
@@ -49,8 +49,7 @@ pub fn two_cases(study: &TwoCases, out: &Path, progress: &dyn Progress) -> Resul
         let means =
             Curves::new(study.forces.values().to_vec(), samples).map_err(Error::model(case.label()))?;
         let curve = mean_curve(case, slope, &means, [&surfaces, &coarser]);
-        let solved =
-            SolvedCase { study, curve: &curve, means: &means, surfaces: &surfaces, coarser: &coarser };
+        let solved = ReadCase { study, curve: &curve, means: &means, surfaces: &surfaces, coarser: &coarser };
         claims.extend(judged(solved)?);
         curves.push(curve);
     }

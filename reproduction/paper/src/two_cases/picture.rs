@@ -7,7 +7,7 @@ use crate::output::save;
 use crate::words;
 use contact_model::PAPER_STIFFNESS_FACTOR;
 use contact_model::Table;
-use plots::{Key, LineStyle, Mark, MarkShape, NEUTRAL, Picture, logarithmic};
+use plots::{LegendKey, LineStyle, Mark, MarkShape, NEUTRAL, Picture, logarithmic};
 use runs::{CsvFile, Result};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
@@ -77,11 +77,11 @@ pub(super) fn pairs_table(pairs: &[PairRow]) -> Result<Table> {
 }
 
 /// A fractal dimension and a roll-off: the four curves of a picture.
-type Problem = (f64, f64);
+type PicturePanel = (f64, f64);
 
 /// A mean of the table.
 #[derive(Deserialize)]
-struct Row {
+struct CaseRow {
     case: String,
     fractal_dimension: f64,
     roll_off: Option<f64>,
@@ -94,22 +94,22 @@ struct Row {
 }
 
 /// The problems of a table, in its order, each with the names of its pictures of k and of k h/F.
-fn problems(rows: &[Row]) -> Vec<(Problem, [String; 2])> {
-    let mut all: Vec<Problem> = Vec::new();
+fn problems(rows: &[CaseRow]) -> Vec<(PicturePanel, [String; 2])> {
+    let mut all: Vec<PicturePanel> = Vec::new();
     for problem in rows.iter().filter_map(|r| Some((r.fractal_dimension, r.roll_off?))) {
         if !all.iter().any(|known| same(*known, problem)) {
             all.push(problem);
         }
     }
     let one = all.len() == 1;
-    let named = |of: Problem| {
+    let named = |of: PicturePanel| {
         let suffix = if one { String::new() } else { format!("-Df{:?}-rolloff{}", of.0, of.1) };
         (of, [format!("{NAME}{suffix}"), format!("{NAME}-ratio{suffix}")])
     };
     all.into_iter().map(named).collect()
 }
 
-fn same(a: Problem, b: Problem) -> bool {
+fn same(a: PicturePanel, b: PicturePanel) -> bool {
     (a.0 - b.0).abs() < 1e-9 && (a.1 - b.1).abs() < 1e-9
 }
 
@@ -121,7 +121,7 @@ pub(super) fn names(csv: &Path) -> Result<Vec<String>> {
 /// Draws two pictures of each problem from the table.
 pub(crate) fn draw(csv: &Path, out: &Path) -> Result<Vec<PathBuf>> {
     let file = CsvFile::read(csv)?;
-    let rows: Vec<Row> = read_rows(csv, &file)?;
+    let rows: Vec<CaseRow> = read_rows(csv, &file)?;
     let mut files = Vec::new();
     for (of, [stiffness, ratio]) in problems(&rows) {
         files.extend(panel(&file, &rows, of, (|r| r.stiffness_bar, words::STIFFNESS), out, &stiffness)?);
@@ -132,15 +132,15 @@ pub(crate) fn draw(csv: &Path, out: &Path) -> Result<Vec<PathBuf>> {
 
 fn panel(
     file: &CsvFile,
-    rows: &[Row],
-    problem: Problem,
-    (value, label): (fn(&Row) -> f64, &str),
+    rows: &[CaseRow],
+    problem: PicturePanel,
+    (value, label): (fn(&CaseRow) -> f64, &str),
     out: &Path,
     name: &str,
 ) -> Result<Vec<PathBuf>> {
     // A spectrum that is fractal to the side belongs to every roll-off.
-    let of_problem = |r: &&Row| same((r.fractal_dimension, r.roll_off.unwrap_or(problem.1)), problem);
-    let rows: Vec<&Row> = rows.iter().filter(of_problem).collect();
+    let of_problem = |r: &&CaseRow| same((r.fractal_dimension, r.roll_off.unwrap_or(problem.1)), problem);
+    let rows: Vec<&CaseRow> = rows.iter().filter(of_problem).collect();
     let shown = || rows.iter().copied().filter(|r| r.stiffness_bar <= HIGHEST);
     let solved = || shown().filter(|r| r.model == "bem3d");
     let (x, y) = (logarithmic(solved().map(|r| r.force_bar)), logarithmic(solved().map(value)));
@@ -164,12 +164,12 @@ fn panel(
         (1.6, Mark::Hollow(MarkShape::Square), 3.2),
     ];
     for ((of, color), (width, mark, radius)) in NAMES.into_iter().zip(looks) {
-        let select = |name: &str, floor: bool| -> Vec<&Row> {
+        let select = |name: &str, floor: bool| -> Vec<&CaseRow> {
             shown().filter(|r| r.case == of && r.model == name && r.below_floor == floor).collect()
         };
-        let at = |rows: &[&Row]| rows.iter().map(|r| (r.force_bar, value(r))).collect::<Vec<_>>();
+        let at = |rows: &[&CaseRow]| rows.iter().map(|r| (r.force_bar, value(r))).collect::<Vec<_>>();
         let inside = select("bem3d", false);
-        let bar = |r: &&Row| {
+        let bar = |r: &&CaseRow| {
             let error = r.stiffness_bar_se.map(|e| 2.0 * (value(r) * e / r.stiffness_bar));
             (r.force_bar, value(r), error)
         };
@@ -185,17 +185,21 @@ fn panel(
         } else {
             "$k = \\rm{d}F/\\rm{d}d$, $d$ the approach"
         };
-        picture.legend(&format!("{of}: {stiffness}"), color, Key::Curve(mark));
+        picture.legend(&format!("{of}: {stiffness}"), color, LegendKey::Curve(mark));
     }
-    picture.legend("Persson", NEUTRAL, Key::Line(LineStyle::Dashed));
-    picture.legend("Greenwood and Williamson", NEUTRAL, Key::Line(LineStyle::Dotted));
-    picture.legend("bars: ± 2 standard errors", NEUTRAL, Key::Bar(Mark::Solid(MarkShape::Circle)));
+    picture.legend("Persson", NEUTRAL, LegendKey::Line(LineStyle::Dashed));
+    picture.legend("Greenwood and Williamson", NEUTRAL, LegendKey::Line(LineStyle::Dotted));
+    picture.legend("bars: ± 2 standard errors", NEUTRAL, LegendKey::Bar(Mark::Solid(MarkShape::Circle)));
     if shown().any(|r| r.below_floor) {
         let label = format!("fewer than {FLOOR_CELLS} contact cells");
-        picture.legend(&label, NEUTRAL, Key::Mark(Mark::Ring(MarkShape::Circle)));
+        picture.legend(&label, NEUTRAL, LegendKey::Mark(Mark::Ring(MarkShape::Circle)));
     }
     if rows.iter().any(|r| r.stiffness_bar > HIGHEST) {
-        picture.legend(&format!("periodic: only $\\bar{{k}}$ up to {HIGHEST} is shown"), NEUTRAL, Key::Words);
+        picture.legend(
+            &format!("periodic: only $\\bar{{k}}$ up to {HIGHEST} is shown"),
+            NEUTRAL,
+            LegendKey::Words,
+        );
     }
     save(picture.files(name), out)
 }

@@ -2,7 +2,7 @@
 
 use super::study::{CaseCurve, CasePoint, PairRow, Solves, SurfaceCase, TwoCases};
 use crate::claim::{Claim, Estimate, plain};
-use crate::claims::{self, CaseData, Cases, Data, Entry, Found, Row};
+use crate::claims::{self, CaseData, Cases, ClaimEntry, ClaimRow, ClaimedNumber, Data};
 use crate::evaluation::{FLOOR_CELLS, list, markdown_table};
 use analysis::{Bootstrap, Curves, FitWindow, Multilevel, fit_power_law, slope_weights};
 use contact_model::Boundary;
@@ -27,7 +27,7 @@ pub(super) fn slopes(points: &[CasePoint]) -> Vec<Option<f64>> {
 
 /// A case as it was solved: its means, its surfaces, and those with cells twice as large.
 #[derive(Clone, Copy)]
-pub(super) struct SolvedCase<'a> {
+pub(super) struct ReadCase<'a> {
     pub(super) study: &'a TwoCases,
     pub(super) curve: &'a CaseCurve,
     pub(super) means: &'a Curves,
@@ -41,10 +41,10 @@ pub(super) struct SolvedCase<'a> {
 ///
 /// # Errors
 /// As [`claims::entries`].
-pub(super) fn judged(solved: SolvedCase<'_>) -> Result<Vec<Claim>> {
+pub(super) fn judged(solved: ReadCase<'_>) -> Result<Vec<Claim>> {
     let case = solved.curve.case;
     let persson = case.roll_off.is_some() && case.boundary == Boundary::Periodic;
-    let speaks_of_case = |entry: &&'static Entry| match entry.cases {
+    let speaks_of_case = |entry: &&'static ClaimEntry| match entry.cases {
         None => true,
         Some(Cases::Fractal) => case.roll_off.is_none(),
         Some(Cases::Persson) => persson,
@@ -59,15 +59,15 @@ pub(super) fn judged(solved: SolvedCase<'_>) -> Result<Vec<Claim>> {
         CaseData::ExponentOfArea => of_area.clone(),
         CaseData::Kappa => kappa.clone(),
     };
-    let claim = |entry: &'static Entry| match entry.data {
-        Data::TwoCases(data) => Some(entry.judge(Row::of(case.label(), found(data)))),
+    let claim = |entry: &'static ClaimEntry| match entry.data {
+        Data::TwoCases(data) => Some(entry.judge(ClaimRow::of(case.label(), found(data)))),
         _ => None,
     };
     Ok(claims::entries("two_cases")?.iter().filter(speaks_of_case).filter_map(claim).collect())
 }
 
 /// The exponent of k over F in a window.
-fn exponent(solved: SolvedCase<'_>, window: &FitWindow) -> Found {
+fn exponent(solved: ReadCase<'_>, window: &FitWindow) -> ClaimedNumber {
     let law =
         fit_power_law(solved.means, window, &Bootstrap::default()).map_err(|reason| reason.to_string())?;
     let alpha = Estimate::normal(law.alpha, law.alpha_se).ok_or("one surface has no scatter")?;
@@ -76,7 +76,7 @@ fn exponent(solved: SolvedCase<'_>, window: &FitWindow) -> Found {
 }
 
 /// k h/F in a window; k_bar is in units of 1.1419 E* L, F_bar in units of E* h L.
-fn constant(curve: &CaseCurve, window: &FitWindow) -> Found {
+fn constant(curve: &CaseCurve, window: &FitWindow) -> ClaimedNumber {
     let inside = window.min_force_bar..=window.max_force_bar;
     let points = curve.points.iter().filter(|p| inside.contains(&p.force_bar));
     let all = points.map(|p| p.stiffness_bar * contact_model::PAPER_STIFFNESS_FACTOR / p.force_bar);
@@ -99,7 +99,7 @@ const LEFT_BY_EXTRAPOLATION: f64 = 0.5;
 ///
 /// Their intervals contain the scatter of the surfaces and, in quadrature, half of the difference from the
 /// number of the counted areas.
-fn areas(solved: SolvedCase<'_>) -> [Found; 2] {
+fn areas(solved: ReadCase<'_>) -> [ClaimedNumber; 2] {
     let (cells, share) = RESOLVED;
     let inside = |p: &CasePoint| {
         p.left_out == 0

@@ -7,7 +7,7 @@ use analysis::StiffnessSample;
 use bem3d::Bem3d;
 use contact_model::{Boundary, Scene, SelfAffine, Surface};
 use fractal_contact::scenes::{
-    AskedLoads, AskedSampling, AskedSelfAffine, AskedSurface, LoadKind, LoadList, Material, Numerics,
+    AskedLoads, AskedSampling, AskedSelfAffine, AskedSurface, LoadList, Material, Numerics, PrescribedLoad,
     Question, System,
 };
 use runs::{Error, Result};
@@ -107,7 +107,7 @@ impl SurfaceCase {
         }
         question.material = Some(Material::ContactModulus(1.0));
         let values = study.forces.values().to_vec();
-        question.loads = Some(AskedLoads::Loads(LoadList { kind: LoadKind::ForceBar, values }));
+        question.loads = Some(AskedLoads::Loads(LoadList { kind: PrescribedLoad::ForceBar, values }));
         let mut surface = AskedSelfAffine::default();
         surface.size = Some(1.0.into());
         surface.hurst = Some(3.0 - self.fractal_dimension);

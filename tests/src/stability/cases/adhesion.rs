@@ -1,11 +1,11 @@
 //! Attraction across open gaps.
 
-use crate::stability::case::{Case, Effort};
+use crate::stability::case::{Effort, HardCase};
 use crate::stability::ledger::{Ledger, approach, known, largest, pressure};
 use crate::stability::maps::{map, rough_map};
 use crate::stability::plain::PlainSum;
 use crate::stability::press::watched;
-use crate::stability::slide::{Fields, MU, alike, rubbed, tangential, vectors};
+use crate::stability::slide::{MU, VectorField, alike, rubbed, tangential, vectors};
 use bem3d::Bem3d;
 use contact_model::{
     Adhesion, AdhesionLaw, Boundary, ContactModel, ContactState, Error, Hardness, HeightMap, Load,
@@ -15,43 +15,43 @@ use contact_model::{
 /// Tolerance of the solves.
 pub(super) const TOLERANCE: f64 = 1e-8;
 
-pub(super) const CASES: [Case; 6] = [
-    Case {
+pub(super) const CASES: [HardCase; 6] = [
+    HardCase {
         name: "a plateau snaps in",
         why: "all its cells become unstable at once: an iteration that starts too far in, or overshoots, finds the other branch",
         asserted: "traction and gap of every cell by plain sums; closed on the way back where it was open on the way in; the loop costs energy",
         bound: 1e-6,
         solve: plateau,
     },
-    Case {
+    HardCase {
         name: "a single summit with attraction",
         why: "one cell touches and all others attract: the net force changes its sign while the contact does not",
         asserted: "traction and gap of every cell by plain sums; one contact cell from pull to push",
         bound: 1e-6,
         solve: summit,
     },
-    Case {
+    HardCase {
         name: "attraction that closes everything",
         why: "without any force a rough surface is in full contact, nearly all of it in tension at the hollows",
         asserted: "traction and gap of every cell by plain sums; every cell in contact at F = 0",
         bound: 1e-6,
         solve: everything,
     },
-    Case {
+    HardCase {
         name: "a range below a cell",
         why: "a cell alone would snap: states would be those of the grid",
         asserted: "refused with the size of a cell that resolves the range, and taken with that size (cases that differ)",
         bound: 0.0,
         solve: below_a_cell,
     },
-    Case {
+    HardCase {
         name: "periodic full contact in tension",
         why: "nothing but the attraction holds the bodies, and the kernel has no constant",
         asserted: "full contact from push to pull; the pressure changes by dF/A at every cell (of the largest pressure)",
         bound: 1e-6,
         solve: tension,
     },
-    Case {
+    HardCase {
         name: "a plateau that snaps in, flows and is dragged",
         why: "three effects at once: cells jump from open to the hardness in one step, slip under a pull, and fit each other on the way out",
         asserted: "by plain sums over the indented surface: the law of every open cell, closed cells between zero and the hardness with the peak of the attraction, Coulomb's limit of the contact pressure, and all of it in sliding",
@@ -246,7 +246,7 @@ fn three(ledger: &mut Ledger, effort: Effort) -> Result<()> {
         let u = PlainSum::of(&map).displacement(&forces);
         let depth = state.fields.as_ref().and_then(|fields| fields.plastic_depth.as_ref());
         let depth = depth.map_or(&[][..], |depth| depth.values());
-        let tractions = vectors(&state, Fields::Traction)?;
+        let tractions = vectors(&state, VectorField::Traction)?;
         let (mut held, mut borne) = (0.0, 0.0);
         for i in 0..net.len() {
             let gap = u[i] + map.highest() - map.heights()[i] + depth[i] - d;

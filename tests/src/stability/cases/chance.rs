@@ -1,6 +1,6 @@
 //! Repeated solves of the same problem.
 
-use crate::stability::case::{Case, Effort};
+use crate::stability::case::{Effort, HardCase};
 use crate::stability::ledger::Ledger;
 use crate::stability::maps::{rough, rough_map};
 use crate::stability::press::{tight, watched};
@@ -9,15 +9,15 @@ use contact_model::{ContactModel, ContactState, Error, Load, Result, Scene, Surf
 use mdr1d::Mdr1d;
 use rayon::prelude::*;
 
-pub(super) const CASES: [Case; 2] = [
-    Case {
+pub(super) const CASES: [HardCase; 2] = [
+    HardCase {
         name: "repeated runs",
         why: "hash order, uninitialised scratch or a plan chosen by a clock change last digits",
         asserted: "F, d, k and p of three runs bit for bit, prepared anew and remembered (numbers that differ)",
         bound: 0.0,
         solve: repeated,
     },
-    Case {
+    HardCase {
         name: "1, 2 and 4 threads",
         why: "sums in the order in which threads finish",
         asserted: "F, d, k and p of an ensemble, 3D and 1D, bit for bit for any number of threads (numbers that differ)",

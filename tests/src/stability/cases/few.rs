@@ -1,6 +1,6 @@
 //! One cell, two cells, tiny grids.
 
-use crate::stability::case::{Case, Effort};
+use crate::stability::case::{Effort, HardCase};
 use crate::stability::ledger::{Ledger, approach, stiffness};
 use crate::stability::maps::{map, rough_map};
 use crate::stability::plain::PlainSum;
@@ -12,43 +12,43 @@ use std::f64::consts::PI;
 /// Rounding of sets of a few cells.
 const ROUNDING: f64 = 1e-12;
 
-pub(super) const CASES: [Case; 6] = [
-    Case {
+pub(super) const CASES: [HardCase; 6] = [
+    HardCase {
         name: "one cell",
         why: "a search direction is 0/0 once its mean is taken out",
         asserted: "k = pi E* h_c/(4 ln(1 + sqrt 2)) and d = F/k, on 1 x 1 cells and on the summit of a rough surface",
         bound: ROUNDING,
         solve: one_cell,
     },
-    Case {
+    HardCase {
         name: "two adjacent cells",
         why: "the smallest coupled set; symmetric, so neither cell may leave",
         asserted: "k = 2 pi E* h_c/(I(0,0) + I(1,0)) = 1.376821433419 E* h_c",
         bound: ROUNDING,
         solve: |ledger, _| two_cells(ledger, (1, 0), 1.376_821_433_419),
     },
-    Case {
+    HardCase {
         name: "two diagonal cells",
         why: "they touch in a corner, where the logarithms of the kernel are singular",
         asserted: "k = 2 pi E* h_c/(I(0,0) + I(1,1)) = 1.478329831506 E* h_c",
         bound: ROUNDING,
         solve: |ledger, _| two_cells(ledger, (1, 1), 1.478_329_831_506),
     },
-    Case {
+    HardCase {
         name: "two distant summits",
         why: "clusters coupled by one part in a thousand: a window around both is almost empty",
         asserted: "k = 2 pi E* h_c/(I(0,0) + I(N-1,N-1)); a summit that is lower joins at the approach z/(1 - I(N-1,N-1)/I(0,0))",
         bound: ROUNDING,
         solve: two_summits,
     },
-    Case {
+    HardCase {
         name: "a single spike",
         why: "one cell carries everything until the plain around it is reached",
         asserted: "one cell's k up to the approach z/(1 - I(far)/I(0,0)) at which the farthest corner touches; more cells beyond",
         bound: ROUNDING,
         solve: spike,
     },
-    Case {
+    HardCase {
         name: "grids of 1, 2 and 3 cells",
         why: "transforms of length 1, 2 and 4; every cell is an edge",
         asserted: "k of full contact by elimination and 0.891106989, 0.993186221, 1.040161425 E* L, and at heavy loads on rough heights",

@@ -1,11 +1,11 @@
 //! Friction where a solver has no set, no slip, nothing else, or no solution.
 
 use super::few::faces;
-use crate::stability::case::{Case, Effort};
+use crate::stability::case::{Effort, HardCase};
 use crate::stability::ledger::{Ledger, approach, pressure};
 use crate::stability::maps::{map, rough_map};
 use crate::stability::slide::{
-    Fields, MU, Slide, TIGHTER, against_dragging, alike, compare, longest, rubbed, tangential, vectors,
+    MU, Slide, TIGHTER, VectorField, against_dragging, alike, compare, longest, rubbed, tangential, vectors,
 };
 use contact_model::{Body, ContactState, Error, HeightMap, Load, Pair, Result, Tangential};
 use std::f64::consts::PI;
@@ -19,64 +19,64 @@ const SECOND_ORDER: f64 = 1e-8;
 /// A direction that is no axis.
 const ALONG: [f64; 2] = [0.6, 0.8];
 
-pub(super) const CASES: [Case; 9] = [
-    Case {
+pub(super) const CASES: [HardCase; 9] = [
+    HardCase {
         name: "gross slip to a billionth",
         why: "displacements grow without bound; at mu F no stick cell and no multiplier is left",
         asserted: "forces up to mu F (1 - 1e-9) and no farther (the error names mu F, the path stays); far beyond |Q| = mu F, and the energy by plain sums",
         bound: SECOND_ORDER,
         solve: gross_slip,
     },
-    Case {
+    HardCase {
         name: "one cell, sheared",
         why: "no neighbour, one disk: every step sticks or slips as a whole",
         asserted: "an elastic and perfectly plastic spring of k = pi E* h_c/(4 ln(1 + sqrt 2) (1 + c/2)) on turning paths: forces, energies, both stiffnesses",
         bound: BY_HAND,
         solve: one_cell,
     },
-    Case {
+    HardCase {
         name: "two cells, sheared",
         why: "the tensor's off-diagonal entry decides alone; both slip at once",
         asserted: "k = 2/(K(0) + K(1)) by the matrix of the pair, adjacent and diagonal; a higher and a lower cell by relaxation",
         bound: SECOND_ORDER,
         solve: two_cells,
     },
-    Case {
+    HardCase {
         name: "no friction at all",
         why: "every disk is a point, the scale of all tractions is 0",
         asserted: "no traction and no energy at any displacement, slip is the displacement; no force is held, zero is",
         bound: 0.0,
         solve: frictionless,
     },
-    Case {
+    HardCase {
         name: "a coefficient of 1000",
         why: "nothing slips but cells without pressure: limits of seven decades",
         asserted: "forces of a flat punch by elimination; full stick of a rough contact: its stiffness by elimination, and witness",
         bound: SECOND_ORDER,
         solve: stuck,
     },
-    Case {
+    HardCase {
         name: "islands with holes between",
         why: "punches of undefined surroundings: windows almost empty, no cell between to carry a correction",
         asserted: "stiffness of full stick by elimination; partial slip, turned and reversed, by relaxation",
         bound: 1e-7,
         solve: islands,
     },
-    Case {
+    HardCase {
         name: "a plateau, sheared",
         why: "ties: equal heights and equal pressures, cells that begin to slip together",
         asserted: "two axes of symmetry of the tractions; terraces by relaxation",
         bound: 1e-7,
         solve: plateau,
     },
-    Case {
+    HardCase {
         name: "sheared in units at the ends of f64",
         why: "energies of 1e450 and 1e-450, lengths of 1e-100",
         asserted: "forces, displacements, energies and stiffness of the same path in ordinary units, divided",
         bound: 1e-9,
         solve: units,
     },
-    Case {
+    HardCase {
         name: "friction on 1, 2 and 3 threads",
         why: "sums in the order in which threads finish, in two components",
         asserted: "tractions, slip, displacement, energy and both stiffnesses of a path bit for bit (numbers that differ)",
@@ -224,8 +224,8 @@ fn frictionless(ledger: &mut Ledger, effort: Effort) -> Result<()> {
     for delta in [[0.5, 0.0], [-1.0, 2.0], [1e12, -1e-12], [0.0, 0.0]] {
         let state = slide.attempt(normal, Tangential::Displacement(delta))?;
         let found = tangential(&state)?;
-        let (p, s) = (pressure(&state)?, vectors(&state, Fields::Slip)?);
-        let q = vectors(&state, Fields::Traction)?;
+        let (p, s) = (pressure(&state)?, vectors(&state, VectorField::Slip)?);
+        let q = vectors(&state, VectorField::Traction)?;
         ledger.count(q.iter().filter(|q| longest(&[**q]) > 0.0).count());
         let rounding = 1e-14 * longest(&[delta, [1e12, 0.0]]);
         let slips = |i: usize| (s[i][0] - delta[0]).hypot(s[i][1] - delta[1]) <= rounding;
@@ -319,7 +319,7 @@ fn plateau(ledger: &mut Ledger, effort: Effort) -> Result<()> {
     let mut slide = Slide::new(&flat, alike(0.5), MU)?;
     for share in [0.3, 0.9, -0.5] {
         let state = slide.force(ledger, Load::force(1.0), [share * MU, 0.0])?;
-        let q = vectors(&state, Fields::Traction)?;
+        let q = vectors(&state, VectorField::Traction)?;
         let most = longest(&q);
         // Even along both axes in q_x, odd along both in q_y.
         for (i, [x, y]) in q.iter().enumerate() {
@@ -436,7 +436,7 @@ fn threads(ledger: &mut Ledger, effort: Effort) -> Result<()> {
                 let state =
                     slide.attempt(Load::force(20.0), Tangential::Force(share.map(|s| s * MU * 20.0)))?;
                 let t = tangential(&state)?;
-                let fields = [Fields::Traction, Fields::Slip].map(|of| vectors(&state, of));
+                let fields = [VectorField::Traction, VectorField::Slip].map(|of| vectors(&state, of));
                 let k = [t.stiffness, t.stiffness_stuck].into_iter().flatten().flatten();
                 let scalars = [t.force, t.displacement, [t.dissipated, approach(&state)?]];
                 for vector in scalars

@@ -1,11 +1,11 @@
 //! Paths of friction: reversals, turns, loads that rise and fall.
 
-use crate::stability::case::{Case, Effort};
+use crate::stability::case::{Effort, HardCase};
 use crate::stability::ledger::{Ledger, approach, largest, mean_gap, pressure};
 use crate::stability::maps::{map, rough_map};
 use crate::stability::press::{tight, watched, watched_periodic};
 use crate::stability::slide::{
-    Fields, MU, Slide, TIGHTER, against_dragging, alike, compare, longest, rubbed, tangential, vectors,
+    MU, Slide, TIGHTER, VectorField, against_dragging, alike, compare, longest, rubbed, tangential, vectors,
 };
 use contact_model::{Boundary, ContactModel, Error, HeightMap, Load, Result, Scene, Step, Tangential};
 use std::f64::consts::PI;
@@ -16,50 +16,50 @@ const SECOND_ORDER: f64 = 1e-8;
 /// largest one.
 const RELAXED: f64 = 1e-7;
 
-pub(super) const CASES: [Case; 7] = [
-    Case {
+pub(super) const CASES: [HardCase; 7] = [
+    HardCase {
         name: "paths of friction, nu 0.3 and 0.5",
         why: "every step begins from slip references of all steps before; sets of stick and slip cells have no order",
         asserted: "tractions, force and dissipated energy beside relaxation: reversal, turned loads, normal loads that rise and fall; witness of periodic ones",
         bound: RELAXED,
         solve: paths,
     },
-    Case {
+    HardCase {
         name: "the normal force falls under a tangential one",
         why: "limits shrink below the tractions that are there; at F = Q/mu the contact slips as a whole",
         asserted: "witness down to F = Q/mu (1 + 1e-6); below it an error that names mu F, and the path stays",
         bound: SECOND_ORDER,
         solve: falling,
     },
-    Case {
+    HardCase {
         name: "reversed at once",
         why: "the step after a reversal begins with the whole contact on the edge between stick and slip",
         asserted: "nu = 0, discrete: q = q_1 - 2 mu (p(F) - p(F - (Q_1 - Q)/(2 mu))), its displacement, and a loop that closes",
         bound: RELAXED,
         solve: reversed,
     },
-    Case {
+    HardCase {
         name: "sheared under loads of sixteen decades",
         why: "one cell to full contact on one surface, and down again with slip references of either",
         asserted: "nu = 0: delta = mu (d(F) - d(F - Q/mu)) at every force; nu = 0.5: witness, up and down",
         bound: SECOND_ORDER,
         solve: range,
     },
-    Case {
+    HardCase {
         name: "oblong cells, sheared",
         why: "tractions along the cells and across them displace differently; the preconditioner knows neither",
         asserted: "beside relaxation for sides 10 : 1 and 1 : 30 and nu = 0.5; a turned map has the turned forces",
         bound: RELAXED,
         solve: oblong,
     },
-    Case {
+    HardCase {
         name: "a periodic surface that sticks as a whole",
         why: "in full contact nothing is displaced by the mean traction: every displacement is rounding, the stiffness no number",
         asserted: "uniform tractions, no displacement, no slip and no stiffness up to mu times the smallest pressure; beyond it witness",
         bound: 1e-7,
         solve: full_contact,
     },
-    Case {
+    HardCase {
         name: "a periodic wave in plane strain, nu = 0.5",
         why: "one closed form that Poisson's ratio does not end: tractions along the wave and across it",
         asserted: "q = mu (p(F) - p(F - Q/mu)); delta = mu times the change of the mean gap along the wave, (1 + c) times it across",
@@ -129,7 +129,7 @@ fn falling(ledger: &mut Ledger, effort: Effort) -> Result<()> {
         // Lifted off and touched again: no slip, no traction remembered.
         slide.force(ledger, Load::force(0.0), [0.0; 2])?;
         let state = slide.force(ledger, Load::force(force), [0.0; 2])?;
-        ledger.enter(longest(&vectors(&state, Fields::Traction)?) / (MU * largest(pressure(&state)?)));
+        ledger.enter(longest(&vectors(&state, VectorField::Traction)?) / (MU * largest(pressure(&state)?)));
     }
     Ok(())
 }
@@ -171,7 +171,7 @@ fn reversed(ledger: &mut Ledger, effort: Effort) -> Result<()> {
             .map(|q| along.map(|a| 0.1 * a * q))
             .collect();
         let tractions: Vec<[f64; 2]> =
-            vectors(&state, Fields::Traction)?.iter().map(|q| q.map(|q| 0.1 * q)).collect();
+            vectors(&state, VectorField::Traction)?.iter().map(|q| q.map(|q| 0.1 * q)).collect();
         compare(ledger, &tractions, &exact, most);
         let delta = MU * ((d - d_rest) - 2.0 * (d - d_half));
         let found = tangential(&state)?;
@@ -251,10 +251,10 @@ fn full_contact(ledger: &mut Ledger, effort: Effort) -> Result<()> {
             let q = share * MU * least;
             let state = slide.force(ledger, Load::force(force), [0.6 * q, 0.8 * q])?;
             let exact = vec![[0.6 * q, 0.8 * q]; p.len()];
-            compare(ledger, &vectors(&state, Fields::Traction)?, &exact, MU * least);
+            compare(ledger, &vectors(&state, VectorField::Traction)?, &exact, MU * least);
             let found = tangential(&state)?;
             compare(ledger, &[found.displacement], &[[0.0; 2]], unit);
-            ledger.enter(longest(&vectors(&state, Fields::Slip)?) / unit);
+            ledger.enter(longest(&vectors(&state, VectorField::Slip)?) / unit);
             ledger.enter(found.dissipated / (unit * MU * force));
             let absent = found.stiffness.is_none() && found.stiffness_stuck.is_none();
             ledger.must(absent, || format!("what does not move has a stiffness: {found:?}"));
@@ -296,7 +296,7 @@ fn wave(ledger: &mut Ledger, effort: Effort) -> Result<()> {
             let exact: Vec<[f64; 2]> =
                 all.iter().zip(rest).map(|(p, rest)| along.map(|a| 0.1 * a * MU * (p - rest))).collect();
             let tractions: Vec<[f64; 2]> =
-                vectors(&state, Fields::Traction)?.iter().map(|q| q.map(|q| 0.1 * q)).collect();
+                vectors(&state, VectorField::Traction)?.iter().map(|q| q.map(|q| 0.1 * q)).collect();
             compare(ledger, &tractions, &exact, MU * largest(all));
             let delta = factor * MU * (d - d_rest);
             compare(ledger, &[tangential(&state)?.displacement], &[along.map(|a| a * delta)], delta.abs());

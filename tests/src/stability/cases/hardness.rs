@@ -1,12 +1,12 @@
 //! Cells that reach the hardness.
 
-use crate::stability::case::{Case, Effort};
+use crate::stability::case::{Effort, HardCase};
 use crate::stability::ledger::{Ledger, approach, largest, pressure};
 use crate::stability::maps::{hard_map, map, rough_map};
 use crate::stability::plain::PlainSum;
 use crate::stability::press::{forces, tight, watched};
 use crate::stability::shear::{PlainShear, compliance};
-use crate::stability::slide::{Fields, MU, alike, compare, rubbed, tangential, vectors};
+use crate::stability::slide::{MU, VectorField, alike, compare, rubbed, tangential, vectors};
 use crate::stability::{DensePath, Prescribed};
 use bem3d::Bem3d;
 use contact_model::{
@@ -14,15 +14,15 @@ use contact_model::{
     Tangential,
 };
 
-pub(super) const CASES: [Case; 5] = [
-    Case {
+pub(super) const CASES: [HardCase; 5] = [
+    HardCase {
         name: "a flat punch at the hardness",
         why: "no cell ever opens: the edge saturates first, and the approach has no bound as the force reaches that of all cells",
         asserted: "the conditions by plain sums; every cell in contact; forces of all cells and more are refused with that force",
         bound: 1e-9,
         solve: flat,
     },
-    Case {
+    HardCase {
         name: "hard maps with a hardness",
         why: "noise, steps, spikes and heights over twenty decades: sets of elastic cells are single cells and rims one cell wide, and \
               sets that follow from each other alternate",
@@ -30,21 +30,21 @@ pub(super) const CASES: [Case; 5] = [
         bound: 1e-9,
         solve: maps,
     },
-    Case {
+    HardCase {
         name: "two scales with a hardness",
         why: "the fine scale flows under every load, the coarse one is elastic for long: saturated cells are sprinkled over an elastic contact",
         asserted: "the conditions by plain sums; area at least F/p_s and increasing in the load",
         bound: 1e-9,
         solve: two_scales,
     },
-    Case {
+    HardCase {
         name: "near full plasticity",
         why: "a hardness of 0.1 E*, a slope of 0.08, a mean pressure of 0.0999 E*: a few cells decide the approach, and solvers ran for ever",
         asserted: "the conditions by plain sums up to all cells but a thousandth at the hardness",
         bound: 1e-9,
         solve: full,
     },
-    Case {
+    HardCase {
         name: "sheared where it flows",
         why: "cells at the hardness have one limit of friction, a tie of nearly all cells; the indentation moves the contact, and with it the cells that remember their slip",
         asserted: "beside dense matrices with an indentation and tractions of their own: loaded until all cells but a few flow, sheared, turned, unloaded, loaded again",
@@ -199,7 +199,7 @@ fn sheared(ledger: &mut Ledger, effort: Effort) -> Result<()> {
                 ledger.field(&p, &exact.pressed, largest(&exact.pressed));
                 // A hundredth of the deviation of the tractions: the square root of that of the energy.
                 let hundredth = |q: [f64; 2]| q.map(|q| 0.01 * q);
-                let q: Vec<[f64; 2]> = vectors(&state, Fields::Traction)?
+                let q: Vec<[f64; 2]> = vectors(&state, VectorField::Traction)?
                     .iter()
                     .map(|q| hundredth(q.map(|q| q * area)))
                     .collect();

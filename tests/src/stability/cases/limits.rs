@@ -1,6 +1,6 @@
 //! Tolerances and iteration limits that cannot be met, and the accuracy of transforms and sums.
 
-use crate::stability::case::{Case, Effort};
+use crate::stability::case::{Effort, HardCase};
 use crate::stability::ledger::{Ledger, approach, stiffness};
 use crate::stability::maps::{map, rough_map};
 use crate::stability::plain::PlainSum;
@@ -17,15 +17,15 @@ use std::sync::Arc;
 /// The tolerance of figures is tighter by ten.
 const LOOSE: f64 = 1e-3;
 
-pub(super) const CASES: [Case; 9] = [
-    Case {
+pub(super) const CASES: [HardCase; 9] = [
+    HardCase {
         name: "primes, powers of two and one more",
         why: "transforms of every factorisation; a circular length one too short wraps around",
         asserted: "displacement of every cell beside the plain sum over pairs; k of full contact by its formula in 1/N",
         bound: 1e-12,
         solve: sizes,
     },
-    Case {
+    HardCase {
         name: "far field to 1e6 cells",
         why: "Love's closed form is a second difference: at distance r it loses r^2 of its digits",
         asserted: "the kernel beside Gauss-Legendre quadrature of 1/r over the cell, and 40-digit values",
@@ -35,49 +35,49 @@ pub(super) const CASES: [Case; 9] = [
             Ok(())
         },
     },
-    Case {
+    HardCase {
         name: "sums over 1e7 cells",
         why: "running sums lose digits in proportion to their length, single precision all of them",
         asserted: "rms height of -3, 1, 2 moved by 2^30 is sqrt(14/3); force and k of a ramp of 1e7 elements in closed form",
         bound: 1e-13,
         solve: long_sums,
     },
-    Case {
+    HardCase {
         name: "beyond single precision",
         why: "operators inside the iteration have a noise floor of 2e-7",
         asserted: "gaps under pressure, by plain sums in double precision, in rms heights, at the tolerance 1e-10",
         bound: 1e-9,
         solve: noise_floor,
     },
-    Case {
+    HardCase {
         name: "a loose tolerance",
         why: "the contact set is settled further for the sake of k: a k of the set before is plausible to a per cent",
         asserted: "at the tolerance 1e-3, k beside elimination of the state's own set and beside k of a tight solve",
         bound: LOOSE,
         solve: loose,
     },
-    Case {
+    HardCase {
         name: "an unattainable tolerance",
         why: "1e-17 is below rounding: a loop that waits for it never ends or lies",
         asserted: "NotConverged, never called converged; the best state's certificate is near rounding all the same",
         bound: 1e-8,
         solve: unattainable,
     },
-    Case {
+    HardCase {
         name: "a limit on outer iterations",
         why: "an interrupted active set is a plausible wrong answer",
         asserted: "NotConverged with the best state and its own certificate, or the k of the unlimited solve",
         bound: SAME,
         solve: few_rounds,
     },
-    Case {
+    HardCase {
         name: "a deadline",
         why: "the caller stops at any moment: what is remembered may be half a state",
         asserted: "Stopped with the best state so far; the next solve gives the k of a fresh one",
         bound: SAME,
         solve: deadline,
     },
-    Case {
+    HardCase {
         name: "no load, and loads that are none",
         why: "0/0 in every normalisation; NaN compares false with everything",
         asserted: "F = d = k = 0 exactly; negative, infinite and NaN loads are refused by every model (wrong answers)",

@@ -16,14 +16,14 @@ mod surfaces;
 mod ties;
 mod units;
 
-use crate::stability::case::Case;
+use crate::stability::case::HardCase;
 
 /// Every hard case, in the order of the table.
 ///
 /// ```
 /// assert!(tests::stability::cases().iter().all(|c| !c.why.is_empty() && !c.asserted.is_empty()));
 /// ```
-pub fn cases() -> Vec<Case> {
+pub fn cases() -> Vec<HardCase> {
     [
         &few::CASES[..],
         &ties::CASES,

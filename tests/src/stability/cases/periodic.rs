@@ -1,20 +1,20 @@
 //! Periodic boundaries.
 
-use crate::stability::case::{Case, Effort};
+use crate::stability::case::{Effort, HardCase};
 use crate::stability::ledger::{Ledger, largest, mean_gap, pressure, stiffness};
 use crate::stability::maps::{map, rough_map};
 use crate::stability::press::{tight, watched_periodic};
 use contact_model::{ContactModel, HeightMap, Load, PreparedContact, Result};
 
-pub(super) const CASES: [Case; 2] = [
-    Case {
+pub(super) const CASES: [HardCase; 2] = [
+    HardCase {
         name: "a periodic square from any origin",
         why: "a contact cut by the edge of the array is one contact: windows, boxes and neighbours must wrap around",
         asserted: "p, k and the mean gap of the same square rolled by any number of cells (of the largest p, of k, of rms heights)",
         bound: 1e-8,
         solve: any_origin,
     },
-    Case {
+    HardCase {
         name: "a periodic square in full contact",
         why: "the kernel has no constant: k is infinite, and nothing but the force fixes the mean pressure",
         asserted: "no k claimed, mean gap 0; between two loads p changes by dF/A at every cell (of the largest p)",

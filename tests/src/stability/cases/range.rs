@@ -1,41 +1,41 @@
 //! Loads from first touch to far beyond full contact.
 
-use crate::stability::case::{Case, Effort};
+use crate::stability::case::{Effort, HardCase};
 use crate::stability::ledger::{Ledger, approach, largest, pressure, stiffness};
 use crate::stability::maps::{map, rough_map};
 use crate::stability::press::{SAME, press, press_again, press_both, stop_after, tight, watched};
 use contact_model::{ContactModel, ContactState, HeightMap, Load, Result};
 
-pub(super) const CASES: [Case; 5] = [
-    Case {
+pub(super) const CASES: [HardCase; 5] = [
+    HardCase {
         name: "1 to 99.99 % contact",
         why: "restarted iterations stall between 50 and 95 %; near 100 % a few holes decide",
         asserted: "k_i dd <= dF <= k_(i+1) dd between neighbours: F is convex with slope k, which never falls (excess over F)",
         bound: 1e-8,
         solve: fractions,
     },
-    Case {
+    HardCase {
         name: "full contact",
         why: "every cell in contact: no gap left to steer by; pressures of both signs if it came too early",
         asserted: "between two loads p changes by dF q/k, the pressure of the flat square, at every cell; k of the square",
         bound: 1e-8,
         solve: full,
     },
-    Case {
+    HardCase {
         name: "F_bar from 1e-12 to 1e4, up and down",
         why: "sixteen decades with one memory: a state remembered from far away misleads",
         asserted: "loading and unloading give the d and k of a fresh solve",
         bound: SAME,
         solve: sweep,
     },
-    Case {
+    HardCase {
         name: "loads a million times the relief",
         why: "gaps left are a millionth of the approach, less than single precision sees",
         asserted: "full contact with its k; d - F/k is the load-free constant sum q z/k of the same surface",
         bound: 1e-4,
         solve: far_beyond,
     },
-    Case {
+    HardCase {
         name: "misleading warm starts",
         why: "after a singleton, a full contact, or a solve that was stopped, the guess is wrong in every cell",
         asserted: "d and k of a fresh solve, whatever was solved before",

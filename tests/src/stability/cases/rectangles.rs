@@ -1,6 +1,6 @@
 //! Rectangular maps, rectangular cells and undefined points.
 
-use crate::stability::case::{Case, Effort};
+use crate::stability::case::{Effort, HardCase};
 use crate::stability::ledger::{Ledger, approach, largest, pressure, stiffness};
 use crate::stability::plain::{PlainSum, relaxed_by};
 use crate::stability::press::{against_relaxation, press, press_both, tight, watched_periodic};
@@ -8,57 +8,57 @@ use bem3d::love::influence;
 use contact_model::{ContactModel, HeightMap, Load, Result};
 use std::f64::consts::PI;
 
-pub(super) const CASES: [Case; 8] = [
-    Case {
+pub(super) const CASES: [HardCase; 8] = [
+    HardCase {
         name: "a row of cells",
         why: "one row: transforms of length 1 or 2, coarse grids with one row, windows without height",
         asserted: "contact set by relaxation; force and k beside it; the column of the same cells gives the same",
         bound: 1e-9,
         solve: row,
     },
-    Case {
+    HardCase {
         name: "a periodic row of cells",
         why: "the period across is one cell: its own images are nearer than its neighbours",
         asserted: "pressures beside relaxation with sums over images (of the largest), for the row and the column",
         bound: 1e-8,
         solve: periodic_row,
     },
-    Case {
+    HardCase {
         name: "cells a hundred times as long as wide",
         why: "the kernel loses digits, its far field begins late, the periodic symbol is no smooth function of the wave",
         asserted: "force and k beside relaxation; a turned map gives the same k",
         bound: 1e-8,
         solve: oblong_cells,
     },
-    Case {
+    HardCase {
         name: "a map a hundred times as long as wide",
         why: "coarse grids run out of rows long before columns; a square window would be a hundred times too large",
         asserted: "k of the map and of the turned map; the witness of every state",
         bound: 1e-8,
         solve: long_map,
     },
-    Case {
+    HardCase {
         name: "a frame of undefined points",
         why: "instruments lose the edges; an infinite gap must not become a mean, a coarse height or a NaN",
         asserted: "F, d and k of the map without the frame",
         bound: 1e-9,
         solve: frame,
     },
-    Case {
+    HardCase {
         name: "a checkerboard of undefined points",
         why: "every neighbour of a cell is missing: coarse cells average two of four, no row has two cells side by side",
         asserted: "flat: k of the checkerboard by elimination; rough: contact set, force and k beside relaxation",
         bound: 1e-9,
         solve: checkerboard,
     },
-    Case {
+    HardCase {
         name: "all points undefined but one",
         why: "no rms height, no range of heights, one cell wherever it lies",
         asserted: "k and d of one cell alone, by force and by approach, free and periodic",
         bound: 1e-12,
         solve: one_point,
     },
-    Case {
+    HardCase {
         name: "periodic squares of odd, prime and 7-smooth sides",
         why: "a transform of another length than the period sees other images; most lengths have no fast transform",
         asserted: "every load from first to full contact converges; pressures beside relaxation with sums over images",

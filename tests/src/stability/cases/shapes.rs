@@ -1,7 +1,7 @@
 //! Shapes made by hand.
 
 use super::few::faces;
-use crate::stability::case::{Case, Effort};
+use crate::stability::case::{Effort, HardCase};
 use crate::stability::ledger::{Ledger, stiffness};
 use crate::stability::maps::{map, rough_map};
 use crate::stability::plain::PlainSum;
@@ -11,36 +11,36 @@ use contact_model::{HeightMap, Load, Result};
 /// Two solves with the tolerance 1e-10, one by relaxation to rounding.
 const RELAXED: f64 = 1e-8;
 
-pub(super) const CASES: [Case; 5] = [
-    Case {
+pub(super) const CASES: [HardCase; 5] = [
+    HardCase {
         name: "a saw-tooth",
         why: "cliffs beside summits: neighbours of contact cells are out of reach",
         asserted: "contact set exactly, F and k by relaxation; in full contact dF = k dd exactly, k of the square",
         bound: RELAXED,
         solve: saw_tooth,
     },
-    Case {
+    HardCase {
         name: "anisotropic surfaces",
         why: "ridges along one axis: contact sets eight times as long as wide",
         asserted: "contact set exactly, F and k by relaxation and elimination, along x and along y",
         bound: RELAXED,
         solve: anisotropic,
     },
-    Case {
+    HardCase {
         name: "flat rectangles",
         why: "long windows: transforms of different lengths in x and y",
         asserted: "k/(E* sqrt(A)) = 1.181626 (2:1) and 1.271291 (4:1), extrapolated from two grids; equal for either direction",
         bound: 1e-3,
         solve: rectangles,
     },
-    Case {
+    HardCase {
         name: "wedges",
         why: "first touch along a line; a tilted plane touches along one edge of the square",
         asserted: "contact set exactly, F and k by relaxation and elimination",
         bound: RELAXED,
         solve: wedges,
     },
-    Case {
+    HardCase {
         name: "a moat",
         why: "a rim shields what lies inside it: cells far from any contact touch late, and a guess grows the wrong way",
         asserted: "contact set exactly, F and k by relaxation and elimination",

@@ -1,12 +1,12 @@
 //! Adhesion of short range: the work of adhesion acts in the last cells of a contact.
 
 use super::adhesion::{attracted_by, go, meets_and_is_stable, path};
-use crate::stability::case::{Case, Effort};
+use crate::stability::case::{Effort, HardCase};
 use crate::stability::ledger::{Ledger, approach, known, pressure};
 use crate::stability::maps::{map, rough_map};
 use crate::stability::plain::PlainSum;
 use crate::stability::shear::{Dragged, PlainShear, compliance};
-use crate::stability::slide::{Fields, alike, rubbed, tangential, vectors};
+use crate::stability::slide::{VectorField, alike, rubbed, tangential, vectors};
 use analytic::jkr::AdhesiveSphere;
 use bem3d::Bem3d;
 use contact_model::{
@@ -15,8 +15,8 @@ use contact_model::{
 };
 use std::f64::consts::PI;
 
-pub(super) const CASES: [Case; 3] = [
-    Case {
+pub(super) const CASES: [HardCase; 3] = [
+    HardCase {
         name: "a front pinned cell by cell",
         why: "a sphere drawn off under force control: its front jumps from cells to cells until none of them holds, at a fold of the path",
         asserted: "traction and gap of every cell by plain sums; radii and pull-off are JKR's within the cells; beyond the fold an error \
@@ -24,7 +24,7 @@ pub(super) const CASES: [Case; 3] = [
         bound: 1e-6,
         solve: pinned,
     },
-    Case {
+    HardCase {
         name: "a map that snaps in at the first touch",
         why: "cells in contact pull in the others over the whole period: the first load passes all partial contacts in one avalanche",
         asserted: "traction and gap of every cell by plain sums; 0.85 of the area and more at F = 0, under a push \
@@ -32,7 +32,7 @@ pub(super) const CASES: [Case; 3] = [
         bound: 1e-6,
         solve: avalanche,
     },
-    Case {
+    HardCase {
         name: "a front that retreats while it is dragged",
         why: "a sphere dragged by its shear strength is drawn off step by step: cells at the front are let go while they stick, and come back under the next push",
         asserted: "traction and gap of every cell by plain sums; tractions by relaxation of the plain tangential sum with the strength times each \
@@ -217,7 +217,7 @@ fn dragged(ledger: &mut Ledger, effort: Effort) -> Result<()> {
             .collect();
         relaxed.advance(&limits, displacement);
         let most: f64 = limits.iter().map(|(_, limit)| limit).sum();
-        for ([x, y], [fx, fy]) in vectors(&state, Fields::Traction)?.iter().zip(&relaxed.forces) {
+        for ([x, y], [fx, fy]) in vectors(&state, VectorField::Traction)?.iter().zip(&relaxed.forces) {
             ledger.enter((x - fx / cell).hypot(y - fy / cell) / strength);
         }
         let found = tangential(&state)?;

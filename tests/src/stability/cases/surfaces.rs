@@ -1,27 +1,27 @@
 //! The ends of the family of self-affine surfaces.
 
-use crate::stability::case::{Case, Effort};
+use crate::stability::case::{Effort, HardCase};
 use crate::stability::ledger::{Ledger, approach, stiffness};
 use crate::stability::maps::{rough_map, scene};
 use crate::stability::press::{against_relaxation, press, tight};
 use contact_model::{Amplitude, ContactModel, Load, Result, SelfAffine, Surface};
 
-pub(super) const CASES: [Case; 3] = [
-    Case {
+pub(super) const CASES: [HardCase; 3] = [
+    HardCase {
         name: "D_f = 3 exactly",
         why: "H = 0, a logarithmic spectrum: contact spots of one to three cells all over the grid",
         asserted: "contact set exactly, F and k by relaxation and elimination",
         bound: 1e-8,
         solve: |ledger, effort| ends(ledger, effort, 3.0),
     },
-    Case {
+    HardCase {
         name: "D_f = 2 exactly",
         why: "H = 1: few large spots, and full contact within reach",
         asserted: "contact set exactly, F and k by relaxation and elimination",
         bound: 1e-8,
         solve: |ledger, effort| ends(ledger, effort, 2.0),
     },
-    Case {
+    HardCase {
         name: "H just above 0 and just below 1",
         why: "exponents 2(H + 1) next to their ends: a special case for the end itself would jump",
         asserted: "d and k change by less than 1e-9 where H changes by 1e-13",

@@ -1,43 +1,43 @@
 //! Ties: several cells that come into contact at the same load.
 
 use super::few::faces;
-use crate::stability::case::{Case, Effort};
+use crate::stability::case::{Effort, HardCase};
 use crate::stability::ledger::{Ledger, approach, pressure, stiffness};
 use crate::stability::maps::{map, rough_map};
 use crate::stability::plain::PlainSum;
 use crate::stability::press::{against_relaxation, press, press_both, tight};
 use contact_model::{ContactModel, HeightMap, Load, Result};
 
-pub(super) const CASES: [Case; 5] = [
-    Case {
+pub(super) const CASES: [HardCase; 5] = [
+    HardCase {
         name: "flat top",
         why: "every cell of a plateau touches at once: the set jumps from none to all",
         asserted: "k of 8 x 8 cells by elimination and 1.106498258 x 8 E* h_c, at any light load",
         bound: 1e-9,
         solve: flat_top,
     },
-    Case {
+    HardCase {
         name: "flat maps",
         why: "rms height 0: no unit for gaps, no F_bar",
         asserted: "k of full contact and F = k d for loads of 1e-200 to 1e200; F_bar is refused",
         bound: 1e-9,
         solve: flat_maps,
     },
-    Case {
+    HardCase {
         name: "quantised heights",
         why: "heights in steps of rms/4: hundreds of exact ties, and a contact set that rounding could choose",
         asserted: "moving every height by at most e moves d at a given force by at most 2 e (excess, in e)",
         bound: 1e-3,
         solve: quantised,
     },
-    Case {
+    HardCase {
         name: "symmetric bodies",
         why: "orbits of eight cells reach their edge together and must join and leave together",
         asserted: "the pressure has all eight symmetries of the square (relative to its largest value)",
         bound: 1e-8,
         solve: symmetric,
     },
-    Case {
+    HardCase {
         name: "a checkerboard",
         why: "all black cells touch together; the kernel is nearest to singular at this wave",
         asserted: "light loads: black cells only, F and k by relaxation and elimination; heavy: k of full contact",

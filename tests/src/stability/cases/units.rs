@@ -1,6 +1,6 @@
 //! Nondimensionalisation, and a caller's choice of units and of the zero of heights.
 
-use crate::stability::case::{Case, Effort};
+use crate::stability::case::{Effort, HardCase};
 use crate::stability::ledger::{Ledger, approach, stiffness};
 use crate::stability::maps::{map, rough_map};
 use crate::stability::press::{tight, watched};
@@ -10,29 +10,29 @@ use contact_model::{ContactModel, ContactState, Error, HeightMap, Load, Result};
 /// solve.
 const NEUTRAL: f64 = 1e-11;
 
-pub(super) const CASES: [Case; 5] = [
-    Case {
+pub(super) const CASES: [HardCase; 5] = [
+    HardCase {
         name: "heights moved by 2^20 and -2^40",
         why: "d - h from raw heights loses every digit; z = h_max - h loses none",
         asserted: "heights in steps of rms/4096 moved by 2^20 and -2^40: F, d, k and p bit for bit",
         bound: 0.0,
         solve: moved,
     },
-    Case {
+    HardCase {
         name: "heights times powers of two",
         why: "2^500 and 2^-500: squares of heights overflow or vanish",
         asserted: "F, d, k and p bit for bit after division",
         bound: 0.0,
         solve: powers_of_two,
     },
-    Case {
+    HardCase {
         name: "heights of 1e-150 and 1e150",
         why: "forces of 1e-150, products of heights beyond f64",
         asserted: "F, d, k of the same map in ordinary nondimensional, divided",
         bound: NEUTRAL,
         solve: |ledger, effort| neutral(ledger, effort, &[(1.0, 1.0, 1e-150), (1.0, 1.0, 1e150)]),
     },
-    Case {
+    HardCase {
         name: "E* and L of 1e-12 and 1e12",
         why: "stiffness and force differ by forty decades between scenes",
         asserted: "F, d, k of the same map with E* = L = 1, divided",
@@ -42,7 +42,7 @@ pub(super) const CASES: [Case; 5] = [
             neutral(ledger, effort, &all)
         },
     },
-    Case {
+    HardCase {
         name: "outputs beyond f64",
         why: "the solve in scaled units is sound, but force or stiffness has no number",
         asserted: "an error with the quantity (Domain), neither infinity nor 0; what can be held is returned (wrong answers)",

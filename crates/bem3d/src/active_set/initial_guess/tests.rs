@@ -6,7 +6,7 @@ use crate::active_set::Bounds;
 use crate::active_set::residuals::Residuals;
 use crate::active_set::state::Continuation;
 use crate::kernel::love::influence;
-use crate::response::normal::{self, Responding, Wanted};
+use crate::response::normal::{self, Responding, StiffnessRequest};
 use approx::assert_relative_eq;
 use contact_model::{Boundary, Status, never};
 
@@ -43,7 +43,7 @@ mod tangent {
                     &mut problem,
                     &solved,
                     &Responding::whole(&solved, Bounds::Unlimited),
-                    Wanted { tolerance: 1e-9, q: None, expected: None },
+                    StiffnessRequest { tolerance: 1e-9, q: None, expected: None },
                     &never,
                 );
                 (solved, k.q().to_vec())
@@ -75,7 +75,7 @@ mod tangent {
                     &mut problem,
                     solved,
                     &Responding::whole(solved, Bounds::Unlimited),
-                    Wanted { tolerance: 100.0, q: Some(q), expected: None },
+                    StiffnessRequest { tolerance: 100.0, q: Some(q), expected: None },
                     &never,
                 );
                 assert_eq!(k.steps, 0);

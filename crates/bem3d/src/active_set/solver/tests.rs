@@ -6,7 +6,7 @@ use crate::geometry::Grid;
 use crate::kernel::NormalTable;
 use crate::kernel::love::influence;
 use crate::operator::{DirectSum, InfluenceOperator};
-use crate::response::normal::{self, Responding, Wanted};
+use crate::response::normal::{self, Responding, StiffnessRequest};
 use crate::tuning::Tuning;
 use approx::assert_relative_eq;
 use contact_model::{Boundary, never};
@@ -130,7 +130,7 @@ fn every_recipe_finds_the_factored_state() {
                     &mut problem,
                     &exact,
                     &Responding::whole(&exact, Bounds::Unlimited),
-                    Wanted { tolerance: TOLERANCE, q: None, expected: None },
+                    StiffnessRequest { tolerance: TOLERANCE, q: None, expected: None },
                     &never,
                 );
                 assert_relative_eq!(tangent.k(), k, max_relative = TOLERANCE);
@@ -138,7 +138,7 @@ fn every_recipe_finds_the_factored_state() {
                     &mut problem,
                     &found,
                     &Responding::whole(&found, Bounds::Unlimited),
-                    Wanted { tolerance: TOLERANCE, q: None, expected: None },
+                    StiffnessRequest { tolerance: TOLERANCE, q: None, expected: None },
                     &never,
                 );
                 assert!(tangent.solve_error <= TOLERANCE, "{what} {}: {tangent:?}", recipe.1);
@@ -160,7 +160,7 @@ fn the_stiffness_of_a_large_contact_is_the_same_in_every_recipe() {
         &mut first,
         &solved,
         &Responding::whole(&solved, Bounds::Unlimited),
-        Wanted { tolerance: 1e-8, q: None, expected: None },
+        StiffnessRequest { tolerance: 1e-8, q: None, expected: None },
         &never,
     );
     assert!(first.operators.last().unwrap().has_preconditioner());
@@ -170,7 +170,7 @@ fn the_stiffness_of_a_large_contact_is_the_same_in_every_recipe() {
             &mut problem,
             &solved,
             &Responding::whole(&solved, Bounds::Unlimited),
-            Wanted { tolerance: 1e-8, q: None, expected: None },
+            StiffnessRequest { tolerance: 1e-8, q: None, expected: None },
             &never,
         );
         assert_recipe(&problem, recipe);

@@ -6,12 +6,12 @@ use contact_model::Status;
 use std::sync::Arc;
 
 /// The constants of a pair of one rigid and one elastic body.
-struct Pair {
+struct RigidElasticPair {
     c: f64,
     beta: f64,
 }
 
-impl Pair {
+impl RigidElasticPair {
     /// A rigid body on an elastic one, on which the tractions act.
     fn on_rigid(nu: f64) -> Self {
         Self { c: nu / (1.0 - nu), beta: (1.0 - 2.0 * nu) / (2.0 * (1.0 - nu)) }
@@ -33,20 +33,20 @@ fn gaps(grid: Grid) -> Vec<f64> {
         .collect()
 }
 
-struct Contact {
+struct PlainContact {
     grid: Grid,
     boundary: Boundary,
-    pair: Pair,
+    pair: RigidElasticPair,
     z: Vec<f64>,
     problem: Problem,
-    friction: Friction,
+    friction: FrictionSolver,
 }
 
-impl Contact {
-    fn new(grid: Grid, boundary: Boundary, pair: Pair, z: Vec<f64>) -> Self {
+impl PlainContact {
+    fn new(grid: Grid, boundary: Boundary, pair: RigidElasticPair, z: Vec<f64>) -> Self {
         let problem = Problem::new(grid, Arc::new(z.clone()), boundary, &Tuning::DEFAULT);
         let constants = [pair.c, pair.beta];
-        let friction = Friction::new(grid, boundary, constants, &Tuning::DEFAULT, &Recorder::default());
+        let friction = FrictionSolver::new(grid, boundary, constants, &Tuning::DEFAULT, &Recorder::default());
         Self { grid, boundary, pair, z, problem, friction }
     }
 
@@ -132,7 +132,7 @@ fn a_coupled_path_meets_the_conditions_of_both_problems() {
     use TangentialControl::{Displacement, Force};
     for (boundary, nu) in [(Boundary::Free, 0.0), (Boundary::Free, 0.3), (Boundary::Periodic, 0.3)] {
         let grid = Grid::square(14, 14);
-        let mut contact = Contact::new(grid, boundary, Pair::on_rigid(nu), gaps(grid));
+        let mut contact = PlainContact::new(grid, boundary, RigidElasticPair::on_rigid(nu), gaps(grid));
         let (mu, force) = (0.4, 30.0);
         let most = mu * force;
         let mut before = SlipMemory::default();
@@ -160,7 +160,7 @@ fn pressed_without_a_force_the_surface_is_held_back_from_moving_inwards() {
             0.05 * (x * x + y * y)
         })
         .collect();
-    let mut contact = Contact::new(grid, Boundary::Free, Pair::on_rigid(0.1), z);
+    let mut contact = PlainContact::new(grid, Boundary::Free, RigidElasticPair::on_rigid(0.1), z);
     let state = contact.advance(
         &SlipMemory::default(),
         FrictionLaw::coulomb(0.2),
@@ -178,8 +178,12 @@ fn pressed_without_a_force_the_surface_is_held_back_from_moving_inwards() {
     }
     // Held by friction, it takes more force to the same approach.
     let free = {
-        let mut contact =
-            Contact::new(grid, Boundary::Free, Pair { c: 0.1 / 0.9, beta: 0.0 }, contact.z.clone());
+        let mut contact = PlainContact::new(
+            grid,
+            Boundary::Free,
+            RigidElasticPair { c: 0.1 / 0.9, beta: 0.0 },
+            contact.z.clone(),
+        );
         contact
             .advance(
                 &SlipMemory::default(),
@@ -205,7 +209,7 @@ fn coupled_paths_with_a_limit_meet_the_conditions_of_both_problems() {
         let grid = Grid::square(4 + draw(0.0, 7.0) as usize, 4 + draw(0.0, 7.0) as usize);
         let boundary = if seed % 3 == 0 { Boundary::Periodic } else { Boundary::Free };
         let nu = draw(0.0, 0.49);
-        let mut contact = Contact::new(grid, boundary, Pair::on_rigid(nu), gaps(grid));
+        let mut contact = PlainContact::new(grid, boundary, RigidElasticPair::on_rigid(nu), gaps(grid));
         let force = draw(1.0, 30.0);
         let limit = (seed % 5 > 0).then(|| draw(0.1, 1.0));
         let law = FrictionLaw { limit, ..FrictionLaw::coulomb(draw(0.05, 0.5)) };

@@ -20,7 +20,7 @@ pub struct Oracle {
     displacement: [f64; 2],
 }
 
-pub struct Expected {
+pub struct OracleState {
     pub traction: Vec<f64>,
     pub slip: Vec<f64>,
     pub displacement: [f64; 2],
@@ -54,7 +54,7 @@ impl Oracle {
     }
 
     /// The next state; tractions and slip on the cells.
-    pub fn advance(&mut self, cells: &CellSet, limit: &[f64], control: TangentialControl) -> Expected {
+    pub fn advance(&mut self, cells: &CellSet, limit: &[f64], control: TangentialControl) -> OracleState {
         let n = self.grid.count();
         let place: Vec<usize> = cells.index(self.grid).collect();
         let mut b = vec![0.0; n];
@@ -116,7 +116,7 @@ impl Oracle {
         };
         let slip = |k: usize| delta[k / n] - u[k] - reference[k];
         let on_cells: Vec<usize> = place.iter().copied().chain(place.iter().map(|i| n + i)).collect();
-        let expected = Expected {
+        let expected = OracleState {
             traction: on_cells.iter().map(|&k| q[k]).collect(),
             slip: on_cells.iter().map(|&k| slip(k)).collect(),
             displacement: delta,

@@ -41,7 +41,7 @@ fn solve(
     tolerance: f64,
     stop: Stop<'_>,
 ) -> NormalStiffness {
-    let wanted = Wanted { tolerance, q: guess, expected: None };
+    let wanted = StiffnessRequest { tolerance, q: guess, expected: None };
     super::solve(problem, state, &Responding::whole(state, Bounds::Unlimited), wanted, stop)
 }
 

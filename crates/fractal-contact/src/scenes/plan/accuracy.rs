@@ -11,7 +11,7 @@ use crate::scenes::read::{
 };
 use analysis::{AccuracyTarget, GridTrial};
 use bem3d::Bem3d;
-use contact_model::quantities::{AskedBy, Quantity};
+use contact_model::quantities::{AskedBy, StateQuantity};
 use contact_model::{Boundary, Cells};
 use runs::amounts::{memory, time};
 
@@ -30,7 +30,7 @@ pub(crate) fn within(scene: &SceneFile, errors: &GridErrors, share: f64) -> bool
 /// Which numbers an accuracy is about: those asked for whose error of the grid is estimated. Of the area it
 /// is the corrected one, and the largest pressure, which every scene has, is none of them.
 fn controlled(scene: &SceneFile) -> Vec<&'static str> {
-    let asked = |quantity: &&Quantity| match quantity.asked_by {
+    let asked = |quantity: &&StateQuantity| match quantity.asked_by {
         AskedBy::Output(output) => scene.requested.outputs.asks(output),
         _ => false,
     };
@@ -295,7 +295,7 @@ fn grids(scene: &SceneFile) -> Vec<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scenes::{LoadKind, LoadList, SceneSurface};
+    use crate::scenes::{LoadList, PrescribedLoad, SceneSurface};
     use contact_model::{SelfAffine, Surface};
 
     fn scene(accuracy: &str, surfaces: usize) -> SceneFile {
@@ -374,7 +374,7 @@ mod tests {
     #[test]
     fn grids_have_coarser_ones_to_be_compared_with() {
         let plain = |surface| {
-            let loads = LoadRequest::Loads(LoadList { kind: LoadKind::Force, values: vec![1.0] });
+            let loads = LoadRequest::Loads(LoadList { kind: PrescribedLoad::Force, values: vec![1.0] });
             SceneFile::new(vec![Numerics::Bem3d(Bem3d::default())], SceneSurface::Plain(surface), 1.0, loads)
         };
         let free = plain(Surface::SelfAffine(SelfAffine::new(2.2, 1.0, 0.01).unwrap()));

@@ -5,7 +5,7 @@
 
 use crate::scenes::plan::Cost;
 use crate::scenes::read::{
-    LoadKind, LoadList, LoadRequest, Numerics, Result, SceneFile, SceneSurface, cells, sampled, step_to,
+    LoadList, LoadRequest, Numerics, PrescribedLoad, Result, SceneFile, SceneSurface, cells, sampled, step_to,
 };
 use bem3d::BYTES_PER_CELL;
 use contact_model::{Adhesion, Cells, ContactState, Coupling, Friction, Surface};
@@ -115,7 +115,7 @@ fn seconds_of_sizes(scene: &SceneFile, numerics: &Numerics) -> f64 {
 /// on a self-affine surface, and for contacts with an effect.
 fn rough_sweep(scene: &SceneFile, model: &bem3d::Bem3d) -> Option<f64> {
     let SceneSurface::Plain(Surface::SelfAffine(surface)) = &scene.surface else { return None };
-    let LoadRequest::Loads(LoadList { kind: LoadKind::ForceBar, values }) = &scene.request else {
+    let LoadRequest::Loads(LoadList { kind: PrescribedLoad::ForceBar, values }) = &scene.request else {
         return None;
     };
     if scene.effects.named().next().is_some() {

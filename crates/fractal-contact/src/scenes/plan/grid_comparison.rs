@@ -2,7 +2,7 @@
 
 use crate::scenes::read::{Numerics, SceneFile, cells};
 use analysis::{GridError, grid_error};
-use contact_model::quantities::{Compared, QUANTITIES, Quantity};
+use contact_model::quantities::{Compared, QUANTITIES, StateQuantity};
 use contact_model::{
     Boundary, Cells, ContactState, Error, HeightMap, Load, Normalisation, Output, Result, Scene, Stop,
 };
@@ -22,7 +22,7 @@ const RESOLVED_SLOPE: f64 = 0.02;
 pub(crate) const RMS_SLOPE: &str = "rms_slope";
 
 /// Numbers of one state on one grid, by their names; those that the model does not claim are absent.
-type Numbers = BTreeMap<&'static str, f64>;
+type GridNumbers = BTreeMap<&'static str, f64>;
 
 /// What the grid does to a state.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -41,11 +41,11 @@ impl GridErrors {
 }
 
 /// The quantities that are compared, where a scene asks for them.
-pub(crate) fn compared() -> impl Iterator<Item = &'static Quantity> {
+pub(crate) fn compared() -> impl Iterator<Item = &'static StateQuantity> {
     QUANTITIES.iter().filter(|quantity| quantity.compared != Compared::No)
 }
 
-fn numbers(state: &ContactState, normalisation: &Normalisation, rms_slope: f64) -> Numbers {
+fn numbers(state: &ContactState, normalisation: &Normalisation, rms_slope: f64) -> GridNumbers {
     let found = compared().filter_map(|q| Some((q.name, q.number(state, normalisation)?)));
     found.chain([(RMS_SLOPE, rms_slope)]).collect()
 }
@@ -54,9 +54,9 @@ fn numbers(state: &ContactState, normalisation: &Normalisation, rms_slope: f64) 
 /// carries load and where finer cells bring no shorter waves, which the slope of the surface shows.
 fn errors(
     boundary: Boundary,
-    fine: &Numbers,
-    half: &Numbers,
-    quarter: &Numbers,
+    fine: &GridNumbers,
+    half: &GridNumbers,
+    quarter: &GridNumbers,
 ) -> BTreeMap<String, GridError> {
     let resolved = match (fine.get(RMS_SLOPE), half.get(RMS_SLOPE)) {
         (Some(fine), Some(half)) => (half - fine).abs() <= RESOLVED_SLOPE * fine,
@@ -64,7 +64,7 @@ fn errors(
     };
     let limited = boundary == Boundary::Periodic && resolved;
     let unknown = |name: &str| {
-        !limited && Quantity::named(name).is_some_and(|quantity| quantity.compared == Compared::Periodic)
+        !limited && StateQuantity::named(name).is_some_and(|quantity| quantity.compared == Compared::Periodic)
     };
     let error = |(&name, &fine): (&&'static str, &f64)| {
         let error = grid_error(fine, *half.get(name)?, *quarter.get(name)?)?;
@@ -79,7 +79,7 @@ pub(crate) struct GridComparison {
     pub rms_slope: f64,
     boundary: Boundary,
     /// Under each load, with cells twice and four times as large; `None` where a grid does not answer.
-    coarser: Vec<Option<[Numbers; 2]>>,
+    coarser: Vec<Option<[GridNumbers; 2]>>,
 }
 
 impl GridComparison {
@@ -130,7 +130,7 @@ pub(crate) fn on_grid(scene: &SceneFile, numerics: &Numerics, longer: usize) -> 
 }
 
 /// The numbers of one model, the first of a scene, under loads; `None` where it does not answer one.
-fn solve(scene: &SceneFile, seed: u64, loads: &[Load], stop: Stop<'_>) -> Result<Vec<Option<Numbers>>> {
+fn solve(scene: &SceneFile, seed: u64, loads: &[Load], stop: Stop<'_>) -> Result<Vec<Option<GridNumbers>>> {
     let numerics = &scene.models[0];
     let slope = rms_slope(scene, &*solved_map(scene, numerics, seed)?)?;
     let mut found = vec![None; loads.len()];
@@ -178,7 +178,7 @@ mod tests {
     fn the_largest_pressure_has_no_error_where_its_limit_may_be_infinite() {
         let all = || compared().map(|quantity| quantity.name).chain([RMS_SLOPE]);
         let unknown = |boundary, slope_of_half| {
-            let [fine, mut half, quarter]: [Numbers; 3] =
+            let [fine, mut half, quarter]: [GridNumbers; 3] =
                 [1.0, 1.1, 1.3].map(|value| all().map(|name| (name, value)).collect());
             half.insert(RMS_SLOPE, slope_of_half);
             let errors = errors(boundary, &fine, &half, &quarter);

@@ -2,8 +2,8 @@
 
 use crate::scenes::plan::{Assumptions, Cost, ModelOnSurface, calibration, probe};
 use crate::scenes::read::{
-    Diagnostic, EffectLine, FieldFormat, HEIGHTS, LoadKind, LoadRequest, Numerics, Result, SceneFile, System,
-    amount, cells, description, effect_lines, short, words,
+    Diagnostic, EffectLine, FieldFormat, HEIGHTS, LoadRequest, Numerics, PrescribedLoad, Result, SceneFile,
+    System, amount, cells, description, effect_lines, short, words,
 };
 use bem3d::UNRESOLVED_RANGE;
 use contact_model::units::ascii;
@@ -325,9 +325,9 @@ fn beyond_hardness(scene: &SceneFile) -> Option<Diagnostic> {
     let (means, rest): (Vec<f64>, _) = match &scene.request {
         LoadRequest::Loads(loads) => {
             let area = match loads.kind {
-                LoadKind::MeanPressure => 1.0,
-                LoadKind::Force => area,
-                LoadKind::ForceBar | LoadKind::Approach | LoadKind::MeanGap => return None,
+                PrescribedLoad::MeanPressure => 1.0,
+                PrescribedLoad::Force => area,
+                PrescribedLoad::ForceBar | PrescribedLoad::Approach | PrescribedLoad::MeanGap => return None,
             };
             (loads.values.iter().map(|value| value / area).collect(), "The other loads are solved.")
         }

@@ -1,7 +1,7 @@
 //! `accuracy`, `budget` and `memory` of `[scene]`.
 
 use crate::scenes::read::key::{Key, KeyTable};
-use crate::scenes::read::{Diagnostic, Entry, Read, System, printed};
+use crate::scenes::read::{Diagnostic, Entry, ReadResult, System, printed};
 use analysis::AccuracyTarget;
 use surface_io::Dimension;
 
@@ -93,7 +93,7 @@ fn alone(entry: &Entry<'_>, help: &str) -> Diagnostic {
     entry.diagnostic_at_key(message).with_help(help)
 }
 
-fn read_share(entry: &Entry<'_>) -> Read<f64> {
+fn read_share(entry: &Entry<'_>) -> ReadResult<f64> {
     let share = entry.pure_number()?;
     if share > 0.0 && share < 1.0 {
         return Ok(share);
@@ -104,7 +104,7 @@ fn read_share(entry: &Entry<'_>) -> Read<f64> {
 }
 
 /// An amount of memory in bytes.
-fn read_memory(entry: &Entry<'_>) -> Read<f64> {
+fn read_memory(entry: &Entry<'_>) -> ReadResult<f64> {
     let amount = entry.as_word().and_then(|text| {
         MEMORY_UNITS.iter().find_map(|(unit, bytes)| {
             Some(text.trim().strip_suffix(unit)?.trim().parse::<f64>().ok()? * bytes)

@@ -2,7 +2,9 @@
 //! `[scene.body]`.
 
 use crate::scenes::read::key::{Context, Key, KeyTable};
-use crate::scenes::read::{Diagnostic, Entries, Entry, LengthOrPair, Read, System, printed, suggestion};
+use crate::scenes::read::{
+    Diagnostic, Entries, Entry, LengthOrPair, ReadResult, System, printed, suggestion,
+};
 use contact_model::Size;
 use std::path::PathBuf;
 use surface_gen::TwinSpectrum;
@@ -722,7 +724,7 @@ pub(crate) static BODY_KEYS: KeyTable<AskedBody> = KeyTable {
 const TWINS: [(&str, TwinSpectrum); 2] = [("waves", TwinSpectrum::EachWave), ("rings", TwinSpectrum::Rings)];
 const FACES: [(&str, Option<Mirror>); 3] = [("x", Some(Mirror::X)), ("y", Some(Mirror::Y)), ("none", None)];
 
-fn length(entry: &Entry<'_>, context: Context<'_>) -> Read<f64> {
+fn length(entry: &Entry<'_>, context: Context<'_>) -> ReadResult<f64> {
     entry.positive(Dimension::LENGTH, context.system)
 }
 
@@ -730,7 +732,7 @@ fn print_length(length: Option<f64>, system: System) -> Option<String> {
     length.map(|length| printed::quantity(length, Dimension::LENGTH, system))
 }
 
-fn read_side(entry: &Entry<'_>, system: System) -> Read<Size> {
+fn read_side(entry: &Entry<'_>, system: System) -> ReadResult<Size> {
     if entry.is_list() {
         return Err(entry
             .diagnostic(format!("`side` has {} values: it is the one of a square", entry.list().len()))
@@ -739,7 +741,7 @@ fn read_side(entry: &Entry<'_>, system: System) -> Read<Size> {
     entry.positive(Dimension::LENGTH, system).map(Size::from)
 }
 
-fn read_size(entry: &Entry<'_>, system: System) -> Read<Size> {
+fn read_size(entry: &Entry<'_>, system: System) -> ReadResult<Size> {
     Ok(match entry.lengths(system)? {
         LengthOrPair::One(side) => side.into(),
         LengthOrPair::Two(sides) => sides.into(),
@@ -755,7 +757,7 @@ fn print_size(size: Option<Size>, system: System) -> Option<String> {
     size.filter(|size| !size.is_square()).map(|size| printed::list(&[size.x, size.y].map(length)))
 }
 
-fn within(entry: &Entry<'_>, low: f64, high: f64) -> Read<f64> {
+fn within(entry: &Entry<'_>, low: f64, high: f64) -> ReadResult<f64> {
     let value = entry.number()?;
     if (low..=high).contains(&value) {
         return Ok(value);
@@ -765,7 +767,7 @@ fn within(entry: &Entry<'_>, low: f64, high: f64) -> Read<f64> {
         .with_help("D_f = 3 - H lies in [2, 3], H in [0, 1]"))
 }
 
-fn read_unit(entry: &Entry<'_>) -> Read<Unit> {
+fn read_unit(entry: &Entry<'_>) -> ReadResult<Unit> {
     entry.text()?.parse().map_err(|error| {
         entry
             .diagnostic(format!("`{}`: {error}", entry.name()))
@@ -779,7 +781,7 @@ fn print_unit(unit: &Unit) -> String {
 }
 
 /// One length or two: sides of the map or of a cell.
-fn sides(entry: &Entry<'_>, context: Context<'_>) -> Read<Sides> {
+fn sides(entry: &Entry<'_>, context: Context<'_>) -> ReadResult<Sides> {
     let length = |value| measured(entry, value, context);
     Ok(match entry.lengths(context.system)? {
         LengthOrPair::One(side) => Sides::One(length(side)?),
@@ -787,16 +789,16 @@ fn sides(entry: &Entry<'_>, context: Context<'_>) -> Read<Sides> {
     })
 }
 
-fn measured(entry: &Entry<'_>, value: f64, context: Context<'_>) -> Read<Quantity> {
+fn measured(entry: &Entry<'_>, value: f64, context: Context<'_>) -> ReadResult<Quantity> {
     let dimension = if context.system == System::Si { Dimension::LENGTH } else { Dimension::NONE };
     Quantity::new(value, dimension).map_err(|error| entry.diagnostic(error.to_string()))
 }
 
-fn positive_length(entry: &Entry<'_>, context: Context<'_>) -> Read<Quantity> {
+fn positive_length(entry: &Entry<'_>, context: Context<'_>) -> ReadResult<Quantity> {
     measured(entry, length(entry, context)?, context)
 }
 
-fn read_crop(entry: &Entry<'_>) -> Read<Crop> {
+fn read_crop(entry: &Entry<'_>) -> ReadResult<Crop> {
     if !entry.is_table() {
         // As a flag has it: row, column, rows, columns.
         if let Some(word) = entry.as_word().filter(|word| word.contains(',')) {
@@ -829,7 +831,7 @@ fn print_crop(crop: Crop) -> String {
     }
 }
 
-fn read_fill(entry: &Entry<'_>, context: Context<'_>) -> Read<Fill> {
+fn read_fill(entry: &Entry<'_>, context: Context<'_>) -> ReadResult<Fill> {
     match entry.as_word() {
         Some("neighbours") => Ok(Fill::Neighbours),
         Some("plane") => Ok(Fill::Plane),
@@ -844,7 +846,7 @@ fn read_fill(entry: &Entry<'_>, context: Context<'_>) -> Read<Fill> {
     }
 }
 
-fn read_rotation(entry: &Entry<'_>) -> Read<u8> {
+fn read_rotation(entry: &Entry<'_>) -> ReadResult<u8> {
     match entry.count(0)? {
         degrees @ (0 | 90 | 180 | 270) => Ok((degrees / 90) as u8),
         degrees => {

@@ -22,7 +22,7 @@ const SHOWN: usize = 100;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Diagnostic {
     message: String,
-    kind: Kind,
+    kind: DiagnosticKind,
     span: Option<Range<usize>>,
     help: Option<String>,
     place: Option<Box<SourceSpan>>,
@@ -30,7 +30,7 @@ pub struct Diagnostic {
 
 /// The kinds that callers with an error type of their own distinguish.
 #[derive(Debug, Clone, PartialEq)]
-enum Kind {
+enum DiagnosticKind {
     Note,
     Mistake,
     /// A value of another type than expected, or none where one is needed.
@@ -50,33 +50,33 @@ struct SourceSpan {
 impl Diagnostic {
     /// A mistake of the whole file.
     pub fn new(message: impl Into<String>) -> Self {
-        Self { message: message.into(), kind: Kind::Mistake, span: None, help: None, place: None }
+        Self { message: message.into(), kind: DiagnosticKind::Mistake, span: None, help: None, place: None }
     }
 
     /// A remark on the whole file, which is still read.
     pub fn note(message: impl Into<String>) -> Self {
-        Self { kind: Kind::Note, ..Self::new(message) }
+        Self { kind: DiagnosticKind::Note, ..Self::new(message) }
     }
 
     /// A value of another type than expected, or none where one is needed.
     pub(crate) fn of_type(message: impl Into<String>) -> Self {
-        Self { kind: Kind::Type, ..Self::new(message) }
+        Self { kind: DiagnosticKind::Type, ..Self::new(message) }
     }
 
     /// A number outside of its range.
     pub(crate) fn of_domain(message: impl Into<String>, error: Error) -> Self {
-        Self { kind: Kind::Domain(Box::new(error)), ..Self::new(message) }
+        Self { kind: DiagnosticKind::Domain(Box::new(error)), ..Self::new(message) }
     }
 
     /// Whether a value is of another type than expected, or missing.
     pub fn is_type(&self) -> bool {
-        self.kind == Kind::Type
+        self.kind == DiagnosticKind::Type
     }
 
     /// The number outside of its range, as [`Error::Domain`].
     pub fn domain(&self) -> Option<&Error> {
         match &self.kind {
-            Kind::Domain(error) => Some(error),
+            DiagnosticKind::Domain(error) => Some(error),
             _ => None,
         }
     }
@@ -161,7 +161,7 @@ fn excerpt(text: &str, span: &Range<usize>) -> (usize, usize, String, usize) {
 
 impl fmt::Display for Diagnostic {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}: {}", if self.kind == Kind::Note { "note" } else { "error" }, self.message)?;
+        write!(f, "{}: {}", if self.kind == DiagnosticKind::Note { "note" } else { "error" }, self.message)?;
         let mut indent = 1;
         if let Some(place) = &self.place {
             let path = place.path.display();

@@ -1,6 +1,6 @@
 //! `[effects]`: an effect is off unless the scene names it.
 
-use crate::scenes::read::{Diagnostic, Entries, Entry, Read, System, amount, number, printed};
+use crate::scenes::read::{Diagnostic, Entries, Entry, ReadResult, System, amount, number, printed};
 use contact_model::{
     Adhesion, AdhesionLaw, Boundary, Coupling, Effects, Friction, FrictionLaw, Hardness, PronySeries,
     Relaxing, Rheology,
@@ -19,7 +19,7 @@ pub struct EffectKey {
     pub about: &'static str,
     /// The behaviour where it is not named.
     pub off: &'static str,
-    pub(crate) read: fn(&Entry<'_>, System, &mut Effects) -> Read<()>,
+    pub(crate) read: fn(&Entry<'_>, System, &mut Effects) -> ReadResult<()>,
     /// Its value as TOML; `None` where it is off.
     pub(crate) print: fn(&Effects, System) -> Option<String>,
     /// Its numbers, where it is on.
@@ -164,7 +164,7 @@ pub fn effect_lines(effects: &Effects, system: System) -> Vec<EffectLine> {
 }
 
 /// Reads `[effects]`.
-pub(crate) fn read_effects(table: Option<Entries<'_>>, system: System) -> Read<Effects> {
+pub(crate) fn read_effects(table: Option<Entries<'_>>, system: System) -> ReadResult<Effects> {
     let mut effects = Effects::default();
     let Some(table) = table else { return Ok(effects) };
     for key in EFFECT_KEYS {
@@ -191,7 +191,7 @@ pub fn parse_effects(text: &str) -> Result<Effects, Diagnostic> {
     Entries::of_text("effects", text, |table| read_effects(Some(table), System::None))
 }
 
-fn read_adhesion(table: &Entries<'_>, system: System) -> Read<Adhesion> {
+fn read_adhesion(table: &Entries<'_>, system: System) -> ReadResult<Adhesion> {
     let work = table.require("work", "\"50 mJ/m^2\"")?.not_negative(Dimension::ENERGY_PER_AREA, system)?;
     let law = table.find("law").map(|e| Ok((e.choice(&LAWS)?, e))).transpose()?;
     let adhesion = match (table.find("range"), law) {
@@ -213,7 +213,7 @@ fn read_adhesion(table: &Entries<'_>, system: System) -> Read<Adhesion> {
     Ok(adhesion)
 }
 
-fn read_friction(table: &Entries<'_>, system: System) -> Read<Friction> {
+fn read_friction(table: &Entries<'_>, system: System) -> ReadResult<Friction> {
     let coefficient = table.optional("coefficient", Entry::not_negative_number)?;
     let shear_strength =
         table.optional("shear_strength", |entry| entry.not_negative(Dimension::PRESSURE, system))?;
@@ -325,7 +325,7 @@ fn print_rheology(rheology: &Rheology, system: System) -> Option<String> {
 }
 
 /// How the parameters of a rheology are read.
-type ReadRheology = fn(&Entries<'_>, System) -> Read<Rheology>;
+type ReadRheology = fn(&Entries<'_>, System) -> ReadResult<Rheology>;
 
 const RHEOLOGIES: [(&str, ReadRheology); 4] = [
     ("kelvin_voigt", |table, system| Ok(Rheology::KelvinVoigt { viscosity: viscosity(table, system)? })),
@@ -343,20 +343,20 @@ const RHEOLOGIES: [(&str, ReadRheology); 4] = [
                 .diagnostic(format!("{} weights and {} times", w.len(), t.len()))
                 .with_help("one relaxation time for each weight"));
         }
-        let arms = w.iter().zip(&t).map(|(w, t)| relaxing(w, t, system)).collect::<Read<Vec<_>>>()?;
+        let arms = w.iter().zip(&t).map(|(w, t)| relaxing(w, t, system)).collect::<ReadResult<Vec<_>>>()?;
         PronySeries::new(&arms).map(Rheology::Prony).map_err(|e| weights.diagnostic(e.to_string()))
     }),
 ];
 
-fn viscosity(table: &Entries<'_>, system: System) -> Read<f64> {
+fn viscosity(table: &Entries<'_>, system: System) -> ReadResult<f64> {
     table.require("viscosity", "\"1 MPa s\"")?.positive(Dimension::VISCOSITY, system)
 }
 
-fn relaxing(weight: &Entry<'_>, time: &Entry<'_>, system: System) -> Read<Relaxing> {
+fn relaxing(weight: &Entry<'_>, time: &Entry<'_>, system: System) -> ReadResult<Relaxing> {
     Ok(Relaxing { weight: weight.positive_number()?, time: time.positive(Dimension::TIME, system)? })
 }
 
-fn read_rheology(entry: &Entry<'_>, system: System) -> Read<Rheology> {
+fn read_rheology(entry: &Entry<'_>, system: System) -> ReadResult<Rheology> {
     let table = entry.table()?;
     let read = table.require("kind", "\"standard_solid\"")?.choice(&RHEOLOGIES)?;
     let rheology = read(&table, system)?;

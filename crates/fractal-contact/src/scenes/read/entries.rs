@@ -11,7 +11,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 /// Result of reading.
-pub(crate) type Read<T> = Result<T, Diagnostic>;
+pub(crate) type ReadResult<T> = Result<T, Diagnostic>;
 
 /// Whether numbers carry units.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -62,14 +62,22 @@ impl<'a> Entries<'a> {
     }
 
     /// Reads a text that is the content of the table of this name.
-    pub fn of_text<T>(name: &str, text: &str, read: impl FnOnce(Entries<'_>) -> Read<T>) -> Read<T> {
+    pub fn of_text<T>(
+        name: &str,
+        text: &str,
+        read: impl FnOnce(Entries<'_>) -> ReadResult<T>,
+    ) -> ReadResult<T> {
         let document = DeTable::parse(text).map_err(|error| syntax(&error))?;
         read(Entries::named(name, document.get_ref()))
     }
 
     /// Reads the value of one key as a flag has it: a value of TOML such as `512` or `["1 N", "2 N"]`, or else a
     /// text such as `0.5 um`.
-    pub fn of_word<T>(path: &str, word: &str, read: impl FnOnce(&Entry<'_>) -> Read<T>) -> Read<T> {
+    pub fn of_word<T>(
+        path: &str,
+        word: &str,
+        read: impl FnOnce(&Entry<'_>) -> ReadResult<T>,
+    ) -> ReadResult<T> {
         let text = || Spanned::new(0..word.len(), DeValue::String(Cow::Borrowed(word)));
         let value = match DeValue::parse(word) {
             Ok(value) if !value.get_ref().is_datetime() => value,
@@ -126,8 +134,8 @@ impl<'a> Entries<'a> {
     pub fn optional<T>(
         &self,
         key: &'static str,
-        read: impl FnOnce(&Entry<'a>) -> Read<T>,
-    ) -> Read<Option<T>> {
+        read: impl FnOnce(&Entry<'a>) -> ReadResult<T>,
+    ) -> ReadResult<Option<T>> {
         self.find(key).map(|entry| read(&entry)).transpose()
     }
 
@@ -136,8 +144,8 @@ impl<'a> Entries<'a> {
         &self,
         value: &mut T,
         key: &'static str,
-        read: impl FnOnce(&Entry<'a>) -> Read<T>,
-    ) -> Read<()> {
+        read: impl FnOnce(&Entry<'a>) -> ReadResult<T>,
+    ) -> ReadResult<()> {
         self.optional(key, read).map(|given| given.into_iter().for_each(|given| *value = given))
     }
 
@@ -153,7 +161,7 @@ impl<'a> Entries<'a> {
     }
 
     /// The value of a key that has to be there.
-    pub fn require(&self, key: &'static str, example: &str) -> Read<Entry<'a>> {
+    pub fn require(&self, key: &'static str, example: &str) -> ReadResult<Entry<'a>> {
         self.find(key).ok_or_else(|| {
             let known = self.known.borrow();
             let near = |name: &&str| !known.contains(name) && distance(name, key) <= 1 + key.len() / 4;
@@ -168,12 +176,12 @@ impl<'a> Entries<'a> {
     }
 
     /// A table, if it is there.
-    pub fn table(&self, key: &'static str) -> Read<Option<Entries<'a>>> {
+    pub fn table(&self, key: &'static str) -> ReadResult<Option<Entries<'a>>> {
         self.optional(key, Entry::table)
     }
 
     /// At most one of these keys.
-    pub fn one_of(&self, keys: &[&'static str]) -> Read<Option<(&'static str, Entry<'a>)>> {
+    pub fn one_of(&self, keys: &[&'static str]) -> ReadResult<Option<(&'static str, Entry<'a>)>> {
         let mut found: Option<(&'static str, Entry<'a>)> = None;
         for &key in keys {
             let Some(entry) = self.find(key) else { continue };
@@ -190,12 +198,12 @@ impl<'a> Entries<'a> {
     }
 
     /// An error where a key was given that was never read.
-    pub fn finish(self) -> Read<()> {
+    pub fn finish(self) -> ReadResult<()> {
         self.known_only()
     }
 
     /// The same for a table that is read further.
-    pub fn known_only(&self) -> Read<()> {
+    pub fn known_only(&self) -> ReadResult<()> {
         let known = self.known.borrow();
         for (name, span) in self.spanned_keys() {
             if !known.contains(&name) {
@@ -321,7 +329,7 @@ impl<'a> Entry<'a> {
         }
     }
 
-    pub fn table(&self) -> Read<Entries<'a>> {
+    pub fn table(&self) -> ReadResult<Entries<'a>> {
         match self.value.get_ref() {
             DeValue::Table(table) => {
                 let span = self.key.clone().or_else(|| Some(self.span()));
@@ -332,7 +340,7 @@ impl<'a> Entry<'a> {
     }
 
     /// A table; any other value stands for a table with this key alone.
-    pub fn table_or(&self, key: &'static str) -> Read<Entries<'a>> {
+    pub fn table_or(&self, key: &'static str) -> ReadResult<Entries<'a>> {
         if self.is_table() {
             return self.table();
         }
@@ -362,7 +370,7 @@ impl<'a> Entry<'a> {
         }
     }
 
-    pub fn text(&self) -> Read<&'a str> {
+    pub fn text(&self) -> ReadResult<&'a str> {
         self.value.get_ref().as_str().ok_or_else(|| self.wrong("text", "it in double quotes"))
     }
 
@@ -371,7 +379,7 @@ impl<'a> Entry<'a> {
         self.value.get_ref().as_str()
     }
 
-    pub fn flag(&self) -> Read<bool> {
+    pub fn flag(&self) -> ReadResult<bool> {
         self.value
             .get_ref()
             .as_bool()
@@ -379,7 +387,7 @@ impl<'a> Entry<'a> {
     }
 
     /// One of these words, each with its value.
-    pub fn choice<T: Copy>(&self, words: &[(&str, T)]) -> Read<T> {
+    pub fn choice<T: Copy>(&self, words: &[(&str, T)]) -> ReadResult<T> {
         let names: Vec<&str> = words.iter().map(|(name, _)| *name).collect();
         let example = names.iter().map(|n| format!("\"{n}\"")).collect::<Vec<_>>().join(" or ");
         let Some(text) = self.value.get_ref().as_str() else {
@@ -392,7 +400,7 @@ impl<'a> Entry<'a> {
     }
 
     /// A finite plain number.
-    pub fn number(&self) -> Read<f64> {
+    pub fn number(&self) -> ReadResult<f64> {
         let digits = match self.value.get_ref() {
             DeValue::Float(v) => v.as_str().replace('_', ""),
             DeValue::Integer(v) if v.radix() == 10 => v.as_str().replace('_', ""),
@@ -407,7 +415,7 @@ impl<'a> Entry<'a> {
     }
 
     /// A pure number: as [`Entry::number`], or a percentage such as `"30 %"`.
-    pub fn pure_number(&self) -> Read<f64> {
+    pub fn pure_number(&self) -> ReadResult<f64> {
         let Some(text) = self.as_word() else { return self.number() };
         let percent = text.trim().strip_suffix('%').and_then(|text| text.trim().parse::<f64>().ok());
         match percent.filter(|percent| percent.is_finite()) {
@@ -417,7 +425,7 @@ impl<'a> Entry<'a> {
     }
 
     /// An angle in degrees: with its unit, `"30 deg"` or `"5 mrad"`, or a plain number of degrees.
-    pub fn angle(&self) -> Read<f64> {
+    pub fn angle(&self) -> ReadResult<f64> {
         // Longer names before those that end them.
         const UNITS: [(&str, f64); 4] =
             [("deg", 1.0), ("mrad", 0.18 / PI), ("urad", 0.18e-3 / PI), ("rad", 180.0 / PI)];
@@ -432,7 +440,7 @@ impl<'a> Entry<'a> {
     }
 
     /// A number as [`Entry::number`], or an infinity: `inf`, `-inf`.
-    pub fn any_number(&self) -> Read<f64> {
+    pub fn any_number(&self) -> ReadResult<f64> {
         match self.value.get_ref() {
             DeValue::Float(v) if matches!(v.as_str(), "inf" | "+inf") => Ok(f64::INFINITY),
             DeValue::Float(v) if v.as_str() == "-inf" => Ok(f64::NEG_INFINITY),
@@ -441,7 +449,7 @@ impl<'a> Entry<'a> {
     }
 
     /// A whole number from `least`.
-    pub fn count(&self, least: u64) -> Read<u64> {
+    pub fn count(&self, least: u64) -> ReadResult<u64> {
         let (digits, radix) = match self.value.get_ref() {
             DeValue::Integer(written) => (written.as_str().replace('_', ""), written.radix()),
             DeValue::Float(written) => (written.as_str().replace('_', ""), 10),
@@ -456,12 +464,12 @@ impl<'a> Entry<'a> {
     }
 
     /// The same of cells, rows and the like.
-    pub fn size(&self, least: u64) -> Read<usize> {
+    pub fn size(&self, least: u64) -> ReadResult<usize> {
         self.count(least).map(|count| count as usize)
     }
 
     /// A number with its unit in SI, or a plain number where the scene has none.
-    pub fn quantity(&self, dimension: Dimension, system: System) -> Read<f64> {
+    pub fn quantity(&self, dimension: Dimension, system: System) -> ReadResult<f64> {
         match (system, self.value.get_ref()) {
             (System::None, DeValue::String(text)) => Err(Diagnostic::of_type(format!(
                 "`{}` is the text \"{text}\": expected a plain number, without a unit",
@@ -488,17 +496,17 @@ impl<'a> Entry<'a> {
     }
 
     /// The same, > 0.
-    pub fn positive(&self, dimension: Dimension, system: System) -> Read<f64> {
+    pub fn positive(&self, dimension: Dimension, system: System) -> ReadResult<f64> {
         self.above_zero(self.quantity(dimension, system)?)
     }
 
     /// The same, >= 0.
-    pub fn not_negative(&self, dimension: Dimension, system: System) -> Read<f64> {
+    pub fn not_negative(&self, dimension: Dimension, system: System) -> ReadResult<f64> {
         self.zero_or_above(self.quantity(dimension, system)?)
     }
 
     /// One length > 0, or two in a list.
-    pub fn lengths(&self, system: System) -> Read<LengthOrPair> {
+    pub fn lengths(&self, system: System) -> ReadResult<LengthOrPair> {
         // As on the command line: "2 mm x 1 mm".
         let both = self.as_word().map(|text| (text.contains(" x "), text.parse::<Sides>()));
         let dimension = if system == System::Si { Dimension::LENGTH } else { Dimension::NONE };
@@ -531,22 +539,22 @@ impl<'a> Entry<'a> {
     }
 
     /// A pure number > 0.
-    pub fn positive_number(&self) -> Read<f64> {
+    pub fn positive_number(&self) -> ReadResult<f64> {
         self.above_zero(self.pure_number()?)
     }
 
     /// A pure number >= 0.
-    pub fn not_negative_number(&self) -> Read<f64> {
+    pub fn not_negative_number(&self) -> ReadResult<f64> {
         self.zero_or_above(self.pure_number()?)
     }
 
-    fn above_zero(&self, value: f64) -> Read<f64> {
+    fn above_zero(&self, value: f64) -> ReadResult<f64> {
         let refused =
             || self.outside(value, "a number > 0").with_help("check the sign; zero is not allowed here");
         if value > 0.0 { Ok(value) } else { Err(refused()) }
     }
 
-    fn zero_or_above(&self, value: f64) -> Read<f64> {
+    fn zero_or_above(&self, value: f64) -> ReadResult<f64> {
         let refused = || self.outside(value, "a number >= 0").with_help("check the sign");
         if value >= 0.0 { Ok(value) } else { Err(refused()) }
     }

@@ -1,7 +1,7 @@
 //! The keys of a table of a scene. One entry says how a key is read from TOML, from a flag or from Python, how
 //! it is printed, and what the book says about it.
 
-use crate::scenes::read::{Diagnostic, Entries, Entry, Places, Read, RegisteredModel, System};
+use crate::scenes::read::{Diagnostic, Entries, Entry, Places, ReadResult, RegisteredModel, System};
 
 /// The settings of the whole scene by which the values of its keys are read.
 #[derive(Debug, Clone, Copy)]
@@ -22,7 +22,7 @@ pub(crate) struct Key<T: 'static> {
     pub about: &'static str,
     /// The value that holds in a scene without the key, in Markdown. It is empty for a key that has to be given.
     pub default: &'static str,
-    pub read: fn(&mut T, &Entry<'_>, Context<'_>) -> Read<()>,
+    pub read: fn(&mut T, &Entry<'_>, Context<'_>) -> ReadResult<()>,
     /// Its value as TOML; `None` where it is not given.
     pub print: fn(&T, System) -> Option<String>,
 }
@@ -43,7 +43,7 @@ pub(crate) struct KeyTable<T: 'static> {
 
 impl<T> KeyTable<T> {
     /// Reads the keys that are there.
-    pub fn read(&self, value: &mut T, table: &Entries<'_>, context: Context<'_>) -> Read<()> {
+    pub fn read(&self, value: &mut T, table: &Entries<'_>, context: Context<'_>) -> ReadResult<()> {
         let given = self.keys.iter().filter_map(|key| Some((key, table.find(key.name)?)));
         let given: Vec<(&Key<T>, Entry<'_>)> = given.collect();
         for keys in self.alternatives {
@@ -53,7 +53,7 @@ impl<T> KeyTable<T> {
     }
 
     /// Sets one key; `None` where there is none of this name.
-    pub fn set(&self, value: &mut T, entry: &Entry<'_>, context: Context<'_>) -> Option<Read<()>> {
+    pub fn set(&self, value: &mut T, entry: &Entry<'_>, context: Context<'_>) -> Option<ReadResult<()>> {
         let key = self.keys.iter().find(|key| key.name == entry.name())?;
         let others = self.alternatives.iter().filter(|keys| keys.contains(&key.name)).copied().flatten();
         let is_given = |other: &Key<T>| (other.print)(value, context.system).is_some();

@@ -4,7 +4,7 @@ use surface_io::Dimension;
 
 /// What a list of loads prescribes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum LoadKind {
+pub enum PrescribedLoad {
     /// Normal force F.
     Force,
     /// F over E* h L, with the measured rms height of each surface.
@@ -17,7 +17,7 @@ pub enum LoadKind {
     MeanGap,
 }
 
-impl LoadKind {
+impl PrescribedLoad {
     /// Its key in the file, its dimension and unit in SI, and its description in tables.
     pub(crate) fn record(self) -> (&'static str, Dimension, &'static str, &'static str) {
         match self {

@@ -2,7 +2,7 @@
 
 use crate::scenes::read::key::Context;
 use crate::scenes::read::path::{AskedStep, MOST, PathPiece, zero_if_rounded};
-use crate::scenes::read::{Diagnostic, Entry, LoadKind, Places, Read, System, printed};
+use crate::scenes::read::{Diagnostic, Entry, Places, PrescribedLoad, ReadResult, System, printed};
 use contact_model::{Load, NormalLoad, Normalisation, Step};
 use surface_io::{Dimension, Quantity};
 
@@ -10,7 +10,7 @@ use surface_io::{Dimension, Quantity};
 #[derive(Debug, Clone, PartialEq)]
 pub struct LoadList {
     /// The quantity that is prescribed.
-    pub kind: LoadKind,
+    pub kind: PrescribedLoad,
     /// The numbers, in SI or the scene's own units.
     pub values: Vec<f64>,
 }
@@ -22,11 +22,11 @@ impl LoadList {
     /// [`contact_model::Error::Domain`] for a normalised force of a surface without rms height.
     pub fn load(&self, value: f64, normalisation: &Normalisation) -> contact_model::Result<Load> {
         Ok(match self.kind {
-            LoadKind::Force => Load::force(value),
-            LoadKind::ForceBar => Load::force(normalisation.force(value)?),
-            LoadKind::MeanPressure => Load::force(value * normalisation.length * normalisation.length),
-            LoadKind::Approach => Load::approach(value),
-            LoadKind::MeanGap => Load::mean_gap(value),
+            PrescribedLoad::Force => Load::force(value),
+            PrescribedLoad::ForceBar => Load::force(normalisation.force(value)?),
+            PrescribedLoad::MeanPressure => Load::force(value * normalisation.length * normalisation.length),
+            PrescribedLoad::Approach => Load::approach(value),
+            PrescribedLoad::MeanGap => Load::mean_gap(value),
         })
     }
 }
@@ -84,7 +84,7 @@ impl LoadRequest {
     /// Whether an approach or a mean gap may be prescribed, so that the force is a result with an error.
     pub(crate) fn prescribes_distance(&self) -> bool {
         match self {
-            Self::Loads(loads) => matches!(loads.kind, LoadKind::Approach | LoadKind::MeanGap),
+            Self::Loads(loads) => matches!(loads.kind, PrescribedLoad::Approach | PrescribedLoad::MeanGap),
             Self::Path(_) => self
                 .ends()
                 .any(|step| matches!(step.load.normal, NormalLoad::Approach(_) | NormalLoad::MeanGap(_))),
@@ -102,7 +102,11 @@ pub enum AskedLoads {
 }
 
 /// Reads one load, a list or a range.
-pub(crate) fn read_loads(kind: LoadKind, entry: &Entry<'_>, context: Context<'_>) -> Read<AskedLoads> {
+pub(crate) fn read_loads(
+    kind: PrescribedLoad,
+    entry: &Entry<'_>,
+    context: Context<'_>,
+) -> ReadResult<AskedLoads> {
     let (key, dimension, ..) = kind.record();
     let number = |item: &Entry<'_>| match dimension {
         Dimension::NONE => item.number(),
@@ -137,9 +141,9 @@ pub(crate) fn read_loads(kind: LoadKind, entry: &Entry<'_>, context: Context<'_>
         let quantity = |part: &str| {
             Quantity::parse_as(part.trim(), dimension).map_err(|reason| of_list(entry, words, &reason))
         };
-        words.split(',').map(quantity).collect::<Read<Vec<f64>>>()?
+        words.split(',').map(quantity).collect::<ReadResult<Vec<f64>>>()?
     } else {
-        entry.list().iter().map(number).collect::<Read<Vec<f64>>>()?
+        entry.list().iter().map(number).collect::<ReadResult<Vec<f64>>>()?
     };
     if values.is_empty() {
         return Err(entry
@@ -162,7 +166,7 @@ fn of_list(entry: &Entry<'_>, words: &str, reason: &surface_io::QuantityError) -
 }
 
 /// The loads as TOML, where they are of this kind.
-pub(crate) fn print_loads(loads: &AskedLoads, kind: LoadKind, system: System) -> Option<String> {
+pub(crate) fn print_loads(loads: &AskedLoads, kind: PrescribedLoad, system: System) -> Option<String> {
     let AskedLoads::Loads(loads) = loads else { return None };
     let dimension = kind.record().1;
     let number = |value: &f64| match dimension {
@@ -173,8 +177,8 @@ pub(crate) fn print_loads(loads: &AskedLoads, kind: LoadKind, system: System) ->
 }
 
 /// Checks that no load pulls, where nothing holds against a pull; `pulls` allows it (adhesion).
-pub(crate) fn check_signs(loads: &LoadList, system: System, pulls: bool, places: &Places) -> Read<()> {
-    let signed = pulls && loads.kind != LoadKind::MeanGap;
+pub(crate) fn check_signs(loads: &LoadList, system: System, pulls: bool, places: &Places) -> ReadResult<()> {
+    let signed = pulls && loads.kind != PrescribedLoad::MeanGap;
     let wrong = loads.values.iter().position(|value| !(*value >= 0.0 || signed));
     let Some(wrong) = wrong else { return Ok(()) };
     let (key, dimension, ..) = loads.kind.record();
@@ -183,7 +187,7 @@ pub(crate) fn check_signs(loads: &LoadList, system: System, pulls: bool, places:
         dimension => printed::quantity(loads.values[wrong], dimension, system),
     };
     let help = match loads.kind {
-        LoadKind::MeanGap => "a mean gap is a distance >= 0",
+        PrescribedLoad::MeanGap => "a mean gap is a distance >= 0",
         _ => "press with a value >= 0; only adhesion (`adhesion` in [effects]) holds against a pull",
     };
     let path = format!("scene.{key}");

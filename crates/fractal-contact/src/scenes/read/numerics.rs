@@ -2,7 +2,9 @@
 
 use crate::models::{MODELS, ModelRecord};
 use crate::scenes::read::key::{Context, Key, KeyTable, SceneKey};
-use crate::scenes::read::{Diagnostic, Entries, Entry, Read, RegisteredModel, System, printed, suggestion};
+use crate::scenes::read::{
+    Diagnostic, Entries, Entry, ReadResult, RegisteredModel, System, printed, suggestion,
+};
 use analytic::greenwood_williamson::SummitHeights;
 use analytic::{GreenwoodWilliamson, Persson};
 use bem3d::{Bem3d, Method};
@@ -185,7 +187,7 @@ impl Numerics {
 }
 
 /// Reads the names of the models, in their order.
-pub(crate) fn read_models(entry: &Entry<'_>, own: &[RegisteredModel]) -> Read<Vec<Numerics>> {
+pub(crate) fn read_models(entry: &Entry<'_>, own: &[RegisteredModel]) -> ReadResult<Vec<Numerics>> {
     let own = own.iter().cloned().map(Numerics::Registered);
     let known: Vec<Numerics> = Numerics::all().chain(own).collect();
     let names: Vec<&str> = known.iter().map(Numerics::name).collect();
@@ -211,7 +213,7 @@ pub(crate) fn read_models(entry: &Entry<'_>, own: &[RegisteredModel]) -> Read<Ve
 }
 
 /// Reads `[models.NAME]` of the models that are named.
-pub(crate) fn read_options(models: &mut [Numerics], options: &Entries<'_>) -> Read<()> {
+pub(crate) fn read_options(models: &mut [Numerics], options: &Entries<'_>) -> ReadResult<()> {
     for numerics in models.iter_mut() {
         if let Some(table) = options.table(numerics.name())? {
             *numerics = configured(numerics.clone(), table)?;
@@ -390,7 +392,7 @@ static GREENWOOD_WILLIAMSON_KEYS: KeyTable<GreenwoodWilliamson> = KeyTable {
 const SUMMITS: [(&str, SummitHeights); 2] =
     [("gaussian", SummitHeights::Gaussian), ("exponential", SummitHeights::Exponential)];
 
-fn read_up_to(entry: &Entry<'_>, most: u64) -> Read<u32> {
+fn read_up_to(entry: &Entry<'_>, most: u64) -> ReadResult<u32> {
     match entry.count(1)? {
         count if count <= most => Ok(count as u32),
         count => {
@@ -400,7 +402,7 @@ fn read_up_to(entry: &Entry<'_>, most: u64) -> Read<u32> {
     }
 }
 
-fn configured(numerics: Numerics, table: Entries<'_>) -> Read<Numerics> {
+fn configured(numerics: Numerics, table: Entries<'_>) -> ReadResult<Numerics> {
     // No key of numerics has a unit or names a model.
     let context = Context { system: System::None, own: &[] };
     let result = match numerics {
@@ -432,7 +434,7 @@ fn configured(numerics: Numerics, table: Entries<'_>) -> Read<Numerics> {
 }
 
 /// Sets an option of a model; `None` where it has none of this name.
-pub(crate) fn set_option(numerics: &mut Numerics, entry: &Entry<'_>) -> Option<Read<()>> {
+pub(crate) fn set_option(numerics: &mut Numerics, entry: &Entry<'_>) -> Option<ReadResult<()>> {
     let context = Context { system: System::None, own: &[] };
     match numerics {
         Numerics::Bem3d(model) => BEM3D_KEYS.set(model, entry, context),

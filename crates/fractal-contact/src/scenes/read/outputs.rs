@@ -1,7 +1,7 @@
 //! `[outputs]`: only requested outputs are computed and stored.
 
 use crate::scenes::read::key::{Context, Key, KeyTable};
-use crate::scenes::read::{Distributed, Entries, Entry, Read, System, printed};
+use crate::scenes::read::{Distributed, Entries, Entry, ReadResult, System, printed};
 use contact_model::{Conductance, FIELDS, FieldQuantity, Output, Outputs};
 use surface_io::Dimension;
 
@@ -130,7 +130,7 @@ pub(crate) static OUTPUT_KEYS: KeyTable<RequestedOutputs> = KeyTable {
             about: "numbers of the loads or steps (from 0) whose fields are drawn, in files and in the report",
             default: "all",
             read: |requested, entry, _| {
-                let states = entry.list().iter().map(|state| state.size(0)).collect::<Read<_>>()?;
+                let states = entry.list().iter().map(|state| state.size(0)).collect::<ReadResult<_>>()?;
                 requested.drawn_states = Some(states);
                 Ok(())
             },
@@ -192,7 +192,7 @@ pub(crate) static OUTPUT_KEYS: KeyTable<RequestedOutputs> = KeyTable {
 };
 
 /// Reads `[outputs]`.
-pub(crate) fn read_outputs(table: Option<Entries<'_>>, context: Context<'_>) -> Read<RequestedOutputs> {
+pub(crate) fn read_outputs(table: Option<Entries<'_>>, context: Context<'_>) -> ReadResult<RequestedOutputs> {
     let mut requested = RequestedOutputs::default();
     let Some(table) = table else { return Ok(requested) };
     for &output in Output::ALL {
@@ -211,7 +211,7 @@ pub(crate) fn set_output(
     requested: &mut RequestedOutputs,
     entry: &Entry<'_>,
     context: Context<'_>,
-) -> Option<Read<()>> {
+) -> Option<ReadResult<()>> {
     match Output::ALL.iter().find(|output| output.name() == entry.name()) {
         Some(output) => Some(read_output(requested, *output, entry, context.system)),
         None => OUTPUT_KEYS.set(requested, entry, context),
@@ -223,7 +223,7 @@ fn read_output(
     output: Output,
     entry: &Entry<'_>,
     system: System,
-) -> Read<()> {
+) -> ReadResult<()> {
     match output {
         Output::Conductance => requested.outputs.conductance = read_conductance(entry, system)?,
         field if field.is_field() => {
@@ -287,7 +287,7 @@ fn print_conductance(conductance: Conductance, system: System) -> Option<String>
 }
 
 /// `["npy", "png"]`, one of them, or `false`.
-fn read_formats(entry: &Entry<'_>) -> Read<Vec<FieldFormat>> {
+fn read_formats(entry: &Entry<'_>) -> ReadResult<Vec<FieldFormat>> {
     if !entry.is_list() && !entry.is_text() {
         return if entry.flag()? {
             Err(entry
@@ -307,7 +307,7 @@ fn read_formats(entry: &Entry<'_>) -> Read<Vec<FieldFormat>> {
     Ok(formats)
 }
 
-fn read_conductance(entry: &Entry<'_>, system: System) -> Read<Conductance> {
+fn read_conductance(entry: &Entry<'_>, system: System) -> ReadResult<Conductance> {
     let table = entry.table()?;
     let electrical =
         table.require("kind", "\"electrical\"")?.choice(&[("electrical", true), ("thermal", false)])?;

@@ -1,7 +1,7 @@
 //! A path of loads: straight pieces, each divided into steps while the path is followed.
 
 use crate::scenes::read::key::{Context, Key, KeyTable};
-use crate::scenes::read::{Entry, LoadKind, Places, Read, System, printed};
+use crate::scenes::read::{Entry, Places, PrescribedLoad, ReadResult, System, printed};
 use contact_model::{ContactState, Error, Load, NormalLoad, Result, Size, Step, Tangential};
 use surface_io::Dimension;
 
@@ -161,7 +161,7 @@ pub struct AskedStep {
     /// End of a straight piece of the path.
     pub time: Option<f64>,
     /// Normal load there.
-    pub normal: Option<(LoadKind, f64)>,
+    pub normal: Option<(PrescribedLoad, f64)>,
     /// Tangential load there.
     pub tangential: Option<Tangential>,
     /// Number of equal parts of the piece.
@@ -193,32 +193,32 @@ pub(crate) static PATH_KEYS: KeyTable<AskedStep> = KeyTable {
             takes: "force",
             about: "normal force at the end of the piece",
             default: "that of the step before",
-            read: |step, entry, context| read_normal(step, LoadKind::Force, entry, context),
-            print: |step, system| print_normal(step, LoadKind::Force, system),
+            read: |step, entry, context| read_normal(step, PrescribedLoad::Force, entry, context),
+            print: |step, system| print_normal(step, PrescribedLoad::Force, system),
         },
         Key {
             name: "mean_pressure",
             takes: "pressure",
             about: "force over the nominal contact area",
             default: "that of the step before",
-            read: |step, entry, context| read_normal(step, LoadKind::MeanPressure, entry, context),
-            print: |step, system| print_normal(step, LoadKind::MeanPressure, system),
+            read: |step, entry, context| read_normal(step, PrescribedLoad::MeanPressure, entry, context),
+            print: |step, system| print_normal(step, PrescribedLoad::MeanPressure, system),
         },
         Key {
             name: "approach",
             takes: "length",
             about: "approach of the bodies; free boundaries",
             default: "that of the step before",
-            read: |step, entry, context| read_normal(step, LoadKind::Approach, entry, context),
-            print: |step, system| print_normal(step, LoadKind::Approach, system),
+            read: |step, entry, context| read_normal(step, PrescribedLoad::Approach, entry, context),
+            print: |step, system| print_normal(step, PrescribedLoad::Approach, system),
         },
         Key {
             name: "mean_gap",
             takes: "length",
             about: "distance between the mean planes; periodic boundaries",
             default: "that of the step before",
-            read: |step, entry, context| read_normal(step, LoadKind::MeanGap, entry, context),
-            print: |step, system| print_normal(step, LoadKind::MeanGap, system),
+            read: |step, entry, context| read_normal(step, PrescribedLoad::MeanGap, entry, context),
+            print: |step, system| print_normal(step, PrescribedLoad::MeanGap, system),
         },
         Key {
             name: "tangential_force",
@@ -263,12 +263,17 @@ pub(crate) static PATH_KEYS: KeyTable<AskedStep> = KeyTable {
     ],
 };
 
-fn read_normal(step: &mut AskedStep, kind: LoadKind, entry: &Entry<'_>, context: Context<'_>) -> Read<()> {
+fn read_normal(
+    step: &mut AskedStep,
+    kind: PrescribedLoad,
+    entry: &Entry<'_>,
+    context: Context<'_>,
+) -> ReadResult<()> {
     step.normal = Some((kind, entry.quantity(kind.record().1, context.system)?));
     Ok(())
 }
 
-fn print_normal(step: &AskedStep, kind: LoadKind, system: System) -> Option<String> {
+fn print_normal(step: &AskedStep, kind: PrescribedLoad, system: System) -> Option<String> {
     let (_, value) = step.normal.filter(|(of, _)| *of == kind)?;
     Some(printed::quantity(value, kind.record().1, system))
 }
@@ -282,13 +287,13 @@ fn print_pair(components: [f64; 2], dimension: Dimension, system: System) -> Str
 }
 
 /// Reads `[[scene.path]]`.
-pub(crate) fn read_steps(entry: &Entry<'_>, context: Context<'_>) -> Read<Vec<AskedStep>> {
+pub(crate) fn read_steps(entry: &Entry<'_>, context: Context<'_>) -> ReadResult<Vec<AskedStep>> {
     if !entry.is_list() {
         return Err(entry
             .diagnostic_at_key("`path` is no list of steps")
             .with_help("write [[scene.path]] once for each step"));
     }
-    let step = |item: &Entry<'_>| -> Read<AskedStep> {
+    let step = |item: &Entry<'_>| -> ReadResult<AskedStep> {
         let (table, mut step) = (item.table()?, AskedStep::default());
         PATH_KEYS.read(&mut step, &table, context)?;
         table.finish()?;
@@ -299,20 +304,25 @@ pub(crate) fn read_steps(entry: &Entry<'_>, context: Context<'_>) -> Read<Vec<As
 
 /// The pieces of a path. `pulls` allows negative loads (adhesion). `size` is that of the nominal contact area,
 /// for mean pressures.
-pub(crate) fn pieces(steps: &[AskedStep], pulls: bool, size: Size, places: &Places) -> Read<Vec<PathPiece>> {
+pub(crate) fn pieces(
+    steps: &[AskedStep],
+    pulls: bool,
+    size: Size,
+    places: &Places,
+) -> ReadResult<Vec<PathPiece>> {
     let mut pieces: Vec<PathPiece> = Vec::new();
     let mut last = Step::new(0.0, Load::force(0.0));
     let mut total = 0_u64;
     for (index, step) in steps.iter().enumerate() {
         let place = format!("scene.path.{index}");
         let normal = match step.normal {
-            Some((LoadKind::Force | LoadKind::ForceBar, force)) => NormalLoad::Force(force),
+            Some((PrescribedLoad::Force | PrescribedLoad::ForceBar, force)) => NormalLoad::Force(force),
             // The mean pressure times the nominal contact area, as for a list of mean pressures.
-            Some((LoadKind::MeanPressure, pressure)) => {
+            Some((PrescribedLoad::MeanPressure, pressure)) => {
                 NormalLoad::Force(pressure * size.length() * size.length())
             }
-            Some((LoadKind::MeanGap, gap)) => NormalLoad::MeanGap(gap),
-            Some((LoadKind::Approach, approach)) => NormalLoad::Approach(approach),
+            Some((PrescribedLoad::MeanGap, gap)) => NormalLoad::MeanGap(gap),
+            Some((PrescribedLoad::Approach, approach)) => NormalLoad::Approach(approach),
             None if pieces.is_empty() => {
                 return Err(places
                     .at_value(&place, "the first step of the path has no normal load")
@@ -355,7 +365,7 @@ pub(crate) fn pieces(steps: &[AskedStep], pulls: bool, size: Size, places: &Plac
 }
 
 /// A tangential load: one number along x, or a pair along x and along y.
-fn read_tangential(entry: &Entry<'_>, dimension: Dimension, system: System) -> Read<[f64; 2]> {
+fn read_tangential(entry: &Entry<'_>, dimension: Dimension, system: System) -> ReadResult<[f64; 2]> {
     let component = |item: &Entry<'_>| item.quantity(dimension, system);
     match &entry.list()[..] {
         [x, y] => Ok([component(x)?, component(y)?]),
@@ -379,7 +389,7 @@ mod tests {
     use crate::scenes::read::{Entries, LoadRequest};
     use contact_model::{SolveReport, TangentialState};
 
-    fn path(text: &str) -> Read<Vec<PathPiece>> {
+    fn path(text: &str) -> ReadResult<Vec<PathPiece>> {
         let size = Size { x: 4.0, y: 1.0 };
         Entries::of_text("scene", text, |scene| {
             let context = Context { system: System::None, own: &[] };

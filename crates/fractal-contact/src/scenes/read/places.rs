@@ -8,10 +8,10 @@ use toml::de::{DeTable, DeValue};
 /// Places in the text of a scene, by the path of a key such as `scene.surface.size`. Elements of lists are
 /// counted from 0: `scene.models.1`. A question that was not read from a text has none.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub(crate) struct Places(Vec<Place>);
+pub(crate) struct Places(Vec<TomlPlace>);
 
 #[derive(Debug, Clone, PartialEq, Eq)]
-struct Place {
+struct TomlPlace {
     path: String,
     key: Range<usize>,
     value: Range<usize>,
@@ -43,10 +43,10 @@ impl Places {
             }
             _ => {}
         }
-        self.0.push(Place { path, key, value: value.span() });
+        self.0.push(TomlPlace { path, key, value: value.span() });
     }
 
-    fn find(&self, path: &str) -> Option<&Place> {
+    fn find(&self, path: &str) -> Option<&TomlPlace> {
         self.0.iter().find(|place| place.path == path)
     }
 

@@ -7,13 +7,13 @@ use crate::scenes::read::asked_surface::{
     SELF_AFFINE_KEYS,
 };
 use crate::scenes::read::key::{Context, Key, KeyTable, SceneKey};
-use crate::scenes::read::load_kind::LoadKind;
+use crate::scenes::read::load_kind::PrescribedLoad;
 use crate::scenes::read::loads::{AskedLoads, print_loads, read_loads};
 use crate::scenes::read::numerics::{self, print_options, read_models};
 use crate::scenes::read::outputs::{OUTPUT_KEYS, print_outputs, set_output};
 use crate::scenes::read::path::{AskedStep, PATH_KEYS, read_steps};
 use crate::scenes::read::{
-    Diagnostic, EFFECT_KEYS, Entries, Entry, Numerics, Read, RegisteredModel, RequestedAccuracy,
+    Diagnostic, EFFECT_KEYS, Entries, Entry, Numerics, ReadResult, RegisteredModel, RequestedAccuracy,
     RequestedOutputs, System, nearest, printed, read_effects, read_outputs,
 };
 use contact_model::{Body, Effects, Pair};
@@ -173,9 +173,9 @@ static SCENE_KEYS: KeyTable<Question> = KeyTable {
             about: "normal force: one value, several such as `\"1 N, 10 N\"` or `[\"1 N\", \"10 N\"]`, or `{ from, to, count, spacing }` with the `spacing` `\"log\"`, which is the default, or `\"linear\"`; other loads take the same",
             default: "another load or a path is given",
             read: |question, entry, context| {
-                read_loads(LoadKind::Force, entry, context).map(|loads| question.loads = Some(loads))
+                read_loads(PrescribedLoad::Force, entry, context).map(|loads| question.loads = Some(loads))
             },
-            print: |question, system| print_loads(question.loads.as_ref()?, LoadKind::Force, system),
+            print: |question, system| print_loads(question.loads.as_ref()?, PrescribedLoad::Force, system),
         },
         Key {
             name: "force_bar",
@@ -183,9 +183,9 @@ static SCENE_KEYS: KeyTable<Question> = KeyTable {
             about: "normal force over $`E^* h L`$, with the measured rms height $`h`$ of each surface; for rough surfaces",
             default: "another load or a path is given",
             read: |question, entry, context| {
-                read_loads(LoadKind::ForceBar, entry, context).map(|loads| question.loads = Some(loads))
+                read_loads(PrescribedLoad::ForceBar, entry, context).map(|loads| question.loads = Some(loads))
             },
-            print: |question, system| print_loads(question.loads.as_ref()?, LoadKind::ForceBar, system),
+            print: |question, system| print_loads(question.loads.as_ref()?, PrescribedLoad::ForceBar, system),
         },
         Key {
             name: "mean_pressure",
@@ -193,9 +193,12 @@ static SCENE_KEYS: KeyTable<Question> = KeyTable {
             about: "mean pressure over the nominal contact area, such as `\"1 MPa\"`, or several as in `\"1 MPa, 10 MPa\"`",
             default: "another load or a path is given",
             read: |question, entry, context| {
-                read_loads(LoadKind::MeanPressure, entry, context).map(|loads| question.loads = Some(loads))
+                read_loads(PrescribedLoad::MeanPressure, entry, context)
+                    .map(|loads| question.loads = Some(loads))
             },
-            print: |question, system| print_loads(question.loads.as_ref()?, LoadKind::MeanPressure, system),
+            print: |question, system| {
+                print_loads(question.loads.as_ref()?, PrescribedLoad::MeanPressure, system)
+            },
         },
         Key {
             name: "approach",
@@ -203,9 +206,9 @@ static SCENE_KEYS: KeyTable<Question> = KeyTable {
             about: "approach of the bodies, counted from first touch, such as `\"10 nm, 100 nm\"`; free boundaries",
             default: "another load or a path is given",
             read: |question, entry, context| {
-                read_loads(LoadKind::Approach, entry, context).map(|loads| question.loads = Some(loads))
+                read_loads(PrescribedLoad::Approach, entry, context).map(|loads| question.loads = Some(loads))
             },
-            print: |question, system| print_loads(question.loads.as_ref()?, LoadKind::Approach, system),
+            print: |question, system| print_loads(question.loads.as_ref()?, PrescribedLoad::Approach, system),
         },
         Key {
             name: "mean_gap",
@@ -213,9 +216,9 @@ static SCENE_KEYS: KeyTable<Question> = KeyTable {
             about: "distance between the mean planes; periodic boundaries",
             default: "another load or a path is given",
             read: |question, entry, context| {
-                read_loads(LoadKind::MeanGap, entry, context).map(|loads| question.loads = Some(loads))
+                read_loads(PrescribedLoad::MeanGap, entry, context).map(|loads| question.loads = Some(loads))
             },
-            print: |question, system| print_loads(question.loads.as_ref()?, LoadKind::MeanGap, system),
+            print: |question, system| print_loads(question.loads.as_ref()?, PrescribedLoad::MeanGap, system),
         },
         Key {
             name: "hardness",
@@ -326,7 +329,7 @@ impl Question {
     }
 
     /// `None` where there is no such key.
-    fn set_entry(&mut self, path: &str, entry: &Entry<'_>, context: Context<'_>) -> Option<Read<()>> {
+    fn set_entry(&mut self, path: &str, entry: &Entry<'_>, context: Context<'_>) -> Option<ReadResult<()>> {
         let (table, key) = path.rsplit_once('.')?;
         match table {
             "scene" => SCENE_KEYS
@@ -361,7 +364,7 @@ impl Question {
         }
     }
 
-    fn choose_surface(&mut self, entry: &Entry<'_>) -> Read<()> {
+    fn choose_surface(&mut self, entry: &Entry<'_>) -> ReadResult<()> {
         self.surface = Some(if read_is_file(entry)? {
             AskedSurface::File(Box::default())
         } else {
@@ -371,7 +374,7 @@ impl Question {
     }
 
     /// Sets a key of a step of the path, which is the next one at most; `None` where there is no such key.
-    fn set_step(&mut self, index: usize, entry: &Entry<'_>, context: Context<'_>) -> Option<Read<()>> {
+    fn set_step(&mut self, index: usize, entry: &Entry<'_>, context: Context<'_>) -> Option<ReadResult<()>> {
         let loads = self.loads.get_or_insert_with(|| AskedLoads::Path(Vec::new()));
         let AskedLoads::Path(steps) = loads else {
             return Some(Err(entry
@@ -397,7 +400,7 @@ impl Question {
 
     /// The same with a heading, and with comments on some keys, by their path such as `scene.bodies`.
     pub fn printed<'c>(&self, heading: &str, comment: impl Fn(&str) -> &'c str) -> String {
-        let mut lines = Lines { text: heading.to_owned(), comment };
+        let mut lines = TomlLines { text: heading.to_owned(), comment };
         let system = self.units;
         let mut scene = SCENE_KEYS.print(self, system);
         scene.extend(ACCURACY_KEYS.print(&self.accuracy, system));
@@ -440,7 +443,7 @@ impl Question {
 }
 
 /// Lines of TOML.
-struct Lines<F> {
+struct TomlLines<F> {
     text: String,
     comment: F,
 }
@@ -448,7 +451,7 @@ struct Lines<F> {
 /// A line of a printed scene begins its comment in this column.
 const COMMENT: usize = 40;
 
-impl<'c, F: Fn(&str) -> &'c str> Lines<F> {
+impl<'c, F: Fn(&str) -> &'c str> TomlLines<F> {
     fn table(&mut self, name: &str, title: &str, keys: Vec<(&'static str, String)>) {
         let empty = if self.text.is_empty() { "" } else { "\n" };
         let _ = writeln!(self.text, "{empty}{title}");
@@ -477,7 +480,7 @@ impl<'c, F: Fn(&str) -> &'c str> Lines<F> {
 pub(crate) fn read_question(
     root: &Entries<'_>,
     own: &[RegisteredModel],
-) -> Read<(Question, Vec<Diagnostic>)> {
+) -> ReadResult<(Question, Vec<Diagnostic>)> {
     let mut question = Question::default();
     let mut notes = Vec::new();
     let Some(scene) = root.table("scene")? else {
@@ -520,7 +523,7 @@ pub(crate) fn read_question(
 }
 
 /// `[[scene.path]]`.
-fn read_path(question: &mut Question, scene: &Entries<'_>, context: Context<'_>) -> Read<()> {
+fn read_path(question: &mut Question, scene: &Entries<'_>, context: Context<'_>) -> ReadResult<()> {
     let Some(path) = scene.find("path") else { return Ok(()) };
     if let Some(AskedLoads::Loads(loads)) = &question.loads {
         let key = loads.kind.key();
@@ -538,9 +541,9 @@ fn read_surfaces(
     scene: &Entries<'_>,
     context: Context<'_>,
     notes: &mut Vec<Diagnostic>,
-) -> Read<()> {
+) -> ReadResult<()> {
     let is_file = |table: &Entries<'_>| read_is_file(&table.require("kind", "\"self_affine\"")?);
-    let mut file = |table: &Entries<'_>| -> Read<AskedFile> {
+    let mut file = |table: &Entries<'_>| -> ReadResult<AskedFile> {
         let mut file = AskedFile::default();
         FILE_KEYS.read(&mut file, table, context)?;
         if let Some(entry) = table.entry("width") {
@@ -583,17 +586,17 @@ fn read_surfaces(
 }
 
 /// The kind of a surface.
-fn read_is_file(entry: &Entry<'_>) -> Read<bool> {
+fn read_is_file(entry: &Entry<'_>) -> ReadResult<bool> {
     entry.choice(&[("self_affine", false), ("file", true)])
 }
 
-fn read_contact_modulus(question: &mut Question, entry: &Entry<'_>, context: Context<'_>) -> Read<()> {
+fn read_contact_modulus(question: &mut Question, entry: &Entry<'_>, context: Context<'_>) -> ReadResult<()> {
     let modulus = entry.positive(Dimension::PRESSURE, context.system)?;
     question.material = Some(Material::ContactModulus(modulus));
     Ok(())
 }
 
-fn read_pair(entry: &Entry<'_>, system: System) -> Read<Pair> {
+fn read_pair(entry: &Entry<'_>, system: System) -> ReadResult<Pair> {
     let pair = if let Some(words) = entry.as_word() {
         match words.split(',').collect::<Vec<_>>()[..] {
             [one] => Pair { first: Body::Rigid, second: body_of_words(one, entry, system)? },
@@ -617,7 +620,7 @@ fn read_pair(entry: &Entry<'_>, system: System) -> Read<Pair> {
 }
 
 /// A body as `210 GPa 0.3` or `rigid`.
-fn body_of_words(words: &str, entry: &Entry<'_>, system: System) -> Read<Body> {
+fn body_of_words(words: &str, entry: &Entry<'_>, system: System) -> ReadResult<Body> {
     let words = words.trim();
     if words == "rigid" {
         return Ok(Body::Rigid);
@@ -639,7 +642,7 @@ fn no_bodies(entry: &Entry<'_>, words: &str) -> Diagnostic {
     entry.diagnostic(format!("`bodies`: \"{words}\" is no body")).with_help(BODIES_HELP)
 }
 
-fn checked_body(young: f64, poisson: f64, ratio: &Entry<'_>) -> Read<Body> {
+fn checked_body(young: f64, poisson: f64, ratio: &Entry<'_>) -> ReadResult<Body> {
     if (0.0..=0.5).contains(&poisson) {
         return Ok(Body::Elastic { young, poisson });
     }
@@ -648,7 +651,7 @@ fn checked_body(young: f64, poisson: f64, ratio: &Entry<'_>) -> Read<Body> {
         .with_help("0.5 is incompressible"))
 }
 
-fn read_body(entry: &Entry<'_>, system: System) -> Read<Body> {
+fn read_body(entry: &Entry<'_>, system: System) -> ReadResult<Body> {
     if entry.is_text() {
         return entry.choice(&[("rigid", Body::Rigid)]);
     }

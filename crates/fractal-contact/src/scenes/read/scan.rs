@@ -2,7 +2,7 @@
 
 use crate::scenes::read::asked_surface::{AskedFile, AskedSecond};
 use crate::scenes::read::key::missing;
-use crate::scenes::read::{Diagnostic, Places, Read, System, amount, number};
+use crate::scenes::read::{Diagnostic, Places, ReadResult, System, amount, number};
 use contact_model::HeightMap;
 use contact_model::units::{ascii, rounded};
 use std::path::Path;
@@ -36,7 +36,7 @@ pub(crate) fn read_map(
     system: System,
     directory: &Path,
     places: &Places,
-) -> Read<FileMap> {
+) -> ReadResult<FileMap> {
     let place = |key: &str| format!("{table}.{key}");
     let (file, declared, preprocessing) = (place("path"), &asked.declared, asked.preprocessing());
     let path = asked.path.as_ref().ok_or_else(|| missing(table, "path", "\"heights.npy\"", places))?;
@@ -95,7 +95,7 @@ pub(crate) fn read_second(
     system: System,
     directory: &Path,
     places: &Places,
-) -> Read<FileMap> {
+) -> ReadResult<FileMap> {
     const TABLE: &str = "scene.second_surface";
     let (facing, offset) = (asked.facing.unwrap_or(Some(Mirror::X)), asked.offset.unwrap_or_default());
     let FileMap { map, mut metadata, reliable_from, notes, profile } =

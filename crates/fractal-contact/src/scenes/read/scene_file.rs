@@ -8,8 +8,8 @@ use crate::scenes::read::path::pieces;
 use crate::scenes::read::question::{AskedSampling, Material, read_question};
 use crate::scenes::read::scene_surface::{FoundSurface, find_surface};
 use crate::scenes::read::{
-    Diagnostic, Entries, LoadKind, LoadRequest, MOST_CELLS, Numerics, Places, Question, Read, Registry,
-    RequestedAccuracy, RequestedOutputs, Result, SceneSurface, System, short,
+    Diagnostic, Entries, LoadRequest, MOST_CELLS, Numerics, Places, PrescribedLoad, Question, ReadResult,
+    Registry, RequestedAccuracy, RequestedOutputs, Result, SceneSurface, System, short,
 };
 use contact_model::{
     Adhesion, Boundary, Cells, Directions, Effect, Effects, Friction, Hardness, NormalLoad, Output, Pair,
@@ -295,7 +295,7 @@ impl SceneFile {
 
 impl SceneFile {
     /// The scene of a question, checked as far as that is possible without a model.
-    fn answered(question: Question, path: &Path, places: Places) -> Read<Self> {
+    fn answered(question: Question, path: &Path, places: Places) -> ReadResult<Self> {
         let Question { units: system, material, accuracy, effects, hardness, .. } = question;
         if question.models.is_empty() {
             return Err(missing("scene", "models", "[\"bem3d\"]", &places));
@@ -357,7 +357,7 @@ impl SceneFile {
 }
 
 /// The loads or the path.
-fn request(question: &Question, size: Size, places: &Places) -> Read<LoadRequest> {
+fn request(question: &Question, size: Size, places: &Places) -> ReadResult<LoadRequest> {
     let pulls = question.effects.adhesion != Adhesion::Off;
     match &question.loads {
         Some(AskedLoads::Loads(loads)) => {
@@ -385,7 +385,7 @@ fn at_model(places: &Places, index: usize, message: String) -> Diagnostic {
     Diagnostic::new(message).at(item.or_else(|| places.value("scene.models")))
 }
 
-fn sampling(question: &Question, surface: &SceneSurface, places: &Places) -> Read<Sampling> {
+fn sampling(question: &Question, surface: &SceneSurface, places: &Places) -> ReadResult<Sampling> {
     const SURFACES: &str = "sampling.surfaces";
     let is_line = |model: &Numerics| surface.given_map().is_some() && surface.is_random_for(model);
     let line = question.models.iter().position(is_line);
@@ -425,7 +425,7 @@ fn is_given(model: &Numerics, key: &str, places: &Places) -> bool {
 }
 
 /// Checks that the grid is not given where an accuracy chooses it.
-fn check_no_grid(question: &Question, places: &Places) -> Read<()> {
+fn check_no_grid(question: &Question, places: &Places) -> ReadResult<()> {
     let Some(model) = question.models.iter().find(|model| matches!(model, Numerics::Bem3d(_))) else {
         return Ok(());
     };
@@ -440,7 +440,7 @@ fn check_no_grid(question: &Question, places: &Places) -> Read<()> {
 
 /// Checks that no cells are given for a map, which has its own, and that a generated surface has not too
 /// many.
-fn check_cells(question: &Question, surface: &SceneSurface, places: &Places) -> Read<()> {
+fn check_cells(question: &Question, surface: &SceneSurface, places: &Places) -> ReadResult<()> {
     for (index, numerics) in question.models.iter().enumerate() {
         let Some(elements) = numerics.boundary_elements() else { continue };
         let name = numerics.name();
@@ -473,7 +473,7 @@ fn check_cells(question: &Question, surface: &SceneSurface, places: &Places) -> 
 
 /// Checks that theories of rough surfaces have no body added to a map: its heights are not part of the
 /// statistics.
-fn check_homogeneous(question: &Question, surface: &SceneSurface, places: &Places) -> Read<()> {
+fn check_homogeneous(question: &Question, surface: &SceneSurface, places: &Places) -> ReadResult<()> {
     if surface.own_cells().is_none() || question.body.is_none() {
         return Ok(());
     }
@@ -484,29 +484,29 @@ fn check_homogeneous(question: &Question, surface: &SceneSurface, places: &Place
 }
 
 /// Checks that the loads do not contradict the boundary or the surface.
-fn check_request(scene: &SceneFile, places: &Places) -> Read<()> {
+fn check_request(scene: &SceneFile, places: &Places) -> ReadResult<()> {
     let SceneFile { request, surface, effects, .. } = scene;
     let key = request_key(request);
     let periodic = effects.boundary == Boundary::Periodic;
-    let prescribes = |kind: LoadKind, of_step: fn(&NormalLoad) -> bool| match request {
+    let prescribes = |kind: PrescribedLoad, of_step: fn(&NormalLoad) -> bool| match request {
         LoadRequest::Loads(loads) => loads.kind == kind,
         LoadRequest::Path(_) => request.ends().any(|step| of_step(&step.load.normal)),
     };
-    if periodic && prescribes(LoadKind::Approach, |load| matches!(load, NormalLoad::Approach(_))) {
+    if periodic && prescribes(PrescribedLoad::Approach, |load| matches!(load, NormalLoad::Approach(_))) {
         return Err(places
             .at_key(&key, "an approach with periodic boundaries: there is no first touch to count from")
             .with_help(
                 "prescribe `force`, `mean_pressure` or `mean_gap`, or remove `boundary = \"periodic\"`",
             ));
     }
-    if !periodic && prescribes(LoadKind::MeanGap, |load| matches!(load, NormalLoad::MeanGap(_))) {
+    if !periodic && prescribes(PrescribedLoad::MeanGap, |load| matches!(load, NormalLoad::MeanGap(_))) {
         return Err(places
             .at_key(&key, "a mean gap with free boundaries")
             .with_help("prescribe `force` or `approach`, or add `boundary = \"periodic\"` to [effects]"));
     }
     let LoadRequest::Loads(loads) = request else { return Ok(()) };
     match loads.kind {
-        LoadKind::ForceBar
+        PrescribedLoad::ForceBar
             if !surface.is_rough() || matches!(surface, SceneSurface::Drawn { body: Some(_), .. }) =>
         {
             Err(places
@@ -522,7 +522,7 @@ fn check_request(scene: &SceneFile, places: &Places) -> Read<()> {
 
 /// Checks that nothing is requested of a profile with free boundaries that depends on the zero of the
 /// displacements of a half-plane.
-fn check_half_plane(scene: &SceneFile, places: &Places) -> Read<()> {
+fn check_half_plane(scene: &SceneFile, places: &Places) -> ReadResult<()> {
     let SceneFile { request, surface, effects, requested, .. } = scene;
     if !surface.is_profile() || effects.boundary == Boundary::Periodic {
         return Ok(());
@@ -531,7 +531,7 @@ fn check_half_plane(scene: &SceneFile, places: &Places) -> Read<()> {
     let help = "prescribe `force` or `mean_pressure` and ask for area, pressure or gap; or add `boundary = \"periodic\"` to [effects], where a mean \
                 gap and its stiffness have a meaning";
     let by_approach = match request {
-        LoadRequest::Loads(loads) => loads.kind == LoadKind::Approach,
+        LoadRequest::Loads(loads) => loads.kind == PrescribedLoad::Approach,
         LoadRequest::Path(_) => {
             request.ends().any(|step| matches!(step.load.normal, NormalLoad::Approach(_)))
         }
@@ -552,7 +552,7 @@ fn check_half_plane(scene: &SceneFile, places: &Places) -> Read<()> {
 }
 
 /// Checks that the states to be drawn exist in the scene.
-fn check_drawn_states(requested: &RequestedOutputs, request: &LoadRequest) -> Read<()> {
+fn check_drawn_states(requested: &RequestedOutputs, request: &LoadRequest) -> ReadResult<()> {
     let count = request.count();
     let Some(state) = requested.drawn_states.iter().flatten().find(|state| **state >= count) else {
         return Ok(());
@@ -567,7 +567,7 @@ pub(crate) fn depends_on_path(effects: &Effects) -> bool {
 }
 
 /// Checks that effects with a memory have a path and models that can follow one.
-fn check_histories(scene: &SceneFile, places: &Places) -> Read<()> {
+fn check_histories(scene: &SceneFile, places: &Places) -> ReadResult<()> {
     let SceneFile { models, request, effects, .. } = scene;
     let key = request_key(request);
     let remembers = effects.friction != Friction::Off
@@ -607,7 +607,7 @@ fn check_histories(scene: &SceneFile, places: &Places) -> Read<()> {
 }
 
 /// Checks that a tangential load along y is given only to models that take both directions.
-fn check_tangential(scene: &SceneFile, places: &Places) -> Read<()> {
+fn check_tangential(scene: &SceneFile, places: &Places) -> ReadResult<()> {
     let SceneFile { models, request, effects, .. } = scene;
     let both = |numerics: &Numerics| numerics.model().abilities().directions == Directions::Plane;
     let Some(model) = models.iter().position(|numerics| !both(numerics)) else { return Ok(()) };
@@ -630,7 +630,7 @@ fn check_tangential(scene: &SceneFile, places: &Places) -> Read<()> {
 
 /// Checks that the coupling of normal and tangential tractions is given, where these bodies couple and a
 /// model can either neglect or solve it.
-fn check_coupling(scene: &SceneFile, places: &Places) -> Read<()> {
+fn check_coupling(scene: &SceneFile, places: &Places) -> ReadResult<()> {
     let SceneFile { models, pair, effects, .. } = scene;
     let asks = |numerics: &&Numerics| numerics.model().abilities().effects.contains(&Effect::FullCoupling);
     let (Some(pair), Some(numerics)) = (pair, models.iter().find(asks)) else { return Ok(()) };

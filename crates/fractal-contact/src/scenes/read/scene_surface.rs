@@ -3,7 +3,7 @@
 use crate::scenes::read::asked_surface::{AskedBody, AskedFile, AskedSelfAffine, AskedSurface, BODIES};
 use crate::scenes::read::key::missing;
 use crate::scenes::read::{
-    Diagnostic, Numerics, Places, Question, RandomSpectrum, RandomSurface, Read, System, amount,
+    Diagnostic, Numerics, Places, Question, RandomSpectrum, RandomSurface, ReadResult, System, amount,
     describe_self_affine, describe_sides, map_key, sampled, scan,
 };
 use contact_model::{Amplitude, Cells, Error, HeightMap, Result, SelfAffine, Size, Surface};
@@ -214,7 +214,11 @@ impl From<SceneSurface> for FoundSurface {
 }
 
 /// The surface that a question asks for; files are looked up from `directory`.
-pub(crate) fn find_surface(question: &Question, directory: &Path, places: &Places) -> Read<FoundSurface> {
+pub(crate) fn find_surface(
+    question: &Question,
+    directory: &Path,
+    places: &Places,
+) -> ReadResult<FoundSurface> {
     let Some(surface) = &question.surface else {
         let Some(body) = &question.body else {
             return Err(places
@@ -241,7 +245,12 @@ pub(crate) fn find_surface(question: &Question, directory: &Path, places: &Place
 }
 
 /// The map of a file, with the surface of the second body and a body added to it, or its twin.
-fn find_map(question: &Question, file: &AskedFile, directory: &Path, places: &Places) -> Read<FoundSurface> {
+fn find_map(
+    question: &Question,
+    file: &AskedFile,
+    directory: &Path,
+    places: &Places,
+) -> ReadResult<FoundSurface> {
     const TWIN: &str = "scene.surface.twin";
     let (system, second) = (question.units, question.second_surface.as_ref());
     if file.keep_heights.is_some() && file.twin.is_none() {
@@ -292,7 +301,7 @@ fn find_map(question: &Question, file: &AskedFile, directory: &Path, places: &Pl
 }
 
 /// Refuses keys that cannot be combined with a profile.
-fn refuse_for_profile(question: &Question, places: &Places) -> Read<()> {
+fn refuse_for_profile(question: &Question, places: &Places) -> ReadResult<()> {
     let help = "remove it, or measure an area; a tilt or a bow of the profile goes with `detrend`";
     let twin = matches!(&question.surface, Some(AskedSurface::File(file)) if file.twin.is_some());
     if twin {
@@ -310,7 +319,7 @@ fn refuse_for_profile(question: &Question, places: &Places) -> Read<()> {
     Ok(())
 }
 
-fn anisotropy(asked: &AskedSelfAffine, places: &Places) -> Read<Option<Anisotropy>> {
+fn anisotropy(asked: &AskedSelfAffine, places: &Places) -> ReadResult<Option<Anisotropy>> {
     match (asked.anisotropy, asked.lay) {
         (Some(ratio), lay) => Ok(Some(Anisotropy { ratio, lay: lay.unwrap_or(0.0) })),
         (None, None) => Ok(None),
@@ -322,7 +331,7 @@ fn anisotropy(asked: &AskedSelfAffine, places: &Places) -> Read<Option<Anisotrop
     }
 }
 
-fn self_affine(asked: &AskedSelfAffine, places: &Places) -> Read<SelfAffine> {
+fn self_affine(asked: &AskedSelfAffine, places: &Places) -> ReadResult<SelfAffine> {
     const TABLE: &str = "scene.surface";
     let size = asked.size.ok_or_else(|| missing(TABLE, "side", "\"1 mm\"", places))?;
     let hurst = asked.hurst.ok_or_else(|| {
@@ -350,7 +359,7 @@ fn self_affine(asked: &AskedSelfAffine, places: &Places) -> Read<SelfAffine> {
 }
 
 /// A body; on a rough surface it has that surface's size.
-fn body_of(asked: &AskedBody, given: Option<Size>, places: &Places) -> Read<Surface> {
+fn body_of(asked: &AskedBody, given: Option<Size>, places: &Places) -> ReadResult<Surface> {
     const TABLE: &str = "scene.body";
     let kind = asked.kind.ok_or_else(|| missing(TABLE, "kind", "\"sphere\"", places))?;
     let size = match (given, asked.size) {

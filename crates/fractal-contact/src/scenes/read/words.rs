@@ -1,7 +1,7 @@
 //! Names of scenes, loads, units and models in titles and labels.
 
 use crate::models::ModelRecord;
-use crate::scenes::read::{LoadKind, LoadRequest, SceneFile, System, amount, short};
+use crate::scenes::read::{LoadRequest, PrescribedLoad, SceneFile, System, amount, short};
 use contact_model::units::{ascii, to_digits};
 use contact_model::{Body, Error, Hardness, Rheology};
 use std::path::Path;
@@ -17,8 +17,11 @@ pub(crate) fn scene_name(scene: &SceneFile) -> String {
 pub(crate) fn load(scene: &SceneFile, state: usize) -> String {
     match &scene.request {
         LoadRequest::Loads(loads) => {
-            let unit =
-                if loads.kind == LoadKind::ForceBar { "" } else { scene.system.shown(loads.kind.unit()) };
+            let unit = if loads.kind == PrescribedLoad::ForceBar {
+                ""
+            } else {
+                scene.system.shown(loads.kind.unit())
+            };
             format!("{} {}", loads.kind.key().replace('_', " "), amount(loads.values[state], unit))
         }
         LoadRequest::Path(_) => format!("step {state}"),

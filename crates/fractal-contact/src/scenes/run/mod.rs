@@ -19,6 +19,6 @@ pub(crate) use pilot::{SharedStop, remove_trials, take_trial};
 pub(crate) use scene_job::{SceneJob, scene_jobs, units};
 pub(crate) use shared_lines::SharedLines;
 pub(crate) use state_result::{
-    Answer, FieldFile, ModelResult, Solved, SolvedUnit, StateRecord, StoredFile, field_of_file,
+    Answer, AnsweredState, FieldFile, ModelResult, SolvedUnit, StateRecord, StoredFile, field_of_file,
 };
 pub(crate) use warnings::{Concerned, Warning, rests_on_few_cells};

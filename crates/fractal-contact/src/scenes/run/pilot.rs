@@ -57,7 +57,7 @@ impl SceneFile {
                     check(&self)?;
                     store = Some(Store::open_for_all(&options.out, options.fresh, &stop)?);
                 }
-                let trial = Trial { candidate, out: &options.out };
+                let trial = PilotJob { candidate, out: &options.out };
                 let Some(store) = &store else { return Ok(Vec::new()) };
                 trial.errors(store, (options.threads, progress), stop)
             };
@@ -93,7 +93,7 @@ impl SceneFile {
         let store = Store::view(out)?;
         let mut missing = false;
         let mut errors = |candidate: &Candidate| {
-            let stored = Trial { candidate, out }.stored(&store);
+            let stored = PilotJob { candidate, out }.stored(&store);
             missing |= stored.is_none();
             stored.map(|result| errors_of(&result)).ok_or_else(stopped)
         };
@@ -141,13 +141,13 @@ fn errors_of(result: &ModelResult) -> ErrorsOfStates {
 }
 
 /// The job of surface 0 on a grid that is tried.
-struct Trial<'a> {
+struct PilotJob<'a> {
     candidate: &'a Candidate,
     /// Folder of the results.
     out: &'a Path,
 }
 
-impl Trial<'_> {
+impl PilotJob<'_> {
     fn job(&self, folder: &Path) -> SceneJob {
         let unit = ModelOnSurface { model: self.candidate.model, surface: 0 };
         let scene = Arc::new(self.candidate.scene.clone());

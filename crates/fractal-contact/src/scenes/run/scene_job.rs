@@ -170,7 +170,7 @@ mod tests {
     use super::*;
     use crate::scenes::plan::grid_comparison::GridErrors;
     use crate::scenes::read::distributed::Distributed;
-    use crate::scenes::run::state_result::{Answer, Solved, StateRecord, StoredFile};
+    use crate::scenes::run::state_result::{Answer, AnsweredState, StateRecord, StoredFile};
     use crate::scenes::run::warnings::Warning;
     use contact_model::{Branch, ContactState, Normalisation, Patches, SolveReport, Status};
 
@@ -190,7 +190,7 @@ mod tests {
             errors: [("area".to_owned(), analysis::grid_error(1.0, 1.1, 1.3).unwrap())].into(),
         };
         let warnings = vec![Warning::Edge, Warning::Area];
-        let solved = Solved { state, normalisation, warnings, grid: Some(grid) };
+        let solved = AnsweredState { state, normalisation, warnings, grid: Some(grid) };
         let mut first = StateRecord::new(0, Answer::State(Box::new(solved)));
         first.distributions.push((Distributed::Gap, vec![[0.0, 0.1, 1e-300], [0.1, 0.2, 3.0]]));
         first.files.push(StoredFile { name: "a b.npy".into(), bytes: 3, digest: u128::MAX - 7 });

@@ -6,8 +6,8 @@ use crate::scenes::read::{
     distributed, step_to, words,
 };
 use crate::scenes::run::{
-    Answer, FieldFile, FieldView, Keeper, ModelResult, SharedLines, Solved, StateRecord, StoredFile, Warning,
-    field_pictures,
+    Answer, AnsweredState, FieldFile, FieldView, Keeper, ModelResult, SharedLines, StateRecord, StoredFile,
+    Warning, field_pictures,
 };
 use contact_model::{Cells, Field, FieldQuantity, LargestPull, Load, PreparedContact, Stop};
 use std::borrow::Cow;
@@ -110,11 +110,11 @@ impl ModelOnSurface {
                         .as_ref()
                         .map(|comparison| comparison.errors(index, &state, &normalisation));
                     let warnings = Warning::of(scene, &state, grid.as_ref());
-                    self.recorded(scene, Solved { state, normalisation, warnings, grid }, out, index)?
+                    self.recorded(scene, AnsweredState { state, normalisation, warnings, grid }, out, index)?
                 }
                 Err(contact_model::Error::NotConverged { best }) => {
                     let state = best.with_fields(None).with_patches(None);
-                    let solved = Solved { state, normalisation, warnings: Vec::new(), grid: None };
+                    let solved = AnsweredState { state, normalisation, warnings: Vec::new(), grid: None };
                     StateRecord::new(index, Answer::State(Box::new(solved)))
                 }
                 Err(contact_model::Error::Stopped { .. }) => {
@@ -163,7 +163,12 @@ impl ModelOnSurface {
                 Ok(state) => {
                     let state = largest.enter(step.load.normal, state);
                     let warnings = Warning::of(scene, &state, None);
-                    self.recorded(scene, Solved { state, normalisation, warnings, grid: None }, out, index)?
+                    self.recorded(
+                        scene,
+                        AnsweredState { state, normalisation, warnings, grid: None },
+                        out,
+                        index,
+                    )?
                 }
                 Err(contact_model::Error::Stopped { .. }) => {
                     keep(result, contact, true);
@@ -175,7 +180,7 @@ impl ModelOnSurface {
                         // the last stable state.
                         let state =
                             largest.enter(step.load.normal, best.with_fields(None).with_patches(None));
-                        let solved = Solved { state, normalisation, warnings: Vec::new(), grid: None };
+                        let solved = AnsweredState { state, normalisation, warnings: Vec::new(), grid: None };
                         StateRecord::new(index, Answer::State(Box::new(solved)))
                     }
                     Err(error) => StateRecord::new(index, Answer::Refused(words::refusal(scene, &error))),
@@ -198,7 +203,7 @@ impl ModelOnSurface {
     fn recorded(
         &self,
         scene: &SceneFile,
-        mut solved: Solved,
+        mut solved: AnsweredState,
         out: &Path,
         index: usize,
     ) -> Result<StateRecord> {
@@ -312,7 +317,7 @@ fn write_vti(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scenes::{LoadKind, SceneSurface};
+    use crate::scenes::{PrescribedLoad, SceneSurface};
     use contact_model::{ContactState, Fields, HeightMap, Output, SolveReport, Step};
     use std::sync::Arc;
 
@@ -322,7 +327,7 @@ mod tests {
         let heights = vec![1.0, 2.0, 3.0, 4.0, f64::NAN, 6.0];
         let map = HeightMap::with_undefined([3, 2], [6.0, 1.0], heights).unwrap();
         let surface = SceneSurface::Plain(contact_model::Surface::Heights(Arc::new(map)));
-        let loads = LoadRequest::Loads(LoadList { kind: LoadKind::Force, values: vec![1.0] });
+        let loads = LoadRequest::Loads(LoadList { kind: PrescribedLoad::Force, values: vec![1.0] });
         let mut scene = SceneFile::new(vec![Numerics::Bem3d(bem3d::Bem3d::default())], surface, 1.0, loads);
         let all = vec![FieldFormat::Npy, FieldFormat::Png, FieldFormat::Pixels, FieldFormat::Vti];
         scene.requested.files = vec![(Output::Pressure, all.clone()), (Output::Gap, all)];
@@ -336,7 +341,7 @@ mod tests {
         let unit = ModelOnSurface { model: 0, surface: 0 };
         std::fs::create_dir(dir.path().join(".units")).unwrap();
         let normalisation = contact_model::Normalisation { contact_modulus: 1.0, length: 1.0, height: None };
-        let solved = Solved { state, normalisation, warnings: Vec::new(), grid: None };
+        let solved = AnsweredState { state, normalisation, warnings: Vec::new(), grid: None };
         let kept = unit.recorded(&scene, solved, dir.path(), 0).unwrap();
         // Three files of each field, its values for the picture, and what the report shows of it.
         assert_eq!((kept.files.len(), kept.solved().unwrap().state.fields.is_none()), (10, true));
@@ -388,7 +393,7 @@ mod tests {
         let dir = tempfile::tempdir().unwrap();
         std::fs::create_dir(dir.path().join(".units")).unwrap();
         let normalisation = contact_model::Normalisation { contact_modulus: 1.0, length: 1.0, height: None };
-        let solved = Solved { state, normalisation, warnings: Vec::new(), grid: None };
+        let solved = AnsweredState { state, normalisation, warnings: Vec::new(), grid: None };
         let unit = ModelOnSurface { model: 0, surface: 0 };
         let kept = unit.recorded(&scene, solved, dir.path(), 0).unwrap();
         let mut result = ModelResult { states: vec![kept], complete: true, ..ModelResult::default() };

@@ -3,7 +3,7 @@
 use crate::scenes::plan::GridErrors;
 use crate::scenes::read::{Bin, Distributed, HEIGHTS, Result, SceneFile, amount, words};
 use crate::scenes::run::Warning;
-use contact_model::quantities::Quantity;
+use contact_model::quantities::StateQuantity;
 use contact_model::{ContactState, FIELDS, Normalisation, Status};
 use runs::fnv1a_128;
 use serde::{Deserialize, Serialize};
@@ -63,14 +63,14 @@ pub(crate) struct StateRecord {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) enum Answer {
     /// A state, including the best one of a solve that missed its tolerance (see its status).
-    State(Box<Solved>),
+    State(Box<AnsweredState>),
     /// The reason why there is no state.
     Refused(String),
 }
 
 /// A state with its warnings and its grid errors.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Solved {
+pub(crate) struct AnsweredState {
     /// The state without its fields, which are in files.
     pub state: ContactState,
     /// Normalisation of its surface.
@@ -88,7 +88,7 @@ impl StateRecord {
     }
 
     /// The state, where there is one.
-    pub fn solved(&self) -> Option<&Solved> {
+    pub fn solved(&self) -> Option<&AnsweredState> {
         match &self.answer {
             Answer::State(solved) => Some(solved),
             Answer::Refused(_) => None,
@@ -96,7 +96,7 @@ impl StateRecord {
     }
 
     /// The state, where it reached its tolerance.
-    pub fn converged(&self) -> Option<&Solved> {
+    pub fn converged(&self) -> Option<&AnsweredState> {
         self.solved().filter(|solved| solved.state.report.status == Status::Converged)
     }
 
@@ -125,7 +125,7 @@ impl StateRecord {
     pub fn words(&self, scene: &SceneFile) -> String {
         let mut text = words::load(scene, self.index);
         let Some(solved) = self.solved().filter(|_| scene.is_history()) else { return text };
-        for quantity in REACHED.into_iter().filter_map(Quantity::named) {
+        for quantity in REACHED.into_iter().filter_map(StateQuantity::named) {
             let Some(value) = quantity.number(&solved.state, &solved.normalisation) else { continue };
             // Components along y are shown only where they are not zero.
             if quantity.name.ends_with("_y") && value == 0.0 {

@@ -3,7 +3,7 @@
 use crate::scenes::plan::RMS_SLOPE;
 use crate::scenes::read::{LoadList, LoadRequest, Numerics, SceneFile};
 use crate::scenes::run::{SolvedUnit, StateRecord};
-use contact_model::quantities::{Compared, QUANTITIES, Quantity, SceneProperties};
+use contact_model::quantities::{Compared, QUANTITIES, SceneProperties, StateQuantity};
 use contact_model::{Column, Table, Value};
 use contact_model::{Directions, Source};
 
@@ -59,7 +59,7 @@ pub(crate) fn sources(scene: &SceneFile) -> Vec<(&'static str, &'static str, Sou
 }
 
 /// The quantities that a scene requests, in the order of the table of all quantities.
-pub(crate) fn asked(scene: &SceneFile) -> impl Iterator<Item = &'static Quantity> + '_ {
+pub(crate) fn asked(scene: &SceneFile) -> impl Iterator<Item = &'static StateQuantity> + '_ {
     let answers_both = |model: &Numerics| model.model().abilities().directions == Directions::Plane;
     let [_, along_y] = scene.request.shears();
     let both = along_y || scene.models.iter().any(answers_both);
@@ -75,12 +75,12 @@ pub(crate) fn asked(scene: &SceneFile) -> impl Iterator<Item = &'static Quantity
 }
 
 /// Those of them whose discretisation error is reported.
-pub(crate) fn with_grid_errors(scene: &SceneFile) -> impl Iterator<Item = &'static Quantity> + '_ {
+pub(crate) fn with_grid_errors(scene: &SceneFile) -> impl Iterator<Item = &'static StateQuantity> + '_ {
     asked(scene).filter(|quantity| scene.requested.grid_error && quantity.compared != Compared::No)
 }
 
 /// The column of a quantity.
-pub(crate) fn column(scene: &SceneFile, quantity: &Quantity) -> Column {
+pub(crate) fn column(scene: &SceneFile, quantity: &StateQuantity) -> Column {
     let unit = scene.system.unit(quantity.unit.si(&scene.requested.outputs));
     Column { name: quantity.name, unit, meaning: quantity.meaning }
 }
@@ -131,7 +131,7 @@ pub(crate) fn row(scene: &SceneFile, unit: &SolvedUnit<'_>, record: &StateRecord
 }
 
 /// A quantity of a state; a refused load has only a status.
-pub(crate) fn value(record: &StateRecord, quantity: &Quantity) -> Value {
+pub(crate) fn value(record: &StateRecord, quantity: &StateQuantity) -> Value {
     if quantity.name == "status" {
         return record.status().into();
     }

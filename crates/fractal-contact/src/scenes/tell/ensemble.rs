@@ -1,17 +1,17 @@
 //! Means over the surfaces of a scene.
 
 use crate::scenes::read::SceneFile;
-use crate::scenes::run::{Solved, SolvedUnit, StateRecord};
+use crate::scenes::run::{AnsweredState, SolvedUnit, StateRecord};
 use crate::scenes::tell::columns;
 use analysis::{mean_and_deviation, student};
-use contact_model::quantities::{Average, Quantity, Role};
+use contact_model::quantities::{Average, Role, StateQuantity};
 use contact_model::{Column, Table, Value};
 
 /// A mean, and the standard deviation of one number where there are two.
 type MeanAndDeviation = (f64, Option<f64>);
 
 /// A quantity, or its discretisation error.
-type Averaged = (&'static Quantity, bool);
+type Averaged = (&'static StateQuantity, bool);
 
 /// The numbers that are averaged over the surfaces of a scene, in the order of columns: quantities, then
 /// discretisation errors.
@@ -37,30 +37,30 @@ pub(crate) struct Mean {
 
 impl Mean {
     /// Mean and, for two surfaces or more, its standard error, of a quantity.
-    pub fn of(&self, quantity: &Quantity) -> Option<MeanAndDeviation> {
+    pub fn of(&self, quantity: &StateQuantity) -> Option<MeanAndDeviation> {
         self.with_error(quantity, false)
     }
 
     /// Mean and, for two surfaces or more, half of its 95 % interval, from Student's distribution with one
     /// degree of freedom less than there are surfaces.
-    pub fn interval(&self, quantity: &Quantity) -> Option<MeanAndDeviation> {
+    pub fn interval(&self, quantity: &StateQuantity) -> Option<MeanAndDeviation> {
         let (mean, deviation, surfaces) = self.find(quantity, false)?;
         let half = |deviation: f64| student(surfaces as f64 - 1.0) * deviation / (surfaces as f64).sqrt();
         Some((mean, deviation.map(half)))
     }
 
     /// The same for its discretisation error.
-    pub fn grid_error(&self, quantity: &Quantity) -> Option<MeanAndDeviation> {
+    pub fn grid_error(&self, quantity: &StateQuantity) -> Option<MeanAndDeviation> {
         self.with_error(quantity, true)
     }
 
-    fn with_error(&self, quantity: &Quantity, of_grid: bool) -> Option<MeanAndDeviation> {
+    fn with_error(&self, quantity: &StateQuantity, of_grid: bool) -> Option<MeanAndDeviation> {
         let (mean, deviation, surfaces) = self.find(quantity, of_grid)?;
         Some((mean, deviation.map(|deviation| deviation / (surfaces as f64).sqrt())))
     }
 
     /// Mean, standard deviation and number of surfaces.
-    fn find(&self, quantity: &Quantity, of_grid: bool) -> Option<(f64, Option<f64>, usize)> {
+    fn find(&self, quantity: &StateQuantity, of_grid: bool) -> Option<(f64, Option<f64>, usize)> {
         let is = |(of, grid): &Averaged| of.name == quantity.name && *grid == of_grid;
         let (_, value, surfaces) = self.values.iter().find(|(of, ..)| is(of))?;
         let (mean, deviation) = (*value)?;
@@ -76,16 +76,17 @@ pub(crate) fn means<'a>(scene: &SceneFile, units: &[SolvedUnit<'a>]) -> Vec<Mean
         for state in 0..scene.request.count() {
             let of_model = || units.iter().filter(|unit| unit.model == model);
             let at = |unit: &SolvedUnit<'a>| unit.states.iter().find(|record| record.index == state);
-            let solved: Vec<&Solved> = of_model().filter_map(at).filter_map(StateRecord::converged).collect();
+            let solved: Vec<&AnsweredState> =
+                of_model().filter_map(at).filter_map(StateRecord::converged).collect();
             // A path that has ended keeps the quantities of the path as a whole.
             let until = |unit: &SolvedUnit<'a>| {
                 let records = unit.states.iter().filter(|record| record.index <= state);
                 records.filter_map(StateRecord::solved).next_back()
             };
-            let of_paths: Vec<&Solved> = of_model().filter_map(until).collect();
+            let of_paths: Vec<&AnsweredState> = of_model().filter_map(until).collect();
             let value = |&(quantity, of_grid): &Averaged| {
                 let solved = if quantity.role == Role::OfPath { &of_paths } else { &solved };
-                let number = |solved: &&Solved| {
+                let number = |solved: &&AnsweredState| {
                     if of_grid {
                         return Some(solved.grid.as_ref()?.of(quantity.name)?.error);
                     }

@@ -23,13 +23,13 @@ pub(crate) use ensemble::Mean;
 pub(crate) use report::Report;
 pub(crate) use result_folder::ResultFolder;
 pub(crate) use state_table::StateTable;
-pub(crate) use statistics::{Bands, FILES, LEVEL, MapStatisticsTables, Parameter, Scale};
+pub(crate) use statistics::{Bands, FILES, LEVEL, MapStatisticsTables, Parameter, SlopeAndCurvature};
 pub(crate) use surface_report::SurfaceReport;
 
 #[cfg(test)]
 mod tests {
     use super::{columns, ensemble, pictures, report, summary};
-    use crate::scenes::{LoadKind, LoadList, LoadRequest, Numerics, SceneFile, SceneSurface};
+    use crate::scenes::{LoadList, LoadRequest, Numerics, PrescribedLoad, SceneFile, SceneSurface};
     use contact_model::quantities::{AskedBy, Average, QUANTITIES, Role};
     use contact_model::{
         Adhesion, Boundary, Conductance, Effect, Friction, Hardness, Load, Output, Outputs, Rheology,
@@ -45,7 +45,7 @@ mod tests {
 
     fn asking_nothing() -> SceneFile {
         let rough = Surface::SelfAffine(SelfAffine::new(2.2, 1.0, 0.01).unwrap());
-        let loads = LoadRequest::Loads(LoadList { kind: LoadKind::Approach, values: vec![0.1, 0.2] });
+        let loads = LoadRequest::Loads(LoadList { kind: PrescribedLoad::Approach, values: vec![0.1, 0.2] });
         let models = vec![Numerics::named("bem3d").unwrap()];
         let mut scene = SceneFile::new(models, SceneSurface::Plain(rough), 1.0, loads);
         scene.sampling.surfaces = 2;
@@ -66,8 +66,10 @@ mod tests {
                 }
                 if output == Output::MeanGap {
                     effects.boundary = Boundary::Periodic;
-                    scene.request =
-                        LoadRequest::Loads(LoadList { kind: LoadKind::MeanPressure, values: vec![0.1, 0.2] });
+                    scene.request = LoadRequest::Loads(LoadList {
+                        kind: PrescribedLoad::MeanPressure,
+                        values: vec![0.1, 0.2],
+                    });
                 }
             }
             AskedBy::AnyTangentialStiffness => {

@@ -1,16 +1,16 @@
 //! Curves drawn from the states.
 
-use crate::scenes::read::{LoadKind, LoadRequest, SceneFile, depends_on_path, words};
+use crate::scenes::read::{LoadRequest, PrescribedLoad, SceneFile, depends_on_path, words};
 use crate::scenes::run::{StateRecord, Warning, rests_on_few_cells};
 use crate::scenes::tell::{Mean, StateTable, columns, ensemble, smooth_ball};
-use contact_model::quantities::Quantity;
+use contact_model::quantities::StateQuantity;
 use contact_model::{Adhesion, Boundary, Hardness};
 use plots::{Chart, Curve};
 
 /// The quantity along the horizontal axis.
 #[derive(Clone, Copy)]
-enum Axis {
-    Quantity(&'static Quantity),
+enum HorizontalAxis {
+    StateQuantity(&'static StateQuantity),
     /// The number that the loads prescribe, where it is no quantity: a mean pressure.
     Load,
 }
@@ -37,7 +37,7 @@ const DEVIATION: &str = "-deviation";
 const TOGETHER: f64 = 0.1;
 
 /// The deviations of all curves from the first one in per cent, where the curves cannot be distinguished.
-fn deviation(scene: &SceneFile, chart: &Chart, y: &'static Quantity) -> Option<Chart> {
+fn deviation(scene: &SceneFile, chart: &Chart, y: &'static StateQuantity) -> Option<Chart> {
     let [first, others @ ..] = &chart.curves[..] else { return None };
     if scene.is_history() || others.is_empty() {
         return None;
@@ -77,31 +77,32 @@ pub(crate) fn curve_files(scene: &SceneFile) -> Vec<String> {
 
 /// The pairs of quantities that are drawn: each quantity over the load, over the time, or over the quantity
 /// of a loop.
-fn pairs(scene: &SceneFile) -> Vec<(Axis, &'static Quantity)> {
+fn pairs(scene: &SceneFile) -> Vec<(HorizontalAxis, &'static StateQuantity)> {
     let drawn = || columns::asked(scene).filter(|quantity| quantity.drawn);
     let named = |name: &str| columns::asked(scene).find(|quantity| quantity.name == name);
-    let over = |x: &'static str| -> Vec<(Axis, &'static Quantity)> {
+    let over = |x: &'static str| -> Vec<(HorizontalAxis, &'static StateQuantity)> {
         let Some(axis) = named(x) else { return Vec::new() };
-        drawn().filter(|y| y.name != x).map(|y| (Axis::Quantity(axis), y)).collect()
+        drawn().filter(|y| y.name != x).map(|y| (HorizontalAxis::StateQuantity(axis), y)).collect()
     };
     if let LoadRequest::Loads(loads) = &scene.request {
         // A force that is prescribed in another form is not a result.
-        let answers = |pairs: Vec<(Axis, &'static Quantity)>| {
+        let answers = |pairs: Vec<(HorizontalAxis, &'static StateQuantity)>| {
             pairs.into_iter().filter(|(_, y)| y.name != "force").collect()
         };
         return match loads.kind {
-            LoadKind::Force => over("force"),
-            LoadKind::ForceBar => answers(over("force_bar")),
-            LoadKind::MeanPressure => answers(drawn().map(|y| (Axis::Load, y)).collect()),
-            LoadKind::Approach => over("approach"),
-            LoadKind::MeanGap => over("mean_gap"),
+            PrescribedLoad::Force => over("force"),
+            PrescribedLoad::ForceBar => answers(over("force_bar")),
+            PrescribedLoad::MeanPressure => answers(drawn().map(|y| (HorizontalAxis::Load, y)).collect()),
+            PrescribedLoad::Approach => over("approach"),
+            PrescribedLoad::MeanGap => over("mean_gap"),
         };
     }
     if depends_on_path(&scene.effects) {
         // The loop of the force, and everything else over the force.
         let distance = if scene.effects.boundary == Boundary::Periodic { "mean_gap" } else { "approach" };
         let rest = over("force").into_iter().filter(|(_, y)| y.name != distance);
-        let axis = named(distance).zip(named("force")).map(|(d, force)| (Axis::Quantity(d), force));
+        let axis =
+            named(distance).zip(named("force")).map(|(d, force)| (HorizontalAxis::StateQuantity(d), force));
         return axis.into_iter().chain(rest).collect();
     }
     if scene.effects.friction == contact_model::Friction::Off {
@@ -129,18 +130,18 @@ fn varies(points: &[(f64, f64)]) -> bool {
     changes(|p| p.0) && changes(|p| p.1)
 }
 
-impl Axis {
+impl HorizontalAxis {
     /// Its name in words and its symbol.
     fn words(self) -> (&'static str, &'static str) {
         match self {
-            Self::Quantity(quantity) => (quantity.words, quantity.symbol),
+            Self::StateQuantity(quantity) => (quantity.words, quantity.symbol),
             Self::Load => ("mean pressure", "\\bar{p}"),
         }
     }
 
     fn unit(self, scene: &SceneFile) -> &'static str {
         match self {
-            Self::Quantity(quantity) => columns::column(scene, quantity).unit,
+            Self::StateQuantity(quantity) => columns::column(scene, quantity).unit,
             Self::Load => columns::prescribed(scene).map_or("1", |column| column.unit),
         }
     }
@@ -153,7 +154,7 @@ impl Axis {
 
     fn of_mean(self, mean: &Mean) -> Option<f64> {
         match self {
-            Self::Quantity(quantity) => Some(mean.of(quantity)?.0),
+            Self::StateQuantity(quantity) => Some(mean.of(quantity)?.0),
             Self::Load => mean.prescribed,
         }
     }
@@ -161,7 +162,7 @@ impl Axis {
 
 /// The curves in a chart of a quantity: the quantity itself and, for an area, also the corrected area, which
 /// is smaller because boundary cells count in part.
-fn drawn_with(scene: &SceneFile, y: &'static Quantity) -> Vec<(&'static Quantity, &'static str)> {
+fn drawn_with(scene: &SceneFile, y: &'static StateQuantity) -> Vec<(&'static StateQuantity, &'static str)> {
     let corrected = columns::asked(scene).find(|quantity| quantity.name == "area_corrected");
     match corrected {
         Some(corrected) if y.name == "area" => vec![(y, ", as counted"), (corrected, ", corrected")],
@@ -170,7 +171,11 @@ fn drawn_with(scene: &SceneFile, y: &'static Quantity) -> Vec<(&'static Quantity
 }
 
 /// The states of one model.
-fn curve(states: &StateTable<'_>, model: &'static str, (x, y): (Axis, &'static Quantity)) -> Curve {
+fn curve(
+    states: &StateTable<'_>,
+    model: &'static str,
+    (x, y): (HorizontalAxis, &'static StateQuantity),
+) -> Curve {
     let StateTable { scene, means, .. } = states;
     let shown = |(x, y): &(f64, f64)| scene.is_history() || (*x != 0.0 && *y != 0.0);
     let label = words::model_name(model).to_owned();
@@ -178,11 +183,12 @@ fn curve(states: &StateTable<'_>, model: &'static str, (x, y): (Axis, &'static Q
         let records = states.of_model(model);
         let state = |record: &StateRecord| {
             let solved = record.solved()?;
-            let number =
-                |of: &Quantity| of.number(&solved.state, &solved.normalisation).filter(|v| v.is_finite());
+            let number = |of: &StateQuantity| {
+                of.number(&solved.state, &solved.normalisation).filter(|v| v.is_finite())
+            };
             let x = match x {
-                Axis::Quantity(quantity) => number(quantity)?,
-                Axis::Load => scene.request.prescribed(record.index)?,
+                HorizontalAxis::StateQuantity(quantity) => number(quantity)?,
+                HorizontalAxis::Load => scene.request.prescribed(record.index)?,
             };
             let error = solved.grid.as_ref().and_then(|grid| grid.of(y.name)).map(|error| error.error);
             Some(((x, number(y)?), (error, rests_on_few_cells(&solved.state))))
@@ -213,8 +219,8 @@ fn curve(states: &StateTable<'_>, model: &'static str, (x, y): (Axis, &'static Q
 
 /// Whether a chart of a path begins at zero, with the bodies apart: over time, so that the immediate response
 /// to a step of the load is seen, and over a load that leaves an indentation.
-fn begins_at_zero(scene: &SceneFile, x: Axis) -> bool {
-    let over = |name: &str| matches!(x, Axis::Quantity(quantity) if quantity.name == name);
+fn begins_at_zero(scene: &SceneFile, x: HorizontalAxis) -> bool {
+    let over = |name: &str| matches!(x, HorizontalAxis::StateQuantity(quantity) if quantity.name == name);
     let effects = &scene.effects;
     scene.is_history()
         && effects.boundary == Boundary::Free
@@ -222,11 +228,12 @@ fn begins_at_zero(scene: &SceneFile, x: Axis) -> bool {
         && (over("time") || effects.hardness != Hardness::Off)
 }
 
-fn chart(states: &StateTable<'_>, x: Axis, y: &'static Quantity) -> Chart {
+fn chart(states: &StateTable<'_>, x: HorizontalAxis, y: &'static StateQuantity) -> Chart {
     let StateTable { scene, means, .. } = states;
     let quantities = drawn_with(scene, y);
     let of_model = |model: &'static str| {
-        let curve = |(y, suffix): &(&'static Quantity, &'static str)| (curve(states, model, (x, y)), *suffix);
+        let curve =
+            |(y, suffix): &(&'static StateQuantity, &'static str)| (curve(states, model, (x, y)), *suffix);
         let mut curves: Vec<(Curve, &str)> =
             quantities.iter().map(curve).filter(|(curve, _)| !curve.points.is_empty()).collect();
         // A model without cells has no corrected area.
@@ -238,8 +245,8 @@ fn chart(states: &StateTable<'_>, x: Axis, y: &'static Quantity) -> Chart {
     let smooth = smooth_ball::states(scene);
     let points = smooth.iter().filter_map(|(index, state, normalisation)| {
         let x = match x {
-            Axis::Quantity(quantity) => quantity.number(state, normalisation)?,
-            Axis::Load => scene.request.prescribed(*index)?,
+            HorizontalAxis::StateQuantity(quantity) => quantity.number(state, normalisation)?,
+            HorizontalAxis::Load => scene.request.prescribed(*index)?,
         };
         Some((x, y.number(state, normalisation)?))
     });
@@ -275,13 +282,13 @@ fn chart(states: &StateTable<'_>, x: Axis, y: &'static Quantity) -> Chart {
         title,
         subtitle: format!("{}{surfaces}", words::scene_name(scene)),
         x_label: x.label(),
-        y_label: Axis::Quantity(y).label(),
+        y_label: HorizontalAxis::StateQuantity(y).label(),
         curves,
         logarithmic: !scene.is_history(),
         directed: scene.is_history(),
         careful: Warning::FewCells.label().to_owned(),
     }
-    .in_units([x, Axis::Quantity(y)].map(|axis| axis.unit(scene)))
+    .in_units([x, HorizontalAxis::StateQuantity(y)].map(|axis| axis.unit(scene)))
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! Statistics of a profile: parameters of ISO 21920-2 instead of those of a surface.
 
-use crate::scenes::tell::{MapStatisticsTables, Parameter, Scale};
+use crate::scenes::tell::{MapStatisticsTables, Parameter, SlopeAndCurvature};
 use contact_model::{Boundary, HeightMap};
 use surface_statistics::{
     DifferenceMap, HeightParameters, PowerSpectrum, ProfileFit, ScaleDependence, Taper,
@@ -38,7 +38,7 @@ impl MapStatisticsTables {
         let curvature = self.known("curvature by scale", ScaleDependence::curvature_along_x(map, boundary));
         if let Some((slope, curvature)) = slope.zip(curvature) {
             let (slope, curvature) = ((slope, Vec::new()), (curvature, Vec::new()));
-            self.scales.push(Scale { axis: "x", slope, curvature });
+            self.scales.push(SlopeAndCurvature { axis: "x", slope, curvature });
         }
     }
 

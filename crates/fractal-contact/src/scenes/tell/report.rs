@@ -5,7 +5,7 @@ use crate::scenes::read::{HEIGHTS, Result, SceneFile, number, short, words};
 use crate::scenes::run::{FieldFile, FieldView, SceneOutcome, SolvedUnit, StateRecord, field_pictures};
 use crate::scenes::tell::{MapStatisticsTables, StateTable, columns, distributions, page, pictures, summary};
 use contact_model::Value;
-use contact_model::quantities::{Quantity, Role};
+use contact_model::quantities::{Role, StateQuantity};
 use contact_model::{Boundary, FieldQuantity};
 use maud::{Markup, PreEscaped, html};
 use plots::{Chart, Curve};
@@ -161,7 +161,7 @@ impl Report<'_> {
 
     /// The largest of each residual over all states, with what it means.
     fn certificates(&self) -> Markup {
-        let largest = |quantity: &Quantity| {
+        let largest = |quantity: &StateQuantity| {
             let records = self.states.units.iter().flat_map(|unit| unit.states);
             let values = records.filter_map(|record| match columns::value(record, quantity) {
                 Value::Number(v) => Some(v),
@@ -169,7 +169,7 @@ impl Report<'_> {
             });
             values.reduce(f64::max)
         };
-        let proves = |quantity: &'static Quantity| match quantity.role {
+        let proves = |quantity: &'static StateQuantity| match quantity.role {
             Role::Residual(proves) => Some((quantity.name, proves, largest(quantity)?)),
             _ => None,
         };
@@ -401,7 +401,7 @@ fn below_each_other(model: &summary::ModelStates) -> Markup {
 }
 
 /// The residuals that a scene has.
-pub(crate) fn residuals(scene: &SceneFile) -> impl Iterator<Item = &'static Quantity> + '_ {
+pub(crate) fn residuals(scene: &SceneFile) -> impl Iterator<Item = &'static StateQuantity> + '_ {
     columns::asked(scene).filter(|quantity| matches!(quantity.role, Role::Residual(_)))
 }
 

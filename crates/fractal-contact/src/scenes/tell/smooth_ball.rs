@@ -1,6 +1,6 @@
 //! The smooth ball that a rough one is compared with: Hertz's formula under the same loads.
 
-use crate::scenes::read::{LoadKind, LoadRequest, SceneFile, SceneSurface};
+use crate::scenes::read::{LoadRequest, PrescribedLoad, SceneFile, SceneSurface};
 use contact_model::{ContactModel as _, ContactState, Effects, Normalisation, Outputs, Scene, Surface};
 
 /// Label of its curve.
@@ -13,7 +13,7 @@ pub(crate) fn states(scene: &SceneFile) -> Vec<(usize, ContactState, Normalisati
         return Vec::new();
     };
     let LoadRequest::Loads(requests) = &scene.request else { return Vec::new() };
-    if requests.kind == LoadKind::ForceBar || scene.effects != Effects::default() {
+    if requests.kind == PrescribedLoad::ForceBar || scene.effects != Effects::default() {
         return Vec::new();
     }
     let asked = &scene.requested.outputs;

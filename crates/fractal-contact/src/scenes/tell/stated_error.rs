@@ -3,7 +3,7 @@
 use crate::scenes::run::StateRecord;
 use crate::scenes::tell::columns;
 use contact_model::Value;
-use contact_model::quantities::Quantity;
+use contact_model::quantities::StateQuantity;
 use contact_model::units::{rounded, short};
 
 /// What stands between a number and its error. Terminals and fonts without it are still in use: there it is
@@ -27,13 +27,13 @@ const SOLVER_ERRORS: [(&str, &str); 6] = [
 
 /// The estimated relative error of a quantity of a state: that of the grid and that of the solver, as far as
 /// they are known.
-pub(crate) fn relative_error(record: &StateRecord, quantity: &Quantity) -> Option<f64> {
+pub(crate) fn relative_error(record: &StateRecord, quantity: &StateQuantity) -> Option<f64> {
     // The contact fraction is the area over a constant.
     let compared = if quantity.name == "contact_fraction" { "area" } else { quantity.name };
     let of_grid =
         record.solved().and_then(|solved| solved.grid.as_ref()?.of(compared)).map(|found| found.error);
     let of_solver = SOLVER_ERRORS.iter().find(|(name, _)| *name == quantity.name).and_then(|(_, error)| {
-        match columns::value(record, Quantity::named(error)?) {
+        match columns::value(record, StateQuantity::named(error)?) {
             Value::Number(error) => Some(error),
             _ => None,
         }
@@ -77,7 +77,7 @@ pub(crate) fn with_error(value: f64, error: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use contact_model::quantities::{QUANTITIES, Role, Unit};
+    use contact_model::quantities::{QUANTITIES, QuantityUnit, Role};
 
     #[test]
     fn a_number_and_its_error_end_at_the_same_place() {
@@ -106,8 +106,8 @@ mod tests {
     #[test]
     fn errors_of_the_solver_are_relative_ones_of_quantities() {
         for (name, error) in SOLVER_ERRORS {
-            let [of, error] = [name, error].map(|name| Quantity::named(name).unwrap());
-            assert!(of.role == Role::Answer && error.unit == Unit::One, "{name}");
+            let [of, error] = [name, error].map(|name| StateQuantity::named(name).unwrap());
+            assert!(of.role == Role::Answer && error.unit == QuantityUnit::One, "{name}");
             assert!(error.meaning.contains("relative error"), "{}", error.meaning);
         }
         let residuals = QUANTITIES.iter();

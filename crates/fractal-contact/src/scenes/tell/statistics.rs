@@ -47,7 +47,7 @@ pub(crate) struct Parameter {
 pub(crate) type Bands = Vec<Option<[f64; 2]>>;
 
 /// Slope and curvature along one axis.
-pub(crate) struct Scale {
+pub(crate) struct SlopeAndCurvature {
     pub axis: &'static str,
     pub slope: (ScaleDependence, Bands),
     pub curvature: (ScaleDependence, Bands),
@@ -61,7 +61,7 @@ pub(crate) struct MapStatisticsTables {
     pub parameters: Vec<Parameter>,
     pub spectra: Vec<(&'static str, PowerSpectrum)>,
     pub differences: Option<(HeightDifference, Bands)>,
-    pub scales: Vec<Scale>,
+    pub scales: Vec<SlopeAndCurvature>,
     /// Shortest and longest wavelength that can be trusted.
     pub reliable: Option<[f64; 2]>,
     /// Reasons why a part is missing.
@@ -122,7 +122,7 @@ impl MapStatisticsTables {
                 let of_slope = limits(&|bands| bands.of_slopes(&slope, i, LEVEL));
                 let of_curvature = limits(&|bands| bands.of_curvatures(&curvature, i, LEVEL));
                 let (slope, curvature) = ((slope, of_slope), (curvature, of_curvature));
-                self.scales.push(Scale { axis, slope, curvature });
+                self.scales.push(SlopeAndCurvature { axis, slope, curvature });
             }
         }
     }

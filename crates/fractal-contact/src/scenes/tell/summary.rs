@@ -6,7 +6,7 @@ use crate::scenes::run::StateRecord;
 use crate::scenes::tell::stated_error::{OF_GRID, OF_SOLVER, PLUS_MINUS, relative_error, with_error};
 use crate::scenes::tell::{Mean, StateTable, columns, ensemble};
 use contact_model::Value;
-use contact_model::quantities::{Quantity, Role, Unit};
+use contact_model::quantities::{QuantityUnit, Role, StateQuantity};
 use contact_model::units::rounded;
 
 /// More states of a model than these are left to the files.
@@ -175,8 +175,8 @@ pub(crate) fn is_short(columns: usize, states: usize) -> bool {
 /// A number of a state in the summary: a quantity, or its estimated discretisation error.
 #[derive(Clone, Copy)]
 enum Shown {
-    Answer(&'static Quantity),
-    GridError(&'static Quantity),
+    Answer(&'static StateQuantity),
+    GridError(&'static StateQuantity),
 }
 
 /// What stands in a cell before its column has a unit.
@@ -228,8 +228,8 @@ impl Shown {
     /// Of its column in files; shares are read in per cent.
     fn unit(self, scene: &SceneFile) -> &'static str {
         match self {
-            Self::Answer(Quantity { name: "contact_fraction", .. }) | Self::GridError(_) => "%",
-            Self::Answer(Quantity { unit: Unit::Word | Unit::One, .. }) => "",
+            Self::Answer(StateQuantity { name: "contact_fraction", .. }) | Self::GridError(_) => "%",
+            Self::Answer(StateQuantity { unit: QuantityUnit::Word | QuantityUnit::One, .. }) => "",
             Self::Answer(quantity) => columns::column(scene, quantity).unit,
         }
     }
@@ -383,7 +383,7 @@ pub(crate) fn of_models(table: &StateTable<'_>) -> Vec<ModelStates> {
 /// What a model's paths are as a whole: the quantities of paths at their ends, in words.
 fn of_paths(table: &StateTable<'_>, model: &str, mean: Option<&Mean>) -> Vec<String> {
     let StateTable { scene, units, .. } = table;
-    let quantities: Vec<&'static Quantity> =
+    let quantities: Vec<&'static StateQuantity> =
         columns::asked(scene).filter(|quantity| quantity.role == Role::OfPath).collect();
     let line = |of: &dyn Fn(Shown) -> Cell| {
         let known = quantities.iter().filter_map(|&quantity| {

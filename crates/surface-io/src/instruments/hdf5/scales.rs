@@ -7,11 +7,11 @@
 
 use super::attributes::{Attributes, LABELS, describe, numbers, text, written};
 use super::storage::{layout, number_type};
-use crate::array::{Array, Coordinates, Dimension};
+use crate::array::{Array, ArrayDimension, Coordinates};
 use crate::channel::{Bytes, FileAxes, RawHeights};
 use crate::error::Result;
 use crate::options::Axes;
-use crate::source::Source;
+use crate::source::OpenedFile;
 use hdf5_pure::{AttrValue, Dataset};
 
 /// How NetCDF-4 marks a scale without coordinates.
@@ -20,19 +20,19 @@ const NO_VARIABLE: &str = "This is a netCDF dimension but not a netCDF variable"
 const MOST: usize = 200;
 
 /// A dimension with a name, and the group for which it counts.
-pub(super) struct Scale {
+pub(super) struct DimensionScale {
     group: String,
     /// The number that NetCDF-4 gives it.
     id: Option<f64>,
-    dimension: Dimension,
+    dimension: ArrayDimension,
     /// Why its coordinates are not read.
     unread: Option<String>,
 }
 
 /// Adds a data set to the scales, where it is one that can be read.
 pub(super) fn collect(
-    scales: &mut Vec<Scale>,
-    source: &mut Source<'_>,
+    scales: &mut Vec<DimensionScale>,
+    source: &mut OpenedFile<'_>,
     (group, name): (&str, &str),
     dataset: &Dataset,
 ) {
@@ -43,7 +43,8 @@ pub(super) fn collect(
     }
     let role = ["axis", "standard_name"].iter().find_map(|key| text(&attributes, key)).unwrap_or_default();
     let name = name.rsplit('/').next().unwrap_or(name).to_owned();
-    let mut dimension = Dimension { name, role: role.to_owned(), ..Dimension::of_length(length as usize) };
+    let mut dimension =
+        ArrayDimension { name, role: role.to_owned(), ..ArrayDimension::of_length(length as usize) };
     let mut unread = None;
     if !text(&attributes, "NAME").is_some_and(|name| name.starts_with(NO_VARIABLE)) {
         // One that cannot be read is a name only, and the size is asked for.
@@ -53,11 +54,11 @@ pub(super) fn collect(
         }
     }
     let id = numbers(&attributes, "_Netcdf4Dimid").and_then(|all| all.first().copied());
-    scales.push(Scale { group: group.to_owned(), id, dimension, unread });
+    scales.push(DimensionScale { group: group.to_owned(), id, dimension, unread });
 }
 
 fn coordinates(
-    source: &mut Source<'_>,
+    source: &mut OpenedFile<'_>,
     dataset: &Dataset,
     length: u64,
     attributes: &Attributes,
@@ -67,7 +68,7 @@ fn coordinates(
     };
     let found = layout(source, dataset, "coordinates", number, [1, length])?;
     let Some((_, numbers)) = found.filter(|_| length > 0) else { return Ok(None) };
-    let dimensions = [1, length as usize].map(Dimension::of_length);
+    let dimensions = [1, length as usize].map(ArrayDimension::of_length);
     let mut array = Array::new("", dimensions, number, (FileAxes::Fixed, ""));
     if describe(&mut array, attributes).is_err() {
         return Ok(None);
@@ -81,7 +82,7 @@ fn coordinates(
 /// Names the dimensions of an array by its labels and scales.
 pub(super) fn name(
     array: &mut Array,
-    scales: &[Scale],
+    scales: &[DimensionScale],
     group: &str,
     dataset: &Dataset,
     attributes: &Attributes,
@@ -89,7 +90,7 @@ pub(super) fn name(
     let labels = attributes.get(LABELS).and_then(AttrValue::as_strings).filter(|labels| labels.len() == 2);
     let ids = numbers(attributes, "_Netcdf4Coordinates").filter(|ids| ids.len() == 2);
     let attached = dataset.attr_datatypes().is_ok_and(|types| types.contains_key("DIMENSION_LIST"));
-    let above = |scale: &&Scale| {
+    let above = |scale: &&DimensionScale| {
         let rest = group.strip_prefix(&scale.group);
         rest.is_some_and(|rest| scale.group.is_empty() || rest.is_empty() || rest.starts_with('/'))
     };

@@ -12,25 +12,25 @@ const SHUFFLE: u16 = 2;
 const FLETCHER32: u16 = 3;
 
 /// The error for a file in which hdf5-pure found a fault.
-pub(super) fn unreadable(source: &Source<'_>, error: &dyn std::fmt::Display) -> crate::error::Error {
+pub(super) fn unreadable(source: &OpenedFile<'_>, error: &dyn std::fmt::Display) -> crate::error::Error {
     let said: String = error.to_string().chars().take(200).collect();
     source.wrong(0, format!("a file as its specification has it ({said})"))
 }
 
 /// Where the numbers of a data set are.
-pub(super) enum Found {
+pub(super) enum DataLocation {
     Stored(Bytes),
     Chunked(Pieces),
     /// The reason why hdf5-pure does not give them.
     Unread(String),
 }
 
-impl Found {
+impl DataLocation {
     /// The numbers line by line, scaled and marked as `by` has it.
     pub(super) fn read(
         &self,
         by: &RawHeights,
-        source: &mut Source<'_>,
+        source: &mut OpenedFile<'_>,
         [lines, along]: [usize; 2],
     ) -> Result<Vec<f64>> {
         let RawHeights { number, scale, shift, undefined, valid, .. } = *by;
@@ -46,12 +46,12 @@ impl Found {
 /// Where the numbers of a data set of one or two dimensions are, and their address where they have one;
 /// `None` where they were never written, or are in other files or data sets.
 pub(super) fn layout(
-    source: &Source<'_>,
+    source: &OpenedFile<'_>,
     dataset: &Dataset,
     name: &str,
     number: NumberType,
     shape: [u64; 2],
-) -> Result<Option<(Option<u64>, Found)>> {
+) -> Result<Option<(Option<u64>, DataLocation)>> {
     let most = RATIO.saturating_mul(source.length());
     if number.bytes_of(shape).is_none_or(|claimed| claimed > most) {
         let [lines, along] = shape;
@@ -60,13 +60,13 @@ pub(super) fn layout(
     }
     let [lines, along] = shape.map(|length| length as usize);
     Ok(match dataset.layout() {
-        Err(e) => Some((None, Found::Unread(e.to_string()))),
+        Err(e) => Some((None, DataLocation::Unread(e.to_string()))),
         Ok(Layout::Compact { .. }) => {
             let bytes = dataset.read_raw().map_err(|e| unreadable(source, &e))?;
-            Some((None, Found::Stored(Bytes::Held(bytes))))
+            Some((None, DataLocation::Stored(Bytes::Held(bytes))))
         }
         Ok(Layout::Contiguous { address: Some(address), .. }) => {
-            Some((Some(address), Found::Stored(Bytes::File(address))))
+            Some((Some(address), DataLocation::Stored(Bytes::File(address))))
         }
         Ok(Layout::Chunked { chunk_shape, .. }) => {
             let chunk = match chunk_shape[..] {
@@ -78,7 +78,10 @@ pub(super) fn layout(
             let address = chunks.as_ref().ok().and_then(|chunks| chunks.first()).map(|chunk| chunk.address);
             let flat = chunk_shape.len() == 1;
             let (name, filters) = (name.to_owned(), dataset.filters());
-            Some((address, Found::Chunked(Pieces { name, chunk, flat, filters, chunks, lines, along })))
+            Some((
+                address,
+                DataLocation::Chunked(Pieces { name, chunk, flat, filters, chunks, lines, along }),
+            ))
         }
         Ok(_) => None,
     })
@@ -134,7 +137,7 @@ pub(super) struct Pieces {
 }
 
 impl Pieces {
-    pub(super) fn read(&self, raw: &RawHeights, source: &mut Source<'_>) -> Result<Vec<f64>> {
+    pub(super) fn read(&self, raw: &RawHeights, source: &mut OpenedFile<'_>) -> Result<Vec<f64>> {
         let chunks = self.chunks.as_ref().map_err(|e| unreadable(source, e))?;
         if let Some(filter) = self.filters.iter().find(|f| !matches!(**f, DEFLATE | SHUFFLE | FLETCHER32)) {
             let expected = format!("{} packed by deflate or not at all, it has filter {filter}", self.name);
@@ -182,7 +185,13 @@ impl Pieces {
     }
 
     /// The numbers of a chunk.
-    fn unpacked(&self, source: &mut Source<'_>, chunk: &Chunk, bytes: u64, size: usize) -> Result<Vec<u8>> {
+    fn unpacked(
+        &self,
+        source: &mut OpenedFile<'_>,
+        chunk: &Chunk,
+        bytes: u64,
+        size: usize,
+    ) -> Result<Vec<u8>> {
         let mut data = source.bytes(chunk.address, chunk.storage_size)?;
         for (i, filter) in self.filters.iter().enumerate().rev() {
             if i < 32 && chunk.filter_mask >> i & 1 == 1 {

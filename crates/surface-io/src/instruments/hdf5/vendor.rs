@@ -13,7 +13,7 @@ const JPK: &str = "encoder.scaling";
 /// JPK's grid of points, in the attributes of a measurement. A data set in it has a line for each point and a
 /// column for each frame of a video.
 #[derive(Clone, Copy)]
-pub(super) struct Grid {
+pub(super) struct JpkGrid {
     pub(super) columns: usize,
     pub(super) rows: usize,
     pub(super) extent: [Option<Extent>; 2],
@@ -21,7 +21,7 @@ pub(super) struct Grid {
     pub(super) turned: bool,
 }
 
-impl Grid {
+impl JpkGrid {
     /// `None` where a group has none.
     pub(super) fn of(attributes: &Attributes) -> Option<Self> {
         let key = |key: &str| format!("position-pattern.grid.{key}");

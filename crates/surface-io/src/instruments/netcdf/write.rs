@@ -35,7 +35,7 @@ pub fn netcdf(map: &HeightMap, metric: Metric) -> Result<Vec<u8>, ContentError> 
         unit => Some(("unit", TEXT, unit.as_bytes().to_vec())),
     };
     let double = |name: &'static str, value: f64| (name, DOUBLE, value.to_be_bytes().to_vec());
-    let axis = |name: &'static str, number: usize, count: usize, side: f64| Variable {
+    let axis = |name: &'static str, number: usize, count: usize, side: f64| WrittenVariable {
         name,
         dimensions: vec![number],
         kind: DOUBLE,
@@ -45,7 +45,7 @@ pub fn netcdf(map: &HeightMap, metric: Metric) -> Result<Vec<u8>, ContentError> 
     let over = vec![0, 1];
     let undefined = map.undefined() > 0;
     let fill = undefined.then(|| double("_FillValue", f64::NAN));
-    let mut variables = vec![Variable {
+    let mut variables = vec![WrittenVariable {
         name: "heights",
         dimensions: over.clone(),
         kind: DOUBLE,
@@ -54,7 +54,13 @@ pub fn netcdf(map: &HeightMap, metric: Metric) -> Result<Vec<u8>, ContentError> 
     }];
     if undefined {
         let attributes = Vec::new();
-        variables.push(Variable { name: "mask", dimensions: over, kind: BYTE, bytes: count, attributes });
+        variables.push(WrittenVariable {
+            name: "mask",
+            dimensions: over,
+            kind: BYTE,
+            bytes: count,
+            attributes,
+        });
     }
     variables.push(axis("x", 0, columns, map.size().x));
     variables.push(axis("y", 1, rows, map.size().y));
@@ -78,7 +84,7 @@ pub fn netcdf(map: &HeightMap, metric: Metric) -> Result<Vec<u8>, ContentError> 
 
 /// One variable: the numbers of its dimensions, the type and bytes of its values, names, types and bytes of
 /// its attributes.
-struct Variable {
+struct WrittenVariable {
     name: &'static str,
     dimensions: Vec<usize>,
     kind: u32,
@@ -87,7 +93,7 @@ struct Variable {
 }
 
 /// The header of a file whose data begin at an offset.
-fn header(variables: &[Variable], [columns, rows]: [usize; 2], data: usize) -> Vec<u8> {
+fn header(variables: &[WrittenVariable], [columns, rows]: [usize; 2], data: usize) -> Vec<u8> {
     let mut header = b"CDF\x02".to_vec();
     let words = |header: &mut Vec<u8>, numbers: &[usize]| {
         header.extend(numbers.iter().flat_map(|&number| (number as u32).to_be_bytes()));
@@ -105,7 +111,7 @@ fn header(variables: &[Variable], [columns, rows]: [usize; 2], data: usize) -> V
     }
     words(&mut header, &[0, 0, 11, variables.len()]);
     let mut offset = data as u64;
-    for Variable { name, dimensions, kind, bytes, attributes } in variables {
+    for WrittenVariable { name, dimensions, kind, bytes, attributes } in variables {
         text(&mut header, name);
         words(&mut header, &[dimensions.len()]);
         words(&mut header, dimensions);

@@ -2,7 +2,7 @@
 
 use crate::error::Result;
 use crate::number_type::{ByteOrder, NumberType};
-use crate::source::Source;
+use crate::source::OpenedFile;
 
 /// Images in one file that are looked at.
 pub(super) const MOST: usize = 1000;
@@ -10,11 +10,11 @@ pub(super) const MOST: usize = 1000;
 /// The entries of each image, and the byte order.
 pub(super) struct Directories {
     order: ByteOrder,
-    images: Vec<Vec<Entry>>,
+    images: Vec<Vec<DirectoryEntry>>,
 }
 
 /// An entry: where its values are.
-struct Entry {
+struct DirectoryEntry {
     tag: u16,
     kind: u16,
     at: u64,
@@ -30,7 +30,7 @@ const LONGEST: u64 = 256;
 impl Directories {
     /// Refuses lists and texts that reach beyond the end of the file, for which the other crate reserves up
     /// to 4 MB unasked.
-    pub(super) fn read(source: &mut Source<'_>) -> Result<Self> {
+    pub(super) fn read(source: &mut OpenedFile<'_>) -> Result<Self> {
         let start = source.bytes(0, 8)?;
         let (big, large) = (start.starts_with(b"MM"), start[2] == 43 || start[3] == 43);
         // Bytes of an entry, of the value in it, of a count of entries, and where the first offset stands.
@@ -65,7 +65,7 @@ impl Directories {
                 let Some(length) = length.filter(|_| end.is_some_and(|end| end <= source.length())) else {
                     return Err(source.wrong(at, format!("the values of tag {tag} inside the file")));
                 };
-                image.push(Entry { tag, kind, at: values, length });
+                image.push(DirectoryEntry { tag, kind, at: values, length });
             }
             found.images.push(image);
             at = number(&source.bytes(at + counted + length, held)?);
@@ -73,7 +73,7 @@ impl Directories {
         Ok(found)
     }
 
-    fn entry(&self, image: usize, tag: u16) -> Option<&Entry> {
+    fn entry(&self, image: usize, tag: u16) -> Option<&DirectoryEntry> {
         self.images.get(image)?.iter().find(|entry| entry.tag == tag)
     }
 
@@ -83,7 +83,7 @@ impl Directories {
     }
 
     /// The text of a tag, where it is one that is not long.
-    pub(super) fn text(&self, source: &mut Source<'_>, image: usize, tag: u16) -> Result<Option<String>> {
+    pub(super) fn text(&self, source: &mut OpenedFile<'_>, image: usize, tag: u16) -> Result<Option<String>> {
         let Some(entry) = self.entry(image, tag).filter(|e| e.kind == 2 && e.length <= LONGEST) else {
             return Ok(None);
         };
@@ -91,7 +91,7 @@ impl Directories {
     }
 
     /// All whole numbers of a tag.
-    pub(super) fn whole(&self, source: &mut Source<'_>, image: usize, tag: u16) -> Result<Vec<u64>> {
+    pub(super) fn whole(&self, source: &mut OpenedFile<'_>, image: usize, tag: u16) -> Result<Vec<u64>> {
         let Some(entry) = self.entry(image, tag) else { return Ok(Vec::new()) };
         let size = match entry.kind {
             3 => 2,
@@ -109,7 +109,7 @@ impl Directories {
     }
 
     /// The first number of a tag, where it is finite.
-    pub(super) fn number(&self, source: &mut Source<'_>, image: usize, tag: u16) -> Result<Option<f64>> {
+    pub(super) fn number(&self, source: &mut OpenedFile<'_>, image: usize, tag: u16) -> Result<Option<f64>> {
         let Some(entry) = self.entry(image, tag) else { return Ok(None) };
         let Some(number) = NumberType::of_code(entry.kind.into(), &TYPES, ByteOrder::Little) else {
             return Ok(None);

@@ -40,7 +40,7 @@ pub(super) struct Jpk {
 
 impl Jpk {
     /// `None` where the tags are not there.
-    pub(super) fn of(source: &mut Source<'_>, tags: &Directories, image: usize) -> Result<Option<Self>> {
+    pub(super) fn of(source: &mut OpenedFile<'_>, tags: &Directories, image: usize) -> Result<Option<Self>> {
         let mut name = None;
         for tag in NAMES {
             name = if name.is_none() { tags.text(source, image, tag)? } else { name };

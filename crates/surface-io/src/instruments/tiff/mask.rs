@@ -4,7 +4,7 @@
 use super::directory::Directories;
 use crate::error::Result;
 use crate::inflate::RATIO;
-use crate::source::Source;
+use crate::source::OpenedFile;
 use flate2::read::ZlibDecoder;
 use std::io::Read as _;
 
@@ -33,7 +33,7 @@ impl Mask {
     /// # Errors
     /// Where it cannot be read: points without a height would be heights.
     pub(super) fn of(
-        source: &mut Source<'_>,
+        source: &mut OpenedFile<'_>,
         tags: &Directories,
         image: usize,
         [rows, columns]: [usize; 2],
@@ -83,7 +83,7 @@ impl Mask {
     }
 
     /// Calls for each point without a height with its row and column.
-    pub(super) fn each(&self, source: &mut Source<'_>, take: &mut dyn FnMut([usize; 2])) -> Result<()> {
+    pub(super) fn each(&self, source: &mut OpenedFile<'_>, take: &mut dyn FnMut([usize; 2])) -> Result<()> {
         for (i, &(offset, length)) in self.pieces.iter().enumerate() {
             let (top, left) = (i / self.across() * self.tall, i % self.across() * self.wide);
             let mut bytes = source.bytes(offset, length)?;

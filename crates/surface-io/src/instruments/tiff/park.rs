@@ -27,7 +27,7 @@ const LENGTH: u64 = 356;
 
 header! {
     /// What is kept of the header.
-    struct Header {
+    struct ParkHeader {
         /// 0 a map, 1 a line, 2 spectra with a map.
         kind: u32 = 0,
         name: Wide<32> = 4,
@@ -46,7 +46,7 @@ header! {
 }
 
 /// The map of a file of this kind; `None` for another TIFF.
-pub(super) fn channel(source: &mut Source<'_>, tags: &Directories) -> Result<Option<StoredChannel>> {
+pub(super) fn channel(source: &mut OpenedFile<'_>, tags: &Directories) -> Result<Option<StoredChannel>> {
     if tags.number(source, 0, MARK)? != Some(MAGIC.into()) {
         return Ok(None);
     }
@@ -60,7 +60,7 @@ pub(super) fn channel(source: &mut Source<'_>, tags: &Directories) -> Result<Opt
     if length < LENGTH {
         return Err(source.wrong(at, format!("a header of {LENGTH} bytes at least, found {length}")));
     }
-    let header = Header::of(&mut source.fields(ByteOrder::Little, at, LENGTH)?)?;
+    let header = ParkHeader::of(&mut source.fields(ByteOrder::Little, at, LENGTH)?)?;
     let wrong = |offset: u64, expected: String| Err(source.wrong(at + offset, expected));
     if header.kind == 1 || header.other != [0; 2] {
         return wrong(

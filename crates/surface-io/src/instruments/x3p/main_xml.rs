@@ -5,7 +5,7 @@ use quick_xml::events::Event;
 
 /// What it says of one axis, as written; empty where it says nothing.
 #[derive(Debug, Default)]
-pub(super) struct Axis {
+pub(super) struct X3pAxis {
     pub(super) kind: String,
     pub(super) number: String,
     pub(super) increment: String,
@@ -17,7 +17,7 @@ pub(super) struct Axis {
 pub(super) struct Main {
     pub(super) feature: String,
     /// x, y and z.
-    pub(super) axes: [Axis; 3],
+    pub(super) axes: [X3pAxis; 3],
     /// Columns, rows and layers.
     pub(super) sizes: [String; 3],
     /// Names of the members with the numbers and with the bits of the points that are defined.

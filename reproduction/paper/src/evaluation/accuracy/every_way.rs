@@ -3,8 +3,8 @@
 use super::limit::{Limit, limit};
 use super::pressure;
 use super::problem::{Family, StudyProblem};
-use super::row::{Answer, Formula, Parts, StudyRow, Way, measure, unless_stopped};
-use super::sizes::{Order, Quantity, StudySizes};
+use super::row::{Formula, MeasuredSolution, Parts, StudyRow, Way, measure, unless_stopped};
+use super::sizes::{Order, SizeQuantity, StudySizes};
 use analytic::Hertz;
 use analytic::flat_punch::SQUARE_STIFFNESS_UNCERTAINTY;
 use bem3d::{Bem3d, Method};
@@ -75,9 +75,10 @@ fn uncertainty(problem: &StudyProblem) -> f64 {
 /// References, errors and parts of the rows of one problem.
 fn compare(problem: &StudyProblem, sizes: &StudySizes, rows: &mut [StudyRow], orders: &mut Vec<Order>) {
     let exact = problem.exact();
-    let of = |a: &Answer, q: usize| [a.stiffness, a.approach, a.area][q];
+    let of = |a: &MeasuredSolution, q: usize| [a.stiffness, a.approach, a.area][q];
     let sequence = sizes.sequence();
-    let tight: Vec<Answer> = sequence.iter().filter_map(|&n| on(rows, n, sizes.tight)).cloned().collect();
+    let tight: Vec<MeasuredSolution> =
+        sequence.iter().filter_map(|&n| on(rows, n, sizes.tight)).cloned().collect();
     let cell = |i: usize| 1.0 / sequence[i] as f64;
     let mut limits: [Option<Limit>; 3] = [None; 3];
     for (q, &known) in exact.iter().enumerate() {
@@ -89,7 +90,7 @@ fn compare(problem: &StudyProblem, sizes: &StudySizes, rows: &mut [StudyRow], or
         };
         let Some(found) = limits[q] else { continue };
         let errors: Vec<(f64, f64)> = values.iter().map(|&(h, v)| (h, found.distance(v))).collect();
-        orders.push(order(problem, Quantity::ALL[q], Some(found), known.is_some(), &errors));
+        orders.push(order(problem, SizeQuantity::ALL[q], Some(found), known.is_some(), &errors));
     }
     let pressures: Vec<(f64, f64)> = tight
         .iter()
@@ -99,7 +100,7 @@ fn compare(problem: &StudyProblem, sizes: &StudySizes, rows: &mut [StudyRow], or
     if !pressures.is_empty() {
         orders.push(order(
             problem,
-            Quantity::Pressure,
+            SizeQuantity::Pressure,
             None,
             problem.key.family == Family::Sphere,
             &pressures,
@@ -133,7 +134,7 @@ fn compare(problem: &StudyProblem, sizes: &StudySizes, rows: &mut [StudyRow], or
 }
 
 /// The result on a grid at a tolerance.
-fn on(rows: &[StudyRow], n: usize, t: f64) -> Option<&Answer> {
+fn on(rows: &[StudyRow], n: usize, t: f64) -> Option<&MeasuredSolution> {
     let same = |r: &&StudyRow| {
         matches!(r.way, Way::Solid { cells, tolerance, method: Method::Auto }
             if cells == n && tolerance.total_cmp(&t).is_eq())
@@ -142,7 +143,11 @@ fn on(rows: &[StudyRow], n: usize, t: f64) -> Option<&Answer> {
 }
 
 /// L2 distance from Hertz or from the finest grid; a grid is not compared with itself.
-fn pressure_error(problem: &StudyProblem, answer: &Answer, finest: &Answer) -> Option<f64> {
+fn pressure_error(
+    problem: &StudyProblem,
+    answer: &MeasuredSolution,
+    finest: &MeasuredSolution,
+) -> Option<f64> {
     let p = answer.pressure.as_ref()?;
     if let Some(exact) = problem.exact_pressure(p.len().isqrt()) {
         return pressure::distance(p, &exact);
@@ -153,7 +158,7 @@ fn pressure_error(problem: &StudyProblem, answer: &Answer, finest: &Answer) -> O
 
 fn order(
     problem: &StudyProblem,
-    quantity: Quantity,
+    quantity: SizeQuantity,
     limit: Option<Limit>,
     exact: bool,
     errors: &[(f64, f64)],

@@ -3,8 +3,8 @@
 
 use super::limit::limit;
 use super::problem::{DIMENSIONS, Family, LOADS, ProblemKey};
-use super::row::{Answer, Formula, Parts, StudyRow, Way, measure, unless_stopped};
-use super::sizes::{Order, Quantity, StudySizes};
+use super::row::{Formula, MeasuredSolution, Parts, StudyRow, Way, measure, unless_stopped};
+use super::sizes::{Order, SizeQuantity, StudySizes};
 use crate::evaluation::realisation::{Discretisation, Realisation, of_scene, realisation_jobs};
 use analysis::{Statistics, statistics};
 use analytic::PowerLaw;
@@ -27,7 +27,7 @@ pub(crate) struct EnsembleMeans {
     pub way: Way,
     pub stiffness: Vec<Option<Statistics>>,
     pub approach: Vec<Option<f64>>,
-    pub answer: Answer,
+    pub answer: MeasuredSolution,
     pub surfaces: usize,
 }
 
@@ -44,7 +44,7 @@ pub(crate) struct ClosedForm {
     /// Number of the load.
     pub load: usize,
     pub way: Way,
-    pub answer: Answer,
+    pub answer: MeasuredSolution,
 }
 
 /// Rows of all ensembles, references and closed forms. The ensembles of each fractal dimension follow one
@@ -114,7 +114,8 @@ impl EnsembleSurfaces {
     /// # Errors
     /// Errors of the model.
     pub fn solve(&self, stop: Stop<'_>) -> Result<EnsembleMeans> {
-        let mut answer = Answer { status: Status::Converged.as_str().to_owned(), ..Answer::default() };
+        let mut answer =
+            MeasuredSolution { status: Status::Converged.as_str().to_owned(), ..MeasuredSolution::default() };
         let mut k: Vec<Vec<f64>> = vec![Vec::new(); LOADS.len()];
         let mut approach = k.clone();
         let mut seconds = Some(0.0);
@@ -167,10 +168,10 @@ fn at_load(
     let problem = ProblemKey::rough(Family::Mean, d, LOADS[j]);
     let errors: Vec<(f64, f64)> = sequence.iter().map(|&(h, v)| (h, reference.distance(v))).collect();
     let far = &errors[..errors.len() - 1];
-    orders.push(Order::new(problem, Quantity::Stiffness, Some(reference), false, &errors, far));
+    orders.push(Order::new(problem, SizeQuantity::Stiffness, Some(reference), false, &errors, far));
     reference.uncertainty = reference.uncertainty.hypot(scatter);
     let mut rows = Vec::new();
-    let mut add = |way: Way, surfaces: usize, answer: Answer, own: Option<f64>| {
+    let mut add = |way: Way, surfaces: usize, answer: MeasuredSolution, own: Option<f64>| {
         let Some(k) = answer.stiffness else { return };
         let mut row = StudyRow::new(problem, way, answer);
         let distance = reference.distance(k);
@@ -189,7 +190,8 @@ fn at_load(
     };
     for e in found {
         let Some(k) = e.stiffness[j] else { continue };
-        let answer = Answer { stiffness: Some(k.mean), approach: e.approach[j], ..e.answer.clone() };
+        let answer =
+            MeasuredSolution { stiffness: Some(k.mean), approach: e.approach[j], ..e.answer.clone() };
         add(e.way, e.surfaces, answer, k.relative_error());
     }
     for form in forms.iter().filter(|form| form.load == j) {
@@ -211,7 +213,8 @@ pub(crate) fn closed_forms(d: f64, stop: Stop<'_>) -> Result<Vec<ClosedForm>> {
         all.extend(answer.map(|answer| ClosedForm { load, way: law, answer }));
         if force_bar > 1.0 {
             let status = Status::Converged.as_str().to_owned();
-            let answer = Answer { stiffness: Some(SQUARE_STIFFNESS), status, ..Answer::default() };
+            let answer =
+                MeasuredSolution { stiffness: Some(SQUARE_STIFFNESS), status, ..MeasuredSolution::default() };
             all.push(ClosedForm { load, way: plateau, answer });
         }
     }

@@ -3,7 +3,7 @@
 use crate::evaluation::run::distinct;
 use crate::evaluation::table_of::read_rows;
 use crate::output::save;
-use plots::{Axis, Key, Legend, LineStyle, Mark, MarkShape, NEUTRAL, Panels, Picture, color, extent};
+use plots::{Axis, Legend, LegendKey, LineStyle, Mark, MarkShape, NEUTRAL, Panels, Picture, color, extent};
 use runs::{CsvFile, Result};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
@@ -145,22 +145,22 @@ fn legend(points: &[AccuracyPoint], dimensions: &[f64]) -> Legend {
     let mut legend = Legend::default();
     for d in dimensions {
         let label = format!("$D_{{\\rm{{f}}}} = {d:?}$, 3D, one surface");
-        legend.push(&label, &color(*d), Key::Curve(Mark::Solid(MarkShape::Circle)));
+        legend.push(&label, &color(*d), LegendKey::Curve(Mark::Solid(MarkShape::Circle)));
     }
     let sizes = values(points, |p| p.size.filter(|_| is_front(p)));
     if let Some((coarse, fine)) = extent(sizes) {
         let sizes = if fine > coarse { vec![coarse, fine] } else { vec![fine] };
         for n in sizes {
-            let key = Key::Sized(Mark::Solid(MarkShape::Circle), mark_size(Some(n)));
+            let key = LegendKey::Sized(Mark::Solid(MarkShape::Circle), mark_size(Some(n)));
             legend.push(&format!("{n} × {n} cells"), NEUTRAL, key);
         }
     }
     let words = ["1D, mean of surfaces", "Eq. 12, mean of surfaces", "rigid square, mean of surfaces"];
     for ((model, mark), words) in MEANS.into_iter().zip(words) {
         if points.iter().any(|p| p.family == "mean" && p.model == model) {
-            legend.push(words, NEUTRAL, Key::Mark(mark));
+            legend.push(words, NEUTRAL, LegendKey::Mark(mark));
         }
     }
-    legend.push("dotted: 10 %, 1 %, 0.1 %", NEUTRAL, Key::Line(LineStyle::Dotted));
+    legend.push("dotted: 10 %, 1 %, 0.1 %", NEUTRAL, LegendKey::Line(LineStyle::Dotted));
     legend
 }

@@ -7,7 +7,7 @@
 use crate::evaluation::budget::{self, Budgeted};
 use crate::evaluation::limits::require;
 use crate::evaluation::measured::{COARSER_SURFACES, ensemble_jobs, measure};
-use crate::evaluation::realisation::Model;
+use crate::evaluation::realisation::EnsembleModel;
 use crate::evaluation::run::{Request, Run};
 use analysis::{AccuracyTarget, GridTrial, first_grid};
 use runs::amounts::duration;
@@ -50,7 +50,7 @@ pub struct AccuracyPlan {
 /// grid; errors of the pilot's solves.
 pub fn plan(
     request: &Request,
-    models: &[Model],
+    models: &[EnsembleModel],
     target: AccuracyTarget,
     progress: &dyn Progress,
 ) -> Result<AccuracyPlan> {
@@ -89,7 +89,7 @@ pub fn plan(
 /// Errors of the solver.
 pub fn settle(
     mut plan: AccuracyPlan,
-    models: &[Model],
+    models: &[EnsembleModel],
     target: AccuracyTarget,
     progress: &dyn Progress,
 ) -> Result<AccuracyPlan> {
@@ -141,15 +141,15 @@ struct Pilot {
 
 /// Chooses size and number of surfaces of a model in a plan, and adds its time.
 fn choose(
-    model: Model,
+    model: EnsembleModel,
     plan: &mut AccuracyPlan,
     target: AccuracyTarget,
     store: &Store,
     progress: &dyn Progress,
 ) -> Result<()> {
     let (grids, power, count): (&[usize], f64, usize) = match model {
-        Model::Bem3d => (&GRIDS, POWERS.0, PILOT_SURFACES),
-        Model::Mdr1d => (&LINES, POWERS.1, PILOT_LINES),
+        EnsembleModel::Bem3d => (&GRIDS, POWERS.0, PILOT_SURFACES),
+        EnsembleModel::Mdr1d => (&LINES, POWERS.1, PILOT_LINES),
     };
     let left = AccuracyTarget { seconds: target.seconds - plan.seconds, ..target };
     let mut spent = 0.0;
@@ -176,8 +176,8 @@ fn choose(
     };
     let (size, trial) = first_grid(grids, left, power, trial)?.map_err(|none| {
         let grid = |size: usize| match model {
-            Model::Bem3d => format!("{size} cells a side"),
-            Model::Mdr1d => format!("{size} elements"),
+            EnsembleModel::Bem3d => format!("{size} cells a side"),
+            EnsembleModel::Mdr1d => format!("{size} elements"),
         };
         let place = |pilot: &Pilot| {
             let words = |(d, force_bar)| format!("D_f = {d:?}, F_bar = {force_bar:.1e}");
@@ -197,25 +197,25 @@ fn choose(
 }
 
 /// Predicted seconds of all surfaces of a model on one thread, coarser grids included.
-fn seconds(model: Model, run: &Run) -> Result<f64> {
+fn seconds(model: EnsembleModel, run: &Run) -> Result<f64> {
     let jobs = ensemble_jobs(run, &[model])?;
     Ok(jobs.iter().map(|job| 1e-3 * Job::cost(job) as f64).sum())
 }
 
 /// Predicted seconds of one more surface.
-fn seconds_of_one(model: Model, run: &Run) -> Result<f64> {
+fn seconds_of_one(model: EnsembleModel, run: &Run) -> Result<f64> {
     let size = run.ensemble(model).0.size();
     let [one, none] = [1, 0].map(|more| run.with_sizes(model, size, COARSER_SURFACES + more));
     Ok(seconds(model, &one)? - seconds(model, &none)?)
 }
 
-fn words(model: Model, run: &Run) -> String {
+fn words(model: EnsembleModel, run: &Run) -> String {
     let Run { cells, surfaces, elements, lines, tolerance, .. } = run;
     match model {
-        Model::Bem3d => {
+        EnsembleModel::Bem3d => {
             format!("bem3d: {surfaces} surfaces of {cells} cells a side, tolerance {tolerance:.0e}")
         }
-        Model::Mdr1d => format!("mdr1d: {lines} lines of {elements} elements"),
+        EnsembleModel::Mdr1d => format!("mdr1d: {lines} lines of {elements} elements"),
     }
 }
 
@@ -227,7 +227,7 @@ mod tests {
     /// A machine with more cores would otherwise choose finer grids and more surfaces.
     #[test]
     fn the_time_that_chooses_is_that_of_one_thread() {
-        for model in Model::BOTH {
+        for model in EnsembleModel::BOTH {
             let on = |threads| {
                 let request = Request { threads: Some(threads), ..Request::default() };
                 seconds_of_one(model, &Run::new(&request).unwrap()).unwrap()
@@ -244,7 +244,7 @@ mod tests {
             fractal_dimension: 2.0,
             force_bar: Some(1.0),
             value: 2.0,
-            budget: budget::Budget {
+            budget: budget::ErrorBudget {
                 algebraic: 0.0,
                 discretisation: Some(grid),
                 ensemble: Some(ensemble),

@@ -96,7 +96,7 @@ impl Way {
 
 /// Result and cost of a solution.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Answer {
+pub(crate) struct MeasuredSolution {
     /// k in units of E* L.
     pub stiffness: Option<f64>,
     /// d in rms heights (in sides for bodies without one).
@@ -134,7 +134,7 @@ pub(crate) struct StudyRow {
     pub way: Way,
     /// Surfaces in the answer.
     pub surfaces: usize,
-    pub answer: Answer,
+    pub answer: MeasuredSolution,
     /// Relative errors of k, d, area, and L2 of the pressure.
     pub errors: [Option<f64>; 4],
     /// Relative uncertainty of the reference of k.
@@ -145,7 +145,7 @@ pub(crate) struct StudyRow {
 }
 
 impl StudyRow {
-    pub fn new(problem: ProblemKey, way: Way, answer: Answer) -> Self {
+    pub fn new(problem: ProblemKey, way: Way, answer: MeasuredSolution) -> Self {
         Self {
             problem,
             way,
@@ -179,11 +179,16 @@ pub(crate) fn measure(
     scene: &Scene,
     load: Load,
     seed: u64,
-) -> Result<Option<Answer>> {
+) -> Result<Option<MeasuredSolution>> {
     on_one_thread(|| measure_here(model, scene, load, seed))
 }
 
-fn measure_here(model: &dyn ContactModel, scene: &Scene, load: Load, seed: u64) -> Result<Option<Answer>> {
+fn measure_here(
+    model: &dyn ContactModel,
+    scene: &Scene,
+    load: Load,
+    seed: u64,
+) -> Result<Option<MeasuredSolution>> {
     reset_peak_memory();
     let before = resident_memory();
     let start = cpu_seconds();
@@ -201,7 +206,7 @@ fn measure_here(model: &dyn ContactModel, scene: &Scene, load: Load, seed: u64) 
         other => other.map_err(Error::model(model.name()))?,
     };
     let ContactState { approach, stiffness, area, fields, report, .. } = state;
-    Ok(Some(Answer {
+    Ok(Some(MeasuredSolution {
         stiffness: stiffness.map(|k| k / (normalisation.contact_modulus * normalisation.length)),
         approach,
         area: area.map(|a| normalisation.contact_fraction(a)),
@@ -247,8 +252,11 @@ mod tests {
     #[test]
     fn the_front() {
         let row = |seconds, error, family| {
-            let answer =
-                Answer { cpu_seconds: Some(seconds), status: "converged".into(), ..Answer::default() };
+            let answer = MeasuredSolution {
+                cpu_seconds: Some(seconds),
+                status: "converged".into(),
+                ..MeasuredSolution::default()
+            };
             let mut row = StudyRow::new(ProblemKey::body(family), Way::Formula(Formula::Hertz), answer);
             row.errors[0] = Some(error);
             row

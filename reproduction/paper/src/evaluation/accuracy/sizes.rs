@@ -30,7 +30,7 @@ pub(crate) struct StudySizes {
 
 /// A quantity whose convergence with the grid is studied.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub(crate) enum Quantity {
+pub(crate) enum SizeQuantity {
     Stiffness,
     Approach,
     Area,
@@ -38,7 +38,7 @@ pub(crate) enum Quantity {
     Pressure,
 }
 
-impl Quantity {
+impl SizeQuantity {
     pub const ALL: [Self; 4] = [Self::Stiffness, Self::Approach, Self::Area, Self::Pressure];
 
     pub fn as_str(self) -> &'static str {
@@ -55,7 +55,7 @@ impl Quantity {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Order {
     pub problem: ProblemKey,
-    pub quantity: Quantity,
+    pub quantity: SizeQuantity,
     /// Order of convergence in the cell size: that of the extrapolation where established, otherwise the
     /// slope of the errors.
     pub power: Option<f64>,
@@ -71,7 +71,7 @@ impl Order {
     /// are `far` from the limit show the slope.
     pub fn new(
         problem: ProblemKey,
-        quantity: Quantity,
+        quantity: SizeQuantity,
         limit: Option<Limit>,
         exact: bool,
         errors: &[(f64, f64)],

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::scenes::read::loads::LoadList;
-use crate::scenes::read::{Distributed, FieldFormat, LoadKind};
+use crate::scenes::read::{Distributed, FieldFormat, PrescribedLoad};
 use contact_model::{
     Adhesion, AdhesionLaw, Boundary, Conductance, Coupling, Friction, FrictionLaw, Hardness, Output,
     PronySeries, Relaxing, Rheology, Tangential,
@@ -46,8 +46,13 @@ fn material() -> impl Strategy<Value = Material> {
 }
 
 fn loads() -> BoxedStrategy<AskedLoads> {
-    let kinds =
-        [LoadKind::Force, LoadKind::ForceBar, LoadKind::MeanPressure, LoadKind::Approach, LoadKind::MeanGap];
+    let kinds = [
+        PrescribedLoad::Force,
+        PrescribedLoad::ForceBar,
+        PrescribedLoad::MeanPressure,
+        PrescribedLoad::Approach,
+        PrescribedLoad::MeanGap,
+    ];
     let list = (select(kinds.to_vec()), vec(positive(), 1..4))
         .prop_map(|(kind, values)| AskedLoads::Loads(LoadList { kind, values }));
     let normal = (select(vec![kinds[0], kinds[2], kinds[3], kinds[4]]), positive());
