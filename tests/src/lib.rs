@@ -14,10 +14,10 @@
 //! * Every tolerance is a named constant with its reason.
 //!
 //! ```
-//! use tests::{Prescribed, deviation, problems};
+//! use tests::{PrescribedQuantity, deviation, problems};
 //! for problem in problems()? {
 //!     // The method of reduction of dimensionality is exact for every round body and refuses the square.
-//!     match deviation(&mdr1d::Mdr1d::default(), &problem, Prescribed::Force)? {
+//!     match deviation(&mdr1d::Mdr1d::default(), &problem, PrescribedQuantity::Force)? {
 //!         Some(found) => assert!(found.response < 1e-10),
 //!         None => assert_eq!(problem.name, "flat square"),
 //!     }

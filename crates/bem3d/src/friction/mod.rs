@@ -11,7 +11,7 @@
 //! **Slip references.** The term that is subtracted, `(delta - u)_before`, is known on every cell of the
 //! surface, in contact or not: a cell that comes into contact takes its reference from there, one that leaves
 //! forgets its slip. The moment within the increment at which a cell touches changes no traction
-//! (`Friction::advance`), unless pressures cause tangential displacements: then the steps of a growing
+//! (`FrictionSolver::advance`), unless pressures cause tangential displacements: then the steps of a growing
 //! contact have to be small.
 //!
 //! **Certificate.** The duality gap `sum(b |w| - q . w)` of admissible tractions bounds the square of their

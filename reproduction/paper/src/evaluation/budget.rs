@@ -31,9 +31,9 @@ impl ErrorBudget {
     /// first three is unknown.
     ///
     /// ```
-    /// use paper::evaluation::Budget;
+    /// use paper::evaluation::ErrorBudget;
     /// let (discretisation, ensemble) = (Some(3.0), Some(4.0));
-    /// let budget = Budget { algebraic: 1.0, discretisation, ensemble, window: None };
+    /// let budget = ErrorBudget { algebraic: 1.0, discretisation, ensemble, window: None };
     /// assert_eq!(budget.half_width(), Some(6.0));
     /// ```
     pub fn half_width(&self) -> Option<f64> {

@@ -78,9 +78,9 @@ impl SceneFile {
     ///
     /// ```
     /// use contact_model::Surface;
-    /// use fractal_contact::scenes::{LoadRequest, LoadList, Numerics, Plan, LoadKind, SceneFile, SceneSurface};
+    /// use fractal_contact::scenes::{LoadRequest, LoadList, Numerics, Plan, PrescribedLoad, SceneFile, SceneSurface};
     /// let body = SceneSurface::Plain(Surface::Sphere { radius: 1.0, size: 4.0.into() });
-    /// let loads = LoadRequest::Loads(LoadList { kind: LoadKind::Force, values: vec![0.1, 1.0] });
+    /// let loads = LoadRequest::Loads(LoadList { kind: PrescribedLoad::Force, values: vec![0.1, 1.0] });
     /// let mut scene = SceneFile::new(vec![Numerics::named("hertz").unwrap()], body, 1.0, loads);
     /// scene.requested.outputs.stiffness = true;
     /// assert!(Plan::new(&scene).is_ok());
