@@ -5,7 +5,7 @@ pub use crate::parts::{Part, PartTime, Recorder};
 pub use crate::tuning::{CONSTANTS, Constant};
 
 use crate::friction::{
-    FrictionLimits, FrictionLoad, FrictionSolver, PressedCells, SlipMemory, TangentialControl,
+    FrictionLimits, FrictionLoad, FrictionSolver, PressedCells, SlipMemory, SlipStep, TangentialControl,
 };
 use crate::geometry::{CellSet, Grid, Lengths};
 use crate::kernel::{NormalTable, TangentialTable};
@@ -200,7 +200,9 @@ impl PartialSlipBench {
         let control = TangentialControl::Force([force, 0.0]);
         let load = FrictionLoad { law: contact_model::FrictionLaw::coulomb(coefficient), control };
         let guess = guess.as_ref().map(|q| (&*cells, &q[..]));
-        let state = friction.advance(&SlipMemory::default(), contact, load, guess, limits, &never).ok()?;
+        let state = friction
+            .advance(SlipStep { before: &SlipMemory::default(), contact, load, guess }, limits, &never)
+            .ok()?;
         let [after, _] = friction.work();
         let k =
             stiffness.then(|| tangential::solve(friction, &state, StiffnessOf::Branch, tolerance, &never));

@@ -66,10 +66,12 @@ use super::attraction::Attraction;
 use super::equilibrium::Equilibrium;
 use super::law::LawShape;
 use super::near::Near;
+use super::pairs::Pairs;
 use crate::active_set::Problem;
 use crate::geometry::CellSet;
 use crate::linear::{Extension, Fixed, Preconditioner, TorusInverse, minres};
-use crate::operator::{Conditioning, InfluenceOperator};
+use crate::operator::{Conditioning, FftConvolution, InfluenceOperator, PlannedPressure};
+use crate::parts::Recorder;
 use crate::real::{dot, each, largest, sum, update};
 use contact_model::Stop;
 
@@ -139,34 +141,80 @@ struct NewtonSolution {
     steps: usize,
 }
 
-/// A Newton step from a state, `None` where it may lead off the branch, and the number of steps of minimal
-/// residuals that it took. `reduction` is the factor by which the residual of the linear system is reduced.
+/// A Newton step that is asked for.
+pub struct WantedStep<'a> {
+    /// Where it begins.
+    pub state: &'a Equilibrium,
+    /// Where the plain iteration would go.
+    pub predicted: &'a Predicted<'a>,
+    /// What is fixed.
+    pub fixed: Fixed,
+    /// The factor by which the residual of the linear system is reduced.
+    pub reduction: f64,
+    /// When to stop.
+    pub stop: Stop<'a>,
+}
+
+/// In which direction the attractions of a step may change, and how far.
+#[derive(Clone, Copy)]
+struct Course {
+    /// 1 for a rising step, -1 for a falling one; `None`: a short step of either sign.
+    sign: Option<f64>,
+    /// Changes of the other sign up to this are none.
+    slack: f64,
+    /// The largest change.
+    farthest: f64,
+}
+
+impl Course {
+    /// From the changes of the plain iteration; `None` where they have both signs and are not small.
+    fn of(wanted: &WantedStep<'_>, peak: f64) -> Option<Self> {
+        let moved = wanted.predicted.attraction.iter().zip(&wanted.state.attraction);
+        let (low, high) = extremes(moved.map(|(next, now)| next - now));
+        let change = high.max(-low);
+        let slack = SLACK * change;
+        let sign = if low >= -slack {
+            Some(1.0)
+        } else if high <= slack {
+            Some(-1.0)
+        } else if change <= NEAR * peak {
+            None
+        } else {
+            return None;
+        };
+        Some(Self { sign, slack, farthest: peak * if sign.is_some() { LONGEST } else { SHORT } })
+    }
+
+    /// Whether changes between these, in a system that was solved to `reduction`, keep to it.
+    fn allows(&self, (low, high): (f64, f64), reduction: f64) -> bool {
+        let allowed = self.slack + reduction * high.max(-low);
+        let wrong = self.sign.map_or(0.0, |sign| if sign > 0.0 { -low } else { high });
+        wrong <= allowed && high.max(-low) <= self.farthest
+    }
+
+    fn falls(&self) -> bool {
+        self.sign.is_some_and(|sign| sign < 0.0)
+    }
+}
+
+/// The lowest and the highest of some changes and of 0.
+fn extremes(changes: impl Iterator<Item = f64>) -> (f64, f64) {
+    changes.fold((0.0f64, 0.0f64), |(low, high), change| (low.min(change), high.max(change)))
+}
+
+/// A Newton step, `None` where it may lead off the branch, and the number of steps of minimal residuals that it
+/// took.
 ///
 /// Cost: a product by G and two means over neighbours a step.
 pub fn step(
     problem: &mut Problem,
     attraction: &Attraction,
-    (state, predicted): (&Equilibrium, &Predicted<'_>),
-    fixed: Fixed,
-    reduction: f64,
-    stop: Stop<'_>,
+    wanted: &WantedStep<'_>,
 ) -> (Option<Trial>, usize) {
+    let WantedStep { state, predicted, reduction, stop, .. } = *wanted;
     let (peak, range) = (attraction.law.peak, attraction.law.range);
-    let moved = predicted.attraction.iter().zip(&state.attraction).map(|(next, now)| next - now);
-    let (low, high) = moved.fold((0.0f64, 0.0f64), |(low, high), change| (low.min(change), high.max(change)));
-    let change = high.max(-low);
-    let slack = SLACK * change;
-    let direction = if low >= -slack {
-        Some(1.0)
-    } else if high <= slack {
-        Some(-1.0)
-    } else if change <= NEAR * peak {
-        None
-    } else {
-        return (None, 0);
-    };
-    let farthest = peak * if direction.is_some() { LONGEST } else { SHORT };
-    let closes = -predicted.noise.max(slack / peak * range);
+    let Some(course) = Course::of(wanted, peak) else { return (None, 0) };
+    let closes = -predicted.noise.max(course.slack / peak * range);
     let mut contact = predicted.contact.to_vec();
     let mut steps = 0;
     for _ in 0..ROUNDS {
@@ -174,38 +222,28 @@ pub fn step(
             break;
         }
         let linear = Linear::new(attraction, state, &contact);
-        let left: Vec<f64> = (predicted.gap.iter().zip(&state.gap).zip(&contact))
-            .map(|((after, before), &c)| if c > 0.0 { *after } else { after - before })
-            .collect();
-        let left = linear.both.carry(&state.cells, &left);
-        let Some(solution) = linear.solve(problem, attraction, (state, &left), fixed, reduction, stop) else {
-            break;
-        };
+        let left = linear.left(wanted, &contact);
+        let Some(solution) = linear.solve(problem, attraction, wanted, &left) else { break };
         steps += solution.steps;
         let change = state.cells.carry(&linear.both, &solution.change);
         let opening = state.cells.carry(&linear.both, &solution.opening);
-        let open = |i: &usize| contact[*i] <= 0.0;
+        let open = || (0..change.len()).filter(|&i| contact[i] <= 0.0);
         // Beyond the plain update.
-        let (low, high) = (0..change.len())
-            .filter(open)
-            .fold((0.0f64, 0.0f64), |(low, high), i| (low.min(-change[i]), high.max(-change[i])));
-        let allowed = slack + reduction * high.max(-low);
-        let wrong = direction.map_or(0.0, |sign| if sign > 0.0 { -low } else { high });
-        if stop.stops() || wrong > allowed || high.max(-low) > farthest {
+        if stop.stops() || !course.allows(extremes(open().map(|i| -change[i])), reduction) {
             break;
         }
-        let closing: Vec<usize> =
-            (0..change.len()).filter(open).filter(|&i| state.gap[i] + opening[i] < closes).collect();
-        if !closing.is_empty() && direction.is_none_or(|sign| sign > 0.0) {
+        let closing: Vec<usize> = open().filter(|&i| state.gap[i] + opening[i] < closes).collect();
+        if !closing.is_empty() && !course.falls() {
             for i in closing {
                 contact[i] = 1.0;
             }
             continue;
         }
         let step = Taken { state, predicted, contact: &contact, change: &change, opening: &opening };
-        let trial = match direction {
-            Some(sign) if sign < 0.0 => step.falling(attraction, slack),
-            _ => Some(step.trial(attraction, 1.0).0),
+        let trial = if course.falls() {
+            step.falling(attraction, course.slack)
+        } else {
+            Some(step.trial(attraction, 1.0).0)
         };
         return (trial, steps);
     }
@@ -271,6 +309,16 @@ impl Linear {
         Self { contact, both, root, is_open }
     }
 
+    /// What is left of the conditions: the gap on contact, elsewhere how far the gap is from where the law is
+    /// linearised.
+    fn left(&self, wanted: &WantedStep<'_>, contact: &[f64]) -> Vec<f64> {
+        let WantedStep { state, predicted, .. } = wanted;
+        let left: Vec<f64> = (predicted.gap.iter().zip(&state.gap).zip(contact))
+            .map(|((after, before), &c)| if c > 0.0 { *after } else { after - before })
+            .collect();
+        self.both.carry(&state.cells, &left)
+    }
+
     /// Solves for the change of net pressure that closes `left` on contact, the gap there, and with which the
     /// attraction of open cells follows the linearised law; `left` is on them how far the gap is from where
     /// the law is linearised. `None` where nothing is left.
@@ -278,112 +326,182 @@ impl Linear {
         &self,
         problem: &mut Problem,
         attraction: &Attraction,
-        (state, left): (&Equilibrium, &[f64]),
-        fixed: Fixed,
-        reduction: f64,
-        stop: Stop<'_>,
+        wanted: &WantedStep<'_>,
+        left: &[f64],
     ) -> Option<NewtonSolution> {
-        let Self { contact, both, root, is_open } = self;
         let on = (problem.grid(), problem.operators.table().boundary());
-        let (n, unit, operators) = (both.len(), largest(left), &mut problem.operators);
-        let recipe = operators.planner().system(both, contact.len(), false)?;
+        let (unit, operators) = (largest(left), &mut problem.operators);
+        let recipe = operators.planner().system(&self.both, self.contact.len(), false)?;
         if unit.is_nan() || unit <= 0.0 {
             return None;
         }
-        let zone_root: Vec<f64> = root.iter().zip(is_open).map(|(r, open)| f64::from(r * open)).collect();
-        let coupling = attraction.coupling(both, &both.carry(&state.cells, &state.gap), &zone_root);
-        // N y, which changes nothing on contact.
-        let neighbours = |y: &[f32], out: &mut [f32]| {
-            out.copy_from_slice(y);
-            if let Some(coupling) = &coupling {
-                coupling.add_product(1.0, y, out);
-            }
-        };
-        let times_root = |values: &mut [f32]| update(values, root, |value, root| *value *= root);
+        let pairs = self.coupling(attraction, wanted.state);
+        let pairs = pairs.as_ref();
         let own = operators.table().own() as f32;
-        let diagonal: Vec<f32> = (root.iter().zip(is_open))
-            .map(|(r, &open)| if open > 0.0 { (1.0 - r * r * own).max(LEAST as f32) } else { own }.recip())
-            .collect();
         let (decay, recorder) = (operators.tuning().decay, operators.recorder().clone());
-        let ((mut matrix, mut torus), mut extensions) = (operators.system(recipe), [Extension::default()]);
+        let (mut kernel, torus) = operators.system(recipe);
+        let mut extension = Extension::default();
         if let (Conditioning::Torus { extended, .. }, Some(torus)) = (recipe.conditioning, &torus) {
-            extensions[0].set(contact, torus.window(), if extended { decay } else { 0.0 });
+            extension.set(&self.contact, torus.window(), if extended { decay } else { 0.0 });
         }
-        let near = torus.as_ref().and_then(|_| Near::of(attraction, on, both, is_open));
-        let mut beside = vec![0.0f32; n];
-        let mut inverse = |r: &[f32], z: &mut [f32]| {
-            z.copy_from_slice(r);
-            if let Some(near) = &near {
-                near.extend(r, &mut beside);
-                times_root(&mut beside);
-                update(z, &beside, |z, beside| *z -= beside);
-            }
-            update(z, &diagonal, |z, d| *z *= d);
-            let Some(transform) = torus.as_deref_mut() else { return };
-            update(z, is_open, |z, open| *z *= open);
-            if let Some(near) = &near {
-                beside.copy_from_slice(z);
-                times_root(&mut beside);
-                near.subtract_transposed(&mut beside, z);
-            }
-            let mut on_contact = contact.carry(both, r);
-            let mut found = vec![0.0; contact.len()];
-            let recorder = recorder.clone();
-            let mut inverse = TorusInverse { transform, extensions: &mut extensions, recorder };
-            inverse.apply(contact, 0.0, &mut on_contact, &mut found);
-            both.add_carried(contact, &found, z);
+        let near = torus.as_ref().and_then(|_| Near::of(attraction, on, &self.both, &self.is_open));
+        let beside = vec![0.0; self.both.len()];
+        let diagonal = self.diagonal(own);
+        let mut inverse = RoughInverse { linear: self, diagonal, near, torus, extension, recorder, beside };
+        let kept = KeptForce::new(self, pairs, wanted.fixed, &mut inverse);
+        let (mut applications, mut source, mut u) =
+            (0, vec![0.0f32; self.both.len()], vec![0.0f32; self.both.len()]);
+        let product = |y: &[f32], out: &mut [f32]| {
+            applications += 1;
+            self.product((&mut kernel, wanted.fixed, pairs), y, out, (&mut source, &mut u));
         };
-        // A fixed net force is the product with these; the correction of it is distributed by the weights.
-        let mut force = vec![0.0f32; n];
-        neighbours(root, &mut force);
-        let (mut weights, mut total) = (vec![0.0f32; n], 0.0);
-        if fixed == Fixed::Force {
-            inverse(&force, &mut weights);
-            total = dot(&force, &weights);
+        let precondition = |r: &mut [f32], z: &mut [f32]| kept.precondition(&mut inverse, r, z);
+        let mut right: Vec<f32> = left.iter().map(|l| -(l / unit) as f32).collect();
+        self.times_root(&mut right);
+        let b = times_neighbours(pairs, &right);
+        let (y, outcome) = minres(product, precondition, b, (wanted.reduction, STEPS), wanted.stop);
+        operators.plans.applications += applications;
+        operators.plans.solves += 1;
+        Some(self.solution(pairs, &y, unit, outcome.steps))
+    }
+
+    /// How the attractions of open cells follow the gaps of others; nothing on contact.
+    fn coupling(&self, attraction: &Attraction, state: &Equilibrium) -> Option<Pairs> {
+        let Self { both, root, is_open, .. } = self;
+        let zone_root: Vec<f64> = root.iter().zip(is_open).map(|(r, open)| f64::from(r * open)).collect();
+        attraction.coupling(both, &both.carry(&state.cells, &state.gap), &zone_root)
+    }
+
+    fn times_root(&self, values: &mut [f32]) {
+        update(values, &self.root, |value, root| *value *= root);
+    }
+
+    /// The diagonal d of the preconditioner.
+    fn diagonal(&self, own: f32) -> Vec<f32> {
+        let of = |(r, &open): (&f32, &f32)| {
+            if open > 0.0 { (1.0 - r * r * own).max(LEAST as f32) } else { own }.recip()
+        };
+        self.root.iter().zip(&self.is_open).map(of).collect()
+    }
+
+    /// The product by the matrix of the system; `source` and `u` are room.
+    fn product(
+        &self,
+        (kernel, fixed, pairs): (&mut PlannedPressure<'_>, Fixed, Option<&Pairs>),
+        y: &[f32],
+        out: &mut [f32],
+        (source, u): (&mut [f32], &mut [f32]),
+    ) {
+        add_neighbours(pairs, y, source);
+        let own: Vec<f32> = source.iter().zip(&self.is_open).map(|(s, open)| s * open).collect();
+        self.times_root(source);
+        kernel.apply(&self.both, source, &self.both, u);
+        if let Fixed::MeanPlane(constant) = fixed {
+            let offset = (constant * sum(source)) as f32;
+            each(u, |u| *u -= offset);
         }
+        self.times_root(u);
+        add_neighbours(pairs, u, out);
+        update(out, &own, |out, own| *out -= own);
+    }
+
+    /// From the unknowns of the system to net pressures and gaps.
+    fn solution(&self, pairs: Option<&Pairs>, y: &[f32], unit: f64, steps: usize) -> NewtonSolution {
+        let mut change = times_neighbours(pairs, y);
+        self.times_root(&mut change);
+        let opening = y.iter().zip(&self.root).zip(&self.is_open);
+        NewtonSolution {
+            change: change.into_iter().map(|c| unit * f64::from(c)).collect(),
+            opening: opening.map(|((y, root), open)| unit * f64::from(y * open / root)).collect(),
+            steps,
+        }
+    }
+}
+
+/// `N y`, which changes nothing on contact.
+fn add_neighbours(pairs: Option<&Pairs>, y: &[f32], out: &mut [f32]) {
+    out.copy_from_slice(y);
+    if let Some(pairs) = pairs {
+        pairs.add_product(1.0, y, out);
+    }
+}
+
+fn times_neighbours(pairs: Option<&Pairs>, y: &[f32]) -> Vec<f32> {
+    let mut out = vec![0.0; y.len()];
+    add_neighbours(pairs, y, &mut out);
+    out
+}
+
+/// The preconditioner of the system.
+struct RoughInverse<'a> {
+    linear: &'a Linear,
+    diagonal: Vec<f32>,
+    near: Option<Near>,
+    torus: Option<&'a mut FftConvolution<f32>>,
+    extension: Extension,
+    recorder: Recorder,
+    /// Room on both sets.
+    beside: Vec<f32>,
+}
+
+impl RoughInverse<'_> {
+    fn apply(&mut self, r: &[f32], z: &mut [f32]) {
+        let Self { linear, diagonal, near, torus, extension, recorder, beside } = self;
+        let Linear { contact, both, is_open, .. } = linear;
+        z.copy_from_slice(r);
+        if let Some(near) = near {
+            near.extend(r, beside);
+            linear.times_root(beside);
+            update(z, beside, |z, beside| *z -= beside);
+        }
+        update(z, diagonal, |z, d| *z *= d);
+        let Some(transform) = torus.as_deref_mut() else { return };
+        update(z, is_open, |z, open| *z *= open);
+        if let Some(near) = near {
+            beside.copy_from_slice(z);
+            linear.times_root(beside);
+            near.subtract_transposed(beside, z);
+        }
+        let mut on_contact = contact.carry(both, r);
+        let mut found = vec![0.0; contact.len()];
+        let extensions = std::array::from_mut(extension);
+        let mut inverse = TorusInverse { transform, extensions, recorder: recorder.clone() };
+        inverse.apply(contact, 0.0, &mut on_contact, &mut found);
+        both.add_carried(contact, &found, z);
+    }
+}
+
+/// A fixed net force is the product with `force`; the correction of it is distributed by the weights.
+struct KeptForce {
+    force: Vec<f32>,
+    weights: Vec<f32>,
+    /// Their product; 0 where the force is free.
+    total: f64,
+}
+
+impl KeptForce {
+    fn new(linear: &Linear, pairs: Option<&Pairs>, fixed: Fixed, inverse: &mut RoughInverse<'_>) -> Self {
+        let force = times_neighbours(pairs, &linear.root);
+        let mut kept = Self { weights: vec![0.0; force.len()], force, total: 0.0 };
+        if fixed == Fixed::Force {
+            inverse.apply(&kept.force, &mut kept.weights);
+            kept.total = dot(&kept.force, &kept.weights);
+        }
+        kept
+    }
+
+    fn precondition(&self, inverse: &mut RoughInverse<'_>, r: &mut [f32], z: &mut [f32]) {
+        let Self { force, weights, total } = self;
         let less = |values: &mut [f32], share: f64, of: &[f32]| {
             let share = share as f32;
             update(values, of, |value, of| *value -= share * of);
         };
-        let precondition = |r: &mut [f32], z: &mut [f32]| {
-            if total > 0.0 {
-                less(r, dot(&weights, r) / total, &force);
-            }
-            inverse(r, z);
-            if total > 0.0 {
-                less(z, dot(&force, z) / total, &weights);
-            }
-        };
-        let (mut applications, mut source, mut u) = (0, vec![0.0f32; n], vec![0.0f32; n]);
-        let product = |y: &[f32], out: &mut [f32]| {
-            applications += 1;
-            neighbours(y, &mut source);
-            let own: Vec<f32> = source.iter().zip(is_open).map(|(s, open)| s * open).collect();
-            times_root(&mut source);
-            matrix.apply(both, &source, both, &mut u);
-            if let Fixed::MeanPlane(constant) = fixed {
-                let offset = (constant * sum(&source)) as f32;
-                each(&mut u, |u| *u -= offset);
-            }
-            times_root(&mut u);
-            neighbours(&u, out);
-            update(out, &own, |out, own| *out -= own);
-        };
-        let mut right: Vec<f32> = left.iter().map(|l| -(l / unit) as f32).collect();
-        times_root(&mut right);
-        let mut b = vec![0.0f32; n];
-        neighbours(&right, &mut b);
-        let (y, outcome) = minres(product, precondition, b, (reduction, STEPS), stop);
-        operators.plans.applications += applications;
-        operators.plans.solves += 1;
-        let mut change = vec![0.0f32; n];
-        neighbours(&y, &mut change);
-        times_root(&mut change);
-        let opening = y.iter().zip(root).zip(is_open);
-        Some(NewtonSolution {
-            change: change.into_iter().map(|c| unit * f64::from(c)).collect(),
-            opening: opening.map(|((y, root), open)| unit * f64::from(y * open / root)).collect(),
-            steps: outcome.steps,
-        })
+        if *total > 0.0 {
+            less(r, dot(weights, r) / total, force);
+        }
+        inverse.apply(r, z);
+        if *total > 0.0 {
+            less(z, dot(force, z) / total, weights);
+        }
     }
 }

@@ -5,7 +5,7 @@ use super::attraction::Attraction;
 use super::bottleneck::Bottleneck;
 use super::equilibrium::{AdhesiveControl, Equilibrium};
 use super::law::LawShape;
-use super::newton::{BEGIN, Predicted, Trial, step};
+use super::newton::{BEGIN, Predicted, Trial, WantedStep, step};
 use super::relaxation::{Tractions, follow};
 use crate::active_set::Problem;
 use crate::kernel::Inverse;
@@ -235,8 +235,8 @@ impl Updates<'_> {
             contact: &held.contact.marked,
             noise: held.contact.noise,
         };
-        let (trial, steps) =
-            step(self.problem, self.attraction, (state, &predicted), wanted.fixed, reduction, stop);
+        let wanted = WantedStep { state, predicted: &predicted, fixed: wanted.fixed, reduction, stop };
+        let (trial, steps) = step(self.problem, self.attraction, &wanted);
         state.steps += steps;
         trial
     }

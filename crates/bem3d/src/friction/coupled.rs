@@ -2,7 +2,9 @@
 //! tangential ones.
 
 use super::increment::FrictionLimits;
-use super::state::{ForceTooLarge, FrictionLoad, FrictionSolver, FrictionState, PressedCells, SlipMemory};
+use super::state::{
+    ForceTooLarge, FrictionLoad, FrictionSolver, FrictionState, PressedCells, SlipMemory, SlipStep,
+};
 use crate::active_set::{self, Candidates, Continuation, Control, Guess, Limits, Problem, Residuals, Solved};
 use contact_model::{Status, Stop};
 use std::sync::Arc;
@@ -82,7 +84,11 @@ pub fn advance(
         let mut normal = active_set::solve(problem, control, from, normal_limits, stop);
         let contact = PressedCells { cells: &normal.contact, pressure: &normal.p };
         let start = tractions.as_ref().map(|last| (&last.cells, &last.traction[..]));
-        let state = friction.advance(before, contact, tangential, start, tangential_limits, stop)?;
+        let state = friction.advance(
+            SlipStep { before, contact, load: tangential, guess: start },
+            tangential_limits,
+            stop,
+        )?;
         let next = friction.normal_displacement(&state.memory).unwrap_or_else(|| vec![0.0; z.len()]);
         let far = next.iter().zip(&raised).fold(0.0, |far: f64, (a, b)| far.max((a - b).abs()));
         deform(problem, z, &next);

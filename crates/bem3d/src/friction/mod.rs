@@ -44,4 +44,6 @@ mod tests;
 pub use coupled::{CoupledLoad, CoupledState, advance as advance_coupled};
 pub use increment::{FrictionLimits, TangentialControl, exact};
 pub use linearised::{FrictionRoom, SlipBranch, inverse_of};
-pub use state::{ForceTooLarge, FrictionLoad, FrictionSolver, FrictionState, PressedCells, SlipMemory};
+pub use state::{
+    ForceTooLarge, FrictionLoad, FrictionSolver, FrictionState, PressedCells, SlipMemory, SlipStep,
+};

@@ -82,6 +82,26 @@ pub struct FrictionLoad {
     pub control: TangentialControl,
 }
 
+impl FrictionLoad {
+    /// The largest traction of each cell.
+    fn limits(&self, pressure: &[f64]) -> Vec<f64> {
+        pressure.iter().map(|&pressure| self.law.largest_traction(pressure)).collect()
+    }
+}
+
+/// An increment of a path.
+#[derive(Debug, Clone, Copy)]
+pub struct SlipStep<'a> {
+    /// The state before.
+    pub before: &'a SlipMemory,
+    /// The contact at the end.
+    pub contact: PressedCells<'a>,
+    /// The tangential load at the end.
+    pub load: FrictionLoad,
+    /// Tractions on some cells to begin with, admissible or not; `None`: those before.
+    pub guess: Option<(&'a CellSet, &'a [f64])>,
+}
+
 /// Friction on one surface: operators and room, kept from increment to increment.
 #[derive(Debug)]
 pub struct FrictionSolver {
@@ -164,27 +184,18 @@ impl FrictionSolver {
     /// stick or slip would be a matter of rounding otherwise. A number of such increments, each too small to be
     /// resolved, still adds up, because each is measured from the last one that moved.
     ///
-    /// `guess` are tractions on some cells to begin with, admissible or not; `None`: those before.
-    ///
     /// # Errors
     /// [`ForceTooLarge`] for a force of more than the sum of the largest tractions of the cells, beyond a
     /// billionth of it.
     pub fn advance(
         &mut self,
-        before: &SlipMemory,
-        contact: PressedCells<'_>,
-        load: FrictionLoad,
-        guess: Option<(&CellSet, &[f64])>,
+        step: SlipStep<'_>,
         limits: FrictionLimits,
         stop: Stop<'_>,
     ) -> Result<FrictionState, ForceTooLarge> {
-        let PressedCells { cells, pressure } = contact;
-        let FrictionLoad { law, control } = load;
-        let limits_of = |pressure: &[f64]| -> Vec<f64> {
-            pressure.iter().map(|&pressure| law.largest_traction(pressure)).collect()
-        };
-        let limit = limits_of(pressure);
-        if let TangentialControl::Force([x, y]) = control {
+        let SlipStep { before, contact: PressedCells { cells, pressure }, load, guess } = step;
+        let limit = load.limits(pressure);
+        if let TangentialControl::Force([x, y]) = load.control {
             let largest = sum(&limit);
             if x.hypot(y) > largest * (1.0 + FORCE_ROUNDING) {
                 return Err(ForceTooLarge { largest });
@@ -199,72 +210,56 @@ impl FrictionSolver {
             cells,
             limit: &limit,
             reference: &reference,
-            control,
+            control: load.control,
             displacement: before.displacement,
         };
         let Self { operators, room, .. } = self;
-        let IncrementState {
-            traction,
-            slip,
-            displacement,
-            duality_gap,
-            length,
-            load_error,
-            stick,
-            iterations,
-            steps,
-            status,
-        } = increment::solve(operators, room, increment, start, limits, stop);
-        let rho = increment::step(operators);
-        let most = limits.unresolved * sum(&limit);
-        let same = most > 0.0
+        let found = increment::solve(operators, room, increment, start, limits, stop);
+        if self.is_unmoved(step, &limit, &found, limits) {
+            return Ok(self.unmoved(before, load, &found));
+        }
+        Ok(moved(step, limit, &offset, found))
+    }
+
+    /// Whether nothing has moved within what is resolved.
+    fn is_unmoved(
+        &self,
+        step: SlipStep<'_>,
+        limit: &[f64],
+        found: &IncrementState,
+        limits: FrictionLimits,
+    ) -> bool {
+        let SlipStep { before, contact: PressedCells { cells, pressure }, load, .. } = step;
+        let most = limits.unresolved * sum(limit);
+        most > 0.0
             && *cells == before.cells
             // Also where a tighter tolerance than this asks for more than the arithmetic gives.
-            && duality_gap <= limits.unresolved
-            && change(&limits_of(&before.pressure), &limit) <= most
+            && found.duality_gap <= limits.unresolved
+            && change(&load.limits(&before.pressure), limit) <= most
             // Pressures that change no limit still displace, where both problems are coupled.
             && (self.coupling.is_none()
                 || change(&before.pressure, pressure) <= limits.unresolved * sum(pressure))
-            && change(&before.traction, &traction) <= most
-            && weighted(&limit, &slip) <= most * length;
-        if same {
-            let limit = limits_of(&before.pressure);
-            let (traction, moved) = (&before.traction, before.moved.clone());
-            return Ok(FrictionState {
-                force: total(traction),
-                dissipated: 0.0,
-                stick: increment::sticking(cells, (traction, &moved), &limit, rho),
-                memory: before.clone(),
-                limit,
-                slip: moved,
-                duality_gap,
-                load_error,
-                iterations: [iterations, steps],
-                status,
-            });
-        }
-        let mut since = carried(cells, &before.cells, &before.slip);
-        since.iter_mut().zip(&slip).for_each(|(since, slip)| *since += slip);
-        Ok(FrictionState {
-            force: total(&traction),
-            dissipated: dot(&traction, &slip),
-            memory: SlipMemory {
-                cells: cells.clone(),
-                traction,
-                displacement,
-                offset: offset.iter().zip(&slip).map(|(offset, slip)| offset + slip).collect(),
-                slip: since,
-                moved: slip.clone(),
-                pressure: pressure.to_vec(),
-            },
+            && change(&before.traction, &found.traction) <= most
+            && weighted(limit, &found.slip) <= most * found.length
+    }
+
+    /// The state before, with the certificate of the increment.
+    fn unmoved(&self, before: &SlipMemory, load: FrictionLoad, found: &IncrementState) -> FrictionState {
+        let limit = load.limits(&before.pressure);
+        let slip = before.moved.clone();
+        let rho = increment::step(&self.operators);
+        FrictionState {
+            force: total(&before.traction),
+            dissipated: 0.0,
+            stick: increment::sticking(&before.cells, (&before.traction, &slip), &limit, rho),
+            memory: before.clone(),
             limit,
             slip,
-            stick,
-            duality_gap,
-            load_error,
-            iterations: [iterations, steps],
-            status,
-        })
+            duality_gap: found.duality_gap,
+            load_error: found.load_error,
+            iterations: [found.iterations, found.steps],
+            status: found.status,
+        }
     }
 
     /// `delta - u` of the state before on the cells of the next contact.
@@ -293,6 +288,34 @@ impl FrictionState {
         let moved = |(q, w): (&f64, &f64)| q + rho * w;
         let y: Vec<f64> = self.memory.traction.iter().zip(&self.slip).map(moved).collect();
         SlipBranch::of(&self.memory.cells, &y, &self.slip, &self.limit)
+    }
+}
+
+/// The state at the end of an increment, from its tractions; `offset` is `delta - u` at its beginning.
+fn moved(step: SlipStep<'_>, limit: Vec<f64>, offset: &[f64], found: IncrementState) -> FrictionState {
+    let SlipStep { before, contact: PressedCells { cells, pressure }, .. } = step;
+    let IncrementState { traction, slip, .. } = found;
+    let mut since = carried(cells, &before.cells, &before.slip);
+    since.iter_mut().zip(&slip).for_each(|(since, slip)| *since += slip);
+    FrictionState {
+        force: total(&traction),
+        dissipated: dot(&traction, &slip),
+        memory: SlipMemory {
+            cells: cells.clone(),
+            traction,
+            displacement: found.displacement,
+            offset: offset.iter().zip(&slip).map(|(offset, slip)| offset + slip).collect(),
+            slip: since,
+            moved: slip.clone(),
+            pressure: pressure.to_vec(),
+        },
+        limit,
+        slip,
+        stick: found.stick,
+        duality_gap: found.duality_gap,
+        load_error: found.load_error,
+        iterations: [found.iterations, found.steps],
+        status: found.status,
     }
 }
 

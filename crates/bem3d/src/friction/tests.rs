@@ -68,7 +68,13 @@ fn advance(
     pressed: &PressedContact,
     control: TangentialControl,
 ) -> FrictionState {
-    let state = friction.advance(before, pressed.cells(), load(control), None, LIMITS, &never).unwrap();
+    let state = friction
+        .advance(
+            SlipStep { before, contact: pressed.cells(), load: load(control), guess: None },
+            LIMITS,
+            &never,
+        )
+        .unwrap();
     assert_eq!(state.status, Status::Converged, "{control:?}: {:e}", state.duality_gap);
     assert!(state.load_error < 1e-12);
     let n = state.limit.len();
@@ -275,8 +281,18 @@ fn a_force_is_held_up_to_gross_slip() {
         let (sin, cos) = 0.7_f64.sin_cos();
         let control = TangentialControl::Force([share * most * cos, share * most * sin]);
         let limits = FrictionLimits { tolerance: 1e-9, ..LIMITS };
-        let state =
-            solver.advance(&SlipMemory::default(), all.cells(), load(control), None, limits, &never).unwrap();
+        let state = solver
+            .advance(
+                SlipStep {
+                    before: &SlipMemory::default(),
+                    contact: all.cells(),
+                    load: load(control),
+                    guess: None,
+                },
+                limits,
+                &never,
+            )
+            .unwrap();
         assert_eq!(state.status, Status::Converged, "{share}: {:e}", state.duality_gap);
         let held = state.force[0].hypot(state.force[1]);
         assert!((held / (share * most) - 1.0).abs() < 1.1e-9, "{share}: {held}");
@@ -287,10 +303,7 @@ fn a_force_is_held_up_to_gross_slip() {
     }
     let beyond = TangentialControl::Force([0.0, -1.001 * most]);
     let refused = friction(grid, Boundary::Free, 0.43).advance(
-        &SlipMemory::default(),
-        all.cells(),
-        load(beyond),
-        None,
+        SlipStep { before: &SlipMemory::default(), contact: all.cells(), load: load(beyond), guess: None },
         LIMITS,
         &never,
     );
@@ -315,10 +328,12 @@ fn limits_of_the_coefficient_and_of_the_number_of_cells() {
     let solve = |solver: &mut FrictionSolver, mu: f64, control| {
         let state = solver
             .advance(
-                &begin,
-                all.cells(),
-                FrictionLoad { law: FrictionLaw::coulomb(mu), control },
-                None,
+                SlipStep {
+                    before: &begin,
+                    contact: all.cells(),
+                    load: FrictionLoad { law: FrictionLaw::coulomb(mu), control },
+                    guess: None,
+                },
                 LIMITS,
                 &never,
             )
@@ -335,10 +350,12 @@ fn limits_of_the_coefficient_and_of_the_number_of_cells() {
     assert_eq!(
         solver
             .advance(
-                &begin,
-                all.cells(),
-                FrictionLoad { law: FrictionLaw::coulomb(0.0), control: Force([1e-9, 0.0]) },
-                None,
+                SlipStep {
+                    before: &begin,
+                    contact: all.cells(),
+                    load: FrictionLoad { law: FrictionLaw::coulomb(0.0), control: Force([1e-9, 0.0]) },
+                    guess: None
+                },
                 LIMITS,
                 &never
             )
@@ -359,12 +376,27 @@ fn limits_of_the_coefficient_and_of_the_number_of_cells() {
     // No contact.
     let nothing = CellSet::default();
     let empty = PressedCells { cells: &nothing, pressure: &[] };
-    let state = solver.advance(&begin, empty, load(Displacement([1.0, 0.0])), None, LIMITS, &never).unwrap();
+    let state = solver
+        .advance(
+            SlipStep { before: &begin, contact: empty, load: load(Displacement([1.0, 0.0])), guess: None },
+            LIMITS,
+            &never,
+        )
+        .unwrap();
     assert!(state.force == [0.0, 0.0] && state.memory.traction.is_empty());
     close(&tangential::solve(&mut solver, &state, StiffnessOf::Branch, 1e-6, &never).value, &[0.0; 3], 0.0);
     // And back into contact from there.
     let again = solver
-        .advance(&state.memory, all.cells(), load(Displacement([1.0, 0.0])), None, LIMITS, &never)
+        .advance(
+            SlipStep {
+                before: &state.memory,
+                contact: all.cells(),
+                load: load(Displacement([1.0, 0.0])),
+                guess: None,
+            },
+            LIMITS,
+            &never,
+        )
         .unwrap();
     assert!(largest(&again.memory.traction) < 1e-10 * total, "touched where it lies");
 }
@@ -408,7 +440,13 @@ fn stiffnesses_are_difference_quotients() {
         let most = all.friction();
         let limits = FrictionLimits { tolerance: 1e-14, ..LIMITS };
         let advance = |solver: &mut FrictionSolver, before: &SlipMemory, control| {
-            solver.advance(before, all.cells(), load(control), None, limits, &never).unwrap()
+            solver
+                .advance(
+                    SlipStep { before, contact: all.cells(), load: load(control), guess: None },
+                    limits,
+                    &never,
+                )
+                .unwrap()
         };
         let begin = SlipMemory::default();
         let state = advance(&mut solver, &begin, TangentialControl::Force([0.45 * most, 0.2 * most]));
@@ -548,7 +586,13 @@ fn the_error_of_a_stiffness_holds_its_true_error() {
                 let control = TangentialControl::Force([share * most, 0.1 * most]);
                 let limits = FrictionLimits { tolerance, ..LIMITS };
                 let begin = SlipMemory::default();
-                let state = solver.advance(&begin, all.cells(), load(control), None, limits, &never).unwrap();
+                let state = solver
+                    .advance(
+                        SlipStep { before: &begin, contact: all.cells(), load: load(control), guess: None },
+                        limits,
+                        &never,
+                    )
+                    .unwrap();
                 tangential::solve(&mut solver, &state, StiffnessOf::Branch, tolerance, &never)
             };
             let exact = stiffness(1e-13).value;

@@ -80,21 +80,35 @@ where
         r: &mut [f32],
         z: &mut [f32],
     ) -> Preconditioned {
-        let Self { transform, extensions, .. } = self;
-        let Window { x: x0, y: y0, width, .. } = transform.window();
-        let (bands, n) = (transform.bands(), set.len());
-        let first_rows = || bands.clone().map(|y| y + y0);
-        let rows = |y: usize| set.rows_within(y..y + BAND);
-        // The residual, and its sums over blocks.
-        let mut parts = Vec::with_capacity(N * bands.len());
-        for (extension, r) in extensions.iter_mut().zip(r.chunks_exact_mut(n)) {
+        let largest = self.lower(set, offset, r);
+        self.extensions.iter_mut().for_each(Extension::extend);
+        self.transform(set, r, z);
+        self.extensions.iter_mut().for_each(Extension::collect);
+        let (product, sum) = self.collect(set, r, z);
+        Preconditioned { largest: f64::from(largest), product, sum }
+    }
+
+    /// The first rows of the bands of the window.
+    fn first_rows(&self) -> impl Iterator<Item = usize> + Clone + use<N, E> {
+        let y0 = self.transform.window().y;
+        self.transform.bands().map(move |y| y + y0)
+    }
+
+    /// Lowers the residual, and sums it over the blocks of the extension. Returns its largest magnitude.
+    fn lower(&mut self, set: &CellSet, offset: f32, r: &mut [f32]) -> f32 {
+        let Window { x: x0, y: y0, width, .. } = self.transform.window();
+        let (first_rows, n) = (self.first_rows(), set.len());
+        let bands = self.transform.bands().len();
+        let mut parts = Vec::with_capacity(N * bands);
+        for (extension, r) in self.extensions.iter_mut().zip(r.chunks_exact_mut(n)) {
             extension.clear();
-            parts.extend(first_rows().zip(set.split(r, first_rows())).zip(extension.bands(bands.len())));
+            let residuals = set.split(r, first_rows.clone());
+            parts.extend(first_rows.clone().zip(residuals).zip(extension.bands(bands)));
         }
         let largest_residuals = map(N * n, parts.into_iter(), |((y, (start, r)), mut sums)| {
             let mut line = vec![0.0; width];
             let mut largest_residual = 0.0f32;
-            for row in rows(y).map(|row| row.after(start)) {
+            for row in set.rows_within(y..y + BAND).map(|row| row.after(start)) {
                 let values = &mut r[row.span()];
                 for r in values.iter_mut() {
                     *r -= offset;
@@ -108,22 +122,31 @@ where
             }
             largest_residual
         });
-        extensions.iter_mut().for_each(Extension::extend);
-        let (extended, residual) = (&**extensions, &*r);
+        largest_residuals.into_iter().fold(0.0, f32::max)
+    }
+
+    /// The inverse on the torus of the residual and its extension: z on the set, and outside of it the sums over
+    /// blocks that the transpose of the extension takes back.
+    fn transform(&mut self, set: &CellSet, r: &[f32], z: &mut [f32]) {
+        let (first_rows, n) = (self.first_rows(), set.len());
+        let Self { transform, extensions, .. } = self;
+        let Window { x: x0, y: y0, .. } = transform.window();
+        let bands = transform.bands().len();
+        let extended = &**extensions;
         transform.forward(
             |_, _| true,
             |component, y, out| {
                 extended[component].fill(y, out);
                 if let Some(row) = set.row(y + y0) {
-                    row.spread(&residual[component * n..][..n], out, x0);
+                    row.spread(&r[component * n..][..n], out, x0);
                 }
             },
         );
         transform.multiply(|_| true);
-        let mut outputs = Vec::with_capacity(N * bands.len());
+        let mut outputs = Vec::with_capacity(N * bands);
         for (extension, z) in extensions.iter_mut().zip(z.chunks_exact_mut(n)) {
             extension.clear();
-            outputs.extend(set.split(z, first_rows()).into_iter().zip(extension.bands(bands.len())));
+            outputs.extend(set.split(z, first_rows.clone()).into_iter().zip(extension.bands(bands)));
         }
         transform.backward(
             |_| true,
@@ -141,16 +164,21 @@ where
                 }
             },
         );
-        extensions.iter_mut().for_each(Extension::collect);
-        let mut parts = Vec::with_capacity(N * bands.len());
-        for ((extension, r), z) in extensions.iter().zip(r.chunks_exact(n)).zip(z.chunks_exact_mut(n)) {
-            let z = set.split(z, first_rows());
-            parts.extend(first_rows().zip(z).map(|(y, z)| (extension, r, y, z)));
+    }
+
+    /// Adds to z what the transpose of the extension gives, and returns `r' z` and the sum of z.
+    fn collect(&self, set: &CellSet, r: &[f32], z: &mut [f32]) -> (f64, f64) {
+        let Window { x: x0, y: y0, width, .. } = self.transform.window();
+        let (first_rows, n) = (self.first_rows(), set.len());
+        let mut parts = Vec::with_capacity(N * self.transform.bands().len());
+        for ((extension, r), z) in self.extensions.iter().zip(r.chunks_exact(n)).zip(z.chunks_exact_mut(n)) {
+            let z = set.split(z, first_rows.clone());
+            parts.extend(first_rows.clone().zip(z).map(|(y, z)| (extension, r, y, z)));
         }
         let sums = map(N * n, parts.into_iter(), |(extension, r, y, (start, z))| {
             let mut line = vec![0.0; width];
             let (mut product, mut total) = (0.0, 0.0);
-            for row in rows(y) {
+            for row in set.rows_within(y..y + BAND) {
                 let (at, z_row) = (row.span(), row.after(start));
                 if extension.is_wanted() {
                     extension.take(row.y - y0, &mut line);
@@ -162,12 +190,7 @@ where
             }
             (product, total)
         });
-        let (product, total) = sums.into_iter().fold((0.0, 0.0), |(a, b), (c, d)| (a + c, b + d));
-        Preconditioned {
-            largest: f64::from(largest_residuals.into_iter().fold(0.0, f32::max)),
-            product,
-            sum: total,
-        }
+        sums.into_iter().fold((0.0, 0.0), |(a, b), (c, d)| (a + c, b + d))
     }
 }
 

@@ -8,7 +8,7 @@ use super::sliding::{Slid, SurfaceFriction};
 use crate::active_set::{Candidates, Solved};
 use crate::friction::{
     ForceTooLarge, FrictionLimits, FrictionLoad, FrictionSolver, FrictionState, PressedCells, SlipMemory,
-    TangentialControl,
+    SlipStep, TangentialControl,
 };
 use crate::geometry::CellSet;
 use crate::response::TangentialStiffness;
@@ -68,7 +68,7 @@ impl PreparedSurface {
         let (mut limits, tolerance) = (self.friction_limits(), self.options.tolerance);
         let work = friction.work();
         let load = FrictionLoad { law: *law, control };
-        let first = friction.advance(before, contact, load, None, limits, stop);
+        let first = friction.advance(SlipStep { before, contact, load, guess: None }, limits, stop);
         let mut state = first.map_err(|beyond| self.gross_slip(control, beyond))?;
         let mut stiffness = self.tangential_stiffness(friction, &state, stop);
         // The error of a stiffness by the cells that may stick or slip falls as the square root of the gap.
@@ -79,7 +79,9 @@ impl PreparedSurface {
             }
             limits.tolerance = limits.tolerance.min(state.duality_gap) * further(tolerance / error);
             let guess = Some((contact.cells, &state.memory.traction[..]));
-            let Ok(next) = friction.advance(before, contact, load, guess, limits, stop) else { break };
+            let Ok(next) = friction.advance(SlipStep { before, contact, load, guess }, limits, stop) else {
+                break;
+            };
             if next.duality_gap >= state.duality_gap {
                 break;
             }

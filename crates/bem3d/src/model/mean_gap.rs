@@ -11,6 +11,73 @@ use crate::active_set::{Bounds, Control, Solved};
 use crate::tuning::{FLOWING_GAP_LOADS, GAP_LOADS, GAP_STEP, POLISHED_GAP, POLISHING_LOADS};
 use contact_model::{ContactState, Error, Result, Status, Stop};
 
+/// The search for a force by the mean gap that it leaves, in x = ln F.
+struct GapSearch {
+    x: f64,
+    /// Where the gap is too large, and too small.
+    low: f64,
+    high: f64,
+    /// Approaches at which the gap is too large, and too small.
+    approaches: [f64; 2],
+    /// The last x of an incomplete contact, and by how much its gap was too large.
+    before: Option<(f64, f64)>,
+}
+
+/// The next x by a slope, and whether it lies between those that are known.
+#[derive(Clone, Copy)]
+struct GapStep {
+    x: f64,
+    is_within: bool,
+}
+
+impl GapSearch {
+    fn is_bracketed(&self) -> bool {
+        self.low.is_finite() && self.high.is_finite()
+    }
+
+    /// Narrows the bracket by a state whose gap is too large by `miss`.
+    fn narrow(&mut self, solved: &Solved, miss: f64, complete: bool) {
+        if miss > 0.0 {
+            self.low = self.low.max(self.x);
+            self.approaches[0] = solved.d.max(self.approaches[0]);
+        } else {
+            self.high = self.high.min(self.x);
+            self.approaches[1] = solved.d.min(self.approaches[1]);
+        }
+        if complete {
+            // Every force from that of the first complete contact on has the gap 0.
+            let (force, least) =
+                (solved.p.iter().sum::<f64>(), solved.p.iter().copied().fold(f64::INFINITY, f64::min));
+            self.high = self.high.min((force - least * solved.p.len() as f64).ln());
+        }
+    }
+
+    /// The change of x with the gap: by the stiffness, by the last two states, or as far as is known of the surface.
+    fn slope(&self, stiffness: Option<f64>, force: f64, miss: f64, usual: f64) -> f64 {
+        match (stiffness, self.before) {
+            (Some(k), _) => k / force,
+            (None, Some((x0, miss0))) if (miss0 - miss).abs() > 0.0 => (self.x - x0) / (miss0 - miss),
+            _ => usual,
+        }
+    }
+
+    fn next(&self, change: f64, complete: bool) -> GapStep {
+        let x = self.x + change.clamp(-GAP_STEP, GAP_STEP);
+        GapStep { x, is_within: x > self.low && x < self.high && !(complete && self.is_bracketed()) }
+    }
+
+    /// Goes on by a step, or halves the bracket, or looks for its other end.
+    fn take(&mut self, step: GapStep, miss: f64) {
+        self.x = if step.is_within {
+            step.x
+        } else if self.is_bracketed() {
+            f64::midpoint(self.low, self.high)
+        } else {
+            self.x + GAP_STEP.copysign(miss)
+        };
+    }
+}
+
 impl PreparedSurface {
     /// Mean gap of a solved state, nondimensional.
     fn gap_of(&self, solved: &Solved) -> f64 {
@@ -52,63 +119,46 @@ impl PreparedSurface {
         }
         self.begin_count();
         let side = (self.problem.grid().count() as f64).sqrt();
-        // A wave of the rms height and the length of the map closes at about side x rms.
-        let mut x = self.last.as_ref().map_or(0.1 * side, |last| last.force).ln();
-        // With a hardness no force reaches that of all cells at it; without, this is infinite.
-        let (mut low, mut high) = (f64::NEG_INFINITY, self.capacity().ln());
-        x = x.min(high - GAP_STEP);
-        // Approaches at which the gap is too large, and too small.
-        let mut approaches = [first, f64::INFINITY];
-        let mut before: Option<(f64, f64)> = None;
+        let mut search = GapSearch {
+            // A wave of the rms height and the length of the map closes at about side x rms.
+            x: self.last.as_ref().map_or(0.1 * side, |last| last.force).ln(),
+            low: f64::NEG_INFINITY,
+            // With a hardness no force reaches that of all cells at it; without, this is infinite.
+            high: self.capacity().ln(),
+            approaches: [first, f64::INFINITY],
+            before: None,
+        };
+        search.x = search.x.min(search.high - GAP_STEP);
         let mut steps = 0;
         // Loads that meet the gap and are followed by another one.
         let mut polish = POLISHING_LOADS;
         for tries in 0..GAP_LOADS {
-            let tried = self.try_gap(asked, Control::Force(x.exp()), &mut polish, stop);
+            let tried = self.try_gap(asked, Control::Force(search.x.exp()), &mut polish, stop);
             steps += tried.solved.steps;
             if tried.ends {
                 return self.at_gap(tried, load, steps, stop);
             }
             let GapTried { solved, tangent, miss, .. } = tried;
-            let (force, d): (f64, f64) = (solved.p.iter().sum(), solved.d);
-            if miss > 0.0 {
-                low = low.max(x);
-                approaches[0] = d.max(approaches[0]);
-            } else {
-                high = high.min(x);
-                approaches[1] = d.min(approaches[1]);
-            }
             let complete = self.is_complete(&solved);
-            if complete {
-                // Every force from that of the first complete contact on has the gap 0.
-                let least = solved.p.iter().copied().fold(f64::INFINITY, f64::min);
-                high = high.min((force - least * solved.p.len() as f64).ln());
-            }
-            let slope = match (&tangent, before) {
-                (Some(t), _) => t.stiffness.k() * self.magnification(t.stiffness.k()) / force,
-                (None, Some((x0, miss0))) if (miss0 - miss).abs() > 0.0 => (x - x0) / (miss0 - miss),
-                _ => 1.0 / self.mean,
-            };
-            let next = x + (miss * slope).clamp(-GAP_STEP, GAP_STEP);
-            let bracketed = low.is_finite() && high.is_finite();
-            let within = next > low && next < high && !(complete && bracketed);
+            search.narrow(&solved, miss, complete);
+            let slope = search.slope(
+                tangent.as_ref().map(|t| t.stiffness.k() * self.magnification(t.stiffness.k())),
+                solved.p.iter().sum(),
+                miss,
+                1.0 / self.mean,
+            );
+            let step = search.next(miss * slope, complete);
             let flows = self.problem.bounds.is_reached(&solved.p);
             let in_approach = flows
                 && (self.responding(&solved).cells.is_empty()
-                    || bracketed && !within
+                    || search.is_bracketed() && !step.is_within
                     || tries >= FLOWING_GAP_LOADS);
-            before = (!complete).then_some((x, miss));
+            search.before = (!complete).then_some((search.x, miss));
             self.remember(solved, tangent);
             if in_approach {
-                return self.at_gap_by_approach((asked, load), approaches, steps, stop);
+                return self.at_gap_by_approach((asked, load), search.approaches, steps, stop);
             }
-            x = if within {
-                next
-            } else if bracketed {
-                f64::midpoint(low, high)
-            } else {
-                x + GAP_STEP.copysign(miss)
-            };
+            search.take(step, miss);
         }
         Err(self.no_such_gap(asked)?)
     }

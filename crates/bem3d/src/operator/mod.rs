@@ -15,7 +15,7 @@ pub use convolution::{Convolution, FftConvolution, VectorConvolution};
 pub use coupling::CouplingOperator;
 pub use direct::DirectSum;
 pub use influence::InfluenceOperator;
-pub use operators::Operators;
+pub use operators::{Operators, PlannedPressure};
 pub use plans::{Planned, TangentialOperators};
 #[cfg(test)]
 pub use recipe::Application;
