@@ -9,7 +9,7 @@ use super::*;
 use crate::active_set::{Limits, Problem};
 use crate::geometry::{CellSet, Grid};
 use crate::kernel::NormalTable;
-use crate::response::adhesive::respond;
+use crate::response::adhesive::{ResponseRequest, respond};
 use crate::tuning::Tuning;
 use contact_model::{Boundary, never};
 use std::f64::consts::PI;
@@ -103,6 +103,10 @@ pub fn eliminated(mut matrix: Vec<Vec<f64>>, mut right: Vec<f64>) -> Vec<f64> {
         right[k] = (right[k] - known) / matrix[k][k];
     }
     right
+}
+
+fn asked(control: AdhesiveControl, tolerance: f64) -> ResponseRequest<'static> {
+    ResponseRequest { control, tolerance: Some(tolerance), stop: &never }
 }
 
 /// The equilibrium near given gaps at an approach, by Newton's method with the contact set changed between
@@ -300,7 +304,7 @@ fn stability_is_that_of_the_dense_matrix_at_an_approach_and_at_a_force() {
             let contact: Vec<bool> = pressure.iter().map(|p| *p > 0.0).collect();
             let slopes = slopes(&law, &all, &gap);
             let at = |problem: &mut Problem, control| {
-                respond(problem, &law, control, &state, Some(1e-10), &never).stability
+                respond(problem, &law, &state, asked(control, 1e-10)).stability
             };
             let (approach, force) = (
                 at(&mut problem, AdhesiveControl::Plane(d)),
@@ -338,7 +342,7 @@ fn every_state_of_a_path_is_a_minimum_that_newton_finds_too() {
                 let state = search.from(start, &never).unwrap();
                 let found = gaps(grid, &state);
                 let control = AdhesiveControl::Plane(d);
-                let response = respond(&mut problem, &law, control, &state, Some(1e-6), &never);
+                let response = respond(&mut problem, &law, &state, asked(control, 1e-6));
                 // Beyond the reach of the attraction gaps are not known to the solver.
                 let all: Vec<f64> = found
                     .iter()
@@ -535,7 +539,7 @@ fn stiffness_by_differences(boundary: Boundary) {
     };
     for (law, d) in [(&law(0.3, 0.15), -0.4), (&law(0.3, 0.15), 0.6)] {
         let state = at(&mut problem, law, d);
-        let response = respond(&mut problem, law, AdhesiveControl::Plane(d), &state, Some(1e-6), &never);
+        let response = respond(&mut problem, law, &state, asked(AdhesiveControl::Plane(d), 1e-6));
         let step = 1e-4;
         let (above, below) =
             (at(&mut problem, law, d + step).force(), at(&mut problem, law, d - step).force());

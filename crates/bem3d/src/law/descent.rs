@@ -61,12 +61,7 @@ pub fn descend<L: ConvexLaw<N>, const N: usize>(
             update(&mut change, &residual, |change, r| *change = beta * *change - r);
             (0..n).map(|i| law.room(i, at(t, n, i), at(&change, n, i))).fold(f64::INFINITY, f64::min)
         } else {
-            target.clear();
-            for (component, mean) in mean.into_iter().enumerate() {
-                let cells = component * n..(component + 1) * n;
-                let pairs = t[cells.clone()].iter().zip(&gradient[cells]);
-                target.extend(pairs.map(|(t, gradient)| t - length * (gradient - mean)));
-            }
+            take_step(t, gradient, mean, length, &mut target);
             law.project(&mut target, force);
             change.copy_from_slice(&target);
             update(&mut change, t, |change, t| *change -= t);
@@ -104,6 +99,23 @@ pub fn descend<L: ConvexLaw<N>, const N: usize>(
         update(gradient, &displaced, |gradient, u| *gradient += share * u);
     }
     steps
+}
+
+/// Writes `t - length (gradient - mean)`.
+fn take_step<const N: usize>(
+    t: &[f64],
+    gradient: &[f64],
+    mean: [f64; N],
+    length: f64,
+    target: &mut Vec<f64>,
+) {
+    target.clear();
+    let n = t.len() / N;
+    for (component, mean) in mean.into_iter().enumerate() {
+        let cells = component * n..(component + 1) * n;
+        let pairs = t[cells.clone()].iter().zip(&gradient[cells]);
+        target.extend(pairs.map(|(t, gradient)| t - length * (gradient - mean)));
+    }
 }
 
 /// The components of cell i.

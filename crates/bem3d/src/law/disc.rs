@@ -161,22 +161,8 @@ impl Discs<'_> {
         let [tractions] = sums((v, v), limit, |v, _, b| [length(v).min(b)]);
         let rounding = ROUNDING * tractions.max(force[0].hypot(force[1]));
         let size = crate::real::largest(v) + crate::real::largest(limit);
-        // Gradient and second derivatives.
-        let evaluate = |[sx, sy]: [f64; 2]| -> [f64; 5] {
-            let mut all = sums((v, v), limit, |[x, y], _, b| {
-                let (x, y) = (x + sx, y + sy);
-                let length = length([x, y]);
-                let outside = length > b;
-                let share = if outside { b / length } else { 1.0 };
-                let (ex, ey) = if outside { (x / length, y / length) } else { (0.0, 0.0) };
-                [share * x, share * y, share * (1.0 - ex * ex), share * (1.0 - ey * ey), -share * ex * ey]
-            });
-            all[0] -= force[0];
-            all[1] -= force[1];
-            all
-        };
         let mut shift = start;
-        let mut now = evaluate(shift);
+        let mut now = self.evaluate(v, force, shift);
         for _ in 0..STEPS {
             let [gx, gy, xx, yy, xy] = now;
             if gx.hypot(gy) <= rounding {
@@ -192,26 +178,7 @@ impl Discs<'_> {
             if !whole.is_finite() {
                 break;
             }
-            let begin = gx * step[0] + gy * step[1];
-            // The slope rises along the step, from `begin < 0`.
-            let (mut low, mut high) = ((0.0, begin), None);
-            let mut share = whole;
-            let mut next = now;
-            for _ in 0..SEARCH {
-                next = evaluate([shift[0] + share * step[0], shift[1] + share * step[1]]);
-                let slope = next[0] * step[0] + next[1] * step[1];
-                if slope <= FLAT * begin.abs() && (slope >= -FLAT * begin.abs() || share >= whole) {
-                    break;
-                }
-                if slope > 0.0 {
-                    high = Some((share, slope));
-                } else {
-                    low = (share, slope);
-                }
-                let Some(high) = high else { break };
-                let (width, weight) = (high.0 - low.0, low.1 / (low.1 - high.1));
-                share = low.0 + width * weight.clamp(0.1, 0.9);
-            }
+            let (share, next) = self.share_of_step((v, force), (shift, step), whole, now);
             shift = [shift[0] + share * step[0], shift[1] + share * step[1]];
             if share * step[0].hypot(step[1]) <= f64::EPSILON * shift[0].hypot(shift[1]) {
                 break;
@@ -219,6 +186,53 @@ impl Discs<'_> {
             now = next;
         }
         shift
+    }
+
+    /// Gradient `[x, y]` and second derivatives `[xx, yy, xy]` of the function at a shift.
+    fn evaluate(&self, v: &[f64], force: [f64; 2], [sx, sy]: [f64; 2]) -> [f64; 5] {
+        let mut all = sums((v, v), self.limit, |[x, y], _, b| {
+            let (x, y) = (x + sx, y + sy);
+            let length = length([x, y]);
+            let outside = length > b;
+            let share = if outside { b / length } else { 1.0 };
+            let (ex, ey) = if outside { (x / length, y / length) } else { (0.0, 0.0) };
+            [share * x, share * y, share * (1.0 - ex * ex), share * (1.0 - ey * ey), -share * ex * ey]
+        });
+        all[0] -= force[0];
+        all[1] -= force[1];
+        all
+    }
+
+    /// The share of a step, at most `whole`, at which the slope along it has nearly vanished, and the derivatives
+    /// there. `now` are those at its beginning, where the function falls along the step.
+    fn share_of_step(
+        &self,
+        (v, force): (&[f64], [f64; 2]),
+        (shift, step): ([f64; 2], [f64; 2]),
+        whole: f64,
+        now: [f64; 5],
+    ) -> (f64, [f64; 5]) {
+        let begin = now[0] * step[0] + now[1] * step[1];
+        // The slope rises along the step, from `begin < 0`.
+        let (mut low, mut high) = ((0.0, begin), None);
+        let mut share = whole;
+        let mut next = now;
+        for _ in 0..SEARCH {
+            next = self.evaluate(v, force, [shift[0] + share * step[0], shift[1] + share * step[1]]);
+            let slope = next[0] * step[0] + next[1] * step[1];
+            if slope <= FLAT * begin.abs() && (slope >= -FLAT * begin.abs() || share >= whole) {
+                break;
+            }
+            if slope > 0.0 {
+                high = Some((share, slope));
+            } else {
+                low = (share, slope);
+            }
+            let Some(high) = high else { break };
+            let (width, weight) = (high.0 - low.0, low.1 / (low.1 - high.1));
+            share = low.0 + width * weight.clamp(0.1, 0.9);
+        }
+        (share, next)
     }
 }
 

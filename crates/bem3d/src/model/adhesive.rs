@@ -13,7 +13,7 @@ use crate::friction::PressedCells;
 use crate::geometry::CellSet;
 use crate::kernel::Evidence;
 use crate::kernel::love::influence_of_rectangle;
-use crate::response::adhesive::{Response, respond};
+use crate::response::adhesive::{Response, ResponseRequest, respond};
 use contact_model::{
     Adhesion, AdhesiveState, Branch, Certificate, ContactState, Error, Result, Status, Stop,
 };
@@ -261,8 +261,8 @@ impl AdhesiveContact<'_> {
             let mut response = Response::default();
             let sound = status == Status::Converged && !left;
             if sound || !again {
-                response =
-                    respond(&mut self.surface.problem, attraction, control, &equilibrium, tolerance, stop);
+                let request = ResponseRequest { control, tolerance, stop };
+                response = respond(&mut self.surface.problem, attraction, &equilibrium, request);
             }
             if again && !(sound && response.stability > 0.0) {
                 spent = (spent.0 + equilibrium.steps, spent.1 + equilibrium.updates);

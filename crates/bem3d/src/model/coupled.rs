@@ -14,6 +14,7 @@ use crate::active_set::{Candidates, Control, Guess, Limits, Solved};
 use crate::friction::{
     CoupledLoad, CoupledState, FrictionLimits, FrictionLoad, SlipMemory, TangentialControl, advance_coupled,
 };
+use crate::response::TangentialStiffness;
 use contact_model::{ContactState, Error, Result, Status, Stop};
 
 /// The step of a difference quotient, over the elastic approach of a circle around the contact.
@@ -86,38 +87,8 @@ impl PreparedSurface {
             self.tighten(sliding, step, tight, &mut state, stop)?;
             limits = tight;
         }
-        let mut tangent = None;
-        if self.outputs.needs_fixed_area() && !self.is_complete(&state.normal) {
-            let mut found = self.tangent(&state.normal, (None, None), None, stop);
-            // As in `settle`, as long as undecided cells could change it by more than the tolerance.
-            for _ in 0..tuning.tightenings {
-                let (error, before_error) = (self.tangent_error(&found), state.normal.residuals.worst());
-                if error <= self.options.tolerance {
-                    break;
-                }
-                limits.normal.tolerance = tuning.tightened(self.options.tolerance / error)
-                    * limits.normal.tolerance.min(before_error);
-                if !self.tighten(sliding, step, limits, &mut state, stop)? {
-                    break;
-                }
-                state.normal.steps += found.steps();
-                found = self.tangent(&state.normal, (None, None), None, stop);
-            }
-            tangent = Some(found);
-        }
-        let mut stiffness = self.tangential_stiffness(&mut sliding.friction, &state.tangential, stop);
-        for _ in 0..TIGHTENINGS {
-            let error = branch_error(&stiffness);
-            if error <= self.options.tolerance {
-                break;
-            }
-            limits.tangential.tolerance = limits.tangential.tolerance.min(state.tangential.duality_gap)
-                * further(self.options.tolerance / error);
-            if !self.tighten(sliding, step, limits, &mut state, stop)? {
-                break;
-            }
-            stiffness = self.tangential_stiffness(&mut sliding.friction, &state.tangential, stop);
-        }
+        let tangent = self.coupled_tangent(sliding, step, &mut limits, &mut state, stop)?;
+        let stiffness = self.coupled_stiffness(sliding, step, &mut limits, &mut state, stop)?;
         let normal_stiffness = if quotient && state.status() == Status::Converged {
             let deformed = self.problem.candidates.shared();
             let quotient = self.quotient(sliding, &state, control, limits, stop);
@@ -130,6 +101,62 @@ impl PreparedSurface {
         let (status, rounds) = (state.status(), Some((state.rounds, state.contraction)));
         let slid = Slid { prescribed, state: state.tangential, stiffness, normal_stiffness, rounds };
         Ok((Solved { status, ..state.normal }, tangent, slid))
+    }
+
+    /// The stiffness of the pressures at a fixed contact area, where it is asked for.
+    fn coupled_tangent(
+        &mut self,
+        sliding: &mut SurfaceFriction,
+        step: CoupledStep<'_>,
+        limits: &mut CoupledLimits,
+        state: &mut CoupledState,
+        stop: Stop<'_>,
+    ) -> Result<Option<Tangent>> {
+        if !self.outputs.needs_fixed_area() || self.is_complete(&state.normal) {
+            return Ok(None);
+        }
+        let tuning = *self.problem.operators.tuning();
+        let mut found = self.tangent(&state.normal, (None, None), None, stop);
+        // As in `settle`, as long as undecided cells could change it by more than the tolerance.
+        for _ in 0..tuning.tightenings {
+            let (error, before_error) = (self.tangent_error(&found), state.normal.residuals.worst());
+            if error <= self.options.tolerance {
+                break;
+            }
+            limits.normal.tolerance =
+                tuning.tightened(self.options.tolerance / error) * limits.normal.tolerance.min(before_error);
+            if !self.tighten(sliding, step, *limits, state, stop)? {
+                break;
+            }
+            state.normal.steps += found.steps();
+            found = self.tangent(&state.normal, (None, None), None, stop);
+        }
+        Ok(Some(found))
+    }
+
+    /// The tangential stiffnesses, for which the pair may have to be solved further.
+    fn coupled_stiffness(
+        &mut self,
+        sliding: &mut SurfaceFriction,
+        step: CoupledStep<'_>,
+        limits: &mut CoupledLimits,
+        state: &mut CoupledState,
+        stop: Stop<'_>,
+    ) -> Result<[Option<TangentialStiffness>; 2]> {
+        let mut stiffness = self.tangential_stiffness(&mut sliding.friction, &state.tangential, stop);
+        for _ in 0..TIGHTENINGS {
+            let error = branch_error(&stiffness);
+            if error <= self.options.tolerance {
+                break;
+            }
+            limits.tangential.tolerance = limits.tangential.tolerance.min(state.tangential.duality_gap)
+                * further(self.options.tolerance / error);
+            if !self.tighten(sliding, step, *limits, state, stop)? {
+                break;
+            }
+            stiffness = self.tangential_stiffness(&mut sliding.friction, &state.tangential, stop);
+        }
+        Ok(stiffness)
     }
 
     fn coupled_limits(&self) -> CoupledLimits {

@@ -76,13 +76,10 @@ struct LinearisedAdhesion<'a> {
     constant: f64,
     /// The correction on the contact for the displacement that the open cells cause there.
     near: Option<Near>,
-    control: AdhesiveControl,
-    /// The largest relative error of the stiffness; `None` where only the stability is wanted.
-    tolerance: Option<f64>,
+    request: ResponseRequest<'a>,
     /// The smallest Ritz value so far; `None` before the first correction.
     stability: Option<f64>,
     steps: usize,
-    stop: Stop<'a>,
 }
 
 /// The result of conjugate gradients on the open cells.
@@ -91,6 +88,40 @@ struct Reduced {
     displacement: Vec<f64>,
     /// Smallest Ritz value of `1 - K G^`, at a fixed force of what stands for it.
     smallest: f64,
+}
+
+impl<'a> LinearisedAdhesion<'a> {
+    fn new(
+        problem: &'a mut Problem,
+        attraction: &Attraction,
+        state: &Equilibrium,
+        contact: CellSet,
+        request: ResponseRequest<'a>,
+    ) -> Self {
+        let unit = attraction.law.peak / attraction.law.range;
+        let mut slopes = attraction.slopes(&state.cells, &state.gap);
+        slopes.iter_mut().zip(&state.pressure).filter(|(_, p)| **p > 0.0).for_each(|(s, _)| *s = 0.0);
+        let open = state.cells.filter(&slopes, |s| s > FLAT * unit);
+        let gap = open.carry(&state.cells, &state.gap);
+        let both = contact.union(&open);
+        let is_open = both.carry(&open, &vec![1.0; open.len()]);
+        let on = (problem.grid(), problem.operators.table().boundary());
+        let holds_plane = matches!(request.control, AdhesiveControl::Plane(_));
+        Self {
+            slopes: open.carry(&state.cells, &slopes),
+            coupling: attraction.coupling(&open, &gap, &vec![unit.sqrt(); open.len()]),
+            near: Near::of(attraction, on, &both, &is_open),
+            constant: if holds_plane { problem.operators.table().shift() } else { 0.0 },
+            problem,
+            contact,
+            open,
+            both,
+            unit,
+            request,
+            stability: None,
+            steps: 0,
+        }
+    }
 }
 
 impl LinearisedAdhesion<'_> {
@@ -104,7 +135,7 @@ impl LinearisedAdhesion<'_> {
         workspace.take(operators, self.contact.clone(), recipe);
         let criteria = StoppingCriteria { reduction, energy, floor: 0.0, steps: INNER_STEPS };
         let fixed = if self.constant > 0.0 { Fixed::MeanPlane(self.constant) } else { Fixed::Approach };
-        let outcome = workspace.solve(operators, r, fixed, criteria, self.stop);
+        let outcome = workspace.solve(operators, r, fixed, criteria, self.request.stop);
         self.steps += outcome.steps;
         outcome.energy
     }
@@ -189,7 +220,7 @@ impl LinearisedAdhesion<'_> {
         let mut last: (f64, f64) = (0.0, 0.0);
         let (mut before, mut settled) = (f64::INFINITY, 0);
         for _ in 0..STEPS {
-            if rr.is_nan() || rr <= 0.0 || self.stop.stops() {
+            if rr.is_nan() || rr <= 0.0 || self.request.stop.stops() {
                 break;
             }
             let mut mt = self.answer(&ut);
@@ -229,16 +260,25 @@ impl LinearisedAdhesion<'_> {
     }
 }
 
-/// The response of a state; `tolerance` is that of the stiffness, relative, `None` where it is not wanted.
+/// What is asked of a response.
+#[derive(Clone, Copy)]
+pub struct ResponseRequest<'a> {
+    /// What the load prescribes.
+    pub control: AdhesiveControl,
+    /// The largest relative error of the stiffness; `None` where only the stability is wanted.
+    pub tolerance: Option<f64>,
+    /// When to stop.
+    pub stop: Stop<'a>,
+}
+
+/// The response of a state.
 ///
 /// Cost: some ten steps, each one solve on the contact and two applications of G.
 pub fn respond(
     problem: &mut Problem,
     attraction: &Attraction,
-    control: AdhesiveControl,
     state: &Equilibrium,
-    tolerance: Option<f64>,
-    stop: Stop<'_>,
+    request: ResponseRequest<'_>,
 ) -> Response {
     let law = attraction.law;
     // Cells that flow do not follow.
@@ -248,41 +288,13 @@ pub fn respond(
     let shift = problem.operators.table().shift();
     let is_full = shift > 0.0 && contact.len() == problem.grid().count();
     // A stopped search has no stability: nothing that is unstable was found.
-    if is_full || stop.stops() {
+    if is_full || request.stop.stops() {
         return Response { stability: 1.0, ..Response::default() };
     }
-    let constant = if matches!(control, AdhesiveControl::Plane(_)) { shift } else { 0.0 };
-    let least = FLAT * law.peak / law.range;
-    let mut slopes = attraction.slopes(&state.cells, &state.gap);
-    slopes.iter_mut().zip(&state.pressure).filter(|(_, p)| **p > 0.0).for_each(|(s, _)| *s = 0.0);
-    let open = state.cells.filter(&slopes, |s| s > least);
-    let slopes = open.carry(&state.cells, &slopes);
-    let unit = law.peak / law.range;
-    let coupling =
-        attraction.coupling(&open, &open.carry(&state.cells, &state.gap), &vec![unit.sqrt(); open.len()]);
-    let both = contact.union(&open);
-    let is_open = both.carry(&open, &vec![1.0; open.len()]);
-    let on = (problem.grid(), problem.operators.table().boundary());
-    let near = Near::of(attraction, on, &both, &is_open);
-    let mut linearised = LinearisedAdhesion {
-        problem,
-        contact,
-        open,
-        both,
-        slopes,
-        coupling,
-        unit,
-        constant,
-        near,
-        control,
-        tolerance,
-        stability: None,
-        steps: 0,
-        stop,
-    };
+    let mut linearised = LinearisedAdhesion::new(problem, attraction, state, contact, request);
     let stiffness = linearised.stiffness();
     let (stability, steps) = (linearised.stability.unwrap_or(1.0), linearised.steps);
-    let stiffness = match control {
+    let stiffness = match request.control {
         AdhesiveControl::Force(_) => stiffness.map(|k| of_zero_mean(k, shift)),
         AdhesiveControl::Plane(_) => stiffness,
     };
@@ -327,8 +339,8 @@ impl LinearisedAdhesion<'_> {
             return Some(NormalStiffness::nothing());
         }
         let tuning = *self.problem.operators.tuning();
-        let stop = self.stop;
-        let found = refine(self, None, self.tolerance.unwrap_or(1.0), &tuning, stop);
+        let stop = self.request.stop;
+        let found = refine(self, None, self.request.tolerance.unwrap_or(1.0), &tuning, stop);
         // No later solve begins with the pressures, which are as large as the state.
         let found = NormalStiffness { change: [Vec::new()], ..found };
         found.solve_error.is_finite().then_some(found)
@@ -381,15 +393,15 @@ impl Conditions<1, 1> for LinearisedAdhesion<'_> {
         }
         // The open cells.
         let first = self.stability.is_none();
-        let held = match self.control {
+        let held = match self.request.control {
             AdhesiveControl::Force(_) if first => Some(sum(&on_contact)).filter(|held| *held > 0.0),
             _ => None,
         };
         let scale = sum(&on_contact).abs().max(left);
-        let found = self.reduce(&b, self.tolerance.map(|t| 1e-2 * t * scale), held);
+        let found = self.reduce(&b, self.request.tolerance.map(|t| 1e-2 * t * scale), held);
         // Ritz values lie above the eigenvalue.
         self.stability = Some(self.stability.map_or(found.smallest, |known| known.min(found.smallest)));
-        if self.tolerance.is_none() || (first && found.smallest <= 0.0) || self.stop.stops() {
+        if self.request.tolerance.is_none() || (first && found.smallest <= 0.0) || self.request.stop.stops() {
             return None;
         }
         let mut opened = b;
