@@ -603,6 +603,9 @@ def test_which_effects_go_together_is_a_table():
     of_keys = {row["keys"]: row for row in rows if row["effects"][0] != row["effects"][1]}
     reasons = {row["effects"]: row["reason"] for row in rows}
     assert reasons["a hardness", "adhesion of short range"] and of_keys["hardness", "adhesion"]["combined"]
+    # A coefficient needs the pressure at the edge, which a short range does not have; a shear strength does not.
+    assert reasons["adhesion of short range", "friction"]
+    assert reasons["adhesion of short range", "friction with a shear strength"] is None
     body = fc.Body(young=2.0, poisson=0.3)
     bodies, sphere = (body, body), fc.Surface.sphere(radius=1.0, size=0.5)
     for row in rows:
@@ -613,6 +616,15 @@ def test_which_effects_go_together_is_a_table():
     states = list(path.follow(force=0.002, tangential_force=[0.0, 0.0003]))
     assert states[1].sliding_force == pytest.approx(0.3 * 0.002)
     assert states[1].plastic_volume >= 0.0
+
+
+def test_a_shear_strength_holds_the_attached_area():
+    body = fc.Body(young=2.0, poisson=0.3)
+    effects = {"adhesion": {"work": 1e-4}, "friction": {"shear_strength": 0.01}}
+    scene = fc.Scene(fc.Surface.sphere(radius=1.0, size=0.3), bodies=(body, body), effects=effects, outputs=["area"])
+    path = fc.Bem3d(cells=33).prepare(scene)
+    for state in path.follow(force=[2e-4, 0.0, -1e-4]):
+        assert state.sliding_force == pytest.approx(0.01 * state.area)
 
 
 def test_laws_of_friction():

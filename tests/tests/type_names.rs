@@ -27,6 +27,15 @@ impl<'ast> Visit<'ast> for TypeNames {
         self.0.extend(name.map(ToString::to_string));
         visit::visit_item(self, item);
     }
+
+    fn visit_macro(&mut self, call: &'ast syn::Macro) {
+        // Arguments of a macro are no syntax tree.
+        let text = call.tokens.to_string();
+        let words: Vec<&str> = text.split_whitespace().collect();
+        let defined = words.windows(2).filter(|pair| ["struct", "enum", "trait", "union"].contains(&pair[0]));
+        let names = defined.map(|pair| pair[1].trim_matches(|c: char| !c.is_alphanumeric()));
+        self.0.extend(names.filter(|name| name.starts_with(char::is_uppercase)).map(str::to_owned));
+    }
 }
 
 fn names(text: &str) -> Vec<String> {
@@ -77,6 +86,7 @@ fn a_name_stands_for_one_type() {
 #[test]
 fn types_of_functions_and_tests_are_found() {
     let text = "struct A; enum B {} trait C { type D; } type E = A; mod tests { struct F; }
-                fn f() { struct G; } impl C for A { type D = u8; }";
-    assert_eq!(names(text), ["A", "B", "C", "E", "F", "G"]);
+                fn f() { struct G; } impl C for A { type D = u8; }
+                records! { pub struct H { a: u8 } }";
+    assert_eq!(names(text), ["A", "B", "C", "E", "F", "G", "H"]);
 }
