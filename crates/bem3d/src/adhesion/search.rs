@@ -24,8 +24,6 @@ const UPDATES: usize = 20;
 /// How far above the reach cells are still included, in ranges, so that small changes of the load keep the
 /// set.
 const AHEAD: f64 = 0.5;
-/// A contact whose force changes by more than this factor is solved from coarse grids.
-const FAR: f64 = 2.0;
 /// Tolerance of the elastic contact that a first load begins with.
 const FIRST: f64 = 1e-2;
 /// Where the pressure has an upper bound, the contact under an attraction is solved to this share of what is left of
@@ -95,10 +93,6 @@ impl Search<'_> {
         let tolerance = self.limits.tolerance;
         let (mut progress, mut accuracy) = (UpdateProgress::default(), BETWEEN);
         self.evaluate(&mut state);
-        if self.is_far(&state) && !stop.stops() {
-            self.contact_afresh(&mut state, stop);
-            self.evaluate(&mut state);
-        }
         for _ in 0..self.limits.outer_iterations * UPDATES {
             let worst = state.residuals.worst().max(state.mismatch).max(self.load_error(&state));
             stop.residual(worst, tolerance);
@@ -171,28 +165,15 @@ impl Search<'_> {
         Updated::Taken
     }
 
-    /// Whether the load of a state is far from the requested one; its contact is then solved from coarse
-    /// grids.
-    fn is_far(&self, state: &Equilibrium) -> bool {
-        let AdhesiveControl::Force(asked) = self.control else { return false };
-        let (held, wanted) = (sum(&state.pressure), asked + sum(&state.attraction));
-        held > 0.0 && wanted > 0.0 && !(1.0 / FAR..=FAR).contains(&(wanted / held))
-    }
-
     /// Where a load begins that follows a smaller one on the branch of approach: with the attraction of that
     /// state, which lies below the one to come. Under a prescribed force its contact is brought to the force by
     /// the updates; under an approach it is solved anew, as the step of the plane is no pressure.
     pub fn continued(&mut self, last: &Equilibrium, stop: Stop<'_>) -> Equilibrium {
         let mut state = last.again();
         if let AdhesiveControl::Plane(_) = self.control {
-            self.contact_afresh(&mut state, stop);
+            self.contact_under(&mut state, None, FIRST, stop);
         }
         state
-    }
-
-    /// The contact under the present attraction, by nested iteration.
-    fn contact_afresh(&mut self, state: &mut Equilibrium, stop: Stop<'_>) {
-        self.contact_under(state, None, FIRST, stop);
     }
 
     /// The contact under the present attraction: the problem of the gaps `z - G s` without attraction, from a guess

@@ -33,14 +33,10 @@ const BALANCE: f64 = 0.3;
 const SETTLED_FIRST: f64 = 0.1;
 /// Bottlenecks are looked for when no gap changes by more than this share of the range in an update.
 const SLOW: f64 = 0.5;
-/// At a prescribed mean gap more attraction in one place opens gaps in another, and cells may alternate for
-/// ever; from this many updates on only a share of the change of the attraction is taken ...
-const PATIENT: usize = 100;
-/// ... which is this.
-const DAMPED: f64 = 0.3;
-/// Reduction of the residual in a first Newton step, which cells that change sides limit ...
+/// A Newton step reduces the residual of its linear system by this factor, because cells that change sides limit
+/// what more would gain ...
 const FIRST_STEP: f64 = 0.03;
-/// ... and the least of a later one: that of single precision.
+/// ... and after steps that were refused or of no use at most by this one, that of single precision.
 const LAST_STEP: f64 = 2e-4;
 /// A Newton step aims at this share of the tolerance.
 const AIM: f64 = 0.1;
@@ -58,8 +54,8 @@ pub struct UpdateProgress {
     /// Plain updates before the next Newton step, and how many after one that is refused.
     rest: usize,
     pause: usize,
-    /// The reduction of the linear system of the last Newton step, at most that of the next one while steps
-    /// are refused or of no use.
+    /// The reduction of the linear system of the next Newton step, which is smaller while steps are refused or
+    /// of no use.
     reduction: f64,
     /// The mismatch before the last Newton step, where that step was the last update of the attraction.
     before: Option<f64>,
@@ -77,12 +73,7 @@ impl UpdateProgress {
         let before = self.before.take();
         match before {
             Some(before) if mismatch > USEFUL * before => self.refuse(),
-            Some(before) => {
-                // What the last step left, squared: the next one need not be solved better (Eisenstat and
-                // Walker, SIAM J. Sci. Comput. 17, 16 (1996)).
-                self.reduction = (mismatch / before).powi(2).min(FIRST_STEP);
-                self.pause = 0;
-            }
+            Some(_) => (self.reduction, self.pause) = (FIRST_STEP, 0),
             None => {}
         }
         if self.rest > 0 {
@@ -190,17 +181,12 @@ impl Updates<'_> {
         self.take(state, next.pressure, next.attraction)
     }
 
-    /// The attraction of the present gaps: a share of its change at a prescribed mean gap after many updates,
-    /// none where the contact is not yet settled.
+    /// The attraction of the present gaps, or that of the state where the contact is not yet settled.
     fn wanted(&self, state: &Equilibrium) -> Wanted {
         let law = self.attraction.law;
         let plain = self.plain || law.shape == LawShape::Uniform;
         let fixed = self.control.fixed(self.problem.operators.table().shift());
         let mut attraction = state.lawful.clone();
-        let damped = matches!(fixed, Fixed::MeanPlane(_)) && state.updates > PATIENT;
-        if damped {
-            update(&mut attraction, &state.attraction, |next, now| *next = now + DAMPED * (*next - now));
-        }
         let change = largest_difference(&attraction, &state.attraction) / law.peak;
         let settled =
             if plain { SETTLED } else { (BALANCE * change).max(0.5 * self.tolerance).min(SETTLED_FIRST) };
@@ -209,7 +195,7 @@ impl Updates<'_> {
         if waits {
             attraction.clone_from(&state.attraction);
         }
-        let follows = self.attraction.inverse().is_some() && !plain && !waits && !damped;
+        let follows = self.attraction.inverse().is_some() && !plain && !waits;
         Wanted { attraction, change, waits, follows, fixed, plain }
     }
 
