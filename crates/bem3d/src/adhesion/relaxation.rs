@@ -23,6 +23,9 @@ use crate::kernel::Inverse;
 use crate::real::largest_difference;
 use contact_model::{Boundary, Stop};
 
+// Half and twice the value of each constant below change the work by less than 3 % (11 paths of short range with
+// 65 cells a side, at a tolerance of 1e-5).
+
 /// Cells are moved that are out of balance by more than this, over the peak, ...
 const BALANCED: f64 = 0.02;
 /// ... or by more than this share of the largest change of an attraction, where that is less.

@@ -19,6 +19,10 @@ use crate::real::{each, largest_difference, smallest, sum};
 use contact_model::{Status, Stop};
 use std::sync::Arc;
 
+// Half and twice the value of `UPDATES`, `AHEAD` and `FIRST` change the work by less than 1 % (34 paths with 65
+// cells a side, at a tolerance of 1e-5). `BETWEEN` and `MOST_ACCURATE` act under a hardness only, where they
+// were not varied.
+
 /// Updates for each outer iteration allowed: the plain iteration contracts by the spectral radius only.
 const UPDATES: usize = 20;
 /// How far above the reach cells are still included, in ranges, so that small changes of the load keep the

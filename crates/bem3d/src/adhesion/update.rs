@@ -13,6 +13,9 @@ use crate::linear::{Fixed, StoppingCriteria};
 use crate::real::{each, largest, largest_difference, sum, update};
 use contact_model::Stop;
 
+// Half and twice the value of each constant below change the work by less than 3 % (34 paths of rough maps and
+// of spheres with 65 cells a side, at a tolerance of 1e-5). Half of `BALANCE` takes 3.3 % more. The work with Dugdale's law alone changes by up to 6 % with `PLAIN_REDUCTION` and by up to 5 % with `SETTLED`.
+
 /// An update reduces the residual gaps on the contact by this factor. Less would lose part of the effect of
 /// the changed attraction, and more would be lost at the next change of the attraction.
 const REDUCTION: f64 = 0.05;
