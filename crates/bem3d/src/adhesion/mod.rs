@@ -59,8 +59,8 @@
 //!   force that changes by more than a factor of two no longer begins with a contact from coarse grids. The
 //!   damping was taken in none of these paths; without it 32 earlier ones (352 mean gaps) reached the same
 //!   forces in 17 % fewer applications. None of the three changes the work of all paths by more than 5 %, and
-//!   without them the folds take 0.63 times as many applications. One
-//!   path (Dugdale, forces) takes 1.26 times as many applications without the contact anew.
+//!   without them the folds take 0.63 times as many applications. One path (Dugdale, forces) takes 1.26 times
+//!   as many without the contact anew.
 //!
 //! # When it looks for a stop
 //!
