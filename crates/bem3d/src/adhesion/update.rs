@@ -36,6 +36,11 @@ const BALANCE: f64 = 0.3;
 const SETTLED_FIRST: f64 = 0.1;
 /// Bottlenecks are looked for when no gap changes by more than this share of the range in an update.
 const SLOW: f64 = 0.5;
+/// At a prescribed mean gap more attraction in one place opens gaps in another, and cells may alternate for
+/// ever; from this many updates on only a share of the change of the attraction is taken ...
+const PATIENT: usize = 100;
+/// ... which is this.
+const DAMPED: f64 = 0.3;
 /// A Newton step reduces the residual of its linear system by this factor, because cells that change sides limit
 /// what more would gain ...
 const FIRST_STEP: f64 = 0.03;
@@ -184,12 +189,17 @@ impl Updates<'_> {
         self.take(state, next.pressure, next.attraction)
     }
 
-    /// The attraction of the present gaps, or that of the state where the contact is not yet settled.
+    /// The attraction of the present gaps: a share of its change at a prescribed mean gap after many updates,
+    /// none where the contact is not yet settled.
     fn wanted(&self, state: &Equilibrium) -> Wanted {
         let law = self.attraction.law;
         let plain = self.plain || law.shape == LawShape::Uniform;
         let fixed = self.control.fixed(self.problem.operators.table().shift());
         let mut attraction = state.lawful.clone();
+        let damped = matches!(fixed, Fixed::MeanPlane(_)) && state.updates > PATIENT;
+        if damped {
+            update(&mut attraction, &state.attraction, |next, now| *next = now + DAMPED * (*next - now));
+        }
         let change = largest_difference(&attraction, &state.attraction) / law.peak;
         let settled =
             if plain { SETTLED } else { (BALANCE * change).max(0.5 * self.tolerance).min(SETTLED_FIRST) };
@@ -198,7 +208,7 @@ impl Updates<'_> {
         if waits {
             attraction.clone_from(&state.attraction);
         }
-        let follows = self.attraction.inverse().is_some() && !plain && !waits;
+        let follows = self.attraction.inverse().is_some() && !plain && !waits && !damped;
         Wanted { attraction, change, waits, follows, fixed, plain }
     }
 
