@@ -154,8 +154,9 @@ impl Search<'_> {
         let length = self.limits.height.unwrap_or_else(|| state.d.abs().max(range));
         let wanted = worst.min(SETTLED).max(self.limits.tolerance);
         // A gap that is wrong by a share of the range changes the attraction by as much. The tolerance of a contact
-        // allows larger gaps where the pressure is small.
-        let misses = left > BETWEEN * worst * range;
+        // allows larger gaps where the pressure is small. Gaps that keep the attraction from being updated are always
+        // too large: otherwise neither they nor the attraction would change any more.
+        let misses = left > (BETWEEN * worst).min(SETTLED) * range;
         *accuracy = if misses { (BETWEEN * *accuracy).max(MOST_ACCURATE) } else { *accuracy };
         let tolerance = *accuracy * wanted * (range / length).min(1.0);
         let contact = state.contact();
