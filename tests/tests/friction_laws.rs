@@ -41,6 +41,16 @@ impl Draw {
     }
 }
 
+/// A random map of a few cells with heights up to this one, whether it is periodic, and the place of Poisson's ratio.
+fn small_map(draw: &mut Draw, highest: f64) -> (HeightMap, bool, usize) {
+    let (periodic, poisson) = (draw.index(2) == 1, draw.index(POISSONS.len()));
+    let columns = 3 + draw.index(3);
+    let rows = if periodic { columns } else { 2 + draw.index(4) };
+    let heights: Vec<f64> = (0..columns * rows).map(|_| highest * draw.next()).collect();
+    let map = HeightMap::new([columns, rows], [1.0, rows as f64 / columns as f64], heights).unwrap();
+    (map, periodic, poisson)
+}
+
 /// Columns, rows, whether it is periodic, and the place of Poisson's ratio.
 type GridKey = (usize, usize, bool, usize);
 /// The normal kernel and its mean where it is periodic, and the tangential kernel.
@@ -104,13 +114,7 @@ fn any_law(draw: &mut Draw, pressure: f64) -> FrictionLaw {
 /// Follows one random path in both ways and notes the deviations.
 fn follow(seed: u64, flows: bool, kernels: &mut Kernels, worst: &mut WorstDeviation) {
     let mut draw = Draw::new(seed);
-    let periodic = draw.index(2) == 1;
-    let poisson = draw.index(POISSONS.len());
-    let columns = 3 + draw.index(3);
-    let rows = if periodic { columns } else { 2 + draw.index(4) };
-    let heights: Vec<f64> = (0..columns * rows).map(|_| draw.next()).collect();
-    let size = [1.0, rows as f64 / columns as f64];
-    let map = HeightMap::new([columns, rows], size, heights).unwrap();
+    let (map, periodic, poisson) = small_map(&mut draw, 1.0);
     let area = map.dx() * map.dy();
     let force = 10_f64.powf(draw.between(-1.5, 0.3));
     let (sum, shift, shear) = kernels.of(&map, periodic, poisson);
@@ -270,6 +274,23 @@ fn paths_under_any_law_are_those_of_the_dense_reference() {
     assert!(worst.steps > 1200 && worst.stick > 1000 && worst.slip > 1000, "{worst:?}");
 }
 
+/// The largest deviation of a traction, over the largest limit.
+fn traction_error(state: &ContactState, exact: &DensePath, area: f64) -> f64 {
+    let [x, y] = state.fields.as_ref().unwrap().traction.as_ref().unwrap();
+    let found = x.values().iter().chain(y.values()).map(|q| q * area);
+    let off = found.zip(&exact.sheared).fold(0.0, |off: f64, (a, b)| off.max((a - b).abs()));
+    let largest = exact.limits().iter().fold(0.0, |a: f64, b| a.max(*b));
+    if off > 0.0 { off / largest } else { 0.0 }
+}
+
+/// Numbers of cells of the reference that stick and slip.
+fn sticking_and_slipping(exact: &DensePath) -> [usize; 2] {
+    let (limits, n) = (exact.limits(), exact.pressed.len());
+    let held = |i: &usize| exact.sheared[*i].hypot(exact.sheared[n + i]) < (1.0 - 1e-9) * limits[*i];
+    let (stick, slip): (Vec<usize>, Vec<usize>) = (0..n).filter(|&i| limits[i] > 0.0).partition(held);
+    [stick.len(), slip.len()]
+}
+
 /// Friction under adhesion of finite range: the reference has the contact pressures of the solver, which other tests
 /// compare, and solves for the tractions.
 #[test]
@@ -278,12 +299,8 @@ fn friction_with_adhesion_is_that_of_the_dense_reference() {
     let (mut steps, mut pulled, mut stick, mut slip) = (0, 0, 0, 0);
     for seed in 2001..=2400 {
         let mut draw = Draw::new(seed);
-        let (periodic, poisson) = (draw.index(2) == 1, draw.index(POISSONS.len()));
-        let columns = 3 + draw.index(3);
-        let rows = if periodic { columns } else { 2 + draw.index(4) };
-        let heights: Vec<f64> = (0..columns * rows).map(|_| 0.1 * draw.next()).collect();
-        let map = HeightMap::new([columns, rows], [1.0, rows as f64 / columns as f64], heights).unwrap();
-        let (area, n) = (map.dx() * map.dy(), columns * rows);
+        let (map, periodic, poisson) = small_map(&mut draw, 0.1);
+        let (area, n) = (map.dx() * map.dy(), map.heights().len());
         let range = draw.between(0.02, 0.05);
         // At most what the cells resolve.
         let work = draw.between(0.1, 1.0) * 0.12 * range * range / map.dx();
@@ -320,18 +337,12 @@ fn friction_with_adhesion_is_that_of_the_dense_reference() {
             let closed = |i: usize| gaps[i] < 1e-9 && net[i] + peak > 1e-7 * peak;
             exact.pressed = (0..n).map(|i| if closed(i) { (net[i] + peak) * area } else { 0.0 }).collect();
             exact.slide(Prescribed::Displacement(delta));
-            let [x, y] = state.fields.as_ref().unwrap().traction.as_ref().unwrap();
-            let found: Vec<f64> = x.values().iter().chain(y.values()).map(|q| q * area).collect();
-            let limits = exact.limits();
-            let largest = limits.iter().fold(0.0, |a: f64, b| a.max(*b));
-            let off = found.iter().zip(&exact.sheared).fold(0.0, |off: f64, (a, b)| off.max((a - b).abs()));
-            assert!(off <= 1e-4 * largest, "{seed} {leg}: {off} {largest}");
-            worst = worst.max(off / largest);
+            let off = traction_error(&state, &exact, area);
+            assert!(off <= 1e-4, "{seed} {leg}: {off}");
+            worst = worst.max(off);
             (steps, pulled) = (steps + 1, pulled + usize::from(at < 0.0));
-            for i in (0..n).filter(|&i| limits[i] > 0.0) {
-                let sticks = exact.sheared[i].hypot(exact.sheared[n + i]) < (1.0 - 1e-9) * limits[i];
-                *(if sticks { &mut stick } else { &mut slip }) += 1;
-            }
+            let [sticking, slipping] = sticking_and_slipping(&exact);
+            (stick, slip) = (stick + sticking, slip + slipping);
         }
     }
     println!("{steps} steps, {pulled} pulled, {stick} stick, {slip} slip, worst {worst:.1e}");
@@ -355,12 +366,8 @@ fn a_shear_strength_on_attached_shares_is_that_of_the_dense_reference() {
     let (mut steps, mut pulled, mut partly, mut stick, mut slip) = (0, 0, 0, 0, 0);
     for seed in 3001..=3400 {
         let mut draw = Draw::new(seed);
-        let (periodic, poisson) = (draw.index(2) == 1, draw.index(POISSONS.len()));
-        let columns = 3 + draw.index(3);
-        let rows = if periodic { columns } else { 2 + draw.index(4) };
-        let heights: Vec<f64> = (0..columns * rows).map(|_| 0.1 * draw.next()).collect();
-        let map = HeightMap::new([columns, rows], [1.0, rows as f64 / columns as f64], heights).unwrap();
-        let (area, n, side) = (map.dx() * map.dy(), columns * rows, map.dx().max(map.dy()));
+        let (map, periodic, poisson) = small_map(&mut draw, 0.1);
+        let (area, n, side) = (map.dx() * map.dy(), map.heights().len(), map.dx().max(map.dy()));
         let work = 10_f64.powf(draw.between(-5.0, -3.0));
         let (strength, force) =
             (10_f64.powf(draw.between(-2.5, -0.5)), 10_f64.powf(draw.between(-2.5, -1.0)));
@@ -392,13 +399,9 @@ fn a_shear_strength_on_attached_shares_is_that_of_the_dense_reference() {
             exact.pressed = gaps.iter().map(|gap| attached(*gap, work, side) * area).collect();
             partly += exact.pressed.iter().filter(|share| **share > 0.0 && **share < area).count();
             exact.slide(Prescribed::Displacement(delta));
-            let [x, y] = state.fields.as_ref().unwrap().traction.as_ref().unwrap();
-            let found: Vec<f64> = x.values().iter().chain(y.values()).map(|q| q * area).collect();
-            let limits = exact.limits();
-            let largest = limits.iter().fold(0.0, |a: f64, b| a.max(*b));
-            let off = found.iter().zip(&exact.sheared).fold(0.0, |off: f64, (a, b)| off.max((a - b).abs()));
-            assert!(off <= 1e-4 * largest, "{seed} {leg}: {off} {largest}");
-            worst = worst.max(off / largest);
+            let off = traction_error(&state, &exact, area);
+            assert!(off <= 1e-4, "{seed} {leg}: {off}");
+            worst = worst.max(off);
             // What slides is the strength times the contact area, of which a part sticks.
             let tangential = state.tangential.unwrap();
             let slides = tangential.sliding_force.unwrap();
@@ -406,10 +409,8 @@ fn a_shear_strength_on_attached_shares_is_that_of_the_dense_reference() {
             let parts = tangential.stick_area.unwrap() + tangential.slip_area.unwrap();
             assert!((parts - state.area.unwrap()).abs() <= 1e-9 * parts, "{seed} {leg}");
             (steps, pulled) = (steps + 1, pulled + usize::from(at < 0.0));
-            for i in (0..n).filter(|&i| limits[i] > 0.0) {
-                let sticks = exact.sheared[i].hypot(exact.sheared[n + i]) < (1.0 - 1e-9) * limits[i];
-                *(if sticks { &mut stick } else { &mut slip }) += 1;
-            }
+            let [sticking, slipping] = sticking_and_slipping(&exact);
+            (stick, slip) = (stick + sticking, slip + slipping);
         }
     }
     println!(

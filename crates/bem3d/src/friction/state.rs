@@ -37,7 +37,8 @@ pub struct SlipMemory {
     pub slip: Vec<f64>,
     /// Slip in the last increment in which anything moved: it tells the cells that slipped from those that stuck.
     pub moved: Vec<f64>,
-    /// Pressure on the contact, which causes tangential displacements where both problems are coupled.
+    /// Pressure on the contact, which causes tangential displacements where both problems are coupled. Where
+    /// friction acts on the attached share of each cell, these shares.
     pub pressure: Vec<f64>,
 }
 

@@ -13,7 +13,7 @@ use contact_model::{
 };
 use std::f64::consts::PI;
 
-/// The parts of a state, in the units of the surface; forces are over pi.
+/// The part of a state that the normal load determines, in the units of the surface; forces are over pi.
 #[derive(Debug)]
 pub(super) struct NormalSolution<'a> {
     /// How the solve ended.

@@ -260,10 +260,10 @@ impl LinearisedAdhesion<'_> {
     }
 }
 
-/// What is asked of a response.
+/// Which response of a state is requested.
 #[derive(Clone, Copy)]
 pub struct ResponseRequest<'a> {
-    /// What the load prescribes.
+    /// The force or the plane that is prescribed.
     pub control: AdhesiveControl,
     /// The largest relative error of the stiffness; `None` where only the stability is wanted.
     pub tolerance: Option<f64>,

@@ -106,7 +106,7 @@ pub trait Conditions<const N: usize, const E: usize> {
     fn set_error(&self, x: &[Vec<f64>; N]) -> f64;
 }
 
-/// What a correction is for.
+/// The accuracy that a correction aims at.
 #[derive(Debug, Clone, Copy)]
 pub struct Goal<const N: usize> {
     /// The stiffness in each direction before the correction.
@@ -119,7 +119,7 @@ pub struct Goal<const N: usize> {
     pub only_energy: bool,
 }
 
-/// What a correction found.
+/// The result of a correction, beside the solution itself.
 #[derive(Debug, Clone, Copy)]
 pub struct StiffnessCorrection<const E: usize> {
     /// Upper estimate of the energy `R' A^-1 R` of the residual before it, where A is not definite of its

@@ -149,12 +149,12 @@ impl Conditions<1, 1> for FixedSet<'_> {
     }
 }
 
-/// What is asked of a stiffness.
+/// The accuracy of a requested stiffness, and where its solve begins.
 #[derive(Debug, Default)]
 pub struct StiffnessRequest {
-    /// Largest relative error of the solve, twice.
+    /// The solve ends when its relative error is estimated below half of this.
     pub tolerance: f64,
-    /// That of a similar set to begin with.
+    /// The q of a similar set to begin with.
     pub q: Option<Vec<f64>>,
     /// The value that is expected; `None`: it is unknown.
     pub expected: Option<f64>,
