@@ -103,13 +103,14 @@
 //!    positive. The cells that penetrate are added.
 //! 4. Steps 2 and 3 repeat until the residuals meet the tolerance.
 //!
-//! Why is it safe to remove the cells in tension? A true contact cell is never removed where G, restricted to
-//! the set, is an inverse M-matrix. It was one on every set tried, of the half-space and of the half-plane. The
-//! periodic kernel of zero mean needs a constant for this, which changes nothing under a given force. The
-//! constant that it has makes every entry positive; only nearly full sets would need up to twice as
-//! much. There, and by rounding, an early stop of the linear solve or a hardness, a cell may be removed that
-//! belongs to the contact. Step 3 then returns it. If the residuals have not fallen for many iterations, a fall-back takes over that lowers the energy
-//! with every step (`law::descent`).
+//! Why is it safe to remove the cells in tension? A true contact cell is never removed where G,
+//! restricted to the set, is an inverse M-matrix. It was one on every set tried, of the half-space and of
+//! the half-plane. The periodic kernel of zero mean needs a constant for this, which changes nothing
+//! under a given force. The constant that it has makes every entry positive; only nearly full sets would
+//! need up to twice as much. There, and by rounding, an early stop of the linear solve or a hardness, a
+//! cell may be removed that belongs to the contact. Step 3 then returns it. If the residuals have not
+//! fallen for many iterations, a fall-back takes over that lowers the energy with every step
+//! (`law::descent`).
 //!
 //! Coarse grids give initial guesses. They never restrict the candidates, because the summits of a fractal
 //! vanish on them.
@@ -139,7 +140,7 @@
 //!
 //! | file | functions | what they do |
 //! |---|---|---|
-//! | `model/contact.rs` | `solve_until`, `at`, `at_target`, `settle` | tell adhesion from its absence, find the pressure and then the stiffness, return the state |
+//! | `model/contact.rs` | `solve_until`, `state_at`, `solved_at`, `at_target`, `settle` | tell adhesion from its absence, find the pressure and then the stiffness, return the state |
 //! | `active_set/solver.rs` | `solve`, `iterate`, `evaluate`, `improve` | iterate over contact sets |
 //! | `linear/pcg.rs` | `Workspace::solve`, `pcg` | solve the linear system on one set |
 //! | `operator/plans.rs` | `Plans::exact`, `Planned::apply` | apply the operator that is planned for the set |
