@@ -25,8 +25,7 @@
 //! | first states from an elastic contact | 1.01 | 1.02 | 1.01 | stays: without it some states are others |
 //! | a contact anew after a far step | 1.03 | 1.01 | 1.02 | was removed |
 //! | a contact anew for a single load (`continued`) | 1.00 | 1.00 | 1.01 | stays, see below |
-//! | `near` in `newton` | 1.05 | not used | not used | stays, see below |
-//! | `near` in both places | 1.10 | not used | not used | stays, see below |
+//! | displacement of open cells estimated from nearby contact, in two preconditioners | 1.04 to 1.13 | not used | not used | was removed |
 //! | damping after 100 updates at a mean gap | 1.00 | 1.00 | 1.00 | stays, see below |
 //!
 //! Applications alone are misleading for Newton steps with a short range: a sphere of 104 cells takes as
@@ -53,10 +52,9 @@
 //!   times as many, and 1.50 times as many where there are no shorter falling steps either.
 //! - **First states.** Without them some paths with Dugdale's law have other equilibria, and the test
 //!   `increasing_loads_continue_from_the_last_state` fails for that law.
-//! - **`continued` and `near`.** Without either of them the same test fails, because loads of a short range that
-//!   continue take at least as many applications as loads that begin anew. There are 374 against 354 without
-//!   `continued`, a tie of 367 without `near` and one of 353 without `near` in `newton`. Single loads
-//!   with Dugdale's law take up to 1.32 times as many applications without `continued`.
+//! - **`continued`.** Without it the same test fails, because loads of a short range that continue take more
+//!   applications than loads that begin anew, 374 against 354. Single loads with Dugdale's law take up to 1.32
+//!   times as many applications without it.
 //! - **Damping.** It changed nothing on these paths, and 32 earlier ones (352 mean gaps) reached the same forces
 //!   in 17 % fewer applications without it. But some mean gaps of a sine wave with an attraction of finite range
 //!   have no state without it (`every_mean_gap_of_a_periodic_contact_with_adhesion_has_a_state`).
@@ -75,7 +73,6 @@ mod attraction;
 mod bottleneck;
 mod equilibrium;
 mod law;
-mod near;
 mod neighbours;
 mod newton;
 mod pairs;
@@ -86,7 +83,6 @@ mod update;
 pub use attraction::Attraction;
 pub use equilibrium::{AdhesiveControl, Equilibrium, energy};
 pub use law::{AttractionLaw, LawShape};
-pub use near::Near;
 pub use pairs::Pairs;
 pub use search::{Ended, Search};
 

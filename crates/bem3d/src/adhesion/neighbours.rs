@@ -29,17 +29,7 @@ impl Neighbours {
     /// A ring, weights `1 - ((r - radius)/width)^2` where that is positive, in units of the sides of the
     /// grid's cells.
     pub fn ring(grid: Grid, periodic: bool, (radius, width): (f64, f64)) -> Self {
-        Self::new(grid, periodic, radius + width, |r| 1.0 - ((r - radius) / width).powi(2))
-    }
-
-    /// All cells nearer than `farthest`, with weights `1/r^3`, which is how the inverse of the kernel couples
-    /// cells.
-    pub fn around(grid: Grid, periodic: bool, farthest: f64) -> Self {
-        Self::new(grid, periodic, farthest, |r| if r > 0.0 { r.powi(-3) } else { 0.0 })
-    }
-
-    /// With a weight of the distance, where that is positive, up to the farthest.
-    fn new(grid: Grid, periodic: bool, farthest: f64, weight_at: impl Fn(f64) -> f64) -> Self {
+        let farthest = radius + width;
         let (dx, dy) = grid.cell();
         // Number of cells to one side within a distance.
         let within = |distance: f64, cell: f64| ((distance / cell).ceil() as usize).saturating_sub(1);
@@ -51,7 +41,7 @@ impl Neighbours {
             let half = within((farthest * farthest - y * y).max(0.0).sqrt(), dx);
             let weight = |i: usize| {
                 let x = dx * (i as f64 - half as f64);
-                let weight = weight_at(x.hypot(y)).max(0.0);
+                let weight = (1.0 - ((x.hypot(y) - radius) / width).powi(2)).max(0.0);
                 total += weight;
                 moment += 0.5 * weight * (x.abs() + y.abs());
                 weight
@@ -215,15 +205,15 @@ mod tests {
                 let values: Vec<f64> = (0..cells.len()).map(|i| (i as f64).sin()).collect();
                 let expected = by_pairs(&neighbours, &cells, &values);
                 let found = neighbours.mean(&cells, &values);
-                // Of each second row, and the transpose of the whole, which is symmetric.
+                // Of all rows, and of each second one.
                 let whole = neighbours.pairs(&cells, |_| true, |_, _, weight| weight);
                 let half = neighbours.pairs(&cells, |i| i % 2 == 0, |_, _, weight| weight);
-                let (mut transposed, mut rows) = (vec![0.0; values.len()], vec![0.0; values.len()]);
-                whole.transposed().add_product(2.0, &values, &mut transposed);
+                let (mut twice, mut rows) = (vec![0.0; values.len()], vec![0.0; values.len()]);
+                whole.add_product(2.0, &values, &mut twice);
                 half.add_product(1.0, &values, &mut rows);
                 for (i, expected) in expected.iter().enumerate() {
                     approx::assert_relative_eq!(found[i], *expected, epsilon = 1e-14);
-                    approx::assert_relative_eq!(transposed[i], 2.0 * expected, epsilon = 1e-6);
+                    approx::assert_relative_eq!(twice[i], 2.0 * expected, epsilon = 1e-6);
                     let row = if i % 2 == 0 { *expected } else { 0.0 };
                     approx::assert_relative_eq!(rows[i], row, epsilon = 1e-6);
                 }

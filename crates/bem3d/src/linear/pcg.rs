@@ -65,8 +65,6 @@ pub struct Workspace {
     double: Vectors<f64>,
     single: Vectors<f32>,
     extension: Extension,
-    /// The divisor of the numbers of the last system.
-    unit: f64,
 }
 
 impl Workspace {
@@ -116,7 +114,6 @@ impl Workspace {
         operators.plans.solves += 1;
         // In units of its own size: its square neither overflows nor underflows.
         let unit = largest(right);
-        self.unit = unit;
         let Some(recipe) = self.recipe.filter(|_| unit > 0.0) else { return PcgOutcome::default() };
         let square = unit * unit;
         let criteria = StoppingCriteria {
@@ -153,16 +150,6 @@ impl Workspace {
         });
         operators.plans.applications += outcome.applications;
         PcgOutcome { energy: outcome.energy * square, ..outcome }
-    }
-
-    /// The residual of the last solution on its set, in the precision of its recipe.
-    pub fn residual(&self) -> Vec<f64> {
-        let scaled = |r: f64| self.unit * r;
-        if self.recipe.is_some_and(|recipe| recipe.is_single()) {
-            self.single.r.iter().map(|&r| scaled(f64::from(r))).collect()
-        } else {
-            self.double.r.iter().map(|&r| scaled(r)).collect()
-        }
     }
 }
 

@@ -22,9 +22,9 @@
 use super::normal::{of_held_cells, of_zero_mean};
 use super::{Conditions, Goal, NormalStiffness, StiffnessCorrection, refine};
 use crate::active_set::Problem;
-use crate::adhesion::{AdhesiveControl, Attraction, Equilibrium, LawShape, Near, Pairs};
+use crate::adhesion::{AdhesiveControl, Attraction, Equilibrium, LawShape, Pairs};
 use crate::geometry::CellSet;
-use crate::linear::{Energy, Fixed, StoppingCriteria};
+use crate::linear::{Fixed, StoppingCriteria};
 use crate::real::{dot, each, largest, sum, update};
 use contact_model::Stop;
 use numerics::root::bisect;
@@ -34,9 +34,6 @@ use numerics::root::bisect;
 const FLAT: f64 = 1e-12;
 /// Solves on the contact reduce their residual by this factor; further rounds correct the response.
 const INNER: f64 = 1e-2;
-/// With pressure that takes displacement back, until the energy of their error is this share of that of the
-/// displacement: r comes out too large by as much at most, the stability too small.
-const ENERGY: f64 = 3e-4;
 /// The reduced iteration ends where its residual has fallen by this factor, whether or not the stability has
 /// settled.
 const REDUCED: f64 = 1e-9;
@@ -74,8 +71,6 @@ struct LinearisedAdhesion<'a> {
     unit: f64,
     /// The constant that is taken from the kernel: all of it where the mean plane is held.
     constant: f64,
-    /// The correction on the contact for the displacement that the open cells cause there.
-    near: Option<Near>,
     request: ResponseRequest<'a>,
     /// The smallest Ritz value so far; `None` before the first correction.
     stability: Option<f64>,
@@ -104,13 +99,10 @@ impl<'a> LinearisedAdhesion<'a> {
         let open = state.cells.filter(&slopes, |s| s > FLAT * unit);
         let gap = open.carry(&state.cells, &state.gap);
         let both = contact.union(&open);
-        let is_open = both.carry(&open, &vec![1.0; open.len()]);
-        let on = (problem.grid(), problem.operators.table().boundary());
         let holds_plane = matches!(request.control, AdhesiveControl::Plane(_));
         Self {
             slopes: open.carry(&state.cells, &slopes),
             coupling: attraction.coupling(&open, &gap, &vec![unit.sqrt(); open.len()]),
-            near: Near::of(attraction, on, &both, &is_open),
             constant: if holds_plane { problem.operators.table().shift() } else { 0.0 },
             problem,
             contact,
@@ -126,14 +118,14 @@ impl<'a> LinearisedAdhesion<'a> {
 
 impl LinearisedAdhesion<'_> {
     /// `G_CC^-1 r`, in place; returns the energy of r.
-    fn contact_solve(&mut self, r: &mut [f64], reduction: f64, energy: Option<Energy>) -> f64 {
+    fn contact_solve(&mut self, r: &mut [f64]) -> f64 {
         let Problem { operators, workspace, .. } = &mut *self.problem;
         let Some(recipe) = operators.planner().system(&self.contact, self.contact.len(), true) else {
             return 0.0;
         };
         workspace.begin_load();
         workspace.take(operators, self.contact.clone(), recipe);
-        let criteria = StoppingCriteria { reduction, energy, floor: 0.0, steps: INNER_STEPS };
+        let criteria = StoppingCriteria { reduction: INNER, energy: None, floor: 0.0, steps: INNER_STEPS };
         let fixed = if self.constant > 0.0 { Fixed::MeanPlane(self.constant) } else { Fixed::Approach };
         let outcome = workspace.solve(operators, r, fixed, criteria, self.request.stop);
         self.steps += outcome.steps;
@@ -155,37 +147,13 @@ impl LinearisedAdhesion<'_> {
 
     /// `G^ y`.
     fn apply(&mut self, y: &[f64]) -> Vec<f64> {
-        let (open, both) = (self.open.clone(), self.both.clone());
-        // Pressure on the contact beside the open cells takes most of its displacement back.
-        let mut sources = both.carry(&open, y);
-        if let Some(near) = &self.near {
-            let mut taken = vec![0.0f32; both.len()];
-            let mut pressed: Vec<f32> = sources.iter().map(|&y| y as f32).collect();
-            near.subtract_transposed(&mut pressed, &mut taken);
-            update(&mut sources, &taken, |source, &taken| *source += f64::from(taken));
-        }
-        let u = self.rough(&both, &sources, &both);
-        let mut x = self.contact.carry(&self.both, &u);
-        let mut displacement = self.open.carry(&self.both, &u);
-        let (reduction, energy) = match self.near {
-            Some(_) => (0.0, Some(Energy { share: ENERGY, base: dot(&sources, &u).max(0.0) })),
-            None => (INNER, None),
-        };
-        self.contact_solve(&mut x, reduction, energy);
-        let through = self.rough(&self.contact.clone(), &x, &open);
+        let (contact, open, both) = (self.contact.clone(), self.open.clone(), self.both.clone());
+        let u = self.rough(&open, y, &both);
+        let mut x = contact.carry(&both, &u);
+        let mut displacement = open.carry(&both, &u);
+        self.contact_solve(&mut x);
+        let through = self.rough(&contact, &x, &open);
         update(&mut displacement, &through, |u, through| *u -= through);
-        if let Some(near) = self.near.as_ref().filter(|_| !self.contact.is_empty()) {
-            // The correcting pressure does work on the residual displacement of the solve. With this term the
-            // product is symmetric and its error is of second order; without it waves close to their snap-in
-            // were classified as unstable.
-            let residual = self.problem.workspace.residual();
-            let residual = self.both.carry(&self.contact, &residual);
-            let residual: Vec<f32> = residual.iter().map(|&r| r as f32).collect();
-            let mut beside = vec![0.0f32; residual.len()];
-            near.extend(&residual, &mut beside);
-            let beside = open.carry(&self.both, &beside);
-            update(&mut displacement, &beside, |u, &beside| *u -= f64::from(beside));
-        }
         displacement
     }
 
@@ -380,7 +348,7 @@ impl Conditions<1, 1> for LinearisedAdhesion<'_> {
         let (r, opening) = r.split_at_mut(self.both.len());
         // Eliminates the contact.
         let mut on_contact = contact.carry(&self.both, r);
-        let energy = self.contact_solve(&mut on_contact, INNER, None);
+        let energy = self.contact_solve(&mut on_contact);
         let through = self.rough(&contact, &on_contact, &open);
         let mut b = open.carry(&self.both, r);
         update(&mut b, &through, |b, through| *b -= through);
@@ -412,7 +380,7 @@ impl Conditions<1, 1> for LinearisedAdhesion<'_> {
         let u = self.rough(&open, &on_open, &contact);
         let mut on_contact = contact.carry(&self.both, r);
         on_contact.iter_mut().zip(&u).for_each(|(x, u)| *x -= u);
-        self.contact_solve(&mut on_contact, INNER, None);
+        self.contact_solve(&mut on_contact);
         r.fill(0.0);
         self.both.add_carried(&contact, &on_contact, r);
         self.both.add_carried(&open, &on_open, r);

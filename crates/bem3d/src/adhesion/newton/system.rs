@@ -5,7 +5,6 @@ use crate::active_set::Problem;
 use crate::adhesion::attraction::Attraction;
 use crate::adhesion::equilibrium::Equilibrium;
 use crate::adhesion::law::LawShape;
-use crate::adhesion::near::Near;
 use crate::adhesion::pairs::Pairs;
 use crate::geometry::CellSet;
 use crate::linear::{Extension, Fixed, Preconditioner, TorusInverse, minres};
@@ -113,7 +112,6 @@ impl Linear {
         wanted: &WantedStep<'_>,
         left: &[f64],
     ) -> Option<NewtonSolution> {
-        let on = (problem.grid(), problem.operators.table().boundary());
         let (unit, operators) = (largest(left), &mut problem.operators);
         let recipe = operators.planner().system(&self.both, self.contact.len(), false)?;
         if unit.is_nan() || unit <= 0.0 {
@@ -128,10 +126,8 @@ impl Linear {
         if let (Conditioning::Torus { extended, .. }, Some(torus)) = (recipe.conditioning, &torus) {
             extension.set(&self.contact, torus.window(), if extended { decay } else { 0.0 });
         }
-        let near = torus.as_ref().and_then(|_| Near::of(attraction, on, &self.both, &self.is_open));
-        let beside = vec![0.0; self.both.len()];
         let diagonal = self.diagonal(own);
-        let mut inverse = RoughInverse { linear: self, diagonal, near, torus, extension, recorder, beside };
+        let mut inverse = RoughInverse { linear: self, diagonal, torus, extension, recorder };
         let kept = KeptForce::new(self, pairs, wanted.fixed, &mut inverse);
         let (mut applications, mut source, mut u) =
             (0, vec![0.0f32; self.both.len()], vec![0.0f32; self.both.len()]);
@@ -220,32 +216,19 @@ fn times_neighbours(pairs: Option<&Pairs>, y: &[f32]) -> Vec<f32> {
 struct RoughInverse<'a> {
     linear: &'a Linear,
     diagonal: Vec<f32>,
-    near: Option<Near>,
     torus: Option<&'a mut FftConvolution<f32>>,
     extension: Extension,
     recorder: Recorder,
-    /// Room on both sets.
-    beside: Vec<f32>,
 }
 
 impl RoughInverse<'_> {
     fn apply(&mut self, r: &[f32], z: &mut [f32]) {
-        let Self { linear, diagonal, near, torus, extension, recorder, beside } = self;
+        let Self { linear, diagonal, torus, extension, recorder } = self;
         let Linear { contact, both, is_open, .. } = linear;
         z.copy_from_slice(r);
-        if let Some(near) = near {
-            near.extend(r, beside);
-            linear.times_root(beside);
-            update(z, beside, |z, beside| *z -= beside);
-        }
         update(z, diagonal, |z, d| *z *= d);
         let Some(transform) = torus.as_deref_mut() else { return };
         update(z, is_open, |z, open| *z *= open);
-        if let Some(near) = near {
-            beside.copy_from_slice(z);
-            linear.times_root(beside);
-            near.subtract_transposed(beside, z);
-        }
         let mut on_contact = contact.carry(both, r);
         let mut found = vec![0.0; contact.len()];
         let extensions = std::array::from_mut(extension);

@@ -88,7 +88,14 @@ fn solve_on(
     workspace.take(operators, set.clone(), recipe);
     assert_eq!(workspace.set(), set);
     let outcome = workspace.solve(operators, &mut x, fixed, criteria, &never);
-    Solution { x, residual: workspace.residual(), outcome }
+    // In units of the size of the right-hand side.
+    let unit = largest(right);
+    let residual = if recipe.is_single() {
+        workspace.single.r.iter().map(|&r| unit * f64::from(r)).collect()
+    } else {
+        workspace.double.r.iter().map(|&r| unit * r).collect()
+    };
+    Solution { x, residual, outcome }
 }
 
 /// Estimated energy `r' G^-1 r`, which no step is needed for.
