@@ -177,13 +177,64 @@ fn the_stiffness_is_a_difference_quotient() {
     }
 }
 
+/// At the mean gap that a force has left, the force is the same: with cells that flow, and on the way back.
 #[test]
-fn what_is_not_solved_is_refused() {
-    let mut periodic = scene(Some(0.05), 1e-4, AdhesionLaw::Exponential, Boundary::Periodic);
-    periodic.outputs = Outputs::default();
-    let refused = MODEL.prepare(&periodic, 2).unwrap().solve(Load::mean_gap(0.01)).unwrap_err().to_string();
-    assert!(refused.contains("mean gap") && refused.contains("not solved"), "{refused}");
-    let mut short = periodic;
+fn a_mean_gap_is_that_of_its_force() {
+    for law in LAWS {
+        let mut scene = scene(Some(0.02), 5e-6, law, Boundary::Periodic);
+        scene.outputs.mean_gap = true;
+        let forces = path(&scene, &[1e-4, 1e-3, 5e-3, 2e-3].map(Load::force));
+        let gaps: Vec<Load> = forces.iter().map(|state| Load::mean_gap(state.mean_gap.unwrap())).collect();
+        let states = path(&scene, &gaps);
+        assert!(forces.last().unwrap().plastic.as_ref().unwrap().volume > 0.0);
+        for (state, asked) in states.iter().zip(&forces) {
+            let error = state.report.certificate.force_error.unwrap();
+            assert!(error < 1e-5, "{law:?} {error}");
+            assert!(
+                (state.force / asked.force - 1.0).abs() < 1e-6,
+                "{law:?} {} {}",
+                state.force,
+                asked.force
+            );
+            assert_eq!(state.mean_gap, asked.mean_gap);
+            let [here, there] = [state, asked].map(|of| of.plastic.as_ref().unwrap().volume);
+            assert!((here - there).abs() <= 1e-6 * there, "{law:?} {here} {there}");
+        }
+    }
+}
+
+/// At mean gaps too, a hardness that is never reached changes nothing.
+#[test]
+fn a_large_hardness_changes_no_state_at_a_mean_gap() {
+    let gaps = [0.04, 0.03, 0.02, 0.025, 0.05].map(Load::mean_gap);
+    let law = AdhesionLaw::Exponential;
+    let hard = path(&scene(Some(1e3), 1e-4, law, Boundary::Periodic), &gaps);
+    let elastic = path(&scene(None, 1e-4, law, Boundary::Periodic), &gaps);
+    for (a, b) in hard.iter().zip(&elastic) {
+        assert!((a.force - b.force).abs() < 1e-5 * b.force.abs().max(1e-4), "{} {}", a.force, b.force);
+        assert_eq!(a.area, b.area);
+    }
+}
+
+/// The stiffness at a mean gap is the slope of the force, where cells flow and on the way back.
+#[test]
+fn the_stiffness_at_a_mean_gap_is_a_difference_quotient() {
+    let mut scene = scene(Some(0.05), 1e-4, AdhesionLaw::Exponential, Boundary::Periodic);
+    scene.outputs.stiffness = true;
+    let step = 1e-6;
+    for (loads, sign) in [(vec![0.03, 0.022], -1.0), (vec![0.03, 0.02, 0.022], 1.0)] {
+        let last = loads.last().unwrap() + sign * step;
+        let gaps: Vec<Load> = loads.into_iter().chain([last]).map(Load::mean_gap).collect();
+        let [.., before, after] = &path(&scene, &gaps)[..] else { unreachable!() };
+        let quotient = (before.force - after.force) / (sign * step);
+        let slope = before.stiffness.unwrap();
+        assert!((slope / quotient - 1.0).abs() < 1e-3, "{sign}: {slope} {quotient}");
+    }
+}
+
+#[test]
+fn adhesion_of_short_range_is_refused() {
+    let mut short = scene(Some(0.05), 1e-4, AdhesionLaw::Exponential, Boundary::Periodic);
     short.effects.adhesion = Adhesion::ShortRange { work: 1e-4 };
     assert!(MODEL.prepare(&short, 2).err().unwrap().to_string().contains("short range"));
 }

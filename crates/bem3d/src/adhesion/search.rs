@@ -13,7 +13,7 @@ use super::attraction::Attraction;
 use super::equilibrium::{AdhesiveControl, Equilibrium};
 use super::law::LawShape;
 use super::update::{SETTLED, UpdateProgress, Updated, Updates};
-use crate::active_set::{self, Bounds, Candidates, Control, Guess, Limits, Problem, Residuals};
+use crate::active_set::{self, Bounds, Candidates, Control, Guess, Limits, Problem, Residuals, Solved};
 use crate::geometry::CellSet;
 use crate::real::{each, largest_difference, smallest, sum};
 use contact_model::{Status, Stop};
@@ -34,7 +34,7 @@ const FIRST: f64 = 1e-2;
 /// the state.
 const BETWEEN: f64 = 0.1;
 /// Smallest such share.
-const MOST_ACCURATE: f64 = 1e-4;
+const MOST_ACCURATE: f64 = 1e-7;
 
 /// Why a search ended without a state.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -143,7 +143,14 @@ impl Search<'_> {
     ) -> Updated {
         let (range, before) = (self.attraction.law.range, state.clone());
         let left = state.largest_gap_left(self.problem.bounds);
-        if left <= SETTLED * range {
+        // A gap that is wrong by a share of the range changes the attraction by as much. The tolerance of a contact
+        // allows larger gaps where the pressure is small. Gaps that keep the attraction from being updated are always
+        // too large: otherwise neither they nor the attraction would change any more.
+        let misses = left > (BETWEEN * worst).min(SETTLED) * range;
+        // As long as the contact can be solved more accurately, the attraction waits for its gaps: both could change
+        // in turn for ever.
+        let waits = left > SETTLED * range || misses && *accuracy > MOST_ACCURATE;
+        if !waits {
             state.attraction.clone_from(&state.lawful);
         }
         if let AdhesiveControl::Force(asked) = self.control
@@ -153,10 +160,6 @@ impl Search<'_> {
         }
         let length = self.limits.height.unwrap_or_else(|| state.d.abs().max(range));
         let wanted = worst.min(SETTLED).max(self.limits.tolerance);
-        // A gap that is wrong by a share of the range changes the attraction by as much. The tolerance of a contact
-        // allows larger gaps where the pressure is small. Gaps that keep the attraction from being updated are always
-        // too large: otherwise neither they nor the attraction would change any more.
-        let misses = left > (BETWEEN * worst).min(SETTLED) * range;
         *accuracy = if misses { (BETWEEN * *accuracy).max(MOST_ACCURATE) } else { *accuracy };
         let tolerance = *accuracy * wanted * (range / length).min(1.0);
         let contact = state.contact();
@@ -196,8 +199,13 @@ impl Search<'_> {
         lifted.iter_mut().zip(self.problem.candidates.z()).for_each(|(u, z)| *u = z - *u);
         // The plane of first touch is that of these gaps.
         let first = smallest(&lifted);
+        // Under an upper bound of the pressure the mean plane is held, elsewhere it is a first guess.
+        let shift = self.problem.operators.table().shift();
+        let holds_plane = shift > 0.0 && self.problem.bounds != Bounds::Unlimited;
+        let pulled = sum(&state.attraction);
         let target = match self.control {
-            AdhesiveControl::Force(asked) => Control::Force(asked + sum(&state.attraction)),
+            AdhesiveControl::Force(asked) => Control::Force(asked + pulled),
+            AdhesiveControl::Plane(plane) if holds_plane => Control::Approach(plane - first - shift * pulled),
             AdhesiveControl::Plane(plane) => Control::Approach(plane - first),
         };
         let (Control::Force(load) | Control::Approach(load)) = target;
@@ -219,13 +227,52 @@ impl Search<'_> {
             Some(guess) => Guess { d: guess.d - first, ..guess },
             None => active_set::cold_start(self.problem, target, limits, &unheard),
         };
-        let solved = active_set::solve(self.problem, target, guess, limits, &unheard);
+        let solved = match target {
+            Control::Approach(plane) if holds_plane => self.contact_at_plane(plane, guess, limits, &unheard),
+            target => active_set::solve(self.problem, target, guess, limits, &unheard),
+        };
         (self.problem.candidates, self.problem.coarser) = (candidates, coarser);
         let cells = state.cells.union(&solved.contact);
         state.take_cells(cells, state.reach);
         state.pressure = state.cells.carry(&solved.contact, &solved.p);
         state.d = solved.d + first;
         state.steps += solved.steps;
+    }
+
+    /// The contact at a mean plane, which is the approach less the displacement by the constant in the kernel. The
+    /// plane rises with the approach, but more slowly.
+    ///
+    /// Cost: some five solves of the contact, each from the one before.
+    fn contact_at_plane(&mut self, plane: f64, guess: Guess, limits: Limits, stop: Stop<'_>) -> Solved {
+        let shift = self.problem.operators.table().shift();
+        let length = limits.height.unwrap_or(plane);
+        let (mut low, mut high) = (plane, f64::INFINITY);
+        let mut before = None;
+        let mut guess = Guess { d: guess.d.max(plane), ..guess };
+        let mut steps = 0;
+        loop {
+            let d = guess.d;
+            let mut solved = active_set::solve(self.problem, Control::Approach(d), guess, limits, stop);
+            steps += solved.steps;
+            let miss = d - shift * sum(&solved.p) - plane;
+            *(if miss > 0.0 { &mut high } else { &mut low }) = d;
+            // The approach has to move by the miss at least.
+            let slope = before.map_or(1.0, |(at, missed)| (miss - missed) / (d - at));
+            let next = d - miss / slope;
+            let next = match next > low && next < high {
+                true => next,
+                false if high.is_finite() => f64::midpoint(low, high),
+                false => d - 2.0 * miss,
+            };
+            let is_met = miss.abs() <= limits.tolerance * length;
+            let is_narrow = next <= low || next >= high;
+            if is_met || is_narrow || !next.is_finite() || stop.stops() {
+                solved.steps = steps;
+                return solved;
+            }
+            before = Some((d, miss));
+            guess = Guess { set: solved.contact, p: solved.p, d: next };
+        }
     }
 
     /// How far the force of a state is from the one prescribed, relative to [`Equilibrium::force_scale`].

@@ -107,11 +107,6 @@ impl AdhesiveContact<'_> {
         stop: Stop<'_>,
     ) -> Result<ContactState> {
         let ScaledLoad { normal, tangential } = load;
-        if let (ScaledNormal::MeanGap(_), Some(_)) = (normal, self.surface.hardness) {
-            let what =
-                "a mean gap with a hardness and adhesion together (not solved): give a force or a pressure";
-            return Err(Error::unsupported(NAME, what));
-        }
         let control = match normal {
             ScaledNormal::Force(force) => AdhesiveControl::Force(force),
             ScaledNormal::Approach(d) => AdhesiveControl::Plane(d),

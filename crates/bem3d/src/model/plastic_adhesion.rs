@@ -16,6 +16,10 @@ struct DenseContact {
     n: usize,
     matrix: Vec<f64>,
     z: Vec<f64>,
+    /// Mean of the gaps before any indentation, and the displacement of all cells by a unit of force that the
+    /// kernel has beside that of zero mean.
+    mean: f64,
+    constant: f64,
     hardness: f64,
     peak: f64,
     range: f64,
@@ -36,10 +40,13 @@ impl DenseContact {
             let ((x, y), (a, b)) = (place(k / n), place(k % n));
             unit * table.lag(x.abs_diff(a), y.abs_diff(b))[0]
         };
+        let z: Vec<f64> = map.heights().iter().map(|h| map.highest() - h).collect();
         Self {
             n,
             matrix: (0..n * n).map(entry).collect(),
-            z: map.heights().iter().map(|h| map.highest() - h).collect(),
+            mean: z.iter().sum::<f64>() / n as f64,
+            constant: unit * table.shift(),
+            z,
             hardness,
             peak,
             range,
@@ -80,21 +87,20 @@ impl DenseContact {
         }
     }
 
-    /// The same under a force of the contact pressure.
-    fn press_to(&mut self, force: f64) {
+    /// The contact in which a measure that grows with the approach is as large as wanted.
+    fn press_to(&mut self, wanted: f64, measure: impl Fn(&Self) -> f64) {
         let total = |dense: &mut Self, d: f64| {
             dense.d = d;
             dense.press();
-            dense.p.iter().sum::<f64>()
+            measure(dense)
         };
         let (mut low, mut high) = (self.d - 1.0, self.d + 1.0);
         for _ in 0..200 {
-            // Secants within the bracket, halved where they leave it.
             let d = f64::midpoint(low, high);
             if high - low <= 1e-14 {
                 break;
             }
-            if total(self, d) < force { low = d } else { high = d }
+            if total(self, d) < wanted { low = d } else { high = d }
         }
     }
 
@@ -111,7 +117,10 @@ impl DenseContact {
                     if wanted <= 0.0 {
                         return None;
                     }
-                    self.press_to(wanted);
+                    self.press_to(wanted, |dense| dense.p.iter().sum());
+                }
+                DenseLoad::MeanGap(gap) => {
+                    self.press_to(self.mean - gap, |dense| dense.d - dense.constant * dense.force());
                 }
             }
             let next: Vec<f64> = (0..self.n).map(|i| self.law(self.gap(i))).collect();
@@ -140,6 +149,7 @@ impl DenseContact {
 enum DenseLoad {
     Approach(f64),
     Force(f64),
+    MeanGap(f64),
 }
 
 /// Heights of a small map that differ by up to 0.1 over sides of 1.
@@ -164,6 +174,7 @@ proptest! {
         resolved in 0.1..1.0_f64,
         range in 0.02..0.05_f64,
         most in 0.02..0.12_f64,
+        at_mean_gaps in any::<bool>(),
     ) {
         let boundary = if periodic { Boundary::Periodic } else { Boundary::Free };
         // Up to what cells of a quarter resolve.
@@ -173,26 +184,36 @@ proptest! {
         scene.effects.boundary = boundary;
         scene.effects.hardness = Hardness::Limit { pressure: hardness };
         scene.effects.adhesion = Adhesion::FiniteRange { work, range, law };
-        scene.outputs = contact_model::Outputs { area: true, pressure: true, ..Default::default() };
+        scene.outputs = contact_model::Outputs { area: true, pressure: true, gap: true, ..Default::default() };
         let model = Bem3d { tolerance: 1e-9, ..Bem3d::default() };
         let mut path = model.prepare(&scene, 0).unwrap();
         let mut dense = DenseContact::new(&map, boundary, [hardness, work / range, range], dugdale);
         let (cell, cells) = (map.dx() * map.dy(), dense.n as f64);
         // The last load pulls.
-        let loads = if periodic {
+        let (loads, pulled) = if periodic && at_mean_gaps {
+            let gap = |share: f64| DenseLoad::MeanGap((dense.mean - share * most).max(0.02 * dense.mean));
+            ([0.3, 1.0, 0.6, 0.2, 1.1].map(gap), DenseLoad::MeanGap(dense.mean + 0.5 * range))
+        } else if periodic {
             let capacity = hardness * cells;
-            [0.1, 0.5, 0.9, 0.3, 0.05].map(|share| DenseLoad::Force(5.0 * share * most * capacity)).to_vec()
+            let force = |share: f64| DenseLoad::Force(5.0 * share * most * capacity);
+            ([0.1, 0.5, 0.9, 0.3, 0.05].map(force), DenseLoad::Force(-0.3 * dense.peak))
         } else {
-            [0.3, 1.0, 0.6, 0.2, 1.1].map(|share| DenseLoad::Approach(share * most)).to_vec()
+            let approach = |share: f64| DenseLoad::Approach(share * most);
+            ([0.3, 1.0, 0.6, 0.2, 1.1].map(approach), DenseLoad::Approach(-0.5 * range))
         };
-        let pulled = if periodic { DenseLoad::Force(-0.3 * dense.peak) } else { DenseLoad::Approach(-0.5 * range) };
         let loads: Vec<DenseLoad> = loads.into_iter().chain([pulled]).collect();
         for (time, load) in loads.into_iter().enumerate() {
             let step = match load {
                 DenseLoad::Approach(d) => Load::approach(d),
                 DenseLoad::Force(force) => Load::force(force * cell),
+                DenseLoad::MeanGap(gap) => Load::mean_gap(gap),
             };
             let state = path.advance(Step::new(time as f64, step));
+            if let (DenseLoad::MeanGap(_), true, Ok(state)) = (load, dugdale, &state) {
+                // At a mean gap more attraction in one place opens gaps in others, so that cells which jump in another
+                // order reach another equilibrium: the reference begins with those that jumped here.
+                dense.s = state.gap().unwrap().values().iter().map(|gap| dense.law(*gap)).collect();
+            }
             let reference = dense.step(load);
             let state = match (state, reference) {
                 (Ok(state), Some(())) => state,
@@ -217,4 +238,22 @@ proptest! {
             prop_assert!((plastic.volume - volume * cell).abs() < 1e-7, "{} {}", plastic.volume, volume * cell);
         }
     }
+}
+
+/// On a few cells the eigenvalue of a stable state is known after as many steps, and further ones have only rounding
+/// to work on. They called this state of a withdrawal unstable.
+#[test]
+fn a_stable_state_of_four_cells_is_found_stable() {
+    let heights = vec![0.02173153882467034, 0.09535102590562147, 0.019215681342152804, 0.04454899621620069];
+    let map = HeightMap::new([2, 2], [0.5, 0.5], heights).unwrap();
+    let mut scene = Scene::new(Surface::Heights(Arc::new(map)), 1.0);
+    scene.effects.boundary = Boundary::Periodic;
+    scene.effects.hardness = Hardness::Limit { pressure: 0.22423987686049798 };
+    let (work, range) = (4.945e-4, 0.02866121410993819);
+    scene.effects.adhesion = Adhesion::FiniteRange { work, range, law: AdhesionLaw::Exponential };
+    let mut path = Bem3d { tolerance: 1e-9, ..Bem3d::default() }.prepare(&scene, 0).unwrap();
+    let states =
+        [0.0333, 0.001, 0.0165].map(|gap| path.advance(Step::new(0.0, Load::mean_gap(gap))).unwrap());
+    let stability = states[2].adhesive.as_ref().unwrap().stability;
+    assert!((0.9..1.0).contains(&stability), "{stability}");
 }
