@@ -182,18 +182,31 @@ impl PyContact {
         if let (Ok(state), true) = (&result, self.yields) {
             *highest = Some(Highest::of(highest.take(), load.normal, state));
         }
+        let (answer, ended) = self.told(py, asked, result, raised);
+        drop(inner);
+        drop(ended);
+        answer
+    }
+
+    /// The state or the exception of a solve, and the states that it replaces.
+    fn told(
+        &self,
+        py: Python<'_>,
+        asked: &Asked,
+        result: fractal_contact::Result<RustState>,
+        raised: Option<PyErr>,
+    ) -> (PyResult<Py<PyContactState>>, Vec<Option<Py<PyContactState>>>) {
         let of = |state: RustState| state::of(py, state, &self.origin);
         let mut ended = Vec::new();
         let answer = match (result, raised) {
-            (Ok(state), raised) => {
-                let state = of(state)?;
+            (Ok(state), raised) => of(state).and_then(|state| {
                 ended.push(replaced(&self.last, Some(state.clone_ref(py))));
                 if raised.is_some() {
                     // It was done before it heard of the signal.
                     ended.push(replaced(&self.best, Some(state.clone_ref(py))));
                 }
                 raised.map_or(Ok(state), Err)
-            }
+            }),
             (Err(error), raised) => {
                 if let Asked::Load(_) = asked {
                     // The path before it is forgotten.
@@ -201,18 +214,17 @@ impl PyContact {
                 }
                 match (error, raised) {
                     (Error::Stopped { best }, Some(raised)) => {
-                        if let Some(best) = best {
-                            ended.push(replaced(&self.best, Some(of(*best)?)));
-                        }
-                        Err(raised)
+                        let best = best.map(|best| of(*best)).transpose();
+                        best.and_then(|best| {
+                            ended.extend(best.map(|best| replaced(&self.best, Some(best))));
+                            Err(raised)
+                        })
                     }
                     (error, _) => Err(of_solve(py, error, &self.origin)),
                 }
             }
         };
-        drop(inner);
-        drop(ended);
-        answer
+        (answer, ended)
     }
 }
 

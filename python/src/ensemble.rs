@@ -61,17 +61,7 @@ pub fn ensemble(
     let (asked, done, mut told) = (scene, AtomicUsize::new(0), 0);
     let scene = &asked.scene;
     if scene.effects.hardness != Hardness::Off {
-        // The order of the values is that of the loads on every surface.
-        let values: Vec<Load> = loads
-            .iter()
-            .map(|(kind, value)| match kind.as_str() {
-                "approach" => Load::approach(*value),
-                "mean_gap" => Load::mean_gap(*value),
-                _ => Load::force(*value),
-            })
-            .collect();
-        let pressures = loads.first().is_some_and(|(kind, _)| kind == "mean_pressure");
-        check_rising(py, &values, pressures.then_some(1.0))?;
+        check_order(py, &loads)?;
     }
     let threads = surfaces_in_memory(py, model, scene, (surfaces, loads.len()))?;
     let answer = |index: usize, stop: Stop<'_>| {
@@ -106,41 +96,70 @@ pub fn ensemble(
         // memory of its own.
         run_jobs(threads, &(0..surfaces).collect::<Vec<usize>>(), stop, answer)
     })?;
-    // A load that was refused stands for itself among the others.
-    let one = |origin: &StateOrigin, state: Result<RustState>| -> PyResult<Py<PyAny>> {
-        match state {
-            Ok(state) => Ok(state::of(py, state, origin)?.into_any()),
-            Err(error) => Ok(of_solve(py, error, origin).into_value(py).into_any()),
-        }
-    };
-    let mut surfaces_done = Vec::new();
-    let mut failed = None;
-    for (index, states) in found.into_iter().enumerate() {
-        match states {
-            Some(Ok((origin, states))) => {
-                let states = states.into_iter().map(|state| one(&origin, state));
-                surfaces_done.push((index, states.collect::<PyResult<Vec<_>>>()?));
-            }
-            // After a failure those in flight are stopped: their reason is not the reason.
-            None | Some(Err(Error::Stopped { .. })) => {}
-            Some(Err(error)) => failed = failed.or(Some(error)),
-        }
-    }
+    let Finished { surfaces: finished, failed } = Finished::of(py, found)?;
     if let (Some(error), None) = (failed, &raised) {
         return Err(of_planning(py, error, scene));
     }
-    let raised = raised.or_else(|| (surfaces_done.len() < surfaces).then(|| stopped(py)));
+    let raised = raised.or_else(|| (finished.len() < surfaces).then(|| stopped(py)));
     if let Some(raised) = raised {
         // What is finished goes with the exception.
-        let finished = PyDict::new(py);
-        for (index, states) in surfaces_done {
-            finished.set_item(index, states)?;
+        let by_number = PyDict::new(py);
+        for (index, states) in finished {
+            by_number.set_item(index, states)?;
         }
-        raised.value(py).setattr("finished", finished)?;
+        raised.value(py).setattr("finished", by_number)?;
         return Err(raised);
     }
     if let Some(progress) = &progress {
         progress.call1(py, (surfaces, surfaces))?;
     }
-    Ok(surfaces_done.into_iter().map(|(_, states)| states).collect())
+    Ok(finished.into_iter().map(|(_, states)| states).collect())
+}
+
+/// With a hardness loads must not decrease; the order of their values is that of the loads on every surface.
+fn check_order(py: Python<'_>, loads: &[(String, f64)]) -> PyResult<()> {
+    let values: Vec<Load> = loads
+        .iter()
+        .map(|(kind, value)| match kind.as_str() {
+            "approach" => Load::approach(*value),
+            "mean_gap" => Load::mean_gap(*value),
+            _ => Load::force(*value),
+        })
+        .collect();
+    let pressures = loads.first().is_some_and(|(kind, _)| kind == "mean_pressure");
+    check_rising(py, &values, pressures.then_some(1.0))
+}
+
+/// The surfaces that were solved, with their numbers, and the error of the first one that failed.
+struct Finished {
+    surfaces: Vec<(usize, Vec<Py<PyAny>>)>,
+    failed: Option<Error>,
+}
+
+/// The states of a surface under all loads, or why it has none; `None` where it was not begun.
+type OfSurface = Option<Result<(StateOrigin, Vec<Result<RustState>>)>>;
+
+impl Finished {
+    fn of(py: Python<'_>, found: Vec<OfSurface>) -> PyResult<Self> {
+        // A load that was refused stands for itself among the others.
+        let one = |origin: &StateOrigin, state: Result<RustState>| -> PyResult<Py<PyAny>> {
+            match state {
+                Ok(state) => Ok(state::of(py, state, origin)?.into_any()),
+                Err(error) => Ok(of_solve(py, error, origin).into_value(py).into_any()),
+            }
+        };
+        let mut finished = Self { surfaces: Vec::new(), failed: None };
+        for (index, states) in found.into_iter().enumerate() {
+            match states {
+                Some(Ok((origin, states))) => {
+                    let states = states.into_iter().map(|state| one(&origin, state));
+                    finished.surfaces.push((index, states.collect::<PyResult<Vec<_>>>()?));
+                }
+                // After a failure those in flight are stopped: their reason is not the reason.
+                None | Some(Err(Error::Stopped { .. })) => {}
+                Some(Err(error)) => finished.failed = finished.failed.or(Some(error)),
+            }
+        }
+        Ok(finished)
+    }
 }

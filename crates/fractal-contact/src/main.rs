@@ -5,7 +5,7 @@ mod cluster;
 mod press;
 mod start;
 
-use arguments::{Arguments, Command, PressArguments};
+use arguments::{Arguments, Command, PressArguments, SurfaceArguments};
 use clap::FromArgMatches as _;
 use fractal_contact::models::{MODELS, ModelRecord};
 use fractal_contact::scenes::{
@@ -13,6 +13,7 @@ use fractal_contact::scenes::{
     info_statistics, run, write_twin,
 };
 use fractal_contact::surface_gen::{Anisotropy, HeightDistribution, TwinSpectrum};
+use runs::cluster::Division;
 use start::{stopped_by_signals, with_grid};
 use std::io::IsTerminal as _;
 use std::path::{Path, PathBuf};
@@ -39,20 +40,9 @@ fn execute(arguments: Arguments) -> Result<ExitCode> {
         Command::Press { asked, out, threads, verbose } => press_map(&asked, out, threads, verbose),
         Command::New { asked, scene } => write_scene(&asked, scene),
         Command::Plan { scene, out, nodes, node_cores, division } => {
-            let out = out.unwrap_or_else(|| default_directory(&scene));
-            let Some(scene) = read_to_plan(&scene, out)? else { return Ok(STOPPED.into()) };
-            let plan = Plan::calibrated(&scene)?;
-            runs::print(format_args!("{}", shown(plan.to_string(), std::io::stdout().is_terminal())));
-            if let Some(nodes) = nodes {
-                let here = all_threads();
-                cluster::tell(
-                    &scene,
-                    &plan,
-                    &division,
-                    (nodes.into(), node_cores.map_or(here, usize::from)),
-                )?;
-            }
-            Ok(ExitCode::SUCCESS)
+            let cores = node_cores.map_or_else(all_threads, usize::from);
+            let nodes = nodes.map(|nodes| (nodes.into(), cores));
+            print_plan(&scene, out, nodes, &division)
         }
         Command::Run { scene, out, threads, fresh, shard, verbose } => {
             let out = out.unwrap_or_else(|| default_directory(&scene));
@@ -75,50 +65,23 @@ fn execute(arguments: Arguments) -> Result<ExitCode> {
         }
         Command::Info { file, json, out, more } => {
             let (declared, preprocessing) = more.options()?;
-            let text = match out {
+            Ok(printed(&match out {
                 None if json => info_json(&file, &declared, &preprocessing)?,
                 None => info(&file, &declared, &preprocessing)?,
                 Some(out) => info_statistics(&file, &declared, &preprocessing, &out)?,
-            };
-            runs::print(format_args!("{text}"));
-            Ok(ExitCode::SUCCESS)
+            }))
         }
-        Command::Surface(asked) => {
-            if let Some(hurst) = asked.hurst.filter(|hurst| !(0.0..=1.0).contains(hurst)) {
-                return Err(runs::Error::parameter("hurst", hurst, "a number in [0, 1]").into());
-            }
-            let fractal_dimension = asked.fractal_dimension.or_else(|| Some(3.0 - asked.hurst?));
-            let make = GeneratedSurface {
-                cells: asked.cells,
-                rows: asked.rows,
-                size: asked.size,
-                fractal_dimension: fractal_dimension.unwrap_or(2.4),
-                rms_height: asked.rms_height,
-                roll_off_wavelength: asked.roll_off_wavelength,
-                shortest_wavelength: asked.shortest_wavelength,
-                anisotropy: asked.anisotropy.map(|ratio| Anisotropy { ratio, lay: asked.lay }),
-                heights: asked.weibull.map(|shape| HeightDistribution::Weibull { shape }),
-                seed: asked.seed,
-            };
-            runs::print(format_args!("{}", make.write(&asked.file)?));
-            Ok(ExitCode::SUCCESS)
-        }
+        Command::Surface(asked) => Ok(printed(&generated_surface(&asked)?.write(&asked.file)?)),
         Command::Twin { file, twin, seed, rings, keep_heights, more } => {
             let (declared, preprocessing) = more.options()?;
             let like = if rings { TwinSpectrum::Rings } else { TwinSpectrum::EachWave };
-            let text = write_twin(&file, (&declared, &preprocessing), (like, keep_heights), seed, &twin)?;
-            runs::print(format_args!("{text}"));
-            Ok(ExitCode::SUCCESS)
+            Ok(printed(&write_twin(&file, (&declared, &preprocessing), (like, keep_heights), seed, &twin)?))
         }
-        Command::Models { name } => {
-            runs::print(format_args!("{}", models(name.as_deref())?));
-            Ok(ExitCode::SUCCESS)
-        }
+        Command::Models { name } => Ok(printed(&models(name.as_deref())?)),
         Command::Completions { shell } => {
             let mut script = Vec::new();
             clap_complete::generate(shell, &mut arguments::command(), "fractal-contact", &mut script);
-            runs::print(format_args!("{}", String::from_utf8_lossy(&script)));
-            Ok(ExitCode::SUCCESS)
+            Ok(printed(&String::from_utf8_lossy(&script)))
         }
         Command::Man { directory } => {
             runs::files::create_directory(&directory)?;
@@ -128,6 +91,49 @@ fn execute(arguments: Arguments) -> Result<ExitCode> {
             Ok(ExitCode::SUCCESS)
         }
     }
+}
+
+/// Prints a text, which is all that a command does.
+fn printed(text: &str) -> ExitCode {
+    runs::print(format_args!("{text}"));
+    ExitCode::SUCCESS
+}
+
+/// Prints what a scene will compute, and how it divides over `nodes`: their number, and the cores of each.
+fn print_plan(
+    scene: &Path,
+    out: Option<PathBuf>,
+    nodes: Option<(usize, usize)>,
+    division: &Division,
+) -> Result<ExitCode> {
+    let out = out.unwrap_or_else(|| default_directory(scene));
+    let Some(scene) = read_to_plan(scene, out)? else { return Ok(STOPPED.into()) };
+    let plan = Plan::calibrated(&scene)?;
+    runs::print(format_args!("{}", shown(plan.to_string(), std::io::stdout().is_terminal())));
+    if let Some(nodes) = nodes {
+        cluster::tell(&scene, &plan, division, nodes)?;
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// The surface that the flags of `surface` describe.
+fn generated_surface(asked: &SurfaceArguments) -> Result<GeneratedSurface> {
+    if let Some(hurst) = asked.hurst.filter(|hurst| !(0.0..=1.0).contains(hurst)) {
+        return Err(runs::Error::parameter("hurst", hurst, "a number in [0, 1]").into());
+    }
+    let fractal_dimension = asked.fractal_dimension.or_else(|| Some(3.0 - asked.hurst?));
+    Ok(GeneratedSurface {
+        cells: asked.cells,
+        rows: asked.rows,
+        size: asked.size.clone(),
+        fractal_dimension: fractal_dimension.unwrap_or(2.4),
+        rms_height: asked.rms_height.clone(),
+        roll_off_wavelength: asked.roll_off_wavelength.clone(),
+        shortest_wavelength: asked.shortest_wavelength.clone(),
+        anisotropy: asked.anisotropy.map(|ratio| Anisotropy { ratio, lay: asked.lay }),
+        heights: asked.weibull.map(|shape| HeightDistribution::Weibull { shape }),
+        seed: asked.seed,
+    })
 }
 
 /// Writes the scene that flags describe beside its results, and runs it.

@@ -77,72 +77,83 @@ fn scene_of(asked: &PressArguments, at: &Path, profile: bool, words: &str) -> Re
 }
 
 fn lacking(asked: &PressArguments, map: &Metadata) -> Vec<Lacking> {
+    let mut lacking = lacking_of_map(asked, map);
+    lacking.extend(lacking_of_bodies(asked));
+    let of_load = |flag, example: &str, why: &str, instead| Lacking {
+        flag,
+        example: example.to_owned(),
+        why: why.to_owned(),
+        instead,
+    };
+    if asked.load().is_none() {
+        lacking.push(of_load(
+            "--pressure",
+            "1 MPa,10 MPa",
+            "mean pressure over the area of the map, one value or several",
+            Some(("--force", "normal force, instead of --pressure; or --approach, counted from first touch")),
+        ));
+    }
+    if asked.has_friction() && asked.tangential_force.is_none() {
+        lacking.push(of_load(
+            "--tangential-force",
+            "10 mN",
+            "tangential force along x, which friction has to hold",
+            None,
+        ));
+    }
+    lacking
+}
+
+/// What the file of a map does not hold and the flags do not say.
+fn lacking_of_map(asked: &PressArguments, map: &Metadata) -> Vec<Lacking> {
     let has = |key: &str| asked.file.value(key).is_some();
+    let mut lacking = Vec::new();
+    let mut add = |flag, example: &str, why: String, instead| {
+        lacking.push(Lacking { flag, example: example.to_owned(), why, instead });
+    };
+    if map.unit.is_none() && !has("unit") && !has("height_scale") {
+        let why = format!("unit of the heights, which this file ({}) does not hold", map.format);
+        add("--unit", "nm", why, None);
+    }
+    if map.size.is_none() && !has("size") && !has("cell") {
+        let why = format!("side of one of the {} x {} cells of the map", map.columns, map.rows);
+        add("--cell", "0.5 um", why, Some(("--size", "side of the whole map, instead of --cell")));
+    }
+    if map.undefined > 0 && !has("undefined") && !has("fill") && asked.file.value("crop") != Some("defined") {
+        let why = format!("{} points have no height: with no_contact they cannot touch", map.undefined);
+        let instead = ("--fill", "gives them a height, instead of --undefined: `--fill neighbours`");
+        add("--undefined", "no_contact", why, Some(instead));
+    }
+    lacking
+}
+
+/// What is not said about the bodies. Friction needs more than E*.
+fn lacking_of_bodies(asked: &PressArguments) -> Vec<Lacking> {
     let bodies = asked.problem.value("bodies");
     let mut lacking = Vec::new();
-    let mut add = |missing: bool, flag, example: &str, why: String, instead| {
-        if missing {
-            lacking.push(Lacking { flag, example: example.to_owned(), why, instead });
-        }
+    let mut add = |flag, example: &str, why: &str, instead| {
+        lacking.push(Lacking { flag, example: example.to_owned(), why: why.to_owned(), instead });
     };
-    add(
-        map.unit.is_none() && !has("unit") && !has("height_scale"),
-        "--unit",
-        "nm",
-        format!("unit of the heights, which this file ({}) does not hold", map.format),
-        None,
-    );
-    add(
-        map.size.is_none() && !has("size") && !has("cell"),
-        "--cell",
-        "0.5 um",
-        format!("side of one of the {} x {} cells of the map", map.columns, map.rows),
-        Some(("--size", "side of the whole map, instead of --cell")),
-    );
-    add(
-        map.undefined > 0 && !has("undefined") && !has("fill") && asked.file.value("crop") != Some("defined"),
-        "--undefined",
-        "no_contact",
-        format!("{} points have no height: with no_contact they cannot touch", map.undefined),
-        Some(("--fill", "gives them a height, instead of --undefined: `--fill neighbours`")),
-    );
-    add(
-        asked.has_friction() && bodies.is_none(),
-        "--bodies",
-        "rigid, 210 GPa 0.3",
-        "Young's modulus and Poisson's ratio of both bodies, which friction needs".to_owned(),
-        None,
-    );
-    add(
-        !asked.has_friction() && asked.contact_modulus().is_none() && bodies.is_none(),
-        "--bodies",
-        "210 GPa 0.3, 210 GPa 0.3",
-        "Young's modulus and Poisson's ratio of both bodies, here steel on steel".to_owned(),
-        Some(("--contact-modulus", "E* of the pair, instead of --bodies: '115 GPa' is steel on steel")),
-    );
-    let couple = bodies.is_none_or(couple);
-    add(
-        asked.has_friction() && couple && asked.coupling.is_none(),
-        "--coupling",
-        "full",
-        "the bodies differ, so normal and tangential tractions act on each other: full solves both, none neglects this"
-            .to_owned(),
-        None,
-    );
-    add(
-        asked.load().is_none(),
-        "--pressure",
-        "1 MPa,10 MPa",
-        "mean pressure over the area of the map, one value or several".to_owned(),
-        Some(("--force", "normal force, instead of --pressure; or --approach, counted from first touch")),
-    );
-    add(
-        asked.has_friction() && asked.tangential_force.is_none(),
-        "--tangential-force",
-        "10 mN",
-        "tangential force along x, which friction has to hold".to_owned(),
-        None,
-    );
+    if asked.has_friction() && bodies.is_none() {
+        let why = "Young's modulus and Poisson's ratio of both bodies, which friction needs";
+        add("--bodies", "rigid, 210 GPa 0.3", why, None);
+    }
+    if !asked.has_friction() && asked.contact_modulus().is_none() && bodies.is_none() {
+        add(
+            "--bodies",
+            "210 GPa 0.3, 210 GPa 0.3",
+            "Young's modulus and Poisson's ratio of both bodies, here steel on steel",
+            Some(("--contact-modulus", "E* of the pair, instead of --bodies: '115 GPa' is steel on steel")),
+        );
+    }
+    if asked.has_friction() && bodies.is_none_or(couple) && asked.coupling.is_none() {
+        add(
+            "--coupling",
+            "full",
+            "the bodies differ, so normal and tangential tractions act on each other: full solves both, none neglects this",
+            None,
+        );
+    }
     lacking
 }
 

@@ -3,7 +3,7 @@
 use crate::scenes::plan::{Cost, ModelOnSurface, ModelPlan, Plan, calibration};
 use crate::scenes::read::{Result, SceneFile, System, effect_lines, number};
 use crate::scenes::run::{
-    Answer, Concerned, FieldFile, ModelResult, Options, SceneOutcome, SharedStop, SolvedUnit, Warning,
+    Concerned, FieldFile, ModelResult, Options, SceneOutcome, SharedStop, SolvedUnit, StateRecord, Warning,
     field_pictures, remove_trials, scene_jobs, take_trial, units,
 };
 use crate::scenes::tell::{
@@ -12,6 +12,7 @@ use crate::scenes::tell::{
 use contact_model::units::ascii;
 use runs::cluster::{ShardPlan, ShardReport, run_shard};
 use runs::{Checkpoint, Failure, Header, Progress, Shard, Store, Threads, run_stored};
+use std::path::PathBuf;
 use std::time::Instant;
 
 /// Answers a scene: every model on every surface under every load, and writes what is asked for.
@@ -61,40 +62,9 @@ pub fn run(
     }
     let mut outcome =
         SceneOutcome { requested: scene.request.count() * units.len(), ..SceneOutcome::default() };
-    let solved: Vec<SolvedUnit<'_>> = (units.iter().zip(&results))
-        .filter_map(|(unit, result)| {
-            let (model, surface) = (unit.numerics(scene).name(), unit.surface);
-            Some(SolvedUnit { model, surface, states: result.as_ref()?.states.as_slice() })
-        })
-        .collect();
-    count(scene, &units, &results, options, &mut outcome);
-    let states = StateTable::new(scene, solved, title(scene));
-    outcome.results = Some(states.results()?);
-    let header = header(scene, plan);
-    let statistics = scene.requested.statistics.then(|| MapStatisticsTables::of_scene(scene)).transpose()?;
-    if let Some(statistics) = &statistics {
-        outcome.notes.extend(
-            statistics.notes.iter().chain(&statistics.remarks).map(|note| format!("statistics: {note}")),
-        );
-    }
-    let mut written = Vec::new();
-    let mut write = |name: &str, bytes: Vec<u8>| -> Result<()> {
-        let path = options.out.join(name);
-        runs::files::write_whole(&path, &bytes)?;
-        written.push(path);
-        Ok(())
-    };
-    if let Some(results) = &outcome.results {
-        files::make(&states, results, statistics.as_ref(), &header, &mut write)?;
-    }
-    outcome.summary = summary::summary(&states);
-    outcome.actual = actual(scene, &units, &results);
-    outcome.peak_memory = runs::peak_memory();
-    outcome.seconds = start.elapsed().as_secs_f64();
-    let view = |file: FieldFile<'_>| field_pictures::view(&options.out, file);
-    let report =
-        Report { states: &states, plan, outcome: &outcome, statistics: statistics.as_ref(), view: &view };
-    write("report.html", report.html()?.into_bytes())?;
+    let answers = SceneAnswers { scene, units: &units, results: &results };
+    answers.count(options, &mut outcome);
+    let written = answers.write(plan, options, start, &mut outcome)?;
     outcome.files.extend(written);
     outcome.files.push(options.out.join("manifest.json"));
     if !outcome.stopped {
@@ -109,6 +79,13 @@ pub fn run(
     }
     manifest::write(scene, plan, options, &outcome)?;
     Ok(outcome)
+}
+
+/// The result of each model on each surface; `None` where it was not begun.
+struct SceneAnswers<'a> {
+    scene: &'a SceneFile,
+    units: &'a [ModelOnSurface],
+    results: &'a [Option<ModelResult>],
 }
 
 /// Does one shard of a scene and writes no table; [`crate::scenes::run`] in the same directory, when all
@@ -139,70 +116,134 @@ pub fn run_scene_shard(
     run_shard(plan, &jobs, shard, (&options.out, options.threads), progress, stop)
 }
 
-/// Counts, notes and files of all results, for the outcome.
-fn count(
-    scene: &SceneFile,
-    units: &[ModelOnSurface],
-    results: &[Option<ModelResult>],
-    options: &Options,
-    outcome: &mut SceneOutcome,
-) {
-    let mut warned: [Vec<Concerned<'_>>; Warning::ALL.len()] = Default::default();
-    // A formula has no cells that a warning could be about.
-    let mut counted = 0;
-    let mut missed: Vec<String> = Vec::new();
-    for (unit, result) in units.iter().zip(results) {
-        let Some(result) = result else {
-            outcome.stopped = true;
-            continue;
+impl<'a> SceneAnswers<'a> {
+    fn begun(&self) -> impl Iterator<Item = (&'a ModelOnSurface, &'a ModelResult)> {
+        let Self { units, results, .. } = *self;
+        units.iter().zip(results).filter_map(|(unit, result)| Some((unit, result.as_ref()?)))
+    }
+
+    /// Writes tables, curves and the report, completes the outcome by what they show, and returns their paths.
+    fn write(
+        &self,
+        plan: &Plan,
+        options: &Options,
+        start: Instant,
+        outcome: &mut SceneOutcome,
+    ) -> Result<Vec<PathBuf>> {
+        let scene = self.scene;
+        let solved = self.begun().map(|(unit, result)| SolvedUnit {
+            model: unit.numerics(scene).name(),
+            surface: unit.surface,
+            states: result.states.as_slice(),
+        });
+        let states = StateTable::new(scene, solved.collect(), title(scene));
+        let statistics =
+            scene.requested.statistics.then(|| MapStatisticsTables::of_scene(scene)).transpose()?;
+        if let Some(statistics) = &statistics {
+            let said = statistics.notes.iter().chain(&statistics.remarks);
+            outcome.notes.extend(said.map(|note| format!("statistics: {note}")));
+        }
+        let mut written = Vec::new();
+        let mut write = |name: &str, bytes: Vec<u8>| -> Result<()> {
+            let path = options.out.join(name);
+            runs::files::write_whole(&path, &bytes)?;
+            written.push(path);
+            Ok(())
         };
-        outcome.stopped |= !result.complete;
-        outcome.kept += result.kept;
-        outcome.notes.extend(result.notes.iter().cloned());
-        for record in &result.states {
-            outcome.states += 1;
-            outcome.failed += usize::from(record.converged().is_none());
-            counted += usize::from(unit.numerics(scene).size() > 0);
-            match &record.answer {
-                Answer::Refused(reason) if !outcome.notes.contains(reason) => {
-                    outcome.notes.push(reason.clone());
+        let results = states.results()?;
+        files::make(&states, &results, statistics.as_ref(), &header(scene, plan), &mut write)?;
+        outcome.results = Some(results);
+        outcome.summary = summary::summary(&states);
+        outcome.actual = self.actual();
+        outcome.peak_memory = runs::peak_memory();
+        outcome.seconds = start.elapsed().as_secs_f64();
+        let view = |file: FieldFile<'_>| field_pictures::view(&options.out, file);
+        let statistics = statistics.as_ref();
+        let report = Report { states: &states, plan, outcome, statistics, view: &view };
+        write("report.html", report.html()?.into_bytes())?;
+        Ok(written)
+    }
+
+    /// Adds counts, notes and files of all results to the outcome.
+    fn count(&self, options: &Options, outcome: &mut SceneOutcome) {
+        outcome.stopped |= self.results.iter().any(|result| result.as_ref().is_none_or(|r| !r.complete));
+        let mut missed: Vec<String> = Vec::new();
+        for (_, result) in self.begun() {
+            outcome.kept += result.kept;
+            outcome.notes.extend(result.notes.iter().cloned());
+            for record in &result.states {
+                outcome.states += 1;
+                outcome.failed += usize::from(record.converged().is_none());
+                if record.solved().is_none() || record.is_pulled_off() {
+                    let why = record.note().filter(|note| !outcome.notes.contains(note));
+                    outcome.notes.extend(why);
+                } else if let Some(error) = self.not_converged(record) {
+                    missed.push(error);
                 }
-                Answer::Refused(_) => {}
-                Answer::State(solved) => {
-                    if let Some(ended) = record.note().filter(|_| record.is_pulled_off())
-                        && !outcome.notes.contains(&ended)
-                    {
-                        outcome.notes.push(ended);
-                    }
-                    if record.converged().is_none() && !record.is_pulled_off() {
-                        let best = Box::new(solved.state.clone());
-                        let error = contact_model::Error::NotConverged { best };
-                        missed.push(format!("{}: {error}", record.words(scene)));
-                    }
-                    for &warning in &solved.warnings {
-                        warned[warning as usize].push((&solved.state, solved.grid.as_ref()));
-                    }
+                let shown = record.files.iter().filter(|file| !file.is_hidden());
+                outcome.files.extend(shown.map(|file| options.out.join(&file.name)));
+            }
+        }
+        outcome.notes.extend(note_on_missed(&missed));
+        outcome.notes.extend(self.warnings());
+    }
+
+    /// The error of a state that has not converged.
+    fn not_converged(&self, record: &StateRecord) -> Option<String> {
+        let solved = record.solved().filter(|_| record.converged().is_none())?;
+        let error = contact_model::Error::NotConverged { best: Box::new(solved.state.clone()) };
+        Some(format!("{}: {error}", record.words(self.scene)))
+    }
+
+    /// One sentence for each kind of warning, about all states that it concerns.
+    fn warnings(&self) -> impl Iterator<Item = String> {
+        let mut warned: [Vec<Concerned<'_>>; Warning::ALL.len()] = Default::default();
+        // A formula has no cells that a warning could be about.
+        let mut counted = 0;
+        for (unit, result) in self.begun() {
+            counted += if unit.numerics(self.scene).size() > 0 { result.states.len() } else { 0 };
+            for solved in result.states.iter().filter_map(StateRecord::solved) {
+                for &warning in &solved.warnings {
+                    warned[warning as usize].push((&solved.state, solved.grid.as_ref()));
                 }
             }
-            let shown = record.files.iter().filter(|file| !file.is_hidden());
-            outcome.files.extend(shown.map(|file| options.out.join(&file.name)));
         }
+        let concerned = Warning::ALL.into_iter().zip(warned).filter(|(_, states)| !states.is_empty());
+        concerned.map(move |(warning, states)| warning.sentence(self.scene, &states, counted))
     }
-    if let Some(first) = missed.first() {
-        let others = match missed.len() - 1 {
-            0 => String::new(),
-            1 => " (and one more state)".to_owned(),
-            count => format!(" (and {count} more states)"),
-        };
-        let note = format!(
-            "{first}{others}. The largest of these numbers has to be below `tolerance` in [models.NAME]: a larger tolerance accepts the state."
-        );
-        outcome.notes.push(note);
+
+    /// What each model did, summed over its states.
+    fn actual(&self) -> Vec<(&'static str, Cost, u64)> {
+        let models = self.scene.models.iter();
+        let mut list: Vec<_> = models.map(|model| (model.name(), Cost::default(), 0)).collect();
+        for (unit, result) in self.begun() {
+            let Some((_, cost, bytes)) = list.get_mut(unit.model) else { continue };
+            cost.seconds += result.seconds;
+            for record in &result.states {
+                *bytes += record.files.iter().map(|file| file.bytes).sum::<u64>();
+                let Some(solved) = record.solved() else { continue };
+                let report = &solved.state.report;
+                cost.applications += report.applications as f64;
+                cost.linear_solves += report.work.linear_solves as f64;
+                cost.fields += report.work.fields as f64;
+                cost.field_bytes += report.work.bytes as f64;
+            }
+        }
+        list
     }
-    for (warning, concerned) in Warning::ALL.into_iter().zip(warned).filter(|(_, states)| !states.is_empty())
-    {
-        outcome.notes.push(warning.sentence(scene, &concerned, counted));
-    }
+}
+
+/// A note on the states that have not converged, by the words of the first one.
+fn note_on_missed(missed: &[String]) -> Option<String> {
+    let first = missed.first()?;
+    let others = match missed.len() - 1 {
+        0 => String::new(),
+        1 => " (and one more state)".to_owned(),
+        count => format!(" (and {count} more states)"),
+    };
+    Some(format!(
+        "{first}{others}. The largest of these numbers has to be below `tolerance` in [models.NAME]: a larger tolerance accepts the state."
+    ))
 }
 
 /// What the tables are called.
@@ -253,28 +294,4 @@ fn header(scene: &SceneFile, plan: &Plan) -> Header {
         header = header.with_note(format!("seed: {}", scene.sampling.seed));
     }
     header
-}
-
-/// What each model did, summed over its states.
-fn actual(
-    scene: &SceneFile,
-    units: &[ModelOnSurface],
-    results: &[Option<ModelResult>],
-) -> Vec<(&'static str, Cost, u64)> {
-    let mut list: Vec<(&'static str, Cost, u64)> =
-        scene.models.iter().map(|m| (m.name(), Cost::default(), 0)).collect();
-    for (unit, result) in units.iter().zip(results) {
-        let (Some(result), Some((_, cost, bytes))) = (result, list.get_mut(unit.model)) else { continue };
-        cost.seconds += result.seconds;
-        for record in &result.states {
-            *bytes += record.files.iter().map(|file| file.bytes).sum::<u64>();
-            let Some(solved) = record.solved() else { continue };
-            let report = &solved.state.report;
-            cost.applications += report.applications as f64;
-            cost.linear_solves += report.work.linear_solves as f64;
-            cost.fields += report.work.fields as f64;
-            cost.field_bytes += report.work.bytes as f64;
-        }
-    }
-    list
 }

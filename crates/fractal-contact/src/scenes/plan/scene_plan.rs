@@ -423,14 +423,9 @@ fn whole(v: f64) -> String {
     format!("{v:.0}")
 }
 
-impl fmt::Display for Plan {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if !self.shows.is_empty() {
-            writeln!(f, "{}\n", self.shows)?;
-        }
-        for note in &self.notes {
-            writeln!(f, "{note}\n")?;
-        }
+impl Plan {
+    /// The surface, the bodies, and how many states are solved.
+    fn write_question(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "surface   {}", ascii(&self.surface))?;
         for line in self.metadata.iter().flat_map(|u| u.lines()) {
             writeln!(f, "          {line}")?;
@@ -449,14 +444,14 @@ impl fmt::Display for Plan {
         }
         writeln!(f, "\neffects")?;
         for line in &self.effects {
-            writeln!(
-                f,
-                "  {:10} {:4} {}",
-                line.name,
-                if line.on { "on" } else { "off" },
-                ascii(&line.reason)
-            )?;
+            let on = if line.on { "on" } else { "off" };
+            writeln!(f, "  {:10} {on:4} {}", line.name, ascii(&line.reason))?;
         }
+        Ok(())
+    }
+
+    /// What is computed and what is left out.
+    fn write_outputs(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let names = |requested: bool| {
             let list: Vec<&str> =
                 self.outputs.iter().filter(|(_, a)| *a == requested).map(|(n, _)| *n).collect();
@@ -467,7 +462,20 @@ impl fmt::Display for Plan {
             "\noutputs\n  computed   force, approach or gap prescribed with it, certificate; {}",
             names(true)
         )?;
-        writeln!(f, "  not requested, so not computed or stored: {}", names(false))?;
+        writeln!(f, "  not requested, so not computed or stored: {}", names(false))
+    }
+}
+
+impl fmt::Display for Plan {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if !self.shows.is_empty() {
+            writeln!(f, "{}\n", self.shows)?;
+        }
+        for note in &self.notes {
+            writeln!(f, "{note}\n")?;
+        }
+        self.write_question(f)?;
+        self.write_outputs(f)?;
         writeln!(f, "\nmodels")?;
         for model in &self.models {
             writeln!(

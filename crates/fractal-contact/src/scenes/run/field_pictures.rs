@@ -71,74 +71,100 @@ fn keep_bytes(out: &Path, file: FieldFile<'_>, bytes: &[u8]) -> Result<StoredFil
 
 /// Draws the fields of all states, each quantity in one range. Once a result is complete it does not name the
 /// values kept for drawing any more; their files are returned, to be removed when the result is stored.
-pub(crate) fn draw(
-    scene: &SceneFile,
-    (model, surface): (&str, usize),
-    cells: Cells,
-    out: &Path,
-    result: &mut ModelResult,
-) -> Result<Vec<PathBuf>> {
-    let file = |field, state, extension| FieldFile { field, model, surface, state, extension };
-    let read = |field, state, components: usize| -> Option<Vec<Cow<'_, [f64]>>> {
-        let name = format!("{WAITING}{}", file(field, state, EXTENSION));
-        let bytes = runs::files::read(&out.join(name), u64::MAX).ok()?;
-        let (values, rest) = bytes.as_chunks();
-        let count = cells.checked_count().filter(|count| *count > 0)?;
-        let whole = rest.is_empty() && Some(values.len()) == count.checked_mul(components);
-        let component = |values: &[[u8; 8]]| values.iter().map(|v| f64::from_le_bytes(*v)).collect();
-        whole.then(|| values.chunks_exact(count).map(component).collect())
-    };
-    for (field, formats) in scene.requested.fields() {
-        if !formats.contains(&FieldFormat::Png) {
-            continue;
-        }
+pub(crate) fn draw(of: FieldPictures<'_>, result: &mut ModelResult) -> Result<Vec<PathBuf>> {
+    let drawn = of.scene.requested.fields().filter(|(_, formats)| formats.contains(&FieldFormat::Png));
+    for (field, _) in drawn {
         let states: Vec<usize> = result.states.iter().map(|state| state.index).collect();
-        let read_field = |state| read(field.name, state, field.components);
-        let ends =
-            states.iter().filter_map(|&state| Some(FieldPicture::ends(&magnitude(&read_field(state)?))));
-        let range = ends.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
+        let read = |&state: &usize| of.read(field.name, state, field.components);
+        let ends = states.iter().filter_map(|state| Some(FieldPicture::ends(&magnitude(&read(state)?))));
+        let of_all_states = FieldOfStates {
+            field,
+            range: ends.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1))),
+            are_several: states.len() > 1,
+        };
         for state in &mut result.states {
-            let Some(components) = read_field(state.index) else { continue };
-            let values = magnitude(&components);
-            let pressure = if field.outlined { read(PRESSURE, state.index, 1) } else { None };
-            let contact: Vec<bool> =
-                pressure.iter().flatten().flat_map(|p| p.iter()).map(|p| *p > 0.0).collect();
-            let name = file(field.name, state.index, FieldFormat::Png.extension()).to_string();
-            let mut drawn = picture(scene, field, model, (surface, Some(state)), cells, &values);
-            if scene.surface.is_profile() {
-                let step = scene.surface.size().x / cells.columns as f64;
-                let points = values.iter().enumerate().map(|(i, v)| ((i as f64 + 0.5) * step, *v));
-                let stem = name.strip_suffix(".png").unwrap_or(&name);
-                for (name, bytes) in row_chart(&drawn, points.collect()).files(stem)? {
-                    runs::files::write_whole(&out.join(&name), &bytes)?;
+            if let Some(components) = read(&state.index) {
+                for (name, bytes) in of.pictures(&of_all_states, state, &components)? {
+                    runs::files::write_whole(&of.out.join(&name), &bytes)?;
                     state.files.retain(|file| file.name != name);
-                    state.files.push(StoredFile::of(out, name)?);
+                    state.files.push(StoredFile::of(of.out, name)?);
                 }
-                continue;
             }
-            (drawn.range, drawn.contact) = (range, &contact);
-            if let [along_x, along_y] = &components[..] {
-                drawn.arrows = Some([along_x, along_y]);
-            }
-            if states.len() > 1 && field.name != HEIGHTS.name && field.classes.is_empty() {
-                drawn.subtitle += if scene.is_history() {
-                    "; one scale for all steps"
-                } else {
-                    "; one scale for all loads"
-                };
-            }
-            let path = out.join(&name);
-            runs::files::write_whole(&path, &drawn.png(&path.display().to_string())?)?;
-            state.files.retain(|file| file.name != name);
-            state.files.push(StoredFile::of(out, name)?);
         }
     }
     let mut drawn = Vec::new();
     for state in result.states.iter_mut().filter(|_| result.complete) {
         let waiting = state.files.extract_if(.., |file| file.name.ends_with(EXTENSION));
-        drawn.extend(waiting.map(|file| out.join(file.name)));
+        drawn.extend(waiting.map(|file| of.out.join(file.name)));
     }
     Ok(drawn)
+}
+
+/// A model on a surface whose fields are drawn into a folder.
+#[derive(Clone, Copy)]
+pub(crate) struct FieldPictures<'a> {
+    pub scene: &'a SceneFile,
+    pub model: &'a str,
+    pub surface: usize,
+    pub cells: Cells,
+    pub out: &'a Path,
+}
+
+/// What all pictures of a field have in common.
+struct FieldOfStates<'a> {
+    field: &'a FieldQuantity,
+    range: Option<(f64, f64)>,
+    are_several: bool,
+}
+
+impl FieldPictures<'_> {
+    fn file<'a>(&'a self, field: &'a str, state: usize, extension: &'a str) -> FieldFile<'a> {
+        FieldFile { field, model: self.model, surface: self.surface, state, extension }
+    }
+
+    /// The components of a field that [`keep`] kept.
+    fn read(&self, field: &str, state: usize, components: usize) -> Option<Vec<Cow<'static, [f64]>>> {
+        let name = format!("{WAITING}{}", self.file(field, state, EXTENSION));
+        let bytes = runs::files::read(&self.out.join(name), u64::MAX).ok()?;
+        let (values, rest) = bytes.as_chunks();
+        let count = self.cells.checked_count().filter(|count| *count > 0)?;
+        let whole = rest.is_empty() && Some(values.len()) == count.checked_mul(components);
+        let component = |values: &[[u8; 8]]| values.iter().map(|v| f64::from_le_bytes(*v)).collect();
+        whole.then(|| values.chunks_exact(count).map(component).collect())
+    }
+
+    /// The pictures of a field of a state, by their names: a map, or a curve over a profile.
+    fn pictures(
+        &self,
+        of_all: &FieldOfStates<'_>,
+        state: &StateRecord,
+        components: &[Cow<'_, [f64]>],
+    ) -> Result<Vec<(String, Vec<u8>)>> {
+        let Self { scene, cells, .. } = *self;
+        let field = of_all.field;
+        let values = magnitude(components);
+        let name = self.file(field.name, state.index, FieldFormat::Png.extension()).to_string();
+        let mut drawn = picture(scene, field, self.model, (self.surface, Some(state)), cells, &values);
+        if scene.surface.is_profile() {
+            let step = scene.surface.size().x / cells.columns as f64;
+            let points = values.iter().enumerate().map(|(i, v)| ((i as f64 + 0.5) * step, *v));
+            let stem = name.strip_suffix(".png").unwrap_or(&name);
+            return Ok(row_chart(&drawn, points.collect()).files(stem)?.into());
+        }
+        let pressure = if field.outlined { self.read(PRESSURE, state.index, 1) } else { None };
+        let contact: Vec<bool> = pressure.iter().flatten().flat_map(|p| p.iter()).map(|p| *p > 0.0).collect();
+        (drawn.range, drawn.contact) = (of_all.range, &contact);
+        if let [along_x, along_y] = components {
+            drawn.arrows = Some([along_x, along_y]);
+        }
+        if of_all.are_several && field.name != HEIGHTS.name && field.classes.is_empty() {
+            drawn.subtitle +=
+                if scene.is_history() { "; one scale for all steps" } else { "; one scale for all loads" };
+        }
+        let path = self.out.join(&name);
+        let bytes = drawn.png(&path.display().to_string())?;
+        Ok(vec![(name, bytes)])
+    }
 }
 
 /// The states of a stored result whose files are all there and unchanged. A picture of an interrupted run does

@@ -112,9 +112,11 @@ impl SceneJob {
         let mut result = self.unit.solve((&self.scene, &self.lines), &self.out, begun, &mut keeper, &told)?;
         let mut drawn = Vec::new();
         if self.draws {
-            let (start, numerics) = (Instant::now(), self.unit.numerics(&self.scene));
-            let cells = cells(&self.scene, numerics);
-            drawn = field_pictures::draw(&self.scene, (model, surface), cells, &self.out, &mut result)?;
+            let start = Instant::now();
+            let (scene, out) = (&*self.scene, &*self.out);
+            let cells = cells(scene, self.unit.numerics(scene));
+            let pictures = field_pictures::FieldPictures { scene, model, surface, cells, out };
+            drawn = field_pictures::draw(pictures, &mut result)?;
             result.seconds += start.elapsed().as_secs_f64();
         } else {
             result.complete = false;

@@ -9,7 +9,9 @@ use crate::scenes::run::{
     Answer, AnsweredState, FieldFile, FieldView, Keeper, ModelResult, SharedLines, StateRecord, StoredFile,
     Warning, field_pictures,
 };
-use contact_model::{Cells, Field, FieldQuantity, LargestPull, Load, PreparedContact, Stop};
+use contact_model::{
+    Cells, ContactState, Field, FieldQuantity, LargestPull, Load, Normalisation, PreparedContact, Stop,
+};
 use std::borrow::Cow;
 use std::path::Path;
 use std::time::Instant;
@@ -53,149 +55,24 @@ impl ModelOnSurface {
             keeper.resume(&mut result, contact.as_mut(), is_path);
         }
         result.complete = false;
-        let mut keep = |result: &mut ModelResult, contact: &dyn PreparedContact, interrupted: bool| {
-            result.seconds = before + start.elapsed().as_secs_f64();
-            keeper.keep(result, contact, interrupted);
+        let mut solving = ContactInHand {
+            unit: self,
+            scene,
+            contact: contact.as_mut(),
+            out,
+            stop,
+            result,
+            keeper,
+            before,
+            start,
         };
         match &scene.request {
-            LoadRequest::Loads(loads) => {
-                self.loads(scene, contact.as_mut(), (loads, out), stop, &mut result, &mut keep)?;
-            }
-            LoadRequest::Path(pieces) => {
-                self.path(scene, contact.as_mut(), (pieces, out), stop, &mut result, &mut keep)?;
-            }
+            LoadRequest::Loads(loads) => solving.loads(loads)?,
+            LoadRequest::Path(pieces) => solving.path(pieces)?,
         }
+        let mut result = solving.result;
         result.seconds = before + start.elapsed().as_secs_f64();
         Ok(result)
-    }
-
-    fn loads(
-        &self,
-        scene: &SceneFile,
-        contact: &mut dyn PreparedContact,
-        (requests, out): (&LoadList, &Path),
-        stop: Stop<'_>,
-        result: &mut ModelResult,
-        keep: &mut dyn FnMut(&mut ModelResult, &dyn PreparedContact, bool),
-    ) -> Result<()> {
-        let normalisation = contact.normalisation();
-        let load = |&value: &f64| requests.load(value, &normalisation);
-        let loads = requests.values.iter().map(load).collect::<contact_model::Result<Vec<Load>>>();
-        let numerics = self.numerics(scene);
-        // All loads, also of a run that goes on: each state on a coarser grid begins with the one before it.
-        let comparison = match &loads {
-            Ok(loads) if scene.requested.grid_error && matches!(numerics, Numerics::Bem3d(_)) => {
-                match GridComparison::solve(scene, numerics, scene.seed(self.surface), loads, stop) {
-                    Err(contact_model::Error::Stopped { .. }) => return Ok(()),
-                    found => Some(found.map_err(|error| {
-                        runs::Error::model(format!("coarser grids of surface {}", self.surface))(error)
-                    })?),
-                }
-            }
-            _ => None,
-        };
-        for index in 0..requests.values.len() {
-            let place = result.states.partition_point(|state| state.index < index);
-            if result.states.get(place).is_some_and(|state| state.index == index) {
-                continue;
-            }
-            let found = match &loads {
-                Ok(loads) => contact.solve_until(loads[index], stop),
-                // A surface without an rms height has no F_bar: no load has an answer, and each row says so.
-                Err(error) => Err(error.clone()),
-            };
-            let record = match found {
-                Ok(state) => {
-                    let grid = comparison
-                        .as_ref()
-                        .map(|comparison| comparison.errors(index, &state, &normalisation));
-                    let warnings = Warning::of(scene, &state, grid.as_ref());
-                    self.recorded(scene, AnsweredState { state, normalisation, warnings, grid }, out, index)?
-                }
-                Err(contact_model::Error::NotConverged { best }) => {
-                    let state = best.with_fields(None).with_patches(None);
-                    let solved = AnsweredState { state, normalisation, warnings: Vec::new(), grid: None };
-                    StateRecord::new(index, Answer::State(Box::new(solved)))
-                }
-                Err(contact_model::Error::Stopped { .. }) => {
-                    keep(result, contact, true);
-                    return Ok(());
-                }
-                Err(other) => StateRecord::new(index, Answer::Refused(words::refusal(scene, &other))),
-            };
-            result.states.insert(place, record);
-            keep(result, contact, false);
-        }
-        result.complete = true;
-        Ok(())
-    }
-
-    fn path(
-        &self,
-        scene: &SceneFile,
-        contact: &mut dyn PreparedContact,
-        (pieces, out): (&[PathPiece], &Path),
-        stop: Stop<'_>,
-        result: &mut ModelResult,
-        keep: &mut dyn FnMut(&mut ModelResult, &dyn PreparedContact, bool),
-    ) -> Result<()> {
-        let normalisation = contact.normalisation();
-        let mut largest = LargestPull::default();
-        let model = self.numerics(scene).name();
-        let step_of = |index: usize, states: &[StateRecord]| {
-            step_to(index, pieces, model, |before| Some(&states.get(before)?.solved()?.state))
-        };
-        for (index, record) in result.states.iter().enumerate() {
-            if let (Some(solved), Ok(step)) = (record.solved(), step_of(index, &result.states)) {
-                let _ = largest.enter(step.load.normal, solved.state.clone());
-            }
-        }
-        for index in result.states.len()..scene.request.count() {
-            let step = match step_of(index, &result.states) {
-                Ok(step) => step,
-                Err(error) => {
-                    let refused = Answer::Refused(words::refusal(scene, &error));
-                    result.states.push(StateRecord::new(index, refused));
-                    break;
-                }
-            };
-            let record = match contact.advance_until(step, stop) {
-                Ok(state) => {
-                    let state = largest.enter(step.load.normal, state);
-                    let warnings = Warning::of(scene, &state, None);
-                    self.recorded(
-                        scene,
-                        AnsweredState { state, normalisation, warnings, grid: None },
-                        out,
-                        index,
-                    )?
-                }
-                Err(contact_model::Error::Stopped { .. }) => {
-                    keep(result, contact, true);
-                    return Ok(());
-                }
-                Err(error) => match error.into_best() {
-                    Ok(best) => {
-                        // The best state of a solve that missed its tolerance or, beyond the pull-off force,
-                        // the last stable state.
-                        let state =
-                            largest.enter(step.load.normal, best.with_fields(None).with_patches(None));
-                        let solved = AnsweredState { state, normalisation, warnings: Vec::new(), grid: None };
-                        StateRecord::new(index, Answer::State(Box::new(solved)))
-                    }
-                    Err(error) => StateRecord::new(index, Answer::Refused(words::refusal(scene, &error))),
-                },
-            };
-            let failed = record.converged().is_none();
-            result.states.push(record);
-            if failed {
-                // The steps after one that failed would belong to another path.
-                break;
-            }
-            keep(result, contact, false);
-        }
-        result.complete = true;
-        Ok(())
     }
 
     /// The record of a state: its fields are written to files where these are requested, and binned where
@@ -239,25 +116,12 @@ impl ModelOnSurface {
                 kept.files.push(field_pictures::keep_view(out, file(""), &view)?);
             }
             for &format in formats {
-                let file = file(format.extension()).to_string();
-                let path = out.join(&file);
-                match format {
-                    FieldFormat::Npy => {
-                        let shape = [components.len(), field.rows(), field.columns()];
-                        let bytes = surface_io::npy(&shape[usize::from(components.len() == 1)..], &all)
-                            .map_err(|e| runs::Error::content(&path, e.to_string()))?;
-                        runs::files::write_whole(&path, &bytes)?;
-                    }
-                    FieldFormat::Png => continue,
-                    FieldFormat::Pixels if !drawn => continue,
-                    FieldFormat::Pixels => {
-                        let name = path.display().to_string();
-                        let png = plots::grey_png(&name, field.cells(), field.size(), &shown)?;
-                        runs::files::write_whole(&path, &png)?;
-                    }
-                    FieldFormat::Vti => write_vti(&path, quantity, scene, field.cells(), &components)?,
+                let name = file(format.extension()).to_string();
+                let values =
+                    WrittenField { quantity, field, components: &components, all: &all, shown: &shown };
+                if values.write(format, drawn, &out.join(&name), scene)? {
+                    kept.files.push(StoredFile::of(out, name)?);
                 }
-                kept.files.push(StoredFile::of(out, file)?);
             }
         }
         Ok(kept)
@@ -280,6 +144,144 @@ impl ModelOnSurface {
     }
 }
 
+/// A model on a surface whose states are being solved.
+struct ContactInHand<'a, 'k> {
+    unit: &'a ModelOnSurface,
+    scene: &'a SceneFile,
+    contact: &'a mut dyn PreparedContact,
+    /// The directory of the fields.
+    out: &'a Path,
+    stop: Stop<'a>,
+    result: ModelResult,
+    keeper: &'a mut Keeper<'k>,
+    /// Seconds that earlier runs spent.
+    before: f64,
+    start: Instant,
+}
+
+impl ContactInHand<'_, '_> {
+    fn keep(&mut self, interrupted: bool) {
+        self.result.seconds = self.before + self.start.elapsed().as_secs_f64();
+        self.keeper.keep(&mut self.result, self.contact, interrupted);
+    }
+
+    /// Solves the loads that the result lacks, each by itself.
+    fn loads(&mut self, requests: &LoadList) -> Result<()> {
+        let normalisation = self.contact.normalisation();
+        let load = |&value: &f64| requests.load(value, &normalisation);
+        let loads = requests.values.iter().map(load).collect::<contact_model::Result<Vec<Load>>>();
+        let numerics = self.unit.numerics(self.scene);
+        let compares = self.scene.requested.grid_error && matches!(numerics, Numerics::Bem3d(_));
+        let mut comparison = None;
+        if let (true, Ok(loads)) = (compares, &loads) {
+            comparison = self.coarser_grids(loads)?;
+            if comparison.is_none() {
+                return Ok(());
+            }
+        }
+        for index in 0..requests.values.len() {
+            let place = self.result.states.partition_point(|state| state.index < index);
+            if self.result.states.get(place).is_some_and(|state| state.index == index) {
+                continue;
+            }
+            let found = match &loads {
+                Ok(loads) => self.contact.solve_until(loads[index], self.stop),
+                // A surface without an rms height has no F_bar: no load has an answer, and each row says so.
+                Err(error) => Err(error.clone()),
+            };
+            let record = match found {
+                Ok(state) => {
+                    let errors = |of: &GridComparison| of.errors(index, &state, &normalisation);
+                    let grid = comparison.as_ref().map(errors);
+                    let warnings = Warning::of(self.scene, &state, grid.as_ref());
+                    let solved = AnsweredState { state, normalisation, warnings, grid };
+                    self.unit.recorded(self.scene, solved, self.out, index)?
+                }
+                Err(contact_model::Error::NotConverged { best }) => missed(index, *best, normalisation),
+                Err(contact_model::Error::Stopped { .. }) => {
+                    self.keep(true);
+                    return Ok(());
+                }
+                Err(other) => StateRecord::new(index, Answer::Refused(words::refusal(self.scene, &other))),
+            };
+            self.result.states.insert(place, record);
+            self.keep(false);
+        }
+        self.result.complete = true;
+        Ok(())
+    }
+
+    /// All loads on coarser grids, also of a run that goes on, because each state there begins with the one
+    /// before it. `None` where it was stopped.
+    fn coarser_grids(&self, loads: &[Load]) -> Result<Option<GridComparison>> {
+        let Self { unit, scene, stop, .. } = *self;
+        match GridComparison::solve(scene, unit.numerics(scene), scene.seed(unit.surface), loads, stop) {
+            Err(contact_model::Error::Stopped { .. }) => Ok(None),
+            found => {
+                let what = || format!("coarser grids of surface {}", unit.surface);
+                Ok(Some(found.map_err(|error| runs::Error::model(what())(error))?))
+            }
+        }
+    }
+
+    /// Solves the steps of a path after those of the result.
+    fn path(&mut self, pieces: &[PathPiece]) -> Result<()> {
+        let normalisation = self.contact.normalisation();
+        let model = self.unit.numerics(self.scene).name();
+        let step_of = |index: usize, states: &[StateRecord]| {
+            step_to(index, pieces, model, |before| Some(&states.get(before)?.solved()?.state))
+        };
+        let mut largest = LargestPull::default();
+        for (index, record) in self.result.states.iter().enumerate() {
+            if let (Some(solved), Ok(step)) = (record.solved(), step_of(index, &self.result.states)) {
+                let _ = largest.enter(step.load.normal, solved.state.clone());
+            }
+        }
+        for index in self.result.states.len()..self.scene.request.count() {
+            let step = step_of(index, &self.result.states);
+            let advanced = step.and_then(|step| match self.contact.advance_until(step, self.stop) {
+                Err(contact_model::Error::Stopped { .. }) => Ok(None),
+                Ok(state) => Ok(Some((largest.enter(step.load.normal, state), true))),
+                // The best state of a solve that missed its tolerance or, beyond the pull-off force, the last
+                // stable state.
+                Err(error) => {
+                    let best = error.into_best()?.with_fields(None).with_patches(None);
+                    Ok(Some((largest.enter(step.load.normal, best), false)))
+                }
+            });
+            let record = match advanced {
+                Ok(None) => {
+                    self.keep(true);
+                    return Ok(());
+                }
+                Ok(Some((state, true))) => {
+                    let warnings = Warning::of(self.scene, &state, None);
+                    let solved = AnsweredState { state, normalisation, warnings, grid: None };
+                    self.unit.recorded(self.scene, solved, self.out, index)?
+                }
+                Ok(Some((best, false))) => missed(index, best, normalisation),
+                Err(error) => StateRecord::new(index, Answer::Refused(words::refusal(self.scene, &error))),
+            };
+            let failed = record.converged().is_none();
+            self.result.states.push(record);
+            if failed {
+                // The steps after one that failed would belong to another path.
+                break;
+            }
+            self.keep(false);
+        }
+        self.result.complete = true;
+        Ok(())
+    }
+}
+
+/// The record of a state that missed its tolerance, without its fields.
+fn missed(index: usize, best: ContactState, normalisation: Normalisation) -> StateRecord {
+    let state = best.with_fields(None).with_patches(None);
+    let solved = AnsweredState { state, normalisation, warnings: Vec::new(), grid: None };
+    StateRecord::new(index, Answer::State(Box::new(solved)))
+}
+
 /// A field as files have it: there is no gap at an undefined point.
 fn on_defined_points<'a>(name: &str, field: &'a Field, scene: &SceneFile) -> Cow<'a, [f64]> {
     match scene.surface.given_map() {
@@ -288,6 +290,42 @@ fn on_defined_points<'a>(name: &str, field: &'a Field, scene: &SceneFile) -> Cow
             map.heights().iter().zip(field.values()).map(defined).collect()
         }
         _ => Cow::Borrowed(field.values()),
+    }
+}
+
+/// A field that is written to files.
+struct WrittenField<'a> {
+    quantity: &'a FieldQuantity,
+    field: &'a Field,
+    components: &'a [Cow<'a, [f64]>],
+    /// One component after the other.
+    all: &'a [f64],
+    /// What a picture shows.
+    shown: &'a [f64],
+}
+
+impl WrittenField<'_> {
+    /// Writes a format of it, and returns whether there is such a file. Pictures with axes are drawn later, when
+    /// all states have been solved.
+    fn write(&self, format: FieldFormat, drawn: bool, path: &Path, scene: &SceneFile) -> Result<bool> {
+        let Self { quantity, field, components, all, shown } = *self;
+        match format {
+            FieldFormat::Npy => {
+                let shape = [components.len(), field.rows(), field.columns()];
+                let bytes = surface_io::npy(&shape[usize::from(components.len() == 1)..], all)
+                    .map_err(|e| runs::Error::content(path, e.to_string()))?;
+                runs::files::write_whole(path, &bytes)?;
+            }
+            FieldFormat::Png => return Ok(false),
+            FieldFormat::Pixels if !drawn => return Ok(false),
+            FieldFormat::Pixels => {
+                let name = path.display().to_string();
+                let png = plots::grey_png(&name, field.cells(), field.size(), shown)?;
+                runs::files::write_whole(path, &png)?;
+            }
+            FieldFormat::Vti => write_vti(path, quantity, scene, field.cells(), components)?,
+        }
+        Ok(true)
     }
 }
 
@@ -318,8 +356,12 @@ fn write_vti(
 mod tests {
     use super::*;
     use crate::scenes::{PrescribedLoad, SceneSurface};
-    use contact_model::{ContactState, Fields, HeightMap, Output, SolveReport, Step};
+    use contact_model::{Fields, HeightMap, Output, SolveReport, Step};
     use std::sync::Arc;
+
+    fn field_pictures_in<'a>(scene: &'a SceneFile, out: &'a Path) -> field_pictures::FieldPictures<'a> {
+        field_pictures::FieldPictures { scene, model: "bem3d", surface: 0, cells: [3, 2].into(), out }
+    }
 
     /// Fields of 2 rows x 3 columns with oblong cells; the second point of the second row is undefined.
     #[test]
@@ -346,7 +388,8 @@ mod tests {
         // Three files of each field, its values for the picture, and what the report shows of it.
         assert_eq!((kept.files.len(), kept.solved().unwrap().state.fields.is_none()), (10, true));
         let mut result = ModelResult { states: vec![kept], complete: true, ..ModelResult::default() };
-        let drawn = field_pictures::draw(&scene, ("bem3d", 0), [3, 2].into(), dir.path(), &mut result);
+        let pictures = field_pictures_in(&scene, dir.path());
+        let drawn = field_pictures::draw(pictures, &mut result);
         let drawn = drawn.unwrap();
         let files = &result.states[0].files;
         assert_eq!((files.len(), files.iter().filter(|file| file.is_hidden()).count()), (10, 2));
@@ -397,7 +440,7 @@ mod tests {
         let unit = ModelOnSurface { model: 0, surface: 0 };
         let kept = unit.recorded(&scene, solved, dir.path(), 0).unwrap();
         let mut result = ModelResult { states: vec![kept], complete: true, ..ModelResult::default() };
-        field_pictures::draw(&scene, ("bem3d", 0), [3, 2].into(), dir.path(), &mut result).unwrap();
+        field_pictures::draw(field_pictures_in(&scene, dir.path()), &mut result).unwrap();
         let files = &result.states[0].files;
         assert!(files.iter().all(|file| file.is_whole(dir.path())), "{files:?}");
         for name in ["traction", "slip", "stick_slip"] {

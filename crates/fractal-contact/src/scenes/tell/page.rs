@@ -7,7 +7,7 @@ use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use contact_model::units::number;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
-use plots::{Chart, FieldPicture, Palette};
+use plots::{Chart, ColourScale, FieldPicture, Palette};
 
 const STYLE: &str = include_str!("page/page.css");
 const SCRIPT: &str = include_str!("page/page.js");
@@ -116,10 +116,7 @@ pub(crate) fn field(picture: &FieldPicture<'_>, view: &FieldView) -> Result<Mark
     let size = picture.size;
     let (length, per_length) = multiple(picture.length_unit, size.x.max(size.y));
     let (unit_name, per_unit) = multiple(picture.unit, high.abs().max(low.abs()));
-    let with = |text: String| html! { (text) " " (unit(&unit_name)) };
-    let end = |v: f64| with(short(per_unit * v));
     let words = picture.quantity.split('$').next().unwrap_or_default().trim().trim_end_matches(", magnitude");
-    let reduction = view.reduction();
     let data = serde_json::json!({
         "across": view.shown.columns, "down": view.shown.rows,
         "columns": view.cells.columns, "rows": view.cells.rows,
@@ -136,19 +133,7 @@ pub(crate) fn field(picture: &FieldPicture<'_>, view: &FieldView) -> Result<Mark
         String::new()
     };
     let alt = format!("{}, {}: {of_cells}{range}.", picture.title, picture.subtitle);
-    let mut ramp = "linear-gradient(to right".to_owned();
-    for [r, g, b] in scale.palette().colours().into_iter().step_by(17) {
-        ramp += &format!(",rgb({r},{g},{b})");
-    }
-    let colour = |value: usize| {
-        let [r, g, b] = scale.colour(value as f64);
-        format!("background:rgb({r},{g},{b})")
-    };
-    let axis = |side: f64, edge: &str| {
-        let most = (TICKS[0] * (side / size.x.max(size.y))).max(TICKS[1]);
-        let side = side * per_length;
-        html! { @for tick in ticks(side, most) { span style=(format!("{edge}:{:.3}%", 100.0 * (tick / side))) { (number(contact_model::units::rounded(tick, 12))) } } }
-    };
+    let axis = |side: f64, edge: &str| axis_ticks(side, size.x.max(size.y), per_length, edge);
     let name = |axis: &str| html! { i { (axis) } @if !length.is_empty() { " (" (length) ")" } };
     Ok(html! {
         figure.field data-field=(data.to_string()) {
@@ -159,11 +144,7 @@ pub(crate) fn field(picture: &FieldPicture<'_>, view: &FieldView) -> Result<Mark
                 div.x aria-hidden="true" { (axis(size.x, "left")) }
                 div.name aria-hidden="true" { (name("x")) }
             }
-            @if picture.classes.is_empty() {
-                div.bar aria-hidden="true" { span { (end(low)) } i style={ "background:" (ramp) ")" } {} span { (end(high)) } }
-            } @else {
-                div.bar aria-hidden="true" { @for (value, words) in picture.classes.iter().enumerate() { b style=(colour(value)) {} span { (words) } } }
-            }
+            (colour_bar(&scale, picture.classes, (&unit_name, per_unit)))
             div.tools {
                 button type="button" aria-label={ "Enlarge: " (words) } { "+" }
                 button type="button" aria-label={ "Reduce: " (words) } { "-" }
@@ -171,17 +152,61 @@ pub(crate) fn field(picture: &FieldPicture<'_>, view: &FieldView) -> Result<Mark
             }
             figcaption {
                 strong { (picture.title) } ", " (picture.subtitle)
-                @if let Some(reduction) = reduction { ". " (reduction) }
+                @if let Some(reduction) = view.reduction() { ". " (reduction) }
             }
             output aria-live="polite" {}
-            script.values type="application/octet-stream" {
-                (PreEscaped(STANDARD.encode(view.values.iter().flat_map(|v| v.to_le_bytes()).collect::<Vec<u8>>())))
-            }
-            script.places type="application/octet-stream" {
-                (PreEscaped(STANDARD.encode(view.places.as_flattened())))
-            }
+            (read_by_script(view))
         }
     })
+}
+
+/// The numbers beside an axis of a map, placed from `edge`; `per_length` is the shown unit's in the scene's.
+fn axis_ticks(side: f64, longest: f64, per_length: f64, edge: &str) -> Markup {
+    let most = (TICKS[0] * (side / longest)).max(TICKS[1]);
+    let side = side * per_length;
+    html! {
+        @for tick in ticks(side, most) {
+            span style=(format!("{edge}:{:.3}%", 100.0 * (tick / side))) {
+                (number(contact_model::units::rounded(tick, 12)))
+            }
+        }
+    }
+}
+
+/// The colours of a map: from its lowest to its highest value in a unit, or one of each class.
+fn colour_bar(scale: &ColourScale, classes: &[&str], (unit_name, per_unit): (&str, f64)) -> Markup {
+    let end = |value: f64| html! { (short(per_unit * value)) " " (unit(unit_name)) };
+    let (low, high) = scale.ends();
+    let mut ramp = "linear-gradient(to right".to_owned();
+    for [r, g, b] in scale.palette().colours().into_iter().step_by(17) {
+        ramp += &format!(",rgb({r},{g},{b})");
+    }
+    let colour = |value: usize| {
+        let [r, g, b] = scale.colour(value as f64);
+        format!("background:rgb({r},{g},{b})")
+    };
+    html! {
+        div.bar aria-hidden="true" {
+            @if classes.is_empty() {
+                span { (end(low)) } i style={ "background:" (ramp) ")" } {} span { (end(high)) }
+            } @else {
+                @for (value, words) in classes.iter().enumerate() {
+                    b style=(colour(value)) {} span { (words) }
+                }
+            }
+        }
+    }
+}
+
+/// The values of a map and the places of their cells, which the page's script reads.
+fn read_by_script(view: &FieldView) -> Markup {
+    let values: Vec<u8> = view.values.iter().flat_map(|v| v.to_le_bytes()).collect();
+    html! {
+        script.values type="application/octet-stream" { (PreEscaped(STANDARD.encode(values))) }
+        script.places type="application/octet-stream" {
+            (PreEscaped(STANDARD.encode(view.places.as_flattened())))
+        }
+    }
 }
 
 #[cfg(test)]

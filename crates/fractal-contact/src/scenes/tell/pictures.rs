@@ -228,6 +228,23 @@ fn begins_at_zero(scene: &SceneFile, x: HorizontalAxis) -> bool {
         && (over("time") || effects.hardness != Hardness::Off)
 }
 
+/// Over how many of the requested surfaces the means are, and what is shaded. An interrupted run has fewer.
+fn mean_over(means: &[Mean], asked: usize, shaded: bool) -> String {
+    let solved = |mean: &&Mean| mean.surfaces > 1 || asked == 1;
+    let counts: Vec<usize> = means.iter().filter(solved).map(|mean| mean.surfaces).collect();
+    let (few, many) = (counts.iter().min().copied(), counts.iter().max().copied());
+    let surfaces = match (few, many) {
+        (Some(few), Some(many)) if few == many && many < asked => format!("{few} of {asked}"),
+        (Some(few), Some(many)) if few < many => format!("{few} to {many} of {asked}"),
+        _ => asked.to_string(),
+    };
+    let shaded = match few.zip(many).filter(|_| shaded) {
+        Some((few, many)) => format!("; shaded: 95 % interval {}", ensemble::distribution(few, many)),
+        None => String::new(),
+    };
+    format!("; means over {surfaces} surfaces{shaded}")
+}
+
 fn chart(states: &StateTable<'_>, x: HorizontalAxis, y: &'static StateQuantity) -> Chart {
     let StateTable { scene, means, .. } = states;
     let quantities = drawn_with(scene, y);
@@ -261,22 +278,7 @@ fn chart(states: &StateTable<'_>, x: HorizontalAxis, y: &'static StateQuantity) 
     let surfaces = match scene.sampling.surfaces {
         1 if shaded => "; shaded: the estimated error of the grid, as a factor".to_owned(),
         1 => String::new(),
-        asked => {
-            // An interrupted run has fewer surfaces.
-            let solved = |mean: &&Mean| mean.surfaces > 1 || asked == 1;
-            let counts: Vec<usize> = means.iter().filter(solved).map(|mean| mean.surfaces).collect();
-            let (few, many) = (counts.iter().min().copied(), counts.iter().max().copied());
-            let surfaces = match (few, many) {
-                (Some(few), Some(many)) if few == many && many < asked => format!("{few} of {asked}"),
-                (Some(few), Some(many)) if few < many => format!("{few} to {many} of {asked}"),
-                _ => asked.to_string(),
-            };
-            let shaded = match few.zip(many).filter(|_| shaded) {
-                Some((few, many)) => format!("; shaded: 95 % interval {}", ensemble::distribution(few, many)),
-                None => String::new(),
-            };
-            format!("; means over {surfaces} surfaces{shaded}")
-        }
+        asked => mean_over(means, asked, shaded),
     };
     Chart {
         title,

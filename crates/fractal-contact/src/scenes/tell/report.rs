@@ -244,25 +244,8 @@ impl Report<'_> {
     /// The map and the fields of the first surface as long as there is room: of the largest loads first, or
     /// of steps spread over a path; shown in the order of the loads, each quantity in one scale.
     fn fields(&self) -> Result<Markup> {
-        let mut views: Vec<View<'_>> = Vec::new();
-        for &SolvedUnit { model, surface, states } in self.states.units.iter().filter(|of| of.surface == 0) {
-            for state in self.by_importance(states) {
-                views.extend(self.scene().requested.fields().filter_map(|(field, _)| {
-                    let file =
-                        FieldFile { field: field.name, model, surface, state: state.index, extension: "" };
-                    Some(View { shown: (self.view)(file)?, field, model, state: Some(state) })
-                }));
-            }
-        }
-        if let (Some(map), false) = (self.scene().surface.given_map(), views.iter().any(View::is_surface)) {
-            let model = self.scene().models.first().map_or("", |model| model.name());
-            let shown = FieldView::new(map.cells(), map.heights());
-            views.insert(0, View { shown, field: &HEIGHTS, model, state: None });
-        }
-        // The map first.
-        views.sort_by_key(|view| !view.is_surface());
+        let views = self.views();
         let ranges = ranges(&views);
-        let count = views.len();
         let mut drawn = Vec::new();
         let (mut bytes, mut zeros) = (0, 0);
         for view in &views {
@@ -270,22 +253,12 @@ impl Report<'_> {
                 zeros += 1;
                 continue;
             }
-            let View { shown, field, model, state } = view;
-            let mut picture =
-                field_pictures::picture(self.scene(), field, model, (0, *state), shown.cells, &[]);
-            picture.range = ranges.get(&(field.name, *model)).copied();
-            let figure = if self.scene().surface.is_profile() {
-                picture.subtitle += &shown.reduction().map_or_else(String::new, |said| format!("; {said}"));
-                page::chart(&field_pictures::row_chart(&picture, shown.row(self.scene().surface.size().x)))?
-            } else {
-                page::field(&picture, shown)?
-            };
-            let figure = figure.into_string();
+            let figure = self.figure(view, ranges.get(&(view.field.name, view.model)).copied())?;
             bytes += figure.len();
             if bytes > MOST_BYTES {
                 break;
             }
-            drawn.push((view.is_surface(), *state, figure));
+            drawn.push((view.is_surface(), view.state, figure));
         }
         let order = |(surface, state, _): &(bool, Option<&StateRecord>, String)| {
             (!surface, state.map_or(0.0, |state| self.load(state)))
@@ -302,13 +275,48 @@ impl Report<'_> {
             } @else {
                 p {
                     @if !self.scene().surface.is_profile() { (page::READING) }
-                    @if count > 2 { " Each quantity has one scale." }
+                    @if views.len() > 2 { " Each quantity has one scale." }
                     @if zeros > 0 { " Fields that are zero everywhere are not drawn." }
-                    @if drawn.len() + zeros < count { " " (drawn.len()) " of " (count) " fields are shown, " (which) "; the others are files beside this page." }
+                    @if drawn.len() + zeros < views.len() { " " (drawn.len()) " of " (views.len()) " fields are shown, " (which) "; the others are files beside this page." }
                 }
                 div.fields { @for (_, _, figure) in &drawn { (PreEscaped(figure)) } }
             }
         })
+    }
+
+    /// The fields of the first surface that were kept for the page, the map before all others.
+    fn views(&self) -> Vec<View<'_>> {
+        let mut views: Vec<View<'_>> = Vec::new();
+        for &SolvedUnit { model, surface, states } in self.states.units.iter().filter(|of| of.surface == 0) {
+            for state in self.by_importance(states) {
+                views.extend(self.scene().requested.fields().filter_map(|(field, _)| {
+                    let file =
+                        FieldFile { field: field.name, model, surface, state: state.index, extension: "" };
+                    Some(View { shown: (self.view)(file)?, field, model, state: Some(state) })
+                }));
+            }
+        }
+        if let (Some(map), false) = (self.scene().surface.given_map(), views.iter().any(View::is_surface)) {
+            let model = self.scene().models.first().map_or("", |model| model.name());
+            let shown = FieldView::new(map.cells(), map.heights());
+            views.insert(0, View { shown, field: &HEIGHTS, model, state: None });
+        }
+        views.sort_by_key(|view| !view.is_surface());
+        views
+    }
+
+    /// A field with its axes, or the curve of a profile.
+    fn figure(&self, view: &View<'_>, range: Option<(f64, f64)>) -> Result<String> {
+        let View { shown, field, model, state } = view;
+        let mut picture = field_pictures::picture(self.scene(), field, model, (0, *state), shown.cells, &[]);
+        picture.range = range;
+        let figure = if self.scene().surface.is_profile() {
+            picture.subtitle += &shown.reduction().map_or_else(String::new, |said| format!("; {said}"));
+            page::chart(&field_pictures::row_chart(&picture, shown.row(self.scene().surface.size().x)))?
+        } else {
+            page::field(&picture, shown)?
+        };
+        Ok(figure.into_string())
     }
 
     /// What states are sorted by: the load that is prescribed, along a path the step.

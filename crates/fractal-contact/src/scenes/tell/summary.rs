@@ -304,6 +304,40 @@ fn percent(share: f64) -> String {
     format!("{} %", number(rounded(100.0 * share, 2)))
 }
 
+/// The columns of a model's table that say something.
+#[derive(Default)]
+struct TableColumns {
+    heads: Vec<Head>,
+    /// The cells of each column.
+    texts: Vec<Vec<String>>,
+    /// What is the same in every row, each in a line of its own.
+    same: Vec<String>,
+}
+
+impl TableColumns {
+    /// From names, units and cells. The first one, of what is prescribed, always stays.
+    fn of<'a>(columns: impl Iterator<Item = (&'a str, &'static str, Vec<Cell>)>) -> Self {
+        let mut table = Self::default();
+        for (i, (name, unit, cells)) in columns.enumerate() {
+            let (unit, cells) = read_column(unit, &cells);
+            let unit = if ["scene", "1"].contains(&&*unit) { String::new() } else { unit };
+            // A column without anything says nothing, and neither do the zeros of a time that does not pass.
+            let empty = cells.iter().all(|cell| cell == NOTHING)
+                || name == "time" && cells.iter().all(|cell| cell == "0");
+            if i > 0 && empty {
+                continue;
+            }
+            if i > 0 && cells.len() >= SEVERAL && cells.iter().all(|cell| *cell == cells[0]) {
+                table.same.push(format!("{name} {} {unit}", cells[0]).trim_end().to_owned());
+                continue;
+            }
+            table.heads.push(Head { name: name.to_owned(), unit });
+            table.texts.push(cells);
+        }
+        table
+    }
+}
+
 /// The answers of each model; of several surfaces their means with half of their intervals.
 pub(crate) fn of_models(table: &StateTable<'_>) -> Vec<ModelStates> {
     let StateTable { scene, means, .. } = table;
@@ -335,29 +369,10 @@ pub(crate) fn of_models(table: &StateTable<'_>) -> Vec<ModelStates> {
         let rest = columns.map(|of| {
             (of.name(), of.unit(scene), column(&|record| of.of_state(record), &|mean| of.of_mean(mean)))
         });
-        let (mut heads, mut kept, mut same) = (Vec::new(), Vec::new(), Vec::new());
-        for (i, (name, unit, cells)) in std::iter::once(first).chain(rest).enumerate() {
-            let (unit, cells) = read_column(unit, &cells);
-            let head = Head {
-                name: name.to_owned(),
-                unit: if ["scene", "1"].contains(&&*unit) { String::new() } else { unit },
-            };
-            // A column without anything says nothing, and neither do the zeros of a time that does not pass.
-            let empty = cells.iter().all(|cell| cell == NOTHING)
-                || name == "time" && cells.iter().all(|cell| cell == "0");
-            if i > 0 && empty {
-                continue;
-            }
-            if i > 0 && cells.len() >= SEVERAL && cells.iter().all(|cell| *cell == cells[0]) {
-                same.push(format!("{} {} {}", head.name, cells[0], head.unit).trim_end().to_owned());
-                continue;
-            }
-            heads.push(head);
-            kept.push(cells);
-        }
-        let count = kept.first().map_or(0, Vec::len);
+        let TableColumns { heads, texts, same } = TableColumns::of(std::iter::once(first).chain(rest));
+        let count = texts.first().map_or(0, Vec::len);
         let compared = states().any(|record| record.solved().is_some_and(|solved| solved.grid.is_some()));
-        let errors = if averaged || !kept.iter().flatten().any(|cell| cell.contains(PLUS_MINUS)) {
+        let errors = if averaged || !texts.iter().flatten().any(|cell| cell.contains(PLUS_MINUS)) {
             ""
         } else if compared {
             OF_GRID
@@ -369,7 +384,7 @@ pub(crate) fn of_models(table: &StateTable<'_>) -> Vec<ModelStates> {
             of_surfaces: ensemble::words(means()),
             heads,
             rows: (0..count.min(MOST))
-                .map(|row| kept.iter().map(|column| column[row].clone()).collect())
+                .map(|row| texts.iter().map(|column| column[row].clone()).collect())
                 .collect(),
             left_out: count.saturating_sub(MOST),
             same,
