@@ -11,7 +11,7 @@
 //! - **Direction.** Descending coordinates turn their axis round, so that x and y ascend.
 //! - **Refused** are coordinates in unequal steps, and dimensions of which only one is x or y.
 
-use crate::channel::{Bytes, FileAxes, RawHeights, StoredChannel, StoredUnit, Undefined};
+use crate::channel::{Bytes, FileAxes, MaskedHeights, RawHeights, StoredChannel, StoredUnit, Undefined};
 use crate::error::Result;
 use crate::extent::Extent;
 use crate::number_type::NumberType;
@@ -300,8 +300,9 @@ impl Array {
         let mut channel = match (numbers, self.mask) {
             (Numbers::Stored(bytes), None) => StoredChannel::new(source, raw(bytes), shape, unit, extent)?,
             (Numbers::Stored(bytes), Some(mask)) => {
-                let mask = (RawHeights { order, reversed, ..mask }, "masked points undefined");
-                StoredChannel::masked(source, raw(bytes), mask, shape, unit, extent)?
+                let mask = RawHeights { order, reversed, ..mask };
+                let masked = MaskedHeights { raw: raw(bytes), mask, detail: "masked points undefined" };
+                StoredChannel::masked(source, masked, shape, unit, extent)?
             }
             (Numbers::Decoded(detail, read), _) => {
                 let raw = raw(Bytes::Held(Vec::new()));

@@ -129,6 +129,14 @@ pub(crate) struct RawHeights {
     pub(crate) valid: [f64; 2],
 }
 
+/// Numbers that are undefined where those of a mask are not 0.
+pub(crate) struct MaskedHeights {
+    pub(crate) raw: RawHeights,
+    pub(crate) mask: RawHeights,
+    /// What the mask does, for people.
+    pub(crate) detail: &'static str,
+}
+
 /// Where numbers are.
 #[derive(Clone)]
 pub(crate) enum Bytes {
@@ -427,15 +435,15 @@ impl StoredChannel {
         Self { name: None, details, rows, columns, unit, extent, axes, notes, compared, heights }
     }
 
-    /// The channel of numbers as [`StoredChannel::new`], undefined where those of a mask are not 0.
+    /// A channel as that of [`StoredChannel::new`], of numbers with a mask.
     pub(crate) fn masked(
         source: &OpenedFile<'_>,
-        raw: RawHeights,
-        (mask, detail): (RawHeights, &str),
+        masked: MaskedHeights,
         [rows, columns]: [usize; 2],
         unit: StoredUnit,
         extent: [Option<Extent>; 2],
     ) -> Result<Self> {
+        let MaskedHeights { raw, mask, detail } = masked;
         raw.check(source, rows, columns)?;
         mask.check(source, rows, columns)?;
         let (details, compared) = (format!("{}, {detail}", raw.details()), raw.compared());

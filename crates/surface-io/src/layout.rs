@@ -98,93 +98,116 @@ fn by_names(
     declared: &ReadOptions,
 ) -> Result<Layout, ContentError> {
     let columns = &table.heading.columns;
-    let refused = |problem: String| {
-        let columns: Vec<String> = columns.iter().map(ToString::to_string).collect();
-        ContentError::Columns { columns: columns.join(", "), problem }
-    };
-    let of = |is: &dyn Fn(&TextColumn) -> bool| -> Vec<usize> {
-        (0..columns.len()).filter(|&at| is(&columns[at])).collect()
-    };
-    let [along_x, along_y] = [0, 1].map(|axis| of(&|column| column.axis() == Some(axis)));
-    for places in [&along_x, &along_y] {
-        if let [first, second, ..] = places[..] {
+    let ColumnRoles { axes, values } = ColumnRoles::of(columns, requested)?;
+    check_values(columns, &values)?;
+    let unused = note_of_unused(columns, &axes, &values);
+    let mut maps = Vec::with_capacity(values.len());
+    for &value in &values {
+        let column = &columns[value];
+        let named = values.len() > 1 || column.kind == ColumnKind::Other;
+        maps.push(PointColumns {
+            axes: axes.iter().map(|&at| axis_column(table, at, declared)).collect::<Result<_, _>>()?,
+            value,
+            name: named.then(|| column.name.clone()),
+            unit: unit_of_values(table, column)?,
+            notes: unused.iter().cloned().collect(),
+        });
+    }
+    Ok(if axes.len() == 2 { Layout::Points(maps) } else { Layout::Profiles(maps) })
+}
+
+/// Which columns are coordinates, x before y, and which are values.
+struct ColumnRoles {
+    axes: Vec<usize>,
+    values: Vec<usize>,
+}
+
+impl ColumnRoles {
+    /// Finds the coordinates and the values among named columns.
+    fn of(columns: &[TextColumn], requested: Option<Format>) -> Result<Self, ContentError> {
+        let (mut x, mut y) = coordinates(columns)?;
+        let heights = places(columns, |column| column.kind == ColumnKind::Height);
+        let along = places(columns, |column| column.kind == ColumnKind::Along);
+        let mut others =
+            places(columns, |column| column.kind == ColumnKind::Other && !column.name.is_empty());
+        if let (None, None) = (x, y) {
+            x = along.first().copied();
+        } else {
+            others.extend(along);
+            others.sort_unstable();
+        }
+        let mut values = if heights.is_empty() { others } else { heights };
+        if let (Some(Format::Profile), Some(_), Some(value), []) = (requested, x, y, &values[..]) {
+            // y over x.
+            (y, values) = (None, vec![value]);
+        }
+        let leave = "skip_lines leaves out the heading, and format = \"text\" takes all columns for heights";
+        let axes: Vec<usize> = [x, y].into_iter().flatten().collect();
+        let wrong = match (requested, axes.len()) {
+            (_, 0) => Some("expected coordinates x and y, or x of a profile, among them"),
+            (Some(Format::Xyz), 1) => Some("points need x and y"),
+            (Some(Format::Profile), 2) => Some("a profile needs x and heights alone"),
+            _ => None,
+        };
+        match wrong {
+            Some(wrong) => Err(refused(columns, format!("{wrong}; {leave}"))),
+            None => Ok(Self { axes, values }),
+        }
+    }
+}
+
+/// The columns along x and along y, each of them one at most.
+fn coordinates(columns: &[TextColumn]) -> Result<(Option<usize>, Option<usize>), ContentError> {
+    let [along_x, along_y] = [0, 1].map(|axis| places(columns, |column| column.axis() == Some(axis)));
+    for along in [&along_x, &along_y] {
+        if let [first, second, ..] = along[..] {
             let (first, second) = (&columns[first], &columns[second]);
-            return Err(refused(format!("{first} and {second} are along one axis, expected one of them")));
+            let problem = format!("{first} and {second} are along one axis, expected one of them");
+            return Err(refused(columns, problem));
         }
     }
     if let Some(column) = columns.iter().find(|column| matches!(column.kind, ColumnKind::Degrees(_))) {
         let remedy = "project the points to lengths, such as metres of easting and northing";
-        return Err(refused(format!("{column} is an angle, and no length: {remedy}")));
+        return Err(refused(columns, format!("{column} is an angle, and no length: {remedy}")));
     }
-    let (mut x, mut y) = (along_x.first().copied(), along_y.first().copied());
-    let heights = of(&|column| column.kind == ColumnKind::Height);
-    let mut others = of(&|column| column.kind == ColumnKind::Other && !column.name.is_empty());
-    if let (None, None) = (x, y) {
-        x = of(&|column| column.kind == ColumnKind::Along).first().copied();
-    } else {
-        others.extend(of(&|column| column.kind == ColumnKind::Along));
-        others.sort_unstable();
-    }
-    let mut values = if heights.is_empty() { others } else { heights };
-    if let (Some(Format::Profile), Some(_), Some(value), []) = (requested, x, y, &values[..]) {
-        // y over x.
-        (y, values) = (None, vec![value]);
-    }
-    let leave = "skip_lines leaves out the heading, and format = \"text\" takes all columns for heights";
-    let axes = match (x, y) {
-        (None, None) => {
-            return Err(refused(format!(
-                "expected coordinates x and y, or x of a profile, among them; {leave}"
-            )));
-        }
-        (Some(x), Some(y)) => vec![x, y],
-        (Some(along), None) | (None, Some(along)) => vec![along],
-    };
-    let wrong = match (requested, axes.len()) {
-        (Some(Format::Xyz), 1) => Some("points need x and y"),
-        (Some(Format::Profile), 2) => Some("a profile needs x and heights alone"),
-        _ => None,
-    };
-    if let Some(wrong) = wrong {
-        return Err(refused(format!("{wrong}; {leave}")));
-    }
+    Ok((along_x.first().copied(), along_y.first().copied()))
+}
+
+/// Refuses a heading without a column of heights, or with more of them than a file has channels.
+fn check_values(columns: &[TextColumn], values: &[usize]) -> Result<(), ContentError> {
     if values.is_empty() {
         let remedy = "expected a column of heights beside the coordinates";
         let profile = "format = \"profile\" takes y for heights over x";
-        return Err(refused(if columns.len() == 2 {
-            format!("{remedy}; {profile}")
-        } else {
-            remedy.to_owned()
-        }));
+        let problem = if columns.len() == 2 { format!("{remedy}; {profile}") } else { remedy.to_owned() };
+        return Err(refused(columns, problem));
     }
     if values.len() > MOST_CHANNELS {
-        return Err(refused(format!(
-            "expected at most {MOST_CHANNELS} columns of heights, found {}",
-            values.len()
-        )));
+        let found = values.len();
+        let problem = format!("expected at most {MOST_CHANNELS} columns of heights, found {found}");
+        return Err(refused(columns, problem));
     }
+    Ok(())
+}
+
+/// A note on the columns that are neither coordinates nor values, where there are any.
+fn note_of_unused(columns: &[TextColumn], axes: &[usize], values: &[usize]) -> Option<String> {
     let unused: Vec<String> = (0..columns.len())
         .filter(|at| !axes.contains(at) && !values.contains(at) && !columns[*at].cell.is_empty())
         .map(|at| columns[at].to_string())
         .collect();
-    let several = values.len() > 1;
-    let mut maps = Vec::with_capacity(values.len());
-    let places = axes;
-    for value in values {
-        let axes = places.iter().map(|&at| axis_column(table, at, declared)).collect::<Result<_, _>>()?;
-        let column = &columns[value];
-        let named = several || column.kind == ColumnKind::Other;
-        let mut notes = Vec::new();
-        if !unused.is_empty() {
-            notes.push(format!(
-                "the heading names further columns, which are not used: {}",
-                unused.join(", ")
-            ));
-        }
-        let name = named.then(|| column.name.clone());
-        maps.push(PointColumns { axes, value, name, unit: unit_of_values(table, column)?, notes });
-    }
-    Ok(if places.len() == 2 { Layout::Points(maps) } else { Layout::Profiles(maps) })
+    let list = unused.join(", ");
+    (!unused.is_empty()).then(|| format!("the heading names further columns, which are not used: {list}"))
+}
+
+/// The places of the columns of one kind.
+fn places(columns: &[TextColumn], is: impl Fn(&TextColumn) -> bool) -> Vec<usize> {
+    (0..columns.len()).filter(|&at| is(&columns[at])).collect()
+}
+
+/// The error of a heading whose columns are no map.
+fn refused(columns: &[TextColumn], problem: String) -> ContentError {
+    let columns: Vec<String> = columns.iter().map(ToString::to_string).collect();
+    ContentError::Columns { columns: columns.join(", "), problem }
 }
 
 /// The unit of the values of a column: that of its heading, or of a statement about heights.

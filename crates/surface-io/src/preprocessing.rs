@@ -20,6 +20,7 @@ use contact_model::units::{five, number};
 use contact_model::{Cells, HeightMap, Size};
 use std::str::FromStr;
 use surface_gen::{hann_window, rms_height};
+use trend::FittedTrend;
 
 /// Steps that turn a scan into a map, in this order. A step is done only if it is named.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -252,7 +253,48 @@ impl Scan {
         heights: Vec<f64>,
         preprocessing: &Preprocessing,
     ) -> Result<Preprocessed, ContentError> {
+        self.check(preprocessing)?;
+        let (size, cell) = self.sides()?;
+        // Cells that no map may have are refused before anything is fitted to them.
+        Cells::from(1).validate(Size::from(cell)).map_err(ContentError::Map)?;
         let mut steps = Vec::new();
+        let (cells, mut heights) = self.part(heights, preprocessing.crop, cell, &mut steps)?;
+        self.convert_to_metres(&mut heights)?;
+        repair(preprocessing, cells, &mut heights, &mut steps)?;
+        let undefined = count_undefined(&heights)?;
+        let mut reliable_from = None;
+        if let Some(radius) = preprocessing.tip_radius {
+            let (step, distance) = self.tip(radius, cells, cell, &heights)?;
+            steps.push(step);
+            reliable_from = distance;
+        }
+        // Before undefined points are filled: the trend is that of the measured heights.
+        let trend = FittedTrend::new(preprocessing.detrend, cells, cell, &heights)?;
+        if undefined > 0 {
+            steps.extend(self.treat_undefined(preprocessing, undefined, cells, cell, &mut heights)?);
+        }
+        if let Some(trend) = trend {
+            trend.subtract(&mut heights);
+            steps.push(trend.words(preprocessing.detrend));
+        }
+        if let Some(cut_off) = preprocessing.filter_across {
+            steps.push(self.filter(cut_off, cells, cell[1], &mut heights)?);
+        }
+        let size = self.size_of_part(size, cells, cell);
+        let (cells, heights) = averaged(preprocessing, cells, heights, &mut steps)?;
+        let kept = undefined > 0 && preprocessing.fill.is_none();
+        let map = if kept {
+            HeightMap::with_undefined(cells, size, heights)
+        } else {
+            HeightMap::new(cells, size, heights)
+        };
+        let map = turned(map.map_err(ContentError::Map)?, preprocessing, &mut steps);
+        let (map, tapered) = windowed(map, preprocessing, &mut steps)?;
+        Ok(Preprocessed { map, steps, reliable_from, tapered })
+    }
+
+    /// Refuses values that are no heights, and steps that contradict each other or the shape of the scan.
+    fn check(&self, preprocessing: &Preprocessing) -> Result<(), ContentError> {
         if let (Some(_), Some(Undefined::NoContact)) = (preprocessing.fill, preprocessing.undefined) {
             let second = "undefined = \"no_contact\" too";
             return Err(ContentError::contradiction("undefined points", "fill is given", second));
@@ -265,82 +307,52 @@ impl Scan {
         if self.metadata().profile {
             of_profile(preprocessing)?;
         }
-        let (size, cell) = self.sides()?;
-        // Cells that no map may have are refused before anything is fitted to them.
-        Cells::from(1).validate(Size::from(cell)).map_err(ContentError::Map)?;
-        let (cells, mut heights) = self.part(heights, preprocessing.crop, cell, &mut steps)?;
+        Ok(())
+    }
+
+    /// Converts heights to metres where the scan has a unit.
+    fn convert_to_metres(&self, heights: &mut [f64]) -> Result<(), ContentError> {
         if let Some(unit) = &self.metadata().unit {
-            for h in &mut heights {
+            for h in heights.iter_mut() {
                 *h = unit.value.to_si(*h);
             }
         }
-        check_overflow(&heights)?;
-        repair(preprocessing, cells, &mut heights, &mut steps)?;
-        let undefined = heights.iter().filter(|h| h.is_nan()).count();
-        if undefined == heights.len() {
-            return Err(ContentError::AllUndefined { points: heights.len() });
-        }
-        let mut reliable_from = None;
-        if let Some(radius) = preprocessing.tip_radius {
-            let (step, distance) = self.tip(radius, cells, cell, &heights)?;
-            steps.push(step);
-            reliable_from = distance;
-        }
-        let form = |kind| form::Form::fit(kind, cells, cell, &heights).map(Some);
-        let form = match preprocessing.detrend {
-            Detrend::Sphere => form(form::FormKind::Sphere)?,
-            Detrend::Cylinder => form(form::FormKind::Cylinder)?,
-            _ => None,
-        };
-        let trend = preprocessing.detrend.fit(cells, &heights)?;
-        if undefined > 0 {
-            let first = heights.iter().position(|h| h.is_nan()).unwrap_or(0);
-            let first = Place::Cell { row: first / cells.columns, column: first % cells.columns };
-            match (preprocessing.fill, preprocessing.undefined) {
-                (Some(fill), _) => {
-                    self.fill(fill, cells, cell, &mut heights)?;
-                    steps.push(format!("{undefined} undefined points filled"));
-                }
-                (None, Some(Undefined::NoContact)) => {}
-                (None, None) => {
-                    return Err(ContentError::Undefined { undefined, points: heights.len(), first });
-                }
+        check_overflow(heights)
+    }
+
+    /// Fills the undefined points or keeps them, as requested; returns a line for records where it fills them.
+    ///
+    /// # Errors
+    /// [`ContentError::Undefined`] where neither is requested.
+    fn treat_undefined(
+        &self,
+        preprocessing: &Preprocessing,
+        undefined: usize,
+        cells: Cells,
+        cell: [f64; 2],
+        heights: &mut [f64],
+    ) -> Result<Option<String>, ContentError> {
+        match (preprocessing.fill, preprocessing.undefined) {
+            (Some(fill), _) => {
+                self.fill(fill, cells, cell, heights)?;
+                Ok(Some(format!("{undefined} undefined points filled")))
+            }
+            (None, Some(Undefined::NoContact)) => Ok(None),
+            (None, None) => {
+                let first = heights.iter().position(|h| h.is_nan()).unwrap_or(0);
+                let first = Place::Cell { row: first / cells.columns, column: first % cells.columns };
+                Err(ContentError::Undefined { undefined, points: heights.len(), first })
             }
         }
-        if let Some(trend) = trend {
-            trend.subtract(&mut heights);
-            steps.push(format!("the {} of least squares subtracted", preprocessing.detrend.word()));
+    }
+
+    /// Sides of the map after a crop; without one they are those that the file or the caller states, to the
+    /// last digit.
+    fn size_of_part(&self, whole: [f64; 2], cells: Cells, cell: [f64; 2]) -> [f64; 2] {
+        if cells == (Cells { columns: self.metadata().columns, rows: self.metadata().rows }) {
+            return whole;
         }
-        if let Some(form) = form {
-            form.subtract(&mut heights);
-            let radius = form.radius();
-            steps.push(format!(
-                "the {} of least squares subtracted: radius {} ({})",
-                preprocessing.detrend.word(),
-                number(radius.abs()),
-                if radius > 0.0 { "a hill" } else { "a hollow" }
-            ));
-        }
-        if let Some(cut_off) = preprocessing.filter_across {
-            steps.push(self.filter(cut_off, cells, cell[1], &mut heights)?);
-        }
-        let whole = cells == Cells { columns: self.metadata().columns, rows: self.metadata().rows };
-        let part = [cell[0] * cells.columns as f64, cell[1] * cells.rows as f64];
-        let size = if whole { size } else { part };
-        let coarse = coarse(preprocessing, cells)?;
-        let heights = resample::coarsen(heights, cells, coarse);
-        if coarse != cells {
-            steps.push(format!("averaged over {} x {} cells", coarse.columns, coarse.rows));
-        }
-        let kept = undefined > 0 && preprocessing.fill.is_none();
-        let map = if kept {
-            HeightMap::with_undefined(coarse, size, heights)
-        } else {
-            HeightMap::new(coarse, size, heights)
-        };
-        let map = turned(map.map_err(ContentError::Map)?, preprocessing, &mut steps);
-        let (map, tapered) = windowed(map, preprocessing, &mut steps)?;
-        Ok(Preprocessed { map, steps, reliable_from, tapered })
+        [cell[0] * cells.columns as f64, cell[1] * cells.rows as f64]
     }
 
     /// From which distance on a tip lets the surface be seen.
@@ -497,6 +509,15 @@ fn check_overflow(heights: &[f64]) -> Result<(), ContentError> {
     }
 }
 
+/// Counts the undefined points; an error where there are no others.
+fn count_undefined(heights: &[f64]) -> Result<usize, ContentError> {
+    let undefined = heights.iter().filter(|h| h.is_nan()).count();
+    if undefined == heights.len() {
+        return Err(ContentError::AllUndefined { points: heights.len() });
+    }
+    Ok(undefined)
+}
+
 /// Scan lines aligned, then scars and outliers made undefined.
 fn repair(
     preprocessing: &Preprocessing,
@@ -586,6 +607,21 @@ fn hann(map: &HeightMap) -> contact_model::Result<HeightMap> {
     };
     let heights = map.heights().iter().enumerate().map(tapered).collect();
     HeightMap::with_undefined(map.cells(), map.size(), heights)
+}
+
+/// Heights averaged over the larger cells that are requested, and the numbers of these.
+fn averaged(
+    preprocessing: &Preprocessing,
+    cells: Cells,
+    heights: Vec<f64>,
+    steps: &mut Vec<String>,
+) -> Result<(Cells, Vec<f64>), ContentError> {
+    let coarse = coarse(preprocessing, cells)?;
+    let heights = resample::coarsen(heights, cells, coarse);
+    if coarse != cells {
+        steps.push(format!("averaged over {} x {} cells", coarse.columns, coarse.rows));
+    }
+    Ok((coarse, heights))
 }
 
 /// Columns and rows after averaging.

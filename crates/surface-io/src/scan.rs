@@ -120,68 +120,44 @@ pub struct Scan {
     heights: Vec<f64>,
 }
 
+/// A channel of a file, with its heights as they are there.
+pub(crate) struct DecodedChannel {
+    pub(crate) format: Format,
+    /// Number of the channel, from 0.
+    pub(crate) number: usize,
+    pub(crate) channel: StoredChannel,
+    /// Row-major; NaN where undefined.
+    pub(crate) heights: Vec<f64>,
+}
+
 impl Scan {
     /// A channel with its heights, checked against what is declared.
     pub(crate) fn new(
         path: &Path,
-        format: Format,
-        (number, channel): (usize, StoredChannel),
-        mut heights: Vec<f64>,
+        decoded: DecodedChannel,
         declared: &ReadOptions,
     ) -> Result<Self, ContentError> {
+        let DecodedChannel { format, number, channel, mut heights } = decoded;
         let StoredChannel { name, details, rows, columns, unit, extent, mut notes, compared, .. } = channel;
         if let Some(mark) = declared.missing {
             heights.iter_mut().filter(|h| compared.same(**h, mark)).for_each(|h| *h = f64::NAN);
         }
         // Before the scale of the caller, as `missing` is: the number that a note names is to be one for it.
         notes.extend(lone_extremes(&heights));
-        check_unit("unit", declared.unit.as_ref())?;
-        let (unit, no_heights) = match unit {
-            StoredUnit::Unknown => (None, None),
-            StoredUnit::Heights(unit) => (Some(unit), None),
-            StoredUnit::NoHeights(unit) => (None, Some(unit.unwrap_or_default())),
-        };
-        let mut unit = sourced(unit, declared.unit.clone(), |a, b| {
-            a.same(b).then_some(()).ok_or_else(|| contradiction("unit of the heights", a, b))
-        })?;
+        let (mut unit, no_heights) = unit_of_heights(unit, declared)?;
         if let Some(scale) = declared.height_scale {
             unit = Some(scaled(scale, unit.as_ref(), &mut heights)?);
         }
-        let (mut undefined, mut range) = (0, None);
-        for (i, &h) in heights.iter().enumerate() {
-            if h.is_infinite() {
-                let place = Place::Cell { row: i / columns, column: i % columns };
-                return Err(ContentError::Infinite { place, value: h });
-            }
-            if h.is_nan() {
-                undefined += 1;
-            } else {
-                let [low, high] = range.unwrap_or([h, h]);
-                range = Some([h.min(low), h.max(high)]);
-            }
-        }
-        let count = [columns, rows];
+        let (undefined, range) = undefined_and_range(&heights, columns)?;
         // Points of a map may lie in one row by chance.
         let profile = rows == 1 && format != Format::Xyz && matches!(extent, [Some(_), None]);
-        let given = extent::given(declared, count)?;
-        let extents = match (given, extent) {
-            (Some(given), file) => {
-                for axis in 0..2 {
-                    if let Some(file) = file[axis] {
-                        extent::check_axis(axis, file, given[axis], count[axis])?;
-                    }
-                }
-                Some((given, Origin::Caller))
-            }
-            (None, [Some(x), Some(y)]) => Some(([x, y], Origin::File)),
-            (None, [Some(x), None]) if profile => Some(([x, Extent::Cell(x.cell(columns)?)], Origin::File)),
-            (None, _) => None,
+        let (size, cell) = match extents(extent, profile, [columns, rows], declared)? {
+            Some(Sourced { value: [x, y], origin }) => (
+                Some([x.side(columns)?, y.side(rows)?]),
+                Some(Sourced { value: [x.cell(columns)?, y.cell(rows)?], origin }),
+            ),
+            None => (None, None),
         };
-        let (mut size, mut cell) = (None, None);
-        if let Some(([x, y], origin)) = extents {
-            size = Some([x.side(columns)?, y.side(rows)?]);
-            cell = Some(Sourced { value: [x.cell(columns)?, y.cell(rows)?], origin });
-        }
         let rms_height = range.map(|range| rms(&heights, columns, undefined, range));
         let metadata = Metadata {
             format,
@@ -228,6 +204,65 @@ impl Scan {
     pub(crate) fn heights(&self) -> &[f64] {
         &self.heights
     }
+}
+
+/// The unit of the heights by the file and the caller, and that of values that are no heights.
+fn unit_of_heights(
+    stored: StoredUnit,
+    declared: &ReadOptions,
+) -> Result<(Option<Sourced<Unit>>, Option<String>), ContentError> {
+    check_unit("unit", declared.unit.as_ref())?;
+    let (unit, no_heights) = match stored {
+        StoredUnit::Unknown => (None, None),
+        StoredUnit::Heights(unit) => (Some(unit), None),
+        StoredUnit::NoHeights(unit) => (None, Some(unit.unwrap_or_default())),
+    };
+    let unit = sourced(unit, declared.unit.clone(), |a, b| {
+        a.same(b).then_some(()).ok_or_else(|| contradiction("unit of the heights", a, b))
+    })?;
+    Ok((unit, no_heights))
+}
+
+/// The number of undefined points, and the lowest and the highest height.
+///
+/// # Errors
+/// [`ContentError::Infinite`] for a height that is not finite.
+#[inline(never)] // Inside of its caller its loop runs in memory instead of registers.
+fn undefined_and_range(heights: &[f64], columns: usize) -> Result<(usize, Option<[f64; 2]>), ContentError> {
+    if let Some(i) = heights.iter().position(|h| h.is_infinite()) {
+        let place = Place::Cell { row: i / columns, column: i % columns };
+        return Err(ContentError::Infinite { place, value: heights[i] });
+    }
+    let undefined = heights.iter().filter(|h| h.is_nan()).count();
+    // The lower and the higher one of NaN and a number are the number.
+    let (low, high) =
+        heights.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), h| (h.min(low), h.max(high)));
+    let range = (undefined < heights.len()).then_some([low, high]);
+    Ok((undefined, range))
+}
+
+/// The extents along x and y: what the caller says, checked against the file, else what the file says. The
+/// cells of a profile are squares.
+fn extents(
+    file: [Option<Extent>; 2],
+    profile: bool,
+    count: [usize; 2],
+    declared: &ReadOptions,
+) -> Result<Option<Sourced<[Extent; 2]>>, ContentError> {
+    if let Some(given) = extent::given(declared, count)? {
+        for axis in 0..2 {
+            if let Some(file) = file[axis] {
+                extent::check_axis(axis, file, given[axis], count[axis])?;
+            }
+        }
+        return Ok(Some(Sourced { value: given, origin: Origin::Caller }));
+    }
+    let value = match file {
+        [Some(x), Some(y)] => [x, y],
+        [Some(x), None] if profile => [x, Extent::Cell(x.cell(count[0])?)],
+        _ => return Ok(None),
+    };
+    Ok(Some(Sourced { value, origin: Origin::File }))
 }
 
 /// Multiplies numbers without a unit by the height of one of them; they are metres then.

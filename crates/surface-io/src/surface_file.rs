@@ -8,7 +8,7 @@ use crate::instruments::READERS;
 use crate::layout::{self, Layout};
 use crate::options::ReadOptions;
 use crate::reader::SNIFF;
-use crate::scan::Scan;
+use crate::scan::{DecodedChannel, Scan};
 use crate::source::{Input, OpenedFile};
 use crate::{points, text};
 use std::fs::File;
@@ -223,7 +223,8 @@ pub(crate) fn scan(
     } else {
         declared
     };
-    Scan::new(source.path(), format, (number, channel), heights, declared).map_err(|e| source.content(e))
+    let decoded = DecodedChannel { format, number, channel, heights };
+    Scan::new(source.path(), decoded, declared).map_err(|e| source.content(e))
 }
 
 /// The channels of a text: matrices, points or profiles, as their headings name the columns.

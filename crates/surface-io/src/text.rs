@@ -102,94 +102,43 @@ impl TextTable {
         Err(error)
     }
 
+    /// Reads all lines with one decimal sign.
     fn read_as(
         bytes: &[u8],
         end: u8,
         decimal: Decimal,
         declared: &ReadOptions,
     ) -> Result<Vec<Self>, ContentError> {
-        let mut maps: Vec<Self> = Vec::new();
-        // Lines of the heading of the next map, and the first and the last of them without the mark of a
-        // comment.
-        let mut heading: Vec<(usize, Cow<'_, [u8]>)> = Vec::new();
-        let (mut first, mut last): (Option<NumberedLine<'_>>, Option<NumberedLine<'_>>) = (None, None);
-        let (mut open, mut gap) = (false, false);
-        // The line before the numbers of the map that is open.
-        let mut title = None;
+        let mut reading = MapsInText::new(bytes, end, decimal, declared);
         for (i, line) in bytes.split(|&b| b == end).enumerate().skip(declared.skip_lines) {
             let (data, comment) = without_comment(line);
             if data.trim_ascii().is_empty() {
-                gap |= comment.is_none();
-                heading.extend(comment.map(|comment| (i + 1, Cow::from(comment))));
-                continue;
+                reading.no_data(comment, i + 1);
+            } else if decimal.is_header(data) {
+                reading.header(line, data, i + 1);
+            } else {
+                reading.numbers(data, i + 1)?;
             }
-            if decimal.is_header(data) {
-                heading.push((i + 1, line.trim_ascii().into()));
-                (first, last) = (first.or(Some((i + 1, data))), Some((i + 1, data)));
-                continue;
-            }
-            if let Some(map) = maps.last_mut().filter(|_| open)
-                && map.ends(
-                    gap,
-                    last.is_some() || heading.iter().any(|(_, line)| Heading::says(line)),
-                    declared,
-                )
-            {
-                open = false;
-                if let Some(stated) = title.and_then(|title| map.statements(title)) {
-                    heading.splice(0..0, stated.into_iter().map(|line| (i, line.into_bytes().into())));
-                    maps.pop();
-                } else {
-                    map.values.shrink_to_fit();
-                    map.lines.shrink_to_fit();
-                }
-            }
-            let new = !open;
-            if new {
-                if maps.len() == MOST_MAPS {
-                    return Err(ContentError::TooManyMaps { most: MOST_MAPS, line: i + 1 });
-                }
-                let mut map = Self::new(data, decimal, end);
-                map.title = last.map(|(_, header)| decoded(header));
-                heading.drain(..).try_for_each(|(line, text)| map.heading.read(&text, line))?;
-                maps.push(map);
-            }
-            let alone = maps.len() == 1;
-            let Some(map) = maps.last_mut() else { return Err(ContentError::Empty) };
-            let all = if alone { bytes } else { &[] };
-            map.line(decimal, data, i + 1, all).map_err(|error| map.odd_one_out(error, bytes))?;
-            if let (true, Some((number, header))) = (new, last)
-                && !Heading::says(header)
-            {
-                map.check_header(decimal, header, number)?;
-            }
-            if new {
-                title = last.map(|(_, header)| header);
-            }
-            heading.clear();
-            (open, gap, last) = (true, false, None);
         }
-        // A heading without numbers: what was expected instead of its first line.
-        if let (Some((number, line)), true) = (last.and(first), last.is_some()) {
-            let (number, line) =
-                if maps.is_empty() { (number, line) } else { last.unwrap_or((number, line)) };
-            let mut none = Self::new(line, decimal, end);
-            return none.line(decimal, line, number, line).and(Err(ContentError::Empty));
-        }
-        let Some(map) = maps.last_mut() else { return Err(ContentError::Empty) };
-        heading.into_iter().try_for_each(|(line, text)| map.heading.read(&text, line))?;
+        let mut maps = reading.finish()?;
         for map in &mut maps {
-            map.name_columns();
-            map.without_first_places();
-            map.heading.finish()?;
-            map.scale = map.heading.scale;
-            if let Some(mark) = map.heading.missing {
-                // Grids of ESRI hold float32, whatever number of digits their cells and their header have.
-                let marks = |h: &f64| NumberType::F32.same(*h, mark);
-                map.values.iter_mut().filter(|h| marks(h)).for_each(|h| *h = f64::NAN);
-            }
+            map.apply_heading()?;
         }
         Ok(maps)
+    }
+
+    /// Names the columns and marks undefined points by the whole heading.
+    fn apply_heading(&mut self) -> Result<(), ContentError> {
+        self.name_columns();
+        self.without_first_places();
+        self.heading.finish()?;
+        self.scale = self.heading.scale;
+        if let Some(mark) = self.heading.missing {
+            // Grids of ESRI hold float32, whatever number of digits their cells and their header have.
+            let marks = |h: &f64| NumberType::F32.same(*h, mark);
+            self.values.iter_mut().filter(|h| marks(h)).for_each(|h| *h = f64::NAN);
+        }
+        Ok(())
     }
 
     /// Finds the columns that the heading names.
@@ -358,6 +307,129 @@ impl TextTable {
             return Err(ContentError::Ragged { line, found, expected, first });
         }
         Ok(())
+    }
+}
+
+/// The maps of a text, read line by line.
+struct MapsInText<'t> {
+    bytes: &'t [u8],
+    end: u8,
+    decimal: Decimal,
+    declared: &'t ReadOptions,
+    maps: Vec<TextTable>,
+    /// Whether the next numbers may go on with the last map.
+    open: bool,
+    /// The line before the numbers of the map that is open.
+    title: Option<&'t [u8]>,
+    /// Lines of the heading of the next map.
+    heading: Vec<(usize, Cow<'t, [u8]>)>,
+    /// The first line of a heading without the mark of a comment.
+    first: Option<NumberedLine<'t>>,
+    /// The last one since the last numbers.
+    last: Option<NumberedLine<'t>>,
+    /// Whether there is an empty line since the last numbers.
+    gap: bool,
+}
+
+impl<'t> MapsInText<'t> {
+    fn new(bytes: &'t [u8], end: u8, decimal: Decimal, declared: &'t ReadOptions) -> Self {
+        Self {
+            bytes,
+            end,
+            decimal,
+            declared,
+            maps: Vec::new(),
+            open: false,
+            title: None,
+            heading: Vec::new(),
+            first: None,
+            last: None,
+            gap: false,
+        }
+    }
+
+    /// Takes an empty line or a comment.
+    fn no_data(&mut self, comment: Option<&'t [u8]>, line: usize) {
+        self.gap |= comment.is_none();
+        self.heading.extend(comment.map(|comment| (line, Cow::from(comment))));
+    }
+
+    /// Takes a line of words.
+    fn header(&mut self, text: &'t [u8], data: &'t [u8], line: usize) {
+        self.heading.push((line, text.trim_ascii().into()));
+        self.first = self.first.or(Some((line, data)));
+        self.last = Some((line, data));
+    }
+
+    /// Takes a line of numbers, which goes on with the open map or begins one.
+    fn numbers(&mut self, data: &'t [u8], line: usize) -> Result<(), ContentError> {
+        self.close_ended_map(line);
+        let begins = !self.open;
+        if begins {
+            self.open_map(data, line)?;
+        }
+        // The first map reserves memory for all lines.
+        let all = if self.maps.len() == 1 { self.bytes } else { &[] };
+        let Some(map) = self.maps.last_mut() else { return Err(ContentError::Empty) };
+        map.line(self.decimal, data, line, all).map_err(|error| map.odd_one_out(error, self.bytes))?;
+        if begins {
+            if let Some((number, header)) = self.last
+                && !Heading::says(header)
+            {
+                map.check_header(self.decimal, header, number)?;
+            }
+            self.title = self.last.map(|(_, header)| header);
+        }
+        self.heading.clear();
+        (self.open, self.gap, self.last) = (true, false, None);
+        Ok(())
+    }
+
+    /// Closes the open map where it ends before the numbers of this line. One that is a line of statements is
+    /// none, but part of the heading of the next.
+    fn close_ended_map(&mut self, line: usize) {
+        let Some(map) = self.maps.last_mut().filter(|_| self.open) else { return };
+        let heading = self.last.is_some() || self.heading.iter().any(|(_, line)| Heading::says(line));
+        if !map.ends(self.gap, heading, self.declared) {
+            return;
+        }
+        self.open = false;
+        if let Some(stated) = self.title.and_then(|title| map.statements(title)) {
+            let stated = stated.into_iter().map(|text| (line - 1, text.into_bytes().into()));
+            self.heading.splice(0..0, stated);
+            self.maps.pop();
+        } else {
+            map.values.shrink_to_fit();
+            map.lines.shrink_to_fit();
+        }
+    }
+
+    /// Begins a map with the heading so far.
+    fn open_map(&mut self, data: &[u8], line: usize) -> Result<(), ContentError> {
+        if self.maps.len() == MOST_MAPS {
+            return Err(ContentError::TooManyMaps { most: MOST_MAPS, line });
+        }
+        let mut map = TextTable::new(data, self.decimal, self.end);
+        map.title = self.last.map(|(_, header)| decoded(header));
+        self.heading.drain(..).try_for_each(|(line, text)| map.heading.read(&text, line))?;
+        self.maps.push(map);
+        Ok(())
+    }
+
+    /// The maps, with what stands behind the last numbers in the heading of the last one.
+    ///
+    /// # Errors
+    /// Where words without numbers end the text: what was expected instead of them.
+    fn finish(mut self) -> Result<Vec<TextTable>, ContentError> {
+        if let (Some((number, line)), true) = (self.last.and(self.first), self.last.is_some()) {
+            let (number, line) =
+                if self.maps.is_empty() { (number, line) } else { self.last.unwrap_or((number, line)) };
+            let mut none = TextTable::new(line, self.decimal, self.end);
+            return none.line(self.decimal, line, number, line).and(Err(ContentError::Empty));
+        }
+        let Some(map) = self.maps.last_mut() else { return Err(ContentError::Empty) };
+        self.heading.into_iter().try_for_each(|(line, text)| map.heading.read(&text, line))?;
+        Ok(self.maps)
     }
 }
 

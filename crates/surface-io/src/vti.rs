@@ -62,12 +62,47 @@ pub fn vti(
     encoding: Encoding,
 ) -> Result<Vec<u8>, ContentError> {
     let (cells, size) = (cells.into(), size.into());
-    let Cells { columns, rows } = cells;
+    check(cells, size, fields, encoding)?;
+    let hidden = hidden_cells(fields);
+    let count = fields.first().map_or(0, |f| f.values.len());
+    let per_field = 24 * count + 200;
+    let mut file = Lines::new(head(cells, size, fields), fields.len() * per_field + 200);
+    // Every array is one run of base64 behind the ones before.
+    let run = encoded_length(8 * count);
+    for (k, field) in fields.iter().enumerate() {
+        let title = title(field);
+        file.add(format_args!("<DataArray type=\"Float64\" Name=\"{title}\" format="));
+        match encoding {
+            Encoding::Base64 => file.add(format_args!("\"appended\" offset=\"{}\"/>\n", k * run)),
+            Encoding::Ascii => {
+                file.add(format_args!("\"ascii\">\n"));
+                add_decimals(&mut file, field.values, cells.columns);
+                file.add(format_args!("</DataArray>\n"));
+            }
+        }
+    }
+    if !hidden.is_empty() {
+        let offset = fields.len() * run;
+        file.add(format_args!(
+            "<DataArray type=\"UInt8\" Name=\"vtkGhostType\" format=\"appended\" offset=\"{offset}\"/>\n"
+        ));
+    }
+    file.add(format_args!("</CellData>\n</Piece>\n</ImageData>\n"));
+    if encoding == Encoding::Base64 && !fields.is_empty() {
+        add_appended_data(&mut file, fields, &hidden);
+    }
+    file.add(format_args!("</VTKFile>\n"));
+    Ok(file.text.into_bytes())
+}
+
+/// Refuses sides, numbers of cells and fields that the file cannot hold.
+fn check(cells: Cells, size: Size, fields: &[DataArray<'_>], encoding: Encoding) -> Result<(), ContentError> {
     for (what, side) in [("side along x", size.x), ("side along y", size.y)] {
         if !(side.is_finite() && side > 0.0) {
             return Err(ContentError::OutOfRange { what, value: side, expected: "a finite number > 0" });
         }
     }
+    let Cells { columns, rows } = cells;
     if columns == 0 || rows == 0 {
         return Err(ContentError::NoCells { rows: rows as u64, columns: columns as u64 });
     }
@@ -85,65 +120,58 @@ pub fn vti(
             });
         }
     }
+    Ok(())
+}
+
+/// The marks of all cells, of which those with an undefined value are hidden; empty where there are none.
+fn hidden_cells(fields: &[DataArray<'_>]) -> Vec<u8> {
     let count = fields.first().map_or(0, |f| f.values.len());
     let undefined = |i: usize| fields.iter().any(|f| f.values[i].is_nan());
     let mut hidden: Vec<u8> = Vec::new();
     if (0..count).any(undefined) {
         hidden.extend((0..count).map(|i| if undefined(i) { HIDDEN } else { 0 }));
     }
+    hidden
+}
+
+/// The file up to its first array.
+fn head(cells: Cells, size: Size, fields: &[DataArray<'_>]) -> String {
+    let Cells { columns, rows } = cells;
     let active = fields.first().map_or(String::new(), |f| format!(" Scalars=\"{}\"", title(f)));
     let extent = format!("0 {columns} 0 {rows} 0 0");
     let (dx, dy) = (size.x / columns as f64, size.y / rows as f64);
-    let head = format!(
+    format!(
         "<?xml version=\"1.0\"?>\n\
          <VTKFile type=\"ImageData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n\
          <ImageData WholeExtent=\"{extent}\" Origin=\"0 0 0\" Spacing=\"{dx} {dy} {dx}\">\n\
          <Piece Extent=\"{extent}\">\n<PointData></PointData>\n<CellData{active}>\n"
-    );
-    let per_field = 24 * count + 200;
-    let mut file = Lines::new(head, fields.len() * per_field + 200);
-    // Every array is one run of base64 behind the ones before.
-    let run = |bytes: usize| 4 * (8 + bytes).div_ceil(3);
-    for (k, field) in fields.iter().enumerate() {
-        let title = title(field);
-        file.add(format_args!("<DataArray type=\"Float64\" Name=\"{title}\" format="));
-        match encoding {
-            Encoding::Base64 => file.add(format_args!("\"appended\" offset=\"{}\"/>\n", k * run(8 * count))),
-            Encoding::Ascii => {
-                file.add(format_args!("\"ascii\">\n"));
-                for row in field.values.chunks_exact(columns) {
-                    for (i, v) in row.iter().enumerate() {
-                        let end = if i + 1 == columns { '\n' } else { ' ' };
-                        if v.abs() >= 1e-4 && v.abs() < 1e6 || v.abs() <= 0.0 {
-                            file.add(format_args!("{v}{end}"));
-                        } else {
-                            file.add(format_args!("{v:e}{end}"));
-                        }
-                    }
-                }
-                file.add(format_args!("</DataArray>\n"));
+    )
+}
+
+/// Writes values as decimals, a line for each row.
+fn add_decimals(file: &mut Lines, values: &[f64], columns: usize) {
+    for row in values.chunks_exact(columns) {
+        for (i, v) in row.iter().enumerate() {
+            let end = if i + 1 == columns { '\n' } else { ' ' };
+            if v.abs() >= 1e-4 && v.abs() < 1e6 || v.abs() <= 0.0 {
+                file.add(format_args!("{v}{end}"));
+            } else {
+                file.add(format_args!("{v:e}{end}"));
             }
         }
     }
+}
+
+/// Writes the section with the numbers of all arrays.
+fn add_appended_data(file: &mut Lines, fields: &[DataArray<'_>], hidden: &[u8]) {
+    file.add(format_args!("<AppendedData encoding=\"base64\">\n_"));
+    for field in fields {
+        append(&mut file.text, 8 * field.values.len(), field.values.iter().map(|v| v.to_le_bytes()));
+    }
     if !hidden.is_empty() {
-        let offset = fields.len() * run(8 * count);
-        file.add(format_args!(
-            "<DataArray type=\"UInt8\" Name=\"vtkGhostType\" format=\"appended\" offset=\"{offset}\"/>\n"
-        ));
+        append(&mut file.text, hidden.len(), hidden.iter().map(|&v| [v]));
     }
-    file.add(format_args!("</CellData>\n</Piece>\n</ImageData>\n"));
-    if encoding == Encoding::Base64 && !fields.is_empty() {
-        file.add(format_args!("<AppendedData encoding=\"base64\">\n_"));
-        for field in fields {
-            append(&mut file.text, 8 * field.values.len(), field.values.iter().map(|v| v.to_le_bytes()));
-        }
-        if !hidden.is_empty() {
-            append(&mut file.text, hidden.len(), hidden.iter().map(|&v| [v]));
-        }
-        file.add(format_args!("\n</AppendedData>\n"));
-    }
-    file.add(format_args!("</VTKFile>\n"));
-    Ok(file.text.into_bytes())
+    file.add(format_args!("\n</AppendedData>\n"));
 }
 
 /// Name and unit, safe in an attribute.
@@ -162,6 +190,11 @@ fn title(field: &DataArray<'_>) -> String {
         }
     }
     safe
+}
+
+/// Characters of the run of base64 of an array of this number of bytes.
+fn encoded_length(bytes: usize) -> usize {
+    4 * (8 + bytes).div_ceil(3)
 }
 
 /// Appends a run of base64: the number of bytes, then the bytes.

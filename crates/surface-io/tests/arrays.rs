@@ -119,22 +119,30 @@ fn unreadable_data_sets_are_listed() {
     );
 }
 
+/// A small file with other bytes from an offset on.
+fn changed(name: &str, at: usize, to: &[u8]) -> Vec<u8> {
+    let mut bytes = small(name).bytes;
+    bytes[at..at + to.len()].copy_from_slice(to);
+    bytes
+}
+
+/// A small file with four bytes behind its end.
+fn longer(name: &str) -> Vec<u8> {
+    [small(name).bytes, vec![0; 4]].concat()
+}
+
+/// A small file with other bytes in the place of the first ones that are `from`.
+fn replaced(name: &str, from: &[u8], to: &[u8]) -> Vec<u8> {
+    let mut bytes = small(name).bytes;
+    let at = bytes.windows(from.len()).position(|part| part == from).unwrap();
+    bytes.splice(at..at + from.len(), to.iter().copied());
+    bytes
+}
+
 /// One byte makes another map: contradictions between header and length, versions and types that are not
 /// read.
 #[test]
 fn contradictions_are_told_with_their_place() {
-    let changed = |name: &str, at: usize, to: &[u8]| {
-        let mut bytes = small(name).bytes;
-        bytes[at..at + to.len()].copy_from_slice(to);
-        bytes
-    };
-    let longer = |name: &str| [small(name).bytes, vec![0; 4]].concat();
-    let replaced = |name: &str, from: &[u8], to: &[u8]| {
-        let mut bytes = small(name).bytes;
-        let at = bytes.windows(from.len()).position(|part| part == from).unwrap();
-        bytes.splice(at..at + from.len(), to.iter().copied());
-        bytes
-    };
     for (bytes, expected) in [
         (longer("tmd"), "TMD (TrueMap), offset 80: expected 24 bytes up to the end of the file, found 28"),
         (changed("tmd", 56, &[2]), "TMD (TrueMap), offset 80: expected 16 bytes up to the end of the file"),

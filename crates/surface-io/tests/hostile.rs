@@ -71,11 +71,11 @@ fn most_held<T>(read: impl FnOnce() -> T) -> (T, usize) {
 
 const NAMES: [&str; 4] = ["a.npy", "a.txt", "a.xyz", "a"];
 
-/// Reads the bytes under every name and with several declarations; what is read is treated in all ways.
-fn torture(bytes: &[u8]) -> Result<(), TestCaseError> {
+/// What callers may declare of a file.
+fn declarations() -> [ReadOptions; 10] {
     let plain = ReadOptions::default();
     let cell = ReadOptions { cell: "1".parse().ok(), ..plain.clone() };
-    let declarations = [
+    [
         plain.clone(),
         ReadOptions { format: Some(Format::Xyz), missing: Some(0.0), skip_lines: 1, ..cell.clone() },
         ReadOptions { format: Some(Format::Text), decimal: Decimal::Comma, ..cell.clone() },
@@ -91,7 +91,12 @@ fn torture(bytes: &[u8]) -> Result<(), TestCaseError> {
         ReadOptions { border: Some(Border::Axes), lateral_unit: "um".parse().ok(), ..plain.clone() },
         ReadOptions { cell: "1 x 2".parse().ok(), format: Some(Format::Xyz), ..plain },
         cell,
-    ];
+    ]
+}
+
+/// Reads the bytes under every name and with several declarations; what is read is treated in all ways.
+fn torture(bytes: &[u8]) -> Result<(), TestCaseError> {
+    let declarations = declarations();
     for name in NAMES {
         for declared in &declarations {
             let (line, held) = most_held(|| surface_io::profile_from_bytes(name, bytes, declared));
@@ -99,59 +104,55 @@ fn torture(bytes: &[u8]) -> Result<(), TestCaseError> {
             prop_assert!(line.is_ok() || line.is_err_and(|e| e.to_string().starts_with(name)));
             let (scan, held) = most_held(|| Scan::from_bytes(name, bytes, declared));
             prop_assert!(held <= MULTIPLE * bytes.len() + CONSTANT, "{held} bytes for {}", bytes.len());
-            let scan = match scan {
-                Ok(scan) => scan,
+            match scan {
+                Ok(scan) => {
+                    prop_assert!(!scan.metadata().to_string().is_empty());
+                    treat(&scan)?;
+                }
                 Err(error) => {
                     let text = error.to_string();
                     prop_assert!(text.starts_with(name) && text.len() < 2000, "{text}");
-                    continue;
                 }
-            };
-            prop_assert!(!scan.metadata().to_string().is_empty());
-            for detrend in
-                [Detrend::Nothing, Detrend::Plane, Detrend::Quadric, Detrend::Sphere, Detrend::Cylinder]
-            {
-                for (fill, undefined) in [
-                    (None, None),
-                    (Some(Fill::Neighbours), None),
-                    (Some(Fill::Plane), None),
-                    (None, Some(Undefined::NoContact)),
-                ] {
-                    for (crop, rows) in [
-                        (None, None),
-                        (Some(Crop::Centre), Some(1)),
-                        (Some(WINDOW), None),
-                        (Some(Crop::Defined), None),
-                    ] {
-                        let plain = Preprocessing {
-                            crop,
-                            undefined,
-                            fill,
-                            detrend,
-                            rows,
-                            ..Preprocessing::default()
-                        };
-                        check(&scan, &plain)?;
-                        let all = Preprocessing {
-                            align_lines: Some(AlignLines::MedianDifference),
-                            scars: Some(3.0),
-                            outliers: Some(3.0),
-                            tip_radius: "0.5".parse().ok(),
-                            mirror: Some(Mirror::Y),
-                            quarter_turns: 1,
-                            window: Some(Window::Hann),
-                            ..plain
-                        };
-                        check(&scan, &all)?;
-                        let filtered = Preprocessing {
-                            align_lines: Some(AlignLines::Median),
-                            filter_across: "4.5".parse().ok(),
-                            crop: None,
-                            ..all
-                        };
-                        check(&scan, &filtered)?;
-                    }
-                }
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Makes maps of a scan with all trends, fillings and crops, and with all other steps.
+fn treat(scan: &Scan) -> Result<(), TestCaseError> {
+    let fillings = [
+        (None, None),
+        (Some(Fill::Neighbours), None),
+        (Some(Fill::Plane), None),
+        (None, Some(Undefined::NoContact)),
+    ];
+    let crops =
+        [(None, None), (Some(Crop::Centre), Some(1)), (Some(WINDOW), None), (Some(Crop::Defined), None)];
+    for detrend in [Detrend::Nothing, Detrend::Plane, Detrend::Quadric, Detrend::Sphere, Detrend::Cylinder] {
+        for (fill, undefined) in fillings {
+            for (crop, rows) in crops {
+                let plain =
+                    Preprocessing { crop, undefined, fill, detrend, rows, ..Preprocessing::default() };
+                check(scan, &plain)?;
+                let all = Preprocessing {
+                    align_lines: Some(AlignLines::MedianDifference),
+                    scars: Some(3.0),
+                    outliers: Some(3.0),
+                    tip_radius: "0.5".parse().ok(),
+                    mirror: Some(Mirror::Y),
+                    quarter_turns: 1,
+                    window: Some(Window::Hann),
+                    ..plain
+                };
+                check(scan, &all)?;
+                let filtered = Preprocessing {
+                    align_lines: Some(AlignLines::Median),
+                    filter_across: "4.5".parse().ok(),
+                    crop: None,
+                    ..all
+                };
+                check(scan, &filtered)?;
             }
         }
     }
@@ -755,75 +756,84 @@ fn real_files_stay_below_the_multiple() {
     }
 }
 
-/// Every contradiction and every impossible rectangle has a message with the file, the value and what was
-/// expected.
+/// The message of a file that is no map, with heights in metres and what else is declared of it.
+fn refusal(name: &str, bytes: &[u8], change: impl FnOnce(&mut ReadOptions)) -> String {
+    let mut declared = ReadOptions { unit: "m".parse().ok(), ..ReadOptions::default() };
+    change(&mut declared);
+    let keep = Preprocessing { undefined: Some(Undefined::NoContact), ..Preprocessing::default() };
+    let scan = Scan::from_bytes(name, bytes, &declared).and_then(|scan| scan.map(&keep));
+    scan.unwrap_err().to_string()
+}
+
+/// A message has the file, the value and what was expected.
+fn assert_begins(found: &str, expected: &str) {
+    assert!(found.starts_with(expected), "{found}\n{expected}");
+}
+
+#[test]
+fn lines_of_another_length_are_named() {
+    for (name, text, expected) in [
+        ("a.txt", "1 2 3\n4 5\n", "a.txt: line 2 has 2 values: expected 3 as in line 1"),
+        ("a.txt", "1 2\n4 5 6\n7 8 9\n", "a.txt: line 1 has 2 values: expected 3 as in line 2"),
+        ("a.csv", "1,2\n\n4,5,6\n#\n7,8,9", "a.csv: line 1 has 2 values: expected 3 as in line 3"),
+        ("a.csv", "1,2\n4,5,6\n7,8\n", "a.csv: line 2 has 3 values: expected 2 as in line 1"),
+    ] {
+        assert_begins(&refusal(name, text.as_bytes(), |_| ()), expected);
+    }
+}
+
+#[test]
+fn arrays_without_a_height_are_named() {
+    let empty = surface_io::npy(&[3, 0], &[]).unwrap();
+    assert_begins(
+        &refusal("a.npy", &empty, |_| ()),
+        "a.npy: an array of 3 rows x 0 columns: expected at least 1 of each",
+    );
+    let undefined = surface_io::npy(&[1, 2], &[f64::NAN; 2]).unwrap();
+    assert_begins(
+        &refusal("a.npy", &undefined, |d| d.cell = "1 m".parse().ok()),
+        "a.npy: 2 of 2 points are undefined: expected one height at least",
+    );
+}
+
+/// Every contradiction and every impossible rectangle has a message.
 #[test]
 fn impossible_rectangles_are_named() {
-    let keep = Preprocessing { undefined: Some(Undefined::NoContact), ..Preprocessing::default() };
-    let error = |name: &str, bytes: &[u8], change: &dyn Fn(&mut ReadOptions)| {
-        let mut declared = ReadOptions { unit: "m".parse().ok(), ..ReadOptions::default() };
-        change(&mut declared);
-        let scan = Scan::from_bytes(name, bytes, &declared).and_then(|scan| scan.map(&keep));
-        scan.unwrap_err().to_string()
-    };
-    let empty = surface_io::npy(&[3, 0], &[]).unwrap();
-    let undefined = surface_io::npy(&[1, 2], &[f64::NAN; 2]).unwrap();
     let two = surface_io::npy(&[1, 2], &[1.0, 2.0]).unwrap();
     for (found, expected) in [
-        (error("a.txt", b"1 2 3\n4 5\n", &|_| ()), "a.txt: line 2 has 2 values: expected 3 as in line 1"),
         (
-            error("a.txt", b"1 2\n4 5 6\n7 8 9\n", &|_| ()),
-            "a.txt: line 1 has 2 values: expected 3 as in line 2",
-        ),
-        (
-            error("a.csv", b"1,2\n\n4,5,6\n#\n7,8,9", &|_| ()),
-            "a.csv: line 1 has 2 values: expected 3 as in line 3",
-        ),
-        (
-            error("a.csv", b"1,2\n4,5,6\n7,8\n", &|_| ()),
-            "a.csv: line 2 has 3 values: expected 2 as in line 1",
-        ),
-        (
-            error("a.npy", &empty, &|_| ()),
-            "a.npy: an array of 3 rows x 0 columns: expected at least 1 of each",
-        ),
-        (
-            error("a.npy", &undefined, &|d| d.cell = "1 m".parse().ok()),
-            "a.npy: 2 of 2 points are undefined: expected one height at least",
-        ),
-        (
-            error("a.npy", &two, &|d| d.size = "1 m x 2e9 m".parse().ok()),
+            refusal("a.npy", &two, |d| d.size = "1 m x 2e9 m".parse().ok()),
             "a.npy: dx / dy (ratio of the sides of a cell) = 2.5e-10: expected between",
         ),
         (
-            error("a.npy", &two, &|d| d.cell = "-1 m x 1 m".parse().ok()),
+            refusal("a.npy", &two, |d| d.cell = "-1 m x 1 m".parse().ok()),
             "a.npy: cell along x = -1: expected a length > 0",
         ),
         (
-            error("a.npy", &two, &|d| d.size = "1 m".parse().ok()),
+            refusal("a.npy", &two, |d| d.size = "1 m".parse().ok()),
             "a.npy: size: one value, 1 m, is that of a square map, but there are 1 rows of 2",
         ),
         (
-            error("a.npy", &two, &|d| (d.size, d.cell) = ("2 m x 1 m".parse().ok(), "2 m".parse().ok())),
+            refusal("a.npy", &two, |d| (d.size, d.cell) = ("2 m x 1 m".parse().ok(), "2 m".parse().ok())),
             "a.npy: side of a cell along x: cell = 2 m, but size over 2 columns = 1 m",
         ),
         (
-            error("a.txt", b"# Width: 2 m\n# Height: 1 m\n1 2\n", &|d| d.size = "2 m x 2 m".parse().ok()),
+            refusal("a.txt", b"# Width: 2 m\n# Height: 1 m\n1 2\n", |d| d.size = "2 m x 2 m".parse().ok()),
             "a.txt: size along y: 1 m from the file, but 2 m as given",
         ),
         (
-            error("a.txt", b"# Width: -2 m\n1 2\n", &|_| ()),
+            refusal("a.txt", b"# Width: -2 m\n1 2\n", |_| ()),
             "a.txt: line 1, width = -2 m: expected a length > 0",
         ),
         (
-            error("a.xyz", b"0 0 1\n1 0 2\n0 1e-9 3\n1 1e-9 4\n", &|d| d.lateral_unit = "m".parse().ok()),
+            refusal("a.xyz", b"0 0 1\n1 0 2\n0 1e-9 3\n1 1e-9 4\n", |d| d.lateral_unit = "m".parse().ok()),
             "a.xyz: dx / dy (ratio of the sides of a cell) = 1e9: expected between 1/10000 and 10000",
         ),
         (
-            error("a.xyz", b"0 0 1\n1 0 2\n2 0 2\n", &|d| d.lateral_unit = "m".parse().ok()),
+            refusal("a.xyz", b"0 0 1\n1 0 2\n2 0 2\n", |d| d.lateral_unit = "m".parse().ok()),
             "a.xyz: the size of the map is neither in the file nor given: say size, ",
         ),
     ] {
-        assert!(found.starts_with(expected), "{found}\n{expected}");
+        assert_begins(&found, expected);
     }
 }

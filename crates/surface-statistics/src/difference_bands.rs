@@ -52,6 +52,16 @@ struct Waves {
     sums: [f64; 2],
 }
 
+/// Pairs of points of a map at one distance.
+#[derive(Debug, Clone, Copy)]
+struct DistantPairs {
+    distance: f64,
+    /// Side of the map along which they lie, the shorter one for all directions.
+    side: f64,
+    /// Share of them that lies inside of a free map.
+    inside: f64,
+}
+
 impl DifferenceBands {
     /// Computes the spectrum of a map. Cost O(N log N), memory about three times that of the map.
     ///
@@ -104,7 +114,8 @@ impl DifferenceBands {
         // Over all directions, of rectangles of Lx - |rx| and Ly - |ry|.
         let inside = |r: f64| 1.0 - 2.0 / PI * r * (1.0 / x + 1.0 / y) + r * r / (PI * x * y);
         let limits = found.distance.iter().zip(&found.half_square).map(|(&r, a)| {
-            let factors = self.factors(0, r, x.min(y), inside(r), level, &|phase| 1.0 - libm::j0(phase))?;
+            let pairs = DistantPairs { distance: r, side: x.min(y), inside: inside(r) };
+            let factors = self.factors(0, pairs, level, &|phase| 1.0 - libm::j0(phase))?;
             Ok(factors.map(|limits| limits.map(|factor| a * factor)))
         });
         limits.collect()
@@ -146,34 +157,34 @@ impl DifferenceBands {
     ) -> Result<Vec<Option<[f64; 2]>>> {
         let (side, group) = if axis == 0 { (self.size.x, 1) } else { (self.size.y, 2) };
         let limits = found.distance.iter().zip(&found.rms).map(|(&r, rms)| {
-            let factors = self.factors(group, r, side, 1.0 - r / side, level, weight)?;
+            let pairs = DistantPairs { distance: r, side, inside: 1.0 - r / side };
+            let factors = self.factors(group, pairs, level, weight)?;
             Ok(factors.map(|limits| limits.map(|factor| rms * factor.sqrt())))
         });
         limits.collect()
     }
 
+    /// Limits of a mean square over one distance, relative to its value.
     fn factors(
         &self,
         group: usize,
-        r: f64,
-        side: f64,
-        inside: f64,
+        pairs: DistantPairs,
         level: f64,
         weight: &dyn Fn(f64) -> f64,
     ) -> Result<Option<[f64; 2]>> {
-        if self.free && r > 0.5 * side {
+        if self.free && pairs.distance > 0.5 * pairs.side {
             return Ok(None);
         }
         let mut sums = [0.0; 2];
         for waves in &self.waves[group] {
-            let w = weight(waves.wavenumber * r);
+            let w = weight(waves.wavenumber * pairs.distance);
             sums[0] += w * waves.sums[0];
             sums[1] += w * w * waves.sums[1];
         }
         if sums[1].is_nan() || sums[1] <= 0.0 {
             return Ok(None);
         }
-        let share = if self.free { inside } else { 1.0 };
+        let share = if self.free { pairs.inside } else { 1.0 };
         let freedom = 2.0 * (2.0 * share * sums[0] / sums[1] * sums[0] - 1.0).max(1.0);
         factors(freedom, level).map(Some)
     }

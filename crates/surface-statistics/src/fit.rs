@@ -9,7 +9,7 @@ use crate::relative::Relative;
 use crate::taper::Taper;
 use contact_model::{Boundary, Error, HeightMap, Result};
 use likelihood::{CUT_OFF, HURST, Likelihood, NOISE, Parameters, ROLL_OFF};
-use profile::End;
+use profile::{End, ProfileWalk};
 use rings::Rings;
 use statrs::distribution::{ChiSquared, ContinuousCDF as _};
 use std::f64::consts::TAU;
@@ -228,15 +228,8 @@ fn without_plane(map: &HeightMap) -> Result<HeightMap> {
 ///
 /// # Errors
 /// A better minimum than `best`.
-fn walk(
-    likelihood: &mut Likelihood,
-    best: (Parameters, f64),
-    index: usize,
-    upwards: bool,
-    rise: f64,
-    step: f64,
-) -> Result<End, Parameters> {
-    match profile::end(likelihood, best, index, &[], upwards, rise, step) {
+fn walk(likelihood: &mut Likelihood, best: (Parameters, f64), walk: ProfileWalk) -> Result<End, Parameters> {
+    match profile::end(likelihood, best, &[], walk) {
         End::Better(parameters) => Err(parameters),
         end => Ok(end),
     }
@@ -274,22 +267,25 @@ impl Ends {
         without.values[CUT_OFF] = likelihood.limits[CUT_OFF][1];
         let without = likelihood.minimum(without, &[CUT_OFF]).1;
         let cut_off = if without - best.1 > EDGE {
-            let ends = [false, true].map(|upwards| walk(likelihood, best, CUT_OFF, upwards, INTERVAL, 0.25));
+            let ends = [false, true].map(|upwards| {
+                walk(likelihood, best, ProfileWalk { index: CUT_OFF, upwards, rise: INTERVAL })
+            });
             let [low, high] = ends;
             let edge = best.0.values[CUT_OFF];
             likelihood.share_edge(edge);
             best = likelihood.minimum(best.0, &[]);
             CutOff::At { value: edge, low: low?, high: high? }
         } else {
-            CutOff::Above(walk(likelihood, best, CUT_OFF, false, BOUND, 0.25)?)
+            let down = ProfileWalk { index: CUT_OFF, upwards: false, rise: BOUND };
+            CutOff::Above(walk(likelihood, best, down)?)
         };
-        let mut walk = |index, upwards, rise, step| walk(likelihood, best, index, upwards, rise, step);
-        let hurst = [walk(HURST, false, INTERVAL, 0.02)?, walk(HURST, true, INTERVAL, 0.02)?];
-        let roll_off = match walk(ROLL_OFF, false, INTERVAL, 0.05)? {
-            End::At(low) => (Some(low), walk(ROLL_OFF, true, INTERVAL, 0.05)?),
-            _ => (None, walk(ROLL_OFF, true, BOUND, 0.05)?),
+        let mut walk = |index, upwards, rise| walk(likelihood, best, ProfileWalk { index, upwards, rise });
+        let hurst = [walk(HURST, false, INTERVAL)?, walk(HURST, true, INTERVAL)?];
+        let roll_off = match walk(ROLL_OFF, false, INTERVAL)? {
+            End::At(low) => (Some(low), walk(ROLL_OFF, true, INTERVAL)?),
+            _ => (None, walk(ROLL_OFF, true, BOUND)?),
         };
-        let noisy = matches!(walk(NOISE, false, INTERVAL, 2.0)?, End::At(_));
+        let noisy = matches!(walk(NOISE, false, INTERVAL)?, End::At(_));
         Ok((Self { hurst, roll_off, cut_off, noisy }, best))
     }
 
@@ -315,8 +311,10 @@ impl Ends {
             start.values[*index] = likelihood.limits[*index][*end];
         }
         let minimum = likelihood.minimum(start, &fixed);
-        let ends = [false, true]
-            .map(|upwards| profile::end(likelihood, minimum, HURST, &fixed, upwards, INTERVAL, 0.02));
+        let ends = [false, true].map(|upwards| {
+            let walk = ProfileWalk { index: HURST, upwards, rise: INTERVAL };
+            profile::end(likelihood, minimum, &fixed, walk)
+        });
         Some((minimum.0, ends))
     }
 

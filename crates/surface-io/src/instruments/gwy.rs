@@ -10,6 +10,7 @@ mod write;
 pub use write::gwy;
 
 use super::prelude::*;
+use crate::channel::MaskedHeights;
 
 const MAGIC: &[u8] = b"GWYP";
 
@@ -150,7 +151,8 @@ fn channel(source: &OpenedFile<'_>, field: &DataField, mask: Option<&DataField>)
             return Err(source.wrong(at, "a mask of as many columns and rows as its data field"));
         };
         let mask = RawHeights::at(masked_at, NumberType::F64);
-        StoredChannel::masked(source, raw, (mask, "masked points undefined"), shape, unit, extent)?
+        let masked = MaskedHeights { raw, mask, detail: "masked points undefined" };
+        StoredChannel::masked(source, masked, shape, unit, extent)?
     } else {
         StoredChannel::new(source, raw, shape, unit, extent)?
     };

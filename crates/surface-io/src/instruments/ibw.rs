@@ -75,13 +75,42 @@ fn channels(source: &mut OpenedFile<'_>) -> Result<Vec<StoredChannel>> {
         return Err(source.wrong(0, "version 5: waves of older versions have one dimension"));
     };
     let header = IbwHeader::of(&mut source.fields(order, 0, HEADER)?)?;
+    let [columns, rows, layers] = shape(source, &header)?;
+    let number = number_type(source, &header, order)?;
+    check_length(source, &header, [columns, rows, layers], number.bytes() as u64)?;
+    let units = units(source, &header, order)?;
+    let labels = labels(source, &header, order, layers)?;
+    let asylum = is_of_asylum(source, &labels)?;
+    let one = u64::from(columns) * u64::from(rows) * number.bytes() as u64;
+    let mut found = Vec::new();
+    for (layer, label) in (0..).zip(labels) {
+        let unit = match StoredUnit::written(&units[0]) {
+            _ if asylum && !HEIGHTS.iter().any(|name| label.starts_with(name)) => StoredUnit::NoHeights(None),
+            unit => unit,
+        };
+        let raw = RawHeights { reversed: [false, true], ..RawHeights::at(HEADER + layer * one, number) };
+        let name = if label.is_empty() && layers == 1 { header.name.to_string() } else { label };
+        let channel = layer_channel(source, &header, raw, unit, &units);
+        let channel = channel.map(|channel| channel.named(&name));
+        found.push(StoredChannel::listed(Some(name), channel)?);
+    }
+    Ok(found)
+}
+
+/// Columns, rows and layers of the wave.
+fn shape(source: &OpenedFile<'_>, header: &IbwHeader) -> Result<[u32; 3]> {
     let [columns, rows, layers, more] = header.count;
-    let layers = layers.max(1);
     if rows == 0 || more > 0 {
         let expected = format!("a wave of two or three dimensions, found {:?}", header.count);
         return Err(source.wrong(132, expected));
     }
+    let layers = layers.max(1);
     check_number(source, 140, layers as usize)?;
+    Ok([columns, rows, layers])
+}
+
+/// The type of the numbers by its code.
+fn number_type(source: &OpenedFile<'_>, header: &IbwHeader, order: ByteOrder) -> Result<NumberType> {
     let letter = if header.kind & 0x40 == 0 { b'i' } else { b'u' };
     let number = match header.kind {
         2 => Some((b'f', 4)),
@@ -93,21 +122,34 @@ fn channels(source: &mut OpenedFile<'_>) -> Result<Vec<StoredChannel>> {
         _ => None,
     };
     let number = number.and_then(|(letter, size)| NumberType::new(letter, size, order == ByteOrder::Little));
-    let Some(number) = number else {
-        return Err(source.wrong(80, format!("real numbers, found the type {:#x}", header.kind)));
-    };
-    let size = number.bytes() as u64;
-    let points = [columns, rows, layers].into_iter().try_fold(1, |n: u64, count| n.checked_mul(count.into()));
+    number.ok_or_else(|| source.wrong(80, format!("real numbers, found the type {:#x}", header.kind)))
+}
+
+/// Checks that both headers have the numbers of bytes and points of a wave of this shape, whose numbers have
+/// `size` bytes.
+fn check_length(source: &OpenedFile<'_>, header: &IbwHeader, shape: [u32; 3], size: u64) -> Result<()> {
+    let points = shape.into_iter().try_fold(1, |n: u64, count| n.checked_mul(count.into()));
     let bytes =
         points.and_then(|points| points.checked_mul(size)).filter(|_| points == Some(header.points.into()));
     if bytes.is_none_or(|bytes| bytes.checked_add(WAVE) != Some(header.wave.into())) {
+        let [columns, rows, layers] = shape;
         let expected = format!(
             "{WAVE} bytes and {columns} x {rows} x {layers} numbers of {size} bytes, found {} bytes and {} numbers",
             header.wave, header.points
         );
         return Err(source.wrong(4, expected));
     }
-    let mut at = HEADER - WAVE + u64::from(header.wave) + header.behind.map(u64::from).iter().sum::<u64>();
+    Ok(())
+}
+
+/// Offset of the long units: they stand behind the numbers, the formula and the note.
+fn offset_of_units(header: &IbwHeader) -> u64 {
+    HEADER - WAVE + u64::from(header.wave) + header.behind.map(u64::from).iter().sum::<u64>()
+}
+
+/// Units of the numbers and along each axis; those of more than three characters stand behind the numbers.
+fn units(source: &mut OpenedFile<'_>, header: &IbwHeader, order: ByteOrder) -> Result<Vec<String>> {
+    let mut at = offset_of_units(header);
     let mut units = Vec::new();
     for (&long, short) in header.units.iter().zip(&header.unit) {
         let long = u64::from(long);
@@ -118,7 +160,18 @@ fn channels(source: &mut OpenedFile<'_>) -> Result<Vec<StoredChannel>> {
         });
         at += long;
     }
-    at += u64::from(header.labels[0]) + u64::from(header.labels[1]);
+    Ok(units)
+}
+
+/// Labels of the layers, empty for those without one.
+fn labels(
+    source: &mut OpenedFile<'_>,
+    header: &IbwHeader,
+    order: ByteOrder,
+    layers: u32,
+) -> Result<Vec<String>> {
+    let before = header.units.iter().chain(&header.labels[..2]).map(|&bytes| u64::from(bytes));
+    let at = offset_of_units(header) + before.sum::<u64>();
     // The first label is that of the axis.
     let mut labels = Vec::new();
     for layer in 0..u64::from(layers) {
@@ -127,25 +180,27 @@ fn channels(source: &mut OpenedFile<'_>) -> Result<Vec<StoredChannel>> {
             if is_there { source.get(order, at + (layer + 1) * LABEL)? } else { Text::<32>::default() };
         labels.push(label.to_string());
     }
+    Ok(labels)
+}
+
+/// Whether the file is one of Asylum's programs, by its end or its labels.
+fn is_of_asylum(source: &mut OpenedFile<'_>, labels: &[String]) -> Result<bool> {
     let end = source.bytes(source.length() - 5, 5)?;
-    let asylum = ASYLUM.iter().any(|mark| end == *mark)
-        || labels.iter().any(|label| DIRECTIONS.iter().any(|word| label.ends_with(word)));
-    let one = u64::from(columns) * u64::from(rows) * size;
-    let mut found = Vec::new();
-    for (layer, label) in (0..).zip(labels) {
-        let unit = match StoredUnit::written(&units[0]) {
-            _ if asylum && !HEIGHTS.iter().any(|name| label.starts_with(name)) => StoredUnit::NoHeights(None),
-            unit => unit,
-        };
-        let raw = RawHeights { reversed: [false, true], ..RawHeights::at(HEADER + layer * one, number) };
-        let extent = [0, 1].map(|axis| Extent::of_cell(header.step[axis], &units[axis + 1]));
-        let name = if label.is_empty() && layers == 1 { header.name.to_string() } else { label };
-        let channel = StoredChannel::new(source, raw, [rows as usize, columns as usize], unit, extent);
-        let channel = channel.map(|mut channel| {
-            channel.note_sides("cells of", [0, 1].map(|axis| Some(header.step[axis])), &units[1]);
-            channel.named(&name)
-        });
-        found.push(StoredChannel::listed(Some(name.clone()), channel)?);
-    }
-    Ok(found)
+    Ok(ASYLUM.iter().any(|mark| end == *mark)
+        || labels.iter().any(|label| DIRECTIONS.iter().any(|word| label.ends_with(word))))
+}
+
+/// The channel of a layer, without a name.
+fn layer_channel(
+    source: &OpenedFile<'_>,
+    header: &IbwHeader,
+    raw: RawHeights,
+    unit: StoredUnit,
+    units: &[String],
+) -> Result<StoredChannel> {
+    let [columns, rows, ..] = header.count.map(|count| count as usize);
+    let extent = [0, 1].map(|axis| Extent::of_cell(header.step[axis], &units[axis + 1]));
+    let mut channel = StoredChannel::new(source, raw, [rows, columns], unit, extent)?;
+    channel.note_sides("cells of", [0, 1].map(|axis| Some(header.step[axis])), &units[1]);
+    Ok(channel)
 }

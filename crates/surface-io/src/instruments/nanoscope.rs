@@ -90,24 +90,8 @@ fn channel<'s>(
     scales: &impl Fn(&str) -> Option<&'s str>,
 ) -> Result<StoredChannel> {
     let (columns, rows) = (image.whole("samps/line")?, image.whole("number of lines")?);
-    let (offset, length) = (image.whole("data offset")? as u64, image.whole("data length")? as u64);
-    let pixel = if image.text("bytes/pixel").is_some() { image.whole("bytes/pixel")? } else { 2 };
-    let range = match pixel {
-        2 => 65_536.0,
-        4 => 4_294_967_296.0,
-        _ => return Err(image.wrong("bytes/pixel", "2 or 4 bytes")),
-    };
-    let bytes = |number: NumberType| number.bytes_of([rows, columns]);
-    let wide = pixel == 4 || (version >= WIDE && bytes(NumberType::I32).is_some_and(|bytes| bytes <= length));
-    let kind = if wide { NumberType::I32 } else { NumberType::I16 };
-    if bytes(kind) != Some(length) {
-        let expected = format!("{columns} x {rows} numbers of {} bytes", kind.bytes());
-        return Err(image.wrong("data length", expected));
-    }
-    if offset < end {
-        return Err(image.wrong("data offset", format!("a place behind the header, which ends at {end},")));
-    }
-    let mut raw = RawHeights { reversed: [false, true], ..RawHeights::at(offset, kind) };
+    let shape = [rows, columns];
+    let (mut raw, range, offset) = counts(image, shape, version, end)?;
     let key = ["@4:z scale", "@2:z scale"].into_iter().find(|key| image.text(key).is_some());
     let Some(key) = key else {
         return Err(source.wrong(offset, "an entry @2:Z scale of each image (version 4.3 or later)"));
@@ -123,21 +107,9 @@ fn channel<'s>(
     };
     let (size, aspect) = (image.text("scan size").unwrap_or_default(), image.text("aspect ratio"));
     let extent = extents(size, aspect);
-    let mut channel = StoredChannel::new(source, raw, [rows, columns], unit, extent)?;
+    let mut channel = StoredChannel::new(source, raw, shape, unit, extent)?;
     channel.name = name(image);
-    // Images of one name differ by these.
-    for (key, behind) in [("scan line", " scan"), ("line direction", "")] {
-        if let Some(word) = image.text(key) {
-            let word: String = word.to_lowercase().chars().take(32).collect();
-            channel.detail(&format!("{word}{behind}"));
-        }
-    }
-    let valid = ["valid data len x", "valid data len y"].map(|key| image.text(key)?.parse::<usize>().ok());
-    if let [Some(x), Some(y)] = valid
-        && [x, y] != [columns, rows]
-    {
-        channel.detail(&format!("of them {x} x {y} valid"));
-    }
+    add_details(&mut channel, image);
     if scale.is_none() {
         channel.note(format!("no Z scale that can be read: {:?}", image.text(key).unwrap_or_default()));
     }
@@ -147,6 +119,47 @@ fn channel<'s>(
         ));
     }
     Ok(channel)
+}
+
+/// The integers of an image behind a header that ends at `end`, the number of counts of their whole range,
+/// and their offset.
+fn counts(image: &Section, shape: [usize; 2], version: u32, end: u64) -> Result<(RawHeights, f64, u64)> {
+    let (offset, length) = (image.whole("data offset")? as u64, image.whole("data length")? as u64);
+    let pixel = if image.text("bytes/pixel").is_some() { image.whole("bytes/pixel")? } else { 2 };
+    let range = match pixel {
+        2 => 65_536.0,
+        4 => 4_294_967_296.0,
+        _ => return Err(image.wrong("bytes/pixel", "2 or 4 bytes")),
+    };
+    let bytes = |number: NumberType| number.bytes_of(shape);
+    let wide = pixel == 4 || (version >= WIDE && bytes(NumberType::I32).is_some_and(|bytes| bytes <= length));
+    let kind = if wide { NumberType::I32 } else { NumberType::I16 };
+    if bytes(kind) != Some(length) {
+        let [rows, columns] = shape;
+        let expected = format!("{columns} x {rows} numbers of {} bytes", kind.bytes());
+        return Err(image.wrong("data length", expected));
+    }
+    if offset < end {
+        return Err(image.wrong("data offset", format!("a place behind the header, which ends at {end},")));
+    }
+    let raw = RawHeights { reversed: [false, true], ..RawHeights::at(offset, kind) };
+    Ok((raw, range, offset))
+}
+
+/// Adds by what images of one name differ, and how many of the numbers are valid.
+fn add_details(channel: &mut StoredChannel, image: &Section) {
+    for (key, behind) in [("scan line", " scan"), ("line direction", "")] {
+        if let Some(word) = image.text(key) {
+            let word: String = word.to_lowercase().chars().take(32).collect();
+            channel.detail(&format!("{word}{behind}"));
+        }
+    }
+    let valid = ["valid data len x", "valid data len y"].map(|key| image.text(key)?.parse::<usize>().ok());
+    if let [Some(x), Some(y)] = valid
+        && [x, y] != [channel.columns, channel.rows]
+    {
+        channel.detail(&format!("of them {x} x {y} valid"));
+    }
 }
 
 /// Name of what an image shows: the word in brackets, or else the one in quotes.

@@ -15,6 +15,7 @@
 //! (SMS, SMT).
 
 use super::prelude::*;
+use crate::channel::MaskedHeights;
 
 const VERSION: &[u8] = b"OM_MS_2.0\0";
 const HEADER: u64 = 3468;
@@ -69,8 +70,8 @@ fn channels(source: &mut OpenedFile<'_>) -> Result<Vec<StoredChannel>> {
             undefined: Undefined::AtLeast(1.0),
             ..RawHeights::at(intensities, NumberType::U8)
         };
-        let mask = (dark, "points of intensity 0 undefined");
-        StoredChannel::masked(source, raw, mask, shape, unit, extent)?
+        let masked = MaskedHeights { raw, mask: dark, detail: "points of intensity 0 undefined" };
+        StoredChannel::masked(source, masked, shape, unit, extent)?
     };
     Ok(vec![channel.named(&header.name)])
 }

@@ -90,53 +90,18 @@ fn object(
     header: &SurHeader,
     image: bool,
 ) -> Result<(StoredChannel, u64)> {
-    let wrong =
-        |source: &OpenedFile<'_>, inside: u64, expected: String| Err(source.wrong(at + inside, expected));
-    if header.machine != 0 {
-        return wrong(source, 12, format!("0, the format of a PC, found {}", header.machine));
-    }
-    let number = match header.bits {
-        16 => NumberType::I16,
-        32 => NumberType::I32,
-        bits => return wrong(source, 98, format!("16 or 32 bits for a number, found {bits}")),
-    };
-    let [x, y, z] = header.step.map(f64::from);
-    let [Ok(columns), Ok(rows)] = header.count.map(usize::try_from) else {
-        return wrong(source, 108, "numbers of columns and rows".to_owned());
-    };
-    // Gwyddion calls surfaces profiles.
-    let is_surface = matches!(header.kind, 1 | 2 | 3 | 5 | 8 | 10 | 11 | 12 | 13 | 16 | 18);
-    if !is_surface || (header.kind == 1 && rows == 1) {
-        let expected =
-            format!("a surface or an image, found {} of type {}", kind_name(header.kind), header.kind);
-        return wrong(source, 18, expected);
-    }
-    if columns as u64 * rows as u64 != u64::from(header.total) {
-        let expected = format!("{columns} x {rows} numbers, found {}", header.total);
-        return wrong(source, 116, expected);
-    }
-    source.check_cells([rows, columns])?;
-    if !(z.is_finite() && z.abs() > 0.0 && header.z_offset.is_finite()) {
-        return wrong(source, 128, format!("a step along z other than 0 and an offset, found {z}"));
-    }
-    if header.inverted != 0 && !image {
-        let expected = "no mark of an inversion: readers disagree whether the numbers are inverted already; export X3P or text";
-        return wrong(source, 290, expected.to_owned());
-    }
+    let number = number_type(source, at, header)?;
+    let shape = shape(source, at, header)?;
+    check_heights(source, at, header, image)?;
+    let data = at + HEADER + header.behind.map(u64::from).iter().sum::<u64>();
     let mark = f64::from(header.lowest) - 2.0;
     let undefined = if header.special == 1 { Undefined::Equal(mark) } else { Undefined::None };
-    let data = at + HEADER + header.behind.map(u64::from).iter().sum::<u64>();
+    let [x, y, z] = header.step.map(f64::from);
     let shift = header.z_offset.into();
     let raw = move |bytes| RawHeights { scale: z, shift, undefined, ..RawHeights::new(bytes, number) };
     let plain = raw(Bytes::File(data));
-    let unit = match StoredUnit::written(&header.unit[2]) {
-        StoredUnit::NoHeights(unit) => StoredUnit::NoHeights(unit),
-        _ if image => StoredUnit::NoHeights(None),
-        unit => unit,
-    };
-    let name = [&*header.name, &*header.z_axis].into_iter().find(|name| !name.is_empty()).unwrap_or_default();
+    let unit = unit_of_values(header, image);
     let extent = [Extent::of_cell(x, &header.unit[0]), Extent::of_cell(y, &header.unit[1])];
-    let shape = [rows, columns];
     let length = u64::from(header.total) * number.bytes() as u64;
     let (mut channel, end) = if header.magic == *COMPRESSED {
         let details = format!("{}, compressed", plain.details());
@@ -146,14 +111,71 @@ fn object(
             for stream in &streams {
                 stream.unpack(source, &mut bytes)?;
             }
-            raw(Bytes::Held(bytes)).read(source, rows, columns)
+            raw(Bytes::Held(bytes)).read(source, shape[0], shape[1])
         };
         (StoredChannel::deferred(details, shape, unit, extent, read), end)
     } else {
         (StoredChannel::new(source, plain, shape, unit, extent)?, data + length)
     };
     channel.note_sides("cells of", [Some(x), Some(y)], &header.unit[0]);
+    let name = [&*header.name, &*header.z_axis].into_iter().find(|name| !name.is_empty()).unwrap_or_default();
     Ok((channel.named(name), end))
+}
+
+/// The type of the numbers of an object, which is that of a PC.
+fn number_type(source: &OpenedFile<'_>, at: u64, header: &SurHeader) -> Result<NumberType> {
+    if header.machine != 0 {
+        let expected = format!("0, the format of a PC, found {}", header.machine);
+        return Err(source.wrong(at + 12, expected));
+    }
+    match header.bits {
+        16 => Ok(NumberType::I16),
+        32 => Ok(NumberType::I32),
+        bits => Err(source.wrong(at + 98, format!("16 or 32 bits for a number, found {bits}"))),
+    }
+}
+
+/// Rows and columns of an object, which is a surface or an image.
+fn shape(source: &OpenedFile<'_>, at: u64, header: &SurHeader) -> Result<[usize; 2]> {
+    let [Ok(columns), Ok(rows)] = header.count.map(usize::try_from) else {
+        return Err(source.wrong(at + 108, "numbers of columns and rows"));
+    };
+    // Gwyddion calls surfaces profiles.
+    let is_surface = matches!(header.kind, 1 | 2 | 3 | 5 | 8 | 10 | 11 | 12 | 13 | 16 | 18);
+    if !is_surface || (header.kind == 1 && rows == 1) {
+        let expected =
+            format!("a surface or an image, found {} of type {}", kind_name(header.kind), header.kind);
+        return Err(source.wrong(at + 18, expected));
+    }
+    if columns as u64 * rows as u64 != u64::from(header.total) {
+        let expected = format!("{columns} x {rows} numbers, found {}", header.total);
+        return Err(source.wrong(at + 116, expected));
+    }
+    source.check_cells([rows, columns])?;
+    Ok([rows, columns])
+}
+
+/// Refuses numbers that make no heights, or whose heights may be inverted.
+fn check_heights(source: &OpenedFile<'_>, at: u64, header: &SurHeader, image: bool) -> Result<()> {
+    let z = f64::from(header.step[2]);
+    if !(z.is_finite() && z.abs() > 0.0 && header.z_offset.is_finite()) {
+        let expected = format!("a step along z other than 0 and an offset, found {z}");
+        return Err(source.wrong(at + 128, expected));
+    }
+    if header.inverted != 0 && !image {
+        let expected = "no mark of an inversion: readers disagree whether the numbers are inverted already; export X3P or text";
+        return Err(source.wrong(at + 290, expected));
+    }
+    Ok(())
+}
+
+/// The unit of an object; an image has no heights.
+fn unit_of_values(header: &SurHeader, image: bool) -> StoredUnit {
+    match StoredUnit::written(&header.unit[2]) {
+        StoredUnit::NoHeights(unit) => StoredUnit::NoHeights(unit),
+        _ if image => StoredUnit::NoHeights(None),
+        unit => unit,
+    }
 }
 
 /// The streams of a compressed object that unpack to `length` bytes, and the offset of their end.

@@ -87,7 +87,8 @@ fn channels(source: &mut OpenedFile<'_>) -> Result<Vec<StoredChannel>> {
     let mut pages = Vec::new();
     let mut decoder = open(source)?;
     loop {
-        let mut page = Page::of(&mut decoder).map_err(|e| Error::content(&path)(unreadable(&e)))?;
+        let mut page =
+            Page::of(&mut decoder, pages.len()).map_err(|e| Error::content(&path)(unreadable(&e)))?;
         if !pages.is_empty() {
             // All images may share one long text, and of others than the first only names are looked at.
             page.description = page.description.filter(|text| text.len() <= NAME);
@@ -109,15 +110,15 @@ fn channels(source: &mut OpenedFile<'_>) -> Result<Vec<StoredChannel>> {
     };
     let mut channels = Vec::new();
     let masked: Vec<bool> = pages.iter().skip(1).map(|page| page.subfile & MASK > 0).collect();
-    for (number, page) in pages.into_iter().enumerate() {
+    for page in pages {
         if page.bits.is_none() || page.subfile & MASK > 0 {
             continue;
         }
-        let jpk = Jpk::of(source, &tags, number)?;
+        let jpk = Jpk::of(source, &tags, page.number)?;
         let shape = [page.size.1 as usize, page.size.0 as usize];
-        let mask = masked.get(number).is_some_and(|&mask| mask);
-        let mask = mask.then(|| Mask::of(source, &tags, number + 1, shape)).transpose()?;
-        channels.extend(channel(source, number, page, &first, (jpk, mask))?);
+        let mask = masked.get(page.number).is_some_and(|&mask| mask);
+        let mask = mask.then(|| Mask::of(source, &tags, page.number + 1, shape)).transpose()?;
+        channels.extend(channel(source, page, &first, jpk, mask)?);
     }
     if channels.is_empty() {
         let what = "a TIFF picture of 8 bits, in colours or with white as zero";
@@ -129,6 +130,8 @@ fn channels(source: &mut OpenedFile<'_>) -> Result<Vec<StoredChannel>> {
 
 /// What the directory of one image says.
 struct Page {
+    /// Number of the image, from 0.
+    number: usize,
     size: (u32, u32),
     /// Bits of a grey number; `None` for pictures.
     bits: Option<u8>,
@@ -153,7 +156,7 @@ struct First {
 }
 
 impl Page {
-    fn of<R: Read + Seek>(decoder: &mut Decoder<R>) -> TiffResult<Self> {
+    fn of<R: Read + Seek>(decoder: &mut Decoder<R>, number: usize) -> TiffResult<Self> {
         let size = decoder.dimensions()?;
         let short = |decoder: &mut Decoder<R>, tag, absent| {
             decoder.find_tag_unsigned(tag).map(|found| found.unwrap_or(absent))
@@ -180,6 +183,7 @@ impl Page {
         Ok(Self {
             gdal: Gdal::of(decoder)?,
             subfile: decoder.find_tag_unsigned(Tag::NewSubfileType)?.unwrap_or(0),
+            number,
             size,
             bits,
             sample_format,
@@ -188,6 +192,41 @@ impl Page {
             resolution_unit: short(decoder, Tag::ResolutionUnit, 2)?,
             description,
         })
+    }
+
+    /// Whether the first number along x, along y is that of the last column, the last row.
+    fn reversed(&self, source: &OpenedFile<'_>) -> Result<[bool; 2]> {
+        match self.orientation {
+            1 => Ok([false, false]),
+            2 => Ok([true, false]),
+            3 => Ok([true, true]),
+            4 => Ok([false, true]),
+            other => {
+                let expected = format!("an orientation of 1 to 4 in image {}, found {other}", self.number);
+                Err(source.wrong(0, expected))
+            }
+        }
+    }
+
+    /// Refuses more numbers than can be packed in the file.
+    fn check_size(&self, source: &OpenedFile<'_>, bits: u8) -> Result<()> {
+        let (columns, rows) = self.size;
+        let claimed = u128::from(rows) * u128::from(columns) * u128::from(bits / 8);
+        if claimed > u128::from(RATIO.saturating_mul(source.length())) {
+            let expected = format!("{columns} x {rows} numbers in {} bytes (cut short?)", source.length());
+            return Err(source.wrong(0, expected));
+        }
+        Ok(())
+    }
+
+    /// The type of the numbers. Byte order and packing are the other crate's; what it decodes has this type.
+    fn number_type(&self, bits: u8) -> Option<NumberType> {
+        let letter = match self.sample_format {
+            2 => b'i',
+            3 => b'f',
+            _ => b'u',
+        };
+        NumberType::new(letter, bits / 8, true)
     }
 }
 
@@ -273,48 +312,56 @@ impl ImageJ {
     }
 }
 
+/// The channel of an image; `None` where its numbers have no type of this crate.
 fn channel(
     source: &OpenedFile<'_>,
-    number: usize,
-    page: Page,
+    mut page: Page,
     first: &First,
-    (jpk, mask): (Option<Jpk>, Option<Mask>),
+    jpk: Option<Jpk>,
+    mask: Option<Mask>,
 ) -> Result<Option<StoredChannel>> {
-    let (columns, rows) = page.size;
+    let Page { number, size, .. } = page;
     let Some(bits) = page.bits else { return Ok(None) };
-    let reversed = match page.orientation {
-        1 => [false, false],
-        2 => [true, false],
-        3 => [true, true],
-        4 => [false, true],
-        other => {
-            let expected = format!("an orientation of 1 to 4 in image {number}, found {other}");
-            return Err(source.wrong(0, expected));
-        }
-    };
-    let claimed = u128::from(rows) * u128::from(columns) * u128::from(bits / 8);
-    if claimed > u128::from(RATIO.saturating_mul(source.length())) {
-        let expected = format!("{columns} x {rows} numbers in {} bytes (cut short?)", source.length());
-        return Err(source.wrong(0, expected));
-    }
-    let letter = match page.sample_format {
-        2 => b'i',
-        3 => b'f',
-        _ => b'u',
-    };
-    // Byte order and packing are the other crate's; what it decodes has this type.
-    let Some(kind) = NumberType::new(letter, bits / 8, true) else { return Ok(None) };
-    let dimensions = [rows, columns].map(|count| Along::of_length(count as usize));
-    let name = if first.alone { String::new() } else { format!("image {number}") };
-    let mut array = Array::new(&name, dimensions, kind, (FileAxes::Fixed, ""));
-    let Gdal { scale, shift, unit, missing, extent, notes, wrong } = page.gdal;
-    if let Some(expected) = wrong {
+    let reversed = page.reversed(source)?;
+    page.check_size(source, bits)?;
+    let Some(kind) = page.number_type(bits) else { return Ok(None) };
+    let gdal = std::mem::take(&mut page.gdal);
+    if let Some(expected) = gdal.wrong {
         return Err(source.wrong(0, format!("{expected} in image {number}")));
     }
-    array.undefined = missing.map_or(Undefined::None, Undefined::Equal);
-    (array.notes, array.reversed) = (notes, reversed);
-    (array.scale, array.shift, array.extent) = (scale, shift, extent);
-    array.unit = StoredUnit::written(unit.as_deref().unwrap_or_default());
+    let (columns, rows) = size;
+    let dimensions = [rows, columns].map(|count| Along::of_length(count as usize));
+    let name = if first.alone { String::new() } else { format!("image {number}") };
+    let mut array = Array {
+        reversed,
+        undefined: gdal.missing.map_or(Undefined::None, Undefined::Equal),
+        notes: gdal.notes,
+        scale: gdal.scale,
+        shift: gdal.shift,
+        extent: gdal.extent,
+        unit: StoredUnit::written(gdal.unit.as_deref().unwrap_or_default()),
+        ..Array::new(&name, dimensions, kind, (FileAxes::Fixed, ""))
+    };
+    take_description(source, &mut array, &page, first, jpk)?;
+    if page.subfile & REDUCED > 0 {
+        array.unit = StoredUnit::NoHeights(Some("an image of less resolution".into()));
+    }
+    let details = format!("{}, row by row{}", kind.name(), if mask.is_some() { ", with a mask" } else { "" });
+    let image = TiffImage { number, size, bytes: u64::from(bits / 8), mask };
+    let numbers = Numbers::Decoded("", Box::new(move |raw, source| image.read(raw, source)));
+    // Byte order and packing are not those of the file any more.
+    Ok(Some(StoredChannel { details, ..array.channel(source, numbers)? }))
+}
+
+/// Takes what the program that wrote the image says of it, instead of what GDAL says: JPK's, Olympus's or
+/// ImageJ. The sides of a pixel by OME count where nothing else says them.
+fn take_description(
+    source: &OpenedFile<'_>,
+    array: &mut Array,
+    page: &Page,
+    first: &First,
+    jpk: Option<Jpk>,
+) -> Result<()> {
     let description = page.description.as_deref().unwrap_or_default().trim();
     if let Some(jpk) = jpk {
         // The first row is the bottom of JPK's image.
@@ -330,19 +377,14 @@ fn channel(
             return Err(source.wrong(0, "one scale of the heights, found those of ImageJ and of GDAL"));
         }
         (array.scale, array.shift) = (array.scale.or(scale), array.shift.or(shift));
-        array.unit = if unit == StoredUnit::Unknown { array.unit } else { unit };
+        if unit != StoredUnit::Unknown {
+            array.unit = unit;
+        }
         array.extent = image_j.extent(&page.resolution, page.resolution_unit);
     } else if array.extent == [None; 2] {
         array.extent = first.microscope;
     }
-    if page.subfile & REDUCED > 0 {
-        array.unit = StoredUnit::NoHeights(Some("an image of less resolution".into()));
-    }
-    let details = format!("{}, row by row{}", kind.name(), if mask.is_some() { ", with a mask" } else { "" });
-    let image = TiffImage { number, size: page.size, bytes: u64::from(bits / 8), mask };
-    let numbers = Numbers::Decoded("", Box::new(move |raw, source| image.read(raw, source)));
-    // Byte order and packing are not those of the file any more.
-    Ok(Some(StoredChannel { details, ..array.channel(source, numbers)? }))
+    Ok(())
 }
 
 /// What is needed to read one image.

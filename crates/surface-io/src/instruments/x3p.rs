@@ -49,59 +49,101 @@ fn channels(source: &mut OpenedFile<'_>) -> Result<Vec<StoredChannel>> {
         return Err(source.content(zip::refused(&members)));
     };
     drop(text);
-    let ([columns, rows], number) = described(&main).map_err(|e| wrong(source, main_member, &e))?;
-    let [x, y, z] = &main.axes;
-    let mut notes = Vec::new();
-    notes.extend(rotated(&main.rotation).map_err(|e| wrong(source, main_member, &e))?);
-    let (scale, shift) = (length(&z.increment, 1.0), length(&z.offset, 0.0));
-    let (Some(scale), Some(shift)) = (scale.filter(|scale| scale.abs() > 0.0), shift) else {
-        return Err(wrong(source, main_member, "an increment along z other than 0, and an offset"));
+    let container = X3pContainer { members: &members, main_member, main };
+    let (shape, number) = described(&container.main).map_err(|e| wrong(source, main_member, &e))?;
+    let rotation = rotated(&container.main.rotation).map_err(|e| wrong(source, main_member, &e))?;
+    let scale = container.scale(source, number)?;
+    let mut details = RawHeights::new(Bytes::Held(Vec::new()), number).details();
+    let numbers = container.numbers(source, shape, number)?;
+    details += match &numbers {
+        X3pNumbers::Listed(_) => ", as text",
+        X3pNumbers::Linked { valid: Some(_), .. } => ", with a mask",
+        X3pNumbers::Linked { valid: None, .. } => "",
     };
-    // The schema gives an increment to integers only, and readers disagree whether floats are multiplied by
-    // it.
-    let disputed = number.is_float() && (scale - 1.0).abs() > 0.0;
-    let (scale, unit) = if disputed { (1.0, StoredUnit::Unknown) } else { (scale, StoredUnit::written("m")) };
-    if disputed {
+    let [x, y, _] = &container.main.axes;
+    let extent = [x.cell(), y.cell()];
+    let factors = (scale.scale, scale.shift);
+    let read = move |source: &mut OpenedFile<'_>| numbers.read(source, shape, factors);
+    let [columns, rows] = shape;
+    let channel = StoredChannel::deferred(details, [rows, columns], scale.unit, extent, read);
+    let notes = rotation.into_iter().chain(scale.note).collect();
+    Ok(vec![StoredChannel { notes, ..channel }])
+}
+
+/// A description and the archive that it is in.
+struct X3pContainer<'a> {
+    members: &'a [Member],
+    main_member: &'a Member,
+    main: Main,
+}
+
+/// What makes heights of numbers.
+struct X3pScale {
+    scale: f64,
+    shift: f64,
+    unit: StoredUnit,
+    note: Option<String>,
+}
+
+impl X3pContainer<'_> {
+    /// The increment and the offset along z.
+    fn scale(&self, source: &OpenedFile<'_>, number: NumberType) -> Result<X3pScale> {
+        let [.., z] = &self.main.axes;
+        let (scale, shift) = (length(&z.increment, 1.0), length(&z.offset, 0.0));
+        let (Some(scale), Some(shift)) = (scale.filter(|scale| scale.abs() > 0.0), shift) else {
+            let expected = "an increment along z other than 0, and an offset";
+            return Err(wrong(source, self.main_member, expected));
+        };
+        // The schema gives an increment to integers only, and readers disagree whether floats are multiplied
+        // by it.
+        let disputed = number.is_float() && (scale - 1.0).abs() > 0.0;
+        if !disputed {
+            return Ok(X3pScale { scale, shift, unit: StoredUnit::written("m"), note: None });
+        }
         let increment = &z.increment;
-        notes.push(format!(
+        let note = format!(
             "heights are floats, which are metres, beside an increment of {increment}, by which some readers multiply them: say \
              height_scale = \"1 m\" or height_scale = \"{increment} m\""
-        ));
+        );
+        Ok(X3pScale { scale: 1.0, shift, unit: StoredUnit::Unknown, note: Some(note) })
     }
-    let folder = &main_member.name[..main_member.name.len() - MAIN.len()];
-    let member = |link: &str| {
-        let name = format!("{folder}{}", link.replace('\\', "/").trim_start_matches("./"));
-        members.iter().find(|m| m.name == name).cloned()
-    };
-    let count = rows as u64 * columns as u64;
-    let mut details = RawHeights::new(Bytes::Held(Vec::new()), number).details();
-    let numbers = if main.data.is_empty() {
-        if main.listed != count {
-            let expected = format!("{columns} x {rows} numbers or a link to them, found {}", main.listed);
-            return Err(wrong(source, main_member, &expected));
+
+    /// Where the numbers are, and as many of them as there are points.
+    fn numbers(
+        &self,
+        source: &mut OpenedFile<'_>,
+        [columns, rows]: [usize; 2],
+        number: NumberType,
+    ) -> Result<X3pNumbers> {
+        let count = rows as u64 * columns as u64;
+        if self.main.data.is_empty() {
+            if self.main.listed != count {
+                let found = self.main.listed;
+                let expected = format!("{columns} x {rows} numbers or a link to them, found {found}");
+                return Err(wrong(source, self.main_member, &expected));
+            }
+            return Ok(X3pNumbers::Listed(self.main_member.clone()));
         }
-        details += ", as text";
-        X3pNumbers::Listed(main_member.clone())
-    } else {
-        let Some(data) = member(&main.data) else {
-            return Err(wrong(source, main_member, "PointDataLink with the name of a member"));
+        let Some(data) = self.member(&self.main.data) else {
+            return Err(wrong(source, self.main_member, "PointDataLink with the name of a member"));
         };
         sized(source, &data, count.checked_mul(number.bytes() as u64))?;
-        let mut valid = None;
-        if !main.valid.is_empty() {
-            let Some(bits) = member(&main.valid) else {
-                return Err(wrong(source, main_member, "ValidPointsLink with the name of a member"));
-            };
-            sized(source, &bits, Some(count.div_ceil(8)))?;
-            details += ", with a mask";
-            valid = Some(bits);
+        if self.main.valid.is_empty() {
+            return Ok(X3pNumbers::Linked { data, valid: None, number });
         }
-        X3pNumbers::Linked { data, valid, number }
-    };
-    let (x, y) = (x.cell(), y.cell());
-    let read = move |source: &mut OpenedFile<'_>| numbers.read(source, [columns, rows], (scale, shift));
-    let channel = StoredChannel::deferred(details, [rows, columns], unit, [x, y], read);
-    Ok(vec![StoredChannel { notes, ..channel }])
+        let Some(bits) = self.member(&self.main.valid) else {
+            return Err(wrong(source, self.main_member, "ValidPointsLink with the name of a member"));
+        };
+        sized(source, &bits, Some(count.div_ceil(8)))?;
+        Ok(X3pNumbers::Linked { data, valid: Some(bits), number })
+    }
+
+    /// The member of a link, which counts from the folder of the description.
+    fn member(&self, link: &str) -> Option<Member> {
+        let folder = &self.main_member.name[..self.main_member.name.len() - MAIN.len()];
+        let name = format!("{folder}{}", link.replace('\\', "/").trim_start_matches("./"));
+        self.members.iter().find(|member| member.name == name).cloned()
+    }
 }
 
 fn wrong(source: &OpenedFile<'_>, main: &Member, expected: &str) -> Error {

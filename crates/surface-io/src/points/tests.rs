@@ -192,32 +192,47 @@ fn profiles_are_lines() {
     assert!(crate::profile_from_bytes("a.npy", &npy, &declared).unwrap_err().to_string().contains("NPY"));
 }
 
-#[test]
-fn profiles_are_maps_of_one_row() {
-    let declared = ReadOptions {
+/// A profile of x in um and heights in nm.
+fn profile(text: &str, change: impl FnOnce(&mut ReadOptions)) -> crate::Result<Scan> {
+    let mut declared = ReadOptions {
         unit: "nm".parse().ok(),
         lateral_unit: "um".parse().ok(),
         format: Some(crate::Format::Profile),
         ..ReadOptions::default()
     };
-    let scan = |text: &str, declared: &ReadOptions| Scan::from_bytes("a.txt", text.as_bytes(), declared);
-    // Two points, of which the format has to be said; the cell along y is a square.
-    let two = scan("0 1\n2 4\n", &declared).unwrap();
+    change(&mut declared);
+    Scan::from_bytes("a.txt", text.as_bytes(), &declared)
+}
+
+/// Of two points the format has to be said.
+#[test]
+fn profiles_are_maps_of_one_row() {
+    // The cell along y is a square.
+    let two = profile("0 1\n2 4\n", |_| ()).unwrap();
     let map = two.map(&crate::Preprocessing::default()).unwrap();
     assert_eq!((map.columns(), map.rows(), map.dx(), map.dy()), (2, 1, 2e-6, 2e-6));
     assert!((map.heights()[1] / 4e-9 - 1.0).abs() < 1e-12);
-    let wide = ReadOptions { size: "4 um x 1 mm".parse().ok(), ..declared.clone() };
-    let wide = scan("0 1\n2 4\n", &wide).unwrap();
+    let wide = profile("0 1\n2 4\n", |d| d.size = "4 um x 1 mm".parse().ok()).unwrap();
     assert!(wide.metadata().profile);
     assert_eq!(wide.map(&crate::Preprocessing::default()).unwrap().dy().to_bits(), 1e-3_f64.to_bits());
     // A size that contradicts x.
-    let wrong = ReadOptions { size: "5 um x 1 mm".parse().ok(), ..declared.clone() };
-    assert!(scan("0 1\n2 4\n", &wrong).unwrap_err().to_string().contains("size along x"));
-    // Undefined points are named, and filled on request; a tilt goes with the plane of one row.
-    let holed = scan("0 1\n1 nan\n2 3\n3 4\n5 6\n", &declared).unwrap();
+    let wrong = profile("0 1\n2 4\n", |d| d.size = "5 um x 1 mm".parse().ok());
+    assert!(wrong.unwrap_err().to_string().contains("size along x"));
+}
+
+#[test]
+fn one_row_of_a_matrix_with_both_sides_is_no_profile() {
+    let row = Scan::from_bytes("a.txt", b"# Width: 3 um\n# Height: 1 um\n1 2 3\n", &ReadOptions::default());
+    assert!(!row.unwrap().metadata().profile);
+}
+
+#[test]
+fn undefined_points_of_profiles_are_named_and_filled_on_request() {
+    let holed = profile("0 1\n1 nan\n2 3\n3 4\n5 6\n", |_| ()).unwrap();
     assert_eq!(holed.metadata().undefined, 2);
     assert!(holed.map(&crate::Preprocessing::default()).unwrap_err().to_string().contains("2 of 6"));
     for fill in [crate::Fill::Neighbours, crate::Fill::Plane] {
+        // A tilt goes with the plane of one row.
         let filled = crate::Preprocessing {
             fill: Some(fill),
             detrend: crate::Detrend::Plane,
@@ -226,7 +241,11 @@ fn profiles_are_maps_of_one_row() {
         let map = holed.map(&filled).unwrap();
         assert!(map.heights().iter().all(|h| h.abs() < 1e-20), "{:?}", map.heights());
     }
-    let parabola = scan("0 0\n1 1\n2 4\n3 9\n4 16\n", &declared).unwrap();
+}
+
+#[test]
+fn profiles_have_the_trends_and_steps_of_one_row() {
+    let parabola = profile("0 0\n1 1\n2 4\n3 9\n4 16\n", |_| ()).unwrap();
     let level = crate::Preprocessing { detrend: crate::Detrend::Quadric, ..crate::Preprocessing::default() };
     assert!(parabola.map(&level).unwrap().heights().iter().all(|h| h.abs() < 1e-22));
     for (preprocessing, expected) in [
@@ -244,6 +263,10 @@ fn profiles_are_maps_of_one_row() {
         let error = parabola.map(&preprocessing).unwrap_err().to_string();
         assert!(error.contains(expected), "{error}");
     }
+}
+
+#[test]
+fn odd_profiles_are_maps_or_refused() {
     for (text, expected) in [
         ("0 1 2\n1 2 3\n", "line 1 has 3 values"),
         ("0 1\n1e308 2\n", ""),
@@ -252,11 +275,8 @@ fn profiles_are_maps_of_one_row() {
         ("5 1\n", "the step of the profile"),
         ("nan 1\nnan 2\n", "line 1 has no x"),
     ] {
-        let found = scan(text, &declared).and_then(|scan| scan.map(&crate::Preprocessing::default()));
+        let found = profile(text, |_| ()).and_then(|scan| scan.map(&crate::Preprocessing::default()));
         let text = found.map_or_else(|e| e.to_string(), |map| format!("{:?}", map.size()));
         assert!(text.contains(expected), "{text}");
     }
-    // One row of a matrix whose file says both sides is a map.
-    let row = Scan::from_bytes("a.txt", b"# Width: 3 um\n# Height: 1 um\n1 2 3\n", &ReadOptions::default());
-    assert!(!row.unwrap().metadata().profile);
 }

@@ -438,10 +438,9 @@ fn undefined_points_are_cropped_away() {
     }
 }
 
-#[test]
-fn errors_of_scanning_are_repaired_in_order_and_told() {
-    // Lines 2 nm apart that jump by 3 nm, a streak of 50 nm in row 9, a wave across the lines at the cut-off;
-    // in a file of nanometres.
+/// Lines 2 nm apart that jump by 3 nm, a streak of 50 nm in row 9, a wave across the lines at the cut-off; in
+/// a file of nanometres.
+fn scan_with_errors() -> Scan {
     let wave = |y: f64| (std::f64::consts::TAU * y / 10.0).cos();
     let height = |x: f64, y: f64| {
         let streak = if (y - 9.0).abs() < 0.5 && (30.0..46.0).contains(&x) { 50.0 } else { 0.0 };
@@ -454,7 +453,11 @@ fn errors_of_scanning_are_repaired_in_order_and_told() {
     let bytes = crate::npy(&[40, 60], &values).unwrap();
     let declared =
         ReadOptions { cell: "1 nm x 2 nm".parse().ok(), unit: "nm".parse().ok(), ..ReadOptions::default() };
-    let scan = Scan::from_bytes("a.npy", &bytes, &declared).unwrap();
+    Scan::from_bytes("a.npy", &bytes, &declared).unwrap()
+}
+
+#[test]
+fn errors_of_scanning_are_repaired_in_order_and_told() {
     let all = Preprocessing {
         crop: Some(Crop::Window { row: 0, column: 0, rows: 40, columns: 59 }),
         align_lines: Some(AlignLines::MedianDifference),
@@ -467,7 +470,7 @@ fn errors_of_scanning_are_repaired_in_order_and_told() {
         mirror: Some(Mirror::X),
         ..Preprocessing::default()
     };
-    let found = scan.preprocessed(&all).unwrap();
+    let found = scan_with_errors().preprocessed(&all).unwrap();
     let beginnings = [
         "cropped to 59 x 40 points",
         "scan lines shifted by 1.4",
@@ -488,52 +491,61 @@ fn errors_of_scanning_are_repaired_in_order_and_told() {
     assert_abs_diff_eq!(h(20, 5) - h(20, 55), 2.0, epsilon = 0.05);
     assert_abs_diff_eq!(h(30, 55) - h(2, 55), 0.0, epsilon = 0.05);
     assert_abs_diff_eq!(h(9, 40), h(9, 55), epsilon = 0.05);
-    // Scars are undefined points as others: an error unless something is said of them.
-    let bare = Preprocessing { scars: all.scars, align_lines: all.align_lines, ..Preprocessing::default() };
+}
+
+/// As others: an error unless something is said of them.
+#[test]
+fn scars_are_undefined_points() {
+    let scan = scan_with_errors();
+    let bare = Preprocessing {
+        scars: Some(20.0),
+        align_lines: Some(AlignLines::MedianDifference),
+        ..Preprocessing::default()
+    };
     let error = scan.map(&bare).unwrap_err().to_string();
     assert!(error.contains("16 of 2400 points are undefined, the first in row 9, column 30"), "{error}");
     let kept = Preprocessing { undefined: Some(Undefined::NoContact), ..bare };
     assert_eq!(scan.map(&kept).unwrap().undefined(), 16);
-    for (change, expected) in [
-        (Preprocessing { scars: Some(0.0), ..Preprocessing::default() }, "scars = 0: expected a number > 0"),
+}
+
+#[test]
+fn limits_of_scars_are_positive_numbers() {
+    let scan = scan_with_errors();
+    for (scars, expected) in [
+        (0.0, "scars = 0: expected a number > 0"),
+        (-2.0, "scars = -2: expected a number > 0"),
+        (f64::NAN, "scars = NaN: expected a number > 0"),
+        (f64::INFINITY, "scars = inf: expected a number > 0"),
+    ] {
+        let error = preprocessed(&scan, |p| p.scars = Some(scars)).unwrap_err().to_string();
+        assert!(error.contains(expected), "{error}");
+    }
+}
+
+#[test]
+fn cut_offs_are_lengths_from_four_cells_to_the_side() {
+    let scan = scan_with_errors();
+    for (cut_off, expected) in [
         (
-            Preprocessing { scars: Some(-2.0), ..Preprocessing::default() },
-            "scars = -2: expected a number > 0",
-        ),
-        (
-            Preprocessing { scars: Some(f64::NAN), ..Preprocessing::default() },
-            "scars = NaN: expected a number > 0",
-        ),
-        (
-            Preprocessing { scars: Some(f64::INFINITY), ..Preprocessing::default() },
-            "scars = inf: expected a number > 0",
-        ),
-        (
-            Preprocessing { filter_across: "7.9 nm".parse().ok(), ..Preprocessing::default() },
+            "7.9 nm",
             "filter_across = 7.9e-9: expected a wavelength from 8e-9, four cells, to 8e-8, the side of the map across",
         ),
-        (
-            Preprocessing { filter_across: "81 nm".parse().ok(), ..Preprocessing::default() },
-            "filter_across = 8.1e-8: ",
-        ),
-        (
-            Preprocessing { filter_across: "0 nm".parse().ok(), ..Preprocessing::default() },
-            "filter_across = 0: ",
-        ),
-        (
-            Preprocessing { filter_across: "-9 nm".parse().ok(), ..Preprocessing::default() },
-            "filter_across = -9e-9: ",
-        ),
-        (Preprocessing { filter_across: "5".parse().ok(), ..Preprocessing::default() }, "filter_across: 5 "),
+        ("81 nm", "filter_across = 8.1e-8: "),
+        ("0 nm", "filter_across = 0: "),
+        ("-9 nm", "filter_across = -9e-9: "),
+        ("5", "filter_across: 5 "),
     ] {
-        let error = scan.map(&change).unwrap_err().to_string();
+        let error = preprocessed(&scan, |p| p.filter_across = cut_off.parse().ok()).unwrap_err().to_string();
         assert!(error.contains(expected), "{error}");
     }
     for cut_off in ["8 nm", "80 nm"] {
-        let ends = Preprocessing { filter_across: cut_off.parse().ok(), ..Preprocessing::default() };
-        assert!(scan.map(&ends).is_ok());
+        assert!(preprocessed(&scan, |p| p.filter_across = cut_off.parse().ok()).is_ok());
     }
-    // A map of one line has no wave across.
+}
+
+/// No wave runs across it, no line is off another.
+#[test]
+fn a_map_of_one_line_is_filtered_by_no_cut_off_and_needs_no_other_repair() {
     let line = scan_of("1", 1, 30, |x, _| x);
     let filter = Preprocessing { filter_across: "4".parse().ok(), ..Preprocessing::default() };
     let error = line.map(&filter).unwrap_err().to_string();

@@ -1,9 +1,11 @@
 //! Least-squares polynomials in x and y, and which trend is subtracted.
 
+use super::form::{Form, FormKind};
 use super::normal_equations::{MOST, NormalEquations};
 use crate::error::ContentError;
 use crate::keyword::keywords;
 use contact_model::Cells;
+use contact_model::units::number;
 
 keywords! {
     /// Trend that is subtracted from the heights.
@@ -22,6 +24,48 @@ keywords! {
     Sphere = "sphere",
     /// The circular cylinder of least squares, its axis in any direction, tilted or not: a roller, a wire.
     Cylinder = "cylinder",
+}
+
+/// The trend of least squares, before it is subtracted.
+#[derive(Debug)]
+pub(super) enum FittedTrend {
+    /// A mean height, a plane or a quadric.
+    Polynomial(Trend),
+    /// A sphere or a cylinder.
+    Form(Form),
+}
+
+impl FittedTrend {
+    /// Fits the heights that are not NaN; `None` for nothing to subtract.
+    pub(super) fn new(
+        detrend: Detrend,
+        cells: Cells,
+        cell: [f64; 2],
+        heights: &[f64],
+    ) -> Result<Option<Self>, ContentError> {
+        let form = |kind| Form::fit(kind, cells, cell, heights).map(|form| Some(Self::Form(form)));
+        match detrend {
+            Detrend::Sphere => form(FormKind::Sphere),
+            Detrend::Cylinder => form(FormKind::Cylinder),
+            _ => Ok(detrend.fit(cells, heights)?.map(Self::Polynomial)),
+        }
+    }
+
+    pub(super) fn subtract(&self, heights: &mut [f64]) {
+        match self {
+            Self::Polynomial(trend) => trend.subtract(heights),
+            Self::Form(form) => form.subtract(heights),
+        }
+    }
+
+    /// What is subtracted, for records.
+    pub(super) fn words(&self, detrend: Detrend) -> String {
+        let subtracted = format!("the {} of least squares subtracted", detrend.word());
+        let Self::Form(form) = self else { return subtracted };
+        let radius = form.radius();
+        let side = if radius > 0.0 { "a hill" } else { "a hollow" };
+        format!("{subtracted}: radius {} ({side})", number(radius.abs()))
+    }
 }
 
 /// Coefficients of Legendre's polynomials in coordinates that run from -1 to 1 along each side.

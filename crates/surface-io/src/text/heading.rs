@@ -131,31 +131,10 @@ impl Heading {
 
     fn statement(&mut self, text: &str, line: usize) -> Result<(), ContentError> {
         let Some((statement, key, value)) = key_and_value(text) else {
-            let lower = text.to_lowercase();
-            let between = [':', '=', '\t', ',', ';', '\u{ff1a}'];
-            let value = text.split_once(between).map(|(_, value)| value.trim());
-            let of_length = |value: &str| {
-                let sides = lengths(value).unwrap_or_default();
-                sides.iter().any(|side| side.quantity.dimension() == Dimension::LENGTH)
-                    || unit(value).is_ok_and(|unit| unit.dimension() == Dimension::LENGTH)
-            };
-            if value.is_some_and(|value| ABOUT.iter().any(|word| lower.contains(word)) || of_length(value))
-                && self.unused.len() < NOTED
-            {
-                self.unused.push(text.trim().chars().take(80).collect());
-            }
+            self.note_unknown(text);
             return Ok(());
         };
-        let about_size = matches!(
-            statement,
-            HeadingStatement::Side(..)
-                | HeadingStatement::Size
-                | HeadingStatement::Cell(_)
-                | HeadingStatement::Count(_)
-        );
-        if about_size && value.contains(|c: char| c.is_ascii_digit()) && self.sizes.len() < NOTED {
-            self.sizes.push(text.trim().chars().take(80).collect());
-        }
+        self.note_size(&statement, text, &value);
         match statement {
             HeadingStatement::Channel => {
                 self.name = self.name.take().or_else(|| (!value.is_empty()).then(|| value.clone()));
@@ -166,46 +145,20 @@ impl Heading {
                 Some([x, y]) => both(&mut self.sides, [*x, *y], &key)?,
                 _ => {}
             },
-            HeadingStatement::Cell(axis) => {
-                let said = lengths(&without_pixels(&value)).unwrap_or_default();
-                let of_length = |side: &Side| side.quantity.dimension() == Dimension::LENGTH;
-                self.grid |= key == "cellsize";
-                match (axis, said.as_slice()) {
-                    (_, []) => {}
-                    (Some(axis), [plain]) if !of_length(plain) => self.count(axis, &value, &key)?,
-                    (Some(axis), [one, ..]) => once(&mut self.cells[axis], Some(*one), &key)?,
-                    (None, [x, y]) => both(&mut self.cells, [*x, *y], &key)?,
-                    (None, [one, ..]) => both(&mut self.cells, [*one; 2], &key)?,
-                }
-            }
+            HeadingStatement::Cell(axis) => self.cell(axis, &value, &key)?,
             HeadingStatement::Count(axis) => self.count(axis, &value, &key)?,
-            HeadingStatement::HeightUnit | HeadingStatement::LateralUnit if !value.is_empty() => {
-                let of_heights = statement == HeadingStatement::HeightUnit;
-                let unit = match unit(&value) {
-                    Ok(unit) => unit,
-                    Err(source) => {
-                        let problem = ContentError::Heading { line, key, source };
-                        if of_heights {
-                            let other = OtherUnit { written: value, convertible: false, problem };
-                            self.other_unit = self.other_unit.take().or(Some(other));
-                            return Ok(());
-                        }
-                        return Err(problem);
-                    }
-                };
-                let field = if of_heights { &mut self.unit } else { &mut self.lateral_unit };
-                if let Some(first) = field.as_ref().filter(|first| !first.same(&unit)) {
-                    return Err(two_lines(&key, first, &unit));
-                }
-                field.get_or_insert(unit);
+            HeadingStatement::HeightUnit | HeadingStatement::LateralUnit if value.is_empty() => {}
+            HeadingStatement::HeightUnit => match read_unit(&value, key.clone(), line) {
+                Ok(unit) => same_unit(&mut self.unit, unit, &key)?,
+                Err(problem) => self.note_other_unit(value, false, problem),
+            },
+            HeadingStatement::LateralUnit => {
+                let unit = read_unit(&value, key.clone(), line)?;
+                same_unit(&mut self.lateral_unit, unit, &key)?;
             }
-            HeadingStatement::DataUnit => match unit(&value) {
+            HeadingStatement::DataUnit => match read_unit(&value, key, line) {
                 Ok(unit) => self.unit = self.unit.take().or(Some(unit)),
-                Err(source) => {
-                    let problem = ContentError::Heading { line, key, source };
-                    let other = OtherUnit { written: value, convertible: true, problem };
-                    self.other_unit = self.other_unit.take().or(Some(other));
-                }
+                Err(problem) => self.note_other_unit(value, true, problem),
             },
             HeadingStatement::Factor(of) => {
                 if let (Some(factor), Ok(unit)) = (positive(&value), unit(&of)) {
@@ -214,9 +167,60 @@ impl Heading {
             }
             HeadingStatement::Missing => self.missing = self.missing.or(value.parse().ok()),
             HeadingStatement::BitToNm => self.bit_to_nm = self.bit_to_nm.or(positive(&value)),
-            HeadingStatement::HeightUnit | HeadingStatement::LateralUnit => {}
         }
         Ok(())
+    }
+
+    /// Keeps a line whose key is not known for the notes, where it speaks of units or sizes, or has a length.
+    fn note_unknown(&mut self, text: &str) {
+        let lower = text.to_lowercase();
+        let between = [':', '=', '\t', ',', ';', '\u{ff1a}'];
+        let value = text.split_once(between).map(|(_, value)| value.trim());
+        let of_length = |value: &str| {
+            let sides = lengths(value).unwrap_or_default();
+            sides.iter().any(|side| side.quantity.dimension() == Dimension::LENGTH)
+                || unit(value).is_ok_and(|unit| unit.dimension() == Dimension::LENGTH)
+        };
+        if value.is_some_and(|value| ABOUT.iter().any(|word| lower.contains(word)) || of_length(value))
+            && self.unused.len() < NOTED
+        {
+            self.unused.push(noted(text));
+        }
+    }
+
+    /// Keeps a line about sides, cells or numbers of pixels for the notes: it may not be enough for a size.
+    fn note_size(&mut self, statement: &HeadingStatement, text: &str, value: &str) {
+        let about_size = matches!(
+            statement,
+            HeadingStatement::Side(..)
+                | HeadingStatement::Size
+                | HeadingStatement::Cell(_)
+                | HeadingStatement::Count(_)
+        );
+        if about_size && value.contains(|c: char| c.is_ascii_digit()) && self.sizes.len() < NOTED {
+            self.sizes.push(noted(text));
+        }
+    }
+
+    /// Keeps the first unit that is none of heights.
+    fn note_other_unit(&mut self, written: String, convertible: bool, problem: ContentError) {
+        let other = OtherUnit { written, convertible, problem };
+        self.other_unit = self.other_unit.take().or(Some(other));
+    }
+
+    /// Takes the side of a cell along an axis, or along both. A plain number along an axis is a number of
+    /// pixels.
+    fn cell(&mut self, axis: Option<usize>, value: &str, key: &str) -> Result<(), ContentError> {
+        let said = lengths(&without_pixels(value)).unwrap_or_default();
+        let of_length = |side: &Side| side.quantity.dimension() == Dimension::LENGTH;
+        self.grid |= key == "cellsize";
+        match (axis, said.as_slice()) {
+            (_, []) => Ok(()),
+            (Some(axis), [plain]) if !of_length(plain) => self.count(axis, value, key),
+            (Some(axis), [one, ..]) => once(&mut self.cells[axis], Some(*one), key),
+            (None, [x, y]) => both(&mut self.cells, [*x, *y], key),
+            (None, [one, ..]) => both(&mut self.cells, [*one; 2], key),
+        }
     }
 
     fn side(
@@ -364,6 +368,25 @@ fn once(field: &mut Option<Side>, side: Option<Side>, key: &str) -> Result<(), C
 fn two_lines(key: &str, first: &dyn std::fmt::Display, second: &dyn std::fmt::Display) -> ContentError {
     let (first, second) = (format!("{key}: {first}"), format!("{key}: {second}"));
     ContentError::Contradiction { what: "two lines of the header", first, second }
+}
+
+/// Takes the unit of a line, or finds it to be another one than before.
+fn same_unit(field: &mut Option<Unit>, unit: Unit, key: &str) -> Result<(), ContentError> {
+    if let Some(first) = field.as_ref().filter(|first| !first.same(&unit)) {
+        return Err(two_lines(key, first, &unit));
+    }
+    field.get_or_insert(unit);
+    Ok(())
+}
+
+/// The unit that a line states.
+fn read_unit(value: &str, key: String, line: usize) -> Result<Unit, ContentError> {
+    unit(value).map_err(|source| ContentError::Heading { line, key, source })
+}
+
+/// The beginning of a line, for notes.
+fn noted(text: &str) -> String {
+    text.trim().chars().take(80).collect()
 }
 
 /// A length for each pixel, `7413 nm/pixel`, as a length.

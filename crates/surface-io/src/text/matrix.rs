@@ -43,72 +43,127 @@ pub(crate) fn matrix(mut table: TextTable, declared: &ReadOptions) -> Result<Sto
 /// # Errors
 /// [`ContentError::Border`] where numbers may be such coordinates and nobody says whether they are.
 fn border(table: &mut TextTable, declared: &ReadOptions) -> Result<[Option<Extent>; 2], ContentError> {
-    let (rows, columns) = (table.rows(), table.columns);
     // Where the heading says both sides, they are those of all columns and rows.
     let stated = table.heading.sides().iter().all(Option::is_some);
-    if rows < 3 || columns < 3 || stated || declared.border == Some(Border::Heights) {
+    if table.rows() < 3 || table.columns < 3 || stated || declared.border == Some(Border::Heights) {
         return Ok([None; 2]);
     }
-    let first_line = || table.values[..columns].iter().copied();
-    let first_column = || table.values.iter().step_by(columns).copied();
-    let corner = table.values[0].is_nan();
-    // Two numbers always ascend in equal steps; without a number in the corner they are no heights.
-    let least = if corner { 2 } else { 3 };
-    let axes = [equal_steps(first_line().skip(1), least), equal_steps(first_column().skip(1), least)];
-    // The index of a data frame, 0 or 1 and on, beside heights that are no whole numbers.
-    let counts = |mut values: Box<dyn Iterator<Item = f64> + '_>| {
-        let first = values.next().unwrap_or(f64::NAN);
-        matches!(first, 0.0 | 1.0)
-            && values.enumerate().all(|(i, v)| (v - first - 1.0 - i as f64).abs() <= 0.0)
-    };
-    let whole = table.values.iter().all(|v| v.is_nan() || v.fract().abs() <= 0.0);
-    let [line_counts, column_counts] = [counts(Box::new(first_line())), counts(Box::new(first_column()))]
-        .map(|counts| counts && !whole && columns > 3);
-    let both = axes.iter().all(Option::is_some);
-    // A plane of heights is in equal steps too, and they are those of all its lines.
-    let plane = || {
-        let (line, column): (Vec<f64>, Vec<f64>) = (first_line().collect(), first_column().collect());
-        let allowed = EVEN * axes.iter().flatten().map(|step| step.abs()).sum::<f64>();
-        table.values.iter().enumerate().all(|(i, value)| {
-            let expected = line[i % columns] + column[i / columns] - line[0];
-            value.is_nan() || (value - expected).abs() <= allowed
-        })
-    };
-    let what = match declared.border {
-        None if both && corner => "first line and the first column have no corner, but",
-        None if both && !plane() => "first line and the first column have, behind their corner,",
-        None if line_counts => "first line has",
-        None if column_counts => "first column has",
-        None => return Ok([None; 2]),
-        Some(_) if both || line_counts || column_counts => "",
+    let numbers = BorderNumbers::of(table);
+    match declared.border {
+        None => {
+            return match numbers.suspected(table) {
+                Some(what) => Err(ContentError::Border { what }),
+                None => Ok([None; 2]),
+            };
+        }
+        Some(_) if numbers.both() || numbers.counts != [false; 2] => {}
         Some(_) => {
             let reason = "the first line and the first column are no coordinates in equal steps";
             return Err(ContentError::Useless { what: "border", reason });
         }
-    };
-    if declared.border.is_none() {
-        return Err(ContentError::Border { what });
     }
-    // An index may stand along one side only.
-    let (lines, places) = (usize::from(both || line_counts), usize::from(both || column_counts));
-    let heights = table.values.chunks_exact(columns).skip(lines).flat_map(|row| &row[places..]);
-    table.values = heights.copied().collect();
-    table.lines.drain(..lines);
-    table.columns -= places;
-    // x and y ascend in a map.
-    if both && axes[0].is_some_and(|step| step < 0.0) {
-        table.values.chunks_exact_mut(table.columns).for_each(<[f64]>::reverse);
-    }
-    if both && axes[1].is_some_and(|step| step < 0.0) {
-        table.values = table.values.rchunks(table.columns).flatten().copied().collect();
-        table.lines.reverse();
-    }
-    if !both {
+    numbers.remove(table);
+    if !numbers.both() {
         return Ok([None; 2]);
     }
     let unit = table.heading.lateral_unit.clone().or_else(|| declared.lateral_unit.clone());
     let unit = unit.unwrap_or_else(Unit::none);
-    Ok(axes.map(|step| Quantity::of(step?.abs(), &unit).ok().map(Extent::Cell)))
+    Ok(numbers.steps.map(|step| Quantity::of(step?.abs(), &unit).ok().map(Extent::Cell)))
+}
+
+/// What the numbers in the first line and the first column of a table may be besides heights.
+struct BorderNumbers {
+    /// Whether there is no number in the corner.
+    corner: bool,
+    /// Steps of the first line and of the first column behind the corner, where they are equal ones.
+    steps: [Option<f64>; 2],
+    /// Whether they count columns, rows from 0 or 1 on, beside heights that are no whole numbers, as the index
+    /// of a data frame does.
+    counts: [bool; 2],
+}
+
+impl BorderNumbers {
+    fn of(table: &TextTable) -> Self {
+        let corner = table.values[0].is_nan();
+        // Two numbers always ascend in equal steps; without a number in the corner they are no heights.
+        let least = if corner { 2 } else { 3 };
+        let whole = table.values.iter().all(|v| v.is_nan() || v.fract().abs() <= 0.0);
+        let index = !whole && table.columns > 3;
+        Self {
+            corner,
+            steps: [
+                equal_steps(first_line(table).skip(1), least),
+                equal_steps(first_column(table).skip(1), least),
+            ],
+            counts: [index && counts(first_line(table)), index && counts(first_column(table))],
+        }
+    }
+
+    /// Whether the line and the column may be coordinates.
+    fn both(&self) -> bool {
+        self.steps.iter().all(Option::is_some)
+    }
+
+    /// What looks like coordinates or an index, in words.
+    fn suspected(&self, table: &TextTable) -> Option<&'static str> {
+        let [line_counts, column_counts] = self.counts;
+        if self.both() && self.corner {
+            Some("first line and the first column have no corner, but")
+        } else if self.both() && !self.is_plane(table) {
+            Some("first line and the first column have, behind their corner,")
+        } else if line_counts {
+            Some("first line has")
+        } else if column_counts {
+            Some("first column has")
+        } else {
+            None
+        }
+    }
+
+    /// Whether the table is a plane of heights, which is in equal steps too, those of all its lines.
+    fn is_plane(&self, table: &TextTable) -> bool {
+        let (line, column): (Vec<f64>, Vec<f64>) =
+            (first_line(table).collect(), first_column(table).collect());
+        let allowed = EVEN * self.steps.iter().flatten().map(|step| step.abs()).sum::<f64>();
+        table.values.iter().enumerate().all(|(i, value)| {
+            let expected = line[i % table.columns] + column[i / table.columns] - line[0];
+            value.is_nan() || (value - expected).abs() <= allowed
+        })
+    }
+
+    /// Leaves the heights in the table, with x and y ascending. An index may stand along one side only.
+    fn remove(&self, table: &mut TextTable) {
+        let [lines, places] = self.counts.map(|counts| usize::from(self.both() || counts));
+        let heights = table.values.chunks_exact(table.columns).skip(lines).flat_map(|row| &row[places..]);
+        table.values = heights.copied().collect();
+        table.lines.drain(..lines);
+        table.columns -= places;
+        if !self.both() {
+            return;
+        }
+        let [descends_along_x, descends_along_y] = self.steps.map(|step| step.is_some_and(|step| step < 0.0));
+        if descends_along_x {
+            table.values.chunks_exact_mut(table.columns).for_each(<[f64]>::reverse);
+        }
+        if descends_along_y {
+            table.values = table.values.rchunks(table.columns).flatten().copied().collect();
+            table.lines.reverse();
+        }
+    }
+}
+
+fn first_line(table: &TextTable) -> impl Iterator<Item = f64> {
+    table.values[..table.columns].iter().copied()
+}
+
+fn first_column(table: &TextTable) -> impl Iterator<Item = f64> {
+    table.values.iter().step_by(table.columns).copied()
+}
+
+/// Whether the numbers count from 0 or 1 on.
+fn counts(mut values: impl Iterator<Item = f64>) -> bool {
+    let first = values.next().unwrap_or(f64::NAN);
+    matches!(first, 0.0 | 1.0) && values.enumerate().all(|(i, v)| (v - first - 1.0 - i as f64).abs() <= 0.0)
 }
 
 /// The step of `least` numbers or more in equal steps up or down, within the digits that are printed.

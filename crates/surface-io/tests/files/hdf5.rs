@@ -43,54 +43,45 @@
 use super::Small;
 
 pub fn files() -> Vec<Small> {
-    let small = |name, bytes: &[u8], number, shape, size, heights| Small {
-        name,
-        bytes: bytes.to_vec(),
-        number,
-        shape,
-        size,
-        heights,
-        compressed: true,
-    };
-    let chunks = include_bytes!("hdf5/chunks.h5");
-    let packed = include_bytes!("hdf5/packed.h5");
-    let nm = |heights: &[f64]| heights.iter().map(|h| h * 1e-9).collect();
-    let count: Vec<f64> = (0..12).map(f64::from).collect();
-    let undefined = f64::NAN;
-    let map = contact_model::HeightMap::with_undefined(
-        [3, 2],
-        [3e-6, 1e-6],
-        vec![1e-9, -2e-9, undefined, 0.0, 5e-9, 1.0],
-    );
-    let own = surface_io::hdf5(&map.unwrap(), surface_io::Metric::Metres).unwrap();
+    [files_of_instruments(), files_of_h5py(), vec![file_of_this_crate()]].concat()
+}
+
+/// A channel in a file without a size.
+fn small(name: &'static str, bytes: &[u8], number: usize, shape: [usize; 2], heights: Vec<f64>) -> Small {
+    Small { name, bytes: bytes.to_vec(), number, shape, size: None, heights, compressed: true }
+}
+
+fn files_of_instruments() -> Vec<Small> {
     let counts = include_bytes!("hdf5/counts.h5");
     let fringes = include_bytes!("hdf5/fringes.datx");
     let nanometers = include_bytes!("hdf5/nanometers.datx");
-    let zygo = |factor: f64| [1.0, 2.0, 3.0, 4.0, undefined, 6.0].map(|h: f64| h * factor).to_vec();
+    let matlab = include_bytes!("hdf5/matlab73.mat");
+    let zygo = |factor: f64| [1.0, 2.0, 3.0, 4.0, f64::NAN, 6.0].map(|h: f64| h * factor).to_vec();
     let jpk = [10.0, 40.0, -20.0, 50.0, 30.0, 60.0].map(|n: f64| 1.5e-15 * n - 1e-6).to_vec();
     vec![
-        small("hdf5 of Zygo in fringes", fringes, 0, [3, 2], None, zygo(0.5 * 6.33e-7)),
-        small("hdf5 of Zygo", nanometers, 0, [3, 2], None, zygo(1e-9)),
-        small(
-            "hdf5 of MATLAB",
-            include_bytes!("hdf5/matlab73.mat"),
-            0,
-            [3, 2],
-            None,
-            vec![1.0, 2.0, 3.0, 4.0, 5.0, 6.0],
-        ),
-        small("hdf5 of JPK", counts, 0, [2, 3], None, jpk),
+        small("hdf5 of Zygo in fringes", fringes, 0, [3, 2], zygo(0.5 * 6.33e-7)),
+        small("hdf5 of Zygo", nanometers, 0, [3, 2], zygo(1e-9)),
+        small("hdf5 of MATLAB", matlab, 0, [3, 2], vec![1.0, 2.0, 3.0, 4.0, 5.0, 6.0]),
+        small("hdf5 of JPK", counts, 0, [2, 3], jpk),
         // Integers in nm without a scale: counts.
-        small("hdf5 of counts", counts, 1, [2, 2], None, vec![1.0, 3.0, 2.0, 4.0]),
+        small("hdf5 of counts", counts, 1, [2, 2], vec![1.0, 3.0, 2.0, 4.0]),
+    ]
+}
+
+fn files_of_h5py() -> Vec<Small> {
+    let chunks = include_bytes!("hdf5/chunks.h5");
+    let packed = include_bytes!("hdf5/packed.h5");
+    let count = (0..12).map(|i| f64::from(i) * 1e-9).collect();
+    let undefined = f64::NAN;
+    vec![
         // Channel 0 is again/phase.
-        small("hdf5 in chunks", chunks, 1, [4, 3], Some([4e-6, 1.5e-6]), nm(&count)),
+        Small { size: Some([4e-6, 1.5e-6]), ..small("hdf5 in chunks", chunks, 1, [4, 3], count) },
         // The first index is x.
         small(
             "hdf5 packed",
             packed,
             0,
             [2, 3],
-            None,
             [10.5, 12.0, 11.0, 12.5, undefined, 13.0].map(|mm: f64| mm * 1e-3).to_vec(),
         ),
         small(
@@ -98,16 +89,15 @@ pub fn files() -> Vec<Small> {
             packed,
             1,
             [2, 4],
-            None,
             vec![undefined, 1.0, undefined, 2.0, undefined, 3.0, undefined, 4.0],
         ),
-        small(
-            "hdf5 of this crate",
-            &own,
-            0,
-            [3, 2],
-            Some([3e-6, 1e-6]),
-            vec![1e-9, -2e-9, undefined, 0.0, 5e-9, 1.0],
-        ),
     ]
+}
+
+fn file_of_this_crate() -> Small {
+    let heights = vec![1e-9, -2e-9, f64::NAN, 0.0, 5e-9, 1.0];
+    let size = [3e-6, 1e-6];
+    let map = contact_model::HeightMap::with_undefined([3, 2], size, heights.clone()).unwrap();
+    let own = surface_io::hdf5(&map, surface_io::Metric::Metres).unwrap();
+    Small { size: Some(size), ..small("hdf5 of this crate", &own, 0, [3, 2], heights) }
 }

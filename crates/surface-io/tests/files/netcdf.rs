@@ -13,22 +13,45 @@ pub fn files() -> Vec<Small> {
         heights,
         compressed: false,
     };
-    // Column by column: x runs slower. The second point of the first column is masked, the last point filled.
+    let scaled = vec![20e-9, -4e-9, nan, 10e-9, 610e-9, 8e-9];
+    vec![
+        small("netcdf", file(2, &masked_doubles()), vec![1.5e-9, -2e-9, 2.5e-9, nan, 0.0, nan]),
+        small("netcdf of version 1", file(1, &scaled_integers()), scaled.clone()),
+        small("netcdf of version 5", file(5, &scaled_floats()), scaled),
+    ]
+}
+
+/// Column by column: x runs slower. The second point of the first column is masked, the last point filled.
+fn masked_doubles() -> [TestVariable; 4] {
     let doubles = [1.5, 1e3, -2.0, 0.0, 2.5, 1e20].map(f64::to_be_bytes).concat();
-    let masked = [
-        TestVariable::new(
-            "heights",
-            &[0, 1],
-            6,
-            doubles,
-            vec![double("_FillValue", 1e20), text("unit", "nm")],
-        ),
+    let attributes = vec![double("_FillValue", 1e20), text("unit", "nm")];
+    [
+        TestVariable::new("heights", &[0, 1], 6, doubles, attributes),
         TestVariable::new("mask", &[0, 1], 1, vec![0, 1, 0, 0, 0, 0], vec![]),
         side("x", 0, 3.0),
         side("y", 1, 1.0),
-    ];
-    // Row by row, with a scale, an offset and the fill value of the library, besides what is passed.
+    ]
+}
+
+/// Row by row, with a scale, an offset and a mark of its own, besides what is passed.
+fn scaled_integers() -> [TestVariable; 4] {
     let of_16_bits = [5, -7, -999, 0, 300, -1].map(i16::to_be_bytes).concat();
+    let attributes = vec![
+        double("scale_factor", 2.0),
+        double("add_offset", 10.0),
+        double("missing_value", -999.0),
+        text("units", "nm"),
+    ];
+    [
+        passed(),
+        side("x", 0, 3.0),
+        side("y", 1, 1.0),
+        TestVariable::new("heights", &[1, 0], 3, of_16_bits, attributes),
+    ]
+}
+
+/// Row by row, with a scale, an offset and the fill value of the library, besides what is passed.
+fn scaled_floats() -> [TestVariable; 4] {
     let fill = (0x7cf0_0000_u32).to_be_bytes();
     let floats = [
         &[5_f32, -7.0].map(f32::to_be_bytes).concat()[..],
@@ -36,32 +59,18 @@ pub fn files() -> Vec<Small> {
         &[0.0, 300.0, -1.0].map(f32::to_be_bytes).concat(),
     ]
     .concat();
-    let scaled = vec![
-        double("scale_factor", 2.0),
-        double("add_offset", 10.0),
-        double("missing_value", -999.0),
-        text("units", "nm"),
-    ];
-    let other = || TestVariable::new("other", &[], 2, vec![b'a'], vec![text("long_name", "nothing")]);
-    let expected = vec![20e-9, -4e-9, nan, 10e-9, 610e-9, 8e-9];
-    let short = [
-        other(),
-        side("x", 0, 3.0),
+    let attributes = vec![double("scale_factor", 2e-9), double("add_offset", 10e-9), text("unit", "m")];
+    [
+        TestVariable::new("heights", &[1, 0], 5, floats, attributes),
         side("y", 1, 1.0),
-        TestVariable::new("heights", &[1, 0], 3, of_16_bits, scaled),
-    ];
-    let of_floats = vec![double("scale_factor", 2e-9), double("add_offset", 10e-9), text("unit", "m")];
-    let float = [
-        TestVariable::new("heights", &[1, 0], 5, floats, of_floats),
-        side("y", 1, 1.0),
-        other(),
+        passed(),
         side("x", 0, 3.0),
-    ];
-    vec![
-        small("netcdf", file(2, &masked), vec![1.5e-9, -2e-9, 2.5e-9, nan, 0.0, nan]),
-        small("netcdf of version 1", file(1, &short), expected.clone()),
-        small("netcdf of version 5", file(5, &float), expected),
     ]
+}
+
+/// A variable that is no map.
+fn passed() -> TestVariable {
+    TestVariable::new("other", &[], 2, vec![b'a'], vec![text("long_name", "nothing")])
 }
 
 type Attribute = (&'static str, u32, u32, Vec<u8>);

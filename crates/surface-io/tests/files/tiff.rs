@@ -3,17 +3,18 @@
 use super::Small;
 
 pub fn files() -> Vec<Small> {
-    let count: Vec<f64> = (0..6).map(f64::from).collect();
-    let words = |words: &[i16]| words.iter().flat_map(|w| w.to_le_bytes()).collect::<Vec<u8>>();
-    let small = |name, bytes, size, heights| Small {
-        name,
-        bytes,
-        number: 0,
-        shape: [3, 2],
-        size,
-        heights,
-        compressed: true,
-    };
+    [grey_images(), images_of_instruments()].concat()
+}
+
+fn small(name: &'static str, bytes: Vec<u8>, size: Option<[f64; 2]>, heights: Vec<f64>) -> Small {
+    Small { name, bytes, number: 0, shape: [3, 2], size, heights, compressed: true }
+}
+
+fn words(words: &[i16]) -> Vec<u8> {
+    words.iter().flat_map(|w| w.to_le_bytes()).collect()
+}
+
+fn grey_images() -> Vec<Small> {
     let floats: Vec<u8> =
         [0.0_f32, 1.0, 2.0, f32::NAN, 4.0, 5.0].iter().flat_map(|f| f.to_be_bytes()).collect();
     // 3.5 pixels per micrometre along x, 2 along y.
@@ -28,7 +29,7 @@ pub fn files() -> Vec<Small> {
             TestImage { dpi: true, orientation: 4, ..TestImage::new(16, 2) }
                 .file(false, &[&words(&[3, 4, 5]), &words(&[0, 1, 2])]),
             None,
-            count,
+            (0..6).map(f64::from).collect(),
         ),
         small(
             "tiff big-endian floats",
@@ -50,6 +51,11 @@ pub fn files() -> Vec<Small> {
             None,
             vec![1.0, 7.0, 9.0 * 256.0, 514.0, 514.0, 514.0],
         ),
+    ]
+}
+
+fn images_of_instruments() -> Vec<Small> {
+    vec![
         // The first row of the file is the last one.
         small(
             "tiff of JPK",
@@ -122,6 +128,24 @@ fn park(data: &[u8], version: u8, number: u32) -> Vec<Private> {
     ]
 }
 
+/// Tag, type, count, value or offset.
+type TiffEntry = (u16, u16, u32, u32);
+
+/// The number of values of a type in these bytes.
+fn count_of(values: &[u8], kind: u16) -> u32 {
+    let size = match kind {
+        12 => 8,
+        4 => 4,
+        _ => 1,
+    };
+    (values.len() / size) as u32
+}
+
+/// The last field of an entry: up to four bytes stand in it, more elsewhere.
+fn held_or_offset(values: &[u8], offset: [u8; 4]) -> Vec<u8> {
+    if values.len() > 4 { offset.to_vec() } else { [values, &[0; 4]].concat()[..4].to_vec() }
+}
+
 /// An image of three columns and two rows, one strip each.
 struct TestImage {
     bits: u16,
@@ -161,8 +185,8 @@ impl TestImage {
         let resolution = resolution.map(|[a, b]| put(&longs([a, b])));
         let private: Vec<_> = self.private.iter().map(|(_, _, bytes)| put(bytes)).collect();
         let directory = put(&[]);
-        // Tag, type (2 text, 3 short, 4 long, 5 ratio), count, value or offset.
-        let mut entries: Vec<(u16, u16, u32, u32)> = vec![
+        // Type 2 is text, 3 short, 4 long, 5 a ratio.
+        let mut entries: Vec<TiffEntry> = vec![
             (256, 4, 1, 3),
             (257, 4, 1, 2),
             (258, 3, 1, self.bits.into()),
@@ -189,20 +213,9 @@ impl TestImage {
             bytes.extend([&short(tag)[..], &short(kind), &long(count), &value].concat());
         }
         for ((tag, kind, values), at) in self.private.iter().zip(private) {
-            let size = match kind {
-                12 => 8,
-                4 => 4,
-                _ => 1,
-            };
-            // Up to four bytes stand in the entry.
-            let value = if values.len() > 4 {
-                long(at).to_vec()
-            } else {
-                [&values[..], &[0; 4]].concat()[..4].to_vec()
-            };
-            bytes.extend(
-                [&short(*tag)[..], &short(*kind), &long((values.len() / size) as u32), &value].concat(),
-            );
+            let value = held_or_offset(values, long(at));
+            let count = long(count_of(values, *kind));
+            bytes.extend([&short(*tag)[..], &short(*kind), &count, &value].concat());
         }
         bytes.extend([0; 4]);
         bytes[4..8].copy_from_slice(&long(directory));

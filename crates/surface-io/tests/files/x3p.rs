@@ -4,76 +4,76 @@ use super::Small;
 use flate2::{Compression, Crc, write::DeflateEncoder};
 use std::io::Write;
 
+const LINKED: &str = "<DataLink><PointDataLink>bindata/data.bin</PointDataLink></DataLink>";
+const MASKED: &str = "<DataLink><PointDataLink>bindata/data.bin</PointDataLink>\
+                      <ValidPointsLink>bindata\\valid.bin</ValidPointsLink></DataLink>";
+const LISTED: &str = "<DataList><Datum>5</Datum><Datum>1;-7</Datum><Datum/><Datum> 0 </Datum><Datum>3e2</Datum><Datum>-1</Datum></DataList>";
+
 pub fn files() -> Vec<Small> {
+    [files_of_floats(), files_of_integers()].concat()
+}
+
+fn small(name: &'static str, bytes: Vec<u8>, heights: Vec<f64>) -> Small {
+    Small { name, bytes, number: 0, shape: [3, 2], size: Some([3e-6, 1e-6]), heights, compressed: true }
+}
+
+fn files_of_floats() -> Vec<Small> {
     let nan = f64::NAN;
-    let small = |name, bytes, heights, compressed| Small {
-        name,
-        bytes,
-        number: 0,
-        shape: [3, 2],
-        size: Some([3e-6, 1e-6]),
-        heights,
-        compressed,
-    };
     let floats = [1.5_f32, -2.0, f32::NAN, 1e3, 0.0, 4.0].map(f32::to_le_bytes).concat();
     let doubles = [1.5e-9, -2e-9, nan, 1e-6, 0.0, 4e-9].map(f64::to_le_bytes).concat();
+    let of_doubles = main("D", "", LINKED).into_bytes();
+    let of_floats = main("F", "<Increment>1e-9</Increment>", LINKED).into_bytes();
+    vec![
+        small(
+            "x3p",
+            zip(&[("main.xml", of_doubles), ("bindata/data.bin", doubles)], false),
+            vec![1.5e-9, -2e-9, nan, 1e-6, 0.0, 4e-9],
+        ),
+        small(
+            "x3p of floats packed",
+            zip(&[("bindata/data.bin", floats), ("main.xml", of_floats)], true),
+            // An increment beside floats: whether it counts is not known.
+            vec![1.5, -2.0, nan, 1e3, 0.0, 4.0],
+        ),
+    ]
+}
+
+fn files_of_integers() -> Vec<Small> {
+    let nan = f64::NAN;
     let of_16_bits = [5, -7, 0, 0, 300, -1].map(i16::to_le_bytes).concat();
     let of_32_bits = [5, -7, 0, 0, 70_000, -1].map(i32::to_le_bytes).concat();
-    let linked = "<DataLink><PointDataLink>bindata/data.bin</PointDataLink></DataLink>";
-    let masked = "<DataLink><PointDataLink>bindata/data.bin</PointDataLink>\
-                  <ValidPointsLink>bindata\\valid.bin</ValidPointsLink></DataLink>";
-    let listed = "<DataList><Datum>5</Datum><Datum>1;-7</Datum><Datum/><Datum> 0 </Datum><Datum>3e2</Datum><Datum>-1</Datum></DataList>";
     let of = |kind: &str, z: &str, data: &str| main(kind, z, data).into_bytes();
     // The third point is undefined.
     let valid = vec![0b1111_1011];
     vec![
         small(
-            "x3p",
-            zip(&[("main.xml", of("D", "", linked)), ("bindata/data.bin", doubles)], false),
-            vec![1.5e-9, -2e-9, nan, 1e-6, 0.0, 4e-9],
-            true,
-        ),
-        small(
-            "x3p of floats packed",
-            zip(
-                &[("bindata/data.bin", floats), ("main.xml", of("F", "<Increment>1e-9</Increment>", linked))],
-                true,
-            ),
-            // An increment beside floats: whether it counts is not known.
-            vec![1.5, -2.0, nan, 1e3, 0.0, 4.0],
-            true,
-        ),
-        small(
             "x3p of integers in a folder, with a mask and an offset",
             zip(
                 &[
-                    ("a/main.xml", of("I", "<Increment>2e-9</Increment><Offset>1e-8</Offset>", masked)),
+                    ("a/main.xml", of("I", "<Increment>2e-9</Increment><Offset>1e-8</Offset>", MASKED)),
                     ("a/bindata/data.bin", of_16_bits),
                     ("a/bindata/valid.bin", valid.clone()),
                 ],
                 true,
             ),
             vec![20e-9, -4e-9, nan, 10e-9, 610e-9, 8e-9],
-            true,
         ),
         small(
             "x3p of wide integers",
             zip(
                 &[
-                    ("main.xml", of("L", "<Increment>1E-009</Increment>", masked)),
+                    ("main.xml", of("L", "<Increment>1E-009</Increment>", MASKED)),
                     ("bindata/data.bin", of_32_bits),
                     ("bindata/valid.bin", valid),
                 ],
                 false,
             ),
             vec![5e-9, -7e-9, nan, 0.0, 70_000e-9, -1e-9],
-            true,
         ),
         small(
             "x3p as text",
-            zip(&[("main.xml", of("I", "<Increment>1e-9</Increment>", listed))], true),
+            zip(&[("main.xml", of("I", "<Increment>1e-9</Increment>", LISTED))], true),
             vec![5e-9, -7e-9, nan, 0.0, 300e-9, -1e-9],
-            true,
         ),
     ]
 }

@@ -25,23 +25,55 @@ pub(super) struct Hills {
 /// saddle: that is the order of Wolf's pruning, because the neighbour across the highest saddle of the least
 /// hill has a higher peak.
 pub(super) fn hills(heights: &[f64], points: &[HolePoint], cells: Cells, pruning: f64) -> Hills {
-    let Cells { columns, rows } = cells;
     let mut order: Vec<usize> = (0..heights.len()).filter(|&i| !heights[i].is_nan()).collect();
     // Of equal heights the first is the higher one.
     order.sort_by(|&a, &b| heights[b].total_cmp(&heights[a]).then(a.cmp(&b)));
-    let none = heights.len();
-    // Hill (its peak) of each point, the part of points joined so far (its highest peak, through a chain),
-    // and what each hill was united with.
-    let mut hill = vec![none; heights.len()];
-    let mut part: Vec<usize> = (0..heights.len()).collect();
-    let mut united: Vec<usize> = (0..heights.len()).collect();
-    let mut incomplete = vec![0_u8; heights.len()];
+    let mut hills = GrowingHills::new(heights);
     for &i in &order {
+        hills.add(i, points, cells);
+        hills.join(i, pruning);
+    }
+    hills.pruned(&order)
+}
+
+/// Hills while points are added from the highest down.
+struct GrowingHills<'a> {
+    heights: &'a [f64],
+    /// Hill (its peak) of each point that has been added; the number of points for the others.
+    hill: Vec<usize>,
+    /// The part of points joined so far that a point belongs to: its highest peak, through a chain.
+    part: Vec<usize>,
+    /// What each hill was united with, through a chain.
+    united: Vec<usize>,
+    /// Why each hill is incomplete, bit by bit.
+    incomplete: Vec<u8>,
+    /// The neighbours of the last point that were added before it.
+    around: Vec<usize>,
+}
+
+impl<'a> GrowingHills<'a> {
+    fn new(heights: &'a [f64]) -> Self {
+        let count = heights.len();
+        Self {
+            heights,
+            hill: vec![count; count],
+            part: (0..count).collect(),
+            united: (0..count).collect(),
+            incomplete: vec![0; count],
+            around: Vec::with_capacity(8),
+        }
+    }
+
+    /// Adds a point to the hill of its highest neighbour, or as a peak where none has been added.
+    fn add(&mut self, i: usize, points: &[HolePoint], cells: Cells) {
+        let Self { heights, hill, incomplete, around, .. } = self;
+        let Cells { columns, rows } = cells;
+        let none = heights.len();
         let (x, y) = (i % columns, i / columns);
         let at_edge = x == 0 || y == 0 || x + 1 == columns || y + 1 == rows;
         let mut open = if at_edge { EDGE } else { 0 };
         let mut steepest = none;
-        let mut around = Vec::with_capacity(8);
+        around.clear();
         for ny in y.saturating_sub(1)..(y + 2).min(rows) {
             for nx in x.saturating_sub(1)..(x + 2).min(columns) {
                 let j = ny * columns + nx;
@@ -60,8 +92,14 @@ pub(super) fn hills(heights: &[f64], points: &[HolePoint], cells: Cells, pruning
         }
         hill[i] = if steepest == none { i } else { hill[steepest] };
         incomplete[hill[i]] |= open;
-        for &j in &around {
-            let (mine, other) = (root(&mut part, i), root(&mut part, j));
+    }
+
+    /// Joins the parts around the point that has been added, which is a saddle where there are several. The
+    /// lower hill is united with the one across where its peak is less than `pruning` above.
+    fn join(&mut self, i: usize, pruning: f64) {
+        let Self { heights, hill, part, united, around, .. } = self;
+        for &j in around.iter() {
+            let (mine, other) = (root(part, i), root(part, j));
             if mine == other {
                 continue;
             }
@@ -71,8 +109,8 @@ pub(super) fn hills(heights: &[f64], points: &[HolePoint], cells: Cells, pruning
             if lower != i && heights[lower] - heights[i] < pruning {
                 let mut across = upper;
                 let mut highest = f64::NEG_INFINITY;
-                for &k in &around {
-                    if heights[k] > highest && root(&mut part, k) == upper {
+                for &k in around.iter() {
+                    if heights[k] > highest && root(part, k) == upper {
                         (across, highest) = (hill[k], heights[k]);
                     }
                 }
@@ -81,16 +119,21 @@ pub(super) fn hills(heights: &[f64], points: &[HolePoint], cells: Cells, pruning
             part[lower] = upper;
         }
     }
-    let all: Vec<usize> = order.iter().copied().filter(|&i| hill[i] == i).collect();
-    for &peak in &all {
-        let kept = root(&mut united, peak);
-        incomplete[kept] |= incomplete[peak];
+
+    /// The hills that are united with no other.
+    fn pruned(mut self, order: &[usize]) -> Hills {
+        let all: Vec<usize> = order.iter().copied().filter(|&i| self.hill[i] == i).collect();
+        for &peak in &all {
+            let kept = root(&mut self.united, peak);
+            self.incomplete[kept] |= self.incomplete[peak];
+        }
+        let kept = |peak: &usize| self.united[*peak] == *peak;
+        let cut = all.iter().filter(|peak| kept(peak) && self.incomplete[**peak] == HOLE).count();
+        let mut peaks: Vec<usize> =
+            all.into_iter().filter(|peak| kept(peak) && self.incomplete[*peak] == 0).collect();
+        peaks.sort_unstable();
+        Hills { peaks, cut }
     }
-    let kept = |peak: &usize| united[*peak] == *peak;
-    let cut = all.iter().filter(|peak| kept(peak) && incomplete[**peak] == HOLE).count();
-    let mut peaks: Vec<usize> = all.into_iter().filter(|peak| kept(peak) && incomplete[*peak] == 0).collect();
-    peaks.sort_unstable();
-    Hills { peaks, cut }
 }
 
 /// Whether point a is higher than point b; of equal heights the first is.

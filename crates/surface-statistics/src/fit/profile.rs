@@ -6,6 +6,8 @@ use super::likelihood::{Likelihood, Parameters};
 const HALVINGS: usize = 9;
 /// Doublings of the first step outwards.
 const DOUBLINGS: usize = 24;
+/// First step outwards of each parameter.
+const FIRST_STEPS: [f64; 4] = [0.02, 0.05, 0.25, 2.0];
 /// A profile below the minimum by more than this has found a better one.
 const BETTER: f64 = 0.02;
 
@@ -18,17 +20,24 @@ pub(super) enum End {
     Better(Parameters),
 }
 
-/// Walks from the minimum to where the profile of parameter `index` has risen by `rise`, upwards or
-/// downwards.
+/// A walk along the profile of one parameter, outwards from the minimum.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct ProfileWalk {
+    /// Index of the parameter.
+    pub(super) index: usize,
+    pub(super) upwards: bool,
+    /// Rise of the profile at which the walk ends.
+    pub(super) rise: f64,
+}
+
+/// Walks from the minimum to where the profile has risen, with some of the other parameters fixed.
 pub(super) fn end(
     likelihood: &mut Likelihood,
     best: (Parameters, f64),
-    index: usize,
     others_fixed: &[usize],
-    upwards: bool,
-    rise: f64,
-    first_step: f64,
+    walk: ProfileWalk,
 ) -> End {
+    let ProfileWalk { index, upwards, rise } = walk;
     let limit = likelihood.limits[index][usize::from(upwards)];
     let sign = if upwards { 1.0 } else { -1.0 };
     let middle = best.0.values[index];
@@ -38,7 +47,7 @@ pub(super) fn end(
         start.values[index] = value;
         likelihood.minimum(start, &fixed)
     };
-    let (mut inside, mut inside_at, mut step) = (best.0, middle, first_step);
+    let (mut inside, mut inside_at, mut step) = (best.0, middle, FIRST_STEPS[index]);
     let mut outside = None;
     for _ in 0..DOUBLINGS {
         let next = inside_at + sign * step;
