@@ -2,7 +2,7 @@
 
 use crate::axis::Axis;
 use crate::colours::ColourScale;
-use crate::drawing::{Anchor, Drawing, Paint, Rectangle, polygon, polyline};
+use crate::drawing::{Anchor, Drawing, LabelPlace, Paint, Rectangle, polygon, polyline};
 use crate::error::{Error, Result};
 use crate::frame::{AxisSide, Frame, TICK, TickStyle};
 use crate::pixels::{Pixels, raster, reduction};
@@ -56,6 +56,10 @@ const TOP: f64 = 62.0;
 const RIGHT: f64 = 124.0;
 const BELOW: f64 = 60.0;
 const BAR: f64 = 18.0;
+/// From the map to the bar of colours or the classes.
+const BESIDE: f64 = 24.0;
+/// The bar is at least as high as its labels need.
+const SHORTEST_BAR: f64 = 160.0;
 /// Size of the words at an axis.
 const NAME: f64 = 1.2 * TICK;
 /// Outline of the contact, a white line with a black edge: on any colour one of both is seen, by colour-blind
@@ -106,6 +110,36 @@ impl FieldPicture<'_> {
     /// [`Error`] with the name that the caller gives the picture, for another number of values, components or
     /// cells in contact than cells, no cells or a size that is not positive.
     pub fn png(&self, name: &str) -> Result<Vec<u8>> {
+        self.validate(name)?;
+        let fonts = Fonts::load()?;
+        let pixels = raster(self.cells, self.size, SIDE, SHORTEST);
+        let [w, h] = [pixels.columns, pixels.rows].map(|count| PIXEL * count as f64);
+        let place = [LEFT, TOP, w, h];
+        let note = reduction(self.cells, pixels);
+        let bottom = TOP + h.max(SHORTEST_BAR) + BELOW;
+        let mut drawing = Drawing::new(LEFT + w + RIGHT, bottom + note.as_ref().map_or(0.0, |_| NOTE_ROOM));
+        let scale = self.scale().widened();
+        let image = self.image(pixels, |v| scale.colour(v)).into_flattened();
+        drawing.image(place, image, pixels.columns);
+        if let Some(note) = note {
+            let at = LabelPlace::new((LEFT, bottom + 0.5 * NOTE_ROOM), Anchor::Start);
+            drawing.label(fonts.fitted(&note, NOTE, w + RIGHT), at, NEUTRAL);
+        }
+        self.draw_arrows(&mut drawing, place);
+        let map = Frame { fonts: &fonts, place, style: TickStyle::OF_MAPS };
+        self.draw_axes(&mut drawing, &map);
+        if self.classes.is_empty() {
+            self.draw_scale(&mut drawing, &map, scale);
+        } else {
+            self.draw_classes(&mut drawing, &map, scale);
+        }
+        drawing.heading(&fonts, &self.title, (&self.subtitle, 15.0), LEFT);
+        drawing.png(&fonts, name)
+    }
+
+    /// Refuses another number of values, components or cells in contact than cells, and sides that are not
+    /// positive.
+    fn validate(&self, name: &str) -> Result<()> {
         let count = self.cells.checked_count().filter(|count| *count > 0);
         if count != Some(self.values.len()) || !self.contact.is_empty() && count != Some(self.contact.len()) {
             let (values, contact, Cells { columns, rows }) =
@@ -119,77 +153,52 @@ impl FieldPicture<'_> {
             let message = format!("{} components of {} values", component.len(), self.values.len());
             return Err(Error::new(name, message));
         }
-        self.cells.validate(self.size).map_err(|e| Error::new(name, e.to_string()))?;
-        let fonts = Fonts::load()?;
-        let size = self.size;
-        let longer = size.x.max(size.y);
-        let pixels = raster(self.cells, size, SIDE, SHORTEST);
-        let [w, h] = [pixels.columns, pixels.rows].map(|count| PIXEL * count as f64);
-        let note = reduction(self.cells, pixels);
-        let bottom = TOP + h.max(160.0) + BELOW;
-        let mut drawing = Drawing::new(LEFT + w + RIGHT, bottom + note.as_ref().map_or(0.0, |_| NOTE_ROOM));
-        let frame = [LEFT, TOP, w, h];
-        let scale = self.scale().widened();
-        let (low, high) = scale.ends();
-        let color = |v: f64| scale.colour(v);
-        let image = self.image(pixels, color).into_flattened();
-        drawing.image(frame, image, pixels.columns);
-        if let Some(note) = note {
-            let set = fonts.fitted(&note, NOTE, w + RIGHT);
-            drawing.label(set, (LEFT, bottom + 0.5 * NOTE_ROOM), Anchor::Start, false, NEUTRAL);
-        }
-        self.draw_arrows(&mut drawing, frame);
-        let (length_unit, per_length) = multiple(self.length_unit, longer);
-        let map = Frame { fonts: &fonts, place: frame, style: TickStyle::OF_MAPS };
-        map.axis(&mut drawing, AxisSide::Below, Axis::Linear(0.0, per_length * size.x), None);
-        map.axis(&mut drawing, AxisSide::Left, Axis::Linear(0.0, per_length * size.y), None);
-        let around = [LEFT - 0.5 * LINE, TOP - 0.5 * LINE, w + LINE, h + LINE];
-        Frame { place: around, ..map }.outline(&mut drawing, LINE);
-        let with = |words: &str, unit: &str| {
-            if unit.is_empty() { words.to_owned() } else { format!("{words} ({unit})") }
-        };
-        map.name_below(&mut drawing, &with("$x$", &length_unit), NAME, TOP + h + 3.2 * TICK);
-        map.name_beside(&mut drawing, &with("$y$", &length_unit), NAME, 1.4 * TICK);
-        let beside = LEFT + w + 24.0;
-        if !self.classes.is_empty() {
-            self.draw_classes(&mut drawing, &fonts, (beside, TOP), color);
-            drawing.heading(&fonts, &self.title, (&self.subtitle, 15.0), LEFT);
-            return drawing.png(&fonts, name);
-        }
-        // The bar is at least as high as its labels need.
-        let bar = [beside, TOP, BAR, h.max(160.0)];
-        let steps = (bar[3] / PIXEL) as usize;
-        let ramp = |i: usize| {
-            let t = (i as f64 + 0.5) / steps as f64;
-            color(low * t + high * (1.0 - t))
-        };
-        drawing.image(bar, (0..steps).flat_map(ramp).collect(), 1);
-        let (unit, per_unit) = multiple(self.unit, low.abs().max(high.abs()));
-        let style = TickStyle { beside: [9.0, 0.5 * TICK], ..TickStyle::OF_MAPS };
-        let beside = Frame { fonts: &fonts, place: bar, style };
-        beside.axis(&mut drawing, AxisSide::Right, Axis::Linear(per_unit * low, per_unit * high), None);
-        beside.outline(&mut drawing, 1.2);
-        let words = LEFT + w + RIGHT - 0.6 * TICK;
-        beside.name_beside(&mut drawing, &with(&self.quantity, &unit), NAME, words);
-        drawing.heading(&fonts, &self.title, (&self.subtitle, 15.0), LEFT);
-        drawing.png(&fonts, name)
+        self.cells.validate(self.size).map_err(|e| Error::new(name, e.to_string()))
     }
 
-    /// A square of the colour of each class with its words, the last one on top.
-    fn draw_classes(
-        &self,
-        drawing: &mut Drawing,
-        fonts: &Fonts,
-        (left, top): (f64, f64),
-        color: impl Fn(f64) -> [u8; 3],
-    ) {
+    /// The axes of the map, with their names, and the line around it.
+    fn draw_axes(&self, drawing: &mut Drawing, map: &Frame<'_>) {
+        let Size { x, y } = self.size;
+        let [left, top, w, h] = map.place;
+        let (unit, per_unit) = multiple(self.length_unit, x.max(y));
+        map.axis(drawing, AxisSide::Below, Axis::Linear(0.0, per_unit * x), None);
+        map.axis(drawing, AxisSide::Left, Axis::Linear(0.0, per_unit * y), None);
+        let around = [left - 0.5 * LINE, top - 0.5 * LINE, w + LINE, h + LINE];
+        Frame { place: around, ..*map }.outline(drawing, LINE);
+        map.name_below(drawing, &with_unit("$x$", &unit), NAME, top + h + 3.2 * TICK);
+        map.name_beside(drawing, &with_unit("$y$", &unit), NAME, 1.4 * TICK);
+    }
+
+    /// The bar of colours beside the map, with its axis and its name.
+    fn draw_scale(&self, drawing: &mut Drawing, map: &Frame<'_>, scale: ColourScale) {
+        let [left, top, w, h] = map.place;
+        let place = [left + w + BESIDE, top, BAR, h.max(SHORTEST_BAR)];
+        let (low, high) = scale.ends();
+        let steps = (place[3] / PIXEL) as usize;
+        let ramp = |i: usize| {
+            let t = (i as f64 + 0.5) / steps as f64;
+            scale.colour(low * t + high * (1.0 - t))
+        };
+        drawing.image(place, (0..steps).flat_map(ramp).collect(), 1);
+        let (unit, per_unit) = multiple(self.unit, low.abs().max(high.abs()));
+        let style = TickStyle { beside: [9.0, 0.5 * TICK], ..TickStyle::OF_MAPS };
+        let bar = Frame { fonts: map.fonts, place, style };
+        bar.axis(drawing, AxisSide::Right, Axis::Linear(per_unit * low, per_unit * high), None);
+        bar.outline(drawing, 1.2);
+        let words = left + w + RIGHT - 0.6 * TICK;
+        bar.name_beside(drawing, &with_unit(&self.quantity, &unit), NAME, words);
+    }
+
+    /// A square of the colour of each class with its words beside the map, the last one on top.
+    fn draw_classes(&self, drawing: &mut Drawing, map: &Frame<'_>, scale: ColourScale) {
+        let (left, top) = (map.place[0] + map.place[2] + BESIDE, map.place[1]);
         for (line, (value, words)) in self.classes.iter().enumerate().rev().enumerate() {
             let y = top + line as f64 * 1.6 * BAR;
-            drawing.image([left, y, BAR, BAR], color(value as f64).to_vec(), 1);
+            drawing.image([left, y, BAR, BAR], scale.colour(value as f64).to_vec(), 1);
             let corners = [(left, y), (left + BAR, y), (left + BAR, y + BAR), (left, y + BAR)];
             drawing.path(polygon(&corners), Paint::stroked(INK, 1.2), None);
             let at = (left + BAR + 9.0, y + 0.5 * BAR + 0.35 * TICK);
-            drawing.label(fonts.typeset(words, TICK), at, Anchor::Start, false, INK);
+            drawing.label(map.fonts.typeset(words, TICK), LabelPlace::new(at, Anchor::Start), INK);
         }
     }
 
@@ -273,6 +282,11 @@ impl FieldPicture<'_> {
         };
         (0..rows).rev().flat_map(|y| (0..columns).map(move |x| y * columns + x)).map(pixel).collect()
     }
+}
+
+/// The name of a quantity with its unit, where it has one.
+fn with_unit(words: &str, unit: &str) -> String {
+    if unit.is_empty() { words.to_owned() } else { format!("{words} ({unit})") }
 }
 
 #[cfg(test)]
