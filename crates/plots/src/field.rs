@@ -358,87 +358,131 @@ mod tests {
         Field::new(cells, size, map.heights().iter().enumerate().map(pressure).collect()).unwrap()
     }
 
-    /// Every picture is read back: shares of the classes, contact and mean pressure are those of the field. The
-    /// maps are small, at the limit and beyond it; rectangles, strips and oblong cells.
+    /// Cells, sides, and whether every cell has pixels of its own. The maps are small, at the limit and beyond it;
+    /// rectangles, strips and oblong cells.
+    const PRESSED: [([usize; 2], [f64; 2], bool); 7] = [
+        ([64, 16], [4.0, 1.0], true),
+        ([512, 128], [4.0, 1.0], true),
+        ([1040, 130], [8.0, 1.0], true),
+        ([1100, 275], [4.0, 1.0], false),
+        ([2049, 683], [3.0, 1.0], false),
+        ([300, 100], [4.0, 1.0], false),
+        ([4000, 40], [100.0, 1.0], false),
+    ];
+
+    /// A pressed rectangle, whose pictures are read back.
+    struct PressedField {
+        field: Field,
+        pixels: Cells,
+        /// How far shares and means of a picture may be from those of the field.
+        tolerance: f64,
+    }
+
+    impl PressedField {
+        fn all() -> impl Iterator<Item = Self> {
+            PRESSED.into_iter().map(|(cells, size, whole)| {
+                let field = pressed(cells, size, 7);
+                let pixels = raster(field.cells(), field.size(), SIDE, SHORTEST);
+                let count = pixels.columns as f64 * pixels.rows as f64;
+                let tolerance = if whole { ROUNDING } else { REDUCTION / count.sqrt() };
+                Self { field, pixels, tolerance }
+            })
+        }
+
+        /// A field on the same cells.
+        fn with(&self, value: impl Fn(f64) -> f64) -> Field {
+            let values = self.field.values().iter().map(|v| value(*v)).collect();
+            Field::new(self.field.cells(), self.field.size(), values).unwrap()
+        }
+
+        /// The share of the cells whose pressure is of this kind.
+        fn share(&self, of: impl Fn(f64) -> bool) -> f64 {
+            let values = self.field.values();
+            values.iter().filter(|v| of(**v)).count() as f64 / values.len() as f64
+        }
+
+        fn near(&self, found: f64, expected: f64, what: &str) {
+            let (cells, off) = (self.field.cells(), (found - expected).abs());
+            println!("{cells:?} {what}: {expected:.5} in the field, off by {off:.1e}");
+            assert!(off <= self.tolerance, "{cells:?} {what}: {found} for {expected}");
+        }
+    }
+
+    fn share_of_pixels(map: &[[u8; 3]], color: [u8; 3]) -> f64 {
+        map.iter().filter(|p| **p == color).count() as f64 / map.len() as f64
+    }
+
     #[test]
-    fn pictures_have_the_shares_of_their_fields() {
-        for (cells, size, whole) in [
-            ([64, 16], [4.0, 1.0], true),
-            ([512, 128], [4.0, 1.0], true),
-            ([1040, 130], [8.0, 1.0], true),
-            ([1100, 275], [4.0, 1.0], false),
-            ([2049, 683], [3.0, 1.0], false),
-            ([300, 100], [4.0, 1.0], false),
-            ([4000, 40], [100.0, 1.0], false),
-        ] {
-            let field = pressed(cells, size, 7);
-            let count = field.values().len() as f64;
-            let pixels = raster(field.cells(), field.size(), SIDE, SHORTEST);
-            let tolerance = if whole {
-                ROUNDING
-            } else {
-                REDUCTION / (pixels.columns as f64 * pixels.rows as f64).sqrt()
-            };
-            let near = |found: f64, expected: f64, what: &str| {
-                let off = (found - expected).abs();
-                println!("{cells:?} {what}: {expected:.5} in the field, off by {off:.1e}");
-                assert!(off <= tolerance, "{cells:?} {what}: {found} for {expected}");
-            };
-            let (low, high) = FieldPicture::ends(field.values());
-            let drawn = picture(&field, true);
+    fn pictures_of_pressures_have_the_shares_of_their_fields() {
+        for pressed in PressedField::all() {
+            let (low, high) = FieldPicture::ends(pressed.field.values());
+            let drawn = picture(&pressed.field, true);
             assert_eq!(drawn.scale().ends(), (0.0, high), "{low}");
-            let (pixels, map) = read_map(drawn.png("a").unwrap(), &field);
-            let share =
-                |color: [u8; 3]| map.iter().filter(|p| **p == color).count() as f64 / map.len() as f64;
-            let of = |test: &dyn Fn(f64) -> bool| {
-                field.values().iter().filter(|v| test(**v)).count() as f64 / count
-            };
-            near(share([255; 3]), of(&|v| v == 0.0), "open");
-            near(share(crate::colours::UNDEFINED), of(&f64::is_nan), "undefined");
+            let (_, map) = read_map(drawn.png("a").unwrap(), &pressed.field);
+            pressed.near(share_of_pixels(&map, [255; 3]), pressed.share(|v| v == 0.0), "open");
+            let undefined = share_of_pixels(&map, crate::colours::UNDEFINED);
+            pressed.near(undefined, pressed.share(f64::is_nan), "undefined");
             // The largest pressure has its colour.
-            assert!(share(crate::viridis()[255]) > 0.0);
-            // Mean colour, by channel, and with it the mean pressure.
+            assert!(share_of_pixels(&map, crate::viridis()[255]) > 0.0);
+        }
+    }
+
+    /// The mean colour, by channel, and with it the mean pressure.
+    #[test]
+    fn pictures_of_pressures_have_the_means_of_their_fields() {
+        for pressed in PressedField::all() {
+            let PressedField { field, pixels, .. } = &pressed;
+            let (drawn, count) = (picture(field, true), field.values().len() as f64);
+            let (_, map) = read_map(drawn.png("a").unwrap(), field);
             let scale = drawn.scale();
             let sum = |sum: [f64; 3], c: [u8; 3]| [0, 1, 2].map(|i| sum[i] + f64::from(c[i]) / 255.0);
             let of_cells = field.values().iter().map(|v| scale.colour(*v)).fold([0.0; 3], sum);
             let of_pixels = map.iter().copied().fold([0.0; 3], sum);
             for (found, expected) in of_pixels.into_iter().zip(of_cells) {
-                near(found / map.len() as f64, expected / count, "colour");
+                pressed.near(found / map.len() as f64, expected / count, "colour");
             }
-            let reduced = Pixels::new(field.cells(), pixels, field.values());
+            let reduced = Pixels::new(field.cells(), *pixels, field.values());
             let shown =
                 (0..map.len()).map(|i| field.values()[reduced.cell(i % pixels.columns, i / pixels.columns)]);
             let mean = shown.filter(|v| v.is_finite()).sum::<f64>() / map.len() as f64;
             let expected = field.values().iter().filter(|v| v.is_finite()).sum::<f64>() / count;
-            near(mean / high, expected / high, "pressure");
-            // Classes of a contact, of which the harder pressed half sticks.
-            let class = |v: &f64| {
-                if *v > 0.4 {
-                    1.0
-                } else if *v > 0.0 {
-                    2.0
-                } else {
-                    0.0
-                }
-            };
-            let classes = Field::new(cells, size, field.values().iter().map(class).collect()).unwrap();
+            let (_, high) = FieldPicture::ends(field.values());
+            pressed.near(mean / high, expected / high, "pressure");
+        }
+    }
+
+    /// Of a contact, of which the harder pressed half sticks.
+    #[test]
+    fn pictures_of_classes_have_the_shares_of_their_fields() {
+        let class = |v: f64| {
+            if v > 0.4 {
+                1.0
+            } else if v > 0.0 {
+                2.0
+            } else {
+                0.0
+            }
+        };
+        for pressed in PressedField::all() {
+            let classes = pressed.with(class);
             let drawn = FieldPicture { classes: &["open", "stick", "slip"], ..picture(&classes, true) };
             let (_, map) = read_map(drawn.png("a").unwrap(), &classes);
             for value in [0.0, 1.0, 2.0] {
-                let colour = drawn.scale().colour(value);
-                let found = map.iter().filter(|p| **p == colour).count();
-                let expected = classes.values().iter().filter(|v| (**v - value).abs() < 0.5).count();
-                near(found as f64 / map.len() as f64, expected as f64 / count, "class");
+                let found = share_of_pixels(&map, drawn.scale().colour(value));
+                pressed.near(found, pressed.share(|v| (class(v) - value).abs() < 0.5), "class");
             }
-            // A gap, in which the contact is outlined: the line lies outside of it.
-            let gap: Vec<f64> = field.values().iter().map(|v| if *v > 0.0 { 0.0 } else { 1.0 }).collect();
-            let contact: Vec<bool> = field.values().iter().map(|v| *v > 0.0).collect();
-            let gap = Field::new(cells, size, gap).unwrap();
+        }
+    }
+
+    #[test]
+    fn the_outline_of_a_contact_lies_outside_of_it() {
+        for pressed in PressedField::all() {
+            let gap = pressed.with(|v| if v > 0.0 { 0.0 } else { 1.0 });
+            let contact: Vec<bool> = pressed.field.values().iter().map(|v| *v > 0.0).collect();
             let drawn = FieldPicture { contact: &contact, ..picture(&gap, false) };
             let (_, map) = read_map(drawn.png("a").unwrap(), &gap);
-            let touching = drawn.scale().colour(0.0);
-            let inside = map.iter().filter(|p| **p == touching).count();
-            near(inside as f64 / map.len() as f64, of(&|v| v > 0.0), "outlined");
+            let inside = share_of_pixels(&map, drawn.scale().colour(0.0));
+            pressed.near(inside, pressed.share(|v| v > 0.0), "outlined");
         }
     }
 
