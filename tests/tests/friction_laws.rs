@@ -10,7 +10,7 @@ use contact_model::{
 use std::collections::HashMap;
 use std::f64::consts::PI;
 use tests::rough_map;
-use tests::stability::{DensePath, PlainShear, PlainSum, Prescribed, compliance};
+use tests::stability::{DensePath, DenseSurface, PlainShear, PlainSum, Prescribed, compliance};
 
 fn alike(poisson: f64) -> Pair {
     let body = Body::Elastic { young: 2.0 * (1.0 - poisson * poisson), poisson };
@@ -111,46 +111,93 @@ fn any_law(draw: &mut Draw, pressure: f64) -> FrictionLaw {
     FrictionLaw { limit, ..law }
 }
 
+/// A random contact, for the solver and for the dense reference.
+struct RandomContact {
+    scene: Scene,
+    exact: DensePath,
+    hardness: Option<f64>,
+    /// Scale of the normal forces.
+    force: f64,
+    periodic: bool,
+}
+
+impl RandomContact {
+    fn new(draw: &mut Draw, flows: bool, kernels: &mut Kernels) -> Self {
+        let (map, periodic, poisson) = small_map(draw, 1.0);
+        let area = map.dx() * map.dy();
+        let force = 10_f64.powf(draw.between(-1.5, 0.3));
+        let kernels = kernels.of(&map, periodic, poisson);
+        let gaps: Vec<f64> = map.heights().iter().map(|h| map.highest() - h).collect();
+        let dense = |law, hardness| DensePath::new(dense_surface(kernels, &map, gaps.clone()), law, hardness);
+        // The pressures of the elastic contact give the scale of the law and of the hardness.
+        let mut elastic = dense(FrictionLaw::coulomb(0.0), None);
+        elastic.press(Prescribed::Force(force));
+        let touching = elastic.pressed.iter().filter(|p| **p > 0.0).count();
+        let (mean, largest) = (
+            force / (touching as f64 * area),
+            elastic.pressed.iter().fold(0.0, |a: f64, b| a.max(*b)) / area,
+        );
+        let least = force / (gaps.len() as f64 * area);
+        let hardness = flows.then(|| (largest * draw.between(0.4, 1.2)).max(1.05 * least));
+        let law = any_law(draw, mean);
+        let exact = dense(law, hardness);
+        let mut scene = Scene { pair: Some(alike(POISSONS[poisson])), ..tests::scene(map.clone()) };
+        scene.effects = Effects {
+            boundary: if periodic { Boundary::Periodic } else { Boundary::Free },
+            hardness: hardness.map_or(Hardness::Off, |pressure| Hardness::Limit { pressure }),
+            friction: Friction::of(law),
+            ..Effects::default()
+        };
+        scene.outputs = Outputs {
+            pressure: true,
+            traction: true,
+            stick_area: true,
+            plastic_depth: flows,
+            mean_gap: periodic,
+            ..Outputs::default()
+        };
+        Self { scene, exact, hardness, force, periodic }
+    }
+}
+
+/// A surface for the dense reference.
+fn dense_surface<'a>(kernels: &'a KernelsOfGrid, map: &HeightMap, gaps: Vec<f64>) -> DenseSurface<'a> {
+    let (normal, shift, shear) = kernels;
+    DenseSurface { normal, shift: *shift, shear, gaps, area: map.dx() * map.dy() }
+}
+
+/// A tangential load below the sliding force.
+fn tangential_load(draw: &mut Draw, sliding_force: f64) -> Prescribed<[f64; 2]> {
+    let (share, (sin, cos)) = (draw.between(0.0, 0.9), draw.between(0.0, 2.0 * PI).sin_cos());
+    if draw.index(2) == 0 {
+        Prescribed::Force([share * sliding_force * cos, share * sliding_force * sin])
+    } else {
+        Prescribed::Displacement([2.0 * share * sliding_force * cos, 2.0 * share * sliding_force * sin])
+    }
+}
+
+/// A step of a path, by the solver and by the reference.
+struct PathStep<'a> {
+    seed: u64,
+    hardness: Option<f64>,
+    state: &'a ContactState,
+    exact: &'a DensePath,
+    /// The reference at the end of the step before.
+    before: Option<&'a DensePath>,
+}
+
 /// Follows one random path in both ways and notes the deviations.
 fn follow(seed: u64, flows: bool, kernels: &mut Kernels, worst: &mut WorstDeviation) {
     let mut draw = Draw::new(seed);
-    let (map, periodic, poisson) = small_map(&mut draw, 1.0);
-    let area = map.dx() * map.dy();
-    let force = 10_f64.powf(draw.between(-1.5, 0.3));
-    let (sum, shift, shear) = kernels.of(&map, periodic, poisson);
-    let gaps: Vec<f64> = map.heights().iter().map(|h| map.highest() - h).collect();
-    let dense = |law, hardness| DensePath::new((sum, *shift), shear, gaps.clone(), area, (law, hardness));
-    // The pressures of the elastic contact give the scale of the law and of the hardness.
-    let mut elastic = dense(FrictionLaw::coulomb(0.0), None);
-    elastic.press(Prescribed::Force(force));
-    let touching = elastic.pressed.iter().filter(|p| **p > 0.0).count();
-    let (mean, largest) =
-        (force / (touching as f64 * area), elastic.pressed.iter().fold(0.0, |a: f64, b| a.max(*b)) / area);
-    let least = force / (gaps.len() as f64 * area);
-    let hardness = flows.then(|| (largest * draw.between(0.4, 1.2)).max(1.05 * least));
-    let law = any_law(&mut draw, mean);
-    let mut exact = dense(law, hardness);
-    let mut scene = Scene { pair: Some(alike(POISSONS[poisson])), ..tests::scene(map.clone()) };
-    scene.effects = Effects {
-        boundary: if periodic { Boundary::Periodic } else { Boundary::Free },
-        hardness: hardness.map_or(Hardness::Off, |pressure| Hardness::Limit { pressure }),
-        friction: Friction::of(law),
-        ..Effects::default()
-    };
-    scene.outputs = Outputs {
-        pressure: true,
-        traction: true,
-        stick_area: true,
-        plastic_depth: flows,
-        mean_gap: periodic,
-        ..Outputs::default()
-    };
+    let RandomContact { scene, mut exact, hardness, force, periodic } =
+        RandomContact::new(&mut draw, flows, kernels);
     let mut contact = Bem3d { tolerance: 1e-12, ..Bem3d::default() }.prepare(&scene, 0).unwrap();
     worst.scenes += 1;
     let mut before: Option<DensePath> = None;
     let mut at = force;
     for leg in 0..4 {
-        let capacity = hardness.map_or(f64::INFINITY, |hardness| hardness * gaps.len() as f64 * area);
+        let cells = exact.pressed.len() as f64;
+        let capacity = hardness.map_or(f64::INFINITY, |hardness| hardness * cells * exact.cell_area());
         if leg > 0 && draw.index(3) > 0 {
             at = (force * draw.between(0.3, 1.6)).min(0.95 * capacity);
         }
@@ -160,13 +207,7 @@ fn follow(seed: u64, flows: bool, kernels: &mut Kernels, worst: &mut WorstDeviat
             worst.undecided += 1;
             return;
         }
-        let most: f64 = exact.limits().iter().sum();
-        let (share, (sin, cos)) = (draw.between(0.0, 0.9), draw.between(0.0, 2.0 * PI).sin_cos());
-        let load = if draw.index(2) == 0 {
-            Prescribed::Force([share * most * cos, share * most * sin])
-        } else {
-            Prescribed::Displacement([2.0 * share * most * cos, 2.0 * share * most * sin])
-        };
+        let load = tangential_load(&mut draw, exact.limits().iter().sum());
         exact.slide(load);
         let normal = if by_approach { Load::approach(exact.approach) } else { Load::force(at) };
         let tangential = match load {
@@ -176,14 +217,17 @@ fn follow(seed: u64, flows: bool, kernels: &mut Kernels, worst: &mut WorstDeviat
         let state = contact
             .advance(Step::new(0.0, normal.with_tangential(tangential)))
             .unwrap_or_else(|error| panic!("{seed} {leg}: {error}"));
-        note(worst, &state, &exact, area, seed);
-        balance(worst, &state, before.as_ref(), &exact, hardness, seed);
+        let step = PathStep { seed, hardness, state: &state, exact: &exact, before: before.as_ref() };
+        note(worst, &step);
+        balance(worst, &step);
         before = Some(exact.clone());
     }
 }
 
 /// Notes the deviations of a state.
-fn note(worst: &mut WorstDeviation, state: &ContactState, exact: &DensePath, area: f64, seed: u64) {
+fn note(worst: &mut WorstDeviation, step: &PathStep<'_>) {
+    let PathStep { seed, state, exact, .. } = *step;
+    let area = exact.cell_area();
     let found = state.tangential.unwrap();
     let fields = state.fields.as_ref().unwrap();
     let n = exact.pressed.len();
@@ -223,14 +267,8 @@ fn note(worst: &mut WorstDeviation, state: &ContactState, exact: &DensePath, are
 
 /// The work of both loads is stored, dissipated by friction, or done on the indentation. With the loads at the end of
 /// a step it also holds half the product of its changes, and what the pressures did across the gaps that closed.
-fn balance(
-    worst: &mut WorstDeviation,
-    state: &ContactState,
-    before: Option<&DensePath>,
-    exact: &DensePath,
-    hardness: Option<f64>,
-    seed: u64,
-) {
+fn balance(worst: &mut WorstDeviation, step: &PathStep<'_>) {
+    let PathStep { seed, hardness, state, exact, before } = *step;
     let found = state.tangential.unwrap();
     let Some(before) = before else { return };
     // The loads of the solver, and its indentation; energies of the reference.
@@ -306,8 +344,8 @@ fn friction_with_adhesion_is_that_of_the_dense_reference() {
         let work = draw.between(0.1, 1.0) * 0.12 * range * range / map.dx();
         let (peak, force) = (work / range, 10_f64.powf(draw.between(-2.5, -1.0)));
         let law = any_law(&mut draw, peak + force);
-        let (sum, shift, shear) = kernels.of(&map, periodic, poisson);
-        let mut exact = DensePath::new((sum, *shift), shear, vec![0.0; n], area, (law, None));
+        let surface = dense_surface(kernels.of(&map, periodic, poisson), &map, vec![0.0; n]);
+        let mut exact = DensePath::new(surface, law, None);
         let mut scene = Scene { pair: Some(alike(POISSONS[poisson])), ..tests::scene(map.clone()) };
         scene.effects = Effects {
             boundary: if periodic { Boundary::Periodic } else { Boundary::Free },
@@ -371,9 +409,8 @@ fn a_shear_strength_on_attached_shares_is_that_of_the_dense_reference() {
         let work = 10_f64.powf(draw.between(-5.0, -3.0));
         let (strength, force) =
             (10_f64.powf(draw.between(-2.5, -0.5)), 10_f64.powf(draw.between(-2.5, -1.0)));
-        let (sum, shift, shear) = kernels.of(&map, periodic, poisson);
-        let law = FrictionLaw::coulomb(strength);
-        let mut exact = DensePath::new((sum, *shift), shear, vec![0.0; n], area, (law, None));
+        let surface = dense_surface(kernels.of(&map, periodic, poisson), &map, vec![0.0; n]);
+        let mut exact = DensePath::new(surface, FrictionLaw::coulomb(strength), None);
         let mut scene = Scene { pair: Some(alike(POISSONS[poisson])), ..tests::scene(map.clone()) };
         scene.effects = Effects {
             boundary: if periodic { Boundary::Periodic } else { Boundary::Free },

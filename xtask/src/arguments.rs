@@ -15,10 +15,10 @@ use runs::ShardChoice;
 use sizes::{Both, LineSizes, Maps, ReducedSizes, Solid, SolveSizes};
 use std::path::PathBuf;
 use studies::{
-    AccuracyCost, Audit, BookArguments, BudgetCheck, ExponentArguments, PartialSlipArguments, Reference,
-    StabilityArguments, TwoCasesArguments,
+    AccuracyCost, Audit, BookArguments, BudgetCheck, PartialSlipArguments, Reference, StabilityArguments,
+    TwoCasesArguments,
 };
-pub use studies::{Redraw, TuningArguments};
+pub use studies::{ExponentArguments, Redraw, TuningArguments};
 
 /// Reproduces Pohrt, Popov, Filippov, Phys. Rev. E 86, 026710 (2012): normal contact stiffness of fractal
 /// rough surfaces.

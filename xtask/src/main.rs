@@ -14,7 +14,7 @@ mod book;
 mod cluster;
 mod hard_cases;
 
-use arguments::{BenchArguments, Redraw, TuningArguments, XtaskArguments, XtaskCommand};
+use arguments::{BenchArguments, ExponentArguments, Redraw, TuningArguments, XtaskArguments, XtaskCommand};
 use clap::{CommandFactory as _, Parser as _};
 use paper::evaluation::{BenchRow, Outcome, Run};
 use paper::{Claim, Judged};
@@ -31,7 +31,7 @@ fn main() -> ExitCode {
         std::env::args_os().skip(1).map(|word| word.to_string_lossy().into_owned()).collect();
     let command = XtaskArguments::parse().command;
     let asked = std::env::var_os(runs::THREADS_VARIABLE);
-    let done = runs::with_threads(asked.as_deref(), || execute(command, &typed));
+    let done = runs::with_threads(asked.as_deref(), || execute(&command, &typed));
     match done.map_err(Failure::from).and_then(|done| done) {
         Ok(code) => code,
         Err(error) => {
@@ -41,12 +41,12 @@ fn main() -> ExitCode {
     }
 }
 
-fn execute(command: XtaskCommand, typed: &[String]) -> Result<ExitCode, Failure> {
+fn execute(command: &XtaskCommand, typed: &[String]) -> Result<ExitCode, Failure> {
     if let Some(choice) = command.shard() {
         tell_what_an_interruption_leaves(command.out())?;
-        return cluster::shard(&command, choice, typed).map(|()| ExitCode::SUCCESS);
+        return cluster::shard(command, choice, typed).map(|()| ExitCode::SUCCESS);
     }
-    match &command {
+    match command {
         XtaskCommand::Plan(options) => cluster::plan(options)?,
         XtaskCommand::Submit(options) => cluster::submit(options)?,
         XtaskCommand::Status(options) => {
@@ -56,101 +56,43 @@ fn execute(command: XtaskCommand, typed: &[String]) -> Result<ExitCode, Failure>
         }
         XtaskCommand::Merge(options) => {
             let (command, typed) = cluster::merged(options)?;
-            return Ok(solve(command, &typed)?);
+            return Ok(solve(&command, &typed)?);
         }
         _ => return Ok(solve(command, typed)?),
     }
     Ok(ExitCode::SUCCESS)
 }
 
-fn solve(command: XtaskCommand, typed: &[String]) -> Result<ExitCode> {
-    match &command {
-        XtaskCommand::CheckReference(options) => return check_reference(options.bless, &options.out),
-        XtaskCommand::Stability(options) => return stability(options.thorough, &options.out),
-        XtaskCommand::Bench(options) => return bench(options),
-        XtaskCommand::Tuning(options) => return tuning(options),
-        XtaskCommand::Redraw(options) => return redraw(options),
+fn solve(command: &XtaskCommand, typed: &[String]) -> Result<ExitCode> {
+    match command {
+        XtaskCommand::CheckReference(options) => check_reference(options.bless, &options.out),
+        XtaskCommand::Stability(options) => stability(options.thorough, &options.out),
+        XtaskCommand::Bench(options) => bench(options),
+        XtaskCommand::Tuning(options) => tuning(options),
+        XtaskCommand::Redraw(options) => redraw(options),
         XtaskCommand::Completions { shell } => {
             let mut script = Vec::new();
             clap_complete::generate(*shell, &mut XtaskArguments::command(), "xtask", &mut script);
             runs::print(format_args!("{}", String::from_utf8_lossy(&script)));
-            return Ok(ExitCode::SUCCESS);
+            Ok(ExitCode::SUCCESS)
         }
-        XtaskCommand::Book(options) => return book::book(options.pictures),
-        _ => {}
+        XtaskCommand::Book(options) => book::book(options.pictures),
+        _ => study(command, typed),
     }
+}
+
+/// Solves what a figure or a study needs, writes its files and the manifest, and compares its numbers with the
+/// paper.
+fn study(command: &XtaskCommand, typed: &[String]) -> Result<ExitCode> {
     let reporter = Reporter::new();
     if let Some(out) = command.request().out {
         tell_what_an_interruption_leaves(out)?;
     }
-    let target = command.target();
-    let run = match target {
-        Some((models, target)) => {
-            let plan = paper::evaluation::plan(&command.request(), models, target, &reporter)?;
-            plan.lines.iter().for_each(|line| runs::out!("{line}"));
-            let told = plan.lines.len();
-            let settled = paper::evaluation::settle(plan, models, target, &reporter)?;
-            settled.lines.iter().skip(told).for_each(|line| runs::out!("{line}"));
-            // The pilots have just been solved and are not solved again.
-            Run { fresh: false, ..settled.run }
-        }
-        None => Run::new(&command.request())?,
+    let run = settled_run(command, &reporter)?;
+    let Some(StudyResults { mut outcomes, coverage_fails }) = results(command, &run, &reporter)? else {
+        return Ok(ExitCode::SUCCESS);
     };
-    let mut coverage_fails = false;
-    let mut outcomes = match command {
-        XtaskCommand::ReproduceFig1(_) => vec![paper::fig1(&run, &reporter)?],
-        XtaskCommand::ReproduceFig2(_) => vec![paper::fig2(&run, &reporter)?],
-        XtaskCommand::ReproduceFig3(_) => vec![paper::fig3(&run, &reporter)?],
-        XtaskCommand::ReproduceFig4(_) => vec![paper::fig4(&run, &reporter)?],
-        XtaskCommand::ReproduceFig5(_) => vec![paper::fig5(&run, &reporter)?],
-        XtaskCommand::ReproduceFig6(_) => vec![paper::fig6(&run, &reporter)?],
-        XtaskCommand::ReproduceFig7(_) => vec![paper::fig7(&run, &reporter)?],
-        XtaskCommand::Verify(_) => vec![paper::verify(&run, &reporter)?],
-        XtaskCommand::ReproduceAll(_) => paper::reproduce_all(&run, &reporter)?,
-        XtaskCommand::AccuracyCost(options) => {
-            let kept = (options.out.as_path(), options.fresh);
-            vec![paper::evaluation::accuracy_cost(options.depth, options.seed, kept, &reporter)?.into()]
-        }
-        XtaskCommand::ReproduceTwoCases(options) => {
-            vec![paper::two_cases(&options.study()?, &options.out, &reporter)?]
-        }
-        XtaskCommand::BudgetCheck(options) => {
-            let (outcome, coverage) = paper::evaluation::budget_check(
-                options.cases,
-                options.seed,
-                run.threads,
-                &run.out,
-                &reporter,
-            )?;
-            runs::out!("{coverage}");
-            coverage_fails = !coverage.holds();
-            vec![outcome.into()]
-        }
-        XtaskCommand::Exponent(options) if !options.samples.is_empty() => {
-            let tested = if options.tested.is_empty() { &options.samples } else { &options.tested };
-            vec![paper::exponent_of_samples(&options.samples, tested, options.error, &run.out)?]
-        }
-        XtaskCommand::Exponent(options) => {
-            let study = options.study(&run)?;
-            for line in paper::exponent_plan(&study, options.budget, &reporter)? {
-                runs::out!("{line}");
-            }
-            if options.plan {
-                return Ok(ExitCode::SUCCESS);
-            }
-            // `--fresh` has already been applied by the plan.
-            vec![paper::exponent(&paper::Exponent { fresh: false, ..study }, &reporter)?]
-        }
-        XtaskCommand::PartialSlip(options) => vec![paper::partial_slip(&options.study(&run)?, &reporter)?],
-        XtaskCommand::Audit(options) => {
-            let (outcome, summary) = paper::evaluation::audit(&run, options.share, options.tight, &reporter)?;
-            runs::out!("{summary}");
-            vec![outcome.into()]
-        }
-        // Done above.
-        _ => Vec::new(),
-    };
-    if let Some((models, _)) = target
+    if let Some((models, _)) = command.target()
         && outcomes.iter().all(|o| o.reached.is_empty())
     {
         let budgets = paper::evaluation::state_budgets(&run, models, &reporter)?;
@@ -168,6 +110,86 @@ fn solve(command: XtaskCommand, typed: &[String]) -> Result<ExitCode> {
     )?;
     let code = report(&outcomes, &claims, &manifest);
     Ok(if coverage_fails { ExitCode::from(3) } else { code })
+}
+
+/// The sizes of a command: those of its flags or, where an accuracy was requested, those that reach it.
+fn settled_run(command: &XtaskCommand, reporter: &Reporter) -> Result<Run> {
+    let Some((models, target)) = command.target() else { return Run::new(&command.request()) };
+    let plan = paper::evaluation::plan(&command.request(), models, target, reporter)?;
+    plan.lines.iter().for_each(|line| runs::out!("{line}"));
+    let told = plan.lines.len();
+    let settled = paper::evaluation::settle(plan, models, target, reporter)?;
+    settled.lines.iter().skip(told).for_each(|line| runs::out!("{line}"));
+    // The pilots have just been solved and are not solved again.
+    Ok(Run { fresh: false, ..settled.run })
+}
+
+/// What a command found.
+struct StudyResults {
+    outcomes: Vec<Judged>,
+    /// Whether error budgets do not hold.
+    coverage_fails: bool,
+}
+
+/// Does the work of a figure or a study; `None` where only a plan was requested.
+fn results(command: &XtaskCommand, run: &Run, reporter: &Reporter) -> Result<Option<StudyResults>> {
+    let mut coverage_fails = false;
+    let outcomes = match command {
+        XtaskCommand::ReproduceFig1(_) => vec![paper::fig1(run, reporter)?],
+        XtaskCommand::ReproduceFig2(_) => vec![paper::fig2(run, reporter)?],
+        XtaskCommand::ReproduceFig3(_) => vec![paper::fig3(run, reporter)?],
+        XtaskCommand::ReproduceFig4(_) => vec![paper::fig4(run, reporter)?],
+        XtaskCommand::ReproduceFig5(_) => vec![paper::fig5(run, reporter)?],
+        XtaskCommand::ReproduceFig6(_) => vec![paper::fig6(run, reporter)?],
+        XtaskCommand::ReproduceFig7(_) => vec![paper::fig7(run, reporter)?],
+        XtaskCommand::Verify(_) => vec![paper::verify(run, reporter)?],
+        XtaskCommand::ReproduceAll(_) => paper::reproduce_all(run, reporter)?,
+        XtaskCommand::AccuracyCost(options) => {
+            let kept = (options.out.as_path(), options.fresh);
+            vec![paper::evaluation::accuracy_cost(options.depth, options.seed, kept, reporter)?.into()]
+        }
+        XtaskCommand::ReproduceTwoCases(options) => {
+            vec![paper::two_cases(&options.study()?, &options.out, reporter)?]
+        }
+        XtaskCommand::BudgetCheck(options) => {
+            let (cases, seed) = (options.cases, options.seed);
+            let (outcome, coverage) =
+                paper::evaluation::budget_check(cases, seed, run.threads, &run.out, reporter)?;
+            runs::out!("{coverage}");
+            coverage_fails = !coverage.holds();
+            vec![outcome.into()]
+        }
+        XtaskCommand::Exponent(options) => match exponent(options, run, reporter)? {
+            Some(outcome) => vec![outcome],
+            None => return Ok(None),
+        },
+        XtaskCommand::PartialSlip(options) => vec![paper::partial_slip(&options.study(run)?, reporter)?],
+        XtaskCommand::Audit(options) => {
+            let (outcome, summary) = paper::evaluation::audit(run, options.share, options.tight, reporter)?;
+            runs::out!("{summary}");
+            vec![outcome.into()]
+        }
+        // They are no studies.
+        _ => Vec::new(),
+    };
+    Ok(Some(StudyResults { outcomes, coverage_fails }))
+}
+
+/// The study of exponents, from samples where they are given; `None` where only its plan was requested.
+fn exponent(options: &ExponentArguments, run: &Run, reporter: &Reporter) -> Result<Option<Judged>> {
+    if !options.samples.is_empty() {
+        let tested = if options.tested.is_empty() { &options.samples } else { &options.tested };
+        return paper::exponent_of_samples(&options.samples, tested, options.error, &run.out).map(Some);
+    }
+    let study = options.study(run)?;
+    for line in paper::exponent_plan(&study, options.budget, reporter)? {
+        runs::out!("{line}");
+    }
+    if options.plan {
+        return Ok(None);
+    }
+    // `--fresh` has already been applied by the plan.
+    paper::exponent(&paper::Exponent { fresh: false, ..study }, reporter).map(Some)
 }
 
 fn redraw(options: &Redraw) -> Result<ExitCode> {

@@ -23,9 +23,29 @@ pub(crate) struct Drawing {
 }
 
 enum Item {
-    Path { pieces: Vec<Piece>, paint: Paint, clip: Option<Rectangle> },
-    Label { set: Typeset, at: (f64, f64), upwards: bool, color: String },
-    Image { place: Rectangle, rgb: Vec<u8>, columns: usize },
+    Path(DrawnPath),
+    Label(DrawnLabel),
+    Image(DrawnImage),
+}
+
+struct DrawnPath {
+    pieces: Vec<Piece>,
+    paint: Paint,
+    clip: Option<Rectangle>,
+}
+
+struct DrawnLabel {
+    set: Typeset,
+    /// Start of the baseline.
+    at: (f64, f64),
+    upwards: bool,
+    color: String,
+}
+
+struct DrawnImage {
+    place: Rectangle,
+    rgb: Vec<u8>,
+    columns: usize,
 }
 
 /// Style of a path.
@@ -57,6 +77,24 @@ pub(crate) enum Anchor {
     End,
 }
 
+/// Where a label stands.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct LabelPlace {
+    /// A point of its baseline.
+    pub at: (f64, f64),
+    /// Which point of the label that is.
+    pub anchor: Anchor,
+    /// Whether it is written upwards, as at a vertical axis.
+    pub upwards: bool,
+}
+
+impl LabelPlace {
+    /// The place of a level label.
+    pub fn new(at: (f64, f64), anchor: Anchor) -> Self {
+        Self { at, anchor, upwards: false }
+    }
+}
+
 impl Drawing {
     /// In units of the drawing.
     pub fn width(&self) -> f64 {
@@ -68,31 +106,32 @@ impl Drawing {
     }
 
     pub fn path(&mut self, pieces: Vec<Piece>, paint: Paint, clip: Option<Rectangle>) {
-        self.items.push(Item::Path { pieces, paint, clip });
+        self.items.push(Item::Path(DrawnPath { pieces, paint, clip }));
     }
 
-    /// A label with its baseline through `at`; upwards for the vertical axis.
-    pub fn label(&mut self, set: Typeset, at: (f64, f64), anchor: Anchor, upwards: bool, color: &str) {
+    pub fn label(&mut self, set: Typeset, place: LabelPlace, color: &str) {
+        let LabelPlace { at, anchor, upwards } = place;
         let back = match anchor {
             Anchor::Start => 0.0,
             Anchor::Middle => 0.5 * set.width,
             Anchor::End => set.width,
         };
         let at = if upwards { (at.0, at.1 + back) } else { (at.0 - back, at.1) };
-        self.items.push(Item::Label { set, at, upwards, color: color.to_owned() });
+        self.items.push(Item::Label(DrawnLabel { set, at, upwards, color: color.to_owned() }));
     }
 
     /// A title and a line below it, of its own size, at the top from so far across.
     pub fn heading(&mut self, fonts: &Fonts, title: &str, (subtitle, size): (&str, f64), across: f64) {
         let room = self.width - across;
-        self.label(fonts.fitted(title, 19.0, room), (across, 27.0), Anchor::Start, false, INK);
-        self.label(fonts.fitted(subtitle, size, room), (across, 49.0), Anchor::Start, false, NEUTRAL);
+        let at_height = |down: f64| LabelPlace::new((across, down), Anchor::Start);
+        self.label(fonts.fitted(title, 19.0, room), at_height(27.0), INK);
+        self.label(fonts.fitted(subtitle, size, room), at_height(49.0), NEUTRAL);
     }
 
     /// An image of three bytes per colour in rows of `columns` colours, first row on top, stretched over a
     /// rectangle.
     pub fn image(&mut self, place: Rectangle, rgb: Vec<u8>, columns: usize) {
-        self.items.push(Item::Image { place, rgb, columns });
+        self.items.push(Item::Image(DrawnImage { place, rgb, columns }));
     }
 
     /// The bytes of `NAME.svg` and `NAME.png`.
@@ -104,76 +143,15 @@ impl Drawing {
 
     /// The picture as an SVG; `picture` is what messages call it.
     pub fn svg(&self, fonts: &Fonts, picture: &str) -> Result<String> {
-        let mut clips: Vec<Rectangle> = Vec::new();
-        let mut glyphs: BTreeSet<(bool, u16)> = BTreeSet::new();
-        let mut body = String::new();
+        let mut svg = SvgText { fonts, clips: Vec::new(), glyphs: BTreeSet::new(), body: String::new() };
         for item in &self.items {
             match item {
-                Item::Path { pieces, paint, clip } => {
-                    let clipped = clip.map(|c| {
-                        let known = clips.iter().position(|k| same(k, &c));
-                        known.unwrap_or_else(|| {
-                            clips.push(c);
-                            clips.len() - 1
-                        })
-                    });
-                    let clip = clipped.map_or_else(String::new, |i| format!(" clip-path=\"url(#c{i})\""));
-                    let style = svg_paint(paint);
-                    body += &format!("<path d=\"{}\"{style}{clip}/>\n", svg_path(pieces, 1.0, 1.0));
-                }
-                Item::Label { set, at, upwards, color } => {
-                    let turn = if *upwards { " rotate(-90)" } else { "" };
-                    body += &format!(
-                        "<g role=\"img\" aria-label=\"{}\" fill=\"{color}\" transform=\"translate({} {}){turn}\">",
-                        escaped(&set.plain),
-                        short(at.0),
-                        short(at.1)
-                    );
-                    for g in &set.glyphs {
-                        let outline = !fonts.outline(g.id, g.italic).is_empty();
-                        if outline {
-                            glyphs.insert((g.italic, g.id));
-                            body += &format!(
-                                "<use href=\"#{}\" transform=\"translate({} {})scale({})\"/>",
-                                glyph_name(g.italic, g.id),
-                                short(g.x),
-                                short(g.y),
-                                format_args!("{:.4}", g.size / 100.0)
-                            );
-                        }
-                    }
-                    for [x, y, w, h] in &set.bars {
-                        let (x, y, w, h) = (short(*x), short(*y), short(*w), short(*h));
-                        body += &format!("<rect x=\"{x}\" y=\"{y}\" width=\"{w}\" height=\"{h}\"/>");
-                    }
-                    body += "</g>\n";
-                }
-                Item::Image { place: [x, y, w, h], rgb, columns } => {
-                    let data = STANDARD.encode(encode_rgb(picture, *columns, rgb)?);
-                    body += &format!(
-                        "<image x=\"{x}\" y=\"{y}\" width=\"{w}\" height=\"{h}\" style=\"image-rendering:pixelated\" \
-                         href=\"data:image/png;base64,{data}\"/>\n"
-                    );
-                }
+                Item::Path(path) => svg.path(path),
+                Item::Label(label) => svg.label(label),
+                Item::Image(image) => svg.image(image, picture)?,
             }
         }
-        let (w, h) = (short(self.width), short(self.height));
-        let mut text = format!(
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{w}\" height=\"{h}\" viewBox=\"0 0 {w} {h}\">\n<defs>\n"
-        );
-        for (i, [x, y, w, h]) in clips.iter().enumerate() {
-            let (x, y, w, h) = (short(*x), short(*y), short(*w), short(*h));
-            text += &format!(
-                "<clipPath id=\"c{i}\"><rect x=\"{x}\" y=\"{y}\" width=\"{w}\" height=\"{h}\"/></clipPath>\n"
-            );
-        }
-        // Each glyph once, 100 units to the em.
-        for (italic, id) in glyphs {
-            let outline = svg_path(&fonts.outline(id, italic), 100.0, -100.0);
-            text += &format!("<path id=\"{}\" d=\"{outline}\"/>\n", glyph_name(italic, id));
-        }
-        text += &format!("</defs>\n<rect width=\"{w}\" height=\"{h}\" fill=\"#ffffff\"/>\n{body}</svg>\n");
-        Ok(text)
+        Ok(svg.document(self.width, self.height))
     }
 
     /// The picture as a PNG; `picture` is what messages call it.
@@ -183,68 +161,184 @@ impl Drawing {
             .ok_or_else(|| Error::new(picture, format!("no picture of {width} x {height} pixels")))?;
         pixels.fill(skia::Color::WHITE);
         let scale = skia::Transform::from_scale(SCALE as f32, SCALE as f32);
-        // Neighbours in the order of drawing share their clip.
-        let mut masked: Option<(Rectangle, skia::Mask)> = None;
+        let mut png = PixelCanvas { fonts, pixels, scale, masked: None };
         for item in &self.items {
             match item {
-                Item::Path { pieces, paint, clip } => {
-                    if let Some(clip) = clip
-                        && masked.as_ref().is_none_or(|(known, _)| !same(known, clip))
-                    {
-                        masked = mask(*clip, [width, height], scale).map(|mask| (*clip, mask));
-                    }
-                    let mask = masked.as_ref().filter(|_| clip.is_some()).map(|(_, mask)| mask);
-                    let Some(shape) = skia_path(pieces, |p| p) else { continue };
-                    if let Some((color, opacity)) = &paint.fill {
-                        let paint = skia_paint(color, *opacity);
-                        pixels.fill_path(&shape, &paint, skia::FillRule::Winding, scale, mask);
-                    }
-                    if let Some((color, width)) = &paint.stroke {
-                        let dash = paint.dashes.iter().map(|v| *v as f32).collect();
-                        let stroke = skia::Stroke {
-                            width: *width as f32,
-                            line_join: skia::LineJoin::Round,
-                            dash: skia::StrokeDash::new(dash, 0.0),
-                            ..skia::Stroke::default()
-                        };
-                        pixels.stroke_path(&shape, &skia_paint(color, 1.0), &stroke, scale, mask);
-                    }
-                }
-                Item::Label { set, at, upwards, color } => {
-                    let place = |x: f64, y: f64| {
-                        if *upwards { [at.0 + y, at.1 - x] } else { [at.0 + x, at.1 + y] }
-                    };
-                    let paint = skia_paint(color, 1.0);
-                    for g in &set.glyphs {
-                        let outline = fonts.outline(g.id, g.italic);
-                        let placed = skia_path(&outline, |[x, y]| place(g.x + x * g.size, g.y - y * g.size));
-                        let Some(placed) = placed else { continue };
-                        pixels.fill_path(&placed, &paint, skia::FillRule::Winding, scale, None);
-                    }
-                    for [x, y, w, h] in &set.bars {
-                        let placed = skia_path(&rectangle([*x, *y, *w, *h]), |[x, y]| place(x, y));
-                        let Some(placed) = placed else { continue };
-                        pixels.fill_path(&placed, &paint, skia::FillRule::Winding, scale, None);
-                    }
-                }
-                Item::Image { place, rgb, columns } => {
-                    let [left, top, w, h] = place.map(|v| (v * SCALE).round() as usize);
-                    let rows = rgb.len() / 3 / columns;
-                    let data = pixels.data_mut();
-                    for row in 0..h {
-                        for column in 0..w {
-                            let from = 3 * ((row * rows / h) * columns + column * columns / w);
-                            let at = ((top + row) * width as usize + left + column) * 4;
-                            if let Some(pixel) = data.get_mut(at..at + 3) {
-                                pixel.copy_from_slice(&rgb[from..from + 3]);
-                            }
-                        }
-                    }
+                Item::Path(path) => png.path(path),
+                Item::Label(label) => png.label(label),
+                Item::Image(image) => png.image(image),
+            }
+        }
+        let opaque: Vec<u8> = png.pixels.data().chunks(4).flat_map(|p| [p[0], p[1], p[2]]).collect();
+        encode_rgb(picture, width as usize, &opaque)
+    }
+}
+
+/// An SVG while it is written.
+struct SvgText<'a> {
+    fonts: &'a Fonts,
+    /// Rectangles that paths are clipped to; a path names its rectangle by number.
+    clips: Vec<Rectangle>,
+    /// Glyphs that labels use, italic or not.
+    glyphs: BTreeSet<(bool, u16)>,
+    /// Everything drawn so far.
+    body: String,
+}
+
+impl SvgText<'_> {
+    fn path(&mut self, path: &DrawnPath) {
+        let clipped = path.clip.map(|clip| self.number_of_clip(clip));
+        let clip = clipped.map_or_else(String::new, |i| format!(" clip-path=\"url(#c{i})\""));
+        let style = svg_paint(&path.paint);
+        self.body += &format!("<path d=\"{}\"{style}{clip}/>\n", svg_path(&path.pieces, 1.0, 1.0));
+    }
+
+    fn number_of_clip(&mut self, clip: Rectangle) -> usize {
+        let known = self.clips.iter().position(|k| same(k, &clip));
+        known.unwrap_or_else(|| {
+            self.clips.push(clip);
+            self.clips.len() - 1
+        })
+    }
+
+    /// Writes a label as uses of its glyphs; its words are for readers who cannot see them.
+    fn label(&mut self, label: &DrawnLabel) {
+        let DrawnLabel { set, at, upwards, color } = label;
+        let turn = if *upwards { " rotate(-90)" } else { "" };
+        self.body += &format!(
+            "<g role=\"img\" aria-label=\"{}\" fill=\"{color}\" transform=\"translate({} {}){turn}\">",
+            escaped(&set.plain),
+            short(at.0),
+            short(at.1)
+        );
+        for g in &set.glyphs {
+            let outline = !self.fonts.outline(g.id, g.italic).is_empty();
+            if outline {
+                self.glyphs.insert((g.italic, g.id));
+                self.body += &format!(
+                    "<use href=\"#{}\" transform=\"translate({} {})scale({})\"/>",
+                    glyph_name(g.italic, g.id),
+                    short(g.x),
+                    short(g.y),
+                    format_args!("{:.4}", g.size / 100.0)
+                );
+            }
+        }
+        for [x, y, w, h] in &set.bars {
+            let (x, y, w, h) = (short(*x), short(*y), short(*w), short(*h));
+            self.body += &format!("<rect x=\"{x}\" y=\"{y}\" width=\"{w}\" height=\"{h}\"/>");
+        }
+        self.body += "</g>\n";
+    }
+
+    fn image(&mut self, image: &DrawnImage, picture: &str) -> Result<()> {
+        let [x, y, w, h] = image.place;
+        let data = STANDARD.encode(encode_rgb(picture, image.columns, &image.rgb)?);
+        self.body += &format!(
+            "<image x=\"{x}\" y=\"{y}\" width=\"{w}\" height=\"{h}\" style=\"image-rendering:pixelated\" \
+             href=\"data:image/png;base64,{data}\"/>\n"
+        );
+        Ok(())
+    }
+
+    /// The whole file: clips and glyphs are defined before what uses them.
+    fn document(self, width: f64, height: f64) -> String {
+        let (w, h) = (short(width), short(height));
+        let mut text = format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{w}\" height=\"{h}\" viewBox=\"0 0 {w} {h}\">\n<defs>\n"
+        );
+        for (i, [x, y, w, h]) in self.clips.iter().enumerate() {
+            let (x, y, w, h) = (short(*x), short(*y), short(*w), short(*h));
+            text += &format!(
+                "<clipPath id=\"c{i}\"><rect x=\"{x}\" y=\"{y}\" width=\"{w}\" height=\"{h}\"/></clipPath>\n"
+            );
+        }
+        // Each glyph once, 100 units to the em.
+        for (italic, id) in self.glyphs {
+            let outline = svg_path(&self.fonts.outline(id, italic), 100.0, -100.0);
+            text += &format!("<path id=\"{}\" d=\"{outline}\"/>\n", glyph_name(italic, id));
+        }
+        let body = self.body;
+        text += &format!("</defs>\n<rect width=\"{w}\" height=\"{h}\" fill=\"#ffffff\"/>\n{body}</svg>\n");
+        text
+    }
+}
+
+/// A PNG while it is drawn.
+struct PixelCanvas<'a> {
+    fonts: &'a Fonts,
+    pixels: skia::Pixmap,
+    /// From units of the drawing to pixels.
+    scale: skia::Transform,
+    /// The last clip: neighbours in the order of drawing share theirs.
+    masked: Option<(Rectangle, skia::Mask)>,
+}
+
+impl PixelCanvas<'_> {
+    fn path(&mut self, path: &DrawnPath) {
+        let DrawnPath { pieces, paint, clip } = path;
+        if let Some(clip) = clip {
+            self.mask_to(*clip);
+        }
+        let mask = self.masked.as_ref().filter(|_| clip.is_some()).map(|(_, mask)| mask);
+        let Some(shape) = skia_path(pieces, |p| p) else { return };
+        if let Some((color, opacity)) = &paint.fill {
+            let paint = skia_paint(color, *opacity);
+            self.pixels.fill_path(&shape, &paint, skia::FillRule::Winding, self.scale, mask);
+        }
+        if let Some((color, width)) = &paint.stroke {
+            let dash = paint.dashes.iter().map(|v| *v as f32).collect();
+            let stroke = skia::Stroke {
+                width: *width as f32,
+                line_join: skia::LineJoin::Round,
+                dash: skia::StrokeDash::new(dash, 0.0),
+                ..skia::Stroke::default()
+            };
+            self.pixels.stroke_path(&shape, &skia_paint(color, 1.0), &stroke, self.scale, mask);
+        }
+    }
+
+    /// Makes the mask of a clip, unless it is the last one.
+    fn mask_to(&mut self, clip: Rectangle) {
+        if self.masked.as_ref().is_none_or(|(known, _)| !same(known, &clip)) {
+            let size = [self.pixels.width(), self.pixels.height()];
+            self.masked = mask(clip, size, self.scale).map(|mask| (clip, mask));
+        }
+    }
+
+    fn label(&mut self, label: &DrawnLabel) {
+        let DrawnLabel { set, at, upwards, color } = label;
+        let place = |x: f64, y: f64| if *upwards { [at.0 + y, at.1 - x] } else { [at.0 + x, at.1 + y] };
+        let paint = skia_paint(color, 1.0);
+        let mut fill = |shape: Option<skia::Path>| {
+            if let Some(shape) = shape {
+                self.pixels.fill_path(&shape, &paint, skia::FillRule::Winding, self.scale, None);
+            }
+        };
+        for g in &set.glyphs {
+            let outline = self.fonts.outline(g.id, g.italic);
+            fill(skia_path(&outline, |[x, y]| place(g.x + x * g.size, g.y - y * g.size)));
+        }
+        for bar in &set.bars {
+            fill(skia_path(&rectangle(*bar), |[x, y]| place(x, y)));
+        }
+    }
+
+    /// Gives each pixel of the place the colour of the image there.
+    fn image(&mut self, image: &DrawnImage) {
+        let [left, top, w, h] = image.place.map(|v| (v * SCALE).round() as usize);
+        let (columns, rows) = (image.columns, image.rgb.len() / 3 / image.columns);
+        let width = self.pixels.width() as usize;
+        let data = self.pixels.data_mut();
+        for row in 0..h {
+            for column in 0..w {
+                let from = 3 * ((row * rows / h) * columns + column * columns / w);
+                let at = ((top + row) * width + left + column) * 4;
+                if let Some(pixel) = data.get_mut(at..at + 3) {
+                    pixel.copy_from_slice(&image.rgb[from..from + 3]);
                 }
             }
         }
-        let opaque: Vec<u8> = pixels.data().chunks(4).flat_map(|p| [p[0], p[1], p[2]]).collect();
-        encode_rgb(picture, width as usize, &opaque)
     }
 }
 

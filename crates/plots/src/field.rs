@@ -2,7 +2,7 @@
 
 use crate::axis::Axis;
 use crate::colours::ColourScale;
-use crate::drawing::{Anchor, Drawing, Paint, Rectangle, polygon, polyline};
+use crate::drawing::{Anchor, Drawing, LabelPlace, Paint, Rectangle, polygon, polyline};
 use crate::error::{Error, Result};
 use crate::frame::{AxisSide, Frame, TICK, TickStyle};
 use crate::pixels::{Pixels, raster, reduction};
@@ -56,6 +56,10 @@ const TOP: f64 = 62.0;
 const RIGHT: f64 = 124.0;
 const BELOW: f64 = 60.0;
 const BAR: f64 = 18.0;
+/// From the map to the bar of colours or the classes.
+const BESIDE: f64 = 24.0;
+/// The bar is at least as high as its labels need.
+const SHORTEST_BAR: f64 = 160.0;
 /// Size of the words at an axis.
 const NAME: f64 = 1.2 * TICK;
 /// Outline of the contact, a white line with a black edge: on any colour one of both is seen, by colour-blind
@@ -106,6 +110,36 @@ impl FieldPicture<'_> {
     /// [`Error`] with the name that the caller gives the picture, for another number of values, components or
     /// cells in contact than cells, no cells or a size that is not positive.
     pub fn png(&self, name: &str) -> Result<Vec<u8>> {
+        self.validate(name)?;
+        let fonts = Fonts::load()?;
+        let pixels = raster(self.cells, self.size, SIDE, SHORTEST);
+        let [w, h] = [pixels.columns, pixels.rows].map(|count| PIXEL * count as f64);
+        let place = [LEFT, TOP, w, h];
+        let note = reduction(self.cells, pixels);
+        let bottom = TOP + h.max(SHORTEST_BAR) + BELOW;
+        let mut drawing = Drawing::new(LEFT + w + RIGHT, bottom + note.as_ref().map_or(0.0, |_| NOTE_ROOM));
+        let scale = self.scale().widened();
+        let image = self.image(pixels, |v| scale.colour(v)).into_flattened();
+        drawing.image(place, image, pixels.columns);
+        if let Some(note) = note {
+            let at = LabelPlace::new((LEFT, bottom + 0.5 * NOTE_ROOM), Anchor::Start);
+            drawing.label(fonts.fitted(&note, NOTE, w + RIGHT), at, NEUTRAL);
+        }
+        self.draw_arrows(&mut drawing, place);
+        let map = Frame { fonts: &fonts, place, style: TickStyle::OF_MAPS };
+        self.draw_axes(&mut drawing, &map);
+        if self.classes.is_empty() {
+            self.draw_scale(&mut drawing, &map, scale);
+        } else {
+            self.draw_classes(&mut drawing, &map, scale);
+        }
+        drawing.heading(&fonts, &self.title, (&self.subtitle, 15.0), LEFT);
+        drawing.png(&fonts, name)
+    }
+
+    /// Refuses another number of values, components or cells in contact than cells, and sides that are not
+    /// positive.
+    fn validate(&self, name: &str) -> Result<()> {
         let count = self.cells.checked_count().filter(|count| *count > 0);
         if count != Some(self.values.len()) || !self.contact.is_empty() && count != Some(self.contact.len()) {
             let (values, contact, Cells { columns, rows }) =
@@ -119,77 +153,52 @@ impl FieldPicture<'_> {
             let message = format!("{} components of {} values", component.len(), self.values.len());
             return Err(Error::new(name, message));
         }
-        self.cells.validate(self.size).map_err(|e| Error::new(name, e.to_string()))?;
-        let fonts = Fonts::load()?;
-        let size = self.size;
-        let longer = size.x.max(size.y);
-        let pixels = raster(self.cells, size, SIDE, SHORTEST);
-        let [w, h] = [pixels.columns, pixels.rows].map(|count| PIXEL * count as f64);
-        let note = reduction(self.cells, pixels);
-        let bottom = TOP + h.max(160.0) + BELOW;
-        let mut drawing = Drawing::new(LEFT + w + RIGHT, bottom + note.as_ref().map_or(0.0, |_| NOTE_ROOM));
-        let frame = [LEFT, TOP, w, h];
-        let scale = self.scale().widened();
-        let (low, high) = scale.ends();
-        let color = |v: f64| scale.colour(v);
-        let image = self.image(pixels, color).into_flattened();
-        drawing.image(frame, image, pixels.columns);
-        if let Some(note) = note {
-            let set = fonts.fitted(&note, NOTE, w + RIGHT);
-            drawing.label(set, (LEFT, bottom + 0.5 * NOTE_ROOM), Anchor::Start, false, NEUTRAL);
-        }
-        self.draw_arrows(&mut drawing, frame);
-        let (length_unit, per_length) = multiple(self.length_unit, longer);
-        let map = Frame { fonts: &fonts, place: frame, style: TickStyle::OF_MAPS };
-        map.axis(&mut drawing, AxisSide::Below, Axis::Linear(0.0, per_length * size.x), None);
-        map.axis(&mut drawing, AxisSide::Left, Axis::Linear(0.0, per_length * size.y), None);
-        let around = [LEFT - 0.5 * LINE, TOP - 0.5 * LINE, w + LINE, h + LINE];
-        Frame { place: around, ..map }.outline(&mut drawing, LINE);
-        let with = |words: &str, unit: &str| {
-            if unit.is_empty() { words.to_owned() } else { format!("{words} ({unit})") }
-        };
-        map.name_below(&mut drawing, &with("$x$", &length_unit), NAME, TOP + h + 3.2 * TICK);
-        map.name_beside(&mut drawing, &with("$y$", &length_unit), NAME, 1.4 * TICK);
-        let beside = LEFT + w + 24.0;
-        if !self.classes.is_empty() {
-            self.draw_classes(&mut drawing, &fonts, (beside, TOP), color);
-            drawing.heading(&fonts, &self.title, (&self.subtitle, 15.0), LEFT);
-            return drawing.png(&fonts, name);
-        }
-        // The bar is at least as high as its labels need.
-        let bar = [beside, TOP, BAR, h.max(160.0)];
-        let steps = (bar[3] / PIXEL) as usize;
-        let ramp = |i: usize| {
-            let t = (i as f64 + 0.5) / steps as f64;
-            color(low * t + high * (1.0 - t))
-        };
-        drawing.image(bar, (0..steps).flat_map(ramp).collect(), 1);
-        let (unit, per_unit) = multiple(self.unit, low.abs().max(high.abs()));
-        let style = TickStyle { beside: [9.0, 0.5 * TICK], ..TickStyle::OF_MAPS };
-        let beside = Frame { fonts: &fonts, place: bar, style };
-        beside.axis(&mut drawing, AxisSide::Right, Axis::Linear(per_unit * low, per_unit * high), None);
-        beside.outline(&mut drawing, 1.2);
-        let words = LEFT + w + RIGHT - 0.6 * TICK;
-        beside.name_beside(&mut drawing, &with(&self.quantity, &unit), NAME, words);
-        drawing.heading(&fonts, &self.title, (&self.subtitle, 15.0), LEFT);
-        drawing.png(&fonts, name)
+        self.cells.validate(self.size).map_err(|e| Error::new(name, e.to_string()))
     }
 
-    /// A square of the colour of each class with its words, the last one on top.
-    fn draw_classes(
-        &self,
-        drawing: &mut Drawing,
-        fonts: &Fonts,
-        (left, top): (f64, f64),
-        color: impl Fn(f64) -> [u8; 3],
-    ) {
+    /// The axes of the map, with their names, and the line around it.
+    fn draw_axes(&self, drawing: &mut Drawing, map: &Frame<'_>) {
+        let Size { x, y } = self.size;
+        let [left, top, w, h] = map.place;
+        let (unit, per_unit) = multiple(self.length_unit, x.max(y));
+        map.axis(drawing, AxisSide::Below, Axis::Linear(0.0, per_unit * x), None);
+        map.axis(drawing, AxisSide::Left, Axis::Linear(0.0, per_unit * y), None);
+        let around = [left - 0.5 * LINE, top - 0.5 * LINE, w + LINE, h + LINE];
+        Frame { place: around, ..*map }.outline(drawing, LINE);
+        map.name_below(drawing, &with_unit("$x$", &unit), NAME, top + h + 3.2 * TICK);
+        map.name_beside(drawing, &with_unit("$y$", &unit), NAME, 1.4 * TICK);
+    }
+
+    /// The bar of colours beside the map, with its axis and its name.
+    fn draw_scale(&self, drawing: &mut Drawing, map: &Frame<'_>, scale: ColourScale) {
+        let [left, top, w, h] = map.place;
+        let place = [left + w + BESIDE, top, BAR, h.max(SHORTEST_BAR)];
+        let (low, high) = scale.ends();
+        let steps = (place[3] / PIXEL) as usize;
+        let ramp = |i: usize| {
+            let t = (i as f64 + 0.5) / steps as f64;
+            scale.colour(low * t + high * (1.0 - t))
+        };
+        drawing.image(place, (0..steps).flat_map(ramp).collect(), 1);
+        let (unit, per_unit) = multiple(self.unit, low.abs().max(high.abs()));
+        let style = TickStyle { beside: [9.0, 0.5 * TICK], ..TickStyle::OF_MAPS };
+        let bar = Frame { fonts: map.fonts, place, style };
+        bar.axis(drawing, AxisSide::Right, Axis::Linear(per_unit * low, per_unit * high), None);
+        bar.outline(drawing, 1.2);
+        let words = left + w + RIGHT - 0.6 * TICK;
+        bar.name_beside(drawing, &with_unit(&self.quantity, &unit), NAME, words);
+    }
+
+    /// A square of the colour of each class with its words beside the map, the last one on top.
+    fn draw_classes(&self, drawing: &mut Drawing, map: &Frame<'_>, scale: ColourScale) {
+        let (left, top) = (map.place[0] + map.place[2] + BESIDE, map.place[1]);
         for (line, (value, words)) in self.classes.iter().enumerate().rev().enumerate() {
             let y = top + line as f64 * 1.6 * BAR;
-            drawing.image([left, y, BAR, BAR], color(value as f64).to_vec(), 1);
+            drawing.image([left, y, BAR, BAR], scale.colour(value as f64).to_vec(), 1);
             let corners = [(left, y), (left + BAR, y), (left + BAR, y + BAR), (left, y + BAR)];
             drawing.path(polygon(&corners), Paint::stroked(INK, 1.2), None);
             let at = (left + BAR + 9.0, y + 0.5 * BAR + 0.35 * TICK);
-            drawing.label(fonts.typeset(words, TICK), at, Anchor::Start, false, INK);
+            drawing.label(map.fonts.typeset(words, TICK), LabelPlace::new(at, Anchor::Start), INK);
         }
     }
 
@@ -275,6 +284,11 @@ impl FieldPicture<'_> {
     }
 }
 
+/// The name of a quantity with its unit, where it has one.
+fn with_unit(words: &str, unit: &str) -> String {
+    if unit.is_empty() { words.to_owned() } else { format!("{words} ({unit})") }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -344,87 +358,131 @@ mod tests {
         Field::new(cells, size, map.heights().iter().enumerate().map(pressure).collect()).unwrap()
     }
 
-    /// Every picture is read back: shares of the classes, contact and mean pressure are those of the field. The
-    /// maps are small, at the limit and beyond it; rectangles, strips and oblong cells.
+    /// Cells, sides, and whether every cell has pixels of its own. The maps are small, at the limit and beyond it;
+    /// rectangles, strips and oblong cells.
+    const PRESSED: [([usize; 2], [f64; 2], bool); 7] = [
+        ([64, 16], [4.0, 1.0], true),
+        ([512, 128], [4.0, 1.0], true),
+        ([1040, 130], [8.0, 1.0], true),
+        ([1100, 275], [4.0, 1.0], false),
+        ([2049, 683], [3.0, 1.0], false),
+        ([300, 100], [4.0, 1.0], false),
+        ([4000, 40], [100.0, 1.0], false),
+    ];
+
+    /// A pressed rectangle, whose pictures are read back.
+    struct PressedField {
+        field: Field,
+        pixels: Cells,
+        /// How far shares and means of a picture may be from those of the field.
+        tolerance: f64,
+    }
+
+    impl PressedField {
+        fn all() -> impl Iterator<Item = Self> {
+            PRESSED.into_iter().map(|(cells, size, whole)| {
+                let field = pressed(cells, size, 7);
+                let pixels = raster(field.cells(), field.size(), SIDE, SHORTEST);
+                let count = pixels.columns as f64 * pixels.rows as f64;
+                let tolerance = if whole { ROUNDING } else { REDUCTION / count.sqrt() };
+                Self { field, pixels, tolerance }
+            })
+        }
+
+        /// A field on the same cells.
+        fn with(&self, value: impl Fn(f64) -> f64) -> Field {
+            let values = self.field.values().iter().map(|v| value(*v)).collect();
+            Field::new(self.field.cells(), self.field.size(), values).unwrap()
+        }
+
+        /// The share of the cells whose pressure is of this kind.
+        fn share(&self, of: impl Fn(f64) -> bool) -> f64 {
+            let values = self.field.values();
+            values.iter().filter(|v| of(**v)).count() as f64 / values.len() as f64
+        }
+
+        fn near(&self, found: f64, expected: f64, what: &str) {
+            let (cells, off) = (self.field.cells(), (found - expected).abs());
+            println!("{cells:?} {what}: {expected:.5} in the field, off by {off:.1e}");
+            assert!(off <= self.tolerance, "{cells:?} {what}: {found} for {expected}");
+        }
+    }
+
+    fn share_of_pixels(map: &[[u8; 3]], color: [u8; 3]) -> f64 {
+        map.iter().filter(|p| **p == color).count() as f64 / map.len() as f64
+    }
+
     #[test]
-    fn pictures_have_the_shares_of_their_fields() {
-        for (cells, size, whole) in [
-            ([64, 16], [4.0, 1.0], true),
-            ([512, 128], [4.0, 1.0], true),
-            ([1040, 130], [8.0, 1.0], true),
-            ([1100, 275], [4.0, 1.0], false),
-            ([2049, 683], [3.0, 1.0], false),
-            ([300, 100], [4.0, 1.0], false),
-            ([4000, 40], [100.0, 1.0], false),
-        ] {
-            let field = pressed(cells, size, 7);
-            let count = field.values().len() as f64;
-            let pixels = raster(field.cells(), field.size(), SIDE, SHORTEST);
-            let tolerance = if whole {
-                ROUNDING
-            } else {
-                REDUCTION / (pixels.columns as f64 * pixels.rows as f64).sqrt()
-            };
-            let near = |found: f64, expected: f64, what: &str| {
-                let off = (found - expected).abs();
-                println!("{cells:?} {what}: {expected:.5} in the field, off by {off:.1e}");
-                assert!(off <= tolerance, "{cells:?} {what}: {found} for {expected}");
-            };
-            let (low, high) = FieldPicture::ends(field.values());
-            let drawn = picture(&field, true);
+    fn pictures_of_pressures_have_the_shares_of_their_fields() {
+        for pressed in PressedField::all() {
+            let (low, high) = FieldPicture::ends(pressed.field.values());
+            let drawn = picture(&pressed.field, true);
             assert_eq!(drawn.scale().ends(), (0.0, high), "{low}");
-            let (pixels, map) = read_map(drawn.png("a").unwrap(), &field);
-            let share =
-                |color: [u8; 3]| map.iter().filter(|p| **p == color).count() as f64 / map.len() as f64;
-            let of = |test: &dyn Fn(f64) -> bool| {
-                field.values().iter().filter(|v| test(**v)).count() as f64 / count
-            };
-            near(share([255; 3]), of(&|v| v == 0.0), "open");
-            near(share(crate::colours::UNDEFINED), of(&f64::is_nan), "undefined");
+            let (_, map) = read_map(drawn.png("a").unwrap(), &pressed.field);
+            pressed.near(share_of_pixels(&map, [255; 3]), pressed.share(|v| v == 0.0), "open");
+            let undefined = share_of_pixels(&map, crate::colours::UNDEFINED);
+            pressed.near(undefined, pressed.share(f64::is_nan), "undefined");
             // The largest pressure has its colour.
-            assert!(share(crate::viridis()[255]) > 0.0);
-            // Mean colour, by channel, and with it the mean pressure.
+            assert!(share_of_pixels(&map, crate::viridis()[255]) > 0.0);
+        }
+    }
+
+    /// The mean colour, by channel, and with it the mean pressure.
+    #[test]
+    fn pictures_of_pressures_have_the_means_of_their_fields() {
+        for pressed in PressedField::all() {
+            let PressedField { field, pixels, .. } = &pressed;
+            let (drawn, count) = (picture(field, true), field.values().len() as f64);
+            let (_, map) = read_map(drawn.png("a").unwrap(), field);
             let scale = drawn.scale();
             let sum = |sum: [f64; 3], c: [u8; 3]| [0, 1, 2].map(|i| sum[i] + f64::from(c[i]) / 255.0);
             let of_cells = field.values().iter().map(|v| scale.colour(*v)).fold([0.0; 3], sum);
             let of_pixels = map.iter().copied().fold([0.0; 3], sum);
             for (found, expected) in of_pixels.into_iter().zip(of_cells) {
-                near(found / map.len() as f64, expected / count, "colour");
+                pressed.near(found / map.len() as f64, expected / count, "colour");
             }
-            let reduced = Pixels::new(field.cells(), pixels, field.values());
+            let reduced = Pixels::new(field.cells(), *pixels, field.values());
             let shown =
                 (0..map.len()).map(|i| field.values()[reduced.cell(i % pixels.columns, i / pixels.columns)]);
             let mean = shown.filter(|v| v.is_finite()).sum::<f64>() / map.len() as f64;
             let expected = field.values().iter().filter(|v| v.is_finite()).sum::<f64>() / count;
-            near(mean / high, expected / high, "pressure");
-            // Classes of a contact, of which the harder pressed half sticks.
-            let class = |v: &f64| {
-                if *v > 0.4 {
-                    1.0
-                } else if *v > 0.0 {
-                    2.0
-                } else {
-                    0.0
-                }
-            };
-            let classes = Field::new(cells, size, field.values().iter().map(class).collect()).unwrap();
+            let (_, high) = FieldPicture::ends(field.values());
+            pressed.near(mean / high, expected / high, "pressure");
+        }
+    }
+
+    /// Of a contact, of which the harder pressed half sticks.
+    #[test]
+    fn pictures_of_classes_have_the_shares_of_their_fields() {
+        let class = |v: f64| {
+            if v > 0.4 {
+                1.0
+            } else if v > 0.0 {
+                2.0
+            } else {
+                0.0
+            }
+        };
+        for pressed in PressedField::all() {
+            let classes = pressed.with(class);
             let drawn = FieldPicture { classes: &["open", "stick", "slip"], ..picture(&classes, true) };
             let (_, map) = read_map(drawn.png("a").unwrap(), &classes);
             for value in [0.0, 1.0, 2.0] {
-                let colour = drawn.scale().colour(value);
-                let found = map.iter().filter(|p| **p == colour).count();
-                let expected = classes.values().iter().filter(|v| (**v - value).abs() < 0.5).count();
-                near(found as f64 / map.len() as f64, expected as f64 / count, "class");
+                let found = share_of_pixels(&map, drawn.scale().colour(value));
+                pressed.near(found, pressed.share(|v| (class(v) - value).abs() < 0.5), "class");
             }
-            // A gap, in which the contact is outlined: the line lies outside of it.
-            let gap: Vec<f64> = field.values().iter().map(|v| if *v > 0.0 { 0.0 } else { 1.0 }).collect();
-            let contact: Vec<bool> = field.values().iter().map(|v| *v > 0.0).collect();
-            let gap = Field::new(cells, size, gap).unwrap();
+        }
+    }
+
+    #[test]
+    fn the_outline_of_a_contact_lies_outside_of_it() {
+        for pressed in PressedField::all() {
+            let gap = pressed.with(|v| if v > 0.0 { 0.0 } else { 1.0 });
+            let contact: Vec<bool> = pressed.field.values().iter().map(|v| *v > 0.0).collect();
             let drawn = FieldPicture { contact: &contact, ..picture(&gap, false) };
             let (_, map) = read_map(drawn.png("a").unwrap(), &gap);
-            let touching = drawn.scale().colour(0.0);
-            let inside = map.iter().filter(|p| **p == touching).count();
-            near(inside as f64 / map.len() as f64, of(&|v| v > 0.0), "outlined");
+            let inside = share_of_pixels(&map, drawn.scale().colour(0.0));
+            pressed.near(inside, pressed.share(|v| v > 0.0), "outlined");
         }
     }
 

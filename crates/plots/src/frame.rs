@@ -1,7 +1,7 @@
 //! Frames: the ticks and the labels around a rectangle of a picture.
 
 use crate::axis::Axis;
-use crate::drawing::{Anchor, Drawing, Paint, Rectangle, polyline, rectangle};
+use crate::drawing::{Anchor, Drawing, LabelPlace, Paint, Rectangle, polyline, rectangle};
 use crate::style::INK;
 use crate::text::Fonts;
 
@@ -98,7 +98,7 @@ impl Frame<'_> {
                 AxisSide::Left => ((x - style.beside[0], middle), Anchor::End),
                 AxisSide::Right => ((right + style.beside[0], middle), Anchor::Start),
             };
-            drawing.label(set, at, anchor, false, INK);
+            drawing.label(set, LabelPlace::new(at, anchor), INK);
         }
         if let Some(power) = power {
             let (at, anchor) = match side {
@@ -106,7 +106,7 @@ impl Frame<'_> {
                 AxisSide::Left => ((x - style.beside[0], y - style.beside[1]), Anchor::End),
                 AxisSide::Right => ((x, y - style.beside[1]), Anchor::Start),
             };
-            drawing.label(self.fonts.power_of_ten(power, style.size), at, anchor, false, INK);
+            drawing.label(self.fonts.power_of_ten(power, style.size), LabelPlace::new(at, anchor), INK);
         }
     }
 
@@ -118,12 +118,13 @@ impl Frame<'_> {
     /// What the horizontal axis shows, with its baseline so far down the picture.
     pub fn name_below(&self, drawing: &mut Drawing, words: &str, size: f64, down: f64) {
         let at = (self.place[0] + 0.5 * self.place[2], down);
-        drawing.label(self.fonts.typeset(words, size), at, Anchor::Middle, false, INK);
+        drawing.label(self.fonts.typeset(words, size), LabelPlace::new(at, Anchor::Middle), INK);
     }
 
     /// What a vertical axis shows, written upwards, with its baseline so far across the picture.
     pub fn name_beside(&self, drawing: &mut Drawing, words: &str, size: f64, across: f64) {
         let at = (across, self.place[1] + 0.5 * self.place[3]);
-        drawing.label(self.fonts.typeset(words, size), at, Anchor::Middle, true, INK);
+        let place = LabelPlace { upwards: true, ..LabelPlace::new(at, Anchor::Middle) };
+        drawing.label(self.fonts.typeset(words, size), place, INK);
     }
 }

@@ -1,8 +1,8 @@
 //! Legends: their lines, and the place where they cover no data.
 
-use crate::drawing::{Anchor, Drawing, Paint, Rectangle, polygon, polyline};
-use crate::mark;
-use crate::style::{INK, LegendKey, LineStyle};
+use crate::drawing::{Anchor, Drawing, LabelPlace, Paint, Rectangle, polygon, polyline};
+use crate::mark::{self, MarkLook};
+use crate::style::{INK, LegendKey, LineStyle, Mark};
 use crate::text::{Fonts, Typeset};
 
 /// One line of a legend.
@@ -94,18 +94,21 @@ impl SetLegend<'_> {
                 let paint = Paint { dashes: style.dashes(), ..Paint::stroked(&entry.color, 1.8) };
                 drawing.path(polyline(&ends), paint, None);
             };
+            let point = |drawing: &mut Drawing, mark: Mark, radius: f64| {
+                mark::draw(drawing, middle, MarkLook { mark, color: &entry.color, radius });
+            };
             match entry.key {
                 LegendKey::Line(style) => line(drawing, style),
                 LegendKey::Curve(mark) => {
                     line(drawing, LineStyle::Solid);
-                    mark::draw(drawing, middle, &entry.color, 4.6, mark);
+                    point(drawing, mark, 4.6);
                 }
-                LegendKey::Mark(mark) => mark::draw(drawing, middle, &entry.color, 4.6, mark),
-                LegendKey::Sized(mark, radius) => mark::draw(drawing, middle, &entry.color, radius, mark),
+                LegendKey::Mark(mark) => point(drawing, mark, 4.6),
+                LegendKey::Sized(mark, radius) => point(drawing, mark, radius),
                 LegendKey::Bar(mark) => {
                     let ends = [(middle.0, middle.1 - 0.5 * size), (middle.0, middle.1 + 0.5 * size)];
                     drawing.path(polyline(&ends), Paint::stroked(&entry.color, 1.5), None);
-                    mark::draw(drawing, middle, &entry.color, 4.6, mark);
+                    point(drawing, mark, 4.6);
                 }
                 LegendKey::Band => {
                     let (a, b) = (middle.0 - half, middle.0 + half);
@@ -115,7 +118,8 @@ impl SetLegend<'_> {
                 }
                 LegendKey::Words => {}
             }
-            drawing.label(set, (x + indent(entry, size), baseline), Anchor::Start, false, INK);
+            let words = LabelPlace::new((x + indent(entry, size), baseline), Anchor::Start);
+            drawing.label(set, words, INK);
         }
     }
 }

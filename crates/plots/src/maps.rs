@@ -1,7 +1,7 @@
 //! Several grey maps side by side.
 
 use crate::axis::Axis;
-use crate::drawing::{Anchor, Drawing, Paint, rectangle};
+use crate::drawing::{Anchor, Drawing, LabelPlace, Paint, rectangle};
 use crate::error::{Error, Result};
 use crate::frame::{AxisSide, Frame, TICK, TickStyle};
 use crate::style::INK;
@@ -64,7 +64,7 @@ pub fn grey_maps(
         let x = GAP + (i % columns) as f64 * (MAP + GAP);
         let y = TITLE + LABEL + (i / columns) as f64 * (MAP + LABEL);
         let label = fonts.typeset(&map.label, 18.0);
-        drawing.label(label, (x + 0.5 * MAP, y - 8.0), Anchor::Middle, false, INK);
+        drawing.label(label, LabelPlace::new((x + 0.5 * MAP, y - 8.0), Anchor::Middle), INK);
         let rgb = map.shades.iter().flat_map(|&shade| [shade; 3]).collect();
         drawing.image([x, y, MAP, MAP], rgb, map.side);
         drawing.path(rectangle([x, y, MAP, MAP]), Paint::stroked(INK, 1.0), None);

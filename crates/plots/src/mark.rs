@@ -4,8 +4,17 @@ use crate::drawing::{Drawing, Paint, polygon, polyline};
 use crate::style::{Mark, MarkShape};
 use crate::text::Piece;
 
-/// Draws a mark of this radius.
-pub(crate) fn draw(drawing: &mut Drawing, at: (f64, f64), color: &str, radius: f64, mark: Mark) {
+/// How a point looks.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct MarkLook<'a> {
+    pub mark: Mark,
+    pub color: &'a str,
+    pub radius: f64,
+}
+
+/// Draws a mark around a point.
+pub(crate) fn draw(drawing: &mut Drawing, at: (f64, f64), look: MarkLook<'_>) {
+    let MarkLook { mark, color, radius } = look;
     let outline = outline(mark.shape(), at, radius);
     let paint = match mark {
         _ if mark.shape() == MarkShape::Cross => Paint::stroked(color, 1.8),

@@ -1,6 +1,6 @@
 //! Several pictures in one file.
 
-use crate::drawing::{Anchor, Drawing};
+use crate::drawing::{Anchor, Drawing, LabelPlace};
 use crate::error::Result;
 use crate::legend::Legend;
 use crate::plot::{Picture, SIZE, TITLE, WORDS};
@@ -58,7 +58,7 @@ impl Panels {
         let mut drawing = Drawing::new(all_width, all_height + legend_height);
         if !self.title.is_empty() {
             let title = fonts.typeset(&self.title, TITLE);
-            drawing.label(title, (left, 1.45 * TITLE), Anchor::Start, false, INK);
+            drawing.label(title, LabelPlace::new((left, 1.45 * TITLE), Anchor::Start), INK);
         }
         if !self.legend.is_empty() {
             set.draw(&mut drawing, (left, all_height + 6.0));

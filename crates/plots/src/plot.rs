@@ -1,10 +1,10 @@
 //! Axes and the curves on them.
 
 use crate::axis::Axis;
-use crate::drawing::{Anchor, Drawing, Paint, Rectangle, polygon, polyline};
+use crate::drawing::{Anchor, Drawing, LabelPlace, Paint, Rectangle, polygon, polyline};
 use crate::frame::{AxisSide, Frame, TickStyle};
 use crate::legend::{Legend, free_place};
-use crate::mark;
+use crate::mark::{self, MarkLook};
 use crate::style::{INK, LegendKey, LineStyle, Mark, NEUTRAL};
 use crate::text::Fonts;
 
@@ -163,14 +163,10 @@ impl Picture {
     }
 
     /// Draws everything but a legend below; gives that back.
-    pub(crate) fn draw(mut self, fonts: &Fonts, drawing: &mut Drawing, corner: (f64, f64)) {
+    pub(crate) fn draw(self, fonts: &Fonts, drawing: &mut Drawing, corner: (f64, f64)) {
         let frame = self.frame(fonts, corner);
         let scale = self.text_scale();
-        let drawn = std::mem::take(&mut self.drawn);
-        let mut taken = Vec::new();
-        for item in &drawn {
-            self.draw_item(item, drawing, frame, &mut taken);
-        }
+        let taken = self.draw_items(drawing, frame);
         self.draw_axes(fonts, drawing, frame, corner);
         if !self.legend_below && !self.legend.is_empty() {
             let set = self.legend.set(fonts, WORDS * scale, 0.0);
@@ -187,11 +183,7 @@ impl Picture {
             return (!self.legend.is_empty()).then_some(&self.legend);
         }
         let frame = self.frame(fonts, (0.0, 0.0));
-        let mut taken = Vec::new();
-        let mut nowhere = Drawing::new(1.0, 1.0);
-        for item in &self.drawn {
-            self.draw_item(item, &mut nowhere, frame, &mut taken);
-        }
+        let taken = self.draw_items(&mut Drawing::new(1.0, 1.0), frame);
         let set = self.legend.set(fonts, WORDS * self.text_scale(), 0.0);
         free_place(frame, (set.width(), set.height()), &taken, MARGIN).is_none().then_some(&self.legend)
     }
@@ -222,99 +214,13 @@ impl Picture {
         [corner.0 + left, corner.1 + top, self.size.0 - left - right, self.size.1 - top - bottom]
     }
 
-    fn place(&self, frame: Rectangle, p: (f64, f64)) -> Option<(f64, f64)> {
-        // What is drawn so far from the frame looks the same nearer to it; coordinates stay finite in single
-        // precision.
-        let (x, y) = (self.axes[0].place(p.0)?.clamp(-FAR, FAR), self.axes[1].place(p.1)?.clamp(-FAR, FAR));
-        Some((frame[0] + x * frame[2], frame[1] + (1.0 - y) * frame[3]))
-    }
-
-    fn draw_item(
-        &self,
-        item: &PlotItem,
-        drawing: &mut Drawing,
-        frame: Rectangle,
-        taken: &mut Vec<(f64, f64)>,
-    ) {
-        let place = |p: (f64, f64)| self.place(frame, p);
-        match item {
-            PlotItem::Line { points, color, width, style } => {
-                let places: Vec<Option<(f64, f64)>> = points.iter().map(|p| place(*p)).collect();
-                for run in places.split(Option::is_none) {
-                    let run: Vec<(f64, f64)> = run.iter().copied().flatten().collect();
-                    if run.len() > 1 {
-                        taken.extend(run.windows(2).flat_map(|w| along(w[0], w[1])));
-                        let paint = Paint { dashes: style.dashes(), ..Paint::stroked(color, *width) };
-                        drawing.path(polyline(&run), paint, Some(frame));
-                    }
-                }
-            }
-            PlotItem::Points { points, color, radius, mark } => {
-                for at in points.iter().filter_map(|p| place(*p)) {
-                    taken.push(at);
-                    mark::draw(drawing, at, color, *radius, *mark);
-                }
-            }
-            PlotItem::Band { points, color } => {
-                let floor = self.axes[1].ends().0;
-                let lower = points.iter().filter_map(|p| place((p.0, p.1.max(floor))));
-                let upper = points.iter().rev().filter_map(|p| place((p.0, p.2.max(floor))));
-                let corners: Vec<(f64, f64)> = lower.chain(upper).collect();
-                if points.len() > 1 {
-                    taken.extend(&corners);
-                    drawing.path(polygon(&corners), Paint::filled(color, 0.25), Some(frame));
-                }
-            }
-            PlotItem::Arrows { points, color } => {
-                let places: Vec<(f64, f64)> = points.iter().filter_map(|p| place(*p)).collect();
-                let [left, top, w, h] = frame;
-                let inside = |&((x, y), _): &((f64, f64), (f64, f64))| {
-                    (left..=left + w).contains(&x) && (top..=top + h).contains(&y)
-                };
-                for (tip, (dx, dy)) in arrow_heads(&places).into_iter().filter(inside) {
-                    let corner = |along: f64, aside: f64| {
-                        (tip.0 + along * dx - aside * dy, tip.1 + along * dy + aside * dx)
-                    };
-                    let corners = [
-                        corner(0.5 * HEAD, 0.0),
-                        corner(-0.5 * HEAD, 0.4 * HEAD),
-                        corner(-0.5 * HEAD, -0.4 * HEAD),
-                    ];
-                    drawing.path(polygon(&corners), Paint::filled(color, 1.0), Some(frame));
-                }
-            }
-            PlotItem::Zeros => {
-                let inside = |axis: Axis| matches!(axis, Axis::Linear(low, high) if low < 0.0 && high > 0.0);
-                let [left, top, w, h] = frame;
-                let mut line = |ends: [(f64, f64); 2]| {
-                    drawing.path(polyline(&ends), Paint::stroked("#b8bcc2", 1.0), Some(frame));
-                };
-                if let Some(x) = self.axes[0].place(0.0).filter(|_| inside(self.axes[0])) {
-                    line([(left + x * w, top), (left + x * w, top + h)]);
-                }
-                if let Some(y) = self.axes[1].place(0.0).filter(|_| inside(self.axes[1])) {
-                    line([(left, top + (1.0 - y) * h), (left + w, top + (1.0 - y) * h)]);
-                }
-            }
-            PlotItem::Bars { points, color } => {
-                /// Half the width of the ends.
-                const END: f64 = 3.5;
-                // What lies below a logarithmic axis ends on it.
-                let floor = self.axes[1].ends().0;
-                for &(x, low, high) in points {
-                    let (Some(a), Some(b)) = (place((x, low.max(floor))), place((x, high.min(f64::MAX))))
-                    else {
-                        continue;
-                    };
-                    taken.extend(along(a, b));
-                    for ends in
-                        [[a, b], [(a.0 - END, a.1), (a.0 + END, a.1)], [(b.0 - END, b.1), (b.0 + END, b.1)]]
-                    {
-                        drawing.path(polyline(&ends), Paint::stroked(color, 1.2), Some(frame));
-                    }
-                }
-            }
+    /// Draws lines, points and bands into the frame; returns places that a legend must not cover.
+    fn draw_items(&self, drawing: &mut Drawing, frame: Rectangle) -> Vec<(f64, f64)> {
+        let mut area = PlotArea { axes: self.axes, frame, drawing, taken: Vec::new() };
+        for item in &self.drawn {
+            area.draw(item);
         }
+        area.taken
     }
 
     fn draw_axes(&self, fonts: &Fonts, drawing: &mut Drawing, place: Rectangle, corner: (f64, f64)) {
@@ -332,10 +238,124 @@ impl Picture {
         let room = corner.0 + self.size.0 - x;
         if !self.subtitle.is_empty() {
             let set = fonts.fitted(&self.subtitle, WORDS * scale, room);
-            drawing.label(set, (x, above), Anchor::Start, false, NEUTRAL);
+            drawing.label(set, LabelPlace::new((x, above), Anchor::Start), NEUTRAL);
             above -= 1.4 * WORDS * scale;
         }
-        drawing.label(fonts.fitted(&self.title, TITLE * scale, room), (x, above), Anchor::Start, false, INK);
+        let title = fonts.fitted(&self.title, TITLE * scale, room);
+        drawing.label(title, LabelPlace::new((x, above), Anchor::Start), INK);
+    }
+}
+
+/// The inside of the axes while it is drawn.
+struct PlotArea<'a> {
+    axes: [Axis; 2],
+    frame: Rectangle,
+    drawing: &'a mut Drawing,
+    /// Places that a legend must not cover.
+    taken: Vec<(f64, f64)>,
+}
+
+impl PlotArea<'_> {
+    fn draw(&mut self, item: &PlotItem) {
+        match item {
+            PlotItem::Line { points, color, width, style } => {
+                let paint = Paint { dashes: style.dashes(), ..Paint::stroked(color, *width) };
+                self.line(points, &paint);
+            }
+            PlotItem::Points { points, color, radius, mark } => {
+                self.points(points, MarkLook { mark: *mark, color, radius: *radius });
+            }
+            PlotItem::Band { points, color } => self.band(points, color),
+            PlotItem::Arrows { points, color } => self.arrows(points, color),
+            PlotItem::Zeros => self.zeros(),
+            PlotItem::Bars { points, color } => self.bars(points, color),
+        }
+    }
+
+    /// Where a point lies in the drawing; `None` where the axes cannot show it.
+    fn place(&self, p: (f64, f64)) -> Option<(f64, f64)> {
+        // What is drawn so far from the frame looks the same nearer to it; coordinates stay finite in single
+        // precision.
+        let (x, y) = (self.axes[0].place(p.0)?.clamp(-FAR, FAR), self.axes[1].place(p.1)?.clamp(-FAR, FAR));
+        let [left, top, w, h] = self.frame;
+        Some((left + x * w, top + (1.0 - y) * h))
+    }
+
+    /// Draws a line, in pieces where the axes cannot show all of its points.
+    fn line(&mut self, points: &[(f64, f64)], paint: &Paint) {
+        let places: Vec<Option<(f64, f64)>> = points.iter().map(|p| self.place(*p)).collect();
+        for run in places.split(Option::is_none) {
+            let run: Vec<(f64, f64)> = run.iter().copied().flatten().collect();
+            if run.len() > 1 {
+                self.taken.extend(run.windows(2).flat_map(|w| along(w[0], w[1])));
+                self.drawing.path(polyline(&run), paint.clone(), Some(self.frame));
+            }
+        }
+    }
+
+    fn points(&mut self, points: &[(f64, f64)], look: MarkLook<'_>) {
+        for &point in points {
+            if let Some(at) = self.place(point) {
+                self.taken.push(at);
+                mark::draw(self.drawing, at, look);
+            }
+        }
+    }
+
+    /// Fills the band between lower and upper ends; what lies below a logarithmic axis ends on it.
+    fn band(&mut self, points: &[(f64, f64, f64)], color: &str) {
+        let floor = self.axes[1].ends().0;
+        let lower = points.iter().filter_map(|p| self.place((p.0, p.1.max(floor))));
+        let upper = points.iter().rev().filter_map(|p| self.place((p.0, p.2.max(floor))));
+        let corners: Vec<(f64, f64)> = lower.chain(upper).collect();
+        if points.len() > 1 {
+            self.taken.extend(&corners);
+            self.drawing.path(polygon(&corners), Paint::filled(color, 0.25), Some(self.frame));
+        }
+    }
+
+    /// Draws the heads of arrows whose middles lie in the frame.
+    fn arrows(&mut self, points: &[(f64, f64)], color: &str) {
+        let places: Vec<(f64, f64)> = points.iter().filter_map(|p| self.place(*p)).collect();
+        let [left, top, w, h] = self.frame;
+        for (middle, direction) in arrow_heads(&places) {
+            if (left..=left + w).contains(&middle.0) && (top..=top + h).contains(&middle.1) {
+                let corners = arrow_corners(middle, direction);
+                self.drawing.path(polygon(&corners), Paint::filled(color, 1.0), Some(self.frame));
+            }
+        }
+    }
+
+    /// Draws a line at zero of each linear axis that has both signs.
+    fn zeros(&mut self) {
+        let inside = |axis: Axis| matches!(axis, Axis::Linear(low, high) if low < 0.0 && high > 0.0);
+        let [left, top, w, h] = self.frame;
+        let mut line = |ends: [(f64, f64); 2]| {
+            self.drawing.path(polyline(&ends), Paint::stroked("#b8bcc2", 1.0), Some(self.frame));
+        };
+        if let Some(x) = self.axes[0].place(0.0).filter(|_| inside(self.axes[0])) {
+            line([(left + x * w, top), (left + x * w, top + h)]);
+        }
+        if let Some(y) = self.axes[1].place(0.0).filter(|_| inside(self.axes[1])) {
+            line([(left, top + (1.0 - y) * h), (left + w, top + (1.0 - y) * h)]);
+        }
+    }
+
+    /// Draws bars from lower to upper ends; what lies below a logarithmic axis ends on it.
+    fn bars(&mut self, points: &[(f64, f64, f64)], color: &str) {
+        /// Half the width of the ends.
+        const END: f64 = 3.5;
+        let floor = self.axes[1].ends().0;
+        for &(x, low, high) in points {
+            let (Some(a), Some(b)) = (self.place((x, low.max(floor))), self.place((x, high.min(f64::MAX))))
+            else {
+                continue;
+            };
+            self.taken.extend(along(a, b));
+            for ends in [[a, b], [(a.0 - END, a.1), (a.0 + END, a.1)], [(b.0 - END, b.1), (b.0 + END, b.1)]] {
+                self.drawing.path(polyline(&ends), Paint::stroked(color, 1.2), Some(self.frame));
+            }
+        }
     }
 }
 
@@ -362,6 +382,13 @@ fn arrow_heads(places: &[(f64, f64)]) -> Vec<((f64, f64), (f64, f64))> {
         rest = at - length;
     }
     heads
+}
+
+/// The triangle of the head of an arrow with this middle and direction.
+fn arrow_corners(middle: (f64, f64), (dx, dy): (f64, f64)) -> [(f64, f64); 3] {
+    let corner =
+        |along: f64, aside: f64| (middle.0 + along * dx - aside * dy, middle.1 + along * dy + aside * dx);
+    [corner(0.5 * HEAD, 0.0), corner(-0.5 * HEAD, 0.4 * HEAD), corner(-0.5 * HEAD, -0.4 * HEAD)]
 }
 
 /// Points every few units of a straight line, for what must not be covered.

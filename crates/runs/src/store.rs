@@ -446,65 +446,114 @@ impl Pack {
         if !path.metadata().is_ok_and(|about| about.is_file()) {
             return Ok(None);
         }
-        let file = File::open(path).map_err(Error::file("read", path))?;
-        let length = file.metadata().map_err(Error::file("read", path))?.len();
-        let start = |at: u64, most: u64| -> Result<Vec<u8>> {
-            let mut bytes = Vec::new();
-            (&file).seek(SeekFrom::Start(at)).map_err(Error::file("read", path))?;
-            (&file).take(most).read_to_end(&mut bytes).map_err(Error::file("read", path))?;
-            Ok(bytes)
-        };
-        let first = start(0, 1024)?;
+        let file = PackFile::open(path)?;
+        let first = file.bytes(0, 1024)?;
         let text = String::from_utf8_lossy(&first);
         let Some(head) = PackHead::parse(&text).filter(wanted) else { return Ok(None) };
-        let mut pack = Self { path: path.to_owned(), head, results: Vec::new(), damaged_bytes: 0 };
-        let mut places = Vec::new();
-        let mut at = pack.head.text().len() as u64;
-        // Results whose inside was searched for another one's beginning.
-        let mut searched = 0;
-        // A damaged pack is read whole, once.
-        let mut all: Option<Vec<u8>> = None;
-        let mark = format!("\n{RESULT}");
-        while at < length {
-            let line = match &all {
-                Some(all) => all[at as usize..].iter().copied().take(HEADER as usize).collect(),
-                None => start(at, HEADER)?,
-            };
-            let bytes =
-                |(_, line, body): (u128, u64, u64)| line.checked_add(body).filter(|all| *all <= length - at);
-            let parsed = parse_header(&line);
-            if let (Some((hash, ..)), Some(bytes)) = (parsed, parsed.and_then(bytes)) {
-                pack.results.push(hash);
-                places.push((at, bytes));
-                at += bytes;
-                continue;
-            }
-            // Cut off or damaged: the next result begins at the next line that says so, which may lie inside
-            // the last one if that was cut.
-            let last = places.last().map_or(at, |&(offset, _)| offset);
-            let from = if std::mem::replace(&mut searched, places.len()) == places.len() { at } else { last };
-            let all = match &mut all {
-                Some(all) => all,
-                none => none.insert(start(0, length)?),
-            };
-            let rest = all.get(from as usize + 1..).unwrap_or_default();
-            let found = rest.windows(mark.len()).position(|window| window == mark.as_bytes());
-            let next = found.map_or(length, |position| from + position as u64 + 2);
-            // A pack that became shorter while it was read has no more.
-            if all.len() as u64 != length {
+        let pack = Self { path: path.to_owned(), head, results: Vec::new(), damaged_bytes: 0 };
+        let at = pack.head.text().len() as u64;
+        let mut scan = PackScan { file, pack, places: Vec::new(), at, searched: 0 };
+        while scan.at < scan.file.length {
+            if !scan.take_result()? && !scan.skip_damage()? {
                 break;
             }
-            if next < at {
-                pack.results.pop();
-                places.pop();
-                searched = places.len();
-                pack.damaged_bytes += next - last;
-            } else {
-                pack.damaged_bytes += next - at;
-            }
-            at = next;
         }
-        Ok(Some((pack, places)))
+        Ok(Some((scan.pack, scan.places)))
+    }
+}
+
+/// An open pack.
+struct PackFile<'a> {
+    path: &'a Path,
+    file: File,
+    /// Bytes in it when it was opened.
+    length: u64,
+    /// All of them: a damaged pack is read whole, once.
+    all: Option<Vec<u8>>,
+}
+
+impl<'a> PackFile<'a> {
+    fn open(path: &'a Path) -> Result<Self> {
+        let file = File::open(path).map_err(Error::file("read", path))?;
+        let length = file.metadata().map_err(Error::file("read", path))?.len();
+        Ok(Self { path, file, length, all: None })
+    }
+
+    /// Bytes from a place on, at most as many as `most`.
+    fn bytes(&self, at: u64, most: u64) -> Result<Vec<u8>> {
+        let mut bytes = Vec::new();
+        (&self.file).seek(SeekFrom::Start(at)).map_err(Error::file("read", self.path))?;
+        (&self.file).take(most).read_to_end(&mut bytes).map_err(Error::file("read", self.path))?;
+        Ok(bytes)
+    }
+
+    /// The bytes in which the first line of a result would be.
+    fn header(&self, at: u64) -> Result<Vec<u8>> {
+        match &self.all {
+            Some(all) => Ok(all[at as usize..].iter().copied().take(HEADER as usize).collect()),
+            None => self.bytes(at, HEADER),
+        }
+    }
+
+    /// Where the next line after `from` begins that says that it begins a result, or the end; `None` where the
+    /// pack became shorter while it was read, and has no more.
+    fn next_result(&mut self, from: u64) -> Result<Option<u64>> {
+        let all = match self.all.take() {
+            Some(all) => all,
+            None => self.bytes(0, self.length)?,
+        };
+        let all = self.all.insert(all);
+        let mark = format!("\n{RESULT}");
+        let rest = all.get(from as usize + 1..).unwrap_or_default();
+        let found = rest.windows(mark.len()).position(|window| window == mark.as_bytes());
+        let next = found.map_or(self.length, |position| from + position as u64 + 2);
+        Ok((all.len() as u64 == self.length).then_some(next))
+    }
+}
+
+/// A pack whose results are looked for, one after the other.
+struct PackScan<'a> {
+    file: PackFile<'a>,
+    pack: Pack,
+    /// Offset and length of each result.
+    places: Vec<(u64, u64)>,
+    /// Where the next result should begin.
+    at: u64,
+    /// Results whose inside was searched for another one's beginning.
+    searched: usize,
+}
+
+impl PackScan<'_> {
+    /// Takes the result that begins here; `false` where none does that ends within the pack.
+    fn take_result(&mut self) -> Result<bool> {
+        let Some((hash, line, body)) = parse_header(&self.file.header(self.at)?) else { return Ok(false) };
+        let left = self.file.length - self.at;
+        let Some(bytes) = line.checked_add(body).filter(|bytes| *bytes <= left) else { return Ok(false) };
+        self.pack.results.push(hash);
+        self.places.push((self.at, bytes));
+        self.at += bytes;
+        Ok(true)
+    }
+
+    /// Goes on at the next line that begins a result. It may lie inside the last result if that was cut off or
+    /// damaged, which then is none. `false` where the pack has no more.
+    fn skip_damage(&mut self) -> Result<bool> {
+        let last = self.places.last().map_or(self.at, |&(offset, _)| offset);
+        let is_searched = self.searched == self.places.len();
+        self.searched = self.places.len();
+        let Some(next) = self.file.next_result(if is_searched { self.at } else { last })? else {
+            return Ok(false);
+        };
+        if next < self.at {
+            self.pack.results.pop();
+            self.places.pop();
+            self.searched = self.places.len();
+            self.pack.damaged_bytes += next - last;
+        } else {
+            self.pack.damaged_bytes += next - self.at;
+        }
+        self.at = next;
+        Ok(true)
     }
 }
 

@@ -57,16 +57,25 @@ pub struct DensePath {
     pub decided: f64,
 }
 
+/// A surface before any load.
+#[derive(Debug, Clone)]
+pub struct DenseSurface<'a> {
+    /// The normal kernel.
+    pub normal: &'a PlainSum,
+    /// What is subtracted from the normal kernel.
+    pub shift: f64,
+    /// The tangential kernel.
+    pub shear: &'a PlainShear,
+    /// Gaps without load.
+    pub gaps: Vec<f64>,
+    /// Area of a cell.
+    pub area: f64,
+}
+
 impl DensePath {
-    /// The path of a surface with these gaps without load, cells of this area, a law for pressures and a hardness.
-    /// `shift` is subtracted from the normal kernel.
-    pub fn new(
-        (normal, shift): (&PlainSum, f64),
-        shear: &PlainShear,
-        gaps: Vec<f64>,
-        area: f64,
-        (law, hardness): (FrictionLaw, Option<f64>),
-    ) -> Self {
+    /// The path of a surface with a law of friction and a hardness.
+    pub fn new(surface: DenseSurface<'_>, law: FrictionLaw, hardness: Option<f64>) -> Self {
+        let DenseSurface { normal, shift, shear, gaps, area } = surface;
         let n = gaps.len();
         let normal = (0..n).map(|i| (0..n).map(|j| normal.between(i, j) - shift).collect()).collect();
         let entry = |row: usize, column: usize| {

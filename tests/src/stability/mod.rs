@@ -59,7 +59,7 @@ mod slide;
 
 pub use case::{CaseResult, Effort, HardCase, run};
 pub use cases::cases;
-pub use dense::{DensePath, Prescribed};
+pub use dense::{DensePath, DenseSurface, Prescribed};
 pub use enumerate::{SmallContact, every_contact_set};
 pub use maps::{embedded, hard_map, map, rough, rough_map, scene};
 pub use plain::{PlainSum, Relaxed, relaxed, relaxed_by};

@@ -61,6 +61,50 @@ impl Before {
     }
 }
 
+/// A step that is checked.
+struct WitnessedStep<'a> {
+    load: Tangential,
+    found: TangentialState,
+    /// Pressures.
+    p: &'a [f64],
+    /// Tractions.
+    q: Vec<[f64; 2]>,
+    /// Slip since each cell touched.
+    s: Vec<[f64; 2]>,
+    /// Largest tangential force.
+    friction: f64,
+    /// Tractions times areas, of the cells in contact.
+    forces: Vec<(usize, [f64; 2])>,
+}
+
+impl<'a> WitnessedStep<'a> {
+    fn new(slide: &Slide<'_>, load: Tangential, state: &'a ContactState) -> Result<Self> {
+        let (found, p) = (tangential(state)?, pressure(state)?);
+        let (q, s) = (vectors(state, VectorField::Traction)?, vectors(state, VectorField::Slip)?);
+        let area = slide.map.dx() * slide.map.dy();
+        let friction = slide.coefficient * p.iter().sum::<f64>() * area;
+        let forces = q.iter().map(|q| q.map(|q| q * area)).enumerate().filter(|&(i, _)| p[i] > 0.0).collect();
+        Ok(Self { load, found, p, q, s, friction, forces })
+    }
+}
+
+/// The slip of a step by plain sums.
+struct StepSlip {
+    /// Of the cells in contact.
+    cells: Vec<[f64; 2]>,
+    /// The longest displacement, of the bodies or of a point, before the step or after it.
+    displacement: f64,
+    /// The longest slip before the step.
+    before: f64,
+    /// Slip where nothing is displaced but by rounding.
+    rounding: f64,
+}
+
+/// The distance of two vectors.
+fn off(a: [f64; 2], b: [f64; 2]) -> f64 {
+    (a[0] - b[0]).hypot(a[1] - b[1])
+}
+
 /// A contact on its path, whose steps are checked.
 pub(crate) struct Slide<'a> {
     map: &'a HeightMap,
@@ -152,72 +196,102 @@ impl<'a> Slide<'a> {
         ledger.must(report.status == Status::Converged && report.certificate.meets(self.tolerance), || {
             format!("{load:?}: {:?}, {}", report.status, report.certificate)
         });
-        let (found, p) = (tangential(state)?, pressure(state)?);
-        let (q, s) = (vectors(state, VectorField::Traction)?, vectors(state, VectorField::Slip)?);
-        let area = self.map.dx() * self.map.dy();
-        let friction = self.coefficient * p.iter().sum::<f64>() * area;
+        let step = WitnessedStep::new(self, load, state)?;
+        self.tractions(ledger, &step)?;
+        let slip = self.slip_of(&step);
+        self.slips(ledger, &step, &slip);
+        self.energies(ledger, &step, &slip);
+        self.classes(ledger, load, state)?;
+        let WitnessedStep { found, forces, s, .. } = step;
+        self.before =
+            Before { forces, displacement: found.displacement, slip: s, dissipated: found.dissipated };
+        Ok(())
+    }
+
+    /// Checks tractions by the limit of friction, and forces by the sums of tractions.
+    fn tractions(&self, ledger: &mut Ledger, step: &WitnessedStep<'_>) -> Result<()> {
+        let WitnessedStep { load, found, p, q, friction, forces, .. } = step;
         ledger.must(
-            p.iter().zip(&q).all(|(p, q)| q[0].hypot(q[1]) <= self.coefficient * p * (1.0 + ROUNDING)),
+            p.iter().zip(q).all(|(p, q)| q[0].hypot(q[1]) <= self.coefficient * p * (1.0 + ROUNDING)),
             || format!("{load:?}: tractions beyond friction"),
         );
-        let forces: Vec<(usize, [f64; 2])> =
-            q.iter().map(|q| q.map(|q| q * area)).enumerate().filter(|&(i, _)| p[i] > 0.0).collect();
         let total = forces.iter().fold([0.0; 2], |[x, y], (_, f)| [x + f[0], y + f[1]]);
-        let off = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).hypot(a[1] - b[1]);
         // A force within a billionth of the largest one is that of a billionth less.
         let held = off(total, found.force);
         ledger.must(held <= (self.tolerance + ROUNDING) * friction, || {
             format!("{load:?}: forces {:?}, sum of tractions {total:?}", found.force)
         });
         let asked = match load {
-            Tangential::Force(force) => off(force, found.force),
+            Tangential::Force(force) => off(*force, found.force),
             _ => off(load.components(), found.displacement),
         };
         ledger.must(asked <= 0.0, || format!("{load:?}: {found:?}"));
-        ledger.near("sliding force", known("sliding force", found.sliding_force)?, friction);
-        // The slip of the step, everywhere.
-        let Before { forces: q_before, displacement: delta_before, slip: s_before, dissipated: lost } =
-            &self.before;
-        let (u, u_before) = (self.sum.displacement(&forces), self.sum.displacement(q_before));
-        let delta = found.displacement;
+        ledger.near("sliding force", known("sliding force", found.sliding_force)?, *friction);
+        Ok(())
+    }
+
+    /// The slip of the step: the displacement of the bodies less that of the surface.
+    fn slip_of(&self, step: &WitnessedStep<'_>) -> StepSlip {
+        let Before { forces: q_before, displacement: delta_before, slip: s_before, .. } = &self.before;
+        let (u, u_before) = (self.sum.displacement(&step.forces), self.sum.displacement(q_before));
+        let delta = step.found.displacement;
         let slip = |i: usize| [0, 1].map(|k| (delta[k] - u[i][k]) - (delta_before[k] - u_before[i][k]));
-        let reach = |u: &[[f64; 2]]| u.iter().fold(0.0, |most: f64, u| most.max(u[0].hypot(u[1])));
-        let longest =
-            reach(&u).max(reach(&u_before)).max(off(delta, *delta_before)).max(delta[0].hypot(delta[1]));
-        // Where nothing is displaced but by rounding.
         let [own, _, _] = self.sum.between(0, 0);
-        let rounding = ROUNDING * friction * own;
-        let (mut gap, mut dissipated) = (0.0, 0.0);
-        for &(i, f) in &forces {
-            let w = slip(i);
-            gap += (self.coefficient * p[i] * area * w[0].hypot(w[1]) - f[0] * w[0] - f[1] * w[1]).max(0.0);
-            dissipated += f[0] * w[0] + f[1] * w[1];
+        StepSlip {
+            cells: step.forces.iter().map(|&(i, _)| slip(i)).collect(),
+            displacement: longest(&u)
+                .max(longest(&u_before))
+                .max(off(delta, *delta_before))
+                .max(delta[0].hypot(delta[1])),
+            before: longest(s_before),
+            rounding: ROUNDING * step.friction * own,
+        }
+    }
+
+    /// Checks the slip of every cell.
+    fn slips(&self, ledger: &mut Ledger, step: &WitnessedStep<'_>, slip: &StepSlip) {
+        let WitnessedStep { load, p, q, s, forces, .. } = step;
+        let Before { forces: q_before, slip: s_before, .. } = &self.before;
+        for (&(i, _), &w) in forces.iter().zip(&slip.cells) {
             // Since it touched: a cell that was not in contact before begins anew.
             let touched = q_before.iter().any(|(j, _)| *j == i);
             let expected = if touched { [0, 1].map(|k| s_before[i][k] + w[k]) } else { w };
             let far = off(s[i], expected);
-            ledger.must(far <= SUMS * longest.max(reach(s_before)) + rounding, || {
-                format!("{load:?}: cell {i} slipped {:?}, expected {expected:?} of {longest}", s[i])
+            ledger.must(far <= SUMS * slip.displacement.max(slip.before) + slip.rounding, || {
+                format!(
+                    "{load:?}: cell {i} slipped {:?}, expected {expected:?} of {}",
+                    s[i], slip.displacement
+                )
             });
         }
-        ledger.must((0..p.len()).all(|i| p[i] > 0.0 || reach(&[s[i], q[i]]) <= 0.0), || {
+        ledger.must((0..p.len()).all(|i| p[i] > 0.0 || longest(&[s[i], q[i]]) <= 0.0), || {
             format!("{load:?}: an open cell slips or carries")
         });
-        let scale = friction * longest;
+    }
+
+    /// Checks the dissipated energy, and the duality gap: by how much it is less than the limit of friction would
+    /// dissipate on the same slip.
+    fn energies(&self, ledger: &mut Ledger, step: &WitnessedStep<'_>, slip: &StepSlip) {
+        let WitnessedStep { load, found, p, friction, forces, .. } = step;
+        let area = self.map.dx() * self.map.dy();
+        let (mut gap, mut dissipated) = (0.0, 0.0);
+        for (&(i, f), w) in forces.iter().zip(&slip.cells) {
+            gap += (self.coefficient * p[i] * area * w[0].hypot(w[1]) - f[0] * w[0] - f[1] * w[1]).max(0.0);
+            dissipated += f[0] * w[0] + f[1] * w[1];
+        }
+        let (lost, rounding) = (self.before.dissipated, slip.rounding * friction);
+        let scale = friction * slip.displacement;
         let change = (found.dissipated - lost - dissipated).abs();
-        ledger.must(change <= SUMS * scale.max(lost.abs()) + rounding * friction, || {
+        ledger.must(change <= SUMS * scale.max(lost.abs()) + rounding, || {
             format!("{load:?}: dissipated {} after {lost}, sum {dissipated}", found.dissipated)
         });
         // The gap of the solver is told over the larger of delta and of the largest reference, which is not above
         // twice the longest displacement here.
-        let allowed = 2.0 * WITNESS * self.tolerance * scale.max(friction * reach(s_before))
-            + rounding * friction
+        let allowed = 2.0 * WITNESS * self.tolerance * scale.max(friction * slip.before)
+            + rounding
             + self.images * scale;
         ledger.must(gap <= allowed, || format!("{load:?}: duality gap {} by plain sums", gap / scale));
-        ledger.enter((gap - rounding * friction).max(0.0) / scale.max(f64::MIN_POSITIVE));
-        self.classes(ledger, load, state)?;
-        self.before = Before { forces, displacement: delta, slip: s, dissipated: found.dissipated };
-        Ok(())
+        ledger.enter((gap - rounding).max(0.0) / scale.max(f64::MIN_POSITIVE));
     }
 
     /// Checks stick and slip by the field of classes, by its areas, and by tractions below the limit of

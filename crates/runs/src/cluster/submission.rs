@@ -108,7 +108,6 @@ impl fmt::Display for Submitted {
 }
 
 /// The program, its directory of results and how its jobs are divided.
-#[derive(Clone)]
 pub(crate) struct SubmittedProgram<'a> {
     /// The program that the tasks run: a built binary.
     pub binary: &'a Path,
@@ -403,23 +402,56 @@ mod tests {
         assert!("pbs".parse::<Engine>().unwrap_err().to_string().ends_with("expected slurm or hyperqueue"));
     }
 
+    /// Six jobs in three shards, of which the second is done, in a directory whose name shells read in their own way.
+    struct SubmittedSquares {
+        folder: tempfile::TempDir,
+        out: PathBuf,
+        squares: Vec<Squares>,
+        plan: ShardPlan,
+    }
+
+    impl SubmittedSquares {
+        fn new() -> Self {
+            let folder = tempfile::tempdir().unwrap();
+            let out = folder.path().join("it's out");
+            std::fs::create_dir(&out).unwrap();
+            let squares = Squares::to(6);
+            let plan = ShardPlan::new("p", vec!["squares".into()], &squares);
+            let submitted = Self { folder, out, squares, plan };
+            submitted.run(1);
+            submitted
+        }
+
+        fn run(&self, index: usize) {
+            let shard = Shard { index, count: 3 };
+            run_shard(&self.plan, &self.squares, shard, (&self.out, 1), &Silent, &never).unwrap();
+        }
+
+        fn write(&self, engine: Engine) -> Result<Submitted> {
+            self.write_for(engine, &self.plan, &self.out)
+        }
+
+        /// Writes the scripts of another plan, or for another directory.
+        fn write_for(&self, engine: Engine, plan: &ShardPlan, out: &Path) -> Result<Submitted> {
+            let binary = std::env::current_exe().unwrap();
+            let target = SubmittedProgram { binary: &binary, out, plan, jobs: &self.squares };
+            let forecast = Forecast::new(&self.squares, &Division { tasks: Some(3), cores: None });
+            let found = check(plan, &self.squares, out).unwrap();
+            submission(engine).write(&target, &forecast, &found)
+        }
+    }
+
+    fn texts(submitted: &Submitted) -> Vec<String> {
+        submitted.files.iter().map(|file| std::fs::read_to_string(file).unwrap()).collect()
+    }
+
     #[test]
-    fn scripts_name_what_is_left() {
-        let dir = tempfile::tempdir().unwrap();
-        let out = dir.path().join("it's out");
-        std::fs::create_dir(&out).unwrap();
-        let squares = Squares::to(6);
-        let plan = ShardPlan::new("p", vec!["squares".into()], &squares);
-        let forecast = Forecast::new(&squares, &Division { tasks: Some(3), cores: None });
-        run_shard(&plan, &squares, Shard { index: 1, count: 3 }, (&out, 1), &Silent, &never).unwrap();
-        let binary = std::env::current_exe().unwrap();
-        let target = SubmittedProgram { binary: &binary, out: &out, plan: &plan, jobs: &squares };
-        let write =
-            |engine| submission(engine).write(&target, &forecast, &check(&plan, &squares, &out).unwrap());
-        let slurm = write(Engine::Slurm).unwrap();
+    fn scripts_of_slurm_name_what_is_left() {
+        let squares = SubmittedSquares::new();
+        let slurm = squares.write(Engine::Slurm).unwrap();
         assert_eq!((slurm.shards.clone(), slurm.jobs), (vec![0, 2], 4));
         assert!(slurm.to_string().contains("4 jobs to do in 2 tasks; submit with: bash '"), "{slurm}");
-        let text = |i: usize| std::fs::read_to_string(&slurm.files[i]).unwrap();
+        let texts = texts(&slurm);
         for part in [
             "#SBATCH --array=0,2\n",
             "#SBATCH --partition=long\n",
@@ -428,42 +460,47 @@ mod tests {
             "--shard \"$SLURM_ARRAY_TASK_ID/3\"",
             r"it'\''s out' --shard",
         ] {
-            assert!(text(0).contains(part), "{part}: {}", text(0));
+            assert!(texts[0].contains(part), "{part}: {}", texts[0]);
         }
-        assert!(text(1).contains(" merge --out ") && text(2).contains("afterany:$shards"));
-        let queue = write(Engine::Hyperqueue).unwrap();
-        let job = std::fs::read_to_string(&queue.files[0]).unwrap();
+        assert!(texts[1].contains(" merge --out ") && texts[2].contains("afterany:$shards"));
+    }
+
+    #[test]
+    fn a_job_of_hyperqueue_names_what_is_left() {
+        let squares = SubmittedSquares::new();
+        let job = texts(&squares.write(Engine::Hyperqueue).unwrap()).remove(0);
         assert!(job.contains("\"--shard\", \"2/3\"") && job.contains("deps = [0, 2]"), "{job}");
-        // What a shell or an engine would read in its own way is refused.
-        let hostile = ShardPlan::new("p", vec!["x\ntouch y".into()], &squares);
-        let refused = submission(Engine::Slurm)
-            .write(
-                &SubmittedProgram { plan: &hostile, ..target.clone() },
-                &forecast,
-                &check(&hostile, &squares, &out).unwrap(),
-            )
-            .unwrap_err()
-            .to_string();
+    }
+
+    /// Nothing is written that a shell or an engine would read in its own way.
+    #[test]
+    fn words_that_scripts_cannot_hold_are_refused() {
+        let squares = SubmittedSquares::new();
+        let hostile = ShardPlan::new("p", vec!["x\ntouch y".into()], &squares.squares);
+        let refused = squares.write_for(Engine::Slurm, &hostile, &squares.out).unwrap_err().to_string();
         assert!(refused.starts_with("command = \"x\\ntouch y\""), "{refused}");
-        let odd = dir.path().join("a%j");
+        let odd = squares.folder.path().join("a%j");
         std::fs::create_dir(&odd).unwrap();
-        let refused = submission(Engine::Slurm)
-            .write(
-                &SubmittedProgram { out: &odd, ..target.clone() },
-                &forecast,
-                &check(&plan, &squares, &odd).unwrap(),
-            )
-            .unwrap_err()
-            .to_string();
+        let refused = squares.write_for(Engine::Slurm, &squares.plan, &odd).unwrap_err().to_string();
         assert!(refused.starts_with("path = "), "{refused}");
-        // Shells find no mistake in them.
+    }
+
+    #[test]
+    fn shells_find_no_mistake_in_scripts() {
+        let squares = SubmittedSquares::new();
+        let [slurm, queue] = [Engine::Slurm, Engine::Hyperqueue].map(|engine| squares.write(engine).unwrap());
+        // The job of HyperQueue is no script.
         for script in slurm.files.iter().chain(queue.files.last()) {
             assert!(Command::new("bash").arg("-n").arg(script).status().unwrap().success());
         }
-        for index in [0, 2] {
-            run_shard(&plan, &squares, Shard { index, count: 3 }, (&out, 1), &Silent, &never).unwrap();
-        }
-        let done = write(Engine::Slurm).unwrap_err().to_string();
+    }
+
+    #[test]
+    fn nothing_is_submitted_when_all_jobs_are_done() {
+        let squares = SubmittedSquares::new();
+        squares.run(0);
+        squares.run(2);
+        let done = squares.write(Engine::Slurm).unwrap_err().to_string();
         assert!(done.contains("all are done: p merge --out"), "{done}");
     }
 }

@@ -79,7 +79,7 @@ pub use outcome::Outcome;
 pub use realisation::{
     Discretisation, EnsembleModel, Realisation, RealisationResult, of_scene, realisation_jobs,
 };
-pub use realisation_jobs::{is_solved, solve_realisations};
+pub use realisation_jobs::{Workplace, is_solved, solve_realisations};
 pub use run::{FRACTAL_DIMENSIONS, Flag, Preset, Request, Run, SEED, TOLERANCE, distinct, list};
 pub use runs::{Error, Result};
 pub use sample::{FLOOR_CELLS, Sample};

@@ -5,8 +5,19 @@ use fractal_contact::scenes::{SceneJob, solve_jobs};
 use runs::{Job as _, Progress, Result, Store};
 use std::path::Path;
 
-/// Solves the realisations that the store of `out` does not hold, the largest first, and returns the results in
-/// the order of `realisations`. The results do not depend on `threads`.
+/// Where the results of realisations are kept, and how many threads solve them.
+#[derive(Debug, Clone, Copy)]
+pub struct Workplace<'a> {
+    /// The directory of the results.
+    pub out: &'a Path,
+    /// Its result store.
+    pub store: &'a Store,
+    /// Number of threads.
+    pub threads: usize,
+}
+
+/// Solves the realisations that the store does not hold, the largest first, and returns the results in
+/// the order of `realisations`. The results do not depend on the number of threads.
 ///
 /// Each finished surface is stored at once, and the states of the surfaces in hand now and then. No more
 /// surfaces are solved at the same time than fit in memory; threads without a surface help the others.
@@ -17,12 +28,11 @@ use std::path::Path;
 pub fn solve_realisations(
     what: &str,
     realisations: &[Realisation],
-    (out, store): (&Path, &Store),
-    threads: usize,
+    place: &Workplace<'_>,
     progress: &dyn Progress,
 ) -> Result<Vec<RealisationResult>> {
-    let jobs = realisation_jobs(realisations, out)?;
-    let states = solve_jobs(what, &jobs, store, threads, progress).map_err(of_scene)?;
+    let jobs = realisation_jobs(realisations, place.out)?;
+    let states = solve_jobs(what, &jobs, place.store, place.threads, progress).map_err(of_scene)?;
     realisations.iter().zip(&states).map(|(realisation, states)| realisation.read(states)).collect()
 }
 

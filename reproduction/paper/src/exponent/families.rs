@@ -50,6 +50,14 @@ impl FamilyTest {
     }
 }
 
+/// The hypothesis of a family that exponents follow a law.
+struct LawHypothesis {
+    family: &'static str,
+    words: &'static str,
+    /// The exponent as a function of D_f.
+    law: fn(f64) -> f64,
+}
+
 const LIGHTER: &str = DECADES[2].0;
 const HEAVIER: &str = DECADES[1].0;
 const CONSTANT: &str = "0: the ratio depends on D_f alone";
@@ -69,6 +77,10 @@ const RATIOS: [(&str, f64); 7] = [
 /// Families B and C.
 const WINDOWS: [(&str, f64); 6] =
     [(HEAVIER, 2.4), (HEAVIER, 2.6), (HEAVIER, 2.8), (HEAVIER, 3.0), (LIGHTER, 2.4), (LIGHTER, 2.6)];
+const LAWS: [LawHypothesis; 2] = [
+    LawHypothesis { family: "B", words: EQ24, law: eq24 },
+    LawHypothesis { family: "C", words: EQ6, law: eq6 },
+];
 /// Family D, for surfaces and for lines.
 const LIMITS: [f64; 4] = [2.4, 2.6, 2.8, 3.0];
 
@@ -85,9 +97,8 @@ pub fn tests(curves: &[MeanCurve], limits: &[FittedLimit]) -> Vec<FamilyTest> {
         curves.iter().filter(|c| c.convention == Convention::Measured).cloned().collect();
     let (_, factors) = ratios(&measured);
     let mut tests: Vec<FamilyTest> = RATIOS.iter().map(|&at| of_ratio(&factors, at)).collect();
-    for (family, hypothesis, law) in [("B", EQ24, eq24 as fn(f64) -> f64), ("C", EQ6, eq6 as fn(f64) -> f64)]
-    {
-        tests.extend(WINDOWS.iter().map(|&at| of_window(&measured, (family, hypothesis, law), at)));
+    for law in LAWS {
+        tests.extend(WINDOWS.iter().map(|&at| of_window(&measured, &law, at)));
     }
     for model in ["bem3d", "mdr1d"] {
         tests.extend(LIMITS.iter().map(|&d| of_limit(limits, model, d)));
@@ -95,29 +106,21 @@ pub fn tests(curves: &[MeanCurve], limits: &[FittedLimit]) -> Vec<FamilyTest> {
     tests
 }
 
-/// A test without its number.
-fn asked(
-    (family, of): (&'static str, usize),
-    (model, quantity): (&'static str, &'static str),
-    (window, fractal_dimension): (&'static str, f64),
-    (hypothesis, expected): (&'static str, f64),
-) -> FamilyTest {
-    let (value, interval, chance, resolved) = (None, None, None, false);
-    FamilyTest {
-        family,
-        of,
-        quantity,
-        model,
-        fractal_dimension,
-        window,
-        hypothesis,
-        expected,
-        value,
-        interval,
-        chance,
-        resolved,
-    }
-}
+/// A test without its number, of no family yet.
+const WITHOUT_NUMBER: FamilyTest = FamilyTest {
+    family: "",
+    of: 0,
+    quantity: "",
+    model: "",
+    fractal_dimension: f64::NAN,
+    window: "",
+    hypothesis: "",
+    expected: f64::NAN,
+    value: None,
+    interval: None,
+    chance: None,
+    resolved: false,
+};
 
 impl FamilyTest {
     fn with(self, number: &BandedNumber, resolved: bool) -> Self {
@@ -128,8 +131,17 @@ impl FamilyTest {
 }
 
 fn of_ratio(factors: &[ModelRatio], at: (&'static str, f64)) -> FamilyTest {
-    let quantity = "slope of ln(k_1D/k_3D) over ln F";
-    let test = asked(("A", RATIOS.len()), ("mdr1d over bem3d", quantity), at, (CONSTANT, 0.0));
+    let test = FamilyTest {
+        family: "A",
+        of: RATIOS.len(),
+        quantity: "slope of ln(k_1D/k_3D) over ln F",
+        model: "mdr1d over bem3d",
+        window: at.0,
+        fractal_dimension: at.1,
+        hypothesis: CONSTANT,
+        expected: 0.0,
+        ..WITHOUT_NUMBER
+    };
     let own = factors.iter().find(|f| f.window == at.0 && close(f.fractal_dimension, at.1));
     match own {
         Some(factor) => test.with(&factor.slope, factor.resolved),
@@ -137,13 +149,18 @@ fn of_ratio(factors: &[ModelRatio], at: (&'static str, f64)) -> FamilyTest {
     }
 }
 
-fn of_window(
-    curves: &[MeanCurve],
-    (family, hypothesis, law): (&'static str, &'static str, fn(f64) -> f64),
-    at: (&'static str, f64),
-) -> FamilyTest {
-    let test =
-        asked((family, WINDOWS.len()), ("bem3d", "exponent of the window"), at, (hypothesis, law(at.1)));
+fn of_window(curves: &[MeanCurve], law: &LawHypothesis, at: (&'static str, f64)) -> FamilyTest {
+    let test = FamilyTest {
+        family: law.family,
+        of: WINDOWS.len(),
+        quantity: "exponent of the window",
+        model: "bem3d",
+        window: at.0,
+        fractal_dimension: at.1,
+        hypothesis: law.words,
+        expected: (law.law)(at.1),
+        ..WITHOUT_NUMBER
+    };
     let forces: Option<Range<f64>> =
         DECADES.into_iter().find(|decade| decade.0 == at.0).map(|decade| decade.1);
     let own = curves.iter().find(|c| c.model == "bem3d" && close(c.fractal_dimension, at.1));
@@ -158,7 +175,17 @@ fn of_window(
 }
 
 fn of_limit(limits: &[FittedLimit], model: &'static str, d: f64) -> FamilyTest {
-    let test = asked(("D", LIMITS_TESTED), (model, "alpha towards zero force"), ("fit", d), (EQ24, eq24(d)));
+    let test = FamilyTest {
+        family: "D",
+        of: LIMITS_TESTED,
+        quantity: "alpha towards zero force",
+        model,
+        window: "fit",
+        fractal_dimension: d,
+        hypothesis: EQ24,
+        expected: eq24(d),
+        ..WITHOUT_NUMBER
+    };
     let judged = |l: &&FittedLimit| l.variant == FREE && l.convention == Convention::Measured;
     let own = |l: &&FittedLimit| l.model == model && close(l.fractal_dimension, d);
     match limits.iter().filter(judged).find(own) {
@@ -178,7 +205,7 @@ mod tests {
 
     #[test]
     fn a_verdict_needs_a_resolved_number() {
-        let test = asked(("A", 7), ("", ""), (HEAVIER, 2.0), (CONSTANT, 0.0));
+        let test = FamilyTest { family: "A", of: 7, expected: 0.0, ..WITHOUT_NUMBER };
         assert_eq!(test.verdict(), "no number");
         let with =
             |interval, resolved| FamilyTest { interval: Some(interval), resolved, ..test.clone() }.verdict();

@@ -2,7 +2,7 @@
 
 use crate::evaluation::limits::{self, require, within};
 use crate::evaluation::{
-    Discretisation, Forces, Realisation, RealisationResult, Sample, is_solved, realisation_jobs,
+    Discretisation, Forces, Realisation, RealisationResult, Sample, Workplace, is_solved, realisation_jobs,
     solve_realisations,
 };
 use runs::{Progress, Result, Store};
@@ -169,7 +169,7 @@ impl Ladder {
         dimensions: &[f64],
         seed: u64,
         surfaces: &[usize],
-        (kept, threads): ((&Path, &Store), usize),
+        place: &Workplace<'_>,
         progress: &dyn Progress,
     ) -> Result<Vec<Rungs>> {
         let places = self.places(dimensions, seed, surfaces);
@@ -181,7 +181,7 @@ impl Ladder {
         for (size, members) in by_size.into_iter().rev() {
             let of_size = realisations(members.iter().map(|&i| &places[i]));
             let what = format!("{}: {} surfaces, size {size}", self.model.name(), of_size.len());
-            let solved = solve_realisations(&what, &of_size, kept, threads, progress)?;
+            let solved = solve_realisations(&what, &of_size, place, progress)?;
             for (i, result) in members.into_iter().zip(solved) {
                 results[i] = Some(result);
             }

@@ -168,19 +168,33 @@ fn first_force(model: &str, d: f64) -> f64 {
     }
 }
 
+/// One way to fit the law to a curve.
+struct LimitVariant {
+    /// In words.
+    name: &'static str,
+    forces: Range<f64>,
+    /// The fixed omega; `None` where it is fitted too.
+    omega: Option<f64>,
+    /// Number of bootstrap samples.
+    draws: usize,
+}
+
 /// Fits of all curves: the one that is judged ([`judged_limit`]) and, for forces normalised by the measured
 /// rms height, further fits for comparison.
 pub fn limits(curves: &[MeanCurve], family: usize) -> Vec<FittedLimit> {
     let mut limits = Vec::new();
-    let [_, beside] = DRAWS;
+    let [_, draws] = DRAWS;
     for curve in curves {
         let start = first_force(curve.model, curve.fractal_dimension);
         if curve.convention == Convention::Measured {
+            let held = LimitVariant { name: HELD, forces: start..0.2, omega: Some(0.5), draws };
+            let short = LimitVariant { name: SHORT, forces: start..0.06, omega: None, draws };
             limits.extend(judged_limit(curve, family));
-            limits.extend(limit(curve, (HELD, start..0.2, Some(0.5)), (family, beside)));
-            limits.extend(limit(curve, (SHORT, start..0.06, None), (family, beside)));
+            limits.extend(limit(curve, &held, family));
+            limits.extend(limit(curve, &short, family));
         } else {
-            limits.extend(limit(curve, (FREE, start..0.2, None), (family, beside)));
+            let free = LimitVariant { name: FREE, forces: start..0.2, omega: None, draws };
+            limits.extend(limit(curve, &free, family));
         }
     }
     limits
@@ -189,74 +203,107 @@ pub fn limits(curves: &[MeanCurve], family: usize) -> Vec<FittedLimit> {
 /// The fit of a curve that is judged, with an interval for this number of tests in its family.
 pub fn judged_limit(curve: &MeanCurve, family: usize) -> Option<FittedLimit> {
     let start = first_force(curve.model, curve.fractal_dimension);
-    limit(curve, (FREE, start..0.2, None), (family, DRAWS[0]))
+    let free = LimitVariant { name: FREE, forces: start..0.2, omega: None, draws: DRAWS[0] };
+    limit(curve, &free, family)
 }
 
-fn limit(
-    curve: &MeanCurve,
-    (variant, forces, held): (&'static str, Range<f64>, Option<f64>),
-    (family, draws): (usize, usize),
-) -> Option<FittedLimit> {
-    let points = curve.window(&forces)?;
+fn limit(curve: &MeanCurve, variant: &LimitVariant, family: usize) -> Option<FittedLimit> {
+    let points = curve.window(&variant.forces)?;
     let levels = &curve.levels;
     let means = levels.means(levels.levels());
-    let ln_f = curve.ln_forces(points.clone());
-    let logarithms = |means: &[f64]| -> Vec<f64> { means[points.clone()].iter().map(|k| k.ln()).collect() };
-    let weights: Vec<f64> = (points.clone())
-        .map(|j| {
-            let mut gradient = vec![0.0; means.len()];
-            gradient[j] = 1.0 / means[j];
-            1.0 / analysis::sum(levels.variances(&gradient))
-        })
-        .collect();
-    let fit =
-        |means: &[f64], omega| Points::new(ln_f.clone(), logarithms(means), weights.clone())?.fit(omega);
-    let law = fit(&means, held)?;
+    let loads = WeightedLoads::new(curve, points.clone(), &means);
+    let law = loads.fit(&means, variant.omega)?;
     // A free omega on coarse grids would tell of its scatter and not of the grid.
-    let grid = curve.grid_part(points.clone(), |means| Some(fit(means, Some(law.omega))?.alpha))?;
-    let curves = levels.resampled(draws, DRAW_SEED);
-    let drawn: Vec<Correction> = curves.iter().filter_map(|means| fit(means, held)).collect();
-    // Loads of one surface go up and down together, so that the misfit of curves about the law is not that of
-    // independent points: it is found by moving the law by the deviations of the drawn curves.
-    let of_law: Vec<f64> = ln_f.iter().map(|&x| law.ln_stiffness(x)).collect();
-    let found = logarithms(&means);
-    let about_law = |drawn: &Vec<f64>| {
-        let moved =
-            logarithms(drawn).into_iter().zip(&found).zip(&of_law).map(|((drawn, k), of)| of + drawn - k);
-        Some(Points::new(ln_f.clone(), moved.collect(), weights.clone())?.fit(held)?.misfit)
-    };
-    let misfits: Vec<f64> = curves.iter().filter_map(about_law).collect();
-    let larger = misfits.iter().filter(|misfit| **misfit >= law.misfit).count();
-    let goodness = larger as f64 / misfits.len().max(1) as f64;
-    if 2 * drawn.len() < draws {
+    let grid = curve.grid_part(points.clone(), |means| Some(loads.fit(means, Some(law.omega))?.alpha))?;
+    let curves = levels.resampled(variant.draws, DRAW_SEED);
+    let drawn: Vec<Correction> = curves.iter().filter_map(|means| loads.fit(means, variant.omega)).collect();
+    if 2 * drawn.len() < variant.draws {
         return None;
     }
-    let sorted = |of: fn(&Correction) -> f64| {
-        let mut values: Vec<f64> = drawn.iter().map(of).collect();
-        values.sort_by(f64::total_cmp);
-        values
-    };
-    let between = |values: &[f64], level: f64| {
-        let at = |share: f64| values[(share * (values.len() - 1) as f64).round() as usize];
-        [at(0.5 * level), at(1.0 - 0.5 * level)]
-    };
-    let (alphas, omegas) = (sorted(|law| law.alpha), sorted(|law| law.omega));
+    let alphas = sorted(drawn.iter().map(|law| law.alpha));
+    let omegas = sorted(drawn.iter().map(|law| law.omega));
     let with_grid = |[low, high]: [f64; 2]| [low - grid, high + grid];
     Some(FittedLimit {
         model: curve.model,
         convention: curve.convention,
         fractal_dimension: curve.fractal_dimension,
-        variant,
+        variant: variant.name,
         forces: curve.forces[points.start]..curve.forces[points.end - 1],
         points: points.len(),
         resolved: curve.resolves(&points),
         law,
-        interval: with_grid(between(&alphas, 0.05)),
-        family: with_grid(between(&alphas, 0.05 / family as f64)),
+        interval: with_grid(middle_of(&alphas, 0.05)),
+        family: with_grid(middle_of(&alphas, 0.05 / family as f64)),
         grid,
-        omega: between(&omegas, 0.05),
-        goodness,
+        omega: middle_of(&omegas, 0.05),
+        goodness: loads.goodness(&law, variant.omega, &means, &curves),
     })
+}
+
+/// The loads of a fit.
+struct WeightedLoads {
+    points: Range<usize>,
+    ln_forces: Vec<f64>,
+    /// One over the variance of ln k at each load.
+    weights: Vec<f64>,
+}
+
+impl WeightedLoads {
+    fn new(curve: &MeanCurve, points: Range<usize>, means: &[f64]) -> Self {
+        let weight = |j: usize| {
+            let mut gradient = vec![0.0; means.len()];
+            gradient[j] = 1.0 / means[j];
+            1.0 / analysis::sum(curve.levels.variances(&gradient))
+        };
+        Self {
+            ln_forces: curve.ln_forces(points.clone()),
+            weights: points.clone().map(weight).collect(),
+            points,
+        }
+    }
+
+    /// ln k at the loads.
+    fn logarithms(&self, means: &[f64]) -> Vec<f64> {
+        means[self.points.clone()].iter().map(|k| k.ln()).collect()
+    }
+
+    /// The law of a curve, with this omega or a fitted one.
+    fn fit(&self, means: &[f64], omega: Option<f64>) -> Option<Correction> {
+        self.fit_logarithms(self.logarithms(means), omega)
+    }
+
+    fn fit_logarithms(&self, logarithms: Vec<f64>, omega: Option<f64>) -> Option<Correction> {
+        Points::new(self.ln_forces.clone(), logarithms, self.weights.clone())?.fit(omega)
+    }
+
+    /// The share of drawn curves about the law of the mean curve that have a larger misfit than the mean curve.
+    ///
+    /// Loads of one surface go up and down together, so that the misfit of curves about the law is not that of
+    /// independent points: it is found by moving the law by the deviations of the drawn curves.
+    fn goodness(&self, law: &Correction, omega: Option<f64>, means: &[f64], drawn: &[Vec<f64>]) -> f64 {
+        let of_law: Vec<f64> = self.ln_forces.iter().map(|&x| law.ln_stiffness(x)).collect();
+        let found = self.logarithms(means);
+        let misfit_about_law = |drawn: &Vec<f64>| {
+            let drawn = self.logarithms(drawn);
+            let moved = drawn.into_iter().zip(&found).zip(&of_law).map(|((drawn, k), of)| of + drawn - k);
+            Some(self.fit_logarithms(moved.collect(), omega)?.misfit)
+        };
+        let misfits: Vec<f64> = drawn.iter().filter_map(misfit_about_law).collect();
+        let larger = misfits.iter().filter(|misfit| **misfit >= law.misfit).count();
+        larger as f64 / misfits.len().max(1) as f64
+    }
+}
+
+fn sorted(values: impl Iterator<Item = f64>) -> Vec<f64> {
+    let mut values: Vec<f64> = values.collect();
+    values.sort_by(f64::total_cmp);
+    values
+}
+
+/// The interval that leaves out a share `level` of sorted values, half of it at each end.
+fn middle_of(sorted: &[f64], level: f64) -> [f64; 2] {
+    let at = |share: f64| sorted[(share * (sorted.len() - 1) as f64).round() as usize];
+    [at(0.5 * level), at(1.0 - 0.5 * level)]
 }
 
 /// k_1D/k_3D at a load.

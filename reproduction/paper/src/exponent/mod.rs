@@ -27,7 +27,7 @@ pub use samples::SAMPLES;
 
 use crate::evaluation::limits::require;
 use crate::evaluation::{
-    Discretisation, FRACTAL_DIMENSIONS, Forces, Outcome, Realisation, SEED, Session, header, list,
+    Discretisation, FRACTAL_DIMENSIONS, Forces, Outcome, Realisation, SEED, Session, Workplace, header, list,
     realisation_jobs,
 };
 use crate::judged::Judged;
@@ -36,6 +36,7 @@ use contact_model::Table;
 use curve::{Convention, MeanCurve};
 use fractal_contact::scenes::SceneJob;
 use ladder::{GridPair, Rungs};
+use report::StudyFindings;
 use runs::{Header, Progress, Result, Store, files, write_csv};
 use std::path::{Path, PathBuf};
 
@@ -191,8 +192,8 @@ pub fn exponent_plan(study: &Exponent, seconds: f64, progress: &dyn Progress) ->
                 Ok(stored.max(if small { PILOT } else { 0 }).min(count))
             })
             .collect::<Result<_>>()?;
-        let kept = ((study.out.as_path(), &store), study.threads);
-        let rungs = ladder.solve(&study.fractal_dimensions, study.seed, &pilot, kept, progress)?;
+        let place = Workplace { out: &study.out, store: &store, threads: study.threads };
+        let rungs = ladder.solve(&study.fractal_dimensions, study.seed, &pilot, &place, progress)?;
         let costs = plan::costs(ladder, &rungs, seconds * study.threads as f64);
         lines.extend(plan::lines(name, &ladder.forces, &costs, study.threads));
     }
@@ -207,16 +208,12 @@ pub fn exponent_plan(study: &Exponent, seconds: f64, progress: &dyn Progress) ->
 pub fn exponent(study: &Exponent, progress: &dyn Progress) -> Result<Judged> {
     study.validate()?;
     let session = Session::open(&study.out, study.fresh)?;
+    let place = Workplace { out: &study.out, store: &session.store, threads: study.threads };
     let mut rungs: Vec<Rungs> = Vec::new();
     // Lines first: they are cheap.
     for (_, ladder) in study.ladders().into_iter().rev() {
-        rungs.extend(ladder.solve(
-            &study.fractal_dimensions,
-            study.seed,
-            &ladder.surfaces,
-            ((&study.out, &session.store), study.threads),
-            progress,
-        )?);
+        let (dimensions, seed) = (&study.fractal_dimensions, study.seed);
+        rungs.extend(ladder.solve(dimensions, seed, &ladder.surfaces, &place, progress)?);
     }
     let mut outcome = Outcome::new("exponent");
     outcome.not_converged = rungs.iter().flat_map(Rungs::pairs).map(GridPair::not_converged).sum();
@@ -320,7 +317,8 @@ fn evaluate(
     }
     files.extend(picture::draw(out)?);
     let text = out.join("exponent.md");
-    let report = report::report(&header.command, rungs, (&limits, &laws, &factors, &tests));
+    let findings = StudyFindings { limits: &limits, laws: &laws, factors: &factors, tests: &tests };
+    let report = report::report(&header.command, rungs, &findings);
     files::write_whole(&text, report.as_bytes())?;
     files.push(text);
     Ok(files)

@@ -130,19 +130,27 @@ fn hypotheses(tests: &[FamilyTest]) -> String {
     markdown_table(head, rows)
 }
 
+/// What follows from the curves of a study.
+pub struct StudyFindings<'a> {
+    /// Exponents towards zero force.
+    pub limits: &'a [FittedLimit],
+    /// Exponents decade by decade.
+    pub laws: &'a [LawRow],
+    /// Line over surface.
+    pub factors: &'a [ModelRatio],
+    /// The tests of the hypotheses.
+    pub tests: &'a [FamilyTest],
+}
+
 /// All tables of a page: the numbers of surfaces, exponents towards zero force and decade by decade, the
 /// factor between line and surface, and the tests of the hypotheses.
-pub fn report(
-    command: &str,
-    rungs: &[Rungs],
-    (limits, laws, factors, tests): (&[FittedLimit], &[LawRow], &[ModelRatio], &[FamilyTest]),
-) -> String {
+pub fn report(command: &str, rungs: &[Rungs], findings: &StudyFindings<'_>) -> String {
     format!(
         "`{command}`\n\n{}\nAlpha towards zero force, F_bar by the measured rms height of each grid. The column \"fit\" is the share of curves that scatter about the fitted law as the surfaces do and have a larger misfit:\n\n{}\nDecade by decade, where all of it is resolved:\n\n{}\nLine over surface, where both are resolved:\n\n{}\nHypotheses, A to D:\n\n{}",
         solved(rungs),
-        towards_zero(limits),
-        decades(laws),
-        over(factors),
-        hypotheses(tests)
+        towards_zero(findings.limits),
+        decades(findings.laws),
+        over(findings.factors),
+        hypotheses(findings.tests)
     )
 }

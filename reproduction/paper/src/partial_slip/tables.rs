@@ -116,8 +116,8 @@ struct LoadedSurface<'a> {
     dissipated: &'a [f64],
 }
 
-/// Every surface: the means can be computed again from it.
-pub(super) fn samples(study: &PartialSlipStudy, solved: &[SolvedCase<'_>]) -> Result<Table> {
+/// All surfaces, each solved with every load and Poisson's ratio, and its equivalent profile with every load.
+fn loaded_surfaces<'a>(study: &PartialSlipStudy, solved: &[SolvedCase<'a>]) -> Vec<LoadedSurface<'a>> {
     let mut rows = Vec::new();
     for &SolvedCase { case, surfaces } in solved {
         for (surface, slips) in surfaces.iter().enumerate() {
@@ -143,12 +143,19 @@ pub(super) fn samples(study: &PartialSlipStudy, solved: &[SolvedCase<'_>]) -> Re
             }
         }
     }
-    let listed = |values: &mut dyn Iterator<Item = Option<f64>>| {
-        let words = values.map(|v| v.map_or_else(|| "-".to_owned(), |v| format!("{v:.6e}")));
-        words.collect::<Vec<_>>().join(" ")
-    };
-    let of =
-        |r: &LoadedSurface<'_>, value: fn(&SlipPoint) -> Option<f64>| listed(&mut r.points.iter().map(value));
+    rows
+}
+
+/// Numbers with a space between them, and a dash for a missing one.
+fn listed(values: impl Iterator<Item = Option<f64>>) -> String {
+    let words = values.map(|v| v.map_or_else(|| "-".to_owned(), |v| format!("{v:.6e}")));
+    words.collect::<Vec<_>>().join(" ")
+}
+
+/// Every surface: the means can be computed again from it.
+pub(super) fn samples(study: &PartialSlipStudy, solved: &[SolvedCase<'_>]) -> Result<Table> {
+    let rows = loaded_surfaces(study, solved);
+    let of = |r: &LoadedSurface<'_>, value: fn(&SlipPoint) -> Option<f64>| listed(r.points.iter().map(value));
     let stiffness = |r: &LoadedSurface<'_>, which: usize| r.contact.map(|(.., k)| k[which]);
     TableOf::new("Partial slip of each surface", &rows)
         .column("model", "-", "bem3d, or equivalent, which is the same for every Poisson's ratio", |r| {
@@ -186,7 +193,7 @@ pub(super) fn samples(study: &PartialSlipStudy, solved: &[SolvedCase<'_>]) -> Re
             move |r| of(r, |p| p.traction),
         )
         .column("dissipated", "1", "energy of loops, as in the table of loops", move |r| {
-            listed(&mut r.dissipated.iter().map(|d| Some(*d)))
+            listed(r.dissipated.iter().map(|d| Some(*d)))
         })
         .table()
 }

@@ -124,48 +124,87 @@ pub(crate) fn draw(csv: &Path, out: &Path) -> Result<Vec<PathBuf>> {
     let rows: Vec<CaseRow> = read_rows(csv, &file)?;
     let mut files = Vec::new();
     for (of, [stiffness, ratio]) in problems(&rows) {
-        files.extend(panel(&file, &rows, of, (|r| r.stiffness_bar, words::STIFFNESS), out, &stiffness)?);
-        files.extend(panel(&file, &rows, of, (|r| r.k_h_over_force, "ratio $k h/F$"), out, &ratio)?);
+        let panel = |value| CasePanel::new(&file, &rows, of, value);
+        files.extend(save(panel(|r| r.stiffness_bar).picture(words::STIFFNESS).files(&stiffness), out)?);
+        files.extend(save(panel(|r| r.k_h_over_force).picture("ratio $k h/F$").files(&ratio), out)?);
     }
     Ok(files)
 }
 
-fn panel(
-    file: &CsvFile,
-    rows: &[CaseRow],
+/// A picture of one problem.
+struct CasePanel<'a> {
+    file: &'a CsvFile,
+    /// Those of the problem.
+    rows: Vec<&'a CaseRow>,
     problem: PicturePanel,
-    (value, label): (fn(&CaseRow) -> f64, &str),
-    out: &Path,
-    name: &str,
-) -> Result<Vec<PathBuf>> {
-    // A spectrum that is fractal to the side belongs to every roll-off.
-    let of_problem = |r: &&CaseRow| same((r.fractal_dimension, r.roll_off.unwrap_or(problem.1)), problem);
-    let rows: Vec<&CaseRow> = rows.iter().filter(of_problem).collect();
-    let shown = || rows.iter().copied().filter(|r| r.stiffness_bar <= HIGHEST);
-    let solved = || shown().filter(|r| r.model == "bem3d");
-    let (x, y) = (logarithmic(solved().map(|r| r.force_bar)), logarithmic(solved().map(value)));
-    let flag = |name| words::flag(file, name).unwrap_or("?");
-    let n = flag("--cells");
-    let mut picture = Picture::new(x, y, words::FORCE, label)
-        .with_size(800.0, 560.0)
-        .with_title("Two cases: boundary and roll-off of the spectrum")
-        .with_subtitle(&format!(
-            "$D_{{\\rm{{f}}}} = {:?}$, {n} × {n} cells, {} surfaces for each case; roll-off at {} waves a side",
-            problem.0,
-            flag("--surfaces"),
-            problem.1,
-        ))
-        .with_legend_below();
-    // One above the other where two agree: the first is wide and pale, the second thin on top of it.
-    let looks = [
-        (3.4, Mark::Solid(MarkShape::Circle), 5.4),
-        (1.6, Mark::Hollow(MarkShape::Circle), 3.2),
-        (3.4, Mark::Solid(MarkShape::Square), 5.0),
-        (1.6, Mark::Hollow(MarkShape::Square), 3.2),
-    ];
-    for ((of, color), (width, mark, radius)) in NAMES.into_iter().zip(looks) {
-        let select = |name: &str, floor: bool| -> Vec<&CaseRow> {
-            shown().filter(|r| r.case == of && r.model == name && r.below_floor == floor).collect()
+    /// The quantity that it shows over the force.
+    value: fn(&CaseRow) -> f64,
+}
+
+/// How the curve of a case looks.
+struct CaseLook {
+    color: &'static str,
+    width: f64,
+    mark: Mark,
+    radius: f64,
+}
+
+impl<'a> CasePanel<'a> {
+    fn new(
+        file: &'a CsvFile,
+        rows: &'a [CaseRow],
+        problem: PicturePanel,
+        value: fn(&CaseRow) -> f64,
+    ) -> Self {
+        // A spectrum that is fractal to the side belongs to every roll-off.
+        let of_problem = |r: &&CaseRow| same((r.fractal_dimension, r.roll_off.unwrap_or(problem.1)), problem);
+        Self { file, rows: rows.iter().filter(of_problem).collect(), problem, value }
+    }
+
+    fn shown(&self) -> impl Iterator<Item = &'a CaseRow> {
+        self.rows.iter().copied().filter(|r| r.stiffness_bar <= HIGHEST)
+    }
+
+    fn picture(&self, label: &str) -> Picture {
+        let mut picture = self.axes(label);
+        // One above the other where two agree: the first is wide and pale, the second thin on top of it.
+        let looks = [
+            (3.4, Mark::Solid(MarkShape::Circle), 5.4),
+            (1.6, Mark::Hollow(MarkShape::Circle), 3.2),
+            (3.4, Mark::Solid(MarkShape::Square), 5.0),
+            (1.6, Mark::Hollow(MarkShape::Square), 3.2),
+        ];
+        for ((case, color), (width, mark, radius)) in NAMES.into_iter().zip(looks) {
+            self.curves(&mut picture, case, &CaseLook { color, width, mark, radius });
+        }
+        self.legend(&mut picture);
+        picture
+    }
+
+    /// Empty axes with their titles.
+    fn axes(&self, label: &str) -> Picture {
+        let solved = || self.shown().filter(|r| r.model == "bem3d");
+        let (x, y) = (logarithmic(solved().map(|r| r.force_bar)), logarithmic(solved().map(self.value)));
+        let flag = |name| words::flag(self.file, name).unwrap_or("?");
+        let n = flag("--cells");
+        Picture::new(x, y, words::FORCE, label)
+            .with_size(800.0, 560.0)
+            .with_title("Two cases: boundary and roll-off of the spectrum")
+            .with_subtitle(&format!(
+                "$D_{{\\rm{{f}}}} = {:?}$, {n} × {n} cells, {} surfaces for each case; roll-off at {} waves a side",
+                self.problem.0,
+                flag("--surfaces"),
+                self.problem.1,
+            ))
+            .with_legend_below()
+    }
+
+    /// Draws a case, solved and of the theories, with its line of the legend.
+    fn curves(&self, picture: &mut Picture, case: &str, look: &CaseLook) {
+        let &CaseLook { color, width, mark, radius } = look;
+        let value = self.value;
+        let select = |model: &str, floor: bool| -> Vec<&CaseRow> {
+            self.shown().filter(|r| r.case == case && r.model == model && r.below_floor == floor).collect()
         };
         let at = |rows: &[&CaseRow]| rows.iter().map(|r| (r.force_bar, value(r))).collect::<Vec<_>>();
         let inside = select("bem3d", false);
@@ -180,28 +219,31 @@ fn panel(
         picture.points(&at(&select("bem3d", true)), color, radius, Mark::Ring(mark_shape(mark)));
         picture.line(&at(&select("persson", false)), color, 1.5, LineStyle::Dashed);
         picture.line(&at(&select("greenwood_williamson", false)), color, 1.5, LineStyle::Dotted);
-        let stiffness = if of.starts_with("periodic") {
+        let stiffness = if case.starts_with("periodic") {
             "$k = -\\rm{d}F/\\rm{d}\\bar{g}$, $\\bar{g}$ the mean gap"
         } else {
             "$k = \\rm{d}F/\\rm{d}d$, $d$ the approach"
         };
-        picture.legend(&format!("{of}: {stiffness}"), color, LegendKey::Curve(mark));
+        picture.legend(&format!("{case}: {stiffness}"), color, LegendKey::Curve(mark));
     }
-    picture.legend("Persson", NEUTRAL, LegendKey::Line(LineStyle::Dashed));
-    picture.legend("Greenwood and Williamson", NEUTRAL, LegendKey::Line(LineStyle::Dotted));
-    picture.legend("bars: ± 2 standard errors", NEUTRAL, LegendKey::Bar(Mark::Solid(MarkShape::Circle)));
-    if shown().any(|r| r.below_floor) {
-        let label = format!("fewer than {FLOOR_CELLS} contact cells");
-        picture.legend(&label, NEUTRAL, LegendKey::Mark(Mark::Ring(MarkShape::Circle)));
+
+    /// The lines of the legend that all cases share.
+    fn legend(&self, picture: &mut Picture) {
+        picture.legend("Persson", NEUTRAL, LegendKey::Line(LineStyle::Dashed));
+        picture.legend("Greenwood and Williamson", NEUTRAL, LegendKey::Line(LineStyle::Dotted));
+        picture.legend("bars: ± 2 standard errors", NEUTRAL, LegendKey::Bar(Mark::Solid(MarkShape::Circle)));
+        if self.shown().any(|r| r.below_floor) {
+            let label = format!("fewer than {FLOOR_CELLS} contact cells");
+            picture.legend(&label, NEUTRAL, LegendKey::Mark(Mark::Ring(MarkShape::Circle)));
+        }
+        if self.rows.iter().any(|r| r.stiffness_bar > HIGHEST) {
+            picture.legend(
+                &format!("periodic: only $\\bar{{k}}$ up to {HIGHEST} is shown"),
+                NEUTRAL,
+                LegendKey::Words,
+            );
+        }
     }
-    if rows.iter().any(|r| r.stiffness_bar > HIGHEST) {
-        picture.legend(
-            &format!("periodic: only $\\bar{{k}}$ up to {HIGHEST} is shown"),
-            NEUTRAL,
-            LegendKey::Words,
-        );
-    }
-    save(picture.files(name), out)
 }
 
 fn mark_shape(mark: Mark) -> MarkShape {

@@ -7,10 +7,10 @@ use crate::stability::plain::PlainSum;
 use crate::stability::press::{forces, tight, watched};
 use crate::stability::shear::{PlainShear, compliance};
 use crate::stability::slide::{MU, VectorField, alike, compare, rubbed, tangential, vectors};
-use crate::stability::{DensePath, Prescribed};
+use crate::stability::{DensePath, DenseSurface, Prescribed};
 use bem3d::Bem3d;
 use contact_model::{
-    ContactModel, ContactState, Error, Friction, FrictionLaw, Hardness, HeightMap, Load, Result, Step,
+    ContactModel, ContactState, Error, Friction, FrictionLaw, Hardness, HeightMap, Load, Result, Scene, Step,
     Tangential,
 };
 
@@ -160,13 +160,13 @@ fn full(ledger: &mut Ledger, effort: Effort) -> Result<()> {
 fn sheared(ledger: &mut Ledger, effort: Effort) -> Result<()> {
     let cells = effort.pick(6, 9);
     let noise: Vec<f64> = (0..1000).map(|i| (f64::from(i) * 0.618_033_988_75).fract()).collect();
-    let pair = alike(0.3);
-    let coulomb = FrictionLaw::coulomb(MU);
+    let (pair, coulomb) = (alike(0.3), FrictionLaw::coulomb(MU));
     // Terraces, and heights over twenty decades.
     for map in [rough_map(2.4, cells, 4)?, hard_map(1, cells, &noise)?, hard_map(6, cells, &noise)?] {
-        let gaps: Vec<f64> = map.heights().iter().map(|h| map.highest() - h).collect();
+        let gaps = map.heights().iter().map(|h| map.highest() - h).collect();
         let (normal, shear) = (PlainSum::of(&map), PlainShear::of(&map, compliance(&pair)?));
-        let area = map.dx() * map.dy();
+        let surface =
+            DenseSurface { normal: &normal, shift: 0.0, shear: &shear, gaps, area: map.dx() * map.dy() };
         for (hardness, law) in [
             (1.0, coulomb),
             (0.03, coulomb),
@@ -176,45 +176,53 @@ fn sheared(ledger: &mut Ledger, effort: Effort) -> Result<()> {
             scene.effects.friction = Friction::of(law);
             scene.effects.hardness = Hardness::Limit { pressure: hardness };
             scene.outputs.plastic_depth = true;
-            let mut contact = Bem3d { tolerance: 1e-12, ..tight() }.prepare(&scene, 0)?;
-            let mut exact = DensePath::new((&normal, 0.0), &shear, gaps.clone(), area, (law, Some(hardness)));
-            let path = [
-                (0.5, [0.0, 0.0]),
-                (0.9, [0.6, 0.3]),
-                (0.99, [-0.5, 0.4]),
-                (0.3, [0.2, 0.1]),
-                (0.95, [0.0, -0.8]),
-            ];
-            for (share, [x, y]) in path {
-                let force = share * hardness * area * gaps.len() as f64;
-                exact.press(Prescribed::Force(force));
-                let limits = exact.limits();
-                let most: f64 = limits.iter().sum();
-                let asked = [x * most, y * most];
-                exact.slide(Prescribed::Force(asked));
-                let load = Load::force(force).with_tangential(Tangential::Force(asked));
-                let state = contact.advance(Step::new(0.0, load))?;
-                let found = tangential(&state)?;
-                let p: Vec<f64> = pressure(&state)?.iter().map(|p| p * area).collect();
-                ledger.field(&p, &exact.pressed, largest(&exact.pressed));
-                // A hundredth of the deviation of the tractions: the square root of that of the energy.
-                let hundredth = |q: [f64; 2]| q.map(|q| 0.01 * q);
-                let q: Vec<[f64; 2]> = vectors(&state, VectorField::Traction)?
-                    .iter()
-                    .map(|q| hundredth(q.map(|q| q * area)))
-                    .collect();
-                let n = limits.len();
-                let expected: Vec<[f64; 2]> =
-                    (0..n).map(|i| hundredth([exact.sheared[i], exact.sheared[n + i]])).collect();
-                compare(ledger, &q, &expected, largest(&limits));
-                let moved = exact.displacement[0].hypot(exact.displacement[1]).max(most);
-                compare(ledger, &[hundredth(found.displacement)], &[hundredth(exact.displacement)], moved);
-                ledger.enter((found.dissipated - exact.dissipated).abs() / (moved * most));
-                let depth = state.fields.as_ref().and_then(|fields| fields.plastic_depth.as_ref());
-                let depth = depth.map_or(&[][..], |depth| depth.values());
-                ledger.field(depth, &exact.indentation, largest(&exact.indentation).max(exact.approach));
-            }
+            let exact = DensePath::new(surface.clone(), law, Some(hardness));
+            sheared_path(ledger, &scene, exact, hardness)?;
         }
     }
+    Ok(())
+}
+
+/// Follows a path of normal and tangential forces beside dense matrices.
+fn sheared_path(ledger: &mut Ledger, scene: &Scene, mut exact: DensePath, hardness: f64) -> Result<()> {
+    let mut contact = Bem3d { tolerance: 1e-12, ..tight() }.prepare(scene, 0)?;
+    let (area, count) = (exact.cell_area(), exact.pressed.len() as f64);
+    // Shares of the force of all cells, and of the sliding force along x and y.
+    let path =
+        [(0.5, [0.0, 0.0]), (0.9, [0.6, 0.3]), (0.99, [-0.5, 0.4]), (0.3, [0.2, 0.1]), (0.95, [0.0, -0.8])];
+    for (share, [x, y]) in path {
+        let force = share * hardness * area * count;
+        exact.press(Prescribed::Force(force));
+        let most: f64 = exact.limits().iter().sum();
+        let asked = [x * most, y * most];
+        exact.slide(Prescribed::Force(asked));
+        let load = Load::force(force).with_tangential(Tangential::Force(asked));
+        let state = contact.advance(Step::new(0.0, load))?;
+        beside_dense(ledger, &state, &exact)?;
+    }
+    Ok(())
+}
+
+/// Compares pressures, tractions, displacement, dissipated energy and indentation with those of dense matrices.
+fn beside_dense(ledger: &mut Ledger, state: &ContactState, exact: &DensePath) -> Result<()> {
+    let (area, limits) = (exact.cell_area(), exact.limits());
+    let most: f64 = limits.iter().sum();
+    let found = tangential(state)?;
+    let p: Vec<f64> = pressure(state)?.iter().map(|p| p * area).collect();
+    ledger.field(&p, &exact.pressed, largest(&exact.pressed));
+    // A hundredth of the deviation of the tractions: the square root of that of the energy.
+    let hundredth = |q: [f64; 2]| q.map(|q| 0.01 * q);
+    let q: Vec<[f64; 2]> =
+        vectors(state, VectorField::Traction)?.iter().map(|q| hundredth(q.map(|q| q * area))).collect();
+    let n = limits.len();
+    let expected: Vec<[f64; 2]> =
+        (0..n).map(|i| hundredth([exact.sheared[i], exact.sheared[n + i]])).collect();
+    compare(ledger, &q, &expected, largest(&limits));
+    let moved = exact.displacement[0].hypot(exact.displacement[1]).max(most);
+    compare(ledger, &[hundredth(found.displacement)], &[hundredth(exact.displacement)], moved);
+    ledger.enter((found.dissipated - exact.dissipated).abs() / (moved * most));
+    let depth = state.fields.as_ref().and_then(|fields| fields.plastic_depth.as_ref());
+    let depth = depth.map_or(&[][..], |depth| depth.values());
+    ledger.field(depth, &exact.indentation, largest(&exact.indentation).max(exact.approach));
     Ok(())
 }

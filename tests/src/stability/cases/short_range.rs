@@ -52,16 +52,20 @@ const NEAR: isize = 6;
 /// Share of the area in nearly full contact.
 const NEARLY: f64 = 0.85;
 
-/// The residual of a state on square cells, by plain sums: for open cells the difference between the traction
+/// A contact with adhesion of short range, on square cells.
+struct ShortRangeContact<'a> {
+    map: &'a HeightMap,
+    /// The kernel of its boundary.
+    sum: &'a PlainSum,
+    boundary: Boundary,
+    work: f64,
+}
+
+/// The residual of a state, by plain sums: for open cells the difference between the traction
 /// and that of their gap and their neighbours, for closed ones a negative contact pressure. Tractions are
 /// over the largest one of a straight front, gaps over the range.
-fn conditions(
-    ledger: &mut Ledger,
-    sum: &PlainSum,
-    map: &HeightMap,
-    (work, boundary): (f64, Boundary),
-    state: &ContactState,
-) -> Result<()> {
+fn conditions(ledger: &mut Ledger, of: &ShortRangeContact<'_>, state: &ContactState) -> Result<()> {
+    let &ShortRangeContact { map, sum, boundary, work } = of;
     meets_and_is_stable(ledger, state);
     let (p, cell) = (pressure(state)?, map.dx());
     let forces: Vec<(usize, f64)> = p.iter().enumerate().map(|(i, p)| (i, p * cell * cell)).collect();
@@ -133,10 +137,11 @@ fn pinned(ledger: &mut Ledger, effort: Effort) -> Result<()> {
     let unit = exact.pull_off_at_force()?.force;
     let map = ball(&exact, in_radius)?;
     let sum = PlainSum::of(&map);
+    let contact = ShortRangeContact { map: &map, sum: &sum, boundary: Boundary::Free, work };
     let mut history = path(&attracted_by(&map, Adhesion::ShortRange { work }))?;
     let mut drawn = |ledger: &mut Ledger, share: f64| -> Result<ContactState> {
         let state = go(history.as_mut(), Load::force(share * unit))?;
-        conditions(ledger, &sum, &map, (work, Boundary::Free), &state)?;
+        conditions(ledger, &contact, &state)?;
         let (area, radius) =
             (state.area.unwrap_or(f64::NAN), exact.radius_at_force((share * unit).max(unit))?);
         // Near the fold the radius goes with the root of what is left of the force.
@@ -176,6 +181,7 @@ fn dragged(ledger: &mut Ledger, effort: Effort) -> Result<()> {
     let unit = exact.pull_off_at_force()?.force;
     let map = ball(&exact, effort.pick(6.0, 9.0))?;
     let (sum, pair) = (PlainSum::of(&map), alike(0.3));
+    let contact = ShortRangeContact { map: &map, sum: &sum, boundary: Boundary::Free, work };
     let shear = PlainShear::of(&map, compliance(&pair)?);
     let mut relaxed = Dragged::new(&shear);
     let mut scene = attracted_by(&map, Adhesion::ShortRange { work });
@@ -208,7 +214,7 @@ fn dragged(ledger: &mut Ledger, effort: Effort) -> Result<()> {
             found => found?,
         };
         ledger.must(share < 1.0, || "more than the pull-off force is held".into());
-        conditions(ledger, &sum, &map, (work, Boundary::Free), &state)?;
+        conditions(ledger, &contact, &state)?;
         let gaps = known("gap", state.gap())?.values();
         let share_of = |gap: &f64| share_of_work((1.0 - gap / range).clamp(0.0, 1.0));
         let limits: Vec<(usize, f64)> = (gaps.iter().map(share_of).enumerate())
@@ -236,6 +242,7 @@ fn avalanche(ledger: &mut Ledger, effort: Effort) -> Result<()> {
     let map = rough_map(2.2, cells, 2)?.scaled(1.0, 0.02)?;
     let (work, pushed) = (3e-3, 0.02);
     let sum = PlainSum::periodic(&map);
+    let contact = ShortRangeContact { map: &map, sum: &sum, boundary: Boundary::Periodic, work };
     let mut scene = attracted_by(&map, Adhesion::ShortRange { work });
     scene.effects.boundary = Boundary::Periodic;
     let area = |state: &ContactState| state.area.unwrap_or(f64::NAN);
@@ -247,7 +254,7 @@ fn avalanche(ledger: &mut Ledger, effort: Effort) -> Result<()> {
     // A pull opens the hollows further and is held.
     for (force, least) in [(0.0, NEARLY), (pushed, NEARLY), (0.0, NEARLY), (-0.05, 0.5)] {
         let state = go(history.as_mut(), Load::force(force))?;
-        conditions(ledger, &sum, &map, (work, Boundary::Periodic), &state)?;
+        conditions(ledger, &contact, &state)?;
         let area = area(&state);
         ledger.must(area > least, || format!("F {force}: area {area}"));
         areas.push(area);

@@ -4,7 +4,7 @@ use super::limit::{Limit, limit};
 use super::pressure;
 use super::problem::{Family, StudyProblem};
 use super::row::{Formula, MeasuredSolution, Parts, StudyRow, Way, measure, unless_stopped};
-use super::sizes::{Order, SizeQuantity, StudySizes};
+use super::sizes::{Order, SequenceErrors, SizeQuantity, StudySizes};
 use analytic::Hertz;
 use analytic::flat_punch::SQUARE_STIFFNESS_UNCERTAINTY;
 use bem3d::{Bem3d, Method};
@@ -167,5 +167,5 @@ fn order(
     // slope.
     let last = errors.last().map_or(0.0, |e| e.0);
     let far: Vec<(f64, f64)> = errors.iter().copied().filter(|e| exact || e.0 > 1.9 * last).collect();
-    Order::new(problem.key, quantity, limit, exact, errors, &far)
+    Order::new(problem.key, quantity, limit, &SequenceErrors { exact, all: errors, far: &far })
 }

@@ -4,7 +4,7 @@
 use super::limit::limit;
 use super::problem::{DIMENSIONS, Family, LOADS, ProblemKey};
 use super::row::{Formula, MeasuredSolution, Parts, StudyRow, Way, measure, unless_stopped};
-use super::sizes::{Order, SizeQuantity, StudySizes};
+use super::sizes::{Order, SequenceErrors, SizeQuantity, StudySizes};
 use crate::evaluation::realisation::{Discretisation, Realisation, of_scene, realisation_jobs};
 use analysis::{Statistics, statistics};
 use analytic::PowerLaw;
@@ -167,8 +167,8 @@ fn at_load(
     let sixty = deviation / PAPER_SURFACES.sqrt() / finest.mean;
     let problem = ProblemKey::rough(Family::Mean, d, LOADS[j]);
     let errors: Vec<(f64, f64)> = sequence.iter().map(|&(h, v)| (h, reference.distance(v))).collect();
-    let far = &errors[..errors.len() - 1];
-    orders.push(Order::new(problem, SizeQuantity::Stiffness, Some(reference), false, &errors, far));
+    let errors = SequenceErrors { exact: false, all: &errors, far: &errors[..errors.len() - 1] };
+    orders.push(Order::new(problem, SizeQuantity::Stiffness, Some(reference), &errors));
     reference.uncertainty = reference.uncertainty.hypot(scatter);
     let mut rows = Vec::new();
     let mut add = |way: Way, surfaces: usize, answer: MeasuredSolution, own: Option<f64>| {

@@ -54,16 +54,20 @@ pub fn accuracy_cost(
     progress: &dyn Progress,
 ) -> Result<Outcome> {
     let command = format!("cargo xtask accuracy-cost --preset {} --seed {seed}", depth.as_str());
-    with_sizes(&depth.sizes(), command, seed, (out, fresh), progress)
+    run(SizedStudy { sizes: &depth.sizes(), seed, command }, out, fresh, progress)
 }
 
-fn with_sizes(
-    sizes: &StudySizes,
-    command: String,
+/// A study of any size.
+struct SizedStudy<'a> {
+    sizes: &'a StudySizes,
+    /// Seed of the seeds of all surfaces.
     seed: u64,
-    (out, fresh): (&Path, bool),
-    progress: &dyn Progress,
-) -> Result<Outcome> {
+    /// The command that its tables name.
+    command: String,
+}
+
+fn run(sized: SizedStudy<'_>, out: &Path, fresh: bool, progress: &dyn Progress) -> Result<Outcome> {
+    let SizedStudy { sizes, seed, command } = sized;
     let session = Session::open(out, fresh)?;
     let study = study::study(sizes, seed, &session.store, progress)?;
     let header = header(command)
@@ -130,7 +134,8 @@ mod tests {
     #[test]
     fn a_tiny_study_is_complete() {
         let dir = tempfile::tempdir().unwrap();
-        let outcome = with_sizes(&TINY, "tiny".into(), 1, (dir.path(), false), &Silent).unwrap();
+        let study = SizedStudy { sizes: &TINY, seed: 1, command: "tiny".into() };
+        let outcome = run(study, dir.path(), false, &Silent).unwrap();
         assert_eq!(outcome.files.len(), 5);
         assert!(outcome.files.iter().all(|f| f.exists()));
         assert_eq!(outcome.not_converged, 0);
@@ -202,7 +207,8 @@ mod tests {
         let [whole, parts] = [(); 2].map(|()| tempfile::tempdir().unwrap());
         let run = |dir: &Path| {
             let stored = Stored::default();
-            with_sizes(&SMALL, "small".into(), 1, (dir, false), &stored).unwrap();
+            let study = SizedStudy { sizes: &SMALL, seed: 1, command: "small".into() };
+            run(study, dir, false, &stored).unwrap();
             (tables(dir), stored.0.into_inner())
         };
         let ([_, expected], found) = run(whole.path());

@@ -66,25 +66,31 @@ pub(crate) struct Order {
     pub errors: [Option<f64>; 2],
 }
 
+/// The errors on a sequence of grids, each with the size of the cells, coarsest first.
+pub(crate) struct SequenceErrors<'a> {
+    /// Whether they are against an exact answer.
+    pub exact: bool,
+    pub all: &'a [(f64, f64)],
+    /// Those that are far from the limit: they show the slope where no order is established.
+    pub far: &'a [(f64, f64)],
+}
+
 impl Order {
-    /// From the errors (cell, error) of a sequence, coarsest first; without an established order those that
-    /// are `far` from the limit show the slope.
     pub fn new(
         problem: ProblemKey,
         quantity: SizeQuantity,
         limit: Option<Limit>,
-        exact: bool,
-        errors: &[(f64, f64)],
-        far: &[(f64, f64)],
+        errors: &SequenceErrors<'_>,
     ) -> Self {
+        let SequenceErrors { exact, all, far } = errors;
         let extrapolated = limit.and_then(|l| l.order);
         Self {
             problem,
             quantity,
             power: extrapolated.or_else(|| observed_power(far.iter().copied())),
-            established: exact || extrapolated.is_some(),
+            established: *exact || extrapolated.is_some(),
             limit,
-            errors: [errors.first().map(|e| e.1), errors.last().map(|e| e.1)],
+            errors: [all.first().map(|e| e.1), all.last().map(|e| e.1)],
         }
     }
 }
