@@ -67,8 +67,22 @@ pub enum NoGrid<T> {
     Finest(Option<(usize, GridTrial<T>)>),
 }
 
+/// A grid that meets a target, with its trial.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FoundGrid<T> {
+    /// The grid.
+    pub grid: usize,
+    /// Its trial.
+    pub trial: GridTrial<T>,
+    /// Whether the next coarser grid confirms its error, which may be small by chance.
+    pub is_confirmed: bool,
+    /// The finer grid that would confirm the error, and seconds of the whole search and of the run with it; `None`
+    /// where the error is confirmed or there is no finer grid.
+    pub confirming: Option<(usize, f64)>,
+}
+
 /// A grid with its trial, or why there is none.
-pub type ChosenGrid<T> = Result<(usize, GridTrial<T>), NoGrid<T>>;
+pub type ChosenGrid<T> = Result<FoundGrid<T>, NoGrid<T>>;
 
 impl<T> NoGrid<T> {
     /// The reason in words, with the error of the last grid: `grid` names a grid, `place` says where the
@@ -111,8 +125,8 @@ fn percent(share: f64) -> String {
 /// The first of several grids, from coarse to fine, that meets a target in error and time.
 ///
 /// A grid is accepted if its error is within the target and that of the next coarser grid is at most twice
-/// the target, because one small difference may be chance. The finest grid is accepted without this second
-/// condition. For a target of 0 the result is the finest grid whose run fits into the time. The time is
+/// the target, because one small difference may be chance. Where a finer grid would exceed the time, or there is none,
+/// a grid is accepted without this second condition, and its error is not confirmed. For a target of 0 the result is the finest grid whose run fits into the time. The time is
 /// assumed to grow with a power of the size of the grid. No rate of convergence is assumed, so an
 /// unsuccessful search continues until one more grid would exceed the time.
 ///
@@ -127,7 +141,7 @@ fn percent(share: f64) -> String {
 /// };
 /// let search = |seconds| first_grid(&[8, 16, 32, 64], AccuracyTarget { share: 0.04, seconds }, 1.0, trial).unwrap();
 /// // 1/32, after 1/16, which is less than twice as much.
-/// assert_eq!(search(100.0).unwrap().0, 32);
+/// assert_eq!(search(100.0).unwrap().grid, 32);
 /// assert!(matches!(search(50.0), Err(NoGrid::Time { grid: 16, next: 32, .. })));
 /// ```
 pub fn first_grid<T, E>(
@@ -144,18 +158,18 @@ pub fn first_grid<T, E>(
         spent += trial.seconds;
         let coarser = last.as_ref().and_then(|(_, coarser)| coarser.error);
         let finer = &grids[i + 1..];
-        let confirmed = finer.is_empty() || coarser.is_some_and(|coarser| coarser <= 2.0 * share);
-        let enough = confirmed && trial.error.is_some_and(|error| error <= share);
+        let is_confirmed = coarser.is_some_and(|coarser| coarser <= 2.0 * share);
+        let enough = trial.error.is_some_and(|error| error <= share);
         let whole = spent + trial.rest;
-        if enough && whole <= budget {
-            return Ok(Ok((grid, trial)));
-        }
         let each = trial.seconds + trial.least_rest;
         let next = finer.first().copied();
         let seconds = next.map(|next| spent + each * (next as f64 / grid as f64).powf(power));
         let affordable = seconds.is_some_and(|seconds| seconds <= budget);
-        if !affordable && target.is_best() && trial.error.is_some() && whole <= budget {
-            return Ok(Ok((grid, trial)));
+        let is_found = enough && (is_confirmed || !affordable);
+        let is_best = !affordable && target.is_best() && trial.error.is_some();
+        if (is_found || is_best) && whole <= budget {
+            let confirming = next.zip(seconds).filter(|_| !is_confirmed);
+            return Ok(Ok(FoundGrid { grid, trial, is_confirmed, confirming }));
         }
         match (next, seconds) {
             _ if enough && !affordable => {
@@ -187,7 +201,7 @@ mod tests {
         let words = |none: NoGrid<usize>| {
             none.words(seconds, &grid, &|n| format!("at {n}"), &|seconds| format!("{seconds} s"))
         };
-        found.map(|found| found.0).map_err(words)
+        found.map(|found| found.grid).map_err(words)
     }
 
     #[test]
@@ -212,13 +226,36 @@ mod tests {
             Ok::<_, ()>(GridTrial { error, seconds: 1.0, rest: 1.0, least_rest: 1.0, kept: n })
         };
         assert_eq!(
-            first_grid(&GRIDS, AccuracyTarget { share: 0.01, seconds: 1e3 }, 1.0, late).unwrap().unwrap().0,
+            first_grid(&GRIDS, AccuracyTarget { share: 0.01, seconds: 1e3 }, 1.0, late)
+                .unwrap()
+                .unwrap()
+                .grid,
             64
         );
         // The best that the time allows: the finest grid with its run.
         let best = |seconds| search(1, 0.0, seconds);
         assert_eq!([best(184.0), best(183.0), best(40.0)], [Ok(64), Ok(32), Ok(16)]);
         assert!(best(10.0).unwrap_err().starts_with("8 cells have an error of 12.5 % (at 8), 16 cells"));
+    }
+
+    /// A small error that no finer grid confirms in time is taken, and the grid that would confirm it is named.
+    #[test]
+    fn an_error_that_is_not_confirmed_is_told() {
+        let found = |late: usize, seconds: f64| {
+            let trial = |n: usize| {
+                let error = Some(if n < late { 0.5 } else { 0.008 });
+                let seconds = n as f64;
+                Ok::<_, ()>(GridTrial { error, seconds, rest: seconds, least_rest: seconds, kept: n })
+            };
+            first_grid(&GRIDS, AccuracyTarget { share: 0.01, seconds }, 1.0, trial).unwrap().unwrap()
+        };
+        let confirmed = found(16, 1e3);
+        assert_eq!((confirmed.grid, confirmed.is_confirmed, confirmed.confirming), (32, true, None));
+        // 8 + 16 + 32 and the run on 32; the trial of 64 and its run are 128 more.
+        let taken = found(32, 100.0);
+        assert_eq!((taken.grid, taken.is_confirmed, taken.confirming), (32, false, Some((64, 184.0))));
+        let finest = found(64, 1e3);
+        assert_eq!((finest.grid, finest.is_confirmed, finest.confirming), (64, false, None));
     }
 
     #[test]
@@ -228,7 +265,7 @@ mod tests {
         };
         let found =
             |seconds| first_grid(&GRIDS, AccuracyTarget { share: 0.05, seconds }, 0.0, trial).unwrap();
-        assert_eq!(found(103.0).unwrap().0, 16);
+        assert_eq!(found(103.0).unwrap().grid, 16);
         // A finer grid may need less; the last one does not.
         assert!(matches!(found(50.0), Err(NoGrid::Time { grid: 64, next: 64, .. })));
         let unknown = |n: usize| Ok::<_, ()>(GridTrial { error: None, ..trial(n).unwrap() });

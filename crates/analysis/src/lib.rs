@@ -71,7 +71,7 @@ pub use fit::{FitWindow, FittedPowerLaw, NoFit, fit_power_law};
 pub use grid_error::{
     GridError, KnownPart, error_from_moments, grid_error, mean_grid_error, relative_differences,
 };
-pub use grid_search::{AccuracyTarget, ChosenGrid, GridTrial, NoGrid, first_grid};
+pub use grid_search::{AccuracyTarget, ChosenGrid, FoundGrid, GridTrial, NoGrid, first_grid};
 pub use kappa::kappa;
 pub use multilevel::{Multilevel, Uncertain, slope_weights};
 pub use numerics::quantile::{student, student_at, student_beyond};

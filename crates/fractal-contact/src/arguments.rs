@@ -289,6 +289,13 @@ pub struct PressArguments {
     /// together, none neglects the coupling.
     #[arg(long, value_parser = ["none", "full"], requires = "law_of_friction")]
     pub coupling: Option<String>,
+    /// Radius of a ball that bears the map, such as "10 mm". Without it the map lies on a flat.
+    #[arg(long, value_name = "RADIUS")]
+    pub ball: Option<String>,
+    /// More quantities and fields by their names in a scene, such as displacement,stiffness_fixed_area. Fields are
+    /// written as NPY and PNG.
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    pub outputs: Vec<String>,
     /// Any other key of a scene, such as scene.surface.rows=128 or outputs.displacement=npy. It may be given
     /// several times. The book lists the keys in "What a scene may say".
     #[arg(long, value_name = "KEY=VALUE")]

@@ -4,6 +4,7 @@ mod arguments;
 mod cluster;
 mod press;
 mod start;
+mod unknown;
 
 use arguments::{Arguments, Command, PressArguments, SurfaceArguments};
 use clap::FromArgMatches as _;
@@ -21,7 +22,13 @@ use std::process::ExitCode;
 use std::sync::atomic::Ordering;
 
 fn main() -> ExitCode {
-    let matches = arguments::command().get_matches();
+    let matches = arguments::command().try_get_matches().unwrap_or_else(|error| {
+        let words: Vec<String> =
+            std::env::args_os().skip(1).map(|word| word.to_string_lossy().into()).collect();
+        let Some(answer) = unknown::answer(&error, &arguments::command(), &words) else { error.exit() };
+        runs::err!("{answer}");
+        std::process::exit(2);
+    });
     let arguments = Arguments::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
     let asked = std::env::var_os(runs::THREADS_VARIABLE);
     let done = runs::with_threads(asked.as_deref(), || execute(arguments));

@@ -12,6 +12,9 @@ use std::fmt::Write as _;
 use std::path::{Component, Path, PathBuf};
 use surface_io::{ContentError, Metadata, SurfaceFile};
 
+/// States of the path along which a tangential force grows.
+const TANGENTIAL_STATES: usize = 8;
+
 /// A flag that a command lacks.
 struct Lacking {
     flag: &'static str,
@@ -168,7 +171,8 @@ fn mistake(asked: &PressArguments, lacking: &[Lacking]) -> Option<String> {
             "--cell" => filled.file.add("cell", example),
             "--undefined" => filled.file.add("undefined", example),
             "--bodies" if asked.contact_modulus().is_some() => {
-                return Some("--friction needs --bodies in the place of --contact-modulus".to_owned());
+                let modulus = if asked.note().is_some() { "--modulus" } else { "--contact-modulus" };
+                return Some(format!("--friction needs --bodies in the place of {modulus}"));
             }
             "--bodies" => filled.problem.add("bodies", example),
             "--coupling" => filled.coupling = text,
@@ -257,10 +261,14 @@ fn question(asked: &PressArguments, at: &Path, profile: bool) -> Result<Question
         Some((key, values)) if asked.has_friction() => {
             set(&format!("scene.path.0.{key}"), values)?;
             set("scene.path.1.tangential_force", asked.tangential_force.as_deref().unwrap_or_default())?;
-            set("scene.path.1.states", "8")?;
+            set("scene.path.1.states", &TANGENTIAL_STATES.to_string())?;
         }
         Some((key, values)) => set(&format!("scene.{key}"), values)?,
         None => {}
+    }
+    if let Some(radius) = &asked.ball {
+        set("scene.body.kind", "sphere")?;
+        set("scene.body.radius", radius).map_err(|mistake| mistake.of_flag("scene.body.radius", "--ball"))?;
     }
     set("effects.boundary", &asked.boundary)?;
     if let Some(hardness) = &asked.hardness {
@@ -278,6 +286,9 @@ fn question(asked: &PressArguments, at: &Path, profile: bool) -> Result<Question
         set("effects.friction", &format!("{{ {} }}", keys.join(", ")))?;
     }
     outputs(&mut question, asked, profile);
+    for name in &asked.outputs {
+        add_output(&mut question, name.trim())?;
+    }
     for assignment in &asked.set {
         let Some((key, value)) = assignment.split_once('=') else {
             let message = format!("`--set {assignment}` has no equals sign");
@@ -316,17 +327,37 @@ fn outputs(question: &mut Question, asked: &PressArguments, profile: bool) {
     requested.outputs.stiffness = periodic || !profile;
     requested.outputs.mean_gap = periodic;
     requested.outputs.contact_patches = true;
-    requested.files = vec![
-        (Output::Pressure, vec![FieldFormat::Npy, FieldFormat::Png]),
-        (Output::Gap, vec![FieldFormat::Png]),
-    ];
+    let both = || vec![FieldFormat::Npy, FieldFormat::Png];
+    requested.files = vec![(Output::Pressure, both()), (Output::Gap, both())];
     if asked.has_friction() {
+        // Normal load and half and all of the tangential one: the pressure changes little meanwhile.
+        requested.files = vec![(Output::Pressure, both()), (Output::StickSlip, both())];
+        requested.drawn_states = Some(vec![TANGENTIAL_STATES / 2, TANGENTIAL_STATES]);
         requested.outputs.stick_area = true;
         requested.curves = true;
     } else {
         requested.distributions = vec![Distributed::Pressure, Distributed::Gap];
         requested.grid_error = asked.problem.value("accuracy").is_none();
     }
+}
+
+/// Requests a quantity, or a field as numbers and as pictures, unless it is requested already.
+fn add_output(question: &mut Question, name: &str) -> Result<(), Diagnostic> {
+    let output = Output::ALL.iter().find(|output| output.name() == name);
+    if question.outputs.files.iter().any(|(requested, _)| Some(requested) == output) {
+        return Ok(());
+    }
+    let value = if output.is_some_and(|output| output.is_field()) { "[\"npy\", \"png\"]" } else { "true" };
+    question.set(&format!("outputs.{name}"), value).map_err(|mistake| {
+        let names: Vec<&str> = Output::ALL.iter().map(|output| output.name()).collect();
+        let help = match name {
+            "force" | "approach" | "certificate" => {
+                format!("`{name}` is always computed where the boundary has one")
+            }
+            _ => format!("outputs are {}", names.join(", ")),
+        };
+        mistake.of_flag(&format!("outputs.{name}"), name).with_help(help)
+    })
 }
 
 /// The comment on a key in the scene of a map.
@@ -339,6 +370,7 @@ fn comment(key: &str) -> &'static str {
         "scene.mean_pressure" | "scene.path.mean_pressure" => "force over the area of the map",
         "scene.approach" | "scene.path.approach" => "from first touch",
         "scene.path.tangential_force" => "along x, in equal parts",
+        "scene.body.kind" => "a ball that bears the map",
         "scene.surface.path" => "from the folder of this file",
         "scene.surface.undefined" => "points without a height cannot touch",
         "scene.surface.detrend" => "\"plane\" subtracts a tilt; \"none\" keeps it",

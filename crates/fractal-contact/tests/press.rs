@@ -367,7 +367,7 @@ fn the_answer_comes_first_and_the_rest_with_verbose() {
     assert!(told.starts_with("bem3d\n") && told.contains("[kPa]"), "{told}");
     let files = told.lines().next_back().unwrap();
     assert!(files.starts_with("found/report.html, and beside it scene.toml, results.csv, "), "{files}");
-    assert!(files.ends_with(" pictures, 3 fields"), "{files}");
+    assert!(files.ends_with(" pictures, 6 fields"), "{files}");
     assert!(told.lines().filter(|line| *line != files).all(|line| line.chars().count() <= 80), "{told}");
     // With both bodies E* is no question.
     let bodies = ["--bodies", "1 GPa 0.3", "--verbose"];
@@ -499,7 +499,7 @@ fn requested_outputs_are_those_that_the_contact_has() {
     };
     let (table, scene) = pressed(&["--hardness", "1 GPa"]);
     assert!(scene.contains("grid_error = true") && !scene.contains("mean_gap"), "{scene}");
-    assert!(table.contains("1 field\n"), "one field and no plural: {table}");
+    assert!(table.contains(" pictures, 2 fields\n"), "{table}");
     let (table, _) = pressed(&["--boundary", "periodic"]);
     assert!(table.contains("mean_gap") && table.contains("stiffness"), "{table}");
 
@@ -511,4 +511,35 @@ fn requested_outputs_are_those_that_the_contact_has() {
     let (code, table, said) = program(dir.path(), &line);
     assert!(code == Some(0) && !table.contains("stiffness"), "{code:?} {table}{said}");
     assert!(said.contains("a profile: the body is taken as uniform along y"), "{said}");
+}
+
+/// A ball that bears the map, more quantities by their names, and pictures of stick and slip at half and at all of a
+/// tangential force.
+#[test]
+fn a_ball_more_outputs_and_stick_and_slip_are_asked_for_by_flags() {
+    let dir = folder();
+    let map = ["press", "map.txt", "--force", "1 uN"];
+    let pressed = |more: &[&str]| program(dir.path(), &[&map, &FLAGS[..], more].concat());
+    let scene = || std::fs::read_to_string(dir.path().join("out/map/scene.toml")).unwrap();
+    let bodies = ["--bodies", "1 GPa 0.3, 1 GPa 0.3"];
+    let more = ["--ball", "10 mm", "--outputs", "stiffness_fixed_area,displacement,pressure"];
+    let (code, told, said) = pressed(&[&bodies[..], &more].concat());
+    assert_eq!(code, Some(0), "{said}");
+    assert!(told.contains("stiffness_fixed_area"), "{told}");
+    let text = scene();
+    for line in ["radius = \"10 mm\"", "displacement = [\"npy\", \"png\"]", "stiffness_fixed_area = true"] {
+        assert!(text.contains(line), "{line}: {text}");
+    }
+    assert!(dir.path().join("out/map/displacement-bem3d-0-000.npy").exists());
+    let (code, _, said) = pressed(&[&bodies[..], &["--outputs", "wetness"]].concat());
+    assert!(code == Some(2) && said.contains("wetness") && said.contains("outputs are stiffness"), "{said}");
+    let (code, _, said) =
+        pressed(&[&bodies[..], &["--friction", "0.3", "--tangential-force", "0.2 uN"]].concat());
+    assert_eq!(code, Some(0), "{said}");
+    let drawn = |name: &str| -> Vec<usize> {
+        let exists =
+            |state: &usize| dir.path().join(format!("out/map/{name}-bem3d-0-{state:03}.png")).exists();
+        (0..9).filter(exists).collect()
+    };
+    assert_eq!((drawn("stick_slip"), drawn("pressure")), (vec![4, 8], vec![4, 8]));
 }

@@ -127,9 +127,11 @@ pub(crate) fn choose(
         let reason = format!("{} would take about {takes}, and the budget is {budget}", coarsest.words());
         return Err(none_found(scene, requested, &reason).into());
     }
-    let (mut chosen, error) = if target.is_best() {
+    let (mut chosen, note) = if target.is_best() {
         let finest = all.iter().rposition(|candidate| candidate.seconds[1] <= target.seconds);
-        (all.swap_remove(finest.unwrap_or_default()), None)
+        let chosen = all.swap_remove(finest.unwrap_or_default());
+        let note = chosen_words(&chosen, "");
+        (chosen, note)
     } else {
         let grids: Vec<usize> = all.iter().map(|candidate| candidate.longer).collect();
         let trial = |longer: usize| -> Result<GridTrial<(usize, Option<Worst>)>> {
@@ -142,7 +144,7 @@ pub(crate) fn choose(
             Ok(GridTrial { error, seconds: one, rest, least_rest: rest, kept: (place, worst) })
         };
         let found = analysis::first_grid(&grids, target, calibration::time_exponent(scene), trial)?;
-        let (_, trial) = found.map_err(|none| {
+        let found = found.map_err(|none| {
             let name = |longer: usize| {
                 all.iter().find(|c| c.longer == longer).map_or_else(String::new, Candidate::words)
             };
@@ -155,9 +157,30 @@ pub(crate) fn choose(
             }
             none_found(scene, requested, &reason)
         })?;
-        (all.swap_remove(trial.kept.0), trial.error)
+        let confirming = found.confirming.map(|(longer, seconds)| {
+            let name =
+                all.iter().find(|finer| finer.longer == longer).map_or_else(String::new, Candidate::words);
+            format!(
+                "{name} would confirm it in about {}, and the budget is {}",
+                time(seconds),
+                time(target.seconds)
+            )
+        });
+        let mut chosen = all.swap_remove(found.trial.kept.0);
+        let error = found.trial.error.map(|error| short(100.0 * error)).unwrap_or_default();
+        let mut note = chosen_words(&chosen, &format!(" with an error of {error} % on the first surface,"));
+        if !found.is_confirmed {
+            let no_finer = || match &beyond {
+                Some(beyond) => format!("a finer grid would confirm it, but {beyond}"),
+                None => "there is no finer grid that would confirm it".to_owned(),
+            };
+            let how = confirming.unwrap_or_else(no_finer);
+            note += &format!(". The error is estimated, not confirmed: {how}");
+            chosen.scene.is_unconfirmed = true;
+        }
+        (chosen, note)
     };
-    let note = Diagnostic::note(format!("{}: {}", asked(target), chosen_words(&chosen, error)));
+    let note = Diagnostic::note(format!("{}: {note}", asked(target)));
     chosen
         .scene
         .notes
@@ -165,11 +188,8 @@ pub(crate) fn choose(
     Ok(chosen)
 }
 
-fn chosen_words(chosen: &Candidate, error: Option<f64>) -> String {
+fn chosen_words(chosen: &Candidate, error: &str) -> String {
     let Cells { columns, rows } = chosen.cells();
-    let error = error.map_or_else(String::new, |error| {
-        format!(" with an error of {} % on the first surface,", short(100.0 * error))
-    });
     let takes = time(chosen.seconds[1]);
     format!("bem3d on {columns} x {rows} cells,{error} in about {takes} of a thread of the reference machine")
 }
@@ -322,6 +342,29 @@ mod tests {
         };
         let found = choose(scene, scene.accuracy.unwrap(), &mut errors);
         (found.map(|found| found.longer).map_err(|error| error.to_string()), tried)
+    }
+
+    /// A grid whose error is small enough is taken where a finer one, which would confirm it, takes too long; the
+    /// note and the plan say so.
+    #[test]
+    fn an_error_that_no_finer_grid_confirms_is_marked() {
+        let scene = scene("accuracy = 0.01\nbudget = \"4 s\"", 1);
+        let mut errors = |candidate: &Candidate| {
+            let mut error = analysis::grid_error(1.0, 1.1, 1.3).unwrap();
+            error.error = if candidate.longer < 512 { 0.05 } else { 0.008 };
+            Ok(vec![Some(GridErrors { rms_slope: 0.1, errors: [("stiffness".to_owned(), error)].into() })])
+        };
+        let found = choose(&scene, scene.accuracy.unwrap(), &mut errors).unwrap();
+        assert_eq!((found.longer, found.scene.is_unconfirmed), (512, true));
+        let note = found.scene.notes.last().unwrap().message().to_owned();
+        for words in [
+            "error of 0.8000 %",
+            "estimated, not confirmed: 1024 cells along the longer side would confirm it in about ",
+        ] {
+            assert!(note.contains(words), "{note}");
+        }
+        let plan = crate::scenes::Plan::new(&found.scene).unwrap();
+        assert!(plan.to_string().contains("estimated, not confirmed"), "{plan}");
     }
 
     #[test]

@@ -140,6 +140,10 @@ impl Plan {
     pub fn new(scene: &SceneFile) -> Result<Self> {
         check(scene)?;
         let assumptions = Assumptions::measured(scene);
+        let unconfirmed = |m: &Numerics| match m {
+            Numerics::Bem3d(_) if scene.is_unconfirmed => "; error of the grid estimated, not confirmed",
+            _ => "",
+        };
         let taken = |m: &Numerics| assumptions.as_ref().map_or_else(String::new, |a| a.taken(m));
         let models = scene
             .models
@@ -147,7 +151,7 @@ impl Plan {
             .map(|m| ModelPlan {
                 name: m.name(),
                 grid: grid(scene, m),
-                accuracy: m.accuracy(cells(scene, m)) + &taken(m),
+                accuracy: m.accuracy(cells(scene, m)) + &taken(m) + unconfirmed(m),
                 predicted: None,
             })
             .collect();

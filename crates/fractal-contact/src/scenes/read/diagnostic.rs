@@ -37,6 +37,8 @@ enum DiagnosticKind {
     Type,
     /// A number outside of its range.
     Domain(Box<Error>),
+    /// Keys that their table does not have; those of which nothing is known.
+    Unknown(Vec<String>),
 }
 
 /// The place of a mistake in the text.
@@ -66,6 +68,19 @@ impl Diagnostic {
     /// A number outside of its range.
     pub(crate) fn of_domain(message: impl Into<String>, error: Error) -> Self {
         Self { kind: DiagnosticKind::Domain(Box::new(error)), ..Self::new(message) }
+    }
+
+    /// Keys that their table does not have; those of which nothing is known.
+    pub(crate) fn of_unknown(message: impl Into<String>, names: Vec<String>) -> Self {
+        Self { kind: DiagnosticKind::Unknown(names), ..Self::new(message) }
+    }
+
+    /// The keys that their table does not have and of which nothing is known.
+    pub(crate) fn unknown(&self) -> &[String] {
+        match &self.kind {
+            DiagnosticKind::Unknown(names) => names,
+            _ => &[],
+        }
     }
 
     /// Whether a value is of another type than expected, or missing.
@@ -185,7 +200,9 @@ impl fmt::Display for Diagnostic {
             }
         }
         if let Some(help) = &self.help {
-            write!(f, "\n{} = help: {help}", " ".repeat(indent))?;
+            for line in help.lines() {
+                write!(f, "\n{} = help: {line}", " ".repeat(indent))?;
+            }
         }
         Ok(())
     }

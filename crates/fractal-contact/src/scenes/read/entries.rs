@@ -1,5 +1,6 @@
 //! Reads a table of a scene key by key; a key that is never read is an error.
 
+use crate::scenes::read::other_words::{meant, stands_for};
 use crate::scenes::read::{Diagnostic, Places};
 use contact_model::Error;
 use std::borrow::Cow;
@@ -164,11 +165,18 @@ impl<'a> Entries<'a> {
     pub fn require(&self, key: &'static str, example: &str) -> ReadResult<Entry<'a>> {
         self.find(key).ok_or_else(|| {
             let known = self.known.borrow();
-            let near = |name: &&str| !known.contains(name) && distance(name, key) <= 1 + key.len() / 4;
-            if let Some(found) = self.keys().find(near).and_then(|name| self.entry(name)) {
+            let is_meant = |name: &&str| {
+                !known.contains(name)
+                    && (distance(name, key) <= 1 + key.len() / 4 || stands_for(&self.name, key, name))
+            };
+            if let Some(found) = self.keys().find(is_meant).and_then(|name| self.entry(name)) {
                 return found
-                    .diagnostic_at_key(format!("`{key}` is missing in {}", self.title()))
-                    .with_help(format!("did you mean `{key}` here?"));
+                    .diagnostic_at_key(format!(
+                        "`{key}` is missing in {}, and `{}` is no key of it",
+                        self.title(),
+                        found.name()
+                    ))
+                    .with_help(format!("write `{key}` for `{}`", found.name()));
             }
             let missing = Diagnostic::of_type(format!("`{key}` is missing in {}", self.title()));
             missing.at(self.span.clone()).with_help(format!("add `{key} = {example}`"))
@@ -202,26 +210,54 @@ impl<'a> Entries<'a> {
         self.known_only()
     }
 
-    /// The same for a table that is read further.
+    /// The same for a table that is read further. All such keys are named, with what was probably meant by each.
     pub fn known_only(&self) -> ReadResult<()> {
         let known = self.known.borrow();
-        for (name, span) in self.spanned_keys() {
-            if !known.contains(&name) {
-                let what = if self.name == "effects" { "effect" } else { "key" };
-                let what = if self.name.is_empty() {
-                    "table".to_owned()
-                } else {
-                    format!("{what} in {}", self.title())
-                };
-                // Names of older versions are read, but not suggested.
-                let current: Vec<&str> =
-                    known.iter().copied().filter(|k| !["chance", "width", "modulus"].contains(k)).collect();
-                return Err(Diagnostic::new(format!("`{name}` is no {what}"))
-                    .at(span)
-                    .with_help(suggestion(name, &current)));
+        let mut unknown = self.spanned_keys();
+        unknown.retain(|(name, _)| !known.contains(name));
+        unknown.sort_by_key(|(_, span)| span.start);
+        if unknown.is_empty() {
+            return Ok(());
+        }
+        // Names of older versions are read, but not suggested.
+        let current: Vec<&str> =
+            known.iter().copied().filter(|k| !["chance", "width", "modulus"].contains(k)).collect();
+        let names: Vec<String> = unknown.iter().map(|(name, _)| format!("`{name}`")).collect();
+        let place = if self.name.is_empty() { String::new() } else { format!(" in {}", self.title()) };
+        let what = match (self.name.as_str(), names.len()) {
+            ("", 1) => "is no table",
+            ("", _) => "are no tables",
+            ("effects", 1) => "is no effect",
+            ("effects", _) => "are no effects",
+            (_, 1) => "is no key",
+            _ => "are no keys",
+        };
+        let meanings: Vec<Option<String>> = unknown
+            .iter()
+            .map(|(name, _)| meant(&self.name, name).or_else(|| near(name, &current)))
+            .collect();
+        let mut help: Vec<String> = Vec::new();
+        for meaning in meanings.iter().flatten() {
+            if !help.contains(meaning) {
+                help.push(meaning.clone());
             }
         }
-        Ok(())
+        let untold = unknown.iter().zip(&meanings).filter(|(_, meaning)| meaning.is_none());
+        let untold: Vec<String> = untold.map(|((name, _), _)| (*name).to_owned()).collect();
+        if !untold.is_empty() {
+            help.push(format!("known here: {}", current.join(", ")));
+        }
+        Err(Diagnostic::of_unknown(format!("{} {what}{place}", in_a_row(&names)), untold)
+            .at(unknown[0].1.clone())
+            .with_help(help.join("\n")))
+    }
+}
+
+/// `a`, `a and b`, `a, b and c`.
+fn in_a_row(names: &[String]) -> String {
+    match names {
+        [most @ .., last] if !most.is_empty() => format!("{} and {last}", most.join(", ")),
+        names => names.concat(),
     }
 }
 
@@ -235,6 +271,16 @@ fn syntax(error: &toml::de::Error) -> Diagnostic {
 /// A quantity of this dimension, as it stands in a file.
 fn example(dimension: Dimension) -> String {
     format!("\"{}\"", dimension.example().unwrap_or("1"))
+}
+
+/// The name that was probably meant.
+fn near(name: &str, known: &[&str]) -> Option<String> {
+    let (_, found) = known
+        .iter()
+        .map(|k| (distance(name, k), *k))
+        .min()
+        .filter(|(distance, found)| *distance <= 1 + found.len() / 4)?;
+    Some(format!("did you mean `{found}` for `{name}`?"))
 }
 
 /// The name that was probably meant, or all of them.
@@ -482,7 +528,7 @@ impl<'a> Entry<'a> {
             (System::None, _) => self.number(),
             (System::Si, DeValue::String(text)) => Quantity::parse_as(text, dimension).map_err(|reason| {
                 self.diagnostic(format!("`{}`: {reason}", self.path))
-                    .with_help(format!("write {dimension} with its unit, such as {}", example(dimension)))
+                    .with_help(self.help_with_quantity(text, dimension))
             }),
             (System::Si, DeValue::Integer(_) | DeValue::Float(_)) => {
                 let value = self.number()?;
@@ -493,6 +539,27 @@ impl<'a> Entry<'a> {
             }
             (System::Si, _) => Err(self.wrong(&dimension.to_string(), &example(dimension))),
         }
+    }
+
+    /// How to write a quantity of this dimension: as another load, where the text is one, or in another unit.
+    fn help_with_quantity(&self, text: &str, dimension: Dimension) -> String {
+        const LOADS: [(&str, &str, Dimension); 3] = [
+            ("force", "--force", Dimension::FORCE),
+            ("mean_pressure", "--pressure", Dimension::PRESSURE),
+            ("approach", "--approach", Dimension::LENGTH),
+        ];
+        let is = |of: Dimension| Quantity::parse_as(text, of).is_ok();
+        let is_load = LOADS.iter().any(|(key, ..)| *key == self.name());
+        if let Some((key, flag, _)) = LOADS.iter().find(|(.., of)| is_load && is(*of)) {
+            return format!(
+                "write {dimension} with its unit, such as {}, or prescribe `{key}` in a scene and `{flag}` in `press`",
+                example(dimension)
+            );
+        }
+        if let Some(number) = text.trim().strip_suffix("HV").map(str::trim) {
+            return format!("a Vickers hardness is in kgf/mm^2: write \"{number} kgf/mm^2\"");
+        }
+        format!("write {dimension} with its unit, such as {}", example(dimension))
     }
 
     /// The same, > 0.

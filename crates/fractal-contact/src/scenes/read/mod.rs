@@ -12,6 +12,7 @@ pub(crate) mod key;
 pub(crate) mod load_kind;
 pub(crate) mod loads;
 pub(crate) mod numerics;
+pub(crate) mod other_words;
 pub(crate) mod outputs;
 pub(crate) mod path;
 pub(crate) mod places;

@@ -14,7 +14,7 @@ use crate::scenes::read::outputs::{OUTPUT_KEYS, print_outputs, set_output};
 use crate::scenes::read::path::{AskedStep, PATH_KEYS, read_steps};
 use crate::scenes::read::{
     Diagnostic, EFFECT_KEYS, Entries, Entry, Numerics, ReadResult, RegisteredModel, RequestedAccuracy,
-    RequestedOutputs, System, nearest, printed, read_effects, read_outputs,
+    RequestedOutputs, System, nearest, other_words, printed, read_effects, read_outputs,
 };
 use contact_model::{Body, Effects, Pair};
 use std::fmt::Write as _;
@@ -476,11 +476,54 @@ impl<'c, F: Fn(&str) -> &'c str> TomlLines<F> {
     }
 }
 
+/// The tables that have a key of this name.
+fn tables_of(name: &str) -> Vec<&'static str> {
+    let keys = scene_keys().into_iter().filter(|key| key.name == name).map(|key| key.table);
+    let effects = EFFECT_KEYS.iter().filter(|key| key.name == name).map(|_| "effects");
+    let outputs = contact_model::Output::ALL.iter().filter(|output| output.name() == name).map(|_| "outputs");
+    keys.chain(effects).chain(outputs).collect()
+}
+
+/// Says of keys that their table does not have which tables have them.
+fn with_other_tables(mistake: Diagnostic) -> Diagnostic {
+    let untold = mistake.unknown();
+    let place = |name: &String| {
+        let mut tables = tables_of(name);
+        tables.dedup();
+        let tables: Vec<String> = tables.iter().map(|table| format!("[{table}]")).collect();
+        (!tables.is_empty()).then(|| format!("`{name}` belongs into {}", tables.join(" or ")))
+    };
+    let places: Vec<String> = untold.iter().filter_map(place).collect();
+    if places.is_empty() {
+        return mistake;
+    }
+    let all = places.len() == untold.len();
+    let lines = mistake.help().unwrap_or_default().lines();
+    let lines = lines.filter(|line| !all || !line.starts_with("known here:")).map(str::to_owned);
+    let help: Vec<String> = places.into_iter().chain(lines).collect();
+    mistake.with_help(help.join("\n"))
+}
+
+/// What was meant by a flag that `press` does not have.
+pub fn meant_by_flag(flag: &str) -> Option<String> {
+    let name = flag.trim_start_matches('-').replace('-', "_");
+    let set = || {
+        let table = tables_of(&name).into_iter().next()?;
+        let table = if table == "scene.path" { "scene.path.0" } else { table };
+        Some(format!("a scene has a key of this name: `--set '{table}.{name}=VALUE'`"))
+    };
+    other_words::meant_by_flag(flag).or_else(set)
+}
+
 /// Reads a whole scene, with remarks on former names.
 pub(crate) fn read_question(
     root: &Entries<'_>,
     own: &[RegisteredModel],
 ) -> ReadResult<(Question, Vec<Diagnostic>)> {
+    read_tables(root, own).map_err(with_other_tables)
+}
+
+fn read_tables(root: &Entries<'_>, own: &[RegisteredModel]) -> ReadResult<(Question, Vec<Diagnostic>)> {
     let mut question = Question::default();
     let mut notes = Vec::new();
     let Some(scene) = root.table("scene")? else {
@@ -639,7 +682,14 @@ const BODIES_HELP: &str = "Young's modulus and Poisson's ratio of both bodies, s
                            other one of a single body is rigid";
 
 fn no_bodies(entry: &Entry<'_>, words: &str) -> Diagnostic {
-    entry.diagnostic(format!("`bodies`: \"{words}\" is no body")).with_help(BODIES_HELP)
+    let wrong = entry.diagnostic(format!("`bodies`: \"{words}\" is no body"));
+    let has_decimal_comma =
+        words.split(',').skip(1).any(|part| part.starts_with(|c: char| c.is_ascii_digit()));
+    wrong.with_help(if has_decimal_comma {
+        "a comma is between two bodies; write a decimal point, such as \"210 GPa 0.3, 70 GPa 0.33\""
+    } else {
+        BODIES_HELP
+    })
 }
 
 fn checked_body(young: f64, poisson: f64, ratio: &Entry<'_>) -> ReadResult<Body> {
@@ -656,8 +706,15 @@ fn read_body(entry: &Entry<'_>, system: System) -> ReadResult<Body> {
         return entry.choice(&[("rigid", Body::Rigid)]);
     }
     let table = entry.table()?;
-    let young = table.require("young", "\"70 GPa\"")?.positive(Dimension::PRESSURE, system)?;
+    let young = table.require("young", "\"70 GPa\"")?;
     let ratio = table.require("poisson", "0.33")?;
+    if let (Ok(_), Some(pressure)) = (young.number(), ratio.as_word())
+        && Quantity::parse_as(pressure, Dimension::PRESSURE).is_ok()
+    {
+        let exchanged = ratio.diagnostic(format!("`poisson` is \"{pressure}\", a pressure"));
+        return Err(exchanged.with_help("exchange the values of `young` and `poisson`"));
+    }
+    let young = young.positive(Dimension::PRESSURE, system)?;
     let poisson = ratio.number()?;
     table.finish()?;
     checked_body(young, poisson, &ratio)

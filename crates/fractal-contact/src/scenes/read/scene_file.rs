@@ -8,13 +8,14 @@ use crate::scenes::read::path::pieces;
 use crate::scenes::read::question::{AskedSampling, Material, read_question};
 use crate::scenes::read::scene_surface::{FoundSurface, find_surface};
 use crate::scenes::read::{
-    Diagnostic, Entries, LoadRequest, MOST_CELLS, Numerics, Places, PrescribedLoad, Question, ReadResult,
-    Registry, RequestedAccuracy, RequestedOutputs, Result, SceneSurface, System, short,
+    Diagnostic, Entries, Error, LoadRequest, MOST_CELLS, Numerics, Places, PrescribedLoad, Question,
+    ReadResult, Registry, RequestedAccuracy, RequestedOutputs, Result, SceneSurface, System, nearest, short,
 };
 use contact_model::{
     Adhesion, Boundary, Cells, Directions, Effect, Effects, Friction, Hardness, NormalLoad, Output, Pair,
     Paths, Rheology, Scene, Size,
 };
+use std::io::Read as _;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
@@ -60,7 +61,41 @@ pub struct SceneFile {
     pub reliable_from: Option<f64>,
     /// Remarks on the file, such as keys that have a new name.
     pub notes: Vec<Diagnostic>,
+    /// Whether the grid was chosen for an accuracy by an estimated error that no finer grid confirms.
+    pub(crate) is_unconfirmed: bool,
     places: Places,
+}
+
+/// The mistake of a path of a scene that does not exist, where a file of nearly this name lies beside it.
+fn misspelt_file(path: &Path) -> Option<Error> {
+    let wanted = path.file_name()?.to_string_lossy().into_owned();
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let entries = std::fs::read_dir(folder).ok()?.flatten();
+    let names: Vec<String> = entries
+        .filter_map(|entry| entry.file_name().into_string().ok())
+        .filter(|name| *name != wanted)
+        .collect();
+    let found = nearest(&wanted, names.iter().map(String::as_str))?;
+    let reason = format!("there is no file {}: did you mean {found}, which lies there?", path.display());
+    Some(Error::Argument { name: "scene", reason })
+}
+
+/// The mistake of a map or of a table of results in the place of a scene.
+fn map_in_place_of_scene(path: &Path) -> Option<Diagnostic> {
+    let file = path.display();
+    let mut beginning = Vec::new();
+    std::fs::File::open(path).ok()?.take(1 << 10).read_to_end(&mut beginning).ok()?;
+    if String::from_utf8_lossy(&beginning).contains("\n# column ") {
+        let help = format!("`fractal-contact info {file}` describes them");
+        return Some(Diagnostic::new("these are results and no scene").with_help(help));
+    }
+    let scan = surface_io::SurfaceFile::open(path, &surface_io::ReadOptions::default()).ok()?.scan().ok()?;
+    let about = scan.metadata();
+    let message = format!("this is a map of {} x {} heights and no scene", about.columns, about.rows);
+    let help = format!(
+        "`fractal-contact press {file}` computes its contact and says what else it needs; `fractal-contact info {file}` describes it"
+    );
+    Some(Diagnostic::new(message).with_help(help))
 }
 
 /// `[sampling]`.
@@ -111,6 +146,7 @@ impl SceneFile {
             metadata: None,
             reliable_from: None,
             notes: Vec::new(),
+            is_unconfirmed: false,
             places: Places::default(),
         }
     }
@@ -139,7 +175,20 @@ impl SceneFile {
     /// # Errors
     /// As [`SceneFile::read`].
     pub fn read_with(path: &Path, registry: &Registry) -> Result<Self> {
-        let about = std::fs::metadata(path).map_err(runs::Error::file("read", path))?;
+        let about = match std::fs::metadata(path) {
+            Ok(about) => about,
+            Err(reason) => {
+                return Err(
+                    misspelt_file(path).unwrap_or_else(|| runs::Error::file("read", path)(reason).into())
+                );
+            }
+        };
+        if path.extension().is_none_or(|ending| ending != "toml")
+            && about.is_file()
+            && let Some(map) = map_in_place_of_scene(path)
+        {
+            return Err(map.placed(path, "").into());
+        }
         let length = about.len();
         if about.is_file() && length > LONGEST {
             let message = format!("{length} bytes: a scene is a short text of at most {LONGEST}");

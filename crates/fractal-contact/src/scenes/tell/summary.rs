@@ -3,7 +3,9 @@
 
 use crate::scenes::read::{LoadList, LoadRequest, SceneFile, amount, multiple, number, short};
 use crate::scenes::run::StateRecord;
-use crate::scenes::tell::stated_error::{OF_GRID, OF_SOLVER, PLUS_MINUS, relative_error, with_error};
+use crate::scenes::tell::stated_error::{
+    OF_GRID, OF_GRID_UNCONFIRMED, OF_SOLVER, PLUS_MINUS, relative_error, with_error,
+};
 use crate::scenes::tell::{Mean, StateTable, columns, ensemble};
 use contact_model::Value;
 use contact_model::quantities::{QuantityUnit, Role, StateQuantity};
@@ -374,6 +376,8 @@ pub(crate) fn of_models(table: &StateTable<'_>) -> Vec<ModelStates> {
         let compared = states().any(|record| record.solved().is_some_and(|solved| solved.grid.is_some()));
         let errors = if averaged || !texts.iter().flatten().any(|cell| cell.contains(PLUS_MINUS)) {
             ""
+        } else if compared && scene.is_unconfirmed {
+            OF_GRID_UNCONFIRMED
         } else if compared {
             OF_GRID
         } else {

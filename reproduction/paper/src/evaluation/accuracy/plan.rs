@@ -174,7 +174,7 @@ fn choose(
         let kept = Pilot { surfaces, worst };
         Ok(GridTrial { error, seconds, rest: whole, least_rest: rest(least), kept })
     };
-    let (size, trial) = first_grid(grids, left, power, trial)?.map_err(|none| {
+    let found = first_grid(grids, left, power, trial)?.map_err(|none| {
         let grid = |size: usize| match model {
             EnsembleModel::Bem3d => format!("{size} cells a side"),
             EnsembleModel::Mdr1d => format!("{size} elements"),
@@ -186,13 +186,16 @@ fn choose(
         let expected = format!("less: {}", none.words(left.seconds, &grid, &place, &duration));
         Error::parameter("accuracy", format!("{:.3} %", 100.0 * target.share), expected)
     })?;
+    let trial = found.trial;
     let seconds = spent + trial.rest;
-    plan.run = plan.run.with_sizes(model, size, trial.kept.surfaces as usize);
+    plan.run = plan.run.with_sizes(model, found.grid, trial.kept.surfaces as usize);
     plan.seconds += seconds;
     let (words, percent) = (words(model, &plan.run), 100.0 * target.share);
     let takes = duration(seconds);
-    plan.lines
-        .push(format!("{words} should give each mean to {percent:.2} % in about {takes} of one thread"));
+    let unconfirmed = if found.is_confirmed { "" } else { "; no finer grid confirms the error of the grid" };
+    plan.lines.push(format!(
+        "{words} should give each mean to {percent:.2} % in about {takes} of one thread{unconfirmed}"
+    ));
     Ok(())
 }
 

@@ -1,0 +1,285 @@
+//! What was meant by a name that is no key: other words for keys, and questions that this program does not answer,
+//! with what comes nearest to them. Scenes and flags are told by the same table.
+
+/// Words that stand for a key, or for something that is not computed.
+struct OtherWords {
+    /// Small letters, with `_` between words.
+    words: &'static [&'static str],
+    /// The table of the key and its name; empty where nothing is computed.
+    table: &'static str,
+    key: &'static str,
+    /// How it is written in a scene, or what there is instead.
+    scene: &'static str,
+    /// How it is written as a flag of `press`; empty where there is none, and the scene decides.
+    flag: &'static str,
+}
+
+const fn key(
+    (table, key): (&'static str, &'static str),
+    words: &'static [&'static str],
+    scene: &'static str,
+    flag: &'static str,
+) -> OtherWords {
+    OtherWords { words, table, key, scene, flag }
+}
+
+/// What is not computed, and what comes nearest.
+const fn nothing(words: &'static [&'static str], instead: &'static str) -> OtherWords {
+    OtherWords { words, table: "", key: "", scene: instead, flag: "" }
+}
+
+const BODIES: &str = "Young's modulus and Poisson's ratio of both bodies are `bodies = [{ young = \"210 GPa\", poisson = 0.3 }, \
+                      { young = \"70 GPa\", poisson = 0.33 }]` in [scene]";
+const BODIES_FLAG: &str =
+    "Young's modulus and Poisson's ratio of both bodies are `--bodies '210 GPa 0.3, 70 GPa 0.33'`";
+const BALL: &str =
+    "a ball is a table of its own: [scene.body] with `kind = \"sphere\"` and `radius = \"10 mm\"`";
+const BALL_FLAG: &str = "a ball under the map is `--ball '10 mm'`, by its radius";
+const MAP: &str =
+    "a measured map is a table of its own: [scene.surface] with `kind = \"file\"` and `path = \"map.sur\"`";
+const MAP_FLAG: &str = "the file of the map stands without a flag: `fractal-contact press map.sur`";
+const RESISTANCE: &str = "a contact resistance is the inverse of the conductance: `conductance = { kind = \"electrical\", resistivities = [\"1.7e-8 \
+                          ohm m\", \"1.7e-8 ohm m\"] }`, or thermal with `conductivities`, in [outputs]";
+
+const TABLE: &[OtherWords] = &[
+    key(
+        ("scene.bodies", "young"),
+        &[
+            "young",
+            "youngs",
+            "e",
+            "e1",
+            "e2",
+            "youngs_modulus",
+            "young_modulus",
+            "young_s_modulus",
+            "e_modulus",
+            "elastic_modulus",
+            "elasticity",
+            "material",
+            "materials",
+        ],
+        BODIES,
+        BODIES_FLAG,
+    ),
+    key(
+        ("scene.bodies", "poisson"),
+        &["poisson", "nu", "nu1", "nu2", "poissons_ratio", "poisson_ratio", "poisson_s_ratio"],
+        BODIES,
+        BODIES_FLAG,
+    ),
+    key(
+        ("scene", "contact_modulus"),
+        &[
+            "e_star",
+            "estar",
+            "e*",
+            "reduced_modulus",
+            "effective_modulus",
+            "modulous",
+            "moduli",
+            "composite_modulus",
+        ],
+        "E* of the pair is `contact_modulus = \"115 GPa\"` in [scene]; `bodies` has Young's moduli",
+        "E* of the pair is `--contact-modulus '115 GPa'`; `--bodies` has Young's moduli",
+    ),
+    key(
+        ("scene", "force"),
+        &["load", "loads", "normal_load", "normal_force", "f", "fn", "f_n", "forces", "preload"],
+        "a normal force is `force = \"1 N\"` in [scene], and a pressure over the area of the map `mean_pressure`",
+        "a normal force is `--force '1 N'`, and a pressure over the area of the map `--pressure '1 MPa'`",
+    ),
+    key(
+        ("scene", "mean_pressure"),
+        &["pressure", "nominal_pressure", "normal_pressure", "pressures", "p", "stress"],
+        "a load by its pressure over the nominal area is `mean_pressure = \"1 MPa\"` in [scene]; `pressure` in [outputs] is the field",
+        "a load by its pressure over the area of the map is `--pressure '1 MPa'`",
+    ),
+    key(
+        ("scene", "approach"),
+        &["indentation", "displacement", "depth", "indentation_depth", "delta"],
+        "a load by its distance is `approach = \"10 nm\"` in [scene], counted from first touch",
+        "a load by its distance is `--approach '10 nm'`, counted from first touch",
+    ),
+    key(
+        ("scene.path", "tangential_force"),
+        &["tangential_force", "shear_force", "lateral_force", "tangential_load", "friction_force", "q"],
+        "a tangential load belongs into a step of a path: after a [[scene.path]] with `force` comes a [[scene.path]] with \
+         `tangential_force`, and [effects] has the `friction` that holds it",
+        "a tangential force is `--tangential-force '0.1 N'`, with `--friction 0.3` that holds it",
+    ),
+    key(
+        ("scene.path", "states"),
+        &["steps", "increments", "substeps"],
+        "the number of states of a step is `states = 8` in its [[scene.path]]",
+        "",
+    ),
+    key(
+        ("scene.body", "radius"),
+        &["ball", "sphere", "indenter", "punch", "radius", "diameter"],
+        BALL,
+        BALL_FLAG,
+    ),
+    key(("scene.surface", "path"), &["map", "file", "filename", "topography", "heights_file"], MAP, MAP_FLAG),
+    key(
+        ("scene.surface", "rms_height"),
+        &["rms", "roughness", "sq", "rq", "rms_roughness"],
+        "the rms height of a random surface is `rms_height = \"1 um\"` in [scene.surface] with `kind = \"self_affine\"`",
+        "`press` takes a measured map, whose roughness is in its heights; `fractal-contact surface` makes a random one",
+    ),
+    key(
+        ("effects", "friction"),
+        &["friction", "friction_coefficient", "coefficient_of_friction", "mu", "cof"],
+        "friction is an effect: `friction = { coefficient = 0.3 }` in [effects], and a path of [[scene.path]] has the `tangential_force`",
+        "a coefficient of friction is `--friction 0.3`, with `--tangential-force '0.1 N'`",
+    ),
+    key(
+        ("effects", "hardness"),
+        &["yield", "yield_stress", "yield_strength", "plasticity", "plastic", "hv"],
+        "plastic flow is `hardness = \"2 GPa\"` in [effects], the largest pressure that the softer body bears; about 3 times its yield stress",
+        "plastic flow is `--hardness '2 GPa'`, the largest pressure that the softer body bears; about 3 times its yield stress",
+    ),
+    key(
+        ("effects", "adhesion"),
+        &["adhesion", "jkr", "dmt", "work_of_adhesion", "surface_energy", "gamma"],
+        "adhesion is an effect: `adhesion = { work = \"50 mJ/m^2\" }` in [effects]",
+        "adhesion is `--set 'effects.adhesion={ work = \"50 mJ/m^2\" }'`",
+    ),
+    key(
+        ("effects", "rheology"),
+        &["viscosity", "viscoelasticity", "viscoelastic", "creep", "relaxation", "prony"],
+        "a viscoelastic body is `rheology` in [effects], for the models mdr1d_viscoelastic and equivalent",
+        "viscoelastic bodies need a scene: `rheology` in [effects], for the models mdr1d_viscoelastic and equivalent",
+    ),
+    key(
+        ("effects", "boundary"),
+        &["boundary", "periodic", "boundaries", "boundary_conditions", "pbc"],
+        "`boundary = \"periodic\"` or `\"free\"` belongs into [effects]",
+        "`--boundary periodic` or `--boundary free`",
+    ),
+    key(
+        ("outputs", "conductance"),
+        &[
+            "contact_resistance",
+            "resistance",
+            "thermal_resistance",
+            "electrical_resistance",
+            "thermal_conductance",
+            "electrical_conductance",
+            "contact_conductance",
+            "heat_transfer",
+        ],
+        RESISTANCE,
+        "",
+    ),
+    key(
+        ("outputs", "area"),
+        &["contact_area", "real_area", "true_area", "area_fraction", "contact_fraction"],
+        "the real contact area and its share of the map are `area = true` in [outputs]",
+        "`press` always tells the real contact area",
+    ),
+    key(
+        ("models", "cells"),
+        &["n", "grid", "resolution", "mesh", "points", "nx", "ny", "elements"],
+        "the number of cells a side is `cells = 512` in the table of the model, [models.bem3d]",
+        "the number of cells a side is `--cells 512`",
+    ),
+    key(
+        ("sampling", "surfaces"),
+        &["random_seed", "realisations", "realizations", "samples"],
+        "random surfaces have `seed = 1` and `surfaces = 20` in [sampling]",
+        "",
+    ),
+    nothing(
+        &["leakage", "leak", "flow", "percolation", "permeability", "seal"],
+        "no leakage is computed: `gap = [\"npy\"]` in [outputs] writes the gap of every cell, from which a program for flow takes it",
+    ),
+    nothing(
+        &["lubrication", "lubricant", "oil", "fluid", "viscosity_of_oil", "film_thickness", "film"],
+        "no lubricant is computed, contacts are dry: `gap = [\"npy\"]` in [outputs] writes the gap of the dry contact",
+    ),
+    nothing(
+        &["wear", "archard", "wear_coefficient", "wear_rate"],
+        "no wear is computed: with friction, `slip = [\"npy\"]` in [outputs] and the column `dissipated` are what a law of wear takes",
+    ),
+    nothing(
+        &["temperature", "heat", "flash_temperature", "thermal"],
+        "no temperature is computed: `conductance = { kind = \"thermal\", conductivities = [...] }` in [outputs] is the thermal conductance, and \
+         the column `dissipated` the energy that friction takes",
+    ),
+    nothing(
+        &["coating", "layer", "layers", "thickness", "substrate", "film_on_substrate"],
+        "no coating is computed: bodies are half-spaces, each of one material",
+    ),
+    nothing(
+        &["stress_below", "subsurface", "von_mises", "subsurface_stress", "mises"],
+        "no stress below the surface is computed: `pressure = [\"npy\"]` in [outputs] is the load on the surface from which it follows",
+    ),
+    nothing(
+        &["velocity", "speed", "sliding_speed", "frequency"],
+        "bodies move slowly here: a path has `time` with a `rheology`, and friction does not depend on the speed",
+    ),
+];
+
+/// Where to read more about what is not computed.
+const NOT_HERE: &str = "\"What is not here\" in the book names programs that have it";
+
+fn plain(name: &str) -> String {
+    name.trim_start_matches('-').to_lowercase().replace(['-', ' ', '.'], "_")
+}
+
+/// What was meant by a name that is no key of this table, such as `scene` or `scene.bodies`.
+pub(crate) fn meant(table: &str, name: &str) -> Option<String> {
+    let word = plain(name);
+    let of = TABLE.iter().find(|of| of.words.contains(&&*word))?;
+    Some(match of {
+        OtherWords { table: "", scene, .. } => format!("{scene}; {NOT_HERE}"),
+        // The name of an output or an effect says too little.
+        of if of.table == table && of.key != word && !["outputs", "effects"].contains(&table) => {
+            format!("write `{}` for `{name}`", of.key)
+        }
+        of => of.scene.to_owned(),
+    })
+}
+
+/// What was meant by a flag that `press` does not have.
+pub(crate) fn meant_by_flag(flag: &str) -> Option<String> {
+    let word = plain(flag);
+    let of = TABLE.iter().find(|of| of.words.contains(&&*word))?;
+    Some(match of {
+        OtherWords { table: "", scene, .. } => format!("{scene}; {NOT_HERE}"),
+        OtherWords { flag: "", scene, .. } => {
+            format!("{scene}; `--set TABLE.KEY=VALUE` sets a key for which there is no flag")
+        }
+        of => of.flag.to_owned(),
+    })
+}
+
+/// Whether a name is another word for a key of this table.
+pub(crate) fn stands_for(table: &str, key: &str, name: &str) -> bool {
+    let word = plain(name);
+    TABLE.iter().any(|of| of.table == table && of.key == key && of.words.contains(&&*word))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_word_stands_in_one_place() {
+        let mut words: Vec<&str> = TABLE.iter().flat_map(|of| of.words).copied().collect();
+        let count = words.len();
+        words.sort_unstable();
+        words.dedup();
+        assert_eq!(words.len(), count);
+    }
+
+    #[test]
+    fn other_words_are_told() {
+        assert_eq!(meant("scene.bodies", "E").unwrap(), "write `young` for `E`");
+        assert!(meant("scene", "young").unwrap().contains("`bodies = [{ young = "));
+        assert!(meant("outputs", "leakage").unwrap().starts_with("no leakage is computed"));
+        assert!(meant("scene", "nonsense").is_none());
+        assert!(meant_by_flag("--load").unwrap().contains("`--force '1 N'`"));
+    }
+}
