@@ -249,7 +249,8 @@ impl Progress for Reporter {
                 return;
             }
             let seconds = s.begun.elapsed().as_secs_f64();
-            crate::err!("{} jobs done in {seconds:.1} s, {} of them found on disk", s.jobs, s.reused);
+            let jobs = if s.jobs == 1 { "job" } else { "jobs" };
+            crate::err!("{} {jobs} done in {seconds:.1} s, {} of them found on disk", s.jobs, s.reused);
         });
     }
 

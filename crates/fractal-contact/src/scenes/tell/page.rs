@@ -102,11 +102,18 @@ fn ticks(length: f64, most: f64) -> Vec<f64> {
     (0..=count.min(most as usize)).map(|i| i as f64 * step).collect()
 }
 
+/// Whether the values of a field on the page are read by clicks and keys.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Reading {
+    Values,
+    PictureAlone,
+}
+
 /// A field with axes, whose values are read by clicks and keys; where no script runs, it is a picture.
 ///
 /// # Errors
 /// A picture that cannot be encoded.
-pub(crate) fn field(picture: &FieldPicture<'_>, view: &FieldView) -> Result<Markup> {
+pub(crate) fn field(picture: &FieldPicture<'_>, view: &FieldView, reading: Reading) -> Result<Markup> {
     let (least, most) = view.ends.unwrap_or_default();
     let own = FieldPicture { range: Some(picture.range.unwrap_or((least, most))), ..picture.clone() };
     let scale = own.scale();
@@ -135,8 +142,10 @@ pub(crate) fn field(picture: &FieldPicture<'_>, view: &FieldView) -> Result<Mark
     let alt = format!("{}, {}: {of_cells}{range}.", picture.title, picture.subtitle);
     let axis = |side: f64, edge: &str| axis_ticks(side, size.x.max(size.y), per_length, edge);
     let name = |axis: &str| html! { i { (axis) } @if !length.is_empty() { " (" (length) ")" } };
+    let is_read = reading == Reading::Values;
+    let data = is_read.then(|| data.to_string());
     Ok(html! {
-        figure.field data-field=(data.to_string()) {
+        figure.field data-field=[data] {
             div.map {
                 div.name aria-hidden="true" { (name("y")) }
                 div.y aria-hidden="true" { (axis(size.y, "bottom")) }
@@ -145,17 +154,21 @@ pub(crate) fn field(picture: &FieldPicture<'_>, view: &FieldView) -> Result<Mark
                 div.name aria-hidden="true" { (name("x")) }
             }
             (colour_bar(&scale, picture.classes, (&unit_name, per_unit)))
-            div.tools {
-                button type="button" aria-label={ "Enlarge: " (words) } { "+" }
-                button type="button" aria-label={ "Reduce: " (words) } { "-" }
-                button type="button" { "whole map" }
+            @if is_read {
+                div.tools {
+                    button type="button" aria-label={ "Enlarge: " (words) } { "+" }
+                    button type="button" aria-label={ "Reduce: " (words) } { "-" }
+                    button type="button" { "whole map" }
+                }
             }
             figcaption {
                 strong { (picture.title) } ", " (picture.subtitle)
                 @if let Some(reduction) = view.reduction() { ". " (reduction) }
             }
-            output aria-live="polite" {}
-            (read_by_script(view))
+            @if is_read {
+                output aria-live="polite" {}
+                (read_by_script(view))
+            }
         }
     })
 }

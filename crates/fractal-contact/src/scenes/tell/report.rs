@@ -3,12 +3,13 @@
 use crate::scenes::plan::{Cost, Plan, PredictedFrom};
 use crate::scenes::read::{HEIGHTS, Result, SceneFile, number, short, words};
 use crate::scenes::run::{FieldFile, FieldView, SceneOutcome, SolvedUnit, StateRecord, field_pictures};
+use crate::scenes::tell::page::Reading;
 use crate::scenes::tell::{MapStatisticsTables, StateTable, columns, distributions, page, pictures, summary};
 use contact_model::Value;
 use contact_model::quantities::{Role, StateQuantity};
 use contact_model::{Boundary, FieldQuantity};
 use maud::{Markup, PreEscaped, html};
-use plots::{Chart, Curve};
+use plots::{Chart, Curve, FieldPicture};
 use runs::amounts::{memory, time};
 use std::collections::BTreeMap;
 
@@ -39,7 +40,11 @@ impl Report<'_> {
             @if !self.plan.shows.is_empty() { p.lead { (page::words(&self.plan.shows)) } }
             (self.verdict())
         };
-        let results = html! { (self.tables()) (self.warnings()) div.charts { (curves) } (distributions) };
+        let first = self.first_map()?;
+        let results = html! {
+            div.first { div { (self.tables()) } @if let Some(map) = first { (map) } }
+            (self.warnings()) div.charts { (curves) } (distributions)
+        };
         let surface = html! { (self.surface()) (spectrum) };
         let scene = html! { pre { (self.scene().text) } };
         let sections = [
@@ -243,6 +248,26 @@ impl Report<'_> {
 
     /// The map and the fields of the first surface as long as there is room: of the largest loads first, or
     /// of steps spread over a path; shown in the order of the loads, each quantity in one scale.
+    /// Stick and slip or the pressure, beside the numbers, because people look before they read: under the largest load,
+    /// or at the last step of a path in contact.
+    fn first_map(&self) -> Result<Option<Markup>> {
+        if self.scene().surface.is_profile() {
+            return Ok(None);
+        }
+        let views = self.views();
+        let of_field = |name: &str| {
+            let mut of = views.iter().filter(|view| view.field.name == name && !view.is_zero());
+            if self.scene().is_history() {
+                of.max_by_key(|view| view.state.map(|state| state.index))
+            } else {
+                of.next()
+            }
+        };
+        let Some(view) = of_field("stick_slip").or_else(|| of_field("pressure")) else { return Ok(None) };
+        let range = ranges(&views).get(&(view.field.name, view.model)).copied();
+        page::field(&self.picture(view, range), &view.shown, Reading::PictureAlone).map(Some)
+    }
+
     fn fields(&self) -> Result<Markup> {
         let views = self.views();
         let ranges = ranges(&views);
@@ -267,6 +292,8 @@ impl Report<'_> {
             let (a, b) = (order(a), order(b));
             a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
         });
+        // The fields of one state stand on one row.
+        let index = |state: Option<&StateRecord>| state.map(|state| state.index);
         let which =
             if self.scene().is_history() { "spread over the path" } else { "those of the largest loads" };
         Ok(html! {
@@ -279,7 +306,9 @@ impl Report<'_> {
                     @if zeros > 0 { " Fields that are zero everywhere are not drawn." }
                     @if drawn.len() + zeros < views.len() { " " (drawn.len()) " of " (views.len()) " fields are shown, " (which) "; the others are files beside this page." }
                 }
-                div.fields { @for (_, _, figure) in &drawn { (PreEscaped(figure)) } }
+                @for of_state in drawn.chunk_by(|a, b| a.0 == b.0 && index(a.1) == index(b.1)) {
+                    div.fields { @for (_, _, figure) in of_state { (PreEscaped(figure)) } }
+                }
             }
         })
     }
@@ -305,16 +334,23 @@ impl Report<'_> {
         views
     }
 
+    fn picture<'b>(&self, view: &'b View<'_>, range: Option<(f64, f64)>) -> FieldPicture<'b> {
+        let View { shown, field, model, state } = view;
+        FieldPicture {
+            range,
+            ..field_pictures::picture(self.scene(), field, model, (0, *state), shown.cells, &[])
+        }
+    }
+
     /// A field with its axes, or the curve of a profile.
     fn figure(&self, view: &View<'_>, range: Option<(f64, f64)>) -> Result<String> {
-        let View { shown, field, model, state } = view;
-        let mut picture = field_pictures::picture(self.scene(), field, model, (0, *state), shown.cells, &[]);
-        picture.range = range;
+        let mut picture = self.picture(view, range);
+        let shown = &view.shown;
         let figure = if self.scene().surface.is_profile() {
             picture.subtitle += &shown.reduction().map_or_else(String::new, |said| format!("; {said}"));
             page::chart(&field_pictures::row_chart(&picture, shown.row(self.scene().surface.size().x)))?
         } else {
-            page::field(&picture, shown)?
+            page::field(&picture, shown, Reading::Values)?
         };
         Ok(figure.into_string())
     }

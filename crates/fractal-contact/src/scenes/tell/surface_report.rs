@@ -82,7 +82,7 @@ impl SurfaceReport<'_> {
             picture.subtitle += &view.reduction().map_or_else(String::new, |said| format!("; {said}"));
             return page::chart(&field_pictures::row_chart(&picture, view.row(map.size().x)));
         }
-        page::field(&picture, &view)
+        page::field(&picture, &view, page::Reading::Values)
     }
 
     /// Distribution of the heights, with that of the normal law.

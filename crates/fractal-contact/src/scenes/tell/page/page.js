@@ -3,7 +3,7 @@
 const bytes = (text) => Uint8Array.from(atob(text.trim()), (c) => c.charCodeAt(0)).buffer;
 const palette = new Uint8Array(bytes(document.getElementById("palette").textContent));
 
-document.querySelectorAll("figure.field").forEach((figure) => {
+document.querySelectorAll("figure.field[data-field]").forEach((figure) => {
   const f = JSON.parse(figure.dataset.field);
   const values = new Float32Array(bytes(figure.querySelector(".values").textContent));
   const places = new Uint8Array(bytes(figure.querySelector(".places").textContent));
