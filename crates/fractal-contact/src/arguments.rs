@@ -81,7 +81,7 @@ Exit codes:
   0    Everything was computed.
   1    An error ended the command.
   2    There is a mistake in the scene or in the arguments.
-  3    The command ran to its end, but some loads were refused or did not converge.
+  3    The command ran to its end, but some loads were refused, could not be held (pull-off), or did not converge.
   130  Ctrl-C, SIGTERM or SIGHUP stopped the run. The states so far are in the files. A second signal ends the program at once.
   141  Nobody reads the output any more.
 

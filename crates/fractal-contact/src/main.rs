@@ -333,6 +333,12 @@ fn how_it_went(outcome: &SceneOutcome) -> ExitCode {
             were(failed)
         ));
     }
+    if outcome.pulled_off > 0 {
+        say(
+            "A path ends where the bodies come apart: the attraction cannot hold the force of its next step."
+                .to_owned(),
+        );
+    }
     if outcome.stopped {
         say(format!(
             "Stopped: {states} of {requested} states are kept. The same command goes on with the others."
@@ -341,9 +347,10 @@ fn how_it_went(outcome: &SceneOutcome) -> ExitCode {
     }
     if not_attempted > 0 {
         say(format!(
-            "{not_attempted} of {requested} states {} not attempted, because they come after a step that failed.",
-            were(not_attempted)
+            "{not_attempted} of {requested} states {} not attempted, because they come after {}.",
+            were(not_attempted),
+            if failed == 0 { "the pull-off" } else { "a step that failed" }
         ));
     }
-    if failed > 0 { ExitCode::from(3) } else { ExitCode::SUCCESS }
+    if failed + outcome.pulled_off > 0 { ExitCode::from(3) } else { ExitCode::SUCCESS }
 }

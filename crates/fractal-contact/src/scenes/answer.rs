@@ -173,7 +173,8 @@ impl<'a> SceneAnswers<'a> {
             outcome.notes.extend(result.notes.iter().cloned());
             for record in &result.states {
                 outcome.states += 1;
-                outcome.failed += usize::from(record.converged().is_none());
+                outcome.pulled_off += usize::from(record.is_pulled_off());
+                outcome.failed += usize::from(record.converged().is_none() && !record.is_pulled_off());
                 if record.solved().is_none() || record.is_pulled_off() {
                     let why = record.note().filter(|note| !outcome.notes.contains(note));
                     outcome.notes.extend(why);

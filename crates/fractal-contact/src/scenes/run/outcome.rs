@@ -26,6 +26,8 @@ pub struct SceneOutcome {
     pub states: usize,
     /// How many of these were refused or did not reach their tolerance.
     pub failed: usize,
+    /// How many of these are the last stable state of a path that was pulled off.
+    pub pulled_off: usize,
     /// How many of these an earlier run had kept.
     pub kept: usize,
     /// The reasons given, each once.

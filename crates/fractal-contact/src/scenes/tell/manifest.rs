@@ -68,6 +68,7 @@ pub(crate) fn write(
         "states_requested": outcome.requested,
         "states": outcome.states,
         "failed": outcome.failed,
+        "pulled_off": outcome.pulled_off,
         "kept_from_earlier_runs": outcome.kept,
         "notes": outcome.notes,
         "files": runs::file_names(&outcome.files),

@@ -65,15 +65,20 @@ impl Report<'_> {
     }
 
     fn verdict(&self) -> Markup {
-        let SceneOutcome { requested, states, failed, stopped, .. } = *self.outcome;
+        let SceneOutcome { requested, states, failed, pulled_off, stopped, .. } = *self.outcome;
         let rest = requested - states;
-        let fine = failed == 0 && rest == 0;
+        let fine = failed == 0 && rest == 0 && pulled_off == 0;
         let warnings = self.outcome.notes.len() + self.plan.notes.len();
         html! {
             p.verdict.warned[!fine] {
                 @if fine && states == 1 { "The requested state was solved and is certified." }
                 @else if fine { "All " (states) " requested states were solved and are certified." }
-                @else { (states) " of " (requested) " states were attempted; " (failed) " of them were refused or missed their tolerance." }
+                @else {
+                    (states) " of " (requested) " states were attempted"
+                    @if failed > 0 { "; " (failed) " of them " (if failed == 1 { "was" } else { "were" }) " refused or missed the tolerance" }
+                    "."
+                    @if pulled_off > 0 { " A path ends where the bodies come apart, and its last row is the last stable state." }
+                }
                 @if stopped { " The run was stopped before its end." }
                 @if warnings > 0 { " " a href="#beware" { (warnings) @if warnings == 1 { " thing" } @else { " things" } " to beware of" } "." }
             }
