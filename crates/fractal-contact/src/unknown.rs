@@ -97,19 +97,20 @@ fn unknown_flag(typed: &str, called: &clap::Command, command: &clap::Command) ->
     };
     let others: Vec<&str> =
         command.get_subcommands().filter(|of| has(of)).map(clap::Command::get_name).collect();
-    let help = if presses {
-        near().or_else(|| meant_by_flag(flag))
-    } else if let Some(near) = near() {
-        Some(near)
-    } else if others.is_empty() {
-        meant_by_flag(flag).filter(|_| name == "run")
-    } else {
-        let of = format!("it is a flag of `{}`", others.join("`, `"));
-        let key = scene_keys().into_iter().find(|key| flag_of(key.name) == flag);
-        Some(match key.filter(|_| ["run", "plan"].contains(&name)) {
-            Some(key) => format!("{of}; a scene says it itself: `{}` in [{}]", key.name, key.table),
-            None => of,
-        })
+    let of_others =
+        (!others.is_empty() && !presses).then(|| format!("it is a flag of `{}`", others.join("`, `")));
+    let of_scene = || {
+        let key = scene_keys().into_iter().find(|key| flag_of(key.name) == flag)?;
+        Some(format!("a scene says it itself: `{}` in [{}]", key.name, key.table))
+    };
+    let help = match near() {
+        Some(near) => Some(near),
+        None if presses => meant_by_flag(flag),
+        None if ["run", "plan"].contains(&name) => {
+            let both: Vec<String> = of_others.into_iter().chain(of_scene()).collect();
+            Some(both.join("; ")).filter(|words| !words.is_empty())
+        }
+        None => of_others,
     };
     let all = format!("`fractal-contact {name} --help` lists the flags");
     let help = help.unwrap_or(all);
@@ -150,7 +151,7 @@ mod tests {
             ("press map.txt --output area", "did you mean `--outputs`?"),
             ("press map.txt --leakage", "no leakage is computed"),
             ("press map.txt --rms-height 1", "`--set 'scene.surface.rms_height=VALUE'`"),
-            ("run scene.toml --mean-gap 1", "`fractal-contact run --help` lists the flags"),
+            ("run scene.toml --mean-gap 1", "a scene says it itself: `mean_gap` in [scene]"),
             ("press map.txt --nonsense 1", "`fractal-contact press --help` lists the flags"),
             ("press map.txt --bodies 210 GPa 0.3", "`--bodies '210 GPa'`"),
             ("run scene.toml --accuracy 1", "it is a flag of `press`, `new`"),

@@ -380,7 +380,7 @@ fn the_answer_comes_first_and_the_rest_with_verbose() {
         "\nmodels\n  bem3d\n    grid       8 x 8 cells of 500 nm\n",
         "estimate    ",
         "from the sizes and times stored in the program, within a factor of ten",
-        " jobs done in ",
+        "1 job done in ",
         "  predicted  ",
         "  actual     ",
         "states       3 requested, 3 in the table (0 of them kept from an earlier run)",
