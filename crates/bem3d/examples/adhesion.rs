@@ -43,14 +43,22 @@ fn main() -> Result<(), Box<dyn StdError>> {
         }
         ["map", cells, hurst, seed, work, range, tolerance, forces] => {
             let forces = forces.split(',').map(str::parse).collect::<Result<Vec<f64>, _>>()?;
-            let adhesion = (work.parse()?, range.parse()?);
-            map(cells.parse()?, hurst.parse()?, seed.parse()?, adhesion, tolerance.parse()?, &forces)
+            let surface = SelfAffine { hurst: hurst.parse()?, ..SelfAffine::new(2.5, 1.0, 1.0)? };
+            let (work, range) = (work.parse()?, range.parse()?);
+            let adhesion = if range > 0.0 {
+                Adhesion::FiniteRange { work, range, law: AdhesionLaw::Exponential }
+            } else {
+                Adhesion::ShortRange { work }
+            };
+            let model = Bem3d { cells: cells.parse()?, tolerance: tolerance.parse()?, ..Bem3d::default() };
+            map(model, surface, seed.parse()?, adhesion, &forces)
         }
         ["challenge", cells, side, roll_off, range, seed, pressures] => {
             let pressures = pressures.split(',').map(str::parse).collect::<Result<Vec<f64>, _>>()?;
             let lengths = [side, roll_off, range].map(str::parse::<f64>);
             let [side, roll_off, range] = lengths.map(|length| length.map(|nm| nm * 1e-9));
-            challenge(cells.parse()?, (side?, roll_off?, range?), seed.parse()?, &pressures)
+            let lengths = ChallengeLengths { side: side?, roll_off: roll_off?, range: range? };
+            challenge(cells.parse()?, lengths, seed.parse()?, &pressures)
         }
         _ => Err("usage: adhesion sphere LAW MU CELLS HALF_SIDE STEPS | cycle LAW MU CELLS HALF_SIDE STEPS | jkr CELLS OFF STEPS | heights CELLS HURST SEED FILE | map CELLS HURST SEED WORK RANGE TOLERANCE F1,... | challenge CELLS SIDE ROLL_OFF RANGE SEED P1,...".into()),
     }
@@ -189,23 +197,16 @@ fn sphere(law: AdhesionLaw, mu: f64, cells: usize, half: f64, steps: usize) -> R
 }
 
 fn map(
-    cells: usize,
-    hurst: f64,
+    model: Bem3d,
+    surface: SelfAffine,
     seed: u64,
-    (work, range): (f64, f64),
-    tolerance: f64,
+    adhesion: Adhesion,
     forces: &[f64],
 ) -> Result<(), Box<dyn StdError>> {
-    let surface = SelfAffine { hurst, ..SelfAffine::new(2.5, 1.0, 1.0)? };
     let mut scene = Scene::new(Surface::SelfAffine(surface), 1.0);
     (scene.outputs.area, scene.outputs.stiffness) = (true, false);
     scene.effects.boundary = Boundary::Periodic;
-    scene.effects.adhesion = if range > 0.0 {
-        Adhesion::FiniteRange { work, range, law: AdhesionLaw::Exponential }
-    } else {
-        Adhesion::ShortRange { work }
-    };
-    let model = Bem3d { cells, tolerance, ..Bem3d::default() };
+    scene.effects.adhesion = adhesion;
     let mut history = ContactModel::prepare(&model, &scene, seed)?;
     println!("force stiffness branch stability energy cells steps applications seconds");
     for (i, &force) in forces.iter().enumerate() {
@@ -225,12 +226,22 @@ const CHALLENGE: (f64, f64, f64) = (25e6, 0.05, 1e-7);
 /// are in no bin.
 const BINS: (f64, usize, f64) = (0.1, 42, -1.0);
 
+/// Lengths of a surface of the challenge, and the range of its attraction, in m.
+#[derive(Clone, Copy)]
+struct ChallengeLengths {
+    side: f64,
+    /// The longest wave.
+    roll_off: f64,
+    range: f64,
+}
+
 fn challenge(
     cells: usize,
-    (side, roll_off, range): (f64, f64, f64),
+    lengths: ChallengeLengths,
     seed: u64,
     pressures: &[f64],
 ) -> Result<(), Box<dyn StdError>> {
+    let ChallengeLengths { side, roll_off, range } = lengths;
     let (contact_modulus, work, shortest) = CHALLENGE;
     let mut surface = SelfAffine { hurst: 0.8, ..SelfAffine::new(2.2, side, side)? };
     (surface.roll_off, surface.short_cutoff) = (Some(TAU / roll_off), Some(TAU / shortest));

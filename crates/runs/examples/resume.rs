@@ -11,7 +11,7 @@
 //! ```
 
 use contact_model::{SelfAffine, Stop};
-use runs::{Error, Job, Result, ResultKind, Silent, Store, Threads, collect, run_stored};
+use runs::{Error, Job, JobRun, Result, ResultKind, Silent, Store, Threads, collect, run_stored};
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use surface_gen::self_affine_map;
@@ -58,11 +58,14 @@ fn main() -> Result<()> {
 
     // Stopped after three jobs, as by Ctrl-C.
     let enough = || solved.load(Ordering::Relaxed) >= 3;
-    let interrupted = run_stored("summits", &jobs, &store, Threads::all(1), &Silent, &enough);
+    let first = JobRun { store: &store, threads: Threads::all(1), progress: &Silent, stop: &enough };
+    let interrupted = run_stored("summits", &jobs, first);
     println!("first run: {} results, {} solved", interrupted.iter().flatten().count(), count());
-    let resumed = collect(run_stored("summits", &jobs, &store, Threads::all(1), &Silent, &|| false))?;
+    let second = JobRun { stop: &|| false, ..first };
+    let resumed = collect(run_stored("summits", &jobs, second))?;
     println!("second run: {} results, {} solved", resumed.len(), count());
-    let again = collect(run_stored("summits", &jobs, &store, Threads::all(2), &Silent, &|| false))?;
+    let third = JobRun { threads: Threads::all(2), ..second };
+    let again = collect(run_stored("summits", &jobs, third))?;
     println!("third run: {} results, {} solved", again.len(), count());
     println!("summits at {:.3}, {:.3}, {:.3}, ... rms heights", again[0], again[1], again[2]);
     assert_eq!(resumed, again); // to the bit

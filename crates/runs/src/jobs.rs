@@ -193,6 +193,25 @@ pub trait Job: Sync {
     }
 }
 
+/// A run of jobs: where their results are kept, how many are in progress, who is told and what stops it.
+#[derive(Clone, Copy)]
+pub struct JobRun<'a> {
+    /// Keeps the results.
+    pub store: &'a Store,
+    /// Number of threads and of jobs in progress.
+    pub threads: Threads,
+    /// Is told of each job that is done.
+    pub progress: &'a dyn Progress,
+    /// Whether no further job begins, and those in progress stop.
+    pub stop: &'a (dyn Fn() -> bool + Sync),
+}
+
+impl std::fmt::Debug for JobRun<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("JobRun").field("threads", &self.threads).finish_non_exhaustive()
+    }
+}
+
 /// Does all jobs that the store does not hold, the most expensive first, and gives the results in the order
 /// of `jobs`; `None` where a failure or `stop` came first. The results do not depend on `threads`.
 ///
@@ -205,14 +224,11 @@ pub trait Job: Sync {
 pub fn run_stored<J: Job>(
     what: &str,
     jobs: &[J],
-    store: &Store,
-    threads: Threads,
-    progress: &dyn Progress,
-    stop: &(dyn Fn() -> bool + Sync),
+    run: JobRun<'_>,
 ) -> Vec<Option<Result<J::Output, J::Error>>> {
     let order = largest_first(jobs.len(), |i| jobs[i].cost());
     let ordered = Ordered { jobs, order: &order, solved: &|_, _| Ok(()) };
-    run_in_order(what, &ordered, store, threads, progress, stop)
+    run_in_order(what, &ordered, run)
 }
 
 /// Jobs that begin in an order of their own.
@@ -238,12 +254,10 @@ impl<J: Job> std::fmt::Debug for Ordered<'_, J> {
 pub fn run_in_order<J: Job>(
     what: &str,
     ordered: &Ordered<'_, J>,
-    store: &Store,
-    threads: Threads,
-    progress: &dyn Progress,
-    stop: &(dyn Fn() -> bool + Sync),
+    run: JobRun<'_>,
 ) -> Vec<Option<Result<J::Output, J::Error>>> {
     let Ordered { jobs, order, solved } = ordered;
+    let JobRun { store, threads, progress, stop } = run;
     store.tell_unused(progress);
     progress.begin(what, jobs.iter().map(Job::cost).sum());
     let done = run_jobs(threads, order, stop, |i, stop| {
@@ -478,8 +492,8 @@ mod tests {
         let jobs: Vec<Doubled> = (0..3).map(Doubled).collect();
         let run = || {
             let counter = JobCounter::default();
-            let done =
-                collect(run_stored("doubles", &jobs, &store, Threads::all(2), &counter, &never)).unwrap();
+            let run = JobRun { store: &store, threads: Threads::all(2), progress: &counter, stop: &never };
+            let done = collect(run_stored("doubles", &jobs, run)).unwrap();
             assert_eq!(done, [0, 2, 4]);
             (counter.0.into_inner(), counter.1.into_inner())
         };
@@ -546,7 +560,9 @@ mod tests {
         let jobs = vec![Counted(5)];
         let run = || {
             let store = Store::open(dir.path(), false).unwrap();
-            let done = run_stored("counts", &jobs, &store, Threads::all(1), &JobCounter::default(), &never);
+            let counter = JobCounter::default();
+            let run = JobRun { store: &store, threads: Threads::all(1), progress: &counter, stop: &never };
+            let done = run_stored("counts", &jobs, run);
             (collect(done).ok(), JobList::is_done(&jobs, 0, &store))
         };
         let counted = Some(vec![vec![0, 1, 2, 3, 4]]);

@@ -53,7 +53,8 @@ pub use csv_file::{CsvFile, Header, csv_bytes, number, write_csv};
 pub use encoding::ResultKind;
 pub use error::{Error, Result};
 pub use jobs::{
-    Failure, Job, JobList, Ordered, Threads, collect, on_one_thread, run_in_order, run_jobs, run_stored,
+    Failure, Job, JobList, JobRun, Ordered, Threads, collect, on_one_thread, run_in_order, run_jobs,
+    run_stored,
 };
 pub use manifest::{file_names, machine, write_manifest};
 pub use meters::{

@@ -15,4 +15,4 @@ pub use candidates::Candidates;
 pub use initial_guess::{LastState, cold_start, predicted_cells};
 pub use residuals::Residuals;
 pub use solver::{resume, solve};
-pub use state::{Continuation, Control, Guess, Limits, Problem, Solved};
+pub use state::{ContactGap, Continuation, Control, Guess, Limits, Problem, Solved};

@@ -1,7 +1,7 @@
 //! How well a pressure satisfies the contact conditions (KKT), from its gap.
 
 use super::bounds::{Bounds, Extremes};
-use crate::geometry::CellSet;
+use super::state::ContactGap;
 use crate::law::ConvexLaw;
 use crate::real::{sum, sum_of_pairs};
 use serde::{Deserialize, Serialize};
@@ -26,18 +26,14 @@ impl Residuals {
         self.duality_gap.max(self.penetration).max(self.complementarity)
     }
 
-    /// Residuals of a pressure `p` on a contact set, from the gap `left` on that set and the gap on all cells
-    /// that could touch. Gaps are compared with the length `s`.
+    /// Residuals of a pressure `p` on a contact set, from the gap under it. Gaps are compared with the length
+    /// `s`.
     ///
     /// Outside the candidates the gap is positive, so that their minimum is the minimum of all.
-    pub fn measure(
-        bounds: Bounds,
-        (contact, p, left): (&CellSet, &[f64], &[f64]),
-        everywhere: (&CellSet, &[f64]),
-        s: f64,
-    ) -> Self {
+    pub fn measure(bounds: Bounds, p: &[f64], under: ContactGap<'_>, s: f64) -> Self {
+        let ContactGap { contact, left, checked, gap } = under;
         let force = sum(p);
-        let Extremes { deepest, level, unfilled } = bounds.extremes(force, (contact, p), everywhere);
+        let Extremes { deepest, level, unfilled } = bounds.extremes(force, (contact, p), (checked, gap));
         if force <= 0.0 {
             // No pressure yet: only the penetration has a meaning.
             return Self { penetration: deepest / s, deepest, ..Self::default() };
@@ -53,7 +49,7 @@ impl Residuals {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::Grid;
+    use crate::geometry::{CellSet, Grid};
     use approx::assert_relative_eq;
 
     /// Residuals on a row of cells.
@@ -62,7 +58,8 @@ mod tests {
         let contact = everywhere.filter(p, |p| p > 0.0);
         let pressed: Vec<f64> = p.iter().copied().filter(|p| *p > 0.0).collect();
         let left = contact.carry(&everywhere, gap);
-        Residuals::measure(bounds, (&contact, &pressed, &left), (&everywhere, gap), s)
+        let under = ContactGap { contact: &contact, left: &left, checked: &everywhere, gap };
+        Residuals::measure(bounds, &pressed, under, s)
     }
 
     #[test]

@@ -1,10 +1,10 @@
 //! The outer iteration: solve on a superset of the contact set, remove cells in tension, add penetrating
 //! cells.
 
-use super::line_search::shorten;
+use super::line_search::{StepStart, shorten};
 use super::progress::{Decision, Evaluated, Look, OuterProgress, criteria};
 use super::residuals::Residuals;
-use super::state::{Continuation, Control, Guess, Limits, Problem, Solved};
+use super::state::{ContactGap, Continuation, Control, Guess, Limits, Problem, Solved};
 use crate::geometry::CellSet;
 use crate::law::{Descent, descend};
 use crate::linear::{Factor, Fixed};
@@ -193,8 +193,9 @@ impl<'a> Solver<'a> {
         // Just above the plane: a generous guess must not make every outer iteration evaluate the whole grid.
         *reach = tuning.candidates * d;
         let height = limits.height.unwrap_or(d);
+        let under = ContactGap { contact: &now.contact, left, checked, gap };
         Evaluated {
-            residuals: Residuals::measure(bounds, (&now.contact, &now.p, left), (checked, gap), height),
+            residuals: Residuals::measure(bounds, &now.p, under, height),
             complete: *uncertainty <= 0.0 && step.is_none() && d <= state.reach,
             uncertainty: *uncertainty,
             factored: now.q.is_some(),
@@ -255,9 +256,10 @@ impl<'a> Solver<'a> {
             return None;
         }
         let tuning = *self.problem.operators.tuning();
-        let old = (at.checked.carry(&before.contact, &before.p), &at.gap[..], before.d);
+        let pressure = at.checked.carry(&before.contact, &before.p);
+        let start = StepStart { pressure: &pressure, gap: &at.gap, approach: before.d };
         let mut p = checked.carry(&self.now.contact, &self.now.p);
-        let share = shorten(old, (&mut p, gap), tuning.whole_step);
+        let share = shorten(start, &mut p, gap, tuning.whole_step);
         self.inner_steps =
             if share.is_some() { tuning.short_steps } else { self.inner_steps.saturating_mul(2) };
         if share.is_some() {

@@ -143,6 +143,19 @@ pub struct Continuation {
     pub reach: f64,
 }
 
+/// A gap on all cells that could touch, and what is left of it on the contact.
+#[derive(Debug, Clone, Copy)]
+pub struct ContactGap<'a> {
+    /// The contact set.
+    pub contact: &'a CellSet,
+    /// Gap left on it.
+    pub left: &'a [f64],
+    /// The cells that could touch, the contact set among them.
+    pub checked: &'a CellSet,
+    /// Gap on them.
+    pub gap: &'a [f64],
+}
+
 impl Control {
     /// The sum of the pressure, where it is prescribed.
     pub fn force(self) -> Option<f64> {
@@ -175,13 +188,14 @@ impl Solved {
     /// than the change that it can still undergo, and cells at the upper bound whose indentation is.
     pub fn undecided(&self, grid: Grid, free: &CellSet, left: &[f64], tuning: &Tuning) -> CellSet {
         let Continuation { checked, gap, .. } = &self.continuation;
+        let seen = ContactGap { contact: free, left, checked, gap };
         if free.len() == self.contact.len() {
-            return undecided(grid, free, left, checked, gap, tuning);
+            return undecided(grid, seen, tuning);
         }
         let at_bound = self.contact.without(free);
         let twice: Vec<f64> = at_bound.carry(checked, gap).iter().map(|g| -2.0 * g).collect();
         let mut away = gap.clone();
         checked.add_carried(&at_bound, &twice, &mut away);
-        undecided(grid, free, left, checked, &away, tuning)
+        undecided(grid, ContactGap { gap: &away, ..seen }, tuning)
     }
 }

@@ -6,6 +6,7 @@
 //! straight edge of the contact the weights beyond a distance R add up to `(2 / pi) asin sqrt(1 / R)` in
 //! cells; of one open cell within the contact, to a few hundredths.
 
+use super::state::ContactGap;
 use crate::geometry::{CellSet, Grid};
 use crate::tuning::Tuning;
 
@@ -50,16 +51,9 @@ impl ChangeBound {
     }
 }
 
-/// The cells without contact whose gap is smaller than the change that it can still undergo. `contact` is a
-/// subset of `checked`, and `left` is the gap on it.
-pub fn undecided(
-    grid: Grid,
-    contact: &CellSet,
-    left: &[f64],
-    checked: &CellSet,
-    gap: &[f64],
-    tuning: &Tuning,
-) -> CellSet {
+/// The cells without contact whose gap is smaller than the change that it can still undergo.
+pub fn undecided(grid: Grid, seen: ContactGap<'_>, tuning: &Tuning) -> CellSet {
+    let ContactGap { contact, left, checked, gap } = seen;
     let bound = ChangeBound::new(grid, contact, left, tuning.undecided_square, tuning.undecided_far);
     // Most cells lie above every bound.
     let near = checked.filter(gap, |g| g < bound.largest).without(contact);
@@ -124,7 +118,8 @@ mod tests {
         // Gap left: 0.8 in the first corner, 0.1 at column 190 of row 20.
         let found = |gap: [f64; 6]| -> Vec<usize> {
             let left = [gap[0], gap[3]];
-            undecided(grid, &contact, &left, &checked, &gap, &Tuning::DEFAULT).index(grid).collect()
+            let seen = ContactGap { contact: &contact, left: &left, checked: &checked, gap: &gap };
+            undecided(grid, seen, &Tuning::DEFAULT).index(grid).collect()
         };
         assert_eq!(found([-0.8, 0.79, 0.81, 0.1, 0.21, -1e-9]), [1, 30_000]);
         assert_eq!(found([-0.8, 0.79, 0.81, 0.1, 0.19, -1e-9]), [1, 4191, 30_000]);
@@ -135,7 +130,8 @@ mod tests {
         let grid = Grid::square(3, 3);
         let (all, first) = (CellSet::all(grid), CellSet::from_index(grid, &[0]));
         let found = |gap: [f64; 9]| -> Vec<usize> {
-            undecided(grid, &first, &gap[..1], &all, &gap, &Tuning::DEFAULT).index(grid).collect()
+            let seen = ContactGap { contact: &first, left: &gap[..1], checked: &all, gap: &gap };
+            undecided(grid, seen, &Tuning::DEFAULT).index(grid).collect()
         };
         // Penetrating, touching, open by less than the gap left, open by as much.
         assert_eq!(found([-0.5, -1.0, 0.0, 0.4, 0.5, 2.0, 2.0, 2.0, 2.0]), [1, 2, 3]);

@@ -46,18 +46,29 @@ pub struct Tractions<'a> {
     pub attraction: &'a mut [f64],
 }
 
+/// The lattice that fronts move over.
+#[derive(Debug, Clone, Copy)]
+pub struct FrontLattice<'a> {
+    /// The inverse of its kernel near a cell.
+    pub inverse: &'a Inverse,
+    /// Its cells.
+    pub grid: Grid,
+    /// Whether it goes on at its other side.
+    pub boundary: Boundary,
+}
+
 /// Follows the fronts of a state from the attraction of its gaps, `to.attraction`, to where they come to rest
 /// under W, or part of the way. On return `to` holds the tractions there.
 ///
 /// Cost: for each cell and round a product with the part of W within its reach.
 pub fn follow(
     attraction: &Attraction,
-    inverse: &Inverse,
-    (grid, boundary): (Grid, Boundary),
+    lattice: FrontLattice<'_>,
     state: &Equilibrium,
     to: &mut Tractions<'_>,
     stop: Stop<'_>,
 ) {
+    let FrontLattice { inverse, grid, boundary } = lattice;
     let Some(window) = state.cells.window() else { return };
     let mut fronts = Fronts::new(attraction, inverse, state, window);
     let change = largest_difference(to.attraction, &state.attraction);

@@ -13,7 +13,9 @@ use super::attraction::Attraction;
 use super::equilibrium::{AdhesiveControl, Equilibrium};
 use super::law::LawShape;
 use super::update::{SETTLED, UpdateProgress, Updated, Updates};
-use crate::active_set::{self, Bounds, Candidates, Control, Guess, Limits, Problem, Residuals, Solved};
+use crate::active_set::{
+    self, Bounds, Candidates, ContactGap, Control, Guess, Limits, Problem, Residuals, Solved,
+};
 use crate::geometry::CellSet;
 use crate::real::{each, largest_difference, smallest, sum};
 use contact_model::{Status, Stop};
@@ -346,8 +348,8 @@ impl Search<'_> {
         let (p, left) =
             (contact.carry(&state.cells, &state.pressure), contact.carry(&state.cells, &state.gap));
         let length = limits.height.unwrap_or_else(|| state.d.abs().max(law.range));
-        let everywhere = (&state.cells, &state.gap[..]);
-        state.residuals = Residuals::measure(self.problem.bounds, (&contact, &p, &left), everywhere, length);
+        let under = ContactGap { contact: &contact, left: &left, checked: &state.cells, gap: &state.gap };
+        state.residuals = Residuals::measure(self.problem.bounds, &p, under, length);
         state.lawful = attraction.tractions(&state.cells, &state.gap);
         state.mismatch = match law.shape {
             LawShape::Uniform => attraction.mismatch(&state.cells, &state.attraction, &state.gap),

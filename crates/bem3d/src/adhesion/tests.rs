@@ -4,7 +4,7 @@
 #![allow(clippy::needless_range_loop)] // Indices as in the formulas.
 
 use super::law::LawShape;
-use super::relaxation::{Tractions, follow};
+use super::relaxation::{FrontLattice, Tractions, follow};
 use super::*;
 use crate::active_set::{Limits, Problem};
 use crate::geometry::{CellSet, Grid};
@@ -109,16 +109,21 @@ fn asked(control: AdhesiveControl, tolerance: f64) -> ResponseRequest<'static> {
     ResponseRequest { control, tolerance: Some(tolerance), stop: &never }
 }
 
+/// A surface at an approach, with the dense matrix of its kernel.
+struct MatrixSurface<'a> {
+    grid: Grid,
+    /// The displacement of each cell under a unit pressure on each other one.
+    g: &'a [Vec<f64>],
+    /// Gaps from the plane of first touch.
+    z: &'a [f64],
+    /// The approach.
+    d: f64,
+}
+
 /// The equilibrium near given gaps at an approach, by Newton's method with the contact set changed between
 /// steps; `None` where it does not settle. Returns the gaps, and whether the energy has a minimum there.
-fn newton(
-    grid: Grid,
-    g: &[Vec<f64>],
-    z: &[f64],
-    d: f64,
-    attraction: &Attraction,
-    start: &[f64],
-) -> Option<(Vec<f64>, bool)> {
+fn newton(surface: &MatrixSurface<'_>, attraction: &Attraction, start: &[f64]) -> Option<(Vec<f64>, bool)> {
+    let MatrixSurface { grid, g, z, d } = *surface;
     let n = z.len();
     let law = attraction.law;
     let all = CellSet::all(grid);
@@ -349,7 +354,8 @@ fn every_state_of_a_path_is_a_minimum_that_newton_finds_too() {
                     .zip(&z)
                     .map(|(&g, z)| if g == 0.0 && z - d > law.law.reach() { z - d } else { g })
                     .collect();
-                let (exact, minimum) = newton(grid, &g, &z, d, &law, &all).unwrap();
+                let surface = MatrixSurface { grid, g: &g, z: &z, d };
+                let (exact, minimum) = newton(&surface, &law, &all).unwrap();
                 assert!(minimum && response.stability > 0.0, "{seed} {range} {d}");
                 for (a, b) in all.iter().zip(&exact) {
                     assert!(
@@ -424,7 +430,8 @@ fn followed_fronts_go_on_and_pass_no_equilibrium() {
         let (_, state) = *search.from(first, &never).unwrap_err();
         let (mut pressure, mut next) = (state.pressure.clone(), state.lawful.clone());
         let mut to = Tractions { pressure: &mut pressure, attraction: &mut next };
-        follow(&attraction, attraction.inverse().unwrap(), (grid, boundary), &state, &mut to, &never);
+        let lattice = FrontLattice { inverse: attraction.inverse().unwrap(), grid, boundary };
+        follow(&attraction, lattice, &state, &mut to, &never);
         let peak = attraction.law.peak;
         let end = state.cells.carry(&end.cells, &end.attraction);
         for ((next, lawful), end) in next.iter().zip(&state.lawful).zip(&end) {

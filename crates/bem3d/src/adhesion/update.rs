@@ -6,7 +6,7 @@ use super::bottleneck::Bottleneck;
 use super::equilibrium::{AdhesiveControl, Equilibrium};
 use super::law::LawShape;
 use super::newton::{BEGIN, Predicted, Trial, WantedStep, step};
-use super::relaxation::{Tractions, follow};
+use super::relaxation::{FrontLattice, Tractions, follow};
 use crate::active_set::Problem;
 use crate::kernel::Inverse;
 use crate::linear::{Fixed, StoppingCriteria};
@@ -299,9 +299,10 @@ impl Updates<'_> {
     ) -> Option<Vec<f64>> {
         let mut pressure = state.pressure.clone();
         if let Some(inverse) = inverse {
-            let on = (self.problem.grid(), self.problem.operators.table().boundary());
+            let boundary = self.problem.operators.table().boundary();
+            let lattice = FrontLattice { inverse, grid: self.problem.grid(), boundary };
             let mut to = Tractions { pressure: &mut pressure, attraction: &mut *attraction };
-            follow(self.attraction, inverse, on, state, &mut to, stop);
+            follow(self.attraction, lattice, state, &mut to, stop);
         } else {
             // A contact cell that is attracted more bears as much more: its net pressure stays.
             for ((p, now), before) in pressure.iter_mut().zip(&*attraction).zip(&state.attraction) {

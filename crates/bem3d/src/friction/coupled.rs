@@ -5,7 +5,9 @@ use super::increment::FrictionLimits;
 use super::state::{
     ForceTooLarge, FrictionLoad, FrictionSolver, FrictionState, PressedCells, SlipMemory, SlipStep,
 };
-use crate::active_set::{self, Candidates, Continuation, Control, Guess, Limits, Problem, Residuals, Solved};
+use crate::active_set::{
+    self, Candidates, ContactGap, Continuation, Control, Guess, Limits, Problem, Residuals, Solved,
+};
 use contact_model::{Status, Stop};
 use std::sync::Arc;
 
@@ -49,8 +51,27 @@ pub struct CoupledLoad {
     pub tangential_limits: FrictionLimits,
 }
 
-/// The state at the end of an increment, from the state before; a guess of the pressure, and tractions that are nearer
-/// than those before, are where it begins.
+/// A surface whose gaps change with the tractions on it.
+#[derive(Debug)]
+pub struct CoupledSurface<'a> {
+    /// The normal problem, on the surface that tractions deform.
+    pub problem: &'a mut Problem,
+    /// The gaps without tractions.
+    pub undeformed: &'a [f64],
+    /// The tangential problem.
+    pub friction: &'a mut FrictionSolver,
+}
+
+/// Where the search for a pair of states begins.
+#[derive(Debug, Default)]
+pub struct CoupledGuess {
+    /// The pressure; `None`: unknown.
+    pub pressure: Option<Guess>,
+    /// Tractions that are nearer than those before; `None`: those before.
+    pub tractions: Option<SlipMemory>,
+}
+
+/// The state at the end of an increment, from the state before.
 ///
 /// Alternates: the pressure on the surface that the last tractions deform, the tractions with the tangential
 /// displacement of that pressure. It ends when the gap of the pressure with the normal displacement of the
@@ -58,18 +79,19 @@ pub struct CoupledLoad {
 /// multiplies the error by about `beta mu`. For a large product the solution need not be unique, and an
 /// alternation that no longer converges is [`Status::Stagnated`].
 ///
-/// `z` are the undeformed gaps of the surface; the problem is left with those that the tractions deform.
+/// The problem is left with the gaps that the tractions deform.
 ///
 /// # Errors
 /// As [`FrictionSolver::advance`].
 pub fn advance(
-    (problem, z): (&mut Problem, &[f64]),
-    friction: &mut FrictionSolver,
+    surface: CoupledSurface<'_>,
     before: &SlipMemory,
     load: CoupledLoad,
-    (mut guess, mut tractions): (Option<Guess>, Option<SlipMemory>),
+    start: CoupledGuess,
     stop: Stop<'_>,
 ) -> Result<CoupledState, ForceTooLarge> {
+    let CoupledSurface { problem, undeformed: z, friction } = surface;
+    let CoupledGuess { pressure: mut guess, mut tractions } = start;
     let CoupledLoad { normal: control, tangential, normal_limits, tangential_limits } = load;
     let from = tractions.as_ref().unwrap_or(before);
     let mut raised = friction.normal_displacement(from).unwrap_or_else(|| vec![0.0; z.len()]);
@@ -92,7 +114,7 @@ pub fn advance(
         let next = friction.normal_displacement(&state.memory).unwrap_or_else(|| vec![0.0; z.len()]);
         let far = next.iter().zip(&raised).fold(0.0, |far: f64, (a, b)| far.max((a - b).abs()));
         deform(problem, z, &next);
-        measure(problem, &mut normal, control, normal_limits, (&next, &raised));
+        measure(problem, &mut normal, load, &next, &raised);
         if rounds > 1 {
             contraction = Some(far / last);
         }
@@ -119,22 +141,16 @@ fn deform(problem: &mut Problem, z: &[f64], raised: &[f64]) {
     problem.coarser = None;
 }
 
-/// Measures the residuals of a pressure with the normal displacement of other tractions than it was found with,
-/// on every cell that may touch the surface that these deform.
-fn measure(
-    problem: &mut Problem,
-    solved: &mut Solved,
-    control: Control,
-    limits: Limits,
-    (next, raised): (&[f64], &[f64]),
-) {
+/// Measures the residuals of a pressure with the normal displacement `next` of other tractions than it was found
+/// with, whose displacement is `raised`, on every cell that may touch the surface that these deform.
+fn measure(problem: &mut Problem, solved: &mut Solved, load: CoupledLoad, next: &[f64], raised: &[f64]) {
     let (grid, bounds) = (problem.grid(), problem.bounds);
     let Continuation { checked, gap, reach } = &mut solved.continuation;
     // First u + z.
     for (i, gap) in checked.index(grid).zip(&mut *gap) {
         *gap += next[i] - raised[i] + solved.d;
     }
-    if control.force().is_some() {
+    if load.normal.force().is_some() {
         let left = solved.contact.carry(checked, gap);
         solved.d = bounds.approach(&solved.p, &left, gap).unwrap_or(solved.d);
     }
@@ -154,7 +170,7 @@ fn measure(
         *gap -= d;
     }
     let left = solved.contact.carry(checked, gap);
-    let height = limits.height.unwrap_or(d);
-    solved.residuals =
-        Residuals::measure(bounds, (&solved.contact, &solved.p, &left), (checked, gap), height);
+    let height = load.normal_limits.height.unwrap_or(d);
+    let under = ContactGap { contact: &solved.contact, left: &left, checked, gap };
+    solved.residuals = Residuals::measure(bounds, &solved.p, under, height);
 }

@@ -106,6 +106,15 @@ const SMALLEST_UNIT: f64 = 1e-100;
 /// the least one at which the contact slides, by at most 1e-6 of it for a ball: `(1 - Q/(mu F))^(2/3)` by Cattaneo.
 pub const LARGEST_SHARE: f64 = 1.0 - 1e-9;
 
+/// The kernel of tangential tractions, with room for its systems.
+#[derive(Debug)]
+pub struct FrictionSystems<'a> {
+    /// The kernel.
+    pub operators: &'a mut TangentialOperators,
+    /// The room.
+    pub room: &'a mut FrictionRoom,
+}
+
 struct IncrementSolver<'a> {
     operators: &'a mut TangentialOperators,
     room: &'a mut FrictionRoom,
@@ -150,8 +159,7 @@ struct IncrementSolver<'a> {
 /// Bodies in Rolling Contact, 1990, chapter 4), the linearisation is that of P. Alart and A. Curnier, Comput.
 /// Methods Appl. Mech. Eng. 92, 353 (1991), made symmetric by the bound that does not depend on the slip.
 pub fn solve(
-    operators: &mut TangentialOperators,
-    room: &mut FrictionRoom,
+    systems: FrictionSystems<'_>,
     increment: Increment<'_>,
     start: Vec<f64>,
     limits: FrictionLimits,
@@ -162,7 +170,7 @@ pub fn solve(
     }
     from_mean(increment, |increment| {
         in_units(increment, start, |increment, start| {
-            IncrementSolver::new(operators, room, increment, start, limits).iterate(stop)
+            IncrementSolver::new(systems, increment, start, limits).iterate(stop)
         })
     })
 }
@@ -234,15 +242,14 @@ fn in_units(
 /// The same by projected gradients alone, in at most the given number of steps.
 #[cfg(test)]
 pub fn by_gradients(
-    operators: &mut TangentialOperators,
-    room: &mut FrictionRoom,
+    systems: FrictionSystems<'_>,
     increment: Increment<'_>,
     start: Vec<f64>,
     limits: FrictionLimits,
     steps: usize,
 ) -> IncrementState {
     in_units(increment, start, |increment, start| {
-        let mut solver = IncrementSolver::new(operators, room, increment, start, limits);
+        let mut solver = IncrementSolver::new(systems, increment, start, limits);
         solver.admit();
         solver.displace();
         solver.descend(steps, &contact_model::never);
@@ -291,12 +298,12 @@ fn free(increment: Increment<'_>) -> IncrementState {
 impl<'a> IncrementSolver<'a> {
     /// From tractions that need not be admissible.
     fn new(
-        operators: &'a mut TangentialOperators,
-        room: &'a mut FrictionRoom,
+        systems: FrictionSystems<'a>,
         increment: Increment<'a>,
         start: Vec<f64>,
         limits: FrictionLimits,
     ) -> Self {
+        let FrictionSystems { operators, room } = systems;
         let most = sum(increment.limit);
         let control = match increment.control {
             TangentialControl::Force([x, y]) => {

@@ -3,8 +3,8 @@
 
 use crate::geometry::{CellSet, Window};
 use crate::linear::{
-    Energy, Extension, Fixed, PcgOutcome, Preconditioned, Preconditioner, StoppingCriteria, TORUS_ENERGY,
-    TorusInverse, Vectors, pcg,
+    Energy, Extension, Fixed, LinearSystem, PcgOutcome, Preconditioned, Preconditioner, StoppingCriteria,
+    TORUS_ENERGY, TorusInverse, Vectors,
 };
 use crate::operator::{InfluenceOperator, Planned, TangentialOperators};
 use crate::parts::{Part, Recorder};
@@ -442,10 +442,9 @@ impl BranchSystem<'_> {
         let Self { conditions, preconditioner, vectors, .. } = self;
         let recorder = preconditioner.recorder.clone();
         recorder.timed(Part::Vectors, || {
-            vectors.load(right, size);
-            let outcome = pcg(conditions, preconditioner, vectors, Fixed::Approach, criteria, stop);
-            vectors.unload(right, size);
-            outcome
+            let system =
+                LinearSystem { operator: conditions, preconditioner, vectors, fixed: Fixed::Approach };
+            system.solve(right, size, criteria, stop)
         })
     }
 }

@@ -41,7 +41,7 @@ mod state;
 #[cfg(test)]
 mod tests;
 
-pub use coupled::{CoupledLoad, CoupledState, advance as advance_coupled};
+pub use coupled::{CoupledGuess, CoupledLoad, CoupledState, CoupledSurface, advance as advance_coupled};
 pub use increment::{FrictionLimits, TangentialControl, exact};
 pub use linearised::{FrictionRoom, SlipBranch, inverse_of};
 pub use state::{

@@ -1,6 +1,8 @@
 //! A surface with friction through the increments of a path.
 
-use super::increment::{self, FrictionLimits, Increment, IncrementState, TangentialControl, exact};
+use super::increment::{
+    self, FrictionLimits, FrictionSystems, Increment, IncrementState, TangentialControl, exact,
+};
 use super::linearised::{FrictionRoom, SlipBranch};
 use crate::geometry::{CellSet, Grid};
 use crate::kernel::TangentialTable;
@@ -132,6 +134,11 @@ impl FrictionSolver {
         Self { operators, room: FrictionRoom::default(), coupling }
     }
 
+    /// The kernel of tangential tractions with the room for its systems.
+    pub fn systems(&mut self) -> FrictionSystems<'_> {
+        FrictionSystems { operators: &mut self.operators, room: &mut self.room }
+    }
+
     /// Drops the plans and the buffers of the increments before. The coupling has one plan, of the grid.
     pub fn forget_plans(&mut self) {
         self.operators.forget_plans();
@@ -214,8 +221,7 @@ impl FrictionSolver {
             control: load.control,
             displacement: before.displacement,
         };
-        let Self { operators, room, .. } = self;
-        let found = increment::solve(operators, room, increment, start, limits, stop);
+        let found = increment::solve(self.systems(), increment, start, limits, stop);
         if self.is_unmoved(step, &limit, &found, limits) {
             return Ok(self.unmoved(before, load, &found));
         }

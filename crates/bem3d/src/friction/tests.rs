@@ -318,87 +318,71 @@ fn a_force_is_held_up_to_gross_slip() {
     assert!(state.force[0] <= most && state.force[0] > 0.999 * most);
 }
 
+/// The first increment with this coefficient of friction, converged.
+fn first_with(
+    solver: &mut FrictionSolver,
+    mu: f64,
+    pressed: &PressedContact,
+    control: TangentialControl,
+) -> FrictionState {
+    let load = FrictionLoad { law: FrictionLaw::coulomb(mu), control };
+    let before = SlipMemory::default();
+    let step = SlipStep { before: &before, contact: pressed.cells(), load, guess: None };
+    let state = solver.advance(step, LIMITS, &never).unwrap();
+    assert_eq!(state.status, Status::Converged, "{mu} {control:?}: {:e}", state.duality_gap);
+    state
+}
+
 #[test]
-fn limits_of_the_coefficient_and_of_the_number_of_cells() {
+fn without_a_load_and_without_friction_there_is_no_traction() {
     use TangentialControl::{Displacement, Force};
     let (grid, states) = pressed(14, 6, Boundary::Free, &[0.3]);
     let all = &states[0];
     let mut solver = friction(grid, Boundary::Free, 0.43);
-    let begin = SlipMemory::default();
-    let solve = |solver: &mut FrictionSolver, mu: f64, control| {
-        let state = solver
-            .advance(
-                SlipStep {
-                    before: &begin,
-                    contact: all.cells(),
-                    load: FrictionLoad { law: FrictionLaw::coulomb(mu), control },
-                    guess: None,
-                },
-                LIMITS,
-                &never,
-            )
-            .unwrap();
-        assert_eq!(state.status, Status::Converged, "{mu} {control:?}: {:e}", state.duality_gap);
-        state
-    };
-    // No load, and no friction.
-    let none = solve(&mut solver, MU, Force([0.0, 0.0]));
+    let none = first_with(&mut solver, MU, all, Force([0.0, 0.0]));
     assert!(largest(&none.memory.traction) == 0.0 && none.duality_gap == 0.0);
-    let none = solve(&mut solver, 0.0, Displacement([0.3, 0.1]));
+    let none = first_with(&mut solver, 0.0, all, Displacement([0.3, 0.1]));
     assert!(none.force == [0.0, 0.0] && (none.slip[0] - 0.3).abs() < 1e-15 && none.dissipated == 0.0);
-    close(&solve(&mut solver, 0.0, Force([0.0, 0.0])).memory.displacement, &[0.0, 0.0], 0.0);
-    assert_eq!(
-        solver
-            .advance(
-                SlipStep {
-                    before: &begin,
-                    contact: all.cells(),
-                    load: FrictionLoad { law: FrictionLaw::coulomb(0.0), control: Force([1e-9, 0.0]) },
-                    guess: None
-                },
-                LIMITS,
-                &never
-            )
-            .map(|_| ())
-            .unwrap_err(),
-        ForceTooLarge { largest: 0.0 }
-    );
-    // No slip: linear, and the stiffness of full stick is that of the force.
+    let none = first_with(&mut solver, 0.0, all, Force([0.0, 0.0]));
+    close(&none.memory.displacement, &[0.0, 0.0], 0.0);
+    let load = FrictionLoad { law: FrictionLaw::coulomb(0.0), control: Force([1e-9, 0.0]) };
+    let before = SlipMemory::default();
+    let step = SlipStep { before: &before, contact: all.cells(), load, guess: None };
+    let refused = solver.advance(step, LIMITS, &never).map(|_| ());
+    assert_eq!(refused.unwrap_err(), ForceTooLarge { largest: 0.0 });
+}
+
+#[test]
+fn without_slip_the_force_is_linear_in_the_displacement() {
+    let (grid, states) = pressed(14, 6, Boundary::Free, &[0.3]);
+    let all = &states[0];
+    let mut solver = friction(grid, Boundary::Free, 0.43);
     let total = all.friction();
-    let stuck = solve(&mut solver, 1e3, Force([0.3 * total, 0.1 * total]));
+    let control = TangentialControl::Force([0.3 * total, 0.1 * total]);
+    let stuck = first_with(&mut solver, 1e3, all, control);
     assert!(stuck.stick.len() > all.cells.len() / 2);
+    // The stiffness of full stick is that of the force.
     let k = tangential::solve(&mut solver, &stuck, StiffnessOf::FullStick, 1e-9, &never);
     let [dx, dy] = stuck.memory.displacement;
     let [xx, yy, xy] = k.value;
     assert!(k.solve_error < 1e-9);
     assert_relative_eq!(xx * dx + xy * dy, 0.3 * total, max_relative = 1e-3);
     assert_relative_eq!(xy * dx + yy * dy, 0.1 * total, max_relative = 1e-3);
-    // No contact.
-    let nothing = CellSet::default();
-    let empty = PressedCells { cells: &nothing, pressure: &[] };
-    let state = solver
-        .advance(
-            SlipStep { before: &begin, contact: empty, load: load(Displacement([1.0, 0.0])), guess: None },
-            LIMITS,
-            &never,
-        )
-        .unwrap();
+}
+
+#[test]
+fn without_contact_bodies_slide_and_touch_where_they_lie() {
+    let (grid, states) = pressed(14, 6, Boundary::Free, &[0.3]);
+    let all = &states[0];
+    let mut solver = friction(grid, Boundary::Free, 0.43);
+    let control = TangentialControl::Displacement([1.0, 0.0]);
+    let nothing = PressedContact { cells: CellSet::default(), pressure: Vec::new(), approach: 0.0 };
+    let state = first_with(&mut solver, MU, &nothing, control);
     assert!(state.force == [0.0, 0.0] && state.memory.traction.is_empty());
     close(&tangential::solve(&mut solver, &state, StiffnessOf::Branch, 1e-6, &never).value, &[0.0; 3], 0.0);
-    // And back into contact from there.
-    let again = solver
-        .advance(
-            SlipStep {
-                before: &state.memory,
-                contact: all.cells(),
-                load: load(Displacement([1.0, 0.0])),
-                guess: None,
-            },
-            LIMITS,
-            &never,
-        )
-        .unwrap();
-    assert!(largest(&again.memory.traction) < 1e-10 * total, "touched where it lies");
+    let again = SlipStep { before: &state.memory, contact: all.cells(), load: load(control), guess: None };
+    let again = solver.advance(again, LIMITS, &never).unwrap();
+    assert!(largest(&again.memory.traction) < 1e-10 * all.friction(), "touched where it lies");
 }
 
 #[test]
@@ -529,8 +513,7 @@ fn every_increment_converges() {
         let c = next().abs();
         let mut solver = friction(grid, boundary, c);
         let limits = FrictionLimits { tolerance: 1e-9, iterations: 300, ..LIMITS };
-        let found =
-            increment::solve(&mut solver.operators, &mut solver.room, increment, start, limits, &never);
+        let found = increment::solve(solver.systems(), increment, start, limits, &never);
         assert_eq!(
             found.status,
             Status::Converged,
@@ -566,8 +549,7 @@ fn projected_gradients_alone_converge() {
         };
         let limits = FrictionLimits { tolerance: 1e-9, iterations: 0, ..LIMITS };
         let start = vec![0.0; 2 * limit.len()];
-        let found =
-            increment::by_gradients(&mut solver.operators, &mut solver.room, increment, start, limits, 2000);
+        let found = increment::by_gradients(solver.systems(), increment, start, limits, 2000);
         assert!(found.duality_gap < 1e-9, "{:e}", found.duality_gap);
         close(&found.traction, &expected.memory.traction, 1e-4 * largest(&limit));
     }

@@ -57,12 +57,12 @@ pub(super) fn symbol(grid: Grid, integrand: Integrand) -> Vec<f64> {
     let (a, b) = grid.cell();
     let (along_x, along_y) =
         (WaveInterpolation::new(grid.columns, a / b), WaveInterpolation::new(grid.rows, b / a));
-    let weights = alternating_weights();
+    let aliases = AliasSum::new(integrand, (a, b));
     let symmetric = grid.has_square_cells() && integrand == Integrand::Normal;
     let alias = |x: f64, y: f64| {
         let (x, y) = if symmetric { (x.max(y), x.min(y)) } else { (x, y) };
         let odd = integrand.odd_factor(x, y);
-        if odd > 0.0 { aliases(integrand, &weights, x, y, a, b) / odd } else { 0.0 }
+        if odd > 0.0 { aliases.at(x, y) / odd } else { 0.0 }
     };
     let values: Vec<Vec<f64>> =
         along_y.nodes.iter().map(|&y| along_x.nodes.iter().map(|&x| alias(x, y)).collect()).collect();
@@ -145,29 +145,47 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// The aliases of the wave (x, y): `sum 2 pi / |Q| sinc(X/2) sinc(Y/2)` over `X = x + 2 pi m`,
-/// `Y = y + 2 pi n`, `Q = (X/a, Y/b)`, without `m = n = 0`; `0 <= x, y <= pi`. For other integrands than
-/// [`Integrand::Normal`] their factor replaces `1 / |Q|`.
-fn aliases(integrand: Integrand, weights: &[f64; TERMS], x: f64, y: f64, a: f64, b: f64) -> f64 {
-    // sin((x + 2 pi m)/2) = (-1)^m sin(x/2): alternating sums over m = 1, 2, .. and m = -1, -2, ..
-    let terms = |q: f64, side: f64| {
+/// Sums over the aliases of waves on cells of the sides a and b.
+struct AliasSum {
+    integrand: Integrand,
+    cell: (f64, f64),
+    /// Weights of the terms of an alternating sum.
+    weights: [f64; TERMS],
+}
+
+impl AliasSum {
+    fn new(integrand: Integrand, cell: (f64, f64)) -> Self {
+        Self { integrand, cell, weights: alternating_weights() }
+    }
+
+    /// The aliases of the wave (x, y): `sum 2 pi / |Q| sinc(X/2) sinc(Y/2)` over `X = x + 2 pi m`,
+    /// `Y = y + 2 pi n`, `Q = (X/a, Y/b)`, without `m = n = 0`; `0 <= x, y <= pi`. For other integrands than
+    /// [`Integrand::Normal`] their factor replaces `1 / |Q|`.
+    fn at(&self, x: f64, y: f64) -> f64 {
+        let (a, b) = self.cell;
+        let (x, y) = (self.terms(x, a), self.terms(y, b));
+        let mut sum = 0.0;
+        for (i, &(wy, fy)) in y.iter().enumerate() {
+            for &(wx, fx) in &x[usize::from(i == 0)..] {
+                sum += self.integrand.at(fx * fy, wx, wy);
+            }
+        }
+        TAU * sum
+    }
+
+    /// Waves over the side of a cell, and their factors, along one direction.
+    ///
+    /// `sin((q + 2 pi m)/2) = (-1)^m sin(q/2)`: alternating sums over m = 1, 2, .. and m = -1, -2, ..
+    fn terms(&self, q: f64, side: f64) -> Vec<(f64, f64)> {
         let sine = 2.0 * (q / 2.0).sin();
-        let half = move |sign: f64| {
-            weights.iter().enumerate().map(move |(k, w)| {
+        let half = |sign: f64| {
+            self.weights.iter().enumerate().map(move |(k, w)| {
                 let wave = q + sign * TAU * (k + 1) as f64;
                 (wave / side, -w * sine / wave)
             })
         };
-        std::iter::once((q / side, sinc(q / 2.0))).chain(half(1.0)).chain(half(-1.0)).collect::<Vec<_>>()
-    };
-    let (x, y) = (terms(x, a), terms(y, b));
-    let mut sum = 0.0;
-    for (i, &(wy, fy)) in y.iter().enumerate() {
-        for &(wx, fx) in &x[usize::from(i == 0)..] {
-            sum += integrand.at(fx * fy, wx, wy);
-        }
+        std::iter::once((q / side, sinc(q / 2.0))).chain(half(1.0)).chain(half(-1.0)).collect()
     }
-    TAU * sum
 }
 
 #[cfg(test)]
@@ -186,20 +204,18 @@ mod tests {
 
     #[test]
     fn interpolation_finds_the_sums() {
-        let weights = alternating_weights();
         for aspect in [1.0f64, 4.0, 0.1] {
             let (a, b) = (aspect.sqrt(), aspect.sqrt().recip());
             let (nx, ny) = (2000, 600);
             let (along_x, along_y) = (WaveInterpolation::new(nx, a / b), WaveInterpolation::new(ny, b / a));
             assert!(!along_x.weights.is_empty() && !along_y.weights.is_empty());
-            let value = |y: f64| -> Vec<f64> {
-                along_x.nodes.iter().map(|&x| aliases(Integrand::Normal, &weights, x, y, a, b)).collect()
-            };
+            let aliases = AliasSum::new(Integrand::Normal, (a, b));
+            let value = |y: f64| -> Vec<f64> { along_x.nodes.iter().map(|&x| aliases.at(x, y)).collect() };
             let values: Vec<Vec<f64>> = along_y.nodes.iter().map(|&y| value(y)).collect();
             for (kx, ky) in [(0, 0), (1000, 0), (100, 290), (1000, 300), (3, 111), (700, 150)] {
                 let line: Vec<f64> = values.iter().map(|row| along_x.at(kx, row)).collect();
                 let (x, y) = (TAU * kx as f64 / nx as f64, TAU * ky as f64 / ny as f64);
-                let (sum, smooth) = (aliases(Integrand::Normal, &weights, x, y, a, b), along_y.at(ky, &line));
+                let (sum, smooth) = (aliases.at(x, y), along_y.at(ky, &line));
                 assert!((sum - smooth).abs() < 1e-13, "aspect {aspect}, {kx} {ky}: {sum} {smooth}");
             }
         }
@@ -207,14 +223,13 @@ mod tests {
 
     #[test]
     fn the_symbol_of_oblong_cells_is_the_sum_over_the_waves() {
-        let weights = alternating_weights();
         for stretch in [3.0f64, 0.4] {
             let grid = Grid { columns: 420, rows: 390, stretch };
             let ((a, b), symbol) = (grid.cell(), symbol(grid, Integrand::Normal));
+            let aliases = AliasSum::new(Integrand::Normal, (a, b));
             for (kx, ky) in [(1, 0), (0, 1), (7, 190), (210, 195), (209, 3), (100, 100)] {
                 let (x, y) = (TAU * kx as f64 / 420.0, TAU * ky as f64 / 390.0);
-                let sum =
-                    first(Integrand::Normal, x, y, a, b) + aliases(Integrand::Normal, &weights, x, y, a, b);
+                let sum = first(Integrand::Normal, x, y, a, b) + aliases.at(x, y);
                 assert_relative_eq!(symbol[kx * 196 + ky], sum, max_relative = 1e-12);
             }
         }

@@ -38,37 +38,35 @@ pub struct Descent<'a, L, const N: usize> {
 ///
 /// Cost: one application of K in double precision a step.
 pub fn descend<L: ConvexLaw<N>, const N: usize>(
-    descent: Descent<'_, L, N>,
+    mut descent: Descent<'_, L, N>,
     mut displace: impl FnMut(&[f64], &mut Vec<f64>),
     steps: usize,
     stop: Stop<'_>,
 ) -> usize {
-    let Descent { law, force, tractions: t, gradient, own } = descent;
-    let n = t.len() / N;
     let (mut target, mut displaced) = (Vec::new(), Vec::new());
-    let (mut change, mut residual) = (vec![0.0; t.len()], vec![0.0; t.len()]);
-    let mut length = 1.0 / own;
+    let size = descent.tractions.len();
+    let (mut change, mut residual) = (vec![0.0; size], vec![0.0; size]);
+    let mut length = 1.0 / descent.own;
     // The square of the last gradient on the cells between their bounds, while conjugate gradients go on.
     let mut conjugate: Option<f64> = None;
     for taken in 0..steps {
         if stop.stops() {
             return taken;
         }
-        let Projected { inside, outside, mean } = project_gradient(law, t, gradient, force, &mut residual);
+        let Projected { inside, outside, mean } = descent.project_gradient(&mut residual);
         let on_face = taken > 0 && inside > outside;
         let limit = if on_face {
             let beta = conjugate.map_or(0.0, |last| inside / last);
             update(&mut change, &residual, |change, r| *change = beta * *change - r);
-            (0..n).map(|i| law.room(i, at(t, n, i), at(&change, n, i))).fold(f64::INFINITY, f64::min)
+            descent.room(&change)
         } else {
-            take_step(t, gradient, mean, length, &mut target);
-            law.project(&mut target, force);
+            descent.take_step(mean, length, &mut target);
             change.copy_from_slice(&target);
-            update(&mut change, t, |change, t| *change -= t);
+            update(&mut change, descent.tractions, |change, t| *change -= t);
             1.0
         };
         // The sum of the change is zero up to rounding, and a distant plane would multiply that rounding.
-        let slope = slope(&change, gradient, mean);
+        let slope = slope(&change, descent.gradient, mean);
         if slope.is_nan() || slope >= 0.0 {
             if on_face && conjugate.is_some() {
                 // Rounding: begin anew.
@@ -85,36 +83,72 @@ pub fn descend<L: ConvexLaw<N>, const N: usize>(
         length = dot(&change, &change) / curvature;
         let share = (-slope / curvature).min(limit);
         if !on_face && share >= 1.0 {
-            t.copy_from_slice(&target);
+            descent.tractions.copy_from_slice(&target);
         } else {
-            update(t, &change, |t, change| *t += share * change);
-            for i in 0..n {
-                put(t, n, i, law.nearest(i, at(t, n, i)));
-            }
+            descent.follow(&change, share);
         }
         conjugate = (on_face && share < limit).then_some(inside);
         if on_face && share >= limit {
-            law.meet(t, &change);
+            descent.law.meet(descent.tractions, &change);
         }
-        update(gradient, &displaced, |gradient, u| *gradient += share * u);
+        update(descent.gradient, &displaced, |gradient, u| *gradient += share * u);
     }
     steps
 }
 
-/// Writes `t - length (gradient - mean)`.
-fn take_step<const N: usize>(
-    t: &[f64],
-    gradient: &[f64],
-    mean: [f64; N],
-    length: f64,
-    target: &mut Vec<f64>,
-) {
-    target.clear();
-    let n = t.len() / N;
-    for (component, mean) in mean.into_iter().enumerate() {
-        let cells = component * n..(component + 1) * n;
-        let pairs = t[cells.clone()].iter().zip(&gradient[cells]);
-        target.extend(pairs.map(|(t, gradient)| t - length * (gradient - mean)));
+impl<L: ConvexLaw<N>, const N: usize> Descent<'_, L, N> {
+    /// Writes the projection of `t - length (gradient - mean)`.
+    fn take_step(&self, mean: [f64; N], length: f64, target: &mut Vec<f64>) {
+        target.clear();
+        let n = self.tractions.len() / N;
+        for (component, mean) in mean.into_iter().enumerate() {
+            let cells = component * n..(component + 1) * n;
+            let pairs = self.tractions[cells.clone()].iter().zip(&self.gradient[cells]);
+            target.extend(pairs.map(|(t, gradient)| t - length * (gradient - mean)));
+        }
+        self.law.project(target, self.force);
+    }
+
+    /// The share of a change at which the first cell meets its bound.
+    fn room(&self, change: &[f64]) -> f64 {
+        let (law, t) = (self.law, &*self.tractions);
+        let n = t.len() / N;
+        (0..n).map(|i| law.room(i, at(t, n, i), at(change, n, i))).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Takes a share of a change; rounding does not lead beyond a bound.
+    fn follow(&mut self, change: &[f64], share: f64) {
+        let (law, t) = (self.law, &mut *self.tractions);
+        update(t, change, |t, change| *t += share * change);
+        let n = t.len() / N;
+        for i in 0..n {
+            put(t, n, i, law.nearest(i, at(t, n, i)));
+        }
+    }
+
+    /// Splits the gradient, and writes its part on cells between their bounds, zero on all others.
+    fn project_gradient(&self, residual: &mut [f64]) -> Projected<N> {
+        let (law, t, gradient) = (self.law, &*self.tractions, &*self.gradient);
+        let n = t.len() / N;
+        let (mut total, mut count) = ([0.0; N], 0.0);
+        for i in (0..n).filter(|&i| law.held(i, at(t, n, i), [0.0; N]).is_none()) {
+            let gradient: [f64; N] = at(gradient, n, i);
+            total.iter_mut().zip(gradient).for_each(|(total, gradient)| *total += gradient);
+            count += 1.0;
+        }
+        if count <= 0.0 {
+            return Projected { inside: 0.0, outside: f64::INFINITY, mean: [0.0; N] };
+        }
+        let mean = total.map(|total| if self.force.is_some() { total / count } else { 0.0 });
+        let mut outside = 0.0;
+        for i in 0..n {
+            let gradient: [f64; N] = at(gradient, n, i);
+            let r: [f64; N] = std::array::from_fn(|component| gradient[component] - mean[component]);
+            let held = law.held(i, at(t, n, i), r.map(|r| -r));
+            outside += held.unwrap_or(0.0);
+            put(residual, n, i, if held.is_some() { [0.0; N] } else { r });
+        }
+        Projected { inside: dot(residual, residual), outside, mean }
     }
 }
 
@@ -147,36 +181,6 @@ struct Projected<const N: usize> {
     /// The square of the part of the gradient that cells at their bounds may follow.
     outside: f64,
     mean: [f64; N],
-}
-
-/// Splits a gradient, and writes its part on cells between their bounds, zero on all others.
-fn project_gradient<L: ConvexLaw<N>, const N: usize>(
-    law: &L,
-    t: &[f64],
-    gradient: &[f64],
-    force: Option<[f64; N]>,
-    residual: &mut [f64],
-) -> Projected<N> {
-    let n = t.len() / N;
-    let (mut total, mut count) = ([0.0; N], 0.0);
-    for i in (0..n).filter(|&i| law.held(i, at(t, n, i), [0.0; N]).is_none()) {
-        let gradient: [f64; N] = at(gradient, n, i);
-        total.iter_mut().zip(gradient).for_each(|(total, gradient)| *total += gradient);
-        count += 1.0;
-    }
-    if count <= 0.0 {
-        return Projected { inside: 0.0, outside: f64::INFINITY, mean: [0.0; N] };
-    }
-    let mean = total.map(|total| if force.is_some() { total / count } else { 0.0 });
-    let mut outside = 0.0;
-    for i in 0..n {
-        let gradient: [f64; N] = at(gradient, n, i);
-        let r: [f64; N] = std::array::from_fn(|component| gradient[component] - mean[component]);
-        let held = law.held(i, at(t, n, i), r.map(|r| -r));
-        outside += held.unwrap_or(0.0);
-        put(residual, n, i, if held.is_some() { [0.0; N] } else { r });
-    }
-    Projected { inside: dot(residual, residual), outside, mean }
 }
 
 #[cfg(test)]

@@ -147,6 +147,18 @@ fn project(v: &mut [f64], limit: &[f64], shift: [f64; 2]) {
     });
 }
 
+/// A step of Newton's method to a multiplier.
+#[derive(Debug, Clone, Copy)]
+struct MultiplierStep {
+    /// The shift where it begins.
+    shift: [f64; 2],
+    step: [f64; 2],
+    /// The largest share of it that may be taken.
+    whole: f64,
+    /// The derivatives at its beginning, where the function falls along it.
+    now: [f64; 5],
+}
+
 impl Discs<'_> {
     /// The shift with which the projections of some vectors add up to a force.
     ///
@@ -178,7 +190,7 @@ impl Discs<'_> {
             if !whole.is_finite() {
                 break;
             }
-            let (share, next) = self.share_of_step((v, force), (shift, step), whole, now);
+            let (share, next) = self.share_of_step(v, force, MultiplierStep { shift, step, whole, now });
             shift = [shift[0] + share * step[0], shift[1] + share * step[1]];
             if share * step[0].hypot(step[1]) <= f64::EPSILON * shift[0].hypot(shift[1]) {
                 break;
@@ -203,15 +215,9 @@ impl Discs<'_> {
         all
     }
 
-    /// The share of a step, at most `whole`, at which the slope along it has nearly vanished, and the derivatives
-    /// there. `now` are those at its beginning, where the function falls along the step.
-    fn share_of_step(
-        &self,
-        (v, force): (&[f64], [f64; 2]),
-        (shift, step): ([f64; 2], [f64; 2]),
-        whole: f64,
-        now: [f64; 5],
-    ) -> (f64, [f64; 5]) {
+    /// The share of a step at which the slope along it has nearly vanished, and the derivatives there.
+    fn share_of_step(&self, v: &[f64], force: [f64; 2], from: MultiplierStep) -> (f64, [f64; 5]) {
+        let MultiplierStep { shift, step, whole, now } = from;
         let begin = now[0] * step[0] + now[1] * step[1];
         // The slope rises along the step, from `begin < 0`.
         let (mut low, mut high) = ((0.0, begin), None);

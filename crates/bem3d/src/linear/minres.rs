@@ -4,6 +4,15 @@
 use crate::real::{Real, dot, update};
 use contact_model::Stop;
 
+/// Where an iteration ends at the latest.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MinresLimits {
+    /// The factor by which the residual is reduced.
+    pub reduction: f64,
+    /// Steps at most.
+    pub steps: usize,
+}
+
 /// Work and residual of an iteration.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct MinresOutcome {
@@ -22,7 +31,7 @@ pub fn minres<T: Real>(
     mut product: impl FnMut(&[T], &mut [T]),
     mut precondition: impl FnMut(&mut [T], &mut [T]),
     mut b: Vec<T>,
-    (reduction, steps): (f64, usize),
+    limits: MinresLimits,
     stop: Stop<'_>,
 ) -> (Vec<T>, MinresOutcome) {
     let zeros = || vec![T::default(); b.len()];
@@ -35,7 +44,7 @@ pub fn minres<T: Real>(
     // The last two rotations of the QR factors of Lanczos's matrix.
     let (mut cosine, mut sine, mut d, mut epsilon, mut left) = (-1.0, 0.0, 0.0, 0.0, start);
     let mut outcome = MinresOutcome { steps: 0, reduction: 1.0 };
-    while start > 0.0 && outcome.steps < steps && beta > 0.0 && beta.is_finite() && !stop.stops() {
+    while start > 0.0 && outcome.steps < limits.steps && beta > 0.0 && beta.is_finite() && !stop.stops() {
         let scale = T::of(beta.recip());
         update(&mut v, &z, |v, &z| *v = scale * z);
         product(&v, &mut y);
@@ -72,7 +81,7 @@ pub fn minres<T: Real>(
         std::mem::swap(&mut before, &mut w);
         update(&mut x, &w, |x, &w| *x += step * w);
         outcome.reduction = left.abs() / start;
-        if outcome.reduction <= reduction {
+        if outcome.reduction <= limits.reduction {
             break;
         }
     }
@@ -107,7 +116,7 @@ mod tests {
                     z.iter_mut().zip(&*r).enumerate().for_each(|(i, (z, r))| *z = own(i) * r);
                 },
                 b.clone(),
-                (1e-12, 3 * n),
+                MinresLimits { reduction: 1e-12, steps: 3 * n },
                 &never,
             );
             assert!(outcome.steps <= n + 2 && outcome.reduction <= 1e-12, "{outcome:?}");
@@ -121,11 +130,13 @@ mod tests {
     fn a_right_hand_side_of_zero_and_a_limit_of_steps() {
         let identity = |v: &[f64], y: &mut [f64]| y.copy_from_slice(v);
         let none = |r: &mut [f64], z: &mut [f64]| z.copy_from_slice(r);
-        let (x, outcome) = minres(identity, none, vec![0.0; 3], (1e-3, 9), &never);
+        let limits = MinresLimits { reduction: 1e-3, steps: 9 };
+        let (x, outcome) = minres(identity, none, vec![0.0; 3], limits, &never);
         assert!(x == [0.0; 3] && outcome.steps == 0);
         let a = matrix(6);
         let product = |v: &[f64], y: &mut [f64]| y.iter_mut().zip(&a).for_each(|(y, row)| *y = dot(row, v));
-        let (_, outcome) = minres(product, none, vec![1.0; 6], (0.0, 2), &never);
+        let limits = MinresLimits { reduction: 0.0, steps: 2 };
+        let (_, outcome) = minres(product, none, vec![1.0; 6], limits, &never);
         assert_eq!(outcome.steps, 2);
     }
 }

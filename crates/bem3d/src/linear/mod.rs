@@ -8,6 +8,6 @@ mod preconditioner;
 
 pub use cholesky::Factor;
 pub use extension::Extension;
-pub use minres::minres;
-pub use pcg::{Energy, Fixed, PcgOutcome, StoppingCriteria, Vectors, Workspace, pcg};
+pub use minres::{MinresLimits, minres};
+pub use pcg::{Energy, Fixed, LinearSystem, PcgOutcome, StoppingCriteria, Vectors, Workspace};
 pub use preconditioner::{Preconditioned, Preconditioner, TORUS_ENERGY, TorusInverse};

@@ -2,7 +2,7 @@
 //! gradients.
 
 use super::extension::Extension;
-use super::preconditioner::{Identity, Preconditioner, TorusInverse};
+use super::preconditioner::{Identity, Preconditioned, Preconditioner, TorusInverse};
 use crate::geometry::CellSet;
 use crate::operator::{Conditioning, InfluenceOperator, Operators, Recipe};
 use crate::parts::Part;
@@ -125,27 +125,20 @@ impl Workspace {
         let recorder = operators.recorder().clone();
         let (mut operator, torus) = operators.system(recipe);
         let outcome = recorder.timed(Part::Vectors, || {
-            if recipe.is_single() {
-                let v = &mut self.single;
-                v.load(right, unit);
-                let outcome = if let Some(transform) = torus {
-                    let mut inverse = TorusInverse {
-                        transform,
-                        extensions: std::array::from_mut(&mut self.extension),
-                        recorder: recorder.clone(),
-                    };
-                    pcg(&mut operator, &mut inverse, v, fixed, criteria, stop)
-                } else {
-                    pcg(&mut operator, &mut identity, v, fixed, criteria, stop)
-                };
-                v.unload(right, unit);
-                outcome
+            let operator = &mut operator;
+            if !recipe.is_single() {
+                let (preconditioner, vectors) = (&mut identity, &mut self.double);
+                let system = LinearSystem { operator, preconditioner, vectors, fixed };
+                return system.solve(right, unit, criteria, stop);
+            }
+            let vectors = &mut self.single;
+            if let Some(transform) = torus {
+                let extensions = std::array::from_mut(&mut self.extension);
+                let preconditioner = &mut TorusInverse { transform, extensions, recorder: recorder.clone() };
+                LinearSystem { operator, preconditioner, vectors, fixed }.solve(right, unit, criteria, stop)
             } else {
-                let v = &mut self.double;
-                v.load(right, unit);
-                let outcome = pcg(&mut operator, &mut identity, v, fixed, criteria, stop);
-                v.unload(right, unit);
-                outcome
+                let preconditioner = &mut identity;
+                LinearSystem { operator, preconditioner, vectors, fixed }.solve(right, unit, criteria, stop)
             }
         });
         operators.plans.applications += outcome.applications;
@@ -202,12 +195,12 @@ impl<T: Real> Vectors<T> {
     }
 
     /// Takes a right-hand side in units of its size.
-    pub fn load(&mut self, right: &[f64], unit: f64) {
+    fn load(&mut self, right: &[f64], unit: f64) {
         update(&mut self.r, right, |r, right| *r = T::of(right / unit));
     }
 
     /// Gives the solution.
-    pub fn unload(&self, solution: &mut [f64], unit: f64) {
+    fn unload(&self, solution: &mut [f64], unit: f64) {
         update(solution, &self.x, |solution, x| *solution = unit * x.to_f64());
     }
 
@@ -224,7 +217,38 @@ impl<T: Real> Vectors<T> {
     }
 }
 
-/// Solves `G x = r` on a set approximately, or the constrained form of it for [`Fixed`].
+/// A system `G x = r` on a set of cells, or the constrained form of it for [`Fixed`], with its preconditioner.
+pub struct LinearSystem<'a, T> {
+    /// The influence matrix G.
+    pub operator: &'a mut dyn InfluenceOperator<T>,
+    /// The preconditioner.
+    pub preconditioner: &'a mut dyn Preconditioner<T>,
+    /// The set, the right-hand side and the solution.
+    pub vectors: &'a mut Vectors<T>,
+    /// The quantity that is fixed.
+    pub fixed: Fixed,
+}
+
+impl<T: Real> LinearSystem<'_, T> {
+    /// Solves for a right-hand side, and writes the solution over it. Criteria and outcome are in units of its size,
+    /// `unit`.
+    pub fn solve(
+        self,
+        right: &mut [f64],
+        unit: f64,
+        criteria: StoppingCriteria,
+        stop: Stop<'_>,
+    ) -> PcgOutcome {
+        let Self { operator, preconditioner, vectors, fixed } = self;
+        vectors.load(right, unit);
+        let system = LinearSystem { operator, preconditioner, vectors: &mut *vectors, fixed };
+        let outcome = pcg(system, criteria, stop);
+        vectors.unload(right, unit);
+        outcome
+    }
+}
+
+/// Solves a system approximately.
 ///
 /// At a fixed force the equation is solved for corrections whose sum is zero: with the weights w, the
 /// residual is `r - (w'r / w'1) 1` and the preconditioned one `z - (1'z / 1'w) w`, which is symmetric and
@@ -232,75 +256,164 @@ impl<T: Real> Vectors<T> {
 ///
 /// Cost: one application of G and one of the preconditioner a step. The caller checks the result with the
 /// exact operator.
-pub fn pcg<T: Real>(
-    operator: &mut dyn InfluenceOperator<T>,
-    preconditioner: &mut dyn Preconditioner<T>,
-    v: &mut Vectors<T>,
-    fixed: Fixed,
-    criteria: StoppingCriteria,
-    stop: Stop<'_>,
-) -> PcgOutcome {
-    let fixed_sum = fixed == Fixed::Force;
-    v.x.fill(T::default());
-    let factor = preconditioner.energy_factor();
-    let total = if fixed_sum { v.weigh(preconditioner) } else { 0.0 };
-    let small = |energy: f64, gain: f64| {
-        criteria.energy.is_some_and(|e| factor * energy <= e.share * (e.base + gain))
-    };
-    let (mut steps, mut applications, mut step, mut rz, mut gain) = (0, 0, T::default(), 0.0, 0.0);
-    let (mut start, mut rate, mut pending) = (0.0, 1.0, false);
+fn pcg<T: Real>(system: LinearSystem<'_, T>, criteria: StoppingCriteria, stop: Stop<'_>) -> PcgOutcome {
+    let mut gradients = ConjugateGradients::new(system, criteria);
     loop {
-        let Vectors { set, r, kt, z, weights, .. } = &mut *v;
-        if steps > 0 {
-            add(r, T::default() - step, kt);
-        }
-        let offset = if fixed_sum { T::of(dot(weights, r) / total) } else { T::default() };
-        // Without a product of r and the weights, the part of z along them adds nothing to r'z.
-        let found = preconditioner.apply(set, offset, r, z);
-        let next = found.product;
-        if steps == 0 {
-            start = next;
-        }
-        let wanted = criteria.reduction * criteria.reduction * start;
-        let reached = small(next, gain) || (steps > 0 && next <= wanted) || found.largest <= criteria.floor;
-        if reached || next.is_nan() || next <= 0.0 || steps >= criteria.steps || stop.stops() {
+        let found = gradients.precondition();
+        if gradients.is_reached(found) || stop.stops() {
             break;
         }
-        if steps > 0 {
-            rate = next / rz;
+        gradients.turn(found);
+        if !gradients.find_step() {
+            break; // Below what single precision can resolve.
         }
-        let beta = if steps == 0 { T::default() } else { T::of(rate) };
-        rz = next;
-        let Vectors { set, x, t, kt, z, weights, .. } = &mut *v;
-        advance(x, step, t, beta, z);
-        if fixed_sum {
+        if gradients.is_expected() {
+            gradients.lower_residual();
+            break;
+        }
+    }
+    gradients.finish()
+}
+
+/// Conjugate gradients on their way.
+struct ConjugateGradients<'a, T> {
+    system: LinearSystem<'a, T>,
+    criteria: StoppingCriteria,
+    /// Upper bound of the ratio of the energy of a residual to `r' M r`.
+    factor: f64,
+    /// The sum of the weights, where the sum of corrections is fixed.
+    total: Option<f64>,
+    /// Length of the last step.
+    step: T,
+    /// Whether x still lacks that step.
+    pending: bool,
+    /// `r' M r` at the beginning and before the last step, and by which factor it fell in the step before.
+    start: f64,
+    rz: f64,
+    rate: f64,
+    /// By how much the steps have raised `r' x`.
+    gain: f64,
+    steps: usize,
+    applications: usize,
+}
+
+impl<'a, T: Real> ConjugateGradients<'a, T> {
+    fn new(system: LinearSystem<'a, T>, criteria: StoppingCriteria) -> Self {
+        let LinearSystem { preconditioner, vectors, fixed, .. } = system;
+        vectors.x.fill(T::default());
+        let factor = preconditioner.energy_factor();
+        let total = (fixed == Fixed::Force).then(|| vectors.weigh(preconditioner));
+        Self {
+            system: LinearSystem { preconditioner, vectors, ..system },
+            criteria,
+            factor,
+            total,
+            step: T::default(),
+            pending: false,
+            start: 0.0,
+            rz: 0.0,
+            rate: 1.0,
+            gain: 0.0,
+            steps: 0,
+            applications: 0,
+        }
+    }
+
+    /// Takes the last step off the residual.
+    fn lower_residual(&mut self) {
+        let Vectors { r, kt, .. } = &mut *self.system.vectors;
+        add(r, T::default() - self.step, kt);
+    }
+
+    /// Preconditions the residual after the last step.
+    fn precondition(&mut self) -> Preconditioned {
+        if self.steps > 0 {
+            self.lower_residual();
+        }
+        let LinearSystem { preconditioner, vectors, .. } = &mut self.system;
+        let Vectors { set, r, z, weights, .. } = &mut **vectors;
+        let offset = self.total.map_or(T::default(), |total| T::of(dot(weights, r) / total));
+        // Without a product of r and the weights, the part of z along them adds nothing to r'z.
+        let found = preconditioner.apply(set, offset, r, z);
+        if self.steps == 0 {
+            self.start = found.product;
+        }
+        found
+    }
+
+    /// Whether a residual with this `r' M r` is as small as wanted.
+    fn is_within(&self, product: f64) -> bool {
+        product <= self.criteria.reduction * self.criteria.reduction * self.start
+    }
+
+    /// Whether the energy of such a residual is as small as wanted, at the present gain.
+    fn is_small(&self, product: f64) -> bool {
+        self.criteria.energy.is_some_and(|e| self.factor * product <= e.share * (e.base + self.gain))
+    }
+
+    /// Whether the iteration ends before another step.
+    fn is_reached(&self, found: Preconditioned) -> bool {
+        let product = found.product;
+        self.is_small(product)
+            || (self.steps > 0 && self.is_within(product))
+            || found.largest <= self.criteria.floor
+            || product.is_nan()
+            || product <= 0.0
+            || self.steps >= self.criteria.steps
+    }
+
+    /// Takes the last step, and turns to the next direction.
+    fn turn(&mut self, found: Preconditioned) {
+        if self.steps > 0 {
+            self.rate = found.product / self.rz;
+        }
+        let beta = if self.steps == 0 { T::default() } else { T::of(self.rate) };
+        self.rz = found.product;
+        let Vectors { x, t, z, weights, .. } = &mut *self.system.vectors;
+        advance(x, self.step, t, beta, z);
+        self.pending = false;
+        if let Some(total) = self.total {
             add(t, T::of(-found.sum / total), weights);
         }
-        pending = false;
+    }
+
+    /// Finds the length of the step along the direction; `false` where the curvature along it is not positive.
+    fn find_step(&mut self) -> bool {
+        let LinearSystem { operator, vectors, fixed, .. } = &mut self.system;
+        let Vectors { set, t, kt, .. } = &mut **vectors;
         operator.apply(set, t, set, kt);
-        if let Fixed::MeanPlane(constant) = fixed {
+        if let Fixed::MeanPlane(constant) = *fixed {
             let offset = T::of(constant * sum(t));
             each(kt, |kt| *kt += T::default() - offset);
         }
-        applications += 1;
+        self.applications += 1;
         let curvature = dot(t, kt);
         if curvature.is_nan() || curvature <= 0.0 {
-            break; // Below what single precision can resolve.
+            return false;
         }
-        step = T::of(rz / curvature);
-        gain += rz * rz / curvature;
-        steps += 1;
-        pending = true;
-        // Where the next step is expected to gain as much as the last one, the rest need not be known.
-        if rz * rate <= wanted || small(rz * rate, gain) {
-            add(&mut v.r, T::default() - step, &v.kt);
-            break;
+        self.step = T::of(self.rz / curvature);
+        self.gain += self.rz * self.rz / curvature;
+        self.steps += 1;
+        self.pending = true;
+        true
+    }
+
+    /// Whether the residual after the step need not be known: the step is expected to gain as much as the last one,
+    /// and that is enough.
+    fn is_expected(&self) -> bool {
+        let expected = self.rz * self.rate;
+        self.is_within(expected) || self.is_small(expected)
+    }
+
+    /// Adds the last step to the solution.
+    fn finish(self) -> PcgOutcome {
+        let Vectors { x, t, .. } = self.system.vectors;
+        if self.pending {
+            add(x, self.step, t);
         }
+        let energy = self.factor * self.start.max(0.0);
+        PcgOutcome { steps: self.steps, applications: self.applications, energy }
     }
-    if pending {
-        add(&mut v.x, step, &v.t);
-    }
-    PcgOutcome { steps, applications, energy: factor * start.max(0.0) }
 }
 
 fn add<T: Real>(a: &mut [T], factor: T, b: &[T]) {

@@ -12,7 +12,8 @@ use super::prepared::{PreparedSurface, Tangent};
 use super::sliding::{Slid, SurfaceFriction};
 use crate::active_set::{Candidates, Control, Guess, Limits, Solved};
 use crate::friction::{
-    CoupledLoad, CoupledState, FrictionLimits, FrictionLoad, SlipMemory, TangentialControl, advance_coupled,
+    CoupledGuess, CoupledLoad, CoupledState, CoupledSurface, FrictionLimits, FrictionLoad, SlipMemory,
+    TangentialControl, advance_coupled,
 };
 use crate::response::TangentialStiffness;
 use contact_model::{ContactState, Error, Result, Status, Stop};
@@ -74,7 +75,8 @@ impl PreparedSurface {
         let guess =
             self.last.as_ref().filter(|last| (tuning.near.0..=tuning.near.1).contains(&last.ratio(target)));
         let guess = guess.and_then(|last| last.extrapolated(target, &tuning));
-        let mut state = self.advance_both(sliding, step, limits, (guess, None), stop)?;
+        let start = CoupledGuess { pressure: guess, tractions: None };
+        let mut state = self.advance_both(sliding, step, limits, start, stop)?;
         let quotient = self.outputs.stiffness && !self.is_complete(&state.normal);
         if quotient {
             let tight = CoupledLimits {
@@ -172,7 +174,7 @@ impl PreparedSurface {
         sliding: &mut SurfaceFriction,
         step: CoupledStep<'_>,
         limits: CoupledLimits,
-        near: (Option<Guess>, Option<SlipMemory>),
+        start: CoupledGuess,
         stop: Stop<'_>,
     ) -> Result<CoupledState> {
         let SurfaceFriction { friction, law, undeformed, .. } = sliding;
@@ -183,8 +185,8 @@ impl PreparedSurface {
             normal_limits: limits.normal,
             tangential_limits: limits.tangential,
         };
-        let surface = (&mut self.problem, &undeformed[..]);
-        let found = advance_coupled(surface, friction, before, load, near, stop);
+        let surface = CoupledSurface { problem: &mut self.problem, undeformed, friction };
+        let found = advance_coupled(surface, before, load, start, stop);
         found.map_err(|beyond| self.gross_slip(control, beyond))
     }
 
@@ -201,9 +203,9 @@ impl PreparedSurface {
         if state.status() != Status::Converged || stop.stops() {
             return Ok(false);
         }
-        let near = (Some(guess_of(&state.normal)), Some(state.tangential.memory.clone()));
+        let start = guess_of(&state.normal, &state.tangential.memory);
         let deformed = self.problem.candidates.shared();
-        let mut next = self.advance_both(sliding, step, limits, near, stop)?;
+        let mut next = self.advance_both(sliding, step, limits, start, stop)?;
         let gap = next.tangential.duality_gap;
         let (worst, before) = (next.normal.residuals.worst(), state.normal.residuals.worst());
         let better = (worst < before || gap < state.tangential.duality_gap)
@@ -250,8 +252,8 @@ impl PreparedSurface {
                 normal: Control::Approach(normal.d + steps * step),
                 tangential,
             };
-            let near = (Some(guess_of(normal)), Some(state.tangential.memory.clone()));
-            let found = self.advance_both(sliding, next, limits, near, stop);
+            let start = guess_of(normal, &state.tangential.memory);
+            let found = self.advance_both(sliding, next, limits, start, stop);
             let next = match found {
                 Ok(next) => next,
                 // The tangential force would be more than friction holds.
@@ -276,6 +278,7 @@ impl PreparedSurface {
     }
 }
 
-fn guess_of(solved: &Solved) -> Guess {
-    Guess { set: solved.contact.clone(), p: solved.p.clone(), d: solved.d }
+fn guess_of(solved: &Solved, tractions: &SlipMemory) -> CoupledGuess {
+    let pressure = Guess { set: solved.contact.clone(), p: solved.p.clone(), d: solved.d };
+    CoupledGuess { pressure: Some(pressure), tractions: Some(tractions.clone()) }
 }

@@ -105,30 +105,9 @@ impl PreparedSurface {
             // Apart, or touching: the gap is the one asked for.
             return self.no_contact(self.mean - asked, load);
         }
-        if asked <= 0.0 && self.has_complete_contact() {
-            let expected = "a number above 0, where every force from that of full contact on would do";
-            return Err(Error::domain(
-                "mean gap",
-                self.nondimensional.approach(asked.abs())?.copysign(asked),
-                expected,
-            ));
-        }
-        if self.sliding.as_ref().is_some_and(SurfaceFriction::is_coupled) {
-            let what = "a mean gap with full coupling: prescribe a force or a pressure";
-            return Err(Error::unsupported(NAME, what));
-        }
+        self.check_gap(asked)?;
         self.begin_count();
-        let side = (self.problem.grid().count() as f64).sqrt();
-        let mut search = GapSearch {
-            // A wave of the rms height and the length of the map closes at about side x rms.
-            x: self.last.as_ref().map_or(0.1 * side, |last| last.force).ln(),
-            low: f64::NEG_INFINITY,
-            // With a hardness no force reaches that of all cells at it; without, this is infinite.
-            high: self.capacity().ln(),
-            approaches: [first, f64::INFINITY],
-            before: None,
-        };
-        search.x = search.x.min(search.high - GAP_STEP);
+        let mut search = self.begin_gap_search(first);
         let mut steps = 0;
         // Loads that meet the gap and are followed by another one.
         let mut polish = POLISHING_LOADS;
@@ -161,6 +140,39 @@ impl PreparedSurface {
             search.take(step, miss);
         }
         Err(self.no_such_gap(asked)?)
+    }
+
+    /// Refuses a mean gap below that of the first touch that cannot be prescribed.
+    fn check_gap(&self, asked: f64) -> Result<()> {
+        if asked <= 0.0 && self.has_complete_contact() {
+            let expected = "a number above 0, where every force from that of full contact on would do";
+            return Err(Error::domain(
+                "mean gap",
+                self.nondimensional.approach(asked.abs())?.copysign(asked),
+                expected,
+            ));
+        }
+        if self.sliding.as_ref().is_some_and(SurfaceFriction::is_coupled) {
+            let what = "a mean gap with full coupling: prescribe a force or a pressure";
+            return Err(Error::unsupported(NAME, what));
+        }
+        Ok(())
+    }
+
+    /// The search for a mean gap from the last force on; `first` is the approach of the first touch.
+    fn begin_gap_search(&self, first: f64) -> GapSearch {
+        let side = (self.problem.grid().count() as f64).sqrt();
+        // A wave of the rms height and the length of the map closes at about side x rms.
+        let x = self.last.as_ref().map_or(0.1 * side, |last| last.force).ln();
+        // With a hardness no force reaches that of all cells at it; without, this is infinite.
+        let high = self.capacity().ln();
+        GapSearch {
+            x: x.min(high - GAP_STEP),
+            low: f64::NEG_INFINITY,
+            high,
+            approaches: [first, f64::INFINITY],
+            before: None,
+        }
     }
 
     /// The same by approaches between one at which the gap is too large and one at which it is too small, if

@@ -231,10 +231,10 @@ mod tests {
         };
         let mut scene = Scene::new(Surface::Heights(Arc::new(map.clone())), 1.0);
         let numerics = (&Tuning::DEFAULT, &Recorder::default());
-        let free = PreparedSurface::of_map(Bem3d::default(), &scene, &map, true, numerics).unwrap();
+        let free = PreparedSurface::of_map(Bem3d::default(), &scene, &map, numerics).unwrap();
         approx::assert_relative_eq!(free.stiffness_error(&tangent(3.0)), 0.03);
         scene.effects.boundary = Boundary::Periodic;
-        let periodic = PreparedSurface::of_map(Bem3d::default(), &scene, &map, true, numerics).unwrap();
+        let periodic = PreparedSurface::of_map(Bem3d::default(), &scene, &map, numerics).unwrap();
         // k = k'/(1 - c k') is four times k' where c k' = 3/4, and so is its relative error.
         let value = 0.75 / periodic.problem.operators.table().shift();
         approx::assert_relative_eq!(periodic.stiffness_error(&tangent(value)), 0.12, max_relative = 1e-12);

@@ -244,12 +244,17 @@ proptest! {
 /// to work on. They called this state of a withdrawal unstable.
 #[test]
 fn a_stable_state_of_four_cells_is_found_stable() {
-    let heights = vec![0.02173153882467034, 0.09535102590562147, 0.019215681342152804, 0.04454899621620069];
+    let heights = vec![
+        0.021_731_538_824_670_34,
+        0.095_351_025_905_621_47,
+        0.019_215_681_342_152_804,
+        0.044_548_996_216_200_69,
+    ];
     let map = HeightMap::new([2, 2], [0.5, 0.5], heights).unwrap();
     let mut scene = Scene::new(Surface::Heights(Arc::new(map)), 1.0);
     scene.effects.boundary = Boundary::Periodic;
-    scene.effects.hardness = Hardness::Limit { pressure: 0.22423987686049798 };
-    let (work, range) = (4.945e-4, 0.02866121410993819);
+    scene.effects.hardness = Hardness::Limit { pressure: 0.224_239_876_860_497_98 };
+    let (work, range) = (4.945e-4, 0.028_661_214_109_938_19);
     scene.effects.adhesion = Adhesion::FiniteRange { work, range, law: AdhesionLaw::Exponential };
     let mut path = Bem3d { tolerance: 1e-9, ..Bem3d::default() }.prepare(&scene, 0).unwrap();
     let states =

@@ -78,6 +78,34 @@ impl Bem3d {
     }
 }
 
+/// Depths below the highest point: differences first, so that an offset of the heights changes nothing.
+fn depths(map: &HeightMap) -> Vec<f64> {
+    let highest = map.highest();
+    let mut depths = vec![0.0; map.heights().len()];
+    update(&mut depths, map.heights(), |depth, h| *depth = highest - h);
+    depths
+}
+
+/// The rms height of the defined points of a map.
+fn rms_of_defined(depths: &[f64], map: &HeightMap) -> f64 {
+    if map.undefined() == 0 {
+        surface_gen::rms_height(depths)
+    } else {
+        surface_gen::rms_height(&depths.iter().copied().filter(|depth| depth.is_finite()).collect::<Vec<_>>())
+    }
+}
+
+/// The upper bound of the pressure by the hardness of a scene, nondimensional; `None` without a hardness.
+fn upper_bound(scene: &Scene, nondimensional: Nondimensionalisation) -> Result<Option<f64>> {
+    let Hardness::Limit { pressure } = scene.effects.hardness else { return Ok(None) };
+    let upper = nondimensional.pressure_in(pressure) / PI;
+    if !(upper.is_finite() && upper > 0.0) {
+        let expected = "a pressure nearer to E* times the slope of the surface";
+        return Err(Error::domain("hardness", pressure, expected));
+    }
+    Ok(Some(upper))
+}
+
 impl PreparedSurface {
     /// The surface of a scene.
     pub(super) fn new(
@@ -88,27 +116,18 @@ impl PreparedSurface {
         recorder: &Recorder,
     ) -> Result<Self> {
         let map = options.heights(scene, seed)?;
-        let has_rms =
-            matches!(scene.surface, Surface::SelfAffine(_) | Surface::Heights(_) | Surface::Profile(_));
-        Self::of_map(*options, scene, &map, has_rms, (tuning, recorder))
+        Self::of_map(*options, scene, &map, (tuning, recorder))
     }
 
+    /// The surface of a scene with these heights.
     pub(super) fn of_map(
         options: Bem3d,
         scene: &Scene,
         map: &HeightMap,
-        has_rms: bool,
         (tuning, recorder): (&Tuning, &Recorder),
     ) -> Result<Self> {
-        let highest = map.highest();
-        // Differences first: an offset of the heights changes nothing.
-        let mut z = vec![0.0; map.heights().len()];
-        update(&mut z, map.heights(), |z, h| *z = highest - h);
-        let rms = if map.undefined() == 0 {
-            surface_gen::rms_height(&z)
-        } else {
-            surface_gen::rms_height(&z.iter().copied().filter(|z| z.is_finite()).collect::<Vec<_>>())
-        };
+        let mut z = depths(map);
+        let rms = rms_of_defined(&z, map);
         let height = if rms > 0.0 { rms } else { 1.0 };
         each(&mut z, |z| *z /= height);
         let (grid, (dx, dy)) = (Grid::of(map), (map.dx(), map.dy()));
@@ -119,17 +138,13 @@ impl PreparedSurface {
         let mut problem = Problem::recorded(grid, Arc::new(z), profile::medium(scene), tuning, recorder);
         problem.nested = options.method != Method::SingleLevel;
         problem.operators.two_levels = problem.nested;
-        let mut hardness = None;
-        if let Hardness::Limit { pressure } = scene.effects.hardness {
-            let upper = nondimensional.pressure_in(pressure) / PI;
-            if !(upper.is_finite() && upper > 0.0) {
-                let expected = "a pressure nearer to E* times the slope of the surface";
-                return Err(Error::domain("hardness", pressure, expected));
-            }
+        let hardness = upper_bound(scene, nondimensional)?;
+        if let Some(upper) = hardness {
             problem.bounds = Bounds::UpTo(upper);
-            hardness = Some(upper);
         }
         let sliding = SurfaceFriction::new(scene, &problem, nondimensional, (tuning, recorder))?;
+        let has_rms =
+            matches!(scene.surface, Surface::SelfAffine(_) | Surface::Heights(_) | Surface::Profile(_));
         let normalisation = Normalisation {
             contact_modulus: scene.contact_modulus,
             length: map.length(),

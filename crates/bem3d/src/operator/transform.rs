@@ -217,7 +217,7 @@ impl<T: Real, const N: usize> Transform<T, N> {
                     let mut end = 0;
                     for rows in sources {
                         clear(columns, pitch, end..rows.start);
-                        to_columns::<T>(stripe, Self::STRIPE, first, rows.clone(), columns, pitch);
+                        to_columns::<T>(&stripe[first..], Self::STRIPE, rows.clone(), columns, pitch);
                         end = rows.end;
                     }
                     clear(columns, pitch, end..lengths.y);
@@ -238,7 +238,7 @@ impl<T: Real, const N: usize> Transform<T, N> {
                 let fields = columns.chunks_exact(each).zip(stripe.chunks_exact_mut(Self::STRIPE * field));
                 for ((columns, stripe), targets) in fields.zip(&targets) {
                     for rows in targets {
-                        to_rows::<T>(columns, pitch, stripe, Self::STRIPE, first, rows.clone());
+                        to_rows::<T>(columns, pitch, &mut stripe[first..], Self::STRIPE, rows.clone());
                     }
                 }
             }
@@ -442,12 +442,11 @@ fn runs(count: usize, has: impl Fn(usize) -> bool) -> Vec<Range<usize>> {
     runs
 }
 
-/// Reads columns from `first` on out of some rows of a stripe, square by square:
-/// `columns[i * pitch + y] = stripe[y * width + first + i]`.
+/// Reads columns out of some rows of a stripe, which is given from the first of them on, square by square:
+/// `columns[i * pitch + y] = stripe[y * width + i]`.
 fn to_columns<T: Real>(
     stripe: &[Complex<T>],
     width: usize,
-    first: usize,
     rows: Range<usize>,
     columns: &mut [Complex<T>],
     pitch: usize,
@@ -460,14 +459,14 @@ fn to_columns<T: Real>(
         move || {
             for y in (begin..end).step_by(SQUARE) {
                 for i in (0..count).step_by(SQUARE) {
-                    let square = square(&stripe[y * width + first + i..], width);
+                    let square = square(&stripe[y * width + i..], width);
                     put_square(&square, &mut to[i * pitch + y..], pitch);
                 }
             }
         },
     );
     for y in end..rows.end {
-        let line = &stripe[y * width + first..][..count];
+        let line = &stripe[y * width..][..count];
         for (column, &value) in columns.chunks_exact_mut(pitch).zip(line) {
             column[y] = value;
         }
@@ -480,7 +479,6 @@ fn to_rows<T: Real>(
     pitch: usize,
     stripe: &mut [Complex<T>],
     width: usize,
-    first: usize,
     rows: Range<usize>,
 ) {
     let count = columns.len() / pitch;
@@ -492,13 +490,13 @@ fn to_rows<T: Real>(
             for y in (begin..end).step_by(SQUARE) {
                 for i in (0..count).step_by(SQUARE) {
                     let square = square(&columns[i * pitch + y..], pitch);
-                    put_square(&square, &mut to[y * width + first + i..], width);
+                    put_square(&square, &mut to[y * width + i..], width);
                 }
             }
         },
     );
     for y in end..rows.end {
-        let line = &mut stripe[y * width + first..][..count];
+        let line = &mut stripe[y * width..][..count];
         for (value, column) in line.iter_mut().zip(columns.chunks_exact(pitch)) {
             *value = column[y];
         }

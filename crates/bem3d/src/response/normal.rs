@@ -84,6 +84,14 @@ impl Doubts {
     }
 }
 
+/// The cells of a solve, and what is known of them.
+struct StiffnessCells<'a> {
+    cells: &'a CellSet,
+    doubts: Doubts,
+    /// Whether they were factored, so that the q to begin with is exact.
+    factored: bool,
+}
+
 /// `G q = 1` on some cells. Conjugate gradients estimate the energy of a residual before their first step, so
 /// that the check of one correction is the beginning of the next.
 struct FixedSet<'a> {
@@ -179,7 +187,8 @@ pub fn solve(
     let factored = state.q.as_ref().filter(|q| q.len() == cells.len());
     let q = wanted.q.or_else(|| factored.cloned());
     let doubts = Doubts::of(problem, state, responding);
-    on_cells(problem, (cells, doubts), StiffnessRequest { q, ..wanted }, factored.is_some(), stop)
+    let cells = StiffnessCells { cells, doubts, factored: factored.is_some() };
+    on_cells(problem, cells, StiffnessRequest { q, ..wanted }, stop)
 }
 
 /// As [`solve`], to a tolerance of the stiffness of the kernel of zero mean, which the value still has to be
@@ -207,7 +216,7 @@ pub fn of_held_cells(
 ) -> NormalStiffness {
     let wanted = StiffnessRequest { tolerance, ..StiffnessRequest::default() };
     let found = to_magnified_tolerance(problem, wanted, false, stop, |problem, wanted| {
-        on_cells(problem, (cells, Doubts::default()), wanted, false, stop)
+        on_cells(problem, StiffnessCells { cells, doubts: Doubts::default(), factored: false }, wanted, stop)
     });
     of_zero_mean(found, problem.operators.table().shift())
 }
@@ -261,20 +270,20 @@ fn to_magnified_tolerance(
 
 fn on_cells(
     problem: &mut Problem,
-    (cells, doubts): (&CellSet, Doubts),
+    responding: StiffnessCells<'_>,
     wanted: StiffnessRequest,
-    is_exact: bool,
     stop: Stop<'_>,
 ) -> NormalStiffness {
+    let StiffnessCells { cells, doubts, factored } = responding;
     let Problem { operators, workspace, .. } = problem;
     let Some(recipe) = operators.planner().system(cells, cells.len(), true) else {
         return NormalStiffness::unknown();
     };
-    let conditioning = if is_exact { Conditioning::Identity } else { recipe.conditioning };
+    let conditioning = if factored { Conditioning::Identity } else { recipe.conditioning };
     let targets = cells.union(&doubts.undecided);
     let tuning = *operators.tuning();
     let error = operators.roughness(cells, &targets);
-    let rough = !is_exact && error > 0.0 && wanted.tolerance >= tuning.stiffness_single * error.powi(2);
+    let rough = !factored && error > 0.0 && wanted.tolerance >= tuning.stiffness_single * error.powi(2);
     let recipe = Recipe { conditioning, ..recipe };
     let mut conditions = FixedSet {
         operators,

@@ -11,7 +11,7 @@ use crate::scenes::tell::{
 };
 use contact_model::units::ascii;
 use runs::cluster::{ShardPlan, ShardReport, run_shard};
-use runs::{Checkpoint, Failure, Header, Progress, Shard, Store, Threads, run_stored};
+use runs::{Checkpoint, Failure, Header, JobRun, Progress, Shard, Store, Threads, run_stored};
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -53,7 +53,8 @@ pub fn run(
     take_trial(scene, &options.out, &store);
     let units = units(scene);
     let jobs = scene_jobs(scene, &options.out);
-    let done = run_stored(&title(scene), &jobs, &store, threads, progress, stop);
+    let run = JobRun { store: &store, threads, progress, stop };
+    let done = run_stored(&title(scene), &jobs, run);
     let mut results = done.into_iter().map(Option::transpose).collect::<Result<Vec<_>>>()?;
     for (result, job) in results.iter_mut().zip(&jobs) {
         if result.is_none() {

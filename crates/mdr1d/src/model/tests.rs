@@ -247,7 +247,10 @@ fn the_stiffness_of_an_adhesive_body_is_the_slope_of_its_branch() {
         let drawn = contact.solve(Load::approach(0.99 * by_approach)).unwrap();
         assert!(drawn.stiffness.unwrap() < 0.0, "{surface:?}");
     }
-    // The edge of a punch stays where it is.
+}
+
+#[test]
+fn the_edge_of_an_adhesive_punch_stays_where_it_is() {
     let mut scene = scene(Surface::FlatCircle { radius: 0.1, size: 1.0.into() });
     scene.effects.adhesion = Adhesion::ShortRange { work: 1e-3 };
     scene.outputs.stiffness_fixed_area = true;

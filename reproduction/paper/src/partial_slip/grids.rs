@@ -9,7 +9,9 @@ use crate::evaluation::{Outcome, Session, header, list};
 use crate::judged::Judged;
 use bem3d::Bem3d;
 use contact_model::{ContactModel as _, never};
-use runs::{Job, Progress, Result, Threads, collect, files, run_stored, threads_for_memory, write_csv};
+use runs::{
+    Job, JobRun, Progress, Result, Threads, collect, files, run_stored, threads_for_memory, write_csv,
+};
 use std::sync::Arc;
 
 /// Solves the surfaces on all grids and writes `partial-slip-grids.csv`, `partial-slip-grid-tests.csv`,
@@ -31,8 +33,8 @@ pub(super) fn grids(study: &PartialSlipStudy, progress: &dyn Progress) -> Result
     let in_flight = threads_for_memory(study.threads, memory, "grids", finest)?;
     let threads = Threads { total: study.threads, jobs: in_flight };
     let what = format!("{} surfaces on {} grids", jobs.len() / study.grids.len(), study.grids.len());
-    let surfaces: Vec<SurfaceOnGrid> =
-        collect(run_stored(&what, &jobs, &session.store, threads, progress, &never))?;
+    let run = JobRun { store: &session.store, threads, progress, stop: &never };
+    let surfaces: Vec<SurfaceOnGrid> = collect(run_stored(&what, &jobs, run))?;
     let solved: Vec<SolvedGrids<'_>> = (study.fractal_dimensions.iter())
         .zip(surfaces.chunks(study.surfaces * study.grids.len()))
         .map(|(d, surfaces)| SolvedGrids { fractal_dimension: *d, surfaces, grids: study.grids.len() })

@@ -35,7 +35,9 @@ use job::SlipJob;
 use means::SolvedCase;
 pub(crate) use picture::SLIPS;
 use picture::{LOOPS, STIFFNESS};
-use runs::{Job, Progress, Result, Threads, collect, files, run_stored, threads_for_memory, write_csv};
+use runs::{
+    Job, JobRun, Progress, Result, Threads, collect, files, run_stored, threads_for_memory, write_csv,
+};
 use std::sync::Arc;
 use study::{AMPLITUDES, COEFFICIENT, ROLL_OFF, SHARES, SlipCase};
 
@@ -65,7 +67,8 @@ pub fn partial_slip(study: &PartialSlipStudy, progress: &dyn Progress) -> Result
     let in_flight = threads_for_memory(study.threads, memory, "cells", study.cells)?;
     let threads = Threads { total: study.threads, jobs: in_flight };
     let what = format!("{} surfaces of {} cells a side", jobs.len(), study.cells);
-    let surfaces = collect(run_stored(&what, &jobs, &session.store, threads, progress, &never))?;
+    let run = JobRun { store: &session.store, threads, progress, stop: &never };
+    let surfaces = collect(run_stored(&what, &jobs, run))?;
     let solved: Vec<SolvedCase<'_>> = (study.cases().into_iter())
         .zip(surfaces.chunks(study.surfaces))
         .map(|(case, surfaces)| SolvedCase { case, surfaces })

@@ -7,7 +7,7 @@ use crate::adhesion::equilibrium::Equilibrium;
 use crate::adhesion::law::LawShape;
 use crate::adhesion::pairs::Pairs;
 use crate::geometry::CellSet;
-use crate::linear::{Extension, Fixed, Preconditioner, TorusInverse, minres};
+use crate::linear::{Extension, Fixed, MinresLimits, Preconditioner, TorusInverse, minres};
 use crate::operator::{Conditioning, FftConvolution, InfluenceOperator, PlannedPressure};
 use crate::parts::Recorder;
 use crate::real::{dot, each, largest, sum, update};
@@ -121,7 +121,7 @@ impl Linear {
         let pairs = pairs.as_ref();
         let own = operators.table().own() as f32;
         let (decay, recorder) = (operators.tuning().decay, operators.recorder().clone());
-        let (mut kernel, torus) = operators.system(recipe);
+        let (kernel, torus) = operators.system(recipe);
         let mut extension = Extension::default();
         if let (Conditioning::Torus { extended, .. }, Some(torus)) = (recipe.conditioning, &torus) {
             extension.set(&self.contact, torus.window(), if extended { decay } else { 0.0 });
@@ -129,17 +129,15 @@ impl Linear {
         let diagonal = self.diagonal(own);
         let mut inverse = RoughInverse { linear: self, diagonal, torus, extension, recorder };
         let kept = KeptForce::new(self, pairs, wanted.fixed, &mut inverse);
-        let (mut applications, mut source, mut u) =
-            (0, vec![0.0f32; self.both.len()], vec![0.0f32; self.both.len()]);
-        let product = |y: &[f32], out: &mut [f32]| {
-            applications += 1;
-            self.product((&mut kernel, wanted.fixed, pairs), y, out, (&mut source, &mut u));
-        };
+        let mut matrix = NewtonMatrix::new(self, kernel, pairs, wanted.fixed);
+        let product = |y: &[f32], out: &mut [f32]| matrix.multiply(y, out);
         let precondition = |r: &mut [f32], z: &mut [f32]| kept.precondition(&mut inverse, r, z);
         let mut right: Vec<f32> = left.iter().map(|l| -(l / unit) as f32).collect();
         self.times_root(&mut right);
         let b = times_neighbours(pairs, &right);
-        let (y, outcome) = minres(product, precondition, b, (wanted.reduction, STEPS), wanted.stop);
+        let limits = MinresLimits { reduction: wanted.reduction, steps: STEPS };
+        let (y, outcome) = minres(product, precondition, b, limits, wanted.stop);
+        let applications = matrix.applications;
         operators.plans.applications += applications;
         operators.plans.solves += 1;
         Some(self.solution(pairs, &y, unit, outcome.steps))
@@ -164,27 +162,6 @@ impl Linear {
         self.root.iter().zip(&self.is_open).map(of).collect()
     }
 
-    /// The product by the matrix of the system; `source` and `u` are room.
-    fn product(
-        &self,
-        (kernel, fixed, pairs): (&mut PlannedPressure<'_>, Fixed, Option<&Pairs>),
-        y: &[f32],
-        out: &mut [f32],
-        (source, u): (&mut [f32], &mut [f32]),
-    ) {
-        add_neighbours(pairs, y, source);
-        let own: Vec<f32> = source.iter().zip(&self.is_open).map(|(s, open)| s * open).collect();
-        self.times_root(source);
-        kernel.apply(&self.both, source, &self.both, u);
-        if let Fixed::MeanPlane(constant) = fixed {
-            let offset = (constant * sum(source)) as f32;
-            each(u, |u| *u -= offset);
-        }
-        self.times_root(u);
-        add_neighbours(pairs, u, out);
-        update(out, &own, |out, own| *out -= own);
-    }
-
     /// From the unknowns of the system to net pressures and gaps.
     fn solution(&self, pairs: Option<&Pairs>, y: &[f32], unit: f64, steps: usize) -> NewtonSolution {
         let mut change = times_neighbours(pairs, y);
@@ -195,6 +172,43 @@ impl Linear {
             opening: opening.map(|((y, root), open)| unit * f64::from(y * open / root)).collect(),
             steps,
         }
+    }
+}
+
+/// The matrix of the system.
+struct NewtonMatrix<'a> {
+    linear: &'a Linear,
+    kernel: PlannedPressure<'a>,
+    pairs: Option<&'a Pairs>,
+    fixed: Fixed,
+    /// Room for a pressure, and for the displacement under it.
+    source: Vec<f32>,
+    u: Vec<f32>,
+    /// Number of products.
+    applications: usize,
+}
+
+impl<'a> NewtonMatrix<'a> {
+    fn new(linear: &'a Linear, kernel: PlannedPressure<'a>, pairs: Option<&'a Pairs>, fixed: Fixed) -> Self {
+        let room = || vec![0.0f32; linear.both.len()];
+        Self { linear, kernel, pairs, fixed, source: room(), u: room(), applications: 0 }
+    }
+
+    /// Writes the product by it.
+    fn multiply(&mut self, y: &[f32], out: &mut [f32]) {
+        let Self { linear, kernel, pairs, fixed, source, u, applications } = self;
+        *applications += 1;
+        add_neighbours(*pairs, y, source);
+        let own: Vec<f32> = source.iter().zip(&linear.is_open).map(|(s, open)| s * open).collect();
+        linear.times_root(source);
+        kernel.apply(&linear.both, source, &linear.both, u);
+        if let Fixed::MeanPlane(constant) = fixed {
+            let offset = (*constant * sum(source)) as f32;
+            each(u, |u| *u -= offset);
+        }
+        linear.times_root(u);
+        add_neighbours(*pairs, u, out);
+        update(out, &own, |out, own| *out -= own);
     }
 }
 

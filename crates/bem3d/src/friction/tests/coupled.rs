@@ -1,6 +1,6 @@
 use super::*;
 use crate::active_set::{Control, Limits, Problem};
-use crate::friction::coupled::{self, CoupledLoad, CoupledState};
+use crate::friction::coupled::{self, CoupledGuess, CoupledLoad, CoupledState, CoupledSurface};
 use crate::kernel::{CouplingTable, NormalTable, TangentialTable};
 use contact_model::Status;
 use std::sync::Arc;
@@ -63,8 +63,9 @@ impl PlainContact {
             normal_limits: NORMAL,
             tangential_limits: TANGENTIAL,
         };
-        coupled::advance((&mut self.problem, &self.z), &mut self.friction, before, load, (None, None), &never)
-            .unwrap()
+        let surface =
+            CoupledSurface { problem: &mut self.problem, undeformed: &self.z, friction: &mut self.friction };
+        coupled::advance(surface, before, load, CoupledGuess::default(), &never).unwrap()
     }
 
     /// Normal and tangential displacement of all cells, by pairs.

@@ -57,44 +57,44 @@ impl Oracle {
     pub fn advance(&mut self, cells: &CellSet, limit: &[f64], control: TangentialControl) -> OracleState {
         let n = self.grid.count();
         let place: Vec<usize> = cells.index(self.grid).collect();
-        let mut b = vec![0.0; n];
-        place.iter().zip(limit).for_each(|(&i, &limit)| b[i] = limit);
         let mut reference = self.displaced(&self.traction);
         for (k, u) in reference.iter_mut().enumerate() {
             *u = self.displacement[k / n] - *u;
         }
-        // The shift of all vectors that brings the sum of the projections to the force, by plain steps.
-        let mut shift = match control {
+        let shift = match control {
             TangentialControl::Displacement(delta) => delta.map(|delta| delta / self.bound),
             TangentialControl::Force(_) => [0.0; 2],
         };
-        let mut project = |y: &[f64]| -> Vec<f64> {
-            loop {
-                let mut q = vec![0.0; 2 * n];
-                let mut sum = [0.0; 2];
-                for &i in &place {
-                    let (x, y) = (y[i] + shift[0], y[n + i] + shift[1]);
-                    let scale = (b[i] / x.hypot(y)).min(1.0);
-                    (q[i], q[n + i]) = (scale * x, scale * y);
-                    sum = [sum[0] + q[i], sum[1] + q[n + i]];
-                }
-                let TangentialControl::Force(force) = control else { return q };
-                let missing = [force[0] - sum[0], force[1] - sum[1]];
-                if missing[0].hypot(missing[1]) < 1e-15 * limit.iter().sum::<f64>() {
-                    return q;
-                }
-                shift = [0, 1].map(|k| shift[k] + missing[k] / place.len() as f64);
-            }
+        let mut admissible = AdmissibleTractions { n, place: &place, limit, control, shift };
+        let q = self.minimised(&mut admissible, &reference);
+        let u = self.displaced(&q);
+        let delta = match control {
+            TangentialControl::Displacement(delta) => delta,
+            TangentialControl::Force(_) => admissible.shift.map(|shift| shift * self.bound),
         };
-        let mut q = project(&self.traction);
+        let slip = |k: usize| delta[k / n] - u[k] - reference[k];
+        let on_cells: Vec<usize> = place.iter().copied().chain(place.iter().map(|i| n + i)).collect();
+        let expected = OracleState {
+            traction: on_cells.iter().map(|&k| q[k]).collect(),
+            slip: on_cells.iter().map(|&k| slip(k)).collect(),
+            displacement: delta,
+            dissipated: on_cells.iter().map(|&k| q[k] * slip(k)).sum(),
+        };
+        (self.traction, self.displacement) = (q, delta);
+        expected
+    }
+
+    /// The tractions of least energy, by accelerated projected gradients from the present ones.
+    fn minimised(&self, admissible: &mut AdmissibleTractions<'_>, reference: &[f64]) -> Vec<f64> {
+        let mut q = admissible.project(&self.traction);
         let (mut ahead, mut t) = (q.clone(), 1.0_f64);
-        let scale = limit.iter().copied().fold(0.0, f64::max);
+        let scale = admissible.limit.iter().copied().fold(0.0, f64::max);
         let (step, mut done) = (1.0 / self.bound, 0);
         for _ in 0..STEPS {
             let u = self.displaced(&ahead);
             let y: Vec<f64> =
-                ahead.iter().zip(&u).zip(&reference).map(|((q, u), r)| q - step * (u + r)).collect();
-            let next = project(&y);
+                ahead.iter().zip(&u).zip(reference).map(|((q, u), r)| q - step * (u + r)).collect();
+            let next = admissible.project(&y);
             let change: Vec<f64> = next.iter().zip(&q).map(|(next, q)| next - q).collect();
             // Momentum that leads uphill is forgotten.
             let uphill: f64 =
@@ -109,20 +109,41 @@ impl Oracle {
                 break;
             }
         }
-        let u = self.displaced(&q);
-        let delta = match control {
-            TangentialControl::Displacement(delta) => delta,
-            TangentialControl::Force(_) => shift.map(|shift| shift * self.bound),
-        };
-        let slip = |k: usize| delta[k / n] - u[k] - reference[k];
-        let on_cells: Vec<usize> = place.iter().copied().chain(place.iter().map(|i| n + i)).collect();
-        let expected = OracleState {
-            traction: on_cells.iter().map(|&k| q[k]).collect(),
-            slip: on_cells.iter().map(|&k| slip(k)).collect(),
-            displacement: delta,
-            dissipated: on_cells.iter().map(|&k| q[k] * slip(k)).sum(),
-        };
-        (self.traction, self.displacement) = (q, delta);
-        expected
+        q
+    }
+}
+
+/// The tractions of all cells that obey their limits and a load.
+struct AdmissibleTractions<'a> {
+    /// Number of all cells, and those in contact.
+    n: usize,
+    place: &'a [usize],
+    /// Largest tractions of the latter.
+    limit: &'a [f64],
+    control: TangentialControl,
+    /// The shift of all vectors that brings the sum of the last projections to the force.
+    shift: [f64; 2],
+}
+
+impl AdmissibleTractions<'_> {
+    /// The nearest of them; the shift is found by plain steps.
+    fn project(&mut self, y: &[f64]) -> Vec<f64> {
+        let Self { n, place, limit, control, ref mut shift } = *self;
+        loop {
+            let mut q = vec![0.0; 2 * n];
+            let mut sum = [0.0; 2];
+            for (&i, &b) in place.iter().zip(limit) {
+                let (x, y) = (y[i] + shift[0], y[n + i] + shift[1]);
+                let scale = (b / x.hypot(y)).min(1.0);
+                (q[i], q[n + i]) = (scale * x, scale * y);
+                sum = [sum[0] + q[i], sum[1] + q[n + i]];
+            }
+            let TangentialControl::Force(force) = control else { return q };
+            let missing = [force[0] - sum[0], force[1] - sum[1]];
+            if missing[0].hypot(missing[1]) < 1e-15 * limit.iter().sum::<f64>() {
+                return q;
+            }
+            *shift = [0, 1].map(|k| shift[k] + missing[k] / place.len() as f64);
+        }
     }
 }

@@ -14,27 +14,80 @@ use contact_model::{Boundary, never};
 /// Rounding of a few additions.
 const ROUNDING_OF_SUMS: f64 = 1e-14;
 
-fn descended(
-    operators: &mut Operators,
-    cells: &CellSet,
-    (p, gap): (&mut [f64], &mut [f64]),
-    (law, force): (PressureRange, Option<f64>),
-    steps: usize,
-    stop: Stop<'_>,
-) -> usize {
-    let own = operators.table().own();
-    let force = force.map(|force| [force]);
-    let descent = Descent { law: &law, force, tractions: p, gradient: gap, own };
-    descend(descent, |change, u| operators.exact(cells, change, cells, u), steps, stop)
+/// A pressure on all cells of a grid and the gap under it, on their way to the solution.
+struct PressureOnAll {
+    operators: Operators,
+    cells: CellSet,
+    law: PressureRange,
+    force: Option<f64>,
+    p: Vec<f64>,
+    gap: Vec<f64>,
 }
 
-/// Energy `p'Gp/2 + z'p` and gap `Gp + z` of a pressure on all cells.
-fn evaluated(operators: &mut Operators, cells: &CellSet, p: &[f64], z: &[f64]) -> (f64, Vec<f64>) {
-    let mut u = Vec::new();
-    operators.exact(cells, p, cells, &mut u);
-    let energy = 0.5 * dot(p, &u) + dot(p, z);
-    u.iter_mut().zip(z).for_each(|(u, z)| *u += z);
-    (energy, u)
+impl PressureOnAll {
+    /// Descends in at most this number of steps. Returns the number of steps taken.
+    fn descend(&mut self, steps: usize, stop: Stop<'_>) -> usize {
+        let Self { operators, cells, law, force, p, gap } = self;
+        let own = operators.table().own();
+        let force = force.map(|force| [force]);
+        let descent = Descent { law: &*law, force, tractions: p, gradient: gap, own };
+        descend(descent, |change, u| operators.exact(cells, change, cells, u), steps, stop)
+    }
+
+    /// Energy `p'Gp/2 + z'p` and gap `Gp + z` of the pressure.
+    fn evaluated(&mut self, z: &[f64]) -> (f64, Vec<f64>) {
+        let Self { operators, cells, p, .. } = self;
+        let mut u = Vec::new();
+        operators.exact(cells, p, cells, &mut u);
+        let energy = 0.5 * dot(p, &u) + dot(p, z);
+        u.iter_mut().zip(z).for_each(|(u, z)| *u += z);
+        (energy, u)
+    }
+
+    /// Descends until the energy does not fall any more, and asserts that every step lowers it and obeys the bounds
+    /// and the force.
+    fn descend_to_the_end(&mut self, z: &[f64]) {
+        let (mut last, gap) = self.evaluated(z);
+        self.gap = gap;
+        for _ in 0..100 {
+            let taken = self.descend(5, &never);
+            let (energy, exact) = self.evaluated(z);
+            assert!(energy <= last + ROUNDING_OF_SUMS * last.abs(), "{energy} {last}");
+            assert!(self.p.iter().all(|p| (0.0..=self.law.upper).contains(p)));
+            if let Some(force) = self.force {
+                assert_relative_eq!(sum(&self.p), force, max_relative = 1e-12);
+            }
+            for (gap, exact) in self.gap.iter().zip(&exact) {
+                assert_relative_eq!(*gap, *exact, epsilon = 1e-12, max_relative = 1e-12);
+            }
+            (last, self.gap) = (energy, exact);
+            if taken == 0 {
+                break;
+            }
+        }
+    }
+
+    /// Asserts the conditions of contact; under a force the gap counts from its mean on the cells between their
+    /// bounds.
+    fn assert_solved(&self, what: &str) {
+        let (p, upper) = (&self.p, self.law.upper);
+        let plane = if self.force.is_some() {
+            let inside: Vec<f64> =
+                p.iter().zip(&self.gap).filter(|(p, _)| **p > 0.0 && **p < upper).map(|(_, g)| *g).collect();
+            sum(&inside) / inside.len() as f64
+        } else {
+            0.0
+        };
+        for (p, gap) in p.iter().zip(&self.gap) {
+            let gap = gap - plane;
+            let miss = match *p {
+                p if p <= 0.0 => -gap,
+                p if p >= upper => gap,
+                _ => gap.abs(),
+            };
+            assert!(miss < 1e-9, "{what}: {miss}");
+        }
+    }
 }
 
 /// Starting from pressures far from any solution, the energy falls in every step, the bounds and the force
@@ -55,50 +108,16 @@ fn every_step_lowers_the_energy_and_the_end_is_the_solution() {
             (0.2, None),
             (f64::INFINITY, None),
         ] {
-            let mut operators = Operators::new(NormalTable::shared(grid, boundary), &Tuning::DEFAULT);
-            let cells = CellSet::all(grid);
             // z - d where the approach is prescribed.
             let z: Vec<f64> = z.iter().map(|z| z - if force.is_none() { 1.5 } else { 0.0 }).collect();
             let law = PressureRange { upper: hardness };
             let mut p: Vec<f64> = (0..n).map(|i| (i % 5) as f64).collect();
             law.project(&mut p, force.map(|force| [force]));
-            let (mut last, mut gap) = evaluated(&mut operators, &cells, &p, &z);
-            for _ in 0..100 {
-                let taken = descended(&mut operators, &cells, (&mut p, &mut gap), (law, force), 5, &never);
-                let (energy, exact) = evaluated(&mut operators, &cells, &p, &z);
-                assert!(energy <= last + ROUNDING_OF_SUMS * last.abs(), "{energy} {last}");
-                assert!(p.iter().all(|p| (0.0..=hardness).contains(p)));
-                if let Some(force) = force {
-                    assert_relative_eq!(sum(&p), force, max_relative = 1e-12);
-                }
-                for (gap, exact) in gap.iter().zip(&exact) {
-                    assert_relative_eq!(*gap, *exact, epsilon = 1e-12, max_relative = 1e-12);
-                }
-                (last, gap) = (energy, exact);
-                if taken == 0 {
-                    break;
-                }
-            }
-            let plane = if force.is_some() {
-                let inside: Vec<f64> = p
-                    .iter()
-                    .zip(&gap)
-                    .filter(|(p, _)| **p > 0.0 && **p < hardness)
-                    .map(|(_, g)| *g)
-                    .collect();
-                sum(&inside) / inside.len() as f64
-            } else {
-                0.0
-            };
-            for (p, gap) in p.iter().zip(&gap) {
-                let gap = gap - plane;
-                let miss = match *p {
-                    p if p <= 0.0 => -gap,
-                    p if p >= hardness => gap,
-                    _ => gap.abs(),
-                };
-                assert!(miss < 1e-9, "{boundary:?} {hardness} {force:?}: {miss}");
-            }
+            let operators = Operators::new(NormalTable::shared(grid, boundary), &Tuning::DEFAULT);
+            let cells = CellSet::all(grid);
+            let mut pressure = PressureOnAll { operators, cells, law, force, p, gap: Vec::new() };
+            pressure.descend_to_the_end(&z);
+            pressure.assert_solved(&format!("{boundary:?} {hardness} {force:?}"));
         }
     }
 }
@@ -165,14 +184,18 @@ fn every_step_lowers_the_energy_of_tractions_too() {
 #[test]
 fn nothing_is_done_at_a_solution_or_when_stopped() {
     let grid = Grid::square(3, 1);
-    let mut operators = Operators::new(NormalTable::shared(grid, Boundary::Free), &Tuning::DEFAULT);
-    let cells = CellSet::all(grid);
-    let conditions = (PressureRange { upper: 1.0 }, Some(1.0));
+    let mut pressure = PressureOnAll {
+        operators: Operators::new(NormalTable::shared(grid, Boundary::Free), &Tuning::DEFAULT),
+        cells: CellSet::all(grid),
+        law: PressureRange { upper: 1.0 },
+        force: Some(1.0),
+        p: vec![0.0, 1.0, 0.0],
+        gap: vec![0.5, -0.5, 0.5],
+    };
     // The saturated cell is the lowest.
-    let (mut p, mut gap) = (vec![0.0, 1.0, 0.0], vec![0.5, -0.5, 0.5]);
-    assert_eq!(descended(&mut operators, &cells, (&mut p, &mut gap), conditions, 9, &never), 0);
-    assert_eq!((p, operators.plans.applications), (vec![0.0, 1.0, 0.0], 0));
-    let (mut p, mut gap) = (vec![1.0, 0.0, 0.0], vec![0.5, -0.5, 0.5]);
-    assert_eq!(descended(&mut operators, &cells, (&mut p, &mut gap), conditions, 9, &|| true), 0);
-    assert_eq!(p, [1.0, 0.0, 0.0]);
+    assert_eq!(pressure.descend(9, &never), 0);
+    assert_eq!((&pressure.p[..], pressure.operators.plans.applications), (&[0.0, 1.0, 0.0][..], 0));
+    (pressure.p, pressure.gap) = (vec![1.0, 0.0, 0.0], vec![0.5, -0.5, 0.5]);
+    assert_eq!(pressure.descend(9, &|| true), 0);
+    assert_eq!(pressure.p, [1.0, 0.0, 0.0]);
 }

@@ -76,31 +76,40 @@ fn fixed(sum: bool) -> Fixed {
     if sum { Fixed::Force } else { Fixed::Approach }
 }
 
-fn solve_on(
-    operators: &mut Operators,
-    set: &CellSet,
+/// The systems of a recipe on a set.
+struct SystemsOn<'a> {
+    set: &'a CellSet,
     recipe: Recipe,
-    right: &[f64],
-    fixed: Fixed,
-    criteria: StoppingCriteria,
-) -> Solution {
-    let (mut workspace, mut x) = (Workspace::default(), right.to_vec());
-    workspace.take(operators, set.clone(), recipe);
-    assert_eq!(workspace.set(), set);
-    let outcome = workspace.solve(operators, &mut x, fixed, criteria, &never);
-    // In units of the size of the right-hand side.
-    let unit = largest(right);
-    let residual = if recipe.is_single() {
-        workspace.single.r.iter().map(|&r| unit * f64::from(r)).collect()
-    } else {
-        workspace.double.r.iter().map(|&r| unit * r).collect()
-    };
-    Solution { x, residual, outcome }
+}
+
+impl SystemsOn<'_> {
+    /// Solves one in a new workspace.
+    fn solve(
+        &self,
+        operators: &mut Operators,
+        right: &[f64],
+        fixed: Fixed,
+        criteria: StoppingCriteria,
+    ) -> Solution {
+        let Self { set, recipe } = *self;
+        let (mut workspace, mut x) = (Workspace::default(), right.to_vec());
+        workspace.take(operators, set.clone(), recipe);
+        assert_eq!(workspace.set(), set);
+        let outcome = workspace.solve(operators, &mut x, fixed, criteria, &never);
+        // In units of the size of the right-hand side.
+        let unit = largest(right);
+        let residual = if recipe.is_single() {
+            workspace.single.r.iter().map(|&r| unit * f64::from(r)).collect()
+        } else {
+            workspace.double.r.iter().map(|&r| unit * r).collect()
+        };
+        Solution { x, residual, outcome }
+    }
 }
 
 /// Estimated energy `r' G^-1 r`, which no step is needed for.
 fn energy(operators: &mut Operators, set: &CellSet, recipe: Recipe, r: &[f64]) -> f64 {
-    let found = solve_on(operators, set, recipe, r, Fixed::Approach, endless(0));
+    let found = SystemsOn { set, recipe }.solve(operators, r, Fixed::Approach, endless(0));
     assert!(found.outcome.steps == 0 && found.x.iter().all(|&x| x == 0.0));
     found.outcome.energy
 }
@@ -110,7 +119,7 @@ fn path(grid: Grid, set: &CellSet, recipe: Recipe, right: &[f64]) -> Vec<(Vec<f6
     let mut operators = operators(grid);
     let after = |steps: usize| {
         let Solution { x, residual, outcome } =
-            solve_on(&mut operators, set, recipe, right, Fixed::Approach, endless(steps));
+            SystemsOn { set, recipe }.solve(&mut operators, right, Fixed::Approach, endless(steps));
         assert_eq!((outcome.steps, outcome.applications), (steps, steps));
         let mut u = Vec::new();
         operators.exact(set, &x, set, &mut u);
@@ -150,7 +159,8 @@ fn every_recipe_reaches_the_factored_solution() {
             for fixed_sum in [false, true] {
                 let criteria = StoppingCriteria { reduction: 1e-5, ..endless(200) };
                 let before = operators.plans.solves;
-                let found = solve_on(&mut operators, &set, recipe, &r, fixed(fixed_sum), criteria);
+                let found =
+                    SystemsOn { set: &set, recipe }.solve(&mut operators, &r, fixed(fixed_sum), criteria);
                 assert_eq!(operators.plans.solves, before + 1);
                 // With a fixed sum the approach takes up the rest: x = w - (sum w / sum q) q.
                 let shift = if fixed_sum { w.iter().sum::<f64>() / q.iter().sum::<f64>() } else { 0.0 };
@@ -170,7 +180,8 @@ fn every_recipe_reaches_the_factored_solution() {
                 );
                 // Eight times the gap asks for eight times the pressure, to the last bit, in as many steps.
                 let eight: Vec<f64> = r.iter().map(|r| 8.0 * r).collect();
-                let again = solve_on(&mut operators, &set, recipe, &eight, fixed(fixed_sum), criteria);
+                let again =
+                    SystemsOn { set: &set, recipe }.solve(&mut operators, &eight, fixed(fixed_sum), criteria);
                 assert_eq!(again.outcome.steps, steps);
                 assert!(again.x.iter().zip(&found.x).all(|(a, b)| (a - 8.0 * b).abs() <= 0.0));
             }
@@ -190,7 +201,7 @@ fn the_position_of_a_set_in_its_grid_does_not_matter() {
     let r = right(corner.len(), 1.0);
     for (here, there) in both(&corner).into_iter().zip(both(&inside)) {
         let [one, other] = [(&corner, here), (&inside, there)].map(|(set, recipe)| {
-            solve_on(&mut operators(grid), set, recipe, &r, Fixed::Approach, endless(4)).x
+            SystemsOn { set, recipe }.solve(&mut operators(grid), &r, Fixed::Approach, endless(4)).x
         });
         assert_eq!(one, other, "{here}");
     }
@@ -204,7 +215,7 @@ fn earlier_contents_of_a_workspace_do_not_matter() {
         let mut used = Workspace::default();
         for recipe in recipes(SQUARE, &set) {
             let criteria = StoppingCriteria { reduction: 1e-3, ..endless(50) };
-            let fresh = solve_on(&mut operators, &set, recipe, &r, fixed(fixed_sum), criteria);
+            let fresh = SystemsOn { set: &set, recipe }.solve(&mut operators, &r, fixed(fixed_sum), criteria);
             used.begin_load();
             used.take(&mut operators, CellSet::from_index(SQUARE, &[3, 77, 200]), recipe);
             used.solve(&mut operators, &mut [1.0, -2.0, 9.0], fixed(fixed_sum), endless(2), &never);
@@ -278,7 +289,8 @@ fn the_energy_of_the_error_is_compared_with_the_value_gained() {
                     let bound = |n: usize| share * (base + dot(&path[n].0, &right));
                     let expected = if left[0] <= bound(0) { 0 } else { first_step(1, |n| left[n], bound) };
                     let criteria = StoppingCriteria { energy: Some(Energy { share, base }), ..endless(50) };
-                    let got = solve_on(&mut operators, &set, recipe, &right, Fixed::Approach, criteria)
+                    let got = SystemsOn { set: &set, recipe }
+                        .solve(&mut operators, &right, Fixed::Approach, criteria)
                         .outcome
                         .steps;
                     assert_eq!(got, expected, "{unit} {recipe} {share} {base}");
@@ -302,7 +314,10 @@ fn it_ends_at_the_first_step_with_the_requested_reduction() {
             // The first step is always taken.
             let expected = first_step(1, |n| left[n], |_| reduction.powi(2) * left[0]);
             let criteria = StoppingCriteria { reduction, ..endless(50) };
-            let got = solve_on(&mut operators, &set, recipe, &right, Fixed::Approach, criteria).outcome.steps;
+            let got = SystemsOn { set: &set, recipe }
+                .solve(&mut operators, &right, Fixed::Approach, criteria)
+                .outcome
+                .steps;
             assert_eq!(got, expected, "{recipe} reduction {reduction}");
         }
         assert!(left[8] < 1e-3 * left[0], "eight steps gain something");
@@ -320,7 +335,12 @@ fn the_floor_is_the_largest_residual() {
                 let floor = share * unit;
                 let expected = path.iter().position(|(_, r)| largest(r) <= floor).unwrap();
                 let criteria = StoppingCriteria { floor, ..endless(50) };
-                let got = solve_on(&mut operators(SQUARE), &set, recipe, &right, Fixed::Approach, criteria);
+                let got = SystemsOn { set: &set, recipe }.solve(
+                    &mut operators(SQUARE),
+                    &right,
+                    Fixed::Approach,
+                    criteria,
+                );
                 assert_eq!(got.outcome.steps, expected, "{recipe} {floor}");
             }
         }
@@ -332,14 +352,20 @@ fn work_is_counted_and_a_uniform_gap_needs_none_under_a_given_force() {
     let (set, mut operators) = (scattered(SQUARE), operators(SQUARE));
     let uniform = vec![1.0; set.len()];
     let [identity, torus] = both(&set);
-    let got = solve_on(&mut operators, &set, identity, &uniform, Fixed::Force, endless(5));
+    let got =
+        SystemsOn { set: &set, recipe: identity }.solve(&mut operators, &uniform, Fixed::Force, endless(5));
     assert!(got.outcome.steps == 0 && got.x.iter().all(|&x| x == 0.0));
     assert_eq!((operators.plans.applications, operators.plans.solves), (0, 1));
-    solve_on(&mut operators, &set, torus, &uniform, Fixed::Approach, endless(5));
+    SystemsOn { set: &set, recipe: torus }.solve(&mut operators, &uniform, Fixed::Approach, endless(5));
     assert_eq!((operators.plans.applications, operators.plans.solves), (5, 2));
     assert_eq!(operators.last(), Some(torus));
     // Nothing is asked for.
-    let got = solve_on(&mut operators, &set, torus, &vec![0.0; set.len()], Fixed::Approach, endless(5));
+    let got = SystemsOn { set: &set, recipe: torus }.solve(
+        &mut operators,
+        &vec![0.0; set.len()],
+        Fixed::Approach,
+        endless(5),
+    );
     assert!(got.outcome.steps == 0 && got.x.iter().all(|&x| x == 0.0));
     // Stopped at once.
     let (mut workspace, mut x) = (Workspace::default(), uniform);

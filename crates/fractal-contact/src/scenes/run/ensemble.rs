@@ -4,7 +4,7 @@ use crate::scenes::plan::calibration;
 use crate::scenes::read::{Result, SceneFile};
 use crate::scenes::run::{Answer, ModelResult, SceneJob, scene_jobs};
 use contact_model::{ContactState, Normalisation, never};
-use runs::{Job as _, Ordered, Progress, Store, Threads, largest_first, run_in_order};
+use runs::{Job as _, JobRun, Ordered, Progress, Store, Threads, largest_first, run_in_order};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -68,7 +68,7 @@ pub fn solve_jobs_in_order(
         in_flight = in_flight.min(calibration::jobs_in_memory(scene, threads)?);
     }
     let threads = Threads { total: threads, jobs: in_flight };
-    let done = run_in_order(what, ordered, store, threads, progress, &never);
+    let done = run_in_order(what, ordered, JobRun { store, threads, progress, stop: &never });
     let (mut results, mut not_begun) = (Vec::with_capacity(done.len()), None);
     for (job, result) in ordered.jobs.iter().zip(done) {
         match result {

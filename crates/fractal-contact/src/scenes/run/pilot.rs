@@ -11,7 +11,7 @@ use crate::scenes::read::{Numerics, Result, SceneFile, cells};
 use crate::scenes::run::{ModelResult, Options, SceneJob, scene_jobs};
 use contact_model::Cells;
 use runs::amounts::memory;
-use runs::{Error, Job as _, Progress, Store, Threads, run_stored};
+use runs::{Error, Job as _, JobRun, Progress, Store, Threads, run_stored};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -178,7 +178,8 @@ impl PilotJob<'_> {
         let Cells { columns, rows } = self.candidate.cells();
         let what = format!("{PILOT}: {columns} x {rows} cells");
         let threads = Threads { total: threads, jobs: 1 };
-        let done = run_stored(&what, &[self.job(&folder)], store, threads, progress, stop);
+        let run = JobRun { store, threads, progress, stop };
+        let done = run_stored(&what, &[self.job(&folder)], run);
         let result = done.into_iter().next().flatten().ok_or_else(stopped)??;
         if result.states.len() < self.candidate.scene.request.count() {
             return Err(stopped());

@@ -10,7 +10,7 @@ use crate::evaluation::tables::{FORCE_BAR, FRACTAL_DIMENSION};
 use analysis::binomial_test;
 use contact_model::Table;
 use contact_model::never;
-use runs::{JobList, Progress, Result, Threads, collect, run_stored, write_csv};
+use runs::{JobList, JobRun, Progress, Result, Threads, collect, run_stored, write_csv};
 use std::path::Path;
 
 /// Share of the true errors that budgets should contain, and the level of the exact binomial test of it.
@@ -122,7 +122,8 @@ pub fn budget_check(
     let jobs = jobs(cases, seed)?;
     let session = Session::open(out, false)?;
     let what = format!("{cases} random cases against references");
-    let found = collect(run_stored(&what, &jobs, &session.store, Threads::all(threads), progress, &never))?;
+    let run = JobRun { store: &session.store, threads: Threads::all(threads), progress, stop: &never };
+    let found = collect(run_stored(&what, &jobs, run))?;
     let coverage = judge(&found);
     let path = out.join("budget-check.csv");
     let mut header = header(format!("cargo xtask budget-check --cases {cases} --seed {seed}"))
@@ -259,8 +260,8 @@ mod tests {
         let dirs = [(); 2].map(|()| tempfile::tempdir().unwrap());
         let [whole, parts] = dirs.each_ref().map(|dir| Store::open(dir.path(), false).unwrap());
         let finish = |store: &Store| {
-            let run = run_stored("cases", &all, store, Threads::all(2), &Silent, &never);
-            collect(run).unwrap()
+            let run = JobRun { store, threads: Threads::all(2), progress: &Silent, stop: &never };
+            collect(run_stored("cases", &all, run)).unwrap()
         };
         let expected = finish(&whole);
         // Stopped inside the first case, then after it; a case is stored whole or not at all.

@@ -5,7 +5,7 @@ use super::means;
 use super::row::{StudyRow, mark_pareto};
 use super::sizes::{Order, StudySizes};
 use contact_model::never;
-use runs::{Progress, Result, Store, Threads, collect, run_stored};
+use runs::{JobRun, Progress, Result, Store, Threads, collect, run_stored};
 
 /// All results of the study.
 #[derive(Debug, Default)]
@@ -20,8 +20,8 @@ pub(crate) fn study(sizes: &StudySizes, seed: u64, store: &Store, progress: &dyn
     let jobs = jobs(sizes, seed)?;
     // Jobs that measure memory come first, because memory is measured from what the process already holds.
     let (problems, means) = jobs.split_at(jobs.partition_point(StudyJob::is_problem));
-    let solve =
-        |what, jobs| collect(run_stored(what, jobs, store, Threads { total: 1, jobs: 1 }, progress, &never));
+    let run = JobRun { store, threads: Threads::all(1), progress, stop: &never };
+    let solve = |what, jobs| collect(run_stored(what, jobs, run));
     let mut study = Study::default();
     let (mut ensembles, mut forms) = (Vec::new(), Vec::new());
     let mut parts = solve("accuracy against time: single surfaces", problems)?;

@@ -215,8 +215,8 @@ fn a_gap_equals_that_of_plain_sums() {
             for g in &mut gap {
                 *g -= d;
             }
-            let expected =
-                Residuals::measure(Bounds::Unlimited, (&all, &p, &gap), (&all, &gap), height.unwrap_or(d));
+            let under = ContactGap { contact: &all, left: &gap, checked: &all, gap: &gap };
+            let expected = Residuals::measure(Bounds::Unlimited, &p, under, height.unwrap_or(d));
             // By pairs and by transforms.
             for recipe in recipes().into_iter().take(2) {
                 let mut problem = problem(grid, &z, recipe.0);
