@@ -13,6 +13,6 @@ mod undecided;
 pub use bounds::Bounds;
 pub use candidates::Candidates;
 pub use initial_guess::{LastState, cold_start, predicted_cells};
-pub use residuals::Residuals;
+pub use residuals::{ContactGap, Residuals};
 pub use solver::{resume, solve};
-pub use state::{ContactGap, Continuation, Control, Guess, Limits, Problem, Solved};
+pub use state::{Continuation, Control, Guess, Limits, Problem, Solved};

@@ -1,10 +1,23 @@
 //! How well a pressure satisfies the contact conditions (KKT), from its gap.
 
 use super::bounds::{Bounds, Extremes};
-use super::state::ContactGap;
+use crate::geometry::CellSet;
 use crate::law::ConvexLaw;
 use crate::real::{sum, sum_of_pairs};
 use serde::{Deserialize, Serialize};
+
+/// A gap on all cells that could touch, and what is left of it on the contact.
+#[derive(Debug, Clone, Copy)]
+pub struct ContactGap<'a> {
+    /// The contact set.
+    pub contact: &'a CellSet,
+    /// Gap left on it.
+    pub left: &'a [f64],
+    /// The cells that could touch, the contact set among them.
+    pub checked: &'a CellSet,
+    /// Gap on them.
+    pub gap: &'a [f64],
+}
 
 /// The residuals of [`contact_model::Certificate`] other than those of the load and of the stiffness.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]

@@ -3,8 +3,9 @@
 
 use super::line_search::{StepStart, shorten};
 use super::progress::{Decision, Evaluated, Look, OuterProgress, criteria};
+use super::residuals::ContactGap;
 use super::residuals::Residuals;
-use super::state::{ContactGap, Continuation, Control, Guess, Limits, Problem, Solved};
+use super::state::{Continuation, Control, Guess, Limits, Problem, Solved};
 use crate::geometry::CellSet;
 use crate::law::{Descent, descend};
 use crate::linear::{Factor, Fixed};

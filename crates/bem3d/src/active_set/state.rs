@@ -2,7 +2,7 @@
 
 use super::bounds::Bounds;
 use super::candidates::Candidates;
-use super::residuals::Residuals;
+use super::residuals::{ContactGap, Residuals};
 use super::undecided::undecided;
 use crate::geometry::{CellSet, Grid};
 use crate::kernel::{Medium, NormalTable};
@@ -141,19 +141,6 @@ pub struct Continuation {
     pub gap: Vec<f64>,
     /// The candidates are those below this approach.
     pub reach: f64,
-}
-
-/// A gap on all cells that could touch, and what is left of it on the contact.
-#[derive(Debug, Clone, Copy)]
-pub struct ContactGap<'a> {
-    /// The contact set.
-    pub contact: &'a CellSet,
-    /// Gap left on it.
-    pub left: &'a [f64],
-    /// The cells that could touch, the contact set among them.
-    pub checked: &'a CellSet,
-    /// Gap on them.
-    pub gap: &'a [f64],
 }
 
 impl Control {

@@ -6,7 +6,7 @@
 //! straight edge of the contact the weights beyond a distance R add up to `(2 / pi) asin sqrt(1 / R)` in
 //! cells; of one open cell within the contact, to a few hundredths.
 
-use super::state::ContactGap;
+use super::residuals::ContactGap;
 use crate::geometry::{CellSet, Grid};
 use crate::tuning::Tuning;
 
