@@ -33,6 +33,7 @@
 //! |---|---|---|
 //! | Sa, Sq, Ssk, Sku, Sp, Sv, Sz | [`HeightParameters`] | left out |
 //! | Sdq, Sdr | [`HybridParameters`] | left out |
+//! | Sk, Spk, Svk, Smr1, Smr2 | [`FunctionalParameters`] | left out |
 //! | Sal, Str | [`SpatialParameters`] | left out |
 //! | Std | [`texture_direction`] | error |
 //! | Spd, Spc | [`FeatureParameters`] | like an edge |
@@ -112,7 +113,7 @@
 //! # What it does not do
 //!
 //! * It has no filters (Gaussian, spline) and no levelling.
-//! * It has no functional and volume parameters (Sk, Vmp, ...), and no dales.
+//! * It has no volume parameters (Vmp, ...), and no dales.
 //! * It finds no roll-off and cut-off of profiles, and fits no anisotropic spectra.
 //!
 //! A profile is a map of one row. The height parameters of such a map are those of its primary profile (Pa,
@@ -132,7 +133,8 @@ mod spectrum;
 mod taper;
 
 pub use areal::{
-    FeatureParameters, HeightParameters, HybridParameters, SpatialParameters, texture_direction,
+    FeatureParameters, FunctionalParameters, HeightParameters, HybridParameters, SpatialParameters,
+    texture_direction,
 };
 pub use bins::Bins;
 pub use derivatives::{Derivatives, ScaleDependence, nayak_parameter};

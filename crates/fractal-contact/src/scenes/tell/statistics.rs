@@ -7,8 +7,8 @@ use contact_model::units::{ascii, number, rounded};
 use contact_model::{Boundary, HeightMap};
 use std::sync::Arc;
 use surface_statistics::{
-    Bins, Derivatives, DifferenceBands, DifferenceMap, FeatureParameters, HeightDifference, HeightParameters,
-    HybridParameters, Interval, PowerSpectrum, ReliableWavelengths, ScaleDependence, SpatialParameters,
+    Bins, Derivatives, DifferenceBands, DifferenceMap, FeatureParameters, FunctionalParameters,
+    HeightDifference, HeightParameters, HybridParameters, Interval, PowerSpectrum, ReliableWavelengths, ScaleDependence, SpatialParameters,
     SpectrumFit, Taper, Wavelength, texture_direction,
 };
 
@@ -163,6 +163,15 @@ impl MapStatisticsTables {
         if let Some(h) = self.known("hybrid parameters", HybridParameters::new(map)) {
             self.push("Sdq", Some(h.sdq), 0, "rms gradient");
             self.push("Sdr", Some(h.sdr), 0, "surface in excess of its projection, over the projection");
+        }
+        if let Some(f) = self.known("functional parameters", FunctionalParameters::new(map)) {
+            for (symbol, value, meaning) in [
+                ("Sk", f.sk, "core height: the straight line of the material ratio curve falls by it"),
+                ("Spk", f.spk, "reduced height of the peaks above the core"),
+                ("Svk", f.svk, "reduced depth of the valleys below it"),
+            ] {
+                self.push(symbol, Some(value), 1, meaning);
+            }
         }
         if let Some(s) = self.known("spatial parameters", SpatialParameters::new(map)) {
             self.push("Sal", s.sal, 1, "shortest distance at which the autocorrelation has fallen to 0.2");
