@@ -170,6 +170,43 @@ fn a_click_reads_the_value_of_the_file() {
 }
 
 #[test]
+fn a_tilt_that_leaves_no_digits_for_the_roughness_is_told_in_words() {
+    let dir = tempfile::tempdir().unwrap();
+    let rough = |i: usize| ((i * i * 31 + i / 24 * 17) % 101) as f64 / 101.0;
+    let mut count = 0;
+    let mut told = |tilt: f64, print: &dyn Fn(f64) -> String, detrend: surface_io::Detrend| {
+        count += 1;
+        let file = dir.path().join(format!("{count}.csv"));
+        let line = |row: usize| {
+            let heights =
+                (24 * row..24 * row + 24).map(|i| print(tilt * ((i % 24) + 2 * row) as f64 + rough(i)));
+            heights.collect::<Vec<_>>().join(",") + "\n"
+        };
+        std::fs::write(&file, (0..24).map(line).collect::<String>()).unwrap();
+        let declared = surface_io::ReadOptions {
+            unit: Some("nm".parse().unwrap()),
+            cell: Some("1 um".parse().unwrap()),
+            ..Default::default()
+        };
+        let preprocessing = surface_io::Preprocessing { detrend, ..Default::default() };
+        fractal_contact::scenes::info(&file, &declared, &preprocessing).unwrap()
+    };
+    let words = "the rounding of the file's numbers, ";
+    let exact = |h: f64| format!("{h:e}");
+    for detrend in [surface_io::Detrend::Nothing, surface_io::Detrend::Plane] {
+        // A tilt of 1e20 times the roughness, and one of 300 times that is printed without decimals.
+        for told in [told(1e20, &exact, detrend), told(300.0, &|h| format!("{:.0}", h / 30.0), detrend)] {
+            assert!(told.contains(words) && told.contains("Subtract the tilt in the program of"), "{told}");
+            assert!(!told.contains("times its rms height without the tilt"), "{told}");
+        }
+        // Digits that are enough.
+        for told in [told(300.0, &exact, detrend), told(3.0, &|h| format!("{h:.1}"), detrend)] {
+            assert!(!told.contains(words), "{told}");
+        }
+    }
+}
+
+#[test]
 fn a_surface_has_a_report() {
     let dir = tempfile::tempdir().unwrap();
     let file = dir.path().join(format!("{HOSTILE}.npy").replace('/', ""));
