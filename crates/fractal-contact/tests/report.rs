@@ -187,7 +187,7 @@ fn statistics_of(map: &contact_model::HeightMap, preprocessing: &surface_io::Pre
 }
 
 /// Holes of 1.7 % cost no part of the map: spectra and their fit are of all of it, whether the points are kept
-/// undefined or filled, and the fit ends where filled points matter.
+/// undefined or filled, and the fit ends where filled points matter. The fitted line is drawn with its interval.
 #[test]
 fn a_map_with_holes_has_an_exponent_of_all_of_it() {
     let surface = contact_model::SelfAffine {
@@ -217,7 +217,7 @@ fn a_map_with_holes_has_an_exponent_of_all_of_it() {
         fill: Some(surface_io::Fill::Neighbours),
         ..surface_io::Preprocessing::default()
     };
-    let [of_whole, _] = statistics_of(&whole, &surface_io::Preprocessing::default());
+    let [of_whole, picture] = statistics_of(&whole, &surface_io::Preprocessing::default());
     assert!(!of_whole.contains("spectra and H are those of the whole map"), "{of_whole}");
     let told = [&kept, &filled].map(|preprocessing| statistics_of(&holes, preprocessing)[0].clone());
     for told in &told {
@@ -234,6 +234,7 @@ fn a_map_with_holes_has_an_exponent_of_all_of_it() {
         let line = told[0].lines().find(|line| line.starts_with(&format!("{symbol} "))).unwrap();
         assert!(line.split_whitespace().nth(1).unwrap().parse::<f64>().unwrap() > 0.0, "{line}");
     }
+    assert!(picture.contains("fit, ") && picture.contains(", shaded 0."), "{picture}");
 }
 
 #[test]
