@@ -8,8 +8,8 @@ import sys
 import numpy as np
 from surfalize import Surface
 
-NAMES = ["Sa", "Sq", "Ssk", "Sku", "Sp", "Sv", "Sz", "Sdq", "Sdr", "Sal", "Str", "Std", "Spd", "Spc"]
-UNITS = ["um", "um", "1", "1", "um", "um", "um", "1", "%", "um", "1", "deg", "1/um^2", "1/um"]
+NAMES = ["Sa", "Sq", "Ssk", "Sku", "Sp", "Sv", "Sz", "Sdq", "Sdr", "Sk", "Spk", "Svk", "Sal", "Str", "Std", "Spd", "Spc"]
+UNITS = ["um", "um", "1", "1", "um", "um", "um", "1", "%", "um", "um", "um", "um", "1", "deg", "1/um^2", "1/um"]
 
 version = importlib.metadata.version("surfalize")
 print(f"# surfalize {version}, {datetime.date.today().isoformat()}")

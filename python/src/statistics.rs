@@ -6,9 +6,9 @@ use crate::memory;
 use crate::numbers::RealNumber;
 use crate::pool;
 use fractal_contact::surface_statistics::{
-    Bins, Derivatives, DifferenceBands, DifferenceMap, FeatureParameters, HeightParameters, HybridParameters,
-    Interval, PowerSpectrum, ReliableWavelengths, ScaleDependence, SpatialParameters, SpectrumFit, Taper,
-    Wavelength, nayak_parameter, texture_direction,
+    Bins, Derivatives, DifferenceBands, DifferenceMap, FeatureParameters, FunctionalParameters,
+    HeightParameters, HybridParameters, Interval, PowerSpectrum, ReliableWavelengths, ScaleDependence,
+    SpatialParameters, SpectrumFit, Taper, Wavelength, nayak_parameter, texture_direction,
 };
 use fractal_contact::{Boundary, Error, Result};
 use numpy::PyArray1;
@@ -65,6 +65,10 @@ pub fn parameters<'py>(py: Python<'py>, map: &PyHeightMap, periodic: bool) -> Py
         let hybrid = HybridParameters::new(of).ok();
         all.push(("Sdq", hybrid.as_ref().map(|h| h.sdq)));
         all.push(("Sdr", hybrid.as_ref().map(|h| h.sdr)));
+        let functional = FunctionalParameters::new(of).ok();
+        all.push(("Sk", functional.as_ref().map(|f| f.sk)));
+        all.push(("Spk", functional.as_ref().map(|f| f.spk)));
+        all.push(("Svk", functional.as_ref().map(|f| f.svk)));
         let spatial = SpatialParameters::new(of).ok();
         all.push(("Sal", spatial.as_ref().and_then(|s| s.sal)));
         all.push(("Str", spatial.as_ref().and_then(|s| s.str)));

@@ -46,6 +46,26 @@ pub fn command() -> clap::Command {
     })
 }
 
+/// Name of the program.
+const PROGRAM: &str = "fractal-contact";
+
+/// The script that completes the command line in a shell.
+///
+/// In the script for bash a variable holds the name of the subcommand, which the branches of a `case` are
+/// labelled with. `clap_complete` makes the hyphen of the program's name `__` in the variable, but another word
+/// in the labels, so that no branch of a subcommand is ever taken. The labels are the names that the subcommands
+/// have once they are built: here those of a program without a hyphen.
+pub fn completions(shell: clap_complete::Shell) -> Vec<u8> {
+    let mut command = command();
+    if shell == clap_complete::Shell::Bash {
+        command.set_bin_name(PROGRAM.replace('-', "__"));
+        command.build();
+    }
+    let mut script = Vec::new();
+    clap_complete::generate(shell, &mut command, PROGRAM, &mut script);
+    script
+}
+
 /// The default of `--detrend` in `press` and `new`: the tilt of the map is subtracted.
 pub const PRESS_DETREND: surface_io::Detrend = surface_io::Detrend::Plane;
 

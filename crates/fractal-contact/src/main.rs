@@ -86,9 +86,7 @@ fn execute(arguments: Arguments) -> Result<ExitCode> {
         }
         Command::Models { name } => Ok(printed(&models(name.as_deref())?)),
         Command::Completions { shell } => {
-            let mut script = Vec::new();
-            clap_complete::generate(shell, &mut arguments::command(), "fractal-contact", &mut script);
-            Ok(printed(&String::from_utf8_lossy(&script)))
+            Ok(printed(&String::from_utf8_lossy(&arguments::completions(shell))))
         }
         Command::Man { directory } => {
             runs::files::create_directory(&directory)?;

@@ -167,10 +167,88 @@ fn plans_surfaces_results_and_completions_are_told() {
     );
     let mixed = program(&["surface", &path("t.npy"), "--seed", "1", "--side", "1 mm"]);
     assert!(!mixed.status.success() && texts(&mixed).1.contains("all lengths"), "{:?}", texts(&mixed));
-    let (script, _) = texts(&program(&["completions", "bash"]));
-    assert!(script.contains("fractal-contact"));
+    for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
+        let (script, _) = texts(&program(&["completions", shell]));
+        assert!(script.contains("fractal-contact") && script.contains("detrend"), "{shell}");
+    }
     let (help, _) = texts(&program(&["--help"]));
     assert!(help.contains("Examples:"));
+}
+
+/// What bash offers after these words, the last of which is begun; sorted.
+fn offered(script: &Path, words: &[&str]) -> Vec<String> {
+    // As bash calls the function: the name of the program, the word that is begun, and the one before it.
+    const ASK: &str = "source \"$1\"; shift; COMP_WORDS=(\"$@\"); COMP_CWORD=$(($# - 1)); \
+        function=$(complete -p fractal-contact | sed 's/.*-F \\([^ ]*\\).*/\\1/'); \
+        \"$function\" fractal-contact \"${COMP_WORDS[COMP_CWORD]}\" \"${COMP_WORDS[COMP_CWORD - 1]}\"; \
+        printf '%s\\n' \"${COMPREPLY[@]}\"";
+    let asked = Command::new("bash")
+        .args(["--norc", "-c", ASK, "bash"])
+        .arg(script)
+        .arg("fractal-contact")
+        .args(words)
+        .output()
+        .unwrap();
+    let (offered, error) = texts(&asked);
+    assert!(asked.status.success() && error.is_empty(), "{words:?}: {error}");
+    let mut offered: Vec<String> = offered.lines().filter(|l| !l.is_empty()).map(Into::into).collect();
+    offered.sort();
+    offered
+}
+
+#[test]
+fn bash_completes_subcommands_flags_and_values() {
+    if Command::new("bash").arg("--version").output().is_err() {
+        println!("skipped: there is no bash");
+        return;
+    }
+    let dir = tempfile::tempdir().unwrap();
+    let script = dir.path().join("fractal-contact.bash");
+    let (text, _) = texts(&program(&["completions", "bash"]));
+    std::fs::write(&script, &text).unwrap();
+    let of = |words: &[&str]| offered(&script, words);
+    assert_eq!(of(&["pr"]), ["press"]);
+    assert_eq!(of(&["press", "--b"]), ["--bodies", "--border", "--boundary"]);
+
+    assert_eq!(of(&["press", "map.csv", "--und"]), ["--undefined"]);
+    assert_eq!(of(&["press", "map.csv", "--detrend", "pl"]), ["plane"]);
+    let trends = of(&["press", "map.csv", "--detrend", ""]);
+    assert!(["none", "mean", "plane"].iter().all(|trend| trends.contains(&(*trend).into())), "{trends:?}");
+    assert_eq!(of(&["completions", "z"]), ["zsh"]);
+    // Every subcommand offers its own flags.
+    for subcommand in of(&[""]).iter().filter(|word| !word.starts_with('-') && *word != "help") {
+        let flags = of(&[subcommand, "--"]);
+        assert!(
+            flags.contains(&"--help".into()) && !flags.contains(&"--version".into()),
+            "{subcommand}: {flags:?}"
+        );
+    }
+}
+
+/// Every place to which the script for zsh goes on is in it, and the one for fish asks for subcommands by the
+/// names that the program has. These shells need not be there.
+#[test]
+fn scripts_of_zsh_and_fish_name_what_they_have() {
+    let (zsh, _) = texts(&program(&["completions", "zsh"]));
+    let names = zsh.split(|c: char| !(c.is_alphanumeric() || "_-".contains(c)));
+    let called: Vec<&str> = names.filter(|w| w.starts_with("_fractal") && w.ends_with("_commands")).collect();
+    assert!(!called.is_empty());
+    for function in called {
+        assert!(zsh.contains(&format!("{function}() {{")), "{function}");
+    }
+    assert!(zsh.starts_with("#compdef fractal-contact"));
+    for command in ["press", "run", "info"] {
+        assert!(zsh.lines().any(|line| line.trim() == format!("({command})")), "{command}");
+    }
+    let (fish, _) = texts(&program(&["completions", "fish"]));
+    assert!(
+        fish.lines()
+            .filter(|l| l.starts_with("complete "))
+            .all(|l| l.starts_with("complete -c fractal-contact "))
+    );
+    let asked = fish.lines().find(|line| line.contains("-l detrend")).unwrap();
+    let condition: Vec<&str> = asked.split('"').nth(1).unwrap().split_whitespace().collect();
+    assert!(condition[1] == "press" && fish.contains(&format!("function {}\n", condition[0])), "{asked}");
 }
 
 /// Ctrl-C, as the shell sends it.

@@ -169,6 +169,111 @@ fn a_click_reads_the_value_of_the_file() {
     }
 }
 
+/// The statistics of a map with holes, those of `preprocessing`, as they are told, and the spectrum's picture.
+fn statistics_of(map: &contact_model::HeightMap, preprocessing: &surface_io::Preprocessing) -> [String; 2] {
+    let dir = tempfile::tempdir().unwrap();
+    let file = dir.path().join("map.csv");
+    let height = |h: &f64| if h.is_finite() { format!("{h:e}") } else { String::new() };
+    let line = |row: &[f64]| row.iter().map(height).collect::<Vec<_>>().join(",") + "\n";
+    std::fs::write(&file, map.heights().chunks(map.columns()).map(line).collect::<String>()).unwrap();
+    let declared = surface_io::ReadOptions {
+        unit: Some("none".parse().unwrap()),
+        size: Some(format!("{} x {}", map.size().x, map.size().y).parse().unwrap()),
+        ..Default::default()
+    };
+    let out = dir.path().join("out");
+    let told = info_statistics(&file, &declared, preprocessing, &out).unwrap_or_else(|e| panic!("{e}"));
+    [told, std::fs::read_to_string(out.join("spectrum.svg")).unwrap()]
+}
+
+/// Holes of 1.7 % cost no part of the map: spectra and their fit are of all of it, whether the points are kept
+/// undefined or filled, and the fit ends where filled points matter. The fitted line is drawn with its interval.
+#[test]
+fn a_map_with_holes_has_an_exponent_of_all_of_it() {
+    let surface = contact_model::SelfAffine {
+        roll_off: Some(8.0 * std::f64::consts::TAU),
+        ..contact_model::SelfAffine::new(2.2, 2.0, 0.01).unwrap()
+    };
+    let whole = surface_gen::self_affine_map(&surface, 400, 3).unwrap().cropped(0..200, 0..160).unwrap();
+    // Discs of 7 cells, one in each 48 x 48.
+    let hole = |i: usize| {
+        let [x, y] = [i % 200 % 48, i / 200 % 48].map(|at| at as f64 - 24.0);
+        x.hypot(y) < 3.6
+    };
+    let heights = whole.heights().iter().enumerate().map(|(i, h)| if hole(i) { f64::NAN } else { *h });
+    let holes =
+        contact_model::HeightMap::with_undefined(whole.cells(), whole.size(), heights.collect()).unwrap();
+    let exponent = |told: &str| -> [f64; 3] {
+        let line = told.lines().find(|line| line.starts_with("H  ")).unwrap_or_else(|| panic!("{told}"));
+        let numbers = line.split(|c: char| !(c.is_ascii_digit() || c == '.'));
+        let numbers: Vec<f64> = numbers.filter_map(|word| word.parse().ok()).collect();
+        [numbers[0], numbers[1], numbers[2]]
+    };
+    let kept = surface_io::Preprocessing {
+        undefined: Some(surface_io::Undefined::NoContact),
+        ..surface_io::Preprocessing::default()
+    };
+    let filled = surface_io::Preprocessing {
+        fill: Some(surface_io::Fill::Neighbours),
+        ..surface_io::Preprocessing::default()
+    };
+    let [of_whole, picture] = statistics_of(&whole, &surface_io::Preprocessing::default());
+    assert!(!of_whole.contains("spectra and H are those of the whole map"), "{of_whole}");
+    let told = [&kept, &filled].map(|preprocessing| statistics_of(&holes, preprocessing)[0].clone());
+    for told in &told {
+        let note = "%) have heights between those of their neighbours";
+        assert!(told.contains("spectra and H are those of the whole map") && told.contains(note), "{told}");
+        assert!(!told.contains("not known      spectrum") && !told.contains("not known      fit"), "{told}");
+        let [value, low, high] = exponent(told);
+        let [_, whole_low, whole_high] = exponent(&of_whole);
+        assert!(low < 0.8 && 0.8 < high && low < value && value < high, "{value} {low} {high}");
+        assert!(high - low < 2.0 * (whole_high - whole_low), "{low} to {high}, {whole_low} to {whole_high}");
+    }
+    assert_eq!(exponent(&told[0]).map(f64::to_bits), exponent(&told[1]).map(f64::to_bits));
+    for symbol in ["Sk", "Spk", "Svk"] {
+        let line = told[0].lines().find(|line| line.starts_with(&format!("{symbol} "))).unwrap();
+        assert!(line.split_whitespace().nth(1).unwrap().parse::<f64>().unwrap() > 0.0, "{line}");
+    }
+    assert!(picture.contains("fit, ") && picture.contains(", shaded 0."), "{picture}");
+}
+
+#[test]
+fn a_tilt_that_leaves_no_digits_for_the_roughness_is_told_in_words() {
+    let dir = tempfile::tempdir().unwrap();
+    let rough = |i: usize| ((i * i * 31 + i / 24 * 17) % 101) as f64 / 101.0;
+    let mut count = 0;
+    let mut told = |tilt: f64, print: &dyn Fn(f64) -> String, detrend: surface_io::Detrend| {
+        count += 1;
+        let file = dir.path().join(format!("{count}.csv"));
+        let line = |row: usize| {
+            let heights =
+                (24 * row..24 * row + 24).map(|i| print(tilt * ((i % 24) + 2 * row) as f64 + rough(i)));
+            heights.collect::<Vec<_>>().join(",") + "\n"
+        };
+        std::fs::write(&file, (0..24).map(line).collect::<String>()).unwrap();
+        let declared = surface_io::ReadOptions {
+            unit: Some("nm".parse().unwrap()),
+            cell: Some("1 um".parse().unwrap()),
+            ..Default::default()
+        };
+        let preprocessing = surface_io::Preprocessing { detrend, ..Default::default() };
+        fractal_contact::scenes::info(&file, &declared, &preprocessing).unwrap()
+    };
+    let words = "the rounding of the file's numbers, ";
+    let exact = |h: f64| format!("{h:e}");
+    for detrend in [surface_io::Detrend::Nothing, surface_io::Detrend::Plane] {
+        // A tilt of 1e20 times the roughness, and one of 300 times that is printed without decimals.
+        for told in [told(1e20, &exact, detrend), told(300.0, &|h| format!("{:.0}", h / 30.0), detrend)] {
+            assert!(told.contains(words) && told.contains("Subtract the tilt in the program of"), "{told}");
+            assert!(!told.contains("times its rms height without the tilt"), "{told}");
+        }
+        // Digits that are enough.
+        for told in [told(300.0, &exact, detrend), told(3.0, &|h| format!("{h:.1}"), detrend)] {
+            assert!(!told.contains(words), "{told}");
+        }
+    }
+}
+
 #[test]
 fn a_surface_has_a_report() {
     let dir = tempfile::tempdir().unwrap();

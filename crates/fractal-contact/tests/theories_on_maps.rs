@@ -223,6 +223,37 @@ fn what_a_map_lacks_is_said() {
     assert!(notes.iter().any(|n| n.contains("assumes small slopes")), "{notes:#?}");
 }
 
+/// Opposite edges that do not fit are told of a periodic map whatever else it lacks: with holes, and tilted.
+#[test]
+fn edges_are_told_of_a_map_with_holes_and_of_a_tilted_one() {
+    let solver = PERIODIC.replace(", \"persson\", \"greenwood_williamson\"", "");
+    let kept = solver.replace("size = 1\n", "size = 1\nundefined = \"no_contact\"\n");
+    let part = drawn(128).cropped(0..100, 0..100).unwrap().scaled(1.28, 1.0).unwrap();
+    let with = |map: &HeightMap, height: &dyn Fn(usize, f64) -> f64| {
+        let heights = map.heights().iter().enumerate().map(|(i, h)| height(i, *h)).collect();
+        HeightMap::with_undefined(map.cells(), map.size(), heights).unwrap()
+    };
+    let hole = |i: usize, h: f64| if i == 1234 { f64::NAN } else { h };
+    let edges = "opposite edges of the map differ by";
+    for (map, text, expected) in [
+        (part.clone(), &solver, edges),
+        (with(&part, &hole), &kept, edges),
+        (with(&part, &|i, h| h + 0.01 * (i % 100) as f64), &solver, "the map is tilted: "),
+        (with(&part, &|i, h| hole(i, h + 0.01 * (i % 100) as f64)), &kept, "the map is tilted: "),
+    ] {
+        let notes = notes(&map, text);
+        assert!(
+            notes.iter().filter(|n| n.contains("bem3d: ") && n.contains(expected)).count() == 1,
+            "{notes:#?}"
+        );
+    }
+    // A map that fits is told nothing, with a hole or without.
+    for (map, text) in [(drawn(64), &solver), (with(&drawn(64), &hole), &kept)] {
+        let notes = notes(&map, text);
+        assert!(notes.iter().all(|n| !n.contains("edges")), "{notes:#?}");
+    }
+}
+
 #[test]
 fn maps_that_theories_have_no_meaning_for_are_refused() {
     let tilted = changed(|map, ix, iy| map.heights()[64 * iy + ix] + 0.01 * ix as f64);

@@ -273,6 +273,21 @@ pub enum ContentError {
         /// Why it is no number.
         kind: NumberKind,
     },
+    /// Commas stand between numbers and are their decimal signs too.
+    #[error(
+        "commas are decimal signs and separators at once: export the file with semicolons or tabs as separators, and say \
+         decimal = \"comma\" (--decimal comma); where every field is a height of its own, say format = \"text\""
+    )]
+    Commas,
+    /// One number in each line, which is neither a map nor a profile.
+    #[error(
+        "one column of {rows} numbers: a profile needs two columns, x and z, and a map several; format = \"text\" takes it for a \
+         map of one column"
+    )]
+    OneColumn {
+        /// Lines of data.
+        rows: usize,
+    },
     /// A height is infinite.
     #[error("{place}: {value}: expected a finite height; write nan where nothing was measured")]
     Infinite {

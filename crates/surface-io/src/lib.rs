@@ -190,7 +190,7 @@ pub use npy::npy;
 pub use options::{Axes, Border, Decimal, ReadOptions};
 pub use points::{profile, profile_from_bytes};
 pub use preprocessing::{
-    AlignLines, Crop, Detrend, Fill, Mirror, Preprocessed, Preprocessing, Undefined, Window,
+    AlignLines, Crop, Detrend, Fill, Mirror, Preprocessed, Preprocessing, Undefined, Window, filled,
 };
 pub use provenance::{Origin, Sourced};
 pub use quantity::{Dimension, Quantity, QuantityError, Unit};

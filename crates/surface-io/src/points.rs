@@ -138,7 +138,7 @@ fn channel(table: &TextTable, columns: &PointColumns, placed: Placed) -> StoredC
     let channel = StoredChannel::of(StoredHeights::Read(heights), details, shape, columns.unit.clone());
     let name = columns.name.clone().or_else(|| table.heading.name.clone());
     let mut notes = table.heading.notes(extent);
-    notes.extend(columns.notes.iter().cloned());
+    notes.extend(table.notes.iter().chain(&columns.notes).cloned());
     if columns.axes.iter().any(|axis| axis.index) {
         notes.push(
             "the heading names numbers of rows or columns, whose step is no length: cell says it".into(),

@@ -9,6 +9,7 @@ mod scan_lines;
 mod tip;
 mod trend;
 
+pub use fill::filled;
 pub use scan_lines::AlignLines;
 pub use trend::Detrend;
 

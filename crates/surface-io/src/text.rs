@@ -1,6 +1,7 @@
 //! Numbers as text: lines, delimiters, comments and headers.
 
 mod columns;
+mod decimals;
 mod delimiter;
 mod heading;
 mod matrix;
@@ -18,6 +19,7 @@ use crate::format::Format;
 use crate::number_type::NumberType;
 use crate::options::{Decimal, ReadOptions};
 use contact_model::units::number;
+use decimals::{CommaPairs, comma_pairs};
 use number::unquoted;
 use std::borrow::Cow;
 
@@ -30,6 +32,8 @@ pub(crate) struct TextTable {
     pub(crate) heading: Heading,
     /// Numbers of the lines of data, from 1.
     pub(crate) lines: Vec<u32>,
+    /// What is to be told of the numbers.
+    pub(crate) notes: Vec<String>,
     /// Height of one unit of a number, where the header says it.
     pub(crate) scale: Option<f64>,
     /// The last line of words before the numbers.
@@ -88,7 +92,11 @@ impl TextTable {
         let end = line_end(bytes);
         check_text(bytes, end)?;
         let bytes = bytes.strip_prefix(MARK).unwrap_or(bytes);
-        let error = match Self::read_as(bytes, end, declared.decimal, declared) {
+        let mut read = Self::read_as(bytes, end, declared.decimal, declared);
+        if declared.decimal == Decimal::Point || read.is_err() {
+            check_commas(bytes, end, declared, &mut read)?;
+        }
+        let error = match read {
             Err(error) if declared.decimal == Decimal::Point => error,
             read => return read,
         };
@@ -175,6 +183,7 @@ impl TextTable {
             delimiter: Delimiter::of(first.trim_ascii(), decimal),
             heading: Heading::default(),
             lines: Vec::new(),
+            notes: Vec::new(),
             scale: None,
             title: None,
             found_commas: false,
@@ -473,6 +482,32 @@ fn check_text(bytes: &[u8], end: u8) -> Result<(), ContentError> {
         Some((offset, &byte)) => Err(ContentError::NoText { offset, byte }),
         None => Ok(()),
     }
+}
+
+/// Refuses commas that are decimal signs and separators at once. Where they may be that and are not certainly,
+/// the maps get a note.
+fn check_commas(
+    bytes: &[u8],
+    end: u8,
+    declared: &ReadOptions,
+    read: &mut Result<Vec<TextTable>, ContentError>,
+) -> Result<(), ContentError> {
+    match (comma_pairs(bytes, end, declared.skip_lines), read) {
+        (CommaPairs::Numbers, _) => {}
+        (CommaPairs::Certain, _) if declared.format != Some(Format::Text) => {
+            return Err(ContentError::Commas);
+        }
+        (_, Ok(maps)) => {
+            let note = "every second number of all lines has no sign and equally many digits, as decimals have: if commas are \
+                        decimal signs and separators at once, export the file with semicolons or tabs as separators and say \
+                        decimal = \"comma\"";
+            for map in maps {
+                map.notes.push(note.to_owned());
+            }
+        }
+        (_, Err(_)) => return Err(ContentError::Commas),
+    }
+    Ok(())
 }
 
 /// Whether every comma in the numbers is one of decimals, and one of them at least can be nothing else: no

@@ -6,6 +6,9 @@
 
 mod hills;
 mod holes;
+mod material_ratio;
+
+pub use material_ratio::FunctionalParameters;
 
 use crate::difference::DifferenceMap;
 use crate::relative::{Relative, finite};

@@ -5,6 +5,7 @@ mod minimise;
 mod profile;
 mod rings;
 
+use crate::filled::FilledPoints;
 use crate::relative::Relative;
 use crate::taper::Taper;
 use contact_model::{Boundary, Error, HeightMap, Result};
@@ -15,6 +16,10 @@ use statrs::distribution::{ChiSquared, ContinuousCDF as _};
 use std::f64::consts::TAU;
 use surface_gen::{MapPlane, defined_everywhere, rms_height};
 
+/// Probability of a worse fit below which a fit beside filled points is repeated with longer waves.
+const DOUBTFUL: f64 = 0.01;
+/// Ratio of the shortest waves of two such fits.
+const LONGER: f64 = 1.5;
 /// Fewest rings of a fit.
 const FEWEST: usize = 8;
 /// Half the 95 % quantile of chi-square with one degree of freedom: rise of the profile at the ends of an
@@ -168,11 +173,49 @@ impl SpectrumFit {
     /// # Ok::<(), contact_model::Error>(())
     /// ```
     pub fn new(map: &HeightMap, options: &FitOptions) -> Result<Self> {
+        Self::with(map, None, options)
+    }
+
+    /// Fits a map whose undefined points were filled between their neighbours: the power of each ring is
+    /// divided by the share that such a map has of it, and the fit ends where this is not known well enough
+    /// ([`FilledPoints::shortest`]).
+    ///
+    /// Beyond a cut-off of the surface there is nothing that could be missing, but the rims of the holes make
+    /// waves of their own there. Where the fit finds no exponent, or has a [`SpectrumFit::goodness`] below 0.01,
+    /// it is repeated with waves of 1.5 times the length at least, up to twice the width of the largest hole.
+    /// [`SpectrumFit::fitted`] shows where it ended.
+    ///
+    /// # Errors
+    /// As [`SpectrumFit::new`].
+    pub fn of_filled(map: &HeightMap, filled: &FilledPoints, options: &FitOptions) -> Result<Self> {
+        let first = options.shortest.unwrap_or(0.0).max(filled.shortest());
+        let fit = |shortest: f64| {
+            let shortest = Some(shortest).filter(|shortest| *shortest > 0.0);
+            Self::with(map, Some(filled), &FitOptions { shortest, ..*options })
+        };
+        let good = |found: &Result<Self>| found.as_ref().is_ok_and(|fit| fit.goodness >= DOUBTFUL);
+        let (mut best, mut shortest) = (fit(first), first);
+        while !good(&best) && shortest > 0.0 && shortest * LONGER <= filled.twice_the_widest() {
+            shortest *= LONGER;
+            let next = fit(shortest);
+            if good(&next) || best.is_err() {
+                best = next;
+            }
+        }
+        best
+    }
+
+    fn with(map: &HeightMap, filled: Option<&FilledPoints>, options: &FitOptions) -> Result<Self> {
         defined_everywhere(map, "a fit of the spectrum")?;
         let limits = limits(options)?;
         let windowed = options.boundary != Boundary::Periodic;
         let prepared = if windowed { Taper::Hann.over(&without_plane(map)?)? } else { map.clone() };
-        let rings = Rings::new(&prepared, windowed, limits)?;
+        let mut rings = Rings::new(&prepared, windowed, limits)?;
+        if let Some(filled) = filled {
+            for ring in &mut rings.all {
+                ring.power /= filled.kept(TAU / (ring.wavenumber * rings.width));
+            }
+        }
         if rings.all.len() < FEWEST {
             let expected = format!("at least {FEWEST} between the longest and the shortest wave of the fit");
             return Err(Error::domain("rings of the spectrum", rings.all.len() as f64, expected));

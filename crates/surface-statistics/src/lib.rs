@@ -33,6 +33,7 @@
 //! |---|---|---|
 //! | Sa, Sq, Ssk, Sku, Sp, Sv, Sz | [`HeightParameters`] | left out |
 //! | Sdq, Sdr | [`HybridParameters`] | left out |
+//! | Sk, Spk, Svk, Smr1, Smr2 | [`FunctionalParameters`] | left out |
 //! | Sal, Str | [`SpatialParameters`] | left out |
 //! | Std | [`texture_direction`] | error |
 //! | Spd, Spc | [`FeatureParameters`] | like an edge |
@@ -42,7 +43,7 @@
 //! | rms gradient and curvature by differences | [`Derivatives`] | left out |
 //! | slope and curvature over a distance | [`ScaleDependence`] | left out |
 //! | Nayak's parameter | [`nayak_parameter`] | error |
-//! | Hurst exponent, roll-off, cut-off, noise | [`SpectrumFit`] | error |
+//! | Hurst exponent, roll-off, cut-off, noise | [`SpectrumFit`] | error; [`SpectrumFit::of_filled`] takes a map that is filled |
 //! | Hurst exponent of a profile | [`ProfileFit`] | error |
 //! | wavelengths that can be trusted | [`ReliableWavelengths`] | |
 //!
@@ -93,6 +94,10 @@
 //! Cut-offs are covered more often than in 95 of 100 cases: their edge is sharp, and the interval is never
 //! narrower than one wave of the map.
 //!
+//! Holes of 1.7 to 5 % of the points, filled, leave the intervals as wide as they were: those of 160 free maps
+//! contain the true exponent 146 times with holes and 151 times without (`tests/coverage.rs`, 40 maps for each of
+//! four cases).
+//!
 //! A free map of 128 cells a side without roll-off and cut-off determines the exponent to +-0.08. One of 512
 //! cells determines it to +-0.02. Two limitations remain. The intervals of a surface with prescribed
 //! amplitudes are too wide, because the fit cannot see that it is not Gaussian. The intervals of a surface
@@ -112,7 +117,7 @@
 //! # What it does not do
 //!
 //! * It has no filters (Gaussian, spline) and no levelling.
-//! * It has no functional and volume parameters (Sk, Vmp, ...), and no dales.
+//! * It has no volume parameters (Vmp, ...), and no dales.
 //! * It finds no roll-off and cut-off of profiles, and fits no anisotropic spectra.
 //!
 //! A profile is a map of one row. The height parameters of such a map are those of its primary profile (Pa,
@@ -124,6 +129,7 @@ mod chi_square;
 mod derivatives;
 mod difference;
 mod difference_bands;
+mod filled;
 mod fit;
 mod profile_fit;
 mod relative;
@@ -132,12 +138,14 @@ mod spectrum;
 mod taper;
 
 pub use areal::{
-    FeatureParameters, HeightParameters, HybridParameters, SpatialParameters, texture_direction,
+    FeatureParameters, FunctionalParameters, HeightParameters, HybridParameters, SpatialParameters,
+    texture_direction,
 };
 pub use bins::Bins;
 pub use derivatives::{Derivatives, ScaleDependence, nayak_parameter};
 pub use difference::{DifferenceMap, HeightDifference};
 pub use difference_bands::DifferenceBands;
+pub use filled::FilledPoints;
 pub use fit::{FitOptions, Interval, SpectrumFit, Wavelength};
 pub use profile_fit::ProfileFit;
 pub use reliable::ReliableWavelengths;

@@ -7,7 +7,7 @@ use contact_model::{Amplitude, Boundary, HeightMap, SelfAffine};
 use std::f64::consts::TAU;
 use std::time::Instant;
 use surface_gen::{self_affine_map, surface_seed};
-use surface_statistics::{FitOptions, SpectrumFit, Wavelength};
+use surface_statistics::{FilledPoints, FitOptions, SpectrumFit, Wavelength};
 
 /// Where a map comes from.
 #[derive(Clone, Copy, PartialEq)]
@@ -195,5 +195,101 @@ fn intervals_of_a_few_surfaces_cover_the_truth() {
 fn intervals_cover_the_truth_in_95_of_100_surfaces() {
     for case in &CASES {
         coverage(case, 13, 100);
+    }
+}
+
+/// The map with round holes of radii from one to four cells, at random places, in `share` of its points.
+fn with_round_holes(map: &HeightMap, share: f64, seed: u64) -> HeightMap {
+    let (columns, rows) = (map.columns(), map.rows());
+    let mut heights = map.heights().to_vec();
+    let mut state = seed;
+    let mut draw = || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    while (heights.iter().filter(|h| h.is_nan()).count() as f64) < share * heights.len() as f64 {
+        let [x, y, radius] = [draw() * columns as f64, draw() * rows as f64, 1.0 + 3.0 * draw()];
+        for (i, h) in heights.iter_mut().enumerate() {
+            if ((i % columns) as f64 - x).hypot((i / columns) as f64 - y) < radius {
+                *h = f64::NAN;
+            }
+        }
+    }
+    HeightMap::with_undefined(map.cells(), map.size(), heights).unwrap()
+}
+
+/// Of a map with holes that are filled the fit ends where filled points matter, and takes all of the map: its
+/// interval contains the truth as often as without holes, and is little wider where the holes are few.
+#[test]
+fn intervals_of_maps_with_filled_holes_cover_the_truth() {
+    const COUNT: usize = 40;
+    // With both limits inside, down to the cells, and rough ones. The last has few waves between a quarter of its
+    // side and the width of its many holes.
+    for (case, share, wider) in
+        [(&CASES[2], 0.017, 1.2), (&CASES[3], 0.017, 1.2), (&CASES[4], 0.03, 1.2), (&CASES[3], 0.05, 1.2)]
+    {
+        let mut covered = [0; 2];
+        let mut widths = [0.0; 2];
+        let (mut shortest, mut off) = (0.0, 0.0);
+        for index in 0..COUNT as u64 {
+            let seed = surface_seed(17, index);
+            let map = draw(case, seed);
+            let holes = with_round_holes(&map, share, seed);
+            let points = FilledPoints::new(&holes);
+            let options = FitOptions::default();
+            let filled = surface_io::filled(&holes).unwrap();
+            let found = [
+                SpectrumFit::new(&map, &options).unwrap(),
+                SpectrumFit::of_filled(&filled, &points, &options).unwrap(),
+            ];
+            for ((covered, width), fit) in covered.iter_mut().zip(&mut widths).zip(&found) {
+                *covered += usize::from(fit.hurst.contains(case.hurst));
+                *width += (fit.hurst.high - fit.hurst.low) / COUNT as f64;
+            }
+            // The same longest waves, which are those of the whole map.
+            assert!((found[0].fitted[0] / found[1].fitted[0] - 1.0).abs() < 1e-12);
+            shortest += points.shortest() / map.dx().max(map.dy()) / COUNT as f64;
+            off += (found[1].hurst.value - found[0].hurst.value) / COUNT as f64;
+        }
+        println!(
+            "{} {share}: {covered:?} of {COUNT} without and with holes, mean widths {widths:.3?}, mean difference {off:.4}, waves from \
+             {shortest:.1} cells on",
+            case.name
+        );
+        for covered in covered {
+            assert!(binomial_test(covered, COUNT, 0.95) > 0.01, "{}: {covered} of {COUNT}", case.name);
+        }
+        assert!(off.abs() < 0.02, "{}: {off}", case.name);
+        assert!(widths[1] < wider * widths[0], "{}: {widths:?}", case.name);
+    }
+}
+
+/// Beyond the cut-off of a surface the rims of filled holes are all that there is: the fit ends before they
+/// count, and finds what it finds without holes.
+#[test]
+fn a_cut_off_far_inside_is_found_beside_filled_holes() {
+    let case = CoverageCase {
+        name: "cut-off of eight cells",
+        hurst: 0.8,
+        roll_off: Some(120.0 / 128.0),
+        cut_off: Some(8.0 / 128.0),
+        cells: [320, 240],
+        cell: [1.0, 1.0],
+        part: MapOrigin::Cut,
+        shortest: None,
+    };
+    for seed in 0..3 {
+        let map = draw(&case, seed);
+        let holes = with_round_holes(&map, 0.017, seed);
+        let options = FitOptions::default();
+        let whole = SpectrumFit::new(&map, &options).unwrap();
+        let filled = surface_io::filled(&holes).unwrap();
+        let found = SpectrumFit::of_filled(&filled, &FilledPoints::new(&holes), &options).unwrap();
+        println!(
+            "{seed}: {:?} {:?} {}, {:?} {:?}",
+            found.hurst, found.cut_off, found.goodness, whole.hurst, whole.cut_off
+        );
+        assert!((found.hurst.value - whole.hurst.value).abs() < 0.25 * (whole.hurst.high - whole.hurst.low));
+        assert!(found.goodness > 0.01 && found.cut_off.contains(8.0 / 128.0));
     }
 }

@@ -7,8 +7,9 @@ use contact_model::{Amplitude, Boundary, HeightMap, SelfAffine};
 use std::f64::consts::TAU;
 use surface_gen::self_affine_map;
 use surface_statistics::{
-    Bins, Derivatives, DifferenceMap, FeatureParameters, HeightParameters, HybridParameters, PowerSpectrum,
-    ReliableWavelengths, ScaleDependence, SpatialParameters, SpectrumFit, Taper, texture_direction,
+    Bins, Derivatives, DifferenceMap, FeatureParameters, FunctionalParameters, HeightParameters,
+    HybridParameters, PowerSpectrum, ReliableWavelengths, ScaleDependence, SpatialParameters, SpectrumFit,
+    Taper, texture_direction,
 };
 
 /// Means over all points or pairs of points: a sample of 90 % has the same mean within its scatter.
@@ -39,6 +40,10 @@ fn parameters(map: &HeightMap) -> StatisticsFound {
     let hybrid = HybridParameters::new(map).ok();
     all.push(("Sdq", hybrid.map(|h| h.sdq), MEAN));
     all.push(("Sdr", hybrid.map(|h| h.sdr), TAIL));
+    let functional = FunctionalParameters::new(map).ok();
+    all.push(("Sk", functional.map(|f| f.sk), MEAN));
+    all.push(("Spk", functional.map(|f| f.spk), TAIL));
+    all.push(("Svk", functional.map(|f| f.svk), TAIL));
     let spatial = SpatialParameters::new(map).ok();
     all.push(("Sal", spatial.and_then(|s| s.sal), OUTLINE));
     all.push(("Str", spatial.and_then(|s| s.str), OUTLINE));
@@ -119,7 +124,7 @@ fn scattered_undefined_points_change_no_parameter_beyond_its_bound() {
                     }
                 }
                 let known = holes.iter().filter(|(_, value, _)| value.is_some()).count();
-                assert!(known >= 24, "{known} of {} are known", holes.len());
+                assert!(known >= 27, "{known} of {} are known", holes.len());
             }
         }
     }

@@ -10,7 +10,8 @@ use std::f64::consts::TAU;
 use std::path::Path;
 use surface_gen::self_affine_map;
 use surface_statistics::{
-    FeatureParameters, HeightParameters, HybridParameters, SpatialParameters, texture_direction,
+    FeatureParameters, FunctionalParameters, HeightParameters, HybridParameters, SpatialParameters,
+    texture_direction,
 };
 
 /// Rounding, of sums in another order and of numbers printed with 12 digits.
@@ -21,6 +22,8 @@ const PART_OF_A_CELL: f64 = 0.1;
 /// Std in degrees: surfalize takes the largest of 0.5 degree sums of amplitudes of all waves without a
 /// window, this crate the largest of 2 degree sums of variances.
 const SECTORS: f64 = 2.0;
+/// Sk, Spk and Svk: surfalize samples the material ratio curve at 10000 shares, this crate has all points.
+const SAMPLED: f64 = 0.01;
 
 /// Sides in micrometres.
 fn maps() -> Vec<(&'static str, HeightMap)> {
@@ -83,6 +86,10 @@ fn parameters_are_those_of_surfalize() {
         same("Sdq", hybrid.sdq, 1.0);
         // surfalize has per cent.
         same("Sdr", hybrid.sdr, 100.0);
+        let functional = FunctionalParameters::new(&map).unwrap();
+        for (what, found) in [("Sk", functional.sk), ("Spk", functional.spk), ("Svk", functional.svk)] {
+            close(&format!("{name}: {what}"), found, of(what), SAMPLED * of(what));
+        }
         let features = FeatureParameters::new(&map).unwrap();
         // surfalize divides by the area between the centres of the outermost cells, this crate by that of all
         // cells.

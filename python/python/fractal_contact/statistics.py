@@ -15,7 +15,9 @@ Curves = dict[str, NDArray[np.float64]]
 
 
 def parameters(heights: HeightMap, *, periodic: bool = False) -> dict[str, float | None]:
-    """Sa, Sq, Ssk, Sku, Sp, Sv, Sz, Sdq, Sdr, Sal, Str, Std, Spd, Spc, rms gradient and curvature, Nayak's parameter.
+    """Parameters of ISO 25178-2, rms gradient and curvature, Nayak's parameter.
+
+    Those of the standard are Sa, Sq, Ssk, Sku, Sp, Sv, Sz, Sdq, Sdr, Sk, Spk, Svk, Sal, Str, Std, Spd and Spc.
 
     None where the map does not define one. Lengths are in the unit of the map, Std in degrees.
 

@@ -17,6 +17,6 @@ pub use patches::{boundary_edges, patches};
 pub use plane::MapPlane;
 pub use self_affine_fit::SelfAffineFit;
 pub use spectra::{Wave, line_spectrum, periodogram, radial_spectrum, rms_slope};
-pub use statistics::{Band, MapStatistics};
+pub use statistics::{Band, MapEdges, MapStatistics};
 pub(crate) use statistics::{homogeneous, rms_by_wave};
 pub use window::{fit_range, hann_window, windowed};

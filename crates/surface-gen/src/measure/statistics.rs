@@ -200,14 +200,9 @@ pub(crate) fn homogeneous(map: &HeightMap) -> Result<Homogeneous<'_>> {
         let expected = "0: statistics of a surface need every height (`fill` or `crop` the map)";
         return Err(Error::domain("undefined points", map.undefined() as f64, expected));
     }
-    let rms = rms_height(map.heights());
-    // NaN and infinity are refused, too.
-    if !(rms > 0.0 && rms.is_finite()) {
-        return Err(Error::domain("rms height of the map", rms, "a rough surface: a finite number > 0"));
-    }
-    let edge_step = edge_step(map, rms).max(edge_step(&map.transposed(), rms));
-    let tilt = MapPlane::fit(map.cells(), map.heights().iter().map(|h| h / rms)).variance();
-    if edge_step <= MATCHING {
+    let edges = MapEdges::new(map)?;
+    let MapEdges { edge_step, tilt } = edges;
+    if edges.match_each_other() {
         return Ok(Homogeneous { map: Cow::Borrowed(map), edge_step, tilt });
     }
     if tilt > TILTED {
@@ -217,21 +212,96 @@ pub(crate) fn homogeneous(map: &HeightMap) -> Result<Homogeneous<'_>> {
     Ok(Homogeneous { map: Cow::Owned(windowed(map)?), edge_step, tilt })
 }
 
+/// How the opposite edges of a map fit each other, and how far the map is tilted. Both are measured on the
+/// defined points, so that they are known of a map with holes and of a tilted one too.
+///
+/// ```
+/// use contact_model::HeightMap;
+/// use surface_gen::MapEdges;
+/// // A plane of 8 columns: all of its variance is a tilt, and one edge is 7 steps above the other.
+/// let plane = HeightMap::from_fn(8, 1.0, |ix, _| ix as f64)?;
+/// let edges = MapEdges::new(&plane)?;
+/// assert!((edges.edge_step - 7.0).abs() < 1e-12 && (edges.tilt - 1.0).abs() < 1e-12);
+/// assert!(!edges.match_each_other());
+/// # Ok::<(), contact_model::Error>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MapEdges {
+    /// Rms step between opposite edges over the largest one between neighbouring columns or rows inside, the
+    /// larger of both directions.
+    pub edge_step: f64,
+    /// Share of the plane of least squares in the variance of heights.
+    pub tilt: f64,
+}
+
+impl MapEdges {
+    /// Measures a map, which may have undefined points. Cost O(N) for N cells.
+    ///
+    /// # Errors
+    /// [`Error::Domain`] for heights that are all equal and for numbers beyond the range of f64.
+    pub fn new(map: &HeightMap) -> Result<Self> {
+        let rms = rms_height(map.heights());
+        // NaN and infinity are refused, too.
+        if !(rms > 0.0 && rms.is_finite()) {
+            return Err(Error::domain("rms height of the map", rms, "a rough surface: a finite number > 0"));
+        }
+        let edge_step = edge_step(map, rms).max(edge_step(&map.transposed(), rms));
+        let tilt = if map.undefined() > 0 {
+            plane_share(map, rms)
+        } else {
+            MapPlane::fit(map.cells(), map.heights().iter().map(|h| h / rms)).variance()
+        };
+        Ok(Self { edge_step, tilt })
+    }
+
+    /// Whether the map is a period of a surface as far as its edges show it: they differ by no more than
+    /// 1.5 times the largest step inside.
+    pub fn match_each_other(&self) -> bool {
+        self.edge_step <= MATCHING
+    }
+}
+
+/// Share of the plane of least squares through the defined points in the variance of their heights. Numbers of
+/// columns and rows are made orthogonal to each other on these points, and each has its own part of the share.
+fn plane_share(map: &HeightMap, rms: f64) -> f64 {
+    let columns = map.columns();
+    let points = || {
+        let defined = map.heights().iter().enumerate().filter(|(_, h)| h.is_finite());
+        defined.map(|(i, h)| [(i % columns) as f64, (i / columns) as f64, h / rms])
+    };
+    let count = points().count() as f64;
+    let means = [0, 1, 2].map(|k: usize| points().map(|point| point[k]).sum::<f64>() / count);
+    let product =
+        |a: usize, b: usize| points().map(|p| (p[a] - means[a]) * (p[b] - means[b])).sum::<f64>() / count;
+    let [xx, xy, yy, xh, yh] = [(0, 0), (0, 1), (1, 1), (0, 2), (1, 2)].map(|(a, b)| product(a, b));
+    let along = |height: f64, square: f64| if square > 0.0 { height * height / square } else { 0.0 };
+    let common = if xx > 0.0 { xy / xx } else { 0.0 };
+    along(xh, xx) + along(yh - common * xh, (yy - common * xy).max(0.0))
+}
+
 /// Rms step from the last column to the first over the largest one from a column to the next; 0 for fewer
-/// than 3 columns, which carry no wave.
+/// than 3 columns, which carry no wave. Pairs with an undefined point are left out, and so are columns with
+/// fewer than half as many pairs as others have: the mean of a few steps may be large by chance.
 fn edge_step(map: &HeightMap, rms: f64) -> f64 {
     let columns = map.columns();
     if columns < 3 {
         return 0.0;
     }
-    let mut steps = vec![0.0; columns];
+    let mut steps = vec![(0.0, 0_usize); columns];
     for row in map.heights().chunks_exact(columns) {
-        for (i, step) in steps.iter_mut().enumerate() {
-            *step += ((row[(i + 1) % columns] - row[i]) / rms).powi(2);
+        for (i, (sum, pairs)) in steps.iter_mut().enumerate() {
+            let (next, own) = (row[(i + 1) % columns], row[i]);
+            if next.is_finite() && own.is_finite() {
+                *sum += ((next - own) / rms).powi(2);
+                *pairs += 1;
+            }
         }
     }
-    let across = steps.pop().unwrap_or(0.0);
-    let inside = steps.into_iter().fold(0.0, f64::max);
+    let most = steps.iter().map(|&(_, pairs)| pairs).max().unwrap_or(0);
+    let known = |&(_, pairs): &(f64, usize)| pairs > 0 && 2 * pairs >= most;
+    let mean = |(sum, pairs): (f64, usize)| sum / pairs as f64;
+    let across = steps.pop().filter(known).map_or(0.0, mean);
+    let inside = steps.into_iter().filter(known).map(mean).fold(0.0, f64::max);
     // Without a step inside there is none across.
     if inside > 0.0 { (across / inside).sqrt() } else { 0.0 }
 }

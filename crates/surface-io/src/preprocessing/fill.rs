@@ -1,6 +1,6 @@
 //! Undefined points filled by the discrete harmonic function with the measured rim.
 
-use contact_model::Cells;
+use contact_model::{Cells, HeightMap, Result};
 
 /// Residual, as a share of the first one, at which the iteration ends: rounding of heights of six digits is
 /// far larger.
@@ -29,6 +29,28 @@ pub(super) fn harmonic(cells: Cells, aspect: f64, heights: &mut [f64]) {
         // The harmonic function lies between the ends of the range; rounding may not.
         heights[i] = (middle + unit * x).clamp(low, high);
     }
+}
+
+/// A map whose undefined points have the heights of [`crate::Fill::Neighbours`]: the discrete harmonic function
+/// with the measured rim. The map stays as it is where all points are defined.
+///
+/// # Errors
+/// [`contact_model::Error::Domain`] where a height is not finite, which no map has.
+///
+/// ```
+/// use contact_model::HeightMap;
+/// let map = HeightMap::with_undefined([3, 1], [3.0, 1.0], vec![1.0, f64::NAN, 2.0])?;
+/// assert_eq!(surface_io::filled(&map)?.heights(), [1.0, 1.5, 2.0]);
+/// # Ok::<(), contact_model::Error>(())
+/// ```
+pub fn filled(map: &HeightMap) -> Result<HeightMap> {
+    if map.undefined() == 0 {
+        return Ok(map.clone());
+    }
+    let defined = |h: &f64| if h.is_finite() { *h } else { f64::NAN };
+    let mut heights: Vec<f64> = map.heights().iter().map(defined).collect();
+    harmonic(map.cells(), map.dy() / map.dx(), &mut heights);
+    HeightMap::new(map.cells(), map.size(), heights)
 }
 
 /// The graph of the missing cells.

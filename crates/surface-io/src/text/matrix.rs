@@ -5,6 +5,7 @@ use super::statement::Side;
 use crate::channel::{StoredChannel, StoredHeights};
 use crate::error::ContentError;
 use crate::extent::Extent;
+use crate::format::Format;
 use crate::options::{Border, ReadOptions};
 use crate::quantity::{Quantity, Unit};
 
@@ -14,12 +15,16 @@ const EVEN: f64 = 0.02;
 /// Rounding of a quotient of two lengths.
 const EXACT: f64 = 4.0 * f64::EPSILON;
 
+/// One column of more lines than this is refused where nothing says that it is a map. Fewer get a note.
+const ONE_COLUMN: usize = 8;
+
 /// The rows of a table as a map; the first line is row 0.
 pub(crate) fn matrix(mut table: TextTable, declared: &ReadOptions) -> Result<StoredChannel, ContentError> {
     if declared.lateral_unit.is_some() && declared.border.is_none() {
         let reason = "a matrix has no coordinates; give size or cell with a unit";
         return Err(ContentError::Useless { what: "lateral_unit", reason });
     }
+    note_one_column(&mut table, declared)?;
     let steps = border(&mut table, declared)?;
     let (rows, columns) = (table.rows(), table.columns);
     let mut extent = extents(&table, columns, rows)?;
@@ -33,8 +38,28 @@ pub(crate) fn matrix(mut table: TextTable, declared: &ReadOptions) -> Result<Sto
     let (heights, unit) = (StoredHeights::Read(table.values), table.heading.stored_unit());
     let channel = StoredChannel::of(heights, details, [rows, columns], unit);
     let mut notes = table.heading.notes(extent);
+    notes.append(&mut table.notes);
     notes.extend(table.heading.named().map(|names| format!("{names}, which are all taken for heights")));
     Ok(StoredChannel { name: table.heading.name, extent, notes, ..channel })
+}
+
+/// Tells that a table has one column only, unless its heading states both sides of the map.
+///
+/// # Errors
+/// [`ContentError::OneColumn`] for many lines where text is not the requested format: they are rather the
+/// heights of a profile, or a map whose separators are not read as such.
+fn note_one_column(table: &mut TextTable, declared: &ReadOptions) -> Result<(), ContentError> {
+    let rows = table.rows();
+    if table.columns > 1 || rows == 1 || table.heading.sides().iter().all(Option::is_some) {
+        return Ok(());
+    }
+    if rows > ONE_COLUMN && declared.format != Some(Format::Text) {
+        return Err(ContentError::OneColumn { rows });
+    }
+    table.notes.push(format!(
+        "the {rows} lines have one number each, and are taken for a map of one column: a profile needs two columns, x and z"
+    ));
+    Ok(())
 }
 
 /// Takes coordinates in the first line and the first value of each line out of a table that has them, and

@@ -308,6 +308,92 @@ fn decimal_commas_are_found_where_they_can_be_nothing_else() {
     }
 }
 
+/// Lines of `columns` numbers with decimal commas and commas between them.
+fn commas(columns: usize, lines: usize, height: impl Fn(usize) -> String) -> String {
+    let line = |row: usize| (0..columns).map(|i| height(row * columns + i)).collect::<Vec<_>>().join(",");
+    (0..lines).map(|row| line(row) + "\n").collect()
+}
+
+#[test]
+fn commas_that_are_decimal_signs_and_separators_are_refused() {
+    // Decimals that begin with 0, and -0 before the comma.
+    let hundredths = |i: usize| format!("{},{:02}", i * i * 7 % 113, i * i * 37 % 100);
+    let tenths =
+        |i: usize| format!("{}{},{}", if i.is_multiple_of(5) { "-" } else { "" }, i % 5 * 3, i * 7 % 10);
+    let quoted = |i: usize| format!("\"{}\"", hundredths(i));
+    for text in [
+        commas(24, 24, hundredths),
+        commas(6, 4, tenths),
+        commas(5, 3, quoted),
+        format!("x,y,z\n{}", commas(7, 5, hundredths)),
+        commas(6, 4, hundredths).replace('\n', ",\r\n"),
+    ] {
+        let error = problem(text.as_bytes());
+        assert_eq!(error, ContentError::Commas, "{text}");
+        let comma = ReadOptions { decimal: Decimal::Comma, ..ReadOptions::default() };
+        let error = Scan::from_bytes("a.txt", text.as_bytes(), &comma).unwrap_err().to_string();
+        assert!(error.contains("commas are decimal signs and separators at once"), "{error}");
+        // The remedy.
+        let lines = text.lines().filter(|line| !line.contains('x')).map(|line| {
+            let fields: Vec<&str> = line.trim_end_matches(',').split(',').collect();
+            fields.chunks(2).map(|pair| pair.join(",")).collect::<Vec<_>>().join(";") + "\n"
+        });
+        let scan = Scan::from_bytes("a.txt", lines.collect::<String>().as_bytes(), &comma).unwrap();
+        assert!(scan.metadata().notes.is_empty(), "{:?}", scan.metadata().notes);
+    }
+    // Whoever has such heights says so.
+    let text = ReadOptions { format: Some(crate::Format::Text), ..ReadOptions::default() };
+    let scan = Scan::from_bytes("a.txt", commas(24, 24, hundredths).as_bytes(), &text).unwrap();
+    assert_eq!((scan.metadata().columns, scan.metadata().notes.len()), (48, 1));
+}
+
+#[test]
+fn whole_numbers_between_commas_are_heights() {
+    let note =
+        |text: &str| read(text.as_bytes()).unwrap_or_else(|e| panic!("{e}: {text}")).metadata().notes.clone();
+    for text in [
+        // Of one length everywhere, of several, with signs, filled up with zeros, and few.
+        commas(20, 10, |i| (100 + i * 37 % 900).to_string()),
+        commas(20, 10, |i| (i * 37 % 900).to_string()),
+        commas(20, 10, |i| ((i * 37 % 90).cast_signed() - 40).to_string()),
+        commas(20, 10, |i| format!("{:03}", i * 37 % 900)),
+        commas(20, 10, |i| (i * 7 % 10).to_string()),
+        commas(21, 10, |i| (i * 37 % 90).to_string()),
+        "1,05\n3,07\n".to_owned(),
+        "1,5\n3,4\n".to_owned(),
+        // Numbers in order and heights.
+        commas(1, 40, |i| format!("{},{}", (i + 3) * (i + 3) % 41, 100 + i % 7)),
+        // A point that is not defined, and one decimal.
+        commas(20, 10, |i| if i == 33 { String::new() } else { (10 + i * 37 % 90).to_string() }),
+        commas(20, 10, |i| if i == 33 { "1.5".into() } else { (10 + i * 37 % 90).to_string() }),
+    ] {
+        assert_eq!(note(&text), [""; 0], "{text}");
+    }
+    // One decimal has no 0 before it, and heights above 0 no -0: this is a suspicion only.
+    let notes = note(&commas(12, 10, |i| format!("{},{}", i * 7 % 113, i * 3 % 10)));
+    assert!(notes.len() == 1 && notes[0].contains("decimal signs and separators at once"), "{notes:?}");
+}
+
+#[test]
+fn one_column_is_told() {
+    let lines = (0..448).map(|i| format!("{}.5\n", i * 7 % 31)).collect::<Vec<_>>().concat();
+    let error = read(lines.as_bytes()).unwrap_err().to_string();
+    assert!(
+        error.starts_with("a.txt: one column of 448 numbers: a profile needs two columns, x and z"),
+        "{error}"
+    );
+    let text = ReadOptions { format: Some(crate::Format::Text), ..ReadOptions::default() };
+    let asked = Scan::from_bytes("a.txt", lines.as_bytes(), &text).unwrap();
+    for scan in [asked, read(b"1\n2\n4\n").unwrap()] {
+        let notes = &scan.metadata().notes;
+        assert!(notes.len() == 1 && notes[0].contains("have one number each"), "{notes:?}");
+    }
+    // A heading that states both sides says that it is a map.
+    let headed = read(format!("# Width: 1 um\n# Height: 448 um\n{lines}").as_bytes()).unwrap();
+    assert!((headed.metadata().rows, headed.metadata().notes.is_empty()) == (448, true));
+    assert!(read(b"5\n").unwrap().metadata().notes.is_empty());
+}
+
 #[test]
 fn a_count_has_a_height() {
     let declared = ReadOptions { height_scale: "0.25 nm".parse().ok(), ..ReadOptions::default() };

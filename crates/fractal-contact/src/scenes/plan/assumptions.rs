@@ -4,7 +4,7 @@ use crate::scenes::read::{Diagnostic, Numerics, SceneFile, number, spike};
 use analytic::greenwood_williamson::Summits;
 use contact_model::Boundary;
 use std::f64::consts::TAU;
-use surface_gen::{MapStatistics, SelfAffineFit};
+use surface_gen::{MapEdges, MapStatistics, SelfAffineFit};
 
 /// Rms slopes of two directions differ by more than chance does below this ratio: on isotropic maps of 128 x
 /// 128 and 240 x 60 cells it was above 0.95.
@@ -18,7 +18,12 @@ const LONGEST: f64 = 0.5;
 /// that of a tilt as large as the rms height of the rest.
 const TILTED: f64 = 1.0 / 13.0;
 /// The map of a scene, as theories see it.
-pub(crate) struct Assumptions(MapStatistics, Option<SelfAffineFit>);
+pub(crate) struct Assumptions {
+    /// Of the defined points, so that a hole or a tilt, which leave no statistics, hide no edge.
+    edges: MapEdges,
+    statistics: Option<MapStatistics>,
+    fit: Option<SelfAffineFit>,
+}
 
 impl Assumptions {
     /// Measured where a theory is to answer for a map; `None` elsewhere. Cost of some transforms of the map.
@@ -30,12 +35,12 @@ impl Assumptions {
         }
         let fits = scene.models.iter().any(|m| m.name() == "power_law");
         let fit = if fits { SelfAffineFit::new(map).ok() } else { None };
-        Some(Self(MapStatistics::new(map).ok()?, fit))
+        Some(Self { edges: MapEdges::new(map).ok()?, statistics: MapStatistics::new(map).ok(), fit })
     }
 
     /// What a theory takes from the map, to be said with its accuracy; nothing for other models.
     pub fn taken(&self, numerics: &Numerics) -> String {
-        let Self(map, fit) = self;
+        let Self { statistics: Some(map), fit, .. } = self else { return String::new() };
         let how = if map.windowed { "spectrum under Hann's window" } else { "spectral derivative" };
         let taken = match numerics {
             Numerics::Persson(_) => format!("rms slope {} ({how})", number(map.rms_slope())),
@@ -59,7 +64,7 @@ impl Assumptions {
 
     /// What the map lacks of what theories assume, with remedies.
     pub fn notes(&self, scene: &SceneFile) -> Vec<Diagnostic> {
-        let Self(map, _) = self;
+        let Self { edges, statistics, .. } = self;
         let mut notes = Vec::new();
         let mut note = |holds: bool, of: &dyn Fn(&Numerics) -> bool, message: String, help: &str| {
             let concerned = |i: &usize| of(&scene.models[*i]);
@@ -76,24 +81,27 @@ impl Assumptions {
         let concerned = |m: &Numerics| m.is_statistical() || (periodic && m.boundary_elements().is_some());
         // One cause is said once; a point that stands out is said of the map itself.
         // The waves of a periodic map tilt it too.
-        let tilted = map.windowed && map.tilt > TILTED;
+        let matching = edges.match_each_other();
+        let tilted = !matching && edges.tilt > TILTED;
         let message = format!(
             "the map is tilted: {:.0} % of the variance of heights is a plane, which makes opposite edges differ by {:.1} times the largest step inside",
-            100.0 * map.tilt,
-            map.edge_step
+            100.0 * edges.tilt,
+            edges.edge_step
         );
         let help = "Subtract it (`detrend = \"plane\"`) if it is a tilt of the measurement. Theories take it for waves as long as the map.";
         note(!tilted, &concerned, message, help);
         let message = format!(
             "opposite edges of the map differ by {:.1} times the largest step inside: it is no period of a surface",
-            map.edge_step
+            edges.edge_step
         );
         let help = if scene.effects.boundary == Boundary::Periodic {
             "`bem3d` solves the map with this step, and theories take it as a piece of an infinite surface. Use free boundaries, or loads at which the step is not in contact."
         } else {
             "Waves as long as the map are known least. Use a larger map, and `detrend = \"plane\"` if it is tilted."
         };
-        note(tilted || !map.windowed, &concerned, message, help);
+        note(tilted || matching, &concerned, message, help);
+        // A map without statistics is refused by the theories that would take them.
+        let Some(map) = statistics else { return notes };
         let message = format!(
             "the map is anisotropic: the rms slope along one direction is {:.2} of that along another, and the theory has one spectrum for all",
             map.isotropy

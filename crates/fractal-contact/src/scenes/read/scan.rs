@@ -5,9 +5,11 @@ use crate::scenes::read::key::missing;
 use crate::scenes::read::{Diagnostic, Places, ReadResult, System, amount, number};
 use contact_model::HeightMap;
 use contact_model::units::{ascii, rounded};
+use std::borrow::Cow;
 use std::path::Path;
 use surface_io::{
     Description, Detrend, Dimension, Mirror, Preprocessed, Preprocessing, Quantity, ReadOptions, Scan, Sides,
+    Undefined,
 };
 
 /// A map from a file.
@@ -149,7 +151,9 @@ pub(crate) fn remarks(
     declared: bool,
 ) -> Vec<Remark> {
     let mut remarks = Vec::new();
-    if !declared && let Some(share) = tilt(scan, preprocessing, map) {
+    if let Some(remark) = of_rounding(scan, preprocessing, map) {
+        remarks.push(remark);
+    } else if !declared && let Some(share) = tilt(scan, preprocessing, map) {
         remarks.push(Remark {
             message: format!(
                 "the map is tilted: from edge to edge by {share:.1} times its rms height without the tilt"
@@ -167,6 +171,70 @@ pub(crate) fn remarks(
         });
     }
     remarks
+}
+
+/// A remark on a map that is so much tilted that the numbers of its file have no digits left for the roughness.
+fn of_rounding(scan: &Scan, preprocessing: &Preprocessing, map: &HeightMap) -> Option<Remark> {
+    /// A roughness below this times the last decimal of the largest heights is rounding: rounding alone is 0.29
+    /// of it, and as much roughness again makes 0.41.
+    const ROUNDED: f64 = 0.5;
+    /// Heights along a tilt over the rms height of the rest from which the tilt has taken the digits.
+    const STEEP: f64 = 20.0;
+    let metadata = scan.metadata();
+    let to_map = |h: f64| metadata.unit.as_ref().map_or(h, |unit| unit.value.to_si(h));
+    let [low, high] = metadata.range?;
+    let flat = Preprocessing {
+        detrend: Detrend::Plane,
+        crop: preprocessing.crop,
+        undefined: Some(Undefined::NoContact),
+        ..Preprocessing::default()
+    };
+    let asked = Preprocessing { undefined: flat.undefined, ..preprocessing.clone() };
+    let level = if asked == flat { Cow::Borrowed(map) } else { Cow::Owned(scan.map(&flat).ok()?) };
+    let roughness = surface_gen::rms_height(level.heights());
+    let (range, rounding) = (to_map(high - low), to_map(last_digit(scan)?));
+    if range <= STEEP * roughness || roughness > ROUNDED * rounding {
+        return None;
+    }
+    let symbol = metadata.unit.as_ref().map(|unit| unit.value.dimension().symbol()).unwrap_or_default();
+    let [range, roughness, rounding] = [range, roughness, rounding].map(|h| ascii(&amount(h, &symbol)));
+    Some(Remark {
+        message: format!(
+            "the heights differ by {range} along a tilt, and by {roughness} (rms) from it: the rounding of the file's numbers, {rounding}, is \
+             as large as the roughness"
+        ),
+        help: "What is left without the tilt is rounding, and so is everything that is computed from it. Subtract the tilt in the program of \
+               the instrument before the heights are exported, or export them with more digits.",
+    })
+}
+
+/// The last decimal place of the largest heights of a scan, in its own unit: what its numbers are rounded to.
+/// Numbers that are all those of single precision are rounded to its digits, and none is finer than those of
+/// double precision after a plane is fitted.
+fn last_digit(scan: &Scan) -> Option<f64> {
+    /// Heights that are looked at.
+    const SAMPLE: usize = 4096;
+    /// Rounding of a fit to numbers of double precision.
+    const FITTED: f64 = 8.0 * f64::EPSILON;
+    let metadata = scan.metadata();
+    let largest = metadata.range.map(|[low, high]| low.abs().max(high.abs()))?;
+    let count = metadata.rows * metadata.columns;
+    let step = count.div_ceil(SAMPLE).max(1);
+    let heights =
+        (0..count).step_by(step).filter_map(|i| scan.height(i / metadata.columns, i % metadata.columns));
+    let large: Vec<f64> = heights.filter(|h| h.abs() >= 0.1 * largest).collect();
+    let last = large.iter().filter_map(|h| decimal_place(*h)).fold(f64::INFINITY, f64::min);
+    let single = large.iter().all(|h| f64::from(*h as f32).to_bits() == h.to_bits());
+    let binary = if single { f64::from(f32::EPSILON) * largest } else { FITTED * largest };
+    last.is_finite().then(|| last.max(binary))
+}
+
+/// The last decimal place of a number as it is written in the fewest digits: 0.1 of 112.7, 1e15 of 1.23e17.
+fn decimal_place(height: f64) -> Option<f64> {
+    let text = format!("{height:e}");
+    let (digits, exponent) = text.split_once('e')?;
+    let decimals = digits.split_once('.').map_or(0, |(_, decimals)| decimals.len());
+    Some(10.0_f64.powi(exponent.parse::<i32>().ok()? - i32::try_from(decimals).ok()?))
 }
 
 /// A remark on declared sides of a map that would make its cells squares if they were exchanged.

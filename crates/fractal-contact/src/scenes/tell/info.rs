@@ -5,7 +5,7 @@ use crate::scenes::read::{
     Error, Remark, Result, SceneFile, System, description, exchanged_sides, number, remarks,
 };
 use crate::scenes::tell::{MapStatisticsTables, SurfaceReport};
-use contact_model::Boundary;
+use contact_model::{Boundary, HeightMap};
 use runs::Header;
 use std::path::Path;
 use surface_io::{
@@ -122,8 +122,10 @@ pub fn info_statistics(
     let scan = SurfaceFile::open(path, declared).and_then(SurfaceFile::scan)?;
     let found = scan.preprocessed(preprocessing)?;
     let system = system(scan.metadata());
+    let holes = without_filled(&scan, preprocessing);
     let statistics = MapStatisticsTables::new(
         &found.map,
+        holes.as_ref(),
         scan.metadata().profile,
         Boundary::Free,
         found.reliable_from,
@@ -155,6 +157,14 @@ pub fn info_statistics(
     // Only one exponent is shown: that of the statistics, which has an interval.
     let text = described(&scan, &found, &description(&found.map, system).without_fit());
     Ok(format!("{text}\n{}\n{}: {}\n", statistics.text(), out.display(), names.join(", ")))
+}
+
+/// The map without the points that `preprocessing` fills; `None` where it fills none.
+fn without_filled(scan: &Scan, preprocessing: &Preprocessing) -> Option<HeightMap> {
+    preprocessing.fill?;
+    let undefined = Some(Undefined::NoContact);
+    let kept = Preprocessing { fill: None, undefined, ..preprocessing.clone() };
+    scan.map(&kept).ok().filter(|map| map.undefined() > 0)
 }
 
 /// Whether lengths are in metres.

@@ -5,11 +5,12 @@ use crate::scenes::plan::solved_map;
 use crate::scenes::read::{Result, SceneFile, System, multiple, short};
 use contact_model::units::{ascii, number, rounded};
 use contact_model::{Boundary, HeightMap};
+use std::f64::consts::TAU;
 use std::sync::Arc;
 use surface_statistics::{
-    Bins, Derivatives, DifferenceBands, DifferenceMap, FeatureParameters, HeightDifference, HeightParameters,
-    HybridParameters, Interval, PowerSpectrum, ReliableWavelengths, ScaleDependence, SpatialParameters,
-    SpectrumFit, Taper, Wavelength, texture_direction,
+    Bins, Derivatives, DifferenceBands, DifferenceMap, FeatureParameters, FilledPoints, FunctionalParameters,
+    HeightDifference, HeightParameters, HybridParameters, Interval, PowerSpectrum, ReliableWavelengths,
+    ScaleDependence, SpatialParameters, SpectrumFit, Taper, Wavelength, texture_direction,
 };
 
 /// Bins in a decade of wavenumbers and of distances.
@@ -60,6 +61,8 @@ pub(crate) struct MapStatisticsTables {
     pub profile: bool,
     pub parameters: Vec<Parameter>,
     pub spectra: Vec<(&'static str, PowerSpectrum)>,
+    /// The self-affine spectrum that is fitted to the radial one.
+    pub fit: Option<SpectrumFit>,
     pub differences: Option<(HeightDifference, Bands)>,
     pub scales: Vec<SlopeAndCurvature>,
     /// Shortest and longest wavelength that can be trusted.
@@ -72,9 +75,12 @@ pub(crate) struct MapStatisticsTables {
 
 impl MapStatisticsTables {
     /// Measures a map: a periodic surface without a window, any other one with Hann's window on its deviation
-    /// from the mean. A `profile` is measured along its row.
+    /// from the mean. A `profile` is measured along its row. `holes` is the same map without the points that
+    /// were filled, where there are some. Spectra are those of the filled map, and the fit ends at wavelengths
+    /// at which filled points matter.
     pub fn new(
         map: &HeightMap,
+        holes: Option<&HeightMap>,
         profile: bool,
         boundary: Boundary,
         instrument: Option<f64>,
@@ -85,6 +91,7 @@ impl MapStatisticsTables {
             profile,
             parameters: Vec::new(),
             spectra: Vec::new(),
+            fit: None,
             differences: None,
             scales: Vec::new(),
             reliable: None,
@@ -96,8 +103,13 @@ impl MapStatisticsTables {
             return found;
         }
         found.heights(map);
-        found.spectra(map, boundary);
-        found.fit(map, boundary, instrument);
+        let holes = holes.unwrap_or(map);
+        let filled = found.known("filled map", surface_io::filled(map));
+        let filled = filled.as_ref().unwrap_or(map);
+        found.spectra(filled, boundary);
+        let points = FilledPoints::new(holes);
+        found.fit(filled, boundary, instrument, &points);
+        found.tell_filled(holes);
         found.distances(map, boundary);
         found
     }
@@ -164,6 +176,15 @@ impl MapStatisticsTables {
             self.push("Sdq", Some(h.sdq), 0, "rms gradient");
             self.push("Sdr", Some(h.sdr), 0, "surface in excess of its projection, over the projection");
         }
+        if let Some(f) = self.known("functional parameters", FunctionalParameters::new(map)) {
+            for (symbol, value, meaning) in [
+                ("Sk", f.sk, "core height: the straight line of the material ratio curve falls by it"),
+                ("Spk", f.spk, "reduced height of the peaks above the core"),
+                ("Svk", f.svk, "reduced depth of the valleys below it"),
+            ] {
+                self.push(symbol, Some(value), 1, meaning);
+            }
+        }
         if let Some(s) = self.known("spatial parameters", SpatialParameters::new(map)) {
             self.push("Sal", s.sal, 1, "shortest distance at which the autocorrelation has fallen to 0.2");
             self.push("Str", s.str, 0, "that over the longest one: 1 for an isotropic surface");
@@ -211,7 +232,27 @@ impl MapStatisticsTables {
         self.notes.dedup();
     }
 
-    fn fit(&mut self, map: &HeightMap, boundary: Boundary, instrument: Option<f64>) {
+    /// Tells that points were filled, and what this means for spectra and their fit.
+    fn tell_filled(&mut self, holes: &HeightMap) {
+        let undefined = holes.undefined();
+        if undefined == 0 {
+            return;
+        }
+        let share = number(rounded(100.0 * undefined as f64 / holes.heights().len() as f64, 2));
+        let end = self.fit.as_ref().map(|fit| TAU / fit.fitted[1]).map(|shortest| {
+            let (unit, factor) = multiple(self.unit(1), shortest);
+            let unit = if unit == "scene" { String::new() } else { format!(" {}", ascii(&unit)) };
+            format!(". The fit takes into account which waves are missing there, and ends at a wavelength of {}{unit}", short(factor * shortest))
+        });
+        self.remarks.push(format!(
+            "spectra and H are those of the whole map, whose {undefined} undefined points ({share} %) have heights between those of \
+             their neighbours{}",
+            end.unwrap_or_default()
+        ));
+    }
+
+    /// Fits the spectrum of a map, some points of which may have been filled.
+    fn fit(&mut self, map: &HeightMap, boundary: Boundary, instrument: Option<f64>, filled: &FilledPoints) {
         // The stencil spans twice the distance of the tip.
         let instrument = instrument.map(|distance| 2.0 * distance);
         // The limits are known even where no wavelength lies between them.
@@ -224,9 +265,8 @@ impl MapStatisticsTables {
         self.reliable = Some([reliable.shortest, reliable.longest]);
         self.push("shortest", Some(reliable.shortest), 1, "wavelength down to which the map can be trusted");
         self.push("longest", Some(reliable.longest), 1, "wavelength up to which it can");
-        let Some(fit) = self
-            .known("fit of a self-affine spectrum", SpectrumFit::new(map, &reliable.fit_options(boundary)))
-        else {
+        let fit = SpectrumFit::of_filled(map, filled, &reliable.fit_options(boundary));
+        let Some(fit) = self.known("fit of a self-affine spectrum", fit) else {
             return;
         };
         if fit.goodness < DOUBTFUL && (fit.hurst.low > 1.0 || fit.hurst.high < 0.0) {
@@ -237,6 +277,7 @@ impl MapStatisticsTables {
             ));
             return;
         }
+        self.fit = Some(fit);
         let of = |interval: &Interval| (Some(interval.value), [Some(interval.low), Some(interval.high)]);
         let wavelength = |found: &Wavelength| match found {
             Wavelength::Interval(interval) => of(interval),
@@ -285,7 +326,7 @@ impl MapStatisticsTables {
             return Err(runs::Error::model("statistics")(refused).into());
         };
         let profile = scene.surface.is_profile();
-        Ok(Self::new(&map, profile, scene.effects.boundary, scene.reliable_from, scene.system))
+        Ok(Self::new(&map, None, profile, scene.effects.boundary, scene.reliable_from, scene.system))
     }
 
     /// The parameters as texts: symbol, value, interval and meaning. Value and interval have the same

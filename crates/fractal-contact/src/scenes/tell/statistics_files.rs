@@ -8,6 +8,7 @@ use contact_model::{Table, Value};
 use plots::{Chart, Curve};
 use runs::{Header, csv_bytes};
 use std::f64::consts::TAU;
+use surface_statistics::{Interval, SpectrumFit, Wavelength};
 
 const LOWER_END: &str =
     "lower end of its 95 % band of Gaussian heights; empty beyond half the side of a free map";
@@ -27,6 +28,39 @@ fn shaded(x: &[f64], bands: &[Option<[f64; 2]>]) -> Vec<(f64, f64, f64)> {
 fn shade_words(curves: &[Curve]) -> &'static str {
     let shaded = curves.iter().any(|curve| curve.band.len() > 1);
     if shaded { "; shaded: where 95 % of Gaussian surfaces are" } else { "" }
+}
+
+/// The fitted spectrum over its range, between the power laws with both ends of the interval of the exponent.
+/// All of them meet in the middle of the power law, which is known best.
+fn fitted_line(fit: &SpectrumFit) -> Curve {
+    const POINTS: usize = 100;
+    let Interval { value, low, high } = fit.hurst;
+    let [first, last] = fit.fitted;
+    let wavenumber = |found: &Wavelength, none: f64| match found {
+        Wavelength::Interval(interval) => TAU / interval.value,
+        _ => none,
+    };
+    let roll_off = wavenumber(&fit.roll_off, 0.0);
+    let end = last.min(wavenumber(&fit.cut_off, f64::INFINITY));
+    // The density is that at the middle of all of the range.
+    let reference = (first * last).sqrt();
+    let law = |q: f64, from: f64, hurst: f64| (q / from).powf(-2.0 * (hurst + 1.0));
+    let middle = (first.max(roll_off) * end).sqrt();
+    let of_middle = fit.density * law(middle, reference, value);
+    let density =
+        |q: f64, hurst: f64| of_middle * law(q.max(roll_off), middle, hurst) + fit.noise.unwrap_or(0.0);
+    let along = (0..POINTS).map(|i| first * (end / first).powf(i as f64 / (POINTS - 1) as f64));
+    let along: Vec<f64> = along.collect();
+    let band = along.iter().map(|&q| {
+        let [a, b] = [low, high].map(|hurst| density(q, hurst));
+        (q, a.min(b), a.max(b))
+    });
+    Curve {
+        label: format!("fit, $H$ = {value:.2}, shaded {low:.2} to {high:.2}"),
+        band: band.collect(),
+        points: along.iter().map(|&q| (q, density(q, value))).collect(),
+        ..Curve::default()
+    }
 }
 
 fn points(x: &[f64], y: &[f64]) -> Vec<(f64, f64)> {
@@ -171,10 +205,12 @@ impl MapStatisticsTables {
         } else if !unsure.is_empty() {
             curves.push(Curve { label: unsure_label.into(), points: unsure, ..Curve::default() });
         }
+        let shaded = shade_words(&curves);
+        curves.extend(self.fit.as_ref().filter(|_| !self.profile).map(fitted_line));
         Some(
             Chart {
                 title: "Power spectral density".into(),
-                subtitle: format!("{name}: {averaged}, two-sided{}", shade_words(&curves)),
+                subtitle: format!("{name}: {averaged}, two-sided{shaded}"),
                 x_label: "wavenumber $q$".into(),
                 y_label: symbol.into(),
                 curves,

@@ -101,6 +101,38 @@ fn a_part_of_a_surface_is_windowed() {
     assert!(rms_slope(&part).unwrap() > 1.05 * slope);
 }
 
+/// Holes change neither what the edges do nor the tilt by more than the points that are missing.
+#[test]
+fn edges_and_tilt_are_known_with_holes() {
+    let whole = self_affine_map(&unit(0.8), 64, 3).unwrap();
+    let part = whole.cropped(0..48, 0..40).unwrap();
+    let tilted = |map: &HeightMap, slope: f64| {
+        let heights = map.heights().iter().enumerate();
+        let columns = map.columns();
+        let heights = heights.map(|(i, h)| h + slope * ((i % columns) as f64 - 0.4 * (i / columns) as f64));
+        HeightMap::new(map.cells(), map.size(), heights.collect()).unwrap()
+    };
+    for map in [&whole, &part, &tilted(&whole, 0.2)] {
+        let full = MapEdges::new(map).unwrap();
+        let hole = |i: usize| {
+            (i * 7919).is_multiple_of(31) || (60..64).contains(&(i / map.columns() + i % map.columns()))
+        };
+        let heights = map.heights().iter().enumerate().map(|(i, h)| if hole(i) { f64::NAN } else { *h });
+        let holes = HeightMap::with_undefined(map.cells(), map.size(), heights.collect()).unwrap();
+        let found = MapEdges::new(&holes).unwrap();
+        assert_eq!(found.match_each_other(), full.match_each_other());
+        assert_relative_eq!(found.edge_step, full.edge_step, max_relative = 0.2);
+        assert!((found.tilt - full.tilt).abs() < 0.05, "{} {}", found.tilt, full.tilt);
+    }
+    assert!(MapEdges::new(&whole).unwrap().match_each_other());
+    assert!(!MapEdges::new(&part).unwrap().match_each_other());
+    // A plane is a tilt alone, whichever of its points are missing.
+    let plane =
+        |i: usize| if i % 5 == 2 || i > 300 { f64::NAN } else { (i % 20) as f64 - 3.0 * (i / 20) as f64 };
+    let plane = HeightMap::with_undefined([20, 30], [2.0, 3.0], (0..600).map(plane).collect()).unwrap();
+    assert_relative_eq!(MapEdges::new(&plane).unwrap().tilt, 1.0, max_relative = ROUNDING);
+}
+
 #[test]
 fn what_is_no_sample_of_a_surface_is_refused() {
     let rough = self_affine_map(&unit(0.8), 64, 3).unwrap();
