@@ -1,6 +1,7 @@
 //! Numbers as text: lines, delimiters, comments and headers.
 
 mod columns;
+mod comment;
 mod decimals;
 mod delimiter;
 mod heading;
@@ -18,6 +19,7 @@ use crate::fields::decoded;
 use crate::format::Format;
 use crate::number_type::NumberType;
 use crate::options::{Decimal, ReadOptions};
+use comment::without_comment;
 use contact_model::units::number;
 use decimals::{CommaPairs, comma_pairs};
 use number::unquoted;
@@ -440,24 +442,6 @@ impl<'t> MapsInText<'t> {
         self.heading.into_iter().try_for_each(|(line, text)| map.heading.read(&text, line))?;
         Ok(self.maps)
     }
-}
-
-/// The data of a line and its comment.
-fn without_comment(line: &[u8]) -> (&[u8], Option<&[u8]>) {
-    // A mark inside a word is none: `1.#QNAN`, `#N/A`.
-    let begins = |&at: &usize| {
-        matches!(line[at], b'#' | b'%')
-            && (at == 0 || line[at - 1].is_ascii_whitespace())
-            && !number::ERRORS.iter().any(|word| starts_with(&line[at..], word))
-    };
-    match (0..line.len()).find(begins) {
-        Some(at) => (line[..at].trim_ascii(), Some(&line[at + 1..])),
-        None => (line, None),
-    }
-}
-
-fn starts_with(line: &[u8], word: &str) -> bool {
-    line.get(..word.len()).is_some_and(|first| first.eq_ignore_ascii_case(word.as_bytes()))
 }
 
 /// What ends the lines: a carriage return where there is no line feed at all, as on old Macintoshes.

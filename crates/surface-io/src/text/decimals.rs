@@ -1,6 +1,6 @@
 //! Commas that are decimal signs and separators at once.
 
-use super::without_comment;
+use super::comment::without_comment;
 use crate::options::Decimal;
 
 /// Fewest pairs of fields, and fewest lines of data, from which a text is told by its own marks.

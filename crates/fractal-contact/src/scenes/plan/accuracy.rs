@@ -157,27 +157,13 @@ pub(crate) fn choose(
             }
             none_found(scene, requested, &reason)
         })?;
-        let confirming = found.confirming.map(|(longer, seconds)| {
-            let name =
-                all.iter().find(|finer| finer.longer == longer).map_or_else(String::new, Candidate::words);
-            format!(
-                "{name} would confirm it in about {}, and the budget is {}",
-                time(seconds),
-                time(target.seconds)
-            )
-        });
+        let unconfirmed = (!found.is_confirmed)
+            .then(|| unconfirmed_words(&all, found.confirming, target.seconds, beyond.as_deref()));
         let mut chosen = all.swap_remove(found.trial.kept.0);
         let error = found.trial.error.map(|error| short(100.0 * error)).unwrap_or_default();
         let mut note = chosen_words(&chosen, &format!(" with an error of {error} % on the first surface,"));
-        if !found.is_confirmed {
-            let no_finer = || match &beyond {
-                Some(beyond) => format!("a finer grid would confirm it, but {beyond}"),
-                None => "there is no finer grid that would confirm it".to_owned(),
-            };
-            let how = confirming.unwrap_or_else(no_finer);
-            note += &format!(". The error is estimated, not confirmed: {how}");
-            chosen.scene.is_unconfirmed = true;
-        }
+        chosen.scene.is_unconfirmed = unconfirmed.is_some();
+        note += unconfirmed.as_deref().unwrap_or_default();
         (chosen, note)
     };
     let note = Diagnostic::note(format!("{}: {note}", asked(target)));
@@ -186,6 +172,26 @@ pub(crate) fn choose(
         .notes
         .push(note.with_help("The columns `_grid_error` of the results hold the errors of the run."));
     Ok(chosen)
+}
+
+/// That no finer grid confirms an error, and what one that would takes: it is too large for the budget or, by the
+/// words `beyond`, for the memory.
+fn unconfirmed_words(
+    all: &[Candidate],
+    confirming: Option<(usize, f64)>,
+    budget: f64,
+    beyond: Option<&str>,
+) -> String {
+    let how = match (confirming, beyond) {
+        (Some((longer, seconds)), _) => {
+            let finer =
+                all.iter().find(|finer| finer.longer == longer).map_or_else(String::new, Candidate::words);
+            format!("{finer} would confirm it in about {}, and the budget is {}", time(seconds), time(budget))
+        }
+        (None, Some(beyond)) => format!("a finer grid would confirm it, but {beyond}"),
+        (None, None) => "there is no finer grid that would confirm it".to_owned(),
+    };
+    format!(". The error is estimated, not confirmed: {how}")
 }
 
 fn chosen_words(chosen: &Candidate, error: &str) -> String {
