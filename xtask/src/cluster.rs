@@ -3,7 +3,9 @@
 use crate::arguments::{PlanArguments, StudyShardsArguments, SubmitArguments, XtaskArguments, XtaskCommand};
 use clap::Parser as _;
 use paper::evaluation::{Run, ensemble_jobs};
-use runs::cluster::{self, Division, Forecast, PlanStatus, check, quoted, run_shard, status, without_flags};
+use runs::cluster::{
+    self, Division, Forecast, PlanStatus, ShardRun, check, quoted, run_shard, status, without_flags,
+};
 use runs::{Error, JobList, Reporter, Result, ShardChoice};
 
 /// Name of the program in messages.
@@ -52,7 +54,12 @@ pub fn shard(command: &XtaskCommand, choice: ShardChoice, typed: &[String]) -> R
     let (out, run) = (command.out(), Run::new(&command.request())?);
     runs::files::create_directory(&out)?;
     let plan = plan_of(typed, &*jobs);
-    let report = run_shard(&plan, &*jobs, shard, (&out, run.threads), &Reporter::new(), &|| false)?;
+    let report = run_shard(
+        &plan,
+        &*jobs,
+        shard,
+        ShardRun { out: &out, threads: run.threads, progress: &Reporter::new(), stop: &|| false },
+    )?;
     runs::out!("{report}");
     Ok(())
 }

@@ -10,8 +10,8 @@ use arguments::{Arguments, Command, PressArguments, SurfaceArguments};
 use clap::FromArgMatches as _;
 use fractal_contact::models::{MODELS, ModelRecord};
 use fractal_contact::scenes::{
-    Error, GeneratedSurface, Options, Plan, Result, SceneFile, SceneOutcome, System, info, info_json,
-    info_statistics, run, write_twin,
+    AskedTwin, Error, GeneratedSurface, Options, Plan, Result, SceneFile, SceneOutcome, System, info,
+    info_json, info_statistics, run, write_twin,
 };
 use fractal_contact::surface_gen::{Anisotropy, HeightDistribution, TwinSpectrum};
 use runs::cluster::Division;
@@ -82,7 +82,9 @@ fn execute(arguments: Arguments) -> Result<ExitCode> {
         Command::Twin { file, twin, seed, rings, keep_heights, more } => {
             let (declared, preprocessing) = more.options()?;
             let like = if rings { TwinSpectrum::Rings } else { TwinSpectrum::EachWave };
-            Ok(printed(&write_twin(&file, (&declared, &preprocessing), (like, keep_heights), seed, &twin)?))
+            let (declared, preprocessing) = (&declared, &preprocessing);
+            let asked = AskedTwin { declared, preprocessing, like, keep_heights, seed };
+            Ok(printed(&write_twin(&file, &asked, &twin)?))
         }
         Command::Models { name } => Ok(printed(&models(name.as_deref())?)),
         Command::Completions { shell } => {

@@ -86,7 +86,7 @@ impl fmt::Display for Place {
 #[non_exhaustive]
 pub enum ContentError {
     /// The file has no data.
-    #[error("no data in it")]
+    #[error("no data in it: it is empty or has nothing but comments; export it again")]
     Empty,
     /// Not a regular file.
     #[error("not a regular file: its length is needed before it is read")]

@@ -10,7 +10,7 @@ use crate::scenes::tell::{
     MapStatisticsTables, Report, ResultFolder, StateTable, columns, files, manifest, summary,
 };
 use contact_model::units::ascii;
-use runs::cluster::{ShardPlan, ShardReport, run_shard};
+use runs::cluster::{ShardPlan, ShardReport, ShardRun, run_shard};
 use runs::{Checkpoint, Failure, Header, JobRun, Progress, Shard, Store, Threads, run_stored};
 use std::path::PathBuf;
 use std::time::Instant;
@@ -114,7 +114,7 @@ pub fn run_scene_shard(
         take_trial(scene, &options.out, &Store::view(&options.out)?);
     }
     let jobs = scene_jobs(scene, &options.out);
-    run_shard(plan, &jobs, shard, (&options.out, options.threads), progress, stop)
+    run_shard(plan, &jobs, shard, ShardRun { out: &options.out, threads: options.threads, progress, stop })
 }
 
 impl<'a> SceneAnswers<'a> {

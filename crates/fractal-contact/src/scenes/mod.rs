@@ -93,7 +93,7 @@ pub use read::distributed::Distributed;
 pub use read::effects::{EFFECT_KEYS, EffectKey, EffectLine, effect_lines, parse_effects};
 pub use read::entries::System;
 pub use read::error::{Error, Result};
-pub use read::generated_surface::{GeneratedSurface, write_map, write_twin};
+pub use read::generated_surface::{AskedTwin, GeneratedSurface, write_map, write_twin};
 pub use read::key::SceneKey;
 pub use read::load_kind::PrescribedLoad;
 pub use read::loads::{AskedLoads, LoadList, LoadRequest};

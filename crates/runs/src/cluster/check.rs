@@ -165,8 +165,8 @@ impl Completeness {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cluster::run_shard;
     use crate::cluster::tests_support::Squares;
+    use crate::cluster::{ShardRun, run_shard};
     use crate::{Shard, Silent};
     use contact_model::never;
 
@@ -176,7 +176,13 @@ mod tests {
         let squares = Squares::to(6);
         let plan = ShardPlan::new("p", vec!["squares".into()], &squares);
         let work = |index| {
-            run_shard(&plan, &squares, Shard { index, count: 2 }, (dir.path(), 1), &Silent, &never).unwrap();
+            run_shard(
+                &plan,
+                &squares,
+                Shard { index, count: 2 },
+                ShardRun { out: dir.path(), threads: 1, progress: &Silent, stop: &never },
+            )
+            .unwrap();
         };
         let found = || check(&plan, &squares, dir.path()).unwrap();
         let refused = || found().require(dir.path(), false, "p squares --shard 1/2").unwrap_err().to_string();
@@ -207,7 +213,13 @@ mod tests {
         // A pack of another plan.
         let other = Squares::to(9);
         let theirs = ShardPlan::new("p", vec!["squares".into(), "9".into()], &other);
-        run_shard(&theirs, &other, Shard { index: 0, count: 1 }, (dir.path(), 1), &Silent, &never).unwrap();
+        run_shard(
+            &theirs,
+            &other,
+            Shard { index: 0, count: 1 },
+            ShardRun { out: dir.path(), threads: 1, progress: &Silent, stop: &never },
+        )
+        .unwrap();
         assert!(refused().contains("are of another plan"), "{}", refused());
         found().require(dir.path(), true, "").unwrap();
         // The jobs changed since.

@@ -21,7 +21,7 @@ mod words;
 pub use check::{Completeness, JobState, check};
 pub use forecast::{Division, Forecast};
 pub use plan::{ShardPlan, without_flags};
-pub use shard_run::{ShardReport, run_shard};
+pub use shard_run::{ShardReport, ShardRun, run_shard};
 pub use status::{PlanStatus, status, submitted_tasks};
 pub use submission::{Engine, Submission, Submitted};
 pub use words::{quoted, toml};

@@ -45,7 +45,29 @@ pub(super) fn shards(jobs: &dyn JobList, count: usize) -> Vec<Option<usize>> {
     of
 }
 
-/// Does the jobs of a shard that the store of `out` does not hold, the most expensive first, as many at a
+/// Where a shard is done, with how many threads, who is told and what stops it.
+#[derive(Clone, Copy)]
+pub struct ShardRun<'a> {
+    /// The folder of the results, which other shards may share.
+    pub out: &'a Path,
+    /// Number of threads.
+    pub threads: usize,
+    /// Is told of each job that is done.
+    pub progress: &'a dyn Progress,
+    /// Whether no further job begins, and those in progress stop.
+    pub stop: &'a (dyn Fn() -> bool + Sync),
+}
+
+impl fmt::Debug for ShardRun<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("ShardRun")
+            .field("out", &self.out)
+            .field("threads", &self.threads)
+            .finish_non_exhaustive()
+    }
+}
+
+/// Does the jobs of a shard that the store of its folder does not hold, the most expensive first, as many at a
 /// time as there are threads and memory. Other shards may run at the same time, here or elsewhere.
 ///
 /// # Errors
@@ -54,10 +76,9 @@ pub fn run_shard(
     plan: &ShardPlan,
     jobs: &dyn JobList,
     shard: Shard,
-    (out, threads): (&Path, usize),
-    progress: &dyn Progress,
-    stop: &(dyn Fn() -> bool + Sync),
+    run: ShardRun<'_>,
 ) -> Result<ShardReport, Failure> {
+    let ShardRun { out, threads, progress, stop } = run;
     let store = Store::open_shared(out, &plan.digest, shard)?;
     plan.write(out)?;
     let mine = members(jobs, shard);
@@ -104,14 +125,25 @@ mod tests {
         let squares = Squares::to(7);
         for index in [2, 0, 1] {
             let shard = Shard { index, count: 3 };
-            let report =
-                run_shard(&plan(&squares), &squares, shard, (dir.path(), 2), &Silent, &never).unwrap();
+            let report = run_shard(
+                &plan(&squares),
+                &squares,
+                shard,
+                ShardRun { out: dir.path(), threads: 2, progress: &Silent, stop: &never },
+            )
+            .unwrap();
             assert!(report.to_string().starts_with(&format!("shard {index}/3: ")), "{report}");
         }
         assert_eq!(squares[0].solved(), 7);
         // Once more, and undivided: nothing is solved again.
         for shard in [Shard { index: 1, count: 3 }, Shard { index: 0, count: 1 }] {
-            run_shard(&plan(&squares), &squares, shard, (dir.path(), 1), &Silent, &never).unwrap();
+            run_shard(
+                &plan(&squares),
+                &squares,
+                shard,
+                ShardRun { out: dir.path(), threads: 1, progress: &Silent, stop: &never },
+            )
+            .unwrap();
         }
         assert_eq!(squares[0].solved(), 7);
         let found = cluster::check(&plan(&squares), &squares, dir.path()).unwrap();
@@ -124,9 +156,21 @@ mod tests {
         let squares = Squares::to(6);
         let one = Shard { index: 0, count: 1 };
         let stopped = || squares[0].solved() >= 2;
-        run_shard(&plan(&squares), &squares, one, (dir.path(), 1), &Silent, &stopped).unwrap();
+        run_shard(
+            &plan(&squares),
+            &squares,
+            one,
+            ShardRun { out: dir.path(), threads: 1, progress: &Silent, stop: &stopped },
+        )
+        .unwrap();
         assert_eq!((squares[0].solved(), Store::count(dir.path())), (2, 2));
-        run_shard(&plan(&squares), &squares, one, (dir.path(), 1), &Silent, &never).unwrap();
+        run_shard(
+            &plan(&squares),
+            &squares,
+            one,
+            ShardRun { out: dir.path(), threads: 1, progress: &Silent, stop: &never },
+        )
+        .unwrap();
         assert_eq!(squares[0].solved(), 6);
     }
 }

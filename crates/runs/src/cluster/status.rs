@@ -299,7 +299,7 @@ impl fmt::Display for PlanStatus {
 mod tests {
     use super::*;
     use crate::cluster::tests_support::Squares;
-    use crate::cluster::{check, run_shard};
+    use crate::cluster::{ShardRun, check, run_shard};
     use crate::{Shard, Silent};
     use contact_model::never;
 
@@ -322,7 +322,13 @@ mod tests {
         let dir = tempfile::tempdir().unwrap();
         let squares = Squares::to(4);
         let plan = ShardPlan::new("p", vec!["squares".into()], &squares);
-        run_shard(&plan, &squares, Shard { index: 0, count: 2 }, (dir.path(), 1), &Silent, &never).unwrap();
+        run_shard(
+            &plan,
+            &squares,
+            Shard { index: 0, count: 2 },
+            ShardRun { out: dir.path(), threads: 1, progress: &Silent, stop: &never },
+        )
+        .unwrap();
         let found = check(&plan, &squares, dir.path()).unwrap();
         let text = status(&found, &squares, dir.path()).to_string();
         assert!(

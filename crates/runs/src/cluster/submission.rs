@@ -376,7 +376,7 @@ impl<'a> Script<'a> {
 mod tests {
     use super::*;
     use crate::cluster::tests_support::Squares;
-    use crate::cluster::{Division, check, run_shard};
+    use crate::cluster::{Division, ShardRun, check, run_shard};
     use crate::{Shard, Silent};
     use contact_model::never;
 
@@ -424,7 +424,13 @@ mod tests {
 
         fn run(&self, index: usize) {
             let shard = Shard { index, count: 3 };
-            run_shard(&self.plan, &self.squares, shard, (&self.out, 1), &Silent, &never).unwrap();
+            run_shard(
+                &self.plan,
+                &self.squares,
+                shard,
+                ShardRun { out: &self.out, threads: 1, progress: &Silent, stop: &never },
+            )
+            .unwrap();
         }
 
         fn write(&self, engine: Engine) -> Result<Submitted> {

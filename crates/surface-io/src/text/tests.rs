@@ -169,8 +169,8 @@ fn contradictions_are_named() {
 #[test]
 fn every_bad_text_says_where_and_what_to_do() {
     for (text, expected) in [
-        (&b""[..], "a.txt: no data in it"),
-        (b"# nothing\n\n", "a.txt: no data in it"),
+        (&b""[..], "a.txt: no data in it: it is empty or has nothing but comments; export it again"),
+        (b"# nothing\n\n", "a.txt: no data in it: it is empty or has nothing but comments; export it again"),
         (
             b"1 2\n3 x\n",
             "a.txt: line 2, value 2: \"x\": expected a number (comments begin with # or %; skip_lines leaves out a heading)",

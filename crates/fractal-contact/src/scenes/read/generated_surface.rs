@@ -95,6 +95,21 @@ impl GeneratedSurface {
     }
 }
 
+/// How a twin of a map is made.
+#[derive(Debug, Clone, Copy)]
+pub struct AskedTwin<'a> {
+    /// How the file of the map is read.
+    pub declared: &'a ReadOptions,
+    /// What is done to the map.
+    pub preprocessing: &'a Preprocessing,
+    /// Whether each wave has its own power or that of its ring.
+    pub like: TwinSpectrum,
+    /// Whether the twin has the distribution of the map's heights.
+    pub keep_heights: bool,
+    /// Seed of the random phases.
+    pub seed: u64,
+}
+
 /// Writes an artificial twin of a map into a file: a surface with the spectrum of the map and random phases
 /// of a seed. Returns a description.
 ///
@@ -105,13 +120,8 @@ impl GeneratedSurface {
 /// # Errors
 /// [`Error::Surface`] for files that cannot be read or written and an unknown ending, [`Error::Run`] for undefined
 /// points and a map of equal heights.
-pub fn write_twin(
-    path: &Path,
-    (declared, preprocessing): (&ReadOptions, &Preprocessing),
-    (like, keep_heights): (TwinSpectrum, bool),
-    seed: u64,
-    out: &Path,
-) -> Result<String> {
+pub fn write_twin(path: &Path, twin: &AskedTwin<'_>, out: &Path) -> Result<String> {
+    let AskedTwin { declared, preprocessing, like, keep_heights, seed } = *twin;
     let scan = Scan::read(path, declared)?;
     let of = Arc::new(scan.map(preprocessing)?);
     let unit = scan.metadata().unit.as_ref().map_or(Ok(Metric::Unitless), |unit| Metric::of(&unit.value));

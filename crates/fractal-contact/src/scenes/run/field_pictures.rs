@@ -144,7 +144,8 @@ impl FieldPictures<'_> {
         let field = of_all.field;
         let values = magnitude(components);
         let name = self.file(field.name, state.index, FieldFormat::Png.extension()).to_string();
-        let mut drawn = picture(scene, field, self.model, (self.surface, Some(state)), cells, &values);
+        let of_state = FieldOfState { field, model: self.model, surface: self.surface, state: Some(state) };
+        let mut drawn = picture(scene, &of_state, cells, &values);
         if scene.surface.is_profile() {
             let step = scene.surface.size().x / cells.columns as f64;
             let points = values.iter().enumerate().map(|(i, v)| ((i as f64 + 0.5) * step, *v));
@@ -194,15 +195,22 @@ pub(crate) fn sweep(out: &Path) {
     }
 }
 
-/// A field of a state of a surface; the heights need no state.
+/// A field of a state on a surface; the heights need no state.
+pub(crate) struct FieldOfState<'a> {
+    pub field: &'a FieldQuantity,
+    pub model: &'a str,
+    pub surface: usize,
+    pub state: Option<&'a StateRecord>,
+}
+
+/// The picture of a field, with its title and its units.
 pub(crate) fn picture<'a>(
     scene: &SceneFile,
-    field: &FieldQuantity,
-    model: &str,
-    (surface, state): (usize, Option<&StateRecord>),
+    of: &FieldOfState<'_>,
     cells: Cells,
     values: &'a [f64],
 ) -> FieldPicture<'a> {
+    let FieldOfState { field, model, surface, state } = *of;
     let &FieldQuantity { name, words, symbol, unit, components, white_zero, signed, classes, .. } = field;
     let load = match state {
         Some(state) if name != HEIGHTS.name => state.words(scene),

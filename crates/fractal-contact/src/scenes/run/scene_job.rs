@@ -2,6 +2,7 @@
 
 use crate::scenes::plan::{FORMAT, ModelOnSurface, calibration};
 use crate::scenes::read::{Error, Result, SceneFile, cells};
+use crate::scenes::run::solve::SceneInFolder;
 use crate::scenes::run::{KeepResult, Keeper, ModelResult, SharedLines, field_pictures};
 use contact_model::Stop;
 use runs::{Checkpoint, Job, JobList, Progress, ResultKind, Silent, StatesInHand, Store, fnv1a_128};
@@ -109,7 +110,8 @@ impl SceneJob {
         let states = [begun.kept, self.scene.request.count()];
         let told = StatesInHand::new((self.name(), self.cost()), states, progress, stop);
         let mut keeper = Keeper::new(store, checkpoint, progress, self.name(), &told);
-        let mut result = self.unit.solve((&self.scene, &self.lines), &self.out, begun, &mut keeper, &told)?;
+        let of = SceneInFolder { scene: &self.scene, lines: &self.lines, out: &self.out };
+        let mut result = self.unit.solve(of, begun, &mut keeper, &told)?;
         let mut drawn = Vec::new();
         if self.draws {
             let start = Instant::now();

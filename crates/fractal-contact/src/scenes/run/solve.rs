@@ -26,12 +26,12 @@ impl ModelOnSurface {
     /// error: the result is then incomplete.
     pub fn solve(
         &self,
-        (scene, lines): (&SceneFile, &SharedLines),
-        out: &Path,
+        of: SceneInFolder<'_>,
         mut result: ModelResult,
         keeper: &mut Keeper<'_>,
         stop: Stop<'_>,
     ) -> Result<ModelResult> {
+        let SceneInFolder { scene, lines, out } = of;
         if let LoadRequest::Loads(loads) = &scene.request
             && result.states.len() == loads.values.len()
         {
@@ -142,6 +142,14 @@ impl ModelOnSurface {
         let what = || format!("heights of surface {}", self.surface);
         Ok(Some(draw().map_err(|error| runs::Error::model(what())(error))?))
     }
+}
+
+/// A scene, the lines that its models share, and the directory of its fields.
+#[derive(Clone, Copy)]
+pub(crate) struct SceneInFolder<'a> {
+    pub scene: &'a SceneFile,
+    pub lines: &'a SharedLines,
+    pub out: &'a Path,
 }
 
 /// A model on a surface whose states are being solved.

@@ -4,6 +4,7 @@ use crate::scenes::plan::{Plan, of_slopes};
 use crate::scenes::read::{
     Error, Remark, Result, SceneFile, System, description, exchanged_sides, number, remarks,
 };
+use crate::scenes::tell::statistics::MeasuredMap;
 use crate::scenes::tell::{MapStatisticsTables, SurfaceReport};
 use contact_model::{Boundary, HeightMap};
 use runs::Header;
@@ -123,14 +124,14 @@ pub fn info_statistics(
     let found = scan.preprocessed(preprocessing)?;
     let system = system(scan.metadata());
     let holes = without_filled(&scan, preprocessing);
-    let statistics = MapStatisticsTables::new(
-        &found.map,
-        holes.as_ref(),
-        scan.metadata().profile,
-        Boundary::Free,
-        found.reliable_from,
-        system,
-    );
+    let measured = MeasuredMap {
+        map: &found.map,
+        holes: holes.as_ref(),
+        profile: scan.metadata().profile,
+        boundary: Boundary::Free,
+        instrument: found.reliable_from,
+    };
+    let statistics = MapStatisticsTables::new(measured, system);
     let name = path.file_name().map_or_else(|| "surface".into(), |name| name.to_string_lossy().into_owned());
     let mut header = Header { command: format!("fractal-contact info {name}"), ..Header::default() };
     for step in &found.steps {

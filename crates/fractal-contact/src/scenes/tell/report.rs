@@ -2,6 +2,7 @@
 
 use crate::scenes::plan::{Cost, Plan, PredictedFrom};
 use crate::scenes::read::{HEIGHTS, Result, SceneFile, number, short, words};
+use crate::scenes::run::field_pictures::FieldOfState;
 use crate::scenes::run::{FieldFile, FieldView, SceneOutcome, SolvedUnit, StateRecord, field_pictures};
 use crate::scenes::tell::page::Reading;
 use crate::scenes::tell::{MapStatisticsTables, StateTable, columns, distributions, page, pictures, summary};
@@ -341,10 +342,8 @@ impl Report<'_> {
 
     fn picture<'b>(&self, view: &'b View<'_>, range: Option<(f64, f64)>) -> FieldPicture<'b> {
         let View { shown, field, model, state } = view;
-        FieldPicture {
-            range,
-            ..field_pictures::picture(self.scene(), field, model, (0, *state), shown.cells, &[])
-        }
+        let of_state = FieldOfState { field, model, surface: 0, state: *state };
+        FieldPicture { range, ..field_pictures::picture(self.scene(), &of_state, shown.cells, &[]) }
     }
 
     /// A field with its axes, or the curve of a profile.

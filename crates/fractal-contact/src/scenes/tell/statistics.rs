@@ -73,19 +73,27 @@ pub(crate) struct MapStatisticsTables {
     pub remarks: Vec<String>,
 }
 
+/// A map that is measured, and what is known of it.
+#[derive(Clone, Copy)]
+pub struct MeasuredMap<'a> {
+    /// The map.
+    pub map: &'a HeightMap,
+    /// The same map without the points that were filled, where there are some.
+    pub holes: Option<&'a HeightMap>,
+    /// Whether it is a profile, which is measured along its row.
+    pub profile: bool,
+    /// Whether it is a tile of an endless surface.
+    pub boundary: Boundary,
+    /// The distance from which on the tip of the instrument resolves heights.
+    pub instrument: Option<f64>,
+}
+
 impl MapStatisticsTables {
     /// Measures a map: a periodic surface without a window, any other one with Hann's window on its deviation
-    /// from the mean. A `profile` is measured along its row. `holes` is the same map without the points that
-    /// were filled, where there are some. Spectra are those of the filled map, and the fit ends at wavelengths
+    /// from the mean. Spectra are those of the filled map, and the fit ends at wavelengths
     /// at which filled points matter.
-    pub fn new(
-        map: &HeightMap,
-        holes: Option<&HeightMap>,
-        profile: bool,
-        boundary: Boundary,
-        instrument: Option<f64>,
-        system: System,
-    ) -> Self {
+    pub fn new(measured: MeasuredMap<'_>, system: System) -> Self {
+        let MeasuredMap { map, holes, profile, boundary, instrument } = measured;
         let mut found = Self {
             system,
             profile,
@@ -326,7 +334,9 @@ impl MapStatisticsTables {
             return Err(runs::Error::model("statistics")(refused).into());
         };
         let profile = scene.surface.is_profile();
-        Ok(Self::new(&map, None, profile, scene.effects.boundary, scene.reliable_from, scene.system))
+        let (boundary, instrument) = (scene.effects.boundary, scene.reliable_from);
+        let measured = MeasuredMap { map: &map, holes: None, profile, boundary, instrument };
+        Ok(Self::new(measured, scene.system))
     }
 
     /// The parameters as texts: symbol, value, interval and meaning. Value and interval have the same
