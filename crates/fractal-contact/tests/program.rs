@@ -208,7 +208,7 @@ fn bash_completes_subcommands_flags_and_values() {
     std::fs::write(&script, &text).unwrap();
     let of = |words: &[&str]| offered(&script, words);
     assert_eq!(of(&["pr"]), ["press"]);
-    assert_eq!(of(&["press", "--b"]), ["--bodies", "--border", "--boundary"]);
+    assert_eq!(of(&["press", "--b"]), ["--ball", "--bodies", "--border", "--boundary"]);
 
     assert_eq!(of(&["press", "map.csv", "--und"]), ["--undefined"]);
     assert_eq!(of(&["press", "map.csv", "--detrend", "pl"]), ["plane"]);
