@@ -169,7 +169,8 @@ impl<'a> SceneAnswers<'a> {
     fn count(&self, options: &Options, outcome: &mut SceneOutcome) {
         outcome.stopped |= self.results.iter().any(|result| result.as_ref().is_none_or(|r| !r.complete));
         let mut missed: Vec<String> = Vec::new();
-        for (_, result) in self.begun() {
+        for (unit, result) in self.begun() {
+            let model = unit.numerics(self.scene).name();
             outcome.kept += result.kept;
             outcome.notes.extend(result.notes.iter().cloned());
             for record in &result.states {
@@ -177,8 +178,8 @@ impl<'a> SceneAnswers<'a> {
                 outcome.pulled_off += usize::from(record.is_pulled_off());
                 outcome.failed += usize::from(record.converged().is_none() && !record.is_pulled_off());
                 if record.solved().is_none() || record.is_pulled_off() {
-                    let why = record.note().filter(|note| !outcome.notes.contains(note));
-                    outcome.notes.extend(why);
+                    let why = record.note().map(|note| format!("{model}: {note}"));
+                    outcome.notes.extend(why.filter(|note| !outcome.notes.contains(note)));
                 } else if let Some(error) = self.not_converged(record) {
                     missed.push(error);
                 }

@@ -180,7 +180,7 @@ const TABLE: &[OtherWords] = &[
     ),
     key(
         ("models", "cells"),
-        &["n", "grid", "resolution", "mesh", "points", "nx", "ny", "elements"],
+        &["grid", "resolution", "mesh", "nx", "ny"],
         "the number of cells a side is `cells = 512` in the table of the model, [models.bem3d]",
         "the number of cells a side is `--cells 512`",
     ),

@@ -173,11 +173,6 @@ impl ContactInHand<'_, '_> {
         self.keeper.keep(&mut self.result, self.contact, interrupted);
     }
 
-    /// Why the model refused a load, with its name.
-    fn refusal(&self, error: &contact_model::Error) -> String {
-        format!("{}: {}", self.unit.numerics(self.scene).name(), words::refusal(self.scene, error))
-    }
-
     /// Solves the loads that the result lacks, each by itself.
     fn loads(&mut self, requests: &LoadList) -> Result<()> {
         let normalisation = self.contact.normalisation();
@@ -215,7 +210,7 @@ impl ContactInHand<'_, '_> {
                     self.keep(true);
                     return Ok(());
                 }
-                Err(other) => StateRecord::new(index, Answer::Refused(self.refusal(&other))),
+                Err(other) => StateRecord::new(index, Answer::Refused(words::refusal(self.scene, &other))),
             };
             self.result.states.insert(place, record);
             self.keep(false);
@@ -273,7 +268,7 @@ impl ContactInHand<'_, '_> {
                     self.unit.recorded(self.scene, solved, self.out, index)?
                 }
                 Ok(Some((best, false))) => missed(index, best, normalisation),
-                Err(error) => StateRecord::new(index, Answer::Refused(self.refusal(&error))),
+                Err(error) => StateRecord::new(index, Answer::Refused(words::refusal(self.scene, &error))),
             };
             let failed = record.converged().is_none();
             self.result.states.push(record);
