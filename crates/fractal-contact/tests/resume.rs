@@ -444,7 +444,8 @@ fn a_path_that_pulls_off_ends_with_its_last_stable_state() {
     let number = |row: &[String], name: &str| row[column(name)].parse::<f64>().unwrap();
     assert_eq!((&*last[column("status")], &*before[column("status")]), ("pulled_off", "converged"));
     assert!(last[column("note")].contains("pull-off before the force -8e-4"), "{last:?}");
-    assert!(outcome.notes.contains(&last[column("note")]), "{outcome:?}");
+    let note = format!("bem3d: {}", last[column("note")]);
+    assert!(outcome.notes.contains(&note), "{outcome:?}");
     for name in ["time", "force", "approach", "energy", "stability"] {
         assert_eq!(last[column(name)], before[column(name)], "{name}");
     }
