@@ -12,7 +12,7 @@ const WATCH: &str = "<script>window.errors = []; addEventListener('error', (e) =
 /// Clicks in the middle of every map, moves by keys, zooms, and writes down what is read and what is seen.
 const PROBE: &str = r#"<script>
 const found = [];
-document.querySelectorAll("figure.field").forEach((figure) => {
+document.querySelectorAll("figure.field[data-field]").forEach((figure) => {
   const canvas = figure.querySelector("canvas"), box = canvas.getBoundingClientRect(), output = figure.querySelector("output");
   const at = { clientX: box.left + 0.3 * box.width, clientY: box.top + 0.6 * box.height, bubbles: true };
   canvas.dispatchEvent(new MouseEvent("click", at));
