@@ -107,7 +107,7 @@ fn lacking(asked: &PressArguments, map: &Metadata) -> Vec<Lacking> {
     lacking
 }
 
-/// What the file of a map does not hold and the flags do not say.
+/// Flags that say what the file of the map does not hold: the unit, the size, and what undefined points are.
 fn lacking_of_map(asked: &PressArguments, map: &Metadata) -> Vec<Lacking> {
     let has = |key: &str| asked.file.value(key).is_some();
     let mut lacking = Vec::new();
@@ -130,7 +130,7 @@ fn lacking_of_map(asked: &PressArguments, map: &Metadata) -> Vec<Lacking> {
     lacking
 }
 
-/// What is not said about the bodies. Friction needs more than E*.
+/// Flags of the bodies that are missing. Friction needs the bodies themselves and not only E*.
 fn lacking_of_bodies(asked: &PressArguments) -> Vec<Lacking> {
     let bodies = asked.problem.value("bodies");
     let mut lacking = Vec::new();

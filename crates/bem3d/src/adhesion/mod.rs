@@ -25,7 +25,7 @@
 //! | first states from an elastic contact | 1.01 | 1.02 | 1.01 | stays: without it some states are others |
 //! | a contact anew after a far step | 1.03 | 1.01 | 1.02 | was removed |
 //! | a contact anew for a single load (`continued`) | 1.00 | 1.00 | 1.01 | stays, see below |
-//! | displacement of open cells estimated from nearby contact, in two preconditioners | 1.04 to 1.13 | not used | not used | was removed |
+//! | displacement of open cells estimated from nearby contact, in two preconditioners | 1.00 to 1.13 | not used | not used | was removed |
 //! | damping after 100 updates at a mean gap | 1.00 | 1.00 | 1.00 | stays, see below |
 //!
 //! Applications alone are misleading for Newton steps with a short range: a sphere of 104 cells takes as

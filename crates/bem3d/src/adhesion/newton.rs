@@ -17,8 +17,9 @@
 //! with G^ for G: pressures on a front displace the contact and all other fronts, and the contact takes that
 //! back. The preconditioner has the inverse of the kernel on a torus for G_CC^-1, and a diagonal on Z. Triangular
 //! factors around both, with an estimate of `G_ZC G_CC^-1` from nearby cells, took 15 steps instead of 25 where a
-//! residual was to fall by two digits. But a path needs only 1.04 to 1.13 times as many applications of the kernel
-//! without them (129, 257 and 513 cells a side) and no more time, so they were removed.
+//! residual was to fall by two digits. But 22 paths (9 with 129 cells a side, 9 with 257 and 4 with 513) need
+//! only 1.00 to 1.13 times as many applications of the kernel without them, and their times, one run each, show no
+//! gain. So they were removed.
 //!
 //! Near contact the law of a short range is level. With D -> 0 the matrix of both terms, `D + C'`, is
 //! indefinite there and N large; a state that is far from instability (r = 0.6) then takes 100 steps instead

@@ -215,7 +215,7 @@ impl<'a> SceneAnswers<'a> {
         concerned.map(move |(warning, states)| warning.sentence(self.scene, &states, counted))
     }
 
-    /// What each model did, summed over its states.
+    /// The cost of each model and the bytes of its files, summed over its states.
     fn actual(&self) -> Vec<(&'static str, Cost, u64)> {
         let models = self.scene.models.iter();
         let mut list: Vec<_> = models.map(|model| (model.name(), Cost::default(), 0)).collect();

@@ -454,7 +454,7 @@ impl Plan {
         Ok(())
     }
 
-    /// What is computed and what is left out.
+    /// Writes the outputs that are computed, and those that are not.
     fn write_outputs(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let names = |requested: bool| {
             let list: Vec<&str> =
