@@ -349,6 +349,10 @@ fn add_output(question: &mut Question, name: &str) -> Result<(), Diagnostic> {
     }
     let value = if output.is_some_and(|output| output.is_field()) { "[\"npy\", \"png\"]" } else { "true" };
     question.set(&format!("outputs.{name}"), value).map_err(|mistake| {
+        if output.is_some() {
+            // Such as a conductance, which has keys of its own.
+            return mistake;
+        }
         let names: Vec<&str> = Output::ALL.iter().map(|output| output.name()).collect();
         let help = match name {
             "force" | "approach" | "certificate" => {
