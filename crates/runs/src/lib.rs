@@ -61,7 +61,7 @@ pub use meters::{
     available_memory, check_memory, cpu_seconds, peak_memory, process_cpu_seconds, reset_peak_memory,
     resident_memory, threads_for_memory,
 };
-pub use progress::{JobInHand, Progress, Silent, StatesInHand};
+pub use progress::{JobInHand, Pictures, Progress, Silent, StatesInHand};
 pub use reporter::Reporter;
 pub use shard::{MOST_SHARDS, Shard, ShardChoice, TASKS, assign, largest_first};
 pub use store::{Pack, PackHead, Store, fnv1a_128};

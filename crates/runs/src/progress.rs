@@ -36,14 +36,27 @@ impl Progress for Silent {
 pub struct JobInHand<'a> {
     /// Its name.
     pub name: &'a str,
-    /// Relative cost of all of it.
+    /// Relative cost of all of it: of its states and of its pictures.
     pub cost: u64,
     /// Number of states that are solved.
     pub done: usize,
     /// Number of all of its states.
     pub all: usize,
+    /// Its pictures, which are drawn when all states are solved.
+    pub pictures: Pictures,
     /// Largest residual of the state that is being solved, and the tolerance that ends its solve.
     pub residual: Option<(f64, f64)>,
+}
+
+/// The pictures of a job.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Pictures {
+    /// Part of the cost of the job that drawing them takes.
+    pub cost: u64,
+    /// Number of pictures that are drawn.
+    pub drawn: usize,
+    /// Number of all pictures.
+    pub all: usize,
 }
 
 /// Reports the residuals of the states of a job, and passes on a request to stop.
@@ -52,19 +65,27 @@ pub struct StatesInHand<'a> {
     cost: u64,
     all: usize,
     done: Cell<usize>,
+    pictures: Cell<Pictures>,
     progress: &'a dyn Progress,
     stop: Stop<'a>,
 }
 
 impl<'a> StatesInHand<'a> {
-    /// A job of this name and relative cost with `done` of its `all` states solved before.
+    /// A job of this name and relative cost with `done` of its `all` states solved before, and no pictures.
     pub fn new(
         (name, cost): (String, u64),
         [done, all]: [usize; 2],
         progress: &'a dyn Progress,
         stop: Stop<'a>,
     ) -> Self {
-        Self { name, cost, all, done: Cell::new(done), progress, stop }
+        Self { name, cost, all, done: Cell::new(done), pictures: Cell::default(), progress, stop }
+    }
+
+    /// The same job with as many pictures, whose drawing takes `cost` of the cost of the whole job.
+    #[must_use]
+    pub fn with_pictures(self, all: usize, cost: u64) -> Self {
+        self.pictures.set(Pictures { cost, drawn: 0, all });
+        self
     }
 
     /// Reports that `done` states are solved.
@@ -73,9 +94,17 @@ impl<'a> StatesInHand<'a> {
         self.tell(None);
     }
 
+    /// Reports that one more picture is drawn.
+    pub fn drew(&self) {
+        let pictures = self.pictures.get();
+        self.pictures.set(Pictures { drawn: pictures.all.min(pictures.drawn + 1), ..pictures });
+        self.tell(None);
+    }
+
     fn tell(&self, residual: Option<(f64, f64)>) {
-        let Self { name, cost, all, done, .. } = self;
-        self.progress.states(&JobInHand { name, cost: *cost, done: done.get(), all: *all, residual });
+        let Self { name, cost, all, done, pictures, .. } = self;
+        let (done, pictures) = (done.get(), pictures.get());
+        self.progress.states(&JobInHand { name, cost: *cost, done, all: *all, pictures, residual });
     }
 }
 

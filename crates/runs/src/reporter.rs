@@ -81,8 +81,8 @@ struct Done {
     whole: f64,
     /// Of jobs under way, by their names.
     parts: BTreeMap<String, JobPart>,
-    /// Costs of jobs whose states are all solved, and which write their files.
-    writing: Vec<u64>,
+    /// Costs of jobs whose states are all solved and whose pictures are drawn.
+    finished: Vec<u64>,
     /// The part of it that was found on disk, which does not predict the time of the rest.
     found: f64,
 }
@@ -100,8 +100,8 @@ struct JobPart {
 impl Done {
     /// A job is done.
     fn add(&mut self, cost: u64, reused: bool) {
-        if let Some(place) = self.writing.iter().position(|writing| *writing == cost) {
-            self.writing.swap_remove(place);
+        if let Some(place) = self.finished.iter().position(|finished| *finished == cost) {
+            self.finished.swap_remove(place);
         }
         self.whole += cost as f64;
         if reused {
@@ -111,16 +111,17 @@ impl Done {
 
     /// A job is as far as this.
     fn set(&mut self, job: &JobInHand<'_>) {
-        let of_state = job.cost as f64 / job.all.max(1) as f64;
+        let of_states = job.cost.saturating_sub(job.pictures.cost) as f64;
+        let of_state = of_states / job.all.max(1) as f64;
         if !self.parts.contains_key(job.name) {
             // What this run has not solved: the state that it tells of was solved by it.
             let solved_now = usize::from(job.residual.is_none());
             self.found += of_state * job.done.saturating_sub(solved_now) as f64;
         }
-        if job.done >= job.all {
-            // The whole job counts when its files are written.
+        if job.done >= job.all && job.pictures.drawn >= job.pictures.all {
+            // The job counts as a whole when its result is stored, too.
             if self.parts.remove(job.name).is_some() {
-                self.writing.push(job.cost);
+                self.finished.push(job.cost);
             }
             return;
         }
@@ -133,14 +134,19 @@ impl Done {
             part.first = if residual.is_finite() { part.first.max(residual) } else { part.first };
             of_the_way(part.first, residual, tolerance)
         });
-        part.cost = part.cost.max(of_state * (job.done as f64 + share));
+        let of_pictures = if job.done < job.all {
+            0.0
+        } else {
+            job.pictures.cost as f64 * job.pictures.drawn as f64 / job.pictures.all.max(1) as f64
+        };
+        part.cost = part.cost.max(of_state * (job.done as f64 + share) + of_pictures);
     }
 
     /// What is done.
     fn cost(&self) -> f64 {
         let under_way: f64 = self.parts.values().map(|part| part.cost).sum();
-        let written: f64 = self.writing.iter().map(|cost| *cost as f64).sum();
-        (self.whole + written + under_way).min(self.total)
+        let finished: f64 = self.finished.iter().map(|cost| *cost as f64).sum();
+        (self.whole + finished + under_way).min(self.total)
     }
 
     /// Predicted seconds for the rest after `seconds`, at the rate of this run so far. `None` where the run
@@ -262,8 +268,11 @@ impl Progress for Reporter {
 
 /// A job under way in words.
 fn words(job: &JobInHand<'_>) -> String {
-    let JobInHand { name, done, all, residual, .. } = job;
+    let JobInHand { name, done, all, pictures, residual, .. } = job;
     match residual {
+        _ if done >= all && pictures.drawn < pictures.all => {
+            format!("picture {} of {} of {name}", pictures.drawn + 1, pictures.all)
+        }
         _ if done >= all => format!("files of {name}"),
         None => format!("{done} of {all} states of {name}"),
         Some((residual, tolerance)) => {
@@ -276,6 +285,7 @@ fn words(job: &JobInHand<'_>) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::progress::Pictures;
 
     #[test]
     fn time_left_follows_from_what_this_run_has_done() {
@@ -287,7 +297,9 @@ mod tests {
         assert_eq!(done.left(5.0), Some(25.0));
         assert_eq!(done.left(0.5), None);
         // A path of four states with two of them on disk, the third half way to its tolerance.
-        let mut job = JobInHand { name: "path", cost: 40, done: 2, all: 4, residual: Some((1e-2, 1e-6)) };
+        let pictures = Pictures::default();
+        let residual = Some((1e-2, 1e-6));
+        let mut job = JobInHand { name: "path", cost: 40, done: 2, all: 4, pictures, residual };
         done.set(&job);
         assert_eq!((done.cost(), done.found), (70.0, 60.0));
         job.residual = Some((1e-4, 1e-6));
@@ -303,12 +315,34 @@ mod tests {
         // It is no less while its files are written.
         assert_eq!((done.cost(), done.parts.len()), (90.0, 0));
         done.add(40, false);
-        assert_eq!((done.cost(), done.writing.len()), (90.0, 0));
+        assert_eq!((done.cost(), done.finished.len()), (90.0, 0));
+    }
+
+    #[test]
+    fn a_job_is_not_done_before_its_pictures_are_drawn() {
+        let mut done = Done { total: 50.0, ..Done::default() };
+        let pictures = Pictures { cost: 20, drawn: 0, all: 4 };
+        let mut job = JobInHand { name: "map", cost: 50, done: 2, all: 3, pictures, residual: None };
+        done.set(&job);
+        approx::assert_relative_eq!(done.cost(), 20.0, max_relative = 1e-12);
+        job.done = 3;
+        done.set(&job);
+        approx::assert_relative_eq!(done.cost(), 30.0, max_relative = 1e-12);
+        job.pictures.drawn = 1;
+        done.set(&job);
+        approx::assert_relative_eq!(done.cost(), 35.0, max_relative = 1e-12);
+        assert_eq!(words(&job), "picture 2 of 4 of map");
+        job.pictures.drawn = 4;
+        done.set(&job);
+        assert_eq!((done.cost(), words(&job)), (50.0, "files of map".to_owned()));
+        done.add(50, false);
+        assert_eq!((done.cost(), done.finished.len()), (50.0, 0));
     }
 
     #[test]
     fn words_of_a_job_name_its_state_and_residual() {
-        let mut job = JobInHand { name: "bem3d", cost: 1, done: 3, all: 10, residual: None };
+        let pictures = Pictures::default();
+        let mut job = JobInHand { name: "bem3d", cost: 1, done: 3, all: 10, pictures, residual: None };
         assert_eq!(words(&job), "3 of 10 states of bem3d");
         job.residual = Some((3.2e-5, 1e-8));
         assert_eq!(words(&job), "state 4 of 10, residual 3e-5 of 1e-8, bem3d");

@@ -1,7 +1,7 @@
 //! One model and one surface: what is solved, stored and divided as a whole.
 
 use crate::scenes::plan::calibration;
-use crate::scenes::read::{Numerics, SceneFile, cells};
+use crate::scenes::read::{FieldFormat, HEIGHTS, Numerics, SceneFile, cells};
 use contact_model::{Cells, Scene};
 
 /// Number of the format of stored states. Raise it with anything that changes a state: the numbers of a model or of
@@ -44,6 +44,25 @@ impl ModelOnSurface {
     /// model, which are what is divided, have the same.
     pub fn cost(&self, scene: &SceneFile) -> u64 {
         calibration::milliseconds_of_sizes(scene, self.numerics(scene))
+    }
+
+    /// Number of the pictures of its fields.
+    pub(crate) fn pictures(&self, scene: &SceneFile) -> usize {
+        if self.numerics(scene).boundary_elements().is_none() {
+            return 0;
+        }
+        let drawn = scene.requested.fields().filter(|(_, formats)| formats.contains(&FieldFormat::Png));
+        // The heights are those of the first state.
+        let states = |name| if name == HEIGHTS.name { 1 } else { scene.request.count() };
+        let of_field = |name| (0..states(name)).filter(|state| scene.requested.draws(name, *state)).count();
+        drawn.map(|(field, _)| of_field(field.name)).sum()
+    }
+
+    /// Milliseconds that drawing them takes, by their number and by the cells: a picture takes 40 ms, and 0.08 us
+    /// for each cell that is read and reduced to its pixels.
+    pub(crate) fn cost_of_pictures(&self, scene: &SceneFile) -> u64 {
+        let Cells { columns: x, rows: y } = cells(scene, self.numerics(scene));
+        (self.pictures(scene) as f64 * (40.0 + 8e-5 * x as f64 * y as f64)) as u64
     }
 
     /// Bytes of its states and of the fields that are asked for.

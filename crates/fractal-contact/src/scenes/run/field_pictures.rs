@@ -70,8 +70,9 @@ fn keep_bytes(out: &Path, file: FieldFile<'_>, bytes: &[u8]) -> Result<StoredFil
 }
 
 /// Draws the fields of all states, each quantity in one range. Once a result is complete it does not name the
-/// values kept for drawing any more; their files are returned, to be removed when the result is stored.
-pub(crate) fn draw(of: FieldPictures<'_>, result: &mut ModelResult) -> Result<Vec<PathBuf>> {
+/// values kept for drawing any more; their files are returned, to be removed when the result is stored. `drew` is
+/// called after each picture.
+pub(crate) fn draw(of: FieldPictures<'_>, result: &mut ModelResult, drew: &dyn Fn()) -> Result<Vec<PathBuf>> {
     let drawn = of.scene.requested.fields().filter(|(_, formats)| formats.contains(&FieldFormat::Png));
     for (field, _) in drawn {
         let states: Vec<usize> = result.states.iter().map(|state| state.index).collect();
@@ -89,6 +90,7 @@ pub(crate) fn draw(of: FieldPictures<'_>, result: &mut ModelResult) -> Result<Ve
                     state.files.retain(|file| file.name != name);
                     state.files.push(StoredFile::of(of.out, name)?);
                 }
+                drew();
             }
         }
     }

@@ -46,7 +46,7 @@ impl Job for SceneJob {
     }
 
     fn cost(&self) -> u64 {
-        self.unit.cost(&self.scene)
+        self.unit.cost(&self.scene) + self.cost_of_pictures()
     }
 
     fn memory(&self) -> f64 {
@@ -90,6 +90,11 @@ impl SceneJob {
         Self { unit, scene, lines: Arc::default(), among: None, out, draws: true }
     }
 
+    /// The relative cost of drawing its pictures.
+    fn cost_of_pictures(&self) -> u64 {
+        if self.draws { self.unit.cost_of_pictures(&self.scene) } else { 0 }
+    }
+
     /// Solves the states that `begun` lacks.
     fn go_on(
         &self,
@@ -108,7 +113,9 @@ impl SceneJob {
         };
         let checkpoint = Checkpoint::new(&self.out, &format!("{scene}{model}-{surface}"), &key);
         let states = [begun.kept, self.scene.request.count()];
-        let told = StatesInHand::new((self.name(), self.cost()), states, progress, stop);
+        let pictures = if self.draws { self.unit.pictures(&self.scene) } else { 0 };
+        let told = StatesInHand::new((self.name(), self.cost()), states, progress, stop)
+            .with_pictures(pictures, self.cost_of_pictures());
         let mut keeper = Keeper::new(store, checkpoint, progress, self.name(), &told);
         let of = SceneInFolder { scene: &self.scene, lines: &self.lines, out: &self.out };
         let mut result = self.unit.solve(of, begun, &mut keeper, &told)?;
@@ -118,7 +125,7 @@ impl SceneJob {
             let (scene, out) = (&*self.scene, &*self.out);
             let cells = cells(scene, self.unit.numerics(scene));
             let pictures = field_pictures::FieldPictures { scene, model, surface, cells, out };
-            drawn = field_pictures::draw(pictures, &mut result)?;
+            drawn = field_pictures::draw(pictures, &mut result, &|| told.drew())?;
             result.seconds += start.elapsed().as_secs_f64();
         } else {
             result.complete = false;

@@ -397,7 +397,7 @@ mod tests {
         assert_eq!((kept.files.len(), kept.solved().unwrap().state.fields.is_none()), (10, true));
         let mut result = ModelResult { states: vec![kept], complete: true, ..ModelResult::default() };
         let pictures = field_pictures_in(&scene, dir.path());
-        let drawn = field_pictures::draw(pictures, &mut result);
+        let drawn = field_pictures::draw(pictures, &mut result, &|| ());
         let drawn = drawn.unwrap();
         let files = &result.states[0].files;
         assert_eq!((files.len(), files.iter().filter(|file| file.is_hidden()).count()), (10, 2));
@@ -448,7 +448,7 @@ mod tests {
         let unit = ModelOnSurface { model: 0, surface: 0 };
         let kept = unit.recorded(&scene, solved, dir.path(), 0).unwrap();
         let mut result = ModelResult { states: vec![kept], complete: true, ..ModelResult::default() };
-        field_pictures::draw(field_pictures_in(&scene, dir.path()), &mut result).unwrap();
+        field_pictures::draw(field_pictures_in(&scene, dir.path()), &mut result, &|| ()).unwrap();
         let files = &result.states[0].files;
         assert!(files.iter().all(|file| file.is_whole(dir.path())), "{files:?}");
         for name in ["traction", "slip", "stick_slip"] {
