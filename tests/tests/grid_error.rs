@@ -1,7 +1,7 @@
 //! Coverage of the discretisation error, estimated from cells twice and four times as large, compared with
 //! the error that a finer grid shows.
 
-use analysis::grid_error;
+use analysis::{AccuracyTarget, GridTrial, first_grid, grid_error};
 use bem3d::Bem3d;
 use contact_model::{Amplitude, Boundary, ContactModel, Effects, Load, Outputs, Scene, SelfAffine, Surface};
 use std::f64::consts::TAU;
@@ -119,6 +119,80 @@ fn how_wide_the_estimates_of_the_grid_are() {
                 ratios[n * 9 / 10],
                 ratios[n - 1]
             );
+        }
+    }
+}
+
+/// How often a grid that is chosen for an accuracy has it, for errors that the next coarser grid confirms and for those
+/// that none does because no finer grid is left, each counted apart: a table of the book. It takes minutes.
+#[test]
+#[ignore = "a table for the book, minutes in release"]
+fn how_often_a_requested_accuracy_is_met() {
+    let waves = |hurst: f64, shortest: f64| {
+        Surface::SelfAffine(SelfAffine {
+            roll_off: Some(TAU / 0.5),
+            short_cutoff: Some(TAU / shortest),
+            ..SelfAffine::new(3.0 - hurst, 1.0, 0.01).unwrap()
+        })
+    };
+    let forces = [3e-4, 1e-3, 3e-3, 1e-2];
+    let targets = [0.01, 0.02, 0.05, 0.1];
+    // Of each kind and target: scenes, scenes whose errors are all within the target, numbers, numbers within it.
+    let mut counts = [[[0_usize; 4]; 4]; 2];
+    for (hurst, shortest) in [(0.8, 0.1), (0.5, 0.05), (0.8, 0.03), (0.3, 0.1)] {
+        let surface = waves(hurst, shortest);
+        for (seed, boundary) in
+            (200..212).flat_map(|seed| [(seed, Boundary::Free), (seed, Boundary::Periodic)])
+        {
+            let more = usize::from(boundary == Boundary::Free);
+            let on = |cells: usize| states(&surface, boundary, cells + more, seed, &forces);
+            // The true numbers are those of the first grid.
+            let grids = [1024, 256, 128, 64, 32, 16].map(on);
+            let number = |grid: usize, load: usize, quantity: usize| grids[grid][load][quantity];
+            let loads_and_quantities = || (0..forces.len()).flat_map(|load| [(load, 0), (load, 1)]);
+            let place =
+                |cells: usize| [1024, 256, 128, 64, 32, 16].iter().position(|known| *known == cells).unwrap();
+            let estimated = |cells: usize| {
+                let grid = place(cells);
+                let errors = loads_and_quantities().filter_map(|(load, q)| {
+                    let [fine, half, quarter] = [0, 1, 2].map(|coarser| number(grid + coarser, load, q));
+                    grid_error(fine, half, quarter).map(|found| found.error)
+                });
+                let trial = GridTrial {
+                    error: errors.reduce(f64::max),
+                    seconds: 1.0,
+                    rest: 1.0,
+                    least_rest: 1.0,
+                    kept: (),
+                };
+                Ok::<_, ()>(trial)
+            };
+            for (t, &share) in targets.iter().enumerate() {
+                for finest in 1..=3 {
+                    let target = AccuracyTarget { share, seconds: f64::INFINITY };
+                    let Ok(found) = first_grid(&[64, 128, 256][..finest], target, 1.0, estimated).unwrap()
+                    else {
+                        continue;
+                    };
+                    let grid = place(found.grid);
+                    let within: Vec<bool> = loads_and_quantities()
+                        .map(|(load, q)| (number(0, load, q) / number(grid, load, q) - 1.0).abs() <= share)
+                        .collect();
+                    let count = &mut counts[usize::from(!found.is_confirmed)][t];
+                    count[0] += 1;
+                    count[1] += usize::from(within.iter().all(|within| *within));
+                    count[2] += within.len();
+                    count[3] += within.iter().filter(|within| **within).count();
+                }
+            }
+        }
+    }
+    println!("kind, target, scenes, all numbers within it %, numbers, within it %");
+    for (kind, counts) in ["confirmed", "not confirmed"].iter().zip(counts) {
+        for (target, [scenes, met, numbers, within]) in targets.iter().zip(counts) {
+            let share = |part: usize, whole: usize| 100.0 * part as f64 / whole.max(1) as f64;
+            let (met, within) = (share(met, scenes), share(within, numbers));
+            println!("{kind}, {target}, {scenes}, {met:.0}, {numbers}, {within:.1}");
         }
     }
 }

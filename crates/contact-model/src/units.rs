@@ -125,14 +125,16 @@ pub fn ascii(text: &str) -> String {
     text.replace('µ', "u")
 }
 
-/// A number with five significant digits and no zeros at the end: for a height or a length of unknown unit.
+/// A height or a length with five significant digits and no zeros at the end, in ASCII: in the multiple of the unit that
+/// suits it, or without one where the unit is empty because it is not known.
 ///
 /// ```
 /// use contact_model::units::five;
-/// assert_eq!([6.79314, 1.0, 4.9144541e-8].map(five), ["6.7931", "1", "4.9145e-8"]);
+/// assert_eq!([6.79314, 1.0, 4.9144541e-8].map(|height| five(height, "")), ["6.7931", "1", "4.9145e-8"]);
+/// assert_eq!(five(4.9144541e-8, "m"), "49.145 nm");
 /// ```
-pub fn five(value: f64) -> String {
-    number(rounded(value, 5))
+pub fn five(value: f64, unit: &str) -> String {
+    ascii(&to_digits(value, unit, 5))
 }
 
 /// The number rounded to `digits` significant digits, 1 to 17.

@@ -95,7 +95,7 @@ fn what_is_done_to_a_map_is_in_its_manifest() {
         "; mean height kept",
         "0 points of scars made undefined, in 0 runs along x: beyond 5 times ",
         "0 outliers beyond 1000000 robust standard deviations made undefined",
-        "with a tip of radius 0.001 m, heights are reliable",
+        "with a tip of radius 1 mm, heights are reliable",
         "y reversed",
         "turned by 90 degrees",
         "deviations from the mean tapered by Hann's window",
@@ -132,9 +132,9 @@ fn scan_lines_are_repaired_where_it_is_named() {
     let plan = Plan::new(&found).unwrap().to_string();
     for step in [
         "the median of differences to the line before is zero; mean height kept",
-        "16 points of scars made undefined, in 1 runs along x: beyond 6 times ",
+        "16 points of scars made undefined, in 1 run along x: beyond 6 times ",
         "16 undefined points filled",
-        "filtered across the scan lines, cut-off 0.005 m: rms height ",
+        "filtered across the scan lines, cut-off 5 mm: rms height ",
     ] {
         assert!(plan.contains(step), "{step}\n{plan}");
     }
@@ -163,7 +163,7 @@ fn scan_lines_are_repaired_where_it_is_named() {
     };
     let (code, text) = info(&["--align-lines", "median", "--scars", "6", "--filter-across", "5 mm"]);
     assert!(code == Some(0) && text.contains("then       16 points of scars made undefined"), "{text}");
-    assert!(text.contains("all have the same median") && text.contains("cut-off 0.005 m"), "{text}");
+    assert!(text.contains("all have the same median") && text.contains("cut-off 5 mm"), "{text}");
     let (code, text) = info(&["--align-lines", "up"]);
     assert!(code != Some(0) && text.contains("[possible values: median_difference, median]"), "{text}");
     let (_, text) = info(&["--filter-across", "30 mm"]);

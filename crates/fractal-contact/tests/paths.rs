@@ -425,3 +425,32 @@ fn an_error_of_the_grid_that_is_not_estimated_is_a_note() {
         assert!(!notes(load, "").contains("is not estimated"), "{load}");
     }
 }
+
+/// The energy of each cycle is what the dissipated energy grows by in it, in the table and on the console.
+#[test]
+fn each_cycle_has_its_energy() {
+    let piece = |end: f64| format!("[[scene.path]]\ntangential_displacement = {end}\nstates = 3\n");
+    let to_and_fro: String = [2e-3, -2e-3, 2e-3, -2e-3, 2e-3].map(piece).concat();
+    let text = BALL.replace("MODELS", "[\"bem3d\", \"cattaneo_mindlin\"]")
+        + "[models.bem3d]\ncells = 17\n[[scene.path]]\nforce = 0.05\n"
+        + &to_and_fro;
+    let scene = SceneFile::parse("scene.toml".as_ref(), text).unwrap_or_else(|e| panic!("{e}"));
+    let dir = tempfile::tempdir().unwrap();
+    let options = Options { out: dir.path().into(), threads: 2, fresh: false };
+    let plan = Plan::new(&scene).unwrap();
+    let outcome = run(&scene, &plan, &options, &Silent, &contact_model::never).unwrap();
+    let [states, cycles] =
+        ["results.csv", "cycles.csv"].map(|file| CsvFile::read(&dir.path().join(file)).unwrap());
+    assert_eq!(cycles.texts("model").unwrap(), ["bem3d", "bem3d", "cattaneo_mindlin", "cattaneo_mindlin"]);
+    let dissipated = states.numbers("dissipated").unwrap();
+    let of_cycles = cycles.numbers("dissipated").unwrap();
+    let [first, last] = ["first_state", "last_state"].map(|column| cycles.numbers(column).unwrap());
+    for (row, energy) in of_cycles.iter().enumerate() {
+        let at = |state: Option<f64>| dissipated[16 * (row / 2) + state.unwrap() as usize].unwrap();
+        assert_eq!([first[row], last[row]], [[Some(3.0), Some(9.0)], [Some(9.0), Some(15.0)]][row % 2]);
+        assert!((energy.unwrap() - (at(last[row]) - at(first[row]))).abs() <= 1e-12 * at(last[row]));
+    }
+    // The closed loop of a sphere repeats itself.
+    assert!((of_cycles[2].unwrap() / of_cycles[3].unwrap() - 1.0).abs() < 1e-9, "{of_cycles:?}");
+    assert!(outcome.summary.contains("cycle 2, states 9 to 15: dissipated "), "{}", outcome.summary);
+}

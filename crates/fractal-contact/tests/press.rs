@@ -356,7 +356,7 @@ fn the_answer_comes_first_and_the_rest_with_verbose() {
     let mut lines = said.lines();
     assert_eq!(
         lines.next(),
-        Some("bem3d, 8 x 8 cells of 500 nm, free boundary, 3 states, about 2 s"),
+        Some("bem3d, 8 x 8 cells of 500 nm, free boundary, 3 states, less than 1 s"),
         "{said}"
     );
     let modulus_line =

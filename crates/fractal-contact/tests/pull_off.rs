@@ -153,3 +153,23 @@ fn means_are_over_the_ends_of_all_paths() {
     assert!((number(&means, end, "pull_off_se") / error - 1.0).abs() < 1e-9, "{ends:?} {end:?}");
     assert!(outcome.summary.contains("path as a whole: pull_off"), "{}", outcome.summary);
 }
+
+/// Where the attraction of a hard, small ball reaches across its gaps, the plan says that it is not of short range.
+#[test]
+fn a_small_parameter_of_tabor_is_told() {
+    let notes = |modulus: &str, adhesion: &str| {
+        let text = format!(
+            "[scene]\nmodels = [\"bem3d\"]\ncontact_modulus = \"{modulus}\"\nforce = \"-1 nN\"\n[scene.body]\nkind = \"sphere\"\n\
+             radius = \"200 nm\"\nside = \"20 nm\"\n[effects]\nadhesion = {{ work = \"50 mJ/m^2\"{adhesion} }}\n[models.bem3d]\ncells = 17\n"
+        );
+        let scene = SceneFile::parse("scene.toml".as_ref(), text).unwrap_or_else(|e| panic!("{e}"));
+        let notes = Plan::new(&scene).unwrap().notes;
+        notes.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n")
+    };
+    // (200 nm (50 mJ/m^2)^2/((70 GPa)^2 (0.3 nm)^3))^(1/3).
+    let told = notes("70 GPa", "");
+    assert!(told.contains("Tabor's parameter of the ball is 0.16 where"), "{told}");
+    assert!(told.contains("`maugis_dugdale`"), "{told}");
+    assert!(!notes("100 MPa", "").contains("Tabor"));
+    assert!(!notes("70 GPa", ", range = \"2 nm\"").contains("Tabor"));
+}

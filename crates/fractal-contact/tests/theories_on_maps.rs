@@ -287,3 +287,19 @@ fn maps_that_theories_have_no_meaning_for_are_refused() {
         + "[sampling]\nseed = 1\nsurfaces = 2\n";
     assert!(refused(&drawn(64), &only).contains("nothing here is random"));
 }
+
+/// A pressure beyond a theory is told in the number of the theory and in pascals.
+#[test]
+fn a_pressure_beyond_a_theory_is_told_in_pascals() {
+    let text = "[scene]\nmodels = [\"persson\"]\ncontact_modulus = \"1 GPa\"\nmean_pressure = [\"1 kPa\", \"1 TPa\"]\n[scene.surface]\n\
+        kind = \"self_affine\"\nhurst = 0.8\nside = \"1 mm\"\nrms_height = \"2 um\"\nroll_off_wavelength = \"0.2 mm\"\n\
+        shortest_wavelength = \"20 um\"\n[effects]\nboundary = \"periodic\"\n[outputs]\narea = true\n[sampling]\nseed = 1\n";
+    let scene = SceneFile::parse("scene.toml".as_ref(), text.into()).unwrap_or_else(|e| panic!("{e}"));
+    let dir = tempfile::tempdir().unwrap();
+    let options = Options { out: dir.path().into(), threads: 1, fresh: false };
+    let outcome = run(&scene, &Plan::new(&scene).unwrap(), &options, &Silent, &contact_model::never).unwrap();
+    let notes = outcome.notes.join("\n");
+    assert!(notes.contains("persson: mean pressure over E* g/sqrt(2)"), "{notes}");
+    let (_, limit) = notes.split_once(": here 1 TPa, and at most ").unwrap_or_else(|| panic!("{notes}"));
+    assert!(limit.split(" in this model").next().is_some_and(|limit| limit.ends_with(" GPa")), "{notes}");
+}

@@ -7,6 +7,8 @@ use crate::map::{encode_rgb, share};
 pub(crate) const UNDEFINED: [u8; 3] = [205, 205, 205];
 /// A field has two signs where the lesser one reaches this share of the other; below, it is rounding.
 const TWO_SIGNS: f64 = 1e-3;
+/// An end of a range below this share of the other is zero with what a solver leaves of it.
+const ROUNDING: f64 = 1e-6;
 
 /// A palette, from the lowest to the highest value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -53,9 +55,11 @@ pub struct ColourScale {
 
 impl ColourScale {
     /// The scale of values in this range. It is viridis from end to end; with a white zero it begins at 0. A
-    /// `signed` field with values of both signs has blue to red, symmetric about a white zero.
+    /// `signed` field with values of both signs has blue to red, symmetric about a white zero. An end below a
+    /// millionth of the other is what a solver left of zero, and the scale has zero there.
     pub fn new((low, high): (f64, f64), white_zero: bool, signed: bool) -> Self {
         let (least, most) = (low.abs().min(high.abs()), low.abs().max(high.abs()));
+        let [low, high] = [low, high].map(|end| if end.abs() < ROUNDING * most { 0.0 } else { end });
         if signed && low < 0.0 && high > 0.0 && least >= TWO_SIGNS * most && most.is_finite() {
             return Self { low: -most, high: most, palette: Palette::BlueRed, white_zero };
         }
@@ -140,9 +144,14 @@ mod tests {
         let ([low, .., blue], [red, .., high]) = (scale.colour(-6.0), scale.colour(6.0));
         assert!(blue > low && red > high && scale.colour(0.0) == [255; 3]);
         // Rounding is no sign, and neither has a height one.
-        for (range, signed) in [((-1e-9, 6.0), true), ((-2.0, 6.0), false), ((2.0, 6.0), true)] {
+        for (range, signed, ends) in [
+            ((-1e-9, 6.0), true, (0.0, 6.0)),
+            ((-4.0, 1e-9), false, (-4.0, 0.0)),
+            ((-2.0, 6.0), false, (-2.0, 6.0)),
+            ((2.0, 6.0), true, (2.0, 6.0)),
+        ] {
             let scale = ColourScale::new(range, false, signed);
-            assert_eq!((scale.palette(), scale.ends()), (Palette::Viridis, range));
+            assert_eq!((scale.palette(), scale.ends()), (Palette::Viridis, ends));
         }
         let nothing = ColourScale::new((f64::INFINITY, f64::NEG_INFINITY), false, true);
         assert_eq!(nothing.colour(f64::NAN), UNDEFINED);

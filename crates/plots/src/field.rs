@@ -2,14 +2,17 @@
 
 use crate::axis::Axis;
 use crate::colours::ColourScale;
-use crate::drawing::{Anchor, Drawing, LabelPlace, Paint, Rectangle, polygon, polyline};
+use crate::drawing::{Anchor, Drawing, LabelPlace, Paint, Rectangle, polygon, polyline, rectangle};
 use crate::error::{Error, Result};
 use crate::frame::{AxisSide, Frame, TICK, TickStyle};
+use crate::inset;
 use crate::pixels::{Pixels, raster, reduction};
 use crate::style::{INK, NEUTRAL};
 use crate::text::Fonts;
-use contact_model::units::multiple;
+use contact_model::units::{amount, multiple};
 use contact_model::{Cells, Size};
+use std::borrow::Cow;
+use std::ops::Range;
 
 /// A field with its title and labels.
 #[derive(Debug, Clone, PartialEq)]
@@ -58,6 +61,8 @@ const BELOW: f64 = 60.0;
 const BAR: f64 = 18.0;
 /// From the map to the bar of colours or the classes.
 const BESIDE: f64 = 24.0;
+/// Side of the enlarged largest contact.
+const INSET: f64 = 220.0;
 /// The bar is at least as high as its labels need.
 const SHORTEST_BAR: f64 = 160.0;
 /// Size of the words at an axis.
@@ -104,6 +109,8 @@ impl FieldPicture<'_> {
     /// pixel has several cells, it shows one of them, so chosen that shares of areas, means and extrema are
     /// those of the field, and a line below the map says so.
     ///
+    /// Where less than a hundredth of the map is in contact, its largest connected contact is enlarged beside it.
+    ///
     /// Cost: linear in the number of cells.
     ///
     /// # Errors
@@ -117,7 +124,9 @@ impl FieldPicture<'_> {
         let place = [LEFT, TOP, w, h];
         let note = reduction(self.cells, pixels);
         let bottom = TOP + h.max(SHORTEST_BAR) + BELOW;
-        let mut drawing = Drawing::new(LEFT + w + RIGHT, bottom + note.as_ref().map_or(0.0, |_| NOTE_ROOM));
+        let inset = inset::window(self.cells, self.size, &self.touching());
+        let width = LEFT + w + RIGHT + inset.as_ref().map_or(0.0, |_| INSET + 2.0 * BESIDE);
+        let mut drawing = Drawing::new(width, bottom + note.as_ref().map_or(0.0, |_| NOTE_ROOM));
         let scale = self.scale().widened();
         let image = self.image(pixels, |v| scale.colour(v)).into_flattened();
         drawing.image(place, image, pixels.columns);
@@ -132,6 +141,9 @@ impl FieldPicture<'_> {
             self.draw_scale(&mut drawing, &map, scale);
         } else {
             self.draw_classes(&mut drawing, &map, scale);
+        }
+        if let Some(window) = inset {
+            self.draw_inset(&mut drawing, &map, window, scale);
         }
         drawing.heading(&fonts, &self.title, (&self.subtitle, 15.0), LEFT);
         drawing.png(&fonts, name)
@@ -154,6 +166,14 @@ impl FieldPicture<'_> {
             return Err(Error::new(name, message));
         }
         self.cells.validate(self.size).map_err(|e| Error::new(name, e.to_string()))
+    }
+
+    /// The cells in contact: those that are given or, of a pressure, those where it is positive.
+    fn touching(&self) -> Cow<'_, [bool]> {
+        if self.contact.is_empty() && self.white_zero {
+            return self.values.iter().map(|value| *value > 0.0).collect();
+        }
+        Cow::Borrowed(self.contact)
     }
 
     /// The axes of the map, with their names, and the line around it.
@@ -187,6 +207,49 @@ impl FieldPicture<'_> {
         bar.outline(drawing, 1.2);
         let words = left + w + RIGHT - 0.6 * TICK;
         bar.name_beside(drawing, &with_unit(&self.quantity, &unit), NAME, words);
+    }
+
+    /// The largest contact, enlarged beside the bar of colours, and its place on the map.
+    fn draw_inset(
+        &self,
+        drawing: &mut Drawing,
+        map: &Frame<'_>,
+        (rows, columns): (Range<usize>, Range<usize>),
+        scale: ColourScale,
+    ) {
+        let [left, top, w, h] = map.place;
+        let Cells { columns: all_columns, rows: all_rows } = self.cells;
+        let (across, up) = (w / all_columns as f64, h / all_rows as f64);
+        let cells = Cells { columns: columns.len(), rows: rows.len() };
+        let side = |all: f64, part: usize, whole: usize| all * part as f64 / whole as f64;
+        let size = Size {
+            x: side(self.size.x, cells.columns, all_columns),
+            y: side(self.size.y, cells.rows, all_rows),
+        };
+        let kept = rows.clone().flat_map(|y| columns.clone().map(move |x| y * all_columns + x));
+        let kept: Vec<usize> = kept.collect();
+        let values: Vec<f64> = kept.iter().map(|cell| self.values[*cell]).collect();
+        let contact: Vec<bool> = kept.iter().filter_map(|cell| self.contact.get(*cell).copied()).collect();
+        let enlarged =
+            FieldPicture { cells, size, values: &values, contact: &contact, arrows: None, ..self.clone() };
+        let pixels = raster(cells, size, (INSET / PIXEL) as usize, SHORTEST);
+        let [wide, high] = [pixels.columns, pixels.rows].map(|count| PIXEL * count as f64);
+        let place = [left + w + RIGHT + BESIDE, top, wide, high];
+        drawing.image(place, enlarged.image(pixels, |v| scale.colour(v)).into_flattened(), pixels.columns);
+        let on_map = [
+            left + across * columns.start as f64,
+            top + h - up * rows.end as f64,
+            across * cells.columns as f64,
+            up * cells.rows as f64,
+        ];
+        for place in [place, on_map] {
+            // Seen on dark and on light colours.
+            drawing.path(rectangle(place), Paint::stroked("#ffffff", 3.0 * LINE), None);
+            drawing.path(rectangle(place), Paint::stroked(INK, LINE), None);
+        }
+        let words = format!("The largest contact; frame {} wide", amount(size.x, self.length_unit));
+        let at = LabelPlace::new((place[0], top + high + 1.4 * TICK), Anchor::Start);
+        drawing.label(map.fonts.fitted(&words, TICK, INSET + BESIDE), at, INK);
     }
 
     /// A square of the colour of each class with its words beside the map, the last one on top.

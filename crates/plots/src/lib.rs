@@ -31,6 +31,7 @@ mod drawing;
 mod error;
 mod field;
 mod frame;
+mod inset;
 mod legend;
 mod map;
 mod maps;

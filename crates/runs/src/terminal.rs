@@ -1,10 +1,15 @@
-//! Text for standard output and standard error. Writing it never panics, and its control characters are
-//! escaped.
+//! Text for standard output and standard error. Writing it never panics, its control characters are escaped, and a
+//! terminal gets lines that are folded at its width.
 
+use console::Term;
 use contact_model::Escaping;
 use std::fmt::{self, Arguments, Write as _};
 use std::io::{ErrorKind, Write};
 
+/// Characters of a line of prose on a terminal.
+const WIDTH: usize = 80;
+/// In a narrower terminal folding would leave no room beside the indentation.
+const NARROWEST: usize = 40;
 /// What a shell reports of a program that SIGPIPE has ended.
 const BROKEN_PIPE: i32 = 141;
 
@@ -28,7 +33,7 @@ macro_rules! err {
 /// [`out!`](crate::out) without the end of the line.
 pub fn print(text: Arguments<'_>) {
     let mut out = std::io::stdout().lock();
-    if let Err(error) = write(&mut out, text).and_then(|()| out.flush()) {
+    if let Err(error) = write_to(&mut out, &Term::stdout(), text).and_then(|()| out.flush()) {
         if error.kind() != ErrorKind::BrokenPipe {
             print_error(format_args!("error: cannot write to standard output: {error}\n"));
             std::process::exit(1);
@@ -39,7 +44,17 @@ pub fn print(text: Arguments<'_>) {
 
 /// [`err!`](crate::err) without the end of the line.
 pub fn print_error(text: Arguments<'_>) {
-    let _ = write(&mut std::io::stderr().lock(), text);
+    let _ = write_to(&mut std::io::stderr().lock(), &Term::stderr(), text);
+}
+
+/// Writes text, folded at the width of the terminal where there is one.
+fn write_to(into: &mut dyn Write, terminal: &Term, text: Arguments<'_>) -> std::io::Result<()> {
+    match terminal.size_checked() {
+        Some((_, columns)) if terminal.is_term() && usize::from(columns) >= NARROWEST => {
+            write(into, format_args!("{}", folded_at(&text.to_string(), columns.into())))
+        }
+        _ => write(into, text),
+    }
 }
 
 /// Text with lines of at most 80 characters where its words allow it, for a terminal: what is folded goes on
@@ -51,15 +66,19 @@ pub fn print_error(text: Arguments<'_>) {
 /// assert!(folded.starts_with("  effects  hardness ") && folded.ends_with("hardness\n           hardness\n"));
 /// ```
 pub fn folded(text: &str) -> String {
-    text.split_inclusive('\n').map(folded_line).collect()
+    folded_at(text, WIDTH)
 }
 
-fn folded_line(line: &str) -> String {
-    const WIDTH: usize = 80;
+/// As [`folded`], for another number of characters.
+fn folded_at(text: &str, width: usize) -> String {
+    text.split_inclusive('\n').map(|line| folded_line(line, width)).collect()
+}
+
+fn folded_line(line: &str, width: usize) -> String {
     /// The longest label.
     const LABEL: usize = 32;
     let count = |text: &str| text.chars().count();
-    if count(line.trim_end()) <= WIDTH {
+    if count(line.trim_end()) <= width {
         return line.to_owned();
     }
     let indent = line.len() - line.trim_start().len();
@@ -69,7 +88,7 @@ fn folded_line(line: &str) -> String {
     let (mut text, rest) = (line[..begin].to_owned(), &line[begin..]);
     let mut used = count(&text);
     for (i, word) in rest.split(' ').enumerate() {
-        if i > 0 && used + 1 + count(word.trim_end()) > WIDTH {
+        if i > 0 && used + 1 + count(word.trim_end()) > width {
             text.push('\n');
             text.extend(std::iter::repeat_n(' ', hang));
             used = hang;

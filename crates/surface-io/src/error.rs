@@ -453,7 +453,7 @@ pub enum ContentError {
         reason: &'static str,
     },
     /// A number out of its range.
-    #[error("{what} = {value}: expected {expected}")]
+    #[error("{what} = {}: expected {expected}", number(*.value))]
     OutOfRange {
         /// What.
         what: &'static str,

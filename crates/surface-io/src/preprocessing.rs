@@ -17,7 +17,7 @@ use crate::error::{ContentError, Error, Place, Result};
 use crate::keyword::{KeywordError, keywords};
 use crate::quantity::{Dimension, Quantity, Unit};
 use crate::scan::Scan;
-use contact_model::units::{five, number};
+use contact_model::units::five;
 use contact_model::{Cells, HeightMap, Size};
 use std::str::FromStr;
 use surface_gen::{hann_window, rms_height};
@@ -261,7 +261,7 @@ impl Scan {
         let mut steps = Vec::new();
         let (cells, mut heights) = self.part(heights, preprocessing.crop, cell, &mut steps)?;
         self.convert_to_metres(&mut heights)?;
-        repair(preprocessing, cells, &mut heights, &mut steps)?;
+        repair(preprocessing, cells, &mut heights, (&mut steps, self.unit()))?;
         let undefined = count_undefined(&heights)?;
         let mut reliable_from = None;
         if let Some(radius) = preprocessing.tip_radius {
@@ -290,7 +290,7 @@ impl Scan {
             HeightMap::new(cells, size, heights)
         };
         let map = turned(map.map_err(ContentError::Map)?, preprocessing, &mut steps);
-        let (map, tapered) = windowed(map, preprocessing, &mut steps)?;
+        let (map, tapered) = windowed(map, preprocessing, (&mut steps, self.unit()))?;
         Ok(Preprocessed { map, steps, reliable_from, tapered })
     }
 
@@ -372,7 +372,10 @@ impl Scan {
         let found = tip::reliable_from(cells, cell, heights, value);
         let step = match found {
             Some(distance) if distance > 0.0 => {
-                format!("with a tip of radius {radius}, heights are reliable from {} on", number(distance))
+                format!(
+                    "with a tip of radius {radius}, heights are reliable from {} on",
+                    five(distance, self.unit())
+                )
             }
             Some(_) => format!("with a tip of radius {radius}, heights are reliable at all distances"),
             None => format!("with a tip of radius {radius}, heights are reliable at no distance"),
@@ -402,8 +405,8 @@ impl Scan {
         let after = rms(heights);
         Ok(format!(
             "filtered across the scan lines, cut-off {cut_off}: rms height {} before, {} after",
-            five(before),
-            five(after)
+            five(before, self.unit()),
+            five(after, self.unit())
         ))
     }
 
@@ -411,6 +414,11 @@ impl Scan {
     fn length(&self, what: &'static str, length: Quantity) -> Result<f64, ContentError> {
         let unit = self.metadata().unit.as_ref().map_or(Dimension::NONE, |u| u.value.dimension());
         length.expect(unit).map_err(ContentError::quantity(what))
+    }
+
+    /// The unit of the map: metres, or none where the heights have none.
+    fn unit(&self) -> &'static str {
+        if self.metadata().unit.is_some() { "m" } else { "" }
     }
 
     /// Sides of the map and of a cell in metres, or in the numbers of the file.
@@ -524,10 +532,10 @@ fn repair(
     preprocessing: &Preprocessing,
     cells: Cells,
     heights: &mut [f64],
-    steps: &mut Vec<String>,
+    (steps, unit): (&mut Vec<String>, &str),
 ) -> Result<(), ContentError> {
     if let Some(align) = preprocessing.align_lines {
-        steps.push(align.apply(cells, heights).map_err(|value| ContentError::Overflow { value })?);
+        steps.push(align.apply(cells, heights, unit).map_err(|value| ContentError::Overflow { value })?);
         check_overflow(heights)?;
     }
     let positive = |what, value: f64, expected| {
@@ -536,7 +544,7 @@ fn repair(
     };
     if let Some(times) = preprocessing.scars {
         let times = positive("scars", times, "a number > 0 of robust standard deviations, such as 3")?;
-        steps.push(scan_lines::remove_scars(cells, times, heights));
+        steps.push(scan_lines::remove_scars(cells, times, heights, unit));
     }
     if let Some(times) = preprocessing.outliers {
         let times = positive("outliers", times, "a number > 0 of robust standard deviations, such as 8")?;
@@ -580,7 +588,7 @@ fn turned(mut map: HeightMap, preprocessing: &Preprocessing, steps: &mut Vec<Str
 fn windowed(
     map: HeightMap,
     preprocessing: &Preprocessing,
-    steps: &mut Vec<String>,
+    (steps, unit): (&mut Vec<String>, &str),
 ) -> Result<(HeightMap, Option<[f64; 2]>), ContentError> {
     let tapered = match preprocessing.window {
         None => return Ok((map, None)),
@@ -589,8 +597,8 @@ fn windowed(
     let [before, after] = [&map, &tapered].map(|map| rms_height(map.heights()));
     steps.push(format!(
         "deviations from the mean tapered by Hann's window over its rms: rms height {} before, {} after",
-        five(before),
-        five(after)
+        five(before, unit),
+        five(after, unit)
     ));
     Ok((tapered, Some([before, after])))
 }

@@ -13,7 +13,7 @@ pub use dimension::Dimension;
 pub use error::QuantityError;
 pub use unit::Unit;
 
-use contact_model::units::number;
+use contact_model::units::{ascii, multiple, number};
 use std::fmt;
 use std::str::FromStr;
 
@@ -154,15 +154,21 @@ fn split(text: &str) -> Result<(&str, i64, &str), QuantityError> {
 }
 
 impl fmt::Display for Quantity {
-    /// The value in SI units with every digit that it has, such as `0.001 m`: read again it is the same number.
+    /// The value in the multiple of its unit that suits it, such as `1.5 um`, or in SI units with all digits where
+    /// rounding would change it: read again it is the same number.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let short = number(self.value);
-        if short.parse() == Ok(self.value) {
-            f.write_str(&short)?;
-        } else {
-            write!(f, "{:e}", self.value)?;
+        let in_unit = |number: &str, unit: &str| {
+            if self.dimension == Dimension::NONE { number.to_owned() } else { format!("{number} {unit}") }
+        };
+        let symbol = self.dimension.symbol();
+        let (unit, factor) = multiple(&symbol, self.value);
+        let suited = in_unit(&number(factor * self.value), &ascii(&unit));
+        let rounded = in_unit(&number(self.value), &symbol);
+        let is_exact = |text: &&String| text.parse() == Ok(*self);
+        match [&suited, &rounded].into_iter().find(is_exact) {
+            Some(text) => f.write_str(text),
+            None => f.write_str(&in_unit(&format!("{:e}", self.value), &symbol)),
         }
-        if self.dimension == Dimension::NONE { Ok(()) } else { write!(f, " {}", self.dimension.symbol()) }
     }
 }
 

@@ -96,7 +96,7 @@ cell       {dx} x {dy}"
         }
         match (self.range, self.rms_height) {
             (Some([low, high]), Some(rms)) => {
-                let [low, high, rms] = [low, high, rms].map(five);
+                let [low, high, rms] = [low, high, rms].map(|height| five(height, ""));
                 writeln!(f, "range      {low} to {high}, rms about the mean {rms}")?;
             }
             _ => writeln!(f, "range      none")?,
@@ -298,7 +298,7 @@ fn lone_extremes(heights: &[f64]) -> Vec<String> {
         let alone = to > from && (value - next).abs() > ALONE * (to - from);
         let count = heights.iter().filter(|h| (**h - value).abs() <= 0.0).count();
         alone.then(|| {
-            let (from, to) = (five(from), five(to));
+            let (from, to) = (five(from, ""), five(to, ""));
             // All its digits: as the note has it, `missing` is to find the same number.
             let plain = (1e-3..1e16).contains(&value.abs());
             let mark = if plain { value.to_string() } else { format!("{value:e}") };

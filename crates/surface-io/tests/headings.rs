@@ -126,7 +126,7 @@ fn numbers_of_rows_and_columns_have_no_length() {
     let cell = ReadOptions { cell: "2 um".parse().ok(), ..ReadOptions::default() };
     let scan = read_with(&profile, &cell).unwrap();
     assert!(scan.metadata().profile);
-    assert_eq!(scan.metadata().size.unwrap()[0].to_string(), "2.4e-5 m");
+    assert_eq!(scan.metadata().size.unwrap()[0].to_string(), "24 um");
 }
 
 #[test]
@@ -221,7 +221,7 @@ fn a_channel_without_heights_leaves_the_others() {
     assert_eq!(phase.metadata().no_heights.as_deref(), Some("deg"));
     // A statement that is wrong is an error of the file: its map may be the one that is meant.
     let found = error("# Channel: a\n# Width: -1 um\n1 2\n3 4\n\n# Channel: b\n5 6\n7 8\n");
-    assert!(found.contains("width = -1e-6 m"), "{found}");
+    assert!(found.contains("width = -1 um"), "{found}");
     let found = error("# Value units: nm\n# Z unit: V\n1 2\n3 4\n");
     assert!(found.contains("line 2, z unit: V is a quantity"), "{found}");
 }
@@ -272,7 +272,7 @@ fn coordinates_around_a_matrix_are_asked_about() {
         };
         let scan = read_with(text, &taken).unwrap();
         assert_eq!(heights(&scan), [0.11, 0.12, 0.13, 0.21, 0.22, 0.23, 0.31, 0.32, 0.33]);
-        assert_eq!(scan.metadata().cell.as_ref().unwrap().value[0].to_string(), "5e-7 m");
+        assert_eq!(scan.metadata().cell.as_ref().unwrap().value[0].to_string(), "500 nm");
     }
     // A plane of heights is in equal steps everywhere.
     let plane = lines(5, |i| format!("{} {} {} {} {}", i, i + 2, i + 4, i + 6, i + 8));

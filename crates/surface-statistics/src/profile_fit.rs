@@ -65,7 +65,8 @@ impl ProfileFit {
         let waves: Vec<(f64, f64)> =
             pairs.filter(|(q, c)| inside(**q) && c.is_normal()).map(|(q, c)| (*q, *c)).collect();
         if waves.len() < FEWEST {
-            let expected = format!("at least {FEWEST} from {} to {} long", five(shortest), five(longest));
+            let expected =
+                format!("at least {FEWEST} from {} to {} long", five(shortest, ""), five(longest, ""));
             return Err(Error::domain("waves of a fit", waves.len() as f64, expected));
         }
         let value = hurst_from_line_spectrum(&waves, 0.0, f64::INFINITY)?;

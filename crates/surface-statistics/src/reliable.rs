@@ -56,7 +56,7 @@ impl ReliableWavelengths {
         let cells = CELLS * map.dx().max(map.dy());
         let shortest = instrument.unwrap_or(0.0).max(cells);
         if shortest > longest {
-            let expected = format!("at most {}, the longest that the map has", five(longest));
+            let expected = format!("at most {}, the longest that the map has", five(longest, ""));
             return Err(Error::domain("shortest reliable wavelength", shortest, expected));
         }
         Ok(Self { shortest, longest, limited_by_instrument: shortest > cells })

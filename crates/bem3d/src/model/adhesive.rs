@@ -14,14 +14,15 @@ use crate::geometry::CellSet;
 use crate::kernel::Evidence;
 use crate::kernel::love::influence_of_rectangle;
 use crate::response::adhesive::{Response, ResponseRequest, respond};
+use contact_model::units::{number, rounded};
 use contact_model::{
     Adhesion, AdhesiveState, Branch, Certificate, ContactState, Error, Result, Status, Stop,
 };
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
-/// Name of the quantity of [`Error::Domain`] where cells are too large for the range of an attraction.
-pub const UNRESOLVED_RANGE: &str = "side of a cell";
+/// Name of the quantity of [`Error::OutOfRange`] where cells are too large for the range of an attraction.
+pub const UNRESOLVED_RANGE: &str = "side of a cell (the cohesive zone needs five of them)";
 
 /// Largest product of the slope of the law and the own compliance of a cell. At 1 a single open cell would be
 /// unstable by itself on any surface; at a fifth of it the cohesive zone, about `E* range^2/work` long, is
@@ -291,7 +292,8 @@ impl AdhesiveContact<'_> {
             Some(last) => {
                 let mut best = last.state.clone();
                 best.report.status = Status::PulledOff;
-                best.report.strategy = format!("pull-off before the force {value:e}; the last stable state");
+                best.report.strategy =
+                    format!("pull-off before the force {}; the last stable state", number(rounded(value, 6)));
                 Error::NotConverged { best: Box::new(best) }
             }
             None => Error::OutOfRange { name: "force".into(), value, min: 0.0, max: f64::INFINITY },
@@ -450,13 +452,13 @@ fn attraction(surface: &PreparedSurface, adhesion: Adhesion) -> Result<Option<At
         let power = if matches!(adhesion, Adhesion::ShortRange { .. }) { 2 } else { 1 };
         let bound = |range: f64| value * (range / law.range).powi(power);
         let (least, most) = (bound(*RANGES.start()), bound(*RANGES.end()));
-        let expected = format!("{least:.1e} to {most:.1e}, by the heights of the surface");
-        return Err(Error::domain(name, value, expected));
+        let name = format!("{name} (by the heights of the surface)").into();
+        return Err(Error::OutOfRange { name, value, min: least, max: most });
     }
     if own > RESOLVED && matches!(adhesion, Adhesion::FiniteRange { .. }) {
-        let most = dx.max(dy) * RESOLVED / own;
-        let expected = format!("at most {most:.3e}, a fifth of the cell that the attraction closes alone");
-        return Err(Error::domain(UNRESOLVED_RANGE, dx.max(dy), expected));
+        let value = dx.max(dy);
+        let max = value * RESOLVED / own;
+        return Err(Error::OutOfRange { name: UNRESOLVED_RANGE.into(), value, min: 0.0, max });
     }
     Ok(Some(attraction))
 }

@@ -20,9 +20,9 @@ use std::time::Instant;
 /// `results.csv` and `manifest.json` always, `ensemble.csv` (means over the surfaces) where there are
 /// several; `patches.csv`, fields and curves where the scene asks for them. A theory, which is the same for
 /// every seed, has one surface. Finished states are kept in `OUT/.units` and reused by the next run of the
-/// same scene: with a state that is solved again, the ones after it differ from those of an uninterrupted run
-/// within the tolerance, no more. A path goes on from a checkpoint beside them, to the bits of an uninterrupted
-/// run. Where `stop` says so, the states so far are written and
+/// same scene. What was interrupted, a path or a list of loads, goes on from a checkpoint beside them to the bits
+/// of an uninterrupted run. Only where files of a finished state were lost, and it is solved again, do the
+/// loads after it differ, within the tolerance. Where `stop` says so, the states so far are written and
 /// [`SceneOutcome::stopped`] is true.
 ///
 /// The directory belongs to one run: what an earlier run wrote there and this one does not is removed.
@@ -93,8 +93,7 @@ struct SceneAnswers<'a> {
 /// shards are done, finds their results and does.
 ///
 /// Shards of one scene may run at the same time, here or on other machines that share the directory. A job
-/// that is interrupted goes on from its last state: the states after it are then those of an undivided run
-/// within the tolerance, not to the last digit; those of a path, whose memory is kept, are the same bits.
+/// that is interrupted goes on from its checkpoint to the bits of an undivided run.
 ///
 /// # Errors
 /// As [`crate::scenes::run`]; the first job that fails.

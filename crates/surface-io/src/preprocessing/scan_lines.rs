@@ -36,7 +36,7 @@ impl AlignLines {
 
     /// Shifts the lines; a line for records. An error is the first shift that overflows. Cost O(N) for N
     /// points.
-    pub(super) fn apply(self, cells: Cells, heights: &mut [f64]) -> Result<String, f64> {
+    pub(super) fn apply(self, cells: Cells, heights: &mut [f64], unit: &str) -> Result<String, f64> {
         let mut shifts = match self {
             Self::MedianDifference => shifts_by_differences(cells, heights),
             Self::Median => shifts_by_medians(cells, heights),
@@ -62,7 +62,7 @@ impl AlignLines {
             }
         }
         let rms = mean(&shifts.iter().map(|s| s * s).collect::<Vec<_>>()).sqrt();
-        Ok(format!("scan lines shifted by {} rms: {}; mean height kept", five(rms), self.result()))
+        Ok(format!("scan lines shifted by {} rms: {}; mean height kept", five(rms, unit), self.result()))
     }
 }
 
@@ -127,7 +127,7 @@ const SHORTEST: usize = 16;
 /// [`SHORTEST`] points or more of one kind in a row. Rows beyond the edges and undefined points are no
 /// neighbours. A ridge of the surface that is as narrow and as long and lies along x cannot be distinguished
 /// from a scar. Cost O(N) for N points.
-pub(super) fn remove_scars(cells: Cells, times: f64, heights: &mut [f64]) -> String {
+pub(super) fn remove_scars(cells: Cells, times: f64, heights: &mut [f64], unit: &str) -> String {
     let Cells { columns, rows } = cells;
     let differences = heights.iter().zip(heights.iter().skip(columns)).map(|(a, b)| b - a);
     let deviation = robust_deviation(&mut differences.filter(|d| !d.is_nan()).collect::<Vec<_>>());
@@ -167,9 +167,10 @@ pub(super) fn remove_scars(cells: Cells, times: f64, heights: &mut [f64]) -> Str
         *h = f64::NAN;
     }
     format!(
-        "{removed} points of scars made undefined, in {runs} runs along x: beyond {times} times {}, the \
+        "{removed} points of scars made undefined, in {runs} {} along x: beyond {times} times {}, the \
          robust standard deviation of differences between lines",
-        five(deviation)
+        if runs == 1 { "run" } else { "runs" },
+        five(deviation, unit)
     )
 }
 
@@ -267,7 +268,7 @@ mod tests {
             let mut found: Vec<f64> =
                 clean.iter().enumerate().map(|(i, h)| h + offset((i / cells.columns) as f64)).collect();
             let kept = mean(&found);
-            AlignLines::MedianDifference.apply(cells, &mut found).unwrap();
+            AlignLines::MedianDifference.apply(cells, &mut found, "").unwrap();
             assert_abs_diff_eq!(mean(&found), kept, epsilon = ROUNDING);
             let constant = kept - mean(&clean);
             for (found, clean) in found.iter().zip(&clean) {
@@ -284,7 +285,7 @@ mod tests {
         let cells = Cells { columns: 2, rows: 4 };
         let nan = f64::NAN;
         let mut found = [1.0, nan, 4.0, nan, nan, 9.0, nan, 10.0];
-        AlignLines::MedianDifference.apply(cells, &mut found).unwrap();
+        AlignLines::MedianDifference.apply(cells, &mut found, "").unwrap();
         // Shifts 0, 3, 3, 4, of mean 2.5.
         let expected = [3.5, nan, 3.5, nan, nan, 8.5, nan, 8.5];
         for (found, expected) in found.iter().zip(expected) {
@@ -292,15 +293,15 @@ mod tests {
         }
         for align in AlignLines::ALL {
             let mut one = [3.0, 5.0, nan, 1.0];
-            assert!(align.apply(Cells { columns: 4, rows: 1 }, &mut one).is_ok());
+            assert!(align.apply(Cells { columns: 4, rows: 1 }, &mut one, "").is_ok());
             assert_eq!(one[..2], [3.0, 5.0]);
             let mut column = [3.0, 5.0, nan, 1.0];
-            align.apply(Cells { columns: 1, rows: 4 }, &mut column).unwrap();
+            align.apply(Cells { columns: 1, rows: 4 }, &mut column, "").unwrap();
             assert!(column[2].is_nan() && [0, 1, 3].iter().all(|&i| (column[i] - 3.0).abs() < ROUNDING));
             let mut none = [nan; 4];
-            assert!(align.apply(Cells { columns: 2, rows: 2 }, &mut none).is_ok());
+            assert!(align.apply(Cells { columns: 2, rows: 2 }, &mut none, "").is_ok());
             let mut huge = [1.5e308, 1.5e308, -1.5e308, -1.5e308];
-            let refused = align.apply(Cells { columns: 2, rows: 2 }, &mut huge).is_err();
+            let refused = align.apply(Cells { columns: 2, rows: 2 }, &mut huge, "").is_err();
             assert_eq!(refused, align == AlignLines::MedianDifference);
         }
     }
@@ -310,7 +311,7 @@ mod tests {
         let cells = Cells { columns: 9, rows: 6 };
         let mut found = heights(cells, |x, y| x * x + 10.0 * y);
         let kept = mean(&found);
-        let step = AlignLines::Median.apply(cells, &mut found).unwrap();
+        let step = AlignLines::Median.apply(cells, &mut found, "").unwrap();
         assert_abs_diff_eq!(mean(&found), kept, epsilon = ROUNDING * kept);
         for line in found.chunks_exact(9) {
             assert_abs_diff_eq!(line[4], found[4], epsilon = ROUNDING * kept);
@@ -325,7 +326,7 @@ mod tests {
         fn medians_of_differences_are_zero(values in any::<[i16; 60]>(), columns in 1..7_usize) {
             let cells = Cells { columns, rows: 60 / columns };
             let mut found: Vec<f64> = values.iter().map(|&v| f64::from(v)).take(columns * cells.rows).collect();
-            AlignLines::MedianDifference.apply(cells, &mut found).unwrap();
+            AlignLines::MedianDifference.apply(cells, &mut found, "").unwrap();
             for pair in found.chunks_exact(columns).collect::<Vec<_>>().windows(2) {
                 let mut differences: Vec<f64> = pair[1].iter().zip(pair[0]).map(|(b, a)| b - a).collect();
                 differences.sort_by(f64::total_cmp);
@@ -381,7 +382,7 @@ mod tests {
         let mut found = heights(cells, |x, y| rough(x, y) + scar(x, y) + ridge(x, y));
         found[30 * 64 + 16] = f64::NAN;
         let before = found.clone();
-        let step = remove_scars(cells, 8.0, &mut found);
+        let step = remove_scars(cells, 8.0, &mut found, "");
         for (i, (found, before)) in found.iter().zip(&before).enumerate() {
             let (x, y) = ((i % 64) as f64, (i / 64) as f64);
             let gone = scar(x, y).abs() > 0.0 || before.is_nan();
@@ -392,11 +393,11 @@ mod tests {
         // The same of a tilted map, with the sign of the heights or the order of the rows reversed.
         let mut tilted: Vec<f64> =
             before.iter().enumerate().map(|(i, h)| h + 0.01 * (i / 64) as f64).collect();
-        assert_eq!(remove_scars(cells, 8.0, &mut tilted)[..expected.len()], step[..expected.len()]);
+        assert_eq!(remove_scars(cells, 8.0, &mut tilted, "")[..expected.len()], step[..expected.len()]);
         let mut negative: Vec<f64> = before.iter().map(|h| -h).collect();
-        assert_eq!(remove_scars(cells, 8.0, &mut negative), step);
+        assert_eq!(remove_scars(cells, 8.0, &mut negative, ""), step);
         let mut reversed: Vec<f64> = before.chunks_exact(64).rev().flatten().copied().collect();
-        assert_eq!(remove_scars(cells, 8.0, &mut reversed), step);
+        assert_eq!(remove_scars(cells, 8.0, &mut reversed, ""), step);
     }
 
     #[test]
@@ -404,15 +405,15 @@ mod tests {
         for rows in 1..4 {
             let cells = Cells { columns: 20, rows };
             let mut found = heights(cells, |_, y| if y < 1.0 { 1.0 } else { 0.0 });
-            let step = remove_scars(cells, 2.0, &mut found);
+            let step = remove_scars(cells, 2.0, &mut found, "");
             assert!(step.starts_with("0 points of scars") && found.iter().all(|h| !h.is_nan()), "{step}");
         }
         let cells = Cells { columns: 16, rows: 3 };
         let mut flat = heights(cells, |_, y| if (y - 1.0).abs() < 0.5 { 1.0 } else { 0.0 });
         // A tilt across the lines is no deviation of their differences.
-        assert!(remove_scars(cells, 0.6, &mut flat).starts_with("16 points"));
+        assert!(remove_scars(cells, 0.6, &mut flat, "").starts_with("16 points"));
         assert!(flat[16..32].iter().all(|h| h.is_nan()));
-        assert!(remove_scars(cells, 0.6, &mut [f64::NAN; 48]).starts_with("0 points"));
+        assert!(remove_scars(cells, 0.6, &mut [f64::NAN; 48], "").starts_with("0 points"));
     }
 
     #[test]

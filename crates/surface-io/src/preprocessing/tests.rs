@@ -99,7 +99,7 @@ fn undefined_points_are_refused_unless_filled_or_kept() {
     assert!((map.heights()[7 + 2] + 7.0).abs() <= 0.0);
     let error = preprocessed(&holed, |t| t.fill = Some(Fill::Value("-7 nm".parse().unwrap()))).unwrap_err();
     assert!(
-        error.to_string().contains("fill: -7e-9 m is a length: expected a number without a unit"),
+        error.to_string().contains("fill: -7 nm is a length: expected a number without a unit"),
         "{error}"
     );
     let empty = scan(2, 2, |_, _| f64::NAN);
@@ -474,12 +474,12 @@ fn errors_of_scanning_are_repaired_in_order_and_told() {
     let beginnings = [
         "cropped to 59 x 40 points",
         "scan lines shifted by 1.4",
-        "16 points of scars made undefined, in 1 runs along x: beyond 20 times ",
+        "16 points of scars made undefined, in 1 run along x: beyond 20 times ",
         "0 outliers beyond 1000000000 robust",
-        "with a tip of radius 1e-9 m, heights are reliable",
+        "with a tip of radius 1 nm, heights are reliable",
         "16 undefined points filled",
         "the mean of least squares subtracted",
-        "filtered across the scan lines, cut-off 2e-8 m: rms height 1.",
+        "filtered across the scan lines, cut-off 20 nm: rms height 1.",
         "x reversed",
     ];
     assert_eq!(found.steps.len(), beginnings.len(), "{:?}", found.steps);

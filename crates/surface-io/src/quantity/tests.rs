@@ -105,10 +105,20 @@ fn no_two_symbols_are_written_alike() {
 }
 
 #[test]
-fn quantities_are_shown_in_si() {
-    for (text, shown) in
-        [("1 mm", "0.001 m"), ("70 GPa", "7e10 Pa"), ("3", "3"), ("0 nm", "0 m"), ("2 um", "2e-6 m")]
-    {
+fn quantities_are_shown_with_the_prefix_that_suits_them() {
+    for (text, shown) in [
+        ("0.001 m", "1 mm"),
+        ("70e9 Pa", "70 GPa"),
+        ("0.0002345 m", "234.5 um"),
+        ("-0.25 N", "-250 mN"),
+        ("0.05 J/m^2", "50 mJ/m^2"),
+        ("2 mm^2", "2 mm^2"),
+        ("2e-12 m^2", "2 um^2"),
+        ("3 kg", "3 kg"),
+        ("3", "3"),
+        ("0 nm", "0 m"),
+        ("1e-30 m", "1e-18 pm"),
+    ] {
         assert_eq!(text.parse::<Quantity>().unwrap().to_string(), shown);
     }
     assert_eq!("um".parse::<Unit>().unwrap().to_string(), "um");

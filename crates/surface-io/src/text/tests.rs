@@ -129,7 +129,7 @@ fn what_a_heading_says_counts() {
     assert!(oblong.metadata().to_string().contains("cell       1.5 um x 1 um"));
     assert_eq!(
         read(b"1 2\n# Width: 3 um\n# Height: -2 um\n3 4\n").unwrap_err().to_string(),
-        "a.txt: line 3, height = -2e-6 m: expected a length > 0; skip_lines leaves out a header"
+        "a.txt: line 3, height = -2 um: expected a length > 0; skip_lines leaves out a header"
     );
     assert!(matches!(
         problem(b"# Width: 3 um\n# Height: 2\n# Value units: none\n1 2\n3 4\n"),
@@ -146,7 +146,7 @@ fn contradictions_are_named() {
         Scan::from_bytes("a.txt", text, &declared).map_err(|e| e.to_string())
     };
     let error = with(|d| d.cell = "6 um".parse().ok()).unwrap_err();
-    assert_eq!(error, "a.txt: side of a cell along x: 5e-6 m from the file, but 6e-6 m as given");
+    assert_eq!(error, "a.txt: side of a cell along x: 5 um from the file, but 6 um as given");
     let error = with(|d| d.unit = "um".parse().ok()).unwrap_err();
     assert_eq!(error, "a.txt: unit of the heights: nm from the file, but um as given");
     // The header prints few digits: what is given within them is taken.
@@ -158,7 +158,7 @@ fn contradictions_are_named() {
     });
     assert_eq!(
         error.unwrap_err(),
-        "a.txt: side of a cell along x: cell = 4e-6 m, but width over 2 columns = 5e-6 m"
+        "a.txt: side of a cell along x: cell = 4 um, but width over 2 columns = 5 um"
     );
     assert!(with(|d| d.cell = "5 s".parse().ok()).unwrap_err().contains("5 s is a time: expected a length"));
     assert!(with(|d| d.cell = "-5 um".parse().ok()).unwrap_err().contains("expected a length > 0"));
@@ -277,13 +277,13 @@ fn headers_that_contradict_themselves_or_the_lines_are_errors() {
         ("Lines = 3\n1 2 3\n4 5 6\n", "number of rows: 3 in the header, but 2 in the lines"),
         (
             "Width: 3 um\nHeight: 1 um\nPixel size: 2 um\n1 2 3\n4 5 6\n",
-            "two lines of the header: size: 3e-6 m",
+            "two lines of the header: size: 3 um",
         ),
-        ("x length = 3 um\nWidth = 4 um\n1 2 3\n4 5 6\n", "two lines of the header: width: 3e-6 m"),
+        ("x length = 3 um\nWidth = 4 um\n1 2 3\n4 5 6\n", "two lines of the header: width: 3 um"),
         ("z unit: nm\nvalue units: um\n1 2 3\n4 5 6\n", "two lines of the header: value units: nm"),
         ("z unit: V\n1 2 3\n4 5 6\n", "line 1, z unit: V is a quantity in"),
         ("data unit: rad\n1 2 3\n4 5 6\n", "line 1, data unit: unknown unit"),
-        ("Width: -3 um\n1 2 3\n4 5 6\n", "line 1, width = -3e-6 m"),
+        ("Width: -3 um\n1 2 3\n4 5 6\n", "line 1, width = -3 um"),
         // A slip in the first line of numbers is no header.
         ("l 2 3\n4 5 6\n", "line 1, value 1: \"l\": expected a number"),
         ("1 2 x\n4 5 6\n", "line 1, value 3: \"x\": expected a number"),
@@ -406,10 +406,10 @@ fn a_count_has_a_height() {
         (
             &b"# Value units: nm\n1 2\n"[..],
             "1 nm",
-            "unit of the heights: nm from the file, but height_scale = 1e-9 m",
+            "unit of the heights: nm from the file, but height_scale = 1 nm",
         ),
         (b"1 2\n", "1 V", "height_scale: 1 m^2 kg s^-3 A^-1 is a quantity"),
-        (b"1 2\n", "-1 nm", "height_scale = -0.000000001: expected a length > 0"),
+        (b"1 2\n", "-1 nm", "height_scale = -1e-9: expected a length > 0"),
     ] {
         let declared = ReadOptions { height_scale: scale.parse().ok(), ..ReadOptions::default() };
         let error = Scan::from_bytes("a.txt", text, &declared).unwrap_err().to_string();
@@ -534,10 +534,10 @@ fn sizes_are_one_value_or_two_and_agree() {
     };
     assert_eq!(
         error(&|d| d.size = "4 um x 2 um".parse().ok()),
-        "a.txt: size along y: 1e-6 m from the file, but 2e-6 m as given"
+        "a.txt: size along y: 1 um from the file, but 2 um as given"
     );
     assert_eq!(
         error(&|d| d.cell = "1 um".parse().ok()),
-        "a.txt: side of a cell along y: 5e-7 m from the file, but 1e-6 m as given"
+        "a.txt: side of a cell along y: 500 nm from the file, but 1 um as given"
     );
 }

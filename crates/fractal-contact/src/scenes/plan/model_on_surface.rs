@@ -8,6 +8,10 @@ use contact_model::{Cells, Scene};
 /// `surface-gen`, or what is stored of a state. `bem3d` has a number of its own, which enters the keys too.
 pub const FORMAT: u32 = 11;
 
+/// Time of a picture and of each of the cells that it shows, by scenes of 129 to 2049 cells a side.
+pub(crate) const MILLISECONDS_OF_PICTURE: f64 = 40.0;
+const MILLISECONDS_OF_CELL: f64 = 8e-5;
+
 /// One model and one surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct ModelOnSurface {
@@ -58,11 +62,11 @@ impl ModelOnSurface {
         drawn.map(|(field, _)| of_field(field.name)).sum()
     }
 
-    /// Milliseconds that drawing them takes, by their number and by the cells: a picture takes 40 ms, and 0.08 us
-    /// for each cell that is read and reduced to its pixels.
+    /// Milliseconds that drawing them takes, by their number and by the cells, which are read and reduced to pixels.
     pub(crate) fn cost_of_pictures(&self, scene: &SceneFile) -> u64 {
         let Cells { columns: x, rows: y } = cells(scene, self.numerics(scene));
-        (self.pictures(scene) as f64 * (40.0 + 8e-5 * x as f64 * y as f64)) as u64
+        (self.pictures(scene) as f64 * (MILLISECONDS_OF_PICTURE + MILLISECONDS_OF_CELL * x as f64 * y as f64))
+            as u64
     }
 
     /// Bytes of its states and of the fields that are asked for.

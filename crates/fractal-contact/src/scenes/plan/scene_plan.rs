@@ -1,13 +1,14 @@
 //! What will be computed, what will not and why, and what it will cost.
 
+use crate::scenes::plan::model_on_surface::MILLISECONDS_OF_PICTURE;
 use crate::scenes::plan::{Assumptions, Cost, ModelOnSurface, calibration, probe};
 use crate::scenes::read::{
-    Diagnostic, EffectLine, FieldFormat, HEIGHTS, LoadRequest, Numerics, PrescribedLoad, Result, SceneFile,
-    System, amount, cells, description, effect_lines, short, words,
+    Diagnostic, EffectLine, LoadRequest, Numerics, PrescribedLoad, Result, SceneFile, System, amount, cells,
+    description, effect_lines, short, words,
 };
 use bem3d::UNRESOLVED_RANGE;
-use contact_model::units::ascii;
-use contact_model::{Boundary, Cells, Hardness, NormalLoad, Step};
+use contact_model::units::{ascii, number, rounded};
+use contact_model::{Adhesion, Boundary, Cells, Hardness, NormalLoad, Step, Surface};
 use runs::amounts::{duration, memory, time};
 use std::fmt;
 
@@ -76,8 +77,8 @@ pub struct Plan {
     pub outputs: Vec<(&'static str, bool)>,
     /// The models in their order.
     pub models: Vec<ModelPlan>,
-    /// Pictures of fields and distributions, which are not in the predicted costs.
-    pub pictures: usize,
+    /// Seconds of one thread for pictures of fields and distributions, which are not in the predicted costs.
+    pub seconds_of_pictures: f64,
     /// What the predicted costs rest on; `None` before a prediction.
     pub predicted_from: Option<PredictedFrom>,
 }
@@ -96,7 +97,7 @@ pub fn check(scene: &SceneFile) -> Result<()> {
         let unit = ModelOnSurface { model, surface: 0 };
         if let Err(error) = unit.probe(scene) {
             return Err(match &error {
-                contact_model::Error::Domain { name, .. } if name == UNRESOLVED_RANGE => {
+                contact_model::Error::OutOfRange { name, .. } if name == UNRESOLVED_RANGE => {
                     scene.at_effect("adhesion", unresolved(scene, &error))
                 }
                 _ => scene.at_model(model, refused(scene, &error)),
@@ -109,15 +110,15 @@ pub fn check(scene: &SceneFile) -> Result<()> {
 
 /// Cells too large for the range of an attraction.
 fn unresolved(scene: &SceneFile, error: &contact_model::Error) -> Diagnostic {
-    let unit = if scene.system == System::Si { " (lengths in m)" } else { "" };
-    Diagnostic::new(format!("{error}{unit}")).with_help(
+    Diagnostic::new(words::refusal(scene, error)).with_help(
         "more cells, a smaller part of the surface or a longer `range`; without `range` the adhesion is of short range (JKR), which any cell resolves",
     )
 }
 
 fn refused(scene: &SceneFile, error: &contact_model::Error) -> Diagnostic {
     if !matches!(error, contact_model::Error::Unsupported { .. }) {
-        return Diagnostic::new(error.to_string()).with_help("check the numbers of [scene] and of the model");
+        return Diagnostic::new(words::refusal(scene, error))
+            .with_help("check the numbers of [scene] and of the model");
     }
     let able: Vec<&str> = Numerics::all()
         .map(|m| m.probe(scene.surface.size()))
@@ -170,6 +171,7 @@ impl Plan {
                 .chain(of_slopes)
                 .chain(beyond_hardness(scene))
                 .chain(without_grid_error(scene))
+                .chain(small_tabor_parameter(scene))
                 .collect(),
             contact_modulus: words::contact_modulus(scene),
             boundary: scene.effects.boundary,
@@ -179,7 +181,7 @@ impl Plan {
             effects: effect_lines(&scene.effects, scene.system),
             outputs: scene.requested.lines(),
             models,
-            pictures: pictures(scene),
+            seconds_of_pictures: seconds_of_pictures(scene),
             predicted_from: None,
         })
     }
@@ -253,7 +255,7 @@ impl Plan {
             if self.surfaces > 1 { format!(" on each of {} surfaces", self.surfaces) } else { String::new() };
         let time = self.predicted().map_or_else(String::new, |cost| {
             let at_once = threads.clamp(1, self.models.len() * self.surfaces);
-            match (cost.seconds + PICTURE_SECONDS * self.pictures as f64) / at_once as f64 {
+            match (cost.seconds + self.seconds_of_pictures) / at_once as f64 {
                 seconds if seconds < 1.0 => ", less than 1 s".to_owned(),
                 seconds => format!(", about {}", duration(seconds)),
             }
@@ -289,13 +291,15 @@ impl Plan {
 
 /// Below this many seconds of predicted work a scene is solved without small solves before it.
 const FEW_SECONDS: f64 = 5.0;
-/// Seconds of one thread that a picture takes; measured once.
-const PICTURE_SECONDS: f64 = 0.2;
 /// What stands in place of a grid where a model has none, and where it is not known here.
 const NO_GRID: &str = "none: a formula";
 const OWN_GRID: &str = "the model's own";
 /// Its spectrum takes seconds and three times its memory on the largest map.
 const LARGEST_DESCRIBED: usize = 1 << 24;
+/// A common range of van der Waals forces, in metres, and the smallest of Tabor's parameters of which adhesion of short
+/// range is an approximation of some per cent.
+const RANGE_OF_ATTRACTION: f64 = 0.3e-9;
+const SHORT_RANGE: f64 = 5.0;
 /// Largest rms slope of which linear elasticity of half-spaces is an approximation of some per cent.
 const SMALL_SLOPE: f64 = 0.3;
 /// Below it a unit or a size is more often wrong than a surface so smooth; chosen, not measured.
@@ -352,6 +356,23 @@ fn beyond_hardness(scene: &SceneFile) -> Option<Diagnostic> {
     Some(Diagnostic::note(message).with_help(format!("Use a smaller load or a larger `hardness`. {rest}")))
 }
 
+/// An adhesion of short range of a ball so hard or so small that the attraction would reach across its gaps.
+fn small_tabor_parameter(scene: &SceneFile) -> Option<Diagnostic> {
+    let Adhesion::ShortRange { work } = scene.effects.adhesion else { return None };
+    let Some(Surface::Sphere { radius, .. }) = scene.body() else { return None };
+    let elastic = work / scene.contact_modulus;
+    let parameter = (radius * elastic * elastic / RANGE_OF_ATTRACTION.powi(3)).cbrt();
+    if scene.system != System::Si || !(parameter > 0.0 && parameter < SHORT_RANGE) {
+        return None;
+    }
+    let message = format!(
+        "Tabor's parameter of the ball is {} where the attraction has a range of 0.3 nm: adhesion of short range (JKR) is that of values above {SHORT_RANGE}",
+        number(rounded(parameter, 2))
+    );
+    let help = "Give the range: `adhesion = { work = ..., range = \"0.3 nm\" }`, and use the model `maugis_dugdale` for a smooth ball or `bem3d` for a rough one.";
+    Some(scene.at_effect("adhesion", Diagnostic::note(message).with_help(help)))
+}
+
 /// An error of the grid that is requested where none is estimated.
 fn without_grid_error(scene: &SceneFile) -> Option<Diagnostic> {
     let estimated = |numerics: &Numerics| matches!(numerics, Numerics::Bem3d(_));
@@ -368,18 +389,14 @@ fn without_grid_error(scene: &SceneFile) -> Option<Diagnostic> {
     Some(scene.at_output("grid_error", Diagnostic::note(message).with_help(help)))
 }
 
-/// Pictures of the fields of all states and of distributions.
-fn pictures(scene: &SceneFile) -> usize {
-    let drawn = |state: usize| {
-        let fields = scene.requested.fields();
-        let drawn = fields.filter(|(field, formats)| {
-            let once = field.name != HEIGHTS.name || state == 0;
-            formats.contains(&FieldFormat::Png) && scene.requested.draws(field.name, state) && once
-        });
-        drawn.count()
+/// Seconds of one thread that the pictures of the fields of all states and of distributions take.
+fn seconds_of_pictures(scene: &SceneFile) -> f64 {
+    let of_model = |model: usize| {
+        let cost = ModelOnSurface { model, surface: 0 }.cost_of_pictures(scene);
+        cost as f64 * scene.surfaces_of(&scene.models[model]) as f64
     };
-    let of_surface: usize = (0..scene.request.count()).map(drawn).sum();
-    of_surface * scene.sampling.surfaces * scene.models.len() + scene.requested.distributions.len()
+    let fields: f64 = (0..scene.models.len()).map(of_model).sum();
+    1e-3 * (fields + MILLISECONDS_OF_PICTURE * scene.requested.distributions.len() as f64)
 }
 
 fn prepared(scene: &SceneFile) -> Option<surface_io::Description> {

@@ -14,12 +14,18 @@ pub enum Distributed {
     Gap,
     /// Areas of connected contacts, as the number of contacts per area.
     Patches,
+    /// The pressure of the cells in contact, as a density over the contact area: its integral is 1.
+    ContactPressure,
 }
 
 impl Distributed {
     /// All of them with their names in `[outputs]`.
-    pub const ALL: [(&'static str, Self); 3] =
-        [("pressure", Self::Pressure), ("gap", Self::Gap), ("patches", Self::Patches)];
+    pub const ALL: [(&'static str, Self); 4] = [
+        ("pressure", Self::Pressure),
+        ("gap", Self::Gap),
+        ("patches", Self::Patches),
+        ("contact_pressure", Self::ContactPressure),
+    ];
 
     /// Its name in `[outputs]` and in names of files.
     pub fn name(self) -> &'static str {
@@ -31,6 +37,7 @@ impl Distributed {
             Self::Pressure => ("pressure", "Pa", "1/Pa"),
             Self::Gap => ("gap", "m", "1/m"),
             Self::Patches => ("area of a contact", "m^2", "1/m^2"),
+            Self::ContactPressure => ("pressure in contact", "Pa", "1/Pa"),
         }
     }
 }
@@ -52,6 +59,10 @@ pub(crate) fn of_state(
             Some(of_cells(&gap?.values().iter().zip(pressure?.values()).map(open).collect::<Vec<_>>()))
         }
         Distributed::Patches => Some(of_patches(patches?.areas(), cell)),
+        Distributed::ContactPressure => {
+            let in_contact = pressure?.values().iter().copied().filter(|p| *p > 0.0);
+            Some(of_cells(&in_contact.collect::<Vec<_>>()))
+        }
     };
     asked.iter().filter_map(|&name| Some((name, of(name)?))).collect()
 }
@@ -108,6 +119,12 @@ mod tests {
         assert_eq!(bins[..2], [[0.375, 0.75, 2.0 / 0.375], [0.75, 1.5, 1.0 / 0.75]]);
         approx::assert_relative_eq!(integral(&bins), 5.0, max_relative = 1e-14);
         assert_eq!(of_patches(&[], 1.0), Vec::<Bin>::new());
+        // Over the contact area, which is three eighths of the cells.
+        let pressure = Field::new([4, 2], 1.0, vec![0.0, 0.0, 1.0, 2.0, 50.0, 0.0, 0.0, 0.0]).unwrap();
+        let both = [Distributed::Pressure, Distributed::ContactPressure];
+        let found = of_state(&both, (Some(&pressure), None, None), 0.125);
+        approx::assert_relative_eq!(integral(&found[0].1), 0.375, max_relative = 1e-14);
+        approx::assert_relative_eq!(integral(&found[1].1), 1.0, max_relative = 1e-14);
         for (place, (name, of)) in Distributed::ALL.into_iter().enumerate() {
             assert_eq!((of as usize, of.name()), (place, name));
         }

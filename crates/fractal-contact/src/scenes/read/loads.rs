@@ -59,11 +59,15 @@ impl LoadRequest {
 
     /// The ends of the pieces of a path; none of loads one by one.
     pub(crate) fn ends(&self) -> impl Iterator<Item = &Step> {
-        let pieces = match self {
-            Self::Loads(_) => &[][..],
+        self.pieces().iter().map(|piece| &piece.end)
+    }
+
+    /// The pieces of a path; none of loads one by one.
+    pub(crate) fn pieces(&self) -> &[PathPiece] {
+        match self {
+            Self::Loads(_) => &[],
             Self::Path(pieces) => pieces,
-        };
-        pieces.iter().map(|piece| &piece.end)
+        }
     }
 
     /// Whether tangential loads along x, and along y, are prescribed.

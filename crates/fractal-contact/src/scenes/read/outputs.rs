@@ -92,7 +92,8 @@ impl RequestedOutputs {
     pub(crate) fn request_what_files_need(&mut self) {
         let counts = |of: Distributed| self.distributions.contains(&of);
         let outlined = self.files.iter().any(|(_, formats)| formats.contains(&FieldFormat::Png));
-        self.outputs.pressure |= outlined || counts(Distributed::Pressure) || counts(Distributed::Gap);
+        let of_pressure = [Distributed::Pressure, Distributed::ContactPressure, Distributed::Gap].map(counts);
+        self.outputs.pressure |= outlined || of_pressure.contains(&true);
         self.outputs.gap |= counts(Distributed::Gap);
         self.outputs.contact_patches |= counts(Distributed::Patches);
         for (field, _) in &self.files {
@@ -154,8 +155,8 @@ pub(crate) static OUTPUT_KEYS: KeyTable<RequestedOutputs> = KeyTable {
         },
         Key {
             name: "distributions",
-            takes: "of `\"pressure\"`, `\"gap\"`, `\"patches\"`",
-            about: "distributions of these, as CSV and picture; `patches` are areas of connected contacts",
+            takes: "of `\"pressure\"`, `\"contact_pressure\"`, `\"gap\"`, `\"patches\"`",
+            about: "distributions of these, as CSV and picture, over the nominal area; `contact_pressure` is the pressure over the contact area, `patches` are areas of connected contacts",
             default: "none",
             read: |requested, entry, _| {
                 for item in entry.list() {

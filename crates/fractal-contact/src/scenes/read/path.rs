@@ -77,6 +77,66 @@ pub(crate) fn step_to<'a>(
     Err(Error::domain("state", state as f64, format!("a number below {first}, the states of the path")))
 }
 
+/// The cycles of a path: the first and the last state of each, where the path has a corner and stands at the same
+/// load.
+///
+/// A corner is an end of a piece behind which the load does not go on in the direction in which it came, so that
+/// the way through a load is no end of a cycle. What comes before the first corner, the first loading, belongs to no
+/// cycle. Cycles do not overlap.
+pub(crate) fn cycles(pieces: &[PathPiece]) -> Vec<[usize; 2]> {
+    let corners: Vec<usize> = (0..pieces.len()).filter(|&end| is_corner(pieces, end)).collect();
+    let mut states = 0;
+    let mut last_states = Vec::with_capacity(pieces.len());
+    for piece in pieces {
+        states += piece.states;
+        last_states.push(states - 1);
+    }
+    let mut cycles = Vec::new();
+    let mut first = 0;
+    while let Some(&begin) = corners.get(first) {
+        let load = pieces[begin].end.load;
+        match corners[first + 1..].iter().position(|&end| pieces[end].end.load == load) {
+            Some(after) => {
+                first += 1 + after;
+                cycles.push([last_states[begin], last_states[corners[first]]]);
+            }
+            None => first += 1,
+        }
+    }
+    cycles
+}
+
+/// Whether the end of a piece is a corner. That of the first piece is one where the load turns back alone, since a
+/// tangential load usually begins there; the end of the path always is.
+fn is_corner(pieces: &[PathPiece], end: usize) -> bool {
+    let here = pieces[end].end.load;
+    let Some(next) = pieces.get(end + 1) else { return true };
+    let before = end.checked_sub(1).map_or_else(|| beginning(pieces[0].end), |before| pieces[before].end);
+    let (Some(came), Some(goes)) = (change(before.load, here), change(here, next.end.load)) else {
+        return end > 0;
+    };
+    let normal = came.0 * goes.0;
+    let tangential = came.1[0] * goes.1[0] + came.1[1] * goes.1[1];
+    let turns_back = normal < 0.0 || tangential < 0.0;
+    turns_back || end > 0 && normal <= 0.0 && tangential <= 0.0
+}
+
+/// The change of the normal and of the tangential load, where both prescribe the same quantities.
+fn change(from: Load, to: Load) -> Option<(f64, [f64; 2])> {
+    let normal = match (from.normal, to.normal) {
+        (NormalLoad::Force(a), NormalLoad::Force(b))
+        | (NormalLoad::Approach(a), NormalLoad::Approach(b))
+        | (NormalLoad::MeanGap(a), NormalLoad::MeanGap(b)) => b - a,
+        _ => return None,
+    };
+    let tangential = match (from.tangential, to.tangential) {
+        (Tangential::Force(a), Tangential::Force(b))
+        | (Tangential::Displacement(a), Tangential::Displacement(b)) => [b[0] - a[0], b[1] - a[1]],
+        _ => return None,
+    };
+    Some((normal, tangential))
+}
+
 /// The state without contact and load, with the quantities that the first step prescribes.
 fn beginning(first: Step) -> Step {
     let normal = match first.load.normal {
@@ -406,6 +466,39 @@ mod tests {
 
     fn state() -> ContactState {
         ContactState::new(0.75, SolveReport::exact("test"))
+    }
+
+    #[test]
+    fn cycles_are_between_corners_of_equal_load() {
+        let of = |loads: &str| {
+            let text: String =
+                loads.split(';').map(|load| format!("[[path]]\n{}\nstates = 2\n", load.trim())).collect();
+            cycles(&path(&text).unwrap())
+        };
+        let tangential = |forces: &[&str]| {
+            let pieces: Vec<String> =
+                forces.iter().map(|force| format!("tangential_force = {force}")).collect();
+            of(&format!("force = 3; {}", pieces.join("; ")))
+        };
+        // To and fro, with the way through zero as a piece of its own or not. The first loading is no part of a cycle.
+        assert_eq!(tangential(&["1", "-1", "1", "-1", "1"]), [[3, 7], [7, 11]]);
+        assert_eq!(tangential(&["1", "0", "-1", "0", "1", "0"]), [[3, 11]]);
+        assert_eq!(tangential(&["1", "0", "1", "0"]), [[3, 7]]);
+        assert_eq!(tangential(&["1", "-1", "0.5"]), [[0; 2]; 0]);
+        // By displacements, which begin at the first piece that prescribes them.
+        assert_eq!(
+            of(
+                "force = 3; tangential_displacement = 1; tangential_displacement = -1; tangential_displacement = 1"
+            ),
+            [[3, 7]]
+        );
+        // Loading and unloading, and a load that goes round.
+        assert_eq!(of("force = 3; force = 1; force = 3; force = 1"), [[1, 5]]);
+        assert_eq!(of("force = 3; force = 1; force = 2; force = 1"), [[3, 7]]);
+        assert_eq!(tangential(&["[1, 0]", "[0, 1]", "[-1, 0]", "[0, -1]", "[1, 0]"]), [[3, 11]]);
+        // No corner, or no path.
+        assert_eq!(of("force = 1; force = 2; force = 3"), [[0; 2]; 0]);
+        assert_eq!(cycles(&[]), [[0; 2]; 0]);
     }
 
     #[test]

@@ -4,10 +4,6 @@ use crate::scenes::read::System;
 use runs::cluster::toml;
 use surface_io::{Dimension, Quantity, Sides};
 
-/// Prefixes of units, from the largest, with their powers of ten.
-const PREFIXES: [(&str, i32); 8] =
-    [("T", 12), ("G", 9), ("M", 6), ("k", 3), ("", 0), ("m", -3), ("u", -6), ("n", -9)];
-
 /// A number with all its digits.
 pub(crate) fn number(value: f64) -> String {
     format!("{value:?}")
@@ -47,32 +43,9 @@ pub(crate) fn sides(sides: Sides, system: System) -> String {
     }
 }
 
-/// A value with the prefix of its unit by which it is between 1 and 1000, where it is then read as the same
-/// number.
+/// A quantity with its unit.
 fn in_units(value: f64, dimension: Dimension) -> String {
-    let plain =
-        || Quantity::new(value, dimension).map_or_else(|_| number(value), |quantity| quantity.to_string());
-    let digits = format!("{value:e}");
-    let Some((mantissa, exponent)) = digits.split_once('e') else { return plain() };
-    let Ok(exponent) = exponent.parse::<i32>() else { return plain() };
-    let prefix = PREFIXES.into_iter().find(|(_, power)| *power <= exponent);
-    let Some((prefix, power)) = prefix.filter(|_| value.abs() > 0.0) else { return plain() };
-    let words = format!(
-        "{} {prefix}{}",
-        shifted(mantissa, (exponent - power).unsigned_abs() as usize),
-        dimension.symbol()
-    );
-    if Quantity::parse_as(&words, dimension) == Ok(value) { words } else { plain() }
-}
-
-/// A decimal number with its point moved to the right.
-fn shifted(mantissa: &str, places: usize) -> String {
-    let (whole, decimals) = mantissa.split_once('.').unwrap_or((mantissa, ""));
-    let moved: String = decimals.chars().chain(std::iter::repeat('0')).take(places).collect();
-    match decimals.get(places..).unwrap_or_default() {
-        "" => format!("{whole}{moved}"),
-        rest => format!("{whole}{moved}.{rest}"),
-    }
+    Quantity::new(value, dimension).map_or_else(|_| number(value), |quantity| quantity.to_string())
 }
 
 #[cfg(test)]

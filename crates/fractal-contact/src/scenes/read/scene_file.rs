@@ -13,7 +13,7 @@ use crate::scenes::read::{
 };
 use contact_model::{
     Adhesion, Boundary, Cells, Directions, Effect, Effects, Friction, Hardness, NormalLoad, Output, Pair,
-    Paths, Rheology, Scene, Size,
+    Paths, Rheology, Scene, Size, Surface,
 };
 use std::io::Read as _;
 use std::ops::Range;
@@ -38,6 +38,8 @@ pub struct SceneFile {
     pub models: Vec<Numerics>,
     /// The surface of the contact.
     pub surface: SceneSurface,
+    /// The smooth body whose heights are part of those of a map; a random surface has its own.
+    pub(crate) added_body: Option<Surface>,
     /// Contact modulus E* of the pair.
     pub contact_modulus: f64,
     /// Pressure above which a state has a note; E*/10 where none is given.
@@ -135,6 +137,7 @@ impl SceneFile {
             system: System::None,
             models,
             surface,
+            added_body: None,
             contact_modulus,
             hardness: None,
             accuracy: None,
@@ -148,6 +151,16 @@ impl SceneFile {
             notes: Vec::new(),
             is_unconfirmed: false,
             places: Places::default(),
+        }
+    }
+
+    /// The smooth body, alone or below the roughness.
+    pub(crate) fn body(&self) -> Option<&Surface> {
+        match &self.surface {
+            SceneSurface::Drawn { body, .. } => body.as_ref(),
+            SceneSurface::Plain(Surface::Heights(_)) => self.added_body.as_ref(),
+            SceneSurface::Plain(Surface::SelfAffine(_) | Surface::Profile(_) | Surface::Line { .. }) => None,
+            SceneSurface::Plain(body) => Some(body),
         }
     }
 
@@ -369,7 +382,7 @@ impl SceneFile {
                 ));
         }
         let directory = path.parent().unwrap_or(Path::new(""));
-        let FoundSurface { surface, metadata, reliable_from, notes } =
+        let FoundSurface { surface, added_body, metadata, reliable_from, notes } =
             find_surface(&question, directory, &places)?;
         check_cells(&question, &surface, &places)?;
         if accuracy.is_some() {
@@ -382,6 +395,7 @@ impl SceneFile {
         requested.request_what_files_need();
         let mut scene = Self {
             system,
+            added_body,
             hardness,
             accuracy,
             pair,

@@ -199,6 +199,8 @@ pub(crate) fn add(map: &HeightMap, body: &Surface) -> Result<HeightMap> {
 /// The surface of a question, read and drawn.
 pub(crate) struct FoundSurface {
     pub surface: SceneSurface,
+    /// The smooth body whose heights are part of those of a map.
+    pub added_body: Option<Surface>,
     /// Metadata of its file.
     pub metadata: Option<String>,
     /// The distance from which on the tips of its instruments resolve heights.
@@ -209,7 +211,7 @@ pub(crate) struct FoundSurface {
 
 impl From<SceneSurface> for FoundSurface {
     fn from(surface: SceneSurface) -> Self {
-        Self { surface, metadata: None, reliable_from: None, notes: Vec::new() }
+        Self { surface, added_body: None, metadata: None, reliable_from: None, notes: Vec::new() }
     }
 }
 
@@ -268,7 +270,13 @@ fn find_map(
     if profile {
         refuse_for_profile(question, places)?;
         let plain = SceneSurface::Plain(Surface::Profile(Arc::new(map)));
-        return Ok(FoundSurface { surface: plain, metadata: Some(metadata), reliable_from, notes });
+        return Ok(FoundSurface {
+            surface: plain,
+            added_body: None,
+            metadata: Some(metadata),
+            reliable_from,
+            notes,
+        });
     }
     if let Some(second) = second {
         let other = scan::read_second(second, &map, system, directory, places)?;
@@ -290,14 +298,20 @@ fn find_map(
         let heights = keep_heights.then(|| HeightDistribution::Of(Arc::clone(&of)));
         let rough = RandomSurface::new(RandomSpectrum::Twin { of, like }, heights);
         let surface = SceneSurface::Drawn { rough, body };
-        return Ok(FoundSurface { surface, metadata: Some(metadata), reliable_from, notes });
+        return Ok(FoundSurface {
+            surface,
+            added_body: None,
+            metadata: Some(metadata),
+            reliable_from,
+            notes,
+        });
     }
-    let map = match body {
+    let map = match &body {
         None => map,
-        Some(body) => add(&map, &body).map_err(|e| places.at_key("scene", e.to_string()))?,
+        Some(body) => add(&map, body).map_err(|e| places.at_key("scene", e.to_string()))?,
     };
     let plain = SceneSurface::Plain(Surface::Heights(Arc::new(map)));
-    Ok(FoundSurface { surface: plain, metadata: Some(metadata), reliable_from, notes })
+    Ok(FoundSurface { surface: plain, added_body: body, metadata: Some(metadata), reliable_from, notes })
 }
 
 /// Refuses keys that cannot be combined with a profile.

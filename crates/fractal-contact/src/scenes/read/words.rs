@@ -3,7 +3,7 @@
 use crate::models::ModelRecord;
 use crate::scenes::read::{LoadRequest, PrescribedLoad, SceneFile, System, amount, short};
 use contact_model::units::{ascii, to_digits};
-use contact_model::{Body, Error, Hardness, Rheology};
+use contact_model::{Body, Error, Hardness, NormalLoad, Rheology};
 use std::path::Path;
 
 /// The scene's name in a title: that of its file or, for `NAME/scene.toml`, that of its folder.
@@ -61,23 +61,42 @@ pub(crate) fn contact_modulus(scene: &SceneFile) -> String {
     }
 }
 
+/// That the bodies come apart on the way to a force.
+pub(crate) fn pull_off(scene: &SceneFile, force: f64) -> String {
+    let force = ascii(&amount(force, scene.system.shown("N")));
+    format!("pull-off before the force {force}; the last stable state")
+}
+
 /// Why a model refuses a load, with the units of the scene.
 pub(crate) fn refusal(scene: &SceneFile, error: &Error) -> String {
     /// Beginnings of the names of quantities, with their SI units.
-    const UNITS: [(&str, &str); 6] = [
+    const UNITS: [(&str, &str); 9] = [
         ("force", "N"),
         ("tangential force", "N"),
         ("approach", "m"),
         ("mean gap", "m"),
         ("contact radius", "m"),
         ("mean pressure", "Pa"),
+        ("hardness", "Pa"),
+        ("side of a cell", "m"),
+        ("work of adhesion", "J/m^2"),
     ];
-    let Error::OutOfRange { name, value, min, max } = error else { return error.to_string() };
+    let (Error::OutOfRange { name, .. } | Error::Domain { name, .. }) = error else {
+        return error.to_string();
+    };
     let of = |(quantity, _): &&(&str, &str)| {
         name.strip_prefix(quantity).is_some_and(|rest| rest.is_empty() || rest.starts_with(" ("))
     };
     let Some((_, unit)) = UNITS.iter().find(of) else { return error.to_string() };
     let unit = scene.system.shown(unit);
+    let (value, min, max) = match error {
+        Error::OutOfRange { value, min, max, .. } => (value, min, max),
+        // A number in the text would lack the unit.
+        Error::Domain { value, expected, .. } if !expected.contains(|c: char| c.is_ascii_digit()) => {
+            return format!("{name} = {}: expected {expected}", ascii(&amount(*value, unit)));
+        }
+        _ => return error.to_string(),
+    };
     // As many digits as are needed to distinguish the value from the limits.
     let told = |digits| [value, min, max].map(|v| ascii(&to_digits(*v, unit, digits)));
     let apart = |digits: &usize| {
@@ -97,6 +116,24 @@ pub(crate) fn refusal(scene: &SceneFile, error: &Error) -> String {
         _ => String::new(),
     };
     format!("{name} = {value} is {range}, the range in which the model holds{hardness}")
+}
+
+/// Why a model refuses this load. A theory counts it over a scale of the surface; the load itself and the largest
+/// or smallest one of the theory stand beside that number.
+pub(crate) fn refusal_of_load(scene: &SceneFile, load: Option<NormalLoad>, error: &Error) -> String {
+    let told = refusal(scene, error);
+    let Error::OutOfRange { name, value, min, max } = error else { return told };
+    let size = scene.surface.size();
+    let (load, unit) = match load {
+        Some(NormalLoad::Force(force)) if name.starts_with("mean pressure over") => {
+            (force / (size.x * size.y), "Pa")
+        }
+        Some(NormalLoad::MeanGap(gap)) if name.starts_with("mean gap over") => (gap, "m"),
+        _ => return told,
+    };
+    let (bound, end) = if value > max { ("at most", max) } else { ("at least", min) };
+    let [load, end] = [load, load / value * end].map(|v| ascii(&amount(v, scene.system.shown(unit))));
+    format!("{told}: here {load}, and {bound} {end} in this model")
 }
 
 /// A unit with its powers as superscripts, such as `m^2` and `W/K`.

@@ -10,7 +10,8 @@ use crate::scenes::run::{
     Warning, field_pictures,
 };
 use contact_model::{
-    Cells, ContactState, Field, FieldQuantity, LargestPull, Load, Normalisation, PreparedContact, Stop,
+    Cells, ContactState, Field, FieldQuantity, LargestPull, Load, NormalLoad, Normalisation, PreparedContact,
+    Status, Stop,
 };
 use std::borrow::Cow;
 use std::path::Path;
@@ -210,7 +211,13 @@ impl ContactInHand<'_, '_> {
                     self.keep(true);
                     return Ok(());
                 }
-                Err(other) => StateRecord::new(index, Answer::Refused(words::refusal(self.scene, &other))),
+                Err(other) => {
+                    let normal = loads.as_ref().ok().map(|loads| loads[index].normal);
+                    StateRecord::new(
+                        index,
+                        Answer::Refused(words::refusal_of_load(self.scene, normal, &other)),
+                    )
+                }
             };
             self.result.states.insert(place, record);
             self.keep(false);
@@ -247,13 +254,19 @@ impl ContactInHand<'_, '_> {
         }
         for index in self.result.states.len()..self.scene.request.count() {
             let step = step_of(index, &self.result.states);
+            let normal = step.as_ref().ok().map(|step| step.load.normal);
             let advanced = step.and_then(|step| match self.contact.advance_until(step, self.stop) {
                 Err(contact_model::Error::Stopped { .. }) => Ok(None),
                 Ok(state) => Ok(Some((largest.enter(step.load.normal, state), true))),
                 // The best state of a solve that missed its tolerance or, beyond the pull-off force, the last
                 // stable state.
                 Err(error) => {
-                    let best = error.into_best()?.with_fields(None).with_patches(None);
+                    let mut best = error.into_best()?.with_fields(None).with_patches(None);
+                    if let (Status::PulledOff, NormalLoad::Force(force)) =
+                        (best.report.status, step.load.normal)
+                    {
+                        best.report.strategy = words::pull_off(self.scene, force);
+                    }
                     Ok(Some((largest.enter(step.load.normal, best), false)))
                 }
             });
@@ -268,7 +281,10 @@ impl ContactInHand<'_, '_> {
                     self.unit.recorded(self.scene, solved, self.out, index)?
                 }
                 Ok(Some((best, false))) => missed(index, best, normalisation),
-                Err(error) => StateRecord::new(index, Answer::Refused(words::refusal(self.scene, &error))),
+                Err(error) => StateRecord::new(
+                    index,
+                    Answer::Refused(words::refusal_of_load(self.scene, normal, &error)),
+                ),
             };
             let failed = record.converged().is_none();
             self.result.states.push(record);

@@ -23,6 +23,7 @@ pub(crate) fn table(states: &StateTable<'_>, of: Distributed) -> Result<Table> {
     let [unit, per_unit] = [unit, per_unit].map(|unit| scene.system.unit(unit));
     let density = match of {
         Distributed::Patches => "contacts per area: its integral is their number",
+        Distributed::ContactPressure => "share of the contact area per unit: its integral is 1",
         _ => "share of the nominal area per unit: its integral is the share of the cells above zero",
     };
     let columns = [
@@ -76,8 +77,11 @@ pub(crate) fn chart(states: &StateTable<'_>, of: Distributed) -> Option<Chart> {
         System::Si => format!(" ({})", words::unit_label(unit)),
         System::None => String::new(),
     };
-    let density =
-        if of == Distributed::Patches { "contacts per area" } else { "density over the nominal area" };
+    let density = match of {
+        Distributed::Patches => "contacts per area",
+        Distributed::ContactPressure => "density over the contact area",
+        Distributed::Pressure | Distributed::Gap => "density over the nominal area",
+    };
     let mut title = format!("{words}: distribution");
     title[..1].make_ascii_uppercase();
     let number = if scene.sampling.surfaces > 1 { ", surface 0" } else { "" };

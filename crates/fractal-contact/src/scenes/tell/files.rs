@@ -1,7 +1,7 @@
 //! The files of a run as bytes. Whoever asks for them decides where they go.
 
 use crate::scenes::read::{Result, words};
-use crate::scenes::tell::{MapStatisticsTables, StateTable, distributions, pictures};
+use crate::scenes::tell::{MapStatisticsTables, StateTable, cycles, distributions, pictures};
 use contact_model::Table;
 use runs::{Header, csv_bytes};
 
@@ -24,6 +24,9 @@ pub(crate) fn make(
     receive("results.csv", csv_bytes(results, header))?;
     if requested.outputs.contact_patches {
         receive("patches.csv", csv_bytes(&states.patches()?, header))?;
+    }
+    if cycles::are_counted(states.scene) {
+        receive(cycles::FILE, csv_bytes(&cycles::table(states)?, header))?;
     }
     if let Some(means) = states.ensemble()? {
         receive("ensemble.csv", csv_bytes(&means, header))?;

@@ -1,6 +1,7 @@
 //! Presentation of the states: tables, pictures, the report and the manifest.
 
 pub(crate) mod columns;
+pub(crate) mod cycles;
 pub(crate) mod distributions;
 pub(crate) mod ensemble;
 pub(crate) mod files;

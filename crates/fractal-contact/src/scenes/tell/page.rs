@@ -114,7 +114,7 @@ pub(crate) enum Reading {
 /// # Errors
 /// A picture that cannot be encoded.
 pub(crate) fn field(picture: &FieldPicture<'_>, view: &FieldView, reading: Reading) -> Result<Markup> {
-    let (least, most) = view.ends.unwrap_or_default();
+    let (least, most) = ColourScale::new(view.ends.unwrap_or_default(), false, false).ends();
     let own = FieldPicture { range: Some(picture.range.unwrap_or((least, most))), ..picture.clone() };
     let scale = own.scale();
     let (low, high) = scale.ends();

@@ -1,6 +1,6 @@
 //! The smooth ball that a rough one is compared with: Hertz's formula under the same loads.
 
-use crate::scenes::read::{LoadRequest, PrescribedLoad, SceneFile, SceneSurface};
+use crate::scenes::read::{LoadRequest, PrescribedLoad, SceneFile};
 use contact_model::{ContactModel as _, ContactState, Effects, Normalisation, Outputs, Scene, Surface};
 
 /// Label of its curve.
@@ -9,7 +9,7 @@ pub(crate) const LABEL: &str = "smooth ball, Hertz";
 /// States of the ball without its roughness, with the number of the load. There are none for other bodies,
 /// for paths, for loads that are normalised by the rms height, and with an effect that the formula lacks.
 pub(crate) fn states(scene: &SceneFile) -> Vec<(usize, ContactState, Normalisation)> {
-    let SceneSurface::Drawn { body: Some(body @ Surface::Sphere { .. }), .. } = &scene.surface else {
+    let Some(body @ Surface::Sphere { .. }) = scene.body().filter(|_| scene.surface.is_rough()) else {
         return Vec::new();
     };
     let LoadRequest::Loads(requests) = &scene.request else { return Vec::new() };
@@ -47,6 +47,17 @@ mod tests {
             let stiffness = (6.0 * 60e9_f64.powi(2) * 10e-3 * state.force).cbrt();
             assert!((state.stiffness.unwrap() / stiffness - 1.0).abs() < 1e-9, "{state:?}");
         }
+        // A map on a ball, whose heights are one map.
+        let path = std::path::Path::new(concat!(
+            env!("CARGO_MANIFEST_DIR"),
+            "/../../data/scenes/diamond-on-ball.toml"
+        ));
+        let on_ball = SceneFile::read(path).unwrap();
+        let found = states(&on_ball);
+        let (_, largest, _) = found.last().unwrap();
+        let modulus = on_ball.contact_modulus;
+        let stiffness = (6.0 * modulus * modulus * 200e-9 * largest.force).cbrt();
+        assert!((largest.stiffness.unwrap() / stiffness - 1.0).abs() < 1e-9, "{largest:?}");
         let plastic = contact_model::Hardness::Limit { pressure: 1e9 };
         scene.effects.hardness = plastic;
         assert!(states(&scene).is_empty());

@@ -6,7 +6,7 @@ use crate::scenes::run::StateRecord;
 use crate::scenes::tell::stated_error::{
     OF_GRID, OF_GRID_UNCONFIRMED, OF_SOLVER, PLUS_MINUS, relative_error, with_error,
 };
-use crate::scenes::tell::{Mean, StateTable, columns, ensemble};
+use crate::scenes::tell::{Mean, StateTable, columns, cycles, ensemble};
 use contact_model::Value;
 use contact_model::quantities::{QuantityUnit, Role, StateQuantity};
 use contact_model::units::rounded;
@@ -399,7 +399,7 @@ pub(crate) fn of_models(table: &StateTable<'_>) -> Vec<ModelStates> {
     scene.models.iter().map(crate::scenes::Numerics::name).map(of_model).collect()
 }
 
-/// What a model's paths are as a whole: the quantities of paths at their ends, in words.
+/// What a model's paths are as a whole: the quantities of paths at their ends and the energy of each cycle, in words.
 fn of_paths(table: &StateTable<'_>, model: &str, mean: Option<&Mean>) -> Vec<String> {
     let StateTable { scene, units, .. } = table;
     let quantities: Vec<&'static StateQuantity> =
@@ -427,7 +427,8 @@ fn of_paths(table: &StateTable<'_>, model: &str, mean: Option<&Mean>) -> Vec<Str
         ends.map(|end| line(&|shown| shown.of_state(end))).collect()
     };
     lines.retain(|line| !line.is_empty());
-    lines.into_iter().map(|line| format!("path as a whole: {line}")).collect()
+    let of_whole = lines.into_iter().map(|line| format!("path as a whole: {line}"));
+    of_whole.chain(cycles::lines(table, model)).collect()
 }
 
 #[cfg(test)]

@@ -251,7 +251,7 @@ fn outputs() -> BoxedStrategy<RequestedOutputs> {
         (positive(), positive()).prop_map(|(first, second)| Conductance::Thermal { first, second })
     ];
     let numbers = vec(any::<bool>(), Output::ALL.len());
-    let distributions = subsequence(Distributed::ALL.map(|(_, of)| of).to_vec(), 0..=3);
+    let distributions = subsequence(Distributed::ALL.map(|(_, of)| of).to_vec(), 0..=4);
     let flags = (any::<bool>(), any::<bool>(), any::<bool>(), of(vec(0..5_usize, 0..3)));
     (numbers, formats(), formats(), conductance, distributions, flags)
         .prop_map(
