@@ -2,6 +2,7 @@
 //! map is.
 
 use crate::arguments::{LOADS, PRESS_DETREND, PressArguments, flag_of};
+use contact_model::units::{amount, ascii};
 use fractal_contact::scenes::{
     AskedFile, AskedSurface, Diagnostic, Distributed, Error, FieldFormat, Material, Numerics, Question,
     Result, SceneFile,
@@ -10,7 +11,7 @@ use fractal_contact::{Boundary, Coupling, Friction, Output};
 use runs::cluster::{quoted, toml};
 use std::fmt::Write as _;
 use std::path::{Component, Path, PathBuf};
-use surface_io::{ContentError, Metadata, SurfaceFile};
+use surface_io::{ContentError, Dimension, Metadata, Quantity, SurfaceFile};
 
 /// States of the path along which a tangential force grows.
 const TANGENTIAL_STATES: usize = 8;
@@ -97,14 +98,26 @@ fn lacking(asked: &PressArguments, map: &Metadata) -> Vec<Lacking> {
         ));
     }
     if asked.has_friction() && asked.tangential_force.is_none() {
-        lacking.push(of_load(
-            "--tangential-force",
-            "10 mN",
-            "tangential force along x, which friction has to hold",
-            None,
-        ));
+        let why = "tangential force along x, which friction has to hold";
+        match held_by_friction(asked) {
+            Some(held) => {
+                let [half, held] = [0.5 * held, held].map(|force| ascii(&amount(force, "N")));
+                lacking.push(of_load("--tangential-force", &half, &format!("{why}: below {held}"), None));
+            }
+            None => lacking.push(of_load("--tangential-force", "10 mN", why, None)),
+        }
     }
     lacking
+}
+
+/// The tangential force at which the whole contact slips, of Coulomb's law under one normal force.
+fn held_by_friction(asked: &PressArguments) -> Option<f64> {
+    let ("force", force) = asked.load()? else { return None };
+    if asked.shear_strength.is_some() || asked.traction_limit.is_some() {
+        return None;
+    }
+    let held = asked.friction? * Quantity::parse_as(force, Dimension::FORCE).ok()?;
+    (held > 0.0 && held.is_finite()).then_some(held)
 }
 
 /// Flags that say what the file of the map does not hold: the unit, the size, and what undefined points are.
