@@ -300,8 +300,14 @@ pub(crate) fn nearest<'k>(name: &str, known: impl Iterator<Item = &'k str>) -> O
     (near.0 <= 1 + name.len() / 4).then_some(near.1)
 }
 
-/// Levenshtein's distance; only the first 64 characters of a long name count.
+/// Levenshtein's distance of a name from a known one, of which a beginning is as near as can be; only the first 64
+/// characters of a long name count.
 fn distance(a: &str, b: &str) -> usize {
+    /// Shorter beginnings may be those of anything.
+    const BEGINNING: usize = 3;
+    if a.len() >= BEGINNING && b.starts_with(a) {
+        return usize::from(a != b);
+    }
     strsim::levenshtein(&a.chars().take(64).collect::<String>(), b)
 }
 

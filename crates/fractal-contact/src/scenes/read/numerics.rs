@@ -3,7 +3,7 @@
 use crate::models::{MODELS, ModelRecord};
 use crate::scenes::read::key::{Context, Key, KeyTable, SceneKey};
 use crate::scenes::read::{
-    Diagnostic, Entries, Entry, ReadResult, RegisteredModel, System, printed, suggestion,
+    Diagnostic, Entries, Entry, ReadResult, RegisteredModel, System, nearest, printed, suggestion,
 };
 use analytic::greenwood_williamson::SummitHeights;
 use analytic::{GreenwoodWilliamson, Persson};
@@ -192,12 +192,12 @@ pub(crate) fn read_models(entry: &Entry<'_>, own: &[RegisteredModel]) -> ReadRes
     let known: Vec<Numerics> = Numerics::all().chain(own).collect();
     let names: Vec<&str> = known.iter().map(Numerics::name).collect();
     let mut models: Vec<Numerics> = Vec::new();
+    let mut unknown: Vec<(Entry<'_>, &str)> = Vec::new();
     for item in entry.list() {
         let name = item.text()?;
         let Some(default) = known.iter().find(|m| m.name() == name) else {
-            return Err(item
-                .diagnostic(format!("there is no model \"{name}\""))
-                .with_help(suggestion(name, &names)));
+            unknown.push((item, name));
+            continue;
         };
         if models.iter().any(|m| m.name() == name) {
             return Err(item
@@ -205,6 +205,22 @@ pub(crate) fn read_models(entry: &Entry<'_>, own: &[RegisteredModel]) -> ReadRes
                 .with_help("name it once"));
         }
         models.push(default.clone());
+    }
+    match &unknown[..] {
+        [] => {}
+        [(item, name)] => {
+            let message = format!("there is no model \"{name}\"");
+            return Err(item.diagnostic(message).with_help(suggestion(name, &names)));
+        }
+        [(item, _), ..] => {
+            let quoted: Vec<String> = unknown.iter().map(|(_, name)| format!("\"{name}\"")).collect();
+            let near = unknown.iter().filter_map(|(_, name)| nearest(name, names.iter().copied()));
+            let near: Vec<String> = near.map(|name| format!("\"{name}\"")).collect();
+            let meant =
+                if near.is_empty() { String::new() } else { format!("did you mean {}? ", near.join(", ")) };
+            let message = format!("there are no models {}", quoted.join(", "));
+            return Err(item.diagnostic(message).with_help(format!("{meant}Known: {}", names.join(", "))));
+        }
     }
     if models.is_empty() {
         return Err(entry.diagnostic("`models` is empty").with_help(format!("known: {}", names.join(", "))));
@@ -224,6 +240,17 @@ pub(crate) fn read_options(models: &mut [Numerics], options: &Entries<'_>) -> Re
         if !used.contains(&key)
             && let Some(stray) = options.entry(key)
         {
+            let known = || Numerics::all().map(|model| model.name()).chain(used.iter().copied());
+            if !known().any(|name| name == key) {
+                let near = nearest(key, used.iter().copied()).or_else(|| nearest(key, known()));
+                let help = near.map_or_else(
+                    || format!("named in `models`: {}", used.join(", ")),
+                    |near| format!("did you mean [models.{near}]?"),
+                );
+                return Err(stray
+                    .diagnostic_at_key(format!("[models.{key}] is of no model"))
+                    .with_help(help));
+            }
             return Err(stray
                 .diagnostic_at_key(format!(
                     "[models.{key}] says how to compute with a model that `models` does not name"
