@@ -371,6 +371,9 @@ pub struct ContactResolution {
     pub largest_share: f64,
     /// Cells in contact at an edge of a free rectangle; 0 with periodic boundaries.
     pub edge_cells: usize,
+    /// Cells in contact that share an edge with an undefined point of the surface. They carry what the undefined point
+    /// would carry, so that their pressure is too large where the surface goes on.
+    pub rim_cells: usize,
     /// Contact area with a correction for its boundary, if the area was requested.
     ///
     /// The area of the cells in contact exceeds that of a contact of smooth boundary by about `(pi - 1 + ln
@@ -388,7 +391,19 @@ impl ContactResolution {
     /// The resolution of a contact whose cells carry at most this pressure and this share of the force, of
     /// which `edge_cells` are at an edge of the rectangle.
     pub fn new(largest_pressure: f64, largest_share: f64, edge_cells: usize) -> Self {
-        Self { largest_pressure: Some(largest_pressure), largest_share, edge_cells, corrected_area: None }
+        Self {
+            largest_pressure: Some(largest_pressure),
+            largest_share,
+            edge_cells,
+            rim_cells: 0,
+            corrected_area: None,
+        }
+    }
+
+    /// With the number of cells in contact that share an edge with an undefined point.
+    #[must_use]
+    pub fn with_rim(self, rim_cells: usize) -> Self {
+        Self { rim_cells, ..self }
     }
 
     /// With the corrected area, >= 0, of a contact of `cells` cells whose boundary consists of `edges` edges

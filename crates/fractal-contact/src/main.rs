@@ -155,8 +155,10 @@ fn press_map(
     press::check_place(&path)?;
     let scene = press::scene(asked, &path)?;
     let text = scene.text.clone();
+    let is_written = std::cell::Cell::new(false);
     let begin = || {
         runs::files::write_whole(&path, text.as_bytes())?;
+        is_written.set(true);
         if let Some(note) = asked.note() {
             runs::err!("{note}");
         }
@@ -171,7 +173,10 @@ fn press_map(
         // A folder that was made for this scene and is still empty.
         std::fs::remove_dir(&options.out).ok();
     }
-    done
+    done.map_err(|error| match error {
+        Error::Scene(mistake) if !is_written.get() => Error::from(mistake.told_of(press::WORDS)),
+        other => other,
+    })
 }
 
 /// Writes the scene that flags describe.
@@ -347,8 +352,9 @@ fn how_it_went(outcome: &SceneOutcome) -> ExitCode {
     }
     if not_attempted > 0 {
         say(format!(
-            "{not_attempted} of {requested} states {} not attempted, because they come after {}.",
+            "{not_attempted} of {requested} states {} not attempted, because {} after {}.",
             were(not_attempted),
+            if not_attempted == 1 { "it comes" } else { "they come" },
             if failed == 0 { "the pull-off" } else { "a step that failed" }
         ));
     }

@@ -5,7 +5,7 @@ use crate::arguments::{LOADS, PRESS_DETREND, PressArguments, flag_of};
 use contact_model::units::{amount, ascii};
 use fractal_contact::scenes::{
     AskedFile, AskedSurface, Diagnostic, Distributed, Error, FieldFormat, Material, Numerics, Question,
-    Result, SceneFile,
+    Result, SceneFile, meant_by_output,
 };
 use fractal_contact::{Boundary, Coupling, Friction, Output};
 use runs::cluster::{quoted, toml};
@@ -15,6 +15,9 @@ use surface_io::{ContentError, Dimension, Metadata, Quantity, SurfaceFile};
 
 /// States of the path along which a tangential force grows.
 const TANGENTIAL_STATES: usize = 8;
+
+/// What the scene of flags is called in messages, because there is no such file yet.
+pub const WORDS: &str = "the scene of these flags";
 
 /// A flag that a command lacks.
 struct Lacking {
@@ -59,7 +62,7 @@ pub fn scene(asked: &PressArguments, at: &Path) -> Result<SceneFile> {
     if let Some(folder) = folder {
         runs::files::create_directory(folder)?;
     }
-    let scene = scene_of(asked, at, known.metadata().profile, "the scene of these flags");
+    let scene = scene_of(asked, at, known.metadata().profile, WORDS);
     if let (Err(_), Some(folder)) = (&scene, folder) {
         std::fs::remove_dir(folder).ok();
     }
@@ -206,7 +209,8 @@ fn mistake(asked: &PressArguments, lacking: &[Lacking]) -> Option<String> {
 fn missing_flags(asked: &PressArguments, lacking: &[Lacking]) -> String {
     let mistake = mistake(asked, lacking);
     let mut text = mistake.as_ref().map_or_else(String::new, |mistake| format!("{mistake}\n"));
-    let _ = write!(text, "some flags are missing for the contact of {}:", asked.map.display());
+    let are_missing = if lacking.len() == 1 { "a flag is missing" } else { "some flags are missing" };
+    let _ = write!(text, "{are_missing} for the contact of {}:", asked.map.display());
     for Lacking { flag, why, instead, .. } in lacking {
         for (flag, why) in std::iter::once((*flag, why.as_str())).chain(*instead) {
             let _ = write!(text, "\n  {flag:<19} {why}");
@@ -356,11 +360,22 @@ fn outputs(question: &mut Question, asked: &PressArguments, profile: bool) {
 
 /// Requests a quantity, or a field as numbers and as pictures, unless it is requested already.
 fn add_output(question: &mut Question, name: &str) -> Result<(), Diagnostic> {
+    const HEIGHTS: &str = "heights";
     let output = Output::ALL.iter().find(|output| output.name() == name);
+    if output == Some(&Output::Conductance) {
+        return Err(Diagnostic::new("`--outputs conductance` does not say what flows").with_help(
+            "say it with --set 'outputs.conductance={ kind = \"electrical\", resistivities = [\"1.7e-8 Ohm m\", \"1.7e-8 Ohm m\"] }', or \
+             with `kind = \"thermal\"` and `conductivities`",
+        ));
+    }
     if question.outputs.files.iter().any(|(requested, _)| Some(requested) == output) {
         return Ok(());
     }
-    let value = if output.is_some_and(|output| output.is_field()) { "[\"npy\", \"png\"]" } else { "true" };
+    let value = if name == HEIGHTS || output.is_some_and(|output| output.is_field()) {
+        "[\"npy\", \"png\"]"
+    } else {
+        "true"
+    };
     question.set(&format!("outputs.{name}"), value).map_err(|mistake| {
         if output.is_some() {
             // Such as a conductance, which has keys of its own.
@@ -371,7 +386,7 @@ fn add_output(question: &mut Question, name: &str) -> Result<(), Diagnostic> {
             "force" | "approach" | "certificate" => {
                 format!("`{name}` is always computed where the boundary has one")
             }
-            _ => format!("outputs are {}", names.join(", ")),
+            _ => meant_by_output(name).unwrap_or_else(|| format!("outputs are {}", names.join(", "))),
         };
         mistake.of_flag(&format!("outputs.{name}"), name).with_help(help)
     })

@@ -101,7 +101,7 @@ fn unknown_flag(typed: &str, called: &clap::Command, command: &clap::Command) ->
         (!others.is_empty() && !presses).then(|| format!("it is a flag of `{}`", others.join("`, `")));
     let of_scene = || {
         let key = scene_keys().into_iter().find(|key| flag_of(key.name) == flag)?;
-        Some(format!("a scene says it itself: `{}` in [{}]", key.name, key.table))
+        Some(format!("a scene says it itself, with `{}` in [{}]", key.name, key.table))
     };
     let help = match near() {
         Some(near) => Some(near),
@@ -123,9 +123,14 @@ fn extra_word(typed: &str, words: &[String]) -> Option<String> {
     let before = words.get(at.checked_sub(1)?)?;
     let flag = words[..at].iter().rev().find(|word| word.starts_with("--"))?;
     let is_value = before.parse::<f64>().is_ok() || before == "rigid";
+    // All words up to the next flag.
+    let first = words.iter().position(|word| word == flag)? + 1;
+    let whole: Vec<&str> =
+        words[first..].iter().take_while(|word| !word.starts_with("--")).map(String::as_str).collect();
+    let whole = whole.join(" ");
     is_value.then(|| {
         format!(
-            "error: unexpected `{typed}` after `{flag} {before}`\n  = help: a value with blanks stands in quotation marks: `{flag} '{before} {typed}'`"
+            "error: unexpected `{typed}` after `{flag} {before}`\n  = help: a value with blanks stands in quotation marks: `{flag} '{whole}'`"
         )
     })
 }
@@ -151,9 +156,9 @@ mod tests {
             ("press map.txt --output area", "did you mean `--outputs`?"),
             ("press map.txt --leakage", "no leakage is computed"),
             ("press map.txt --rms-height 1", "`--set 'scene.surface.rms_height=VALUE'`"),
-            ("run scene.toml --mean-gap 1", "a scene says it itself: `mean_gap` in [scene]"),
+            ("run scene.toml --mean-gap 1", "a scene says it itself, with `mean_gap` in [scene]"),
             ("press map.txt --nonsense 1", "`fractal-contact press --help` lists the flags"),
-            ("press map.txt --bodies 210 GPa 0.3", "`--bodies '210 GPa'`"),
+            ("press map.txt --bodies 210 GPa 0.3, rigid --force 1", "`--bodies '210 GPa 0.3, rigid'`"),
             ("run scene.toml --accuracy 1", "it is a flag of `press`, `new`"),
             ("statistics map.txt", "`fractal-contact info MAP --out DIR`"),
             ("resume out/scene", "goes on where it was stopped"),

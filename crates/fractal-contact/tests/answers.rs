@@ -84,7 +84,7 @@ fn traps_are_named_with_a_remedy() {
             assert!(note.contains(words), "{i}: {note}");
         }
         // Each has a sentence that says where, what and what to do.
-        let sentences = outcome.notes.iter().filter(|line| line.starts_with("In the only state "));
+        let sentences = outcome.notes.iter().filter(|line| line.starts_with("In this state "));
         assert!(sentences.clone().count() >= said.len(), "{i}: {:?}", outcome.notes);
         assert!(sentences.clone().all(|line| line.matches(". ").count() >= 1), "{i}: {:?}", outcome.notes);
         let all = outcome.notes.concat();
@@ -101,12 +101,12 @@ fn traps_are_named_with_a_remedy() {
 fn sentences_of(case: usize) -> &'static [&'static str] {
     match case {
         1 => &[
-            "In the only state fewer than 10 cells are in contact. ",
-            "In the only state one cell carries most of the load. ",
-            "In the only state the pressure is above the hardness of 500 MPa (it reaches ",
+            "In this state fewer than 10 cells are in contact. ",
+            "In this state one cell carries most of the load. ",
+            "In this state the pressure is above the hardness of 500 MPa (it reaches ",
         ],
-        2 => &["In the only state cells at the edge of the rectangle are in contact. "],
-        3 => &["In the only state the pressure is above a tenth of E*, 10 GPa (it reaches "],
+        2 => &["In this state cells at the edge of the rectangle are in contact. "],
+        3 => &["In this state the pressure is above a tenth of E*, 10 GPa (it reaches "],
         _ => &[],
     }
 }
@@ -121,7 +121,7 @@ fn a_tilt_that_decides_is_told_unless_the_scene_says_what_to_do() {
         scene.notes.iter().map(ToString::to_string).collect::<String>()
     };
     let text = MAP.replace("FORCE", "1 mN");
-    assert!(notes(&text).contains("the map is tilted") && notes(&text).contains("`detrend` by \"plane\""));
+    assert!(notes(&text).contains("the map is tilted") && notes(&text).contains("`detrend = \"plane\"`"));
     for detrend in ["plane", "none"] {
         assert_eq!(notes(&text.replace("unit =", &format!("detrend = \"{detrend}\"\nunit ="))), "");
     }

@@ -8,7 +8,7 @@ use std::io::{ErrorKind, Write};
 
 /// Characters of a line of prose on a terminal.
 const WIDTH: usize = 80;
-/// In a narrower terminal folding would leave no room beside the indentation.
+/// Lines are not folded shorter than this: there would be no room beside the indentation.
 const NARROWEST: usize = 40;
 /// What a shell reports of a program that SIGPIPE has ended.
 const BROKEN_PIPE: i32 = 141;
@@ -49,12 +49,12 @@ pub fn print_error(text: Arguments<'_>) {
 
 /// Writes text, folded at the width of the terminal where there is one.
 fn write_to(into: &mut dyn Write, terminal: &Term, text: Arguments<'_>) -> std::io::Result<()> {
-    match terminal.size_checked() {
-        Some((_, columns)) if terminal.is_term() && usize::from(columns) >= NARROWEST => {
-            write(into, format_args!("{}", folded_at(&text.to_string(), columns.into())))
-        }
-        _ => write(into, text),
+    if !terminal.is_term() {
+        return write(into, text);
     }
+    // A terminal may not know its size.
+    let columns = terminal.size_checked().map_or(WIDTH, |(_, columns)| columns.into()).max(NARROWEST);
+    write(into, format_args!("{}", folded_at(&text.to_string(), columns)))
 }
 
 /// Text with lines of at most 80 characters where its words allow it, for a terminal: what is folded goes on

@@ -281,8 +281,8 @@ pub enum ContentError {
     Commas,
     /// One number in each line, which is neither a map nor a profile.
     #[error(
-        "one column of {rows} numbers: a profile needs two columns, x and z, and a map several; format = \"text\" takes it for a \
-         map of one column"
+        "one column of {rows} numbers: a profile needs two columns, x and z, and a map several (format = \"text\" with both sides of \
+         size reads a map of one column)"
     )]
     OneColumn {
         /// Lines of data.

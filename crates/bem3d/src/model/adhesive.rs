@@ -324,6 +324,7 @@ impl AdhesiveContact<'_> {
         // A force times a length.
         let stored = stored.signum() * units.approach(units.force(stored.abs())?)?;
         let residuals = equilibrium.residuals;
+        let net = equilibrium.net();
         let normal = NormalSolution {
             status,
             strategy: format!(
@@ -347,14 +348,14 @@ impl AdhesiveContact<'_> {
             d: equilibrium.d,
             complete: self.surface.is_full(&contact) && saturated.is_empty(),
             contact: &contact,
-            pressure: (&equilibrium.cells, &equilibrium.net()),
+            pressure: (&equilibrium.cells, &net),
             indented: (&saturated, &depth),
             yielded: saturated.len(),
             area: self.attraction.area(&contact, &equilibrium.gap),
             stiffness: stiffness.along_the_branch.map(|k| PI * k),
             fixed_area: stiffness.fixed_area.map(|k| PI * k),
             adhesive: Some(AdhesiveState::new(branch, stored, response.stability)),
-            resolution: None,
+            resolution: Some(self.surface.loaded_cells(&contact, &net)?),
         };
         let (state, slid) = self.surface.assess(normal, slid, stop)?;
         let last = Last { equilibrium, control, branch, state: returned(state)? };

@@ -5,7 +5,7 @@ use super::load::ScaledTangential;
 use super::prepared::{PreparedSurface, Tangent};
 use super::sliding::Slid;
 use crate::active_set::{Bounds, Solved};
-use crate::geometry::CellSet;
+use crate::geometry::{CellSet, Grid};
 use crate::response::NormalStiffness;
 use contact_model::{
     AdhesiveState, Boundary, Certificate, ContactResolution, ContactState, Error, Field, Fields, Patches,
@@ -323,17 +323,42 @@ impl PreparedSurface {
         Field::new([grid.columns, grid.rows], self.size, values)
     }
 
-    /// The measures of how well the cells resolve the contact.
-    fn resolution(&self, solved: &Solved) -> Result<ContactResolution> {
-        let (grid, contact) = (self.problem.grid(), &solved.contact);
-        let largest = solved.p.iter().copied().fold(0.0, f64::max);
+    /// The largest of these pressures of a contact, its share of all pressures, and the cells at an edge of the
+    /// rectangle or of an undefined point. Attraction counts as no pressure.
+    pub(super) fn loaded_cells(&self, contact: &CellSet, pressure: &[f64]) -> Result<ContactResolution> {
+        let grid = self.problem.grid();
+        let largest = pressure.iter().copied().fold(0.0, f64::max);
         // A profile goes on along y.
         let across = |y: usize| !self.is_profile && (y == 0 || y + 1 == grid.rows);
         let at_edge = |&(x, y): &(usize, usize)| x == 0 || x + 1 == grid.columns || across(y);
         let edge_cells = if self.is_periodic() { 0 } else { contact.places().filter(at_edge).count() };
-        let largest_share = largest / solved.p.iter().sum::<f64>();
-        let pressure = self.nondimensional.pressure(PI * largest)?;
-        let resolution = ContactResolution::new(pressure, largest_share, edge_cells);
+        let sum: f64 = pressure.iter().filter(|p| **p > 0.0).sum();
+        let largest_share = if sum > 0.0 { largest / sum } else { 0.0 };
+        let largest = self.nondimensional.pressure(PI * largest)?;
+        Ok(ContactResolution::new(largest, largest_share, edge_cells).with_rim(self.rim_cells(contact)))
+    }
+
+    /// The number of cells in contact that share an edge with an undefined point.
+    fn rim_cells(&self, contact: &CellSet) -> usize {
+        let Grid { columns, rows, .. } = self.problem.grid();
+        let z = self.problem.candidates.z();
+        let periodic = self.is_periodic();
+        let is_undefined = |x: usize, y: usize| z[y * columns + x].is_infinite();
+        let beside = |at: usize, count: usize| {
+            let before = if at > 0 { Some(at - 1) } else { periodic.then(|| count - 1) };
+            let after = if at + 1 < count { Some(at + 1) } else { periodic.then_some(0) };
+            before.into_iter().chain(after)
+        };
+        let at_rim = |&(x, y): &(usize, usize)| {
+            beside(x, columns).any(|x| is_undefined(x, y)) || beside(y, rows).any(|y| is_undefined(x, y))
+        };
+        contact.places().filter(at_rim).count()
+    }
+
+    /// The measures of how well the cells resolve the contact.
+    fn resolution(&self, solved: &Solved) -> Result<ContactResolution> {
+        let contact = &solved.contact;
+        let resolution = self.loaded_cells(contact, &solved.p)?;
         // The correction for the boundary is one for curved boundaries; a line contact is not biased.
         if !self.outputs.area || self.is_profile {
             return Ok(resolution);

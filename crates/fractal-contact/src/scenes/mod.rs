@@ -100,7 +100,7 @@ pub use read::loads::{AskedLoads, LoadList, LoadRequest};
 pub use read::numerics::Numerics;
 pub use read::outputs::{FieldFormat, RequestedOutputs};
 pub use read::path::{AskedStep, PathPiece};
-pub use read::question::{AskedSampling, Material, Question, meant_by_flag, scene_keys};
+pub use read::question::{AskedSampling, Material, Question, meant_by_flag, meant_by_output, scene_keys};
 pub use read::random_surface::{RandomSpectrum, RandomSurface};
 pub use read::registered_model::RegisteredModel;
 pub use read::registry::Registry;

@@ -65,6 +65,8 @@ pub struct Plan {
     pub contact_modulus: String,
     /// What lies outside of the rectangle.
     pub boundary: Boundary,
+    /// The body below the roughness, in words; empty without one.
+    on_body: String,
     /// Whether numbers carry units.
     pub system: System,
     /// Number of states for each surface, and of surfaces.
@@ -175,6 +177,7 @@ impl Plan {
                 .collect(),
             contact_modulus: words::contact_modulus(scene),
             boundary: scene.effects.boundary,
+            on_body: on_body(scene),
             system: scene.system,
             states: scene.request.count(),
             surfaces: scene.sampling.surfaces,
@@ -194,12 +197,10 @@ impl Plan {
         }
     }
 
-    /// The map as it is solved, without the exponent where statistics are asked for: theirs has an interval,
-    /// and one is told.
+    /// The map as it is solved, without the exponent: that of the statistics has an interval, knows where the
+    /// spectrum ends, and is the one that is told.
     pub(crate) fn as_solved(&self) -> Option<surface_io::Description> {
-        let description = self.prepared.clone()?;
-        let fitted = self.outputs.contains(&("statistics", true));
-        Some(if fitted { description.without_fit() } else { description })
+        Some(self.prepared.clone()?.without_fit())
     }
 
     /// The plan with what it will cost, from small solves of the same kind here and now. Takes a few seconds
@@ -261,7 +262,7 @@ impl Plan {
             }
         });
         let then = if models.len() > 1 { ";" } else { "," };
-        format!("{}{then} {boundary}, {states}{surfaces}{time}", models.join("; "))
+        format!("{}{then} {boundary}{}, {states}{surfaces}{time}", models.join("; "), self.on_body)
     }
 
     /// What is predicted of a model, in words.
@@ -324,6 +325,17 @@ pub(crate) fn of_slopes(system: System, map: Option<&surface_io::Description>) -
     let message = format!("the rms slope of the map is {}, and {what}", short(slope));
     let help = format!("Are the unit of the heights and the size of the map right? {help}");
     (system == System::Si).then(|| Diagnostic::note(message).with_help(help))
+}
+
+/// The body below the roughness, in words that follow a comma's phrase.
+fn on_body(scene: &SceneFile) -> String {
+    match scene.body().filter(|_| scene.surface.is_rough()) {
+        Some(Surface::Sphere { radius, .. }) => {
+            format!(", on a sphere of radius {}", ascii(&amount(*radius, scene.system.shown("m"))))
+        }
+        Some(body) => format!(", on a {}", body.kind()),
+        None => String::new(),
+    }
 }
 
 /// A mean pressure at which every cell is at the hardness: models refuse such a state.

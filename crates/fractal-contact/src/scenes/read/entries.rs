@@ -170,13 +170,14 @@ impl<'a> Entries<'a> {
                     && (distance(name, key) <= 1 + key.len() / 4 || stands_for(&self.name, key, name))
             };
             if let Some(found) = self.keys().find(is_meant).and_then(|name| self.entry(name)) {
-                return found
-                    .diagnostic_at_key(format!(
-                        "`{key}` is missing in {}, and `{}` is no key of it",
-                        self.title(),
-                        found.name()
-                    ))
-                    .with_help(format!("write `{key}` for `{}`", found.name()));
+                let name = found.name();
+                // What stands beside it may be wrong in the same way.
+                let others = self.keys().filter(|other| *other != name && !known.contains(other));
+                let others = others.filter_map(|other| meant(&self.name, other));
+                let help: Vec<String> =
+                    std::iter::once(format!("write `{key}` for `{name}`")).chain(others).collect();
+                let message = format!("`{key}` is missing in {}, and `{name}` is no key of it", self.title());
+                return found.diagnostic_at_key(message).with_help(help.join(", and "));
             }
             let missing = Diagnostic::of_type(format!("`{key}` is missing in {}", self.title()));
             missing.at(self.span.clone()).with_help(format!("add `{key} = {example}`"))
@@ -263,6 +264,11 @@ fn in_a_row(names: &[String]) -> String {
 
 fn syntax(error: &toml::de::Error) -> Diagnostic {
     let message = error.message().lines().collect::<Vec<_>>().join(", ");
+    if message.starts_with("string values must be quoted") {
+        return Diagnostic::new("a value that is neither a number nor in quotation marks")
+            .with_help("a quantity with its unit and a text stand in quotation marks, such as \"210 GPa\"")
+            .at(error.span());
+    }
     Diagnostic::new(message)
         .with_help("this is not valid TOML: text is quoted, tables are `[name]`, each key stands once")
         .at(error.span())
@@ -558,7 +564,7 @@ impl<'a> Entry<'a> {
         let is_load = LOADS.iter().any(|(key, ..)| *key == self.name());
         if let Some((key, flag, _)) = LOADS.iter().find(|(.., of)| is_load && is(*of)) {
             return format!(
-                "write {dimension} with its unit, such as {}, or prescribe `{key}` in a scene and `{flag}` in `press`",
+                "prescribe it as `{key} = \"{text}\"` in a scene, or as `{flag} '{text}'` in `press`; {dimension} has its unit, such as {}",
                 example(dimension)
             );
         }

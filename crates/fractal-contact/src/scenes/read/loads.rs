@@ -192,7 +192,7 @@ pub(crate) fn check_signs(loads: &LoadList, system: System, pulls: bool, places:
     };
     let help = match loads.kind {
         PrescribedLoad::MeanGap => "a mean gap is a distance >= 0",
-        _ => "press with a value >= 0; only adhesion (`adhesion` in [effects]) holds against a pull",
+        _ => "a load that presses is positive; only adhesion (`adhesion` in [effects]) holds against a pull",
     };
     let path = format!("scene.{key}");
     let item = places.value(&format!("{path}.{wrong}")).or_else(|| places.value(&path));

@@ -32,14 +32,14 @@ const BODIES: &str = "Young's modulus and Poisson's ratio of both bodies are `bo
                       { young = \"70 GPa\", poisson = 0.33 }]` in [scene]";
 const BODIES_FLAG: &str =
     "Young's modulus and Poisson's ratio of both bodies are `--bodies '210 GPa 0.3, 70 GPa 0.33'`";
-const BALL: &str =
-    "a ball is a table of its own: [scene.body] with `kind = \"sphere\"` and `radius = \"10 mm\"`";
-const BALL_FLAG: &str = "a ball under the map is `--ball '10 mm'`, by its radius";
+const BALL: &str = "a ball is a table of its own: [scene.body] with `kind = \"sphere\"`, `radius = \"10 mm\"` and, without a map, `side = \"1 mm\"`, \
+     the side of the square around the contact";
+const BALL_FLAG: &str = "a ball under the map is `--ball '10 mm'`, its radius";
 const MAP: &str =
     "a measured map is a table of its own: [scene.surface] with `kind = \"file\"` and `path = \"map.sur\"`";
 const MAP_FLAG: &str = "the file of the map stands without a flag: `fractal-contact press map.sur`";
 const RESISTANCE: &str = "a contact resistance is the inverse of the conductance: `conductance = { kind = \"electrical\", resistivities = [\"1.7e-8 \
-                          ohm m\", \"1.7e-8 ohm m\"] }`, or thermal with `conductivities`, in [outputs]";
+                          Ohm m\", \"1.7e-8 Ohm m\"] }`, or thermal with `conductivities`, in [outputs]";
 
 const TABLE: &[OtherWords] = &[
     key(
@@ -104,8 +104,8 @@ const TABLE: &[OtherWords] = &[
     key(
         ("scene.path", "tangential_force"),
         &["tangential_force", "shear_force", "lateral_force", "tangential_load", "friction_force", "q"],
-        "a tangential load belongs into a step of a path: after a [[scene.path]] with `force` comes a [[scene.path]] with \
-         `tangential_force`, and [effects] has the `friction` that holds it",
+        "a tangential load belongs into a step of a path: move `force` from [scene] into a first [[scene.path]], and write \
+         `tangential_force` into a second one; [effects] has the `friction` that holds it",
         "a tangential force is `--tangential-force '0.1 N'`, with `--friction 0.3` that holds it",
     ),
     key(
@@ -130,7 +130,8 @@ const TABLE: &[OtherWords] = &[
     key(
         ("effects", "friction"),
         &["friction", "friction_coefficient", "coefficient_of_friction", "mu", "cof"],
-        "friction is an effect: `friction = { coefficient = 0.3 }` in [effects], and a path of [[scene.path]] has the `tangential_force`",
+        "friction is an effect: `friction = { coefficient = 0.3 }` in [effects]. It acts along a path: move `force` from [scene] into a \
+         first [[scene.path]], and write `tangential_force` into a second one",
         "a coefficient of friction is `--friction 0.3`, with `--tangential-force '0.1 N'`",
     ),
     key(

@@ -292,7 +292,7 @@ fn read_formats(entry: &Entry<'_>) -> ReadResult<Vec<FieldFormat>> {
     if !entry.is_list() && !entry.is_text() {
         return if entry.flag()? {
             Err(entry
-                .diagnostic("a field is requested without a format")
+                .diagnostic(format!("the field `{}` is requested without a format", entry.name()))
                 .with_help("name its files: `[\"npy\"]`, `[\"npy\", \"png\", \"vti\"]`"))
         } else {
             Ok(Vec::new())
@@ -313,7 +313,7 @@ fn read_conductance(entry: &Entry<'_>, system: System) -> ReadResult<Conductance
     let electrical =
         table.require("kind", "\"electrical\"")?.choice(&[("electrical", true), ("thermal", false)])?;
     let (key, example, dimension) = if electrical {
-        ("resistivities", "[\"1.7e-8 ohm m\", \"1.7e-8 ohm m\"]", Dimension::RESISTIVITY)
+        ("resistivities", "[\"1.7e-8 Ohm m\", \"1.7e-8 Ohm m\"]", Dimension::RESISTIVITY)
     } else {
         ("conductivities", "[\"400 W/(m K)\", \"400 W/(m K)\"]", Dimension::THERMAL_CONDUCTIVITY)
     };

@@ -288,7 +288,9 @@ fn no_such_key(path: &str) -> Diagnostic {
         scene_keys().iter().map(|key| format!("{}.{}", step(key.table), key.name)).collect();
     known.extend(EFFECT_KEYS.iter().map(|key| format!("effects.{}", key.name)));
     known.extend(contact_model::Output::ALL.iter().map(|output| format!("outputs.{}", output.name())));
+    let meant = path.rsplit_once('.').and_then(|(table, key)| other_words::meant(table, key));
     let help = match nearest(path, known.iter().map(String::as_str)) {
+        _ if meant.is_some() => meant.unwrap_or_default(),
         Some(near) => format!("did you mean `{near}`?"),
         None => "a key has the name of its table before it, such as `scene.surface.cells`; \"What a scene may say\" in the book lists all of them"
             .to_owned(),
@@ -513,6 +515,11 @@ pub fn meant_by_flag(flag: &str) -> Option<String> {
         Some(format!("a scene has a key of this name: `--set '{table}.{name}=VALUE'`"))
     };
     other_words::meant_by_flag(flag).or_else(set)
+}
+
+/// What was meant by a name that is no output, such as something that is not computed.
+pub fn meant_by_output(name: &str) -> Option<String> {
+    other_words::meant("outputs", name)
 }
 
 /// Reads a whole scene, with remarks on former names.

@@ -156,9 +156,9 @@ pub(crate) fn remarks(
     } else if !declared && let Some(share) = tilt(scan, preprocessing, map) {
         remarks.push(Remark {
             message: format!(
-                "the map is tilted: from edge to edge by {share:.1} times its rms height without the tilt"
+                "the map is tilted: from corner to corner by {share:.1} times its rms height without the tilt"
             ),
-            help: "Its highest corner then carries the load. Subtract the tilt (`detrend` by \"plane\"), or say that it is real (\"none\").",
+            help: "Its highest corner then carries the load. Subtract the tilt (`detrend = \"plane\"`), or say that it is real (`detrend = \"none\"`).",
         });
     }
     if let Some((row, column, height)) = spike(map) {

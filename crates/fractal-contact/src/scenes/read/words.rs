@@ -67,6 +67,14 @@ pub(crate) fn pull_off(scene: &SceneFile, force: f64) -> String {
     format!("pull-off before the force {force}; the last stable state")
 }
 
+/// That the bodies come apart under a load by itself.
+pub(crate) fn no_state(scene: &SceneFile, state: usize) -> String {
+    format!(
+        "no state under the {}: the attraction cannot hold it, and the bodies come apart",
+        ascii(&load(scene, state))
+    )
+}
+
 /// Why a model refuses a load, with the units of the scene.
 pub(crate) fn refusal(scene: &SceneFile, error: &Error) -> String {
     /// Beginnings of the names of quantities, with their SI units.

@@ -206,6 +206,12 @@ impl ContactInHand<'_, '_> {
                     let solved = AnsweredState { state, normalisation, warnings, grid };
                     self.unit.recorded(self.scene, solved, self.out, index)?
                 }
+                // A load by itself has no stable state before it.
+                Err(contact_model::Error::NotConverged { best })
+                    if best.report.status == Status::PulledOff =>
+                {
+                    StateRecord::new(index, Answer::Refused(words::no_state(self.scene, index)))
+                }
                 Err(contact_model::Error::NotConverged { best }) => missed(index, *best, normalisation),
                 Err(contact_model::Error::Stopped { .. }) => {
                     self.keep(true);

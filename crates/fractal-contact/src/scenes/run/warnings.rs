@@ -5,6 +5,7 @@ use crate::scenes::read::{SceneFile, SceneSurface, amount, number};
 use contact_model::units::{ascii, rounded};
 use contact_model::{ContactState, Coupling, Friction, Hardness, Scene, Surface};
 use serde::{Deserialize, Serialize};
+use surface_gen::MapEdges;
 
 /// With fewer cells in contact than this the results depend on the grid.
 const FEW_CELLS: usize = 10;
@@ -34,10 +35,11 @@ pub(crate) enum Warning {
     Accuracy,
     Stiffness,
     Coupling,
+    Rim,
 }
 
 impl Warning {
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::FewCells,
         Self::OneCell,
         Self::Edge,
@@ -46,6 +48,7 @@ impl Warning {
         Self::Accuracy,
         Self::Stiffness,
         Self::Coupling,
+        Self::Rim,
     ];
 
     /// What stands in the row of the state.
@@ -59,6 +62,7 @@ impl Warning {
             Self::Accuracy => "accuracy not reached",
             Self::Stiffness => "stiffness not known",
             Self::Coupling => "coupling of normal and tangential tractions neglected",
+            Self::Rim => "contact beside undefined points",
         }
     }
 
@@ -96,6 +100,10 @@ impl Warning {
                 "These bodies differ in their compressibility, so the tractions act on each other (the second Dundurs constant is not 0). \
                  Use `coupling = \"full\"`, which solves both together."
             }
+            Self::Rim => {
+                "Where the surface goes on below undefined points, these cells carry too much, and the area is too small. Compare with \
+                 `fill = \"neighbours\"` in the place of `undefined`, which gives these points heights."
+            }
         }
     }
 
@@ -103,7 +111,7 @@ impl Warning {
     /// them, and what to do.
     pub fn sentence(self, scene: &SceneFile, concerned: &[Concerned<'_>], counted: usize) -> String {
         let states = match (concerned.len(), counted) {
-            (1, 1) => "In the only state".to_owned(),
+            (1, 1) => "In this state".to_owned(),
             (count, all) if count == all => format!("In all {all} states"),
             (count, all) => format!("In {count} of {all} states"),
         };
@@ -151,11 +159,26 @@ impl Warning {
             }
             Self::Accuracy => format!("{states} the requested accuracy is not reached."),
             Self::Stiffness => format!("{states} the stiffness is not known."),
+            Self::Rim => {
+                let share = worst(&|(state, _)| {
+                    Some(state.resolution?.rim_cells as f64 / state.report.contact_cells? as f64)
+                });
+                let share =
+                    share.map_or_else(String::new, |share| format!(", up to {} of them", percent(share)));
+                format!("{states} cells in contact border undefined points{share}.")
+            }
             Self::Coupling => {
                 format!("{states} the coupling of normal and tangential tractions is neglected.")
             }
         };
-        format!("{what} {}", self.advice())
+        let advice = match self {
+            Self::Edge if !is_tilted(scene) => {
+                "With a free boundary the edge then decides the answer too. Use a larger map or a smaller load, or choose \
+                 `boundary = \"periodic\"` if the surface is a part of a larger one."
+            }
+            other => other.advice(),
+        };
+        format!("{what} {advice}")
     }
 
     /// All warnings that concern a state.
@@ -207,6 +230,7 @@ impl Circumstances {
             (Warning::Accuracy, _) => missed,
             (Warning::OneCell, Some(r)) => r.largest_share > ALONE,
             (Warning::Edge, Some(r)) => r.edge_cells > 0 && !self.flat,
+            (Warning::Rim, Some(r)) => r.rim_cells > 0,
             (Warning::Yield, Some(r)) => r.largest_pressure.is_some_and(|largest| largest > self.hardness),
             (Warning::Area, Some(r)) => {
                 state.area.zip(r.corrected_area).is_some_and(|(a, corrected)| a - corrected > UNRESOLVED * a)
@@ -248,6 +272,14 @@ impl StateNotes {
         let note = |warning: Warning| format!("{}: {}", warning.label(), warning.advice());
         self.0.warnings(state, false).into_iter().map(note).collect()
     }
+}
+
+/// Whether a plane is a part of the heights of a map that changes its contact.
+fn is_tilted(scene: &SceneFile) -> bool {
+    /// Share of the plane in the variance of heights: a tilt as large as a quarter of the roughness.
+    const TILTED: f64 = 1.0 / 17.0;
+    let edges = scene.surface.given_map().and_then(|map| MapEdges::new(map).ok());
+    edges.is_some_and(|edges| edges.tilt > TILTED)
 }
 
 /// Whether normal and tangential tractions of these bodies are coupled, but the scene neglects the coupling.
