@@ -5,11 +5,13 @@ use analytic::{Hertz, Westergaard};
 use approx::assert_relative_eq;
 use bem3d::{Bem3d, Method};
 use contact_model::{
-    Boundary, ContactModel, ContactState, HeightMap, Load, PreparedContact, Scene, SelfAffine, Surface,
+    Adhesion, Boundary, ContactModel, ContactState, HeightMap, Load, PreparedContact, Scene, SelfAffine,
+    Surface,
 };
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use std::f64::consts::PI;
+use std::sync::Arc;
 use tests::scene;
 use tests::stability::{PlainSum, relaxed, relaxed_by};
 
@@ -369,4 +371,38 @@ fn resolution_of_a_full_rectangle() {
     assert_relative_eq!(periodic.corrected_area.unwrap(), 3.0, max_relative = 1e-12);
     scene.outputs.area = false;
     assert_eq!(solve(&scene).resolution.unwrap().corrected_area, None);
+}
+
+/// Cells in contact that border an undefined point, and the largest pressure with adhesion, compared with the field.
+#[test]
+fn the_rim_of_undefined_points_and_the_largest_pressure_with_adhesion() {
+    const CELLS: usize = 21;
+    // A paraboloid with a hole of two cells at its summit and one at the edge of the map.
+    let height = |i: usize| {
+        let (x, y) = ((i % CELLS) as f64 - 10.0, (i / CELLS) as f64 - 10.0);
+        let is_hole = y == 0.0 && (x == 0.0 || x == 1.0) || x == -10.0 && y == -10.0;
+        if is_hole { f64::NAN } else { -1e-3 * (x * x + y * y) }
+    };
+    let heights = (0..CELLS * CELLS).map(height).collect();
+    let map = HeightMap::with_undefined([CELLS, CELLS], [1.0, 1.0], heights).unwrap();
+    let mut scene = Scene::new(Surface::Heights(Arc::new(map)), 1.0);
+    (scene.outputs.area, scene.outputs.pressure) = (true, true);
+    let solve = |scene: &Scene, force: f64| {
+        let model = Bem3d { cells: CELLS, ..Bem3d::default() };
+        model.prepare(scene, 0).unwrap().solve(Load::force(force)).unwrap()
+    };
+    let compare = |state: &ContactState, rim: usize| {
+        let (found, pressure) = (state.resolution.unwrap(), state.pressure().unwrap());
+        let largest = pressure.values().iter().copied().fold(0.0, f64::max);
+        assert_relative_eq!(found.largest_pressure.unwrap(), largest, max_relative = 1e-12);
+        assert_eq!(found.rim_cells, rim, "{found:?}");
+    };
+    // The six cells around the hole, and two more at the corner once everything touches.
+    compare(&solve(&scene, 0.02), 6);
+    compare(&solve(&scene, 3.0), 8);
+    scene.effects.adhesion = Adhesion::ShortRange { work: 1e-4 };
+    compare(&solve(&scene, 0.02), 6);
+    let pulled = solve(&scene, -1e-4);
+    compare(&pulled, 6);
+    assert!(pulled.resolution.unwrap().edge_cells == 0 && pulled.resolution.unwrap().largest_share > 0.0);
 }
