@@ -379,8 +379,9 @@ fn the_rim_of_undefined_points_and_the_largest_pressure_with_adhesion() {
     const CELLS: usize = 21;
     // A paraboloid with a hole of two cells at its summit and one at the edge of the map.
     let height = |i: usize| {
-        let (x, y) = ((i % CELLS) as f64 - 10.0, (i / CELLS) as f64 - 10.0);
-        let is_hole = y == 0.0 && (x == 0.0 || x == 1.0) || x == -10.0 && y == -10.0;
+        let (column, row) = (i % CELLS, i / CELLS);
+        let (x, y) = (column as f64 - 10.0, row as f64 - 10.0);
+        let is_hole = row == 10 && (column == 10 || column == 11) || i == 0;
         if is_hole { f64::NAN } else { -1e-3 * (x * x + y * y) }
     };
     let heights = (0..CELLS * CELLS).map(height).collect();

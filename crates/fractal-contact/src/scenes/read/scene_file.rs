@@ -509,7 +509,7 @@ fn check_cells(question: &Question, surface: &SceneSurface, places: &Places) -> 
         let name = numerics.name();
         let Some(own) = surface.own_cells() else {
             let cells = elements.grid(surface.size());
-            if cells.checked_count().is_none_or(|count| count > MOST_CELLS * MOST_CELLS) {
+            if cells.checked_count().is_none_or(|count| count as f64 > (MOST_CELLS as f64).powi(2)) {
                 let (columns, rows, most) = (cells.columns, cells.rows, MOST_CELLS);
                 let message = format!("{columns} x {rows} cells: expected at most {most} x {most}");
                 return Err(at_model(places, index, message).with_help(format!(
