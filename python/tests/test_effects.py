@@ -683,7 +683,8 @@ def test_a_plastic_depth_needs_a_hardness():
         fc.Scene(rough(17), contact_modulus=1.0, outputs=["plastic_depth"])
 
 
-def test_the_page_of_the_book_runs():
+def test_the_page_of_the_book_runs(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
     page = ROOT / "book/src/python.md"
     if not page.exists():
         pytest.skip("outside of the repository")
