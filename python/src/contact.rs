@@ -119,7 +119,7 @@ impl PyNormalisation {
 ///
 /// With a hardness `solve` begins with the virgin surface: a load smaller than one before is refused, because
 /// the indentation of that one would be forgotten. `advance` and `follow` keep it, along any path.
-#[pyclass(name = "Contact", frozen, module = "fractal_contact")]
+#[pyclass(name = "Contact", frozen, weakref, module = "fractal_contact")]
 pub struct PyContact {
     inner: Exclusive<Inner>,
     origin: StateOrigin,

@@ -36,7 +36,7 @@ use std::sync::Arc;
 ///     Unit of the heights in the array, such as ``"nm"``: the map is then in metres.
 /// undefined : {"error", "no_contact"}
 ///     What NaN means: an error, or a point that cannot touch. Masked points cannot touch either way.
-#[pyclass(name = "HeightMap", frozen, module = "fractal_contact")]
+#[pyclass(name = "HeightMap", frozen, weakref, module = "fractal_contact")]
 #[derive(Clone)]
 pub struct PyHeightMap {
     pub map: Arc<RustMap>,
@@ -212,6 +212,13 @@ impl PyHeightMap {
     ) -> PyResult<Bound<'py, PyAny>> {
         let arrays = slf.py().import("fractal_contact._arrays")?;
         arrays.call_method1("ufunc", (slf, ufunc, method, inputs, options))
+    }
+
+    /// Operations of data frames with a map are the map's.
+    #[classattr]
+    #[pyo3(name = "__pandas_priority__")]
+    fn pandas_priority() -> u32 {
+        5000
     }
 
     fn __getitem__<'py>(&self, py: Python<'py>, index: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {

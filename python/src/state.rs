@@ -253,7 +253,7 @@ impl PyCertificate {
 ///
 /// Its numbers and words are those of `quantities`. Units in brackets are those of SI; a scene in other units
 /// has its own.
-#[pyclass(name = "ContactState", frozen, module = "fractal_contact")]
+#[pyclass(name = "ContactState", frozen, weakref, module = "fractal_contact")]
 pub struct PyContactState {
     state: RustState,
     normalisation: RustNormalisation,

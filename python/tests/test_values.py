@@ -8,6 +8,7 @@ import os
 import pickle
 import subprocess
 import sys
+import weakref
 
 import numpy as np
 import pytest
@@ -227,6 +228,20 @@ def test_functions_of_numpy_take_maps():
     assert np.add(h, map_, out=out) is out and np.array_equal(out, 2 * h)
     h += map_
     assert np.array_equal(h, 2 * np.array(map_))
+
+
+def test_data_frames_and_maps():
+    pandas = pytest.importorskip("pandas")
+    map_ = ROUGH.height_map((8, 4), seed=1)
+    h = np.array(map_)
+    for found in (map_ + pandas.DataFrame(h), pandas.DataFrame(h) + map_):
+        assert isinstance(found, fc.HeightMap) and np.array_equal(found.heights, 2 * h)
+
+
+def test_objects_can_be_referred_to_weakly(state):
+    contact = fc.Hertz().prepare(fc.Scene(BALL, 1.0))
+    for value in (state, contact, ROUGH.height_map(8, seed=1)):
+        assert weakref.ref(value)() is value
 
 
 # Names of dimensions.
