@@ -516,8 +516,9 @@ class ContactState:
         """float or None: area of the largest contact, area of the largest patch [m^2]."""
     @property
     def largest_pressure(self) -> float | None:
-        """float or None: largest pressure, of a cell; grows with smaller cells until they resolve the shortest wave,
-        at an edge of the rectangle or a spike without limit [Pa].
+        """float or None: largest pressure, of a cell, or at a point by a closed form; that of a cell grows with
+        smaller cells until they resolve the shortest wave, at an edge of the rectangle or a spike without limit
+        [Pa].
         """
     @property
     def status(self) -> str:
