@@ -89,6 +89,8 @@ def test_maps_are_prepared():
     with pytest.raises(fc.DomainError, match="is NaN"):
         fc.press(filled, 1.0, 1.0, mean_pressure=1e-3)
     assert fc.press(HEIGHTS, 1.0, 1.0, mean_pressure=1e-3, cells=32).pressure[0].shape == (32, 32)
+    options = {"undefined": None, "fill": None, "crop": None}
+    assert fc.press(holes, 1.0, 1.0, mean_pressure=1e-3, **options).area == without.area
     finer = fc.press(HEIGHTS, 1.0, 1.0, mean_pressure=1e-2, keys={"models.bem3d.tolerance": 1e-10})
     assert finer.results["duality_gap"][0] < 1e-10
     assert fc.press(HEIGHTS, 1.0, 1.0, force=1e-3, outputs=["displacement"]).fields["displacement"][0].shape == (64, 64)
@@ -145,7 +147,17 @@ def test_files(tmp_path):
     assert by_path.area == by_map.area and by_path.approach == by_map.approach
     kept = fc.press(tmp_path / "map.x3p", contact_modulus="1 GPa", force="1 mN", out=tmp_path / "out")
     assert {"report.html", "results.csv"} <= {file.name for file in kept.files} and all(f.exists() for f in kept.files)
-    assert (tmp_path / "out" / "scene.toml").read_text() == kept.scene
+    assert (tmp_path / "out" / "scene.toml").read_text().endswith(kept.scene)
+    # Its own folder may be used again; what another has written stays.
+    again = fc.press(ROUGH.scaled(1e-3, 1e-3), contact_modulus="1 GPa", force="1 mN", out=tmp_path / "out")
+    assert again.area == by_map.area
+    for name in ("scene.toml", "heights.npy"):
+        folder = tmp_path / name.split(".")[0]
+        folder.mkdir()
+        (folder / name).write_text("of another")
+        with pytest.raises(FileExistsError, match="not written by press"):
+            fc.press(ROUGH, contact_modulus=1.0, force=1e-3, out=folder)
+        assert (folder / name).read_text() == "of another" and len(list(folder.iterdir())) == 1
     with pytest.raises(TypeError, match="leave size= out"):
         fc.press(ROUGH, 1.0, 1.0, force=1.0)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import tempfile
 import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -23,6 +24,9 @@ from ._numbers import is_iterable, number
 from ._plain import same_fields, with_names
 from .typing import Detrend, PressOptions
 
+# First words of a scene that this call, or the program's `press`, has written, and the file of an array beside it.
+HEADING = "# Contact of the map "
+ARRAY = "heights.npy"
 # States of the path along which a tangential force grows.
 TANGENTIAL_STATES = 8
 LOADS = ("mean_pressure", "force", "approach", "mean_gap")
@@ -223,7 +227,8 @@ def press(
     keys : mapping, optional
         Any other keys of a scene by their tables and names: ``{"models.bem3d.tolerance": 1e-8}``.
     out : str or path-like, optional
-        Folder in which the files of the program are kept; an interrupted run goes on from it.
+        Folder in which the files of the program are kept; an interrupted run goes on from it. A scene in it that
+        `press` has not written is not overwritten.
     threads : int, optional
         Number of threads; that of `threads` by default.
     progress : callable, optional
@@ -260,6 +265,8 @@ def press(
     ------
     TypeError, ValueError, DomainError
         For what is missing, contradictory or makes no sense.
+    OSError
+        Where the system refuses, such as FileNotFoundError; FileExistsError for a folder with another scene.
     SceneError, ReadError
         For what only shows when the whole problem is read, such as a file without a size.
     Unsupported, OutOfMemory
@@ -273,8 +280,8 @@ def press(
 
     Notes
     -----
-    The time is that of the solves, of one solve each on grids with a half and a quarter of the cells a side for the
-    error, and of the pictures of the report. `Bem3d` solves without errors of the grid and pictures.
+    The time is that of the solves, of one more solve of each load on grids with a half and a quarter of the cells a
+    side for the error, and of the pictures of the report. `Bem3d` solves without errors of the grid and pictures.
 
     Examples
     --------
@@ -305,8 +312,7 @@ def press(
             'friction and tangential_force= need each other: effects={"friction": 0.3}, tangential_force=...'
         )
     numbers = (size, cell, contact_modulus, bodies, loads, tangential_force, effects, ball, options)
-    is_file = isinstance(heights, str | PathLike | ReadSurface)
-    in_si = is_file or unit is not None or any(map(_has_unit, numbers))
+    in_si = unit is not None or _is_metric(heights) or any(map(_has_unit, numbers))
     material = {"contact_modulus": contact_modulus} if bodies is None else {"bodies": _bodies(bodies)}
     problem: dict[str, Any] = {"scene.models": ["bem3d"], "scene.accuracy": accuracy}
     problem.update({f"scene.{name}": value for name, value in material.items()})
@@ -315,10 +321,12 @@ def press(
         problem.update({"scene.body.kind": "sphere", "scene.body.radius": ball})
     problem.update({f"effects.{name}": value for name, value in {"boundary": "free", **effects}.items()})
     surface = {"unit": unit, "size": _sides(size, "size", in_si), "cell": _sides(cell, "cell", in_si)}
-    surface.update(detrend=detrend, **_words(options))
+    known = {name: value for name, value in _words(options).items() if value is not None}
+    surface.update(detrend=detrend, **known)
     with tempfile.TemporaryDirectory(prefix="fractal-contact-") as temporary:
         folder = Path(temporary if out is None else out)
         folder.mkdir(parents=True, exist_ok=True)
+        _check_folder(folder)
         surface.update(_placed(heights, surface, folder, in_si))
         of_surface = {f"scene.surface.{name}": value for name, value in {"kind": "file", **surface}.items()}
         requested = _outputs(outputs, effects, accuracy)
@@ -326,13 +334,33 @@ def press(
         entries = [(name, value, _has_unit(value)) for name, value in problem.items()]
         entries += [(name, value, in_si) for name, value in {**of_surface, **requested, **(keys or {})}.items()]
         scene = _core.press_scene([entry for entry in entries if entry[1] is not None], in_si, folder / "scene.toml")
-        (folder / "scene.toml").write_text(scene.text, encoding="utf-8")
+        heading = f"{HEADING}{of_surface['scene.surface.path']!r}, written by fractal_contact.press.\n"
+        (folder / "scene.toml").write_text(heading + scene.text, encoding="utf-8")
         outcome = run_scene(scene, folder, threads=threads, progress=progress, stop=stop)
         pressed = _pressed(scene, outcome, folder, kept=out is not None)
     if outcome.failed:
         why = "; ".join(pressed.notes)
         warnings.warn(f"{outcome.failed} of {outcome.requested} loads failed: {why}", RuntimeWarning, stacklevel=2)
     return pressed
+
+
+def _is_metric(heights: Any) -> bool:
+    """Whether a file says the unit of the heights, or has to."""
+    if isinstance(heights, ReadSurface):
+        return bool(heights.metadata["unit"] == "m")
+    return isinstance(heights, str | PathLike)
+
+
+def _check_folder(folder: Path) -> None:
+    """Refuses to overwrite files that `press` has not written."""
+    scene, array = folder / "scene.toml", folder / ARRAY
+    for path, foreign in (
+        (scene, scene.exists() and not scene.read_text(encoding="utf-8", errors="replace").startswith(HEADING)),
+        (array, array.exists() and not scene.exists()),
+    ):
+        if foreign:
+            message = "was not written by press, and is not overwritten: give another folder as out="
+            raise FileExistsError(errno.EEXIST, message, str(path))
 
 
 def _has_unit(value: Any) -> bool:
@@ -419,7 +447,7 @@ def _placed(heights: Any, surface: dict[str, Any], folder: Path, in_si: bool) ->
             pass
         return {"path": str(Path(heights).absolute())}
     map_ = heights.heights if isinstance(heights, ReadSurface) else heights
-    more: dict[str, Any] = {"path": "heights.npy"}
+    more: dict[str, Any] = {"path": ARRAY}
     if isinstance(map_, HeightMap):
         for name in ("size", "cell", "unit"):
             if surface[name] is not None:
@@ -439,7 +467,7 @@ def _placed(heights: Any, surface: dict[str, Any], folder: Path, in_si: bool) ->
         partly = partly and not stated
     if partly and "fill" not in surface:
         more["undefined"] = "no_contact"
-    np.save(folder / "heights.npy", values)
+    np.save(folder / ARRAY, values)
     return more
 
 
