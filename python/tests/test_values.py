@@ -437,9 +437,10 @@ import fractal_contact as fc
 
 rough = fc.Surface.self_affine(hurst=0.3, size=1.0, rms_height=0.01)
 contact = fc.Bem3d(tolerance=1e-12).prepare(fc.Scene(rough.height_map(1025, 1), 1.0))
-stop = threading.Event()
+stop, begun = threading.Event(), threading.Event()
 
 def solve():
+    begun.set()
     try:
         contact.solve(force=2.0, stop=stop)
     except fc.Stopped:
@@ -447,6 +448,7 @@ def solve():
 
 thread = threading.Thread(target=solve)
 thread.start()
+begun.wait()
 time.sleep(0.3)
 child = os.fork()
 if child == 0:
