@@ -12,10 +12,15 @@ pub fn note(warning: Warning) -> String {
 #[pyfunction]
 pub fn notes_of_python(notes: Vec<String>) -> Vec<String> {
     let told = |note: String| {
+        let note = note.replace(Warning::EDGE_WITHOUT_TILT, EDGE_WITHOUT_TILT);
         Warning::ALL.iter().fold(note, |note, warning| note.replace(warning.advice(), advice(*warning)))
     };
     notes.into_iter().map(told).collect()
 }
+
+/// [`Warning::EDGE_WITHOUT_TILT`] in the words of Python.
+const EDGE_WITHOUT_TILT: &str = "With a free boundary the edge then decides the answer too. Use a larger map or a smaller load, or write \
+                                 `effects={\"boundary\": \"periodic\"}` if the surface is a part of a larger one.";
 
 /// The remedy. Where it names a key of a scene, it has the keyword of Python instead.
 fn advice(warning: Warning) -> &'static str {

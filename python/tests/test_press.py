@@ -85,6 +85,10 @@ def test_maps_are_prepared():
     without = fc.press(holes, 1.0, 1.0, mean_pressure=1e-3)
     assert np.isnan(without.gap[0][holes.mask]).all() and not without.pressure[0][holes.mask].any()
     filled = np.where(holes.mask, np.nan, HEIGHTS)
+    # Remedies have the words of this package, of each kind of note that these states have.
+    notes = [note for one in (level, without, fc.press(HEIGHTS, 1.0, 1.0, mean_pressure=0.02)) for note in one.notes]
+    assert any("undefined points" in note for note in notes) and any("edge of the rectangle" in note for note in notes)
+    assert not [note for note in notes if "[effects]" in note or ' = "' in note]
     assert np.isfinite(fc.press(filled, 1.0, 1.0, mean_pressure=1e-3, fill="neighbours").gap[0]).all()
     with pytest.raises(fc.DomainError, match="is NaN"):
         fc.press(filled, 1.0, 1.0, mean_pressure=1e-3)
