@@ -44,11 +44,12 @@ EFFECTS = '''"""The effects. Written by python/generate.py from the keys of `[ef
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from typing import Any
 
 from . import _core
-from ._plain import named, plain
+from ._plain import frozen, named
 from .typing import {types}
 
 
@@ -79,15 +80,25 @@ class Effects:
 {fields}
 
     def __post_init__(self) -> None:
-        # Copies: a change of the caller's mapping is none of the effect.
+        # Copies that do not change: a change of the caller's mapping is none of the effect.
         for name, value in self._values().items():
-            object.__setattr__(self, name, plain(value))
+            object.__setattr__(self, name, frozen(value))
         # Mistakes are told where they are made.
         _core.check_effects(self._values())
 
     @classmethod
-    def of(cls, effects: Effects | EffectsDict) -> Effects:
-        """Effects from a mapping of these names."""
+    def of(cls, effects: Effects | EffectsDict | Mapping[str, Any]) -> Effects:
+        """Effects from a mapping of these names.
+
+        Parameters
+        ----------
+        effects : Effects or mapping
+            Effects, which are returned as they are, or a mapping with the parameters above as keys.
+
+        Returns
+        -------
+        Effects
+        """
         known = [one.name for one in fields(cls)]
         return effects if isinstance(effects, Effects) else cls(**named(effects, "effect", known))
 

@@ -44,19 +44,51 @@ impl PyNormalisation {
         self.0.height
     }
 
-    /// F for F_bar = F/(E* h L).
+    /// The force F for F_bar = F/(E* h L).
+    ///
+    /// Parameters
+    /// ----------
+    /// force_bar : float
+    ///     The dimensionless force.
+    ///
+    /// Returns
+    /// -------
+    /// float
     fn force(&self, py: Python<'_>, force_bar: RealNumber) -> PyResult<f64> {
         self.0.force(force_bar.0).map_err(|error| of_model(py, error))
     }
 
-    /// F_bar = F/(E* h L) for F.
+    /// The dimensionless force F_bar = F/(E* h L) for F.
+    ///
+    /// Parameters
+    /// ----------
+    /// force : float
+    ///     The force, in the unit of the scene.
+    ///
+    /// Returns
+    /// -------
+    /// float
     fn force_bar(&self, py: Python<'_>, force: RealNumber) -> PyResult<f64> {
         self.0.force_bar(force.0).map_err(|error| of_model(py, error))
     }
 
-    /// k_bar = k/(1.1419 E* L) for k.
+    /// The dimensionless stiffness k_bar = k/(1.1419 E* L) for k.
+    ///
+    /// Parameters
+    /// ----------
+    /// stiffness : float
+    ///     The stiffness, in the unit of the scene.
+    ///
+    /// Returns
+    /// -------
+    /// float
     fn stiffness_bar(&self, stiffness: RealNumber) -> f64 {
         self.0.stiffness_bar(stiffness.0)
+    }
+
+    fn __hash__(&self) -> u64 {
+        // Of equal ones equal: both numbers are positive.
+        self.0.contact_modulus.to_bits() ^ self.0.length.to_bits().rotate_left(32)
     }
 
     /// From the bytes of `__reduce__`.
@@ -78,15 +110,16 @@ impl PyNormalisation {
     }
 }
 
-/// A planned contact: solve often, follow paths. It keeps tables, plans and the last state, from which the
-/// next solve starts.
+/// A planned contact: solve often, follow paths.
+///
+/// It keeps tables, plans and the last state, from which the next solve starts.
 ///
 /// `solve` and `sweep` start each load from no contact; `advance` and `follow` continue a path of loads from
 /// the current state. Threads that share one contact use it one after the other, in the order of their calls.
 ///
 /// With a hardness `solve` begins with the virgin surface: a load smaller than one before is refused, because
 /// the indentation of that one would be forgotten. `advance` and `follow` keep it, along any path.
-#[pyclass(name = "Contact", frozen, module = "fractal_contact")]
+#[pyclass(name = "Contact", frozen, weakref, module = "fractal_contact")]
 pub struct PyContact {
     inner: Exclusive<Inner>,
     origin: StateOrigin,
@@ -285,24 +318,31 @@ impl PyContact {
     /// Parameters
     /// ----------
     /// force, approach, mean_pressure, mean_gap : iterable of float
-    ///     Exactly one of them. Increasing loads are the fastest order, and the only one with a hardness.
+    ///     Exactly one of them. Increasing loads are the fastest order, and the only one with a hardness. With
+    ///     ``steps`` the first and the last load.
+    /// steps : int, optional
+    ///     Number of states, at least 2, which are equally spaced in the logarithm of the contact area between those of
+    ///     the two loads, to a twentieth of a step or as the cells allow. The scene has to compute the area. The loads
+    ///     between are found by two to three solves each.
     /// stop : threading.Event, optional
     ///     As in `solve`.
     ///
     /// Yields
     /// ------
     /// ContactState
-    #[pyo3(signature = (*, force=None, approach=None, mean_pressure=None, mean_gap=None, stop=None))]
+    #[pyo3(signature = (*, force=None, approach=None, mean_pressure=None, mean_gap=None, steps=None, stop=None))]
+    #[allow(clippy::too_many_arguments)] // One for each keyword.
     fn sweep<'py>(
         slf: &Bound<'py, Self>,
         force: Option<Bound<'py, PyAny>>,
         approach: Option<Bound<'py, PyAny>>,
         mean_pressure: Option<Bound<'py, PyAny>>,
         mean_gap: Option<Bound<'py, PyAny>>,
+        steps: Option<Bound<'py, PyAny>>,
         stop: Option<Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let values = [force, approach, mean_pressure, mean_gap, stop];
-        let loads = LOADS.into_iter().chain(["stop"]).zip(values).into_py_dict(slf.py())?;
+        let values = [force, approach, mean_pressure, mean_gap, steps, stop];
+        let loads = LOADS.into_iter().chain(["steps", "stop"]).zip(values).into_py_dict(slf.py())?;
         slf.py().import("fractal_contact._models")?.call_method("sweep", (slf,), Some(&loads))
     }
 
@@ -406,9 +446,11 @@ impl PyContact {
         Ok(())
     }
 
-    /// The memory of the loads so far, of a path or each by itself, as bytes: together with the next load it
-    /// determines the next state. `recall` of a contact of the same model, scene and seed continues from it with
-    /// identical bits, also in another process of the same version on the same kind of processor.
+    /// The memory of the loads so far, of a path or each by itself, as bytes.
+    ///
+    /// Together with the next load it determines the next state. `recall` of a contact of the same model, scene and
+    /// seed continues from it with identical bits, also in another process of the same version on the same kind of
+    /// processor.
     ///
     /// Returns
     /// -------
@@ -426,12 +468,14 @@ impl PyContact {
         Ok(kept.map(|kept| PyBytes::new(py, kept.bytes())))
     }
 
-    /// Restores a contact of the same model, scene and seed to where it gave its `memory`. The states before that
-    /// are not in the memory: `last` is None.
+    /// Restores a contact of the same model, scene and seed to where it gave its `memory`.
+    ///
+    /// The states before that are not in the memory: `last` is None.
     ///
     /// Parameters
     /// ----------
     /// memory : bytes
+    ///     What `memory` gave.
     ///
     /// Raises
     /// ------
@@ -467,6 +511,12 @@ impl PyContact {
             highest.check(py, first.normal, area)?;
         }
         check_rising(py, &loads, area)
+    }
+
+    /// Whether the order of loads matters, because the surface yields.
+    #[getter]
+    fn _yields(&self) -> bool {
+        self.yields
     }
 
     /// Normalisation: that of this surface.

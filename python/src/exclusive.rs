@@ -27,6 +27,8 @@ struct State<T> {
     /// Those that wait, the first in front: a number each, and the thread.
     waiting: VecDeque<(u64, ThreadId)>,
     next: u64,
+    /// The process in which it was used last: threads do not survive a fork.
+    process: u32,
 }
 
 /// The value in use; it goes back where this ends.
@@ -37,7 +39,13 @@ pub struct InUse<'a, T> {
 
 impl<T: Send> Exclusive<T> {
     pub fn new(value: T) -> Self {
-        let state = State { value: Some(value), user: None, waiting: VecDeque::new(), next: 0 };
+        let state = State {
+            value: Some(value),
+            user: None,
+            waiting: VecDeque::new(),
+            next: 0,
+            process: std::process::id(),
+        };
         Self { state: Mutex::new(state), returned: Condvar::new() }
     }
 
@@ -53,9 +61,22 @@ impl<T: Send> Exclusive<T> {
     /// The same, unless the token is set while it waits.
     ///
     /// # Errors
-    /// `Stopped` then.
+    /// `Stopped` then. `RuntimeError` in a process that was forked while a thread of its parent had the value:
+    /// that thread does not exist in the child, and would never give it back.
     pub fn take_unless(&self, py: Python<'_>, token: StopToken<'_>) -> PyResult<InUse<'_, T>> {
         let mut state = self.locked();
+        let process = std::process::id();
+        if state.process != process {
+            if state.value.is_none() {
+                return Err(PyRuntimeError::new_err(
+                    "this process was forked while a thread of its parent was solving with this contact, and the solve does not go on \
+                     here: start processes with multiprocessing.get_context(\"spawn\"), or make a contact in each process",
+                ));
+            }
+            // Those that waited are threads of the parent.
+            state.waiting.clear();
+            state.process = process;
+        }
         if state.waiting.is_empty()
             && let Some(value) = state.take()
         {

@@ -4,25 +4,31 @@ use crate::errors::of_model;
 use crate::memory;
 use crate::numbers::{NumberPair, OneOrTwo, RealNumber, pair};
 use crate::pool;
-use crate::state::reduced;
+use crate::state::{forbid_writing, reduced};
 use fractal_contact::surface_io::{Dimension, Sides as TextSides, Unit};
 use fractal_contact::{Cells, HeightMap as RustMap, Size};
-use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods};
+use numpy::{
+    PyArray1, PyArray2, PyArrayDescr, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods, dtype,
+};
+use pyo3::basic::CompareOp;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::{IntoPyDict as _, PyDict, PyString, PyTuple};
+use pyo3::types::{IntoPyDict as _, PyDict, PyIterator, PyString, PyTuple};
 use std::sync::Arc;
 
 /// Heights on a rectangle of equal cells, measured outwards from the body, so that large values touch first.
 ///
 /// ``np.asarray(map)`` is an array of them. Maps of the same size are added and subtracted; numbers, and arrays of
-/// the map's shape, are added, subtracted, multiplied and divided by. Undefined points stay undefined.
+/// the map's shape, are added, subtracted, multiplied and divided by. Undefined points stay undefined. Comparisons,
+/// ``map[row, column]``, ``map.max()`` and the functions of numpy give what they give of the array, in which undefined
+/// points are NaN; each copies the heights once. `equals` compares two maps as wholes.
 ///
 /// Parameters
 /// ----------
 /// heights : array_like
 ///     Two-dimensional, ``[row, column]``: columns along x, rows along y, of any real type. A masked array has
-///     undefined points where it is masked.
+///     undefined points where it is masked. Of an array whose dimensions have names, such as one of xarray, the names
+///     ``x`` and ``y`` (or ``column`` and ``row``) decide which axis is which; ``metadata`` says what was done.
 /// size : float, str, or two of them
 ///     Side of a square or sides ``(Lx, Ly)`` of the rectangle, in the unit of the heights; texts with a unit, such
 ///     as ``"1 mm"`` or ``"2 mm x 1 mm"``, are metres.
@@ -30,13 +36,23 @@ use std::sync::Arc;
 ///     Unit of the heights in the array, such as ``"nm"``: the map is then in metres.
 /// undefined : {"error", "no_contact"}
 ///     What NaN means: an error, or a point that cannot touch. Masked points cannot touch either way.
-#[pyclass(name = "HeightMap", frozen, module = "fractal_contact")]
+#[pyclass(name = "HeightMap", frozen, weakref, module = "fractal_contact")]
 #[derive(Clone)]
-pub struct PyHeightMap(pub Arc<RustMap>);
+pub struct PyHeightMap {
+    pub map: Arc<RustMap>,
+    /// What was done with the axes of an array whose dimensions have names.
+    axes: Option<String>,
+}
 
 impl From<RustMap> for PyHeightMap {
     fn from(map: RustMap) -> Self {
-        Self(Arc::new(map))
+        Arc::new(map).into()
+    }
+}
+
+impl From<Arc<RustMap>> for PyHeightMap {
+    fn from(map: Arc<RustMap>) -> Self {
+        Self { map, axes: None }
     }
 }
 
@@ -98,13 +114,13 @@ impl PyHeightMap {
     /// A copy of the heights, NaN at undefined points.
     fn array<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         self.copied(py)?;
-        let values = self.0.heights().iter().map(|h| if h.is_finite() { *h } else { f64::NAN }).collect();
-        PyArray1::from_vec(py, values).reshape([self.0.rows(), self.0.columns()])
+        let values = self.map.heights().iter().map(|h| if h.is_finite() { *h } else { f64::NAN }).collect();
+        PyArray1::from_vec(py, values).reshape([self.map.rows(), self.map.columns()])
     }
 
     /// An error where there is no memory for another map of this size.
     fn copied(&self, py: Python<'_>) -> PyResult<()> {
-        let cells = self.0.cells();
+        let cells = self.map.cells();
         memory::check_grid(py, "a map", cells, cells.map_bytes())
     }
 }
@@ -123,7 +139,7 @@ impl PyHeightMap {
         let GivenSides(size) = size;
         // Numpy's own rules for types, masks and memory orders.
         let prepared = py.import("fractal_contact._arrays")?.call_method1("heights", (heights, undefined))?;
-        let (array, partly): (PyReadonlyArray2<'_, f64>, bool) = prepared.extract()?;
+        let (array, partly, axes): (PyReadonlyArray2<'_, f64>, bool, Option<String>) = prepared.extract()?;
         let [rows, columns] = array.shape() else { unreachable!("two dimensions") };
         let cells = Cells { columns: *columns, rows: *rows };
         memory::check_grid(py, "a map", cells, cells.map_bytes())?;
@@ -143,7 +159,18 @@ impl PyHeightMap {
         } else {
             RustMap::new(cells, size, values)
         };
-        map.map(Self::from).map_err(|error| of_model(py, error))
+        map.map(|map| Self { axes, ..map.into() }).map_err(|error| of_model(py, error))
+    }
+
+    /// dict of str: what was done with the axes of an array whose dimensions have names, under ``"axes"``; empty for
+    /// other arrays, and of a map that follows from another one.
+    #[getter]
+    fn metadata<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let said = PyDict::new(py);
+        if let Some(axes) = &self.axes {
+            said.set_item("axes", axes)?;
+        }
+        Ok(said)
     }
 
     /// numpy.ndarray: the heights, [row, column]; NaN at undefined points. Read-only: ``np.array(map)`` is a copy to
@@ -151,7 +178,7 @@ impl PyHeightMap {
     #[getter]
     fn heights<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let array = self.array(py)?;
-        array.try_readwrite()?.make_nonwriteable();
+        forbid_writing(&array)?;
         Ok(array)
     }
 
@@ -174,59 +201,182 @@ impl PyHeightMap {
         }
     }
 
-    /// Operations of arrays with a map are the map's.
+    /// Sums, differences, products and quotients are those of the map; any other function of numpy has the array.
+    #[pyo3(signature = (ufunc, method, *inputs, **options))]
+    fn __array_ufunc__<'py>(
+        slf: &Bound<'py, Self>,
+        ufunc: &Bound<'py, PyAny>,
+        method: &str,
+        inputs: &Bound<'py, PyTuple>,
+        options: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let arrays = slf.py().import("fractal_contact._arrays")?;
+        arrays.call_method1("ufunc", (slf, ufunc, method, inputs, options))
+    }
+
+    /// Operations of data frames with a map are the map's.
     #[classattr]
-    #[pyo3(name = "__array_priority__")]
-    fn array_priority() -> f64 {
-        1000.0
+    #[pyo3(name = "__pandas_priority__")]
+    fn pandas_priority() -> u32 {
+        5000
+    }
+
+    fn __getitem__<'py>(&self, py: Python<'py>, index: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+        self.heights(py)?.get_item(index)
+    }
+
+    fn __iter__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyIterator>> {
+        self.heights(py)?.try_iter()
+    }
+
+    fn __contains__<'py>(&self, py: Python<'py>, value: &Bound<'py, PyAny>) -> PyResult<bool> {
+        self.heights(py)?.as_any().contains(value)
+    }
+
+    fn __bool__(&self, py: Python<'_>) -> PyResult<bool> {
+        self.heights(py)?.is_truthy()
+    }
+
+    /// int: 2, as of the array.
+    #[getter]
+    #[allow(clippy::unused_self)] // A property, which has a docstring.
+    fn ndim(&self) -> usize {
+        2
+    }
+
+    /// numpy.dtype: that of the array, double precision.
+    #[getter]
+    #[allow(clippy::unused_self)] // A property, which has a docstring.
+    fn dtype<'py>(&self, py: Python<'py>) -> Bound<'py, PyArrayDescr> {
+        dtype::<f64>(py)
+    }
+
+    /// The largest height, as ``max`` of the array: NaN where a point is undefined.
+    ///
+    /// Parameters
+    /// ----------
+    /// axis : int, optional
+    ///     0 for that of each column, 1 for that of each row; of all by default.
+    /// **options
+    ///     Other options of the array's method.
+    ///
+    /// Returns
+    /// -------
+    /// float or numpy.ndarray
+    #[pyo3(signature = (axis=None, **options))]
+    fn max<'py>(
+        &self,
+        py: Python<'py>,
+        axis: Option<Bound<'py, PyAny>>,
+        options: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        self.heights(py)?.call_method("max", (axis,), options)
+    }
+
+    /// The smallest height, as ``min`` of the array: NaN where a point is undefined.
+    ///
+    /// Parameters
+    /// ----------
+    /// axis : int, optional
+    ///     0 for that of each column, 1 for that of each row; of all by default.
+    /// **options
+    ///     Other options of the array's method.
+    ///
+    /// Returns
+    /// -------
+    /// float or numpy.ndarray
+    #[pyo3(signature = (axis=None, **options))]
+    fn min<'py>(
+        &self,
+        py: Python<'py>,
+        axis: Option<Bound<'py, PyAny>>,
+        options: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        self.heights(py)?.call_method("min", (axis,), options)
+    }
+
+    /// The mean height, as ``mean`` of the array: NaN where a point is undefined.
+    ///
+    /// Parameters
+    /// ----------
+    /// axis : int, optional
+    ///     0 for that of each column, 1 for that of each row; of all by default.
+    /// **options
+    ///     Other options of the array's method.
+    ///
+    /// Returns
+    /// -------
+    /// float or numpy.ndarray
+    #[pyo3(signature = (axis=None, **options))]
+    fn mean<'py>(
+        &self,
+        py: Python<'py>,
+        axis: Option<Bound<'py, PyAny>>,
+        options: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        self.heights(py)?.call_method("mean", (axis,), options)
+    }
+
+    /// Whether another map has the same size and the same heights to the last bit, undefined points included.
+    ///
+    /// Parameters
+    /// ----------
+    /// other : HeightMap
+    ///     The other map.
+    ///
+    /// Returns
+    /// -------
+    /// bool
+    fn equals(&self, other: &Self) -> bool {
+        self.map == other.map
     }
 
     /// Number of rows, as of the array.
     fn __len__(&self) -> usize {
-        self.0.rows()
+        self.map.rows()
     }
 
     /// (int, int): rows and columns.
     #[getter]
     fn shape(&self) -> (usize, usize) {
-        (self.0.rows(), self.0.columns())
+        (self.map.rows(), self.map.columns())
     }
 
     /// (float, float): sides (Lx, Ly).
     #[getter]
     fn size(&self) -> (f64, f64) {
-        (self.0.size().x, self.0.size().y)
+        (self.map.size().x, self.map.size().y)
     }
 
     /// (float, float): sides of a cell (dx, dy).
     #[getter]
     fn cell(&self) -> (f64, f64) {
-        (self.0.dx(), self.0.dy())
+        (self.map.dx(), self.map.dy())
     }
 
     /// (float, float, float, float): left, right, bottom and top of the rectangle, as ``imshow`` takes it with
     /// ``origin="lower"``.
     #[getter]
     fn extent(&self) -> (f64, f64, f64, f64) {
-        (0.0, self.0.size().x, 0.0, self.0.size().y)
+        (0.0, self.map.size().x, 0.0, self.map.size().y)
     }
 
     /// numpy.ndarray: places of the centres of the columns along x, shape (columns,).
     #[getter]
     fn x<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        centres(py, self.0.columns(), self.0.dx())
+        centres(py, self.map.columns(), self.map.dx())
     }
 
     /// numpy.ndarray: places of the centres of the rows along y, shape (rows,).
     #[getter]
     fn y<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        centres(py, self.0.rows(), self.0.dy())
+        centres(py, self.map.rows(), self.map.dy())
     }
 
     /// int: number of undefined points.
     #[getter]
     fn undefined(&self) -> usize {
-        self.0.undefined()
+        self.map.undefined()
     }
 
     /// float: rms height about the mean of the defined points.
@@ -234,7 +384,7 @@ impl PyHeightMap {
     fn rms_height(&self, py: Python<'_>) -> PyResult<f64> {
         // On the pool, as all that shares its work: the threads of rayon's own pool do not survive a fork.
         self.copied(py)?;
-        let map = Arc::clone(&self.0);
+        let map = Arc::clone(&self.map);
         pool::call(py, move || {
             let defined: Vec<f64> = map.defined().collect();
             fractal_contact::surface_gen::rms_height(&defined)
@@ -244,19 +394,19 @@ impl PyHeightMap {
     /// The map with x and y exchanged.
     fn transposed(&self, py: Python<'_>) -> PyResult<Self> {
         self.copied(py)?;
-        Ok(self.0.transposed().into())
+        Ok(self.map.transposed().into())
     }
 
     /// The map with x reversed.
     fn mirrored(&self, py: Python<'_>) -> PyResult<Self> {
         self.copied(py)?;
-        Ok(self.0.mirrored().into())
+        Ok(self.map.mirrored().into())
     }
 
     /// The map turned by a quarter from x to y.
     fn rotated(&self, py: Python<'_>) -> PyResult<Self> {
         self.copied(py)?;
-        Ok(self.0.rotated().into())
+        Ok(self.map.rotated().into())
     }
 
     /// The map of the rows and columns from the first to before the second of each pair.
@@ -268,16 +418,28 @@ impl PyHeightMap {
     fn cropped(&self, py: Python<'_>, rows: NumberPair, columns: NumberPair) -> PyResult<Self> {
         let (NumberPair(rows), NumberPair(columns)) = (rows, columns);
         let [wide, high] = [columns, rows].map(|[first, end]| end.saturating_sub(first));
-        let cells = Cells { columns: wide.min(self.0.columns()), rows: high.min(self.0.rows()) };
+        let cells = Cells { columns: wide.min(self.map.columns()), rows: high.min(self.map.rows()) };
         memory::check_grid(py, "a map", cells, cells.map_bytes())?;
-        let map = self.0.cropped(columns[0]..columns[1], rows[0]..rows[1]);
+        let map = self.map.cropped(columns[0]..columns[1], rows[0]..rows[1]);
         map.map(Self::from).map_err(|error| of_model(py, error))
     }
 
     /// The map with its sides and its heights multiplied.
+    ///
+    /// Parameters
+    /// ----------
+    /// lateral : float
+    ///     Factor > 0 of the sides.
+    /// vertical : float
+    ///     Factor of the heights.
+    ///
+    /// Returns
+    /// -------
+    /// HeightMap
+    ///     A new map.
     fn scaled(&self, py: Python<'_>, lateral: RealNumber, vertical: RealNumber) -> PyResult<Self> {
         self.copied(py)?;
-        self.0.scaled(lateral.0, vertical.0).map(Self::from).map_err(|error| of_model(py, error))
+        self.map.scaled(lateral.0, vertical.0).map(Self::from).map_err(|error| of_model(py, error))
     }
 
     /// Draws the map with matplotlib: cells in their shape, the first row at the bottom, a colour bar.
@@ -313,7 +475,7 @@ impl PyHeightMap {
     fn __add__<'py>(slf: &Bound<'py, Self>, other: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         let Ok(other) = other.cast::<Self>() else { return combined(slf, other, "add", false) };
         slf.get().copied(slf.py())?;
-        let sum = slf.get().0.plus(&other.get().0).map_err(|error| of_model(slf.py(), error))?;
+        let sum = slf.get().map.plus(&other.get().map).map_err(|error| of_model(slf.py(), error))?;
         Ok(Self::from(sum).into_pyobject(slf.py())?.into_any())
     }
 
@@ -324,7 +486,7 @@ impl PyHeightMap {
     fn __sub__<'py>(slf: &Bound<'py, Self>, other: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         let Ok(other) = other.cast::<Self>() else { return combined(slf, other, "subtract", false) };
         slf.get().copied(slf.py())?;
-        let difference = slf.get().0.minus(&other.get().0).map_err(|error| of_model(slf.py(), error))?;
+        let difference = slf.get().map.minus(&other.get().map).map_err(|error| of_model(slf.py(), error))?;
         Ok(Self::from(difference).into_pyobject(slf.py())?.into_any())
     }
 
@@ -352,13 +514,26 @@ impl PyHeightMap {
         self.clone()
     }
 
-    fn __eq__(&self, other: &Self) -> bool {
-        self.0 == other.0
+    /// Element by element, as of the array.
+    fn __richcmp__<'py>(
+        &self,
+        py: Python<'py>,
+        other: &Bound<'py, PyAny>,
+        operation: CompareOp,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let other = py.import("fractal_contact._arrays")?.call_method1("operand", (other,))?;
+        self.heights(py)?.rich_compare(other, operation)
+    }
+
+    /// From the values of `__reduce__`.
+    #[staticmethod]
+    fn _with_axes(map: &Self, axes: Option<String>) -> Self {
+        Self { axes, ..map.clone() }
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         let undefined = if self.undefined() > 0 { "no_contact" } else { "error" };
-        reduced(py, "height_map", (self.array(py)?, self.size(), undefined))
+        reduced(py, "height_map", (self.array(py)?, self.size(), undefined, &self.axes))
     }
 
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {

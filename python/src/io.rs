@@ -13,7 +13,7 @@ use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::fmt::Display;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use std::sync::Arc;
 
@@ -96,19 +96,32 @@ fn metadata<'py>(py: Python<'py>, of: &Metadata) -> PyResult<Bound<'py, PyDict>>
 /// Map, metadata, steps, and the distance from which on heights are reliable.
 type ReadFile<'py> = (PyHeightMap, Bound<'py, PyDict>, Vec<String>, Option<f64>);
 
-/// A surface of a file: its map, what the file says, what was done to the map, from which distance on the tip
-/// lets heights be seen.
+/// The file at a path, or the content of a file of this name.
+fn opened<'a>(
+    path: &Path,
+    content: Option<&'a [u8]>,
+    declared: &ReadOptions,
+) -> Result<SurfaceFile<'a>, Error> {
+    content.map_or_else(
+        || SurfaceFile::open(path, declared),
+        |content| SurfaceFile::from_bytes(path, content, declared),
+    )
+}
+
+/// A surface of a file, or of its content: its map, what the file says, what was done to the map, from which distance
+/// on the tip lets heights be seen.
 #[pyfunction]
-#[pyo3(signature = (path, options))]
+#[pyo3(signature = (path, options, content=None))]
 pub fn read_surface<'py>(
     py: Python<'py>,
     path: PathBuf,
     options: &Bound<'py, PyDict>,
+    content: Option<&[u8]>,
 ) -> PyResult<ReadFile<'py>> {
     let (declared, preprocessing) = self::options(options)?;
-    let file = path.clone();
+    let (file, content) = (path.clone(), content.map(<[u8]>::to_vec));
     let read = move || -> Result<_, Error> {
-        let scan = SurfaceFile::open(&file, &declared)?.scan()?;
+        let scan = opened(&file, content.as_deref(), &declared)?.scan()?;
         let found = scan.preprocessed(&preprocessing)?;
         Ok((scan.metadata().clone(), found))
     };
@@ -123,20 +136,22 @@ pub fn read_surface<'py>(
 
 /// Metadata of each channel of a file; of a channel that cannot be read beside others, `error`.
 #[pyfunction]
-#[pyo3(signature = (path, options))]
+#[pyo3(signature = (path, options, content=None))]
 pub fn channels<'py>(
     py: Python<'py>,
     path: PathBuf,
     options: &Bound<'py, PyDict>,
+    content: Option<&[u8]>,
 ) -> PyResult<Vec<Bound<'py, PyDict>>> {
     let (declared, _) = self::options(options)?;
+    let content = content.map(<[u8]>::to_vec);
     let read = move || -> Result<Vec<Result<Metadata, String>>, Error> {
         let one = |scan: Result<Scan, Error>| match scan {
             Ok(scan) => Ok(Ok(scan.metadata().clone())),
             Err(error) if error.problem().is_some() => Ok(Err(error.to_string())),
             Err(error) => Err(error),
         };
-        SurfaceFile::open(&path, &declared)?.scans().map(one).collect()
+        opened(&path, content.as_deref(), &declared)?.scans().map(one).collect()
     };
     let found = pool::call(py, read)?.map_err(|error| of_surface(py, &error))?;
     let one = |of: &Result<Metadata, String>| match of {
@@ -161,6 +176,6 @@ pub fn si(text: &str) -> PyResult<f64> {
 #[pyfunction]
 pub fn write_surface(py: Python<'_>, path: PathBuf, map: &PyHeightMap, metres: bool) -> PyResult<()> {
     let metric = if metres { Metric::Metres } else { Metric::Unitless };
-    let map = Arc::clone(&map.0);
+    let map = Arc::clone(&map.map);
     pool::call(py, move || scenes::write_map(&path, &map, metric))?.map_err(|error| of_surface(py, &error))
 }

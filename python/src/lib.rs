@@ -18,6 +18,7 @@ mod load_order;
 mod loads;
 mod memory;
 mod model;
+mod notes;
 mod numbers;
 mod picture;
 mod pool;
@@ -51,6 +52,8 @@ mod _core {
     #[pymodule_export]
     use crate::model::{PyModel, combinations, model, models};
     #[pymodule_export]
+    use crate::notes::notes_of_python;
+    #[pymodule_export]
     use crate::picture::picture;
     #[pymodule_export]
     use crate::pool::{set_threads, threads};
@@ -59,7 +62,7 @@ mod _core {
     #[pymodule_export]
     use crate::scene::{PyScene, PySurface, check_effects, effect_keys, height_map, scene, surface};
     #[pymodule_export]
-    use crate::scenes::{PySceneFile, run_scene};
+    use crate::scenes::{PySceneFile, press_scene, run_scene};
     #[pymodule_export]
     use crate::state::{PyCertificate, PyContactState};
     #[pymodule_export]

@@ -36,8 +36,9 @@ fn new_pool(threads: usize) -> PyResult<Arc<ThreadPool>> {
     built.map(Arc::new).map_err(|error| PyRuntimeError::new_err(error.to_string()))
 }
 
-/// Number of threads that one solve, or one ensemble, may use: by default what the variable ``RAYON_NUM_THREADS`` of the
-/// environment says, or as many as there are processors.
+/// Number of threads that one solve, or one ensemble, may use.
+///
+/// By default it is what the variable ``RAYON_NUM_THREADS`` of the environment says, or as many as there are processors.
 ///
 /// Returns
 /// -------

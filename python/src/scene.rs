@@ -6,8 +6,8 @@ use crate::numbers::{OneOrTwo, RealNumber, Seed};
 use crate::toml_text::toml_text;
 use fractal_contact::scenes::{EFFECT_KEYS, EffectKey, parse_effects};
 use fractal_contact::{
-    Amplitude, Body, Conductance, Effects, Line, Output, Outputs, Pair, Scene as RustScene, SelfAffine,
-    Surface as RustSurface,
+    Amplitude, Body, Conductance, Effects, Friction, Line, Output, Outputs, Pair, Scene as RustScene,
+    SelfAffine, Surface as RustSurface,
 };
 use numpy::PyReadonlyArray1;
 use pyo3::exceptions::{PyOverflowError, PyTypeError, PyValueError};
@@ -127,7 +127,7 @@ pub fn height_map(
     crate::memory::check_grid(py, "a map", cells, bytes)?;
     let map =
         crate::pool::call(py, move || fractal_contact::surface_gen::height_map(&surface, cells, seed.0))?;
-    map.map(PyHeightMap).map_err(|error| of_model(py, error))
+    map.map(PyHeightMap::from).map_err(|error| of_model(py, error))
 }
 
 /// Everything physical about one contact problem.
@@ -175,7 +175,7 @@ pub fn scene(
     conductance: Option<(String, RealNumber, RealNumber)>,
 ) -> PyResult<PyScene> {
     let surface = match surface {
-        AnySurface::Map(map) => RustSurface::Heights(Arc::clone(&map.get().0)),
+        AnySurface::Map(map) => RustSurface::Heights(Arc::clone(&map.get().map)),
         AnySurface::Described(surface) => surface.get().0.clone(),
     };
     let pair = bodies.map(|[first, second]| Pair { first: body(first), second: body(second) });
@@ -187,6 +187,12 @@ pub fn scene(
     };
     let mut scene = made.map_err(|error| of_model(py, error))?;
     scene.effects = self::effects(py, effects)?;
+    if scene.pair.is_none() && scene.effects.friction != Friction::Off {
+        return Err(PyTypeError::new_err(
+            "friction needs Young's modulus and Poisson's ratio of both bodies, and contact_modulus does not say them: bodies= is \
+             missing; write bodies=(fc.Body(young, poisson), None) in the place of contact_modulus, None for a rigid body",
+        ));
+    }
     let default_outputs = outputs.is_none();
     if let Some(names) = outputs {
         scene.outputs = Outputs::default();

@@ -8,14 +8,19 @@ use crate::toml_text::{toml_text, toml_value};
 use fractal_contact::Table;
 use fractal_contact::Value;
 use fractal_contact::runs::Progress;
-use fractal_contact::scenes::{Options, Plan, Question, SceneFile as RustSceneFile, SceneOutcome, run};
+use fractal_contact::scenes::{
+    Error, Options, Plan, Question, SceneFile as RustSceneFile, SceneOutcome, System, run,
+};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
+use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// A scene file: the surface, the material, the effects, the loads and the requested outputs.
+///
+/// Two of them are equal where their texts are, and the folders from which relative paths count.
 #[pyclass(name = "SceneFile", frozen, module = "fractal_contact")]
 pub struct PySceneFile(RustSceneFile);
 
@@ -30,12 +35,34 @@ impl PySceneFile {
 #[pymethods]
 impl PySceneFile {
     /// Reads a file.
+    ///
+    /// Parameters
+    /// ----------
+    /// path : str or path-like
+    ///     The file; relative paths in it count from its folder.
+    ///
+    /// Returns
+    /// -------
+    /// SceneFile
     #[staticmethod]
     fn read(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
         pool::call(py, move || RustSceneFile::read(&path))?.map(Self).map_err(|error| of_scene(py, &error))
     }
 
-    /// Reads a text; relative paths in it count from `directory`.
+    /// Reads a text.
+    ///
+    /// Parameters
+    /// ----------
+    /// text : str
+    ///     What a file of a scene holds.
+    /// directory : str or path-like
+    ///     The folder from which relative paths count; the current one by default.
+    /// name : str
+    ///     What the scene is called in titles.
+    ///
+    /// Returns
+    /// -------
+    /// SceneFile
     #[staticmethod]
     #[pyo3(signature = (text, *, directory=PathBuf::new(), name="scene".to_owned()))]
     fn from_toml(py: Python<'_>, text: String, directory: PathBuf, name: String) -> PyResult<Self> {
@@ -45,7 +72,20 @@ impl PySceneFile {
             .map_err(|error| of_scene(py, &error))
     }
 
-    /// A scene from its tables, with the keys and values of a text; relative paths count from `directory`.
+    /// Makes a scene of its tables, with the keys and values of a text.
+    ///
+    /// Parameters
+    /// ----------
+    /// tables : dict
+    ///     The tables by their names, such as ``scene``, ``effects`` and ``outputs``.
+    /// directory : str or path-like
+    ///     The folder from which relative paths count; the current one by default.
+    /// name : str
+    ///     What the scene is called in titles.
+    ///
+    /// Returns
+    /// -------
+    /// SceneFile
     #[staticmethod]
     #[pyo3(signature = (tables, *, directory=PathBuf::new(), name="scene".to_owned()))]
     fn from_dict(
@@ -59,8 +99,16 @@ impl PySceneFile {
         Self::of(py, question, directory.join(format!("{name}.toml")))
     }
 
-    /// The same scene with other values of some keys, each by its table and its name:
-    /// ``scene.replaced({"scene.surface.cells": 64})``.
+    /// Gives the same scene with other values of some keys.
+    ///
+    /// Parameters
+    /// ----------
+    /// keys : dict
+    ///     The values, each by its table and its name: ``scene.replaced({"scene.surface.cells": 64})``.
+    ///
+    /// Returns
+    /// -------
+    /// SceneFile
     fn replaced(&self, py: Python<'_>, keys: &Bound<'_, PyDict>) -> PyResult<Self> {
         let mut question = Question::parse(&self.0.text).map_err(|mistake| of_scene(py, &mistake.into()))?;
         for (key, value) in keys {
@@ -77,17 +125,38 @@ impl PySceneFile {
         &self.0.text
     }
 
+    /// (float, float): sides (Lx, Ly) of its rectangle.
+    #[getter]
+    fn size(&self) -> (f64, f64) {
+        let size = self.0.surface.size();
+        (size.x, size.y)
+    }
+
     /// list of str: its models.
     #[getter]
     fn models(&self) -> Vec<&'static str> {
         self.0.models.iter().map(fractal_contact::scenes::Numerics::name).collect()
     }
 
-    /// The plan in words: what will be computed, what will not and why, and the cost.
+    /// Says what will be computed, what will not and why, and what it will cost.
+    ///
+    /// Returns
+    /// -------
+    /// str
     fn plan(&self, py: Python<'_>) -> PyResult<String> {
         let file = self.0.clone();
         let planned = pool::call(py, move || Plan::new(&file).map(|plan| plan.to_string()))?;
         planned.map_err(|error| of_scene(py, &error))
+    }
+
+    fn __eq__(&self, other: &Self) -> bool {
+        (&self.0.text, &self.0.path) == (&other.0.text, &other.0.path)
+    }
+
+    fn __hash__(&self) -> u64 {
+        let mut state = DefaultHasher::new();
+        (&self.0.text, &self.0.path).hash(&mut state);
+        state.finish()
     }
 
     /// The text and where it stands: files that it names are read again.
@@ -98,6 +167,32 @@ impl PySceneFile {
     fn __repr__(&self) -> String {
         format!("<SceneFile: {} by {}>", self.0.surface.describe(self.0.system), self.models().join(", "))
     }
+}
+
+/// The scene of a map that is pressed, of its keys in their order.
+///
+/// Each has its value, and whether the numbers in it have units. The whole scene is in SI units, or in any.
+#[pyfunction]
+pub fn press_scene(
+    py: Python<'_>,
+    keys: Vec<(String, Bound<'_, PyAny>, bool)>,
+    si: bool,
+    path: PathBuf,
+) -> PyResult<PySceneFile> {
+    let system = |units: bool| if units { System::Si } else { System::None };
+    let mut question = Question::default();
+    for (key, value, units) in keys {
+        question.units = system(units);
+        question.set(&key, &toml_value(&value, &key)?).map_err(|mistake| of_values(py, &mistake))?;
+    }
+    question.units = system(si);
+    let scene = pool::call(py, move || RustSceneFile::of(question, &path))?;
+    let told = |error| match error {
+        // It has no place in a file of the user.
+        Error::Scene(mistake) => Error::from(mistake.told_of("the scene of this call")),
+        other => other,
+    };
+    scene.map(PySceneFile).map_err(|error| of_scene(py, &told(error)))
 }
 
 /// Relative cost of what is done and of all.
@@ -211,6 +306,7 @@ pub fn run_scene<'py>(
     dict.set_item("requested", outcome.requested)?;
     dict.set_item("states", outcome.states)?;
     dict.set_item("failed", outcome.failed)?;
+    dict.set_item("pulled_off", outcome.pulled_off)?;
     dict.set_item("kept", outcome.kept)?;
     dict.set_item("seconds", outcome.seconds)?;
     Ok(dict)

@@ -1,6 +1,7 @@
 //! States of a contact.
 
 use crate::errors::of_model;
+use crate::notes::note;
 use crate::quantities::{is_named_where_known, object};
 use fractal_contact::quantities::{QUANTITIES, Role, StateQuantity};
 use fractal_contact::scenes::StateNotes;
@@ -8,7 +9,8 @@ use fractal_contact::{
     Certificate as RustCertificate, ContactState as RustState, FIELDS, Field, FieldQuantity,
     Normalisation as RustNormalisation, PathMemory, Scene, SolveReport, Value,
 };
-use numpy::{PyArray1, PyArrayDyn, PyArrayMethods};
+use numpy::ndarray::Dimension;
+use numpy::{BorrowError, PyArray, PyArray1, PyArrayDyn, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyTuple};
 use serde::Serialize;
@@ -25,8 +27,23 @@ pub fn array(py: Python<'_>, components: Vec<Field>) -> PyResult<Option<Py<PyArr
     values.extend(components.flat_map(Field::into_values));
     let shape = shape[usize::from(count == 1)..].to_vec();
     let flat = PyArray1::from_vec(py, values);
-    flat.try_readwrite()?.make_nonwriteable();
+    forbid_writing(&flat)?;
     Ok(Some(flat.reshape(shape)?.unbind()))
+}
+
+/// Makes an array read-only. One that is so already, such as a view of a file or of bytes, stays as it is.
+///
+/// # Errors
+/// For an array that is being written to.
+pub fn forbid_writing<D: Dimension>(array: &Bound<'_, PyArray<f64, D>>) -> PyResult<()> {
+    match array.try_readwrite() {
+        Ok(writable) => {
+            writable.make_nonwriteable();
+            Ok(())
+        }
+        Err(BorrowError::NotWriteable) => Ok(()),
+        Err(error) => Err(error.into()),
+    }
 }
 
 /// What a value is made of, as bytes for another process of the same version.
@@ -178,12 +195,30 @@ impl PyCertificate {
         self.0.worst()
     }
 
+    fn __hash__(&self) -> u64 {
+        // Of equal certificates equal; 0 and -0 are equal.
+        (self.0.worst() + 0.0).to_bits()
+    }
+
     /// Whether every number that the tolerance bounds is at most `tolerance`.
+    ///
+    /// Parameters
+    /// ----------
+    /// tolerance : float
+    ///     Dimensionless, as that of the model.
+    ///
+    /// Returns
+    /// -------
+    /// bool
     fn meets(&self, tolerance: f64) -> bool {
         self.0.meets(tolerance)
     }
 
     /// The numbers by the names of the columns of scenes; ``stiffness_error`` is `error_of_stiffness`.
+    ///
+    /// Returns
+    /// -------
+    /// dict of float or None
     fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         // The residuals of the table, of a state that has nothing but this certificate.
         let mut state = RustState::new(0.0, SolveReport::exact(""));
@@ -211,12 +246,14 @@ impl PyCertificate {
     }
 }
 
-/// One contact state, alone or at the end of a step of a path. What was not requested, or what the model does
-/// not claim, is None.
+/// One contact state, alone or at the end of a step of a path.
+///
+/// What was not requested, or what the model does not claim, is None. Two states compare with ``==`` as wholes: they
+/// are equal if all their numbers, fields and notes are, to the last bit.
 ///
 /// Its numbers and words are those of `quantities`. Units in brackets are those of SI; a scene in other units
 /// has its own.
-#[pyclass(name = "ContactState", frozen, module = "fractal_contact")]
+#[pyclass(name = "ContactState", frozen, weakref, module = "fractal_contact")]
 pub struct PyContactState {
     state: RustState,
     normalisation: RustNormalisation,
@@ -229,7 +266,7 @@ pub struct PyContactState {
 /// Moves a state of a contact of this origin into Python.
 pub fn of(py: Python<'_>, mut state: RustState, origin: &StateOrigin) -> PyResult<Py<PyContactState>> {
     let StateOrigin { normalisation, notes, size } = *origin;
-    let notes = notes.of(&state);
+    let notes = notes.of(&state).into_iter().map(note).collect();
     let mut taken = state.fields.take().unwrap_or_default();
     let arrays = FIELDS.iter().map(|quantity| array(py, (quantity.take)(&mut taken)));
     let fields = arrays.collect::<PyResult<_>>()?;
@@ -255,7 +292,9 @@ impl PyContactState {
     /// int or None: cells in contact at an edge of a free rectangle.
     #[getter]
     fn edge_cells(&self) -> Option<usize> {
-        self.state.resolution.map(|resolution| resolution.edge_cells)
+        // A formula has no cells.
+        let resolution = self.state.resolution.filter(|_| self.state.report.contact_cells.is_some());
+        resolution.map(|resolution| resolution.edge_cells)
     }
 
     /// numpy.ndarray or None: areas of the connected contacts (length^2), the largest first; shape
@@ -264,12 +303,12 @@ impl PyContactState {
     fn patches<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray1<f64>>>> {
         let Some(patches) = self.state.patches.as_ref() else { return Ok(None) };
         let array = PyArray1::from_slice(py, patches.areas());
-        array.try_readwrite()?.make_nonwriteable();
+        forbid_writing(&array)?;
         Ok(Some(array))
     }
 
     /// tuple of str: what may be wrong with the state though it is solved, such as few cells in contact or contact at
-    /// the edge, and what to do about it: the notes of scenes.
+    /// the edge, and what to do about it.
     #[getter]
     fn notes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         PyTuple::new(py, &self.notes)
@@ -287,11 +326,20 @@ impl PyContactState {
         PyCertificate(self.state.report.certificate)
     }
 
-    /// The numbers and words by their names, which are those of the columns of scenes; arrays only with
-    /// ``fields=True``.
+    /// The numbers and words by their names, which are those of the columns of scenes.
     ///
-    /// Those of effects and of paths are there where the state has them; any other that it lacks is None.
+    /// Arrays are there only with ``fields=True``. Those of effects and of paths are there where the state has them; any other that it lacks is None.
     /// ``patches`` is the number of connected contacts, and with ``fields=True`` the array.
+    ///
+    /// Parameters
+    /// ----------
+    /// fields : bool
+    ///     True to add the arrays of the fields that were requested.
+    ///
+    /// Returns
+    /// -------
+    /// dict
+    ///     Numbers, texts, None and arrays by their names.
     #[pyo3(signature = (*, fields=false))]
     fn to_dict<'py>(&self, py: Python<'py>, fields: bool) -> PyResult<Bound<'py, PyDict>> {
         let dict = PyDict::new(py);
@@ -310,6 +358,35 @@ impl PyContactState {
         Ok(dict)
     }
 
+    /// Whether two states are the same to the last bit, with their fields and notes.
+    fn __eq__(&self, py: Python<'_>, other: &Self) -> PyResult<bool> {
+        let numbers = self.state == other.state
+            && self.normalisation == other.normalisation
+            && self.notes == other.notes
+            && self.size.map(f64::to_bits) == other.size.map(f64::to_bits);
+        if !numbers {
+            return Ok(false);
+        }
+        for fields in self.fields.iter().zip(&other.fields) {
+            let same = match fields {
+                (Some(one), Some(other)) => {
+                    let (one, other) = (one.bind(py).try_readonly()?, other.bind(py).try_readonly()?);
+                    one.as_array() == other.as_array()
+                }
+                (one, other) => one.is_none() == other.is_none(),
+            };
+            if !same {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+
+    fn __hash__(&self) -> u64 {
+        // Of equal states equal; 0 and -0 are equal.
+        (self.state.force + 0.0).to_bits()
+    }
+
     /// From the bytes of `__reduce__` and the fields, in the order of `FIELDS`.
     #[staticmethod]
     fn _of_bytes(
@@ -317,9 +394,7 @@ impl PyContactState {
         bytes: &[u8],
         fields: Vec<Option<Bound<'_, PyArrayDyn<f64>>>>,
     ) -> PyResult<Self> {
-        for field in fields.iter().flatten() {
-            field.try_readwrite()?.make_nonwriteable();
-        }
+        fields.iter().flatten().try_for_each(forbid_writing)?;
         let (state, normalisation, notes, size) = of_bytes(py, bytes)?;
         let mut fields: Vec<_> = fields.into_iter().map(|field| field.map(Bound::unbind)).collect();
         fields.resize_with(FIELDS.len(), || None);

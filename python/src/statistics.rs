@@ -28,7 +28,7 @@ const DIFFERENCES: [f64; 2] = [100.0, 400.0];
 
 /// `MemoryError` where there is less than so many bytes for each point of a map.
 fn check_memory(py: Python<'_>, map: &PyHeightMap, bytes: f64) -> PyResult<()> {
-    let cells = map.0.cells();
+    let cells = map.map.cells();
     memory::check_grid(py, "the statistics of a map", cells, cells.map_bytes() / 8.0 * bytes)
 }
 
@@ -47,7 +47,7 @@ fn arrays(dict: &Bound<'_, PyDict>, of: &[(&str, Vec<f64>)]) -> PyResult<()> {
 #[pyfunction]
 pub fn parameters<'py>(py: Python<'py>, map: &PyHeightMap, periodic: bool) -> PyResult<Bound<'py, PyDict>> {
     check_memory(py, map, DIFFERENCES[1])?;
-    let of = Arc::clone(&map.0);
+    let of = Arc::clone(&map.map);
     let found = pool::call(py, move || -> Result<Vec<(&'static str, Option<f64>)>> {
         let (of, mut all) = (&*of, Vec::new());
         let h = HeightParameters::new(of)?;
@@ -101,7 +101,7 @@ pub fn power_spectrum<'py>(
     level: RealNumber,
 ) -> PyResult<Bound<'py, PyDict>> {
     check_memory(py, map, SPECTRUM)?;
-    let (of, taper) = (Arc::clone(&map.0), if periodic { Taper::None } else { Taper::Hann });
+    let (of, taper) = (Arc::clone(&map.map), if periodic { Taper::None } else { Taper::Hann });
     let found = match direction {
         "radial" => pool::call(py, move || {
             PowerSpectrum::radial(&of, taper, &Bins::of_wavenumbers(&of, per_decade.0)?)
@@ -147,7 +147,7 @@ pub fn height_difference<'py>(
     level: RealNumber,
 ) -> PyResult<Bound<'py, PyDict>> {
     check_memory(py, map, DIFFERENCES[usize::from(!periodic)])?;
-    let of = Arc::clone(&map.0);
+    let of = Arc::clone(&map.map);
     let found = pool::call(py, move || -> Result<_> {
         let of = &*of;
         let found =
@@ -183,7 +183,7 @@ pub fn scale_dependence<'py>(
     level: RealNumber,
 ) -> PyResult<Bound<'py, PyDict>> {
     check_memory(py, map, SPECTRUM)?;
-    let (of, boundary, axis) = (Arc::clone(&map.0), boundary(periodic), usize::from(along_y));
+    let (of, boundary, axis) = (Arc::clone(&map.map), boundary(periodic), usize::from(along_y));
     let found = pool::call(py, move || -> Result<_> {
         let of = &*of;
         let bands = DifferenceBands::new(of, boundary).ok();
@@ -217,7 +217,7 @@ pub fn fit_spectrum<'py>(
     instrument: Option<RealNumber>,
 ) -> PyResult<Bound<'py, PyDict>> {
     check_memory(py, map, SPECTRUM)?;
-    let (of, boundary) = (Arc::clone(&map.0), boundary(periodic));
+    let (of, boundary) = (Arc::clone(&map.map), boundary(periodic));
     let instrument = instrument.map(|RealNumber(wavelength)| wavelength);
     let found = pool::call(py, move || {
         let reliable = ReliableWavelengths::new(&of, boundary, instrument)?;

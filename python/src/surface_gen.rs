@@ -67,7 +67,7 @@ pub fn twin(
     rings: bool,
     keep_heights: bool,
 ) -> PyResult<PyHeightMap> {
-    let of = Arc::clone(&map.0);
+    let of = Arc::clone(&map.map);
     let (cells, like) = (of.cells(), if rings { TwinSpectrum::Rings } else { TwinSpectrum::EachWave });
     let heights = keep_heights.then(|| HeightDistribution::Of(Arc::clone(&of)));
     let random = RandomSurface::new(RandomSpectrum::Twin { of, like }, heights);

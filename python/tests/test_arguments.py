@@ -313,8 +313,8 @@ def test_messages_are_not_those_of_rust():
     body = fc.Body(1.0, 0.3)
     told = []
     for take in (
-        lambda: fc.CattaneoMindlin().prepare(fc.Scene(SPHERE, contact_modulus=1.0, effects={"friction": 0.5})),
-        lambda: fc.Bem3d(cells=17).prepare(fc.Scene(SPHERE, contact_modulus=1.0, effects={"friction": 0.5})),
+        lambda: fc.Hertz().prepare(fc.Scene(SPHERE, bodies=(body, body), effects={"friction": 0.5})),
+        lambda: fc.PartialSlip().prepare(fc.Scene(SPHERE, contact_modulus=1.0, outputs=["pressure"])),
         lambda: fc.Bem3d(cells=17).prepare(fc.Scene(SPHERE, contact_modulus=1.0)).solve(mean_gap=0.1),
         lambda: fc.Hertz().prepare(fc.Scene(SPHERE, contact_modulus=1.0, effects={"boundary": "periodic"})),
         lambda: CONTACT.solve(mean_gap=0.1),

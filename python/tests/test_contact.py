@@ -89,7 +89,7 @@ def test_undefined_points_cannot_touch():
     masked = fc.HeightMap(np.ma.masked_array(h, mask), size=1.0)
     h[mask] = np.nan
     marked = fc.HeightMap(h, size=1.0, undefined="no_contact")
-    assert masked == marked and masked.undefined == 1 and np.isnan(masked.heights[mask]).all()
+    assert masked.equals(marked) and masked.undefined == 1 and np.isnan(masked.heights[mask]).all()
     scene = fc.Scene(masked, contact_modulus=1.0, outputs=["pressure", "gap"])
     state = fc.Bem3d().prepare(scene).solve(force=0.01)
     assert (state.pressure[mask] == 0).all() and np.isinf(state.gap[mask]).all()

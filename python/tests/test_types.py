@@ -1,5 +1,6 @@
 """What a type checker finds."""
 
+import inspect
 import subprocess
 import sys
 import typing
@@ -11,6 +12,7 @@ from fractal_contact import _core
 from fractal_contact import typing as words
 
 GOOD = """
+import io
 import threading
 import numpy as np
 import fractal_contact as fc
@@ -27,17 +29,37 @@ total: float = np.asarray(rough).sum() + len(state.notes)
 for state in contact.sweep(force=(value for value in (1.0, 2.0))):
     print(state.force)
 fc.read_surface("map.npy", unit="nm", detrend="plane")
+fc.read_surface(io.BytesIO(b"1 2"), size="1 mm")
+names = ["area", "pressure"]
+values = {"hardness": 0.1}
+fc.Scene(ball, 1.0, outputs=names, effects=values)
+fc.Scene(ball, 1.0, outputs=(name for name in names), effects={"adhesion": {"work": 1.0}})
+pressed = fc.press(np.zeros((4, 4)), "1 mm", "1 GPa", unit="nm", mean_pressure=["1 MPa"], effects=values, crop="centre")
+area: float = pressed.area[0] + pressed.area_error[0]
+pair = (fc.Body(1.0, 0.3), {"young": 1.0, "poisson": 0.3})
+fc.press(rough, bodies=pair, force=(force for force in (1.0, 2.0)), outputs=names)
+positive = rough > 0
+highest: float = np.asarray(rough)[positive].sum() + rough.max() + rough[0, 0]
+rough.height = 1  # type: ignore[attr-defined]
+random = fc.Surface.self_affine(size=1.0, rms_height=0.1, hurst=0.5).height_map(8, np.random.default_rng(1))
+list(contact.sweep(force=(1.0, 2.0), steps=10))
 fc.Scene(ball, 1.0, effects={"friction": {"coefficient": 0.1, "coupling": "full"}}, conductance=("thermal", 1.0, 1.0))
 """
 
 BAD = [
-    'fc.Scene(ball, 1.0, effects={"hardnes": 1})',
-    'fc.Scene(ball, 1.0, effects={"hardness": {"pressur": 1.0}})',
-    'fc.Scene(ball, 1.0, effects={"hardness": "2 GPa"})',
-    'fc.Scene(ball, 1.0, effects={"boundary": "round"})',
-    'fc.Scene(ball, 1.0, effects={"rheology": {"kind": "maxwell"}})',
+    "fc.Effects(hardnes=1)",
+    'fc.Effects(hardness={"pressur": 1.0})',
+    'fc.Effects(hardness="2 GPa")',
+    'fc.Effects(boundary="round")',
+    'fc.Effects(rheology={"kind": "maxwell"})',
+    'effects: EffectsDict = {"hardnes": 1}',
+    'outputs: list[Output] = ["stifness"]',
+    "fc.Scene(ball, 1.0, effects=[1])",
+    "fc.Scene(ball, 1.0, outputs=[1])",
+    'fc.press([[1.0]], 1.0, 1.0, force=1.0, detrend="pane")',
+    "fc.press([[1.0]], 1.0, 1.0, force=1.0, outlier=8)",
+    "fc.press([[1.0]], 1.0, 1.0, forces=1.0)",
     'fc.Effects(adhesion={"work": 1.0, "law": "jkr"})',
-    'fc.Scene(ball, 1.0, outputs=["stifness"])',
     'fc.Scene(ball, 1.0, conductance={"kind": "thermal", "resistivities": (1.0, 1.0)})',
     'fc.Scene("map.npy", 1.0)',
     'fc.Bem3d(method="magic")',
@@ -68,10 +90,47 @@ def test_programs_are_accepted(tmp_path):
 
 
 def test_mistakes_are_found(tmp_path):
-    head = ["import fractal_contact as fc", "ball = fc.Surface.sphere(radius=1.0, size=1.0)"]
+    head = [
+        "import fractal_contact as fc",
+        "from fractal_contact.typing import EffectsDict, Output",
+        "ball = fc.Surface.sphere(radius=1.0, size=1.0)",
+    ]
     told = checked(tmp_path, "\n".join([*head, *BAD, ""]))
     for number, line in enumerate(BAD, len(head) + 1):
         assert any(text.startswith(f"program.py:{number}: error") for text in told), (line, told)
+
+
+def test_the_stub_is_that_of_the_module():
+    pytest.importorskip("mypy")
+    command = [sys.executable, "-m", "mypy.stubtest", "fractal_contact._core"]
+    told = subprocess.run(command, capture_output=True, text=True)
+    assert told.returncode == 0, told.stdout
+
+
+def test_signatures_have_names_to_complete():
+    for call in (
+        fc.Contact.solve,
+        fc.Contact.sweep,
+        fc.Contact.advance,
+        fc.Contact.follow,
+        fc.HeightMap,
+        fc.HeightMap.max,
+        fc.HeightMap.cropped,
+        fc.press,
+        fc.read_surface,
+        fc.channels,
+        fc.ensemble,
+        fc.Bem3d,
+        fc.run_scene,
+        fc.set_threads,
+    ):
+        parameters = inspect.signature(call).parameters.values()
+        assert all(one.kind is not one.VAR_POSITIONAL for one in parameters), call
+        # What is taken by name is listed.
+        assert call is fc.HeightMap.max or all(one.kind is not one.VAR_KEYWORD for one in parameters), call
+    for call in (fc.read_surface, fc.channels):
+        assert set(inspect.signature(call).parameters) == {"path", *words.ReadOptions.__annotations__}
+    assert words.PressOptions.__annotations__.keys() < inspect.signature(fc.press).parameters.keys()
 
 
 def test_the_words_are_those_of_the_library():

@@ -41,6 +41,17 @@ pub(crate) trait ClosedLaw: Send {
     fn at_force(&self, force: f64) -> Result<ClosedState>;
     /// State at an approach.
     fn at_approach(&self, approach: f64) -> Result<ClosedState>;
+    /// State without a load.
+    fn unloaded(&self) -> ClosedState {
+        ClosedState {
+            force: 0.0,
+            approach: 0.0,
+            stiffness: 0.0,
+            area: Some(0.0),
+            radius: None,
+            largest_pressure: None,
+        }
+    }
 }
 
 /// One state of a [`ClosedLaw`].
@@ -51,6 +62,10 @@ pub(crate) struct ClosedState {
     pub stiffness: f64,
     /// `None` where the theory has no area; its model then refuses the output.
     pub area: Option<f64>,
+    /// Of a round contact.
+    pub radius: Option<f64>,
+    /// `None` where the theory does not state one, or where it is infinite.
+    pub largest_pressure: Option<f64>,
 }
 
 /// A closed form of an elastic contact without adhesion.
@@ -66,14 +81,21 @@ pub(crate) struct Closed<L> {
 /// The quantities of a round contact that follow from its radius alone.
 pub(crate) fn round(radius: f64) -> ScaledState {
     let area = PI * radius * radius;
-    ScaledState { stiffness_fixed_area: Some(2.0 * radius), area: Some(area), ..ScaledState::default() }
+    ScaledState {
+        stiffness_fixed_area: Some(2.0 * radius),
+        area: Some(area),
+        contact_radius: Some(radius),
+        ..ScaledState::default()
+    }
 }
 
 impl ClosedState {
     /// A round contact inside a face of this size.
     pub fn round(force: f64, approach: f64, radius: f64, size: Size) -> Result<Self> {
         within(radius, size)?;
-        Ok(Self { force, approach, stiffness: 2.0 * radius, area: Some(PI * radius * radius) })
+        let area = Some(PI * radius * radius);
+        let stiffness = 2.0 * radius;
+        Ok(Self { force, approach, stiffness, area, radius: Some(radius), largest_pressure: None })
     }
 }
 
@@ -86,7 +108,7 @@ impl<L: ClosedLaw> LoadLaw for Closed<L> {
             _ => return Err(Error::unsupported_load(self.model, load)),
         };
         let point = if asked <= 0.0 {
-            ClosedState { force: 0.0, approach: 0.0, stiffness: 0.0, area: Some(0.0) }
+            self.law.unloaded()
         } else if value.is_finite() && value > 0.0 {
             match load {
                 NormalLoad::Force(_) => self.law.at_force(value)?,
@@ -107,6 +129,8 @@ impl<L: ClosedLaw> LoadLaw for Closed<L> {
             force: point.force,
             approach: Some(point.approach),
             area: point.area,
+            contact_radius: point.radius,
+            largest_pressure: point.largest_pressure,
             stiffness_error: self.stiffness_error,
             ..ScaledState::default()
         };

@@ -93,12 +93,26 @@ struct Face {
 impl ClosedLaw for Face {
     fn at_force(&self, force: f64) -> Result<ClosedState> {
         let Self { stiffness, area } = *self;
-        Ok(ClosedState { force, approach: force / stiffness, stiffness, area: Some(area) })
+        Ok(ClosedState {
+            force,
+            approach: force / stiffness,
+            stiffness,
+            area: Some(area),
+            radius: None,
+            largest_pressure: None,
+        })
     }
 
     fn at_approach(&self, approach: f64) -> Result<ClosedState> {
         let Self { stiffness, area } = *self;
-        Ok(ClosedState { force: stiffness * approach, approach, stiffness, area: Some(area) })
+        Ok(ClosedState {
+            force: stiffness * approach,
+            approach,
+            stiffness,
+            area: Some(area),
+            radius: None,
+            largest_pressure: None,
+        })
     }
 }
 

@@ -5,7 +5,8 @@ use contact_model::{Abilities, ContactModel, PreparedContact, Result, Scene, Siz
 
 const NAME: &str = "hertz";
 
-/// Hertz's contact of a sphere: `a^3 = 3 F R / (4 E*)`, `d = a^2 / R`, `k = 2 E* a`, `A = pi a^2`.
+/// Hertz's contact of a sphere: `a^3 = 3 F R / (4 E*)`, `d = a^2 / R`, `k = 2 E* a`, `A = pi a^2` and the largest
+/// pressure `p_0 = 2 E* a / (pi R)`.
 ///
 /// Takes [`contact_model::Surface::Sphere`]; a contact radius beyond half the shorter side is
 /// [`contact_model::Error::OutOfRange`].
@@ -54,12 +55,31 @@ struct HertzSphere {
 impl ClosedLaw for HertzSphere {
     fn at_force(&self, force: f64) -> Result<ClosedState> {
         let contact = (0.75 * force * self.radius).cbrt();
-        ClosedState::round(force, 0.75 * force / contact, contact, self.size)
+        self.state(force, 0.75 * force / contact, contact)
     }
 
     fn at_approach(&self, approach: f64) -> Result<ClosedState> {
         let contact = (approach * self.radius).sqrt();
-        ClosedState::round(4.0 / 3.0 * approach * contact, approach, contact, self.size)
+        self.state(4.0 / 3.0 * approach * contact, approach, contact)
+    }
+
+    fn unloaded(&self) -> ClosedState {
+        let none = Some(0.0);
+        ClosedState {
+            force: 0.0,
+            approach: 0.0,
+            stiffness: 0.0,
+            area: none,
+            radius: none,
+            largest_pressure: none,
+        }
+    }
+}
+
+impl HertzSphere {
+    fn state(&self, force: f64, approach: f64, contact: f64) -> Result<ClosedState> {
+        let largest_pressure = Some(std::f64::consts::FRAC_2_PI * contact / self.radius);
+        Ok(ClosedState { largest_pressure, ..ClosedState::round(force, approach, contact, self.size)? })
     }
 }
 
@@ -102,6 +122,12 @@ mod tests {
         assert_relative_eq!(a, 0.908_560_296_416, max_relative = PRINTED);
         assert_relative_eq!(one.approach.unwrap(), 0.825_481_812_224, max_relative = PRINTED);
         assert_relative_eq!(pressure(1.0, a, 0.0).unwrap(), 0.578_407_449_087, max_relative = PRINTED);
+        assert_relative_eq!(one.contact_radius.unwrap(), a, max_relative = ROUNDING);
+        let largest = one.resolution.and_then(|resolution| resolution.largest_pressure).unwrap();
+        assert_relative_eq!(largest, 0.578_407_449_087, max_relative = PRINTED);
+        let none = pressed(&Hertz, &scene, Load::force(0.0)).unwrap();
+        assert_eq!(none.contact_radius, Some(0.0));
+        assert_eq!(none.resolution.and_then(|resolution| resolution.largest_pressure), Some(0.0));
         let small = pressed(&Hertz, &scene, Load::force(1e-3)).unwrap();
         assert_relative_eq!(small.stiffness.unwrap(), 2.0 * 0.090_856_029_642, max_relative = PRINTED);
         assert_relative_eq!(small.approach.unwrap(), 0.008_254_818_122, max_relative = PRINTED);

@@ -552,7 +552,8 @@ pub static QUANTITIES: &[StateQuantity] = &quantities! {
     "largest_patch" "area of the largest contact" "" Si("m^2"); AskedBy::Output(Output::ContactPatches); "area of the largest patch"
         => |s, _| s.patches.as_ref().and_then(|p| p.areas().first().copied()).into();
     "largest_pressure" "largest pressure" "p_{\\rm{max}}" Si("Pa"); Always;
-        "of a cell; grows with smaller cells until they resolve the shortest wave, at an edge of the rectangle or a spike without limit"
+        "of a cell, or at a point by a closed form; that of a cell grows with smaller cells until they resolve the shortest wave, at an edge of \
+         the rectangle or a spike without limit"
         { compared: Compared::Periodic }
         => |s, _| s.resolution.and_then(|r| r.largest_pressure).into();
     "status" "status" "" Word; Always; "how the solve ended"

@@ -6,7 +6,7 @@ use crate::nondimensionalisation::Nondimensionalisation;
 use crate::normalisation::Normalisation;
 use crate::quantities::Outputs;
 use crate::scene::Scene;
-use crate::state::{ContactState, SolveReport};
+use crate::state::{ContactResolution, ContactState, SolveReport};
 
 /// The units in which a model computes, the normalisation of what it reports, and the requested outputs.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -50,6 +50,10 @@ pub struct ScaledState {
     pub stiffness_error: f64,
     /// Real contact area.
     pub area: Option<f64>,
+    /// Radius of a round contact, in the unit of heights.
+    pub contact_radius: Option<f64>,
+    /// Largest pressure, where the formula has a finite one.
+    pub largest_pressure: Option<f64>,
 }
 
 impl ScaledState {
@@ -126,12 +130,17 @@ impl Scaling {
         let slope = asked(scaled.stiffness, outputs.needs_stiffness(), &of_stiffness)?;
         let held = asked(scaled.stiffness_fixed_area, outputs.needs_fixed_area(), &of_stiffness)?;
         let area = asked(scaled.area, outputs.area, &|area| nondimensional.area(area))?;
+        let radius = scaled.contact_radius.map(|radius| nondimensional.approach(radius)).transpose()?;
+        let pressure =
+            scaled.largest_pressure.map(|pressure| nondimensional.pressure(pressure)).transpose()?;
         report.certificate.stiffness_error = slope.or(held).map(|_| scaled.stiffness_error);
         ContactState::new(force, report)
             .with_approach(approach)
             .with_stiffness(slope)
             .with_stiffness_fixed_area(held)
             .with_area(area)
+            .with_contact_radius(radius)
+            .with_resolution(pressure.map(ContactResolution::of_formula))
             .completed(outputs, normalisation.contact_modulus)
     }
 }

@@ -364,7 +364,7 @@ impl Branch {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ContactResolution {
     /// Largest pressure of a cell: the mean over that cell, which grows as cells get smaller until they
-    /// resolve the shortest wave. `None` where the contact is known and its pressures are not (a viscoelastic
+    /// resolve the shortest wave. Of a formula without cells it is the largest pressure at a point. `None` where the contact is known and its pressures are not (a viscoelastic
     /// one by its equivalent elastic contact).
     pub largest_pressure: Option<f64>,
     /// Largest share of the force that a single cell carries, in [0, 1].
@@ -404,6 +404,11 @@ impl ContactResolution {
     #[must_use]
     pub fn with_rim(self, rim_cells: usize) -> Self {
         Self { rim_cells, ..self }
+    }
+
+    /// The largest pressure of a formula, which has no cells.
+    pub fn of_formula(largest_pressure: f64) -> Self {
+        Self::new(largest_pressure, 0.0, 0)
     }
 
     /// With the corrected area, >= 0, of a contact of `cells` cells whose boundary consists of `edges` edges

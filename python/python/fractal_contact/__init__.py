@@ -61,6 +61,7 @@ from ._models import (
     sweep,
     table,
 )
+from ._press import Pressed, press
 
 __all__ = [
     "Bem3d",
@@ -82,6 +83,7 @@ __all__ = [
     "OutOfMemory",
     "OutOfRange",
     "Persson",
+    "Pressed",
     "ReadError",
     "ReadSurface",
     "Scene",
@@ -98,6 +100,7 @@ __all__ = [
     "ensemble",
     "follow",
     "models",
+    "press",
     "quantities",
     "read_surface",
     "run_scene",

@@ -11,14 +11,42 @@ from numpy.typing import ArrayLike, NDArray
 from ._core import HeightMap
 from ._errors import DomainError, ShapeError
 
+# Names of dimensions along x and along y, in small letters.
+NAMES = {"x": ("x", "column", "columns", "col"), "y": ("y", "row", "rows")}
 
-def heights(values: ArrayLike, undefined: str) -> tuple[NDArray[np.float64], bool]:
-    """Two-dimensional C-ordered doubles, and whether NaN in them are undefined points."""
+
+def by_name(values: Any) -> tuple[Any, str | None]:
+    """An array whose dimensions have names as ``[row, column]``, and what was done; any other as it is, and None.
+
+    Names that a library gave for want of better ones (``dim_0``) say nothing: their order is that of an array.
+    """
+    names = getattr(values, "dims", None)
+    if not isinstance(names, tuple) or len(names) != 2 or not hasattr(values, "transpose"):
+        return values, None
+    if all(isinstance(name, str) and name.startswith("dim_") for name in names):
+        return values, None
+    axes = [axis for name in names for axis, known in NAMES.items() if str(name).lower() in known]
+    if sorted(axes) != ["x", "y"]:
+        raise ValueError(
+            f"the dimensions of the array are {names[0]!r} and {names[1]!r}: expected x and y, which say which axis is "
+            "which; array.rename(...) names them, and array.values has none, for [row, column]"
+        )
+    if axes == ["y", "x"]:
+        return values, f"as given: rows along {names[0]!r}, columns along {names[1]!r}"
+    return values.transpose(names[1], names[0]), (
+        f"transposed by the names of the dimensions: given as ({names[0]!r}, {names[1]!r}), "
+        f"rows are along {names[1]!r} and columns along {names[0]!r}"
+    )
+
+
+def heights(values: ArrayLike, undefined: str) -> tuple[NDArray[np.float64], bool, str | None]:
+    """Two-dimensional C-ordered doubles, whether NaN in them are undefined points, and what was done with the axes."""
     if undefined not in ("error", "no_contact"):
         raise ValueError(f'undefined is {undefined!r}: expected "error" or "no_contact"')
-    masked = np.ma.isMaskedArray(values)
-    mask = np.ma.getmaskarray(np.ma.asarray(values)) if masked else None
-    array = np.asarray(np.ma.getdata(values) if masked else values)
+    named, axes = by_name(values)
+    masked = np.ma.isMaskedArray(named)
+    mask = np.ma.getmaskarray(np.ma.asarray(named)) if masked else None
+    array = np.asarray(np.ma.getdata(named) if masked else named)
     if array.dtype.kind not in "fiub":
         raise TypeError(f"heights are of the type {array.dtype}: expected real numbers")
     if array.ndim != 2:
@@ -34,12 +62,12 @@ def heights(values: ArrayLike, undefined: str) -> tuple[NDArray[np.float64], boo
         found = np.where(mask, np.nan, found)
         if undefined == "error" and np.isnan(found[~mask]).any():
             raise _undefined(found, ~mask)
-        return found, True
+        return found, True, axes
     if undefined == "no_contact":
-        return found, True
+        return found, True, axes
     if np.isnan(found).any():
         raise _undefined(found, np.ones(found.shape, dtype=bool))
-    return found, False
+    return found, False, axes
 
 
 def _undefined(found: NDArray[np.float64], among: NDArray[np.bool_]) -> DomainError:
@@ -53,6 +81,16 @@ def _undefined(found: NDArray[np.float64], among: NDArray[np.bool_]) -> DomainEr
     return error
 
 
+def checked_map(heights: Any) -> HeightMap:
+    """A map, where an array would lack its size."""
+    if isinstance(heights, HeightMap):
+        return heights
+    raise TypeError(
+        f"heights is of the type {type(heights).__name__}: expected a HeightMap, which has a size; "
+        "fc.HeightMap(array, size=...) makes one of an array, fc.read_surface(...).heights is that of a file"
+    )
+
+
 def combined(map_: HeightMap, other: Any, operation: str, reflected: bool) -> Any:
     """The map added to a number or an array of its shape, and so on; what is neither is left to the other operand."""
     if isinstance(other, HeightMap | str | bytes | bool | complex) or (reflected and operation == "divide"):
@@ -60,7 +98,7 @@ def combined(map_: HeightMap, other: Any, operation: str, reflected: bool) -> An
     if np.ma.isMaskedArray(other):
         # A masked array would take the heights for its own operation.
         raise TypeError("a map and a masked array: expected an array of numbers")
-    array = np.asarray(other)
+    array = np.asarray(by_name(other)[0])
     if array.dtype.kind not in "fiu":
         return NotImplemented
     if array.ndim and array.shape != map_.shape:
@@ -79,6 +117,32 @@ def combined(map_: HeightMap, other: Any, operation: str, reflected: bool) -> An
     if undefined and (np.isnan(heights) != np.isnan(map_.heights)).any():
         raise DomainError("a height that is no number: 0 divided by 0")
     return HeightMap(heights, map_.size, undefined="no_contact" if undefined else "error")
+
+
+def operand(other: Any) -> Any:
+    """What a map is compared with, as arrays are."""
+    return other.heights if isinstance(other, HeightMap) else by_name(other)[0]
+
+
+OPERATIONS: dict[Any, str] = {np.add: "add", np.subtract: "subtract", np.multiply: "multiply", np.divide: "divide"}
+
+
+def ufunc(
+    map_: HeightMap, function: np.ufunc, method: str, inputs: tuple[Any, ...], options: dict[str, Any] | None
+) -> Any:
+    """A function of numpy of a map and others: an operation of maps where it is one, or that of the arrays."""
+    operation = OPERATIONS.get(function)
+    if method == "__call__" and not options and operation is not None:
+        first, second = inputs
+        if isinstance(first, HeightMap) and isinstance(second, HeightMap) and operation in ("add", "subtract"):
+            return first + second if operation == "add" else first - second
+        found = combined(map_, second if first is map_ else first, operation, first is not map_)
+        if found is not NotImplemented:
+            return found
+        raise TypeError(f"np.{function.__name__} of a map and {type(second if first is map_ else first).__name__}")
+    if method == "__call__" and not options and function in (np.negative, np.positive):
+        return -map_ if function is np.negative else +map_
+    return getattr(function, method)(*map(operand, inputs), **(options or {}))
 
 
 def plot(map_: HeightMap, ax: Any = None, **options: Any) -> Any:

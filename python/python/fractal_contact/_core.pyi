@@ -1,7 +1,7 @@
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from os import PathLike
 from pathlib import Path
-from typing import Any, Never, final
+from typing import Any, ClassVar, Never, final
 
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
@@ -36,9 +36,11 @@ __all__ = [
     "height_map",
     "model",
     "models",
+    "notes_of_python",
     "parameters",
     "picture",
     "power_spectrum",
+    "press_scene",
     "quantities",
     "read_surface",
     "run_scene",
@@ -59,13 +61,18 @@ class HeightMap:
     """Heights on a rectangle of equal cells, measured outwards from the body, so that large values touch first.
 
     ``np.asarray(map)`` is an array of them. Maps of the same size are added and subtracted; numbers, and arrays of
-    the map's shape, are added, subtracted, multiplied and divided by. Undefined points stay undefined.
+    the map's shape, are added, subtracted, multiplied and divided by. Undefined points stay undefined. Comparisons,
+    ``map[row, column]``, ``map.max()`` and the functions of numpy give what they give of the array, in which
+    undefined
+    points are NaN; each copies the heights once. `equals` compares two maps as wholes.
 
     Parameters
     ----------
     heights : array_like
             Two-dimensional, ``[row, column]``: columns along x, rows along y, of any real type. A masked array has
-            undefined points where it is masked.
+            undefined points where it is masked. Of an array whose dimensions have names, such as one of xarray, the
+        names
+            ``x`` and ``y`` (or ``column`` and ``row``) decide which axis is which; ``metadata`` says what was done.
     size : float, str, or two of them
             Side of a square or sides ``(Lx, Ly)`` of the rectangle, in the unit of the heights; texts with a unit,
         such
@@ -83,7 +90,80 @@ class HeightMap:
         unit: str | None = None,
         undefined: Undefined = "error",
     ) -> HeightMap: ...
-    __array_priority__: float
+    @staticmethod
+    def _with_axes(map: HeightMap, axes: str | None) -> HeightMap: ...
+    @property
+    def metadata(self) -> dict[str, str]:
+        """dict of str: what was done with the axes of an array whose dimensions have names, under ``"axes"``; empty
+        for
+        other arrays, and of a map that follows from another one.
+        """
+    __pandas_priority__: int
+    def __array_ufunc__(self, ufunc: np.ufunc, method: str, *inputs: Any, **options: Any) -> Any: ...
+    def __getitem__(self, index: Any, /) -> Any: ...
+    def __iter__(self) -> Iterator[NDArray[np.float64]]: ...
+    def __contains__(self, value: object, /) -> bool: ...
+    def __bool__(self) -> bool: ...
+    @property
+    def ndim(self) -> int:
+        """int: 2, as of the array."""
+    @property
+    def dtype(self) -> np.dtype[np.float64]:
+        """numpy.dtype: that of the array, double precision."""
+    def max(self, axis: int | None = None, **options: Any) -> Any:
+        """The largest height, as ``max`` of the array: NaN where a point is undefined.
+
+        Parameters
+        ----------
+        axis : int, optional
+                0 for that of each column, 1 for that of each row; of all by default.
+        **options
+                Other options of the array's method.
+
+        Returns
+        -------
+        float or numpy.ndarray
+        """
+    def min(self, axis: int | None = None, **options: Any) -> Any:
+        """The smallest height, as ``min`` of the array: NaN where a point is undefined.
+
+        Parameters
+        ----------
+        axis : int, optional
+                0 for that of each column, 1 for that of each row; of all by default.
+        **options
+                Other options of the array's method.
+
+        Returns
+        -------
+        float or numpy.ndarray
+        """
+    def mean(self, axis: int | None = None, **options: Any) -> Any:
+        """The mean height, as ``mean`` of the array: NaN where a point is undefined.
+
+        Parameters
+        ----------
+        axis : int, optional
+                0 for that of each column, 1 for that of each row; of all by default.
+        **options
+                Other options of the array's method.
+
+        Returns
+        -------
+        float or numpy.ndarray
+        """
+    def equals(self, other: HeightMap) -> bool:
+        """Whether another map has the same size and the same heights to the last bit, undefined points included.
+
+        Parameters
+        ----------
+        other : HeightMap
+                The other map.
+
+        Returns
+        -------
+        bool
+        """
     def __array__(self, dtype: DTypeLike | None = None, *, copy: bool | None = None) -> NDArray[Any]: ...
     def __len__(self) -> int: ...
     @property
@@ -133,7 +213,20 @@ class HeightMap:
                 First, and the one after the last.
         """
     def scaled(self, lateral: float, vertical: float) -> HeightMap:
-        """The map with its sides and its heights multiplied."""
+        """The map with its sides and its heights multiplied.
+
+        Parameters
+        ----------
+        lateral : float
+                Factor > 0 of the sides.
+        vertical : float
+                Factor of the heights.
+
+        Returns
+        -------
+        HeightMap
+                A new map.
+        """
     def plot(self, ax: Any = None, **options: Any) -> Any:
         """Draws the map with matplotlib: cells in their shape, the first row at the bottom, a colour bar.
 
@@ -165,8 +258,13 @@ class HeightMap:
     def __rtruediv__(self, other: Never, /) -> HeightMap: ...
     def __neg__(self) -> HeightMap: ...
     def __pos__(self) -> HeightMap: ...
-    def __eq__(self, other: object, /) -> bool: ...
-    def __ne__(self, other: object, /) -> bool: ...
+    def __eq__(self, other: object, /) -> NDArray[np.bool_]: ...  # type: ignore[override]
+    def __ne__(self, other: object, /) -> NDArray[np.bool_]: ...  # type: ignore[override]
+    def __lt__(self, other: Any, /) -> NDArray[np.bool_]: ...
+    def __le__(self, other: Any, /) -> NDArray[np.bool_]: ...
+    def __gt__(self, other: Any, /) -> NDArray[np.bool_]: ...
+    def __ge__(self, other: Any, /) -> NDArray[np.bool_]: ...
+    __hash__: ClassVar[None]  # type: ignore[assignment]
     def __reduce__(self) -> tuple[Any, ...]: ...
     def _repr_html_(self) -> str: ...
 
@@ -232,19 +330,37 @@ class Certificate:
     def worst(self) -> float:
         """float: the largest of the numbers that the tolerance bounds."""
     def meets(self, tolerance: float) -> bool:
-        """Whether every number that the tolerance bounds is at most `tolerance`."""
+        """Whether every number that the tolerance bounds is at most `tolerance`.
+
+        Parameters
+        ----------
+        tolerance : float
+                Dimensionless, as that of the model.
+
+        Returns
+        -------
+        bool
+        """
     def to_dict(self) -> dict[str, float | None]:
-        """The numbers by the names of the columns of scenes; ``stiffness_error`` is `error_of_stiffness`."""
+        """The numbers by the names of the columns of scenes; ``stiffness_error`` is `error_of_stiffness`.
+
+        Returns
+        -------
+        dict of float or None
+        """
     @staticmethod
     def _of_bytes(bytes: bytes) -> Certificate: ...
+    def __hash__(self) -> int: ...
     def __reduce__(self) -> tuple[Any, ...]: ...
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
 
 @final
 class ContactState:
-    """One contact state, alone or at the end of a step of a path. What was not requested, or what the model does
-    not claim, is None.
+    """One contact state, alone or at the end of a step of a path.
+
+    What was not requested, or what the model does not claim, is None. Two states compare with ``==`` as wholes: they
+    are equal if all their numbers, fields and notes are, to the last bit.
 
     Its numbers and words are those of `quantities`. Units in brackets are those of SI; a scene in other units
     has its own.
@@ -400,8 +516,9 @@ class ContactState:
         """float or None: area of the largest contact, area of the largest patch [m^2]."""
     @property
     def largest_pressure(self) -> float | None:
-        """float or None: largest pressure, of a cell; grows with smaller cells until they resolve the shortest wave,
-        at an edge of the rectangle or a spike without limit [Pa].
+        """float or None: largest pressure, of a cell, or at a point by a closed form; that of a cell grows with
+        smaller cells until they resolve the shortest wave, at an edge of the rectangle or a spike without limit
+        [Pa].
         """
     @property
     def status(self) -> str:
@@ -516,7 +633,7 @@ class ContactState:
     def notes(self) -> tuple[str, ...]:
         """tuple of str: what may be wrong with the state though it is solved, such as few cells in contact or
         contact at
-        the edge, and what to do about it: the notes of scenes.
+        the edge, and what to do about it.
         """
     @property
     def size(self) -> tuple[float, float]:
@@ -525,14 +642,27 @@ class ContactState:
     def certificate(self) -> Certificate:
         """Certificate: how exactly the contact conditions hold."""
     def to_dict(self, *, fields: bool = False) -> dict[str, Any]:
-        """The numbers and words by their names, which are those of the columns of scenes; arrays only with
-        ``fields=True``.
+        """The numbers and words by their names, which are those of the columns of scenes.
 
-        Those of effects and of paths are there where the state has them; any other that it lacks is None.
+        Arrays are there only with ``fields=True``. Those of effects and of paths are there where the state has them;
+        any other that it lacks is None.
         ``patches`` is the number of connected contacts, and with ``fields=True`` the array.
+
+        Parameters
+        ----------
+        fields : bool
+                True to add the arrays of the fields that were requested.
+
+        Returns
+        -------
+        dict
+                Numbers, texts, None and arrays by their names.
         """
     @staticmethod
     def _of_bytes(bytes: bytes, fields: list[NDArray[np.float64] | None]) -> ContactState: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
+    def __hash__(self) -> int: ...
     def __reduce__(self) -> tuple[Any, ...]: ...
     def _repr_html_(self) -> str: ...
 
@@ -549,21 +679,53 @@ class Normalisation:
     def rms_height(self) -> float | None:
         """float or None: measured rms height of this surface."""
     def force(self, force_bar: float) -> float:
-        """F for F_bar = F/(E* h L)."""
+        """The force F for F_bar = F/(E* h L).
+
+        Parameters
+        ----------
+        force_bar : float
+                The dimensionless force.
+
+        Returns
+        -------
+        float
+        """
     def force_bar(self, force: float) -> float:
-        """F_bar = F/(E* h L) for F."""
+        """The dimensionless force F_bar = F/(E* h L) for F.
+
+        Parameters
+        ----------
+        force : float
+                The force, in the unit of the scene.
+
+        Returns
+        -------
+        float
+        """
     def stiffness_bar(self, stiffness: float) -> float:
-        """k_bar = k/(1.1419 E* L) for k."""
+        """The dimensionless stiffness k_bar = k/(1.1419 E* L) for k.
+
+        Parameters
+        ----------
+        stiffness : float
+                The stiffness, in the unit of the scene.
+
+        Returns
+        -------
+        float
+        """
     @staticmethod
     def _of_bytes(bytes: bytes) -> Normalisation: ...
+    def __hash__(self) -> int: ...
     def __reduce__(self) -> tuple[Any, ...]: ...
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
 
 @final
 class Contact:
-    """A planned contact: solve often, follow paths. It keeps tables, plans and the last state, from which the
-    next solve starts.
+    """A planned contact: solve often, follow paths.
+
+    It keeps tables, plans and the last state, from which the next solve starts.
 
     `solve` and `sweep` start each load from no contact; `advance` and `follow` continue a path of loads from
     the current state. Threads that share one contact use it one after the other, in the order of their calls.
@@ -610,6 +772,7 @@ class Contact:
         approach: Iterable[float] | None = None,
         mean_pressure: Iterable[float] | None = None,
         mean_gap: Iterable[float] | None = None,
+        steps: int | None = None,
         stop: StopToken | None = None,
     ) -> Iterator[ContactState]:
         """Solves for loads in their order: an iterator that yields each state as soon as it is known.
@@ -617,7 +780,14 @@ class Contact:
         Parameters
         ----------
         force, approach, mean_pressure, mean_gap : iterable of float
-                Exactly one of them. Increasing loads are the fastest order, and the only one with a hardness.
+                Exactly one of them. Increasing loads are the fastest order, and the only one with a hardness. With
+                ``steps`` the first and the last load.
+        steps : int, optional
+                Number of states, at least 2, which are equally spaced in the logarithm of the contact area between
+            those of
+                the two loads, to a twentieth of a step or as the cells allow. The scene has to compute the area. The
+            loads
+                between are found by two to three solves each.
         stop : threading.Event, optional
                 As in `solve`.
 
@@ -699,9 +869,11 @@ class Contact:
     def restart(self) -> None:
         """Forgets the loads and the path before: back to no contact at time 0."""
     def memory(self) -> bytes | None:
-        """The memory of the loads so far, of a path or each by itself, as bytes: together with the next load it
-        determines the next state. `recall` of a contact of the same model, scene and seed continues from it with
-        identical bits, also in another process of the same version on the same kind of processor.
+        """The memory of the loads so far, of a path or each by itself, as bytes.
+
+        Together with the next load it determines the next state. `recall` of a contact of the same model, scene and
+        seed continues from it with identical bits, also in another process of the same version on the same kind of
+        processor.
 
         Returns
         -------
@@ -709,12 +881,14 @@ class Contact:
                 None for models without such a memory, whose paths must be followed anew.
         """
     def recall(self, memory: bytes) -> None:
-        """Restores a contact of the same model, scene and seed to where it gave its `memory`. The states before that
-        are not in the memory: `last` is None.
+        """Restores a contact of the same model, scene and seed to where it gave its `memory`.
+
+        The states before that are not in the memory: `last` is None.
 
         Parameters
         ----------
         memory : bytes
+                What `memory` gave.
 
         Raises
         ------
@@ -722,6 +896,8 @@ class Contact:
                 For bytes of another model or surface. The contact is then as after `restart`.
         """
     def _check_order(self, kind: str, values: list[float]) -> None: ...
+    @property
+    def _yields(self) -> bool: ...
     @property
     def normalisation(self) -> Normalisation:
         """Normalisation: that of this surface."""
@@ -761,29 +937,89 @@ class Model:
 
 @final
 class SceneFile:
-    """A scene file: the surface, the material, the effects, the loads and the requested outputs."""
+    """A scene file: the surface, the material, the effects, the loads and the requested outputs.
+
+    Two of them are equal where their texts are, and the folders from which relative paths count.
+    """
     @staticmethod
     def read(path: str | PathLike[str]) -> SceneFile:
-        """Reads a file."""
+        """Reads a file.
+
+        Parameters
+        ----------
+        path : str or path-like
+                The file; relative paths in it count from its folder.
+
+        Returns
+        -------
+        SceneFile
+        """
     @staticmethod
     def from_toml(text: str, *, directory: str | PathLike[str] = ..., name: str = ...) -> SceneFile:
-        """Reads a text; relative paths in it count from `directory`."""
+        """Reads a text.
+
+        Parameters
+        ----------
+        text : str
+                What a file of a scene holds.
+        directory : str or path-like
+                The folder from which relative paths count; the current one by default.
+        name : str
+                What the scene is called in titles.
+
+        Returns
+        -------
+        SceneFile
+        """
     @staticmethod
     def from_dict(tables: Mapping[str, Any], *, directory: str | PathLike[str] = ..., name: str = ...) -> SceneFile:
-        """A scene from its tables, with the keys and values of a text; relative paths count from `directory`."""
-    def replaced(self, keys: Mapping[str, Any]) -> SceneFile:
-        """The same scene with other values of some keys, each by its table and its name:
-        ``scene.replaced({"scene.surface.cells": 64})``.
+        """Makes a scene of its tables, with the keys and values of a text.
+
+        Parameters
+        ----------
+        tables : dict
+                The tables by their names, such as ``scene``, ``effects`` and ``outputs``.
+        directory : str or path-like
+                The folder from which relative paths count; the current one by default.
+        name : str
+                What the scene is called in titles.
+
+        Returns
+        -------
+        SceneFile
         """
+    def replaced(self, keys: Mapping[str, Any]) -> SceneFile:
+        """Gives the same scene with other values of some keys.
+
+        Parameters
+        ----------
+        keys : dict
+                The values, each by its table and its name: ``scene.replaced({"scene.surface.cells": 64})``.
+
+        Returns
+        -------
+        SceneFile
+        """
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
+    def __hash__(self) -> int: ...
     def __reduce__(self) -> tuple[Any, ...]: ...
     @property
     def text(self) -> str:
         """str: the file itself."""
     @property
+    def size(self) -> tuple[float, float]:
+        """(float, float): sides (Lx, Ly) of its rectangle."""
+    @property
     def models(self) -> list[str]:
         """list of str: its models."""
     def plan(self) -> str:
-        """The plan in words: what will be computed, what will not and why, and the cost."""
+        """Says what will be computed, what will not and why, and what it will cost.
+
+        Returns
+        -------
+        str
+        """
 
 def surface(kind: str, parameters: Mapping[str, Any]) -> Surface:
     """A surface of a kind."""
@@ -873,9 +1109,10 @@ def picture(values: NDArray[np.float64], low: float, high: float) -> tuple[bytes
     """
 
 def threads() -> int:
-    """Number of threads that one solve, or one ensemble, may use: by default what the variable ``RAYON_NUM_THREADS``
-    of the
-    environment says, or as many as there are processors.
+    """Number of threads that one solve, or one ensemble, may use.
+
+    By default it is what the variable ``RAYON_NUM_THREADS`` of the environment says, or as many as there are
+    processors.
 
     Returns
     -------
@@ -927,12 +1164,15 @@ def scale_dependence(
 def fit_spectrum(map: HeightMap, periodic: bool, instrument: float | None) -> dict[str, Any]:
     """The fit of a self-affine spectrum: each quantity as (value, low, high), None where there is only a bound."""
 
-def read_surface(path: Path, options: Mapping[str, Any]) -> tuple[HeightMap, dict[str, Any], list[str], float | None]:
-    """A surface of a file: its map, what the file says, what was done to the map, from which distance on the tip
-    lets heights be seen.
+def read_surface(
+    path: Path, options: Mapping[str, Any], content: bytes | None = None
+) -> tuple[HeightMap, dict[str, Any], list[str], float | None]:
+    """A surface of a file, or of its content: its map, what the file says, what was done to the map, from which
+    distance
+    on the tip lets heights be seen.
     """
 
-def channels(path: Path, options: Mapping[str, Any]) -> list[dict[str, Any]]:
+def channels(path: Path, options: Mapping[str, Any], content: bytes | None = None) -> list[dict[str, Any]]:
     """Metadata of each channel of a file; of a channel that cannot be read beside others, `error`."""
 
 def si(text: str) -> float:
@@ -940,6 +1180,15 @@ def si(text: str) -> float:
 
 def write_surface(path: Path, map: HeightMap, metres: bool) -> None:
     """Writes a map by the ending of the file's name; lengths are in metres, or without a unit."""
+
+def notes_of_python(notes: list[str]) -> list[str]:
+    """Notes on the states of a scene, with remedies in the words of Python."""
+
+def press_scene(keys: list[tuple[str, Any, bool]], si: bool, path: Path) -> SceneFile:
+    """The scene of a map that is pressed, of its keys in their order.
+
+    Each has its value, and whether the numbers in it have units. The whole scene is in SI units, or in any.
+    """
 
 def run_scene(
     scene: SceneFile,

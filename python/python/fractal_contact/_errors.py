@@ -30,6 +30,13 @@ class DomainError(Error, ValueError):
     expected: str
 
 
+def domain_error(quantity: str, value: float, expected: str) -> DomainError:
+    """The error of a number, with what it names."""
+    error = DomainError(f"{quantity} = {value:g}: expected {expected}")
+    error.quantity, error.value, error.expected = quantity, value, expected
+    return error
+
+
 class ShapeError(Error, ValueError):
     """An array does not have the expected number of values; attributes as of `DomainError`."""
 

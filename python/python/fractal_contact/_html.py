@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import base64
 import html
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from . import _core
 from ._core import ContactState, HeightMap
+
+if TYPE_CHECKING:
+    from ._press import Pressed
 
 # Largest sides of a picture on the screen.
 WIDE, HIGH = 320, 400
@@ -80,3 +83,14 @@ def state(state_: ContactState) -> str:
     status = html.escape(state_.status.replace("_", " "))
     noted = f"<ul>{notes}</ul>" if notes else ""
     return f"<div>contact state, {status}</div><table>{rows}</table>{noted}<div>{pictures}</div>"
+
+
+def pressed(pressed_: Pressed) -> str:
+    """A map that was pressed: the table of its states, its notes, pictures of the fields of the last state."""
+    notes = "".join(f"<li>{html.escape(note)}</li>" for note in pressed_.notes)
+    last = ((name, fields[-1]) for name, fields in pressed_.fields.items())
+    pictures = "".join(
+        picture(_field(values), pressed_.size, f"{name}, last state") for name, values in last if values is not None
+    )
+    noted = f"<ul>{notes}</ul>" if notes else ""
+    return f"<pre>{html.escape(pressed_.summary)}</pre>{noted}<div>{pictures}</div>"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import warnings
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -15,8 +16,9 @@ from numpy.typing import ArrayLike, NDArray
 from . import _core, _numbers
 from ._core import HeightMap, SceneFile
 from ._effects import Effects
-from ._numbers import number
-from ._plain import named, pair
+from ._errors import domain_error
+from ._numbers import Seed, number
+from ._plain import frozen, named, pair, same_fields
 from .typing import BodyDict, ConductanceDict, EffectsDict, Output, SurfaceKind
 
 Size = float | Sequence[float] | NDArray[np.float64]
@@ -30,6 +32,13 @@ class Surface:
 
     Axisymmetric bodies are at the centre of the rectangle, apex up. Lengths are in one unit of your choice.
 
+    Parameters
+    ----------
+    kind : {"self_affine", "sphere", "cone", "power_law", "flat_circle", "flat", "sine", "line"}
+        Its kind, the name of the method that makes it.
+    parameters : mapping
+        What that method takes, by name. The surface keeps a copy that does not change.
+
     Examples
     --------
     >>> import fractal_contact as fc
@@ -41,9 +50,9 @@ class Surface:
     parameters: Mapping[str, Any]
 
     def __post_init__(self) -> None:
-        # A copy, with sizes that compare.
+        # A copy that does not change, with sizes that compare.
         parameters = {name: pair(value) if name == "size" else value for name, value in self.parameters.items()}
-        object.__setattr__(self, "parameters", parameters)
+        object.__setattr__(self, "parameters", frozen(parameters))
         self._core()
 
     def _core(self) -> _core.Surface:
@@ -99,12 +108,28 @@ class Surface:
 
     @classmethod
     def sphere(cls, *, radius: float, size: Size) -> Surface:
-        """Paraboloid r^2/(2 radius): Hertz's sphere."""
+        """Paraboloid r^2/(2 radius): Hertz's sphere.
+
+        Parameters
+        ----------
+        radius : float
+            Radius of the sphere (length > 0).
+        size : float or (float, float)
+            Side of a square or sides (Lx, Ly).
+        """
         return cls("sphere", {"radius": radius, "size": size})
 
     @classmethod
     def cone(cls, *, slope: float, size: Size) -> Surface:
-        """Cone of depth slope * r."""
+        """Cone of depth slope * r.
+
+        Parameters
+        ----------
+        slope : float
+            Slope of its side, > 0, dimensionless.
+        size : float or (float, float)
+            Side of a square or sides (Lx, Ly).
+        """
         return cls("cone", {"slope": slope, "size": size})
 
     @classmethod
@@ -117,7 +142,19 @@ class Surface:
         depth: float | None = None,
         radius: float | None = None,
     ) -> Surface:
-        """Body of depth coefficient * r^exponent, with `coefficient` given, or with `depth` at `radius`."""
+        """Body of depth coefficient * r^exponent.
+
+        Parameters
+        ----------
+        exponent : float
+            The exponent, > 0.
+        size : float or (float, float)
+            Side of a square or sides (Lx, Ly).
+        coefficient : float, optional
+            The coefficient (length^(1 - exponent), > 0).
+        depth, radius : float, optional
+            In place of the coefficient: the depth at a radius (lengths > 0).
+        """
         if (coefficient is None) == (depth is None) or (depth is None) != (radius is None):
             raise TypeError("give coefficient, or depth and radius")
         if coefficient is None:
@@ -127,36 +164,76 @@ class Surface:
 
     @classmethod
     def flat_circle(cls, *, radius: float, size: Size) -> Surface:
-        """Flat circular punch."""
+        """Flat circular punch.
+
+        Parameters
+        ----------
+        radius : float
+            Radius of the punch (length > 0).
+        size : float or (float, float)
+            Side of a square or sides (Lx, Ly).
+        """
         return cls("flat_circle", {"radius": radius, "size": size})
 
     @classmethod
     def flat(cls, *, size: Size) -> Surface:
-        """Flat rectangle: all of it touches at once."""
+        """Flat rectangle: all of it touches at once.
+
+        Parameters
+        ----------
+        size : float or (float, float)
+            Side of a square or sides (Lx, Ly).
+        """
         return cls("flat", {"size": size})
 
     @classmethod
     def sine(cls, *, amplitude: float, wavelength: float, size: Size) -> Surface:
-        """Waves amplitude * cos(2 pi x/wavelength) along x."""
+        """Waves amplitude * cos(2 pi x/wavelength) along x.
+
+        Parameters
+        ----------
+        amplitude : float
+            Half the height from trough to crest (length > 0).
+        wavelength : float
+            Distance of two crests (length > 0).
+        size : float or (float, float)
+            Side of a square or sides (Lx, Ly).
+        """
         return cls("sine", {"amplitude": amplitude, "wavelength": wavelength, "size": size})
 
     @classmethod
     def line(cls, heights: ArrayLike, *, length: float, size: Size) -> Surface:
-        """Line with these heights of its elements, for `Mdr1d`; it represents a rectangle."""
+        """Line with these heights of its elements, for `Mdr1d`; it represents a rectangle.
+
+        Parameters
+        ----------
+        heights : array_like
+            Heights of the elements, shape (elements,).
+        length : float
+            Length of the line (> 0).
+        size : float or (float, float)
+            Side of a square or sides (Lx, Ly) of the rectangle.
+        """
         values = np.asarray(heights, dtype=np.float64)
         if values.ndim != 1:
             raise ValueError(f"heights of a line have {values.ndim} dimensions: expected 1")
         return cls("line", {"heights": tuple(values.tolist()), "length": length, "size": size})
 
-    def height_map(self, cells: Cells, seed: int = 0) -> HeightMap:
+    def height_map(self, cells: Cells, seed: Seed = 0) -> HeightMap:
         """The height of each cell.
 
         Parameters
         ----------
         cells : int or (int, int)
             Columns, with as many rows as make the cells nearly square, or columns and rows.
-        seed : int
-            Seed of a random surface.
+        seed : int or numpy.random.Generator
+            Seed of a random surface. Of a generator a number from 0 to 2^64 - 1, one draw of ``integers``: the next
+            call then draws another surface.
+
+        Returns
+        -------
+        HeightMap
+            The heights on a rectangle of the size of the surface.
 
         Raises
         ------
@@ -180,6 +257,16 @@ class Body:
 
     young: float
     poisson: float
+
+    def __post_init__(self) -> None:
+        # Mistakes are told where they are made.
+        young, poisson = number(self.young, "young"), number(self.poisson, "poisson")
+        if not 0 < young < math.inf:
+            raise domain_error("young", young, "a finite number > 0")
+        if not 0 <= poisson <= 0.5:
+            raise domain_error("poisson", poisson, "a number in [0, 0.5]")
+        object.__setattr__(self, "young", young)
+        object.__setattr__(self, "poisson", poisson)
 
 
 AnyBody = Body | BodyDict | Literal["rigid"] | None
@@ -269,8 +356,8 @@ class Scene:
         contact_modulus: float | None = None,
         *,
         bodies: Sequence[AnyBody] | None = None,
-        effects: Effects | EffectsDict | None = None,
-        outputs: Iterable[Output] | None = None,
+        effects: Effects | EffectsDict | Mapping[str, Any] | None = None,
+        outputs: Iterable[Output] | Iterable[str] | None = None,
         conductance: ConductanceDict | Conductance | None = None,
         modulus: float | None = None,
     ) -> None:
@@ -301,6 +388,14 @@ class Scene:
         # Mistakes are told where they are made.
         self._core()
 
+    def __eq__(self, other: object) -> bool:
+        return same_fields(self, other) if isinstance(other, Scene) else NotImplemented
+
+    def __hash__(self) -> int:
+        # A map has no hash: its shape and its sides stand for it.
+        surface = self.surface if isinstance(self.surface, Surface) else (self.surface.shape, self.surface.size)
+        return hash((surface, self.contact_modulus, self.bodies, self.effects, self.outputs, self.conductance))
+
     def _core(self) -> _core.Scene:
         surface = self.surface._core() if isinstance(self.surface, Surface) else self.surface
         bodies = self.bodies and [body and (body.young, body.poisson) for body in self.bodies]
@@ -309,10 +404,36 @@ class Scene:
 
     @staticmethod
     def from_toml(text: str, *, directory: str | PathLike[str] = ".") -> SceneFile:
-        """A scene file from its text, with the same keys as for the program; relative paths start at `directory`."""
+        """A scene file from its text, with the same keys as for the program.
+
+        Parameters
+        ----------
+        text : str
+            What a file of a scene holds.
+        directory : str or path-like
+            The folder from which relative paths count.
+
+        Returns
+        -------
+        SceneFile
+            The scene, which `run_scene` runs.
+        """
         return SceneFile.from_toml(text, directory=Path(directory))
 
     @staticmethod
     def from_dict(tables: Mapping[str, Any], *, directory: str | PathLike[str] = ".") -> SceneFile:
-        """A scene file from its tables, with the same keys as its text; relative paths start at `directory`."""
+        """A scene file from its tables, with the same keys as its text.
+
+        Parameters
+        ----------
+        tables : mapping
+            The tables by their names, such as ``scene``, ``effects`` and ``outputs``.
+        directory : str or path-like
+            The folder from which relative paths count.
+
+        Returns
+        -------
+        SceneFile
+            The scene, which `run_scene` runs.
+        """
         return SceneFile.from_dict(dict(tables), directory=Path(directory))

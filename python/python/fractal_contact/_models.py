@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any, ClassVar, Protocol
 
@@ -9,10 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _core, _numbers
-from ._core import Contact, ContactState
-from ._errors import Error
+from ._core import Contact, ContactState, HeightMap
+from ._errors import Error, domain_error
 from ._inputs import Scene
-from ._numbers import numbers, steps
+from ._numbers import Seed, numbers, steps
 from .typing import Heights, Method
 
 LOADS = ("force", "approach", "mean_pressure", "mean_gap")
@@ -30,6 +31,11 @@ class Model:
     """A model of contact, which relates force, approach and stiffness. It plans a contact once for many solves.
 
     Each model of the library is a class; `models` lists them.
+
+    Parameters
+    ----------
+    **options
+        The options of the class, by name; None leaves one at its default.
     """
 
     _name: ClassVar[str]
@@ -67,15 +73,16 @@ class Model:
         """
         return self._core().supports
 
-    def prepare(self, scene: Scene, seed: int = 0) -> Contact:
+    def prepare(self, scene: Scene, seed: Seed = 0) -> Contact:
         """Checks the scene against what this model can do, and plans.
 
         Parameters
         ----------
         scene : Scene
             The contact problem.
-        seed : int
-            Seed of the surface, where it is random.
+        seed : int or numpy.random.Generator
+            Seed of the surface, where it is random; of a generator a number from 0 to 2^64 - 1, one draw of
+            ``integers``.
 
         Returns
         -------
@@ -89,7 +96,16 @@ class Model:
         OutOfMemory
             For a grid that does not fit in memory, before anything is drawn or planned.
         """
+        self._check(scene)
         return self._core().prepare(scene._core(), _numbers.seed(seed))
+
+    def _check(self, scene: Scene) -> None:
+        """Refuses what is no scene, and numerics that the scene leaves no use for."""
+        if not isinstance(scene, Scene):
+            raise TypeError(
+                f"scene is of the type {type(scene).__name__}: expected fc.Scene(surface, contact_modulus), which says "
+                "what is pressed and what is computed"
+            )
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}({', '.join(f'{k}={v!r}' for k, v in self._options.items())})"
@@ -165,6 +181,18 @@ class Bem3d(Model):
             method=method,
         )
 
+    def _check(self, scene: Scene) -> None:
+        super()._check(scene)
+        if not isinstance(scene.surface, HeightMap):
+            return
+        for name, of_map in zip(("rows", "cells"), scene.surface.shape, strict=True):
+            if (given := self._options.get(name, of_map)) != of_map:
+                raise ValueError(
+                    f"{name} = {given}, but the map has {of_map} {name.replace('cells', 'columns')}, and each of its "
+                    f"points is a cell: leave {name}= out, or take a map with fewer points "
+                    "(fc.read_surface(..., cells=...))"
+                )
+
 
 class Mdr1d(Model):
     """The reduction to one dimension (method of dimensionality reduction).
@@ -231,6 +259,9 @@ class Equivalent(Model):
     def _core(self) -> _core.Model:
         return _core.model(self._name, self._options, self.model._core())
 
+    def _check(self, scene: Scene) -> None:
+        self.model._check(scene)
+
     def __repr__(self) -> str:
         options = "".join(f", {k}={v!r}" for k, v in self._options.items())
         return f"Equivalent({self.model!r}{options})"
@@ -251,6 +282,7 @@ def sweep(
     approach: Iterable[float] | None = None,
     mean_pressure: Iterable[float] | None = None,
     mean_gap: Iterable[float] | None = None,
+    steps: int | None = None,
     stop: StopToken | None = None,
 ) -> Iterator[ContactState]:
     """Solves for loads in their order, and yields each state as soon as it is known.
@@ -261,13 +293,18 @@ def sweep(
         A planned contact. Increasing loads are the fastest order, and the only one with a hardness: each load is solved
         from the virgin surface, and a smaller one after a larger one is a `DomainError`. `follow` goes along a path.
     force, approach, mean_pressure, mean_gap : iterable of float
-        Exactly one of them.
+        Exactly one of them; with ``steps`` the first and the last load.
+    steps : int, optional
+        Number of states, at least 2, which are equally spaced in the logarithm of the contact area between those of the
+        two loads, to a twentieth of a step or as the cells allow. The scene has to compute the area. The loads between
+        are found by two to three solves each.
     stop : threading.Event, optional
         Set by another thread, it stops the solve between two iterations: `Stopped`.
 
-    Yields
-    ------
-    ContactState
+    Returns
+    -------
+    iterator of ContactState
+        The states, each as soon as it is known.
 
     Examples
     --------
@@ -278,9 +315,70 @@ def sweep(
     """
     given = {"force": force, "approach": approach, "mean_pressure": mean_pressure, "mean_gap": mean_gap}
     name, values = _one_of(given)
+    if steps is not None:
+        steps = _numbers.count(steps, "steps", 2)
+        if len(values) != 2:
+            raise ValueError(
+                f"steps = {steps}, but {name} has {len(values)} loads: expected the first and the last one"
+            )
+        return _by_area(contact, name, (values[0], values[1]), steps, stop)
     # Checked at the call, not at the first state.
     contact._check_order(name, values)
     return (contact.solve(**{name: value}, stop=stop) for value in values)
+
+
+# Largest distance of a state from its place, in steps of the logarithm of the area.
+OFF_PLACE = 0.05
+# Most solves for the place of one state: on a coarse grid no load may lead to its area.
+MOST_SOLVES = 8
+
+
+def _by_area(
+    contact: Contact, name: str, ends: tuple[float, float], steps: int, stop: StopToken | None
+) -> Iterator[ContactState]:
+    """States from the first load to the last one, equally spaced in the logarithm of the area.
+
+    Each load is found by the secant in the logarithms of load and area (a gap, which may be negative, as it is),
+    between the nearest states that are known.
+    """
+
+    def solved(load: float) -> tuple[float, float, ContactState]:
+        if contact._yields:
+            # Each load begins with the virgin surface, and the order of the solves is that of the search.
+            contact.restart()
+        state = contact.solve(**{name: load}, stop=stop)
+        if state.area is None:
+            raise ValueError(
+                'steps= spaces the states by their area, which this contact does not compute: outputs=["area"]'
+            )
+        if state.area <= 0:
+            raise ValueError(
+                f"{name} = {load:g} gives no contact area: steps= needs one at the first and the last load"
+            )
+        return (load if name == "mean_gap" else math.log(load)), math.log(state.area), state
+
+    for load in ends:
+        if not (load > 0 or name == "mean_gap"):
+            raise domain_error(name, load, "a load > 0 with steps=")
+    first, last = solved(ends[0]), solved(ends[1])
+    known = sorted([first, last], key=lambda found: found[1])
+    if first[1] == last[1]:
+        raise ValueError(f"{name} = {ends[0]:g} and {ends[1]:g} give the same area: expected two different ones")
+    yield first[2]
+    step = (last[1] - first[1]) / (steps - 1)
+    for number in range(1, steps - 1):
+        place = first[1] + number * step
+        for _ in range(MOST_SOLVES):
+            nearest = min(known, key=lambda found: abs(found[1] - place))
+            if abs(nearest[1] - place) <= OFF_PLACE * abs(step):
+                break
+            below = max((found for found in known if found[1] <= place), key=lambda found: found[1])
+            above = min((found for found in known if found[1] > place), key=lambda found: found[1])
+            share = (place - below[1]) / (above[1] - below[1])
+            load = below[0] + share * (above[0] - below[0])
+            known.append(solved(load if name == "mean_gap" else math.exp(load)))
+        yield min(known, key=lambda found: abs(found[1] - place))[2]
+    yield last[2]
 
 
 def follow(
@@ -311,9 +409,10 @@ def follow(
     stop : threading.Event, optional
         As in `sweep`.
 
-    Yields
-    ------
-    ContactState
+    Returns
+    -------
+    iterator of ContactState
+        The states, each as soon as it is known.
 
     Examples
     --------
@@ -351,7 +450,7 @@ def ensemble(
     model: Model,
     scene: Scene,
     *,
-    seed: int,
+    seed: Seed,
     surfaces: int,
     force: Iterable[float] | None = None,
     approach: Iterable[float] | None = None,
@@ -369,8 +468,9 @@ def ensemble(
         The model that solves each surface.
     scene : Scene
         A scene with a random surface.
-    seed : int
-        Surface number i has the seed ``surface_gen.surface_seed(seed, i)``, as in scenes and figures.
+    seed : int or numpy.random.Generator
+        The master seed; of a generator a number from 0 to 2^64 - 1, one draw of ``integers``. Surface number i has the
+        seed ``surface_gen.surface_seed(seed, i)``, as in scenes and figures.
     surfaces : int
         Number of surfaces, >= 0.
     force, approach, mean_pressure, mean_gap, force_bar : iterable of float
@@ -401,6 +501,7 @@ def ensemble(
         "force_bar": force_bar,
     }
     name, values = _one_of(given)
+    model._check(scene)
     loads = [(name, value) for value in values]
     seed, surfaces = _numbers.seed(seed), _numbers.count(surfaces, "surfaces")
     return _core.ensemble(model._core(), scene._core(), loads, seed, surfaces, progress, stop)

@@ -29,14 +29,24 @@ def number(value: Any, name: str) -> float:
         raise ValueError(f"{name} is beyond the range of a float") from None
 
 
-def seed(value: Any, name: str = "seed") -> int:
-    """The seed of a surface, or the number of one."""
-    return _whole(value, name, 0, "a whole number from 0 to 2^64 - 1")
+Seed = int | np.random.Generator
+
+
+def seed(value: Any) -> int:
+    """The seed of a surface: a whole number, or one that is drawn from a generator of numpy."""
+    if isinstance(value, np.random.Generator):
+        return int(value.integers(0, MOST, dtype=np.uint64, endpoint=True))
+    return _whole(value, "seed", 0, "a whole number from 0 to 2^64 - 1, or a numpy.random.Generator")
+
+
+def index(value: Any) -> int:
+    """The number of a surface of an ensemble."""
+    return _whole(value, "index", 0, "a whole number from 0 to 2^64 - 1")
 
 
 def count(value: Any, name: str, least: int = 0) -> int:
     """A whole number of at least `least`."""
-    return _whole(value, name, least, f"a whole number >= {least}")
+    return _whole(value, name, least, f"a whole number >= {least} and < 2^64")
 
 
 def _whole(value: Any, name: str, least: int, expected: str) -> int:

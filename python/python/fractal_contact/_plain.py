@@ -3,28 +3,95 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Mapping, Sequence
-from typing import Any
+import inspect
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import fields
+from typing import Any, TypeVar
 
 import numpy as np
 
 
-def plain(value: Any) -> Any:
-    """Mappings as dicts and arrays as lists, whatever is in them; what is nested without end stays as it is."""
+class FrozenMapping(Mapping[str, Any]):
+    """A mapping that does not change, so that what holds it has a hash. It equals a dict of the same items."""
+
+    __slots__ = ("_items",)
+
+    def __init__(self, items: Mapping[str, Any]) -> None:
+        self._items = dict(items)
+
+    def __getitem__(self, key: str) -> Any:
+        return self._items[key]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._items)
+
+    def __len__(self) -> int:
+        return len(self._items)
+
+    def __hash__(self) -> int:
+        return hash(frozenset(self._items.items()))
+
+    def __repr__(self) -> str:
+        return repr(self._items)
+
+    def __reduce__(self) -> tuple[type[FrozenMapping], tuple[dict[str, Any]]]:
+        return FrozenMapping, (self._items,)
+
+
+def frozen(value: Any) -> Any:
+    """Mappings, lists and arrays as ones that do not change, whatever is in them; what is nested without end stays."""
     return _plain(value, 8)
 
 
 def _plain(value: Any, depth: int) -> Any:
     if depth > 0 and isinstance(value, Mapping):
-        return {key: _plain(item, depth - 1) for key, item in value.items()}
+        return FrozenMapping({key: _plain(item, depth - 1) for key, item in value.items()})
     if isinstance(value, np.ndarray) and not np.ma.isMaskedArray(value):
-        return value.tolist()
+        value = value.tolist()
+    if depth > 0 and isinstance(value, list | tuple):
+        return tuple(_plain(item, depth - 1) for item in value)
     return value
+
+
+def same(one: Any, other: Any) -> bool:
+    """Whether two values are the same, arrays and maps as wholes: one truth value."""
+    if hasattr(one, "equals") and type(one) is type(other):
+        return bool(one.equals(other))
+    if isinstance(one, np.ndarray) and isinstance(other, np.ndarray):
+        return one.dtype == other.dtype and np.array_equal(one, other, equal_nan=one.dtype.kind in "fc")
+    if isinstance(one, Mapping) and isinstance(other, Mapping):
+        return one.keys() == other.keys() and all(same(value, other[key]) for key, value in one.items())
+    if isinstance(one, list | tuple) and type(one) is type(other):
+        return len(one) == len(other) and all(map(same, one, other))
+    return bool(one == other)
+
+
+def same_fields(one: Any, other: Any) -> bool:
+    """The same for the fields of two dataclasses of one class."""
+    return all(same(getattr(one, field.name), getattr(other, field.name)) for field in fields(one))
+
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+
+def with_names(options: type) -> Callable[[Function], Function]:
+    """Shows the names of the options of a function, which ``**options`` would hide from `help` and completion."""
+
+    def named_(function: Function) -> Function:
+        signature = inspect.signature(function)
+        known = [one for one in signature.parameters.values() if one.kind is not one.VAR_KEYWORD]
+        names = [name for name in options.__annotations__ if name not in signature.parameters]
+        more = [inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=None) for name in names]
+        setattr(function, "__signature__", signature.replace(parameters=[*known, *more]))  # noqa: B010
+        return function
+
+    return named_
 
 
 def pair(value: Any) -> Any:
     """Two values of a list or an array as a tuple, one of an array as a number; anything else as it is."""
-    value = _plain(value, 0)
+    if isinstance(value, np.ndarray) and not np.ma.isMaskedArray(value):
+        value = value.tolist()
     return tuple(value) if isinstance(value, list) else value
 
 

@@ -12,9 +12,11 @@ from ._core import Certificate, ContactState, HeightMap, Normalisation, SceneFil
 from .typing import Undefined
 
 
-def height_map(values: NDArray[np.float64], size: tuple[float, float], undefined: Undefined) -> HeightMap:
+def height_map(
+    values: NDArray[np.float64], size: tuple[float, float], undefined: Undefined, axes: str | None = None
+) -> HeightMap:
     """A map."""
-    return HeightMap(values, size, undefined=undefined)
+    return HeightMap._with_axes(HeightMap(values, size, undefined=undefined), axes)
 
 
 def state(kept: bytes, fields: list[NDArray[np.float64] | None]) -> ContactState:

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _core
+from ._arrays import checked_map
 from ._core import HeightMap
 from .typing import Axis, Direction
 
@@ -19,7 +20,18 @@ def parameters(heights: HeightMap, *, periodic: bool = False) -> dict[str, float
 
     Those of the standard are Sa, Sq, Ssk, Sku, Sp, Sv, Sz, Sdq, Sdr, Sk, Spk, Svk, Sal, Str, Std, Spd and Spc.
 
-    None where the map does not define one. Lengths are in the unit of the map, Std in degrees.
+    Parameters
+    ----------
+    heights : HeightMap
+        The map; undefined points are left out where the parameter allows it.
+    periodic : bool
+        Whether the map is periodic, for the gradient and the curvature.
+
+    Returns
+    -------
+    dict of float or None
+        The parameters by their names, None where the map does not define one. Lengths are in the unit of the map, Std
+        in degrees.
 
     Examples
     --------
@@ -28,7 +40,7 @@ def parameters(heights: HeightMap, *, periodic: bool = False) -> dict[str, float
     >>> round(fc.statistics.parameters(rough)["Sq"], 12)
     0.01
     """
-    return _core.parameters(heights, periodic)
+    return _core.parameters(checked_map(heights), periodic)
 
 
 def power_spectrum(
@@ -68,9 +80,9 @@ def power_spectrum(
     Returns
     -------
     dict of numpy.ndarray
-        wavenumber, density, low, high, degrees_of_freedom.
+        Arrays ``wavenumber``, ``density``, ``low``, ``high`` and ``degrees_of_freedom``.
     """
-    return _core.power_spectrum(heights, direction, periodic, per_decade, level)
+    return _core.power_spectrum(checked_map(heights), direction, periodic, per_decade, level)
 
 
 def height_difference(
@@ -78,22 +90,68 @@ def height_difference(
 ) -> Curves:
     """Half the mean square of h(x + r) - h(x): the variance less the autocorrelation.
 
+    Parameters
+    ----------
+    heights : HeightMap
+        A map without undefined points.
+    periodic : bool
+        Whether the map is periodic.
+    per_decade : float
+        Number of rings in a decade of distances, > 0.
+    level : float
+        Confidence level of the band, between 0 and 1.
+
     Returns
     -------
     dict of numpy.ndarray
-        distance, half_square, low, high, pairs; no band (NaN) beyond half the side of a map that is not periodic.
+        Arrays ``distance``, ``half_square``, ``low``, ``high`` and ``pairs``; no band (NaN) beyond half the side of a
+        map that is not periodic.
     """
-    return _core.height_difference(heights, periodic, per_decade, level)
+    return _core.height_difference(checked_map(heights), periodic, per_decade, level)
 
 
 def slope(heights: HeightMap, axis: Axis = "x", *, periodic: bool = False, level: float = 0.95) -> Curves:
-    """Rms slope over distances along an axis: distance, rms, low, high."""
-    return _core.scale_dependence(heights, False, _along_y(axis), periodic, level)
+    """Rms slope over distances along an axis.
+
+    Parameters
+    ----------
+    heights : HeightMap
+        A map without undefined points.
+    axis : {"x", "y"}
+        The axis along which differences are taken.
+    periodic : bool
+        Whether the map is periodic.
+    level : float
+        Confidence level of the band, between 0 and 1.
+
+    Returns
+    -------
+    dict of numpy.ndarray
+        Arrays ``distance``, ``rms``, ``low`` and ``high``.
+    """
+    return _core.scale_dependence(checked_map(heights), False, _along_y(axis), periodic, level)
 
 
 def curvature(heights: HeightMap, axis: Axis = "x", *, periodic: bool = False, level: float = 0.95) -> Curves:
-    """Rms curvature over distances along an axis: distance, rms, low, high."""
-    return _core.scale_dependence(heights, True, _along_y(axis), periodic, level)
+    """Rms curvature over distances along an axis.
+
+    Parameters
+    ----------
+    heights : HeightMap
+        A map without undefined points.
+    axis : {"x", "y"}
+        The axis along which differences are taken.
+    periodic : bool
+        Whether the map is periodic.
+    level : float
+        Confidence level of the band, between 0 and 1.
+
+    Returns
+    -------
+    dict of numpy.ndarray
+        Arrays ``distance``, ``rms`` (one over a length), ``low`` and ``high``.
+    """
+    return _core.scale_dependence(checked_map(heights), True, _along_y(axis), periodic, level)
 
 
 def fit_spectrum(heights: HeightMap, *, periodic: bool = False, instrument: float | None = None) -> dict[str, Any]:
@@ -111,11 +169,11 @@ def fit_spectrum(heights: HeightMap, *, periodic: bool = False, instrument: floa
     Returns
     -------
     dict
-        hurst, roll_off and cut_off (wavelengths) as (value, low, high) with 95 % limits, None where there is only a
-        bound; goodness, which is below 0.01 for a surface that is not self-affine; fitted, the range of wavelengths of
-        the fit.
+        The fit: ``hurst``, ``roll_off`` and ``cut_off`` (wavelengths) as (value, low, high) with 95 % limits, None
+        where there is only a bound; ``goodness``, which is below 0.01 for a surface that is not self-affine;
+        ``fitted``, the range of wavelengths of the fit.
     """
-    return _core.fit_spectrum(heights, periodic, instrument)
+    return _core.fit_spectrum(checked_map(heights), periodic, instrument)
 
 
 def _along_y(axis: Axis) -> bool:

@@ -19,6 +19,7 @@ __all__ = [
     "Boundary",
     "ConductanceDict",
     "CropDict",
+    "Detrend",
     "Direction",
     "EffectsDict",
     "ElectricalDict",
@@ -29,6 +30,7 @@ __all__ = [
     "Heights",
     "Method",
     "Output",
+    "PressOptions",
     "PronyDict",
     "ReadOptions",
     "Rheology",
@@ -65,6 +67,7 @@ Direction = Literal["radial", "x", "y"]
 Axis = Literal["x", "y"]
 Waves = Literal["waves", "rings"]
 Boundary = Literal["free", "periodic"]
+Detrend = Literal["none", "mean", "plane", "quadric", "sphere", "cylinder"]
 
 
 class HardnessDict(TypedDict):
@@ -163,15 +166,12 @@ class CropDict(TypedDict):
     cells: NotRequired[int]
 
 
-class ReadOptions(TypedDict, total=False):
-    """Options of `read_surface`: the keys of ``[scene.surface]`` in a scene."""
+class PressOptions(TypedDict, total=False):
+    """Options of `press` that say how a map is read and prepared: keys of ``[scene.surface]`` in a scene."""
 
     channel: int | str
     format: str
-    unit: str
     lateral_unit: str
-    size: str | Sequence[str]
-    cell: str | Sequence[str]
     height_scale: str
     decimal: str
     axes: Literal["xy", "yx"]
@@ -185,10 +185,18 @@ class ReadOptions(TypedDict, total=False):
     tip_radius: str
     undefined: Literal["no_contact"]
     fill: str
-    detrend: Literal["none", "mean", "plane", "quadric", "sphere", "cylinder"]
     filter_across: str
     cells: int
     rows: int
     mirror: Axis
     rotate: Literal[0, 90, 180, 270]
     window: Literal["hann"]
+
+
+class ReadOptions(PressOptions, total=False):
+    """Options of `read_surface`: the keys of ``[scene.surface]`` in a scene."""
+
+    unit: str
+    size: str | Sequence[str]
+    cell: str | Sequence[str]
+    detrend: Detrend

@@ -111,5 +111,5 @@ pub use run::outcome::{Options, SceneOutcome};
 pub use run::pilot::SharedStop;
 pub use run::scene_job::{SceneJob, jobs};
 pub use run::state_result::ModelResult;
-pub use run::warnings::StateNotes;
+pub use run::warnings::{StateNotes, Warning};
 pub use tell::info::{info, info_json, info_statistics};

@@ -6,7 +6,7 @@ use contact_model::{Cells, Scene};
 
 /// Number of the format of stored states. Raise it with anything that changes a state: the numbers of a model or of
 /// `surface-gen`, or what is stored of a state. `bem3d` has a number of its own, which enters the keys too.
-pub const FORMAT: u32 = 11;
+pub const FORMAT: u32 = 12;
 
 /// Time of a picture and of each of the cells that it shows, by scenes of 129 to 2049 cells a side.
 pub(crate) const MILLISECONDS_OF_PICTURE: f64 = 40.0;

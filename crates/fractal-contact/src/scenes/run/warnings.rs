@@ -26,19 +26,29 @@ pub(crate) type Concerned<'a> = (&'a ContactState, Option<&'a GridErrors>);
 
 /// A warning on a state.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub(crate) enum Warning {
+pub enum Warning {
+    /// Fewer than ten cells are in contact.
     FewCells,
+    /// One cell carries most of the load.
     OneCell,
+    /// Cells at the edge of the rectangle are in contact.
     Edge,
+    /// The pressure is above the hardness.
     Yield,
+    /// The cells are too large for the contact.
     Area,
+    /// The requested accuracy is not reached.
     Accuracy,
+    /// A requested stiffness is not known.
     Stiffness,
+    /// The coupling of normal and tangential tractions is neglected.
     Coupling,
+    /// Cells in contact border undefined points.
     Rim,
 }
 
 impl Warning {
+    /// All of them, in the order in which they are told.
     pub const ALL: [Self; 9] = [
         Self::FewCells,
         Self::OneCell,
@@ -50,6 +60,10 @@ impl Warning {
         Self::Coupling,
         Self::Rim,
     ];
+
+    /// The remedy for contact at the edge of a map without a tilt.
+    pub const EDGE_WITHOUT_TILT: &'static str = "With a free boundary the edge then decides the answer too. Use a larger map or a smaller \
+        load, or choose `boundary = \"periodic\"` if the surface is a part of a larger one.";
 
     /// What stands in the row of the state.
     pub fn label(self) -> &'static str {
@@ -66,8 +80,8 @@ impl Warning {
         }
     }
 
-    /// What it means and what to do about it, in full sentences.
-    fn advice(self) -> &'static str {
+    /// What it means and what to do about it, in full sentences with the keys of a scene.
+    pub fn advice(self) -> &'static str {
         match self {
             Self::FewCells => {
                 "The numbers are then those of the grid and not of the surface. Use a larger load or smaller cells."
@@ -109,7 +123,7 @@ impl Warning {
 
     /// What a run says of all states that it concerns: how many of the `counted` ones, the worst number among
     /// them, and what to do.
-    pub fn sentence(self, scene: &SceneFile, concerned: &[Concerned<'_>], counted: usize) -> String {
+    pub(crate) fn sentence(self, scene: &SceneFile, concerned: &[Concerned<'_>], counted: usize) -> String {
         let states = match (concerned.len(), counted) {
             (1, 1) => "In this state".to_owned(),
             (count, all) if count == all => format!("In all {all} states"),
@@ -172,17 +186,14 @@ impl Warning {
             }
         };
         let advice = match self {
-            Self::Edge if !is_tilted(scene) => {
-                "With a free boundary the edge then decides the answer too. Use a larger map or a smaller load, or choose \
-                 `boundary = \"periodic\"` if the surface is a part of a larger one."
-            }
+            Self::Edge if !is_tilted(scene) => Self::EDGE_WITHOUT_TILT,
             other => other.advice(),
         };
         format!("{what} {advice}")
     }
 
     /// All warnings that concern a state.
-    pub fn of(scene: &SceneFile, state: &ContactState, errors: Option<&GridErrors>) -> Vec<Self> {
+    pub(crate) fn of(scene: &SceneFile, state: &ContactState, errors: Option<&GridErrors>) -> Vec<Self> {
         let circumstances = Circumstances {
             flat: matches!(scene.surface, SceneSurface::Plain(Surface::Flat { .. })),
             // Where a hardness limits the pressure, no state is marked.
@@ -200,7 +211,7 @@ impl Warning {
     }
 
     /// All warnings as one note; `None` where there are none.
-    pub fn note(all: &[Self]) -> Option<String> {
+    pub(crate) fn note(all: &[Self]) -> Option<String> {
         let texts: Vec<&str> = all.iter().map(|warning| warning.label()).collect();
         (!texts.is_empty()).then(|| texts.join("; "))
     }
@@ -240,14 +251,15 @@ impl Circumstances {
     }
 }
 
-/// Notes on the states of a scene: those that a run of a scene file has in its results.
+/// Notes on the states of a scene, as a run of a scene file has them in its results. A program puts the remedies
+/// ([`Warning::advice`]) into the words of its own user.
 ///
 /// ```
 /// use contact_model::{ContactModel, Load, Scene, Surface};
 /// let scene = Scene::new(Surface::Sphere { radius: 1.0, size: 1.0.into() }, 1.0);
 /// let state = bem3d::Bem3d { cells: 17, ..Default::default() }.prepare(&scene, 0)?.solve(Load::force(1e-4))?;
 /// let notes = fractal_contact::scenes::StateNotes::new(&scene).of(&state);
-/// assert!(notes[0].starts_with("fewer than 10 contact cells: "));
+/// assert_eq!(notes[0].label(), "fewer than 10 contact cells");
 /// # Ok::<(), contact_model::Error>(())
 /// ```
 #[derive(Debug, Clone, Copy)]
@@ -267,10 +279,9 @@ impl StateNotes {
         })
     }
 
-    /// The warnings on a state, each followed by a colon and the remedy.
-    pub fn of(&self, state: &ContactState) -> Vec<String> {
-        let note = |warning: Warning| format!("{}: {}", warning.label(), warning.advice());
-        self.0.warnings(state, false).into_iter().map(note).collect()
+    /// The warnings on a state.
+    pub fn of(&self, state: &ContactState) -> Vec<Warning> {
+        self.0.warnings(state, false)
     }
 }
 
