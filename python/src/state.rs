@@ -6,8 +6,8 @@ use crate::quantities::{is_named_where_known, object};
 use fractal_contact::quantities::{QUANTITIES, Role, StateQuantity};
 use fractal_contact::scenes::StateNotes;
 use fractal_contact::{
-    Certificate as RustCertificate, ContactState as RustState, FIELDS, Field, FieldQuantity,
-    Normalisation as RustNormalisation, PathMemory, Scene, SolveReport, Value,
+    Certificate as RustCertificate, ContactResolution, ContactState as RustState, FIELDS, Field,
+    FieldQuantity, Normalisation as RustNormalisation, PathMemory, Scene, SolveReport, Value,
 };
 use numpy::ndarray::Dimension;
 use numpy::{BorrowError, PyArray, PyArray1, PyArrayDyn, PyArrayMethods};
@@ -287,14 +287,25 @@ impl PyContactState {
     }
 }
 
+impl PyContactState {
+    /// How well cells resolve the contact; a formula has none.
+    fn resolution_of_cells(&self) -> Option<ContactResolution> {
+        self.state.resolution.filter(|_| self.state.report.contact_cells.is_some())
+    }
+}
+
 #[pymethods]
 impl PyContactState {
     /// int or None: cells in contact at an edge of a free rectangle.
     #[getter]
     fn edge_cells(&self) -> Option<usize> {
-        // A formula has no cells.
-        let resolution = self.state.resolution.filter(|_| self.state.report.contact_cells.is_some());
-        resolution.map(|resolution| resolution.edge_cells)
+        self.resolution_of_cells().map(|resolution| resolution.edge_cells)
+    }
+
+    /// int or None: cells in contact that share an edge with an undefined point of the surface.
+    #[getter]
+    fn rim_cells(&self) -> Option<usize> {
+        self.resolution_of_cells().map(|resolution| resolution.rim_cells)
     }
 
     /// numpy.ndarray or None: areas of the connected contacts (length^2), the largest first; shape

@@ -625,6 +625,9 @@ class ContactState:
     def edge_cells(self) -> int | None:
         """int or None: cells in contact at an edge of a free rectangle."""
     @property
+    def rim_cells(self) -> int | None:
+        """int or None: cells in contact that share an edge with an undefined point of the surface."""
+    @property
     def patches(self) -> NDArray[np.float64] | None:
         """numpy.ndarray or None: areas of the connected contacts (length^2), the largest first; shape
         (patches,). Read-only.

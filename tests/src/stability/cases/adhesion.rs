@@ -169,12 +169,11 @@ fn below_a_cell(ledger: &mut Ledger, _: Effort) -> Result<()> {
     let flat = |cells: usize| map(cells, 1.0, |_, _| 0.0);
     let (work, range) = (0.02, 0.02);
     let allowed = match path(&attracted(&flat(8)?, work, range)).map(|_| ()) {
-        Err(Error::Domain { name, value, expected }) => {
-            ledger.must(name == "side of a cell" && (value - 0.125).abs() < 1e-12, || {
+        Err(Error::OutOfRange { name, value, max, .. }) => {
+            ledger.must(name == bem3d::UNRESOLVED_RANGE && (value - 0.125).abs() < 1e-12, || {
                 format!("{name} {value}")
             });
-            let words: Vec<&str> = expected.split([' ', ',']).collect();
-            words.iter().find_map(|word| word.parse::<f64>().ok()).unwrap_or(f64::NAN)
+            max
         }
         other => {
             ledger.must(false, || format!("a range below a cell: {:?}", other.is_ok()));
