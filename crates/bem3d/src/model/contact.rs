@@ -3,7 +3,6 @@
 
 use super::adhesive::AdhesivePath;
 use super::certificate::LoadError;
-use super::increment::pressed;
 use super::load::{LoadSequence, ScaledLoad, ScaledNormal, ScaledTangential};
 use super::options::{Bem3d, bytes_per_cell, friction_bytes_per_cell};
 use super::path_memory::{PlaceInLoads, Remembered};
@@ -15,10 +14,11 @@ use crate::parts::{Part, Recorder};
 use crate::response::normal::{self, Responding, StiffnessRequest};
 use crate::tuning::Tuning;
 use contact_model::{
-    ContactState, Error, Load, NormalLoad, Normalisation, PathMemory, PreparedContact, RequiredMemory,
-    Result, Scene, Status, Step, Stop,
+    ContactState, Error, Interrupted, Load, NormalLoad, Normalisation, PathMemory, PreparedContact,
+    RequiredMemory, Result, Scene, Status, Step, Stop, Watch,
 };
 use std::borrow::Cow;
+use std::cell::Cell;
 
 /// One surface under loads.
 ///
@@ -63,6 +63,7 @@ impl PreparedBem3d {
 
     /// The state of a load, with the given relation to other loads.
     fn at(&mut self, load: ScaledLoad, loads: LoadSequence, stop: Stop<'_>) -> Result<ContactState> {
+        let stop = &Heard { stop, heard: Cell::new(false) };
         if self.place.loads != loads {
             let solved = self.place.solved.take();
             self.begin(loads);
@@ -77,7 +78,7 @@ impl PreparedBem3d {
         let state = match self.state_at(load, loads, stop) {
             // What a solve finds while it is being stopped, such as a pull-off, need not be so.
             Err(error) if stop.stops() && !matches!(error, Error::Stopped { .. }) => {
-                return Err(Error::Stopped { best: None });
+                return Err(Interrupted.without_state());
             }
             found => found?,
         };
@@ -86,14 +87,16 @@ impl PreparedBem3d {
     }
 
     fn state_at(&mut self, load: ScaledLoad, loads: LoadSequence, stop: Stop<'_>) -> Result<ContactState> {
-        self.surface.forget_plans();
         if let (Some(sliding), LoadSequence::Single) = (&mut self.surface.sliding, loads) {
             sliding.begin();
         }
-        match &mut self.adhesion {
+        let state = match &mut self.adhesion {
             Some(adhesion) => adhesion.on(&mut self.surface).at(load, loads, stop),
             None => self.surface.at(load, stop),
-        }
+        };
+        // Those of the next load would depend on them, and the memory is free meanwhile.
+        self.surface.forget_plans();
+        state
     }
 
     /// Takes the virgin surface again.
@@ -103,6 +106,24 @@ impl PreparedBem3d {
         if let Some(adhesion) = &mut self.adhesion {
             adhesion.last = None;
         }
+    }
+}
+
+/// A stop that goes on to say so once it has: what was left unfinished is then never taken for finished.
+struct Heard<'a> {
+    stop: Stop<'a>,
+    heard: Cell<bool>,
+}
+
+impl Watch for Heard<'_> {
+    fn stops(&self) -> bool {
+        let stops = self.heard.get() || self.stop.stops();
+        self.heard.set(stops);
+        stops
+    }
+
+    fn residual(&self, residual: f64, tolerance: f64) {
+        self.stop.residual(residual, tolerance);
     }
 }
 
@@ -212,9 +233,10 @@ impl PreparedSurface {
         if self.sliding.as_ref().is_some_and(SurfaceFriction::is_coupled) {
             return self.at_coupled(target, tangential, stop);
         }
-        let (solved, tangent) = self.settle(target, self.limits(), stop);
+        let (solved, tangent) =
+            self.settle(target, self.limits(), stop).map_err(Interrupted::without_state)?;
         let error = self.load_error(target, &solved, tangent.as_ref());
-        let slid = self.slide(pressed(&solved), tangential, stop)?;
+        let slid = self.slide_under(&solved, tangential, stop)?;
         let recorder = self.problem.operators.recorder().clone();
         recorder.timed(Part::Results, || self.state(solved, tangent, error, slid, stop))
     }
@@ -259,24 +281,28 @@ impl PreparedSurface {
 
     /// Solves for the pressure and, where requested, for the stiffness. The stiffness may need a more
     /// accurate pressure than the certificate does: as long as undecided cells could change it by more than
-    /// the tolerance, the contact set is solved further.
+    /// the tolerance, the contact set is solved further. A pressure that was found before a stop has none.
+    ///
+    /// # Errors
+    /// [`Interrupted`] by the stop before a pressure was found.
     pub(super) fn settle(
         &mut self,
         target: Control,
         mut limits: Limits,
         stop: Stop<'_>,
-    ) -> (Solved, Option<Tangent>) {
+    ) -> std::result::Result<(Solved, Option<Tangent>), Interrupted> {
         let tuning = *self.problem.operators.tuning();
-        let guess = self.guess(target, limits, stop);
-        let mut solved = active_set::solve(&mut self.problem, target, guess, limits, stop);
-        if self.is_complete(&solved) || !self.outputs.needs_stiffness() {
-            return (solved, None);
+        let guess = self.guess(target, limits, stop)?;
+        let mut solved = active_set::solve(&mut self.problem, target, guess, limits, stop)?;
+        let has_tangent = solved.status != Status::Stopped && !self.is_complete(&solved);
+        if !has_tangent || !self.outputs.needs_stiffness() {
+            return Ok((solved, None));
         }
         // The last state is not needed any more, and as large as the contact.
         let last = self.last.take();
         let k = last.as_ref().and_then(|last| last.tangent.as_ref()).map(|&(_, k)| k);
         let q = last.and_then(|last| last.tangent_at(&solved, &self.responding(&solved).cells, &tuning));
-        let mut tangent = self.tangent(&solved, (q, None), k, stop);
+        let Ok(mut tangent) = self.tangent(&solved, (q, None), k, stop) else { return Ok((solved, None)) };
         for _ in 0..tuning.tightenings {
             let (error, before) = (self.tangent_error(&tangent), solved.residuals.worst());
             if solved.status != Status::Converged || error <= self.options.tolerance || stop.stops() {
@@ -287,7 +313,7 @@ impl PreparedSurface {
                 tuning.tightened(self.options.tolerance / error) * limits.tolerance.min(before);
             let continuation = std::mem::take(&mut solved.continuation);
             let again = Solved { continuation, ..solved.clone() };
-            let next = active_set::resume(&mut self.problem, target, again, limits, stop);
+            let Ok(next) = active_set::resume(&mut self.problem, target, again, limits, stop) else { break };
             solved.steps += next.steps;
             if next.residuals.worst() >= before {
                 solved.continuation = next.continuation;
@@ -300,44 +326,59 @@ impl PreparedSurface {
             let whole = tangent.whole.map(|whole| next.contact.carry(&solved.contact, whole.q()));
             let steps = solved.steps + tangent.stiffness.steps;
             solved = Solved { steps, status, ..next };
-            tangent = self.tangent(&solved, (Some(q), whole), k, stop);
+            tangent = match self.tangent(&solved, (Some(q), whole), k, stop) {
+                Ok(tangent) => tangent,
+                Err(Interrupted) => return Ok((solved, None)),
+            };
         }
-        (solved, Some(tangent))
+        Ok((solved, Some(tangent)))
     }
 
     /// The stiffnesses of a state from guesses of q, along the branch and of the whole contact, and of k.
+    ///
+    /// # Errors
+    /// [`Interrupted`] by the stop.
     pub(super) fn tangent(
         &mut self,
         solved: &Solved,
         (q, of_whole): (Option<Vec<f64>>, Option<Vec<f64>>),
         k: Option<f64>,
         stop: Stop<'_>,
-    ) -> Tangent {
+    ) -> std::result::Result<Tangent, Interrupted> {
         let responding = self.responding(solved);
         let (problem, tolerance) = (&mut self.problem, self.options.tolerance);
         let wanted = StiffnessRequest { tolerance, q, expected: k };
-        let stiffness = normal::solve_of_zero_mean(problem, solved, &responding, wanted, stop);
+        let stiffness = normal::solve_of_zero_mean(problem, solved, &responding, wanted, stop)?;
         let another = responding.cells.len() != solved.contact.len();
         let wanted = another && self.outputs.needs_fixed_area() && !self.is_full(&solved.contact);
-        let whole = wanted.then(|| {
+        let whole = if wanted {
             let whole = Responding::whole(solved, self.problem.bounds);
             let wanted = StiffnessRequest { tolerance, q: of_whole, expected: None };
-            normal::solve_of_zero_mean(&mut self.problem, solved, &whole, wanted, stop)
-        });
-        Tangent { stiffness, cells: responding.cells.into_owned(), whole }
+            Some(normal::solve_of_zero_mean(&mut self.problem, solved, &whole, wanted, stop)?)
+        } else {
+            None
+        };
+        Ok(Tangent { stiffness, cells: responding.cells.into_owned(), whole })
     }
 
     /// An upper estimate of the stiffness to a few per cent; infinite where the contact is complete.
-    pub(super) fn rough_stiffness(&mut self, solved: &Solved, stop: Stop<'_>) -> f64 {
+    ///
+    /// # Errors
+    /// [`Interrupted`] by the stop.
+    pub(super) fn rough_stiffness(
+        &mut self,
+        solved: &Solved,
+        stop: Stop<'_>,
+    ) -> std::result::Result<f64, Interrupted> {
         const ROUGH: f64 = 0.02;
         if self.is_complete(solved) {
-            return f64::INFINITY;
+            return Ok(f64::INFINITY);
         }
         let responding = self.responding(solved);
         let wanted = StiffnessRequest { tolerance: ROUGH, ..StiffnessRequest::default() };
-        let found = normal::solve(&mut self.problem, solved, &responding, wanted, stop);
+        let found = normal::solve(&mut self.problem, solved, &responding, wanted, stop)?;
         let k = found.k() * (1.0 + found.solve_error.min(1.0));
-        k * self.magnification(k)
+        Ok(k * self.magnification(k))
     }
 
     /// The cells that follow a small change of the load as it goes on: those below the hardness. On a path,

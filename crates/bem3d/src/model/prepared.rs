@@ -12,8 +12,8 @@ use crate::response::NormalStiffness;
 use crate::response::normal::magnification;
 use crate::tuning::Tuning;
 use contact_model::{
-    Boundary, Error, Hardness, HeightMap, Nondimensionalisation, Normalisation, Outputs, Result, Scene, Size,
-    Stop, Surface,
+    Boundary, Error, Hardness, HeightMap, Interrupted, Nondimensionalisation, Normalisation, Outputs, Result,
+    Scene, Size, Stop, Surface,
 };
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -225,15 +225,23 @@ impl PreparedSurface {
     }
 
     /// The guess for a target: the tangent at the last state, or a cold start.
-    pub(super) fn guess(&mut self, target: Control, limits: Limits, stop: Stop<'_>) -> Guess {
+    ///
+    /// # Errors
+    /// [`Interrupted`] by the stop.
+    pub(super) fn guess(
+        &mut self,
+        target: Control,
+        limits: Limits,
+        stop: Stop<'_>,
+    ) -> std::result::Result<Guess, Interrupted> {
         let tuning = *self.problem.operators.tuning();
         if let Some(last) = &self.last
             && let Some(guess) = last.extrapolated(target, &tuning)
         {
             let (nested, cells) = (self.problem.nested, self.problem.grid().count());
-            let predicted = || active_set::predicted_cells(&mut self.problem, &guess);
-            if !nested || !last.overshoots(target, cells, &tuning, predicted) {
-                return guess;
+            let predicted = || active_set::predicted_cells(&mut self.problem, &guess, stop);
+            if !nested || !last.overshoots(target, cells, &tuning, predicted)? {
+                return Ok(guess);
             }
         }
         active_set::cold_start(&mut self.problem, target, limits, stop)
