@@ -290,7 +290,7 @@ mod tuning;
 #[doc(no_inline)]
 pub use contact_model::*;
 pub use kernel::love;
-pub use model::{BYTES_PER_CELL, Bem3d, Method, UNRESOLVED_RANGE, bytes_per_cell};
+pub use model::{BYTES_PER_CELL, Bem3d, Method, UNRESOLVED_RANGE, solve_bytes};
 
 #[doc(hidden)]
 pub mod benchmarks;

@@ -4,21 +4,23 @@
 use super::adhesive::AdhesivePath;
 use super::certificate::LoadError;
 use super::load::{LoadSequence, ScaledLoad, ScaledNormal, ScaledTangential};
-use super::options::{Bem3d, bytes_per_cell, friction_bytes_per_cell};
+use super::options::Bem3d;
 use super::path_memory::{PlaceInLoads, Remembered};
 use super::prepared::{PreparedSurface, Tangent};
 use super::sliding::SurfaceFriction;
+use super::solve_memory::{factor_bytes, solve_bytes};
 use crate::active_set::{self, Control, Limits, Solved};
 use crate::geometry::{CellSet, Grid};
 use crate::parts::{Part, Recorder};
 use crate::response::normal::{self, Responding, StiffnessRequest};
 use crate::tuning::Tuning;
 use contact_model::{
-    ContactState, Error, Interrupted, Load, NormalLoad, Normalisation, PathMemory, PreparedContact,
+    Cells, ContactState, Error, Interrupted, Load, NormalLoad, Normalisation, PathMemory, PreparedContact,
     RequiredMemory, Result, Scene, Status, Step, Stop, Watch,
 };
 use std::borrow::Cow;
 use std::cell::Cell;
+use std::f64::consts::PI;
 
 /// One surface under loads.
 ///
@@ -139,15 +141,11 @@ impl PreparedContact for PreparedBem3d {
 
     /// Cost O(N).
     fn required_memory(&self, load: Load) -> Option<RequiredMemory> {
-        if self.adhesion.is_some() {
-            // Attraction reaches beyond the contact, and how far is not known before.
-            return None;
-        }
         let surface = &self.surface;
         let Grid { columns, rows, .. } = surface.problem.grid();
         let contact = surface.expected_contact(load.normal);
-        let friction = surface.sliding.as_ref().map_or(0.0, |_| friction_bytes_per_cell(contact));
-        let bytes = (bytes_per_cell(contact) + friction) * columns as f64 * rows as f64;
+        let bytes = solve_bytes(&surface.effects, &surface.outputs, Cells { columns, rows }, contact);
+        let bytes = bytes + factor_bytes(surface.largest_factor(load.normal, contact));
         Some(RequiredMemory { what: format!("a solve on {columns} columns x {rows} rows").into(), bytes })
     }
 
@@ -252,6 +250,25 @@ impl PreparedSurface {
             Control::Force(asked) => LoadError::of_force((solved.p.iter().sum::<f64>() - asked) / asked),
             Control::Approach(_) => self.force_error(solved, self.stiffest(solved, tangent), 0.0),
         }
+    }
+
+    /// The largest set of cells that a solve may factor, where a share of the cells touches.
+    fn largest_factor(&self, load: NormalLoad, contact: f64) -> usize {
+        let (problem, tuning) = (&self.problem, self.problem.operators.tuning());
+        let (planner, window) = (problem.operators.planner(), problem.grid().window());
+        let (mut low, mut high) = (0, tuning.largest_factor);
+        while low < high {
+            let middle = (low + high).div_ceil(2);
+            (low, high) = if planner.factors(middle, window) { (middle, high) } else { (low, middle - 1) };
+        }
+        if contact * problem.grid().count() as f64 > 2.0 * low as f64 {
+            return 0;
+        }
+        // The first guess of a light load: the cells below a plane that one cell alone would hold.
+        let NormalLoad::Force(force) = load else { return low };
+        let force = self.nondimensional.force_in(force) / PI;
+        let reach = problem.candidates.range().first + force * problem.operators.table().own();
+        problem.candidates.z().iter().filter(|z| **z < reach).take(low).count()
     }
 
     /// An estimate of the share of the cells that a load brings into contact.

@@ -12,8 +12,8 @@ use crate::response::NormalStiffness;
 use crate::response::normal::magnification;
 use crate::tuning::Tuning;
 use contact_model::{
-    Boundary, Error, Hardness, HeightMap, Interrupted, Nondimensionalisation, Normalisation, Outputs, Result,
-    Scene, Size, Stop, Surface,
+    Boundary, Effects, Error, Hardness, HeightMap, Interrupted, Nondimensionalisation, Normalisation,
+    Outputs, Result, Scene, Size, Stop, Surface,
 };
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -42,6 +42,7 @@ impl Tangent {
 pub struct PreparedSurface {
     pub(super) options: Bem3d,
     pub(super) outputs: Outputs,
+    pub(super) effects: Effects,
     pub(super) problem: Problem,
     pub(super) nondimensional: Nondimensionalisation,
     /// Unit of lengths normal to the surface: the rms height where there is one.
@@ -152,6 +153,7 @@ impl PreparedSurface {
         };
         Ok(Self {
             options,
+            effects: scene.effects,
             outputs: profile::outputs(scene.outputs, problem.operators.table().kernel()),
             problem,
             nondimensional,
