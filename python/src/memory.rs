@@ -12,8 +12,8 @@ pub fn check(py: Python<'_>, what: impl Into<Cow<'static, str>>, bytes: f64) -> 
     check_memory(what, bytes).map_err(|error| of_model(py, error))
 }
 
-/// Bytes of a contact below which its solves are not looked at, those of 200 cells a side: to ask the system would
-/// take a part of their time.
+/// Bytes of a contact, those of 200 cells a side, or of a solve, below which it is not looked at: to ask the system
+/// would take a part of its time.
 const SMALL: f64 = 2e6;
 
 /// Whether contacts that need this much at least are looked at before each solve.
@@ -29,8 +29,8 @@ pub fn check_solve<C: Send + ?Sized>(
     required: impl FnOnce(&mut C) -> Option<RequiredMemory> + Send,
 ) -> PyResult<()> {
     match py.detach(|| required(contact)) {
-        Some(RequiredMemory { what, bytes }) => check(py, what, bytes),
-        None => Ok(()),
+        Some(RequiredMemory { what, bytes }) if bytes > SMALL => check(py, what, bytes),
+        _ => Ok(()),
     }
 }
 

@@ -282,18 +282,22 @@ impl PreparedSurface {
             }
             // Rough contact has an area of about 2 F/(E* g), g the rms gradient.
             NormalLoad::Force(force) => {
-                let squares = z.chunks_exact(self.problem.grid().columns).flat_map(|row| row.windows(2));
-                let squares =
-                    squares.map(|pair| (pair[1] - pair[0]).powi(2)).filter(|square| square.is_finite());
-                let (sum, count) =
-                    squares.fold((0.0, 0.0), |(sum, count), square| (sum + square, count + 1.0));
-                let gradient = self.height / self.cell().0 * (2.0 * sum / f64::max(count, 1.0)).sqrt();
+                let gradient = *self.gradient.get_or_init(|| self.rms_gradient());
                 let share = 2.0 * force / (self.normalisation.contact_modulus * self.size.area() * gradient);
                 // Of a flat surface all.
                 if share.is_finite() { share.clamp(0.0, 1.0) } else { 1.0 }
             }
             _ => 1.0,
         }
+    }
+
+    /// The rms gradient of the heights, from differences along x.
+    fn rms_gradient(&self) -> f64 {
+        let z = self.problem.candidates.z();
+        let squares = z.chunks_exact(self.problem.grid().columns).flat_map(|row| row.windows(2));
+        let squares = squares.map(|pair| (pair[1] - pair[0]).powi(2)).filter(|square| square.is_finite());
+        let (sum, count) = squares.fold((0.0, 0.0), |(sum, count), square| (sum + square, count + 1.0));
+        self.height / self.cell().0 * (2.0 * sum / f64::max(count, 1.0)).sqrt()
     }
 
     /// Solves for the pressure and, where requested, for the stiffness. The stiffness may need a more

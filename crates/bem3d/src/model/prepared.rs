@@ -16,7 +16,7 @@ use contact_model::{
     Outputs, Result, Scene, Size, Stop, Surface,
 };
 use std::f64::consts::PI;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// The stiffnesses of a state.
 #[derive(Debug)]
@@ -50,6 +50,8 @@ pub struct PreparedSurface {
     pub(super) normalisation: Normalisation,
     /// The hardness, nondimensional: the upper bound of the net pressure.
     pub(super) hardness: Option<f64>,
+    /// The rms gradient, once it was asked for.
+    pub(super) gradient: OnceLock<f64>,
     /// Mean of z over the defined points.
     pub(super) mean: f64,
     /// Number of defined points.
@@ -160,6 +162,7 @@ impl PreparedSurface {
             height,
             normalisation,
             hardness,
+            gradient: OnceLock::new(),
             mean,
             defined,
             last: None,
