@@ -139,34 +139,37 @@ fn light_and_middle_loads_need_no_more_than_is_told() {
     }
 }
 
+/// What makes a scene one with an effect.
+type Change = fn(&mut Scene);
+
 #[test]
 fn effects() {
     let _alone = alone();
-    let changes: [(&str, fn(&mut Scene), &[f64]); 4] = [
-        ("hardness", |scene| scene.effects.hardness = Hardness::Limit { pressure: 0.2 }, &[15.0]),
+    let changes: [(&str, Change, f64); 4] = [
+        ("hardness", |scene| scene.effects.hardness = Hardness::Limit { pressure: 0.2 }, 15.0),
         (
             "friction",
             |scene| {
                 scene.effects.friction = Friction::coulomb(0.3).with_coupling(Some(Coupling::Neglected));
             },
-            &[100.0],
+            100.0,
         ),
-        ("short range", |scene| scene.effects.adhesion = Adhesion::ShortRange { work: 1e-6 }, &[5.0]),
+        ("short range", |scene| scene.effects.adhesion = Adhesion::ShortRange { work: 1e-6 }, 5.0),
         (
             "finite range",
             |scene| {
                 let law = AdhesionLaw::Exponential;
                 scene.effects.adhesion = Adhesion::FiniteRange { work: 1e-5, range: 0.01, law };
             },
-            &[20.0],
+            20.0,
         ),
     ];
     for (name, change, force_bar) in changes {
         for boundary in [Boundary::Free, Boundary::Periodic] {
             let model = Bem3d { cells: 129, tolerance: 1e-5, ..Bem3d::default() };
             println!("{name}");
-            for ratio in told_over_peak(&scene(boundary, change), model, force_bar) {
-                assert!(ratio >= 1.0 && ratio <= WITH_EFFECTS, "{name}, {boundary:?}: {ratio}");
+            for ratio in told_over_peak(&scene(boundary, change), model, &[force_bar]) {
+                assert!((1.0..=WITH_EFFECTS).contains(&ratio), "{name}, {boundary:?}: {ratio}");
             }
         }
     }
