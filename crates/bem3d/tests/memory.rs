@@ -22,7 +22,7 @@ const AT_MOST: f64 = 1.5;
 /// The same with effects, whose need depends on more than the size.
 const WITH_EFFECTS: f64 = 2.0;
 
-struct CountingAllocator;
+struct PeakAllocator;
 
 fn count(size: usize) {
     let now = NOW.fetch_add(size, Ordering::Relaxed) + size;
@@ -30,7 +30,7 @@ fn count(size: usize) {
 }
 
 // SAFETY: every call is passed on to the system's allocator unchanged.
-unsafe impl GlobalAlloc for CountingAllocator {
+unsafe impl GlobalAlloc for PeakAllocator {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         count(layout.size());
         unsafe { System.alloc(layout) }
@@ -51,7 +51,7 @@ unsafe impl GlobalAlloc for CountingAllocator {
 }
 
 #[global_allocator]
-static ALLOCATOR: CountingAllocator = CountingAllocator;
+static ALLOCATOR: PeakAllocator = PeakAllocator;
 
 /// A rough surface of bodies that are alike, with all outputs that its effects allow.
 fn scene(boundary: Boundary, change: impl FnOnce(&mut Scene)) -> Scene {

@@ -145,7 +145,7 @@ impl PreparedContact for PreparedBem3d {
         let Grid { columns, rows, .. } = surface.problem.grid();
         let contact = surface.expected_contact(load.normal);
         let bytes = solve_bytes(&surface.effects, &surface.outputs, Cells { columns, rows }, contact);
-        let bytes = bytes + factor_bytes(surface.largest_factor(load.normal, contact));
+        let bytes = bytes + factor_bytes(surface.largest_factor(load.normal, contact), contact);
         Some(RequiredMemory { what: format!("a solve on {columns} columns x {rows} rows").into(), bytes })
     }
 
@@ -252,8 +252,9 @@ impl PreparedSurface {
         }
     }
 
-    /// The largest set of cells that a solve may factor, where a share of the cells touches.
-    fn largest_factor(&self, load: NormalLoad, contact: f64) -> usize {
+    /// The largest set of cells that a solve may factor, where a share of the cells touches; `None` where that is
+    /// too many.
+    fn largest_factor(&self, load: NormalLoad, contact: f64) -> Option<usize> {
         let (problem, tuning) = (&self.problem, self.problem.operators.tuning());
         let (planner, window) = (problem.operators.planner(), problem.grid().window());
         let (mut low, mut high) = (0, tuning.largest_factor);
@@ -262,13 +263,13 @@ impl PreparedSurface {
             (low, high) = if planner.factors(middle, window) { (middle, high) } else { (low, middle - 1) };
         }
         if contact * problem.grid().count() as f64 > 2.0 * low as f64 {
-            return 0;
+            return None;
         }
         // The first guess of a light load: the cells below a plane that one cell alone would hold.
-        let NormalLoad::Force(force) = load else { return low };
+        let NormalLoad::Force(force) = load else { return Some(low) };
         let force = self.nondimensional.force_in(force) / PI;
         let reach = problem.candidates.range().first + force * problem.operators.table().own();
-        problem.candidates.z().iter().filter(|z| **z < reach).take(low).count()
+        Some(problem.candidates.z().iter().filter(|z| **z < reach).take(low).count())
     }
 
     /// An estimate of the share of the cells that a load brings into contact.

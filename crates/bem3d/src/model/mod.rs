@@ -285,7 +285,7 @@ mod tests {
         };
         // The bearing area: r^2 < 2 R d, up to the cells at its edge.
         let area = std::f64::consts::PI * 2.0 * 0.005;
-        let wanted = of_share(&scene.outputs, area);
+        let wanted = of_share(&scene.outputs, area) + solve_memory::factor_bytes(None, area);
         approx::assert_relative_eq!(bytes(Load::approach(0.005)), wanted, max_relative = 0.05);
         let least = of_share(&scene.outputs, 0.0);
         assert!(bytes(Load::force(1e-9)) >= least && bytes(Load::force(1e-9)) < 1.1 * least);

@@ -65,8 +65,13 @@ pub fn solve_bytes(effects: &Effects, outputs: &Outputs, cells: Cells, contact: 
     (share * dense + always * count).min(dense)
 }
 
-/// Memory of the factor of a set of cells, in bytes.
-pub(super) fn factor_bytes(cells: usize) -> f64 {
-    let products = if cells > FEWEST { PRODUCTS } else { 0.0 };
-    products + FACTOR * (cells as f64).powi(2)
+/// Memory of factors in bytes: of the largest set of cells that may be factored on the grid, and of sets on coarser
+/// grids, which scattered contact has whose set is too large, `None`.
+pub(super) fn factor_bytes(largest: Option<usize>, contact: f64) -> f64 {
+    match largest {
+        Some(cells) if cells <= FEWEST => FACTOR * (cells as f64).powi(2),
+        Some(cells) => PRODUCTS + FACTOR * (cells as f64).powi(2),
+        None if SCATTERED * contact.sqrt() < 1.0 => PRODUCTS,
+        None => 0.0,
+    }
 }
